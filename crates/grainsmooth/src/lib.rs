@@ -1,0 +1,1 @@
+//! Virtual polycrystals with smooth, watertight grain boundaries.

@@ -1,0 +1,2 @@
+//! The `grainsmooth` program.
+fn main() {}

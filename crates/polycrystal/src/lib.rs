@@ -1,0 +1,1 @@
+//! The grain-boundary network of a polycrystal: junctions, relaxation, subdivision, measures, validation.

@@ -1,0 +1,1 @@
+//! Voronoi cells in two and three dimensions, welded into one cell complex.
