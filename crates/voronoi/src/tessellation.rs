@@ -1,0 +1,212 @@
+use glam::DVec3;
+
+use crate::batch::cut_cells;
+use crate::generator::Generator;
+use crate::measure::{CellMeasure, cell_measures};
+use crate::planar::cut_polygons;
+use crate::predicate::ExactInput;
+use crate::weld::weld;
+use crate::{Dimension, Domain, VoronoiError, Wall};
+
+macro_rules! id {
+    ($(#[$doc:meta])* $name:ident) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $name(pub u32);
+
+        impl $name {
+            /// The id as an index into the arrays of a [`Tessellation`].
+            pub fn index(self) -> usize {
+                self.0 as usize
+            }
+        }
+    };
+}
+
+id!(
+    /// Number of a cell: its seed's place in the input.
+    CellId
+);
+id!(
+    /// Number of a vertex.
+    VertexId
+);
+id!(
+    /// Number of a face (in the plane: of an edge between two cells).
+    FaceId
+);
+
+/// What lies on one side of a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Side {
+    /// A cell.
+    Cell(CellId),
+    /// The outside of the domain, beyond a wall.
+    Wall(Wall),
+}
+
+/// The cells of all seeds as one cell complex: shared vertices once, shared faces once.
+///
+/// In three dimensions a face is a convex polygon. In the plane it is the edge between two cells, with two corners.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tessellation {
+    pub(crate) domain: Domain,
+    pub(crate) seeds: Vec<DVec3>,
+    pub(crate) vertices: Vec<DVec3>,
+    pub(crate) face_sides: Vec<[Side; 2]>,
+    pub(crate) face_starts: Vec<usize>,
+    pub(crate) face_corners: Vec<VertexId>,
+    pub(crate) cell_starts: Vec<usize>,
+    pub(crate) cell_faces: Vec<FaceId>,
+}
+
+impl Tessellation {
+    /// Cuts the domain into the Voronoi cells of the seeds, in parallel. In the plane the seeds' z must be 0.
+    ///
+    /// The same seeds give the same result bit by bit whatever the number of threads.
+    ///
+    /// # Errors
+    /// [`VoronoiError`] names the first seed that is not finite, outside the domain or a duplicate.
+    pub fn new(domain: &Domain, seeds: &[DVec3]) -> Result<Self, VoronoiError> {
+        check_seeds(domain, seeds)?;
+        let input = ExactInput { domain, seeds };
+        let batches = match domain.dimension() {
+            Dimension::Three => cut_cells(input),
+            Dimension::Two => cut_polygons(input)?,
+        };
+        Ok(weld(input, &batches))
+    }
+
+    /// The domain that is divided up.
+    pub fn domain(&self) -> &Domain {
+        &self.domain
+    }
+
+    /// The seeds, one per cell.
+    pub fn seeds(&self) -> &[DVec3] {
+        &self.seeds
+    }
+
+    /// Positions of the vertices.
+    pub fn vertices(&self) -> &[DVec3] {
+        &self.vertices
+    }
+
+    /// Number of cells.
+    pub fn cell_count(&self) -> usize {
+        self.seeds.len()
+    }
+
+    /// Number of faces.
+    pub fn face_count(&self) -> usize {
+        self.face_sides.len()
+    }
+
+    /// All faces in order of id.
+    pub fn faces(&self) -> impl ExactSizeIterator<Item = FaceId> {
+        (0..u32::try_from(self.face_count()).expect("face ids fit 32 bits")).map(FaceId)
+    }
+
+    /// The two sides of a face: a cell first, then a cell of greater number or a wall.
+    pub fn face_sides(&self, face: FaceId) -> [Side; 2] {
+        self.face_sides[face.index()]
+    }
+
+    /// The corners of a face, counter-clockwise as seen from its second side.
+    ///
+    /// In the plane: start and end of the edge, its first side to the left.
+    pub fn face_corners(&self, face: FaceId) -> &[VertexId] {
+        &self.face_corners[self.face_starts[face.index()]..self.face_starts[face.index() + 1]]
+    }
+
+    /// The faces of a cell.
+    pub fn cell_faces(&self, cell: CellId) -> &[FaceId] {
+        &self.cell_faces[self.cell_starts[cell.index()]..self.cell_starts[cell.index() + 1]]
+    }
+
+    /// What lies beyond the faces of a cell, sorted: other cells by number, then walls.
+    pub fn neighbors(&self, cell: CellId) -> Vec<Side> {
+        let own = Side::Cell(cell);
+        let across = |face: &FaceId| {
+            let [first, second] = self.face_sides(*face);
+            if first == own { second } else { first }
+        };
+        let mut sides: Vec<Side> = self.cell_faces(cell).iter().map(across).collect();
+        sides.sort_unstable();
+        sides
+    }
+
+    /// Volume, surface and counts of every cell.
+    pub fn cell_measures(&self) -> Vec<CellMeasure> {
+        cell_measures(self)
+    }
+
+    /// The edges between corners of the faces (three dimensions), or the faces' own (in the plane).
+    pub fn edges(&self) -> Edges {
+        Edges::new(self)
+    }
+}
+
+/// The edges of a tessellation, each once.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Edges {
+    /// The two ends of each edge, smaller id first; sorted.
+    pub ends: Vec<[VertexId; 2]>,
+    /// For each corner of each face, in the order of the faces, the edge from it to the next corner.
+    pub of_corner: Vec<u32>,
+}
+
+impl Edges {
+    fn new(tessellation: &Tessellation) -> Self {
+        let mut uses: Vec<([VertexId; 2], usize)> = Vec::with_capacity(tessellation.face_corners.len());
+        let mut corner = 0;
+        for face in tessellation.faces() {
+            let corners = tessellation.face_corners(face);
+            for (&from, &to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+                uses.push(([from.min(to), from.max(to)], corner));
+                corner += 1;
+            }
+        }
+        uses.sort_unstable();
+        let mut edges = Self { ends: Vec::new(), of_corner: vec![0; uses.len()] };
+        for same in uses.chunk_by(|left, right| left.0 == right.0) {
+            let edge = u32::try_from(edges.ends.len()).expect("edge ids fit 32 bits");
+            edges.ends.push(same[0].0);
+            for (_, corner) in same {
+                edges.of_corner[*corner] = edge;
+            }
+        }
+        edges
+    }
+}
+
+fn check_seeds(domain: &Domain, seeds: &[DVec3]) -> Result<(), VoronoiError> {
+    if seeds.is_empty() {
+        return Err(VoronoiError::NoSeeds);
+    }
+    if seeds.len() > Generator::MAX_SEEDS {
+        return Err(VoronoiError::TooManySeeds { count: seeds.len() });
+    }
+    for (seed, &position) in seeds.iter().enumerate() {
+        if !position.is_finite() {
+            return Err(VoronoiError::NotFinite { seed, position });
+        }
+        if !domain.contains(position) {
+            return Err(VoronoiError::OutsideDomain { seed, position, domain: domain.to_string() });
+        }
+    }
+    let mut order: Vec<usize> = (0..seeds.len()).collect();
+    // Adding zero makes -0 and 0 the same place.
+    let key = |seed: usize| (seeds[seed] + DVec3::ZERO).to_array();
+    let compare = |a: &usize, b: &usize| {
+        let (left, right) = (key(*a), key(*b));
+        let by_axis = |axis: usize| left[axis].total_cmp(&right[axis]);
+        by_axis(0).then_with(|| by_axis(1)).then_with(|| by_axis(2)).then(a.cmp(b))
+    };
+    order.sort_unstable_by(compare);
+    let duplicates = order.windows(2).filter(|pair| key(pair[0]) == key(pair[1]));
+    match duplicates.map(|pair| (pair[0], pair[1])).min() {
+        Some((first, second)) => Err(VoronoiError::DuplicateSeeds { first, second, position: seeds[first] }),
+        None => Ok(()),
+    }
+}

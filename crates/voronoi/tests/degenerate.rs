@@ -1,0 +1,202 @@
+//! Seeds in special position: lattices, walls, lines, planes, spheres, near-duplicates, thin boxes.
+
+mod common;
+
+use common::{assert_complex, random_seeds, tessellate};
+use glam::DVec3;
+use voronoi::{Domain, Side, Tessellation, VoronoiError};
+
+/// Centres of the n x n x n cubes that fill the unit cube, and `offsets` from there in units of their edge.
+fn lattice(n: u32, offsets: &[DVec3]) -> Vec<DVec3> {
+    let mut seeds = Vec::new();
+    for (x, y, z) in (0..n).flat_map(|x| (0..n).flat_map(move |y| (0..n).map(move |z| (x, y, z)))) {
+        for offset in offsets {
+            let corner = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
+            seeds.push((corner + *offset) / f64::from(n));
+        }
+    }
+    seeds
+}
+
+fn jittered(seeds: &[DVec3], size: f64) -> Vec<DVec3> {
+    let noise = random_seeds(seeds.len(), 5);
+    seeds.iter().zip(noise).map(|(seed, noise)| *seed + (noise - 0.5) * size).collect()
+}
+
+const SIMPLE_CUBIC: [DVec3; 1] = [DVec3::splat(0.5)];
+const BODY_CENTRED: [DVec3; 2] = [DVec3::splat(0.25), DVec3::splat(0.75)];
+const FACE_CENTRED: [DVec3; 4] = [
+    DVec3::splat(0.25),
+    DVec3::new(0.25, 0.75, 0.75),
+    DVec3::new(0.75, 0.25, 0.75),
+    DVec3::new(0.75, 0.75, 0.25),
+];
+
+/// Face and vertex counts of the cell that holds the centre of the cube's inner part.
+fn inner_counts(tessellation: &Tessellation, near: DVec3) -> (usize, usize) {
+    let seeds = tessellation.seeds().iter().enumerate();
+    let distances = seeds.map(|(id, seed)| (seed.distance(near), id));
+    let (_, id) = distances.min_by(|a, b| a.0.total_cmp(&b.0)).expect("seeds");
+    let measure = tessellation.cell_measures()[id];
+    (measure.face_count, measure.vertex_count)
+}
+
+#[test]
+fn simple_cubic_lattices_have_cubes_with_six_faces() {
+    for n in [1, 2, 3, 5, 8] {
+        let tessellation = tessellate(&lattice(n, &SIMPLE_CUBIC));
+        assert_complex(&tessellation);
+        let corners = (n as usize + 1).pow(3);
+        assert_eq!(tessellation.vertices().len(), corners, "lattice of {n}");
+        assert!(tessellation.cell_measures().iter().all(|cell| cell.face_count == 6));
+    }
+}
+
+#[test]
+fn body_centred_lattices_have_kelvin_cells() {
+    for n in [4, 5] {
+        let tessellation = tessellate(&lattice(n, &BODY_CENTRED));
+        assert_complex(&tessellation);
+        assert_eq!(inner_counts(&tessellation, DVec3::splat(0.45)), (14, 24));
+    }
+}
+
+#[test]
+fn face_centred_lattices_have_rhombic_dodecahedra() {
+    let tessellation = tessellate(&lattice(4, &FACE_CENTRED));
+    assert_complex(&tessellation);
+    assert_eq!(inner_counts(&tessellation, DVec3::splat(0.45)), (12, 14));
+}
+
+#[test]
+fn jittered_lattices_are_complexes() {
+    for offsets in [&SIMPLE_CUBIC[..], &BODY_CENTRED[..], &FACE_CENTRED[..]] {
+        for size in [1e-15, 1e-13, 1e-10, 1e-7] {
+            assert_complex(&tessellate(&jittered(&lattice(4, offsets), size)));
+        }
+    }
+}
+
+#[test]
+fn few_seeds() {
+    for count in 1..=5 {
+        assert_complex(&tessellate(&random_seeds(count, 3)));
+    }
+    let alone = tessellate(&[DVec3::splat(0.3)]);
+    assert_eq!((alone.vertices().len(), alone.face_count()), (8, 6));
+}
+
+#[test]
+fn seeds_on_a_line_in_a_plane_and_on_a_sphere() {
+    let line: Vec<DVec3> = (1..9).map(|i| DVec3::splat(f64::from(i) / 9.0)).collect();
+    let plane: Vec<DVec3> = random_seeds(100, 1).iter().map(|seed| seed.with_z(0.5)).collect();
+    let mut sphere: Vec<DVec3> = random_seeds(300, 2)
+        .iter()
+        .map(|seed| DVec3::splat(0.5) + (*seed - 0.5).normalize_or(DVec3::X) * 0.3)
+        .collect();
+    sphere.push(DVec3::splat(0.5));
+    for seeds in [line, plane, sphere] {
+        assert_complex(&tessellate(&seeds));
+    }
+}
+
+#[test]
+fn exactly_cospherical_seeds_meet_in_one_vertex() {
+    // The points of the form (±3, ±4, 0) / 16 and their permutations lie on one sphere, exactly representable.
+    let mut seeds = Vec::new();
+    for (a, b) in [(3.0, 4.0), (3.0, -4.0), (-3.0, 4.0), (-3.0, -4.0)] {
+        for vector in [DVec3::new(a, b, 0.0), DVec3::new(0.0, a, b), DVec3::new(b, 0.0, a)] {
+            seeds.push(DVec3::splat(0.5) + vector / 16.0);
+        }
+    }
+    let tessellation = tessellate(&seeds);
+    assert_complex(&tessellation);
+    let at_centre = tessellation.vertices().iter().filter(|v| v.distance(DVec3::splat(0.5)) < 0.1);
+    assert_eq!(at_centre.count(), 1);
+}
+
+#[test]
+fn seeds_on_walls_edges_and_corners() {
+    let mut seeds = lattice(2, &[DVec3::ZERO, DVec3::new(0.5, 0.0, 0.0), DVec3::new(0.5, 0.5, 0.0)]);
+    seeds.extend([DVec3::ONE, DVec3::new(1.0, 1.0, 0.3), DVec3::new(0.2, 1.0, 0.7)]);
+    assert_complex(&tessellate(&seeds));
+}
+
+#[test]
+fn near_duplicates_keep_cells_of_their_own() {
+    for distance in [1e-8, 1e-12, 1e-15] {
+        let mut seeds = random_seeds(20, 8);
+        seeds.push(seeds[4] + DVec3::new(distance, 0.0, 0.0));
+        assert_complex(&tessellate(&seeds));
+    }
+}
+
+#[test]
+fn clusters_and_extreme_boxes() {
+    for size in [1e-2, 1e-6] {
+        let cluster: Vec<DVec3> = random_seeds(500, 4).iter().map(|seed| 0.4 + *seed * size).collect();
+        assert_complex(&tessellate(&cluster));
+    }
+    for size in
+        [DVec3::new(1.0, 1.0, 1000.0), DVec3::new(3.0, 1.0, 0.2), DVec3::splat(1e-9), DVec3::splat(1e9)]
+    {
+        let domain = Domain::cuboid(DVec3::ZERO, size).expect("positive sides");
+        let seeds: Vec<DVec3> = random_seeds(300, 6).iter().map(|seed| *seed * size).collect();
+        assert_complex(&Tessellation::new(&domain, &seeds).expect("valid seeds"));
+    }
+}
+
+#[test]
+fn degenerate_seeds_in_the_plane() {
+    let square = |n: u32| -> Vec<DVec3> {
+        let center = |i: u32| (f64::from(i) + 0.5) / f64::from(n);
+        (0..n * n).map(|i| DVec3::new(center(i % n), center(i / n), 0.0)).collect()
+    };
+    let circle: Vec<DVec3> = [(3.0, 4.0), (4.0, 3.0), (5.0, 0.0), (0.0, 5.0)]
+        .iter()
+        .flat_map(|(x, y)| [(*x, *y), (-*x, *y), (*x, -*y), (-*x, -*y)])
+        .map(|(x, y)| DVec3::new(0.5 + x / 16.0, 0.5 + y / 16.0, 0.0))
+        .collect();
+    let mut circle = circle;
+    circle.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    circle.dedup();
+    let line: Vec<DVec3> = (1..9).map(|i| DVec3::new(f64::from(i) / 9.0, 0.5, 0.0)).collect();
+    let diagonal: Vec<DVec3> = line.iter().map(|seed| DVec3::new(seed.x, seed.x, 0.0)).collect();
+    let alone = vec![DVec3::new(0.1, 0.9, 0.0)];
+    for seeds in [square(2), square(3), square(7), circle, line, diagonal, alone] {
+        let tessellation = Tessellation::new(&Domain::unit_square(), &seeds).expect("valid seeds");
+        assert_complex(&tessellation);
+    }
+    let lattice = Tessellation::new(&Domain::unit_square(), &square(7)).expect("valid seeds");
+    assert_eq!(lattice.vertices().len(), 64);
+}
+
+#[test]
+fn bad_seeds_are_named() {
+    let cube = Domain::unit_cube();
+    let message = |seeds: &[DVec3]| Tessellation::new(&cube, seeds).map(|_| ()).map_err(|e| e.to_string());
+    assert_eq!(Tessellation::new(&cube, &[]), Err(VoronoiError::NoSeeds));
+    let mut seeds = random_seeds(20, 1);
+    seeds[17] = DVec3::new(1.2, 0.0, 0.0);
+    assert_eq!(
+        message(&seeds),
+        Err("seed 17 at (1.2, 0, 0) lies outside the domain [0, 1] x [0, 1] x [0, 1]; move it inside or enlarge the box"
+            .to_string())
+    );
+    seeds[17] = DVec3::new(0.5, f64::NAN, 0.0);
+    assert!(matches!(Tessellation::new(&cube, &seeds), Err(VoronoiError::NotFinite { seed: 17, .. })));
+    seeds[17] = seeds[3];
+    let expected = VoronoiError::DuplicateSeeds { first: 3, second: 17, position: seeds[3] };
+    assert_eq!(Tessellation::new(&cube, &seeds), Err(expected));
+    assert!(matches!(
+        Domain::cuboid(DVec3::ZERO, DVec3::new(1.0, 0.0, 1.0)),
+        Err(VoronoiError::BadDomain { axis: 'y', .. })
+    ));
+}
+
+#[test]
+fn a_seed_on_a_wall_touches_it() {
+    let tessellation = tessellate(&[DVec3::new(0.0, 0.5, 0.5), DVec3::new(0.7, 0.5, 0.5)]);
+    let walls = tessellation.neighbors(voronoi::CellId(0));
+    assert!(walls.iter().filter(|side| matches!(side, Side::Wall(_))).count() == 5);
+}
