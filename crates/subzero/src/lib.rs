@@ -1,1 +1,52 @@
 //! Subdivision of curves, triangle meshes and polygon meshes, with connectivity apart from positions.
+//!
+//! A mesh holds connectivity only. Refining it gives the finer mesh and a [`StencilTable`] that says how each new
+//! point is averaged from the old ones, so that topology is refined once and new control points cost one `apply`:
+//!
+//! ```
+//! use glam::DVec3;
+//! use subzero::{Features, Refinement, TriangleMesh};
+//!
+//! let tetrahedron = vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
+//! let points = [DVec3::new(1., 1., 1.), DVec3::new(-1., 1., -1.), DVec3::new(1., -1., -1.), DVec3::new(-1., -1., 1.)];
+//!
+//! let mesh = TriangleMesh::new(4, tetrahedron, &Features::default())?;
+//! let Refinement { mesh: finer, stencils } = mesh.loop_refine();
+//! let finer_points = stencils.apply(&points);
+//!
+//! assert_eq!(finer.triangles().len(), 16);
+//! assert_eq!(finer_points.len(), 10);
+//! assert!((finer_points[0].x - 0.25).abs() < 1e-12);
+//! # Ok::<(), subzero::MeshError>(())
+//! ```
+
+mod counts;
+mod curve_mesh;
+mod error;
+mod features;
+mod ids;
+mod loop_scheme;
+mod point;
+mod sharpness;
+mod stencil;
+mod triangle_build;
+mod triangle_mesh;
+mod triangle_refine;
+
+pub use counts::{EdgeParent, MeshCounts, VertexParent};
+pub use curve_mesh::CurveMesh;
+pub use error::MeshError;
+pub use features::{BoundaryRule, Crease, Features, INFINITE_SHARPNESS, VertexRule};
+pub use loop_scheme::LoopWeights;
+pub use point::Point;
+pub use stencil::StencilTable;
+pub use triangle_mesh::TriangleMesh;
+
+/// One step of subdivision: the finer mesh, and how its points follow from the coarser mesh's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refinement<M> {
+    /// Connectivity of the finer level.
+    pub mesh: M,
+    /// One row per vertex of `mesh`, over the vertices of the mesh that was refined.
+    pub stencils: StencilTable,
+}

@@ -1,0 +1,131 @@
+//! Networks of cubic B-spline polylines.
+
+use rayon::prelude::*;
+
+use crate::ids::id;
+use crate::triangle_build::{check_size, check_vertex};
+use crate::{MeshError, Refinement, StencilTable, VertexRule};
+
+/// A network of polylines that subdivision turns into cubic B-spline curves; positions live beside it as slices.
+///
+/// Curves run through vertices with exactly two segments. Every other vertex (an open end, a triple point, an unused
+/// vertex) is a corner and stays where it is, as do the vertices marked as corners.
+///
+/// [`refine`](Self::refine) numbers by arithmetic. With V vertices, the vertex v stays v and the segment s gets the
+/// vertex V + s; its halves are the segments 2 s (at its start) and 2 s + 1, both in the direction of s. So vertex
+/// `v >= V` lies on segment `v - V`, and segment `s` is part of segment `s / 2`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurveMesh {
+    segments: Vec<[u32; 2]>,
+    /// Per vertex: the two segments of a smooth vertex, nothing for a corner.
+    curves: Vec<Option<[u32; 2]>>,
+}
+
+impl CurveMesh {
+    /// Connectivity of `segments` over `vertex_count` vertices.
+    ///
+    /// # Errors
+    /// [`MeshError`] names the place: a vertex id out of range, a segment that starts where it ends, or more elements
+    /// than 32-bit ids can count.
+    pub fn new(vertex_count: usize, segments: Vec<[u32; 2]>, corners: &[u32]) -> Result<Self, MeshError> {
+        check_size("vertices", vertex_count)?;
+        check_size("segments", segments.len())?;
+        let mut around: Vec<Vec<u32>> = vec![Vec::new(); vertex_count];
+        for (index, &[start, end]) in segments.iter().enumerate() {
+            for vertex in [start, end] {
+                check_vertex("segment", index, vertex, vertex_count)?;
+                around[vertex as usize].push(id(index));
+            }
+            if start == end {
+                return Err(MeshError::Degenerate { what: "segment", index, vertex: start });
+            }
+        }
+        let mut curves: Vec<Option<[u32; 2]>> =
+            around.into_iter().map(|segments| <[u32; 2]>::try_from(segments).ok()).collect();
+        for (index, &corner) in corners.iter().enumerate() {
+            check_vertex("corner", index, corner, vertex_count)?;
+            curves[corner as usize] = None;
+        }
+        Ok(Self { segments, curves })
+    }
+
+    /// Number of vertices, counting those that no segment uses.
+    pub fn vertex_count(&self) -> usize {
+        self.curves.len()
+    }
+
+    /// The two ends of each segment.
+    pub fn segments(&self) -> &[[u32; 2]] {
+        &self.segments
+    }
+
+    /// [`VertexRule::Smooth`] where a curve passes through, else [`VertexRule::Corner`].
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn vertex_rule(&self, v: u32) -> VertexRule {
+        if self.curves[v as usize].is_some() { VertexRule::Smooth } else { VertexRule::Corner }
+    }
+
+    /// The two neighbours of a smooth vertex along its curve; nothing at a corner.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn neighbours(&self, v: u32) -> Option<[u32; 2]> {
+        self.curves[v as usize].map(|segments| {
+            segments.map(|segment| {
+                let [start, end] = self.segments[segment as usize];
+                if start == v { end } else { start }
+            })
+        })
+    }
+
+    /// One step of cubic B-spline subdivision: (1, 6, 1)/8 at smooth vertices, (1, 1)/2 on segments.
+    ///
+    /// # Panics
+    /// If the finer network outgrows 32-bit ids.
+    pub fn refine(&self) -> Refinement<Self> {
+        let vertices = self.vertex_count();
+        for (what, count) in
+            [("vertices", vertices + self.segments.len()), ("segments", 2 * self.segments.len())]
+        {
+            if let Err(error) = check_size(what, count) {
+                panic!("the finer network does not fit: {error}");
+            }
+        }
+        let middle = |segment: usize| id(vertices + segment);
+        let segments = self
+            .segments
+            .par_iter()
+            .enumerate()
+            .flat_map_iter(|(s, &[start, end])| [[start, middle(s)], [middle(s), end]])
+            .collect();
+        let half_at = |v: u32, segment: u32| 2 * segment + u32::from(self.segments[segment as usize][0] != v);
+        let old = self
+            .curves
+            .par_iter()
+            .enumerate()
+            .map(|(v, curve)| curve.map(|ss| ss.map(|s| half_at(id(v), s))));
+        let new = (0..self.segments.len()).into_par_iter().map(|s| Some([id(2 * s), id(2 * s + 1)]));
+        let mesh = Self { segments, curves: old.chain(new).collect() };
+        Refinement { mesh, stencils: self.stencils() }
+    }
+
+    fn stencils(&self) -> StencilTable {
+        let vertices = self.vertex_count();
+        StencilTable::from_rows(vertices + self.segments.len(), |i, rows| {
+            if let Some(segment) = (i as usize).checked_sub(vertices) {
+                for end in self.segments[segment] {
+                    rows.add(end, 0.5);
+                }
+            } else if let Some(neighbours) = self.neighbours(i) {
+                rows.add(i, 0.75);
+                for neighbour in neighbours {
+                    rows.add(neighbour, 0.125);
+                }
+            } else {
+                rows.add(i, 1.0);
+            }
+        })
+    }
+}

@@ -1,0 +1,76 @@
+//! Why a mesh cannot be made.
+
+/// Why a mesh, a curve or a feature of theirs was refused; each case names the place.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// More vertices or half-edges than 32-bit ids can count.
+    #[error("{count} {what} are too many: ids are 32 bits wide")]
+    TooLarge {
+        /// What there are too many of.
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+    },
+    /// A face or segment refers to a vertex that does not exist.
+    #[error("{what} {index} refers to vertex {vertex}, but there are only {vertex_count} vertices")]
+    VertexOutOfRange {
+        /// "triangle", "segment", "crease", ...
+        what: &'static str,
+        /// Which one, counted from 0.
+        index: usize,
+        /// The vertex it refers to.
+        vertex: u32,
+        /// How many vertices there are.
+        vertex_count: usize,
+    },
+    /// A face or segment has the same vertex twice.
+    #[error("{what} {index} is degenerate: it uses vertex {vertex} twice")]
+    Degenerate {
+        /// "triangle" or "segment".
+        what: &'static str,
+        /// Which one, counted from 0.
+        index: usize,
+        /// The vertex that occurs twice.
+        vertex: u32,
+    },
+    /// Two faces have the same vertices.
+    #[error("faces {first} and {second} have the same vertices")]
+    DuplicateFace {
+        /// The face with the lower number.
+        first: u32,
+        /// The face with the higher number.
+        second: u32,
+    },
+    /// Two triangles that share an edge wind opposite ways, and nothing says that the surface breaks there.
+    #[error(
+        "triangles {first} and {second} both run along edge {}-{} in the same direction: turn one round, or make the edge an infinite crease",
+        ends[0], ends[1]
+    )]
+    Winding {
+        /// The triangle with the lower number.
+        first: u32,
+        /// The triangle with the higher number.
+        second: u32,
+        /// The ends of the edge, in the direction in which both run.
+        ends: [u32; 2],
+    },
+    /// A crease joins two vertices that share no edge.
+    #[error("crease {index} joins vertices {} and {}, but the mesh has no such edge", ends[0], ends[1])]
+    CreaseWithoutEdge {
+        /// Which crease, counted from 0.
+        index: usize,
+        /// The vertices it joins.
+        ends: [u32; 2],
+    },
+    /// A sharpness is negative or not a number.
+    #[error("the sharpness of {what} {index} is {sharpness}: it must be 0 or more")]
+    Sharpness {
+        /// "crease" or "corner".
+        what: &'static str,
+        /// Which one, counted from 0.
+        index: usize,
+        /// The value given.
+        sharpness: f32,
+    },
+}

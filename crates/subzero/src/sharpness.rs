@@ -1,0 +1,110 @@
+//! The sharp edges and corners of one level, and what is left of them on the next.
+//!
+//! Features are sparse (curves on a surface), so they are sorted lists beside the dense connectivity. Refining keeps
+//! them sorted: no search, no sort.
+
+use crate::features::INFINITE_SHARPNESS;
+use crate::{MeshCounts, VertexRule};
+
+/// A sharp edge as seen from one of its ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Spoke {
+    pub vertex: u32,
+    pub edge: u32,
+    pub sharpness: f32,
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Sharpness {
+    /// Edges with a sharpness above 0, sorted by edge.
+    pub edges: Vec<(u32, f32)>,
+    /// Both ends of each of them, sorted by vertex, then edge.
+    pub spokes: Vec<Spoke>,
+    /// Vertices with a sharpness of their own, sorted.
+    pub corners: Vec<(u32, f32)>,
+}
+
+impl Sharpness {
+    /// The sharpness of an edge; 0 if it is smooth.
+    pub(crate) fn of_edge(&self, edge: u32) -> f32 {
+        self.edges.binary_search_by_key(&edge, |&(e, _)| e).map_or(0.0, |found| self.edges[found].1)
+    }
+
+    /// The sharpness of a vertex itself; 0 if it has none.
+    pub(crate) fn of_corner(&self, vertex: u32) -> f32 {
+        self.corners.binary_search_by_key(&vertex, |&(v, _)| v).map_or(0.0, |found| self.corners[found].1)
+    }
+
+    /// The sharp edges at a vertex.
+    pub(crate) fn spokes(&self, vertex: u32) -> &[Spoke] {
+        let start = self.spokes.partition_point(|spoke| spoke.vertex < vertex);
+        let end = start + self.spokes[start..].partition_point(|spoke| spoke.vertex == vertex);
+        &self.spokes[start..end]
+    }
+
+    /// The features one level on; `is_start(vertex, edge)` tells which end of an edge a vertex is.
+    pub(crate) fn refine(&self, counts: MeshCounts, is_start: impl Fn(u32, u32) -> bool) -> Self {
+        let mut refined = Self::default();
+        for &Spoke { vertex, edge, sharpness } in &self.spokes {
+            let sharpness = decay(sharpness);
+            if sharpness > 0.0 {
+                let [first, second] = counts.edge_children(edge);
+                let edge = if is_start(vertex, edge) { first } else { second };
+                refined.spokes.push(Spoke { vertex, edge, sharpness });
+            }
+        }
+        for &(edge, sharpness) in &self.edges {
+            let sharpness = decay(sharpness);
+            if sharpness > 0.0 {
+                for half in counts.edge_children(edge) {
+                    refined.edges.push((half, sharpness));
+                    refined.spokes.push(Spoke { vertex: counts.edge_vertex(edge), edge: half, sharpness });
+                }
+            }
+        }
+        refined.corners =
+            self.corners.iter().map(|&(v, s)| (v, decay(s))).filter(|&(_, s)| s > 0.0).collect();
+        refined
+    }
+
+    /// The rule of each vertex: its number of sharp edges decides, unless it is a corner by itself.
+    pub(crate) fn vertex_rules(&self, vertex_count: usize) -> Vec<VertexRule> {
+        let mut rules = vec![VertexRule::Smooth; vertex_count];
+        for spokes in self.spokes.chunk_by(|a, b| a.vertex == b.vertex) {
+            rules[spokes[0].vertex as usize] = rule_of_sharp_edges(spokes.len());
+        }
+        for &(vertex, _) in &self.corners {
+            rules[vertex as usize] = VertexRule::Corner;
+        }
+        rules
+    }
+
+    /// Which edges are sharp at all.
+    pub(crate) fn sharp_edges(&self, edge_count: usize) -> Vec<bool> {
+        let mut sharp = vec![false; edge_count];
+        for &(edge, _) in &self.edges {
+            sharp[edge as usize] = true;
+        }
+        sharp
+    }
+}
+
+/// Whether a sharpness never runs out.
+pub(crate) fn is_infinite(sharpness: f32) -> bool {
+    sharpness >= INFINITE_SHARPNESS
+}
+
+/// What is left of a sharpness one level on.
+pub(crate) fn decay(sharpness: f32) -> f32 {
+    if is_infinite(sharpness) { sharpness } else { (sharpness - 1.0).max(0.0) }
+}
+
+/// The rule of a vertex that is no corner by itself and has this many sharp edges.
+pub(crate) fn rule_of_sharp_edges(count: usize) -> VertexRule {
+    match count {
+        0 => VertexRule::Smooth,
+        1 => VertexRule::Dart,
+        2 => VertexRule::Crease,
+        _ => VertexRule::Corner,
+    }
+}

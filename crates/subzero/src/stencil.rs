@@ -1,0 +1,134 @@
+//! Sparse rows that average old points into new ones.
+
+use rayon::prelude::*;
+
+use crate::Point;
+use crate::ids::id;
+
+/// Rows that one task fills or applies; fixed, so that no result depends on the number of threads.
+const ROWS_PER_TASK: usize = 2048;
+
+/// How new points follow from old ones: row i lists the old points that make up new point i, and their weights.
+///
+/// Rows of a subdivision scheme sum to 1. Rows may share their weights: a regular mesh needs few different masks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StencilTable {
+    /// Where each row starts in `ids`, and after the last row their number.
+    starts: Vec<usize>,
+    /// Old points of all rows, row after row.
+    ids: Vec<u32>,
+    /// Weights of all rows, row after row.
+    weights: Vec<f64>,
+}
+
+/// One row while it is being written: old points and their weights.
+#[derive(Default)]
+pub(crate) struct Rows {
+    lengths: Vec<usize>,
+    ids: Vec<u32>,
+    weights: Vec<f64>,
+}
+
+impl Rows {
+    /// Adds an old point to the row at hand.
+    pub(crate) fn add(&mut self, point: u32, weight: f64) {
+        self.ids.push(point);
+        self.weights.push(weight);
+    }
+}
+
+impl StencilTable {
+    /// Builds `count` rows in parallel: `write(i, rows)` adds the entries of row i.
+    pub(crate) fn from_rows(count: usize, write: impl Fn(u32, &mut Rows) + Sync) -> Self {
+        let tasks: Vec<Rows> = (0..count.div_ceil(ROWS_PER_TASK))
+            .into_par_iter()
+            .map(|task| {
+                let mut rows = Rows::default();
+                for row in task * ROWS_PER_TASK..count.min((task + 1) * ROWS_PER_TASK) {
+                    let before = rows.ids.len();
+                    write(id(row), &mut rows);
+                    rows.lengths.push(rows.ids.len() - before);
+                }
+                rows
+            })
+            .collect();
+        let mut starts = Vec::with_capacity(count + 1);
+        let mut end = 0;
+        starts.push(end);
+        for length in tasks.iter().flat_map(|rows| &rows.lengths) {
+            end += length;
+            starts.push(end);
+        }
+        let (ids, weights): (Vec<&[u32]>, Vec<&[f64]>) =
+            tasks.iter().map(|rows| (rows.ids.as_slice(), rows.weights.as_slice())).unzip();
+        Self { starts, ids: ids.concat(), weights: weights.concat() }
+    }
+
+    /// Number of rows, that is of new points.
+    pub fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Whether the table makes no point at all.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Row `i`: the old points, and the weight of each.
+    ///
+    /// # Panics
+    /// If there is no row `i`.
+    pub fn row(&self, i: usize) -> (&[u32], &[f64]) {
+        let entries = self.starts[i]..self.starts[i + 1];
+        (&self.ids[entries.clone()], &self.weights[entries])
+    }
+
+    /// The new points, computed in parallel; the result does not depend on the number of threads.
+    ///
+    /// # Panics
+    /// If `points` has fewer points than the mesh that was refined.
+    pub fn apply<P: Point>(&self, points: &[P]) -> Vec<P> {
+        (0..self.len()).into_par_iter().with_min_len(ROWS_PER_TASK).map(|i| self.point(i, points)).collect()
+    }
+
+    /// Writes the new points to `out`, in parallel and without allocation.
+    ///
+    /// # Panics
+    /// If `points` has fewer points than the mesh that was refined, or if `out` is not [`len`](Self::len) points long.
+    pub fn apply_into<P: Point>(&self, points: &[P], out: &mut [P]) {
+        assert_eq!(out.len(), self.len(), "the output must have one point per row");
+        out.par_iter_mut()
+            .with_min_len(ROWS_PER_TASK)
+            .enumerate()
+            .for_each(|(i, new)| *new = self.point(i, points));
+    }
+
+    fn point<P: Point>(&self, i: usize, points: &[P]) -> P {
+        let (ids, weights) = self.row(i);
+        ids.iter()
+            .zip(weights)
+            .fold(P::zero(), |sum, (&old, &weight)| sum.add_scaled(points[old as usize], weight))
+    }
+
+    /// This table and `next` in one: row i of the result averages the points of `self` as row i of `next` those of `next`.
+    ///
+    /// Within a row, old points are sorted.
+    ///
+    /// # Panics
+    /// If `next` refers to points that `self` does not make.
+    pub fn then(&self, next: &Self) -> Self {
+        Self::from_rows(next.len(), |i, rows| {
+            let (middle_ids, middle_weights) = next.row(i as usize);
+            let mut entries: Vec<(u32, f64)> = Vec::new();
+            for (&middle, &outer) in middle_ids.iter().zip(middle_weights) {
+                let (ids, weights) = self.row(middle as usize);
+                entries.extend(ids.iter().zip(weights).map(|(&old, &inner)| (old, outer * inner)));
+            }
+            // Stable, so that equal ids are summed in the order in which the rows name them.
+            entries.sort_by_key(|&(old, _)| old);
+            for equal in entries.chunk_by(|a, b| a.0 == b.0) {
+                rows.add(equal[0].0, equal.iter().map(|&(_, weight)| weight).sum());
+            }
+        })
+    }
+}

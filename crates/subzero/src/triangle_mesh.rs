@@ -1,0 +1,136 @@
+//! Connectivity of a triangle mesh.
+
+use crate::ids::{NONE, id, next, prev};
+use crate::sharpness::{Sharpness, is_infinite};
+use crate::{MeshCounts, VertexRule};
+
+/// Connectivity of a triangle mesh, possibly with boundary and non-manifold edges; positions live beside it as slices.
+///
+/// An edge with one triangle, or with three and more, is an infinitely sharp crease. The half-edge h = 3 t + k runs
+/// from corner k to corner k + 1 of triangle t. Edges are numbered in the order in which the half-edges first
+/// name them; [`MeshCounts`] has the numbering after refinement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TriangleMesh {
+    /// The vertices of each triangle.
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// Per half-edge: twice its edge, plus 1 if it runs against the edge. Twice an edge plus a direction is also the
+    /// id of a half of this edge one level on, namely the half where the half-edge starts.
+    pub(crate) directed_edges: Vec<[u32; 3]>,
+    /// Per edge: a half-edge that runs along it, and, if there is exactly one other and it runs against it, that one.
+    /// Both are [`NONE`]-free on smooth edges; the second is [`NONE`] on boundary and non-manifold edges.
+    pub(crate) edges: Vec<[u32; 2]>,
+    /// Per vertex: a half-edge that starts there, or [`NONE`] if no triangle uses the vertex.
+    pub(crate) outgoing: Vec<u32>,
+    /// Per vertex: its rule.
+    pub(crate) vertex_rules: Vec<VertexRule>,
+    /// Per edge: whether it is sharp.
+    pub(crate) sharp_edges: Vec<bool>,
+    /// How sharp, and the sharp edges by vertex.
+    pub(crate) sharpness: Sharpness,
+}
+
+impl TriangleMesh {
+    /// Number of vertices, counting those that no triangle uses.
+    pub fn vertex_count(&self) -> usize {
+        self.vertex_rules.len()
+    }
+
+    /// The vertices of each triangle.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Number of edges.
+    pub fn edge_count(&self) -> usize {
+        self.edges.len()
+    }
+
+    /// The numbers of vertices, edges and triangles; they say which child descends from whom.
+    pub fn counts(&self) -> MeshCounts {
+        MeshCounts {
+            vertices: id(self.vertex_count()),
+            edges: id(self.edge_count()),
+            triangles: id(self.triangles.len()),
+        }
+    }
+
+    /// The two ends of an edge.
+    ///
+    /// # Panics
+    /// If there is no such edge.
+    pub fn edge(&self, edge: u32) -> [u32; 2] {
+        let [along, _] = self.edges[edge as usize];
+        [self.start(along), self.start(next(along))]
+    }
+
+    /// The edges of a triangle; edge k runs from corner k to corner k + 1.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn triangle_edges(&self, triangle: u32) -> [u32; 3] {
+        self.directed_edges[triangle as usize].map(|directed| directed / 2)
+    }
+
+    /// Whether an edge is infinitely sharp: marked so, or on the boundary, or with three or more triangles.
+    ///
+    /// # Panics
+    /// If there is no such edge.
+    pub fn is_crease(&self, edge: u32) -> bool {
+        is_infinite(self.edge_sharpness(edge))
+    }
+
+    /// The sharpness of an edge: 0 if smooth, [`INFINITE_SHARPNESS`](crate::INFINITE_SHARPNESS) or more if it stays.
+    ///
+    /// # Panics
+    /// If there is no such edge.
+    pub fn edge_sharpness(&self, edge: u32) -> f32 {
+        if self.sharp_edges[edge as usize] { self.sharpness.of_edge(edge) } else { 0.0 }
+    }
+
+    /// The rule that moves a vertex in the next refinement.
+    ///
+    /// A vertex that no triangle uses, one where sheets of triangles touch in a point, and one with a number of
+    /// non-manifold edges other than 0 and 2 are corners.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn vertex_rule(&self, vertex: u32) -> VertexRule {
+        self.vertex_rules[vertex as usize]
+    }
+
+    /// The vertex where a half-edge starts.
+    pub(crate) fn start(&self, h: u32) -> u32 {
+        self.triangles[(h / 3) as usize][(h % 3) as usize]
+    }
+
+    /// Twice the edge of a half-edge, plus 1 if the half-edge runs against the edge.
+    pub(crate) fn directed_edge(&self, h: u32) -> u32 {
+        self.directed_edges[(h / 3) as usize][(h % 3) as usize]
+    }
+
+    /// The half-edge on the other side, or [`NONE`] on boundary and non-manifold edges.
+    pub(crate) fn twin(&self, h: u32) -> u32 {
+        let directed = self.directed_edge(h);
+        let [along, against] = self.edges[(directed / 2) as usize];
+        match (against, directed % 2) {
+            (NONE, _) => NONE,
+            (against, 0) => against,
+            _ => along,
+        }
+    }
+
+    /// The end of an edge that is not `vertex`.
+    pub(crate) fn other_end(&self, edge: u32, vertex: u32) -> u32 {
+        let [start, end] = self.edge(edge);
+        if start == vertex { end } else { start }
+    }
+
+    /// The half-edges that start where `first` starts, counter-clockwise, until the ring closes or an edge has no
+    /// other side. Whether it closes is for the caller to know.
+    pub(crate) fn ring(&self, first: u32) -> impl Iterator<Item = u32> {
+        std::iter::successors(Some(first), move |&h| {
+            let turned = self.twin(prev(h));
+            (turned != NONE && turned != first).then_some(turned)
+        })
+    }
+}
