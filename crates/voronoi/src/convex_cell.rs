@@ -197,10 +197,10 @@ impl ConvexCell {
     }
 
     fn push_vertex(&mut self, triple: [u16; 3], input: ExactInput) {
-        let (mut position, mut error) = self.intersect(triple);
-        if !(error <= LOOSE_WHILE_CUTTING * position.length()) {
-            (position, error) = self.intersect_exactly(triple, input);
-        }
+        let (position, error) = match self.intersect(triple) {
+            Some((position, error)) if error <= LOOSE_WHILE_CUTTING * position.length() => (position, error),
+            _ => self.intersect_exactly(triple, input),
+        };
         self.triples.push(triple);
         self.x.push(position.x);
         self.y.push(position.y);
@@ -208,8 +208,8 @@ impl ConvexCell {
         self.errors.push(error + EVALUATION_ERROR * position.abs().max_element());
     }
 
-    /// The common point of three planes, and a bound on the error of its coordinates (infinite if unknown).
-    fn intersect(&self, triple: [u16; 3]) -> (DVec3, f64) {
+    /// The common point of three planes and a bound on the error of its coordinates, if floating point can tell.
+    fn intersect(&self, triple: [u16; 3]) -> Option<(DVec3, f64)> {
         let [a, b, c] = triple.map(|p| self.planes[usize::from(p)]);
         let bc = b.normal.cross(c.normal);
         let ca = c.normal.cross(a.normal);
@@ -222,11 +222,9 @@ impl ConvexCell {
             lengths * (a.offset.abs() / a.length + b.offset.abs() / b.length + c.offset.abs() / c.length);
         let determinants = 2.0 * lengths;
         let safe_determinant = determinant - INTERSECTION_ERROR * determinants;
-        if !(safe_determinant > 0.0) {
-            return (position, f64::INFINITY);
-        }
         let size = position.abs().max_element();
-        (position, INTERSECTION_ERROR * (numerators + size * determinants) / safe_determinant)
+        let error = INTERSECTION_ERROR * (numerators + size * determinants) / safe_determinant;
+        (safe_determinant > 0.0).then_some((position, error))
     }
 
     fn intersect_exactly(&self, triple: [u16; 3], input: ExactInput) -> (DVec3, f64) {

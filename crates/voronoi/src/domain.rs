@@ -15,7 +15,7 @@ pub enum Dimension {
 
 /// A side of the box, numbered 0 to 5 in the order x0, x1, y0, y1, z0, z1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Wall(u8);
+pub struct Wall(pub(crate) u8);
 
 impl Wall {
     /// The walls of a box in space; the first four are those of a rectangle.

@@ -18,7 +18,7 @@ impl Generator {
     }
 
     pub(crate) fn wall(wall: Wall) -> Self {
-        Self(FIRST_WALL + u32::from(wall.index() as u8))
+        Self(FIRST_WALL + u32::from(wall.0))
     }
 
     pub(crate) fn as_seed(self) -> Option<u32> {

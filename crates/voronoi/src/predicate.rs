@@ -87,7 +87,7 @@ impl ExactInput<'_> {
     /// The smallest exponent such that all coordinates involved are integers times two to it.
     fn common_exponent(self, seed: u32, generators: &[Generator]) -> i32 {
         let smallest = |point: DVec3| {
-            let exponents = point.to_array().map(|value| decompose(value));
+            let exponents = point.to_array().map(decompose);
             exponents.into_iter().filter(|(mantissa, _)| *mantissa != 0).map(|(_, e)| e).min()
         };
         let of_planes = generators.iter().filter_map(|generator| match generator.side() {

@@ -1,5 +1,7 @@
 //! What holds for every tessellation: nearest seeds, permutations, threads, and the statistics of random seeds.
 
+#![allow(clippy::cast_possible_truncation, reason = "a handful of seeds")]
+
 mod common;
 
 use common::{assert_complex, random_seeds, tessellate};
