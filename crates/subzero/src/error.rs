@@ -73,4 +73,10 @@ pub enum MeshError {
         /// The value given.
         sharpness: f32,
     },
+    /// The vertex has a sharpness that will run out, so that its limit needs further refinement.
+    #[error("vertex {vertex} is semi-sharp: refine until its sharpness has run out")]
+    SemiSharp {
+        /// The vertex.
+        vertex: u32,
+    },
 }

@@ -1,0 +1,199 @@
+//! Where the points of a mesh end up on Loop's limit surface, and its normals there.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::ids::{NONE, next, prev};
+use crate::limit_masks::{
+    RingMask, crease_tangents, dart_position, dart_tangents, smooth_position, smooth_tangents,
+};
+use crate::sharpness::is_infinite;
+use crate::stencil::Rows;
+use crate::{LoopWeights, MeshError, Point, StencilTable, TriangleMesh, VertexRule};
+
+/// A piece of the surface around a vertex that has one tangent plane: all of it at a smooth vertex or a dart, and what
+/// lies between two neighbouring creases elsewhere, so one piece at a boundary and three at most triple lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sector {
+    /// The vertex.
+    pub vertex: u32,
+    /// The first half-edge, counter-clockwise; it lies on a crease unless the sector goes all round.
+    first: u32,
+}
+
+/// Limit positions and tangents of all vertices of a mesh, as averages of its points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopLimits {
+    /// One row per vertex: its limit position.
+    pub positions: StencilTable,
+    /// All sectors, sorted by vertex.
+    pub sectors: Vec<Sector>,
+    /// Per sector two rows, that add up to 0: limit tangents t1 and t2 with the normal along t1 x t2. The rows are empty where the
+    /// surface has no tangent plane.
+    pub tangents: StencilTable,
+}
+
+impl TriangleMesh {
+    /// Limit positions and tangents of the scheme that [`loop_refine_with`](Self::loop_refine_with) iterates.
+    ///
+    /// Corners have a tangent plane only in sectors of at most three triangles; more make a cone. At boundaries and creases
+    /// with sectors of six and more triangles the normals given are those of the dominant eigenvectors.
+    ///
+    /// # Errors
+    /// [`MeshError::SemiSharp`] names a vertex with a sharpness that will run out: refine until it has.
+    pub fn loop_limits(&self, weights: LoopWeights) -> Result<LoopLimits, MeshError> {
+        let finite = |sharpness: f32| !is_infinite(sharpness);
+        let spoke =
+            self.sharpness.spokes.iter().find(|spoke| finite(spoke.sharpness)).map(|spoke| spoke.vertex);
+        let corner = self.sharpness.corners.iter().find(|corner| finite(corner.1)).map(|corner| corner.0);
+        if let Some(vertex) = spoke.or(corner) {
+            return Err(MeshError::SemiSharp { vertex });
+        }
+        let positions =
+            StencilTable::from_rows(self.vertex_count(), |vertex, rows| match self.vertex_rule(vertex) {
+                VertexRule::Smooth => {
+                    let ring = self.closed_ring(self.outgoing[vertex as usize]);
+                    add_row(rows, vertex, &ring, &smooth_position(ring.len(), weights));
+                }
+                VertexRule::Dart => {
+                    let ring = self.closed_ring(self.dart_start(vertex));
+                    add_row(rows, vertex, &ring, &dart_position(ring.len(), weights));
+                }
+                VertexRule::Crease => {
+                    rows.add(vertex, 4.0 / 6.0);
+                    for spoke in self.sharpness.spokes(vertex) {
+                        rows.add(self.other_end(spoke.edge, vertex), 1.0 / 6.0);
+                    }
+                }
+                VertexRule::Corner => rows.add(vertex, 1.0),
+            });
+        let sectors = self.sectors();
+        let tangents = StencilTable::from_rows(2 * sectors.len(), |row, rows| {
+            let Sector { vertex, first } = sectors[(row / 2) as usize];
+            let which = (row % 2) as usize;
+            match self.vertex_rule(vertex) {
+                VertexRule::Smooth => {
+                    let ring = self.closed_ring(first);
+                    add_row(rows, vertex, &ring, &smooth_tangents(ring.len())[which]);
+                }
+                VertexRule::Dart => {
+                    let ring = self.closed_ring(first);
+                    add_row(rows, vertex, &ring, &dart_tangents(ring.len(), weights)[which]);
+                }
+                VertexRule::Crease => {
+                    let ring = self.open_ring(first);
+                    add_row(rows, vertex, &ring, &crease_tangents(ring.len())[which]);
+                }
+                VertexRule::Corner => {
+                    let ring = self.open_ring(first);
+                    // The creases decide, unless the inner edges shrink more slowly than they do.
+                    if ring.len() <= 4 {
+                        rows.add(ring[which * (ring.len() - 1)], 1.0);
+                        rows.add(vertex, -1.0);
+                    }
+                }
+            }
+        });
+        Ok(LoopLimits { positions, sectors, tangents })
+    }
+
+    /// The neighbours that bound or lie in a sector, counter-clockwise.
+    ///
+    /// # Panics
+    /// If the sector is another mesh's.
+    pub fn sector_ring(&self, sector: Sector) -> Vec<u32> {
+        match self.vertex_rule(sector.vertex) {
+            VertexRule::Smooth | VertexRule::Dart => self.closed_ring(sector.first),
+            _ => self.open_ring(sector.first),
+        }
+    }
+
+    fn sectors(&self) -> Vec<Sector> {
+        let at_crease = |h: u32| {
+            let vertex = self.start(h);
+            let between_creases = matches!(self.vertex_rule(vertex), VertexRule::Crease | VertexRule::Corner);
+            (between_creases && self.is_crease(self.directed_edge(h) / 2))
+                .then_some(Sector { vertex, first: h })
+        };
+        let all_round = |vertex: u32| match self.vertex_rule(vertex) {
+            VertexRule::Smooth => Some(Sector { vertex, first: self.outgoing[vertex as usize] }),
+            VertexRule::Dart => Some(Sector { vertex, first: self.dart_start(vertex) }),
+            _ => None,
+        };
+        let counts = self.counts();
+        let mut sectors: Vec<Sector> = (0..counts.vertices).into_par_iter().filter_map(all_round).collect();
+        sectors.par_extend((0..3 * counts.triangles).into_par_iter().filter_map(at_crease));
+        sectors.par_sort_unstable_by_key(|sector| (sector.vertex, sector.first));
+        sectors
+    }
+
+    /// The half-edge of a dart's sharp edge that starts at the dart.
+    fn dart_start(&self, vertex: u32) -> u32 {
+        let on_crease = |&h: &u32| self.is_crease(self.directed_edge(h) / 2);
+        let first = self.outgoing[vertex as usize];
+        self.ring(first).find(on_crease).unwrap_or(first)
+    }
+
+    /// The neighbours all round a vertex, from the end of the half-edge `first` on.
+    fn closed_ring(&self, first: u32) -> Vec<u32> {
+        self.ring(first).map(|h| self.start(next(h))).collect()
+    }
+
+    /// The neighbours from the end of the half-edge `first` to the next crease.
+    fn open_ring(&self, first: u32) -> Vec<u32> {
+        let mut ring = vec![self.start(next(first))];
+        let mut h = first;
+        loop {
+            let before = prev(h);
+            ring.push(self.start(before));
+            let twin = self.twin(before);
+            if twin == NONE || self.is_crease(self.directed_edge(before) / 2) {
+                return ring;
+            }
+            h = twin;
+        }
+    }
+}
+
+impl LoopLimits {
+    /// The unit normals of all sectors; nothing where the surface has no tangent plane or the points are degenerate.
+    ///
+    /// # Panics
+    /// If `points` has fewer points than the mesh has vertices.
+    pub fn sector_normals(&self, points: &[DVec3]) -> Vec<Option<DVec3>> {
+        let tangents = self.tangents.apply(points);
+        tangents.par_chunks_exact(2).map(|t| t[0].cross(t[1]).try_normalize()).collect()
+    }
+
+    /// The unit normal at each vertex; nothing where there is no normal or more than one.
+    ///
+    /// # Panics
+    /// If `points` has fewer points than the mesh has vertices.
+    pub fn vertex_normals(&self, points: &[DVec3]) -> Vec<Option<DVec3>> {
+        let normals = self.sector_normals(points);
+        let mut of_vertices = vec![None; self.positions.len()];
+        let mut first = 0;
+        for sectors in self.sectors.chunk_by(|a, b| a.vertex == b.vertex) {
+            if sectors.len() == 1 {
+                of_vertices[sectors[0].vertex as usize] = normals[first];
+            }
+            first += sectors.len();
+        }
+        of_vertices
+    }
+
+    /// The points moved to their limit positions.
+    ///
+    /// # Panics
+    /// If `points` has fewer points than the mesh has vertices.
+    pub fn project<P: Point>(&self, points: &[P]) -> Vec<P> {
+        self.positions.apply(points)
+    }
+}
+
+fn add_row(rows: &mut Rows, vertex: u32, ring: &[u32], mask: &RingMask) {
+    rows.add(vertex, mask.centre);
+    for (&neighbour, &weight) in ring.iter().zip(&mask.ring) {
+        rows.add(neighbour, weight);
+    }
+}
