@@ -71,6 +71,15 @@ impl TriangleMesh {
         self.directed_edges[triangle as usize].map(|directed| directed / 2)
     }
 
+    /// The two triangles of an edge; nothing on boundary and non-manifold edges.
+    ///
+    /// # Panics
+    /// If there is no such edge.
+    pub fn edge_triangles(&self, edge: u32) -> Option<[u32; 2]> {
+        let [along, against] = self.edges[edge as usize];
+        (against != NONE).then_some([along / 3, against / 3])
+    }
+
     /// Whether an edge is infinitely sharp: marked so, or on the boundary, or with three or more triangles.
     ///
     /// # Panics
