@@ -67,17 +67,20 @@ impl CurveMesh {
         if self.curves[v as usize].is_some() { VertexRule::Smooth } else { VertexRule::Corner }
     }
 
+    /// The two segments that meet in a smooth vertex; nothing at a corner.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn vertex_segments(&self, v: u32) -> Option<[u32; 2]> {
+        self.curves[v as usize]
+    }
+
     /// The two neighbours of a smooth vertex along its curve; nothing at a corner.
     ///
     /// # Panics
     /// If there is no such vertex.
     pub fn neighbours(&self, v: u32) -> Option<[u32; 2]> {
-        self.curves[v as usize].map(|segments| {
-            segments.map(|segment| {
-                let [start, end] = self.segments[segment as usize];
-                if start == v { end } else { start }
-            })
-        })
+        self.curves[v as usize].map(|segments| segments.map(|segment| self.other_end(segment, v)))
     }
 
     /// One step of cubic B-spline subdivision: (1, 6, 1)/8 at smooth vertices, (1, 1)/2 on segments.
@@ -109,6 +112,44 @@ impl CurveMesh {
         let new = (0..self.segments.len()).into_par_iter().map(|s| Some([id(2 * s), id(2 * s + 1)]));
         let mesh = Self { segments, curves: old.chain(new).collect() };
         Refinement { mesh, stencils: self.stencils() }
+    }
+
+    /// One row per vertex: its place on the limit curve, (1, 4, 1)/6 of a smooth vertex and its neighbours.
+    pub fn limit_positions(&self) -> StencilTable {
+        StencilTable::from_rows(self.vertex_count(), |v, rows| match self.neighbours(v) {
+            Some(neighbours) => {
+                rows.add(v, 4.0 / 6.0);
+                for neighbour in neighbours {
+                    rows.add(neighbour, 1.0 / 6.0);
+                }
+            }
+            None => rows.add(v, 1.0),
+        })
+    }
+
+    /// Two rows per segment: the derivatives of the limit curve at its start and at its end, when the curve runs
+    /// through the segment in unit time. Half the difference of the neighbours at smooth vertices, the one-sided
+    /// difference at corners.
+    pub fn limit_tangents(&self) -> StencilTable {
+        StencilTable::from_rows(2 * self.segments.len(), |row, rows| {
+            let [start, end] = self.segments[(row / 2) as usize];
+            let at_start = row % 2 == 0;
+            let (here, there) = if at_start { (start, end) } else { (end, start) };
+            let forward = if at_start { 1.0 } else { -1.0 };
+            if let Some(segments) = self.curves[here as usize] {
+                let behind = if segments[0] == row / 2 { segments[1] } else { segments[0] };
+                rows.add(there, 0.5 * forward);
+                rows.add(self.other_end(behind, here), -0.5 * forward);
+            } else {
+                rows.add(there, forward);
+                rows.add(here, -forward);
+            }
+        })
+    }
+
+    fn other_end(&self, segment: u32, vertex: u32) -> u32 {
+        let [start, end] = self.segments[segment as usize];
+        if start == vertex { end } else { start }
     }
 
     fn stencils(&self) -> StencilTable {
