@@ -79,4 +79,17 @@ pub enum MeshError {
         /// The vertex.
         vertex: u32,
     },
+    /// A Bezier curve or surface without control points.
+    #[error("a Bezier curve or surface needs a control point at least")]
+    NoControlPoints,
+    /// The control points of a Bezier surface form no grid.
+    #[error("row {row} of the control points has {found} points, but the first row has {length}")]
+    RaggedControlPoints {
+        /// The first row that differs.
+        row: usize,
+        /// Points in the first row.
+        length: usize,
+        /// Points in that row.
+        found: usize,
+    },
 }

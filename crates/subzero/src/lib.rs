@@ -20,6 +20,7 @@
 //! # Ok::<(), subzero::MeshError>(())
 //! ```
 
+mod bezier;
 mod counts;
 mod curve_mesh;
 mod error;
@@ -35,6 +36,7 @@ mod triangle_build;
 mod triangle_mesh;
 mod triangle_refine;
 
+pub use bezier::{BezierCurve, BezierSurface};
 pub use counts::{EdgeParent, MeshCounts, VertexParent};
 pub use curve_mesh::CurveMesh;
 pub use error::MeshError;

@@ -63,7 +63,7 @@ fn check_limits(name: &str, tolerance: f64) {
     let mut ids: Vec<u32> = (0..points.len() as u32).collect();
     for level in 0..=reference.levels.len() {
         if let Some(expected) = reference.limits.iter().find(|limits| limits.level == level) {
-            let limits = mesh.loop_limits(LoopWeights::Loop).unwrap();
+            let limits = mesh.loop_limits(LoopWeights::Loop).expect("all sharpness has run out");
             let positions = limits.project(&points);
             let normals = limits.vertex_normals(&points);
             for (v, &ours) in ids.iter().enumerate() {

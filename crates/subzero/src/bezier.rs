@@ -1,0 +1,164 @@
+//! Bezier curves and tensor-product surfaces by de Casteljau's algorithm.
+
+use glam::DVec3;
+
+use crate::ids::id;
+use crate::triangle_build::check_size;
+use crate::{MeshError, Point};
+
+/// A Bezier curve of any degree.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BezierCurve<P> {
+    control: Vec<P>,
+}
+
+/// `(1 - t) a + t b`.
+fn mix<P: Point>(a: P, b: P, t: f64) -> P {
+    P::zero().add_scaled(a, 1.0 - t).add_scaled(b, t)
+}
+
+/// The next level of de Casteljau's scheme, in place: one point less.
+fn descend<P: Point>(points: &mut Vec<P>, t: f64) {
+    for i in 1..points.len() {
+        points[i - 1] = mix(points[i - 1], points[i], t);
+    }
+    points.pop();
+}
+
+impl<P: Point> BezierCurve<P> {
+    /// The curve with these control points, one more than its degree.
+    ///
+    /// # Errors
+    /// [`MeshError::NoControlPoints`] if there are none.
+    pub fn new(control: Vec<P>) -> Result<Self, MeshError> {
+        if control.is_empty() { Err(MeshError::NoControlPoints) } else { Ok(Self { control }) }
+    }
+
+    /// The control points.
+    pub fn control(&self) -> &[P] {
+        &self.control
+    }
+
+    /// The degree, 0 for a single point.
+    pub fn degree(&self) -> usize {
+        self.control.len() - 1
+    }
+
+    /// The point at `t`, which runs from 0 to 1 along the curve (and may leave this range).
+    pub fn point(&self, t: f64) -> P {
+        let mut points = self.control.clone();
+        while points.len() > 1 {
+            descend(&mut points, t);
+        }
+        points[0]
+    }
+
+    /// The derivative at `t`.
+    pub fn derivative(&self, t: f64) -> P {
+        let mut points = self.control.clone();
+        while points.len() > 2 {
+            descend(&mut points, t);
+        }
+        match points[..] {
+            #[allow(clippy::cast_precision_loss)] // No degree is that high.
+            [a, b] => P::zero().add_scaled(b, self.degree() as f64).add_scaled(a, -(self.degree() as f64)),
+            _ => P::zero(),
+        }
+    }
+
+    /// All levels of de Casteljau's scheme at `t`: first the control points, last the point on the curve.
+    pub fn casteljau(&self, t: f64) -> Vec<Vec<P>> {
+        let mut levels = vec![self.control.clone()];
+        while let Some(last) = levels.last().filter(|level| level.len() > 1) {
+            let mut next = last.clone();
+            descend(&mut next, t);
+            levels.push(next);
+        }
+        levels
+    }
+
+    /// The two curves of the same degree before and after `t`.
+    pub fn split(&self, t: f64) -> [Self; 2] {
+        let levels = self.casteljau(t);
+        let left = levels.iter().map(|level| level[0]).collect();
+        let right = levels.iter().rev().map(|level| level[level.len() - 1]).collect();
+        [Self { control: left }, Self { control: right }]
+    }
+
+    /// `segments + 1` points at even steps of `t`, both ends included.
+    pub fn sample(&self, segments: u32) -> Vec<P> {
+        (0..=segments).map(|i| self.point(f64::from(i) / f64::from(segments.max(1)))).collect()
+    }
+}
+
+/// A tensor-product Bezier surface, bicubic with 4 x 4 control points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BezierSurface<P> {
+    /// One curve in v for each control step in u; all of the same degree.
+    rows: Vec<BezierCurve<P>>,
+}
+
+impl<P: Point> BezierSurface<P> {
+    /// The surface whose control point i, j is `control[i][j]`, with i along u and j along v.
+    ///
+    /// # Errors
+    /// [`MeshError::NoControlPoints`] if there are none, [`MeshError::RaggedControlPoints`] if rows differ in length.
+    pub fn new(control: Vec<Vec<P>>) -> Result<Self, MeshError> {
+        let length = control.first().ok_or(MeshError::NoControlPoints)?.len();
+        if let Some(row) = control.iter().position(|row| row.len() != length) {
+            return Err(MeshError::RaggedControlPoints { row, length, found: control[row].len() });
+        }
+        Ok(Self { rows: control.into_iter().map(BezierCurve::new).collect::<Result<_, _>>()? })
+    }
+
+    /// The point at `(u, v)`.
+    pub fn point(&self, u: f64, v: f64) -> P {
+        self.curve_along_u(|row| row.point(v)).point(u)
+    }
+
+    /// The derivatives with respect to u and to v at `(u, v)`.
+    pub fn derivatives(&self, u: f64, v: f64) -> [P; 2] {
+        [
+            self.curve_along_u(|row| row.point(v)).derivative(u),
+            self.curve_along_u(|row| row.derivative(v)).point(u),
+        ]
+    }
+
+    fn curve_along_u(&self, of_row: impl Fn(&BezierCurve<P>) -> P) -> BezierCurve<P> {
+        BezierCurve { control: self.rows.iter().map(of_row).collect() }
+    }
+
+    /// Points on a grid of `u_steps` x `v_steps` cells, v running fastest, and two triangles per cell, counter-clockwise
+    /// as seen from where u x v points. Triangles have corners apart; a collapsed side of the surface makes
+    /// points that coincide.
+    ///
+    /// # Errors
+    /// [`MeshError::TooLarge`] if there are more points than 32-bit ids can count.
+    pub fn tessellate(&self, u_steps: u32, v_steps: u32) -> Result<(Vec<P>, Vec<[u32; 3]>), MeshError> {
+        let [u_steps, v_steps] = [u_steps.max(1), v_steps.max(1)];
+        let count = (u_steps as usize + 1).saturating_mul(v_steps as usize + 1);
+        check_size("grid points", count)?;
+        let mut points = Vec::with_capacity(count);
+        let mut triangles = Vec::new();
+        for i in 0..=u_steps {
+            for j in 0..=v_steps {
+                let corner = id(points.len());
+                points.push(self.point(f64::from(i) / f64::from(u_steps), f64::from(j) / f64::from(v_steps)));
+                if i < u_steps && j < v_steps {
+                    let across = corner + v_steps + 1;
+                    triangles.push([corner, across, across + 1]);
+                    triangles.push([corner, across + 1, corner + 1]);
+                }
+            }
+        }
+        Ok((points, triangles))
+    }
+}
+
+impl BezierSurface<DVec3> {
+    /// The unit normal at `(u, v)`, along the derivative in u x that in v; nothing where they are parallel or vanish.
+    pub fn normal(&self, u: f64, v: f64) -> Option<DVec3> {
+        let [along_u, along_v] = self.derivatives(u, v);
+        along_u.cross(along_v).try_normalize()
+    }
+}

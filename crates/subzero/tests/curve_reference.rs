@@ -1,0 +1,139 @@
+//! Curves against reference numbers.
+#![allow(clippy::cast_possible_truncation)] // Curves of tests are short.
+
+mod common;
+
+use common::{assert_close, load};
+use glam::DVec3;
+use serde::Deserialize;
+use subzero::{BezierCurve, BezierSurface, CurveMesh};
+
+#[derive(Deserialize)]
+struct LineReference {
+    closed: bool,
+    corners: Vec<u32>,
+    vertices: Vec<DVec3>,
+    levels: Vec<LineLevel>,
+    limit: Vec<DVec3>,
+    limit_tangent_half_difference: Vec<[Option<f64>; 3]>,
+}
+
+#[derive(Deserialize)]
+struct LineLevel {
+    vertices: Vec<DVec3>,
+}
+
+/// The vertices in the order in which the segments pass them.
+fn in_order(mesh: &CurveMesh, closed: bool) -> Vec<u32> {
+    let mut order: Vec<u32> = mesh.segments().iter().map(|segment| segment[0]).collect();
+    order.extend(mesh.segments().last().filter(|_| !closed).map(|segment| segment[1]));
+    order
+}
+
+#[test]
+fn lines_match_their_reference() {
+    for name in ["line_open", "line_closed", "line_open_corner"] {
+        let reference: LineReference = load(name);
+        let count = reference.vertices.len() as u32;
+        let segments = (0..count - u32::from(!reference.closed)).map(|i| [i, (i + 1) % count]).collect();
+        let mut mesh = CurveMesh::new(count as usize, segments, &reference.corners).unwrap();
+        let mut points = reference.vertices.clone();
+
+        let limits = mesh.limit_positions().apply(&points);
+        let tangents = mesh.limit_tangents().apply(&points);
+        for v in 0..count as usize {
+            assert_close(limits[v], reference.limit[v], 1e-12, name);
+            if let [Some(x), Some(y), Some(z)] = reference.limit_tangent_half_difference[v] {
+                let before = (v + count as usize - 1) % count as usize;
+                assert_close(tangents[2 * v], DVec3::new(x, y, z), 1e-12, name);
+                assert_close(tangents[2 * before + 1], DVec3::new(x, y, z), 1e-12, name);
+            }
+        }
+        if !reference.closed {
+            assert_close(tangents[0], points[1] - points[0], 1e-12, name);
+        }
+
+        for level in &reference.levels {
+            let refined = mesh.refine();
+            points = refined.stencils.apply(&points);
+            mesh = refined.mesh;
+            let order = in_order(&mesh, reference.closed);
+            assert_eq!(order.len(), level.vertices.len());
+            for (&v, &expected) in order.iter().zip(&level.vertices) {
+                assert_close(points[v as usize], expected, 1e-12, name);
+            }
+        }
+    }
+}
+
+#[derive(Deserialize)]
+struct BezierReference {
+    curves: Vec<BezierCurveReference>,
+    surface: BezierSurfaceReference,
+}
+
+#[derive(Deserialize)]
+struct BezierCurveReference {
+    degree: usize,
+    control: Vec<DVec3>,
+    t: Vec<f64>,
+    point: Vec<DVec3>,
+    derivative: Vec<DVec3>,
+    split_at: f64,
+    left: Vec<DVec3>,
+    right: Vec<DVec3>,
+}
+
+#[derive(Deserialize)]
+struct BezierSurfaceReference {
+    control: Vec<Vec<DVec3>>,
+    uv: Vec<[f64; 2]>,
+    point: Vec<DVec3>,
+    du: Vec<DVec3>,
+    dv: Vec<DVec3>,
+}
+
+#[test]
+fn bezier_curves_match_bernstein() {
+    for reference in load::<BezierReference>("bezier").curves {
+        let curve = BezierCurve::new(reference.control).unwrap();
+        assert_eq!(curve.degree(), reference.degree);
+        for (i, &t) in reference.t.iter().enumerate() {
+            assert_close(curve.point(t), reference.point[i], 1e-12, "point");
+            assert_close(curve.derivative(t), reference.derivative[i], 1e-12, "derivative");
+            let levels = curve.casteljau(t);
+            assert_eq!(levels.len(), curve.degree() + 1);
+            assert_close(levels[curve.degree()][0], reference.point[i], 1e-12, "last level");
+        }
+        for (half, expected) in
+            curve.split(reference.split_at).iter().zip([&reference.left, &reference.right])
+        {
+            for (&ours, &theirs) in half.control().iter().zip(expected) {
+                assert_close(ours, theirs, 1e-12, "split");
+            }
+        }
+        let samples = curve.sample(8);
+        assert_eq!(samples.len(), 9);
+        assert_close(samples[4], curve.point(0.5), 1e-15, "sample");
+    }
+}
+
+#[test]
+fn bezier_surface_matches_bernstein() {
+    let reference = load::<BezierReference>("bezier").surface;
+    let surface = BezierSurface::new(reference.control).unwrap();
+    for (i, &[u, v]) in reference.uv.iter().enumerate() {
+        assert_close(surface.point(u, v), reference.point[i], 1e-12, "point");
+        let [du, dv] = surface.derivatives(u, v);
+        assert_close(du, reference.du[i], 1e-12, "du");
+        assert_close(dv, reference.dv[i], 1e-12, "dv");
+        let normal = surface.normal(u, v).unwrap();
+        assert_close(normal, du.cross(dv).normalize(), 1e-12, "normal");
+    }
+    let (points, triangles) = surface.tessellate(3, 5).unwrap();
+    assert_eq!((points.len(), triangles.len()), (24, 30));
+    assert_close(points[8], surface.point(1.0 / 3.0, 0.4), 1e-15, "grid point");
+    // A triangle's normal is near the surface's.
+    let [a, b, c] = triangles[0].map(|v| points[v as usize]);
+    assert!((b - a).cross(c - a).dot(surface.normal(0.1, 0.1).unwrap()) > 0.0);
+}
