@@ -1,0 +1,163 @@
+//! Surfaces and polylines as VTK files, written through the `vtkio` crate.
+//!
+//! One data set, [`PolyData`], is written as XML PolyData, XML UnstructuredGrid or legacy PolyData.
+//! Coordinates are 64-bit and come back bit for bit.
+
+use std::io::{self, Write};
+
+use glam::DVec3;
+use vtkio::xml::ScalarType;
+
+use crate::OutputFormat;
+use xml::XmlFormat;
+
+mod legacy;
+mod xml;
+
+/// Points, the cells between them, and what is known about both: the content of one VTK file.
+#[derive(Debug, Clone)]
+pub struct PolyData<'a> {
+    /// Coordinates in the user's unit of length; z = 0 in 2D.
+    pub points: &'a [DVec3],
+    /// Triangles or polylines, by position in `points`.
+    pub cells: Cells<'a>,
+    /// Arrays with one tuple for each point.
+    pub point_arrays: Vec<Array<'a>>,
+    /// Arrays with one tuple for each cell.
+    pub cell_arrays: Vec<Array<'a>>,
+    /// What is said about the file as a whole, such as the command line that made it.
+    pub field: Vec<FieldEntry>,
+}
+
+/// The cells of a data set, all of one kind.
+#[derive(Debug, Clone, Copy)]
+pub enum Cells<'a> {
+    /// Three points each.
+    Triangles(&'a [[u32; 3]]),
+    /// Two or more points each, in order along the curve.
+    Polylines(&'a [Vec<u32>]),
+}
+
+impl Cells<'_> {
+    /// Number of cells.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Triangles(triangles) => triangles.len(),
+            Self::Polylines(polylines) => polylines.len(),
+        }
+    }
+
+    /// Whether there is no cell.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Number of point ids in all cells together.
+    fn corner_count(&self) -> usize {
+        match self {
+            Self::Triangles(triangles) => 3 * triangles.len(),
+            Self::Polylines(polylines) => polylines.iter().map(Vec::len).sum(),
+        }
+    }
+}
+
+/// A named array over the points or the cells.
+#[derive(Debug, Clone, Copy)]
+pub struct Array<'a> {
+    /// Name under which VTK lists the array; without blanks, which the legacy format cannot hold.
+    pub name: &'static str,
+    /// One tuple for each point or cell.
+    pub values: Values<'a>,
+}
+
+/// The numbers of an [`Array`].
+#[derive(Debug, Clone, Copy)]
+pub enum Values<'a> {
+    /// One 8-bit integer each.
+    Int8(&'a [i8]),
+    /// One 32-bit integer each.
+    Int32(&'a [i32]),
+    /// Two 32-bit integers each.
+    Int32Pairs(&'a [[i32; 2]]),
+}
+
+impl<'a> Values<'a> {
+    /// Number of tuples.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Int8(values) => values.len(),
+            Self::Int32(values) => values.len(),
+            Self::Int32Pairs(pairs) => pairs.len(),
+        }
+    }
+
+    /// Whether there is no tuple.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    fn component_count(&self) -> u32 {
+        match self {
+            Self::Int8(_) | Self::Int32(_) => 1,
+            Self::Int32Pairs(_) => 2,
+        }
+    }
+
+    fn scalar_type(&self) -> ScalarType {
+        match self {
+            Self::Int8(_) => ScalarType::Int8,
+            Self::Int32(_) | Self::Int32Pairs(_) => ScalarType::Int32,
+        }
+    }
+
+    fn bytes(&self) -> &'a [u8] {
+        match self {
+            Self::Int8(values) => bytemuck::cast_slice(values),
+            Self::Int32(values) => bytemuck::cast_slice(values),
+            Self::Int32Pairs(pairs) => bytemuck::cast_slice(pairs),
+        }
+    }
+}
+
+/// A named remark about the file as a whole, kept in VTK's field data.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FieldEntry {
+    /// Name under which VTK lists the entry; without blanks, which the legacy format cannot hold.
+    pub name: &'static str,
+    /// What is said.
+    pub value: FieldValue,
+}
+
+/// The value of a [`FieldEntry`].
+///
+/// A text is a string array in .vtp and .vtk. In .vtu it is an array of UInt8 holding the UTF-8 bytes: the
+/// tools other than VTK that read .vtu refuse the whole file when they meet a string array.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum FieldValue {
+    /// Text without NUL characters.
+    Text(String),
+    /// A number such as the random seed, kept as UInt64.
+    Integer(u64),
+}
+
+/// Writes `data` in `format`.
+///
+/// # Errors
+/// Whatever `out` reports; and [`io::ErrorKind::InvalidInput`] when the legacy format, whose ids are signed
+/// 32-bit numbers, cannot hold so many points or cells.
+///
+/// # Panics
+/// When an array has another length than the points or cells that it describes.
+pub fn write_vtk(data: &PolyData<'_>, format: OutputFormat, out: &mut dyn Write) -> io::Result<()> {
+    for array in &data.point_arrays {
+        assert_eq!(array.values.len(), data.points.len(), "point array {}", array.name);
+    }
+    for array in &data.cell_arrays {
+        assert_eq!(array.values.len(), data.cells.len(), "cell array {}", array.name);
+    }
+    match format {
+        OutputFormat::Vtp => xml::write(data, XmlFormat::PolyData, out),
+        OutputFormat::Vtu => xml::write(data, XmlFormat::UnstructuredGrid, out),
+        OutputFormat::Vtk => legacy::write(data, out),
+    }
+}

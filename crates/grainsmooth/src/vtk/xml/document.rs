@@ -1,0 +1,276 @@
+//! The elements of an XML file, named and ordered as VTK wants them.
+//!
+//! `vtkio` has the same tree, but without field data and with parts that only its own conversion can fill;
+//! from it come the names of types and the serializer.
+
+use std::borrow::Cow;
+
+use serde::Serialize;
+use vtkio::model::ByteOrder;
+use vtkio::xml::{DataArrayFormat, DataSetType, ScalarType};
+
+use super::super::{Array, Cells, FieldEntry, FieldValue, PolyData};
+use super::{AppendedNumbers, XmlFormat};
+
+/// The one file version that VTK, ParaView, pyvista and meshio all read.
+const VERSION: &str = "1.0";
+
+/// VTK's codes for the kinds of cell.
+const POLY_LINE: u8 = 4;
+const TRIANGLE: u8 = 5;
+
+#[derive(Serialize)]
+#[serde(rename = "VTKFile")]
+pub(super) struct Document {
+    #[serde(rename = "@type")]
+    data_set_type: DataSetType,
+    #[serde(rename = "@version")]
+    version: &'static str,
+    #[serde(rename = "@byte_order")]
+    byte_order: ByteOrder,
+    #[serde(rename = "@header_type")]
+    header_type: ScalarType,
+    #[serde(rename = "$value")]
+    data_set: DataSet,
+}
+
+#[derive(Serialize)]
+enum DataSet {
+    PolyData(Grid),
+    UnstructuredGrid(Grid),
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "PascalCase")]
+struct Grid {
+    field_data: Arrays,
+    piece: Piece,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "PascalCase")]
+struct Piece {
+    #[serde(rename = "@NumberOfPoints")]
+    number_of_points: usize,
+    #[serde(rename = "@NumberOfLines", skip_serializing_if = "Option::is_none")]
+    number_of_lines: Option<usize>,
+    #[serde(rename = "@NumberOfPolys", skip_serializing_if = "Option::is_none")]
+    number_of_polys: Option<usize>,
+    #[serde(rename = "@NumberOfCells", skip_serializing_if = "Option::is_none")]
+    number_of_cells: Option<usize>,
+    point_data: Arrays,
+    cell_data: Arrays,
+    points: Arrays,
+    #[serde(rename = "$value")]
+    topology: Topology,
+}
+
+#[derive(Serialize)]
+enum Topology {
+    Lines(Arrays),
+    Polys(Arrays),
+    Cells(Arrays),
+}
+
+#[derive(Serialize)]
+struct Arrays {
+    #[serde(rename = "$value")]
+    arrays: Vec<Element>,
+}
+
+#[derive(Serialize)]
+enum Element {
+    DataArray(Header<ScalarType>),
+    /// VTK's element for arrays of anything but numbers.
+    Array(Header<NotNumeric>),
+}
+
+#[derive(Serialize)]
+enum NotNumeric {
+    String,
+}
+
+/// What an array is; its numbers are appended.
+#[derive(Serialize)]
+struct Header<Type> {
+    #[serde(rename = "@type")]
+    value_type: Type,
+    #[serde(rename = "@Name")]
+    name: &'static str,
+    #[serde(rename = "@NumberOfComponents")]
+    number_of_components: u32,
+    /// Only field data need this: other arrays have as many tuples as there are points or cells.
+    #[serde(rename = "@NumberOfTuples", skip_serializing_if = "Option::is_none")]
+    number_of_tuples: Option<usize>,
+    #[serde(rename = "@format")]
+    format: DataArrayFormat,
+    #[serde(rename = "@offset")]
+    offset: u64,
+}
+
+impl Document {
+    /// Describes `data` and lists its arrays in `numbers`.
+    pub(super) fn new<'a>(data: &PolyData<'a>, format: XmlFormat, numbers: &mut AppendedNumbers<'a>) -> Self {
+        let grid = Grid {
+            field_data: Arrays {
+                arrays: data.field.iter().map(|entry| field(entry, format, numbers)).collect(),
+            },
+            piece: Piece::new(data, format, numbers),
+        };
+        let (data_set_type, data_set) = match format {
+            XmlFormat::PolyData => (DataSetType::PolyData, DataSet::PolyData(grid)),
+            XmlFormat::UnstructuredGrid => (DataSetType::UnstructuredGrid, DataSet::UnstructuredGrid(grid)),
+        };
+        Self {
+            data_set_type,
+            version: VERSION,
+            byte_order: ByteOrder::native(),
+            header_type: ScalarType::UInt64,
+            data_set,
+        }
+    }
+}
+
+impl Piece {
+    fn new<'a>(data: &PolyData<'a>, format: XmlFormat, numbers: &mut AppendedNumbers<'a>) -> Self {
+        let points =
+            array("Points", ScalarType::Float64, 3, numbers.append(bytemuck::cast_slice(data.points)));
+        let mut piece = Self {
+            number_of_points: data.points.len(),
+            number_of_lines: None,
+            number_of_polys: None,
+            number_of_cells: None,
+            point_data: Arrays { arrays: attributes(&data.point_arrays, numbers) },
+            cell_data: Arrays { arrays: attributes(&data.cell_arrays, numbers) },
+            points: Arrays { arrays: vec![points] },
+            topology: Topology::new(data, format, numbers),
+        };
+        let number_of = match piece.topology {
+            Topology::Lines(_) => &mut piece.number_of_lines,
+            Topology::Polys(_) => &mut piece.number_of_polys,
+            Topology::Cells(_) => &mut piece.number_of_cells,
+        };
+        *number_of = Some(data.cells.len());
+        piece
+    }
+}
+
+impl Topology {
+    fn new<'a>(data: &PolyData<'a>, format: XmlFormat, numbers: &mut AppendedNumbers<'a>) -> Self {
+        // VTK's ids are signed, and both arrays must have the same width.
+        let largest = data.points.len().max(data.cells.corner_count());
+        let wide = i32::try_from(largest).is_err();
+        let id_type = if wide { ScalarType::Int64 } else { ScalarType::Int32 };
+        let (connectivity, ends) = cell_ids(data.cells, wide);
+        let mut arrays = vec![
+            array("connectivity", id_type, 1, numbers.append(connectivity)),
+            array("offsets", id_type, 1, numbers.append(ends)),
+        ];
+        match (format, data.cells) {
+            (XmlFormat::PolyData, Cells::Triangles(_)) => Self::Polys(Arrays { arrays }),
+            (XmlFormat::PolyData, Cells::Polylines(_)) => Self::Lines(Arrays { arrays }),
+            (XmlFormat::UnstructuredGrid, cells) => {
+                let kind = match cells {
+                    Cells::Triangles(_) => TRIANGLE,
+                    Cells::Polylines(_) => POLY_LINE,
+                };
+                arrays.push(array("types", ScalarType::UInt8, 1, numbers.append(vec![kind; cells.len()])));
+                Self::Cells(Arrays { arrays })
+            }
+        }
+    }
+}
+
+/// The point ids of all cells in a row, and where in that row each cell ends.
+fn cell_ids(cells: Cells<'_>, wide: bool) -> (Cow<'_, [u8]>, Vec<u8>) {
+    match cells {
+        Cells::Triangles(triangles) => {
+            let connectivity = if wide {
+                id_bytes(triangles.as_flattened().iter().map(|&id| u64::from(id)), wide).into()
+            } else {
+                bytemuck::cast_slice(triangles).into()
+            };
+            (connectivity, id_bytes((1..=triangles.len() as u64).map(|cell| 3 * cell), wide))
+        }
+        Cells::Polylines(polylines) => {
+            let ends = polylines.iter().scan(0, |end, polyline| {
+                *end += polyline.len() as u64;
+                Some(*end)
+            });
+            let connectivity = id_bytes(polylines.iter().flatten().map(|&id| u64::from(id)), wide);
+            (connectivity.into(), id_bytes(ends, wide))
+        }
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the caller asks for wide ids where 32 bits do not hold them"
+)]
+fn id_bytes(ids: impl Iterator<Item = u64>, wide: bool) -> Vec<u8> {
+    if wide {
+        bytemuck::cast_slice(&ids.collect::<Vec<_>>()).to_vec()
+    } else {
+        bytemuck::cast_slice(&ids.map(|id| id as u32).collect::<Vec<_>>()).to_vec()
+    }
+}
+
+fn attributes<'a>(arrays: &[Array<'a>], numbers: &mut AppendedNumbers<'a>) -> Vec<Element> {
+    arrays
+        .iter()
+        .map(|Array { name, values }| {
+            array(name, values.scalar_type(), values.component_count(), numbers.append(values.bytes()))
+        })
+        .collect()
+}
+
+fn field(entry: &FieldEntry, format: XmlFormat, numbers: &mut AppendedNumbers<'_>) -> Element {
+    match (&entry.value, format) {
+        (FieldValue::Integer(number), _) => {
+            let offset = numbers.append(number.to_ne_bytes().to_vec());
+            Element::DataArray(Header::new(entry.name, ScalarType::UInt64, 1, offset).with_tuples(1))
+        }
+        (FieldValue::Text(text), XmlFormat::UnstructuredGrid) => {
+            let offset = numbers.append(text.clone().into_bytes());
+            Element::DataArray(Header::new(entry.name, ScalarType::UInt8, 1, offset).with_tuples(text.len()))
+        }
+        (FieldValue::Text(text), XmlFormat::PolyData) => {
+            let offset = numbers.append(format!("{text}\0").into_bytes());
+            Element::Array(Header::new(entry.name, NotNumeric::String, 1, offset).with_tuples(1))
+        }
+    }
+}
+
+fn array(name: &'static str, scalar_type: ScalarType, number_of_components: u32, offset: u64) -> Element {
+    Element::DataArray(Header::new(name, scalar_type, number_of_components, offset))
+}
+
+impl<Type> Header<Type> {
+    fn new(name: &'static str, value_type: Type, number_of_components: u32, offset: u64) -> Self {
+        let format = DataArrayFormat::Appended;
+        Self { value_type, name, number_of_components, number_of_tuples: None, format, offset }
+    }
+
+    fn with_tuples(self, count: usize) -> Self {
+        Self { number_of_tuples: Some(count), ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_are_widened_when_asked() {
+        let as_bytes = |ids: &[i64]| bytemuck::cast_slice(ids).to_vec();
+        let triangles = [[0, 1, 2], [2, 1, u32::MAX]];
+        let (connectivity, ends) = cell_ids(Cells::Triangles(&triangles), true);
+        assert_eq!(connectivity, as_bytes(&[0, 1, 2, 2, 1, i64::from(u32::MAX)]));
+        assert_eq!(ends, as_bytes(&[3, 6]));
+
+        let polylines = [vec![0, 1], vec![2, 1, 3]];
+        let (connectivity, ends) = cell_ids(Cells::Polylines(&polylines), true);
+        assert_eq!(connectivity, as_bytes(&[0, 1, 2, 1, 3]));
+        assert_eq!(ends, as_bytes(&[2, 5]));
+    }
+}

@@ -1,0 +1,227 @@
+//! Every format read back with vtkio: what was put in comes out, bit for bit.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::fs;
+use std::path::Path;
+
+use glam::DVec3;
+use grainsmooth::vtk::{Array, Cells, FieldEntry, FieldValue, PolyData, Values, write_vtk};
+use grainsmooth::{Output, OutputFormat};
+use vtkio::model::{Attribute, CellType, DataSet, IOBuffer, Piece, VertexNumbers, Vtk};
+
+/// Coordinates that lose digits in anything but 64-bit floats.
+const POINTS: [DVec3; 5] = [
+    DVec3::new(0.0, -0.0, 1e-8),
+    DVec3::new(0.1, 1.0 / 3.0, 1e-300),
+    DVec3::new(1e-8 / 3.0, -1e300, 5e-324),
+    DVec3::new(std::f64::consts::PI, 2.0, 3.0),
+    DVec3::new(1.0, 1.0 + f64::EPSILON, 1.0 - f64::EPSILON),
+];
+const TRIANGLES: [[u32; 3]; 3] = [[0, 1, 2], [2, 1, 3], [4, 0, 3]];
+const LABELS: [[i32; 2]; 3] = [[0, 1], [7, i32::MAX], [2, -1]];
+const BOUNDARIES: [i32; 3] = [0, 1, 70_000];
+const NODE_TYPES: [i8; 5] = [2, 3, 4, 14, -1];
+const COMMAND: &str = "grainsmooth --seeds 200 -o 'gräins & <more>.vtp'";
+
+fn surface(cells: Cells<'_>) -> PolyData<'_> {
+    PolyData {
+        points: &POINTS,
+        cells,
+        point_arrays: vec![Array { name: "NodeTypes", values: Values::Int8(&NODE_TYPES) }],
+        cell_arrays: vec![
+            Array { name: "FaceLabels", values: Values::Int32Pairs(&LABELS[..cells.len()]) },
+            Array { name: "BoundaryId", values: Values::Int32(&BOUNDARIES[..cells.len()]) },
+        ],
+        field: vec![
+            FieldEntry { name: "CommandLine", value: FieldValue::Text(COMMAND.to_owned()) },
+            FieldEntry { name: "RandomSeed", value: FieldValue::Integer(u64::MAX - 1) },
+        ],
+    }
+}
+
+fn write(data: &PolyData<'_>, path: &Path) {
+    let output = Output::check(path).unwrap();
+    output.write(|out| write_vtk(data, output.format(), out)).unwrap();
+}
+
+fn bytes(data: &PolyData<'_>, format: OutputFormat) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write_vtk(data, format, &mut bytes).unwrap();
+    bytes
+}
+
+/// Arrays as name, number of components and values, whichever way the format holds them.
+fn named(attributes: Vec<Attribute>) -> Vec<(String, u32, IOBuffer)> {
+    let arrays = attributes.into_iter().flat_map(|attribute| match attribute {
+        Attribute::DataArray(array) => vec![(array.name, array.elem.num_comp(), array.data)],
+        Attribute::Field { data_array, .. } => {
+            data_array.into_iter().map(|array| (array.name, array.elem, array.data)).collect()
+        }
+    });
+    arrays.collect()
+}
+
+fn inline<P>(pieces: Vec<Piece<P>>) -> P {
+    match pieces.into_iter().next() {
+        Some(Piece::Inline(piece)) => *piece,
+        _ => panic!("no inline piece"),
+    }
+}
+
+/// Checks coordinates and arrays; returns each cell's kind and points.
+fn check(file: Vtk) -> Vec<(CellType, Vec<u64>)> {
+    let (points, cells, attributes) = match file.data {
+        DataSet::PolyData { pieces, .. } => {
+            let piece = inline(pieces);
+            let (kind, vertices) = match (piece.polys, piece.lines) {
+                (Some(polys), None) => (CellType::Triangle, polys),
+                (None, Some(lines)) => (CellType::PolyLine, lines),
+                _ => panic!("neither polys alone nor lines alone"),
+            };
+            (piece.points, split(vertices).into_iter().map(|cell| (kind, cell)).collect(), piece.data)
+        }
+        DataSet::UnstructuredGrid { pieces, .. } => {
+            let piece = inline(pieces);
+            let cells: Vec<_> = piece.cells.types.into_iter().zip(split(piece.cells.cell_verts)).collect();
+            (piece.points, cells, piece.data)
+        }
+        _ => panic!("neither PolyData nor UnstructuredGrid"),
+    };
+    let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+    let expected: Vec<f64> = POINTS.iter().flat_map(|point| point.to_array()).collect();
+    assert_eq!(bits(&points.into_vec::<f64>().unwrap()), bits(&expected));
+
+    let labels: Vec<i32> = LABELS[..cells.len()].as_flattened().to_vec();
+    assert_eq!(
+        named(attributes.cell),
+        [
+            ("FaceLabels".to_owned(), 2, IOBuffer::I32(labels)),
+            ("BoundaryId".to_owned(), 1, IOBuffer::I32(BOUNDARIES[..cells.len()].to_vec())),
+        ]
+    );
+    assert_eq!(named(attributes.point), [("NodeTypes".to_owned(), 1, IOBuffer::I8(NODE_TYPES.to_vec()))]);
+    cells
+}
+
+fn split(vertices: VertexNumbers) -> Vec<Vec<u64>> {
+    let (connectivity, ends) = vertices.into_xml();
+    let mut start = 0;
+    ends.into_iter()
+        .map(|end| {
+            let cell = connectivity[start..usize::try_from(end).unwrap()].to_vec();
+            start += cell.len();
+            cell
+        })
+        .collect()
+}
+
+fn read(path: &Path) -> Vtk {
+    if OutputFormat::of_path(path) != Some(OutputFormat::Vtk) {
+        return Vtk::import(path).unwrap();
+    }
+    // vtkio does not know field data at the head of a legacy file: take them out.
+    let mut file = fs::read(path).unwrap();
+    let find = |text: &[u8]| file.windows(text.len()).position(|window| window == text).unwrap();
+    let field = find(b"FIELD FieldData")..find(b"POINTS");
+    let mut expected = b"FIELD FieldData 2\nCommandLine 1 1 string\n\x40\0\0\x31".to_vec();
+    expected.extend_from_slice(COMMAND.as_bytes());
+    expected.extend_from_slice(b"\nRandomSeed 1 1 vtktypeuint64\n");
+    expected.extend_from_slice(&(u64::MAX - 1).to_be_bytes());
+    expected.push(b'\n');
+    assert_eq!(file[field.clone()], expected);
+    file.drain(field);
+    Vtk::parse_legacy_be(&file[..]).unwrap()
+}
+
+#[test]
+fn triangles_come_back() {
+    let directory = tempfile::tempdir().unwrap();
+    for format in OutputFormat::ALL {
+        let path = directory.path().join("grains").with_extension(format.extension());
+        write(&surface(Cells::Triangles(&TRIANGLES)), &path);
+        let expected = TRIANGLES.map(|triangle| (CellType::Triangle, triangle.map(u64::from).to_vec()));
+        assert_eq!(check(read(&path)), expected, "{format:?}");
+    }
+}
+
+#[test]
+fn polylines_come_back() {
+    let polylines = [vec![0, 1], vec![4, 3, 2, 0, 1]];
+    let directory = tempfile::tempdir().unwrap();
+    for format in OutputFormat::ALL {
+        let path = directory.path().join("lines").with_extension(format.extension());
+        write(&surface(Cells::Polylines(&polylines)), &path);
+        let expected =
+            polylines.clone().map(|line| (CellType::PolyLine, line.into_iter().map(u64::from).collect()));
+        assert_eq!(check(read(&path)), expected, "{format:?}");
+    }
+}
+
+#[test]
+fn field_data_stand_in_the_xml_head() {
+    let data = surface(Cells::Triangles(&TRIANGLES));
+    let vtp = String::from_utf8(bytes(&data, OutputFormat::Vtp)).unwrap();
+    let vtu = String::from_utf8(bytes(&data, OutputFormat::Vtu)).unwrap();
+    let text =
+        r#"type="String" Name="CommandLine" NumberOfComponents="1" NumberOfTuples="1" format="appended""#;
+    assert!(vtp.contains(&format!("<PolyData><FieldData><Array {text}")), "{vtp}");
+    let text =
+        r#"type="UInt8" Name="CommandLine" NumberOfComponents="1" NumberOfTuples="49" format="appended""#;
+    assert!(vtu.contains(&format!("<UnstructuredGrid><FieldData><DataArray {text}")), "{vtu}");
+
+    // The command line is the first array of either file: its length, then its bytes.
+    for (file, length) in [(&vtp, COMMAND.len() + 1), (&vtu, COMMAND.len())] {
+        let base64 = file.split("\n_").nth(1).unwrap();
+        let array = decode(&base64.as_bytes()[..(8 + length).div_ceil(3) * 4]);
+        assert_eq!(array[..8], (length as u64).to_ne_bytes());
+        assert_eq!(&array[8..8 + COMMAND.len()], COMMAND.as_bytes());
+    }
+}
+
+fn decode(text: &[u8]) -> Vec<u8> {
+    use base64::Engine;
+    base64::engine::general_purpose::STANDARD.decode(text).unwrap()
+}
+
+#[test]
+fn empty_data_set_is_a_valid_file() {
+    let data = PolyData {
+        points: &[],
+        cells: Cells::Triangles(&[]),
+        point_arrays: vec![],
+        cell_arrays: vec![],
+        field: vec![],
+    };
+    for format in OutputFormat::ALL {
+        let file = bytes(&data, format);
+        match format {
+            OutputFormat::Vtk => drop(Vtk::parse_legacy_be(&file[..]).unwrap()),
+            _ => drop(Vtk::parse_xml(&file[..]).unwrap()),
+        }
+    }
+}
+
+#[test]
+fn number_of_threads_does_not_change_the_file() {
+    let points: Vec<DVec3> = (0..200_000).map(|i| DVec3::splat(f64::from(i)).sqrt()).collect();
+    let data = PolyData {
+        points: &points,
+        cells: Cells::Triangles(&TRIANGLES),
+        point_arrays: vec![],
+        cell_arrays: vec![],
+        field: vec![],
+    };
+    let with_threads = |count| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
+        OutputFormat::ALL.map(|format| pool.install(|| bytes(&data, format)))
+    };
+    assert!(with_threads(1) == with_threads(3));
+}
+
+#[test]
+#[should_panic(expected = "cell array BoundaryId")]
+fn array_of_another_length_is_refused() {
+    let mut data = surface(Cells::Triangles(&TRIANGLES));
+    data.cell_arrays[1].values = Values::Int32(&BOUNDARIES[..2]);
+    bytes(&data, OutputFormat::Vtp);
+}
