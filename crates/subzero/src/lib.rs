@@ -21,6 +21,7 @@
 //! ```
 
 mod bezier;
+mod butterfly;
 mod counts;
 mod curve_mesh;
 mod error;

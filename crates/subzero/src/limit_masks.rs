@@ -40,7 +40,7 @@ fn sines(valence: usize) -> RingMask {
 ///
 /// The first points along the crease at edge 0, the second into the sector. The second is the exact eigenvector of the
 /// rules used here; Hoppe et al. 1994 give one that belongs to other edge rules.
-pub(crate) fn crease_tangents(edges: usize) -> [RingMask; 2] {
+pub(crate) fn crease_tangents(edges: usize, weights: LoopWeights) -> [RingMask; 2] {
     let last = edges - 1;
     let mut along = RingMask { centre: 0.0, ring: vec![0.0; edges] };
     along.ring[0] = 1.0;
@@ -49,6 +49,13 @@ pub(crate) fn crease_tangents(edges: usize) -> [RingMask; 2] {
         return [along, RingMask { centre: -2.0, ring: vec![1.0, 1.0] }];
     }
     let angle = PI / real(last);
+    if weights == LoopWeights::BiermannLevinZorin {
+        let mut ring: Vec<f64> = (0..edges).map(|i| (angle * real(i)).sin()).collect();
+        let ends = (angle.sin() - 1.0 / (angle / 2.0).tan()) / 2.0;
+        ring[0] = ends;
+        ring[last] = ends;
+        return [along, RingMask { centre: -angle.sin(), ring }];
+    }
     let inside = (2.0 * angle.cos() + 1.0) * (angle / 2.0).tan();
     let mut ring: Vec<f64> = (0..edges).map(|i| inside * (angle * real(i)).sin()).collect();
     ring[0] = -angle.cos();

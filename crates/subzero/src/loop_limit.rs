@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::ids::{NONE, next, prev};
+use crate::ids::{next, prev};
 use crate::limit_masks::{
     RingMask, crease_tangents, dart_position, dart_tangents, smooth_position, smooth_tangents,
 };
@@ -82,7 +82,7 @@ impl TriangleMesh {
                 }
                 VertexRule::Crease => {
                     let ring = self.open_ring(first);
-                    add_row(rows, vertex, &ring, &crease_tangents(ring.len())[which]);
+                    add_row(rows, vertex, &ring, &crease_tangents(ring.len(), weights)[which]);
                 }
                 VertexRule::Corner => {
                     let ring = self.open_ring(first);
@@ -142,16 +142,8 @@ impl TriangleMesh {
     /// The neighbours from the end of the half-edge `first` to the next crease.
     fn open_ring(&self, first: u32) -> Vec<u32> {
         let mut ring = vec![self.start(next(first))];
-        let mut h = first;
-        loop {
-            let before = prev(h);
-            ring.push(self.start(before));
-            let twin = self.twin(before);
-            if twin == NONE || self.is_crease(self.directed_edge(before) / 2) {
-                return ring;
-            }
-            h = twin;
-        }
+        ring.extend(self.sector(first).map(|h| self.start(prev(h))));
+        ring
     }
 }
 

@@ -1,6 +1,6 @@
 //! The rows of Loop's scheme: smooth, crease and corner rules, and the semi-sharp ones between them.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use crate::ids::{next, prev};
 use crate::sharpness::{Spoke, decay, is_infinite, rule_of_sharp_edges};
@@ -15,6 +15,9 @@ pub enum LoopWeights {
     Loop,
     /// Warren 1995: 3/16 for each of 3 neighbours, else 3/(8 n).
     Warren,
+    /// Loop's, and at creases those of Biermann, Levin and Zorin 2000: an edge that leaves a crease vertex is weighted by
+    /// the number of triangles in its sector, which gives the surface a tangent plane there whatever that number is.
+    BiermannLevinZorin,
 }
 
 impl LoopWeights {
@@ -23,7 +26,7 @@ impl LoopWeights {
         #[allow(clippy::cast_precision_loss)]
         let n = valence as f64;
         match self {
-            Self::Loop => (0.625 - (0.375 + 0.25 * (TAU / n).cos()).powi(2)) / n,
+            Self::Loop | Self::BiermannLevinZorin => (0.625 - (0.375 + 0.25 * (TAU / n).cos()).powi(2)) / n,
             Self::Warren if valence == 3 => 3.0 / 16.0,
             Self::Warren => 3.0 / (8.0 * n),
         }
@@ -38,12 +41,12 @@ impl TriangleMesh {
             if i < vertices {
                 self.loop_vertex_row(i, weights, rows);
             } else {
-                self.loop_edge_row(i - vertices, rows);
+                self.loop_edge_row(i - vertices, weights, rows);
             }
         })
     }
 
-    fn loop_edge_row(&self, edge: u32, rows: &mut Rows) {
+    fn loop_edge_row(&self, edge: u32, weights: LoopWeights, rows: &mut Rows) {
         let [along, against] = self.edges[edge as usize];
         let [a, b] = [self.start(along), self.start(next(along))];
         let crease =
@@ -53,13 +56,42 @@ impl TriangleMesh {
             rows.add(b, 0.5);
         } else {
             let crease = f64::from(crease);
-            let end = 0.375 + 0.125 * crease;
+            let smooth = match weights {
+                LoopWeights::Loop | LoopWeights::Warren => [0.375; 2],
+                LoopWeights::BiermannLevinZorin => self.sector_weights(along, against),
+            };
+            let [end_a, end_b] = smooth.map(|end| end + (0.5 - end) * crease);
             let apex = 0.125 - 0.125 * crease;
-            rows.add(a, end);
-            rows.add(b, end);
+            rows.add(a, end_a);
+            rows.add(b, end_b);
             rows.add(self.start(prev(along)), apex);
             rows.add(self.start(prev(against)), apex);
         }
+    }
+
+    /// The weights of the two ends of an edge after Biermann, Levin and Zorin.
+    fn sector_weights(&self, along: u32, against: u32) -> [f64; 2] {
+        let far_end = |h: u32| {
+            (self.vertex_rule(self.start(h)) == VertexRule::Crease)
+                .then(|| 0.5 - 0.25 * (PI / f64::from(self.sector_triangles(h))).cos())
+        };
+        match (far_end(along), far_end(against)) {
+            (Some(b), None) => [0.75 - b, b],
+            (None, Some(a)) => [a, 0.75 - a],
+            _ => [0.375; 2],
+        }
+    }
+
+    /// Triangles in the sector of the start of `h` in which `h` lies, `h` being on no crease.
+    fn sector_triangles(&self, h: u32) -> u32 {
+        let is_crease = |h: &u32| self.sharp_edges[(self.directed_edge(*h) / 2) as usize];
+        let left = std::iter::successors(Some(h), |&h| {
+            Some(prev(h)).filter(|h| !is_crease(h)).map(|h| self.twin(h))
+        });
+        let right = std::iter::successors(Some(self.twin(h)), |&h| {
+            Some(next(h)).filter(|h| !is_crease(h)).map(|h| self.twin(h))
+        });
+        left.chain(right).fold(0, |count, _| count + 1)
     }
 
     fn loop_vertex_row(&self, vertex: u32, weights: LoopWeights, rows: &mut Rows) {

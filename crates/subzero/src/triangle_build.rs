@@ -38,7 +38,7 @@ impl TriangleMesh {
             sharp_edges: Vec::new(),
             sharpness: Sharpness::default(),
         };
-        mesh.set_sharpness(&numbered.triangle_counts, numbered.sharpness, corners, features.boundary);
+        mesh.set_sharpness(&numbered.triangle_counts, &numbered.sharpness, corners, features.boundary);
         Ok(mesh)
     }
 
@@ -46,49 +46,56 @@ impl TriangleMesh {
     fn set_sharpness(
         &mut self,
         triangle_counts: &[u32],
-        edge_sharpness: Vec<f32>,
+        edge_sharpness: &[f32],
         mut corners: Vec<(u32, f32)>,
         boundary: BoundaryRule,
     ) {
-        let vertex_count = self.vertex_count();
-        let edges: Vec<(u32, f32)> =
-            edge_sharpness.iter().enumerate().filter(|&(_, &s)| s > 0.0).map(|(e, &s)| (id(e), s)).collect();
-        let mut spokes = Vec::with_capacity(2 * edges.len());
-        for &(edge, sharpness) in &edges {
-            spokes.extend(self.edge(edge).map(|vertex| Spoke { vertex, edge, sharpness }));
+        let sharp = edge_sharpness.iter().enumerate().filter(|&(_, &s)| s > 0.0);
+        self.sharpness.edges = sharp.map(|(e, &s)| (id(e), s)).collect();
+        self.sharp_edges = self.sharpness.sharp_edges(self.edges.len());
+        for &(edge, sharpness) in &self.sharpness.edges {
+            let spokes = self.edge(edge).map(|vertex| Spoke { vertex, edge, sharpness });
+            self.sharpness.spokes.extend(spokes);
         }
-        spokes.sort_by_key(|spoke| (spoke.vertex, spoke.edge));
+        self.sharpness.spokes.sort_by_key(|spoke| (spoke.vertex, spoke.edge));
 
-        // Vertices whose triangles form no simple fan, apart from crease vertices between two non-manifold edges.
-        let mut fan = vec![0_u32; vertex_count];
-        for &vertex in self.triangles.as_flattened() {
-            fan[vertex as usize] += 1;
-        }
-        let mut infinite = vec![0_u8; vertex_count];
-        let mut non_manifold = vec![0_u32; vertex_count];
-        for &(edge, sharpness) in &edges {
-            for vertex in self.edge(edge) {
-                infinite[vertex as usize] |= u8::from(is_infinite(sharpness));
-                non_manifold[vertex as usize] += u32::from(triangle_counts[edge as usize] > 2);
-            }
-        }
-        for vertex in 0..id(vertex_count) {
-            let at = vertex as usize;
-            let outgoing = self.outgoing[at];
-            let corner = outgoing == NONE
-                || !matches!(non_manifold[at], 0 | 2)
-                || (boundary == BoundaryRule::EdgeCorner && fan[at] == 1)
-                || (infinite[at] == 0 && self.ring(outgoing).count() != fan[at] as usize);
-            if corner {
-                corners.push((vertex, INFINITE_SHARPNESS));
-            }
-        }
+        let fixed = self.fixed_vertices(triangle_counts, boundary);
+        corners.extend(fixed.into_iter().map(|vertex| (vertex, INFINITE_SHARPNESS)));
+        // Of several entries for a vertex, the sharpest comes first and stays.
         corners.sort_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
         corners.dedup_by_key(|&mut (vertex, _)| vertex);
+        self.sharpness.corners = corners;
+        self.vertex_rules = self.sharpness.vertex_rules(self.vertex_count());
+    }
 
-        self.sharpness = Sharpness { edges, spokes, corners };
-        self.vertex_rules = self.sharpness.vertex_rules(vertex_count);
-        self.sharp_edges = self.sharpness.sharp_edges(self.edges.len());
+    /// Vertices that connectivity alone makes corners: unused ones, those where sheets touch in the point only, those
+    /// with a number of non-manifold edges other than 0 and 2, and boundary corners if the boundary rule fixes them.
+    fn fixed_vertices(&self, triangle_counts: &[u32], boundary: BoundaryRule) -> Vec<u32> {
+        let mut triangles = vec![0_usize; self.vertex_count()];
+        for &vertex in self.triangles.as_flattened() {
+            triangles[vertex as usize] += 1;
+        }
+        let mut non_manifold = vec![0_u32; self.vertex_count()];
+        for spoke in &self.sharpness.spokes {
+            let count = triangle_counts[spoke.edge as usize];
+            non_manifold[spoke.vertex as usize] += u32::from(count > 2);
+        }
+        // Triangles that a turn around the vertex meets, starting at each crease, or anywhere if there is none.
+        let mut met = vec![0; self.vertex_count()];
+        for h in (0..id(3 * self.triangles.len())).filter(|&h| self.is_crease(self.directed_edge(h) / 2)) {
+            met[self.start(h) as usize] += self.sector(h).count();
+        }
+        let is_fixed = |&vertex: &u32| {
+            let [triangles, mut met] = [triangles[vertex as usize], met[vertex as usize]];
+            if triangles > 0 && met == 0 {
+                met = self.ring(self.outgoing[vertex as usize]).count();
+            }
+            triangles == 0
+                || met != triangles
+                || !matches!(non_manifold[vertex as usize], 0 | 2)
+                || (boundary == BoundaryRule::EdgeCorner && triangles == 1)
+        };
+        (0..id(self.vertex_count())).filter(is_fixed).collect()
     }
 }
 

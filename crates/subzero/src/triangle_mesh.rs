@@ -142,4 +142,16 @@ impl TriangleMesh {
             (turned != NONE && turned != first).then_some(turned)
         })
     }
+
+    /// The half-edges of [`ring`](Self::ring) up to the next infinite crease.
+    pub(crate) fn sector(&self, first: u32) -> impl Iterator<Item = u32> {
+        let beyond = move |&h: &u32| {
+            let before = prev(h);
+            if self.is_crease(self.directed_edge(before) / 2) {
+                return None;
+            }
+            Some(self.twin(before)).filter(|&turned| turned != first)
+        };
+        std::iter::successors(Some(first), beyond)
+    }
 }

@@ -55,6 +55,20 @@ fn warren_weights_match_libigl() {
     check_levels("loop_warren_open_edge", 1e-12, |mesh| mesh.loop_refine_with(LoopWeights::Warren));
 }
 
+#[test]
+fn sector_weights_match() {
+    check_levels("loop_blz_open_edge", 1e-12, |mesh| mesh.loop_refine_with(LoopWeights::BiermannLevinZorin));
+}
+
+#[test]
+fn butterflies_match() {
+    check_levels("butterfly_cube_presplit", 1e-12, TriangleMesh::butterfly_refine);
+    for name in ["mbutterfly_tetrahedron", "mbutterfly_torus", "mbutterfly_cube_presplit", "mbutterfly_open"]
+    {
+        check_levels(name, 1e-12, TriangleMesh::modified_butterfly_refine);
+    }
+}
+
 /// Compares limit positions and normals on each level that has them, and sector normals on level 0.
 fn check_limits(name: &str, tolerance: f64) {
     let reference: TriangleReference = load(name);

@@ -1,0 +1,135 @@
+//! Interpolating schemes: butterfly, modified butterfly and midpoints. Old vertices stay where they are.
+
+use std::f64::consts::TAU;
+
+use crate::ids::{NONE, next, prev};
+use crate::stencil::Rows;
+use crate::{Refinement, StencilTable, TriangleMesh, VertexRule};
+
+impl TriangleMesh {
+    /// One step of the butterfly scheme (Dyn, Gregory and Levin 1990, w = 1/16): the 8-point rule on every edge.
+    ///
+    /// Creases (boundaries and non-manifold edges among them) get the 4-point rule along their own curve; across them the
+    /// 8-point rule reflects the points that it lacks. Semi-sharp creases count as smooth.
+    ///
+    /// # Panics
+    /// If the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
+    pub fn butterfly_refine(&self) -> Refinement<Self> {
+        self.interpolating_refine(|along, rows| self.eight_point(along, 1.0, rows))
+    }
+
+    /// One step of the modified butterfly scheme (Zorin, Schroeder and Sweldens 1996), smooth at irregular vertices too.
+    ///
+    /// Creases are treated as in [`butterfly_refine`](Self::butterfly_refine), and vertices on them count as regular.
+    ///
+    /// # Panics
+    /// If the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
+    pub fn modified_butterfly_refine(&self) -> Refinement<Self> {
+        self.interpolating_refine(|along, rows| {
+            match (self.is_irregular(along), self.is_irregular(self.twin(along))) {
+                (false, false) => self.eight_point(along, 1.0, rows),
+                (true, false) => self.irregular(along, 1.0, rows),
+                (false, true) => self.irregular(self.twin(along), 1.0, rows),
+                (true, true) => {
+                    self.irregular(along, 0.5, rows);
+                    self.irregular(self.twin(along), 0.5, rows);
+                }
+            }
+        })
+    }
+
+    /// Splits each triangle into four at the midpoints of its edges, without moving the surface.
+    ///
+    /// # Panics
+    /// If the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
+    pub fn midpoint_refine(&self) -> Refinement<Self> {
+        let vertices = self.counts().vertices;
+        let stencils = StencilTable::from_rows(self.vertex_count() + self.edge_count(), |i, rows| {
+            if i < vertices {
+                rows.add(i, 1.0);
+            } else {
+                self.edge(i - vertices).into_iter().for_each(|end| rows.add(end, 0.5));
+            }
+        });
+        Refinement { mesh: self.refine_connectivity(), stencils }
+    }
+
+    /// A refinement that keeps old vertices, with `inner` as the rule of edges that are no creases.
+    fn interpolating_refine(&self, inner: impl Fn(u32, &mut Rows) + Sync) -> Refinement<Self> {
+        let vertices = self.counts().vertices;
+        let stencils = StencilTable::from_rows(self.vertex_count() + self.edge_count(), |i, rows| {
+            if i < vertices {
+                rows.add(i, 1.0);
+            } else if self.is_crease(i - vertices) {
+                self.four_point(i - vertices, rows);
+            } else {
+                inner(self.edges[(i - vertices) as usize][0], rows);
+            }
+        });
+        Refinement { mesh: self.refine_connectivity(), stencils }
+    }
+
+    /// 9/16 of the ends and -1/16 of the next points of the crease, reflected where the crease does not go on.
+    fn four_point(&self, edge: u32, rows: &mut Rows) {
+        let [a, b] = self.edge(edge);
+        for (end, other) in [(a, b), (b, a)] {
+            rows.add(end, 9.0 / 16.0);
+            let goes_on = self.vertex_rule(end) == VertexRule::Crease;
+            let spoke = self.sharpness.spokes(end).iter().find(|spoke| goes_on && spoke.edge != edge);
+            if let Some(spoke) = spoke {
+                rows.add(self.other_end(spoke.edge, end), -1.0 / 16.0);
+            } else {
+                rows.add(end, -2.0 / 16.0);
+                rows.add(other, 1.0 / 16.0);
+            }
+        }
+    }
+
+    /// 1/2 of the ends, 1/8 of the apexes and -1/16 of the wings.
+    fn eight_point(&self, along: u32, share: f64, rows: &mut Rows) {
+        for h in [along, self.twin(along)] {
+            rows.add(self.start(h), 0.5 * share);
+            rows.add(self.start(prev(h)), 0.125 * share);
+            for wing in [next(h), prev(h)] {
+                let beyond =
+                    if self.is_crease(self.directed_edge(wing) / 2) { NONE } else { self.twin(wing) };
+                if beyond == NONE {
+                    // The triangle's mirror image: the ends of the wing's edge less the third corner.
+                    rows.add(self.start(wing), -share / 16.0);
+                    rows.add(self.start(next(wing)), -share / 16.0);
+                    rows.add(self.start(prev(wing)), share / 16.0);
+                } else {
+                    rows.add(self.start(prev(beyond)), -share / 16.0);
+                }
+            }
+        }
+    }
+
+    /// The rule of an edge that starts at an irregular vertex, `h` running away from it.
+    fn irregular(&self, h: u32, share: f64, rows: &mut Rows) {
+        let valence = self.ring(h).count();
+        #[allow(clippy::cast_precision_loss)]
+        let n = valence as f64;
+        rows.add(self.start(h), 0.75 * share);
+        let mut angle = 0.0;
+        for (j, spoke) in self.ring(h).enumerate() {
+            let weight = match (valence, j) {
+                (3, 0) => 5.0 / 12.0,
+                (3, _) => -1.0 / 12.0,
+                (4, 0) => 3.0 / 8.0,
+                (4, 2) => -1.0 / 8.0,
+                (4, _) => 0.0,
+                _ => (0.25 + f64::cos(angle) + 0.5 * f64::cos(2.0 * angle)) / n,
+            };
+            if weight != 0.0 {
+                rows.add(self.start(next(spoke)), share * weight);
+            }
+            angle += TAU / n;
+        }
+    }
+
+    /// Whether the half-edge starts at a smooth vertex with a valence other than 6.
+    fn is_irregular(&self, h: u32) -> bool {
+        self.vertex_rule(self.start(h)) == VertexRule::Smooth && self.ring(h).count() != 6
+    }
+}
