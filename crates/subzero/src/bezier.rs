@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::ids::id;
-use crate::triangle_build::check_size;
+use crate::mesh_checks::check_size;
 use crate::{MeshError, Point};
 
 /// A Bezier curve of any degree.

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::ids::id;
-use crate::triangle_build::{check_size, check_vertex};
+use crate::mesh_checks::{check_size, check_vertex};
 use crate::{MeshError, Refinement, StencilTable, VertexRule};
 
 /// A network of polylines that subdivision turns into cubic B-spline curves; positions live beside it as slices.

@@ -42,15 +42,15 @@ pub enum MeshError {
         /// The face with the higher number.
         second: u32,
     },
-    /// Two triangles that share an edge wind opposite ways, and nothing says that the surface breaks there.
+    /// Two faces that share an edge wind opposite ways, and nothing says that the surface breaks there.
     #[error(
-        "triangles {first} and {second} both run along edge {}-{} in the same direction: turn one round, or make the edge an infinite crease",
+        "faces {first} and {second} both run along edge {}-{} in the same direction: turn one round, or crease the edge infinitely",
         ends[0], ends[1]
     )]
     Winding {
-        /// The triangle with the lower number.
+        /// The face with the lower number.
         first: u32,
-        /// The triangle with the higher number.
+        /// The face with the higher number.
         second: u32,
         /// The ends of the edge, in the direction in which both run.
         ends: [u32; 2],

@@ -1,0 +1,55 @@
+//! Checks that every kind of mesh makes of what it is given.
+
+use crate::features::INFINITE_SHARPNESS;
+use crate::ids::id;
+use crate::{Features, MeshError};
+
+/// Whether so many elements can be counted with 32-bit ids; the last id is kept for "none".
+pub(crate) fn check_size(what: &'static str, count: usize) -> Result<(), MeshError> {
+    if count < u32::MAX as usize { Ok(()) } else { Err(MeshError::TooLarge { what, count }) }
+}
+
+pub(crate) fn check_vertex(
+    what: &'static str,
+    index: usize,
+    vertex: u32,
+    vertex_count: usize,
+) -> Result<(), MeshError> {
+    if (vertex as usize) < vertex_count {
+        Ok(())
+    } else {
+        Err(MeshError::VertexOutOfRange { what, index, vertex, vertex_count })
+    }
+}
+
+pub(crate) fn check_sharpness(what: &'static str, index: usize, sharpness: f32) -> Result<(), MeshError> {
+    if sharpness >= 0.0 { Ok(()) } else { Err(MeshError::Sharpness { what, index, sharpness }) }
+}
+
+/// Marked corners, as (vertex, sharpness) with sharpness above 0.
+pub(crate) fn check_corners(vertex_count: usize, features: &Features) -> Result<Vec<(u32, f32)>, MeshError> {
+    let mut corners = Vec::with_capacity(features.corners.len() + features.soft_corners.len());
+    for (index, &vertex) in features.corners.iter().enumerate() {
+        check_vertex("corner", index, vertex, vertex_count)?;
+        corners.push((vertex, INFINITE_SHARPNESS));
+    }
+    for (index, &(vertex, sharpness)) in features.soft_corners.iter().enumerate() {
+        check_vertex("corner", index, vertex, vertex_count)?;
+        check_sharpness("corner", index, sharpness)?;
+        if sharpness > 0.0 {
+            corners.push((vertex, sharpness));
+        }
+    }
+    Ok(corners)
+}
+
+/// Whether no two faces have the same vertices; `sorted_faces` are the vertices of each face, sorted.
+pub(crate) fn check_duplicates<Face: Ord>(sorted_faces: impl Iterator<Item = Face>) -> Result<(), MeshError> {
+    let mut faces: Vec<(Face, u32)> = sorted_faces.enumerate().map(|(f, face)| (face, id(f))).collect();
+    faces.sort_unstable();
+    let equal = faces.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+    match equal.map(|pair| (pair[0].1, pair[1].1)).min() {
+        Some((first, second)) => Err(MeshError::DuplicateFace { first, second }),
+        None => Ok(()),
+    }
+}
