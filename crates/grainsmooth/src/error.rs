@@ -1,7 +1,8 @@
 use std::io;
 use std::path::PathBuf;
 
-use crate::OutputFormat;
+use crate::memory::{self, LevelSize};
+use crate::{OutputFormat, SeedLineProblem};
 
 /// What can go wrong between the user's input and the files written. Each message is one line that names the
 /// value, the place and the remedy.
@@ -42,5 +43,57 @@ pub enum Error {
         path: PathBuf,
         /// Why.
         source: io::Error,
+    },
+    /// A seed file cannot be opened or read.
+    #[error("{}: cannot be read: {source}; give the path of a readable CSV file", path.display())]
+    SeedFileUnreadable {
+        /// The path as given.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A seed file holds no seeds.
+    #[error("{}: holds no seeds; write x, y, z on each line", path.display())]
+    NoSeedsInFile {
+        /// The path as given.
+        path: PathBuf,
+    },
+    /// A line of a seed file is not a seed.
+    #[error("{} line {line}: {problem}", path.display())]
+    BadSeedLine {
+        /// The path as given.
+        path: PathBuf,
+        /// Line of the file, counted from 1.
+        line: usize,
+        /// What is wrong with it.
+        problem: SeedLineProblem,
+    },
+    /// So many levels of subdivision need more memory than there is.
+    #[error(
+        "{levels} levels would take {} of memory and {} are available; {}",
+        memory::in_words(*needed), memory::in_words(u128::from(*available)), memory::remedy(*largest)
+    )]
+    LevelsExceedMemory {
+        /// Number of levels asked for.
+        levels: u32,
+        /// Bytes that they would take.
+        needed: u128,
+        /// Bytes that there are.
+        available: u64,
+        /// The most levels that would fit, if any.
+        largest: Option<u32>,
+    },
+    /// So many levels of subdivision make more points, edges or triangles than 32-bit ids can name.
+    #[error(
+        "{levels} levels would make {} triangles on {} points, more than ids can name; {}",
+        size.triangles, size.points, memory::remedy(*largest)
+    )]
+    LevelsExceedIds {
+        /// Number of levels asked for.
+        levels: u32,
+        /// What they would make.
+        size: LevelSize,
+        /// The most levels that would fit, if any.
+        largest: Option<u32>,
     },
 }

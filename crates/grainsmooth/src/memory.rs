@@ -1,0 +1,219 @@
+//! How large a network becomes, known before it is computed.
+
+use std::fs;
+
+use subzero::MeshCounts;
+
+use crate::Error;
+
+/// Bytes that a run holds at its peak for each point, edge and triangle of its last level: the mesh with its
+/// arrays, the stencil that made the points, the level before, and the arrays being written. Rounded up.
+const BYTES_PER_POINT: u128 = 112;
+const BYTES_PER_EDGE: u128 = 24;
+const BYTES_PER_TRIANGLE: u128 = 64;
+
+/// Taken to be available where the system does not tell: 8 GiB.
+const AVAILABLE_WHERE_UNKNOWN: u64 = 8 << 30;
+
+/// The size of a network after some levels of subdivision.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LevelSize {
+    /// Number of points.
+    pub points: u128,
+    /// Number of edges.
+    pub edges: u128,
+    /// Number of triangles; 0 in 2D.
+    pub triangles: u128,
+}
+
+impl LevelSize {
+    /// The size that a control mesh has after `levels` subdivisions. Each keeps the points and adds one on
+    /// every edge, halves the edges, adds three inside every triangle, and makes four of each triangle.
+    /// Numbers beyond `u128::MAX` stay there.
+    pub fn after(control_mesh: MeshCounts, levels: u32) -> Self {
+        let MeshCounts { vertices, edges, triangles } = control_mesh;
+        let mut size = Self { points: vertices.into(), edges: edges.into(), triangles: triangles.into() };
+        // After 128 doublings any number is either 0 or at its end.
+        for _ in 0..levels.min(128) {
+            size = Self {
+                points: size.points.saturating_add(size.edges),
+                edges: size.edges.saturating_mul(2).saturating_add(size.triangles.saturating_mul(3)),
+                triangles: size.triangles.saturating_mul(4),
+            };
+        }
+        size
+    }
+
+    /// Bytes that computing and writing the network takes at its peak, as an estimate.
+    pub fn bytes(&self) -> u128 {
+        let points = self.points.saturating_mul(BYTES_PER_POINT);
+        let edges = self.edges.saturating_mul(BYTES_PER_EDGE);
+        points.saturating_add(edges).saturating_add(self.triangles.saturating_mul(BYTES_PER_TRIANGLE))
+    }
+
+    /// Whether 32-bit ids can name every point, both directions of every edge, and every corner of a
+    /// triangle.
+    fn fits_ids(&self) -> bool {
+        let most = self.points.max(self.edges.saturating_mul(2)).max(self.triangles.saturating_mul(3));
+        most <= u128::from(u32::MAX)
+    }
+}
+
+/// Checks that the network of a control mesh after `levels` subdivisions can be held in `available` bytes and
+/// named with 32-bit ids.
+///
+/// # Errors
+/// [`Error::LevelsExceedMemory`] or [`Error::LevelsExceedIds`], with the most levels that would fit.
+pub fn check_levels(control_mesh: MeshCounts, levels: u32, available: u64) -> Result<(), Error> {
+    let size = LevelSize::after(control_mesh, levels);
+    let fits = |size: LevelSize| size.fits_ids() && size.bytes() <= u128::from(available);
+    if fits(size) {
+        return Ok(());
+    }
+    // Sizes grow with the level, and from 128 on they stand still.
+    let largest = (0..levels.min(128)).rev().find(|&level| fits(LevelSize::after(control_mesh, level)));
+    if size.bytes() > u128::from(available) {
+        Err(Error::LevelsExceedMemory { levels, needed: size.bytes(), available, largest })
+    } else {
+        Err(Error::LevelsExceedIds { levels, size, largest })
+    }
+}
+
+/// Bytes of memory that the system can give without swapping: `MemAvailable` on Linux; 8 GiB where there is
+/// no such figure.
+pub fn available_memory() -> u64 {
+    fs::read_to_string("/proc/meminfo")
+        .ok()
+        .and_then(|meminfo| available_in(&meminfo))
+        .unwrap_or(AVAILABLE_WHERE_UNKNOWN)
+}
+
+fn available_in(meminfo: &str) -> Option<u64> {
+    let line = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    kibibytes.checked_mul(1024)
+}
+
+/// A number of bytes in words, such as `3.2 GB`.
+pub(crate) fn in_words(bytes: u128) -> String {
+    let units = ["kB", "MB", "GB", "TB", "PB", "EB"];
+    let mut amount = bytes as f64 / 1e3;
+    for unit in units {
+        // What would be printed as 1000.0 takes the next unit.
+        if amount < 999.95 {
+            return format!("{amount:.1} {unit}");
+        }
+        amount /= 1e3;
+    }
+    "over 1000 EB".to_owned()
+}
+
+/// What would fit instead of too many levels.
+pub(crate) fn remedy(largest: Option<u32>) -> String {
+    match largest {
+        Some(1) => "1 level would fit".to_owned(),
+        Some(levels) => format!("{levels} levels would fit"),
+        None => "not even 0 levels would fit, take fewer seeds".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TETRAHEDRON: MeshCounts = MeshCounts { vertices: 4, edges: 6, triangles: 4 };
+
+    #[test]
+    fn sizes_are_those_of_the_refined_mesh() {
+        let mut counts = MeshCounts { vertices: 7, edges: 20, triangles: 13 };
+        for level in 0..6 {
+            let size = LevelSize {
+                points: counts.vertices.into(),
+                edges: counts.edges.into(),
+                triangles: counts.triangles.into(),
+            };
+            assert_eq!(LevelSize::after(MeshCounts { vertices: 7, edges: 20, triangles: 13 }, level), size);
+            counts = counts.refined().unwrap();
+        }
+        let line = MeshCounts { vertices: 4, edges: 3, triangles: 0 };
+        assert_eq!(LevelSize::after(line, 3), LevelSize { points: 25, edges: 24, triangles: 0 });
+    }
+
+    #[test]
+    fn any_level_has_a_size() {
+        for level in [63, 64, 200, u32::MAX] {
+            let size = LevelSize::after(TETRAHEDRON, level);
+            assert!(size.bytes() >= LevelSize::after(TETRAHEDRON, 62).bytes());
+            assert!(matches!(
+                check_levels(TETRAHEDRON, level, u64::MAX),
+                Err(Error::LevelsExceedMemory { .. })
+            ));
+        }
+        let nothing = MeshCounts { vertices: 0, edges: 0, triangles: 0 };
+        assert!(check_levels(nothing, u32::MAX, 0).is_ok());
+    }
+
+    #[test]
+    fn largest_level_is_the_last_that_fits_exactly() {
+        let needed = |level| u64::try_from(LevelSize::after(TETRAHEDRON, level).bytes()).unwrap();
+        assert!(check_levels(TETRAHEDRON, 5, needed(5)).is_ok());
+        for (available, expected) in [(needed(5) - 1, Some(4)), (needed(0), Some(0)), (needed(0) - 1, None)] {
+            match check_levels(TETRAHEDRON, 5, available) {
+                Err(Error::LevelsExceedMemory { levels: 5, needed: bytes, available: given, largest }) => {
+                    assert_eq!((bytes, given, largest), (needed(5).into(), available, expected));
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn ids_are_the_limit_where_memory_is_not() {
+        // 3 * 4 * 4^14 corners are below 2^32, and 4^15 times as many are not.
+        assert!(check_levels(TETRAHEDRON, 14, u64::MAX).is_ok());
+        assert!(matches!(
+            check_levels(TETRAHEDRON, 15, u64::MAX),
+            Err(Error::LevelsExceedIds { levels: 15, largest: Some(14), .. })
+        ));
+        let mut counts = TETRAHEDRON;
+        let refinable = (0..20).take_while(|_| counts.refined().map(|finer| counts = finer).is_ok()).count();
+        assert_eq!(refinable, 14, "the mesh agrees on what ids can name");
+    }
+
+    #[test]
+    fn messages_say_bytes_and_remedy() {
+        let mesh = MeshCounts { vertices: 5000, edges: 20_000, triangles: 14_000 };
+        let message = |levels, available| check_levels(mesh, levels, available).unwrap_err().to_string();
+        assert_eq!(
+            message(9, 8_000_000_000),
+            "9 levels would take 572.5 GB of memory and 8.0 GB are available; 5 levels would fit"
+        );
+        assert_eq!(
+            message(200, 8_000_000_000),
+            "200 levels would take over 1000 EB of memory and 8.0 GB are available; 5 levels would fit"
+        );
+        assert_eq!(
+            message(3, 1_000_000),
+            "3 levels would take 138.6 MB of memory and 1.0 MB are available; not even 0 levels would fit, take fewer seeds"
+        );
+        assert_eq!(
+            message(9, u64::MAX),
+            "9 levels would make 3670016000 triangles on 1834495000 points, more than ids can name; 8 levels would fit"
+        );
+        assert_eq!(in_words(999_949), "999.9 kB");
+        assert_eq!(in_words(999_950), "1.0 MB");
+        assert_eq!(in_words(0), "0.0 kB");
+    }
+
+    #[test]
+    fn available_memory_is_read_from_the_system() {
+        let meminfo = "MemTotal:       16316412 kB\nMemFree:  1 kB\nMemAvailable:   12345678 kB\n";
+        assert_eq!(available_in(meminfo), Some(12_345_678 * 1024));
+        for meminfo in
+            ["", "MemAvailable: lots kB", "MemAvailable: 1", "MemAvailable: 99999999999999999999 kB"]
+        {
+            assert_eq!(available_in(meminfo), None);
+        }
+        assert!(available_memory() > 0);
+    }
+}
