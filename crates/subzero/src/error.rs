@@ -34,6 +34,38 @@ pub enum MeshError {
         /// The vertex that occurs twice.
         vertex: u32,
     },
+    /// A face has fewer than three corners.
+    #[error("face {face} has {corners} corners: three are the least")]
+    TooFewCorners {
+        /// Which face, counted from 0.
+        face: usize,
+        /// How many corners it has.
+        corners: usize,
+    },
+    /// More than two faces share an edge of a mesh that has to be manifold.
+    #[error("{faces} faces share edge {}-{}: a manifold mesh has at most two", ends[0], ends[1])]
+    NonManifoldEdge {
+        /// The ends of the edge.
+        ends: [u32; 2],
+        /// How many faces share it.
+        faces: u32,
+    },
+    /// The faces around a vertex of a mesh that has to be manifold form more than one fan.
+    #[error(
+        "the faces around vertex {vertex} touch only in this point: a manifold mesh has one fan around it"
+    )]
+    NonManifoldVertex {
+        /// The vertex.
+        vertex: u32,
+    },
+    /// Doo-Sabin subdivision of an inner vertex with two edges.
+    #[error(
+        "vertex {vertex} has only two edges: Doo-Sabin subdivision would give it a face with two corners"
+    )]
+    ValenceTwo {
+        /// The vertex.
+        vertex: u32,
+    },
     /// Two faces have the same vertices.
     #[error("faces {first} and {second} have the same vertices")]
     DuplicateFace {
@@ -91,5 +123,27 @@ pub enum MeshError {
         length: usize,
         /// Points in that row.
         found: usize,
+    },
+    /// An edit of a half-edge mesh that would not leave a manifold mesh.
+    #[error("edge {}-{} cannot be {edit}: {why}", ends[0], ends[1])]
+    Edit {
+        /// "flipped", "split" or "collapsed".
+        edit: &'static str,
+        /// The ends of the edge.
+        ends: [u32; 2],
+        /// What is in the way.
+        why: &'static str,
+    },
+    /// A half-edge that does not exist, or does no longer.
+    #[error("there is no half-edge {half_edge}")]
+    NoHalfEdge {
+        /// The half-edge.
+        half_edge: u32,
+    },
+    /// Two vertices that share no edge.
+    #[error("there is no edge {}-{}", ends[0], ends[1])]
+    NoEdge {
+        /// The vertices.
+        ends: [u32; 2],
     },
 }

@@ -22,31 +22,42 @@
 
 mod bezier;
 mod butterfly;
+mod catmull_clark;
 mod counts;
 mod curve_mesh;
+mod doo_sabin;
 mod edge_table;
 mod error;
 mod features;
+mod half_edge_edit;
+mod half_edge_mesh;
 mod ids;
 mod limit_masks;
 mod loop_limit;
 mod loop_scheme;
 mod mesh_checks;
 mod point;
+mod polygon_mesh;
 mod sharpness;
+mod split_and_flip;
 mod stencil;
 mod triangle_build;
 mod triangle_mesh;
 mod triangle_refine;
+mod vertex_rows;
 
 pub use bezier::{BezierCurve, BezierSurface};
+pub use catmull_clark::CatmullClarkLimits;
 pub use counts::{EdgeParent, MeshCounts, VertexParent};
 pub use curve_mesh::CurveMesh;
+pub use doo_sabin::{DooSabinLimits, DooSabinWeights};
 pub use error::MeshError;
 pub use features::{BoundaryRule, Crease, Features, INFINITE_SHARPNESS, VertexRule};
+pub use half_edge_mesh::HalfEdgeMesh;
 pub use loop_limit::{LoopLimits, Sector};
 pub use loop_scheme::LoopWeights;
 pub use point::Point;
+pub use polygon_mesh::PolygonMesh;
 pub use stencil::StencilTable;
 pub use triangle_mesh::TriangleMesh;
 

@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::ids::{next, prev};
-use crate::sharpness::{Spoke, decay, is_infinite, rule_of_sharp_edges};
 use crate::stencil::Rows;
+use crate::vertex_rows::vertex_row;
 use crate::{StencilTable, TriangleMesh, VertexRule};
 
 /// How strongly a smooth vertex is drawn to its neighbours.
@@ -95,62 +95,15 @@ impl TriangleMesh {
     }
 
     fn loop_vertex_row(&self, vertex: u32, weights: LoopWeights, rows: &mut Rows) {
+        let smooth = |share: f64, rows: &mut Rows| {
+            let first = self.outgoing[vertex as usize];
+            let valence = self.ring(first).count();
+            let neighbour = weights.neighbour(valence);
+            #[allow(clippy::cast_precision_loss)]
+            rows.add(vertex, share * (1.0 - valence as f64 * neighbour));
+            self.ring(first).for_each(|h| rows.add(self.start(next(h)), share * neighbour));
+        };
         let rule = self.vertex_rule(vertex);
-        if matches!(rule, VertexRule::Smooth | VertexRule::Dart) {
-            return self.smooth_vertex_row(vertex, weights, 1.0, rows);
-        }
-        // A sharp vertex keeps its rule, or blends it with the one that follows when some sharpness runs out.
-        let spokes = self.sharpness.spokes(vertex);
-        let corner = self.sharpness.of_corner(vertex);
-        let next_rule = rule_after(spokes, corner);
-        let sharp_share = if next_rule == rule { 1.0 } else { share_before_run_out(spokes, corner) };
-        self.sharp_vertex_row(vertex, rule, spokes, sharp_share, rows);
-        if sharp_share < 1.0 {
-            let rest = 1.0 - sharp_share;
-            match next_rule {
-                VertexRule::Smooth | VertexRule::Dart => self.smooth_vertex_row(vertex, weights, rest, rows),
-                _ => self.sharp_vertex_row(vertex, next_rule, &still_sharp(spokes), rest, rows),
-            }
-        }
+        vertex_row(&self.sharpness, (vertex, rule), rows, |edge| self.other_end(edge, vertex), smooth);
     }
-
-    fn smooth_vertex_row(&self, vertex: u32, weights: LoopWeights, share: f64, rows: &mut Rows) {
-        let ring = self.ring(self.outgoing[vertex as usize]);
-        let valence = ring.count();
-        let neighbour = weights.neighbour(valence);
-        #[allow(clippy::cast_precision_loss)]
-        rows.add(vertex, share * (1.0 - valence as f64 * neighbour));
-        for h in self.ring(self.outgoing[vertex as usize]) {
-            rows.add(self.start(next(h)), share * neighbour);
-        }
-    }
-
-    fn sharp_vertex_row(&self, vertex: u32, rule: VertexRule, spokes: &[Spoke], share: f64, rows: &mut Rows) {
-        if rule == VertexRule::Crease {
-            rows.add(vertex, 0.75 * share);
-            for spoke in spokes {
-                rows.add(self.other_end(spoke.edge, vertex), 0.125 * share);
-            }
-        } else {
-            rows.add(vertex, share);
-        }
-    }
-}
-
-/// The spokes that are sharp one level on.
-fn still_sharp(spokes: &[Spoke]) -> Vec<Spoke> {
-    spokes.iter().filter(|spoke| decay(spoke.sharpness) > 0.0).copied().collect()
-}
-
-/// The rule of a vertex one level on.
-fn rule_after(spokes: &[Spoke], corner: f32) -> VertexRule {
-    if decay(corner) > 0.0 { VertexRule::Corner } else { rule_of_sharp_edges(still_sharp(spokes).len()) }
-}
-
-/// The mean of the sharpnesses that run out in this step, at most 1: the share of the rule that held until now.
-fn share_before_run_out(spokes: &[Spoke], corner: f32) -> f64 {
-    let ending = |&sharpness: &f32| sharpness > 0.0 && !is_infinite(sharpness) && decay(sharpness) == 0.0;
-    let sharpnesses = spokes.iter().map(|spoke| spoke.sharpness).chain([corner]).filter(ending);
-    let (sum, count) = sharpnesses.fold((0.0, 0.0), |(sum, count), s| (sum + f64::from(s), count + 1.0));
-    if count > 0.0 { f64::min(sum / count, 1.0) } else { 1.0 }
 }

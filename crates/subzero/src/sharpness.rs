@@ -3,8 +3,9 @@
 //! Features are sparse (curves on a surface), so they are sorted lists beside the dense connectivity. Refining keeps
 //! them sorted: no search, no sort.
 
+use crate::VertexRule;
 use crate::features::INFINITE_SHARPNESS;
-use crate::{MeshCounts, VertexRule};
+use crate::ids::id;
 
 /// A sharp edge as seen from one of its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +26,24 @@ pub(crate) struct Sharpness {
 }
 
 impl Sharpness {
+    /// The sharp edges among all; `ends` gives the two vertices of an edge.
+    pub(crate) fn new(edge_sharpness: &[f32], ends: impl Fn(u32) -> [u32; 2]) -> Self {
+        let sharp = edge_sharpness.iter().enumerate().filter(|&(_, &s)| s > 0.0);
+        let edges: Vec<(u32, f32)> = sharp.map(|(e, &s)| (id(e), s)).collect();
+        let spokes_of =
+            |&(edge, sharpness): &(u32, f32)| ends(edge).map(|vertex| Spoke { vertex, edge, sharpness });
+        let mut spokes: Vec<Spoke> = edges.iter().flat_map(spokes_of).collect();
+        spokes.sort_by_key(|spoke| (spoke.vertex, spoke.edge));
+        Self { edges, spokes, corners: Vec::new() }
+    }
+
+    /// Makes these the corners, in any order; of several entries for a vertex the sharpest holds.
+    pub(crate) fn set_corners(&mut self, mut corners: Vec<(u32, f32)>) {
+        corners.sort_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
+        corners.dedup_by_key(|&mut (vertex, _)| vertex);
+        self.corners = corners;
+    }
+
     /// The sharpness of an edge; 0 if it is smooth.
     pub(crate) fn of_edge(&self, edge: u32) -> f32 {
         self.edges.binary_search_by_key(&edge, |&(e, _)| e).map_or(0.0, |found| self.edges[found].1)
@@ -42,23 +61,23 @@ impl Sharpness {
         &self.spokes[start..end]
     }
 
-    /// The features one level on; `is_start(vertex, edge)` tells which end of an edge a vertex is.
-    pub(crate) fn refine(&self, counts: MeshCounts, is_start: impl Fn(u32, u32) -> bool) -> Self {
+    /// The features one level on, where edge e has the halves 2 e and 2 e + 1 and the vertex `vertex_count` + e;
+    /// `is_start(vertex, edge)` tells which end of an edge a vertex is.
+    pub(crate) fn refine(&self, vertex_count: usize, is_start: impl Fn(u32, u32) -> bool) -> Self {
         let mut refined = Self::default();
         for &Spoke { vertex, edge, sharpness } in &self.spokes {
             let sharpness = decay(sharpness);
             if sharpness > 0.0 {
-                let [first, second] = counts.edge_children(edge);
-                let edge = if is_start(vertex, edge) { first } else { second };
+                let edge = 2 * edge + u32::from(!is_start(vertex, edge));
                 refined.spokes.push(Spoke { vertex, edge, sharpness });
             }
         }
         for &(edge, sharpness) in &self.edges {
             let sharpness = decay(sharpness);
             if sharpness > 0.0 {
-                for half in counts.edge_children(edge) {
+                for half in [2 * edge, 2 * edge + 1] {
                     refined.edges.push((half, sharpness));
-                    refined.spokes.push(Spoke { vertex: counts.edge_vertex(edge), edge: half, sharpness });
+                    refined.spokes.push(Spoke { vertex: id(vertex_count) + edge, edge: half, sharpness });
                 }
             }
         }

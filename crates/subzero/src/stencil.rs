@@ -21,10 +21,11 @@ pub struct StencilTable {
     weights: Vec<f64>,
 }
 
-/// One row while it is being written: old points and their weights.
+/// Rows while they are being written: old points and their weights.
 #[derive(Default)]
 pub(crate) struct Rows {
-    lengths: Vec<usize>,
+    /// Where each row starts, the row at hand included.
+    starts: Vec<usize>,
     ids: Vec<u32>,
     weights: Vec<f64>,
 }
@@ -34,6 +35,17 @@ impl Rows {
     pub(crate) fn add(&mut self, point: u32, weight: f64) {
         self.ids.push(point);
         self.weights.push(weight);
+    }
+
+    /// Sorts the row at hand, and adds up entries of the same point.
+    pub(crate) fn merge(&mut self) {
+        let start = self.starts.last().copied().unwrap_or(0);
+        let mut row: Vec<(u32, f64)> = self.ids.drain(start..).zip(self.weights.drain(start..)).collect();
+        // Stable, so that weights of one point are summed in the order in which they were added.
+        row.sort_by_key(|&(point, _)| point);
+        for same in row.chunk_by(|a, b| a.0 == b.0) {
+            self.add(same[0].0, same.iter().map(|&(_, weight)| weight).sum());
+        }
     }
 }
 
@@ -45,20 +57,19 @@ impl StencilTable {
             .map(|task| {
                 let mut rows = Rows::default();
                 for row in task * ROWS_PER_TASK..count.min((task + 1) * ROWS_PER_TASK) {
-                    let before = rows.ids.len();
+                    rows.starts.push(rows.ids.len());
                     write(id(row), &mut rows);
-                    rows.lengths.push(rows.ids.len() - before);
                 }
                 rows
             })
             .collect();
         let mut starts = Vec::with_capacity(count + 1);
         let mut end = 0;
-        starts.push(end);
-        for length in tasks.iter().flat_map(|rows| &rows.lengths) {
-            end += length;
-            starts.push(end);
+        for rows in &tasks {
+            starts.extend(rows.starts.iter().map(|start| end + start));
+            end += rows.ids.len();
         }
+        starts.push(end);
         let (ids, weights): (Vec<&[u32]>, Vec<&[f64]>) =
             tasks.iter().map(|rows| (rows.ids.as_slice(), rows.weights.as_slice())).unzip();
         Self { starts, ids: ids.concat(), weights: weights.concat() }
@@ -119,16 +130,11 @@ impl StencilTable {
     pub fn then(&self, next: &Self) -> Self {
         Self::from_rows(next.len(), |i, rows| {
             let (middle_ids, middle_weights) = next.row(i as usize);
-            let mut entries: Vec<(u32, f64)> = Vec::new();
             for (&middle, &outer) in middle_ids.iter().zip(middle_weights) {
                 let (ids, weights) = self.row(middle as usize);
-                entries.extend(ids.iter().zip(weights).map(|(&old, &inner)| (old, outer * inner)));
+                ids.iter().zip(weights).for_each(|(&old, &inner)| rows.add(old, outer * inner));
             }
-            // Stable, so that equal ids are summed in the order in which the rows name them.
-            entries.sort_by_key(|&(old, _)| old);
-            for equal in entries.chunk_by(|a, b| a.0 == b.0) {
-                rows.add(equal[0].0, equal.iter().map(|&(_, weight)| weight).sum());
-            }
+            rows.merge();
         })
     }
 }

@@ -4,7 +4,7 @@ use crate::edge_table::EdgeTable;
 use crate::features::INFINITE_SHARPNESS;
 use crate::ids::{NONE, id};
 use crate::mesh_checks::{check_corners, check_duplicates, check_size, check_vertex};
-use crate::sharpness::{Sharpness, Spoke, is_infinite};
+use crate::sharpness::{Sharpness, is_infinite};
 use crate::{BoundaryRule, Features, MeshError, TriangleMesh, VertexRule};
 
 impl TriangleMesh {
@@ -36,7 +36,6 @@ impl TriangleMesh {
                 *sharpness = INFINITE_SHARPNESS;
             }
         }
-        let corners = check_corners(vertex_count, features)?;
 
         let mut outgoing = vec![NONE; vertex_count];
         for (h, &vertex) in triangles.as_flattened().iter().enumerate().rev() {
@@ -51,34 +50,14 @@ impl TriangleMesh {
             sharp_edges: Vec::new(),
             sharpness: Sharpness::default(),
         };
-        mesh.set_sharpness(&table.half_edge_counts, &edge_sharpness, corners, features.boundary);
-        Ok(mesh)
-    }
-
-    /// Collects sharp edges and corners, and from them the rules.
-    fn set_sharpness(
-        &mut self,
-        triangle_counts: &[u32],
-        edge_sharpness: &[f32],
-        mut corners: Vec<(u32, f32)>,
-        boundary: BoundaryRule,
-    ) {
-        let sharp = edge_sharpness.iter().enumerate().filter(|&(_, &s)| s > 0.0);
-        self.sharpness.edges = sharp.map(|(e, &s)| (id(e), s)).collect();
-        self.sharp_edges = self.sharpness.sharp_edges(self.edges.len());
-        for &(edge, sharpness) in &self.sharpness.edges {
-            let spokes = self.edge(edge).map(|vertex| Spoke { vertex, edge, sharpness });
-            self.sharpness.spokes.extend(spokes);
-        }
-        self.sharpness.spokes.sort_by_key(|spoke| (spoke.vertex, spoke.edge));
-
-        let fixed = self.fixed_vertices(triangle_counts, boundary);
+        mesh.sharpness = Sharpness::new(&edge_sharpness, |edge| mesh.edge(edge));
+        mesh.sharp_edges = mesh.sharpness.sharp_edges(mesh.edge_count());
+        let mut corners = check_corners(vertex_count, features)?;
+        let fixed = mesh.fixed_vertices(&table.half_edge_counts, features.boundary);
         corners.extend(fixed.into_iter().map(|vertex| (vertex, INFINITE_SHARPNESS)));
-        // Of several entries for a vertex, the sharpest comes first and stays.
-        corners.sort_by(|a, b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
-        corners.dedup_by_key(|&mut (vertex, _)| vertex);
-        self.sharpness.corners = corners;
-        self.vertex_rules = self.sharpness.vertex_rules(self.vertex_count());
+        mesh.sharpness.set_corners(corners);
+        mesh.vertex_rules = mesh.sharpness.vertex_rules(vertex_count);
+        Ok(mesh)
     }
 
     /// Vertices that connectivity alone makes corners: unused ones, those where sheets touch in the point only, those
@@ -112,7 +91,7 @@ impl TriangleMesh {
     }
 }
 
-fn check_triangles(vertex_count: usize, triangles: &[[u32; 3]]) -> Result<(), MeshError> {
+pub(crate) fn check_triangles(vertex_count: usize, triangles: &[[u32; 3]]) -> Result<(), MeshError> {
     for (index, &[a, b, c]) in triangles.iter().enumerate() {
         for vertex in [a, b, c] {
             check_vertex("triangle", index, vertex, vertex_count)?;

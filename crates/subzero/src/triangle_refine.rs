@@ -32,7 +32,8 @@ impl TriangleMesh {
             Ok(refined) => refined,
             Err(error) => panic!("the finer mesh does not fit: {error}"),
         };
-        let sharpness = self.sharpness.refine(counts, |vertex, edge| self.edge(edge)[0] == vertex);
+        let sharpness =
+            self.sharpness.refine(self.vertex_count(), |vertex, edge| self.edge(edge)[0] == vertex);
         let (triangles, directed_edges) = self.refined_triangles(counts);
         Self {
             triangles,

@@ -1,0 +1,202 @@
+//! Edge flip, edge split and edge collapse.
+
+use crate::ids::{NONE, id, next, prev};
+use crate::mesh_checks::check_size;
+use crate::{HalfEdgeMesh, MeshError, Point};
+
+impl HalfEdgeMesh {
+    /// Turns an edge within the quadrilateral of its two triangles, so that it joins their far corners instead.
+    ///
+    /// The half-edge and its twin keep their ids and run between the far corners afterwards.
+    ///
+    /// # Errors
+    /// [`MeshError::NoHalfEdge`], or [`MeshError::Edit`] if the edge is on the boundary or the far corners share an edge
+    /// already. The mesh is unchanged then.
+    pub fn flip(&mut self, half_edge: u32) -> Result<(), MeshError> {
+        self.check_exists(half_edge)?;
+        let ends = [self.start(half_edge), self.end(half_edge)];
+        let refuse = |why| Err(MeshError::Edit { edit: "flipped", ends, why });
+        let [h, other] = [half_edge, self.twins[half_edge as usize]];
+        if other == NONE {
+            return refuse("it lies on the boundary");
+        }
+        // Around h: a b c; around its twin: b a d.
+        let [b_c, c_a, a_d, d_b] = [next(h), prev(h), next(other), prev(other)];
+        let [a, b, c, d] = [self.start(h), self.start(b_c), self.start(c_a), self.start(d_b)];
+        if self.neighbours(c).any(|neighbour| neighbour == d) {
+            return refuse("its far corners share an edge already");
+        }
+        let [beyond_bc, beyond_ca, beyond_ad, beyond_db] =
+            [b_c, c_a, a_d, d_b].map(|h| self.twins[h as usize]);
+        // The triangles become d c a and c d b.
+        for (h, start, twin) in [
+            (h, d, other),
+            (b_c, c, beyond_ca),
+            (c_a, a, beyond_ad),
+            (other, c, h),
+            (a_d, d, beyond_db),
+            (d_b, b, beyond_bc),
+        ] {
+            self.starts[h as usize] = start;
+            self.link(h, twin);
+        }
+        for (vertex, left, now) in
+            [(a, [h, a_d], c_a), (b, [other, b_c], d_b), (c, [c_a; 2], b_c), (d, [d_b; 2], a_d)]
+        {
+            if left.contains(&self.outgoing[vertex as usize]) {
+                self.outgoing[vertex as usize] = now;
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts a vertex on an edge and joins it to the far corners of the edge's triangles; returns its id.
+    ///
+    /// The half-edge keeps its id and its start, and ends at the new vertex afterwards.
+    ///
+    /// # Errors
+    /// [`MeshError::NoHalfEdge`], or [`MeshError::TooLarge`] if the mesh outgrows 32-bit ids.
+    pub fn split(&mut self, half_edge: u32) -> Result<u32, MeshError> {
+        self.check_exists(half_edge)?;
+        check_size("vertices", self.vertex_count() + 1)?;
+        check_size("half-edges", self.starts.len() + 6)?;
+        let [h, other] = [half_edge, self.twins[half_edge as usize]];
+        let middle = id(self.vertex_count());
+        let far_half = self.split_triangle(h, middle);
+        self.outgoing.push(far_half);
+        if other != NONE {
+            let near_half = self.split_triangle(other, middle);
+            self.link(h, near_half);
+            self.link(other, far_half);
+        }
+        Ok(middle)
+    }
+
+    /// Cuts the triangle of `h` at a vertex on `h`: `h` keeps the first half. Returns the second half, without twin.
+    fn split_triangle(&mut self, h: u32, middle: u32) -> u32 {
+        let [b_c, c_a] = [next(h), prev(h)];
+        let [b, c] = [self.start(b_c), self.start(c_a)];
+        let far_half = id(self.starts.len());
+        let beyond_bc = self.twins[b_c as usize];
+        self.starts.extend([middle, b, c]);
+        self.twins.extend([NONE; 3]);
+        self.link(far_half + 1, beyond_bc);
+        self.starts[b_c as usize] = middle;
+        self.link(b_c, far_half + 2);
+        if self.outgoing[b as usize] == b_c {
+            self.outgoing[b as usize] = far_half + 1;
+        }
+        far_half
+    }
+
+    /// Splits each of these edges, given by their ends, in this order and at its midpoint; appends the midpoints to `points`.
+    ///
+    /// Splitting what would be cut one way or another makes subdivision keep a symmetry: a cube whose faces are cut
+    /// along one diagonal each loses its symmetry under Loop's scheme, one whose diagonals are split first does not.
+    ///
+    /// # Errors
+    /// [`MeshError::NoEdge`] if two ends share no edge, or [`MeshError::TooLarge`]; the edges before are split then.
+    ///
+    /// # Panics
+    /// If `points` does not have one point per vertex.
+    pub fn split_edges<P: Point>(
+        &mut self,
+        edges: &[[u32; 2]],
+        points: &mut Vec<P>,
+    ) -> Result<(), MeshError> {
+        assert_eq!(points.len(), self.vertex_count(), "there must be one point per vertex");
+        for &[a, b] in edges {
+            let half_edge = self.half_edge_between(a, b)?;
+            self.split(half_edge)?;
+            let midpoint = P::zero().add_scaled(points[a as usize], 0.5).add_scaled(points[b as usize], 0.5);
+            points.push(midpoint);
+        }
+        Ok(())
+    }
+
+    /// Draws the start of a half-edge into its end, which removes the start, the edge, and its triangles.
+    ///
+    /// # Errors
+    /// [`MeshError::NoHalfEdge`], or [`MeshError::Edit`] if the link condition does not hold: the mesh would be no manifold
+    /// or change its topology. The mesh is unchanged then.
+    pub fn collapse(&mut self, half_edge: u32) -> Result<(), MeshError> {
+        self.check_exists(half_edge)?;
+        let [h, other] = [half_edge, self.twins[half_edge as usize]];
+        let [a, b] = [self.start(h), self.end(h)];
+        if let Some(why) = self.breaks_link_condition(h) {
+            return Err(MeshError::Edit { edit: "collapsed", ends: [a, b], why });
+        }
+        // The fan of b takes in that of a. On the boundary it starts where that of the boundary vertex does.
+        let a_leads = other != NONE && self.is_boundary_vertex(a);
+        let mut first = self.outgoing[if a_leads { a } else { b } as usize];
+        let mut turning = self.outgoing[a as usize];
+        loop {
+            self.starts[turning as usize] = b;
+            turning = self.twins[prev(turning) as usize];
+            if turning == NONE || turning == self.outgoing[a as usize] {
+                break;
+            }
+        }
+        for side in [h, other].into_iter().filter(|&side| side != NONE) {
+            // The triangle's other two edges become one.
+            let [after, before] = [next(side), prev(side)];
+            let [beyond_after, beyond_before] = [after, before].map(|h| self.twins[h as usize]);
+            for (h, twin) in [(beyond_after, beyond_before), (beyond_before, beyond_after)] {
+                if h != NONE {
+                    self.twins[h as usize] = twin;
+                }
+            }
+            let apex = self.start(before) as usize;
+            if self.outgoing[apex] == before {
+                self.outgoing[apex] = beyond_after;
+            }
+            if first == after || (side == h && first == other) {
+                first = beyond_before;
+            }
+            for removed in [side, after, before] {
+                self.starts[removed as usize] = NONE;
+                self.twins[removed as usize] = NONE;
+            }
+        }
+        self.outgoing[b as usize] = first;
+        self.outgoing[a as usize] = NONE;
+        Ok(())
+    }
+
+    /// What would go wrong if an edge collapsed.
+    fn breaks_link_condition(&self, h: u32) -> Option<&'static str> {
+        let [a, b] = [self.start(h), self.end(h)];
+        let shared = self.neighbours(a).filter(|&x| self.neighbours(b).any(|y| x == y)).count();
+        let Some(other) = self.twin(h) else {
+            let alone = self.twin(next(h)).is_none() && self.twin(prev(h)).is_none();
+            return match (shared, alone) {
+                (1, false) => None,
+                (1, true) => Some("nothing else holds its triangle"),
+                _ => Some("its ends share a neighbour beyond its triangle"),
+            };
+        };
+        let boundary_ends = [a, b].map(|v| self.is_boundary_vertex(v));
+        // An inner vertex has a valence of 3 when a turn around it takes three steps.
+        let has_three = |h: u32| {
+            let turn = |h: u32| self.twin(prev(h));
+            turn(h).and_then(turn).and_then(turn) == Some(h)
+        };
+        match boundary_ends {
+            [true, true] => Some("it joins two boundary vertices across the inside"),
+            _ if shared != 2 => Some("its ends share a neighbour beyond its triangles"),
+            [false, false] if has_three(h) && has_three(other) => Some("a tetrahedron would fall flat"),
+            _ => None,
+        }
+    }
+
+    fn link(&mut self, h: u32, twin: u32) {
+        self.twins[h as usize] = twin;
+        if twin != NONE {
+            self.twins[twin as usize] = h;
+        }
+    }
+
+    fn check_exists(&self, half_edge: u32) -> Result<(), MeshError> {
+        if self.exists(half_edge) { Ok(()) } else { Err(MeshError::NoHalfEdge { half_edge }) }
+    }
+}

@@ -1,0 +1,190 @@
+//! A triangle mesh for editing.
+
+use glam::DVec3;
+
+use crate::edge_table::EdgeTable;
+use crate::ids::{NONE, id, next, prev};
+use crate::mesh_checks::check_size;
+use crate::triangle_build::check_triangles;
+use crate::{MeshError, TriangleMesh};
+
+/// A manifold triangle mesh, possibly with boundary, that can be edited; positions live beside it.
+///
+/// The half-edge h = 3 t + k runs from corner k to corner k + 1 of triangle t. Edits keep the ids of everything they leave
+/// in place: a split adds a vertex and triangles at the end, a collapse leaves gaps that [`triangles`](Self::triangles) skips.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HalfEdgeMesh {
+    /// Per half-edge: the vertex where it starts, [`NONE`] in triangles that are gone.
+    pub(crate) starts: Vec<u32>,
+    /// Per half-edge: the half-edge on the other side, [`NONE`] on the boundary.
+    pub(crate) twins: Vec<u32>,
+    /// Per vertex: a half-edge that starts there, on the boundary the one without twin; [`NONE`] at unused vertices.
+    pub(crate) outgoing: Vec<u32>,
+}
+
+impl HalfEdgeMesh {
+    /// Builds the mesh and checks that it is manifold.
+    ///
+    /// # Errors
+    /// [`MeshError`] names the place: a vertex id out of range, a triangle that uses a vertex twice, two triangles with the
+    /// same vertices, an edge with three or more triangles or with two that run the same way, a vertex where triangles
+    /// touch only in the point, or more elements than 32-bit ids can count.
+    pub fn new(vertex_count: usize, triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
+        check_size("vertices", vertex_count)?;
+        check_size("half-edges", triangles.len().saturating_mul(6))?;
+        check_triangles(vertex_count, triangles)?;
+        let half_edges: Vec<[u32; 2]> =
+            triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+        let table = EdgeTable::new(&half_edges);
+        if let Some(edge) = table.half_edge_counts.iter().position(|&count| count > 2) {
+            let ends = half_edges[table.edges[edge][0] as usize];
+            return Err(MeshError::NonManifoldEdge { ends, faces: table.half_edge_counts[edge] });
+        }
+        if let Some(&(_, [first, second])) = table.same_way.first() {
+            let ends = half_edges[first as usize];
+            return Err(MeshError::Winding { first: first / 3, second: second / 3, ends });
+        }
+        let mut twins = vec![NONE; half_edges.len()];
+        for &[along, against] in table.edges.iter().filter(|edge| edge[1] != NONE) {
+            twins[along as usize] = against;
+            twins[against as usize] = along;
+        }
+        let mut mesh = Self { starts: triangles.concat(), twins, outgoing: vec![NONE; vertex_count] };
+        let mut triangles_at = vec![0_usize; vertex_count];
+        for h in 0..id(mesh.starts.len()) {
+            let vertex = mesh.start(h) as usize;
+            triangles_at[vertex] += 1;
+            if mesh.outgoing[vertex] == NONE || mesh.twin(h).is_none() {
+                mesh.outgoing[vertex] = h;
+            }
+        }
+        let has_more_fans =
+            |&vertex: &u32| mesh.outgoing_half_edges(vertex).count() != triangles_at[vertex as usize];
+        match (0..id(vertex_count)).find(has_more_fans) {
+            Some(vertex) => Err(MeshError::NonManifoldVertex { vertex }),
+            None => Ok(mesh),
+        }
+    }
+
+    /// The mesh of the triangles of a [`TriangleMesh`], without its features.
+    ///
+    /// # Errors
+    /// [`MeshError`] as of [`new`](Self::new), where the mesh is not manifold.
+    pub fn from_triangle_mesh(mesh: &TriangleMesh) -> Result<Self, MeshError> {
+        Self::new(mesh.vertex_count(), mesh.triangles())
+    }
+
+    /// Number of vertices, counting those that no triangle uses.
+    pub fn vertex_count(&self) -> usize {
+        self.outgoing.len()
+    }
+
+    /// Number of half-edges, counting those that collapses removed.
+    pub fn half_edge_count(&self) -> usize {
+        self.starts.len()
+    }
+
+    /// The triangles that are there, with their ids.
+    pub fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3])> {
+        let (triangles, _) = self.starts.as_chunks::<3>();
+        triangles
+            .iter()
+            .enumerate()
+            .filter(|(_, corners)| corners[0] != NONE)
+            .map(|(t, &corners)| (id(t), corners))
+    }
+
+    /// One half-edge of each edge: the only one, or that with the lower id.
+    pub fn edges(&self) -> impl Iterator<Item = u32> {
+        (0..id(self.starts.len())).filter(|&h| self.exists(h) && self.twin(h).is_none_or(|twin| h < twin))
+    }
+
+    /// Whether a half-edge is there, and not out of range or removed.
+    pub fn exists(&self, half_edge: u32) -> bool {
+        self.starts.get(half_edge as usize).is_some_and(|&start| start != NONE)
+    }
+
+    /// The vertex where a half-edge starts.
+    ///
+    /// # Panics
+    /// If the half-edge is out of range.
+    pub fn start(&self, half_edge: u32) -> u32 {
+        self.starts[half_edge as usize]
+    }
+
+    /// The vertex where a half-edge ends.
+    ///
+    /// # Panics
+    /// If the half-edge is out of range.
+    pub fn end(&self, half_edge: u32) -> u32 {
+        self.start(next(half_edge))
+    }
+
+    /// The half-edge on the other side of the edge, if it is not on the boundary.
+    ///
+    /// # Panics
+    /// If the half-edge is out of range.
+    pub fn twin(&self, half_edge: u32) -> Option<u32> {
+        Some(self.twins[half_edge as usize]).filter(|&twin| twin != NONE)
+    }
+
+    /// The three half-edges around the triangle of a half-edge, from this one on.
+    pub fn face_half_edges(&self, half_edge: u32) -> [u32; 3] {
+        [half_edge, next(half_edge), prev(half_edge)]
+    }
+
+    /// The half-edges that start at a vertex, counter-clockwise; at the boundary from one side of it to the other.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn outgoing_half_edges(&self, vertex: u32) -> impl Iterator<Item = u32> {
+        let first = self.outgoing[vertex as usize];
+        let start = Some(first).filter(|&h| h != NONE);
+        std::iter::successors(start, move |&h| self.twin(prev(h)).filter(|&turned| turned != first))
+    }
+
+    /// The vertices that share an edge with `vertex`, counter-clockwise; at the boundary from one side of it to the other.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn neighbours(&self, vertex: u32) -> impl Iterator<Item = u32> {
+        // The fan of a boundary vertex has an edge more than triangles.
+        let last_of = move |h: u32| self.twin(prev(h)).is_none().then(|| self.start(prev(h)));
+        self.outgoing_half_edges(vertex).flat_map(move |h| [Some(self.end(h)), last_of(h)]).flatten()
+    }
+
+    /// Whether a vertex lies on the boundary.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn is_boundary_vertex(&self, vertex: u32) -> bool {
+        let first = self.outgoing[vertex as usize];
+        first != NONE && self.twin(first).is_none()
+    }
+
+    /// A half-edge of the edge between two vertices, from `a` to `b` if there is one.
+    ///
+    /// # Errors
+    /// [`MeshError::NoEdge`] if they share no edge.
+    pub fn half_edge_between(&self, a: u32, b: u32) -> Result<u32, MeshError> {
+        let known = |v: u32| (v as usize) < self.vertex_count();
+        let from_to = |a: u32, b: u32| self.outgoing_half_edges(a).find(|&h| self.end(h) == b);
+        let found = if known(a) && known(b) { from_to(a, b).or_else(|| from_to(b, a)) } else { None };
+        found.ok_or(MeshError::NoEdge { ends: [a, b] })
+    }
+
+    /// The unit normal at each vertex: the mean of those of its triangles, weighted by their areas. Nothing at unused vertices, and where
+    /// the mean vanishes.
+    ///
+    /// # Panics
+    /// If `points` has fewer points than the mesh has vertices.
+    pub fn vertex_normals(&self, points: &[DVec3]) -> Vec<Option<DVec3>> {
+        let mut sums = vec![DVec3::ZERO; self.vertex_count()];
+        for (_, corners) in self.triangles() {
+            let [a, b, c] = corners.map(|v| points[v as usize]);
+            let normal = (b - a).cross(c - a);
+            corners.into_iter().for_each(|v| sums[v as usize] += normal);
+        }
+        sums.into_iter().map(DVec3::try_normalize).collect()
+    }
+}

@@ -1,0 +1,58 @@
+//! The row of an old vertex, for every scheme that moves vertices: sharp rules, and what lies between sharp and smooth.
+
+use crate::VertexRule;
+use crate::sharpness::{Sharpness, Spoke, decay, is_infinite, rule_of_sharp_edges};
+use crate::stencil::Rows;
+
+/// Writes the row of `vertex`: by its sharp rule, by `smooth`, which is given its share of the row, or by a blend of the
+/// rule and the next level's when some sharpness runs out (OpenSubdiv's rule).
+pub(crate) fn vertex_row(
+    sharpness: &Sharpness,
+    (vertex, rule): (u32, VertexRule),
+    rows: &mut Rows,
+    other_end: impl Fn(u32) -> u32,
+    smooth: impl Fn(f64, &mut Rows),
+) {
+    if matches!(rule, VertexRule::Smooth | VertexRule::Dart) {
+        return smooth(1.0, rows);
+    }
+    let spokes = sharpness.spokes(vertex);
+    let corner = sharpness.of_corner(vertex);
+    let next_rule = rule_after(spokes, corner);
+    let sharp_share = if next_rule == rule { 1.0 } else { share_before_run_out(spokes, corner) };
+    let mut sharp_row = |rule: VertexRule, spokes: &mut dyn Iterator<Item = &Spoke>, share: f64| {
+        if rule == VertexRule::Crease {
+            rows.add(vertex, 0.75 * share);
+            spokes.for_each(|spoke| rows.add(other_end(spoke.edge), 0.125 * share));
+        } else {
+            rows.add(vertex, share);
+        }
+    };
+    sharp_row(rule, &mut spokes.iter(), sharp_share);
+    if sharp_share < 1.0 {
+        let rest = 1.0 - sharp_share;
+        match next_rule {
+            VertexRule::Smooth | VertexRule::Dart => smooth(rest, rows),
+            _ => sharp_row(next_rule, &mut still_sharp(spokes), rest),
+        }
+        rows.merge();
+    }
+}
+
+/// The spokes that are sharp one level on.
+fn still_sharp(spokes: &[Spoke]) -> impl Iterator<Item = &Spoke> {
+    spokes.iter().filter(|spoke| decay(spoke.sharpness) > 0.0)
+}
+
+/// The rule of a vertex one level on.
+fn rule_after(spokes: &[Spoke], corner: f32) -> VertexRule {
+    if decay(corner) > 0.0 { VertexRule::Corner } else { rule_of_sharp_edges(still_sharp(spokes).count()) }
+}
+
+/// The mean of the sharpnesses that run out in this step, at most 1: the share of the rule that held until now.
+fn share_before_run_out(spokes: &[Spoke], corner: f32) -> f64 {
+    let ending = |&sharpness: &f32| sharpness > 0.0 && !is_infinite(sharpness) && decay(sharpness) == 0.0;
+    let sharpnesses = spokes.iter().map(|spoke| spoke.sharpness).chain([corner]).filter(ending);
+    let (sum, count) = sharpnesses.fold((0.0, 0.0), |(sum, count), s| (sum + f64::from(s), count + 1.0));
+    if count > 0.0 { f64::min(sum / count, 1.0) } else { 1.0 }
+}
