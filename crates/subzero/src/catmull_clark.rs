@@ -7,7 +7,6 @@ use rayon::prelude::*;
 
 use crate::ids::{NONE, id};
 use crate::mesh_checks::check_size;
-use crate::sharpness::is_infinite;
 use crate::stencil::Rows;
 use crate::vertex_rows::vertex_row;
 use crate::{MeshError, PolygonMesh, Refinement, StencilTable, VertexRule};
@@ -141,11 +140,7 @@ impl PolygonMesh {
     /// # Errors
     /// [`MeshError::SemiSharp`] names a vertex with a sharpness that will run out: refine until it has.
     pub fn catmull_clark_limits(&self) -> Result<CatmullClarkLimits, MeshError> {
-        let spoke = self.sharpness.spokes.iter().find(|spoke| !is_infinite(spoke.sharpness));
-        let corner = self.sharpness.corners.iter().find(|corner| !is_infinite(corner.1));
-        if let Some(vertex) = spoke.map(|spoke| spoke.vertex).or(corner.map(|corner| corner.0)) {
-            return Err(MeshError::SemiSharp { vertex });
-        }
+        self.sharpness.check_settled()?;
         // The masks are known where all faces have four corners, as they do one level on.
         let Refinement { mesh: quads, stencils } = self.catmull_clark_refine();
         let positions = StencilTable::from_rows(self.vertex_count(), |v, rows| quads.limit_position(v, rows));

@@ -34,6 +34,20 @@ pub enum MeshError {
         /// The vertex that occurs twice.
         vertex: u32,
     },
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {vertex} is at {point:?}: every coordinate must be finite")]
+    NotFinite {
+        /// The vertex.
+        vertex: usize,
+        /// Where it is.
+        point: [f64; 3],
+    },
+    /// An edge with one face where a closed surface is needed.
+    #[error("the surface is open: edge {}-{} has one face only", ends[0], ends[1])]
+    Open {
+        /// The ends of the edge.
+        ends: [u32; 2],
+    },
     /// A face has fewer than three corners.
     #[error("face {face} has {corners} corners: three are the least")]
     TooFewCorners {

@@ -56,6 +56,7 @@ pub use features::{BoundaryRule, Crease, Features, INFINITE_SHARPNESS, VertexRul
 pub use half_edge_mesh::HalfEdgeMesh;
 pub use loop_limit::{LoopLimits, Sector};
 pub use loop_scheme::LoopWeights;
+pub use mesh_checks::check_finite;
 pub use point::Point;
 pub use polygon_mesh::PolygonMesh;
 pub use stencil::StencilTable;

@@ -63,6 +63,15 @@ pub(crate) fn crease_tangents(edges: usize, weights: LoopWeights) -> [RingMask; 
     [along, RingMask { centre: -1.0, ring }]
 }
 
+/// Limit tangents in a sector of a corner with `edges` edges, along its two creases.
+pub(crate) fn corner_tangents(edges: usize) -> [RingMask; 2] {
+    [0, edges - 1].map(|crease| {
+        let mut ring = vec![0.0; edges];
+        ring[crease] = 1.0;
+        RingMask { centre: -1.0, ring }
+    })
+}
+
 /// Limit position of a dart, whose sharp edge is edge 0.
 ///
 /// With the centre's weight set to 1, the rules ask of the weights w_1 .. w_(n-1) that w_(i-1) - 5 w_i + w_(i+1) = -8 b, and

@@ -5,11 +5,11 @@ use rayon::prelude::*;
 
 use crate::ids::{next, prev};
 use crate::limit_masks::{
-    RingMask, crease_tangents, dart_position, dart_tangents, smooth_position, smooth_tangents,
+    RingMask, corner_tangents, crease_tangents, dart_position, dart_tangents, smooth_position,
+    smooth_tangents,
 };
-use crate::sharpness::is_infinite;
 use crate::stencil::Rows;
-use crate::{LoopWeights, MeshError, Point, StencilTable, TriangleMesh, VertexRule};
+use crate::{LoopWeights, MeshError, Point, Refinement, StencilTable, TriangleMesh, VertexRule};
 
 /// A piece of the surface around a vertex that has one tangent plane: all of it at a smooth vertex or a dart, and what
 /// lies between two neighbouring creases elsewhere, so one piece at a boundary and three at most triple lines.
@@ -42,15 +42,25 @@ impl TriangleMesh {
     /// # Errors
     /// [`MeshError::SemiSharp`] names a vertex with a sharpness that will run out: refine until it has.
     pub fn loop_limits(&self, weights: LoopWeights) -> Result<LoopLimits, MeshError> {
-        let finite = |sharpness: f32| !is_infinite(sharpness);
-        let spoke =
-            self.sharpness.spokes.iter().find(|spoke| finite(spoke.sharpness)).map(|spoke| spoke.vertex);
-        let corner = self.sharpness.corners.iter().find(|corner| finite(corner.1)).map(|corner| corner.0);
-        if let Some(vertex) = spoke.or(corner) {
-            return Err(MeshError::SemiSharp { vertex });
-        }
+        self.sharpness.check_settled()?;
+        let sectors = self.sectors();
+        let [positions, tangents] = if weights == LoopWeights::BiermannLevinZorin {
+            // An edge's weights depend on both ends here. One level on, old vertices have regular neighbours only.
+            let Refinement { mesh: finer, stencils } = self.loop_refine_with(weights);
+            let children =
+                sectors.iter().map(|&Sector { vertex, first }| Sector { vertex, first: 3 * first });
+            let children: Vec<Sector> = children.collect();
+            finer.limit_rows(self.vertex_count(), &children, weights).map(|table| stencils.then(&table))
+        } else {
+            self.limit_rows(self.vertex_count(), &sectors, weights)
+        };
+        Ok(LoopLimits { positions, sectors, tangents })
+    }
+
+    /// The limit positions of the first vertices, and the tangents of the sectors, where edges have regular rules.
+    fn limit_rows(&self, vertex_count: usize, sectors: &[Sector], weights: LoopWeights) -> [StencilTable; 2] {
         let positions =
-            StencilTable::from_rows(self.vertex_count(), |vertex, rows| match self.vertex_rule(vertex) {
+            StencilTable::from_rows(vertex_count, |vertex, rows| match self.vertex_rule(vertex) {
                 VertexRule::Smooth => {
                     let ring = self.closed_ring(self.outgoing[vertex as usize]);
                     add_row(rows, vertex, &ring, &smooth_position(ring.len(), weights));
@@ -67,34 +77,20 @@ impl TriangleMesh {
                 }
                 VertexRule::Corner => rows.add(vertex, 1.0),
             });
-        let sectors = self.sectors();
         let tangents = StencilTable::from_rows(2 * sectors.len(), |row, rows| {
-            let Sector { vertex, first } = sectors[(row / 2) as usize];
-            let which = (row % 2) as usize;
-            match self.vertex_rule(vertex) {
-                VertexRule::Smooth => {
-                    let ring = self.closed_ring(first);
-                    add_row(rows, vertex, &ring, &smooth_tangents(ring.len())[which]);
-                }
-                VertexRule::Dart => {
-                    let ring = self.closed_ring(first);
-                    add_row(rows, vertex, &ring, &dart_tangents(ring.len(), weights)[which]);
-                }
-                VertexRule::Crease => {
-                    let ring = self.open_ring(first);
-                    add_row(rows, vertex, &ring, &crease_tangents(ring.len(), weights)[which]);
-                }
-                VertexRule::Corner => {
-                    let ring = self.open_ring(first);
-                    // The creases decide, unless the inner edges shrink more slowly than they do.
-                    if ring.len() <= 4 {
-                        rows.add(ring[which * (ring.len() - 1)], 1.0);
-                        rows.add(vertex, -1.0);
-                    }
-                }
-            }
+            let sector = sectors[(row / 2) as usize];
+            let ring = self.sector_ring(sector);
+            let masks = match self.vertex_rule(sector.vertex) {
+                VertexRule::Smooth => smooth_tangents(ring.len()),
+                VertexRule::Dart => dart_tangents(ring.len(), weights),
+                VertexRule::Crease => crease_tangents(ring.len(), weights),
+                // The creases decide, unless the inner edges shrink more slowly than they do.
+                VertexRule::Corner if ring.len() <= 4 => corner_tangents(ring.len()),
+                VertexRule::Corner => return,
+            };
+            add_row(rows, sector.vertex, &ring, &masks[(row % 2) as usize]);
         });
-        Ok(LoopLimits { positions, sectors, tangents })
+        [positions, tangents]
     }
 
     /// The neighbours that bound or lie in a sector, counter-clockwise.
@@ -185,7 +181,7 @@ impl LoopLimits {
 
 fn add_row(rows: &mut Rows, vertex: u32, ring: &[u32], mask: &RingMask) {
     rows.add(vertex, mask.centre);
-    for (&neighbour, &weight) in ring.iter().zip(&mask.ring) {
+    for (&neighbour, &weight) in ring.iter().zip(&mask.ring).filter(|&(_, &weight)| weight != 0.0) {
         rows.add(neighbour, weight);
     }
 }

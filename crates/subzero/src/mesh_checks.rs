@@ -1,8 +1,21 @@
 //! Checks that every kind of mesh makes of what it is given.
 
+use glam::DVec3;
+
 use crate::features::INFINITE_SHARPNESS;
 use crate::ids::id;
 use crate::{Features, MeshError};
+
+/// Checks that every coordinate of every point is finite.
+///
+/// # Errors
+/// [`MeshError::NotFinite`] names the first vertex with a coordinate that is NaN or infinite.
+pub fn check_finite(points: &[DVec3]) -> Result<(), MeshError> {
+    match points.iter().position(|point| !point.is_finite()) {
+        Some(vertex) => Err(MeshError::NotFinite { vertex, point: points[vertex].to_array() }),
+        None => Ok(()),
+    }
+}
 
 /// Whether so many elements can be counted with 32-bit ids; the last id is kept for "none".
 pub(crate) fn check_size(what: &'static str, count: usize) -> Result<(), MeshError> {

@@ -3,9 +3,9 @@
 //! Features are sparse (curves on a surface), so they are sorted lists beside the dense connectivity. Refining keeps
 //! them sorted: no search, no sort.
 
-use crate::VertexRule;
 use crate::features::INFINITE_SHARPNESS;
 use crate::ids::id;
+use crate::{MeshError, VertexRule};
 
 /// A sharp edge as seen from one of its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,6 +59,13 @@ impl Sharpness {
         let start = self.spokes.partition_point(|spoke| spoke.vertex < vertex);
         let end = start + self.spokes[start..].partition_point(|spoke| spoke.vertex == vertex);
         &self.spokes[start..end]
+    }
+
+    /// Checks that all sharpness is infinite.
+    pub(crate) fn check_settled(&self) -> Result<(), MeshError> {
+        let spoke = self.spokes.iter().find(|spoke| !is_infinite(spoke.sharpness)).map(|spoke| spoke.vertex);
+        let corner = self.corners.iter().find(|corner| !is_infinite(corner.1)).map(|corner| corner.0);
+        spoke.or(corner).map_or(Ok(()), |vertex| Err(MeshError::SemiSharp { vertex }))
     }
 
     /// The features one level on, where edge e has the halves 2 e and 2 e + 1 and the vertex `vertex_count` + e;

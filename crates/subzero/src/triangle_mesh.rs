@@ -2,7 +2,7 @@
 
 use crate::ids::{NONE, id, next, prev};
 use crate::sharpness::{Sharpness, is_infinite};
-use crate::{MeshCounts, VertexRule};
+use crate::{MeshCounts, MeshError, VertexRule};
 
 /// Connectivity of a triangle mesh, possibly with boundary and non-manifold edges; positions live beside it as slices.
 ///
@@ -105,6 +105,26 @@ impl TriangleMesh {
     /// If there is no such vertex.
     pub fn vertex_rule(&self, vertex: u32) -> VertexRule {
         self.vertex_rules[vertex as usize]
+    }
+
+    /// The number of triangles of each edge: 1 on the boundary, 2 inside a surface, 3 and more where surfaces meet.
+    pub fn edge_triangle_counts(&self) -> Vec<u32> {
+        let mut counts = vec![0; self.edge_count()];
+        for directed in self.directed_edges.as_flattened() {
+            counts[(directed / 2) as usize] += 1;
+        }
+        counts
+    }
+
+    /// Checks that no edge lies on a boundary.
+    ///
+    /// # Errors
+    /// [`MeshError::Open`] names the first edge with one triangle only.
+    pub fn check_closed(&self) -> Result<(), MeshError> {
+        match self.edge_triangle_counts().iter().position(|&count| count == 1) {
+            Some(edge) => Err(MeshError::Open { ends: self.edge(id(edge)) }),
+            None => Ok(()),
+        }
     }
 
     /// The vertex where a half-edge starts.
