@@ -1,1 +1,46 @@
 //! The grain-boundary network of a polycrystal: junctions, relaxation, subdivision, measures, validation.
+//!
+//! A [`Network`] is the connectivity of all grain boundaries on every level of subdivision; positions live beside it as
+//! slices of control points. Three steps lead from cells to smooth grains:
+//!
+//! ```
+//! use polycrystal::{Junctions, Network, Relaxation, relax};
+//! use voronoi::{Domain, Tessellation};
+//! # use glam::DVec3;
+//!
+//! let seeds = [DVec3::new(0.3, 0.4, 0.5), DVec3::new(0.7, 0.3, 0.2), DVec3::new(0.6, 0.8, 0.9)];
+//! let tessellation = Tessellation::new(&Domain::unit_cube(), &seeds)?;
+//! let (network, flat) = Network::new(&tessellation, Junctions::Crease, 2)?;
+//! let relaxed = relax(&network, &flat, &Relaxation::default(), |_, _| ())?;
+//! let smooth = network.subdivide(&relaxed.control_points);
+//!
+//! let volumes = network.grain_volumes(network.finest(), &smooth);
+//! let cells = tessellation.cell_measures();
+//! assert!(volumes.iter().zip(&cells).all(|(grain, cell)| (grain / cell.volume - 1.0).abs() < 1e-9));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod angles;
+mod boundary;
+mod control_mesh;
+mod crease_uses;
+mod error;
+mod folds;
+mod level;
+mod network;
+mod node_type;
+mod relax;
+mod validate;
+mod volume;
+mod wall_set;
+
+pub use angles::{AngleStatistics, dihedral_angles};
+pub use boundary::{Boundary, BoundaryId, GrainId, Side};
+pub use error::NetworkError;
+pub use folds::folded_edges;
+pub use level::{Level, Mesh};
+pub use network::{Junctions, Network};
+pub use node_type::NodeType;
+pub use relax::{Relaxation, Relaxed, relax};
+pub use validate::{Fault, Validation, validate};
+pub use wall_set::WallSet;

@@ -1,0 +1,56 @@
+use voronoi::Wall;
+
+/// Number of a grain: that of its seed in the input, from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct GrainId(pub u32);
+
+impl GrainId {
+    /// The id as an index.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Number of a boundary, from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct BoundaryId(pub u32);
+
+impl BoundaryId {
+    /// The id as an index.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// What lies on one side of a boundary.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Side {
+    /// A grain.
+    Grain(GrainId),
+    /// The outside of the domain.
+    Exterior,
+}
+
+/// The surface (in the plane: the line) between two grains, or between a grain and one wall of the domain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Boundary {
+    /// The two sides: a grain first, then a grain of greater number or the exterior. Normals point from first to second.
+    pub sides: [Side; 2],
+    /// The wall that the boundary lies on, if its second side is the exterior.
+    pub wall: Option<Wall>,
+}
+
+impl Boundary {
+    /// The grains on either side with the sign of the boundary's contribution to their volume.
+    pub fn signed_grains(&self) -> impl Iterator<Item = (GrainId, f64)> {
+        self.sides.into_iter().zip([1.0, -1.0]).filter_map(|(side, sign)| match side {
+            Side::Grain(grain) => Some((grain, sign)),
+            Side::Exterior => None,
+        })
+    }
+
+    /// Whether grains lie on both sides.
+    pub fn is_interior(&self) -> bool {
+        self.wall.is_none()
+    }
+}

@@ -1,0 +1,44 @@
+use crate::{Fault, GrainId};
+
+/// Why a network could not be made or relaxed.
+#[derive(Debug, thiserror::Error)]
+pub enum NetworkError {
+    /// The control mesh, or a level of its subdivision, has more parts than 32-bit ids can name.
+    #[error(
+        "level {level} would have {count} {parts}, more than 32-bit ids can name; use fewer levels or fewer grains"
+    )]
+    TooLarge {
+        /// Level of subdivision.
+        level: usize,
+        /// Number of parts.
+        count: u128,
+        /// `triangles` or `edges`.
+        parts: &'static str,
+    },
+    /// The triangulated network is no mesh.
+    #[error("the control mesh is broken: {0}")]
+    Mesh(#[from] subzero::MeshError),
+    /// The relaxation time is negative or not a number.
+    #[error("the relaxation time is {0}; it must be 0 (off) or a positive, finite number")]
+    BadRelaxationTime(f64),
+    /// The grains' volumes could not be restored.
+    #[error(
+        "grain {} misses its volume by {relative_error:e} of it after relaxation; relax for a shorter time",
+        grain.0
+    )]
+    VolumeNotRestored {
+        /// The grain that is farthest from its volume.
+        grain: GrainId,
+        /// Difference to the volume of its cell, as a share of that.
+        relative_error: f64,
+    },
+    /// A boundary stays folded however small the steps.
+    #[error("{count} edges inside boundaries are folded after relaxation; relax for a shorter time")]
+    Folded {
+        /// Number of edges whose two triangles are more than 90 degrees apart.
+        count: usize,
+    },
+    /// The finished network does not keep its contract.
+    #[error("the network is invalid: {0}")]
+    Invalid(Fault),
+}

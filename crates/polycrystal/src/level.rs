@@ -1,0 +1,97 @@
+use rayon::prelude::*;
+use subzero::{CurveMesh, Refinement, StencilTable, TriangleMesh};
+
+use crate::{Boundary, BoundaryId, NodeType, WallSet};
+
+/// The elements of the network: triangles in space, segments in the plane.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Mesh {
+    /// Surfaces.
+    Triangles(TriangleMesh),
+    /// Lines in the plane z = 0.
+    Segments(CurveMesh),
+}
+
+/// The network's connectivity on one level of subdivision, without positions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Level {
+    /// Triangles or segments.
+    pub mesh: Mesh,
+    /// The boundary of each element.
+    pub boundary_of: Vec<BoundaryId>,
+    /// What each vertex is part of.
+    pub node_types: Vec<NodeType>,
+    /// The level on which each vertex was born.
+    pub generations: Vec<u8>,
+    /// The walls that each vertex stays on.
+    pub walls: Vec<WallSet>,
+    /// Of each edge of the triangles, the type of a point inside it; empty in the plane.
+    pub(crate) edge_node_types: Vec<NodeType>,
+}
+
+impl Level {
+    /// Number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.node_types.len()
+    }
+
+    /// Number of triangles or segments.
+    pub fn element_count(&self) -> usize {
+        self.boundary_of.len()
+    }
+
+    /// The next level, and how its points follow from this one's.
+    pub(crate) fn refine(&self, boundaries: &[Boundary]) -> (Self, StencilTable) {
+        match &self.mesh {
+            Mesh::Triangles(mesh) => {
+                let Refinement { mesh: finer, stencils } = mesh.loop_refine();
+                let ends: Vec<[u32; 2]> = (0..self.edge_node_types.len())
+                    .into_par_iter()
+                    .map(|edge| mesh.edge(u32::try_from(edge).expect("edge ids fit 32 bits")))
+                    .collect();
+                let triangles = self.element_count();
+                // The three corner triangles of each triangle come first, then all the centre triangles.
+                let corners = self.boundary_of.iter().flat_map(|boundary| [*boundary; 3]);
+                let boundary_of = corners.chain(self.boundary_of.iter().copied()).collect();
+                // Two halves of each edge, then three edges inside each triangle.
+                let halves = self.edge_node_types.iter().flat_map(|node_type| [*node_type; 2]);
+                let inside = (0..triangles).flat_map(|t| [self.type_inside(t, boundaries); 3]);
+                let edge_node_types = halves.chain(inside).collect();
+                let born = self.edge_node_types.clone();
+                (self.child(Mesh::Triangles(finer), boundary_of, &ends, born, edge_node_types), stencils)
+            }
+            Mesh::Segments(mesh) => {
+                let Refinement { mesh: finer, stencils } = mesh.refine();
+                let boundary_of = self.boundary_of.iter().flat_map(|boundary| [*boundary; 2]).collect();
+                let born = (0..self.element_count()).map(|s| self.type_inside(s, boundaries)).collect();
+                (self.child(Mesh::Segments(finer), boundary_of, mesh.segments(), born, Vec::new()), stencils)
+            }
+        }
+    }
+
+    /// The finer level, whose new vertices lie between `ends` and have the types `born`.
+    fn child(
+        &self,
+        mesh: Mesh,
+        boundary_of: Vec<BoundaryId>,
+        ends: &[[u32; 2]],
+        born: Vec<NodeType>,
+        edge_node_types: Vec<NodeType>,
+    ) -> Self {
+        let generation = self.generations.iter().max().map_or(0, |newest| newest + 1);
+        let mut generations = self.generations.clone();
+        generations.resize(generations.len() + born.len(), generation);
+        let mut node_types = self.node_types.clone();
+        node_types.extend(born);
+        let mut walls = self.walls.clone();
+        // A line between two points of a wall lies in the wall: no element joins walls through the inside.
+        walls.extend(ends.iter().map(|[a, b]| self.walls[*a as usize].intersection(self.walls[*b as usize])));
+        Self { mesh, boundary_of, node_types, generations, walls, edge_node_types }
+    }
+
+    /// The type of a point inside an element.
+    fn type_inside(&self, element: usize, boundaries: &[Boundary]) -> NodeType {
+        let boundary = &boundaries[self.boundary_of[element].index()];
+        if boundary.is_interior() { NodeType::INTERIOR } else { NodeType::OUTER }
+    }
+}

@@ -1,0 +1,146 @@
+use glam::DVec3;
+use rayon::prelude::*;
+use subzero::StencilTable;
+use voronoi::{Domain, Tessellation};
+
+use crate::control_mesh::ControlMesh;
+use crate::volume::{boundary_volumes, sum_over_grains};
+use crate::{Boundary, Level, NetworkError};
+
+/// How triple lines and the domain's edges are smoothed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Junctions {
+    /// As cubic B-splines between quadruple points.
+    #[default]
+    Crease,
+    /// Not at all: every control point on them is a corner, and they stay polylines.
+    Corner,
+}
+
+/// All boundaries, triple lines and quadruple points of one polycrystal, on every level of subdivision.
+///
+/// Holds connectivity only; control points and refined points live beside it as slices.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Network {
+    domain: Domain,
+    boundaries: Vec<Boundary>,
+    cell_volumes: Vec<f64>,
+    /// From the control mesh to the finest.
+    levels: Vec<Level>,
+    /// How the points of each level but the first follow from those of the level before.
+    stencils: Vec<StencilTable>,
+}
+
+impl Network {
+    /// The network of a tessellation, refined `level_count` times, and its control points: still flat.
+    ///
+    /// # Errors
+    /// [`NetworkError::TooLarge`] when a level outgrows 32-bit ids.
+    pub fn new(
+        tessellation: &Tessellation,
+        junctions: Junctions,
+        level_count: usize,
+    ) -> Result<(Self, Vec<DVec3>), NetworkError> {
+        check_size(tessellation, level_count)?;
+        let ControlMesh { level, points, boundaries } = ControlMesh::new(tessellation, junctions)?;
+        let mut levels = vec![level];
+        let mut stencils = Vec::new();
+        for coarser in 0..level_count {
+            let (finer, table) = levels[coarser].refine(&boundaries);
+            levels.push(finer);
+            stencils.push(table);
+        }
+        let cell_volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
+        let network = Self { domain: *tessellation.domain(), boundaries, cell_volumes, levels, stencils };
+        Ok((network, points))
+    }
+
+    /// The domain that the grains fill.
+    pub fn domain(&self) -> &Domain {
+        &self.domain
+    }
+
+    /// All boundaries, by number.
+    pub fn boundaries(&self) -> &[Boundary] {
+        &self.boundaries
+    }
+
+    /// Number of grains.
+    pub fn grain_count(&self) -> usize {
+        self.cell_volumes.len()
+    }
+
+    /// The volume (in the plane: area) of each grain's cell, which relaxation keeps.
+    pub fn cell_volumes(&self) -> &[f64] {
+        &self.cell_volumes
+    }
+
+    /// The connectivity of all levels, from the control mesh to the finest.
+    pub fn levels(&self) -> &[Level] {
+        &self.levels
+    }
+
+    /// The control mesh.
+    pub fn control_mesh(&self) -> &Level {
+        &self.levels[0]
+    }
+
+    /// The finest level.
+    pub fn finest(&self) -> &Level {
+        &self.levels[self.levels.len() - 1]
+    }
+
+    /// How the points of level `level + 1` follow from those of `level`.
+    pub(crate) fn stencils(&self, level: usize) -> &StencilTable {
+        &self.stencils[level]
+    }
+
+    /// The points of the finest level for the given control points, all boundaries in parallel.
+    ///
+    /// Costs one pass over the points of each level: connectivity is not touched.
+    ///
+    /// # Panics
+    /// When there are fewer points than the control mesh has vertices.
+    pub fn subdivide(&self, control_points: &[DVec3]) -> Vec<DVec3> {
+        let mut points = control_points.to_vec();
+        for (stencils, finer) in self.stencils.iter().zip(&self.levels[1..]) {
+            points = stencils.apply(&points);
+            let on_walls = points.par_iter_mut().zip(&finer.walls).filter(|(_, walls)| !walls.is_empty());
+            on_walls.for_each(|(point, walls)| *point = walls.put_on_walls(&self.domain, *point));
+        }
+        points
+    }
+
+    /// Volume (in the plane: area) of each grain, for points of the given level.
+    pub fn grain_volumes(&self, level: &Level, points: &[DVec3]) -> Vec<f64> {
+        let origin = self.domain.lower().midpoint(self.domain.upper());
+        let volumes = boundary_volumes(level, self.boundaries.len(), points, origin);
+        sum_over_grains(&self.boundaries, &volumes, self.grain_count())
+    }
+
+    /// The edge of a cube (in the plane: of a square) with the mean grain volume: the unit of lengths in relaxation.
+    pub fn mean_grain_size(&self) -> f64 {
+        let mean = self.domain.measure() / self.grain_count() as f64;
+        match self.domain.dimension() {
+            voronoi::Dimension::Two => mean.sqrt(),
+            voronoi::Dimension::Three => mean.cbrt(),
+        }
+    }
+}
+
+/// Subdivision multiplies elements by four (in the plane: two); the largest ids are those of half-edges, three a triangle.
+fn check_size(tessellation: &Tessellation, level_count: usize) -> Result<(), NetworkError> {
+    let corners: usize = tessellation.faces().map(|face| tessellation.face_corners(face).len()).sum();
+    let (factor, parts, ids_per_corner) = match tessellation.domain().dimension() {
+        voronoi::Dimension::Two => (2u128, "segments", 1),
+        voronoi::Dimension::Three => (4u128, "half-edges", 6),
+    };
+    for level in 0..=level_count {
+        let growth = factor.saturating_pow(u32::try_from(level).unwrap_or(u32::MAX));
+        let count = growth.saturating_mul(ids_per_corner * corners as u128);
+        if count >= u128::from(u32::MAX) {
+            return Err(NetworkError::TooLarge { level, count, parts });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,31 @@
+use crate::Side;
+
+/// What a point is part of, in DREAM.3D's codes: 2 inside a boundary, 3 on a triple line, 4 a quadruple point; 10 more on
+/// the domain's outer surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct NodeType(i8);
+
+impl NodeType {
+    /// Inside a boundary between two grains.
+    pub const INTERIOR: Self = Self(2);
+
+    /// Inside a boundary on the domain's outer surface.
+    pub const OUTER: Self = Self(12);
+
+    /// The type of a point by the sides that meet there, sorted and without duplicates. The exterior counts as one side.
+    pub fn of_sides(sides: &[Side]) -> Self {
+        // DREAM.3D knows no more than four grains: what has more counts as a quadruple point.
+        let kind = match sides.len() {
+            0..=2 => 2,
+            3 => 3,
+            _ => 4,
+        };
+        let outer = if sides.contains(&Side::Exterior) { 10 } else { 0 };
+        Self(kind + outer)
+    }
+
+    /// The code.
+    pub fn code(self) -> i8 {
+        self.0
+    }
+}

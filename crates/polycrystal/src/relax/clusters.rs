@@ -1,0 +1,114 @@
+//! Control points that move as one.
+
+use glam::DVec3;
+
+use crate::{Mesh, Network};
+
+/// Groups of control points that are displaced by the same vector, so that what lies between them keeps its shape.
+///
+/// Under curvature flow a feature of size l lives for a time of order l^2: one much smaller than a step would turn inside
+/// out within it. Rigid groups take such features out of the flow without taking them out of the network.
+#[derive(Debug, Clone)]
+pub(super) struct Clusters {
+    /// Union-find forest over the control points; a root is the smallest point of its cluster.
+    parents: Vec<u32>,
+}
+
+impl Clusters {
+    /// Every control point on its own.
+    pub(super) fn new(point_count: usize) -> Self {
+        Self { parents: (0u32..).take(point_count).collect() }
+    }
+
+    fn root(&self, mut point: u32) -> u32 {
+        while self.parents[point as usize] != point {
+            point = self.parents[point as usize];
+        }
+        point
+    }
+
+    /// Makes two control points move as one.
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parents[a.max(b) as usize] = a.min(b);
+        // Halving the path keeps the forest flat.
+        for point in [a, b] {
+            self.parents[point as usize] = self.root(point);
+        }
+    }
+
+    /// Makes some control points move as one.
+    pub(super) fn join_all(&mut self, points: &[u32]) {
+        points.windows(2).for_each(|pair| self.join(pair[0], pair[1]));
+    }
+
+    /// Joins the ends of all edges of the control mesh that are shorter than `length`.
+    pub(super) fn join_short_edges(&mut self, network: &Network, points: &[DVec3], length: f64) {
+        let mut join = |[a, b]: [u32; 2]| {
+            if points[a as usize].distance(points[b as usize]) < length {
+                self.join(a, b);
+            }
+        };
+        match &network.control_mesh().mesh {
+            Mesh::Triangles(mesh) => {
+                let edges = 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits");
+                edges.for_each(|edge| join(mesh.edge(edge)));
+            }
+            Mesh::Segments(mesh) => mesh.segments().iter().for_each(|segment| join(*segment)),
+        }
+    }
+
+    /// Numbers the clusters from 0, in order of their smallest points.
+    pub(super) fn number(&self) -> Numbering {
+        let mut numbers = vec![0; self.parents.len()];
+        let mut count = 0;
+        for point in (0u32..).take(self.parents.len()) {
+            let root = self.root(point);
+            numbers[point as usize] = if root == point {
+                count += 1;
+                count - 1
+            } else {
+                numbers[root as usize]
+            };
+        }
+        let mut members: Vec<u32> = (0u32..).take(numbers.len()).collect();
+        members.sort_by_key(|point| numbers[*point as usize]);
+        let mut starts = vec![0; count as usize + 1];
+        for number in &numbers {
+            starts[*number as usize + 1] += 1;
+        }
+        for cluster in 1..starts.len() {
+            starts[cluster] += starts[cluster - 1];
+        }
+        Numbering { numbers, members, starts }
+    }
+}
+
+/// Clusters by number.
+pub(super) struct Numbering {
+    numbers: Vec<u32>,
+    /// The control points sorted by cluster; those of cluster c are `members[starts[c]..starts[c + 1]]`.
+    members: Vec<u32>,
+    starts: Vec<usize>,
+}
+
+impl Numbering {
+    pub(super) fn cluster_count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// The cluster of each control point.
+    pub(super) fn numbers(&self) -> &[u32] {
+        &self.numbers
+    }
+
+    /// The cluster of a control point.
+    pub(super) fn cluster_of(&self, point: u32) -> usize {
+        self.numbers[point as usize] as usize
+    }
+
+    /// The control points of a cluster.
+    pub(super) fn members(&self, cluster: usize) -> &[u32] {
+        &self.members[self.starts[cluster]..self.starts[cluster + 1]]
+    }
+}

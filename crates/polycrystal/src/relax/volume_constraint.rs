@@ -1,0 +1,138 @@
+//! Grain volumes as linear constraints on the displacement of clusters.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::clusters::Numbering;
+use super::conjugate_gradients::{Limits, solve};
+use super::patches::Patches;
+use crate::Network;
+
+/// The pressures are the inner solve of a projection, whose error shows directly in the volumes.
+const PRESSURES: Limits = Limits { tolerance: 1e-9, steps: 2000 };
+
+/// How the volumes of grains change when clusters move: a sparse matrix J with a vector for each cluster and grain.
+pub(super) struct VolumeConstraint {
+    /// Of each cluster, its grains and the gradients of their volumes.
+    by_cluster: Rows<DVec3>,
+    /// Of each grain, its clusters and the gradients of its volume.
+    by_grain: Rows<DVec3>,
+}
+
+/// Rows of pairs of a column and a value.
+struct Rows<T> {
+    starts: Vec<usize>,
+    entries: Vec<(u32, T)>,
+}
+
+impl<T: Copy> Rows<T> {
+    fn new(rows: Vec<Vec<(u32, T)>>) -> Self {
+        let mut starts = vec![0];
+        for row in &rows {
+            starts.push(starts[starts.len() - 1] + row.len());
+        }
+        Self { starts, entries: rows.concat() }
+    }
+
+    fn row(&self, row: usize) -> &[(u32, T)] {
+        &self.entries[self.starts[row]..self.starts[row + 1]]
+    }
+
+    fn row_count(&self) -> usize {
+        self.starts.len() - 1
+    }
+}
+
+impl VolumeConstraint {
+    pub(super) fn new(network: &Network, patches: &Patches, points: &[DVec3], clusters: &Numbering) -> Self {
+        let gradients: Vec<DVec3> = patches.volume_gradients(points).concat();
+        let row = |cluster: usize| {
+            let mut row: Vec<(u32, DVec3)> = Vec::new();
+            for place in patches.places_of_cluster(clusters, cluster) {
+                let boundary = &network.boundaries()[patches.patch_of_place(place)];
+                // Walls do not move, so what lies on them changes no volume.
+                for (grain, sign) in boundary.signed_grains().filter(|_| boundary.is_interior()) {
+                    let gradient = gradients[place] * sign;
+                    match row.iter_mut().find(|(known, _)| *known == grain.0) {
+                        Some((_, sum)) => *sum += gradient,
+                        None => row.push((grain.0, gradient)),
+                    }
+                }
+            }
+            row
+        };
+        let rows: Vec<_> = (0..clusters.cluster_count()).into_par_iter().map(row).collect();
+        let mut columns: Vec<Vec<(u32, DVec3)>> = vec![Vec::new(); network.grain_count()];
+        for (cluster, row) in (0u32..).zip(&rows) {
+            for (grain, gradient) in row {
+                columns[*grain as usize].push((cluster, *gradient));
+            }
+        }
+        Self { by_cluster: Rows::new(rows), by_grain: Rows::new(columns) }
+    }
+
+    /// The change of each grain's volume under a displacement: `J d`.
+    pub(super) fn volume_change(&self, displacement: &[DVec3]) -> Vec<f64> {
+        let change = |grain: usize| {
+            let row = self.by_grain.row(grain).iter();
+            row.map(|(cluster, gradient)| gradient.dot(displacement[*cluster as usize])).sum()
+        };
+        (0..self.by_grain.row_count()).into_par_iter().map(change).collect()
+    }
+
+    /// The force of the grains' pressures on a cluster: a row of `J^T p`.
+    pub(super) fn force(&self, pressures: &[f64], cluster: usize) -> DVec3 {
+        let row = self.by_cluster.row(cluster).iter();
+        row.map(|(grain, gradient)| *gradient * pressures[*grain as usize]).sum()
+    }
+
+    /// `J D J^T` for the mobility D of the clusters.
+    pub(super) fn compliance(&self, mobility: &[DVec3]) -> Compliance {
+        let row = |grain: usize| {
+            let mut row: Vec<(u32, f64)> = Vec::new();
+            for (cluster, gradient) in self.by_grain.row(grain) {
+                let moved = *gradient * mobility[*cluster as usize];
+                for (other, gradient) in self.by_cluster.row(*cluster as usize) {
+                    let change = moved.dot(*gradient);
+                    match row.iter_mut().find(|(known, _)| known == other) {
+                        Some((_, sum)) => *sum += change,
+                        None => row.push((*other, change)),
+                    }
+                }
+            }
+            row
+        };
+        let rows: Vec<_> = (0..self.by_grain.row_count()).into_par_iter().map(row).collect();
+        let inverse_diagonal = (0u32..)
+            .zip(&rows)
+            .map(|(grain, row)| {
+                let own = row.iter().find(|(other, _)| *other == grain);
+                own.map_or(0.0, |(_, value)| if *value > 0.0 { 1.0 / value } else { 0.0 })
+            })
+            .collect();
+        Compliance { rows: Rows::new(rows), inverse_diagonal }
+    }
+}
+
+/// How the volumes of grains answer to pressures: a symmetric matrix over the grains.
+pub(super) struct Compliance {
+    rows: Rows<f64>,
+    inverse_diagonal: Vec<f64>,
+}
+
+impl Compliance {
+    /// The pressures that bring about the given changes of volume.
+    pub(super) fn pressures(&self, changes: &[f64]) -> Vec<f64> {
+        let apply = |pressures: &[f64], out: &mut [f64]| {
+            for (row, out) in out.iter_mut().enumerate() {
+                let row = self.rows.row(row).iter();
+                *out = row.map(|(column, value)| value * pressures[*column as usize]).sum();
+            }
+        };
+        // The same pressure everywhere moves nothing, as the walls hold: a total other than zero, which rounding leaves,
+        // has no answer and would grow without bound.
+        let mean = changes.iter().sum::<f64>() / changes.len() as f64;
+        let balanced: Vec<f64> = changes.iter().map(|change| change - mean).collect();
+        solve(apply, &balanced, &self.inverse_diagonal, &PRESSURES)
+    }
+}

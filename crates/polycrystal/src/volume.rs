@@ -1,0 +1,49 @@
+//! Volumes of grains (areas in the plane) and how they change with the points.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::{Boundary, Level, Mesh};
+
+/// Six times the volume of the tetrahedron that a triangle spans with the origin.
+pub(crate) fn triangle_volume(corners: [DVec3; 3]) -> f64 {
+    corners[0].dot(corners[1].cross(corners[2])) / 6.0
+}
+
+/// The area between a segment in the plane and the origin, positive when counter-clockwise.
+pub(crate) fn segment_area(ends: [DVec3; 2]) -> f64 {
+    0.5 * ends[0].truncate().perp_dot(ends[1].truncate())
+}
+
+/// Per boundary, the volume of the cone from the origin; positive where the origin lies on its first side.
+pub(crate) fn boundary_volumes(
+    level: &Level,
+    boundary_count: usize,
+    points: &[DVec3],
+    origin: DVec3,
+) -> Vec<f64> {
+    let at = |vertex: u32| points[vertex as usize] - origin;
+    let of_elements: Vec<f64> = match &level.mesh {
+        Mesh::Triangles(mesh) => {
+            mesh.triangles().par_iter().map(|corners| triangle_volume(corners.map(at))).collect()
+        }
+        Mesh::Segments(mesh) => mesh.segments().par_iter().map(|ends| segment_area(ends.map(at))).collect(),
+    };
+    // One thread sums, for the order of a sum decides its last digit.
+    let mut volumes = vec![0.0; boundary_count];
+    for (volume, boundary) in of_elements.iter().zip(&level.boundary_of) {
+        volumes[boundary.index()] += volume;
+    }
+    volumes
+}
+
+/// Sums over the boundaries of each grain, outward counted positive.
+pub(crate) fn sum_over_grains(boundaries: &[Boundary], values: &[f64], grain_count: usize) -> Vec<f64> {
+    let mut sums = vec![0.0; grain_count];
+    for (boundary, value) in boundaries.iter().zip(values) {
+        for (grain, sign) in boundary.signed_grains() {
+            sums[grain.index()] += sign * value;
+        }
+    }
+    sums
+}
