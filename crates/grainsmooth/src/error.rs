@@ -1,6 +1,9 @@
 use std::io;
 use std::path::PathBuf;
 
+use polycrystal::NetworkError;
+use voronoi::VoronoiError;
+
 use crate::memory::{self, LevelSize};
 use crate::{OutputFormat, SeedLineProblem};
 
@@ -68,6 +71,30 @@ pub enum Error {
         /// What is wrong with it.
         problem: SeedLineProblem,
     },
+    /// A side of the box is not a length that can be computed with.
+    #[error("the box's side along {axis} is {length}; give a positive number between 1e-30 and 1e30")]
+    BoxSide {
+        /// `x`, `y` or `z`.
+        axis: char,
+        /// The side as given.
+        length: f64,
+    },
+    /// A seed of a file has no cell.
+    #[error("{} line {line}: {source}", path.display())]
+    SeedInFile {
+        /// The path as given.
+        path: PathBuf,
+        /// Line of the file, counted from 1.
+        line: usize,
+        /// What is wrong with the seed.
+        source: VoronoiError,
+    },
+    /// The seeds cannot be tessellated.
+    #[error(transparent)]
+    Voronoi(#[from] VoronoiError),
+    /// The network cannot be made, relaxed, or is invalid.
+    #[error(transparent)]
+    Network(#[from] NetworkError),
     /// So many levels of subdivision need more memory than there is.
     #[error(
         "{levels} levels would take {} of memory and {} are available; {}",

@@ -1,13 +1,34 @@
 //! Virtual polycrystals with smooth, watertight grain boundaries.
+//!
+//! The library behind the `grainsmooth` program: seeds, Voronoi cells, relaxation, subdivision, validation and files.
+//!
+//! ```
+//! use grainsmooth::{Config, Output, SeedSource, make_polycrystal};
+//!
+//! let config = Config { seeds: SeedSource::Random { count: 10 }, levels: 1, ..Config::default() };
+//! let polycrystal = make_polycrystal(&config, &|_, _, _| ())?;
+//! assert_eq!(polycrystal.network.grain_count(), 10);
+//!
+//! let directory = tempfile::tempdir()?;
+//! polycrystal.write(&Output::check(directory.path().join("grains.vtp"))?)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
+mod config;
 mod error;
 pub mod memory;
+mod network_file;
 mod output;
+mod pipeline;
 mod seed_file;
 mod seeding;
+mod summary;
 pub mod vtk;
 
+pub use config::{Config, SeedSource};
 pub use error::Error;
 pub use output::{Output, OutputFormat};
+pub use pipeline::{Polycrystal, Progress, Stage, make_polycrystal};
 pub use seed_file::{FileSeed, SeedLineProblem, read_seed_file};
 pub use seeding::random_seeds;
+pub use summary::Summary;

@@ -2,8 +2,6 @@
 
 use std::fs;
 
-use subzero::MeshCounts;
-
 use crate::Error;
 
 /// Bytes that a run holds at its peak for each point, edge and triangle of its last level: the mesh with its
@@ -27,12 +25,11 @@ pub struct LevelSize {
 }
 
 impl LevelSize {
-    /// The size that a control mesh has after `levels` subdivisions. Each keeps the points and adds one on
+    /// The size after `levels` subdivisions. Each keeps the points and adds one on
     /// every edge, halves the edges, adds three inside every triangle, and makes four of each triangle.
     /// Numbers beyond `u128::MAX` stay there.
-    pub fn after(control_mesh: MeshCounts, levels: u32) -> Self {
-        let MeshCounts { vertices, edges, triangles } = control_mesh;
-        let mut size = Self { points: vertices.into(), edges: edges.into(), triangles: triangles.into() };
+    pub fn after(self, levels: u32) -> Self {
+        let mut size = self;
         // After 128 doublings any number is either 0 or at its end.
         for _ in 0..levels.min(128) {
             size = Self {
@@ -64,14 +61,14 @@ impl LevelSize {
 ///
 /// # Errors
 /// [`Error::LevelsExceedMemory`] or [`Error::LevelsExceedIds`], with the most levels that would fit.
-pub fn check_levels(control_mesh: MeshCounts, levels: u32, available: u64) -> Result<(), Error> {
-    let size = LevelSize::after(control_mesh, levels);
+pub fn check_levels(control_mesh: LevelSize, levels: u32, available: u64) -> Result<(), Error> {
+    let size = control_mesh.after(levels);
     let fits = |size: LevelSize| size.fits_ids() && size.bytes() <= u128::from(available);
     if fits(size) {
         return Ok(());
     }
     // Sizes grow with the level, and from 128 on they stand still.
-    let largest = (0..levels.min(128)).rev().find(|&level| fits(LevelSize::after(control_mesh, level)));
+    let largest = (0..levels.min(128)).rev().find(|&level| fits(control_mesh.after(level)));
     if size.bytes() > u128::from(available) {
         Err(Error::LevelsExceedMemory { levels, needed: size.bytes(), available, largest })
     } else {
@@ -119,9 +116,11 @@ pub(crate) fn remedy(largest: Option<u32>) -> String {
 
 #[cfg(test)]
 mod tests {
+    use subzero::MeshCounts;
+
     use super::*;
 
-    const TETRAHEDRON: MeshCounts = MeshCounts { vertices: 4, edges: 6, triangles: 4 };
+    const TETRAHEDRON: LevelSize = LevelSize { points: 4, edges: 6, triangles: 4 };
 
     #[test]
     fn sizes_are_those_of_the_refined_mesh() {
@@ -132,30 +131,30 @@ mod tests {
                 edges: counts.edges.into(),
                 triangles: counts.triangles.into(),
             };
-            assert_eq!(LevelSize::after(MeshCounts { vertices: 7, edges: 20, triangles: 13 }, level), size);
+            assert_eq!(LevelSize { points: 7, edges: 20, triangles: 13 }.after(level), size);
             counts = counts.refined().unwrap();
         }
-        let line = MeshCounts { vertices: 4, edges: 3, triangles: 0 };
-        assert_eq!(LevelSize::after(line, 3), LevelSize { points: 25, edges: 24, triangles: 0 });
+        let line = LevelSize { points: 4, edges: 3, triangles: 0 };
+        assert_eq!(line.after(3), LevelSize { points: 25, edges: 24, triangles: 0 });
     }
 
     #[test]
     fn any_level_has_a_size() {
         for level in [63, 64, 200, u32::MAX] {
-            let size = LevelSize::after(TETRAHEDRON, level);
-            assert!(size.bytes() >= LevelSize::after(TETRAHEDRON, 62).bytes());
+            let size = TETRAHEDRON.after(level);
+            assert!(size.bytes() >= TETRAHEDRON.after(62).bytes());
             assert!(matches!(
                 check_levels(TETRAHEDRON, level, u64::MAX),
                 Err(Error::LevelsExceedMemory { .. })
             ));
         }
-        let nothing = MeshCounts { vertices: 0, edges: 0, triangles: 0 };
+        let nothing = LevelSize { points: 0, edges: 0, triangles: 0 };
         assert!(check_levels(nothing, u32::MAX, 0).is_ok());
     }
 
     #[test]
     fn largest_level_is_the_last_that_fits_exactly() {
-        let needed = |level| u64::try_from(LevelSize::after(TETRAHEDRON, level).bytes()).unwrap();
+        let needed = |level| u64::try_from(TETRAHEDRON.after(level).bytes()).unwrap();
         assert!(check_levels(TETRAHEDRON, 5, needed(5)).is_ok());
         for (available, expected) in [(needed(5) - 1, Some(4)), (needed(0), Some(0)), (needed(0) - 1, None)] {
             match check_levels(TETRAHEDRON, 5, available) {
@@ -175,14 +174,14 @@ mod tests {
             check_levels(TETRAHEDRON, 15, u64::MAX),
             Err(Error::LevelsExceedIds { levels: 15, largest: Some(14), .. })
         ));
-        let mut counts = TETRAHEDRON;
+        let mut counts = MeshCounts { vertices: 4, edges: 6, triangles: 4 };
         let refinable = (0..20).take_while(|_| counts.refined().map(|finer| counts = finer).is_ok()).count();
         assert_eq!(refinable, 14, "the mesh agrees on what ids can name");
     }
 
     #[test]
     fn messages_say_bytes_and_remedy() {
-        let mesh = MeshCounts { vertices: 5000, edges: 20_000, triangles: 14_000 };
+        let mesh = LevelSize { points: 5000, edges: 20_000, triangles: 14_000 };
         let message = |levels, available| check_levels(mesh, levels, available).unwrap_err().to_string();
         assert_eq!(
             message(9, 8_000_000_000),

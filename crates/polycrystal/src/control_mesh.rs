@@ -12,6 +12,16 @@ pub(crate) struct ControlMesh {
     pub(crate) level: Level,
     pub(crate) points: Vec<DVec3>,
     pub(crate) boundaries: Vec<Boundary>,
+    pub(crate) junctions: JunctionCounts,
+}
+
+/// How many places there are where boundaries meet, on the domain's surface and inside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct JunctionCounts {
+    /// Lines where at least three sides (grains, or the exterior) meet; in the plane, such points.
+    pub triple_lines: usize,
+    /// Points where at least four sides meet.
+    pub quadruple_points: usize,
 }
 
 impl ControlMesh {
@@ -83,6 +93,10 @@ fn surfaces(
     let mesh = TriangleMesh::new(points.len(), triangles, &features)?;
 
     let (mut node_types, line_types) = junction_types(tessellation, &edges);
+    let counts = JunctionCounts {
+        triple_lines: line_types.iter().filter(|line| line.side_count() >= 3).count(),
+        quadruple_points: node_types.iter().filter(|point| point.side_count() >= 4).count(),
+    };
     node_types.extend(&line_types);
     node_types.extend(boundaries.iter().map(type_inside));
     let mut edge_node_types = vec![NodeType::INTERIOR; mesh.edge_count()];
@@ -101,7 +115,7 @@ fn surfaces(
     let generations = vec![0; points.len()];
     let level =
         Level { mesh: Mesh::Triangles(mesh), boundary_of, node_types, generations, walls, edge_node_types };
-    Ok(ControlMesh { level, points, boundaries })
+    Ok(ControlMesh { level, points, boundaries, junctions: counts })
 }
 
 fn lines(tessellation: &Tessellation, boundaries: Vec<Boundary>) -> Result<ControlMesh, NetworkError> {
@@ -122,11 +136,13 @@ fn lines(tessellation: &Tessellation, boundaries: Vec<Boundary>) -> Result<Contr
     walls.extend(boundaries.iter().map(walls_inside));
     let corners: Vec<u32> = (0..id(vertex_count)).collect();
     let mut node_types = types_by_place(vertex_count, sides_at);
+    let at_least = |count| node_types.iter().filter(|point| point.side_count() >= count).count();
+    let counts = JunctionCounts { triple_lines: at_least(3), quadruple_points: at_least(4) };
     node_types.extend(boundaries.iter().map(type_inside));
     let mesh = Mesh::Segments(CurveMesh::new(points.len(), segments, &corners)?);
     let generations = vec![0; points.len()];
     let level = Level { mesh, boundary_of, node_types, generations, walls, edge_node_types: Vec::new() };
-    Ok(ControlMesh { level, points, boundaries })
+    Ok(ControlMesh { level, points, boundaries, junctions: counts })
 }
 
 /// The centroid of a face's outline: inside the face, and well defined for the thinnest of slivers.

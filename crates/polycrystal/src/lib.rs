@@ -36,6 +36,7 @@ mod wall_set;
 
 pub use angles::{AngleStatistics, dihedral_angles};
 pub use boundary::{Boundary, BoundaryId, GrainId, Side};
+pub use control_mesh::JunctionCounts;
 pub use error::NetworkError;
 pub use folds::folded_edges;
 pub use level::{Level, Mesh};

@@ -3,7 +3,7 @@ use rayon::prelude::*;
 use subzero::StencilTable;
 use voronoi::{Domain, Tessellation};
 
-use crate::control_mesh::ControlMesh;
+use crate::control_mesh::{ControlMesh, JunctionCounts};
 use crate::volume::{boundary_volumes, sum_over_grains};
 use crate::{Boundary, Level, NetworkError};
 
@@ -24,6 +24,7 @@ pub enum Junctions {
 pub struct Network {
     domain: Domain,
     boundaries: Vec<Boundary>,
+    junctions: JunctionCounts,
     cell_volumes: Vec<f64>,
     /// From the control mesh to the finest.
     levels: Vec<Level>,
@@ -42,7 +43,8 @@ impl Network {
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
         check_size(tessellation, level_count)?;
-        let ControlMesh { level, points, boundaries } = ControlMesh::new(tessellation, junctions)?;
+        let ControlMesh { level, points, boundaries, junctions: counts } =
+            ControlMesh::new(tessellation, junctions)?;
         let mut levels = vec![level];
         let mut stencils = Vec::new();
         for coarser in 0..level_count {
@@ -51,7 +53,14 @@ impl Network {
             stencils.push(table);
         }
         let cell_volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
-        let network = Self { domain: *tessellation.domain(), boundaries, cell_volumes, levels, stencils };
+        let network = Self {
+            domain: *tessellation.domain(),
+            boundaries,
+            junctions: counts,
+            cell_volumes,
+            levels,
+            stencils,
+        };
         Ok((network, points))
     }
 
@@ -63,6 +72,11 @@ impl Network {
     /// All boundaries, by number.
     pub fn boundaries(&self) -> &[Boundary] {
         &self.boundaries
+    }
+
+    /// Numbers of triple lines and quadruple points.
+    pub fn junction_counts(&self) -> JunctionCounts {
+        self.junctions
     }
 
     /// Number of grains.

@@ -24,6 +24,11 @@ impl NodeType {
         Self(kind + outer)
     }
 
+    /// Number of sides that meet, from 2 to 4; what has more counts as 4.
+    pub(crate) fn side_count(self) -> i8 {
+        self.0 % 10
+    }
+
     /// The code.
     pub fn code(self) -> i8 {
         self.0

@@ -11,6 +11,10 @@ const SMALL_LENGTH: f64 = 0.06;
 /// shrink with l, so the strain stays bounded for exponents above one.
 const EXPONENT: i32 = 4;
 
+/// Stiffest spring. Edges that would need a stiffer one are rigid anyhow, and far larger numbers would drown the others
+/// where rigid edges cancel.
+const STIFFEST: f64 = 10.0;
+
 /// Spring of the longest edges: it only makes points without tension (those inside walls) follow their neighbours.
 const FOLLOW: f64 = 1e-3;
 
@@ -20,7 +24,7 @@ pub(super) fn add_springs(stiffness: &mut [f64], patch: &Patch, points: &[DVec3]
     for &[a, b] in &patch.control_edges {
         let [start, end] = [a, b].map(|local| points[patch.control_points[local as usize] as usize]);
         let ratio = SMALL_LENGTH * mean_grain_size / start.distance(end).max(f64::MIN_POSITIVE);
-        let spring = FOLLOW + ratio.powi(EXPONENT);
+        let spring = FOLLOW + ratio.powi(EXPONENT).min(STIFFEST);
         let (a, b) = (a as usize, b as usize);
         stiffness[a * count + a] += spring;
         stiffness[b * count + b] += spring;

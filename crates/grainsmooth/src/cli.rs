@@ -1,0 +1,155 @@
+//! The command line.
+
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser, ValueEnum};
+use glam::DVec3;
+use grainsmooth::{Config, OutputFormat, SeedSource};
+use polycrystal::Junctions;
+use voronoi::Dimension;
+
+/// Make a virtual polycrystal: smooth, closed grains of exact volume, as a VTK file for ParaView.
+///
+/// Random seeds grow into Voronoi grains. Relaxation then moves the grain boundaries toward the equilibrium of their
+/// tension (120 degrees at triple lines) while every grain keeps its volume, and Loop subdivision makes them smooth.
+#[derive(Debug, Parser)]
+#[command(version, max_term_width = 100, after_help = EXAMPLES)]
+pub struct Arguments {
+    /// Number of grains, grown from uniform random seeds
+    #[arg(long, value_name = "N", default_value = "200", value_parser = parse_count, allow_negative_numbers = true, help_heading = SEEDS)]
+    seeds: NonZeroUsize,
+
+    /// Read seeds from a text file instead: x, y, z on each line (x, y in 2D)
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["seeds", "rng_seed"], help_heading = SEEDS)]
+    seeds_file: Option<PathBuf>,
+
+    /// Start of the random generator: the same number gives the same grains on every machine
+    #[arg(long, value_name = "S", default_value_t = 1, help_heading = SEEDS)]
+    rng_seed: u64,
+
+    /// Dimensions: 3 for grains in a box, 2 for grains in a rectangle
+    #[arg(long, value_name = "2|3", default_value = "3", value_parser = parse_dimension, help_heading = DOMAIN)]
+    dim: Dimension,
+
+    /// Side lengths of the box, in your unit of length; X Y in 2D [default: 1 1 1]
+    #[arg(long = "box", value_names = ["X", "Y", "Z"], num_args = 2..=3, value_parser = parse_length, allow_negative_numbers = true, help_heading = DOMAIN)]
+    box_size: Option<Vec<f64>>,
+
+    /// Relaxation time, in units of the mean grain size squared; 0 keeps boundaries flat
+    #[arg(long, value_name = "T", default_value_t = Config::default().relaxation_time, value_parser = parse_time, allow_negative_numbers = true, help_heading = SMOOTHING)]
+    relax: f64,
+
+    /// Number of subdivisions; each makes four triangles of one
+    #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = Config::default().levels, allow_negative_numbers = true, help_heading = SMOOTHING)]
+    levels: u32,
+
+    /// Triple lines as smooth curves (crease) or as polylines through all their control points (corner)
+    #[arg(long, value_enum, default_value_t = JunctionRule::Crease, help_heading = SMOOTHING)]
+    junctions: JunctionRule,
+
+    /// File to write; its extension names the format: .vtp, .vtu or .vtk
+    #[arg(short, long, value_name = "PATH", default_value = "grains.vtp", value_parser = parse_output, help_heading = RUN)]
+    pub output: PathBuf,
+
+    /// Number of threads [default: all processors]; the file does not depend on it
+    #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true, help_heading = RUN)]
+    pub threads: Option<NonZeroUsize>,
+
+    /// Say nothing unless something is wrong
+    #[arg(short, long, help_heading = RUN)]
+    pub quiet: bool,
+}
+
+const SEEDS: &str = "Seeds";
+const DOMAIN: &str = "Domain";
+const SMOOTHING: &str = "Smoothing";
+const RUN: &str = "Run";
+
+const EXAMPLES: &str = "\
+Examples:
+  grainsmooth --seeds 200 -n 3                    200 grains in a unit cube, to grains.vtp
+  grainsmooth --seeds 500 --box 3 1 0.2 -o a.vtu  a plate
+  grainsmooth --seeds 300 --dim 2                 grains in a square
+  grainsmooth --seeds-file seeds.csv --relax 0    flat Voronoi grains from your own seeds
+
+Exit status: 0 good, 1 the run failed or its result is invalid, 2 a mistake on the command line.";
+
+/// `--junctions` as it is spelled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum JunctionRule {
+    Crease,
+    Corner,
+}
+
+impl Arguments {
+    /// What the arguments ask to compute.
+    ///
+    /// Ends the program with exit status 2 where they do not fit together.
+    pub fn config(&self) -> Config {
+        let seeds = match &self.seeds_file {
+            Some(path) => SeedSource::File(path.clone()),
+            None => SeedSource::Random { count: self.seeds.get() },
+        };
+        let box_size = match (self.box_size.as_deref(), self.dim) {
+            (None, _) => DVec3::ONE,
+            (Some(&[x, y]), Dimension::Two) => DVec3::new(x, y, 1.0),
+            (Some(&[x, y, z]), Dimension::Three) => DVec3::new(x, y, z),
+            (Some(_), Dimension::Two) => usage("--box takes two numbers, X Y, with --dim 2"),
+            (Some(_), Dimension::Three) => usage("--box takes three numbers, X Y Z, with --dim 3"),
+        };
+        let junctions = match self.junctions {
+            JunctionRule::Crease => Junctions::Crease,
+            JunctionRule::Corner => Junctions::Corner,
+        };
+        Config {
+            seeds,
+            random_seed: self.rng_seed,
+            dimension: self.dim,
+            box_size,
+            relaxation_time: self.relax,
+            levels: self.levels,
+            junctions,
+        }
+    }
+}
+
+/// Ends the program as clap does on a mistake.
+fn usage(message: &str) -> ! {
+    Arguments::command().error(ErrorKind::WrongNumberOfValues, message).exit()
+}
+
+fn parse_count(text: &str) -> Result<NonZeroUsize, String> {
+    text.parse().map_err(|_| "the number of grains is a whole number, 1 or more".to_owned())
+}
+
+fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
+    text.parse().map_err(|_| "the number of threads is a whole number, 1 or more".to_owned())
+}
+
+fn parse_dimension(text: &str) -> Result<Dimension, String> {
+    match text {
+        "2" => Ok(Dimension::Two),
+        "3" => Ok(Dimension::Three),
+        _ => Err("grains have 2 or 3 dimensions".to_owned()),
+    }
+}
+
+fn parse_length(text: &str) -> Result<f64, String> {
+    let length = text.parse().ok().filter(|length: &f64| length.is_finite() && *length > 0.0);
+    length.ok_or_else(|| "a side of the box is a positive, finite number".to_owned())
+}
+
+fn parse_time(text: &str) -> Result<f64, String> {
+    let time = text.parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0);
+    time.ok_or_else(|| "the relaxation time is 0 (off) or a positive, finite number".to_owned())
+}
+
+fn parse_output(text: &str) -> Result<PathBuf, String> {
+    let path = Path::new(text);
+    match OutputFormat::of_path(path) {
+        Some(_) => Ok(path.to_owned()),
+        None => Err("unknown extension; name the file *.vtp, *.vtu or *.vtk".to_owned()),
+    }
+}

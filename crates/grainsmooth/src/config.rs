@@ -1,0 +1,95 @@
+use std::path::PathBuf;
+
+use glam::DVec3;
+use polycrystal::Junctions;
+use voronoi::{Dimension, Domain};
+
+use crate::Error;
+
+/// Where seeds come from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum SeedSource {
+    /// Uniform random in the box, see [`random_seeds`](crate::random_seeds).
+    Random {
+        /// Number of seeds, at least 1.
+        count: usize,
+    },
+    /// A text file, see [`read_seed_file`](crate::read_seed_file).
+    File(PathBuf),
+}
+
+/// Everything that decides what a run computes. The same config gives the same bytes on every machine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Config {
+    /// Where seeds come from.
+    pub seeds: SeedSource,
+    /// Starts the random generator.
+    pub random_seed: u64,
+    /// Two or three dimensions.
+    pub dimension: Dimension,
+    /// Side lengths of the box, which has its lower corner in the origin; in 2D the last is ignored.
+    pub box_size: DVec3,
+    /// Relaxation time in units of the mean grain size squared; 0 leaves boundaries flat.
+    pub relaxation_time: f64,
+    /// Number of subdivisions.
+    pub levels: u32,
+    /// How triple lines are smoothed.
+    pub junctions: Junctions,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            seeds: SeedSource::Random { count: 200 },
+            random_seed: 1,
+            dimension: Dimension::Three,
+            box_size: DVec3::ONE,
+            relaxation_time: polycrystal::Relaxation::default().time,
+            levels: 3,
+            junctions: Junctions::Crease,
+        }
+    }
+}
+
+/// Shortest and longest side of a box: products of five lengths, which volumes and their derivatives are, must stay
+/// within the range of doubles.
+const SIDE_RANGE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
+
+impl Config {
+    /// The box that the grains fill.
+    ///
+    /// # Errors
+    /// [`Error::BoxSide`] when a side is not positive and finite, or beyond what doubles can compute with.
+    pub fn domain(&self) -> Result<Domain, Error> {
+        let axes = if self.dimension == Dimension::Two { 2 } else { 3 };
+        let sides = ['x', 'y', 'z'].into_iter().zip(self.box_size.to_array());
+        if let Some((axis, length)) = sides.take(axes).find(|(_, length)| !SIDE_RANGE.contains(length)) {
+            return Err(Error::BoxSide { axis, length });
+        }
+        Ok(match self.dimension {
+            Dimension::Two => Domain::rectangle(DVec3::ZERO, self.box_size)?,
+            Dimension::Three => Domain::cuboid(DVec3::ZERO, self.box_size)?,
+        })
+    }
+
+    /// The command line that makes the same result, all settings spelled out.
+    ///
+    /// What does not change the result (output path, number of threads) is left out, so files can be compared.
+    pub fn command_line(&self) -> String {
+        let seeds = match &self.seeds {
+            SeedSource::Random { count } => format!("--seeds {count} --rng-seed {}", self.random_seed),
+            SeedSource::File(path) => format!("--seeds-file {}", path.display()),
+        };
+        let DVec3 { x, y, z } = self.box_size;
+        let space = match self.dimension {
+            Dimension::Two => format!("--dim 2 --box {x} {y}"),
+            Dimension::Three => format!("--dim 3 --box {x} {y} {z}"),
+        };
+        let junctions = match self.junctions {
+            Junctions::Crease => "crease",
+            Junctions::Corner => "corner",
+        };
+        let Self { relaxation_time, levels, .. } = self;
+        format!("grainsmooth {seeds} {space} --relax {relaxation_time} -n {levels} --junctions {junctions}")
+    }
+}

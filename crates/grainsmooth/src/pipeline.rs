@@ -1,0 +1,173 @@
+//! From a config to a smooth, validated network.
+
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
+use polycrystal::{AngleStatistics, Network, NetworkError, Relaxation, Validation};
+use polycrystal::{dihedral_angles, relax, validate};
+use voronoi::{Dimension, Tessellation, VoronoiError};
+
+use crate::memory::{LevelSize, available_memory, check_levels};
+use crate::{Config, Error, FileSeed, SeedSource, random_seeds, read_seed_file};
+
+/// A part of a run, in the order in which they follow each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Drawing or reading seeds.
+    Seeds,
+    /// Cutting the Voronoi cells.
+    Cells,
+    /// Building the network and the connectivity of all its levels.
+    Network,
+    /// Moving control points toward equilibrium.
+    Relaxation,
+    /// Placing the points of the finest level.
+    Subdivision,
+    /// Checking the result and measuring it.
+    Validation,
+    /// Writing the file.
+    Writing,
+}
+
+impl Stage {
+    /// The stage in one word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Seeds => "seeds",
+            Self::Cells => "cells",
+            Self::Network => "network",
+            Self::Relaxation => "relaxation",
+            Self::Subdivision => "subdivision",
+            Self::Validation => "validation",
+            Self::Writing => "writing",
+        }
+    }
+}
+
+/// Told how far a run is: the stage, the steps of it that are done, and their number.
+pub type Progress<'a> = &'a (dyn Fn(Stage, usize, usize) + Sync);
+
+/// A finished polycrystal: a valid network with the points of its finest level.
+#[derive(Debug, Clone)]
+pub struct Polycrystal {
+    /// What was asked for.
+    pub config: Config,
+    /// Connectivity of all levels.
+    pub network: Network,
+    /// Points of the finest level.
+    pub points: Vec<DVec3>,
+    /// Angles between boundaries of the flat network, if boundaries meet inside the domain.
+    pub angles_before: Option<AngleStatistics>,
+    /// The same of the finished network.
+    pub angles_after: Option<AngleStatistics>,
+    /// What validation measured.
+    pub validation: Validation,
+    /// Time that each stage took.
+    pub times: Vec<(Stage, Duration)>,
+}
+
+/// Computes a polycrystal.
+///
+/// # Errors
+/// Whatever is wrong with the input, or the first fault that makes the result invalid.
+pub fn make_polycrystal(config: &Config, progress: Progress) -> Result<Polycrystal, Error> {
+    let mut clock = Clock::new(progress);
+    let domain = config.domain()?;
+    let seeds = clock.time(Stage::Seeds, || seeds(config, &domain))?;
+    let positions: Vec<DVec3> = seeds.iter().map(|seed| seed.position).collect();
+    let tessellation = clock.time(Stage::Cells, || {
+        Tessellation::new(&domain, &positions).map_err(|error| located(error, config, &seeds))
+    })?;
+    check_levels(control_mesh_size(&tessellation), config.levels, available_memory())?;
+    let (network, flat) = clock
+        .time(Stage::Network, || Network::new(&tessellation, config.junctions, config.levels as usize))?;
+    let relaxation = Relaxation { time: config.relaxation_time };
+    let relaxed = clock.time(Stage::Relaxation, || {
+        relax(&network, &flat, &relaxation, |done, count| progress(Stage::Relaxation, done, count))
+    })?;
+    let points = clock.time(Stage::Subdivision, || network.subdivide(&relaxed.control_points));
+    let (validation, angles_before, angles_after) = clock.time(Stage::Validation, || {
+        let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
+        let before = dihedral_angles(&network, network.control_mesh(), &flat);
+        Ok::<_, Error>((validation, before, dihedral_angles(&network, network.finest(), &points)))
+    })?;
+    let times = clock.times;
+    let config = config.clone();
+    Ok(Polycrystal { config, network, points, angles_before, angles_after, validation, times })
+}
+
+/// Runs stages one after the other and remembers how long each took.
+struct Clock<'a> {
+    progress: Progress<'a>,
+    times: Vec<(Stage, Duration)>,
+}
+
+impl<'a> Clock<'a> {
+    fn new(progress: Progress<'a>) -> Self {
+        Self { progress, times: Vec::new() }
+    }
+
+    fn time<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
+        (self.progress)(stage, 0, 1);
+        let start = Instant::now();
+        let result = work();
+        self.times.push((stage, start.elapsed()));
+        result
+    }
+}
+
+fn seeds(config: &Config, domain: &voronoi::Domain) -> Result<Vec<FileSeed>, Error> {
+    match &config.seeds {
+        SeedSource::File(path) => read_seed_file(path, config.dimension),
+        SeedSource::Random { count } => {
+            // Known before the first cell is cut: a count beyond all means must not eat the memory first.
+            let expected = expected_control_mesh_size(*count, config.dimension);
+            check_levels(expected, config.levels, available_memory())?;
+            let positions = random_seeds(*count, domain, config.random_seed).into_iter();
+            Ok(positions.map(|position| FileSeed { position, line: 0 }).collect())
+        }
+    }
+}
+
+/// The error with the line of the seed file that it comes from.
+fn located(error: VoronoiError, config: &Config, seeds: &[FileSeed]) -> Error {
+    let SeedSource::File(path) = &config.seeds else { return error.into() };
+    let seed = match &error {
+        VoronoiError::NotFinite { seed, .. }
+        | VoronoiError::OutsideDomain { seed, .. }
+        | VoronoiError::NotTriangulable { seed, .. }
+        | VoronoiError::DuplicateSeeds { second: seed, .. } => *seed,
+        _ => return error.into(),
+    };
+    Error::SeedInFile { path: path.clone(), line: seeds[seed].line, source: error }
+}
+
+/// The size of a tessellation's control mesh: a point per vertex, edge and face, two triangles per corner of a face.
+fn control_mesh_size(tessellation: &Tessellation) -> LevelSize {
+    let corners: usize = tessellation.faces().map(|face| tessellation.face_corners(face).len()).sum();
+    let (vertices, faces) = (tessellation.vertices().len(), tessellation.face_count());
+    match tessellation.domain().dimension() {
+        Dimension::Two => {
+            LevelSize { points: (vertices + faces) as u128, edges: 2 * faces as u128, triangles: 0 }
+        }
+        Dimension::Three => {
+            let lines = tessellation.edges().ends.len();
+            LevelSize {
+                points: (vertices + lines + faces) as u128,
+                edges: 2 * (lines + corners) as u128,
+                triangles: 2 * corners as u128,
+            }
+        }
+    }
+}
+
+/// The size for so many random seeds, from the means of Poisson-Voronoi cells (walls not counted): in space 15.54 faces,
+/// 27.07 vertices and 40.61 edges a cell, 5.23 edges a face; in the plane 6 edges and 6 vertices.
+fn expected_control_mesh_size(seed_count: usize, dimension: Dimension) -> LevelSize {
+    let count = seed_count as u128;
+    match dimension {
+        Dimension::Two => LevelSize { points: 5 * count, edges: 6 * count, triangles: 0 },
+        // Each face belongs to two cells, each line to three, each vertex to four: 6.77 + 13.54 + 7.77 points.
+        Dimension::Three => LevelSize { points: 28 * count, edges: 108 * count, triangles: 81 * count },
+    }
+}

@@ -1,0 +1,86 @@
+//! What a run says about its result.
+
+use std::fmt;
+use std::time::Duration;
+
+use polycrystal::AngleStatistics;
+use voronoi::Dimension;
+
+use crate::{Polycrystal, Stage};
+
+/// A polycrystal in a few lines of text: counts, angles, volumes, validation, times.
+pub struct Summary<'a>(pub &'a Polycrystal);
+
+impl fmt::Display for Summary<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Summary(polycrystal) = self;
+        let network = &polycrystal.network;
+        let finest = network.finest();
+        let counts = network.junction_counts();
+        let (points, elements) = (finest.vertex_count(), finest.element_count());
+        let levels = polycrystal.config.levels;
+        writeln!(out, "grains      {} in {}", network.grain_count(), network.domain())?;
+        let interior = network.boundaries().iter().filter(|boundary| boundary.is_interior()).count();
+        let walls = network.boundaries().len() - interior;
+        writeln!(out, "boundaries  {interior} between grains, {walls} on the walls")?;
+        match network.domain().dimension() {
+            Dimension::Three => {
+                writeln!(
+                    out,
+                    "junctions   {} triple lines, {} quadruple points",
+                    counts.triple_lines, counts.quadruple_points
+                )?;
+                writeln!(
+                    out,
+                    "mesh        {points} points, {elements} triangles after {levels} subdivisions"
+                )?;
+            }
+            Dimension::Two => {
+                writeln!(out, "junctions   {} triple points", counts.triple_lines)?;
+                writeln!(
+                    out,
+                    "mesh        {points} points, {elements} segments after {levels} subdivisions"
+                )?;
+            }
+        }
+        if let (Some(before), Some(after)) = (polycrystal.angles_before, polycrystal.angles_after) {
+            writeln!(out, "angles      {} before relaxation, {} after", Angle(before), Angle(after))?;
+        }
+        let validation = &polycrystal.validation;
+        let error = validation.largest_volume_error;
+        writeln!(out, "volumes     largest relative error of a grain {error:.1e}")?;
+        writeln!(
+            out,
+            "validation  good: grains closed, no folds, no points or triangles twice or without size"
+        )?;
+        write!(out, "time       ")?;
+        for (stage, time) in &polycrystal.times {
+            write!(out, " {} {},", stage.name(), Seconds(*time))?;
+        }
+        let total: Duration = polycrystal.times.iter().map(|(_, time)| *time).sum();
+        write!(out, " in all {}", Seconds(total))
+    }
+}
+
+impl Polycrystal {
+    /// Adds the time that a stage took after the computation, such as writing.
+    pub fn add_time(&mut self, stage: Stage, time: Duration) {
+        self.times.push((stage, time));
+    }
+}
+
+struct Angle(AngleStatistics);
+
+impl fmt::Display for Angle {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{:.2} +- {:.2} degrees", self.0.mean, self.0.standard_deviation)
+    }
+}
+
+struct Seconds(Duration);
+
+impl fmt::Display for Seconds {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{:.3} s", self.0.as_secs_f64())
+    }
+}
