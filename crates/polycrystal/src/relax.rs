@@ -58,9 +58,9 @@ pub struct Relaxation {
 }
 
 impl Default for Relaxation {
-    /// Time 0.2: the angles of random Voronoi grains spread by 12 degrees instead of 24, and no boundary has to vanish.
+    /// Time 0.3: the angles of random Voronoi grains spread by 12 degrees instead of 24, and no boundary has to vanish.
     fn default() -> Self {
-        Self { time: 0.2 }
+        Self { time: 0.3 }
     }
 }
 
