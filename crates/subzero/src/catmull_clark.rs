@@ -94,12 +94,16 @@ impl PolygonMesh {
         StencilTable::from_rows(count, |i, rows| {
             if i < vertices {
                 let rule = (i, self.vertex_rule(i));
-                let smooth = |share: f64, rows: &mut Rows| self.smooth_vertex_row(i, share, rows);
-                vertex_row(&self.sharpness, rule, rows, |edge| self.other_end(edge, i), smooth);
+                let other_end = |edge| self.other_end(edge, i);
+                let mut add = |point: u32, weight: f64| rows.add(point, weight);
+                vertex_row(&self.sharpness, rule, &mut add, other_end, |share, add| {
+                    self.smooth_vertex_row(i, share, add);
+                });
+                rows.merge();
             } else if i < vertices + edges {
                 self.catmull_clark_edge_row(i - vertices, rows);
             } else {
-                self.add_face_point(i - vertices - edges, 1.0, rows);
+                self.add_face_point(i - vertices - edges, 1.0, &mut |point, weight| rows.add(point, weight));
             }
         })
     }
@@ -112,27 +116,28 @@ impl PolygonMesh {
         }
         if smooth > 0.0 {
             for side in self.edges[edge as usize] {
-                self.add_face_point(self.faces_of[side as usize], 0.25 * smooth, rows);
+                self.add_face_point(self.faces_of[side as usize], 0.25 * smooth, &mut |point, weight| {
+                    rows.add(point, weight)
+                });
             }
             rows.merge();
         }
     }
 
     /// (F + 2 R + (n - 3) v)/n, with F the mean of the face points and R that of the midpoints of the n edges.
-    fn smooth_vertex_row(&self, vertex: u32, share: f64, rows: &mut Rows) {
+    fn smooth_vertex_row(&self, vertex: u32, share: f64, add: &mut impl FnMut(u32, f64)) {
         let first = self.outgoing[vertex as usize];
         let n = real(self.ring(first).count());
-        rows.add(vertex, share * (n - 2.0) / n);
+        add(vertex, share * (n - 2.0) / n);
         for h in self.ring(first) {
-            rows.add(self.end(h), share / (n * n));
-            self.add_face_point(self.faces_of[h as usize], share / (n * n), rows);
+            add(self.end(h), share / (n * n));
+            self.add_face_point(self.faces_of[h as usize], share / (n * n), add);
         }
-        rows.merge();
     }
 
-    fn add_face_point(&self, face: u32, share: f64, rows: &mut Rows) {
+    fn add_face_point(&self, face: u32, share: f64, add: &mut impl FnMut(u32, f64)) {
         let corners = self.face(face);
-        corners.iter().for_each(|&corner| rows.add(corner, share / real(corners.len())));
+        corners.iter().for_each(|&corner| add(corner, share / real(corners.len())));
     }
 
     /// Limit positions of all vertices, and limit tangents of the smooth ones.

@@ -3,7 +3,6 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::ids::{next, prev};
-use crate::stencil::Rows;
 use crate::vertex_rows::vertex_row;
 use crate::{StencilTable, TriangleMesh, VertexRule};
 
@@ -39,21 +38,24 @@ impl TriangleMesh {
         let vertices = self.counts().vertices;
         StencilTable::from_rows(self.vertex_count() + self.edge_count(), |i, rows| {
             if i < vertices {
-                self.loop_vertex_row(i, weights, rows);
+                self.loop_vertex_row(i, weights, &mut |point, weight| rows.add(point, weight));
+                if !matches!(self.vertex_rule(i), VertexRule::Smooth | VertexRule::Dart) {
+                    rows.merge();
+                }
             } else {
-                self.loop_edge_row(i - vertices, weights, rows);
+                self.loop_edge_row(i - vertices, weights, &mut |point, weight| rows.add(point, weight));
             }
         })
     }
 
-    fn loop_edge_row(&self, edge: u32, weights: LoopWeights, rows: &mut Rows) {
+    pub(crate) fn loop_edge_row(&self, edge: u32, weights: LoopWeights, add: &mut impl FnMut(u32, f64)) {
         let [along, against] = self.edges[edge as usize];
         let [a, b] = [self.start(along), self.start(next(along))];
         let crease =
             if self.sharp_edges[edge as usize] { self.sharpness.of_edge(edge).min(1.0) } else { 0.0 };
         if crease >= 1.0 {
-            rows.add(a, 0.5);
-            rows.add(b, 0.5);
+            add(a, 0.5);
+            add(b, 0.5);
         } else {
             let crease = f64::from(crease);
             let smooth = match weights {
@@ -62,10 +64,10 @@ impl TriangleMesh {
             };
             let [end_a, end_b] = smooth.map(|end| end + (0.5 - end) * crease);
             let apex = 0.125 - 0.125 * crease;
-            rows.add(a, end_a);
-            rows.add(b, end_b);
-            rows.add(self.start(prev(along)), apex);
-            rows.add(self.start(prev(against)), apex);
+            add(a, end_a);
+            add(b, end_b);
+            add(self.start(prev(along)), apex);
+            add(self.start(prev(against)), apex);
         }
     }
 
@@ -94,16 +96,21 @@ impl TriangleMesh {
         left.chain(right).fold(0, |count, _| count + 1)
     }
 
-    fn loop_vertex_row(&self, vertex: u32, weights: LoopWeights, rows: &mut Rows) {
-        let smooth = |share: f64, rows: &mut Rows| {
+    pub(crate) fn loop_vertex_row<Add: FnMut(u32, f64)>(
+        &self,
+        vertex: u32,
+        weights: LoopWeights,
+        add: &mut Add,
+    ) {
+        let smooth = |share: f64, add: &mut Add| {
             let first = self.outgoing[vertex as usize];
             let valence = self.ring(first).count();
             let neighbour = weights.neighbour(valence);
             #[allow(clippy::cast_precision_loss)]
-            rows.add(vertex, share * (1.0 - valence as f64 * neighbour));
-            self.ring(first).for_each(|h| rows.add(self.start(next(h)), share * neighbour));
+            add(vertex, share * (1.0 - valence as f64 * neighbour));
+            self.ring(first).for_each(|h| add(self.start(next(h)), share * neighbour));
         };
         let rule = self.vertex_rule(vertex);
-        vertex_row(&self.sharpness, (vertex, rule), rows, |edge| self.other_end(edge, vertex), smooth);
+        vertex_row(&self.sharpness, (vertex, rule), add, |edge| self.other_end(edge, vertex), smooth);
     }
 }

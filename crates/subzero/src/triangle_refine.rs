@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::ids::{NONE, id, next};
+use crate::large_vec;
 use crate::{LoopWeights, MeshCounts, Refinement, TriangleMesh};
 
 /// Parents that one task refines.
@@ -47,28 +48,30 @@ impl TriangleMesh {
     }
 
     fn refined_triangles(&self, counts: MeshCounts) -> (Vec<[u32; 3]>, Vec<[u32; 3]>) {
-        let mut triangles = vec![[0; 3]; 4 * self.triangles.len()];
-        let mut directed_edges = triangles.clone();
-        let (corners, centres) = triangles.split_at_mut(3 * self.triangles.len());
-        let (corner_edges, centre_edges) = directed_edges.split_at_mut(3 * self.triangles.len());
-        let parents = self.triangles.par_iter().zip(&self.directed_edges).with_min_len(PARENTS_PER_TASK);
+        let parents = self.triangles.len();
+        let mut triangles = large_vec::zeros::<[u32; 3]>(4 * parents);
+        let mut directed_edges = large_vec::zeros::<[u32; 3]>(4 * parents);
+        let (corners, centres) = triangles.split_at_mut(3 * parents);
+        let (corner_edges, centre_edges) = directed_edges.split_at_mut(3 * parents);
+        let old = self.triangles.par_iter().zip(&self.directed_edges);
         let corners = corners.par_chunks_exact_mut(3).zip(corner_edges.par_chunks_exact_mut(3));
         let centres = centres.par_iter_mut().zip(centre_edges);
-        parents.zip(corners).zip(centres).enumerate().for_each(
+        old.zip(corners).zip(centres).with_min_len(PARENTS_PER_TASK).enumerate().for_each(
             |(t, (((triangle, directed), (corners, corner_edges)), (centre, centre_edges)))| {
                 let inner = 2 * counts.edges + 3 * id(t);
                 let on_edge = directed.map(|d| counts.edge_vertex(d / 2));
-                for (k, before) in [(0, 2), (1, 0), (2, 1)] {
-                    let inner = inner + id(k);
-                    corners[k] = [triangle[k], on_edge[k], on_edge[before]];
-                    corner_edges[k] = [
-                        2 * directed[k] + directed[k] % 2,
-                        2 * inner,
-                        2 * (directed[before] ^ 1) + directed[before] % 2,
-                    ];
-                    centre[k] = on_edge[before];
-                    centre_edges[k] = 2 * inner + 1;
-                }
+                let [d0, d1, d2] = *directed;
+                // The halves of an edge where a half-edge starts and where it ends, in the half-edge's direction.
+                let first_half = |d: u32| 2 * d + d % 2;
+                let second_half = |d: u32| 2 * (d ^ 1) + d % 2;
+                corners[0] = [triangle[0], on_edge[0], on_edge[2]];
+                corners[1] = [triangle[1], on_edge[1], on_edge[0]];
+                corners[2] = [triangle[2], on_edge[2], on_edge[1]];
+                corner_edges[0] = [first_half(d0), 2 * inner, second_half(d2)];
+                corner_edges[1] = [first_half(d1), 2 * inner + 2, second_half(d0)];
+                corner_edges[2] = [first_half(d2), 2 * inner + 4, second_half(d1)];
+                *centre = [on_edge[2], on_edge[0], on_edge[1]];
+                *centre_edges = [2 * inner + 1, 2 * inner + 3, 2 * inner + 5];
             },
         );
         (triangles, directed_edges)
@@ -76,20 +79,18 @@ impl TriangleMesh {
 
     fn refined_edges(&self) -> Vec<[u32; 2]> {
         let half_edges = id(3 * self.triangles.len());
-        let halves = |&[along, against]: &[u32; 2]| {
+        let mut edges = large_vec::zeros::<[u32; 2]>(2 * self.edges.len() + half_edges as usize);
+        let (halves, inner) = edges.split_at_mut(2 * self.edges.len());
+        let parents = self.edges.par_iter().with_min_len(PARENTS_PER_TASK);
+        parents.zip(halves.par_chunks_exact_mut(2)).for_each(|(&[along, against], halves)| {
             if against == NONE {
-                [[3 * along, NONE], [3 * next(along) + 2, NONE]]
+                halves[0] = [3 * along, NONE];
+                halves[1] = [3 * next(along) + 2, NONE];
             } else {
-                [[3 * along, 3 * next(against) + 2], [3 * next(along) + 2, 3 * against]]
+                halves[0] = [3 * along, 3 * next(against) + 2];
+                halves[1] = [3 * next(along) + 2, 3 * against];
             }
-        };
-        let mut edges = vec![[0; 2]; 2 * self.edges.len() + 3 * self.triangles.len()];
-        let (outer, inner) = edges.split_at_mut(2 * self.edges.len());
-        outer
-            .par_chunks_exact_mut(2)
-            .with_min_len(PARENTS_PER_TASK)
-            .zip(&self.edges)
-            .for_each(|(children, edge)| children.copy_from_slice(&halves(edge)));
+        });
         inner
             .par_iter_mut()
             .with_min_len(PARENTS_PER_TASK)
@@ -99,12 +100,10 @@ impl TriangleMesh {
     }
 
     fn refined_outgoing(&self) -> Vec<u32> {
+        let mut outgoing = large_vec::with_capacity(self.vertex_count() + self.edge_count());
         let old = self.outgoing.par_iter().map(|&h| if h == NONE { NONE } else { 3 * h });
         let new = self.edges.par_iter().map(|&[along, _]| 3 * along + 1);
-        let mut outgoing = vec![0; self.outgoing.len() + self.edges.len()];
-        let (old_out, new_out) = outgoing.split_at_mut(self.outgoing.len());
-        old.with_min_len(PARENTS_PER_TASK).zip(old_out).for_each(|(h, out)| *out = h);
-        new.with_min_len(PARENTS_PER_TASK).zip(new_out).for_each(|(h, out)| *out = h);
+        old.chain(new).with_min_len(PARENTS_PER_TASK).collect_into_vec(&mut outgoing);
         outgoing
     }
 }

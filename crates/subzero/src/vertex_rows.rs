@@ -2,40 +2,40 @@
 
 use crate::VertexRule;
 use crate::sharpness::{Sharpness, Spoke, decay, is_infinite, rule_of_sharp_edges};
-use crate::stencil::Rows;
 
-/// Writes the row of `vertex`: by its sharp rule, by `smooth`, which is given its share of the row, or by a blend of the
-/// rule and the next level's when some sharpness runs out (OpenSubdiv's rule).
-pub(crate) fn vertex_row(
+/// Hands the row of `vertex` to `add`, entry by entry: by its sharp rule, by `smooth`, which is given its share of the row, or
+/// by a blend of the rule and the next level's when some sharpness runs out (OpenSubdiv's rule). A blend may name
+/// a vertex more than once.
+pub(crate) fn vertex_row<Add: FnMut(u32, f64)>(
     sharpness: &Sharpness,
     (vertex, rule): (u32, VertexRule),
-    rows: &mut Rows,
+    add: &mut Add,
     other_end: impl Fn(u32) -> u32,
-    smooth: impl Fn(f64, &mut Rows),
+    smooth: impl Fn(f64, &mut Add),
 ) {
     if matches!(rule, VertexRule::Smooth | VertexRule::Dart) {
-        return smooth(1.0, rows);
+        return smooth(1.0, add);
     }
     let spokes = sharpness.spokes(vertex);
     let corner = sharpness.of_corner(vertex);
     let next_rule = rule_after(spokes, corner);
     let sharp_share = if next_rule == rule { 1.0 } else { share_before_run_out(spokes, corner) };
-    let mut sharp_row = |rule: VertexRule, spokes: &mut dyn Iterator<Item = &Spoke>, share: f64| {
-        if rule == VertexRule::Crease {
-            rows.add(vertex, 0.75 * share);
-            spokes.for_each(|spoke| rows.add(other_end(spoke.edge), 0.125 * share));
-        } else {
-            rows.add(vertex, share);
-        }
-    };
-    sharp_row(rule, &mut spokes.iter(), sharp_share);
+    let sharp_row =
+        |rule: VertexRule, spokes: &mut dyn Iterator<Item = &Spoke>, share: f64, add: &mut Add| {
+            if rule == VertexRule::Crease {
+                add(vertex, 0.75 * share);
+                spokes.for_each(|spoke| add(other_end(spoke.edge), 0.125 * share));
+            } else {
+                add(vertex, share);
+            }
+        };
+    sharp_row(rule, &mut spokes.iter(), sharp_share, add);
     if sharp_share < 1.0 {
         let rest = 1.0 - sharp_share;
         match next_rule {
-            VertexRule::Smooth | VertexRule::Dart => smooth(rest, rows),
-            _ => sharp_row(next_rule, &mut still_sharp(spokes), rest),
+            VertexRule::Smooth | VertexRule::Dart => smooth(rest, add),
+            _ => sharp_row(next_rule, &mut still_sharp(spokes), rest, add),
         }
-        rows.merge();
     }
 }
 
