@@ -3,6 +3,8 @@
 //! Touching a fresh page costs more than filling it, and refinement fills hundreds of megabytes once. In pages of 2 MiB
 //! the first touch costs a fifth; Linux gives them to whoever asks.
 
+use bytemuck::Zeroable;
+
 /// Bytes from which huge pages are worth asking for, and their size.
 const HUGE_PAGE: usize = 1 << 21;
 
@@ -14,8 +16,8 @@ pub(crate) fn with_capacity<T>(capacity: usize) -> Vec<T> {
 }
 
 /// `len` zeros; not touched yet if they are many.
-pub(crate) fn zeros<T: Clone + Default>(len: usize) -> Vec<T> {
-    let vec = vec![T::default(); len];
+pub(crate) fn zeros<T: Zeroable>(len: usize) -> Vec<T> {
+    let vec = bytemuck::zeroed_vec(len);
     advise_huge_pages(&vec);
     vec
 }

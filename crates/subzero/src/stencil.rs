@@ -75,6 +75,11 @@ impl StencilTable {
         Self { starts, ids: ids.concat(), weights: weights.concat() }
     }
 
+    /// The table that leaves `count` points as they are.
+    pub fn identity(count: usize) -> Self {
+        Self::from_rows(count, |i, rows| rows.add(i, 1.0))
+    }
+
     /// Number of rows, that is of new points.
     pub fn len(&self) -> usize {
         self.starts.len() - 1

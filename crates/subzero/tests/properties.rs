@@ -8,8 +8,8 @@ use glam::{DMat3, DVec3};
 use proptest::prelude::*;
 use rayon::ThreadPoolBuilder;
 use subzero::{
-    BoundaryRule, Crease, CurveMesh, DooSabinWeights, Features, HalfEdgeMesh, LoopWeights, PolygonMesh,
-    Refinement, StencilTable, TriangleMesh, VertexRule,
+    BoundaryRule, Crease, CurveMesh, DooSabinWeights, Features, HalfEdgeMesh, LoopHierarchy, LoopWeights,
+    PolygonMesh, Refinement, StencilTable, TriangleMesh, VertexRule,
 };
 
 const WEIGHTS: [LoopWeights; 3] = [LoopWeights::Loop, LoopWeights::Warren, LoopWeights::BiermannLevinZorin];
@@ -182,6 +182,29 @@ proptest! {
     }
 
     #[test]
+    fn points_straight_from_connectivity_are_those_of_the_tables(example in examples(0.0..11.0_f32)) {
+        for weights in WEIGHTS {
+            let mut mesh = example.mesh();
+            let hierarchy = LoopHierarchy::new(mesh.clone(), 4, weights);
+            let mut levels = hierarchy.buffers();
+            hierarchy.apply_into(&example.points, &mut levels);
+            let (subdivided, points) = mesh.clone().loop_subdivide(&example.points, 4, weights);
+            prop_assert_eq!(&points, &levels[3]);
+            prop_assert_eq!(&points, &hierarchy.apply(&example.points));
+            let mut expected = example.points.clone();
+            for level in levels {
+                let refined = mesh.loop_refine_with(weights);
+                expected = refined.stencils.apply(&expected);
+                mesh = refined.mesh;
+                for (ours, &theirs) in level.into_iter().zip(&expected) {
+                    assert_close(ours, theirs, 1e-13, "point");
+                }
+            }
+            prop_assert!(subdivided == mesh && *hierarchy.finest() == mesh);
+        }
+    }
+
+    #[test]
     fn limits_stay_put(example in examples(prop_oneof![Just(10.0_f32), Just(f32::INFINITY)])) {
         for weights in WEIGHTS {
             let mut mesh = example.mesh();
@@ -277,8 +300,12 @@ fn threads_do_not_change_a_bit() {
                 mesh = refined.mesh;
                 tables.push(refined.stencils);
             }
+            let (direct_mesh, direct) =
+                reference.mesh().loop_subdivide(&reference.vertices, 4, LoopWeights::Loop);
+            assert!(direct_mesh == mesh);
             let limits = mesh.loop_limits(LoopWeights::Loop).unwrap();
             let normals = limits.sector_normals(&points);
+            points.extend(direct);
             (mesh, tables, points, normals, limits)
         })
     };
@@ -289,6 +316,37 @@ fn threads_do_not_change_a_bit() {
     assert!(one.0.triangles().len() > 10 * 2048, "there must be several tasks");
     assert_eq!(bits(&one.2), bits(&two.2));
     assert!(one == two);
+}
+
+#[test]
+fn a_hierarchy_knows_generations_and_ancestors() {
+    let reference: common::TriangleReference = common::load("loop_crease_inf");
+    let hierarchy = LoopHierarchy::new(reference.mesh(), 3, LoopWeights::Loop);
+    let counts: Vec<usize> = hierarchy.meshes().iter().map(TriangleMesh::vertex_count).collect();
+    for (vertex, level) in [(0, 0), (counts[0] - 1, 0), (counts[0], 1), (counts[1], 2), (counts[3] - 1, 3)] {
+        assert_eq!(hierarchy.generation(vertex as u32), level);
+    }
+    // The centre of an ancestor's descendants is near its own: with midpoints they would lie in it.
+    let mut points = reference.vertices.clone();
+    for mesh in &hierarchy.meshes()[..3] {
+        points = mesh.midpoint_refine().stencils.apply(&points);
+    }
+    for (t, corners) in hierarchy.finest().triangles().iter().enumerate() {
+        let [a, b, c] =
+            reference.faces[hierarchy.ancestor(t as u32) as usize].map(|v| reference.vertices[v as usize]);
+        let centre = corners.iter().map(|&v| points[v as usize]).sum::<DVec3>() / 3.0;
+        let normal = (b - a).cross(c - a);
+        let inside = [[a, b], [b, c], [c, a]].map(|[p, q]| (q - p).cross(centre - p).dot(normal) > 0.0);
+        assert_eq!(inside, [true; 3], "triangle {t}");
+        assert!((centre - a).dot(normal).abs() < 1e-12, "triangle {t}");
+    }
+    let composed = hierarchy.stencils();
+    assert_rows_sum_to(&composed, 1.0);
+    for (ours, theirs) in
+        composed.apply(&reference.vertices).into_iter().zip(hierarchy.apply(&reference.vertices))
+    {
+        assert_close(ours, theirs, 1e-14, "composed");
+    }
 }
 
 #[test]

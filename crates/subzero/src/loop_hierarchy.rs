@@ -1,0 +1,110 @@
+//! A mesh refined several times by Loop's scheme.
+
+use crate::large_vec;
+use crate::{LoopWeights, Point, StencilTable, TriangleMesh};
+
+/// A mesh and what Loop's scheme makes of it over several levels: topology once, points again and again.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopHierarchy {
+    /// The meshes, coarsest first.
+    levels: Vec<TriangleMesh>,
+    weights: LoopWeights,
+}
+
+impl TriangleMesh {
+    /// The mesh refined `levels` times by Loop's scheme, and its points. Faster than a [`LoopHierarchy`] if the points will
+    /// not change.
+    ///
+    /// # Panics
+    /// If there is not one point per vertex, or if the finest mesh outgrows 32-bit ids;
+    /// [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
+    pub fn loop_subdivide<P: Point>(
+        self,
+        points: &[P],
+        levels: usize,
+        weights: LoopWeights,
+    ) -> (Self, Vec<P>) {
+        let mut ancestors = Vec::with_capacity(levels);
+        let mut mesh = self;
+        let mut points = points.to_vec();
+        for _ in 0..levels {
+            let mut refined = large_vec::zeros(mesh.vertex_count() + mesh.edge_count());
+            mesh.loop_points(&ancestors, &points, weights, &mut refined);
+            points = refined;
+            let finer = mesh.refine_connectivity();
+            ancestors.push(std::mem::replace(&mut mesh, finer));
+        }
+        (mesh, points)
+    }
+}
+
+impl LoopHierarchy {
+    /// Refines `mesh` so many times.
+    ///
+    /// # Panics
+    /// If the finest mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
+    pub fn new(mesh: TriangleMesh, levels: usize, weights: LoopWeights) -> Self {
+        let mut meshes = vec![mesh];
+        for level in 0..levels {
+            meshes.push(meshes[level].refine_connectivity());
+        }
+        Self { levels: meshes, weights }
+    }
+
+    /// The meshes, from the one given to the finest.
+    pub fn meshes(&self) -> &[TriangleMesh] {
+        &self.levels
+    }
+
+    /// The finest mesh.
+    pub fn finest(&self) -> &TriangleMesh {
+        &self.levels[self.levels.len() - 1]
+    }
+
+    /// The level at which a vertex of the finest mesh was born, 0 for control points.
+    pub fn generation(&self, vertex: u32) -> usize {
+        self.levels.partition_point(|mesh| mesh.vertex_count() <= vertex as usize)
+    }
+
+    /// The triangle of the coarsest mesh in which a triangle of the finest lies.
+    pub fn ancestor(&self, triangle: u32) -> u32 {
+        let coarser = self.levels[..self.levels.len() - 1].iter().rev();
+        coarser.fold(triangle, |triangle, mesh| mesh.counts().triangle_parent(triangle))
+    }
+
+    /// Room for the points of each level but the coarsest, as [`apply_into`](Self::apply_into) needs it.
+    pub fn buffers<P: Point>(&self) -> Vec<Vec<P>> {
+        self.levels[1..].iter().map(|mesh| large_vec::zeros(mesh.vertex_count())).collect()
+    }
+
+    /// Writes the points of each level, from those of the coarsest, in parallel and without allocation. The result does
+    /// not depend on the number of threads.
+    ///
+    /// # Panics
+    /// If `points` or an element of `levels` does not have one point per vertex of its level.
+    pub fn apply_into<P: Point>(&self, points: &[P], levels: &mut [Vec<P>]) {
+        assert_eq!(levels.len() + 1, self.levels.len(), "there must be one buffer per refinement");
+        for (level, mesh) in self.levels[..levels.len()].iter().enumerate() {
+            let (coarser, finer) = levels.split_at_mut(level);
+            let points = coarser.last().map_or(points, Vec::as_slice);
+            mesh.loop_points(&self.levels[..level], points, self.weights, &mut finer[0]);
+        }
+    }
+
+    /// The points of the finest level.
+    ///
+    /// # Panics
+    /// If there is not one point per vertex of the coarsest mesh.
+    pub fn apply<P: Point>(&self, points: &[P]) -> Vec<P> {
+        let mut levels = self.buffers();
+        self.apply_into(points, &mut levels);
+        levels.pop().unwrap_or_else(|| points.to_vec())
+    }
+
+    /// One table that takes points of the coarsest mesh to the finest: one row per vertex of the finest.
+    pub fn stencils(&self) -> StencilTable {
+        let identity = StencilTable::identity(self.levels[0].vertex_count());
+        let coarser = &self.levels[..self.levels.len() - 1];
+        coarser.iter().fold(identity, |table, mesh| table.then(&mesh.loop_stencils(self.weights)))
+    }
+}
