@@ -4,11 +4,13 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser, ValueEnum};
+use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use grainsmooth::{Config, OutputFormat, SeedSource};
 use polycrystal::Junctions;
 use voronoi::Dimension;
+
+use crate::mesh_cli::MeshArguments;
 
 /// Make a virtual polycrystal: smooth, closed grains of exact volume, as a VTK file for ParaView.
 ///
@@ -16,7 +18,11 @@ use voronoi::Dimension;
 /// tension (120 degrees at triple lines) while every grain keeps its volume, and Loop subdivision makes them smooth.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 100, after_help = EXAMPLES)]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+
     /// Number of grains, grown from uniform random seeds
     #[arg(long, value_name = "N", default_value = "200", value_parser = parse_count, allow_negative_numbers = true, help_heading = SEEDS)]
     seeds: NonZeroUsize,
@@ -60,6 +66,12 @@ pub struct Arguments {
     /// Say nothing unless something is wrong
     #[arg(short, long, help_heading = RUN)]
     pub quiet: bool,
+}
+
+/// What else the program does.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    Mesh(MeshArguments),
 }
 
 const SEEDS: &str = "Seeds";

@@ -5,6 +5,7 @@ use polycrystal::NetworkError;
 use voronoi::VoronoiError;
 
 use crate::memory::{self, LevelSize};
+use crate::mesh_file::MeshFileProblem;
 use crate::{OutputFormat, SeedLineProblem};
 
 /// What can go wrong between the user's input and the files written. Each message is one line that names the
@@ -95,6 +96,14 @@ pub enum Error {
     /// The network cannot be made, relaxed, or is invalid.
     #[error(transparent)]
     Network(#[from] NetworkError),
+    /// A mesh file cannot be used.
+    #[error("{}: {problem}", path.display())]
+    MeshFile {
+        /// The path as given.
+        path: PathBuf,
+        /// Why.
+        problem: MeshFileProblem,
+    },
     /// So many levels of subdivision need more memory than there is.
     #[error(
         "{levels} levels would take {} of memory and {} are available; {}",

@@ -17,18 +17,27 @@
 mod config;
 mod error;
 pub mod memory;
+mod mesh_bezier;
+mod mesh_edit;
+pub mod mesh_file;
+mod mesh_json;
 mod network_file;
 mod output;
 mod pipeline;
 mod seed_file;
 mod seeding;
+mod subdivide;
 mod summary;
 pub mod vtk;
 
 pub use config::{Config, SeedSource};
 pub use error::Error;
+pub use mesh_bezier::{BezierFile, read_bezier};
+pub use mesh_edit::{EdgeEdit, edit_edges};
+pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputFormat};
 pub use pipeline::{Polycrystal, Progress, Stage, make_polycrystal};
 pub use seed_file::{FileSeed, SeedLineProblem, read_seed_file};
 pub use seeding::random_seeds;
+pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};
 pub use summary::Summary;

@@ -1,16 +1,20 @@
 //! The `grainsmooth` program: reads the command line, runs the pipeline, reports.
 
 mod cli;
+mod mesh_cli;
+mod mesh_run;
 mod progress;
 
+use std::io::Write;
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Context;
 use clap::Parser;
+use grainsmooth::mesh_file::READER_THREAD;
 use grainsmooth::{Output, Stage, Summary, make_polycrystal};
 
-use cli::Arguments;
+use cli::{Arguments, Command};
 use progress::ProgressLine;
 
 #[expect(clippy::print_stderr, reason = "the program's face")]
@@ -24,8 +28,27 @@ fn main() -> ExitCode {
     }
 }
 
+/// Writes a line to standard error. Where nobody can read it the run is no worse for that.
+fn say(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+/// A panic over a corrupt VTK file becomes an error, and needs no words of its own.
+fn keep_reader_quiet() {
+    let hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        if std::thread::current().name() != Some(READER_THREAD) {
+            hook(info);
+        }
+    }));
+}
+
 #[expect(clippy::print_stderr, reason = "the program's face")]
 fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    if let Some(Command::Mesh(mesh)) = &arguments.command {
+        keep_reader_quiet();
+        return Ok(mesh_run::run(&mesh.command)?);
+    }
     // An output that cannot be written is found before hours of work, not after.
     let output = Output::check(&arguments.output)?;
     let threads = arguments.threads.map_or(0, usize::from);

@@ -46,13 +46,13 @@ impl OutputFormat {
     }
 }
 
-/// A path that was found writable, and the format that its extension names.
+/// A path that was found writable, and the format to write there.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Output {
+pub struct Output<Format = OutputFormat> {
     path: PathBuf,
     /// Where the file goes: `path`, or what it links to.
     target: PathBuf,
-    format: OutputFormat,
+    format: Format,
 }
 
 impl Output {
@@ -64,9 +64,20 @@ impl Output {
     /// file is read-only.
     pub fn check(path: impl Into<PathBuf>) -> Result<Self, Error> {
         let path = path.into();
-        let Some(format) = OutputFormat::of_path(&path) else {
-            return Err(Error::UnknownExtension { path });
-        };
+        match OutputFormat::of_path(&path) {
+            Some(format) => Self::check_as(path, format),
+            None => Err(Error::UnknownExtension { path }),
+        }
+    }
+}
+
+impl<Format: Copy> Output<Format> {
+    /// Checks that a file can be written at `path`, whatever its extension, without changing what is there.
+    ///
+    /// # Errors
+    /// As of [`check`](Output::check), but for the extension.
+    pub fn check_as(path: impl Into<PathBuf>, format: Format) -> Result<Self, Error> {
+        let path = path.into();
         let target = match fs::metadata(&path) {
             Ok(present) if !present.is_file() => return Err(Error::OutputNotAFile { path }),
             Ok(present) if present.permissions().readonly() => {
@@ -97,8 +108,8 @@ impl Output {
         &self.path
     }
 
-    /// The format that the path's extension names.
-    pub fn format(&self) -> OutputFormat {
+    /// The format to write.
+    pub fn format(&self) -> Format {
         self.format
     }
 

@@ -19,7 +19,7 @@ mod xml;
 pub struct PolyData<'a> {
     /// Coordinates in the user's unit of length; z = 0 in 2D.
     pub points: &'a [DVec3],
-    /// Triangles or polylines, by position in `points`.
+    /// Triangles, polygons or polylines, by position in `points`.
     pub cells: Cells<'a>,
     /// Arrays with one tuple for each point.
     pub point_arrays: Vec<Array<'a>>,
@@ -34,6 +34,8 @@ pub struct PolyData<'a> {
 pub enum Cells<'a> {
     /// Three points each.
     Triangles(&'a [[u32; 3]]),
+    /// Three or more points each, in order around the face.
+    Polygons(&'a [Vec<u32>]),
     /// Two or more points each, in order along the curve.
     Polylines(&'a [Vec<u32>]),
 }
@@ -43,7 +45,7 @@ impl Cells<'_> {
     pub fn len(&self) -> usize {
         match self {
             Self::Triangles(triangles) => triangles.len(),
-            Self::Polylines(polylines) => polylines.len(),
+            Self::Polygons(cells) | Self::Polylines(cells) => cells.len(),
         }
     }
 
@@ -56,7 +58,7 @@ impl Cells<'_> {
     fn corner_count(&self) -> usize {
         match self {
             Self::Triangles(triangles) => 3 * triangles.len(),
-            Self::Polylines(polylines) => polylines.iter().map(Vec::len).sum(),
+            Self::Polygons(cells) | Self::Polylines(cells) => cells.iter().map(Vec::len).sum(),
         }
     }
 }
@@ -79,6 +81,8 @@ pub enum Values<'a> {
     Int32(&'a [i32]),
     /// Two 32-bit integers each.
     Int32Pairs(&'a [[i32; 2]]),
+    /// Three 64-bit floating point numbers each.
+    Vectors(&'a [DVec3]),
 }
 
 impl<'a> Values<'a> {
@@ -88,6 +92,7 @@ impl<'a> Values<'a> {
             Self::Int8(values) => values.len(),
             Self::Int32(values) => values.len(),
             Self::Int32Pairs(pairs) => pairs.len(),
+            Self::Vectors(vectors) => vectors.len(),
         }
     }
 
@@ -100,6 +105,7 @@ impl<'a> Values<'a> {
         match self {
             Self::Int8(_) | Self::Int32(_) => 1,
             Self::Int32Pairs(_) => 2,
+            Self::Vectors(_) => 3,
         }
     }
 
@@ -107,6 +113,7 @@ impl<'a> Values<'a> {
         match self {
             Self::Int8(_) => ScalarType::Int8,
             Self::Int32(_) | Self::Int32Pairs(_) => ScalarType::Int32,
+            Self::Vectors(_) => ScalarType::Float64,
         }
     }
 
@@ -115,6 +122,7 @@ impl<'a> Values<'a> {
             Self::Int8(values) => bytemuck::cast_slice(values),
             Self::Int32(values) => bytemuck::cast_slice(values),
             Self::Int32Pairs(pairs) => bytemuck::cast_slice(pairs),
+            Self::Vectors(vectors) => bytemuck::cast_slice(vectors),
         }
     }
 }

@@ -35,6 +35,7 @@ fn to_vtkio(data: &PolyData<'_>) -> io::Result<Vtk> {
     checked_count(data.points.len().max(data.cells.len() + data.cells.corner_count()))?;
     let (lines, polys) = match data.cells {
         Cells::Triangles(triangles) => (None, Some(counted_cells(triangles.iter().map(|cell| &cell[..]))?)),
+        Cells::Polygons(polygons) => (None, Some(counted_cells(polygons.iter().map(|cell| &cell[..]))?)),
         Cells::Polylines(polylines) => (Some(counted_cells(polylines.iter().map(|cell| &cell[..]))?), None),
     };
     let coordinates: &[f64] = bytemuck::cast_slice(data.points);
@@ -84,6 +85,7 @@ fn attributes(arrays: &[Array<'_>]) -> Vec<Attribute> {
             Values::Int8(values) => IOBuffer::I8(values.to_vec()),
             Values::Int32(values) => IOBuffer::I32(values.to_vec()),
             Values::Int32Pairs(pairs) => IOBuffer::I32(pairs.as_flattened().to_vec()),
+            Values::Vectors(vectors) => IOBuffer::F64(bytemuck::cast_slice(vectors).to_vec()),
         },
     });
     vec![Attribute::field("FieldData").with_field_data(arrays)]

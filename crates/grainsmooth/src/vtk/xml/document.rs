@@ -18,6 +18,7 @@ const VERSION: &str = "1.0";
 /// VTK's codes for the kinds of cell.
 const POLY_LINE: u8 = 4;
 const TRIANGLE: u8 = 5;
+const POLYGON: u8 = 7;
 
 #[derive(Serialize)]
 #[serde(rename = "VTKFile")]
@@ -167,11 +168,12 @@ impl Topology {
             array("offsets", id_type, 1, numbers.append(ends)),
         ];
         match (format, data.cells) {
-            (XmlFormat::PolyData, Cells::Triangles(_)) => Self::Polys(Arrays { arrays }),
+            (XmlFormat::PolyData, Cells::Triangles(_) | Cells::Polygons(_)) => Self::Polys(Arrays { arrays }),
             (XmlFormat::PolyData, Cells::Polylines(_)) => Self::Lines(Arrays { arrays }),
             (XmlFormat::UnstructuredGrid, cells) => {
                 let kind = match cells {
                     Cells::Triangles(_) => TRIANGLE,
+                    Cells::Polygons(_) => POLYGON,
                     Cells::Polylines(_) => POLY_LINE,
                 };
                 arrays.push(array("types", ScalarType::UInt8, 1, numbers.append(vec![kind; cells.len()])));
@@ -192,12 +194,12 @@ fn cell_ids(cells: Cells<'_>, wide: bool) -> (Cow<'_, [u8]>, Vec<u8>) {
             };
             (connectivity, id_bytes((1..=triangles.len() as u64).map(|cell| 3 * cell), wide))
         }
-        Cells::Polylines(polylines) => {
-            let ends = polylines.iter().scan(0, |end, polyline| {
-                *end += polyline.len() as u64;
+        Cells::Polygons(cells) | Cells::Polylines(cells) => {
+            let ends = cells.iter().scan(0, |end, cell| {
+                *end += cell.len() as u64;
                 Some(*end)
             });
-            let connectivity = id_bytes(polylines.iter().flatten().map(|&id| u64::from(id)), wide);
+            let connectivity = id_bytes(cells.iter().flatten().map(|&id| u64::from(id)), wide);
             (connectivity.into(), id_bytes(ends, wide))
         }
     }

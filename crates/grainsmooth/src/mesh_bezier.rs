@@ -1,0 +1,247 @@
+//! Control points of Bezier curves and surfaces from a file, and the curves and surfaces as points and cells.
+
+use std::path::Path;
+
+use glam::DVec3;
+use serde::Deserialize;
+use subzero::{BezierCurve, BezierSurface, MeshError};
+
+use crate::Error;
+use crate::mesh_file::MeshFileProblem;
+
+/// Curves and surfaces as a file gives them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct BezierFile {
+    /// Curves of any degree.
+    pub curves: Vec<BezierCurve<DVec3>>,
+    /// Tensor-product surfaces, such as bicubic patches.
+    pub surfaces: Vec<BezierSurface<DVec3>>,
+    /// The control points of each surface, as rows along u.
+    pub surface_control: Vec<Vec<Vec<DVec3>>>,
+}
+
+/// Reads control points: from JSON where the extension is .json, else from plain text.
+///
+/// JSON has `curves` (each a list of points, or an object with `control`), `surfaces` or `surface` (lists of rows of
+/// points, or objects with `control`), or one `control`. Plain text has one point per line, x y z; a blank line ends a
+/// curve. A line with two numbers `m n` begins a surface of these degrees, with (m + 1)(n + 1) points after it; that
+/// is the format of the Utah teapot's files, whose first line is the number of patches.
+///
+/// # Errors
+/// [`Error::MeshFile`] names the line, or the curve or surface that lacks points.
+pub fn read_bezier(path: &Path) -> Result<BezierFile, Error> {
+    let read = || {
+        let bytes = std::fs::read(path).map_err(MeshFileProblem::Unreadable)?;
+        let is_json = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
+        let file = if is_json { from_json(&bytes)? } else { from_text(&String::from_utf8_lossy(&bytes))? };
+        if file.curves.is_empty() && file.surfaces.is_empty() {
+            return Err(MeshError::NoControlPoints.into());
+        }
+        Ok(file)
+    };
+    read().map_err(|problem| Error::MeshFile { path: path.to_owned(), problem })
+}
+
+impl BezierFile {
+    fn add_curve(&mut self, control: Vec<DVec3>) -> Result<(), MeshError> {
+        subzero::check_finite(&control)?;
+        self.curves.push(BezierCurve::new(control)?);
+        Ok(())
+    }
+
+    fn add_surface(&mut self, control: Vec<Vec<DVec3>>) -> Result<(), MeshError> {
+        control.iter().try_for_each(|row| subzero::check_finite(row))?;
+        self.surfaces.push(BezierSurface::new(control.clone())?);
+        self.surface_control.push(control);
+        Ok(())
+    }
+
+    /// Each curve as a polyline through `samples` points at even steps of the parameter.
+    ///
+    /// # Errors
+    /// [`MeshError::TooLarge`] if there are more points than 32-bit ids can count.
+    pub fn polylines(&self, samples: u32) -> Result<(Vec<DVec3>, Vec<Vec<u32>>), MeshError> {
+        let mut points = Vec::new();
+        let mut polylines = Vec::new();
+        for curve in &self.curves {
+            let first = first_id(points.len(), samples as usize)?;
+            points.extend(curve.sample(samples - 1));
+            polylines.push((first..first + samples).collect());
+        }
+        Ok((points, polylines))
+    }
+
+    /// Each surface as triangles over `samples` x `samples` points, with the unit normals of the points; zero where a surface
+    /// has none.
+    ///
+    /// # Errors
+    /// [`MeshError::TooLarge`] if there are more points than 32-bit ids can count.
+    #[expect(clippy::type_complexity, reason = "points, normals and triangles, used in one place")]
+    pub fn triangles(&self, samples: u32) -> Result<(Vec<DVec3>, Vec<DVec3>, Vec<[u32; 3]>), MeshError> {
+        let (mut points, mut normals, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
+        for surface in &self.surfaces {
+            let first = first_id(points.len(), (samples as usize).saturating_mul(samples as usize))?;
+            let (more_points, more_triangles) = surface.tessellate(samples - 1, samples - 1)?;
+            points.extend(more_points);
+            normals.extend(grid(samples).map(|[u, v]| surface.normal(u, v).unwrap_or_default()));
+            triangles.extend(more_triangles.iter().map(|corners| corners.map(|id| first + id)));
+        }
+        Ok((points, normals, triangles))
+    }
+}
+
+/// The parameters of a surface's points, v running fastest.
+pub(crate) fn grid(samples: u32) -> impl Iterator<Item = [f64; 2]> {
+    (0..samples).flat_map(move |i| (0..samples).map(move |j| [step(i, samples), step(j, samples)]))
+}
+
+/// The parameter of a curve's point.
+pub(crate) fn step(i: u32, samples: u32) -> f64 {
+    f64::from(i) / f64::from(samples - 1)
+}
+
+/// The id of the first of some points more.
+fn first_id(points: usize, more: usize) -> Result<u32, MeshError> {
+    let too_large = |count| MeshError::TooLarge { what: "points", count };
+    let count = points.saturating_add(more);
+    u32::try_from(count).map_err(|_| too_large(count))?;
+    u32::try_from(points).map_err(|_| too_large(points))
+}
+
+type Point = [f64; 3];
+
+#[derive(Deserialize)]
+struct JsonFile {
+    #[serde(default)]
+    curves: Vec<Control<Vec<Point>>>,
+    #[serde(default, alias = "patches")]
+    surfaces: Vec<Control<Vec<Vec<Point>>>>,
+    #[serde(default)]
+    surface: Option<Control<Vec<Vec<Point>>>>,
+    #[serde(default)]
+    control: Option<CurveOrSurface>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "control points are [x, y, z] in lists, a list of lists for a surface")]
+enum Control<T> {
+    Named { control: T },
+    Bare(T),
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "control points are [x, y, z] in a list, or in a list of lists for a surface")]
+enum CurveOrSurface {
+    Curve(Vec<Point>),
+    Surface(Vec<Vec<Point>>),
+}
+
+impl<T> Control<T> {
+    fn points(self) -> T {
+        match self {
+            Self::Named { control } | Self::Bare(control) => control,
+        }
+    }
+}
+
+fn from_json(bytes: &[u8]) -> Result<BezierFile, MeshFileProblem> {
+    let mut json: JsonFile = serde_json::from_slice(bytes)
+        .map_err(|error| MeshFileProblem::Line { line: error.line(), what: error.to_string() })?;
+    match json.control {
+        Some(CurveOrSurface::Curve(points)) => json.curves.push(Control::Bare(points)),
+        Some(CurveOrSurface::Surface(rows)) => json.surfaces.push(Control::Bare(rows)),
+        None => {}
+    }
+    let points = |row: Vec<Point>| row.into_iter().map(DVec3::from_array).collect();
+    let mut file = BezierFile::default();
+    for curve in json.curves {
+        file.add_curve(points(curve.points()))?;
+    }
+    for surface in json.surfaces.into_iter().chain(json.surface) {
+        file.add_surface(surface.points().into_iter().map(points).collect())?;
+    }
+    Ok(file)
+}
+
+fn from_text(text: &str) -> Result<BezierFile, MeshFileProblem> {
+    let mut file = BezierFile::default();
+    let mut points = Vec::new();
+    // Points in a row, and rows, of the surface at hand.
+    let mut surface: Option<[usize; 2]> = None;
+    for (index, line) in text.lines().chain([""]).enumerate() {
+        let problem = |what: String| MeshFileProblem::Line { line: index + 1, what };
+        let words: Vec<&str> = line
+            .split('#')
+            .next()
+            .unwrap_or_default()
+            .split([' ', '\t', ',', '\r'])
+            .filter(|w| !w.is_empty())
+            .collect();
+        let number = |word: &str| -> Result<f64, _> {
+            let number = word.parse().ok().filter(|number: &f64| number.is_finite());
+            number.ok_or_else(|| problem(format!("'{word}' is not a finite number")))
+        };
+        match words[..] {
+            [x, y, z] => points.push(DVec3::new(number(x)?, number(y)?, number(z)?)),
+            // The teapot's files begin with their number of patches.
+            [_] if file == BezierFile::default() && points.is_empty() && surface.is_none() => {}
+            [rows, columns] if points.is_empty() => {
+                let degree = |word: &str| {
+                    let degree = word.parse().ok().filter(|degree: &u8| *degree > 0);
+                    degree
+                        .ok_or_else(|| problem(format!("'{word}' is not the degree of a surface, 1 to 255")))
+                };
+                surface = Some([usize::from(degree(rows)?) + 1, usize::from(degree(columns)?) + 1]);
+            }
+            [] if surface.is_none() && !points.is_empty() => file.add_curve(std::mem::take(&mut points))?,
+            [] => {}
+            _ => {
+                return Err(problem("not a control point x y z, nor the degrees m n of a surface".to_owned()));
+            }
+        }
+        if let Some([rows, columns]) = surface
+            && points.len() == rows * columns
+        {
+            file.add_surface(points.chunks(columns).map(<[DVec3]>::to_vec).collect())?;
+            points.clear();
+            surface = None;
+        }
+    }
+    match surface {
+        Some([rows, columns]) => {
+            let what = format!("the last surface has {} of {} points", points.len(), rows * columns);
+            Err(MeshFileProblem::Corrupt { format: "control point", what })
+        }
+        None => Ok(file),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plain_text_has_curves_and_patches() {
+        let file = from_text("0 0 0\n1, 2, 0 # end\n\n0 0 1\n1 1 1\n2 0 1\n").unwrap();
+        assert_eq!(file.curves.iter().map(BezierCurve::degree).collect::<Vec<_>>(), [1, 2]);
+        let patch = "1 2\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n";
+        let file = from_text(&format!("2\n{patch}{patch}")).unwrap();
+        assert_eq!((file.surfaces.len(), file.surface_control[0].len()), (2, 2));
+        assert_eq!(file.surfaces[0].point(0.5, 0.5), DVec3::new(0.5, 1.0, 0.0));
+    }
+
+    #[test]
+    fn messages_name_the_place() {
+        for (text, message) in [
+            ("0 0 0\n0 0 x\n", "line 2: 'x' is not a finite number"),
+            ("0 0 0\n0 0 0 0\n", "line 2: not a control point x y z, nor the degrees m n of a surface"),
+            ("3 0\n", "line 1: '0' is not the degree of a surface, 1 to 255"),
+            ("1 1\n0 0 0\n", "the last surface has 1 of 4 points; give a complete control point file"),
+        ] {
+            assert_eq!(from_text(text).unwrap_err().to_string(), message);
+        }
+        let ragged = r#"{"surface": [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0]]]}"#;
+        let error = from_json(ragged.as_bytes()).unwrap_err().to_string();
+        assert_eq!(error, "row 1 of the control points has 1 points, but the first row has 2");
+    }
+}

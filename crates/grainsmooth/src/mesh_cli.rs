@@ -1,0 +1,277 @@
+//! The command line of `grainsmooth mesh`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+use grainsmooth::mesh_file::MeshFormat;
+use grainsmooth::{EdgeEdit, Scheme};
+use subzero::{BoundaryRule, Crease, DooSabinWeights, INFINITE_SHARPNESS, LoopWeights};
+
+/// Subdivide and edit meshes: OBJ, PLY, STL, OFF, VTK or JSON in; VTK, OBJ, PLY, STL or JSON out.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct MeshArguments {
+    #[command(subcommand)]
+    pub command: MeshCommand,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  grainsmooth mesh loop cube.obj -n 3 -o smooth.vtp --crease 0-1,1-2:2.5 --corners 7
+  grainsmooth mesh catmull-clark cage.ply -n 2 -o out.vtp --each-level    out_0.vtp, out_1.vtp, out_2.vtp
+  grainsmooth mesh loop tetrahedron.off --json -o levels.json             all levels, parents and limits
+  grainsmooth mesh collapse part.stl --edge 4-9 -o part.obj
+
+Vertices and faces count from 0, in the order of the file.";
+
+#[derive(Debug, Subcommand)]
+pub enum MeshCommand {
+    /// Loop's scheme on triangles
+    Loop(LoopArguments),
+    /// The butterfly scheme on triangles, which keeps the points
+    Butterfly(SchemeArguments),
+    /// The modified butterfly scheme, smooth at irregular points too
+    ModifiedButterfly(SchemeArguments),
+    /// Four triangles of one, cut at the midpoints of the edges
+    Midpoint(SchemeArguments),
+    /// Doo and Sabin's scheme on polygons
+    DooSabin(DooSabinArguments),
+    /// Catmull and Clark's scheme on polygons, with creases
+    CatmullClark(SchemeArguments),
+    /// Points on the limit surface, with its normals there
+    Limit(LimitArguments),
+    /// Normals at the points: means of those of the triangles, weighted by area
+    Normals(FileArguments),
+    /// Turn edges within the quadrilaterals of their two triangles
+    Flip(EditArguments),
+    /// Put points on the middles of edges
+    Split(EditArguments),
+    /// Draw the first point of an edge into the second
+    Collapse(EditArguments),
+    /// Points on Bezier curves and surfaces, given by control points in JSON or plain text
+    Bezier(BezierArguments),
+}
+
+#[derive(Debug, Args)]
+pub struct FileArguments {
+    /// File to read; its extension names the format
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+
+    /// File to write; its extension names the format: .vtp, .vtu, .vtk, .obj, .ply, .stl or .json
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+
+    /// Write JSON, whatever the extension: levels with their parents, and limits
+    #[arg(long)]
+    pub json: bool,
+
+    /// Say nothing unless something is wrong
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct FeatureArguments {
+    /// Points that stay where they are
+    #[arg(long, value_name = "V,...", value_delimiter = ',')]
+    pub corners: Vec<u32>,
+
+    /// Sharp edges; with a sharpness they smooth out after so many levels
+    #[arg(long = "crease", value_name = "A-B[:SHARPNESS],...", value_delimiter = ',', value_parser = parse_crease)]
+    pub creases: Vec<Crease>,
+
+    /// Boundary points of a single face: on the boundary's curve (edge) or fixed (edge-corner) [default: edge]
+    #[arg(long, value_enum)]
+    pub boundary: Option<Boundary>,
+}
+
+#[derive(Debug, Args)]
+pub struct SchemeArguments {
+    #[command(flatten)]
+    pub files: FileArguments,
+
+    #[command(flatten)]
+    pub features: FeatureArguments,
+
+    /// Number of subdivisions
+    #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = 1)]
+    pub levels: u32,
+
+    /// Write one file a level: OUT_0, OUT_1, ...
+    #[arg(long, conflicts_with = "json")]
+    pub each_level: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct LoopArguments {
+    #[command(flatten)]
+    pub scheme: SchemeArguments,
+
+    /// How strongly a point is drawn to its neighbours
+    #[arg(long, value_enum, default_value_t = Weights::Loop)]
+    pub weights: Weights,
+}
+
+#[derive(Debug, Args)]
+pub struct DooSabinArguments {
+    #[command(flatten)]
+    pub scheme: SchemeArguments,
+
+    /// Doo and Sabin's weights, or means of centroid, corner and midpoints
+    #[arg(long, value_enum, default_value_t = PolygonWeights::DooSabin)]
+    pub weights: PolygonWeights,
+}
+
+#[derive(Debug, Args)]
+pub struct LimitArguments {
+    #[command(flatten)]
+    pub files: FileArguments,
+
+    #[command(flatten)]
+    pub features: FeatureArguments,
+
+    /// Number of subdivisions before
+    #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = 0)]
+    pub levels: u32,
+
+    /// The scheme whose limit is wanted
+    #[arg(long, value_enum, default_value_t = LimitScheme::Loop)]
+    pub scheme: LimitScheme,
+
+    /// Weights of Loop's scheme
+    #[arg(long, value_enum, default_value_t = Weights::Loop)]
+    pub weights: Weights,
+}
+
+#[derive(Debug, Args)]
+pub struct EditArguments {
+    #[command(flatten)]
+    pub files: FileArguments,
+
+    /// Edges to edit, one after the other
+    #[arg(long = "edge", value_name = "A-B,...", value_delimiter = ',', required = true, value_parser = parse_edge)]
+    pub edges: Vec<[u32; 2]>,
+}
+
+#[derive(Debug, Args)]
+pub struct BezierArguments {
+    #[command(flatten)]
+    pub files: FileArguments,
+
+    /// Points on each curve, and along each side of a surface
+    #[arg(long, value_name = "N", default_value_t = 33, value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    pub samples: u32,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Boundary {
+    Edge,
+    EdgeCorner,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Weights {
+    /// Loop 1987
+    Loop,
+    /// Warren 1995
+    Warren,
+    /// Loop's, and those of Biermann, Levin and Zorin 2000 at creases
+    BiermannLevinZorin,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum PolygonWeights {
+    DooSabin,
+    Means,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum LimitScheme {
+    Loop,
+    CatmullClark,
+}
+
+impl From<Boundary> for BoundaryRule {
+    fn from(boundary: Boundary) -> Self {
+        match boundary {
+            Boundary::Edge => Self::Edge,
+            Boundary::EdgeCorner => Self::EdgeCorner,
+        }
+    }
+}
+
+impl From<Weights> for LoopWeights {
+    fn from(weights: Weights) -> Self {
+        match weights {
+            Weights::Loop => Self::Loop,
+            Weights::Warren => Self::Warren,
+            Weights::BiermannLevinZorin => Self::BiermannLevinZorin,
+        }
+    }
+}
+
+/// What a subcommand asks for, subcommands of a kind together.
+pub enum Task<'a> {
+    Subdivide(Scheme, &'a SchemeArguments),
+    Limit(Scheme, &'a LimitArguments),
+    Normals,
+    Edit(EdgeEdit, &'a [[u32; 2]]),
+    Bezier { samples: u32 },
+}
+
+impl MeshCommand {
+    /// The files, and what to do.
+    pub fn task(&self) -> (&FileArguments, Task<'_>) {
+        let (scheme, arguments) = match self {
+            Self::Loop(arguments) => (Scheme::Loop(arguments.weights.into()), &arguments.scheme),
+            Self::Butterfly(arguments) => (Scheme::Butterfly, arguments),
+            Self::ModifiedButterfly(arguments) => (Scheme::ModifiedButterfly, arguments),
+            Self::Midpoint(arguments) => (Scheme::Midpoint, arguments),
+            Self::DooSabin(arguments) => {
+                let weights = match arguments.weights {
+                    PolygonWeights::DooSabin => DooSabinWeights::DooSabin,
+                    PolygonWeights::Means => DooSabinWeights::Means,
+                };
+                (Scheme::DooSabin(weights), &arguments.scheme)
+            }
+            Self::CatmullClark(arguments) => (Scheme::CatmullClark, arguments),
+            Self::Limit(arguments) => {
+                let scheme = match arguments.scheme {
+                    LimitScheme::Loop => Scheme::Loop(arguments.weights.into()),
+                    LimitScheme::CatmullClark => Scheme::CatmullClark,
+                };
+                return (&arguments.files, Task::Limit(scheme, arguments));
+            }
+            Self::Normals(files) => return (files, Task::Normals),
+            Self::Flip(edit) => return (&edit.files, Task::Edit(EdgeEdit::Flip, &edit.edges)),
+            Self::Split(edit) => return (&edit.files, Task::Edit(EdgeEdit::Split, &edit.edges)),
+            Self::Collapse(edit) => return (&edit.files, Task::Edit(EdgeEdit::Collapse, &edit.edges)),
+            Self::Bezier(bezier) => return (&bezier.files, Task::Bezier { samples: bezier.samples }),
+        };
+        (&arguments.files, Task::Subdivide(scheme, arguments))
+    }
+}
+
+impl FileArguments {
+    /// The format to write, if the extension names one.
+    pub fn format(&self) -> Option<MeshFormat> {
+        if self.json { Some(MeshFormat::Json) } else { MeshFormat::of_path(&self.output) }
+    }
+}
+
+fn parse_edge(text: &str) -> Result<[u32; 2], String> {
+    let ends = text.split_once('-').and_then(|(a, b)| Some([a.trim().parse().ok()?, b.trim().parse().ok()?]));
+    ends.ok_or_else(|| "an edge is two points, such as 4-9".to_owned())
+}
+
+fn parse_crease(text: &str) -> Result<Crease, String> {
+    let (ends, sharpness) = match text.split_once(':') {
+        None => (text, Some(INFINITE_SHARPNESS)),
+        Some((ends, sharpness)) => (ends, sharpness.parse().ok().filter(|s: &f32| *s >= 0.0)),
+    };
+    match (parse_edge(ends), sharpness) {
+        (Ok(ends), Some(sharpness)) => Ok(Crease { ends, sharpness }),
+        _ => Err("a crease is an edge and perhaps a sharpness from 0, such as 4-9 or 4-9:2.5".to_owned()),
+    }
+}

@@ -1,0 +1,46 @@
+//! Edge flips, splits and collapses on a mesh from a file.
+
+use glam::DVec3;
+use subzero::{HalfEdgeMesh, MeshError};
+
+use crate::mesh_file::{MeshFile, MeshFileProblem};
+
+/// A change at an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EdgeEdit {
+    /// Turns the edge within the quadrilateral of its two triangles.
+    Flip,
+    /// Puts a vertex on the middle of the edge.
+    Split,
+    /// Draws the edge's first vertex into its second.
+    Collapse,
+}
+
+/// Edits edges, given by their ends, one after the other; returns the points and triangles then.
+///
+/// Points keep their ids: a split appends points, a collapse leaves a point that no triangle uses.
+///
+/// # Errors
+/// [`MeshFileProblem::NotATriangle`]; [`MeshFileProblem::Mesh`] when the mesh is not manifold, or has no such edge
+/// by the time of its edit, or the edit would leave no manifold mesh.
+pub fn edit_edges(
+    mesh: &MeshFile,
+    edit: EdgeEdit,
+    edges: &[[u32; 2]],
+) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), MeshFileProblem> {
+    let mut points = mesh.points.clone();
+    let mut half_edges = HalfEdgeMesh::new(points.len(), &mesh.triangles()?)?;
+    for &[a, b] in edges {
+        match edit {
+            EdgeEdit::Flip => half_edges.flip(half_edges.half_edge_between(a, b)?)?,
+            EdgeEdit::Split => half_edges.split_edges(&[[a, b]], &mut points).map(drop)?,
+            EdgeEdit::Collapse => collapse(&mut half_edges, &points, [a, b])?,
+        }
+    }
+    Ok((points, half_edges.triangles().map(|(_, triangle)| triangle).collect()))
+}
+
+fn collapse(mesh: &mut HalfEdgeMesh, _points: &[DVec3], [a, b]: [u32; 2]) -> Result<(), MeshError> {
+    let half_edge = mesh.half_edge_between(a, b)?;
+    mesh.collapse(half_edge)
+}

@@ -1,0 +1,127 @@
+//! Meshes from files and into files: OBJ, PLY, STL, OFF, VTK, and JSON as in the references of subdivision.
+
+use std::path::Path;
+
+use glam::DVec3;
+use subzero::{BoundaryRule, Crease, Features, INFINITE_SHARPNESS, PolygonMesh, TriangleMesh};
+
+use crate::Error;
+
+mod json;
+mod lines;
+mod obj;
+mod off;
+mod ply;
+mod problem;
+mod stl;
+mod vtk;
+mod write;
+
+pub use problem::MeshFileProblem;
+pub use vtk::READER_THREAD;
+pub use write::{MeshFormat, MeshToWrite, write_mesh};
+
+/// A mesh as a file holds it: points, faces, and what a JSON file says about creases and corners.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct MeshFile {
+    /// Coordinates of each point.
+    pub points: Vec<DVec3>,
+    /// The points of each face, by position in `points`.
+    pub faces: Vec<Vec<u32>>,
+    /// Sharp edges.
+    pub creases: Vec<Crease>,
+    /// Points that stay where they are until their sharpness has run out.
+    pub corners: Vec<(u32, f32)>,
+    /// The rule for boundary vertices of a single face.
+    pub boundary: BoundaryRule,
+    /// For formats without shared points: the number of corners that were welded, by exactly equal coordinates.
+    pub welded_corners: Option<usize>,
+}
+
+/// Reads a mesh; the extension names the format: .obj, .ply, .stl, .off, .vtk, .vtp, .vtu or .json.
+///
+/// Polygons are kept as they are. Lines, single points, colours, texture and any other data are passed over.
+///
+/// # Errors
+/// [`Error::MeshFile`] when the file cannot be read, is truncated or corrupt, has no faces, a face with less than three
+/// corners or with points that do not exist, or a coordinate that is not finite.
+pub fn read_mesh(path: &Path) -> Result<MeshFile, Error> {
+    read(path).map_err(|problem| Error::MeshFile { path: path.to_owned(), problem })
+}
+
+fn read(path: &Path) -> Result<MeshFile, MeshFileProblem> {
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    let read_bytes = match extension.to_str() {
+        Some("obj") => obj::read,
+        Some("off") => off::read,
+        Some("ply") => ply::read,
+        Some("stl") => stl::read,
+        Some("vtk") => vtk::read_legacy,
+        Some("vtp" | "vtu") => vtk::read_xml,
+        Some("json") => json::read,
+        _ => return Err(MeshFileProblem::UnknownExtension),
+    };
+    let bytes = std::fs::read(path).map_err(MeshFileProblem::Unreadable)?;
+    let mesh = read_bytes(&bytes)?;
+    mesh.check()?;
+    Ok(mesh)
+}
+
+impl MeshFile {
+    /// What any mesh must have; how faces fit together is for the scheme to judge.
+    fn check(&self) -> Result<(), MeshFileProblem> {
+        subzero::check_finite(&self.points)?;
+        for (face, corners) in self.faces.iter().enumerate() {
+            if corners.len() < 3 {
+                return Err(subzero::MeshError::TooFewCorners { face, corners: corners.len() }.into());
+            }
+            let vertex_count = self.points.len();
+            if let Some(&vertex) = corners.iter().find(|&&vertex| vertex as usize >= vertex_count) {
+                let (what, index) = ("face", face);
+                return Err(subzero::MeshError::VertexOutOfRange { what, index, vertex, vertex_count }.into());
+            }
+        }
+        if self.faces.is_empty() { Err(MeshFileProblem::NoFaces) } else { Ok(()) }
+    }
+
+    /// The faces, if all are triangles.
+    ///
+    /// # Errors
+    /// [`MeshFileProblem::NotATriangle`] names the first face with more corners.
+    pub fn triangles(&self) -> Result<Vec<[u32; 3]>, MeshFileProblem> {
+        let triangle = |(face, corners): (usize, &Vec<u32>)| {
+            <[u32; 3]>::try_from(corners.as_slice())
+                .map_err(|_| MeshFileProblem::NotATriangle { face, corners: corners.len() })
+        };
+        self.faces.iter().enumerate().map(triangle).collect()
+    }
+
+    /// Connectivity for the triangle schemes, with the creases and corners.
+    ///
+    /// # Errors
+    /// [`MeshFileProblem::NotATriangle`], or [`MeshFileProblem::Mesh`] as of [`TriangleMesh::new`].
+    pub fn triangle_mesh(&self) -> Result<TriangleMesh, MeshFileProblem> {
+        let triangles = self.triangles()?;
+        Ok(self.with_features(|features| TriangleMesh::new(self.points.len(), triangles, features))?)
+    }
+
+    /// Connectivity for the polygon schemes, with the creases and corners.
+    ///
+    /// # Errors
+    /// [`MeshFileProblem::Mesh`] as of [`PolygonMesh::new`].
+    pub fn polygon_mesh(&self) -> Result<PolygonMesh, MeshFileProblem> {
+        Ok(self.with_features(|features| PolygonMesh::new(self.points.len(), &self.faces, features))?)
+    }
+
+    fn with_features<T>(&self, make: impl FnOnce(&Features<'_>) -> T) -> T {
+        let is_hard = |corner: &&(u32, f32)| corner.1 >= INFINITE_SHARPNESS;
+        let corners: Vec<u32> = self.corners.iter().filter(is_hard).map(|corner| corner.0).collect();
+        let soft: Vec<(u32, f32)> = self.corners.iter().filter(|corner| !is_hard(corner)).copied().collect();
+        make(&Features {
+            creases: &self.creases,
+            corners: &corners,
+            soft_corners: &soft,
+            boundary: self.boundary,
+        })
+    }
+}

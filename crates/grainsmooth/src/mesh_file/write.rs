@@ -1,0 +1,183 @@
+//! Meshes into files.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use glam::DVec3;
+
+use crate::vtk::{Array, Cells, FieldEntry, FieldValue, PolyData, Values, write_vtk};
+use crate::{Error, Output, OutputFormat};
+
+/// A file format that meshes are written in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeshFormat {
+    /// One of VTK's.
+    Vtk(OutputFormat),
+    /// Wavefront OBJ.
+    Obj,
+    /// Binary PLY.
+    Ply,
+    /// Binary STL: single precision, and polygons cut into triangles.
+    Stl,
+    /// JSON with the keys of the reference files of subdivision.
+    Json,
+}
+
+impl MeshFormat {
+    /// The format that the path's extension names, in upper or lower case.
+    pub fn of_path(path: &Path) -> Option<Self> {
+        match path.extension()?.to_ascii_lowercase().to_str()? {
+            "obj" => Some(Self::Obj),
+            "ply" => Some(Self::Ply),
+            "stl" => Some(Self::Stl),
+            "json" => Some(Self::Json),
+            _ => OutputFormat::of_path(path).map(Self::Vtk),
+        }
+    }
+}
+
+/// A mesh and what is known about it: the content of a file.
+#[derive(Debug, Clone, Copy)]
+pub struct MeshToWrite<'a> {
+    /// Coordinates of each point.
+    pub points: &'a [DVec3],
+    /// Faces or polylines, by position in `points`.
+    pub cells: Cells<'a>,
+    /// A unit vector for each point; zero where there is none. STL does not hold them.
+    pub normals: Option<&'a [DVec3]>,
+    /// For each point the level at which it was born. Only VTK files hold it.
+    pub generations: Option<&'a [i8]>,
+    /// The command line that made the mesh. Only VTK files hold it.
+    pub command_line: &'a str,
+}
+
+/// Writes a mesh in any format but JSON.
+///
+/// # Errors
+/// [`Error::WriteOutput`]; nothing is left behind then. Polylines have no place in PLY and STL.
+pub fn write_mesh(mesh: &MeshToWrite<'_>, output: &Output<MeshFormat>) -> Result<(), Error> {
+    output.write(|out| match output.format() {
+        MeshFormat::Vtk(format) => write_vtk(&poly_data(mesh), format, out),
+        MeshFormat::Obj => write_obj(mesh, out),
+        MeshFormat::Ply => write_ply(mesh, out),
+        MeshFormat::Stl => write_stl(mesh, out),
+        MeshFormat::Json => Err(io::Error::other("JSON is written level by level")),
+    })
+}
+
+fn poly_data<'a>(mesh: &MeshToWrite<'a>) -> PolyData<'a> {
+    let normals = mesh.normals.map(|normals| Array { name: "Normals", values: Values::Vectors(normals) });
+    let generations = mesh.generations.map(|g| Array { name: "Generation", values: Values::Int8(g) });
+    let text = |name, value: String| FieldEntry { name, value: FieldValue::Text(value) };
+    PolyData {
+        points: mesh.points,
+        cells: mesh.cells,
+        point_arrays: normals.into_iter().chain(generations).collect(),
+        cell_arrays: Vec::new(),
+        field: vec![
+            text("Version", format!("grainsmooth {}", env!("CARGO_PKG_VERSION"))),
+            text("CommandLine", mesh.command_line.to_owned()),
+        ],
+    }
+}
+
+/// Calls `visit` with the points of each cell.
+fn for_each_cell(cells: Cells<'_>, mut visit: impl FnMut(&[u32]) -> io::Result<()>) -> io::Result<()> {
+    match cells {
+        Cells::Triangles(triangles) => triangles.iter().try_for_each(|cell| visit(cell)),
+        Cells::Polygons(cells) | Cells::Polylines(cells) => cells.iter().try_for_each(|cell| visit(cell)),
+    }
+}
+
+/// Coordinates in the fewest digits that give the same number back.
+fn write_obj(mesh: &MeshToWrite<'_>, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "# grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
+    for DVec3 { x, y, z } in mesh.points {
+        writeln!(out, "v {x:?} {y:?} {z:?}")?;
+    }
+    for DVec3 { x, y, z } in mesh.normals.into_iter().flatten() {
+        writeln!(out, "vn {x:?} {y:?} {z:?}")?;
+    }
+    let keyword = if matches!(mesh.cells, Cells::Polylines(_)) { "l" } else { "f" };
+    for_each_cell(mesh.cells, |cell| {
+        write!(out, "{keyword}")?;
+        for id in cell.iter().map(|&id| u64::from(id) + 1) {
+            match mesh.normals {
+                Some(_) if keyword == "f" => write!(out, " {id}//{id}")?,
+                _ => write!(out, " {id}")?,
+            }
+        }
+        writeln!(out)
+    })
+}
+
+fn write_ply(mesh: &MeshToWrite<'_>, out: &mut dyn Write) -> io::Result<()> {
+    refuse_polylines(mesh.cells, "PLY")?;
+    writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
+    writeln!(out, "element vertex {}", mesh.points.len())?;
+    let axes: &[&str] =
+        if mesh.normals.is_some() { &["x", "y", "z", "nx", "ny", "nz"] } else { &["x", "y", "z"] };
+    for axis in axes {
+        writeln!(out, "property double {axis}")?;
+    }
+    // Many readers know no longer list than that of one byte; it is enough for most.
+    let mut largest = 0;
+    for_each_cell(mesh.cells, |cell| {
+        largest = largest.max(cell.len());
+        Ok(())
+    })?;
+    let count_type = if largest <= usize::from(u8::MAX) { "uchar" } else { "uint" };
+    writeln!(
+        out,
+        "element face {}\nproperty list {count_type} uint vertex_indices\nend_header",
+        mesh.cells.len()
+    )?;
+    for (index, point) in mesh.points.iter().enumerate() {
+        let normal = mesh.normals.map(|normals| normals[index]);
+        for vector in [Some(*point), normal].into_iter().flatten() {
+            for coordinate in vector.to_array() {
+                out.write_all(&coordinate.to_le_bytes())?;
+            }
+        }
+    }
+    for_each_cell(mesh.cells, |cell| {
+        let count = u32::try_from(cell.len()).map_err(io::Error::other)?.to_le_bytes();
+        out.write_all(if count_type == "uchar" { &count[..1] } else { &count })?;
+        cell.iter().try_for_each(|id| out.write_all(&id.to_le_bytes()))
+    })
+}
+
+fn write_stl(mesh: &MeshToWrite<'_>, out: &mut dyn Write) -> io::Result<()> {
+    refuse_polylines(mesh.cells, "STL")?;
+    let mut triangles = Vec::new();
+    let mut outside = None;
+    for_each_cell(mesh.cells, |cell| {
+        // A polygon as a fan around its first corner.
+        for pair in cell[1..].windows(2) {
+            let corners = [cell[0], pair[0], pair[1]].map(|id| mesh.points[id as usize]);
+            outside = outside.or(corners.into_iter().find(|point| !point.as_vec3().is_finite()));
+            let [a, b, c] = corners;
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            triangles.push(stl_io::Triangle {
+                normal: stl_io::Normal::new(normal.as_vec3().to_array()),
+                vertices: corners.map(|point| stl_io::Vertex::new(point.as_vec3().to_array())),
+            });
+        }
+        Ok(())
+    })?;
+    if let Some(point) = outside {
+        return Err(io::Error::other(format!("{point} is too far out for STL's single precision")));
+    }
+    u32::try_from(triangles.len()).map_err(|_| io::Error::other("more triangles than STL can count"))?;
+    stl_io::write_stl(&mut &mut *out, triangles.iter())
+}
+
+fn refuse_polylines(cells: Cells<'_>, format: &str) -> io::Result<()> {
+    match cells {
+        Cells::Polylines(_) => {
+            let message = format!("{format} holds no curves; write .vtp, .obj or .json instead");
+            Err(io::Error::new(io::ErrorKind::InvalidInput, message))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,260 @@
+//! `grainsmooth mesh`: reads a mesh, runs what the command line asks for, writes and reports.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use clap::CommandFactory;
+use clap::error::ErrorKind;
+use glam::DVec3;
+use grainsmooth::mesh_file::{MeshFile, MeshFileProblem, MeshFormat, MeshToWrite, read_mesh, write_mesh};
+use grainsmooth::vtk::Cells;
+use grainsmooth::{
+    Connectivity, Error, Level, Output, Scheme, bezier_json, edit_edges, levels_json, limits, mesh_json,
+    read_bezier, subdivide,
+};
+use subzero::{HalfEdgeMesh, MeshError};
+
+use crate::cli::Arguments;
+use crate::mesh_cli::{FeatureArguments, FileArguments, LimitArguments, MeshCommand, SchemeArguments, Task};
+use crate::say;
+
+/// Runs a subcommand.
+///
+/// Ends the program with exit status 2 where the output's extension names no format.
+pub fn run(command: &MeshCommand) -> Result<(), Error> {
+    let (files, task) = command.task();
+    let Some(format) = files.format() else {
+        let message = format!(
+            "{}: unknown extension; name the file *.vtp, *.vtu, *.vtk, *.obj, *.ply, *.stl or *.json",
+            files.output.display()
+        );
+        Arguments::command().error(ErrorKind::ValueValidation, message).exit()
+    };
+    let job = Job { files, format, command_line: command_line() };
+    match task {
+        Task::Subdivide(scheme, arguments) => job.subdivide(scheme, arguments),
+        Task::Limit(scheme, arguments) => job.limit(scheme, arguments),
+        Task::Normals => job.normals(),
+        Task::Edit(edit, edges) => {
+            let output = job.output(&files.output)?;
+            let mesh = job.read()?;
+            let (points, triangles) = edit_edges(&mesh, edit, edges).map_err(|error| job.located(error))?;
+            job.report(format_args!("edited      {} edges", edges.len()));
+            job.write_single(&output, &points, &triangles, None)
+        }
+        Task::Bezier { samples } => job.bezier(samples),
+    }
+}
+
+/// The files of a run.
+struct Job<'a> {
+    files: &'a FileArguments,
+    format: MeshFormat,
+    command_line: String,
+}
+
+impl Job<'_> {
+    fn subdivide(&self, scheme: Scheme, arguments: &SchemeArguments) -> Result<(), Error> {
+        // Outputs that cannot be written are found before the work.
+        let last = arguments.levels;
+        let outputs = if arguments.each_level {
+            (0..=last).map(|level| self.output(&of_level(&self.files.output, level))).collect()
+        } else {
+            self.output(&self.files.output).map(|output| vec![output])
+        }?;
+        let mesh = self.read_with(&arguments.features)?;
+        let levels = subdivide(&mesh, &self.files.input, scheme, last)?;
+        for (index, level) in levels.iter().enumerate() {
+            let (points, faces) = (level.points.len(), level.mesh.face_count());
+            self.report(format_args!("level {index:<5} {points} points, {faces} faces"));
+        }
+        if self.format == MeshFormat::Json {
+            outputs[0].write(|out| levels_json(&mesh, scheme, &levels, out))?;
+        } else {
+            let births = births(scheme, &levels);
+            let first = if arguments.each_level { 0 } else { levels.len() - 1 };
+            for (level, output) in levels[first..].iter().zip(&outputs) {
+                let generations = births.as_ref().map(|births| &births[..level.points.len()]);
+                self.write_level(level, &level.points, None, generations, output)?;
+            }
+        }
+        self.report_written(&outputs);
+        Ok(())
+    }
+
+    fn limit(&self, scheme: Scheme, arguments: &LimitArguments) -> Result<(), Error> {
+        let output = self.output(&self.files.output)?;
+        let mesh = self.read_with(&arguments.features)?;
+        let levels = subdivide(&mesh, &self.files.input, scheme, arguments.levels)?;
+        let level = &levels[levels.len() - 1];
+        // A level without limits is an error here, where JSON of all levels leaves it out.
+        let found = limits(level, scheme).map_err(|error| self.located(error))?.unwrap_or_default();
+        let with_normal = found.normals.iter().flatten().count();
+        self.report(format_args!("limit       {} points, {with_normal} with a normal", level.points.len()));
+        if self.format == MeshFormat::Json {
+            output.write(|out| levels_json(&mesh, scheme, &levels, out))?;
+        } else {
+            let births = births(scheme, &levels);
+            let normals: Vec<DVec3> = found.normals.iter().map(|normal| normal.unwrap_or_default()).collect();
+            self.write_level(level, &found.positions, Some(&normals), births.as_deref(), &output)?;
+        }
+        self.report_written(&[output]);
+        Ok(())
+    }
+
+    fn normals(&self) -> Result<(), Error> {
+        let output = self.output(&self.files.output)?;
+        let mesh = self.read()?;
+        let find = || -> Result<_, MeshFileProblem> {
+            let triangles = mesh.triangles()?;
+            let normals = HalfEdgeMesh::new(mesh.points.len(), &triangles)?.vertex_normals(&mesh.points);
+            Ok((triangles, normals))
+        };
+        let (triangles, normals) = find().map_err(|error| self.located(error))?;
+        self.report(format_args!("normals     {} points", normals.iter().flatten().count()));
+        self.write_single(&output, &mesh.points, &triangles, Some(&normals))
+    }
+
+    fn bezier(&self, samples: u32) -> Result<(), Error> {
+        let output = self.output(&self.files.output)?;
+        let file = read_bezier(&self.files.input)?;
+        let (curves, surfaces) = (file.curves.len(), file.surfaces.len());
+        self.report(format_args!("read        {curves} curves and {surfaces} surfaces"));
+        let located = |error: MeshError| self.located(error.into());
+        if self.format == MeshFormat::Json {
+            output.write(|out| bezier_json(&file, samples, out))?;
+        } else if surfaces == 0 {
+            let (points, polylines) = file.polylines(samples).map_err(located)?;
+            write_mesh(&self.content(&points, Cells::Polylines(&polylines)), &output)?;
+        } else if curves == 0 {
+            let (points, normals, triangles) = file.triangles(samples).map_err(located)?;
+            let content = self.content(&points, Cells::Triangles(&triangles));
+            write_mesh(&MeshToWrite { normals: Some(&normals), ..content }, &output)?;
+        } else {
+            return Err(self.located(MeshFileProblem::CurvesAndSurfaces));
+        }
+        self.report_written(&[output]);
+        Ok(())
+    }
+
+    fn read(&self) -> Result<MeshFile, Error> {
+        let mesh = read_mesh(&self.files.input)?;
+        let (points, faces) = (mesh.points.len(), mesh.faces.len());
+        self.report(format_args!("read        {points} points, {faces} faces"));
+        if let Some(corners) = mesh.welded_corners {
+            self.report(format_args!(
+                "welded      {corners} corners with exactly equal coordinates to {points} points"
+            ));
+        }
+        Ok(mesh)
+    }
+
+    /// The mesh, with the creases and corners of the command line beside those of the file.
+    fn read_with(&self, features: &FeatureArguments) -> Result<MeshFile, Error> {
+        let mut mesh = self.read()?;
+        mesh.creases.extend(&features.creases);
+        mesh.corners.extend(features.corners.iter().map(|&vertex| (vertex, subzero::INFINITE_SHARPNESS)));
+        if let Some(boundary) = features.boundary {
+            mesh.boundary = boundary.into();
+        }
+        Ok(mesh)
+    }
+
+    fn write_level(
+        &self,
+        level: &Level,
+        points: &[DVec3],
+        normals: Option<&[DVec3]>,
+        generations: Option<&[i8]>,
+        output: &Output<MeshFormat>,
+    ) -> Result<(), Error> {
+        let polygons;
+        let cells = match &level.mesh {
+            Connectivity::Triangles(mesh) => Cells::Triangles(mesh.triangles()),
+            Connectivity::Polygons(_) => {
+                polygons = level.mesh.faces();
+                Cells::Polygons(&polygons)
+            }
+        };
+        write_mesh(&MeshToWrite { normals, generations, ..self.content(points, cells) }, output)
+    }
+
+    /// Writes triangles in any format.
+    fn write_single(
+        &self,
+        output: &Output<MeshFormat>,
+        points: &[DVec3],
+        triangles: &[[u32; 3]],
+        normals: Option<&[Option<DVec3>]>,
+    ) -> Result<(), Error> {
+        if self.format == MeshFormat::Json {
+            output.write(|out| mesh_json(points, triangles, normals, out))?;
+        } else {
+            let normals: Option<Vec<DVec3>> =
+                normals.map(|normals| normals.iter().map(|normal| normal.unwrap_or_default()).collect());
+            let content = self.content(points, Cells::Triangles(triangles));
+            write_mesh(&MeshToWrite { normals: normals.as_deref(), ..content }, output)?;
+        }
+        self.report_written(std::slice::from_ref(output));
+        Ok(())
+    }
+
+    fn content<'a>(&'a self, points: &'a [DVec3], cells: Cells<'a>) -> MeshToWrite<'a> {
+        let command_line = &self.command_line;
+        MeshToWrite { points, cells, normals: None, generations: None, command_line }
+    }
+
+    fn output(&self, path: &Path) -> Result<Output<MeshFormat>, Error> {
+        Output::check_as(path, self.format)
+    }
+
+    fn located(&self, problem: MeshFileProblem) -> Error {
+        Error::MeshFile { path: self.files.input.clone(), problem }
+    }
+
+    fn report_written(&self, outputs: &[Output<MeshFormat>]) {
+        for output in outputs {
+            self.report(format_args!("written     {}", output.path().display()));
+        }
+    }
+
+    fn report(&self, line: std::fmt::Arguments<'_>) {
+        if !self.files.quiet {
+            say(&line.to_string());
+        }
+    }
+}
+
+/// For each point of the last level the level at which it was born; nothing for Doo and Sabin's scheme, whose points are
+/// all new at each level.
+fn births(scheme: Scheme, levels: &[Level]) -> Option<Vec<i8>> {
+    if matches!(scheme, Scheme::DooSabin(_)) {
+        return None;
+    }
+    let mut births = Vec::new();
+    for (index, level) in levels.iter().enumerate() {
+        births.resize(level.points.len(), i8::try_from(index).unwrap_or(i8::MAX));
+    }
+    Some(births)
+}
+
+/// `out.vtp` as `out_2.vtp`.
+fn of_level(path: &Path, level: u32) -> PathBuf {
+    let mut name = OsString::from(path.file_stem().unwrap_or_default());
+    name.push(format!("_{level}"));
+    if let Some(extension) = path.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    path.with_file_name(name)
+}
+
+/// The command line as it was typed, words with blanks in quotes.
+fn command_line() -> String {
+    let quoted = |word: OsString| {
+        let word = word.to_string_lossy().into_owned();
+        if word.contains(char::is_whitespace) || word.is_empty() { format!("'{word}'") } else { word }
+    };
+    let words = std::env::args_os().skip(1).map(quoted);
+    std::iter::once("grainsmooth".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,180 @@
+//! Subdivision of a mesh by any scheme, with all its levels.
+
+use glam::DVec3;
+use subzero::{DooSabinWeights, LoopWeights, MeshError, PolygonMesh, Refinement, TriangleMesh, VertexRule};
+
+use crate::Error;
+use crate::memory::{LevelSize, available_memory, check_levels};
+use crate::mesh_file::{MeshFile, MeshFileProblem};
+
+/// A scheme of subdivision.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scheme {
+    /// Loop's, on triangles.
+    Loop(LoopWeights),
+    /// Butterfly, on triangles; interpolating.
+    Butterfly,
+    /// Modified butterfly, on triangles; interpolating.
+    ModifiedButterfly,
+    /// Midpoints, on triangles: the surface stays as it is.
+    Midpoint,
+    /// Doo and Sabin's, on polygons.
+    DooSabin(DooSabinWeights),
+    /// Catmull and Clark's, on polygons.
+    CatmullClark,
+}
+
+/// Connectivity of one level.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Connectivity {
+    /// Of the triangle schemes.
+    Triangles(TriangleMesh),
+    /// Of the polygon schemes.
+    Polygons(PolygonMesh),
+}
+
+/// A mesh after some steps of subdivision.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Level {
+    /// Its connectivity.
+    pub mesh: Connectivity,
+    /// Its points.
+    pub points: Vec<DVec3>,
+}
+
+/// Where the vertices of a level end up on the limit surface, and its unit normals there.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Limits {
+    /// A position for each vertex.
+    pub positions: Vec<DVec3>,
+    /// A normal for each vertex; nothing where there is none, or more than one.
+    pub normals: Vec<Option<DVec3>>,
+    /// For Loop's scheme at vertices that are not smooth: vertex, neighbours counter-clockwise from crease to crease,
+    /// and the normal of the piece of surface between them.
+    pub sectors: Vec<(u32, Vec<u32>, Option<DVec3>)>,
+}
+
+/// Subdivides a mesh `levels` times; the first of the levels returned is the mesh itself.
+///
+/// # Errors
+/// [`MeshFileProblem::NotATriangle`] or [`MeshFileProblem::Mesh`] where the scheme cannot work with the mesh, in
+/// [`Error::MeshFile`], which names `path`; [`Error::LevelsExceedMemory`] or [`Error::LevelsExceedIds`].
+pub fn subdivide(
+    mesh: &MeshFile,
+    path: &std::path::Path,
+    scheme: Scheme,
+    levels: u32,
+) -> Result<Vec<Level>, Error> {
+    let located = |problem| Error::MeshFile { path: path.to_owned(), problem };
+    let connectivity = match scheme {
+        Scheme::DooSabin(_) | Scheme::CatmullClark => {
+            Connectivity::Polygons(mesh.polygon_mesh().map_err(located)?)
+        }
+        _ => Connectivity::Triangles(mesh.triangle_mesh().map_err(located)?),
+    };
+    check_levels(connectivity.size(), levels, available_memory())?;
+    let mut all = vec![Level { mesh: connectivity, points: mesh.points.clone() }];
+    for _ in 0..levels {
+        let finer = all[all.len() - 1].refine(scheme).map_err(|error| located(error.into()))?;
+        all.push(finer);
+    }
+    Ok(all)
+}
+
+impl Level {
+    fn refine(&self, scheme: Scheme) -> Result<Self, MeshError> {
+        match &self.mesh {
+            Connectivity::Triangles(mesh) => {
+                let Refinement { mesh, stencils } = match scheme {
+                    Scheme::Loop(weights) => mesh.loop_refine_with(weights),
+                    Scheme::Butterfly => mesh.butterfly_refine(),
+                    Scheme::ModifiedButterfly => mesh.modified_butterfly_refine(),
+                    _ => mesh.midpoint_refine(),
+                };
+                Ok(Self { mesh: Connectivity::Triangles(mesh), points: stencils.apply(&self.points) })
+            }
+            Connectivity::Polygons(mesh) => {
+                let Refinement { mesh, stencils } = match scheme {
+                    Scheme::DooSabin(weights) => mesh.doo_sabin_refine(weights)?,
+                    _ => mesh.catmull_clark_refine(),
+                };
+                Ok(Self { mesh: Connectivity::Polygons(mesh), points: stencils.apply(&self.points) })
+            }
+        }
+    }
+}
+
+impl Connectivity {
+    /// The faces as lists of vertices.
+    pub fn faces(&self) -> Vec<Vec<u32>> {
+        match self {
+            Self::Triangles(mesh) => mesh.triangles().iter().map(|triangle| triangle.to_vec()).collect(),
+            Self::Polygons(mesh) => mesh.faces().map(<[u32]>::to_vec).collect(),
+        }
+    }
+
+    /// Number of faces.
+    pub fn face_count(&self) -> usize {
+        match self {
+            Self::Triangles(mesh) => mesh.triangles().len(),
+            Self::Polygons(mesh) => mesh.face_count(),
+        }
+    }
+
+    /// The rule that moves a vertex.
+    ///
+    /// # Panics
+    /// If there is no such vertex.
+    pub fn vertex_rule(&self, vertex: u32) -> VertexRule {
+        match self {
+            Self::Triangles(mesh) => mesh.vertex_rule(vertex),
+            Self::Polygons(mesh) => mesh.vertex_rule(vertex),
+        }
+    }
+
+    /// The size for an estimate of memory; polygons count as if cut into triangles from their middles, which grow as
+    /// fast under the triangle schemes as polygons do under theirs.
+    fn size(&self) -> LevelSize {
+        let [points, edges, triangles] = match self {
+            Self::Triangles(mesh) => [mesh.vertex_count(), mesh.edge_count(), mesh.triangles().len()],
+            Self::Polygons(mesh) => {
+                let corners = mesh.faces().map(<[u32]>::len).sum::<usize>();
+                [mesh.vertex_count() + mesh.face_count(), mesh.edge_count() + corners, corners]
+            }
+        }
+        .map(|count| count as u128);
+        LevelSize { points, edges, triangles }
+    }
+}
+
+/// The limits of a level of Loop's scheme or Catmull and Clark's; nothing for the other schemes.
+///
+/// # Errors
+/// [`MeshError::SemiSharp`] while a sharpness has not run out.
+pub fn limits(level: &Level, scheme: Scheme) -> Result<Option<Limits>, MeshFileProblem> {
+    match (&level.mesh, scheme) {
+        (Connectivity::Triangles(mesh), Scheme::Loop(weights)) => {
+            let limits = mesh.loop_limits(weights)?;
+            let normals = limits.sector_normals(&level.points).into_iter();
+            let sectors = limits.sectors.iter().zip(normals).filter(|(sector, _)| {
+                !matches!(mesh.vertex_rule(sector.vertex), VertexRule::Smooth | VertexRule::Dart)
+            });
+            Ok(Some(Limits {
+                positions: limits.project(&level.points),
+                normals: limits.vertex_normals(&level.points),
+                sectors: sectors
+                    .map(|(sector, normal)| (sector.vertex, mesh.sector_ring(*sector), normal))
+                    .collect(),
+            }))
+        }
+        (Connectivity::Polygons(mesh), Scheme::CatmullClark) => {
+            let limits = mesh.catmull_clark_limits()?;
+            Ok(Some(Limits {
+                positions: limits.positions.apply(&level.points),
+                normals: limits.normals(&level.points),
+                sectors: Vec::new(),
+            }))
+        }
+        _ => Ok(None),
+    }
+}
