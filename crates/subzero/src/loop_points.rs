@@ -93,18 +93,10 @@ impl TriangleMesh {
                     }
                     return;
                 }
-                let first_inner = 2 * counts.edges;
                 let middle = on_old(counts.vertices + e);
-                // In the triangle of each side: the vertices on the other edges' halves at this edge's ends, and on the
-                // edges that cut off these ends' corners.
-                let side = |h: u32| {
-                    let [after, before] = [next(h), prev(h)];
-                    let at_start = on_parent_edge(grandparent.directed_edge(before) ^ 1);
-                    let at_end = on_parent_edge(grandparent.directed_edge(after));
-                    (at_start, on_parent_edge(first_inner + h), on_parent_edge(first_inner + after), at_end)
-                };
-                let (left_start, left_cut_start, left_cut_end, left_end) = side(along);
-                let (right_end, right_cut_end, right_cut_start, right_start) = side(against);
+                let (left_start, left_cut_start, left_cut_end, left_end) = grandparent.beside(along, points);
+                let (right_end, right_cut_end, right_cut_start, right_start) =
+                    grandparent.beside(against, points);
                 let start = on_old(grandparent.start(along));
                 let [half, rest] = [on_parent_edge(2 * e), on_parent_edge(2 * e + 1)];
                 on_halves[0] = vertex_point(
@@ -216,6 +208,23 @@ impl TriangleMesh {
                 },
             );
         }
+    }
+}
+
+impl TriangleMesh {
+    /// Points of the mesh two levels on, in the triangle of a half-edge: on the half of the edge before it at its start, on
+    /// the edges that cut off its start and its end, and on the half of the edge after it at its end.
+    #[inline(always)]
+    fn beside<P: Point>(&self, h: u32, points: &[P]) -> (P, P, P, P) {
+        let [after, before] = [next(h), prev(h)];
+        let first_cut = 2 * id(self.edge_count());
+        let on_child_edge = |e: u32| points[self.vertex_count() + self.edge_count() + e as usize];
+        (
+            on_child_edge(self.directed_edge(before) ^ 1),
+            on_child_edge(first_cut + h),
+            on_child_edge(first_cut + after),
+            on_child_edge(self.directed_edge(after)),
+        )
     }
 }
 
