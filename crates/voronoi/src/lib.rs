@@ -22,6 +22,7 @@ mod error;
 mod generator;
 mod grid;
 mod measure;
+mod near_seeds;
 mod planar;
 mod polygon;
 mod predicate;
