@@ -4,6 +4,7 @@ use subzero::StencilTable;
 use voronoi::{Domain, Tessellation};
 
 use crate::control_mesh::{ControlMesh, JunctionCounts};
+use crate::folds::element_normals;
 use crate::volume::{boundary_volumes, sum_over_grains};
 use crate::{Boundary, Level, NetworkError};
 
@@ -36,7 +37,8 @@ impl Network {
     /// The network of a tessellation, refined `level_count` times, and its control points: still flat.
     ///
     /// # Errors
-    /// [`NetworkError::TooLarge`] when a level outgrows 32-bit ids.
+    /// [`NetworkError::TooLarge`] when a level outgrows 32-bit ids; [`NetworkError::BoundaryTooSmall`] when more than four
+    /// grains all but meet in a point.
     pub fn new(
         tessellation: &Tessellation,
         junctions: Junctions,
@@ -45,6 +47,10 @@ impl Network {
         check_size(tessellation, level_count)?;
         let ControlMesh { level, points, boundaries, junctions: counts } =
             ControlMesh::new(tessellation, junctions)?;
+        let mut normals = element_normals(&level, &points).into_iter().zip(&level.boundary_of);
+        if let Some((_, boundary)) = normals.find(|(normal, _)| normal.length() == 0.0 || normal.is_nan()) {
+            return Err(NetworkError::BoundaryTooSmall { sides: boundaries[boundary.index()].sides });
+        }
         let mut levels = vec![level];
         let mut stencils = Vec::new();
         for coarser in 0..level_count {
@@ -72,6 +78,12 @@ impl Network {
     /// All boundaries, by number.
     pub fn boundaries(&self) -> &[Boundary] {
         &self.boundaries
+    }
+
+    /// For tests that break a network.
+    #[cfg(test)]
+    pub(crate) fn boundary_mut(&mut self, boundary: usize) -> &mut Boundary {
+        &mut self.boundaries[boundary]
     }
 
     /// Numbers of triple lines and quadruple points.

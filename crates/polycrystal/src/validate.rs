@@ -152,3 +152,96 @@ fn check_volumes(network: &Network, level: &Level, points: &[DVec3]) -> Result<V
     }
     Ok(Validation { largest_volume_error, total_volume_error })
 }
+
+#[cfg(test)]
+mod tests {
+    use voronoi::{Domain, Tessellation};
+
+    use super::*;
+    use crate::{Boundary, Junctions};
+
+    fn cubes(domain: &Domain) -> (Network, Vec<DVec3>) {
+        let middle = 0.5 * domain.size().z;
+        let seeds: Vec<DVec3> = (0..4)
+            .map(|i| DVec3::new(f64::from(i % 2) * 0.5 + 0.25, f64::from(i / 2) * 0.5 + 0.25, middle))
+            .collect();
+        let tessellation = Tessellation::new(domain, &seeds).expect("valid seeds");
+        let (network, flat) = Network::new(&tessellation, Junctions::Crease, 1).expect("a small network");
+        let points = network.subdivide(&flat);
+        (network, points)
+    }
+
+    /// A point inside a boundary, for the faults to start from.
+    fn inner_point(network: &Network) -> usize {
+        let node_types = &network.finest().node_types;
+        node_types.iter().position(|node_type| *node_type == crate::NodeType::INTERIOR).expect("a boundary")
+    }
+
+    #[test]
+    fn good_networks_pass() {
+        for domain in [Domain::unit_cube(), Domain::unit_square()] {
+            let (network, points) = cubes(&domain);
+            let validation = validate(&network, &points).expect("valid");
+            assert!(validation.largest_volume_error < 1e-14 && validation.total_volume_error < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_point_that_is_no_number_is_found() {
+        let (network, mut points) = cubes(&Domain::unit_cube());
+        points[7].y = f64::NAN;
+        assert_eq!(validate(&network, &points), Err(Fault::NotFinite { vertex: 7 }));
+    }
+
+    #[test]
+    fn points_at_the_same_place_are_found() {
+        let (network, mut points) = cubes(&Domain::unit_cube());
+        // Two points with no triangle in common.
+        let last = points.len() - 1;
+        points[last] = points[0];
+        assert_eq!(validate(&network, &points), Err(Fault::DuplicatePoints { count: 1 }));
+    }
+
+    #[test]
+    fn triangles_and_segments_without_size_are_found() {
+        for domain in [Domain::unit_cube(), Domain::unit_square()] {
+            let (network, mut points) = cubes(&domain);
+            let (a, b) = match &network.finest().mesh {
+                Mesh::Triangles(mesh) => (mesh.triangles()[0][0], mesh.triangles()[0][1]),
+                Mesh::Segments(mesh) => (mesh.segments()[0][0], mesh.segments()[0][1]),
+            };
+            points[a as usize] = points[b as usize];
+            assert!(matches!(validate(&network, &points), Err(Fault::NoArea { .. })));
+        }
+    }
+
+    #[test]
+    fn folds_are_found() {
+        for domain in [Domain::unit_cube(), Domain::unit_square()] {
+            let (network, mut points) = cubes(&domain);
+            // Out of its own fan, within the plane of its boundary.
+            let inner = inner_point(&network);
+            points[inner] += DVec3::new(0.01, 0.9, 0.0);
+            assert!(matches!(validate(&network, &points), Err(Fault::Folded { .. })));
+        }
+    }
+
+    #[test]
+    fn grains_of_the_wrong_volume_are_found() {
+        for domain in [Domain::unit_cube(), Domain::unit_square()] {
+            let (network, mut points) = cubes(&domain);
+            points[inner_point(&network)] += DVec3::new(1e-4, 1e-4, 0.0);
+            assert!(matches!(validate(&network, &points), Err(Fault::WrongVolume { .. })));
+        }
+    }
+
+    #[test]
+    fn grains_that_are_not_closed_are_found() {
+        for domain in [Domain::unit_cube(), Domain::unit_square()] {
+            let (mut network, points) = cubes(&domain);
+            let wrong: &mut Boundary = network.boundary_mut(0);
+            wrong.sides = [Side::Grain(GrainId(2)), Side::Grain(GrainId(3))];
+            assert!(matches!(validate(&network, &points), Err(Fault::Open { .. })));
+        }
+    }
+}

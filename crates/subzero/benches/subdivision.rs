@@ -1,64 +1,110 @@
 //! Loop subdivision of 20 000 triangles to level 4, from scratch and for new points, and half-edge edits.
+//!
+//! `README.md` beside this file says how to run it, and what it gave.
 #![allow(missing_docs)] // criterion's macros
 
 mod sphere;
 
-use criterion::{Criterion, criterion_group, criterion_main};
-use rayon::ThreadPoolBuilder;
-use sphere::sphere_hull;
-use subzero::{Features, TriangleMesh};
+use std::time::Duration;
+
+use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use sphere::{Order, Random, sphere_hull};
+use subzero::{Features, HalfEdgeMesh, LoopHierarchy, LoopWeights, TriangleMesh};
+
+const POINTS: u32 = 10_002;
+const LEVELS: usize = 4;
+/// Edits of each kind in one round, on 320 000 triangles.
+const EDITS: usize = 20_000;
+
+fn pool(threads: usize) -> ThreadPool {
+    ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start")
+}
+
+fn base_mesh(points: usize, triangles: &[[u32; 3]]) -> TriangleMesh {
+    TriangleMesh::new(points, triangles.to_vec(), &Features::default()).expect("the mesh is good")
+}
 
 fn from_scratch(c: &mut Criterion) {
-    let (triangles, points) = sphere_hull(10_002);
-    for threads in [1, 2] {
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
-        c.bench_function(&format!("loop to level 4 from scratch, {threads} threads"), |b| {
-            b.iter(|| {
-                pool.install(|| {
-                    let mut mesh = TriangleMesh::new(points.len(), triangles.clone(), &Features::default())
-                        .expect("a good mesh");
-                    let mut points = points.clone();
-                    for _ in 0..4 {
-                        let refined = mesh.loop_refine();
-                        points = refined.stencils.apply(&points);
-                        mesh = refined.mesh;
-                    }
-                    (mesh, points)
-                })
+    let mut group = c.benchmark_group("Loop to level 4 from scratch");
+    for (name, order) in [("random order", Order::Random), ("along a curve", Order::Curve)] {
+        let (triangles, points) = sphere_hull(POINTS, order);
+        group.throughput(Throughput::Elements(triangles.len() as u64 * 256));
+        for threads in [1, 2] {
+            let pool = pool(threads);
+            group.bench_function(BenchmarkId::new(name, threads), |b| {
+                let run =
+                    || base_mesh(points.len(), &triangles).loop_subdivide(&points, LEVELS, LoopWeights::Loop);
+                b.iter_with_large_drop(|| pool.install(run));
             });
+        }
+    }
+}
+
+fn new_points(c: &mut Criterion) {
+    let mut group = c.benchmark_group("new points at level 4");
+    for (name, order) in [("random order", Order::Random), ("along a curve", Order::Curve)] {
+        let (triangles, points) = sphere_hull(POINTS, order);
+        let hierarchy = LoopHierarchy::new(base_mesh(points.len(), &triangles), LEVELS, LoopWeights::Loop);
+        let mut levels = hierarchy.buffers();
+        group.throughput(Throughput::Elements(hierarchy.finest().vertex_count() as u64));
+        for threads in [1, 2] {
+            let pool = pool(threads);
+            group.bench_function(BenchmarkId::new(name, threads), |b| {
+                b.iter(|| pool.install(|| hierarchy.apply_into(&points, &mut levels)));
+            });
+        }
+    }
+}
+
+fn tables(c: &mut Criterion) {
+    let mut group = c.benchmark_group("new points at level 4 through tables");
+    let (triangles, mut points) = sphere_hull(POINTS, Order::Curve);
+    let mut mesh = base_mesh(points.len(), &triangles);
+    for _ in 1..LEVELS {
+        let refined = mesh.loop_refine();
+        points = refined.stencils.apply(&points);
+        mesh = refined.mesh;
+    }
+    let table = mesh.loop_refine().stencils;
+    let mut finest = table.apply(&points);
+    group.throughput(Throughput::Elements(table.len() as u64));
+    for threads in [1, 2] {
+        let pool = pool(threads);
+        group.bench_function(BenchmarkId::new("last level", threads), |b| {
+            b.iter(|| pool.install(|| table.apply_into(&points, &mut finest)));
         });
     }
 }
 
-fn re_apply(c: &mut Criterion) {
-    let (triangles, points) = sphere_hull(10_002);
-    let mut mesh = TriangleMesh::new(points.len(), triangles, &Features::default()).expect("a good mesh");
-    let mut tables = Vec::new();
-    for _ in 0..4 {
-        let refined = mesh.loop_refine();
-        tables.push(refined.stencils);
-        mesh = refined.mesh;
-    }
-    let mut levels: Vec<_> = tables.iter().map(|table| vec![glam::DVec3::ZERO; table.len()]).collect();
-    for threads in [1, 2] {
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start");
-        c.bench_function(&format!("new points to level 4, {threads} threads"), |b| {
-            b.iter(|| {
-                pool.install(|| {
-                    tables[0].apply_into(&points, &mut levels[0]);
-                    for k in 1..4 {
-                        let (coarse, fine) = levels.split_at_mut(k);
-                        tables[k].apply_into(&coarse[k - 1], &mut fine[0]);
-                    }
-                });
-            });
+fn edits(c: &mut Criterion) {
+    let (triangles, points) = sphere_hull(POINTS, Order::Curve);
+    let (mesh, _) = base_mesh(points.len(), &triangles).loop_subdivide(&points, 2, LoopWeights::Loop);
+    let mesh = HalfEdgeMesh::from_triangle_mesh(&mesh).expect("the mesh is manifold");
+    let mut random = Random(2);
+    let half_edges = mesh.half_edge_count() as u64;
+    let picks: Vec<u32> =
+        (0..EDITS).map(|_| u32::try_from(random.bits() % half_edges).expect("half-edges are u32")).collect();
+    let mut group = c.benchmark_group("half-edge edits on 320 000 triangles");
+    group.throughput(Throughput::Elements(EDITS as u64));
+    let mut bench = |name: &str, edit: fn(&mut HalfEdgeMesh, u32)| {
+        group.bench_function(name, |b| {
+            let run = |mut mesh: HalfEdgeMesh| {
+                picks.iter().for_each(|&h| edit(&mut mesh, h));
+                mesh
+            };
+            b.iter_batched(|| mesh.clone(), run, BatchSize::PerIteration);
         });
-    }
+    };
+    // What an edit before made impossible is refused; that is rare among so many edges.
+    bench("flip", |mesh, h| drop(mesh.flip(h)));
+    bench("split", |mesh, h| drop(mesh.split(h)));
+    bench("collapse", |mesh, h| drop(mesh.collapse(h)));
 }
 
 criterion_group! {
     name = benches;
-    config = Criterion::default().sample_size(10).measurement_time(std::time::Duration::from_secs(3)).warm_up_time(std::time::Duration::from_secs(1));
-    targets = from_scratch, re_apply
+    config = Criterion::default().sample_size(20).measurement_time(Duration::from_secs(4));
+    targets = from_scratch, new_points, tables, edits
 }
 criterion_main!(benches);

@@ -25,6 +25,8 @@ impl LoopWeights {
         #[allow(clippy::cast_precision_loss)]
         let n = valence as f64;
         match self {
+            // By far the most common, and the same for all.
+            _ if valence == 6 => 0.0625,
             Self::Loop | Self::BiermannLevinZorin => (0.625 - (0.375 + 0.25 * (TAU / n).cos()).powi(2)) / n,
             Self::Warren if valence == 3 => 3.0 / 16.0,
             Self::Warren => 3.0 / (8.0 * n),

@@ -23,10 +23,19 @@ impl Random {
     }
 }
 
+/// How vertices and triangles are numbered: it decides what is near each other in memory.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Order {
+    /// Vertices as they were drawn, triangles as the triangulation lists them.
+    Random,
+    /// Along a space-filling curve, as a mesh that was made with care.
+    Curve,
+}
+
 /// The hull of `count` random points on the unit sphere, outward and with `2 count - 4` triangles.
 ///
-/// Seen from the last point, the others' hull is the Delaunay triangulation of their stereographic projection.
-pub fn sphere_hull(count: u32) -> (Vec<[u32; 3]>, Vec<DVec3>) {
+/// Seen from one point, the others' hull is the Delaunay triangulation of their stereographic projection.
+pub fn sphere_hull(count: u32, order: Order) -> (Vec<[u32; 3]>, Vec<DVec3>) {
     let mut random = Random(1);
     let mut points: Vec<DVec3> = (1..count)
         .map(|_| {
@@ -35,6 +44,9 @@ pub fn sphere_hull(count: u32) -> (Vec<[u32; 3]>, Vec<DVec3>) {
             DVec3::new(radius * angle.cos(), radius * angle.sin(), z)
         })
         .collect();
+    if order == Order::Curve {
+        points.sort_by_key(|point| place_on_curve(*point));
+    }
     let flat = points.iter().map(|p| Point2::new(p.x / (1.0 - p.z), p.y / (1.0 - p.z))).collect();
     let delaunay: DelaunayTriangulation<Point2<f64>> =
         DelaunayTriangulation::bulk_load_stable(flat).expect("the points are finite");
@@ -53,5 +65,18 @@ pub fn sphere_hull(count: u32) -> (Vec<[u32; 3]>, Vec<DVec3>) {
         let [a, b] = edge.vertices().map(|v| index(v.index()));
         [b, a, pole]
     }));
+    if order == Order::Curve {
+        triangles.sort_by_key(|corners| {
+            let [a, b, c] = corners.map(|v| points[v as usize]);
+            place_on_curve((a + b + c) / 3.0)
+        });
+    }
     (triangles, points)
+}
+
+/// The place of a point of the cube from -1 to 1 on Morton's curve.
+fn place_on_curve(point: DVec3) -> u64 {
+    let cell = ((point + 1.0) * 512.0).as_u64vec3();
+    let spread = |x: u64| (0..10).map(|bit| (x >> bit & 1) << (3 * bit)).sum::<u64>();
+    spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2
 }

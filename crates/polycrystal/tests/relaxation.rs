@@ -1,0 +1,193 @@
+//! Relaxation: what it must keep, what it must change, and where it must change nothing.
+
+#[allow(dead_code, reason = "every test file uses its own share")]
+mod common;
+
+use common::{network, random_network, random_seeds, relaxed};
+use glam::DVec3;
+use polycrystal::{
+    Junctions, Network, NetworkError, Relaxation, dihedral_angles, folded_edges, relax, validate,
+};
+use proptest::prelude::*;
+use voronoi::{Domain, Tessellation};
+
+fn spread(network: &Network, points: &[DVec3]) -> f64 {
+    dihedral_angles(network, network.finest(), points).expect("triple lines").standard_deviation
+}
+
+#[test]
+fn random_grains_keep_their_volumes_and_come_closer_to_equilibrium() {
+    for (levels, random_seed) in [(0, 1), (0, 2), (1, 3), (1, 4), (2, 5), (3, 6)] {
+        let (network, flat) = random_network(&Domain::unit_cube(), 200, random_seed, levels);
+        let smooth = network.subdivide(&relaxed(&network, &flat));
+        let validation = validate(&network, &smooth).expect("a valid network");
+        assert!(validation.largest_volume_error < 1e-10, "{validation:?}");
+        assert!(folded_edges(network.finest(), &smooth, 0.0).is_empty());
+        let before = spread(&network, &network.subdivide(&flat));
+        assert!((22.0..26.0).contains(&before), "{before}");
+        assert!(spread(&network, &smooth) < 14.0);
+        let angles = dihedral_angles(&network, network.finest(), &smooth).expect("triple lines");
+        assert!((angles.mean - 120.0).abs() < 0.1, "{angles:?}");
+    }
+}
+
+#[test]
+fn grains_in_the_plane_keep_their_areas_and_come_closer_to_equilibrium() {
+    for (levels, random_seed) in [(0, 1), (1, 2), (3, 3), (5, 4)] {
+        let (network, flat) = random_network(&Domain::unit_square(), 200, random_seed, levels);
+        let flat: Vec<DVec3> = flat.iter().map(|point| point.with_z(0.0)).collect();
+        let smooth = network.subdivide(&relaxed(&network, &flat));
+        assert!(validate(&network, &smooth).expect("valid").largest_volume_error < 1e-10);
+        assert!(smooth.iter().all(|point| point.z == 0.0));
+        let before = spread(&network, &network.subdivide(&flat));
+        assert!((26.0..33.0).contains(&before), "{before}");
+        let after = spread(&network, &smooth);
+        assert!(after < 18.0, "{after}");
+    }
+}
+
+/// The body-centred lattice of spacing 1/4: binary numbers hold it exactly.
+#[test]
+fn kelvin_cells_relax() {
+    let mut seeds = Vec::new();
+    for i in 0..64 {
+        let corner = DVec3::new(f64::from(i % 4), f64::from(i / 4 % 4), f64::from(i / 16));
+        seeds.extend([(corner + 0.25) / 4.0, (corner + 0.75) / 4.0]);
+    }
+    let (network, flat) = network(&Domain::unit_cube(), &seeds, 2);
+    let smooth = network.subdivide(&relaxed(&network, &flat));
+    assert!(validate(&network, &smooth).is_ok());
+    // Twice 125.26 degrees and once 109.47 where Kelvin's flat faces meet; 120 in equilibrium.
+    assert!((spread(&network, &network.subdivide(&flat)) - 7.445).abs() < 1e-3);
+    assert!(spread(&network, &smooth) < 5.0);
+}
+
+/// A spacing that binary numbers cannot hold leaves faces of size 1e-17 between grains that should meet in a point.
+#[test]
+fn grains_that_all_but_meet_are_named() {
+    let mut seeds = Vec::new();
+    for i in 0..27 {
+        let corner = DVec3::new(f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9));
+        seeds.extend([(corner + 0.25) / 3.0, (corner + 0.75) / 3.0]);
+    }
+    let tessellation = Tessellation::new(&Domain::unit_cube(), &seeds).expect("valid seeds");
+    let error =
+        Network::new(&tessellation, Junctions::Crease, 1).expect_err("no such boundary can be meshed");
+    assert!(matches!(error, NetworkError::BoundaryTooSmall { .. }), "{error}");
+    assert!(error.to_string().starts_with("the boundary between grain "), "{error}");
+}
+
+#[test]
+fn flat_equilibria_stay_as_they_are() {
+    let two = vec![DVec3::new(0.25, 0.5, 0.5), DVec3::new(0.75, 0.5, 0.5)];
+    let cubes: Vec<DVec3> = (0..27)
+        .map(|i| DVec3::new(f64::from(i % 3) + 0.5, f64::from(i / 3 % 3) + 0.5, f64::from(i / 9) + 0.5) / 3.0)
+        .collect();
+    for seeds in [two, cubes] {
+        let (network, flat) = network(&Domain::unit_cube(), &seeds, 2);
+        for (before, after) in flat.iter().zip(relaxed(&network, &flat)) {
+            assert!(before.distance(after) < 1e-9, "{before} went to {after}");
+        }
+    }
+}
+
+#[test]
+fn one_grain_and_time_zero_change_nothing() {
+    let (one, points) = network(&Domain::unit_cube(), &[DVec3::splat(0.3)], 2);
+    assert_eq!(relaxed(&one, &points), points);
+    let (many, points) = random_network(&Domain::unit_cube(), 20, 1, 1);
+    let off = Relaxation { time: 0.0 };
+    assert_eq!(relax(&many, &points, &off, |_, _| ()).expect("nothing to do").control_points, points);
+}
+
+#[test]
+fn times_that_are_no_times_are_refused() {
+    let (network, points) = random_network(&Domain::unit_cube(), 5, 1, 0);
+    for time in [-1.0, f64::NAN, f64::INFINITY] {
+        let result = relax(&network, &points, &Relaxation { time }, |_, _| ());
+        assert!(matches!(result, Err(NetworkError::BadRelaxationTime(_))));
+    }
+}
+
+#[test]
+fn size_of_the_box_only_scales_the_result() {
+    let seeds = random_seeds(&Domain::unit_cube(), 30, 7);
+    let (network_of_one, flat) = network(&Domain::unit_cube(), &seeds, 1);
+    let expected = relaxed(&network_of_one, &flat);
+    for scale in [1e-8, 1e6] {
+        let domain = Domain::cuboid(DVec3::ZERO, DVec3::splat(scale)).expect("positive sides");
+        let scaled: Vec<DVec3> = seeds.iter().map(|seed| *seed * scale).collect();
+        let (network, flat) = network(&domain, &scaled, 1);
+        for (point, expected) in relaxed(&network, &flat).iter().zip(&expected) {
+            assert!((*point / scale).distance(*expected) < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn one_and_two_threads_give_the_same_bits() {
+    let with_threads = |count: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().expect("threads");
+        pool.install(|| {
+            let (network, flat) = random_network(&Domain::unit_cube(), 100, 8, 2);
+            network.subdivide(&relaxed(&network, &flat))
+        })
+    };
+    assert_eq!(with_threads(1), with_threads(2));
+}
+
+/// Springs on edges of length 1e-9 once made the matrix of a step indefinite, and the whole network froze.
+#[test]
+fn nearly_touching_quadruple_points_do_not_freeze_the_network() {
+    let mut seeds = random_seeds(&Domain::unit_cube(), 60, 9);
+    let (network_before, flat) = network(&Domain::unit_cube(), &seeds, 1);
+    let expected = spread(&network_before, &network_before.subdivide(&relaxed(&network_before, &flat)));
+    // A fifth seed on the circumsphere of four neighbours, but for 1e-9, splits their vertex in two.
+    let tessellation = Tessellation::new(&Domain::unit_cube(), &seeds).expect("valid seeds");
+    let vertex = tessellation
+        .vertices()
+        .iter()
+        .copied()
+        .min_by(|a, b| a.distance(DVec3::splat(0.5)).total_cmp(&b.distance(DVec3::splat(0.5))));
+    let vertex = vertex.expect("vertices");
+    let radius = seeds.iter().map(|seed| seed.distance(vertex)).fold(f64::INFINITY, f64::min);
+    seeds.push(vertex + DVec3::new(0.48, 0.6, 0.64).normalize() * radius * (1.0 + 1e-9));
+    let (network, flat) = network(&Domain::unit_cube(), &seeds, 1);
+    assert!(spread(&network, &network.subdivide(&relaxed(&network, &flat))) < expected + 2.0);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn any_few_grains_relax_to_a_valid_network(
+        random_seed in 0u64..1_000_000,
+        count in 1usize..40,
+        levels in 0usize..3,
+        (height, time) in (0.1..3.0f64, 0.01..0.6f64),
+    ) {
+        let domain = Domain::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, height)).expect("positive sides");
+        let (network, flat) = random_network(&domain, count, random_seed, levels);
+        let relaxed = relax(&network, &flat, &Relaxation { time }, |_, _| ()).expect("relaxes");
+        prop_assert!(validate(&network, &network.subdivide(&relaxed.control_points)).is_ok());
+    }
+
+    #[test]
+    fn a_permutation_of_the_seeds_permutes_the_grains(random_seed in 0u64..1_000_000, shift in 1usize..20) {
+        let seeds = random_seeds(&Domain::unit_cube(), 20, random_seed);
+        let mut rotated = seeds.clone();
+        rotated.rotate_left(shift % 20);
+        let mean_point_and_volumes = |seeds: &[DVec3]| {
+            let (network, flat) = network(&Domain::unit_cube(), seeds, 1);
+            let points = network.subdivide(&relaxed(&network, &flat));
+            (points.iter().sum::<DVec3>() / points.len() as f64, network.grain_volumes(network.finest(), &points))
+        };
+        let (place, mut volumes) = mean_point_and_volumes(&seeds);
+        let (rotated_place, rotated_volumes) = mean_point_and_volumes(&rotated);
+        volumes.rotate_left(shift % 20);
+        prop_assert!(place.distance(rotated_place) < 1e-8);
+        for (a, b) in volumes.iter().zip(&rotated_volumes) {
+            prop_assert!((a - b).abs() < 1e-12);
+        }
+    }
+}
