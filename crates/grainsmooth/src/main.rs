@@ -3,28 +3,32 @@
 mod cli;
 mod progress;
 
+use std::io::Write;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use anyhow::Context;
+use anyhow::anyhow;
 use clap::Parser;
 use grainsmooth::{Output, Stage, Summary, make_polycrystal};
 
 use cli::Arguments;
 use progress::ProgressLine;
 
-#[expect(clippy::print_stderr, reason = "the program's face")]
 fn main() -> ExitCode {
     match run(&Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            say(&format!("error: {error}"));
             ExitCode::FAILURE
         }
     }
 }
 
-#[expect(clippy::print_stderr, reason = "the program's face")]
+/// Writes a line to standard error. Where nobody can read it the run is no worse for that.
+fn say(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
 fn run(arguments: &Arguments) -> anyhow::Result<()> {
     // An output that cannot be written is found before hours of work, not after.
     let output = Output::check(&arguments.output)?;
@@ -32,7 +36,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
-        .with_context(|| format!("cannot start {threads} threads; try fewer"))?;
+        .map_err(|cause| anyhow!("cannot start {threads} threads: {cause}; give fewer with --threads"))?;
     let line = ProgressLine::new(arguments.quiet);
     let result = pool.install(|| {
         let mut polycrystal =
@@ -46,7 +50,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
     line.clear();
     let polycrystal = result?;
     if !arguments.quiet {
-        eprintln!("{}\nwritten     {}", Summary(&polycrystal), output.path().display());
+        say(&format!("{}\nwritten     {}", Summary(&polycrystal), output.path().display()));
     }
     Ok(())
 }

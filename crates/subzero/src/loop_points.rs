@@ -241,20 +241,22 @@ fn smooth_point<P: Point>(vertex: P, ring: impl Iterator<Item = P>, weights: Loo
 #[inline(always)]
 fn vertex_point<P: Point>(vertex: P, ring: [P; 6]) -> P {
     let [a, b, c, d, e, f] = ring;
-    let ring = P::zero()
-        .add_scaled(a, 1.0)
+    let ring = a
         .add_scaled(b, 1.0)
         .add_scaled(c, 1.0)
         .add_scaled(d, 1.0)
         .add_scaled(e, 1.0)
-        .add_scaled(f, 1.0);
-    P::zero().add_scaled(vertex, 0.625).add_scaled(ring, 0.0625)
+        .add_scaled(f, 1.0)
+        .add_scaled(vertex, 10.0);
+    P::zero().add_scaled(ring, 0.0625)
 }
 
 /// The point on a smooth edge from its ends and the apexes of its triangles.
 #[inline(always)]
 fn edge_point<P: Point>(a: P, b: P, c: P, d: P) -> P {
-    P::zero().add_scaled(a, 0.375).add_scaled(b, 0.375).add_scaled(c, 0.125).add_scaled(d, 0.125)
+    let ends = a.add_scaled(b, 1.0);
+    let apexes = c.add_scaled(d, 1.0);
+    P::zero().add_scaled(apexes.add_scaled(ends, 3.0), 0.125)
 }
 
 fn sum_row<P: Point>(points: &[P], row: impl FnOnce(&mut dyn FnMut(u32, f64))) -> P {
