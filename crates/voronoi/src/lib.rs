@@ -19,6 +19,7 @@ mod batch;
 mod convex_cell;
 mod domain;
 mod error;
+mod flat_cells;
 mod generator;
 mod grid;
 mod measure;

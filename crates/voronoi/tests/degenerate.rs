@@ -176,13 +176,24 @@ fn weights_on_lattices() {
     // Every other cube outweighs its neighbours: by little, by so much that the others all but vanish, and by more.
     for radius in [0.05, 0.1249, 0.125, 0.2, 0.5] {
         let seeds = lattice(4, &SIMPLE_CUBIC);
-        let is_odd = |seed: &DVec3| (*seed * 4.0).floor().element_sum() as i64 % 2 == 1;
+        let is_odd = |seed: &DVec3| (*seed * 4.0).floor().element_sum() % 2.0 == 1.0;
         let weights: Vec<f64> =
             seeds.iter().map(|seed| if is_odd(seed) { radius * radius } else { 0.0 }).collect();
         let tessellation = Tessellation::power(&Domain::unit_cube(), &seeds, &weights).expect("valid seeds");
         assert_complex(&tessellation);
         assert_eq!(tessellation.empty_cells().len(), if radius > 0.25 { 32 } else { 0 }, "radius {radius}");
     }
+}
+
+/// Bisectors at z = 0.5 with both neighbours leave the middle seeds a square each, and then the two squares nothing.
+#[test]
+fn cells_that_are_flat_are_empty() {
+    let seeds: Vec<DVec3> = [0.25, 0.375, 0.625, 0.75].map(|z| DVec3::new(0.5, 0.5, z)).to_vec();
+    let weights = [0.0, -3.0 / 64.0, -3.0 / 64.0, 0.0];
+    let tessellation = Tessellation::power(&Domain::unit_cube(), &seeds, &weights).expect("valid seeds");
+    assert_complex(&tessellation);
+    assert_eq!(tessellation.empty_cells(), [voronoi::CellId(1), voronoi::CellId(2)]);
+    assert_eq!(tessellation.neighbors(voronoi::CellId(0))[0], Side::Cell(voronoi::CellId(3)));
 }
 
 #[test]
