@@ -1,7 +1,9 @@
 //! The command line.
 
-use std::num::NonZeroUsize;
+use std::fmt::Display;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
@@ -24,31 +26,31 @@ pub struct Arguments {
     pub command: Option<Command>,
 
     /// Number of grains, grown from uniform random seeds
-    #[arg(long, value_name = "N", default_value = "200", value_parser = parse_count, allow_negative_numbers = true, help_heading = SEEDS)]
-    seeds: NonZeroUsize,
+    #[arg(long, value_name = "N", default_value_t = 200_u32, value_parser = whole_number(1..=4_000_000_000_u32), allow_negative_numbers = true, help_heading = SEEDS)]
+    seeds: u32,
 
     /// Read seeds from a text file instead: x, y, z on each line (x, y in 2D)
     #[arg(long, value_name = "FILE", conflicts_with_all = ["seeds", "rng_seed"], help_heading = SEEDS)]
     seeds_file: Option<PathBuf>,
 
     /// Start of the random generator: the same number gives the same grains on every machine
-    #[arg(long, value_name = "S", default_value_t = 1, help_heading = SEEDS)]
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = whole_number(0..=u64::MAX), allow_negative_numbers = true, help_heading = SEEDS)]
     rng_seed: u64,
 
     /// Dimensions: 3 for grains in a box, 2 for grains in a rectangle
     #[arg(long, value_name = "2|3", default_value = "3", value_parser = parse_dimension, help_heading = DOMAIN)]
     dim: Dimension,
 
-    /// Side lengths of the box, in your unit of length; X Y in 2D [default: 1 1 1]
-    #[arg(long = "box", value_names = ["X", "Y", "Z"], num_args = 2..=3, value_parser = parse_length, allow_negative_numbers = true, help_heading = DOMAIN)]
+    /// Side lengths of the box in your unit of length, X Y in 2D; a corner is at 0 0 0 [default: 1 1 1]
+    #[arg(long = "box", value_names = ["X", "Y", "Z"], num_args = 2.., value_parser = parse_length, allow_negative_numbers = true, help_heading = DOMAIN)]
     box_size: Option<Vec<f64>>,
 
     /// Relaxation time, in units of the mean grain size squared; 0 keeps boundaries flat
     #[arg(long, value_name = "T", default_value_t = Config::default().relaxation_time, value_parser = parse_time, allow_negative_numbers = true, help_heading = SMOOTHING)]
     relax: f64,
 
-    /// Number of subdivisions; each makes four triangles of one
-    #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = Config::default().levels, allow_negative_numbers = true, help_heading = SMOOTHING)]
+    /// Number of subdivisions; each makes four triangles of one (two segments in 2D)
+    #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = Config::default().levels, value_parser = whole_number(0..=99_u32), allow_negative_numbers = true, help_heading = SMOOTHING)]
     levels: u32,
 
     /// Triple lines as smooth curves (crease) or as polylines through all their control points (corner)
@@ -60,8 +62,8 @@ pub struct Arguments {
     pub output: PathBuf,
 
     /// Number of threads [default: all processors]; the file does not depend on it
-    #[arg(long, value_name = "N", value_parser = parse_threads, allow_negative_numbers = true, help_heading = RUN)]
-    pub threads: Option<NonZeroUsize>,
+    #[arg(long, value_name = "N", value_parser = whole_number(1..=1024_u16), allow_negative_numbers = true, help_heading = RUN)]
+    pub threads: Option<u16>,
 
     /// Say nothing unless something is wrong
     #[arg(short, long, help_heading = RUN)]
@@ -102,14 +104,18 @@ impl Arguments {
     pub fn config(&self) -> Config {
         let seeds = match &self.seeds_file {
             Some(path) => SeedSource::File(path.clone()),
-            None => SeedSource::Random { count: self.seeds.get() },
+            None => SeedSource::Random { count: self.seeds as usize },
         };
         let box_size = match (self.box_size.as_deref(), self.dim) {
             (None, _) => DVec3::ONE,
             (Some(&[x, y]), Dimension::Two) => DVec3::new(x, y, 1.0),
             (Some(&[x, y, z]), Dimension::Three) => DVec3::new(x, y, z),
-            (Some(_), Dimension::Two) => usage("--box takes two numbers, X Y, with --dim 2"),
-            (Some(_), Dimension::Three) => usage("--box takes three numbers, X Y Z, with --dim 3"),
+            (Some(sides), Dimension::Two) => {
+                usage(&format!("--box takes two numbers, X Y, with --dim 2; {} given", sides.len()))
+            }
+            (Some(sides), Dimension::Three) => {
+                usage(&format!("--box takes three numbers, X Y Z, without --dim 2; {} given", sides.len()))
+            }
         };
         let junctions = match self.junctions {
             JunctionRule::Crease => Junctions::Crease,
@@ -132,12 +138,14 @@ fn usage(message: &str) -> ! {
     Arguments::command().error(ErrorKind::WrongNumberOfValues, message).exit()
 }
 
-fn parse_count(text: &str) -> Result<NonZeroUsize, String> {
-    text.parse().map_err(|_| "the number of grains is a whole number, 1 or more".to_owned())
-}
-
-fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
-    text.parse().map_err(|_| "the number of threads is a whole number, 1 or more".to_owned())
+fn whole_number<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, String> + Clone
+where
+    T: FromStr + PartialOrd + Display + Clone,
+{
+    move |text| {
+        let number = text.parse().ok().filter(|number| range.contains(number));
+        number.ok_or_else(|| format!("give a whole number from {} to {}", range.start(), range.end()))
+    }
 }
 
 fn parse_dimension(text: &str) -> Result<Dimension, String> {
@@ -149,8 +157,8 @@ fn parse_dimension(text: &str) -> Result<Dimension, String> {
 }
 
 fn parse_length(text: &str) -> Result<f64, String> {
-    let length = text.parse().ok().filter(|length: &f64| length.is_finite() && *length > 0.0);
-    length.ok_or_else(|| "a side of the box is a positive, finite number".to_owned())
+    let length = text.parse().ok().filter(|length| Config::SIDE_RANGE.contains(length));
+    length.ok_or_else(|| "a side of the box is a positive number between 1e-30 and 1e30".to_owned())
 }
 
 fn parse_time(text: &str) -> Result<f64, String> {

@@ -1,3 +1,4 @@
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use glam::DVec3;
@@ -51,11 +52,11 @@ impl Default for Config {
     }
 }
 
-/// Shortest and longest side of a box: products of five lengths, which volumes and their derivatives are, must stay
-/// within the range of doubles.
-const SIDE_RANGE: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
-
 impl Config {
+    /// Shortest and longest side of a box: products of five lengths, which volumes and their derivatives are, must
+    /// stay within the range of doubles.
+    pub const SIDE_RANGE: RangeInclusive<f64> = 1e-30..=1e30;
+
     /// The box that the grains fill.
     ///
     /// # Errors
@@ -63,7 +64,8 @@ impl Config {
     pub fn domain(&self) -> Result<Domain, Error> {
         let axes = if self.dimension == Dimension::Two { 2 } else { 3 };
         let sides = ['x', 'y', 'z'].into_iter().zip(self.box_size.to_array());
-        if let Some((axis, length)) = sides.take(axes).find(|(_, length)| !SIDE_RANGE.contains(length)) {
+        if let Some((axis, length)) = sides.take(axes).find(|(_, length)| !Self::SIDE_RANGE.contains(length))
+        {
             return Err(Error::BoxSide { axis, length });
         }
         Ok(match self.dimension {

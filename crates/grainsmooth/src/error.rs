@@ -1,6 +1,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use glam::DVec3;
 use polycrystal::NetworkError;
 use voronoi::VoronoiError;
 
@@ -10,6 +11,8 @@ use crate::{OutputFormat, SeedLineProblem};
 
 /// What can go wrong between the user's input and the files written. Each message is one line that names the
 /// value, the place and the remedy.
+///
+/// The message holds the cause, so `source` names none: whoever prints the chain would print it twice.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The output path has no extension, or one that names no format.
@@ -33,28 +36,28 @@ pub enum Error {
         path: PathBuf,
     },
     /// Nothing can be written under the output path.
-    #[error("{}: cannot be written: {source}; allow it or choose another path", path.display())]
+    #[error("{}: cannot be written: {cause}; allow it or choose another path", path.display())]
     OutputNotWritable {
         /// The path as given.
         path: PathBuf,
         /// Why.
-        source: io::Error,
+        cause: io::Error,
     },
     /// Writing the output failed on the way; nothing of it is left behind.
-    #[error("{}: writing failed and left nothing: {source}; make room or choose another path", path.display())]
+    #[error("{}: writing failed and left nothing: {cause}; make room or choose another path", path.display())]
     WriteOutput {
         /// The path as given.
         path: PathBuf,
         /// Why.
-        source: io::Error,
+        cause: io::Error,
     },
     /// A seed file cannot be opened or read.
-    #[error("{}: cannot be read: {source}; give the path of a readable CSV file", path.display())]
+    #[error("{}: cannot be read: {cause}; give the path of a readable CSV file", path.display())]
     SeedFileUnreadable {
         /// The path as given.
         path: PathBuf,
         /// Why.
-        source: io::Error,
+        cause: io::Error,
     },
     /// A seed file holds no seeds.
     #[error("{}: holds no seeds; write x, y, z on each line", path.display())]
@@ -73,7 +76,7 @@ pub enum Error {
         problem: SeedLineProblem,
     },
     /// A side of the box is not a length that can be computed with.
-    #[error("the box's side along {axis} is {length}; give a positive number between 1e-30 and 1e30")]
+    #[error("the box's side along {axis} is {length:?}; give a positive number between 1e-30 and 1e30")]
     BoxSide {
         /// `x`, `y` or `z`.
         axis: char,
@@ -81,14 +84,27 @@ pub enum Error {
         length: f64,
     },
     /// A seed of a file has no cell.
-    #[error("{} line {line}: {source}", path.display())]
+    #[error("{} line {line}: {cause}", path.display())]
     SeedInFile {
         /// The path as given.
         path: PathBuf,
         /// Line of the file, counted from 1.
         line: usize,
         /// What is wrong with the seed.
-        source: VoronoiError,
+        cause: VoronoiError,
+    },
+    /// Two seeds of a file stand at the same place.
+    #[error(
+        "{} lines {} and {}: the same seed ({}, {}, {}) twice; remove one of them",
+        path.display(), lines[0], lines[1], position.x, position.y, position.z
+    )]
+    DuplicateSeedsInFile {
+        /// The path as given.
+        path: PathBuf,
+        /// Lines of the file, counted from 1.
+        lines: [usize; 2],
+        /// The seeds' coordinates.
+        position: DVec3,
     },
     /// The seeds cannot be tessellated.
     #[error(transparent)]

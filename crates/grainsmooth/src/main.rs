@@ -9,7 +9,7 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use anyhow::Context;
+use anyhow::anyhow;
 use clap::Parser;
 use grainsmooth::mesh_file::READER_THREAD;
 use grainsmooth::{Output, Stage, Summary, make_polycrystal};
@@ -17,12 +17,11 @@ use grainsmooth::{Output, Stage, Summary, make_polycrystal};
 use cli::{Arguments, Command};
 use progress::ProgressLine;
 
-#[expect(clippy::print_stderr, reason = "the program's face")]
 fn main() -> ExitCode {
     match run(&Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            say(&format!("error: {error}"));
             ExitCode::FAILURE
         }
     }
@@ -43,7 +42,6 @@ fn keep_reader_quiet() {
     }));
 }
 
-#[expect(clippy::print_stderr, reason = "the program's face")]
 fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(Command::Mesh(mesh)) = &arguments.command {
         keep_reader_quiet();
@@ -55,7 +53,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
-        .with_context(|| format!("cannot start {threads} threads; try fewer"))?;
+        .map_err(|cause| anyhow!("cannot start {threads} threads: {cause}; give fewer with --threads"))?;
     let line = ProgressLine::new(arguments.quiet);
     let result = pool.install(|| {
         let mut polycrystal =
@@ -69,7 +67,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
     line.clear();
     let polycrystal = result?;
     if !arguments.quiet {
-        eprintln!("{}\nwritten     {}", Summary(&polycrystal), output.path().display());
+        say(&format!("{}\nwritten     {}", Summary(&polycrystal), output.path().display()));
     }
     Ok(())
 }

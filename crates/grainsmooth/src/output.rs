@@ -81,8 +81,8 @@ impl<Format: Copy> Output<Format> {
         let target = match fs::metadata(&path) {
             Ok(present) if !present.is_file() => return Err(Error::OutputNotAFile { path }),
             Ok(present) if present.permissions().readonly() => {
-                let source = io::Error::new(io::ErrorKind::PermissionDenied, "the present file is read-only");
-                return Err(Error::OutputNotWritable { path, source });
+                let cause = io::Error::new(io::ErrorKind::PermissionDenied, "the present file is read-only");
+                return Err(Error::OutputNotWritable { path, cause });
             }
             // Renaming over a link would replace the link.
             Ok(_) => fs::canonicalize(&path),
@@ -91,7 +91,7 @@ impl<Format: Copy> Output<Format> {
         };
         let output = match target {
             Ok(target) => Self { path, target, format },
-            Err(source) => return Err(Error::OutputNotWritable { path, source }),
+            Err(cause) => return Err(Error::OutputNotWritable { path, cause }),
         };
         if !output.directory().is_dir() {
             let directory = output.directory().to_owned();
@@ -99,7 +99,7 @@ impl<Format: Copy> Output<Format> {
         }
         match output.temporary_file() {
             Ok(_) => Ok(output),
-            Err(source) => Err(Error::OutputNotWritable { path: output.path, source }),
+            Err(cause) => Err(Error::OutputNotWritable { path: output.path, cause }),
         }
     }
 
@@ -120,7 +120,7 @@ impl<Format: Copy> Output<Format> {
     /// [`Error::WriteOutput`] when `content` or the file system fails. The temporary file is removed then,
     /// and a present file stays as it was.
     pub fn write(&self, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
-        self.try_to_write(content).map_err(|source| Error::WriteOutput { path: self.path.clone(), source })
+        self.try_to_write(content).map_err(|cause| Error::WriteOutput { path: self.path.clone(), cause })
     }
 
     fn try_to_write(&self, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {

@@ -135,11 +135,14 @@ fn located(error: VoronoiError, config: &Config, seeds: &[FileSeed]) -> Error {
     let seed = match &error {
         VoronoiError::NotFinite { seed, .. }
         | VoronoiError::OutsideDomain { seed, .. }
-        | VoronoiError::NotTriangulable { seed, .. }
-        | VoronoiError::DuplicateSeeds { second: seed, .. } => *seed,
+        | VoronoiError::NotTriangulable { seed, .. } => *seed,
+        VoronoiError::DuplicateSeeds { first, second, position } => {
+            let lines = [seeds[*first].line, seeds[*second].line];
+            return Error::DuplicateSeedsInFile { path: path.clone(), lines, position: *position };
+        }
         _ => return error.into(),
     };
-    Error::SeedInFile { path: path.clone(), line: seeds[seed].line, source: error }
+    Error::SeedInFile { path: path.clone(), line: seeds[seed].line, cause: error }
 }
 
 /// The size of a tessellation's control mesh: a point per vertex, edge and face, two triangles per corner of a face.

@@ -81,7 +81,7 @@ fn wanted(dimension: Dimension) -> &'static str {
 /// [`Error::BadSeedLine`] at the first line that is not as above or holds a number that is not finite.
 pub fn read_seed_file(path: &Path, dimension: Dimension) -> Result<Vec<FileSeed>, Error> {
     let content =
-        fs::read(path).map_err(|source| Error::SeedFileUnreadable { path: path.to_owned(), source })?;
+        fs::read(path).map_err(|cause| Error::SeedFileUnreadable { path: path.to_owned(), cause })?;
     let mut seeds = Vec::new();
     let mut names_may_follow = true;
     for (index, bytes) in content.split(|&byte| byte == b'\n').enumerate() {

@@ -23,35 +23,29 @@ impl fmt::Display for Summary<'_> {
         let interior = network.boundaries().iter().filter(|boundary| boundary.is_interior()).count();
         let walls = network.boundaries().len() - interior;
         writeln!(out, "boundaries  {interior} between grains, {walls} on the walls")?;
-        match network.domain().dimension() {
-            Dimension::Three => {
-                writeln!(
-                    out,
-                    "junctions   {} triple lines, {} quadruple points",
-                    counts.triple_lines, counts.quadruple_points
-                )?;
-                writeln!(
-                    out,
-                    "mesh        {points} points, {elements} triangles after {levels} subdivisions"
-                )?;
-            }
+        let (junctions, element, measure, size) = match network.domain().dimension() {
             Dimension::Two => {
-                writeln!(out, "junctions   {} triple points", counts.triple_lines)?;
-                writeln!(
-                    out,
-                    "mesh        {points} points, {elements} segments after {levels} subdivisions"
-                )?;
+                (format!("{} triple points", counts.triple_lines), "segment", "areas", "length")
             }
-        }
+            Dimension::Three => {
+                let counts = format!(
+                    "{} triple lines, {} quadruple points",
+                    counts.triple_lines, counts.quadruple_points
+                );
+                (counts, "triangle", "volumes", "area")
+            }
+        };
+        writeln!(out, "junctions   {junctions}")?;
+        writeln!(out, "mesh        {points} points, {elements} {element}s at level {levels}")?;
         if let (Some(before), Some(after)) = (polycrystal.angles_before, polycrystal.angles_after) {
             writeln!(out, "angles      {} before relaxation, {} after", Angle(before), Angle(after))?;
         }
         let validation = &polycrystal.validation;
         let error = validation.largest_volume_error;
-        writeln!(out, "volumes     largest relative error of a grain {error:.1e}")?;
+        writeln!(out, "{measure:12}largest relative error of a grain {error:.1e}")?;
         writeln!(
             out,
-            "validation  good: grains closed, no folds, no points or triangles twice or without size"
+            "validation  good: every grain closed, no fold, no point twice, no {element} without {size}"
         )?;
         write!(out, "time       ")?;
         for (stage, time) in &polycrystal.times {

@@ -96,21 +96,27 @@ pub fn relax(
     }
     let mut flow = Flow::new(network);
     let step_time = time * network.mean_grain_size().powi(2) / STEPS as f64;
+    let mut states = vec![control_points.to_vec()];
     let mut count = 0;
-    // Where the finest level folds although no step did, the flow runs again with that rigid.
     for _ in 0..ATTEMPTS {
-        let mut points = control_points.to_vec();
-        for step in 0..STEPS {
-            points = flow.step(&points, step_time)?;
-            progress(step + 1, STEPS);
+        while states.len() <= STEPS {
+            states.push(flow.step(&states[states.len() - 1], step_time)?);
+            progress(states.len() - 1, STEPS);
         }
+        let mut points = states[STEPS].clone();
         flow.restore_volumes(&mut points)?;
-        let folds = folded_edges(network.finest(), &network.subdivide(&points), 0.0);
+        let folds = flow.finest_folds(&points);
         if folds.is_empty() {
             return Ok(Relaxed { control_points: points, steps: STEPS });
         }
+        // The finest level folds although no step did: back to where it did not, and on with an eye on that level.
         count = folds.len();
+        flow.checks_finest = true;
         flow.make_rigid(network.levels().len() - 1, folds.into_iter().flatten());
+        states.pop();
+        while states.len() > 1 && !flow.finest_folds(&states[states.len() - 1]).is_empty() {
+            states.pop();
+        }
     }
     Err(NetworkError::Folded { count })
 }
@@ -123,19 +129,16 @@ struct Flow<'a> {
     level: usize,
     corners: FaceCorners,
     clusters: Clusters,
+    /// Whether each step is checked for folds on the finest level too, which is seldom worth its time.
+    checks_finest: bool,
 }
 
 impl<'a> Flow<'a> {
     fn new(network: &'a Network) -> Self {
         let level = (network.levels().len() - 1).min(1);
         let clusters = Clusters::new(network.control_mesh().vertex_count());
-        Self {
-            network,
-            patches: Patches::new(network, level),
-            level,
-            corners: FaceCorners::new(network),
-            clusters,
-        }
+        let (patches, corners) = (Patches::new(network, level), FaceCorners::new(network));
+        Self { network, patches, level, corners, clusters, checks_finest: false }
     }
 
     /// One step of curvature flow; tried again where it folds.
@@ -151,12 +154,17 @@ impl<'a> Flow<'a> {
             let moved: Vec<DVec3> = points.iter().zip(&moves).map(|(point, by)| *point + *by).collect();
             let broken = self.broken_elements(&before, &moved);
             let folding = self.corners.folding(points, &moved);
-            if broken.is_empty() && folding.is_empty() {
-                return Ok(moved);
-            }
             count = broken.len() + folding.len();
             self.make_rigid(self.level, broken.into_iter());
             folding.iter().for_each(|corner| self.clusters.join_all(corner));
+            if count == 0 && self.checks_finest {
+                let folds = self.finest_folds(&moved);
+                count = folds.len();
+                self.make_rigid(self.network.levels().len() - 1, folds.into_iter().flatten());
+            }
+            if count == 0 {
+                return Ok(moved);
+            }
         }
         Err(NetworkError::Folded { count })
     }
@@ -207,6 +215,10 @@ impl<'a> Flow<'a> {
     /// The points of the level that carries the flow.
     fn refined(&self, points: &[DVec3]) -> Vec<DVec3> {
         if self.level == 0 { points.to_vec() } else { self.network.stencils(0).apply(points) }
+    }
+
+    fn finest_folds(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
+        folded_edges(self.network.finest(), &self.network.subdivide(points), 0.0)
     }
 
     /// Elements that a step has bent or turned too far.

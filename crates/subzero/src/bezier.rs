@@ -111,6 +111,11 @@ impl<P: Point> BezierSurface<P> {
         Ok(Self { rows: control.into_iter().map(BezierCurve::new).collect::<Result<_, _>>()? })
     }
 
+    /// The bicubic patch whose control point i, j is `control[i][j]`, with i along u and j along v.
+    pub fn bicubic(control: [[P; 4]; 4]) -> Self {
+        Self { rows: control.map(|row| BezierCurve { control: row.to_vec() }).to_vec() }
+    }
+
     /// The point at `(u, v)`.
     pub fn point(&self, u: f64, v: f64) -> P {
         self.curve_along_u(|row| row.point(v)).point(u)

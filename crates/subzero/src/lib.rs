@@ -44,6 +44,7 @@ mod polygon_mesh;
 mod sharpness;
 mod split_and_flip;
 mod stencil;
+mod teapot;
 mod triangle_build;
 mod triangle_mesh;
 mod triangle_refine;
@@ -64,6 +65,7 @@ pub use mesh_checks::check_finite;
 pub use point::Point;
 pub use polygon_mesh::PolygonMesh;
 pub use stencil::StencilTable;
+pub use teapot::teapot;
 pub use triangle_mesh::TriangleMesh;
 
 /// One step of subdivision: the finer mesh, and how its points follow from the coarser mesh's.

@@ -93,18 +93,10 @@ impl TriangleMesh {
                     }
                     return;
                 }
-                let first_inner = 2 * counts.edges;
                 let middle = on_old(counts.vertices + e);
-                // In the triangle of each side: the vertices on the other edges' halves at this edge's ends, and on the
-                // edges that cut off these ends' corners.
-                let side = |h: u32| {
-                    let [after, before] = [next(h), prev(h)];
-                    let at_start = on_parent_edge(grandparent.directed_edge(before) ^ 1);
-                    let at_end = on_parent_edge(grandparent.directed_edge(after));
-                    (at_start, on_parent_edge(first_inner + h), on_parent_edge(first_inner + after), at_end)
-                };
-                let (left_start, left_cut_start, left_cut_end, left_end) = side(along);
-                let (right_end, right_cut_end, right_cut_start, right_start) = side(against);
+                let (left_start, left_cut_start, left_cut_end, left_end) = grandparent.beside(along, points);
+                let (right_end, right_cut_end, right_cut_start, right_start) =
+                    grandparent.beside(against, points);
                 let start = on_old(grandparent.start(along));
                 let [half, rest] = [on_parent_edge(2 * e), on_parent_edge(2 * e + 1)];
                 on_halves[0] = vertex_point(
@@ -219,6 +211,23 @@ impl TriangleMesh {
     }
 }
 
+impl TriangleMesh {
+    /// Points of the mesh two levels on, in the triangle of a half-edge: on the half of the edge before it at its start, on
+    /// the edges that cut off its start and its end, and on the half of the edge after it at its end.
+    #[inline(always)]
+    fn beside<P: Point>(&self, h: u32, points: &[P]) -> (P, P, P, P) {
+        let [after, before] = [next(h), prev(h)];
+        let first_cut = 2 * id(self.edge_count());
+        let on_child_edge = |e: u32| points[self.vertex_count() + self.edge_count() + e as usize];
+        (
+            on_child_edge(self.directed_edge(before) ^ 1),
+            on_child_edge(first_cut + h),
+            on_child_edge(first_cut + after),
+            on_child_edge(self.directed_edge(after)),
+        )
+    }
+}
+
 /// The new place of a smooth vertex.
 fn smooth_point<P: Point>(vertex: P, ring: impl Iterator<Item = P>, weights: LoopWeights) -> P {
     let (valence, sum) = ring.fold((0, P::zero()), |(valence, sum), p| (valence + 1, sum.add_scaled(p, 1.0)));
@@ -232,20 +241,22 @@ fn smooth_point<P: Point>(vertex: P, ring: impl Iterator<Item = P>, weights: Loo
 #[inline(always)]
 fn vertex_point<P: Point>(vertex: P, ring: [P; 6]) -> P {
     let [a, b, c, d, e, f] = ring;
-    let ring = P::zero()
-        .add_scaled(a, 1.0)
+    let ring = a
         .add_scaled(b, 1.0)
         .add_scaled(c, 1.0)
         .add_scaled(d, 1.0)
         .add_scaled(e, 1.0)
-        .add_scaled(f, 1.0);
-    P::zero().add_scaled(vertex, 0.625).add_scaled(ring, 0.0625)
+        .add_scaled(f, 1.0)
+        .add_scaled(vertex, 10.0);
+    P::zero().add_scaled(ring, 0.0625)
 }
 
 /// The point on a smooth edge from its ends and the apexes of its triangles.
 #[inline(always)]
 fn edge_point<P: Point>(a: P, b: P, c: P, d: P) -> P {
-    P::zero().add_scaled(a, 0.375).add_scaled(b, 0.375).add_scaled(c, 0.125).add_scaled(d, 0.125)
+    let ends = a.add_scaled(b, 1.0);
+    let apexes = c.add_scaled(d, 1.0);
+    P::zero().add_scaled(apexes.add_scaled(ends, 3.0), 0.125)
 }
 
 fn sum_row<P: Point>(points: &[P], row: impl FnOnce(&mut dyn FnMut(u32, f64))) -> P {

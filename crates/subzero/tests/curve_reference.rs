@@ -6,7 +6,7 @@ mod common;
 use common::{assert_close, load};
 use glam::DVec3;
 use serde::Deserialize;
-use subzero::{BezierCurve, BezierSurface, CurveMesh};
+use subzero::{BezierCurve, BezierSurface, CurveMesh, teapot};
 
 #[derive(Deserialize)]
 struct LineReference {
@@ -136,4 +136,37 @@ fn bezier_surface_matches_bernstein() {
     // A triangle's normal is near the surface's.
     let [a, b, c] = triangles[0].map(|v| points[v as usize]);
     assert!((b - a).cross(c - a).dot(surface.normal(0.1, 0.1).unwrap()) > 0.0);
+}
+
+#[test]
+fn the_teapot_looks_outward() {
+    let patches = teapot();
+    assert_eq!(patches.len(), 32);
+    let mut heights = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut volume = 0.0;
+    for patch in &patches {
+        let (points, triangles) = patch.tessellate(8, 8).unwrap();
+        for point in &points {
+            heights = (heights.0.min(point.z), heights.1.max(point.z));
+        }
+        for triangle in triangles {
+            let [a, b, c] = triangle.map(|v| points[v as usize]);
+            volume += a.dot(b.cross(c)) / 6.0;
+        }
+    }
+    assert!(heights.0 == 0.0 && (heights.1 - 3.15).abs() < 1e-12, "{heights:?}");
+    // The pot fills a little less than a cylinder of radius 2 and height 2.4; the lid and rim add their shells.
+    assert!((15.0..32.0).contains(&volume), "{volume}");
+    // At the middle of a body patch the normal points away from the axis, at the bottom down, on top up.
+    for patch in &patches[12..16] {
+        let [point, normal] = [patch.point(0.5, 0.5), patch.normal(0.5, 0.5).unwrap()];
+        assert!(normal.truncate().dot(point.truncate()) > 0.9 * point.truncate().length());
+    }
+    assert!(patches[20].normal(0.9, 0.5).unwrap().z < -0.9);
+    assert!(patches[4].normal(0.5, 0.5).unwrap().z > 0.7);
+    // Handle and spout: away from the plane of symmetry.
+    for patch in &patches[24..] {
+        let [point, normal] = [patch.point(0.5, 0.5), patch.normal(0.5, 0.5).unwrap()];
+        assert!(normal.y * point.y > 0.0);
+    }
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::convex_cell::ConvexCell;
 use crate::generator::{Generator, VertexKey, vertex_key};
-use crate::grid::SeedGrid;
+use crate::near_seeds::NearSeeds;
 use crate::predicate::ExactInput;
 
 /// Cells that one task cuts: enough to spread the cost of its buffers, few enough to share the work evenly.
@@ -135,13 +135,14 @@ fn coincide(cell: &ConvexCell, seed: u32, v: usize, w: usize, input: ExactInput)
 
 /// Cuts all cells in parallel; cell c of the result's batch b is that of seed `b * BATCH + c`.
 pub(crate) fn cut_cells(input: ExactInput) -> Vec<CellBatch> {
-    let grid = SeedGrid::new(input.seeds);
+    let near_seeds = NearSeeds::new(input);
     in_batches(input.seeds.len(), |seeds| {
         let mut batch = CellBatch::new();
         let mut cell = ConvexCell::new();
-        let mut near = Vec::new();
+        let mut buffer = Vec::new();
         for seed in seeds {
-            cut_cell(&mut cell, seed, &grid, &mut near, input);
+            cell.start(seed, input);
+            near_seeds.cut(&mut cell, seed, &mut buffer);
             batch.push_cell(seed, &cell, input);
         }
         batch
@@ -156,34 +157,4 @@ pub(crate) fn in_batches(
     let seed_id = |count: usize| u32::try_from(count).expect("seed ids were checked to fit");
     let starts: Vec<usize> = (0..seed_count).step_by(BATCH).collect();
     starts.par_iter().map(|start| cut(seed_id(*start)..seed_id(seed_count.min(start + BATCH)))).collect()
-}
-
-/// Cuts one cell with its neighbours in order of distance, until no further seed can reach it.
-fn cut_cell(
-    cell: &mut ConvexCell,
-    seed: u32,
-    grid: &SeedGrid,
-    near: &mut Vec<(f64, u32)>,
-    input: ExactInput,
-) {
-    let own = input.seeds[seed as usize];
-    cell.start(seed, input);
-    let mut shells = grid.shells(own);
-    while shells.distance_ahead() <= cell.security_radius() {
-        near.clear();
-        let reach = cell.security_radius();
-        shells.next_shell(|other| {
-            let distance = input.seeds[other as usize].distance(own);
-            if other != seed && distance <= reach {
-                near.push((distance, other));
-            }
-        });
-        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        for (distance, other) in near.iter() {
-            if *distance > cell.security_radius() {
-                break;
-            }
-            cell.cut_with_bisector(*other, input);
-        }
-    }
 }

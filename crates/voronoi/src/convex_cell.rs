@@ -32,6 +32,8 @@ struct Plane {
     generator: Generator,
     normal: DVec3,
     offset: f64,
+    /// The offset's terms without their signs: what its rounding error is relative to.
+    offset_size: f64,
     /// Length of the normal.
     length: f64,
 }
@@ -92,7 +94,13 @@ impl ConvexCell {
         for wall in input.domain.walls() {
             let normal = wall.outward_normal();
             let offset = normal[wall.axis()] * (input.domain.wall_coordinate(*wall) - own[wall.axis()]);
-            self.planes.push(Plane { generator: Generator::wall(*wall), normal, offset, length: 1.0 });
+            self.planes.push(Plane {
+                generator: Generator::wall(*wall),
+                normal,
+                offset,
+                offset_size: offset.abs(),
+                length: 1.0,
+            });
         }
         for corner in 0..8u16 {
             let upper = [corner & 1, (corner >> 1) & 1, (corner >> 2) & 1];
@@ -104,20 +112,26 @@ impl ConvexCell {
         self.update_radius();
     }
 
-    /// The distance from which on no seed's bisector reaches the cell.
-    pub(crate) fn security_radius(&self) -> f64 {
-        // A bisector lies half way to its seed. The margin covers the rounding of a distance.
-        2.0 * self.radius * (1.0 + 1e-12)
+    /// The distance from which on no seed reaches the cell, if no weight exceeds the cell's own by more than
+    /// `weight_excess`; negative for an empty cell.
+    pub(crate) fn security_radius(&self, weight_excess: f64) -> f64 {
+        if self.triples.is_empty() {
+            return -1.0;
+        }
+        // The bisector with a seed at distance d lies (d^2 - excess) / (2 d) away. The margin covers rounding.
+        (self.radius + (self.radius * self.radius + weight_excess).sqrt()) * (1.0 + 1e-12)
     }
 
-    /// Cuts off what lies nearer to another seed.
+    /// Cuts off what lies nearer to another seed, by power distance.
     pub(crate) fn cut_with_bisector(&mut self, other: u32, input: ExactInput) {
         let normal = input.seeds[other as usize] - input.seeds[self.seed as usize];
         let squared_length = normal.length_squared();
+        let (own_weight, weight) = (input.weight(self.seed), input.weight(other));
         let plane = Plane {
             generator: Generator::seed(other),
             normal,
-            offset: 0.5 * squared_length,
+            offset: 0.5 * (squared_length + (own_weight - weight)),
+            offset_size: 0.5 * (squared_length + own_weight.abs() + weight.abs()),
             length: squared_length.sqrt(),
         };
         if self.find_cut(&plane, input) {
@@ -128,9 +142,9 @@ impl ConvexCell {
 
     /// Fills `self.cut` with the vertices beyond the plane; false where there are none.
     fn find_cut(&mut self, plane: &Plane, input: ExactInput) -> bool {
-        let Plane { normal, offset, .. } = *plane;
+        let Plane { normal, offset, offset_size, .. } = *plane;
         let sum = normal.x.abs() + normal.y.abs() + normal.z.abs();
-        let own_error = EVALUATION_ERROR * offset.abs();
+        let own_error = EVALUATION_ERROR * offset_size;
         let count = self.triples.len();
         let (x, y, z, errors) = (&self.x[..count], &self.y[..count], &self.z[..count], &self.errors[..count]);
         // Most planes tried miss the cell: one pass without branches tells.
@@ -219,7 +233,7 @@ impl ConvexCell {
         // Cauchy's inequality bounds the sums of absolute products by products of lengths.
         let lengths = a.length * b.length * c.length;
         let numerators =
-            lengths * (a.offset.abs() / a.length + b.offset.abs() / b.length + c.offset.abs() / c.length);
+            lengths * (a.offset_size / a.length + b.offset_size / b.length + c.offset_size / c.length);
         let determinants = 2.0 * lengths;
         let safe_determinant = determinant - INTERSECTION_ERROR * determinants;
         let size = position.abs().max_element();

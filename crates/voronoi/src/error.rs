@@ -38,6 +38,14 @@ pub enum VoronoiError {
         /// The domain in words, such as `[0, 1] x [0, 1] x [0, 1]`.
         domain: String,
     },
+    /// A power weight is NaN or infinite.
+    #[error("seed {seed} has the weight {weight}, which is not a finite number")]
+    BadWeight {
+        /// Position of the seed in the input.
+        seed: usize,
+        /// Its weight.
+        weight: f64,
+    },
     /// Two seeds share all coordinates, so neither has a cell of its own.
     #[error("seeds {first} and {second} stand at the same place {}; remove one of them", Point(*.position))]
     DuplicateSeeds {

@@ -7,6 +7,7 @@ use spade::{DelaunayTriangulation, Point2, Triangulation};
 
 use crate::batch::{CellBatch, in_batches};
 use crate::generator::{Generator, vertex_key};
+use crate::near_seeds::NearSeeds;
 use crate::polygon::ConvexPolygon;
 use crate::predicate::ExactInput;
 use crate::{Domain, VoronoiError};
@@ -14,23 +15,32 @@ use crate::{Domain, VoronoiError};
 type Delaunay = DelaunayTriangulation<Point2<f64>>;
 type Edge<'a> = DirectedEdgeHandle<'a, Point2<f64>, (), (), ()>;
 
-/// Cuts all cells in parallel.
+/// Cuts all cells in parallel: with the neighbours in the Delaunay triangulation, or, if there are weights, with all seeds
+/// that are near enough.
 pub(crate) fn cut_polygons(input: ExactInput) -> Result<Vec<CellBatch>, VoronoiError> {
+    if input.weights.is_some() {
+        let near_seeds = NearSeeds::new(input);
+        return Ok(cut_with(input, |polygon, seed| near_seeds.cut(polygon, seed, &mut Vec::new())));
+    }
     let delaunay = triangulate(input)?;
-    Ok(in_batches(input.seeds.len(), |seeds| {
+    Ok(cut_with(input, |polygon, seed| {
+        for other in sharing_a_circle(&delaunay, seed) {
+            polygon.cut_with_bisector(other, input);
+        }
+    }))
+}
+
+fn cut_with(input: ExactInput, cut: impl Fn(&mut ConvexPolygon, u32) + Sync) -> Vec<CellBatch> {
+    in_batches(input.seeds.len(), |seeds| {
         let mut batch = CellBatch::new();
         let mut polygon = ConvexPolygon::new();
-        let mut candidates = Vec::new();
         for seed in seeds {
-            sharing_a_circle(&delaunay, seed, &mut candidates);
             polygon.start(seed, input);
-            for other in &candidates {
-                polygon.cut_with_bisector(*other, input);
-            }
+            cut(&mut polygon, seed);
             push_cell(&mut batch, seed, &polygon, input);
         }
         batch
-    }))
+    })
 }
 
 fn triangulate(input: ExactInput) -> Result<Delaunay, VoronoiError> {
@@ -54,10 +64,10 @@ fn scale_to_one(domain: &Domain) -> f64 {
     2f64.powi(-exponent)
 }
 
-/// Fills `candidates` with all seeds that share an empty circle with `seed`: its Delaunay neighbours, and those that only
-/// the triangulation's arbitrary choice among equal circles separates from it. The exact cutter makes its own choice.
-fn sharing_a_circle(delaunay: &Delaunay, seed: u32, candidates: &mut Vec<u32>) {
-    candidates.clear();
+/// All seeds that share an empty circle with `seed`: its Delaunay neighbours, and those that only the triangulation's
+/// arbitrary choice among equal circles separates from it. The exact cutter makes its own choice.
+fn sharing_a_circle(delaunay: &Delaunay, seed: u32) -> Vec<u32> {
+    let mut candidates = Vec::new();
     let vertex = delaunay.vertex(FixedVertexHandle::from_index(seed as usize));
     for edge in vertex.out_edges() {
         candidates.push(id(edge.to().fix()));
@@ -79,6 +89,7 @@ fn sharing_a_circle(delaunay: &Delaunay, seed: u32, candidates: &mut Vec<u32>) {
     }
     candidates.sort_unstable();
     candidates.dedup();
+    candidates
 }
 
 fn id(vertex: FixedVertexHandle) -> u32 {

@@ -22,6 +22,8 @@ struct Line {
     generator: Generator,
     normal: DVec2,
     offset: f64,
+    /// The offset's terms without their signs: what its rounding error is relative to.
+    offset_size: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -56,20 +58,36 @@ impl ConvexPolygon {
         for wall in [2, 1, 3, 0].map(|index| Wall::ALL[index]) {
             let normal = wall.outward_normal();
             let offset = normal[wall.axis()] * (input.domain.wall_coordinate(wall) - own[wall.axis()]);
-            self.lines.push(Line { generator: Generator::wall(wall), normal: normal.truncate(), offset });
+            self.lines.push(Line {
+                generator: Generator::wall(wall),
+                normal: normal.truncate(),
+                offset,
+                offset_size: offset.abs(),
+            });
         }
         for k in 0..4 {
             self.corners.push(self.intersect(self.lines[(k + 3) % 4], self.lines[k], input));
         }
     }
 
-    /// Cuts off what lies nearer to another seed.
+    /// Cuts off what lies nearer to another seed, by power distance.
     pub(crate) fn cut_with_bisector(&mut self, other: u32, input: ExactInput) {
         let normal = (input.seeds[other as usize] - input.seeds[self.seed as usize]).truncate();
-        let line = Line { generator: Generator::seed(other), normal, offset: 0.5 * normal.length_squared() };
+        let (own_weight, weight) = (input.weight(self.seed), input.weight(other));
+        let squared_length = normal.length_squared();
+        let line = Line {
+            generator: Generator::seed(other),
+            normal,
+            offset: 0.5 * (squared_length + (own_weight - weight)),
+            offset_size: 0.5 * (squared_length + own_weight.abs() + weight.abs()),
+        };
         let count = self.corners.len();
         let beyond: Vec<bool> = (0..count).map(|k| self.is_beyond(k, &line, input)).collect();
         let Some(first) = (0..count).find(|k| beyond[*k] && !beyond[(k + count - 1) % count]) else {
+            if beyond.contains(&true) {
+                self.lines.clear();
+                self.corners.clear();
+            }
             return;
         };
         let removed = (0..count).take_while(|k| beyond[(first + k) % count]).count();
@@ -89,7 +107,7 @@ impl ConvexPolygon {
         let value = line.normal.dot(position) - line.offset;
         let sum = line.normal.x.abs() + line.normal.y.abs();
         let largest = position.abs().max_element();
-        let bound = sum * (error + ROUNDING_ERROR * largest) + ROUNDING_ERROR * line.offset.abs();
+        let bound = sum * (error + ROUNDING_ERROR * largest) + ROUNDING_ERROR * line.offset_size;
         if value.abs() > bound {
             return value > 0.0;
         }
@@ -103,8 +121,8 @@ impl ConvexPolygon {
         let position = (incoming.normal.perp() * outgoing.offset - outgoing.normal.perp() * incoming.offset)
             / determinant;
         let lengths = incoming.normal.length() * outgoing.normal.length();
-        let numerators = outgoing.offset.abs() * incoming.normal.length()
-            + incoming.offset.abs() * outgoing.normal.length();
+        let numerators =
+            outgoing.offset_size * incoming.normal.length() + incoming.offset_size * outgoing.normal.length();
         let size = position.abs().max_element();
         let error = ROUNDING_ERROR * (numerators + size * lengths) / (determinant - ROUNDING_ERROR * lengths);
         if error >= 0.0 && error <= LOOSE * position.length() {
@@ -113,6 +131,13 @@ impl ConvexPolygon {
         let planes = [incoming.generator, outgoing.generator, Generator::wall(PLANE)];
         let position = input.vertex(self.seed, planes).truncate();
         Corner { position, error: 2.0 * f64::EPSILON * position.abs().max_element() }
+    }
+
+    /// The distance from which on no seed reaches the cell, see [`ConvexCell::security_radius`](crate::convex_cell::ConvexCell).
+    pub(crate) fn security_radius(&self, weight_excess: f64) -> f64 {
+        let reach = |corner: &Corner| corner.position.length() + 2.0 * corner.error;
+        let radius = self.corners.iter().map(reach).fold(f64::NEG_INFINITY, f64::max);
+        if radius < 0.0 { -1.0 } else { (radius + (radius * radius + weight_excess).sqrt()) * (1.0 + 1e-12) }
     }
 
     pub(crate) fn corner_count(&self) -> usize {

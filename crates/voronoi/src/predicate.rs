@@ -1,7 +1,7 @@
 //! Exact decisions, for when floating point cannot tell.
 //!
 //! A cell of seed i is bounded by planes `n . y <= D / 2`, with y relative to the seed: for a bisector with seed j,
-//! `n = s_j - s_i` and `D = |n|^2`; for a wall, `n` is its outward normal and `D` twice the distance to it. Three planes
+//! `n = s_j - s_i` and `D = |n|^2 + w_i - w_j` with the power weights w; for a wall, `n` is its outward normal and `D` twice the distance to it. Three planes
 //! a, b, c with positive determinant meet in a vertex; a fourth plane m cuts it off when
 //!
 //! `n_m . (D_a n_b x n_c + D_b n_c x n_a + D_c n_a x n_b) - D_m det(n_a, n_b, n_c) > 0`.
@@ -34,6 +34,8 @@ pub(crate) struct Decision {
 pub(crate) struct ExactInput<'a> {
     pub(crate) domain: &'a Domain,
     pub(crate) seeds: &'a [DVec3],
+    /// Power weights, one per seed; all 0 if there are none.
+    pub(crate) weights: Option<&'a [f64]>,
 }
 
 struct ExactPlane {
@@ -42,6 +44,11 @@ struct ExactPlane {
 }
 
 impl ExactInput<'_> {
+    /// Power weight of a seed.
+    pub(crate) fn weight(self, seed: u32) -> f64 {
+        self.weights.map_or(0.0, |weights| weights[seed as usize])
+    }
+
     /// Whether plane `cutter` cuts off the vertex of `planes` (in positive orientation) from the cell of `seed`.
     pub(crate) fn decide(self, seed: u32, planes: [Generator; 3], cutter: Generator) -> Decision {
         let exponent = self.common_exponent(seed, &[planes[0], planes[1], planes[2], cutter]);
@@ -84,17 +91,23 @@ impl ExactInput<'_> {
         DVec3::new(coordinate(0), coordinate(1), coordinate(2))
     }
 
-    /// The smallest exponent such that all coordinates involved are integers times two to it.
+    /// The smallest exponent such that all coordinates involved are integers times two to it, and all weights integers times
+    /// two to twice it.
     fn common_exponent(self, seed: u32, generators: &[Generator]) -> i32 {
         let smallest = |point: DVec3| {
             let exponents = point.to_array().map(decompose);
             exponents.into_iter().filter(|(mantissa, _)| *mantissa != 0).map(|(_, e)| e).min()
         };
+        let of_seed = |seed: u32| {
+            let (mantissa, exponent) = decompose(self.weight(seed));
+            let of_weight = (mantissa != 0).then_some(exponent.div_euclid(2));
+            of_weight.into_iter().chain(smallest(self.seeds[seed as usize])).min()
+        };
         let of_planes = generators.iter().filter_map(|generator| match generator.side() {
-            Side::Cell(cell) => smallest(self.seeds[cell.index()]),
+            Side::Cell(cell) => of_seed(cell.0),
             Side::Wall(wall) => smallest(DVec3::splat(self.domain.wall_coordinate(wall))),
         });
-        of_planes.chain(smallest(self.seeds[seed as usize])).min().unwrap_or(0)
+        of_planes.chain(of_seed(seed)).min().unwrap_or(0)
     }
 
     fn plane(self, seed: u32, generator: Generator, exponent: i32) -> ExactPlane {
@@ -104,7 +117,8 @@ impl ExactInput<'_> {
                 let other = self.seeds[cell.index()];
                 let normal =
                     [0, 1, 2].map(|axis| to_integer(other[axis], exponent) - to_integer(own[axis], exponent));
-                let doubled_offset = dot(&normal, &normal);
+                let weight = |seed: u32| to_integer(self.weight(seed), 2 * exponent);
+                let doubled_offset = dot(&normal, &normal) + weight(seed) - weight(cell.0);
                 ExactPlane { normal, doubled_offset }
             }
             Side::Wall(wall) => {
@@ -194,7 +208,7 @@ mod tests {
 
     fn decide(seeds: &[DVec3], seed: u32, planes: [u32; 3], cutter: u32) -> Decision {
         let domain = Domain::unit_cube();
-        let input = ExactInput { domain: &domain, seeds };
+        let input = ExactInput { domain: &domain, seeds, weights: None };
         input.decide(seed, planes.map(Generator::seed), Generator::seed(cutter))
     }
 
@@ -225,11 +239,11 @@ mod tests {
     fn exact_vertex_is_the_circumcentre() {
         let domain = Domain::unit_cube();
         let seeds = seeds();
-        let input = ExactInput { domain: &domain, seeds: &seeds };
+        let input = ExactInput { domain: &domain, seeds: &seeds, weights: None };
         let vertex = input.vertex(0, [1, 2, 3].map(Generator::seed));
         assert_eq!(vertex, DVec3::splat(0.5));
         let tiny: Vec<DVec3> = seeds.iter().map(|seed| *seed * 1e-200).collect();
-        let input = ExactInput { domain: &domain, seeds: &tiny };
+        let input = ExactInput { domain: &domain, seeds: &tiny, weights: None };
         assert_eq!(input.vertex(0, [1, 2, 3].map(Generator::seed)), DVec3::splat(0.5e-200));
     }
 
@@ -237,7 +251,7 @@ mod tests {
     fn walls_take_part_in_decisions() {
         let domain = Domain::unit_cube();
         let seeds = [DVec3::new(0.25, 0.5, 0.5), DVec3::new(0.75, 0.5, 0.5)];
-        let input = ExactInput { domain: &domain, seeds: &seeds };
+        let input = ExactInput { domain: &domain, seeds: &seeds, weights: None };
         let walls = [Wall::ALL[1], Wall::ALL[3], Wall::ALL[5]].map(Generator::wall);
         assert!(input.decide(0, walls, Generator::seed(1)).beyond);
         assert_eq!(input.vertex(0, walls), DVec3::new(0.75, 0.5, 0.5));

@@ -68,8 +68,30 @@ impl Tessellation {
     /// # Errors
     /// [`VoronoiError`] names the first seed that is not finite, outside the domain or a duplicate.
     pub fn new(domain: &Domain, seeds: &[DVec3]) -> Result<Self, VoronoiError> {
+        Self::cut(ExactInput { domain, seeds, weights: None })
+    }
+
+    /// Cuts the domain into the power (Laguerre) cells of the seeds: a point belongs to the seed s with the smallest
+    /// `|x - s|^2 - w`. The weight w is the squared radius of a sphere around the seed.
+    ///
+    /// A seed whose neighbours outweigh it has no cell; [`Self::empty_cells`] lists those.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; [`VoronoiError::BadWeight`] for a weight that is not finite.
+    ///
+    /// # Panics
+    /// When there are not as many weights as seeds.
+    pub fn power(domain: &Domain, seeds: &[DVec3], weights: &[f64]) -> Result<Self, VoronoiError> {
+        assert_eq!(seeds.len(), weights.len(), "one weight for each seed");
+        if let Some((seed, weight)) = weights.iter().enumerate().find(|(_, weight)| !weight.is_finite()) {
+            return Err(VoronoiError::BadWeight { seed, weight: *weight });
+        }
+        Self::cut(ExactInput { domain, seeds, weights: Some(weights) })
+    }
+
+    fn cut(input: ExactInput) -> Result<Self, VoronoiError> {
+        let ExactInput { domain, seeds, .. } = input;
         check_seeds(domain, seeds)?;
-        let input = ExactInput { domain, seeds };
         let batches = match domain.dimension() {
             Dimension::Three => cut_cells(input),
             Dimension::Two => cut_polygons(input)?,
@@ -122,6 +144,12 @@ impl Tessellation {
     /// The faces of a cell.
     pub fn cell_faces(&self, cell: CellId) -> &[FaceId] {
         &self.cell_faces[self.cell_starts[cell.index()]..self.cell_starts[cell.index() + 1]]
+    }
+
+    /// The cells without volume, which have no faces: seeds that their neighbours outweigh.
+    pub fn empty_cells(&self) -> Vec<CellId> {
+        let cells = (0u32..).take(self.cell_count()).map(CellId);
+        cells.filter(|cell| self.cell_faces(*cell).is_empty()).collect()
     }
 
     /// What lies beyond the faces of a cell, sorted: other cells by number, then walls.

@@ -7,6 +7,7 @@
 use rayon::prelude::*;
 
 use crate::batch::{CellBatch, CellView};
+use crate::flat_cells::remove_flat_cells;
 use crate::generator::Generator;
 use crate::predicate::ExactInput;
 use crate::tessellation::{CellId, FaceId, Side, Tessellation, VertexId};
@@ -110,6 +111,9 @@ pub(crate) fn weld(input: ExactInput, batches: &[CellBatch]) -> Tessellation {
     }
     put_vertices_on_walls(&mut tessellation);
     list_faces_of_cells(&mut tessellation);
+    if remove_flat_cells(&mut tessellation) {
+        list_faces_of_cells(&mut tessellation);
+    }
     tessellation
 }
 

@@ -172,6 +172,44 @@ fn degenerate_seeds_in_the_plane() {
 }
 
 #[test]
+fn weights_on_lattices() {
+    // Every other cube outweighs its neighbours: by little, by so much that the others all but vanish, and by more.
+    for radius in [0.05, 0.1249, 0.125, 0.2, 0.5] {
+        let seeds = lattice(4, &SIMPLE_CUBIC);
+        let is_odd = |seed: &DVec3| (*seed * 4.0).floor().element_sum() % 2.0 == 1.0;
+        let weights: Vec<f64> =
+            seeds.iter().map(|seed| if is_odd(seed) { radius * radius } else { 0.0 }).collect();
+        let tessellation = Tessellation::power(&Domain::unit_cube(), &seeds, &weights).expect("valid seeds");
+        assert_complex(&tessellation);
+        assert_eq!(tessellation.empty_cells().len(), if radius > 0.25 { 32 } else { 0 }, "radius {radius}");
+    }
+}
+
+/// Bisectors at z = 0.5 with both neighbours leave the middle seeds a square each, and then the two squares nothing.
+#[test]
+fn cells_that_are_flat_are_empty() {
+    let seeds: Vec<DVec3> = [0.25, 0.375, 0.625, 0.75].map(|z| DVec3::new(0.5, 0.5, z)).to_vec();
+    let weights = [0.0, -3.0 / 64.0, -3.0 / 64.0, 0.0];
+    let tessellation = Tessellation::power(&Domain::unit_cube(), &seeds, &weights).expect("valid seeds");
+    assert_complex(&tessellation);
+    assert_eq!(tessellation.empty_cells(), [voronoi::CellId(1), voronoi::CellId(2)]);
+    assert_eq!(tessellation.neighbors(voronoi::CellId(0))[0], Side::Cell(voronoi::CellId(3)));
+}
+
+#[test]
+fn one_weight_can_take_all() {
+    let seeds = random_seeds(30, 9);
+    let mut weights = vec![0.0; 30];
+    weights[7] = 4.0;
+    let tessellation = Tessellation::power(&Domain::unit_cube(), &seeds, &weights).expect("valid seeds");
+    assert_complex(&tessellation);
+    assert_eq!(tessellation.empty_cells().len(), 29);
+    weights[3] = f64::NAN;
+    let error = Tessellation::power(&Domain::unit_cube(), &seeds, &weights);
+    assert!(matches!(error, Err(VoronoiError::BadWeight { seed: 3, .. })));
+}
+
+#[test]
 fn bad_seeds_are_named() {
     let cube = Domain::unit_cube();
     let message = |seeds: &[DVec3]| Tessellation::new(&cube, seeds).map(|_| ()).map_err(|e| e.to_string());

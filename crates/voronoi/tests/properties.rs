@@ -57,6 +57,49 @@ proptest! {
     }
 
     #[test]
+    fn power_cells_give_complexes_and_corners_are_nearest_by_power(
+        seeds in distinct_seeds(false),
+        radii in prop::collection::vec(prop_oneof![Just(0.0), Just(0.125), 0.0..0.3f64], 60),
+        flat in any::<bool>(),
+    ) {
+        let (domain, seeds) = if flat {
+            let mut seeds: Vec<DVec3> = seeds.iter().map(|seed| seed.with_z(0.0)).collect();
+            seeds.dedup();
+            (Domain::unit_square(), seeds)
+        } else {
+            (Domain::unit_cube(), seeds)
+        };
+        let weights: Vec<f64> = radii[..seeds.len()].iter().map(|radius| radius * radius).collect();
+        let tessellation = Tessellation::power(&domain, &seeds, &weights).expect("valid seeds");
+        assert_complex(&tessellation);
+        let power = |point: DVec3, seed: usize| point.distance_squared(seeds[seed]) - weights[seed];
+        for face in tessellation.faces() {
+            for side in tessellation.face_sides(face) {
+                let Side::Cell(cell) = side else { continue };
+                for corner in tessellation.face_corners(face) {
+                    let corner = tessellation.vertices()[corner.index()];
+                    let own = power(corner, cell.index());
+                    prop_assert!((0..seeds.len()).all(|seed| power(corner, seed) >= own - 1e-12));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn equal_weights_change_nothing(seeds in distinct_seeds(false), weight in 0.0..10.0f64) {
+        let power = Tessellation::power(&Domain::unit_cube(), &seeds, &vec![weight; seeds.len()]).expect("valid seeds");
+        let plain = tessellate(&seeds);
+        prop_assert_eq!(power.vertices().len(), plain.vertices().len());
+        for (a, b) in power.vertices().iter().zip(plain.vertices()) {
+            prop_assert!(a.distance(*b) < 1e-12);
+        }
+        for face in plain.faces() {
+            prop_assert_eq!(power.face_sides(face), plain.face_sides(face));
+            prop_assert_eq!(power.face_corners(face), plain.face_corners(face));
+        }
+    }
+
+    #[test]
     fn a_permutation_of_the_seeds_permutes_the_cells(seeds in distinct_seeds(false), shift in 0usize..60) {
         let count = seeds.len();
         let shift = shift % count;

@@ -38,7 +38,15 @@ fn assert_close(ours: &[f64], reference: &[f64]) {
 
 fn compare(name: &str, domain: Domain, volume_key: &str, area_key: &str, face_key: &str) -> Tessellation {
     let reference = load(name);
-    let tessellation = Tessellation::new(&domain, &seeds(&reference)).expect("valid seeds");
+    let tessellation = match reference["radii"].as_array() {
+        None => Tessellation::new(&domain, &seeds(&reference)),
+        Some(radii) => {
+            let weights: Vec<f64> =
+                radii.iter().filter_map(Value::as_f64).map(|radius| radius * radius).collect();
+            Tessellation::power(&domain, &seeds(&reference), &weights)
+        }
+    };
+    let tessellation = tessellation.expect("valid seeds");
     let cells = reference["cells"].as_array().expect("cells");
     assert_eq!(tessellation.cell_count(), cells.len());
     let measures = tessellation.cell_measures();
@@ -81,5 +89,22 @@ fn two_hundred_cells_in_a_square() {
     let counts = &load("v2_N200_box")["complex_counts"];
     if let Some(vertices) = counts["vertices"].as_u64() {
         assert_eq!(tessellation.vertices().len() as u64, vertices);
+    }
+}
+
+#[test]
+fn power_cells_in_a_cube() {
+    for name in ["v3_N50_radical_box", "v3_N200_radical_box"] {
+        compare_in_space(name);
+        let reference = load(name);
+        let empty = reference["cells"].as_array().expect("cells").iter();
+        let empty =
+            empty.filter(|cell| cell["nfaces"].as_u64() == Some(0)).filter_map(|cell| cell["id"].as_u64());
+        let radii = reference["radii"].as_array().expect("radii").iter().filter_map(Value::as_f64);
+        let weights: Vec<f64> = radii.map(|radius| radius * radius).collect();
+        let tessellation = Tessellation::power(&Domain::unit_cube(), &seeds(&reference), &weights);
+        let found = tessellation.expect("valid seeds").empty_cells();
+        assert_eq!(found.iter().map(|cell| u64::from(cell.0)).collect::<Vec<_>>(), empty.collect::<Vec<_>>());
+        assert!(!found.is_empty());
     }
 }

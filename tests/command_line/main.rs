@@ -1,0 +1,9 @@
+//! The program as its users meet it: run as a process, judged by what it prints, returns and writes.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod bad_arguments;
+mod bad_outputs;
+mod bad_seed_files;
+mod good_runs;
+mod surface_file;
+mod workplace;
