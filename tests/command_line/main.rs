@@ -6,4 +6,5 @@ mod bad_outputs;
 mod bad_seed_files;
 mod good_runs;
 mod surface_file;
+mod weights_and_tables;
 mod workplace;

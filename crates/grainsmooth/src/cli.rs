@@ -29,9 +29,13 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 200_u32, value_parser = whole_number(1..=4_000_000_000_u32), allow_negative_numbers = true, help_heading = SEEDS)]
     seeds: u32,
 
-    /// Read seeds from a text file instead: x, y, z on each line (x, y in 2D)
+    /// Read seeds from a text file instead: x, y, z on each line (x, y in 2D); a last column radius weights the cells
     #[arg(long, value_name = "FILE", conflicts_with_all = ["seeds", "rng_seed"], help_heading = SEEDS)]
     seeds_file: Option<PathBuf>,
+
+    /// Go on without seeds whose neighbours outweigh them; else that is an error
+    #[arg(long, requires = "seeds_file", help_heading = SEEDS)]
+    drop_empty: bool,
 
     /// Start of the random generator: the same number gives the same grains on every machine
     #[arg(long, value_name = "S", default_value_t = 1, value_parser = whole_number(0..=u64::MAX), allow_negative_numbers = true, help_heading = SEEDS)]
@@ -60,6 +64,18 @@ pub struct Arguments {
     /// File to write; its extension names the format: .vtp, .vtu or .vtk
     #[arg(short, long, value_name = "PATH", default_value = "grains.vtp", value_parser = parse_output, help_heading = RUN)]
     pub output: PathBuf,
+
+    /// Write a table of the flat cells as JSON
+    #[arg(long, value_name = "PATH", help_heading = RUN)]
+    pub cells_json: Option<PathBuf>,
+
+    /// Write a table of the flat cells as CSV
+    #[arg(long, value_name = "PATH", help_heading = RUN)]
+    pub cells_csv: Option<PathBuf>,
+
+    /// Stop after the cells and their tables: no relaxation, no mesh
+    #[arg(long, conflicts_with = "output", help_heading = RUN)]
+    pub no_mesh: bool,
 
     /// Number of threads [default: all processors]; the file does not depend on it
     #[arg(long, value_name = "N", value_parser = whole_number(1..=1024_u16), allow_negative_numbers = true, help_heading = RUN)]
@@ -129,6 +145,7 @@ impl Arguments {
             relaxation_time: self.relax,
             levels: self.levels,
             junctions,
+            drop_empty: self.drop_empty,
         }
     }
 }

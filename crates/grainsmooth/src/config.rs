@@ -36,6 +36,8 @@ pub struct Config {
     pub levels: u32,
     /// How triple lines are smoothed.
     pub junctions: Junctions,
+    /// Whether to go on without seeds that have no cell, as their neighbours outweigh them; else that is an error.
+    pub drop_empty: bool,
 }
 
 impl Default for Config {
@@ -48,6 +50,7 @@ impl Default for Config {
             relaxation_time: polycrystal::Relaxation::default().time,
             levels: 3,
             junctions: Junctions::Crease,
+            drop_empty: false,
         }
     }
 }
@@ -91,7 +94,10 @@ impl Config {
             Junctions::Crease => "crease",
             Junctions::Corner => "corner",
         };
+        let drop_empty = if self.drop_empty { " --drop-empty" } else { "" };
         let Self { relaxation_time, levels, .. } = self;
-        format!("grainsmooth {seeds} {space} --relax {relaxation_time} -n {levels} --junctions {junctions}")
+        format!(
+            "grainsmooth {seeds}{drop_empty} {space} --relax {relaxation_time} -n {levels} --junctions {junctions}"
+        )
     }
 }

@@ -109,6 +109,15 @@ pub enum Error {
     /// The seeds cannot be tessellated.
     #[error(transparent)]
     Voronoi(#[from] VoronoiError),
+    /// Weights leave grains without volume.
+    #[error(
+        "weights leave {} without volume; change their radii, or go on without them with --drop-empty",
+        grains_in_words(grains)
+    )]
+    EmptyGrains {
+        /// The grains, by number.
+        grains: Vec<u32>,
+    },
     /// The network cannot be made, relaxed, or is invalid.
     #[error(transparent)]
     Network(#[from] NetworkError),
@@ -148,4 +157,15 @@ pub enum Error {
         /// The most levels that would fit, if any.
         largest: Option<u32>,
     },
+}
+
+/// Grains as a message names them, the first ten of many.
+fn grains_in_words(grains: &[u32]) -> String {
+    const NAMED: usize = 10;
+    let names: Vec<String> = grains.iter().take(NAMED).map(u32::to_string).collect();
+    let noun = if grains.len() == 1 { "grain" } else { "grains" };
+    match grains.len().saturating_sub(NAMED) {
+        0 => format!("{noun} {}", names.join(", ")),
+        more => format!("{noun} {} and {more} more", names.join(", ")),
+    }
 }

@@ -14,6 +14,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod cell_table;
 mod config;
 mod error;
 pub mod memory;
@@ -30,13 +31,14 @@ mod subdivide;
 mod summary;
 pub mod vtk;
 
+pub use cell_table::{CellTable, TableFormat};
 pub use config::{Config, SeedSource};
 pub use error::Error;
 pub use mesh_bezier::{BezierFile, read_bezier};
 pub use mesh_edit::{EdgeEdit, edit_edges};
 pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputFormat};
-pub use pipeline::{Polycrystal, Progress, Stage, make_polycrystal};
+pub use pipeline::{Polycrystal, Progress, Stage, Tessellated, make_polycrystal, smooth, tessellate};
 pub use seed_file::{FileSeed, SeedLineProblem, read_seed_file};
 pub use seeding::random_seeds;
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};

@@ -12,7 +12,7 @@ use std::time::Instant;
 use anyhow::anyhow;
 use clap::Parser;
 use grainsmooth::mesh_file::READER_THREAD;
-use grainsmooth::{Output, Stage, Summary, make_polycrystal};
+use grainsmooth::{CellTable, Output, Stage, Summary, TableFormat, smooth, tessellate};
 
 use cli::{Arguments, Command};
 use progress::ProgressLine;
@@ -48,26 +48,54 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
         return Ok(mesh_run::run(&mesh.command)?);
     }
     // An output that cannot be written is found before hours of work, not after.
-    let output = Output::check(&arguments.output)?;
+    let tables = tables(arguments)?;
+    let output = if arguments.no_mesh { None } else { Some(Output::check(&arguments.output)?) };
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .map_err(|cause| anyhow!("cannot start {threads} threads: {cause}; give fewer with --threads"))?;
     let line = ProgressLine::new(arguments.quiet);
-    let result = pool.install(|| {
-        let mut polycrystal =
-            make_polycrystal(&arguments.config(), &|stage, done, count| line.show(stage, done, count))?;
-        line.show(Stage::Writing, 0, 1);
-        let start = Instant::now();
-        polycrystal.write(&output)?;
-        polycrystal.add_time(Stage::Writing, start.elapsed());
-        Ok::<_, grainsmooth::Error>(polycrystal)
-    });
+    let result = pool.install(|| compute(arguments, &tables, output.as_ref(), &line));
     line.clear();
-    let polycrystal = result?;
+    let summary = result?;
     if !arguments.quiet {
-        say(&format!("{}\nwritten     {}", Summary(&polycrystal), output.path().display()));
+        let written = tables.iter().map(Output::path).chain(output.as_ref().map(Output::path));
+        let names: Vec<String> = written.map(|path| path.display().to_string()).collect();
+        say(&format!("{summary}\nwritten     {}", names.join(", ")));
     }
     Ok(())
+}
+
+/// The tables asked for, found writable.
+fn tables(arguments: &Arguments) -> Result<Vec<Output<TableFormat>>, grainsmooth::Error> {
+    let json = arguments.cells_json.iter().map(|path| Output::check_as(path, TableFormat::Json));
+    let csv = arguments.cells_csv.iter().map(|path| Output::check_as(path, TableFormat::Csv));
+    json.chain(csv).collect()
+}
+
+/// Computes and writes what is asked for, and returns the summary.
+fn compute(
+    arguments: &Arguments,
+    tables: &[Output<TableFormat>],
+    output: Option<&Output>,
+    line: &ProgressLine,
+) -> Result<String, grainsmooth::Error> {
+    let config = arguments.config();
+    let progress = |stage, done, count| line.show(stage, done, count);
+    let tessellated = tessellate(&config, &progress)?;
+    if !tables.is_empty() {
+        let table = CellTable::new(&tessellated);
+        tables.iter().try_for_each(|output| table.write(output))?;
+    }
+    let Some(output) = output else {
+        let tessellation = &tessellated.tessellation;
+        return Ok(format!("cells       {} in {}", tessellation.cell_count(), tessellation.domain()));
+    };
+    let mut polycrystal = smooth(&config, tessellated, &progress)?;
+    line.show(Stage::Writing, 0, 1);
+    let start = Instant::now();
+    polycrystal.write(output)?;
+    polycrystal.add_time(Stage::Writing, start.elapsed());
+    Ok(Summary(&polycrystal).to_string())
 }

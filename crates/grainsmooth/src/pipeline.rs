@@ -66,18 +66,73 @@ pub struct Polycrystal {
     pub times: Vec<(Stage, Duration)>,
 }
 
-/// Computes a polycrystal.
+/// The cells of a config's seeds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tessellated {
+    /// All cells; none is empty.
+    pub tessellation: Tessellation,
+    /// Power weight of each seed: 0 where there are no radii.
+    pub weights: Vec<f64>,
+    /// Time that each stage took.
+    pub times: Vec<(Stage, Duration)>,
+}
+
+/// Computes the cells alone.
+///
+/// # Errors
+/// Whatever is wrong with the seeds; [`Error::EmptyGrains`] unless the config drops them.
+pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Error> {
+    let mut clock = Clock { progress, times: Vec::new() };
+    let domain = config.domain()?;
+    let seeds = clock.time(Stage::Seeds, || seeds(config, &domain))?;
+    let (tessellation, weights) = clock.time(Stage::Cells, || {
+        let all = cells_of(config, &domain, &seeds)?;
+        let empty = all.0.empty_cells();
+        if empty.is_empty() {
+            return Ok(all);
+        }
+        if !config.drop_empty {
+            return Err(Error::EmptyGrains { grains: empty.iter().map(|cell| cell.0).collect() });
+        }
+        let is_kept = |seed: &usize| !empty.iter().any(|cell| cell.index() == *seed);
+        let kept: Vec<FileSeed> = (0..seeds.len()).filter(is_kept).map(|seed| seeds[seed]).collect();
+        cells_of(config, &domain, &kept)
+    })?;
+    Ok(Tessellated { tessellation, weights, times: clock.times })
+}
+
+/// The cells of some seeds, and the seeds' weights.
+fn cells_of(
+    config: &Config,
+    domain: &voronoi::Domain,
+    seeds: &[FileSeed],
+) -> Result<(Tessellation, Vec<f64>), Error> {
+    let positions: Vec<DVec3> = seeds.iter().map(|seed| seed.position).collect();
+    let weights: Vec<f64> = seeds.iter().map(|seed| seed.radius.unwrap_or(0.0).powi(2)).collect();
+    let tessellation = if seeds.iter().any(|seed| seed.radius.is_some()) {
+        Tessellation::power(domain, &positions, &weights)
+    } else {
+        Tessellation::new(domain, &positions)
+    };
+    Ok((tessellation.map_err(|error| located(error, config, seeds))?, weights))
+}
+
+/// Computes a polycrystal: its cells, then all that [`smooth`] does.
 ///
 /// # Errors
 /// Whatever is wrong with the input, or the first fault that makes the result invalid.
 pub fn make_polycrystal(config: &Config, progress: Progress) -> Result<Polycrystal, Error> {
-    let mut clock = Clock::new(progress);
-    let domain = config.domain()?;
-    let seeds = clock.time(Stage::Seeds, || seeds(config, &domain))?;
-    let positions: Vec<DVec3> = seeds.iter().map(|seed| seed.position).collect();
-    let tessellation = clock.time(Stage::Cells, || {
-        Tessellation::new(&domain, &positions).map_err(|error| located(error, config, &seeds))
-    })?;
+    smooth(config, tessellate(config, progress)?, progress)
+}
+
+/// Relaxes, subdivides and validates the network of some cells.
+///
+/// # Errors
+/// [`Error::LevelsExceedMemory`] and [`Error::LevelsExceedIds`]; [`Error::Network`] when the network cannot be relaxed, or
+/// is invalid.
+pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result<Polycrystal, Error> {
+    let Tessellated { tessellation, times, .. } = cells;
+    let mut clock = Clock { progress, times };
     check_levels(control_mesh_size(&tessellation), config.levels, available_memory())?;
     let (network, flat) = clock
         .time(Stage::Network, || Network::new(&tessellation, config.junctions, config.levels as usize))?;
@@ -102,11 +157,7 @@ struct Clock<'a> {
     times: Vec<(Stage, Duration)>,
 }
 
-impl<'a> Clock<'a> {
-    fn new(progress: Progress<'a>) -> Self {
-        Self { progress, times: Vec::new() }
-    }
-
+impl Clock<'_> {
     fn time<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
         (self.progress)(stage, 0, 1);
         let start = Instant::now();
@@ -124,7 +175,7 @@ fn seeds(config: &Config, domain: &voronoi::Domain) -> Result<Vec<FileSeed>, Err
             let expected = expected_control_mesh_size(*count, config.dimension);
             check_levels(expected, config.levels, available_memory())?;
             let positions = random_seeds(*count, domain, config.random_seed).into_iter();
-            Ok(positions.map(|position| FileSeed { position, line: 0 }).collect())
+            Ok(positions.map(|position| FileSeed { position, radius: None, line: 0 }).collect())
         }
     }
 }
@@ -135,6 +186,7 @@ fn located(error: VoronoiError, config: &Config, seeds: &[FileSeed]) -> Error {
     let seed = match &error {
         VoronoiError::NotFinite { seed, .. }
         | VoronoiError::OutsideDomain { seed, .. }
+        | VoronoiError::BadWeight { seed, .. }
         | VoronoiError::NotTriangulable { seed, .. } => *seed,
         VoronoiError::DuplicateSeeds { first, second, position } => {
             let lines = [seeds[*first].line, seeds[*second].line];

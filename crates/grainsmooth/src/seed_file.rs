@@ -15,6 +15,8 @@ use crate::Error;
 pub struct FileSeed {
     /// Coordinates in the user's unit of length; z = 0 in 2D.
     pub position: DVec3,
+    /// Radius of the seed's sphere, whose square is its power weight; nothing where the file has no such column.
+    pub radius: Option<f64>,
     /// Line of the file, counted from 1, for what is to be said about the seed later.
     pub line: usize,
 }
@@ -55,8 +57,14 @@ pub enum SeedLineProblem {
         /// The column, cut short.
         value: String,
     },
+    /// A radius is negative.
+    #[error("radius is {radius}; write 0 or more")]
+    NegativeRadius {
+        /// The radius.
+        radius: f64,
+    },
     /// A seed of a 2D run has a third coordinate.
-    #[error("z is {z} in a 2D run; set it to 0, or run in 3D")]
+    #[error("z is {z} in a 2D run; set it to 0, run in 3D, or name the columns x, y, radius")]
     NotInPlane {
         /// The third coordinate.
         z: f64,
@@ -70,11 +78,46 @@ fn wanted(dimension: Dimension) -> &'static str {
     }
 }
 
+/// The columns of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Columns {
+    Xy,
+    Xyz,
+    XyRadius,
+    XyzRadius,
+}
+
+impl Columns {
+    /// What the first line names them.
+    fn named(names: &[&str], dimension: Dimension) -> Option<Self> {
+        let names: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        match (names.as_slice(), dimension) {
+            (["x", "y"], Dimension::Two) => Some(Self::Xy),
+            (["x", "y", "radius"], Dimension::Two) => Some(Self::XyRadius),
+            (["x", "y", "z"], _) => Some(Self::Xyz),
+            (["x", "y", "z", "radius"], _) => Some(Self::XyzRadius),
+            _ => None,
+        }
+    }
+
+    /// What so many columns without names are.
+    fn counted(count: usize, dimension: Dimension) -> Option<Self> {
+        match (count, dimension) {
+            (2, Dimension::Two) => Some(Self::Xy),
+            (3, _) => Some(Self::Xyz),
+            (4, _) => Some(Self::XyzRadius),
+            _ => None,
+        }
+    }
+}
+
 /// Reads seeds from a CSV file with one seed a line: `x, y, z`, or `x, y` in 2D.
 ///
 /// Columns stand between commas or, in lines without a comma, between blanks or tabs. The first line may name
-/// the columns; empty lines and lines that begin with `#` are skipped. In 2D a third column is taken when it
-/// is 0, as programs write it that know three dimensions only.
+/// the columns; empty lines and lines that begin with `#` are skipped. A last column `radius` makes the cells power
+/// (Laguerre) cells; after two coordinates it needs its name. In 2D a third coordinate is taken when it is 0, as programs
+/// write it that know three dimensions only.
 ///
 /// # Errors
 /// [`Error::SeedFileUnreadable`] when the file cannot be read; [`Error::NoSeedsInFile`] when it holds none;
@@ -83,7 +126,7 @@ pub fn read_seed_file(path: &Path, dimension: Dimension) -> Result<Vec<FileSeed>
     let content =
         fs::read(path).map_err(|cause| Error::SeedFileUnreadable { path: path.to_owned(), cause })?;
     let mut seeds = Vec::new();
-    let mut names_may_follow = true;
+    let mut known_columns = None;
     for (index, bytes) in content.split(|&byte| byte == b'\n').enumerate() {
         let line = index + 1;
         let bad_line = |problem| Error::BadSeedLine { path: path.to_owned(), line, problem };
@@ -98,13 +141,19 @@ pub fn read_seed_file(path: &Path, dimension: Dimension) -> Result<Vec<FileSeed>
         } else {
             text.split_whitespace().collect()
         };
-        if names_may_follow && columns.iter().all(|column| column.parse::<f64>().is_err()) {
-            check_names(&columns, dimension).map_err(bad_line)?;
-        } else {
-            let position = position(&columns, dimension).map_err(bad_line)?;
-            seeds.push(FileSeed { position, line });
+        let are_names = columns.iter().all(|column| column.parse::<f64>().is_err());
+        if known_columns.is_none() && are_names {
+            known_columns = Some(Columns::named(&columns, dimension).ok_or_else(|| {
+                bad_line(SeedLineProblem::ColumnNames { names: shortened(&columns.join(", ")), dimension })
+            })?);
+            continue;
         }
-        names_may_follow = false;
+        let problem = || bad_line(SeedLineProblem::ColumnCount { found: columns.len(), dimension });
+        let kind =
+            known_columns.or_else(|| Columns::counted(columns.len(), dimension)).ok_or_else(problem)?;
+        known_columns = Some(kind);
+        let (position, radius) = seed(&columns, kind, dimension).map_err(bad_line)?;
+        seeds.push(FileSeed { position, radius, line });
     }
     if seeds.is_empty() {
         return Err(Error::NoSeedsInFile { path: path.to_owned() });
@@ -112,24 +161,26 @@ pub fn read_seed_file(path: &Path, dimension: Dimension) -> Result<Vec<FileSeed>
     Ok(seeds)
 }
 
-fn check_names(columns: &[&str], dimension: Dimension) -> Result<(), SeedLineProblem> {
-    let names: Vec<String> = columns.iter().map(|column| column.to_lowercase()).collect();
-    let good = names == ["x", "y", "z"] || (dimension == Dimension::Two && names == ["x", "y"]);
-    let problem = || SeedLineProblem::ColumnNames { names: shortened(&columns.join(", ")), dimension };
-    good.then_some(()).ok_or_else(problem)
-}
-
-fn position(columns: &[&str], dimension: Dimension) -> Result<DVec3, SeedLineProblem> {
-    match (columns, dimension) {
-        (&[x, y, z], _) => {
-            let [x, y, z] = [number(x, dimension)?, number(y, dimension)?, number(z, dimension)?];
-            if dimension == Dimension::Two && z != 0.0 {
-                return Err(SeedLineProblem::NotInPlane { z });
-            }
-            Ok(DVec3::new(x, y, z))
-        }
-        (&[x, y], Dimension::Two) => Ok(DVec3::new(number(x, dimension)?, number(y, dimension)?, 0.0)),
-        _ => Err(SeedLineProblem::ColumnCount { found: columns.len(), dimension }),
+/// Position and radius in a line.
+fn seed(
+    texts: &[&str],
+    columns: Columns,
+    dimension: Dimension,
+) -> Result<(DVec3, Option<f64>), SeedLineProblem> {
+    let numbers: Vec<f64> = texts.iter().map(|text| number(text, dimension)).collect::<Result<_, _>>()?;
+    let (position, radius) = match (columns, numbers.as_slice()) {
+        (Columns::Xy, &[x, y]) => (DVec3::new(x, y, 0.0), None),
+        (Columns::Xyz, &[x, y, z]) => (DVec3::new(x, y, z), None),
+        (Columns::XyRadius, &[x, y, radius]) => (DVec3::new(x, y, 0.0), Some(radius)),
+        (Columns::XyzRadius, &[x, y, z, radius]) => (DVec3::new(x, y, z), Some(radius)),
+        _ => return Err(SeedLineProblem::ColumnCount { found: texts.len(), dimension }),
+    };
+    if dimension == Dimension::Two && position.z != 0.0 {
+        return Err(SeedLineProblem::NotInPlane { z: position.z });
+    }
+    match radius {
+        Some(radius) if radius < 0.0 => Err(SeedLineProblem::NegativeRadius { radius }),
+        _ => Ok((position, radius)),
     }
 }
 
@@ -163,7 +214,7 @@ mod tests {
     }
 
     fn seed(line: usize, x: f64, y: f64, z: f64) -> FileSeed {
-        FileSeed { position: DVec3::new(x, y, z), line }
+        FileSeed { position: DVec3::new(x, y, z), radius: None, line }
     }
 
     #[test]
@@ -185,6 +236,17 @@ mod tests {
         let flat = "x y\n1 2\n3 4 0\n";
         assert_eq!(read(flat, Dimension::Two), Ok(vec![seed(2, 1.0, 2.0, 0.0), seed(3, 3.0, 4.0, 0.0)]));
         assert_eq!(read("x,y,z\n1,2,0\n", Dimension::Two), Ok(vec![seed(2, 1.0, 2.0, 0.0)]));
+    }
+
+    #[test]
+    fn radii_follow_the_coordinates() {
+        let weighted = |line, x, y, z, radius| FileSeed { radius: Some(radius), ..seed(line, x, y, z) };
+        let expected = vec![weighted(1, 1.0, 2.0, 3.0, 0.5), weighted(2, 4.0, 5.0, 6.0, 0.0)];
+        assert_eq!(read("1,2,3,0.5\n4,5,6,0", Dimension::Three), Ok(expected));
+        let named = "x,y,radius\n1,2,0.5\n";
+        assert_eq!(read(named, Dimension::Two), Ok(vec![weighted(2, 1.0, 2.0, 0.0, 0.5)]));
+        let named = "x y z radius\n1 2 0 0.5\n";
+        assert_eq!(read(named, Dimension::Two), Ok(vec![weighted(2, 1.0, 2.0, 0.0, 0.5)]));
     }
 
     #[test]
@@ -211,9 +273,15 @@ mod tests {
                 "seeds.csv line 1: \"1e999\" is not a finite number; correct or remove the seed",
             ),
             ("x,y,z\n1,2\n", 3, "seeds.csv line 2: 2 columns; write x, y, z on each line"),
-            ("1,2,3,4\n", 3, "seeds.csv line 1: 4 columns; write x, y, z on each line"),
+            ("1,2,3,4,5\n", 3, "seeds.csv line 1: 5 columns; write x, y, z on each line"),
+            ("1,2,3,-4\n", 3, "seeds.csv line 1: radius is -4; write 0 or more"),
+            ("1,2,3\n1,2,3,4\n", 3, "seeds.csv line 2: 4 columns; write x, y, z on each line"),
             ("1\n", 2, "seeds.csv line 1: 1 columns; write x, y on each line"),
-            ("1,2,0.5", 2, "seeds.csv line 1: z is 0.5 in a 2D run; set it to 0, or run in 3D"),
+            (
+                "1,2,0.5",
+                2,
+                "seeds.csv line 1: z is 0.5 in a 2D run; set it to 0, run in 3D, or name the columns x, y, radius",
+            ),
             (
                 "z,y,x\n1,2,3",
                 3,

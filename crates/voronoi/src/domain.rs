@@ -31,6 +31,11 @@ impl Wall {
         self.0 % 2 == 1
     }
 
+    /// Number from 0 to 5.
+    pub fn number(self) -> u8 {
+        self.0
+    }
+
     /// Position in [`Wall::ALL`].
     pub fn index(self) -> usize {
         usize::from(self.0)

@@ -15,6 +15,10 @@ pub struct CellMeasure {
     pub face_count: usize,
     /// Number of vertices.
     pub vertex_count: usize,
+    /// Number of edges; in the plane the same as `face_count`.
+    pub edge_count: usize,
+    /// Centre of mass; the seed for an empty cell.
+    pub centroid: DVec3,
 }
 
 pub(crate) fn cell_measures(tessellation: &Tessellation) -> Vec<CellMeasure> {
@@ -24,7 +28,7 @@ pub(crate) fn cell_measures(tessellation: &Tessellation) -> Vec<CellMeasure> {
 
 fn measure(tessellation: &Tessellation, cell: CellId) -> CellMeasure {
     let seed = tessellation.seeds[cell.index()];
-    let (mut volume, mut area) = (0.0, 0.0);
+    let (mut volume, mut area, mut moment) = (0.0, 0.0, DVec3::ZERO);
     let mut corners = Vec::new();
     for &face in tessellation.cell_faces(cell) {
         let ring = tessellation.face_corners(face);
@@ -34,12 +38,19 @@ fn measure(tessellation: &Tessellation, cell: CellId) -> CellMeasure {
         let outward = if tessellation.face_sides(face)[0] == Side::Cell(cell) { 1.0 } else { -1.0 };
         match tessellation.domain.dimension() {
             Dimension::Two => {
-                volume += outward * 0.5 * at(0).truncate().perp_dot(at(1).truncate());
+                let triangle = outward * 0.5 * at(0).truncate().perp_dot(at(1).truncate());
+                volume += triangle;
+                moment += (at(0) + at(1)) * (triangle / 3.0);
                 area += at(0).distance(at(1));
             }
             Dimension::Three => {
-                let pairs = (1..ring.len() - 1).map(|k| (at(k) - at(0)).cross(at(k + 1) - at(0)));
-                let doubled: DVec3 = pairs.sum();
+                let mut doubled = DVec3::ZERO;
+                for k in 1..ring.len() - 1 {
+                    let normal = (at(k) - at(0)).cross(at(k + 1) - at(0));
+                    let tetrahedron = outward * at(0).dot(normal) / 6.0;
+                    doubled += normal;
+                    moment += (at(0) + at(k) + at(k + 1)) * (tetrahedron / 4.0);
+                }
                 volume += outward * at(0).dot(doubled) / 6.0;
                 area += 0.5 * doubled.length();
             }
@@ -47,5 +58,13 @@ fn measure(tessellation: &Tessellation, cell: CellId) -> CellMeasure {
     }
     corners.sort_unstable();
     corners.dedup();
-    CellMeasure { volume, area, face_count: tessellation.cell_faces(cell).len(), vertex_count: corners.len() }
+    let face_count = tessellation.cell_faces(cell).len();
+    let vertex_count = corners.len();
+    let edge_count = match tessellation.domain.dimension() {
+        Dimension::Two => face_count,
+        // Euler's formula for a convex polyhedron, which an empty cell is not.
+        Dimension::Three => (face_count + vertex_count).saturating_sub(2),
+    };
+    let centroid = if volume > 0.0 { seed + moment / volume } else { seed };
+    CellMeasure { volume, area, face_count, vertex_count, edge_count, centroid }
 }

@@ -48,7 +48,10 @@ fn simple_cubic_lattices_have_cubes_with_six_faces() {
         assert_complex(&tessellation);
         let corners = (n as usize + 1).pow(3);
         assert_eq!(tessellation.vertices().len(), corners, "lattice of {n}");
-        assert!(tessellation.cell_measures().iter().all(|cell| cell.face_count == 6));
+        for (cell, seed) in tessellation.cell_measures().iter().zip(tessellation.seeds()) {
+            assert_eq!((cell.face_count, cell.vertex_count, cell.edge_count), (6, 8, 12));
+            assert!(cell.centroid.distance(*seed) < 1e-14);
+        }
     }
 }
 
@@ -168,6 +171,10 @@ fn degenerate_seeds_in_the_plane() {
         assert_complex(&tessellation);
     }
     let lattice = Tessellation::new(&Domain::unit_square(), &square(7)).expect("valid seeds");
+    for (cell, seed) in lattice.cell_measures().iter().zip(lattice.seeds()) {
+        assert_eq!((cell.edge_count, cell.vertex_count), (4, 4));
+        assert!(cell.centroid.distance(*seed) < 1e-14);
+    }
     assert_eq!(lattice.vertices().len(), 64);
 }
 

@@ -1,0 +1,195 @@
+//! A table of the cells: one row for each grain.
+
+use std::f64::consts::PI;
+use std::io::{self, Write};
+
+use glam::DVec3;
+use serde::Serialize;
+use voronoi::{CellId, CellMeasure, Dimension, Side};
+
+use crate::{Error, Output, Tessellated};
+
+/// A format of tables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TableFormat {
+    /// An object with the list `cells`.
+    Json,
+    /// A header line, then one line a cell; lists have blanks between their numbers.
+    Csv,
+}
+
+/// One row for each cell of a tessellation: the flat cells, before any relaxation.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CellTable {
+    cells: Vec<Row>,
+}
+
+/// A cell in space or in the plane, with the names that each has there.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+enum Row {
+    Space {
+        id: u32,
+        seed: [f64; 3],
+        weight: f64,
+        volume: f64,
+        centroid: [f64; 3],
+        area: f64,
+        nfaces: usize,
+        nverts: usize,
+        nedges: usize,
+        neighbors: Vec<i64>,
+        equivalent_diameter: f64,
+        sphericity: f64,
+    },
+    Plane {
+        id: u32,
+        seed: [f64; 2],
+        weight: f64,
+        area: f64,
+        centroid: [f64; 2],
+        perimeter: f64,
+        nedges: usize,
+        nverts: usize,
+        neighbors: Vec<i64>,
+        equivalent_diameter: f64,
+        circularity: f64,
+    },
+}
+
+impl CellTable {
+    /// Measures all cells. Walls among the `neighbors` are -1 (x0), -2 (x1), -3, -4 (y) and -5, -6 (z).
+    pub fn new(cells: &Tessellated) -> Self {
+        let tessellation = &cells.tessellation;
+        let rows = (0u32..).zip(tessellation.cell_measures()).map(|(id, measure)| {
+            let number = |side: Side| match side {
+                Side::Cell(cell) => i64::from(cell.0),
+                Side::Wall(wall) => -1 - i64::from(wall.number()),
+            };
+            let mut neighbors: Vec<i64> =
+                tessellation.neighbors(CellId(id)).into_iter().map(number).collect();
+            neighbors.sort_unstable();
+            let seed = tessellation.seeds()[id as usize];
+            let weight = cells.weights[id as usize];
+            match tessellation.domain().dimension() {
+                Dimension::Three => row_in_space(id, seed, weight, &measure, neighbors),
+                Dimension::Two => row_in_plane(id, seed, weight, &measure, neighbors),
+            }
+        });
+        Self { cells: rows.collect() }
+    }
+
+    /// Writes the table.
+    ///
+    /// # Errors
+    /// [`Error::WriteOutput`]; nothing is left behind then.
+    pub fn write(&self, output: &Output<TableFormat>) -> Result<(), Error> {
+        output.write(|out| match output.format() {
+            TableFormat::Json => {
+                serde_json::to_writer(&mut *out, self)?;
+                writeln!(out)
+            }
+            TableFormat::Csv => self.write_csv(out),
+        })
+    }
+
+    fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
+        match self.cells.first() {
+            Some(Row::Plane { .. }) => writeln!(
+                out,
+                "id,x,y,weight,area,centroid_x,centroid_y,perimeter,nedges,nverts,equivalent_diameter,circularity,neighbors"
+            )?,
+            _ => writeln!(
+                out,
+                "id,x,y,z,weight,volume,centroid_x,centroid_y,centroid_z,area,nfaces,nverts,nedges,equivalent_diameter,sphericity,neighbors"
+            )?,
+        }
+        for row in &self.cells {
+            row.write_csv(out)?;
+        }
+        Ok(())
+    }
+}
+
+impl Row {
+    fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
+        let neighbors = match self {
+            Self::Space {
+                id,
+                seed: [x, y, z],
+                weight,
+                volume,
+                centroid: [cx, cy, cz],
+                area,
+                nfaces,
+                nverts,
+                nedges,
+                neighbors,
+                equivalent_diameter,
+                sphericity,
+            } => {
+                write!(out, "{id},{x:?},{y:?},{z:?},{weight:?},{volume:?},{cx:?},{cy:?},{cz:?},{area:?},")?;
+                write!(out, "{nfaces},{nverts},{nedges},{equivalent_diameter:?},{sphericity:?},")?;
+                neighbors
+            }
+            Self::Plane {
+                id,
+                seed: [x, y],
+                weight,
+                area,
+                centroid: [cx, cy],
+                perimeter,
+                nedges,
+                nverts,
+                neighbors,
+                equivalent_diameter,
+                circularity,
+            } => {
+                write!(out, "{id},{x:?},{y:?},{weight:?},{area:?},{cx:?},{cy:?},{perimeter:?},")?;
+                write!(out, "{nedges},{nverts},{equivalent_diameter:?},{circularity:?},")?;
+                neighbors
+            }
+        };
+        let neighbors: Vec<String> = neighbors.iter().map(i64::to_string).collect();
+        writeln!(out, "{}", neighbors.join(" "))
+    }
+}
+
+fn row_in_space(id: u32, seed: DVec3, weight: f64, measure: &CellMeasure, neighbors: Vec<i64>) -> Row {
+    let volume = measure.volume;
+    // Diameter and surface of the ball with the cell's volume.
+    let equivalent_diameter = (6.0 * volume / PI).cbrt();
+    Row::Space {
+        id,
+        seed: seed.to_array(),
+        weight,
+        volume,
+        centroid: measure.centroid.to_array(),
+        area: measure.area,
+        nfaces: measure.face_count,
+        nverts: measure.vertex_count,
+        nedges: measure.edge_count,
+        neighbors,
+        equivalent_diameter,
+        sphericity: PI * equivalent_diameter.powi(2) / measure.area,
+    }
+}
+
+fn row_in_plane(id: u32, seed: DVec3, weight: f64, measure: &CellMeasure, neighbors: Vec<i64>) -> Row {
+    let area = measure.volume;
+    // Diameter and perimeter of the circle with the cell's area.
+    let equivalent_diameter = 2.0 * (area / PI).sqrt();
+    Row::Plane {
+        id,
+        seed: seed.truncate().to_array(),
+        weight,
+        area,
+        centroid: measure.centroid.truncate().to_array(),
+        perimeter: measure.area,
+        nedges: measure.edge_count,
+        nverts: measure.vertex_count,
+        neighbors,
+        equivalent_diameter,
+        circularity: PI * equivalent_diameter / measure.area,
+    }
+}
