@@ -196,7 +196,9 @@ fn from_text(text: &str) -> Result<BezierFile, MeshFileProblem> {
             [] if surface.is_none() && !points.is_empty() => file.add_curve(std::mem::take(&mut points))?,
             [] => {}
             _ => {
-                return Err(problem("not a control point x y z, nor the degrees m n of a surface".to_owned()));
+                return Err(problem(
+                    "not a control point x y z, nor the degrees m n of a surface".to_owned(),
+                ));
             }
         }
         if let Some([rows, columns]) = surface
