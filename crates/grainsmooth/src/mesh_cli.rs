@@ -95,7 +95,7 @@ pub struct SchemeArguments {
     pub features: FeatureArguments,
 
     /// Number of subdivisions
-    #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = 1)]
+    #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = 1, value_parser = clap::value_parser!(u32).range(0..=99))]
     pub levels: u32,
 
     /// Write one file a level: OUT_0, OUT_1, ...
@@ -132,7 +132,7 @@ pub struct LimitArguments {
     pub features: FeatureArguments,
 
     /// Number of subdivisions before
-    #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = 0)]
+    #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=99))]
     pub levels: u32,
 
     /// The scheme whose limit is wanted

@@ -1,7 +1,7 @@
 //! Edge flips, splits and collapses on a mesh from a file.
 
 use glam::DVec3;
-use subzero::{HalfEdgeMesh, MeshError};
+use subzero::HalfEdgeMesh;
 
 use crate::mesh_file::{MeshFile, MeshFileProblem};
 
@@ -34,13 +34,8 @@ pub fn edit_edges(
         match edit {
             EdgeEdit::Flip => half_edges.flip(half_edges.half_edge_between(a, b)?)?,
             EdgeEdit::Split => half_edges.split_edges(&[[a, b]], &mut points).map(drop)?,
-            EdgeEdit::Collapse => collapse(&mut half_edges, &points, [a, b])?,
+            EdgeEdit::Collapse => half_edges.collapse_into(a, b)?,
         }
     }
     Ok((points, half_edges.triangles().map(|(_, triangle)| triangle).collect()))
-}
-
-fn collapse(mesh: &mut HalfEdgeMesh, _points: &[DVec3], [a, b]: [u32; 2]) -> Result<(), MeshError> {
-    let half_edge = mesh.half_edge_between(a, b)?;
-    mesh.collapse(half_edge)
 }

@@ -176,7 +176,7 @@ fn corners(mesh: &Connectivity) -> Vec<[u32; 2]> {
     corners.collect()
 }
 
-/// 0 smooth, 1 dart, 2 boundary crease, 3 corner, 4 inner crease, 5 on a crease where three or more faces meet.
+/// 0 smooth, 1 dart, 2 boundary crease, 3 corner, 4 inner crease, 5 on an edge of three or more faces.
 fn kinds(mesh: &Connectivity) -> Vec<u8> {
     let (vertex_count, counts): (usize, Vec<([u32; 2], u32)>) = match mesh {
         Connectivity::Triangles(mesh) => {
@@ -188,24 +188,23 @@ fn kinds(mesh: &Connectivity) -> Vec<u8> {
             (mesh.vertex_count(), ids(mesh.edge_count()).map(|e| (mesh.edge(e), faces(e))).collect())
         }
     };
-    let mut creases = vec![4; vertex_count];
+    let mut on_boundary = vec![false; vertex_count];
+    let mut on_junction = vec![false; vertex_count];
     for (ends, count) in counts {
-        for end in ends {
-            let kind = &mut creases[end as usize];
-            *kind = match count {
-                1 => 2,
-                2 => *kind,
-                _ => 5,
-            };
+        for end in ends.map(|end| end as usize) {
+            on_boundary[end] |= count == 1;
+            on_junction[end] |= count > 2;
         }
     }
-    let kind = |(v, crease): (u32, u8)| match mesh.vertex_rule(v) {
+    let kind = |v: u32| match mesh.vertex_rule(v) {
         VertexRule::Smooth => 0,
         VertexRule::Dart => 1,
-        VertexRule::Crease => crease,
+        _ if on_junction[v as usize] => 5,
+        VertexRule::Crease if on_boundary[v as usize] => 2,
+        VertexRule::Crease => 4,
         VertexRule::Corner => 3,
     };
-    ids(vertex_count).zip(creases).map(kind).collect()
+    ids(vertex_count).map(kind).collect()
 }
 
 /// The ids of so many elements; meshes are refused that have more than ids can count.

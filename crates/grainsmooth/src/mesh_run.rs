@@ -1,5 +1,6 @@
 //! `grainsmooth mesh`: reads a mesh, runs what the command line asks for, writes and reports.
 
+use std::cell::RefCell;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -9,8 +10,8 @@ use glam::DVec3;
 use grainsmooth::mesh_file::{MeshFile, MeshFileProblem, MeshFormat, MeshToWrite, read_mesh, write_mesh};
 use grainsmooth::vtk::Cells;
 use grainsmooth::{
-    Connectivity, Error, Level, Output, Scheme, bezier_json, edit_edges, levels_json, limits, mesh_json,
-    read_bezier, subdivide,
+    Connectivity, EdgeEdit, Error, Level, Output, Scheme, bezier_json, edit_edges, levels_json, limits,
+    mesh_json, read_bezier, subdivide,
 };
 use subzero::{HalfEdgeMesh, MeshError};
 
@@ -30,20 +31,13 @@ pub fn run(command: &MeshCommand) -> Result<(), Error> {
         );
         Arguments::command().error(ErrorKind::ValueValidation, message).exit()
     };
-    let job = Job { files, format, command_line: command_line() };
-    match task {
-        Task::Subdivide(scheme, arguments) => job.subdivide(scheme, arguments),
-        Task::Limit(scheme, arguments) => job.limit(scheme, arguments),
-        Task::Normals => job.normals(),
-        Task::Edit(edit, edges) => {
-            let output = job.output(&files.output)?;
-            let mesh = job.read()?;
-            let (points, triangles) = edit_edges(&mesh, edit, edges).map_err(|error| job.located(error))?;
-            job.report(format_args!("edited      {} edges", edges.len()));
-            job.write_single(&output, &points, &triangles, None)
-        }
-        Task::Bezier { samples } => job.bezier(samples),
+    let job = Job { files, format, command_line: command_line(), report: RefCell::default() };
+    job.run(task)?;
+    // A run that fails says one line, its error.
+    if !files.quiet {
+        say(&job.report.take().join("\n"));
     }
+    Ok(())
 }
 
 /// The files of a run.
@@ -51,9 +45,21 @@ struct Job<'a> {
     files: &'a FileArguments,
     format: MeshFormat,
     command_line: String,
+    /// What there is to say about it, line by line.
+    report: RefCell<Vec<String>>,
 }
 
 impl Job<'_> {
+    fn run(&self, task: Task<'_>) -> Result<(), Error> {
+        match task {
+            Task::Subdivide(scheme, arguments) => self.subdivide(scheme, arguments),
+            Task::Limit(scheme, arguments) => self.limit(scheme, arguments),
+            Task::Normals => self.normals(),
+            Task::Edit(edit, edges) => self.edit(edit, edges),
+            Task::Bezier { samples } => self.bezier(samples),
+        }
+    }
+
     fn subdivide(&self, scheme: Scheme, arguments: &SchemeArguments) -> Result<(), Error> {
         // Outputs that cannot be written are found before the work.
         let last = arguments.levels;
@@ -113,6 +119,19 @@ impl Job<'_> {
         let (triangles, normals) = find().map_err(|error| self.located(error))?;
         self.report(format_args!("normals     {} points", normals.iter().flatten().count()));
         self.write_single(&output, &mesh.points, &triangles, Some(&normals))
+    }
+
+    fn edit(&self, edit: EdgeEdit, edges: &[[u32; 2]]) -> Result<(), Error> {
+        let output = self.output(&self.files.output)?;
+        let mesh = self.read()?;
+        let (points, triangles) = edit_edges(&mesh, edit, edges).map_err(|error| self.located(error))?;
+        self.report(format_args!(
+            "edited      {} edges: {} points, {} triangles",
+            edges.len(),
+            points.len(),
+            triangles.len()
+        ));
+        self.write_single(&output, &points, &triangles, None)
     }
 
     fn bezier(&self, samples: u32) -> Result<(), Error> {
@@ -219,9 +238,7 @@ impl Job<'_> {
     }
 
     fn report(&self, line: std::fmt::Arguments<'_>) {
-        if !self.files.quiet {
-            say(&line.to_string());
-        }
+        self.report.borrow_mut().push(line.to_string());
     }
 }
 

@@ -163,6 +163,25 @@ impl HalfEdgeMesh {
         Ok(())
     }
 
+    /// Draws vertex `from` into its neighbour `into`, which removes `from`, their edge, and its triangles.
+    ///
+    /// # Errors
+    /// [`MeshError::NoEdge`], or [`MeshError::Edit`] as of [`collapse`](Self::collapse). The mesh is unchanged then.
+    pub fn collapse_into(&mut self, from: u32, into: u32) -> Result<(), MeshError> {
+        let half_edge = self.half_edge_between(from, into)?;
+        if self.start(half_edge) == from {
+            return self.collapse(half_edge);
+        }
+        // On the boundary the only half-edge may run the other way: then the vertex that is left takes the other's id.
+        self.collapse(half_edge)?;
+        let around: Vec<u32> = self.outgoing_half_edges(from).collect();
+        for h in around {
+            self.starts[h as usize] = into;
+        }
+        self.outgoing[into as usize] = std::mem::replace(&mut self.outgoing[from as usize], NONE);
+        Ok(())
+    }
+
     /// What would go wrong if an edge collapsed.
     fn breaks_link_condition(&self, h: u32) -> Option<&'static str> {
         let [a, b] = [self.start(h), self.end(h)];

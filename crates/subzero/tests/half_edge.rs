@@ -217,3 +217,27 @@ fn what_would_break_the_mesh_is_refused() {
     let turned = HalfEdgeMesh::new(4, &[[0, 1, 2], [0, 1, 3]]);
     assert_eq!(turned.unwrap_err(), MeshError::Winding { first: 0, second: 1, ends: [0, 1] });
 }
+
+#[test]
+fn collapse_removes_the_vertex_that_is_named_first() {
+    // Every edge of a grid in both directions; on the boundary one of them has no half-edge.
+    let whole = grid(3);
+    for h in whole.edges() {
+        for [from, into] in [[whole.start(h), whole.end(h)], [whole.end(h), whole.start(h)]] {
+            let mut mesh = whole.clone();
+            let Ok(()) = mesh.collapse_into(from, into) else { continue };
+            let triangles: Vec<[u32; 3]> = mesh.triangles().map(|(_, triangle)| triangle).collect();
+            assert!(triangles.as_flattened().iter().all(|&v| v != from), "{from} into {into}");
+            assert!(triangles.as_flattened().contains(&into));
+            let rebuilt = HalfEdgeMesh::new(whole.vertex_count(), &triangles).unwrap();
+            for v in 0..16 {
+                assert_eq!(mesh.is_boundary_vertex(v), rebuilt.is_boundary_vertex(v));
+                let [mut ours, mut theirs] =
+                    [&mesh, &rebuilt].map(|mesh| mesh.neighbours(v).collect::<Vec<_>>());
+                ours.sort_unstable();
+                theirs.sort_unstable();
+                assert_eq!(ours, theirs, "{from} into {into}: around {v}");
+            }
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! Each format, written and read back.
+
+use std::process::Command;
+
+use glam::DVec3;
+use grainsmooth::mesh_file::{MeshFile, read_mesh};
+use predicates::str::contains;
+
+use crate::shapes::{CUBE_OBJ, TETRAHEDRON_OFF, json, points};
+use crate::workplace::Workplace;
+
+const EXACT: [&str; 6] = ["vtp", "vtu", "vtk", "obj", "ply", "json"];
+
+fn read(workplace: &Workplace, name: &str) -> MeshFile {
+    read_mesh(&workplace.path(name)).unwrap()
+}
+
+#[test]
+fn points_and_faces_come_back_bit_for_bit() {
+    let workplace = Workplace::new();
+    workplace.put("in.off", TETRAHEDRON_OFF);
+    let original = read(&workplace, "in.off");
+    assert_eq!(original.points[1], DVec3::new(1.0, 0.1 + 0.2, 0.0));
+    for extension in EXACT {
+        let name = format!("out.{extension}");
+        workplace.run(&format!("mesh midpoint -n 0 in.off -o {name}"));
+        let back = read(&workplace, &name);
+        assert_eq!((&back.points, &back.faces), (&original.points, &original.faces), "{extension}");
+        // And once more, from that format.
+        workplace.run(&format!("mesh midpoint -n 0 {name} -o again.ply"));
+        assert_eq!(read(&workplace, "again.ply").points, original.points, "{extension}");
+    }
+}
+
+#[test]
+fn polygons_stay_polygons() {
+    let workplace = Workplace::new();
+    workplace.put("cube.obj", CUBE_OBJ);
+    for extension in EXACT {
+        let name = format!("out.{extension}");
+        workplace.run(&format!("mesh doo-sabin -n 1 cube.obj -o {name}"));
+        if extension == "json" {
+            let faces = &json(&workplace.bytes(&name))["levels"][0]["faces"];
+            assert_eq!(faces.as_array().unwrap().len(), 26);
+            continue;
+        }
+        let back = read(&workplace, &name);
+        // 6 squares inside the faces, 12 across the edges, 8 triangles around the corners.
+        assert_eq!((back.points.len(), back.faces.len()), (24, 26), "{extension}");
+        assert_eq!(back.faces.iter().filter(|face| face.len() == 3).count(), 8, "{extension}");
+    }
+    workplace.run("mesh catmull-clark -n 2 cube.obj -o out.vtu");
+    assert_eq!(read(&workplace, "out.vtu").faces.len(), 6 * 16);
+}
+
+#[test]
+fn stl_is_welded_by_equal_coordinates() {
+    let workplace = Workplace::new();
+    workplace.put("in.off", TETRAHEDRON_OFF);
+    workplace.run("mesh midpoint -n 1 in.off -o out.stl");
+    assert_eq!(workplace.bytes("out.stl").len(), 84 + 50 * 16);
+    let said = workplace.run("mesh loop out.stl -o out.ply");
+    assert!(said.contains("welded      48 corners with exactly equal coordinates to 10 points"), "{said}");
+    assert_eq!(read(&workplace, "out.ply").faces.len(), 64);
+    let welded = read(&workplace, "out.stl");
+    assert_eq!((welded.points.len(), welded.welded_corners), (10, Some(48)));
+    assert!((welded.points[0] - read(&workplace, "in.off").points[0]).length() < 1e-7);
+
+    workplace.put("cube.obj", CUBE_OBJ);
+    workplace.run("mesh catmull-clark cube.obj -n 0 -o cube.stl");
+    assert_eq!(read(&workplace, "cube.stl").faces.len(), 12, "squares are cut");
+}
+
+#[test]
+fn ascii_and_big_endian_ply() {
+    let workplace = Workplace::new();
+    let header = |format: &str| {
+        format!(
+            "ply\nformat {format} 1.0\nelement vertex 3\nproperty float x\nproperty uchar red\nproperty double y\n\
+             property int z\nelement face 1\nproperty list uchar short vertex_index\nelement edge 0\n\
+             property int a\nend_header\n"
+        )
+    };
+    workplace.put("ascii.ply", header("ascii") + "0 9 0 0\n1.5 9 0 0\n0 9 0.1 -2\n3 0 1 2\n");
+    let mut bytes = header("binary_big_endian").into_bytes();
+    for (x, y, z) in [(0_f32, 0_f64, 0_i32), (1.5, 0.0, 0), (0.0, 0.1, -2)] {
+        bytes.extend(x.to_be_bytes());
+        bytes.push(9);
+        bytes.extend(y.to_be_bytes());
+        bytes.extend(z.to_be_bytes());
+    }
+    bytes.extend([3, 0, 0, 0, 1, 0, 2]);
+    workplace.put("binary.ply", bytes);
+    for name in ["ascii.ply", "binary.ply"] {
+        let mesh = read(&workplace, name);
+        assert_eq!(mesh.points[2], DVec3::new(0.0, 0.1, -2.0), "{name}");
+        assert_eq!(mesh.faces, [[0, 1, 2]], "{name}");
+    }
+}
+
+#[test]
+fn legacy_vtk_with_strips_and_field_data() {
+    let workplace = Workplace::new();
+    workplace.put(
+        "strip.vtk",
+        "# vtk DataFile Version 3.0\nstrip\nASCII\nDATASET POLYDATA\nFIELD FieldData 2\nnote 1 1 string\nhello\n\
+         time 2 1 double\n0.5 1\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 1 1 0\nTRIANGLE_STRIPS 1 5\n4 0 1 2 3\n",
+    );
+    assert_eq!(read(&workplace, "strip.vtk").faces, [[0, 1, 2], [2, 1, 3]]);
+    workplace.put(
+        "solid.vtk",
+        "# vtk DataFile Version 3.0\nsolid\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n\
+         0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n",
+    );
+    let error = read_mesh(&workplace.path("solid.vtk")).unwrap_err().to_string();
+    assert!(error.ends_with("cell 0 is a Tetra, not a polygon; give a complete VTK file"), "{error}");
+}
+
+#[test]
+fn polycrystals_of_this_program_are_subdivided_further() {
+    let workplace = Workplace::new();
+    for extension in ["vtp", "vtu", "vtk"] {
+        workplace.run(&format!("--seeds 5 -n 0 -o grains.{extension}"));
+        workplace.run(&format!("mesh loop grains.{extension} -o finer.{extension}"));
+        let (coarse, fine) = (
+            read(&workplace, &format!("grains.{extension}")),
+            read(&workplace, &format!("finer.{extension}")),
+        );
+        assert_eq!(fine.faces.len(), 4 * coarse.faces.len());
+    }
+}
+
+#[test]
+fn one_file_for_each_level() {
+    let workplace = Workplace::new();
+    workplace.put("in.off", TETRAHEDRON_OFF);
+    let said = workplace.run("mesh loop in.off -n 2 --each-level -o out.vtp");
+    for (level, faces) in [4, 16, 64].into_iter().enumerate() {
+        assert_eq!(read(&workplace, &format!("out_{level}.vtp")).faces.len(), faces);
+        assert!(said.contains(&format!("written     out_{level}.vtp")), "{said}");
+    }
+    assert!(!workplace.path("out.vtp").exists());
+    assert_eq!(workplace.run("mesh loop in.off -q -o out.vtp"), "");
+}
+
+#[test]
+fn limits_and_normals() {
+    let workplace = Workplace::new();
+    workplace
+        .put("in.off", "OFF\n4 4 0\n1 1 1\n1 -1 -1\n-1 1 -1\n-1 -1 1\n3 0 1 2\n3 0 2 3\n3 0 3 1\n3 1 3 2\n");
+    workplace.run("mesh limit in.off -o limit.obj");
+    let limit = read(&workplace, "limit.obj");
+    // A fifth of the way out: (1 - 3 w) - w with w = 1/(3 + 3/(8 * 3/16)) = 1/5.
+    assert!((limit.points[0] - DVec3::splat(0.2)).length() < 1e-15, "{}", limit.points[0]);
+    let text = String::from_utf8(workplace.bytes("limit.obj")).unwrap();
+    assert!(text.contains("\nvn ") && text.contains("\nf 1//1 "), "{text}");
+
+    workplace.run("mesh normals in.off -o normals.json");
+    let normals = points(&json(&workplace.bytes("normals.json"))["normals"]);
+    assert!((DVec3::from(normals[1]) - DVec3::new(1.0, -1.0, -1.0).normalize()).length() < 1e-15);
+    for extension in ["vtp", "vtu", "vtk", "ply", "obj", "stl"] {
+        workplace.run(&format!("mesh normals in.off -o normals.{extension}"));
+        assert_eq!(read(&workplace, &format!("normals.{extension}")).points.len(), 4);
+    }
+    workplace.put("cube.obj", CUBE_OBJ);
+    workplace.run("mesh limit --scheme catmull-clark cube.obj -o cube.ply");
+    let corner = read(&workplace, "cube.ply").points[6];
+    // (n^2 v + 4 sum of edge points + sum of face points)/(n (n + 5)) at valence 3.
+    assert!((corner - DVec3::splat(0.5)).length() < 1e-15, "{corner}");
+}
+
+#[test]
+fn bezier_curves_and_patches() {
+    let workplace = Workplace::new();
+    workplace.put("curve.txt", "0 0 0\n1 2 0\n2 0 0\n");
+    workplace.run("mesh bezier curve.txt --samples 3 -o curve.obj");
+    let text = String::from_utf8(workplace.bytes("curve.obj")).unwrap();
+    assert!(text.ends_with("v 0.0 0.0 0.0\nv 1.0 1.0 0.0\nv 2.0 0.0 0.0\nl 1 2 3\n"), "{text}");
+    workplace.run("mesh bezier curve.txt -o curve.vtp");
+    workplace.refuses(
+        "mesh bezier curve.txt -o curve.ply",
+        1,
+        "curve.ply: writing failed and left nothing: PLY holds no curves; write .vtp, .obj or .json instead; \
+         make room or choose another path",
+    );
+    workplace.put("patch.bpt", format!("1\n1 1\n{}", "0 0 0\n0 1 0\n1 0 0\n1 1 2\n"));
+    workplace.run("mesh bezier patch.bpt --samples 3 -o patch.ply");
+    let patch = read(&workplace, "patch.ply");
+    assert_eq!((patch.points.len(), patch.faces.len(), patch.points[4].z), (9, 8, 0.5));
+}
+
+/// Files as ParaView's own library writes them, where it is there.
+#[test]
+fn files_of_vtk_itself() {
+    let workplace = Workplace::new();
+    let script = "
+import pyvista
+cube = pyvista.Cube().clean()
+cube.save('cube.vtp'); cube.save('ascii.vtk', binary=False); cube.save('binary.vtk'); cube.save('cube.ply')
+cube.cast_to_unstructured_grid().save('cube.vtu')
+cube.triangulate().save('cube.stl')
+";
+    let python = Command::new("python3").args(["-c", script]).current_dir(workplace.path(".")).output();
+    if !python.is_ok_and(|output| output.status.success()) {
+        return;
+    }
+    for name in ["cube.vtp", "ascii.vtk", "binary.vtk", "cube.vtu", "cube.ply"] {
+        let mesh = read_mesh(&workplace.path(name)).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!((mesh.points.len(), mesh.faces.len()), (8, 6), "{name}");
+    }
+    assert_eq!(read(&workplace, "cube.stl").points.len(), 8);
+}
+
+#[test]
+fn output_is_checked_before_the_input() {
+    let workplace = Workplace::new();
+    workplace
+        .command("mesh loop missing.obj -o nowhere/out.obj")
+        .assert()
+        .code(1)
+        .stderr(contains("nowhere/out.obj: no directory nowhere"));
+}

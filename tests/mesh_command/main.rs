@@ -1,0 +1,12 @@
+//! `grainsmooth mesh` as its users meet it: run as a process, judged by what it prints, returns and writes.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod bad_meshes;
+mod corrupt_files;
+mod edits;
+mod formats;
+mod references;
+mod shapes;
+#[allow(dead_code, reason = "shared with the tests of the command line")]
+#[path = "../command_line/workplace.rs"]
+mod workplace;
