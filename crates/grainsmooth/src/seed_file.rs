@@ -170,7 +170,7 @@ fn seed(
     let numbers: Vec<f64> = texts.iter().map(|text| number(text, dimension)).collect::<Result<_, _>>()?;
     let (position, radius) = match (columns, numbers.as_slice()) {
         (Columns::Xy, &[x, y]) => (DVec3::new(x, y, 0.0), None),
-        (Columns::Xyz, &[x, y, z]) => (DVec3::new(x, y, z), None),
+        (Columns::Xy | Columns::Xyz, &[x, y, z]) => (DVec3::new(x, y, z), None),
         (Columns::XyRadius, &[x, y, radius]) => (DVec3::new(x, y, 0.0), Some(radius)),
         (Columns::XyzRadius, &[x, y, z, radius]) => (DVec3::new(x, y, z), Some(radius)),
         _ => return Err(SeedLineProblem::ColumnCount { found: texts.len(), dimension }),
