@@ -81,20 +81,27 @@ fn edits(c: &mut Criterion) {
     let (triangles, points) = sphere_hull(POINTS, Order::Curve);
     let (mesh, _) = base_mesh(points.len(), &triangles).loop_subdivide(&points, 2, LoopWeights::Loop);
     let mesh = HalfEdgeMesh::from_triangle_mesh(&mesh).expect("the mesh is manifold");
+    // One half-edge in so many, in order, and of each in turn one of its triangle's three.
+    let step = mesh.half_edge_count() / EDITS;
+    let in_order: Vec<u32> =
+        (0..EDITS).map(|i| u32::try_from(i * step + i % 3).expect("ids are u32")).collect();
+    let mut shuffled = in_order.clone();
     let mut random = Random(2);
-    let half_edges = mesh.half_edge_count() as u64;
-    let picks: Vec<u32> =
-        (0..EDITS).map(|_| u32::try_from(random.bits() % half_edges).expect("half-edges are u32")).collect();
+    for i in (1..shuffled.len()).rev() {
+        shuffled.swap(i, usize::try_from(random.bits() % (i as u64 + 1)).expect("indices are usize"));
+    }
     let mut group = c.benchmark_group("half-edge edits on 320 000 triangles");
     group.throughput(Throughput::Elements(EDITS as u64));
     let mut bench = |name: &str, edit: fn(&mut HalfEdgeMesh, u32)| {
-        group.bench_function(name, |b| {
-            let run = |mut mesh: HalfEdgeMesh| {
-                picks.iter().for_each(|&h| edit(&mut mesh, h));
-                mesh
-            };
-            b.iter_batched(|| mesh.clone(), run, BatchSize::PerIteration);
-        });
+        for (order, picks) in [("in order", &in_order), ("shuffled", &shuffled)] {
+            group.bench_function(BenchmarkId::new(name, order), |b| {
+                let run = |mut mesh: HalfEdgeMesh| {
+                    picks.iter().for_each(|&h| edit(&mut mesh, h));
+                    mesh
+                };
+                b.iter_batched(|| mesh.clone(), run, BatchSize::PerIteration);
+            });
+        }
     };
     // What an edit before made impossible is refused; that is rare among so many edges.
     bench("flip", |mesh, h| drop(mesh.flip(h)));

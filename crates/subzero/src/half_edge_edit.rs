@@ -23,7 +23,9 @@ impl HalfEdgeMesh {
         // Around h: a b c; around its twin: b a d.
         let [b_c, c_a, a_d, d_b] = [next(h), prev(h), next(other), prev(other)];
         let [a, b, c, d] = [self.start(h), self.start(b_c), self.start(c_a), self.start(d_b)];
-        if self.neighbours(c).any(|neighbour| neighbour == d) {
+        // Every neighbour of c is a corner of some triangle around it.
+        let has_d = |h: u32| [self.start(next(h)), self.start(prev(h))].contains(&d);
+        if self.outgoing_half_edges(c).any(has_d) {
             return refuse("its far corners share an edge already");
         }
         let [beyond_bc, beyond_ca, beyond_ad, beyond_db] =
@@ -185,7 +187,8 @@ impl HalfEdgeMesh {
     /// What would go wrong if an edge collapsed.
     fn breaks_link_condition(&self, h: u32) -> Option<&'static str> {
         let [a, b] = [self.start(h), self.end(h)];
-        let shared = self.neighbours(a).filter(|&x| self.neighbours(b).any(|y| x == y)).count();
+        let around_b: Vec<u32> = self.neighbours(b).collect();
+        let shared = self.neighbours(a).filter(|x| around_b.contains(x)).count();
         let Some(other) = self.twin(h) else {
             let alone = self.twin(next(h)).is_none() && self.twin(prev(h)).is_none();
             return match (shared, alone) {

@@ -149,8 +149,8 @@ impl HalfEdgeMesh {
     /// If there is no such vertex.
     pub fn neighbours(&self, vertex: u32) -> impl Iterator<Item = u32> {
         // The fan of a boundary vertex has an edge more than triangles.
-        let last_of = move |h: u32| self.twin(prev(h)).is_none().then(|| self.start(prev(h)));
-        self.outgoing_half_edges(vertex).flat_map(move |h| [Some(self.end(h)), last_of(h)]).flatten()
+        let first = self.is_boundary_vertex(vertex).then(|| self.end(self.outgoing[vertex as usize]));
+        first.into_iter().chain(self.outgoing_half_edges(vertex).map(|h| self.start(prev(h))))
     }
 
     /// Whether a vertex lies on the boundary.
