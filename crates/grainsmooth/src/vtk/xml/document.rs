@@ -264,7 +264,7 @@ mod tests {
 
     #[test]
     fn ids_are_widened_when_asked() {
-        let as_bytes = |ids: &[i64]| bytemuck::cast_slice(ids).to_vec();
+        let as_bytes = |ids: &[i64]| bytemuck::cast_slice::<i64, u8>(ids).to_vec();
         let triangles = [[0, 1, 2], [2, 1, u32::MAX]];
         let (connectivity, ends) = cell_ids(Cells::Triangles(&triangles), true);
         assert_eq!(connectivity, as_bytes(&[0, 1, 2, 2, 1, i64::from(u32::MAX)]));
