@@ -95,7 +95,7 @@ fn option_that_does_not_exist() {
     let workplace = Workplace::new();
     workplace.refuses("--seed 3", USAGE, "unexpected argument '--seed' found");
     workplace.refuses("-x", USAGE, "unexpected argument '-x' found");
-    workplace.refuses("200", USAGE, "unexpected argument '200' found");
+    workplace.refuses("200", USAGE, "unrecognized subcommand '200'");
     let said = workplace.command("--sedes 3").assert().get_output().stderr.clone();
     assert!(String::from_utf8(said).unwrap().contains("a similar argument exists: '--seeds'"));
 }
