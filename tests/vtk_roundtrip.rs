@@ -225,3 +225,43 @@ fn array_of_another_length_is_refused() {
     data.cell_arrays[1].values = Values::Int32(&BOUNDARIES[..2]);
     bytes(&data, OutputFormat::Vtp);
 }
+
+#[test]
+fn polygons_come_back() {
+    let polygons = [vec![0, 1, 2, 3], vec![4, 3, 2, 0, 1]];
+    let directory = tempfile::tempdir().unwrap();
+    for format in OutputFormat::ALL {
+        let path = directory.path().join("faces").with_extension(format.extension());
+        write(&surface(Cells::Polygons(&polygons)), &path);
+        // PolyData do not tell triangles from other polygons.
+        let kind = if format == OutputFormat::Vtu { CellType::Polygon } else { CellType::Triangle };
+        let expected = polygons.clone().map(|cell| (kind, cell.into_iter().map(u64::from).collect()));
+        assert_eq!(check(read(&path)), expected, "{format:?}");
+    }
+}
+
+#[test]
+fn vectors_come_back() {
+    let data = PolyData {
+        points: &POINTS,
+        cells: Cells::Triangles(&TRIANGLES),
+        point_arrays: vec![Array { name: "Normals", values: Values::Vectors(&POINTS) }],
+        cell_arrays: vec![],
+        field: vec![],
+    };
+    let expected: Vec<f64> = POINTS.iter().flat_map(|point| point.to_array()).collect();
+    for format in OutputFormat::ALL {
+        let file = bytes(&data, format);
+        let file = match format {
+            OutputFormat::Vtk => Vtk::parse_legacy_be(&file[..]).unwrap(),
+            _ => Vtk::parse_xml(&file[..]).unwrap(),
+        };
+        let attributes = match file.data {
+            DataSet::PolyData { pieces, .. } => inline(pieces).data,
+            DataSet::UnstructuredGrid { pieces, .. } => inline(pieces).data,
+            _ => panic!("neither PolyData nor UnstructuredGrid"),
+        };
+        let arrays = named(attributes.point);
+        assert_eq!(arrays, [("Normals".to_owned(), 3, IOBuffer::F64(expected.clone()))], "{format:?}");
+    }
+}

@@ -1,5 +1,6 @@
 //! Each format, written and read back.
 
+use std::fs;
 use std::process::Command;
 
 use glam::DVec3;
@@ -199,15 +200,37 @@ cube = pyvista.Cube().clean()
 cube.save('cube.vtp'); cube.save('ascii.vtk', binary=False); cube.save('binary.vtk'); cube.save('cube.ply')
 cube.cast_to_unstructured_grid().save('cube.vtu')
 cube.triangulate().save('cube.stl')
+import vtk
+for mode in ['Ascii', 'Binary', 'Appended']:
+    for encode in [0, 1]:
+        for compressor in ['None', 'ZLib', 'LZ4']:
+            for header in ['32', '64']:
+                for kind, mesh in [('PolyData', cube), ('UnstructuredGrid', cube.cast_to_unstructured_grid())]:
+                    writer = getattr(vtk, f'vtkXML{kind}Writer')()
+                    writer.SetInputData(mesh)
+                    getattr(writer, f'SetDataModeTo{mode}')()
+                    writer.SetEncodeAppendedData(encode)
+                    getattr(writer, f'SetCompressorTypeTo{compressor}')()
+                    getattr(writer, f'SetHeaderTypeToUInt{header}')()
+                    extension = 'vtp' if kind == 'PolyData' else 'vtu'
+                    writer.SetFileName(f'{mode}_{encode}_{compressor}_{header}.{extension}')
+                    writer.Write()
 ";
     let python = Command::new("python3").args(["-c", script]).current_dir(workplace.path(".")).output();
     if !python.is_ok_and(|output| output.status.success()) {
         return;
     }
-    for name in ["cube.vtp", "ascii.vtk", "binary.vtk", "cube.vtu", "cube.ply"] {
-        let mesh = read_mesh(&workplace.path(name)).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!((mesh.points.len(), mesh.faces.len()), (8, 6), "{name}");
+    let mut count = 0;
+    for entry in fs::read_dir(workplace.path(".")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.ends_with("cube.stl") || path.ends_with("grains.vtp") {
+            continue;
+        }
+        let mesh = read_mesh(&path).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!((mesh.points.len(), mesh.faces.len()), (8, 6), "{}", path.display());
+        count += 1;
     }
+    assert_eq!(count, 5 + 3 * 2 * 3 * 2 * 2);
     assert_eq!(read(&workplace, "cube.stl").points.len(), 8);
 }
 

@@ -57,6 +57,9 @@ impl MeshFileProblem {
     /// A file that is none of its format, and why; of an error in many lines the first is told.
     pub(super) fn corrupt(format: &'static str, what: impl ToString) -> Self {
         let what = what.to_string();
-        Self::Corrupt { format, what: what.lines().next().unwrap_or_default().to_owned() }
+        Self::Corrupt {
+            format,
+            what: what.lines().next().unwrap_or_default().trim_end_matches('.').to_owned(),
+        }
     }
 }

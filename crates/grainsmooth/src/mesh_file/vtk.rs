@@ -9,6 +9,7 @@ use vtkio::model::{CellType, DataSet, Piece, PieceData, VertexNumbers, Vtk};
 use super::{MeshFile, MeshFileProblem};
 
 mod field;
+mod xml_parts;
 
 /// The name of the thread in which `vtkio` reads.
 ///
@@ -24,7 +25,8 @@ pub(super) fn read_legacy(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
 
 /// Reads a .vtp or .vtu file.
 pub(super) fn read_xml(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
-    in_thread(|| Vtk::parse_xml(bytes).map_err(problem))
+    let bytes = xml_parts::points_and_faces(bytes);
+    in_thread(|| Vtk::parse_xml(&bytes[..]).map_err(problem))
 }
 
 fn problem(error: impl ToString) -> MeshFileProblem {

@@ -93,15 +93,15 @@ impl Reader<'_> {
 
     /// The length of a binary string: its two highest bits say in how many bytes it is stored.
     fn string_length(&mut self) -> Option<usize> {
-        let width = match self.bytes.get(self.at)? >> 6 {
-            3 => 1,
-            2 => 2,
-            1 => 4,
-            _ => 8,
+        let (width, length_bits) = match self.bytes.get(self.at)? >> 6 {
+            3 => (1, 6),
+            2 => (2, 14),
+            1 => (4, 30),
+            _ => (8, 62),
         };
         let stored = self.bytes.get(self.at..self.at + width)?;
         self.at += width;
         let number = stored.iter().fold(0_u64, |number, &byte| number << 8 | u64::from(byte));
-        usize::try_from(number & (u64::MAX >> (66 - 8 * width as u32))).ok()
+        usize::try_from(number & (u64::MAX >> (64 - length_bits))).ok()
     }
 }
