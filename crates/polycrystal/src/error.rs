@@ -45,7 +45,9 @@ pub enum NetworkError {
         relative_error: f64,
     },
     /// A boundary stays folded however small the steps.
-    #[error("{count} edges inside boundaries are folded after relaxation; relax for a shorter time")]
+    #[error(
+        "{count} edges inside boundaries are folded after relaxation; relax for a shorter time or use fewer levels"
+    )]
     Folded {
         /// Number of edges whose two triangles are more than 90 degrees apart.
         count: usize,

@@ -154,6 +154,18 @@ impl Network {
     }
 }
 
+impl Network {
+    /// The mean grain size, or the box's shortest side where that is shorter: the size of what can be seen to be small.
+    pub(crate) fn feature_size(&self) -> f64 {
+        let size = self.domain.size();
+        let shortest = match self.domain.dimension() {
+            voronoi::Dimension::Two => size.truncate().min_element(),
+            voronoi::Dimension::Three => size.min_element(),
+        };
+        self.mean_grain_size().min(shortest)
+    }
+}
+
 /// Subdivision multiplies elements by four (in the plane: two); the largest ids are those of half-edges, three a triangle.
 fn check_size(tessellation: &Tessellation, level_count: usize) -> Result<(), NetworkError> {
     let corners: usize = tessellation.faces().map(|face| tessellation.face_corners(face).len()).sum();

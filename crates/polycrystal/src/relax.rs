@@ -31,7 +31,7 @@ const STEPS: usize = 10;
 /// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
 const ATTEMPTS: usize = 12;
 
-/// Length, in units of the mean grain size, below which a control edge no longer changes.
+/// Length, in units of the feature size, below which a control edge no longer changes.
 const RIGID_LENGTH: f64 = 0.04;
 
 /// Cosine of the largest angle between neighbouring elements after a step (75 degrees), so that later subdivision
@@ -46,6 +46,10 @@ const VOLUME_TOLERANCE: f64 = 1e-12;
 
 /// Difference that is accepted where rounding keeps the iteration above that: small grains in large boxes.
 const VOLUME_LIMIT: f64 = 1e-10;
+
+/// Bounds on the factor by which a volume correction is larger than its gradient asks for.
+const SMALLEST_GAIN: f64 = 0.3;
+const LARGEST_GAIN: f64 = 2.0;
 
 /// Most Newton steps on the volumes; each gains about a digit, for its gradient is that of a coarser level.
 const VOLUME_STEPS: usize = 40;
@@ -146,11 +150,10 @@ impl<'a> Flow<'a> {
         let terms = self.patches.terms(points);
         let before = element_normals(self.surface(), &self.refined(points));
         let missing = self.missing(&self.patches.grain_volumes(self.network, points));
-        let rigid_length = RIGID_LENGTH * self.network.mean_grain_size();
-        self.clusters.join_short_edges(self.network, points, rigid_length);
+        self.clusters.join_short_edges(self.network, points, self.rigid_length());
         let mut count = 0;
         for _ in 0..ATTEMPTS {
-            let moves = self.system(points, &terms, time).displacement(&missing);
+            let moves = self.system(points, &terms, &self.clusters, time).displacement(&missing);
             let moved: Vec<DVec3> = points.iter().zip(&moves).map(|(point, by)| *point + *by).collect();
             let broken = self.broken_elements(&before, &moved);
             let folding = self.corners.folding(points, &moved);
@@ -170,30 +173,62 @@ impl<'a> Flow<'a> {
     }
 
     /// Moves points so that the grains of the finest level have the volumes of their cells.
+    ///
+    /// Where much has become rigid, some grain may be unable to change its volume: then only short edges stay rigid, and
+    /// at last none.
     fn restore_volumes(&self, points: &mut [DVec3]) -> Result<(), NetworkError> {
+        let free = Clusters::new(points.len());
+        let mut short = free.clone();
+        short.join_short_edges(self.network, points, self.rigid_length());
+        let start = points.to_vec();
+        self.restore_with(&self.clusters, points)
+            .or_else(|_| {
+                points.copy_from_slice(&start);
+                self.restore_with(&short, points)
+            })
+            .or_else(|_| {
+                points.copy_from_slice(&start);
+                self.restore_with(&free, points)
+            })
+    }
+
+    fn restore_with(&self, clusters: &Clusters, points: &mut [DVec3]) -> Result<(), NetworkError> {
         let terms = self.patches.terms(points);
-        let system = self.system(points, &terms, 0.0);
-        let mut last_error = f64::INFINITY;
+        let system = self.system(points, &terms, clusters, 0.0);
+        let mut last: Option<Vec<f64>> = None;
+        // The gradient is that of a coarser level: what is too small or large in it is measured and made up for.
+        let mut gain = 1.0;
         for step in 0.. {
             let surface = self.network.subdivide(points);
             let missing = self.missing(&self.network.grain_volumes(self.network.finest(), &surface));
             let (grain, relative_error) = self.largest_error(&missing);
-            let stalled = relative_error > 0.5 * last_error;
+            let mut stalled = false;
+            if let Some(last) = &last {
+                let left = dot(&missing, last) / dot(last, last);
+                stalled = relative_error > 0.5 * self.largest_error(last).1;
+                gain = (gain / (1.0 - left)).clamp(SMALLEST_GAIN, LARGEST_GAIN);
+            }
             if relative_error <= VOLUME_TOLERANCE || (stalled && relative_error <= VOLUME_LIMIT) {
                 return Ok(());
             }
-            if step == VOLUME_STEPS {
+            // A correction that makes things worse (NaN included) would only be followed by others.
+            if step == VOLUME_STEPS || relative_error.is_nan() || relative_error >= 1.0 {
                 return Err(NetworkError::VolumeNotRestored { grain, relative_error });
             }
-            last_error = relative_error;
-            let moves = system.volume_correction(&missing);
+            let wanted: Vec<f64> = missing.iter().map(|lack| gain * lack).collect();
+            let moves = system.volume_correction(&wanted);
             points.iter_mut().zip(&moves).for_each(|(point, by)| *point += *by);
+            last = Some(missing);
         }
         Ok(())
     }
 
-    fn system(&self, points: &[DVec3], terms: &[PatchTerms], time: f64) -> System<'_> {
-        System::new(self.network, &self.patches, terms, points, self.clusters.number(), time)
+    fn system(&self, points: &[DVec3], terms: &[PatchTerms], clusters: &Clusters, time: f64) -> System<'_> {
+        System::new(self.network, &self.patches, terms, points, clusters.number(), time)
+    }
+
+    fn rigid_length(&self) -> f64 {
+        RIGID_LENGTH * self.network.feature_size()
     }
 
     /// What each grain's volume lacks.
@@ -257,4 +292,8 @@ fn ancestor(levels: &[Level], element: u32) -> u32 {
         Mesh::Triangles(mesh) => mesh.counts().triangle_parent(element),
         Mesh::Segments(_) => element / 2,
     })
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

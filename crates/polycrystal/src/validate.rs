@@ -49,7 +49,9 @@ pub enum Fault {
         count: usize,
     },
     /// Elements of one boundary are folded over each other.
-    #[error("{count} edges inside boundaries are folded by more than 90 degrees; relax for a shorter time")]
+    #[error(
+        "{count} edges inside boundaries are folded by more than 90 degrees; use fewer levels, or move seeds apart that nearly share a vertex"
+    )]
     Folded {
         /// Number of edges.
         count: usize,

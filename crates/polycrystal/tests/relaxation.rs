@@ -136,6 +136,22 @@ fn one_and_two_threads_give_the_same_bits() {
     assert_eq!(with_threads(1), with_threads(2));
 }
 
+/// Rigid parts once left a grain no way to change its volume, and the pressures of the others grew without bound.
+#[test]
+fn volumes_are_restored_in_thin_boxes_and_where_much_is_rigid() {
+    for (size, count, random_seed, time) in [
+        (DVec3::new(1.0, 1.0, 0.001), 16, 1, 0.3),
+        (DVec3::new(1.0, 1e-5, 1.0), 4, 2, 0.3),
+        (DVec3::new(1.0, 1000.0, 1.0), 30, 3, 0.1),
+        (DVec3::ONE, 15, 4, 3.0),
+    ] {
+        let domain = Domain::cuboid(DVec3::ZERO, size).expect("positive sides");
+        let (network, flat) = random_network(&domain, count, random_seed, 2);
+        let relaxed = relax(&network, &flat, &Relaxation { time }, |_, _| ()).expect("relaxes");
+        assert!(validate(&network, &network.subdivide(&relaxed.control_points)).is_ok());
+    }
+}
+
 /// Springs on edges of length 1e-9 once made the matrix of a step indefinite, and the whole network froze.
 #[test]
 fn nearly_touching_quadruple_points_do_not_freeze_the_network() {

@@ -99,15 +99,20 @@ pub(crate) struct Shells<'a> {
 }
 
 impl Shells<'_> {
-    /// A lower bound on the distance of all seeds not handed out yet; infinite when there are none.
-    pub(crate) fn distance_ahead(&self) -> f64 {
+    /// A lower bound on the distance of all seeds not handed out yet; nothing when there are none.
+    pub(crate) fn distance_ahead(&self) -> Option<f64> {
+        if self.ring == 0 {
+            return Some(0.0);
+        }
         let mut distance = f64::INFINITY;
+        let mut has_more = false;
         for axis in 0..3 {
             let below = self.home[axis] - self.ring;
             let above = self.home[axis] + self.ring;
             // A block's rounded limits may be off by some last places: the margin is that of the coordinates.
             let edge = |index: i32| self.grid.lower[axis] + f64::from(index) * self.grid.block[axis];
             let margin = 1e-12 * self.grid.block[axis] * f64::from(self.grid.counts[axis]);
+            has_more |= below >= 0 || above < self.grid.counts[axis];
             if below >= 0 {
                 distance = distance.min(self.center[axis] - edge(below + 1) - margin);
             }
@@ -115,7 +120,7 @@ impl Shells<'_> {
                 distance = distance.min(edge(above) - self.center[axis] - margin);
             }
         }
-        if self.ring == 0 { 0.0 } else { distance.max(0.0) }
+        has_more.then_some(distance.max(0.0))
     }
 
     /// Hands out the seeds of the next shell: the blocks `ring` steps from the home block.
@@ -161,8 +166,7 @@ mod tests {
         for center in [seeds[0], seeds[17], seeds[499]] {
             let mut shells = grid.shells(center);
             let mut seen = vec![0; seeds.len()];
-            while shells.distance_ahead() < f64::INFINITY {
-                let promised = shells.distance_ahead();
+            while let Some(promised) = shells.distance_ahead() {
                 shells.next_shell(|seed| {
                     seen[seed as usize] += 1;
                     assert!(seeds[seed as usize].distance(center) >= promised);

@@ -56,9 +56,12 @@ impl<'a> NearSeeds<'a> {
         let own = self.input.seeds[seed as usize];
         let excess = self.largest_weight - self.input.weight(seed);
         let mut shells = self.grid.shells(own);
-        while shells.distance_ahead() <= cell.security_radius(excess) {
-            buffer.clear();
+        while let Some(distance) = shells.distance_ahead() {
             let reach = cell.security_radius(excess);
+            if distance > reach {
+                break;
+            }
+            buffer.clear();
             shells.next_shell(|other| {
                 let distance = self.input.seeds[other as usize].distance(own);
                 if other != seed && distance <= reach {

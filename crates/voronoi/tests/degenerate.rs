@@ -134,6 +134,16 @@ fn near_duplicates_keep_cells_of_their_own() {
     }
 }
 
+/// Squares of such distances underflow: the search for neighbours once went on for ever.
+#[test]
+fn seeds_nearer_than_numbers_can_square() {
+    for distance in [1e-200, 1e-300, 5e-324] {
+        let mut seeds = vec![DVec3::new(0.5, 0.5, 0.0), DVec3::new(0.5, 0.5, distance)];
+        seeds.extend(random_seeds(10, 12));
+        assert_complex(&tessellate(&seeds));
+    }
+}
+
 #[test]
 fn clusters_and_extreme_boxes() {
     for size in [1e-2, 1e-6] {

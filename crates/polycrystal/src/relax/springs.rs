@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::patch::Patch;
 
-/// Length, in units of the mean grain size, of a control edge whose spring is as stiff as the surface's own tension.
+/// Length, in units of the feature size, of a control edge whose spring is as stiff as the surface's own tension.
 const SMALL_LENGTH: f64 = 0.06;
 
 /// How fast the spring stiffens as the edge gets shorter. Tension pulls on an edge of length l with a force that does not
@@ -19,11 +19,11 @@ const STIFFEST: f64 = 10.0;
 const FOLLOW: f64 = 1e-3;
 
 /// Adds to a patch's matrix the springs on displacement along its control edges, in units of the time step.
-pub(super) fn add_springs(stiffness: &mut [f64], patch: &Patch, points: &[DVec3], mean_grain_size: f64) {
+pub(super) fn add_springs(stiffness: &mut [f64], patch: &Patch, points: &[DVec3], feature_size: f64) {
     let count = patch.control_points.len();
     for &[a, b] in &patch.control_edges {
         let [start, end] = [a, b].map(|local| points[patch.control_points[local as usize] as usize]);
-        let ratio = SMALL_LENGTH * mean_grain_size / start.distance(end).max(f64::MIN_POSITIVE);
+        let ratio = SMALL_LENGTH * feature_size / start.distance(end).max(f64::MIN_POSITIVE);
         let spring = FOLLOW + ratio.powi(EXPONENT).min(STIFFEST);
         let (a, b) = (a as usize, b as usize);
         stiffness[a * count + a] += spring;

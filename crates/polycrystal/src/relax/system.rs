@@ -47,7 +47,7 @@ impl<'a> System<'a> {
             .zip(terms)
             .map(|(patch, terms)| {
                 let mut matrix = terms.stiffness.clone();
-                add_springs(&mut matrix, patch, points, network.mean_grain_size());
+                add_springs(&mut matrix, patch, points, network.feature_size());
                 matrix.iter_mut().for_each(|entry| *entry *= time);
                 matrix
             })

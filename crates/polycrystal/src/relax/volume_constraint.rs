@@ -9,7 +9,11 @@ use super::patches::Patches;
 use crate::Network;
 
 /// The pressures are the inner solve of a projection, whose error shows directly in the volumes.
-const PRESSURES: Limits = Limits { tolerance: 1e-9, steps: 2000 };
+const TOLERANCE: f64 = 1e-9;
+
+/// Most iterations. Without rounding as many as there are grains are enough; where rigid parts leave a grain no way to
+/// change its volume there is no solution, and going on would only blow up what rounding leaves.
+const ITERATIONS: usize = 2000;
 
 /// How the volumes of grains change when clusters move: a sparse matrix J with a vector for each cluster and grain.
 pub(super) struct VolumeConstraint {
@@ -133,6 +137,7 @@ impl Compliance {
         // has no answer and would grow without bound.
         let mean = changes.iter().sum::<f64>() / changes.len() as f64;
         let balanced: Vec<f64> = changes.iter().map(|change| change - mean).collect();
-        solve(apply, &balanced, &self.inverse_diagonal, &PRESSURES)
+        let limits = Limits { tolerance: TOLERANCE, steps: ITERATIONS.min(2 * changes.len() + 20) };
+        solve(apply, &balanced, &self.inverse_diagonal, &limits)
     }
 }
