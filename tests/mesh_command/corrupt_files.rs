@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::LazyLock;
+use std::sync::{LazyLock, Once};
 
 use grainsmooth::mesh_file::{MeshFile, READER_THREAD, read_mesh};
 use grainsmooth::read_bezier;
@@ -51,12 +51,15 @@ fn read(directory: &Path, extension: &str, bytes: &[u8]) -> Option<MeshFile> {
 
 /// Panics of the thread in which `vtkio` reads become errors; their words would only fill the tests' output.
 fn keep_reader_quiet() {
-    let hook = std::panic::take_hook();
-    std::panic::set_hook(Box::new(move |info| {
-        if std::thread::current().name() != Some(READER_THREAD) {
-            hook(info);
-        }
-    }));
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let hook = std::panic::take_hook();
+        std::panic::set_hook(Box::new(move |info| {
+            if std::thread::current().name() != Some(READER_THREAD) {
+                hook(info);
+            }
+        }));
+    });
 }
 
 #[test]

@@ -98,6 +98,10 @@ pub struct SchemeArguments {
     #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = 1, value_parser = clap::value_parser!(u32).range(0..=99))]
     pub levels: u32,
 
+    /// Refuse a mesh with a boundary
+    #[arg(long)]
+    pub closed: bool,
+
     /// Write one file a level: OUT_0, OUT_1, ...
     #[arg(long, conflicts_with = "json")]
     pub each_level: bool,

@@ -96,7 +96,11 @@ pub fn levels_json(mesh: &MeshFile, scheme: Scheme, levels: &[Level], out: &mut 
             .map(|crease| (crease.ends[0], crease.ends[1], crease.sharpness))
             .collect(),
         corners: &mesh.corners,
-        levels: levels.windows(2).enumerate().map(|(index, pair)| level_entry(index + 1, pair)).collect(),
+        levels: levels
+            .windows(2)
+            .enumerate()
+            .map(|(index, pair)| level_entry(scheme, index + 1, pair))
+            .collect(),
         sector_normals_level0: sectors
             .map(|(v, ring, normal)| SectorEntry { v: *v, ring: ring.clone(), normal: nullable(*normal) })
             .collect(),
@@ -124,16 +128,10 @@ fn name(scheme: Scheme) -> &'static str {
     }
 }
 
-fn level_entry(index: usize, pair: &[Level]) -> LevelEntry<'_> {
+fn level_entry(scheme: Scheme, index: usize, pair: &[Level]) -> LevelEntry<'_> {
     let [coarse, fine] = [&pair[0], &pair[1]];
-    let is_dual = match (&coarse.mesh, &fine.mesh) {
-        // Catmull-Clark keeps all vertices, Doo-Sabin none: it makes one for each corner.
-        (Connectivity::Polygons(coarse), _) => {
-            let corners: usize = coarse.faces().map(<[u32]>::len).sum();
-            fine.points.len() == corners && fine.mesh.face_count() != corners
-        }
-        _ => false,
-    };
+    // Doo and Sabin's scheme keeps no vertex: it makes one for each corner.
+    let is_dual = matches!(scheme, Scheme::DooSabin(_));
     let face_limits = match &fine.mesh {
         Connectivity::Polygons(mesh) if is_dual => {
             let limits = mesh.doo_sabin_limits();

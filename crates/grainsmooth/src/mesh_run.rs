@@ -70,6 +70,9 @@ impl Job<'_> {
         }?;
         let mesh = self.read_with(&arguments.features)?;
         let levels = subdivide(&mesh, &self.files.input, scheme, last)?;
+        if arguments.closed {
+            levels[0].mesh.check_closed().map_err(|error| self.located(error.into()))?;
+        }
         for (index, level) in levels.iter().enumerate() {
             let (points, faces) = (level.points.len(), level.mesh.face_count());
             self.report(format_args!("level {index:<5} {points} points, {faces} faces"));

@@ -121,6 +121,20 @@ impl Connectivity {
         }
     }
 
+    /// Checks that no edge lies on a boundary.
+    ///
+    /// # Errors
+    /// [`MeshError::Open`] names the first edge with one face only.
+    pub fn check_closed(&self) -> Result<(), MeshError> {
+        match self {
+            Self::Triangles(mesh) => mesh.check_closed(),
+            Self::Polygons(mesh) => {
+                let open = (0..).take(mesh.edge_count()).find(|&edge| mesh.is_boundary(edge));
+                open.map_or(Ok(()), |edge| Err(MeshError::Open { ends: mesh.edge(edge) }))
+            }
+        }
+    }
+
     /// The rule that moves a vertex.
     ///
     /// # Panics
