@@ -182,8 +182,9 @@ fn ratio(numerator: BigInt, denominator: &BigInt, exponent: i32) -> f64 {
     }
     // 64 bits of quotient, more than a double holds, whatever the sizes of the two.
     let bits = |value: &BigInt| i64::try_from(value.bits()).unwrap_or(i64::MAX);
-    let shift = (bits(denominator) - bits(&numerator) + 64).max(0);
-    let quotient = (numerator << shift) / denominator;
+    let shift = bits(denominator) - bits(&numerator) + 64;
+    let shifted = if shift >= 0 { numerator << shift } else { numerator >> shift.unsigned_abs() };
+    let quotient = shifted / denominator;
     let scale = i64::from(exponent) - shift;
     // Two factors, for one power of two alone may leave the range of doubles where the product does not.
     let half = scale / 2;
