@@ -10,7 +10,7 @@ const ROWS_PER_TASK: usize = 2048;
 
 /// How new points follow from old ones: row i lists the old points that make up new point i, and their weights.
 ///
-/// Rows of a subdivision scheme sum to 1. Rows may share their weights: a regular mesh needs few different masks.
+/// Rows of a subdivision scheme sum to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StencilTable {
     /// Where each row starts in `ids`, and after the last row their number.
