@@ -98,12 +98,12 @@ fn surfaces(
         quadruple_points: node_types.iter().filter(|point| point.side_count() >= 4).count(),
     };
     node_types.extend(&line_types);
-    node_types.extend(boundaries.iter().map(type_inside));
+    node_types.extend(boundaries.iter().map(NodeType::inside));
     let mut edge_node_types = vec![NodeType::INTERIOR; mesh.edge_count()];
     for (triangle, (boundary, line)) in (0u32..).zip(boundary_of.iter().zip(line_of)) {
         let [along_line, spoke, other_spoke] = mesh.triangle_edges(triangle).map(|edge| edge as usize);
         edge_node_types[along_line] = line_types[line as usize];
-        edge_node_types[spoke] = type_inside(&boundaries[boundary.index()]);
+        edge_node_types[spoke] = NodeType::inside(&boundaries[boundary.index()]);
         edge_node_types[other_spoke] = edge_node_types[spoke];
     }
 
@@ -138,7 +138,7 @@ fn lines(tessellation: &Tessellation, boundaries: Vec<Boundary>) -> Result<Contr
     let mut node_types = types_by_place(vertex_count, sides_at);
     let at_least = |count| node_types.iter().filter(|point| point.side_count() >= count).count();
     let counts = JunctionCounts { triple_lines: at_least(3), quadruple_points: at_least(4) };
-    node_types.extend(boundaries.iter().map(type_inside));
+    node_types.extend(boundaries.iter().map(NodeType::inside));
     let mesh = Mesh::Segments(CurveMesh::new(points.len(), segments, &corners)?);
     let generations = vec![0; points.len()];
     let level = Level { mesh, boundary_of, node_types, generations, walls, edge_node_types: Vec::new() };
@@ -184,10 +184,6 @@ fn types_by_place(count: usize, mut sides_at: Vec<(usize, Side)>) -> Vec<NodeTyp
         types[at_place[0].0] = NodeType::of_sides(&sides);
     }
     types
-}
-
-fn type_inside(boundary: &Boundary) -> NodeType {
-    if boundary.is_interior() { NodeType::INTERIOR } else { NodeType::OUTER }
 }
 
 fn walls_inside(boundary: &Boundary) -> WallSet {

@@ -91,7 +91,6 @@ impl Level {
 
     /// The type of a point inside an element.
     fn type_inside(&self, element: usize, boundaries: &[Boundary]) -> NodeType {
-        let boundary = &boundaries[self.boundary_of[element].index()];
-        if boundary.is_interior() { NodeType::INTERIOR } else { NodeType::OUTER }
+        NodeType::inside(&boundaries[self.boundary_of[element].index()])
     }
 }

@@ -152,9 +152,7 @@ impl Network {
             voronoi::Dimension::Three => mean.cbrt(),
         }
     }
-}
 
-impl Network {
     /// The mean grain size, or the box's shortest side where that is shorter: the size of what can be seen to be small.
     pub(crate) fn feature_size(&self) -> f64 {
         let size = self.domain.size();

@@ -1,4 +1,4 @@
-use crate::Side;
+use crate::{Boundary, Side};
 
 /// What a point is part of, in DREAM.3D's codes: 2 inside a boundary, 3 on a triple line, 4 a quadruple point; 10 more on
 /// the domain's outer surface.
@@ -11,6 +11,11 @@ impl NodeType {
 
     /// Inside a boundary on the domain's outer surface.
     pub const OUTER: Self = Self(12);
+
+    /// The type of a point inside a boundary.
+    pub(crate) fn inside(boundary: &Boundary) -> Self {
+        if boundary.is_interior() { Self::INTERIOR } else { Self::OUTER }
+    }
 
     /// The type of a point by the sides that meet there, sorted and without duplicates. The exterior counts as one side.
     pub fn of_sides(sides: &[Side]) -> Self {

@@ -20,6 +20,7 @@ use glam::DVec3;
 use crate::folds::{element_normals, folded_edges};
 use crate::{GrainId, Level, Mesh, Network, NetworkError};
 use clusters::Clusters;
+use conjugate_gradients::dot;
 use face_corners::FaceCorners;
 use patch::PatchTerms;
 use patches::Patches;
@@ -292,8 +293,4 @@ fn ancestor(levels: &[Level], element: u32) -> u32 {
         Mesh::Triangles(mesh) => mesh.counts().triangle_parent(element),
         Mesh::Segments(_) => element / 2,
     })
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
