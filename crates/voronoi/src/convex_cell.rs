@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use crate::generator::Generator;
+use crate::near_seeds::Cutting;
 use crate::predicate::ExactInput;
 
 /// Half the distance between 1 and the next double: the largest relative error of one rounding.
@@ -110,34 +111,6 @@ impl ConvexCell {
             self.push_vertex(triple, input);
         }
         self.update_radius();
-    }
-
-    /// The distance from which on no seed reaches the cell, if no weight exceeds the cell's own by more than
-    /// `weight_excess`; negative for an empty cell.
-    pub(crate) fn security_radius(&self, weight_excess: f64) -> f64 {
-        if self.triples.is_empty() {
-            return -1.0;
-        }
-        // The bisector with a seed at distance d lies (d^2 - excess) / (2 d) away. The margin covers rounding.
-        (self.radius + (self.radius * self.radius + weight_excess).sqrt()) * (1.0 + 1e-12)
-    }
-
-    /// Cuts off what lies nearer to another seed, by power distance.
-    pub(crate) fn cut_with_bisector(&mut self, other: u32, input: ExactInput) {
-        let normal = input.seeds[other as usize] - input.seeds[self.seed as usize];
-        let squared_length = normal.length_squared();
-        let (own_weight, weight) = (input.weight(self.seed), input.weight(other));
-        let plane = Plane {
-            generator: Generator::seed(other),
-            normal,
-            offset: 0.5 * (squared_length + (own_weight - weight)),
-            offset_size: 0.5 * (squared_length + own_weight.abs() + weight.abs()),
-            length: squared_length.sqrt(),
-        };
-        if self.find_cut(&plane, input) {
-            self.close_hole(plane, input);
-            self.update_radius();
-        }
     }
 
     /// Fills `self.cut` with the vertices beyond the plane; false where there are none.
@@ -321,6 +294,33 @@ impl ConvexCell {
                 corner = face.iter().find(|next| next.1 == corner.2).expect("a face is one closed ring");
             }
             visit(CellFace { generator: face[0].0, corners: &ring });
+        }
+    }
+}
+
+impl Cutting for ConvexCell {
+    fn security_radius(&self, weight_excess: f64) -> f64 {
+        if self.triples.is_empty() {
+            return -1.0;
+        }
+        // The bisector with a seed at distance d lies (d^2 - excess) / (2 d) away. The margin covers rounding.
+        (self.radius + (self.radius * self.radius + weight_excess).sqrt()) * (1.0 + 1e-12)
+    }
+
+    fn cut_with_bisector(&mut self, other: u32, input: ExactInput) {
+        let normal = input.seeds[other as usize] - input.seeds[self.seed as usize];
+        let squared_length = normal.length_squared();
+        let (own_weight, weight) = (input.weight(self.seed), input.weight(other));
+        let plane = Plane {
+            generator: Generator::seed(other),
+            normal,
+            offset: 0.5 * (squared_length + (own_weight - weight)),
+            offset_size: 0.5 * (squared_length + own_weight.abs() + weight.abs()),
+            length: squared_length.sqrt(),
+        };
+        if self.find_cut(&plane, input) {
+            self.close_hole(plane, input);
+            self.update_radius();
         }
     }
 }

@@ -1,8 +1,6 @@
 //! Cutting a cell with the seeds around it, from near to far.
 
-use crate::convex_cell::ConvexCell;
 use crate::grid::SeedGrid;
-use crate::polygon::ConvexPolygon;
 use crate::predicate::ExactInput;
 
 /// A cell that is being cut: polyhedron or polygon.
@@ -13,26 +11,6 @@ pub(crate) trait Cutting {
 
     /// Cuts off what lies nearer to another seed, by power distance.
     fn cut_with_bisector(&mut self, other: u32, input: ExactInput);
-}
-
-impl Cutting for ConvexCell {
-    fn security_radius(&self, weight_excess: f64) -> f64 {
-        self.security_radius(weight_excess)
-    }
-
-    fn cut_with_bisector(&mut self, other: u32, input: ExactInput) {
-        self.cut_with_bisector(other, input);
-    }
-}
-
-impl Cutting for ConvexPolygon {
-    fn security_radius(&self, weight_excess: f64) -> f64 {
-        self.security_radius(weight_excess)
-    }
-
-    fn cut_with_bisector(&mut self, other: u32, input: ExactInput) {
-        self.cut_with_bisector(other, input);
-    }
 }
 
 /// All seeds, sorted for visits from near to far.

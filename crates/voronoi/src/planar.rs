@@ -7,7 +7,7 @@ use spade::{DelaunayTriangulation, Point2, Triangulation};
 
 use crate::batch::{CellBatch, in_batches};
 use crate::generator::{Generator, vertex_key};
-use crate::near_seeds::NearSeeds;
+use crate::near_seeds::{Cutting, NearSeeds};
 use crate::polygon::ConvexPolygon;
 use crate::predicate::ExactInput;
 use crate::{Domain, VoronoiError};

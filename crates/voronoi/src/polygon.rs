@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use crate::Wall;
 use crate::generator::Generator;
+use crate::near_seeds::Cutting;
 use crate::predicate::ExactInput;
 
 /// Bound on the rounding errors of a corner and of its distance to a line, in units of the sums of absolute products:
@@ -70,38 +71,6 @@ impl ConvexPolygon {
         }
     }
 
-    /// Cuts off what lies nearer to another seed, by power distance.
-    pub(crate) fn cut_with_bisector(&mut self, other: u32, input: ExactInput) {
-        let normal = (input.seeds[other as usize] - input.seeds[self.seed as usize]).truncate();
-        let (own_weight, weight) = (input.weight(self.seed), input.weight(other));
-        let squared_length = normal.length_squared();
-        let line = Line {
-            generator: Generator::seed(other),
-            normal,
-            offset: 0.5 * (squared_length + (own_weight - weight)),
-            offset_size: 0.5 * (squared_length + own_weight.abs() + weight.abs()),
-        };
-        let count = self.corners.len();
-        let beyond: Vec<bool> = (0..count).map(|k| self.is_beyond(k, &line, input)).collect();
-        let Some(first) = (0..count).find(|k| beyond[*k] && !beyond[(k + count - 1) % count]) else {
-            if beyond.contains(&true) {
-                self.lines.clear();
-                self.corners.clear();
-            }
-            return;
-        };
-        let removed = (0..count).take_while(|k| beyond[(first + k) % count]).count();
-        // From the edge that leaves the removed corners round to the edge that enters them.
-        self.lines.rotate_left(first);
-        self.corners.rotate_left(first);
-        self.lines.drain(..removed - 1);
-        self.corners.drain(..removed);
-        let (leaving, entering) = (self.lines[0], self.lines[self.lines.len() - 1]);
-        self.corners.insert(0, self.intersect(line, leaving, input));
-        self.corners.push(self.intersect(entering, line, input));
-        self.lines.push(line);
-    }
-
     fn is_beyond(&mut self, corner: usize, line: &Line, input: ExactInput) -> bool {
         let Corner { position, error } = self.corners[corner];
         let value = line.normal.dot(position) - line.offset;
@@ -133,13 +102,6 @@ impl ConvexPolygon {
         Corner { position, error: 2.0 * f64::EPSILON * position.abs().max_element() }
     }
 
-    /// The distance from which on no seed reaches the cell, see [`ConvexCell::security_radius`](crate::convex_cell::ConvexCell).
-    pub(crate) fn security_radius(&self, weight_excess: f64) -> f64 {
-        let reach = |corner: &Corner| corner.position.length() + 2.0 * corner.error;
-        let radius = self.corners.iter().map(reach).fold(f64::NEG_INFINITY, f64::max);
-        if radius < 0.0 { -1.0 } else { (radius + (radius * radius + weight_excess).sqrt()) * (1.0 + 1e-12) }
-    }
-
     pub(crate) fn corner_count(&self) -> usize {
         self.corners.len()
     }
@@ -165,5 +127,44 @@ impl ConvexPolygon {
     pub(crate) fn has_no_length(&self, corner: usize, input: ExactInput) -> bool {
         let next = (corner + 1) % self.lines.len();
         self.has_ties && input.decide(self.seed, self.corner_planes(corner), self.lines[next].generator).tie
+    }
+}
+
+impl Cutting for ConvexPolygon {
+    fn security_radius(&self, weight_excess: f64) -> f64 {
+        let reach = |corner: &Corner| corner.position.length() + 2.0 * corner.error;
+        let radius = self.corners.iter().map(reach).fold(f64::NEG_INFINITY, f64::max);
+        if radius < 0.0 { -1.0 } else { (radius + (radius * radius + weight_excess).sqrt()) * (1.0 + 1e-12) }
+    }
+
+    fn cut_with_bisector(&mut self, other: u32, input: ExactInput) {
+        let normal = (input.seeds[other as usize] - input.seeds[self.seed as usize]).truncate();
+        let (own_weight, weight) = (input.weight(self.seed), input.weight(other));
+        let squared_length = normal.length_squared();
+        let line = Line {
+            generator: Generator::seed(other),
+            normal,
+            offset: 0.5 * (squared_length + (own_weight - weight)),
+            offset_size: 0.5 * (squared_length + own_weight.abs() + weight.abs()),
+        };
+        let count = self.corners.len();
+        let beyond: Vec<bool> = (0..count).map(|k| self.is_beyond(k, &line, input)).collect();
+        let Some(first) = (0..count).find(|k| beyond[*k] && !beyond[(k + count - 1) % count]) else {
+            if beyond.contains(&true) {
+                self.lines.clear();
+                self.corners.clear();
+            }
+            return;
+        };
+        let removed = (0..count).take_while(|k| beyond[(first + k) % count]).count();
+        // From the edge that leaves the removed corners round to the edge that enters them.
+        self.lines.rotate_left(first);
+        self.corners.rotate_left(first);
+        self.lines.drain(..removed - 1);
+        self.corners.drain(..removed);
+        let (leaving, entering) = (self.lines[0], self.lines[self.lines.len() - 1]);
+        self.corners.insert(0, self.intersect(line, leaving, input));
+        self.corners.push(self.intersect(entering, line, input));
+        self.lines.push(line);
     }
 }
