@@ -70,6 +70,18 @@ impl Network {
         Ok((network, points))
     }
 
+    /// The network with other volumes (in the plane: areas) for relaxation to give its grains: those of the cells before
+    /// their tessellation was regularised.
+    ///
+    /// # Panics
+    /// When there are not as many volumes as grains.
+    #[must_use]
+    pub fn with_cell_volumes(mut self, volumes: Vec<f64>) -> Self {
+        assert_eq!(volumes.len(), self.grain_count(), "one volume for each grain");
+        self.cell_volumes = volumes;
+        self
+    }
+
     /// The domain that the grains fill.
     pub fn domain(&self) -> &Domain {
         &self.domain
@@ -128,8 +140,16 @@ impl Network {
     /// # Panics
     /// When there are fewer points than the control mesh has vertices.
     pub fn subdivide(&self, control_points: &[DVec3]) -> Vec<DVec3> {
-        let mut points = control_points.to_vec();
-        for (stencils, finer) in self.stencils.iter().zip(&self.levels[1..]) {
+        self.subdivide_between(0, self.levels.len() - 1, control_points)
+    }
+
+    /// The points of level `to` for those of level `from`.
+    ///
+    /// # Panics
+    /// When there are fewer points than level `from` has vertices, or no level `to`.
+    pub fn subdivide_between(&self, from: usize, to: usize, points: &[DVec3]) -> Vec<DVec3> {
+        let mut points = points.to_vec();
+        for (stencils, finer) in self.stencils[from..to].iter().zip(&self.levels[from + 1..=to]) {
             points = stencils.apply(&points);
             let on_walls = points.par_iter_mut().zip(&finer.walls).filter(|(_, walls)| !walls.is_empty());
             on_walls.for_each(|(point, walls)| *point = walls.put_on_walls(&self.domain, *point));

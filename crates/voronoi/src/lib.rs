@@ -27,10 +27,12 @@ mod near_seeds;
 mod planar;
 mod polygon;
 mod predicate;
+mod regularize;
 mod tessellation;
 mod weld;
 
 pub use domain::{Dimension, Domain, Wall};
 pub use error::VoronoiError;
 pub use measure::CellMeasure;
+pub use regularize::Collapsed;
 pub use tessellation::{CellId, Edges, FaceId, Side, Tessellation, VertexId};

@@ -196,7 +196,7 @@ fn put_vertices_on_walls(tessellation: &mut Tessellation) {
     }
 }
 
-fn list_faces_of_cells(tessellation: &mut Tessellation) {
+pub(crate) fn list_faces_of_cells(tessellation: &mut Tessellation) {
     let cells_of = |sides: &[Side; 2]| {
         sides.map(|side| match side {
             Side::Cell(cell) => Some(cell.index()),

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{Mesh, Network};
+use crate::Mesh;
 
 /// Groups of control points that are displaced by the same vector, so that what lies between them keeps its shape.
 ///
@@ -42,14 +42,14 @@ impl Clusters {
         points.windows(2).for_each(|pair| self.join(pair[0], pair[1]));
     }
 
-    /// Joins the ends of all edges of the control mesh that are shorter than `length`.
-    pub(super) fn join_short_edges(&mut self, network: &Network, points: &[DVec3], length: f64) {
+    /// Joins the ends of all edges of a mesh that are shorter than `length`.
+    pub(super) fn join_short_edges(&mut self, mesh: &Mesh, points: &[DVec3], length: f64) {
         let mut join = |[a, b]: [u32; 2]| {
             if points[a as usize].distance(points[b as usize]) < length {
                 self.join(a, b);
             }
         };
-        match &network.control_mesh().mesh {
+        match mesh {
             Mesh::Triangles(mesh) => {
                 let edges = 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits");
                 edges.for_each(|edge| join(mesh.edge(edge)));

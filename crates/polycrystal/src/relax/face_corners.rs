@@ -14,6 +14,9 @@ use crate::{Mesh, Network};
 /// mesh's (75 degrees).
 const LARGEST_BEND: f64 = 0.26;
 
+/// Change of that cosine that counts as none.
+const SLIGHT_BEND: f64 = 1e-9;
+
 /// The corners of all faces in the control mesh.
 pub(super) struct FaceCorners {
     /// Corner, outgoing crease neighbour, neighbour in between, incoming crease neighbour.
@@ -24,10 +27,10 @@ pub(super) struct FaceCorners {
 
 impl FaceCorners {
     /// None in the plane, and none where the control mesh is not subdivided.
-    pub(super) fn new(network: &Network) -> Self {
-        let level_count = network.levels().len() - 1;
+    pub(super) fn new(network: &Network, level: usize) -> Self {
+        let level_count = network.levels().len() - 1 - level;
         let remaining = 0.75f64.powi(i32::try_from(level_count).unwrap_or(i32::MAX));
-        let control = network.control_mesh();
+        let control = &network.levels()[level];
         let (Mesh::Triangles(mesh), 1..) = (&control.mesh, level_count) else {
             return Self { corners: Vec::new(), remaining };
         };
@@ -52,13 +55,16 @@ impl FaceCorners {
         Self { corners, remaining }
     }
 
-    /// The corners that a step from `before` to `after` makes fold on the finest level.
+    /// The corners that a step from `before` to `after` makes fold, or more so, on the finest level.
     pub(super) fn folding(&self, before: &[DVec3], after: &[DVec3]) -> Vec<[u32; 4]> {
         let folds = |corner: &&[u32; 4]| {
             let [first, second] = self.finest_normals(after, corner);
             let [old_first, old_second] = self.finest_normals(before, corner);
-            let bent = |a: DVec3, b: DVec3| a.dot(b) < LARGEST_BEND * a.length() * b.length();
-            bent(first, second) || bent(first, old_first) || bent(second, old_second)
+            let cosine = |a: DVec3, b: DVec3| a.normalize_or_zero().dot(b.normalize_or_zero());
+            let bend = cosine(first, second);
+            (bend < LARGEST_BEND && bend < cosine(old_first, old_second) - SLIGHT_BEND)
+                || cosine(first, old_first) < LARGEST_BEND
+                || cosine(second, old_second) < LARGEST_BEND
         };
         self.corners.iter().filter(folds).copied().collect()
     }

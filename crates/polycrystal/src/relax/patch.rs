@@ -1,7 +1,11 @@
 //! One boundary as a finite element.
 //!
 //! The points of a boundary's subdivided surface depend on the control points of that boundary alone, for triple lines are
-//! creases. So each boundary has its own small, dense matrices over its control points, made in parallel.
+//! creases. So all that a boundary brings to the energy is made by itself, in parallel with the others.
+//!
+//! With N the normal of a surface triangle (a, b, c), twice as long as its area, the area's gradient at a is
+//! `1/2 N/|N| x (c - b)`, and the volume that the triangle sweeps per displacement of each of its corners is `N / 6`.
+//! Both are pulled back to the control points by the transposed weights of subdivision.
 
 use glam::DVec3;
 
@@ -13,167 +17,164 @@ const SMALLEST_COTANGENT: f64 = 0.05;
 /// The largest: that of an angle of 11 degrees. Needles would otherwise glue their ends together.
 const LARGEST_COTANGENT: f64 = 5.0;
 
-/// A boundary's refined elements in terms of its control points.
+/// A boundary's control mesh, and its surface in terms of the control points.
 #[derive(Debug)]
 pub(super) struct Patch {
     /// The control points that the boundary depends on; all other fields count them from 0.
     pub(super) control_points: Vec<u32>,
-    /// Row f of the refined points is `weights[starts[f]..starts[f + 1]]`.
-    pub(super) starts: Vec<usize>,
-    pub(super) weights: Vec<(u32, f64)>,
-    pub(super) elements: PatchElements,
-    /// The edges of the control mesh in the boundary.
-    pub(super) control_edges: Vec<[u32; 2]>,
-    /// Boundaries between grains have tension, those on walls have none.
-    pub(super) has_tension: bool,
+    /// The elements of the control mesh.
+    pub(super) elements: Elements,
+    /// The edges of the control mesh.
+    pub(super) edges: Vec<[u32; 2]>,
+    /// Of each element of the control mesh, the edge across from each corner. In the plane, a segment is its own edge.
+    pub(super) edges_across: Vec<[u32; 3]>,
+    /// The surface, where it is finer than the control mesh.
+    pub(super) refinement: Option<Refinement>,
+    /// Energy per area.
+    pub(super) tension: f64,
 }
 
-/// Refined triangles or segments of a patch, as numbers of its refined points.
+/// Triangles or segments, as numbers of points.
 #[derive(Debug)]
-pub(super) enum PatchElements {
+pub(super) enum Elements {
     Triangles(Vec<[u32; 3]>),
     Segments(Vec<[u32; 2]>),
 }
 
-/// The energy of a patch at given control points.
+/// A surface that is finer than the control mesh.
+#[derive(Debug)]
+pub(super) struct Refinement {
+    /// Surface point f is the mean of the control points `ids[starts[f]..starts[f + 1]]` by the weights of the same range.
+    pub(super) starts: Vec<usize>,
+    pub(super) ids: Vec<u32>,
+    pub(super) weights: Vec<f64>,
+    pub(super) elements: Elements,
+}
+
+impl Refinement {
+    fn row(&self, point: usize) -> impl Iterator<Item = (usize, f64)> {
+        let range = self.starts[point]..self.starts[point + 1];
+        self.ids[range.clone()].iter().map(|id| *id as usize).zip(self.weights[range].iter().copied())
+    }
+
+    fn apply(&self, points: &[DVec3]) -> Vec<DVec3> {
+        let point = |f: usize| self.row(f).map(|(c, weight)| points[c] * weight).sum();
+        (0..self.starts.len() - 1).map(point).collect()
+    }
+
+    /// From forces on the surface's points to forces on the control points.
+    fn pull_back(&self, forces: &[DVec3], count: usize) -> Vec<DVec3> {
+        let mut pulled = vec![DVec3::ZERO; count];
+        for (f, force) in forces.iter().enumerate() {
+            self.row(f).for_each(|(c, weight)| pulled[c] += *force * weight);
+        }
+        pulled
+    }
+}
+
+/// What a patch brings to a step.
 #[derive(Debug)]
 pub(super) struct PatchTerms {
-    /// Stiffness: row-major, one row per control point. `stiffness * points` is the gradient of area.
-    pub(super) stiffness: Vec<f64>,
+    /// Gradient of the energy at each control point.
+    pub(super) gradient: Vec<DVec3>,
+    /// Volume swept from the first side to the second, per displacement of each control point.
+    pub(super) sweep: Vec<DVec3>,
     /// Share of the area that each control point stands for.
     pub(super) mass: Vec<f64>,
+    /// Stiffness of each edge of the control mesh.
+    pub(super) stiffness: Vec<f64>,
+    /// Volume of the surface's cone from the origin.
+    pub(super) volume: f64,
 }
 
 impl Patch {
-    fn row(&self, point: u32) -> &[(u32, f64)] {
-        &self.weights[self.starts[point as usize]..self.starts[point as usize + 1]]
-    }
-
-    /// The refined points, relative to `origin`.
-    fn refined(&self, points: &[DVec3], origin: DVec3) -> Vec<DVec3> {
+    /// The terms at the given control points; the cone of the volume starts at `origin`.
+    pub(super) fn terms(&self, points: &[DVec3], origin: DVec3) -> PatchTerms {
         let local: Vec<DVec3> = self.control_points.iter().map(|p| points[*p as usize] - origin).collect();
-        let point = |row: &[(u32, f64)]| row.iter().map(|(p, weight)| local[*p as usize] * *weight).sum();
-        self.starts.windows(2).map(|ends| point(&self.weights[ends[0]..ends[1]])).collect()
-    }
-
-    /// Volume of the cone from the origin.
-    pub(super) fn volume(&self, points: &[DVec3], origin: DVec3) -> f64 {
-        let refined = self.refined(points, origin);
-        let at = |point: u32| refined[point as usize];
-        match &self.elements {
-            PatchElements::Triangles(triangles) => {
-                triangles.iter().map(|corners| triangle_volume(corners.map(at))).sum()
+        let (mass, stiffness) = self.mass_and_stiffness(&local);
+        let count = local.len();
+        match &self.refinement {
+            None => {
+                let (gradient, sweep, volume) = first_variation(&self.elements, &local, self.tension);
+                PatchTerms { gradient, sweep, mass, stiffness, volume }
             }
-            PatchElements::Segments(segments) => segments.iter().map(|ends| segment_area(ends.map(at))).sum(),
-        }
-    }
-
-    /// Change of the grains' volumes with each control point, as far as this patch brings it about.
-    ///
-    /// A closed surface's gradient does not depend on the origin, and every patch at a control point takes that point
-    /// itself: then each patch's share is of the order of its area there, and nothing large has to cancel.
-    pub(super) fn volume_gradient(&self, points: &[DVec3]) -> Vec<DVec3> {
-        let origin = points[self.control_points[0] as usize];
-        let refined = self.refined(points, origin);
-        let at = |point: u32| refined[point as usize];
-        // With b, c the other corners: (b - o) x (c - o) = b x c - o x (c - b).
-        let mut products = vec![DVec3::ZERO; self.control_points.len()];
-        let mut differences = products.clone();
-        let mut add = |point: u32, product: DVec3, difference: DVec3| {
-            for (p, weight) in self.row(point) {
-                products[*p as usize] += product * *weight;
-                differences[*p as usize] += difference * *weight;
-            }
-        };
-        match &self.elements {
-            PatchElements::Triangles(triangles) => {
-                for &[a, b, c] in triangles {
-                    for [apex, from, to] in [[a, b, c], [b, c, a], [c, a, b]] {
-                        add(apex, at(from).cross(at(to)) / 6.0, (at(to) - at(from)) / 6.0);
-                    }
-                }
-            }
-            PatchElements::Segments(segments) => {
-                for &[a, b] in segments {
-                    add(a, at(b).cross(DVec3::Z) / 2.0, DVec3::Z / 2.0);
-                    add(b, DVec3::Z.cross(at(a)) / 2.0, -DVec3::Z / 2.0);
-                }
+            Some(refinement) => {
+                let surface = refinement.apply(&local);
+                let (gradient, sweep, volume) =
+                    first_variation(&refinement.elements, &surface, self.tension);
+                let gradient = refinement.pull_back(&gradient, count);
+                let sweep = refinement.pull_back(&sweep, count);
+                PatchTerms { gradient, sweep, mass, stiffness, volume }
             }
         }
-        let own_origin = self.control_points.iter().map(|p| points[*p as usize] - origin);
-        let shares = products.iter().zip(&differences).zip(own_origin);
-        shares.map(|((product, difference), origin)| *product - origin.cross(*difference)).collect()
     }
 
-    /// The energy at the given control points.
-    pub(super) fn terms(&self, points: &[DVec3]) -> PatchTerms {
-        let count = self.control_points.len();
-        let mut terms = PatchTerms { stiffness: vec![0.0; count * count], mass: vec![0.0; count] };
-        if !self.has_tension {
-            return terms;
+    /// Lumped masses, and the cotangent Laplacian times the tension as a spring constant for each edge.
+    fn mass_and_stiffness(&self, local: &[DVec3]) -> (Vec<f64>, Vec<f64>) {
+        let mut mass = vec![0.0; local.len()];
+        let mut stiffness = vec![0.0; self.edges.len()];
+        if self.tension == 0.0 {
+            return (mass, stiffness);
         }
-        let refined = self.refined(points, points[self.control_points[0] as usize]);
-        let mut rows = vec![0.0; refined.len() * count];
-        let at = |point: u32| refined[point as usize];
+        let at = |point: u32| local[point as usize];
         match &self.elements {
-            PatchElements::Triangles(triangles) => {
-                for &corners in triangles {
+            Elements::Triangles(triangles) => {
+                for (corners, across) in triangles.iter().zip(&self.edges_across) {
                     let [a, b, c] = corners.map(at);
                     let doubled_area = (b - a).cross(c - a).length();
                     for k in 0..3 {
-                        let [apex, from, to] = [corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]];
-                        let cosine = (at(from) - at(apex)).dot(at(to) - at(apex));
+                        let [apex, from, to] = [0, 1, 2].map(|step| at(corners[(k + step) % 3]));
                         // A triangle without area has no cotangent: the upper limit stands in.
-                        let cotangent = (cosine / doubled_area.max(f64::MIN_POSITIVE))
-                            .clamp(SMALLEST_COTANGENT, LARGEST_COTANGENT);
-                        self.add_spring(&mut rows, from, to, 0.5 * cotangent);
-                        self.add_mass(&mut terms.mass, apex, doubled_area / 6.0);
+                        let cotangent = (from - apex).dot(to - apex) / doubled_area.max(f64::MIN_POSITIVE);
+                        let cotangent = cotangent.clamp(SMALLEST_COTANGENT, LARGEST_COTANGENT);
+                        stiffness[across[k] as usize] += 0.5 * self.tension * cotangent;
+                        mass[corners[k] as usize] += doubled_area / 6.0;
                     }
                 }
             }
-            PatchElements::Segments(segments) => {
-                for &[from, to] in segments {
-                    let length = at(from).distance(at(to)).max(f64::MIN_POSITIVE);
-                    self.add_spring(&mut rows, from, to, 1.0 / length);
-                    self.add_mass(&mut terms.mass, from, 0.5 * length);
-                    self.add_mass(&mut terms.mass, to, 0.5 * length);
+            Elements::Segments(segments) => {
+                for (ends, stiffness) in segments.iter().zip(&mut stiffness) {
+                    let length = at(ends[0]).distance(at(ends[1])).max(f64::MIN_POSITIVE);
+                    *stiffness += self.tension / length;
+                    ends.iter().for_each(|end| mass[*end as usize] += 0.5 * length);
                 }
             }
         }
-        terms.stiffness = self.pull_back(&rows);
-        terms
+        (mass, stiffness)
     }
+}
 
-    /// Adds the spring between two refined points to the rows of the refined points.
-    fn add_spring(&self, rows: &mut [f64], from: u32, to: u32, constant: f64) {
-        let count = self.control_points.len();
-        for (near, far) in [(from, to), (to, from)] {
-            let row = &mut rows[near as usize * count..][..count];
-            for (p, weight) in self.row(near) {
-                row[*p as usize] += constant * weight;
+/// Gradient of `tension` times the area, swept volume, and volume.
+fn first_variation(elements: &Elements, points: &[DVec3], tension: f64) -> (Vec<DVec3>, Vec<DVec3>, f64) {
+    let mut gradient = vec![DVec3::ZERO; points.len()];
+    let mut sweep = gradient.clone();
+    let mut volume = 0.0;
+    let at = |point: u32| points[point as usize];
+    match elements {
+        Elements::Triangles(triangles) => {
+            for corners in triangles {
+                let [a, b, c] = corners.map(at);
+                let normal = (b - a).cross(c - a);
+                let unit = normal.normalize_or_zero() * (0.5 * tension);
+                for (corner, across) in corners.iter().zip([c - b, a - c, b - a]) {
+                    gradient[*corner as usize] += unit.cross(across);
+                    sweep[*corner as usize] += normal / 6.0;
+                }
+                volume += triangle_volume([a, b, c]);
             }
-            for (p, weight) in self.row(far) {
-                row[*p as usize] -= constant * weight;
+        }
+        Elements::Segments(segments) => {
+            for ends in segments {
+                let [start, end] = ends.map(at);
+                let along = end - start;
+                let unit = along.normalize_or_zero() * tension;
+                for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
+                    gradient[*end as usize] += unit * sign;
+                    sweep[*end as usize] += along.cross(DVec3::Z) / 2.0;
+                }
+                volume += segment_area([start, end]);
             }
         }
     }
-
-    /// From forces on the refined points, row by row, to forces on the control points.
-    fn pull_back(&self, rows: &[f64]) -> Vec<f64> {
-        let count = self.control_points.len();
-        let mut stiffness = vec![0.0; count * count];
-        for (point, row) in (0u32..).zip(rows.chunks_exact(count)) {
-            for (p, weight) in self.row(point) {
-                let into = &mut stiffness[*p as usize * count..][..count];
-                into.iter_mut().zip(row).for_each(|(sum, value)| *sum += weight * value);
-            }
-        }
-        stiffness
-    }
-
-    fn add_mass(&self, mass: &mut [f64], point: u32, area: f64) {
-        for (p, weight) in self.row(point) {
-            mass[*p as usize] += weight * area;
-        }
-    }
+    (gradient, sweep, volume)
 }

@@ -1,13 +1,14 @@
 //! All patches of a network, and the way from their fields to those of the network.
 
+use std::collections::HashMap;
+
 use glam::DVec3;
 use rayon::prelude::*;
 use subzero::StencilTable;
 
 use super::clusters::Numbering;
-use super::patch::{Patch, PatchElements, PatchTerms};
-use crate::volume::sum_over_grains;
-use crate::{Boundary, Mesh, Network};
+use super::patch::{Elements, Patch, PatchTerms, Refinement};
+use crate::{BoundaryId, Mesh, Network};
 
 /// The patches of all boundaries.
 ///
@@ -25,23 +26,22 @@ pub(super) struct Patches {
 }
 
 impl Patches {
-    /// Patches whose surface is that of the given level: 0 for the control mesh itself, or 1.
-    pub(super) fn new(network: &Network, level: usize) -> Self {
-        let control = network.control_mesh();
-        let surface = &network.levels()[level];
-        let control_elements = by_boundary(network.boundaries().len(), &control.boundary_of);
-        let surface_elements = by_boundary(network.boundaries().len(), &surface.boundary_of);
-        let stencils = (level > 0).then(|| network.stencils(0));
-        let patches: Vec<Patch> = network
-            .boundaries()
-            .par_iter()
-            .zip(control_elements.par_iter().zip(&surface_elements))
-            .map(|(boundary, (control_elements, surface_elements))| {
-                let edges = edges(&control.mesh, control_elements);
-                new_patch(boundary, &surface.mesh, surface_elements, stencils, &edges)
+    /// Patches whose control points are those of one level, and whose surface is that of the same level or the next.
+    pub(super) fn new(network: &Network, control: usize, surface: usize, tensions: &[f64]) -> Self {
+        let [control_level, surface_level] = [control, surface].map(|level| &network.levels()[level]);
+        let count = network.boundaries().len();
+        let control_elements = by_boundary(count, &control_level.boundary_of);
+        let surface_elements = by_boundary(count, &surface_level.boundary_of);
+        let patches: Vec<Patch> = (0..count)
+            .into_par_iter()
+            .map(|boundary| {
+                let surface = (surface > control).then(|| {
+                    (network.stencils(control), &surface_level.mesh, surface_elements[boundary].as_slice())
+                });
+                new_patch(&control_level.mesh, &control_elements[boundary], surface, tensions[boundary])
             })
             .collect();
-        let mut place_starts = vec![0; control.vertex_count() + 1];
+        let mut place_starts = vec![0; control_level.vertex_count() + 1];
         for patch in &patches {
             for point in &patch.control_points {
                 place_starts[*point as usize + 1] += 1;
@@ -101,23 +101,12 @@ impl Patches {
     }
 
     pub(super) fn terms(&self, points: &[DVec3]) -> Vec<PatchTerms> {
-        self.patches.par_iter().map(|patch| patch.terms(points)).collect()
-    }
-
-    pub(super) fn volume_gradients(&self, points: &[DVec3]) -> Vec<Vec<DVec3>> {
-        self.patches.par_iter().map(|patch| patch.volume_gradient(points)).collect()
-    }
-
-    /// Volumes of the grains on the level that the patches were made for.
-    pub(super) fn grain_volumes(&self, network: &Network, points: &[DVec3]) -> Vec<f64> {
-        let volumes: Vec<f64> =
-            self.patches.par_iter().map(|patch| patch.volume(points, self.origin)).collect();
-        sum_over_grains(network.boundaries(), &volumes, network.grain_count())
+        self.patches.par_iter().map(|patch| patch.terms(points, self.origin)).collect()
     }
 }
 
 /// The numbers of each boundary's elements.
-fn by_boundary(boundary_count: usize, boundary_of: &[crate::BoundaryId]) -> Vec<Vec<u32>> {
+fn by_boundary(boundary_count: usize, boundary_of: &[BoundaryId]) -> Vec<Vec<u32>> {
     let mut elements = vec![Vec::new(); boundary_count];
     for (element, boundary) in (0u32..).zip(boundary_of) {
         elements[boundary.index()].push(element);
@@ -125,72 +114,67 @@ fn by_boundary(boundary_count: usize, boundary_of: &[crate::BoundaryId]) -> Vec<
     elements
 }
 
-/// The edges of some elements, each once.
-fn edges(mesh: &Mesh, elements: &[u32]) -> Vec<[u32; 2]> {
-    let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
-    let mut edges: Vec<[u32; 2]> = match mesh {
+/// Some elements of a mesh in terms of their own points, and these points, sorted.
+fn local_elements(mesh: &Mesh, elements: &[u32]) -> (Vec<u32>, Elements) {
+    let mut points: Vec<u32> = match mesh {
+        Mesh::Triangles(mesh) => elements.iter().flat_map(|e| mesh.triangles()[*e as usize]).collect(),
+        Mesh::Segments(mesh) => elements.iter().flat_map(|e| mesh.segments()[*e as usize]).collect(),
+    };
+    points.sort_unstable();
+    points.dedup();
+    let local = |point: u32| place_in(&points, point);
+    let elements = match mesh {
         Mesh::Triangles(mesh) => {
-            let corners = elements.iter().map(|element| mesh.triangles()[*element as usize]);
-            corners.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]].map(sorted)).collect()
+            Elements::Triangles(elements.iter().map(|e| mesh.triangles()[*e as usize].map(local)).collect())
         }
         Mesh::Segments(mesh) => {
-            elements.iter().map(|element| sorted(mesh.segments()[*element as usize])).collect()
+            Elements::Segments(elements.iter().map(|e| mesh.segments()[*e as usize].map(local)).collect())
         }
     };
-    edges.sort_unstable();
-    edges.dedup();
-    edges
+    (points, elements)
 }
 
 fn new_patch(
-    boundary: &Boundary,
-    surface: &Mesh,
+    control: &Mesh,
     elements: &[u32],
-    stencils: Option<&StencilTable>,
-    control_edges: &[[u32; 2]],
+    surface: Option<(&StencilTable, &Mesh, &[u32])>,
+    tension: f64,
 ) -> Patch {
-    let mut refined: Vec<u32> = match surface {
-        Mesh::Triangles(mesh) => {
-            elements.iter().flat_map(|element| mesh.triangles()[*element as usize]).collect()
+    let (control_points, elements) = local_elements(control, elements);
+    let (edges, edges_across) = edges(&elements);
+    let refinement = surface.map(|(stencils, mesh, elements)| {
+        let (points, elements) = local_elements(mesh, elements);
+        let mut starts = vec![0];
+        let (mut ids, mut weights) = (Vec::new(), Vec::new());
+        for point in points {
+            let (row, row_weights) = stencils.row(point as usize);
+            ids.extend(row.iter().map(|point| place_in(&control_points, *point)));
+            weights.extend(row_weights);
+            starts.push(ids.len());
         }
-        Mesh::Segments(mesh) => {
-            elements.iter().flat_map(|element| mesh.segments()[*element as usize]).collect()
-        }
-    };
-    refined.sort_unstable();
-    refined.dedup();
-    let row = |point: u32| match stencils {
-        Some(table) => {
-            let (ids, weights) = table.row(point as usize);
-            ids.iter().copied().zip(weights.iter().copied()).collect()
-        }
-        None => vec![(point, 1.0)],
-    };
-    let rows: Vec<Vec<(u32, f64)>> = refined.iter().map(|point| row(*point)).collect();
-    let mut control_points: Vec<u32> = rows.iter().flatten().map(|(point, _)| *point).collect();
-    control_points.sort_unstable();
-    control_points.dedup();
+        Refinement { starts, ids, weights, elements }
+    });
+    Patch { control_points, elements, edges, edges_across, refinement, tension }
+}
 
-    let mut starts = vec![0];
-    let mut weights = Vec::new();
-    for row in &rows {
-        weights.extend(row.iter().map(|(point, weight)| (place_in(&control_points, *point), *weight)));
-        starts.push(weights.len());
+/// The edges of some elements, each once, and of each triangle those across from its corners.
+fn edges(elements: &Elements) -> (Vec<[u32; 2]>, Vec<[u32; 3]>) {
+    match elements {
+        Elements::Segments(segments) => (segments.clone(), Vec::new()),
+        Elements::Triangles(triangles) => {
+            let mut edges = Vec::new();
+            let mut numbers = HashMap::new();
+            let mut number = |a: u32, b: u32| {
+                *numbers.entry([a.min(b), a.max(b)]).or_insert_with_key(|ends| {
+                    edges.push(*ends);
+                    u32::try_from(edges.len() - 1).expect("a patch has fewer edges than its network")
+                })
+            };
+            let across = triangles.iter().map(|[a, b, c]| [number(*b, *c), number(*c, *a), number(*a, *b)]);
+            let across = across.collect();
+            (edges, across)
+        }
     }
-    let local = |point: u32| place_in(&refined, point);
-    let elements = match surface {
-        Mesh::Triangles(mesh) => {
-            let corners = elements.iter().map(|element| mesh.triangles()[*element as usize].map(local));
-            PatchElements::Triangles(corners.collect())
-        }
-        Mesh::Segments(mesh) => {
-            let ends = elements.iter().map(|element| mesh.segments()[*element as usize].map(local));
-            PatchElements::Segments(ends.collect())
-        }
-    };
-    let control_edges =
-        control_edges.iter().map(|ends| ends.map(|end| place_in(&control_points, end))).collect();
-    Patch { control_points, starts, weights, elements, control_edges, has_tension: boundary.is_interior() }
 }
 
 /// The place of an id in a sorted list that holds it.

@@ -18,17 +18,13 @@ const STIFFEST: f64 = 10.0;
 /// Spring of the longest edges: it only makes points without tension (those inside walls) follow their neighbours.
 const FOLLOW: f64 = 1e-3;
 
-/// Adds to a patch's matrix the springs on displacement along its control edges, in units of the time step.
+/// Adds to the stiffness of a patch's edges their springs on displacement, in units of the time step.
+///
+/// `feature_size` is that of the control mesh, which has shorter edges on higher levels.
 pub(super) fn add_springs(stiffness: &mut [f64], patch: &Patch, points: &[DVec3], feature_size: f64) {
-    let count = patch.control_points.len();
-    for &[a, b] in &patch.control_edges {
-        let [start, end] = [a, b].map(|local| points[patch.control_points[local as usize] as usize]);
+    for ([a, b], stiffness) in patch.edges.iter().zip(stiffness) {
+        let [start, end] = [a, b].map(|local| points[patch.control_points[*local as usize] as usize]);
         let ratio = SMALL_LENGTH * feature_size / start.distance(end).max(f64::MIN_POSITIVE);
-        let spring = FOLLOW + ratio.powi(EXPONENT).min(STIFFEST);
-        let (a, b) = (a as usize, b as usize);
-        stiffness[a * count + a] += spring;
-        stiffness[b * count + b] += spring;
-        stiffness[a * count + b] -= spring;
-        stiffness[b * count + a] -= spring;
+        *stiffness += FOLLOW + ratio.powi(EXPONENT).min(STIFFEST);
     }
 }

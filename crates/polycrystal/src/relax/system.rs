@@ -8,7 +8,7 @@ use super::patch::PatchTerms;
 use super::patches::Patches;
 use super::springs::add_springs;
 use super::volume_constraint::{Compliance, VolumeConstraint};
-use crate::Network;
+use crate::{Network, WallSet};
 
 /// Share of its first residual at which a step is solved: a step is one of several, and the next one starts from where it ends.
 const TOLERANCE: f64 = 1e-3;
@@ -16,14 +16,14 @@ const TOLERANCE: f64 = 1e-3;
 /// Most iterations for a step.
 const ITERATIONS: usize = 200;
 
-/// `(M + dt (K + S)) d = -dt K x + J^T p` for the displacements d of clusters, with pressures p such that `J d` is given.
+/// `(M + dt (K + S)) d = -dt g + J^T p` for the displacements d of clusters, with pressures p such that `J d` is given.
 pub(super) struct System<'a> {
     patches: &'a Patches,
     clusters: Numbering,
     masses: Vec<f64>,
-    /// `dt (K + S)` of each patch.
-    matrices: Vec<Vec<f64>>,
-    /// `-dt K x`.
+    /// `dt (K + S)` of each patch: a spring constant for each of its edges.
+    springs: Vec<Vec<f64>>,
+    /// `-dt g`.
     forces: Vec<DVec3>,
     /// 1 over the diagonal of the matrix, 0 along axes that walls lock.
     mobility: Vec<DVec3>,
@@ -39,34 +39,32 @@ impl<'a> System<'a> {
         terms: &[PatchTerms],
         points: &[DVec3],
         clusters: Numbering,
-        time: f64,
+        (time, feature_size): (f64, f64),
+        walls: &[WallSet],
     ) -> Self {
-        let matrices: Vec<Vec<f64>> = patches
+        let springs: Vec<Vec<f64>> = patches
             .patches
             .par_iter()
             .zip(terms)
             .map(|(patch, terms)| {
-                let mut matrix = terms.stiffness.clone();
-                add_springs(&mut matrix, patch, points, network.feature_size());
-                matrix.iter_mut().for_each(|entry| *entry *= time);
-                matrix
+                let mut springs = terms.stiffness.clone();
+                add_springs(&mut springs, patch, points, feature_size);
+                springs.iter_mut().for_each(|spring| *spring *= time);
+                springs
             })
             .collect();
+        let count = clusters.cluster_count();
         let of_places: Vec<f64> = terms.iter().flat_map(|terms| terms.mass.iter().copied()).collect();
         let mass = |c| patches.places_of_cluster(&clusters, c).map(|place| of_places[place]).sum();
-        let masses: Vec<f64> = (0..clusters.cluster_count()).map(mass).collect();
-        let mobility = mobility(network, patches, &clusters, &matrices, &masses);
-        let constraint = VolumeConstraint::new(network, patches, points, &clusters);
+        let masses: Vec<f64> = (0..count).into_par_iter().map(mass).collect();
+        let of_places: Vec<DVec3> = terms.iter().flat_map(|terms| terms.gradient.iter().copied()).collect();
+        let force =
+            |c| patches.places_of_cluster(&clusters, c).map(|place| of_places[place]).sum::<DVec3>() * -time;
+        let forces: Vec<DVec3> = (0..count).into_par_iter().map(force).collect();
+        let mobility = mobility(walls, patches, &clusters, &springs, &masses);
+        let constraint = VolumeConstraint::new(network, patches, terms, &clusters);
         let compliance = constraint.compliance(&mobility);
-        let forces = Vec::new();
-        let mut system =
-            Self { patches, clusters, masses, matrices, forces, mobility, constraint, compliance };
-        let stiffness: Vec<&[f64]> = terms.iter().map(|terms| terms.stiffness.as_slice()).collect();
-        let mut at_places = vec![DVec3::ZERO; patches.place_count()];
-        system.multiply(&stiffness, |point| points[point as usize], &mut at_places);
-        let force = |c| -time * system.sum_of_places(&at_places, c);
-        system.forces = (0..system.clusters.cluster_count()).map(force).collect();
-        system
+        Self { patches, clusters, masses, springs, forces, mobility, constraint, compliance }
     }
 
     /// The displacement of every control point that changes the grains' volumes by `changes`, to first order, and is
@@ -126,21 +124,22 @@ impl<'a> System<'a> {
 
     /// `(M + dt (K + S)) d`.
     fn apply(&self, displacement: &[DVec3], image: &mut [DVec3], at_places: &mut [DVec3]) {
-        let matrices: Vec<&[f64]> = self.matrices.iter().map(Vec::as_slice).collect();
-        self.multiply(&matrices, |point| displacement[self.clusters.cluster_of(point)], at_places);
+        let slices = self.patches.split(at_places);
+        slices.into_par_iter().zip(&self.patches.patches).zip(&self.springs).for_each(
+            |((out, patch), springs)| {
+                let cluster = |point: &u32| displacement[self.clusters.cluster_of(*point)];
+                let local: Vec<DVec3> = patch.control_points.iter().map(cluster).collect();
+                out.fill(DVec3::ZERO);
+                for (ends, spring) in patch.edges.iter().zip(springs) {
+                    let [a, b] = ends.map(|end| end as usize);
+                    let pull = (local[a] - local[b]) * *spring;
+                    out[a] += pull;
+                    out[b] -= pull;
+                }
+            },
+        );
         image.par_iter_mut().enumerate().for_each(|(cluster, image)| {
             *image = displacement[cluster] * self.masses[cluster] + self.sum_of_places(at_places, cluster);
-        });
-    }
-
-    /// Multiplies each patch's matrix with a field over its control points.
-    fn multiply(&self, matrices: &[&[f64]], field: impl Fn(u32) -> DVec3 + Sync, at_places: &mut [DVec3]) {
-        let slices = self.patches.split(at_places);
-        slices.into_par_iter().zip(&self.patches.patches).zip(matrices).for_each(|((out, patch), matrix)| {
-            let local: Vec<DVec3> = patch.control_points.iter().map(|point| field(*point)).collect();
-            for (out, row) in out.iter_mut().zip(matrix.chunks_exact(local.len())) {
-                *out = row.iter().zip(&local).map(|(entry, value)| *value * *entry).sum();
-            }
         });
     }
 
@@ -151,21 +150,22 @@ impl<'a> System<'a> {
 
 /// 1 over the diagonal of `M + dt (K + S)`, 0 along the axes in which a point of the cluster is locked by a wall.
 fn mobility(
-    network: &Network,
+    walls: &[WallSet],
     patches: &Patches,
     clusters: &Numbering,
-    matrices: &[Vec<f64>],
+    springs: &[Vec<f64>],
     masses: &[f64],
 ) -> Vec<DVec3> {
     let mut diagonal = masses.to_vec();
-    for (matrix, patch) in matrices.iter().zip(&patches.patches) {
-        let numbers: Vec<usize> = patch.control_points.iter().map(|p| clusters.cluster_of(*p)).collect();
-        for (own, row) in numbers.iter().zip(matrix.chunks_exact(numbers.len())) {
-            let within = row.iter().zip(&numbers).filter(|(_, number)| *number == own);
-            diagonal[*own] += within.map(|(entry, _)| entry).sum::<f64>();
+    for (springs, patch) in springs.iter().zip(&patches.patches) {
+        for (ends, spring) in patch.edges.iter().zip(springs) {
+            let [a, b] = ends.map(|end| clusters.cluster_of(patch.control_points[end as usize]));
+            if a != b {
+                diagonal[a] += spring;
+                diagonal[b] += spring;
+            }
         }
     }
-    let walls = &network.control_mesh().walls;
     let of_cluster = |(cluster, diagonal): (usize, &f64)| {
         let free = clusters.members(cluster).iter().map(|point| walls[*point as usize].free_axes());
         let free = free.fold(glam::BVec3::TRUE, |all, free| all & free);

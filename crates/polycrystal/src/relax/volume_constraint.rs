@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::clusters::Numbering;
 use super::conjugate_gradients::{Limits, solve};
+use super::patch::PatchTerms;
 use super::patches::Patches;
 use crate::Network;
 
@@ -48,8 +49,8 @@ impl<T: Copy> Rows<T> {
 }
 
 impl VolumeConstraint {
-    pub(super) fn new(network: &Network, patches: &Patches, points: &[DVec3], clusters: &Numbering) -> Self {
-        let gradients: Vec<DVec3> = patches.volume_gradients(points).concat();
+    pub(super) fn new(network: &Network, patches: &Patches, terms: &[PatchTerms], clusters: &Numbering) -> Self {
+        let gradients: Vec<DVec3> = terms.iter().flat_map(|terms| terms.sweep.iter().copied()).collect();
         let row = |cluster: usize| {
             let mut row: Vec<(u32, DVec3)> = Vec::new();
             for place in patches.places_of_cluster(clusters, cluster) {

@@ -1,0 +1,281 @@
+//! Curvature flow of the points of one level.
+
+use glam::DVec3;
+
+use super::clusters::Clusters;
+use super::conjugate_gradients::dot;
+use super::face_corners::FaceCorners;
+use super::patch::PatchTerms;
+use super::patches::Patches;
+use super::system::System;
+use crate::folds::{element_normals, folded_edges};
+use crate::volume::sum_over_grains;
+use crate::{Boundary, GrainId, Level, Mesh, Network, NetworkError};
+
+/// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
+const ATTEMPTS: usize = 12;
+
+/// Length, in units of the feature size, below which a control edge no longer changes.
+const RIGID_LENGTH: f64 = 0.04;
+
+/// Cosine of the largest angle between neighbouring elements after a step (75 degrees), so that later subdivision
+/// has room before the 90 degrees of a fold.
+const LARGEST_BEND: f64 = 0.26;
+
+/// Change of that cosine that counts as none.
+const SLIGHT_BEND: f64 = 1e-9;
+
+/// Cosine of the largest angle that an element may turn by within a step (60 degrees).
+const LARGEST_TURN: f64 = 0.5;
+
+/// Difference of a grain's volume from its cell's, as a share of the cell's, that ends the iteration on volumes.
+const VOLUME_TOLERANCE: f64 = 1e-12;
+
+/// Difference that is accepted where rounding keeps the iteration above that: small grains in large boxes.
+const VOLUME_LIMIT: f64 = 1e-10;
+
+/// Bounds on the factor by which a volume correction is larger than its gradient asks for.
+const SMALLEST_GAIN: f64 = 0.3;
+const LARGEST_GAIN: f64 = 2.0;
+
+/// Most Newton steps on the volumes; each gains about a digit, for its gradient is that of a coarser level.
+const VOLUME_STEPS: usize = 40;
+
+/// A number of steps on one level.
+pub(super) struct Stage {
+    pub(super) step_time: f64,
+    pub(super) steps: usize,
+    /// Whether the volumes of the finest level have to be right in the end.
+    pub(super) is_last: bool,
+}
+
+/// A network whose points of one level move.
+pub(super) struct Flow<'a> {
+    network: &'a Network,
+    patches: Patches,
+    /// The level whose points move.
+    level: usize,
+    /// The level whose surface carries energy and volumes during the flow: one subdivision on, if there is any.
+    surface: usize,
+    corners: FaceCorners,
+    clusters: Clusters,
+    /// Whether each step is checked for folds on the finest level too, which is seldom worth its time.
+    checks_finest: bool,
+}
+
+impl<'a> Flow<'a> {
+    pub(super) fn new(network: &'a Network, level: usize) -> Self {
+        let surface = (network.levels().len() - 1).min(level + 1);
+        let clusters = Clusters::new(network.levels()[level].vertex_count());
+        let tension = |boundary: &Boundary| if boundary.is_interior() { 1.0 } else { 0.0 };
+        let tensions: Vec<f64> = network.boundaries().iter().map(tension).collect();
+        let patches = Patches::new(network, level, surface, &tensions);
+        let corners = FaceCorners::new(network, level);
+        Self { network, patches, level, surface, corners, clusters, checks_finest: false }
+    }
+
+    /// Takes the steps of a stage. Where the finest level folds though no step did, goes back to where it did not.
+    ///
+    /// `progress` is told the number of steps done.
+    pub(super) fn run(
+        &mut self,
+        start: Vec<DVec3>,
+        stage: &Stage,
+        progress: &impl Fn(usize),
+    ) -> Result<Vec<DVec3>, NetworkError> {
+        let mut states = vec![start];
+        let mut count = 0;
+        for _ in 0..ATTEMPTS {
+            while states.len() <= stage.steps {
+                states.push(self.step(&states[states.len() - 1], stage.step_time)?);
+                progress(states.len() - 1);
+            }
+            let mut points = states[stage.steps].clone();
+            if stage.is_last {
+                self.restore_volumes(&mut points)?;
+            }
+            let folds = self.finest_folds(&points);
+            if folds.is_empty() {
+                return Ok(points);
+            }
+            count = folds.len();
+            self.checks_finest = true;
+            self.make_rigid(self.finest(), folds.into_iter().flatten());
+            states.pop();
+            while states.len() > 1 && !self.finest_folds(&states[states.len() - 1]).is_empty() {
+                states.pop();
+            }
+        }
+        Err(NetworkError::Folded { count })
+    }
+
+    /// One step of curvature flow; tried again where it folds.
+    fn step(&mut self, points: &[DVec3], time: f64) -> Result<Vec<DVec3>, NetworkError> {
+        let terms = self.patches.terms(points);
+        let before = element_normals(self.surface(), &self.refined(points));
+        let volumes: Vec<f64> = terms.iter().map(|terms| terms.volume).collect();
+        let volumes = sum_over_grains(self.network.boundaries(), &volumes, self.network.grain_count());
+        let missing = self.missing(&volumes);
+        self.clusters.join_short_edges(self.control_mesh(), points, self.rigid_length());
+        let mut count = 0;
+        for _ in 0..ATTEMPTS {
+            let moves = self.system(points, &terms, &self.clusters, time).displacement(&missing);
+            let moved: Vec<DVec3> = points.iter().zip(&moves).map(|(point, by)| *point + *by).collect();
+            let broken = self.broken_elements(&before, &moved);
+            let folding = self.corners.folding(points, &moved);
+            count = broken.len() + folding.len();
+            self.make_rigid(self.surface, broken.into_iter());
+            folding.iter().for_each(|corner| self.clusters.join_all(corner));
+            if count == 0 && self.checks_finest {
+                let folds = self.finest_folds(&moved);
+                count = folds.len();
+                self.make_rigid(self.finest(), folds.into_iter().flatten());
+            }
+            if count == 0 {
+                return Ok(moved);
+            }
+        }
+        Err(NetworkError::Folded { count })
+    }
+
+    /// Moves points so that the grains of the finest level have the volumes of their cells.
+    ///
+    /// Where much has become rigid, some grain may be unable to change its volume: then only short edges stay rigid, and
+    /// at last none.
+    fn restore_volumes(&self, points: &mut [DVec3]) -> Result<(), NetworkError> {
+        let free = Clusters::new(points.len());
+        let mut short = free.clone();
+        short.join_short_edges(self.control_mesh(), points, self.rigid_length());
+        let start = points.to_vec();
+        self.restore_with(&self.clusters, points)
+            .or_else(|_| {
+                points.copy_from_slice(&start);
+                self.restore_with(&short, points)
+            })
+            .or_else(|_| {
+                points.copy_from_slice(&start);
+                self.restore_with(&free, points)
+            })
+    }
+
+    fn restore_with(&self, clusters: &Clusters, points: &mut [DVec3]) -> Result<(), NetworkError> {
+        let terms = self.patches.terms(points);
+        let system = self.system(points, &terms, clusters, 0.0);
+        let mut last: Option<Vec<f64>> = None;
+        // The gradient is that of a coarser level: what is too small or large in it is measured and made up for.
+        let mut gain = 1.0;
+        for step in 0.. {
+            let surface = self.network.subdivide_between(self.level, self.finest(), points);
+            let missing = self.missing(&self.network.grain_volumes(self.network.finest(), &surface));
+            let (grain, relative_error) = self.largest_error(&missing);
+            let mut stalled = false;
+            if let Some(last) = &last {
+                let left = dot(&missing, last) / dot(last, last);
+                stalled = relative_error > 0.5 * self.largest_error(last).1;
+                gain = (gain / (1.0 - left)).clamp(SMALLEST_GAIN, LARGEST_GAIN);
+            }
+            if relative_error <= VOLUME_TOLERANCE || (stalled && relative_error <= VOLUME_LIMIT) {
+                return Ok(());
+            }
+            // A correction that makes things worse (NaN included) would only be followed by others.
+            if step == VOLUME_STEPS || relative_error.is_nan() || relative_error >= 1.0 {
+                return Err(NetworkError::VolumeNotRestored { grain, relative_error });
+            }
+            let wanted: Vec<f64> = missing.iter().map(|lack| gain * lack).collect();
+            let moves = system.volume_correction(&wanted);
+            points.iter_mut().zip(&moves).for_each(|(point, by)| *point += *by);
+            last = Some(missing);
+        }
+        Ok(())
+    }
+
+    fn system(&self, points: &[DVec3], terms: &[PatchTerms], clusters: &Clusters, time: f64) -> System<'_> {
+        let size = self.feature_size();
+        let walls = &self.network.levels()[self.level].walls;
+        System::new(self.network, &self.patches, terms, points, clusters.number(), (time, size), walls)
+    }
+
+    /// The feature size as control edges of this level have it.
+    fn feature_size(&self) -> f64 {
+        self.network.feature_size() * 0.5f64.powi(i32::try_from(self.level).expect("a level is a small number"))
+    }
+
+    fn finest(&self) -> usize {
+        self.network.levels().len() - 1
+    }
+
+    fn rigid_length(&self) -> f64 {
+        RIGID_LENGTH * self.feature_size()
+    }
+
+    /// What each grain's volume lacks.
+    fn missing(&self, volumes: &[f64]) -> Vec<f64> {
+        self.network.cell_volumes().iter().zip(volumes).map(|(cell, grain)| cell - grain).collect()
+    }
+
+    fn largest_error(&self, missing: &[f64]) -> (GrainId, f64) {
+        let relative =
+            missing.iter().zip(self.network.cell_volumes()).map(|(lack, cell)| (lack / cell).abs());
+        let errors = (0u32..).map(GrainId).zip(relative);
+        errors.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a network has grains")
+    }
+
+    fn surface(&self) -> &'a Level {
+        &self.network.levels()[self.surface]
+    }
+
+    fn control_mesh(&self) -> &'a Mesh {
+        &self.network.levels()[self.level].mesh
+    }
+
+    /// The points of the level that carries the flow.
+    fn refined(&self, points: &[DVec3]) -> Vec<DVec3> {
+        self.network.subdivide_between(self.level, self.surface, points)
+    }
+
+    fn finest_folds(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
+        let points = self.network.subdivide_between(self.level, self.finest(), points);
+        folded_edges(self.network.finest(), &points, 0.0)
+    }
+
+    /// Elements that a step has turned too far, or bent too far and more than they were.
+    fn broken_elements(&self, before: &[DVec3], moved: &[DVec3]) -> Vec<u32> {
+        let refined = self.refined(moved);
+        let after = element_normals(self.surface(), &refined);
+        let cosine = |normals: &[DVec3], [a, b]: [u32; 2]| {
+            normals[a as usize].normalize_or_zero().dot(normals[b as usize].normalize_or_zero())
+        };
+        let bent = folded_edges(self.surface(), &refined, LARGEST_BEND);
+        let bent = bent.into_iter().filter(|pair| cosine(&after, *pair) < cosine(before, *pair) - SLIGHT_BEND);
+        let turned = (0u32..).zip(before.iter().zip(&after)).filter(|(_, (before, after))| {
+            before.dot(**after) < LARGEST_TURN * before.length() * after.length()
+        });
+        turned.map(|(element, _)| element).chain(bent.flatten()).collect()
+    }
+
+    /// Makes rigid all control points that the given elements of a level depend on.
+    fn make_rigid(&mut self, level: usize, elements: impl Iterator<Item = u32>) {
+        for element in elements {
+            let element = ancestor(&self.network.levels()[self.surface..=level], element) as usize;
+            let vertices: &[u32] = match &self.surface().mesh {
+                Mesh::Triangles(mesh) => &mesh.triangles()[element],
+                Mesh::Segments(mesh) => &mesh.segments()[element],
+            };
+            if self.level == self.surface {
+                self.clusters.join_all(vertices);
+                continue;
+            }
+            let rows = vertices.iter().map(|vertex| self.network.stencils(self.level).row(*vertex as usize).0);
+            let depends_on: Vec<u32> = rows.flatten().copied().collect();
+            self.clusters.join_all(&depends_on);
+        }
+    }
+}
+
+/// The element of the first of some consecutive levels that an element of the last descends from.
+fn ancestor(levels: &[Level], element: u32) -> u32 {
+    levels[..levels.len() - 1].iter().rev().fold(element, |element, parent| match &parent.mesh {
+        Mesh::Triangles(mesh) => mesh.counts().triangle_parent(element),
+        Mesh::Segments(_) => element / 2,
+    })
+}
