@@ -22,11 +22,13 @@ mod error;
 mod flat_cells;
 mod generator;
 mod grid;
+mod images;
 mod measure;
 mod near_seeds;
 mod planar;
 mod polygon;
 mod predicate;
+mod search;
 mod tessellation;
 mod weld;
 

@@ -4,7 +4,7 @@ use crate::batch::cut_cells;
 use crate::generator::Generator;
 use crate::measure::{CellMeasure, cell_measures};
 use crate::planar::cut_polygons;
-use crate::predicate::ExactInput;
+use crate::search::Search;
 use crate::weld::weld;
 use crate::{Dimension, Domain, VoronoiError, Wall};
 
@@ -68,7 +68,7 @@ impl Tessellation {
     /// # Errors
     /// [`VoronoiError`] names the first seed that is not finite, outside the domain or a duplicate.
     pub fn new(domain: &Domain, seeds: &[DVec3]) -> Result<Self, VoronoiError> {
-        Self::cut(ExactInput { domain, seeds, weights: None })
+        Self::cut(domain, seeds, None)
     }
 
     /// Cuts the domain into the power (Laguerre) cells of the seeds: a point belongs to the seed s with the smallest
@@ -86,17 +86,17 @@ impl Tessellation {
         if let Some((seed, weight)) = weights.iter().enumerate().find(|(_, weight)| !weight.is_finite()) {
             return Err(VoronoiError::BadWeight { seed, weight: *weight });
         }
-        Self::cut(ExactInput { domain, seeds, weights: Some(weights) })
+        Self::cut(domain, seeds, Some(weights))
     }
 
-    fn cut(input: ExactInput) -> Result<Self, VoronoiError> {
-        let ExactInput { domain, seeds, .. } = input;
+    fn cut(domain: &Domain, seeds: &[DVec3], weights: Option<&[f64]>) -> Result<Self, VoronoiError> {
         check_seeds(domain, seeds)?;
+        let mut search = Search::new(domain, seeds, weights);
         let batches = match domain.dimension() {
-            Dimension::Three => cut_cells(input),
-            Dimension::Two => cut_polygons(input)?,
+            Dimension::Three => cut_cells(&mut search),
+            Dimension::Two => cut_polygons(&mut search)?,
         };
-        Ok(weld(input, &batches))
+        Ok(weld(search.input(), &batches))
     }
 
     /// The domain that is divided up.
@@ -212,7 +212,7 @@ fn check_seeds(domain: &Domain, seeds: &[DVec3]) -> Result<(), VoronoiError> {
     if seeds.is_empty() {
         return Err(VoronoiError::NoSeeds);
     }
-    if seeds.len() > Generator::MAX_SEEDS {
+    if seeds.len() > Generator::MAX_SITES {
         return Err(VoronoiError::TooManySeeds { count: seeds.len() });
     }
     for (seed, &position) in seeds.iter().enumerate() {
