@@ -3,12 +3,13 @@
 use glam::DVec3;
 
 use crate::Domain;
+use crate::tessellation::Shift;
 
 /// A seed moved by whole periods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Image {
     pub(crate) seed: u32,
-    pub(crate) shift: [i8; 3],
+    pub(crate) shift: Shift,
 }
 
 /// Images of seeds by number, and their numbers by image.
@@ -54,8 +55,8 @@ impl ImageTable {
             for x in shifts(0) {
                 for y in shifts(1) {
                     for z in shifts(2) {
-                        let image = Image { seed, shift: [x, y, z] };
-                        if image.shift != [0; 3] && self.find(image).is_none() {
+                        let image = Image { seed, shift: Shift([x, y, z]) };
+                        if image.shift != Shift::NONE && self.find(image).is_none() {
                             list.push(image);
                         }
                     }

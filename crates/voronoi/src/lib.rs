@@ -25,14 +25,16 @@ mod grid;
 mod images;
 mod measure;
 mod near_seeds;
+mod periodic_weld;
 mod planar;
 mod polygon;
 mod predicate;
 mod search;
 mod tessellation;
+mod torus;
 mod weld;
 
 pub use domain::{Dimension, Domain, Wall};
 pub use error::VoronoiError;
 pub use measure::CellMeasure;
-pub use tessellation::{CellId, Edges, FaceId, Side, Tessellation, VertexId};
+pub use tessellation::{CellId, Edges, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};

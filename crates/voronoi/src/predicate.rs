@@ -23,6 +23,7 @@ use num_traits::{Signed, ToPrimitive, Zero};
 
 use crate::generator::{Generator, Plane};
 use crate::images::{Image, ImageTable};
+use crate::tessellation::Shift;
 use crate::{Domain, Wall};
 
 /// On which side of a plane a vertex lies once ties are broken.
@@ -54,14 +55,14 @@ impl ExactInput<'_> {
     /// The seed, and by how many periods it is moved, that a site is the image of.
     pub(crate) fn image(self, site: u32) -> Image {
         match (site as usize).checked_sub(self.seeds.len()) {
-            None => Image { seed: site, shift: [0; 3] },
+            None => Image { seed: site, shift: Shift::NONE },
             Some(image) => self.images.list()[image],
         }
     }
 
     /// The site that is an image of a seed, if there is one.
     pub(crate) fn site(self, image: Image) -> Option<u32> {
-        if image.shift == [0; 3] {
+        if image.shift == Shift::NONE {
             return Some(image.seed);
         }
         let place = self.images.find(image)?;
@@ -77,8 +78,7 @@ impl ExactInput<'_> {
     /// Where a site lies, rounded.
     pub(crate) fn position(self, site: u32) -> DVec3 {
         let Image { seed, shift } = self.image(site);
-        let periods = DVec3::from_array(shift.map(f64::from));
-        self.seeds[seed as usize] + periods * self.domain.size()
+        self.seeds[seed as usize] + shift.vector(self.domain)
     }
 
     /// What bounds the cell of a seed across an axis before any other seed does: a wall, or its own image one period away.
@@ -88,7 +88,7 @@ impl ExactInput<'_> {
         }
         let mut shift = [0; 3];
         shift[wall.axis()] = if wall.is_upper() { 1 } else { -1 };
-        self.site(Image { seed, shift }).map_or(Generator::wall(wall), Generator::site)
+        self.site(Image { seed, shift: Shift(shift) }).map_or(Generator::wall(wall), Generator::site)
     }
 
     /// Distance of a seed from a wall, across a periodic axis half a period.
@@ -103,7 +103,7 @@ impl ExactInput<'_> {
     /// Whether a site is one of those that a cell begins with: the seed itself or one of its nearest images.
     pub(crate) fn bounds_from_start(self, seed: u32, site: u32) -> bool {
         let image = self.image(site);
-        image.seed == seed && image.shift.iter().map(|shift| shift.unsigned_abs()).sum::<u8>() <= 1
+        image.seed == seed && image.shift.0.iter().map(|shift| shift.unsigned_abs()).sum::<u8>() <= 1
     }
 
     /// Power weight of a site.
@@ -121,7 +121,7 @@ impl ExactInput<'_> {
         let other = self.seeds[image.seed as usize];
         DVec3::from_array([0, 1, 2].map(|axis| {
             // Shifts of at most two periods keep the products exact.
-            let shift = f64::from(image.shift[axis]);
+            let shift = f64::from(image.shift.0[axis]);
             let (lower, upper) = (self.domain.lower()[axis], self.domain.upper()[axis]);
             accurate_sum([other[axis], -own[axis], shift * upper, -shift * lower])
         }))
@@ -179,7 +179,7 @@ impl ExactInput<'_> {
         let of_point = |point: DVec3| point.to_array().into_iter().filter_map(of_number).min();
         let of_site = |site: u32| {
             let image = self.image(site);
-            let of_period = (0..3).filter(|axis| image.shift[*axis] != 0).flat_map(|axis| {
+            let of_period = (0..3).filter(|axis| image.shift.0[*axis] != 0).flat_map(|axis| {
                 [self.domain.lower()[axis], self.domain.upper()[axis]].into_iter().filter_map(of_number)
             });
             let of_weight = of_number(self.weight(site)).map(|exponent| exponent.div_euclid(2));
@@ -206,7 +206,7 @@ impl ExactInput<'_> {
                 let other = self.seeds[image.seed as usize];
                 let normal = [0, 1, 2].map(|axis| {
                     let difference = integer(other[axis]) - integer(own[axis]);
-                    match image.shift[axis] {
+                    match image.shift.0[axis] {
                         0 => difference,
                         shift => difference + period(axis) * shift,
                     }

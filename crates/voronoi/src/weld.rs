@@ -103,11 +103,11 @@ pub(crate) fn weld(input: ExactInput, batches: &[CellBatch]) -> Tessellation {
         face_corners: Vec::new(),
         cell_starts: Vec::new(),
         cell_faces: Vec::new(),
+        periodic_vertices: Vec::new(),
+        periodic_faces: Vec::new(),
     };
     for face in faces.into_iter().flatten() {
-        tessellation.face_sides.push(face.sides);
-        tessellation.face_corners.extend(face.corners);
-        tessellation.face_starts.push(tessellation.face_corners.len());
+        tessellation.push_face(face.sides, face.corners.into_iter());
     }
     put_vertices_on_walls(&mut tessellation);
     list_faces_of_cells(&mut tessellation);
@@ -184,7 +184,7 @@ fn root(parents: &mut [u32], mut v: u32) -> u32 {
 }
 
 /// Rounding may leave a vertex of a wall's face a last place beside the wall: it gets the wall's own coordinate.
-fn put_vertices_on_walls(tessellation: &mut Tessellation) {
+pub(crate) fn put_vertices_on_walls(tessellation: &mut Tessellation) {
     for face in 0..tessellation.face_sides.len() {
         if let Side::Wall(wall) = tessellation.face_sides[face][1] {
             let corners = tessellation.face_starts[face]..tessellation.face_starts[face + 1];
@@ -196,11 +196,11 @@ fn put_vertices_on_walls(tessellation: &mut Tessellation) {
     }
 }
 
-fn list_faces_of_cells(tessellation: &mut Tessellation) {
+pub(crate) fn list_faces_of_cells(tessellation: &mut Tessellation) {
     let cells_of = |sides: &[Side; 2]| {
         sides.map(|side| match side {
             Side::Cell(cell) => Some(cell.index()),
-            Side::Wall(_) => None,
+            Side::Image(..) | Side::Wall(_) => None,
         })
     };
     let mut starts = vec![0; tessellation.seeds.len() + 1];
