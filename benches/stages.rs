@@ -20,7 +20,7 @@ fn stages(criterion: &mut Criterion) {
     let (network, flat) = build();
     let relax = || relax(&network, &flat, &Relaxation::default(), |_, _| ()).unwrap();
     let relaxed = relax();
-    let subdivide = || network.subdivide(&relaxed.control_points);
+    let subdivide = || relaxed.finest_points(&network);
     let points = subdivide();
     let directory = tempfile::tempdir().unwrap();
     let output = Output::check(directory.path().join("grains.vtp")).unwrap();

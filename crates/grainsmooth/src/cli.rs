@@ -53,6 +53,11 @@ pub struct Arguments {
     #[arg(long, value_name = "T", default_value_t = Config::default().relaxation_time, value_parser = parse_time, allow_negative_numbers = true, help_heading = SMOOTHING)]
     relax: f64,
 
+    /// Length, in units of the mean grain size, below which edges between grains collapse; 0 keeps all
+    /// [default: 0.1, but 0 with --relax 0]
+    #[arg(long, value_name = "L", value_parser = parse_regularize, allow_negative_numbers = true, help_heading = SMOOTHING)]
+    regularize: Option<f64>,
+
     /// Number of subdivisions; each makes four triangles of one (two segments in 2D)
     #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = Config::default().levels, value_parser = whole_number(0..=99_u32), allow_negative_numbers = true, help_heading = SMOOTHING)]
     levels: u32,
@@ -143,6 +148,8 @@ impl Arguments {
             dimension: self.dim,
             box_size,
             relaxation_time: self.relax,
+            // What is not relaxed shall stay flat, for which no vertex may move.
+            regularize: self.regularize.unwrap_or(if self.relax > 0.0 { Config::REGULARIZE } else { 0.0 }),
             levels: self.levels,
             junctions,
             drop_empty: self.drop_empty,
@@ -181,6 +188,11 @@ fn parse_length(text: &str) -> Result<f64, String> {
 fn parse_time(text: &str) -> Result<f64, String> {
     let time = text.parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0);
     time.ok_or_else(|| "the relaxation time is 0 (off) or a positive, finite number".to_owned())
+}
+
+fn parse_regularize(text: &str) -> Result<f64, String> {
+    let length = text.parse().ok().filter(|length| (0.0..=Config::LARGEST_REGULARIZE).contains(length));
+    length.ok_or_else(|| format!("give a length from 0 (off) to {}", Config::LARGEST_REGULARIZE))
 }
 
 fn parse_output(text: &str) -> Result<PathBuf, String> {

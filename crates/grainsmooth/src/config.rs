@@ -32,6 +32,8 @@ pub struct Config {
     pub box_size: DVec3,
     /// Relaxation time in units of the mean grain size squared; 0 leaves boundaries flat.
     pub relaxation_time: f64,
+    /// Length, in units of the mean grain size, below which edges of cells collapse before relaxation; 0 keeps all.
+    pub regularize: f64,
     /// Number of subdivisions.
     pub levels: u32,
     /// How triple lines are smoothed.
@@ -48,6 +50,7 @@ impl Default for Config {
             dimension: Dimension::Three,
             box_size: DVec3::ONE,
             relaxation_time: polycrystal::Relaxation::default().time,
+            regularize: Self::REGULARIZE,
             levels: 3,
             junctions: Junctions::Crease,
             drop_empty: false,
@@ -59,6 +62,12 @@ impl Config {
     /// Shortest and longest side of a box: products of five lengths, which volumes and their derivatives are, must
     /// stay within the range of doubles.
     pub const SIDE_RANGE: RangeInclusive<f64> = 1e-30..=1e30;
+
+    /// The usual length to regularise by: a tenth of a grain. Shorter edges would shrink to nothing during relaxation.
+    pub const REGULARIZE: f64 = 0.1;
+
+    /// The largest: edges as long as half a grain are no small features.
+    pub const LARGEST_REGULARIZE: f64 = 0.5;
 
     /// The box that the grains fill.
     ///
@@ -95,9 +104,9 @@ impl Config {
             Junctions::Corner => "corner",
         };
         let drop_empty = if self.drop_empty { " --drop-empty" } else { "" };
-        let Self { relaxation_time, levels, .. } = self;
+        let Self { relaxation_time, regularize, levels, .. } = self;
         format!(
-            "grainsmooth {seeds}{drop_empty} {space} --relax {relaxation_time} -n {levels} --junctions {junctions}"
+            "grainsmooth {seeds}{drop_empty} {space} --relax {relaxation_time} --regularize {regularize} -n {levels} --junctions {junctions}"
         )
     }
 }

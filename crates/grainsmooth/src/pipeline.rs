@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use polycrystal::{AngleStatistics, Network, NetworkError, Relaxation, Validation};
 use polycrystal::{dihedral_angles, relax, validate};
-use voronoi::{Dimension, Tessellation, VoronoiError};
+use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
 use crate::memory::{LevelSize, available_memory, check_levels};
 use crate::{Config, Error, FileSeed, SeedSource, random_seeds, read_seed_file};
@@ -56,6 +56,8 @@ pub struct Polycrystal {
     pub network: Network,
     /// Points of the finest level.
     pub points: Vec<DVec3>,
+    /// What regularisation took out.
+    pub collapsed: Collapsed,
     /// Angles between boundaries of the flat network, if boundaries meet inside the domain.
     pub angles_before: Option<AngleStatistics>,
     /// The same of the finished network.
@@ -134,13 +136,12 @@ pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result
     let Tessellated { tessellation, times, .. } = cells;
     let mut clock = Clock { progress, times };
     check_levels(control_mesh_size(&tessellation), config.levels, available_memory())?;
-    let (network, flat) = clock
-        .time(Stage::Network, || Network::new(&tessellation, config.junctions, config.levels as usize))?;
+    let (network, flat, collapsed) = clock.time(Stage::Network, || network(config, &tessellation))?;
     let relaxation = Relaxation { time: config.relaxation_time };
     let relaxed = clock.time(Stage::Relaxation, || {
         relax(&network, &flat, &relaxation, |done, count| progress(Stage::Relaxation, done, count))
     })?;
-    let points = clock.time(Stage::Subdivision, || network.subdivide(&relaxed.control_points));
+    let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
     let (validation, angles_before, angles_after) = clock.time(Stage::Validation, || {
         let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
         let before = dihedral_angles(&network, network.control_mesh(), &flat);
@@ -148,7 +149,23 @@ pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result
     })?;
     let times = clock.times;
     let config = config.clone();
-    Ok(Polycrystal { config, network, points, angles_before, angles_after, validation, times })
+    Ok(Polycrystal { config, network, points, collapsed, angles_before, angles_after, validation, times })
+}
+
+/// The network of regularised cells, whose grains are to have the volumes of the cells as they were.
+fn network(
+    config: &Config,
+    tessellation: &Tessellation,
+) -> Result<(Network, Vec<DVec3>, Collapsed), NetworkError> {
+    let levels = config.levels as usize;
+    if config.regularize == 0.0 {
+        let (network, flat) = Network::new(tessellation, config.junctions, levels)?;
+        return Ok((network, flat, Collapsed::default()));
+    }
+    let volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
+    let (regular, collapsed) = tessellation.regularized(config.regularize);
+    let (network, flat) = Network::new(&regular, config.junctions, levels)?;
+    Ok((network.with_cell_volumes(volumes), flat, collapsed))
 }
 
 /// Runs stages one after the other and remembers how long each took.

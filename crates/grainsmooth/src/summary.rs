@@ -4,7 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use polycrystal::AngleStatistics;
-use voronoi::Dimension;
+use voronoi::{Collapsed, Dimension};
 
 use crate::{Polycrystal, Stage};
 
@@ -23,6 +23,11 @@ impl fmt::Display for Summary<'_> {
         let interior = network.boundaries().iter().filter(|boundary| boundary.is_interior()).count();
         let walls = network.boundaries().len() - interior;
         writeln!(out, "boundaries  {interior} between grains, {walls} on the walls")?;
+        let collapsed = &polycrystal.collapsed;
+        if collapsed.edges > 0 {
+            let Collapsed { edges, faces } = collapsed;
+            writeln!(out, "collapsed   {edges} short edges of cells, with them {faces} small boundaries")?;
+        }
         let (junctions, element, measure, size) = match network.domain().dimension() {
             Dimension::Two => {
                 (format!("{} triple points", counts.triple_lines), "segment", "areas", "length")

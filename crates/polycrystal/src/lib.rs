@@ -12,7 +12,7 @@
 //! let tessellation = Tessellation::new(&Domain::unit_cube(), &seeds)?;
 //! let (network, flat) = Network::new(&tessellation, Junctions::Crease, 2)?;
 //! let relaxed = relax(&network, &flat, &Relaxation::default(), |_, _| ())?;
-//! let smooth = network.subdivide(&relaxed.control_points);
+//! let smooth = relaxed.finest_points(&network);
 //!
 //! let volumes = network.grain_volumes(network.finest(), &smooth);
 //! let cells = tessellation.cell_measures();

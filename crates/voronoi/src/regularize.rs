@@ -17,6 +17,9 @@ const SWEEPS: usize = 10;
 /// Cosine of the largest angle between a face and one of the triangles that join its edges to its centre (60 degrees).
 const LARGEST_BEND: f64 = 0.5;
 
+/// Share of the length of a short edge below which an edge is tiny.
+const TINY: f64 = 0.01;
+
 /// What a regularisation took out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Collapsed {
@@ -27,14 +30,20 @@ pub struct Collapsed {
 }
 
 impl Tessellation {
-    /// The complex without the edges that are shorter than `length`, or than the given share of the smallest cell around.
+    /// The complex without short edges: those shorter than `length` times the mean size of all cells, and than `length`
+    /// times that of the smallest cell around. A cell's size is the edge of a cube (in the plane, of a square) as large.
     ///
-    /// Ends of such edges become one vertex in their middle, or where a wall holds one of them. Faces that are left with two
-    /// edges vanish. Edges stay where a cell would no longer be a closed ball, or a face would fold. Cells are no longer
+    /// The ends of such an edge become one vertex in its middle, or where a wall holds one of them. Faces that are left with
+    /// two edges vanish. Edges stay where a cell would no longer be a closed ball, or a face would fold. Cells are no longer
     /// quite convex, nor faces quite plane.
+    ///
+    /// A periodic complex comes back as it is.
     #[must_use]
-    pub fn regularized(&self, length: f64, share: f64) -> (Self, Collapsed) {
-        let mut complex = Complex::new(self, length, share);
+    pub fn regularized(&self, length: f64) -> (Self, Collapsed) {
+        if !self.periodic_faces.is_empty() {
+            return (self.clone(), Collapsed::default());
+        }
+        let mut complex = Complex::new(self, length);
         for _ in 0..SWEEPS {
             let before = complex.collapsed;
             for ends in complex.short_edges() {
@@ -67,7 +76,7 @@ struct Complex<'a> {
 }
 
 impl<'a> Complex<'a> {
-    fn new(original: &'a Tessellation, length: f64, share: f64) -> Self {
+    fn new(original: &'a Tessellation, length: f64) -> Self {
         let vertices = original.vertices().to_vec();
         let mut walls = vec![Vec::new(); vertices.len()];
         let mut faces_at = vec![Vec::new(); vertices.len()];
@@ -87,6 +96,7 @@ impl<'a> Complex<'a> {
             Dimension::Three => volume.cbrt(),
         };
         let measures = original.cell_measures();
+        let mean_size = root(original.domain().measure() / measures.len() as f64);
         Self {
             original,
             weights: vec![1.0; vertices.len()],
@@ -97,7 +107,7 @@ impl<'a> Complex<'a> {
                 .collect(),
             faces_at,
             face_counts: measures.iter().map(|cell| cell.face_count).collect(),
-            short: measures.iter().map(|cell| length.min(share * root(cell.volume))).collect(),
+            short: measures.iter().map(|cell| length * mean_size.min(root(cell.volume))).collect(),
             vertices,
             collapsed: Collapsed::default(),
         }
@@ -122,9 +132,18 @@ impl<'a> Complex<'a> {
         edges.dedup();
         let mut edges: Vec<(f64, [u32; 2])> =
             edges.into_iter().map(|ends| (self.length(ends), ends)).collect();
-        edges.retain(|(length, ends)| *length < self.allowed(*ends));
+        let count = u32::try_from(self.vertices.len()).expect("vertex ids fit 32 bits");
+        let is_bend: Vec<bool> = (0..count).map(|vertex| self.is_bend(vertex)).collect();
+        edges.retain(|(length, ends)| {
+            *length < self.allowed(*ends) || ends.iter().any(|end| is_bend[*end as usize])
+        });
         edges.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         edges.into_iter().map(|(_, ends)| ends).collect()
+    }
+
+    /// Whether a vertex is left with two edges: a mere bend in a line, where two long, thin faces have closed that crossed.
+    fn is_bend(&self, vertex: u32) -> bool {
+        self.dimension() == Dimension::Three && self.neighbors(vertex).len() == 2
     }
 
     fn allowed(&self, ends: [u32; 2]) -> f64 {
@@ -160,17 +179,21 @@ impl<'a> Complex<'a> {
         if self.faces_at[u as usize].is_empty() || self.faces_at[w as usize].is_empty() {
             return;
         }
-        if self.length(ends) >= self.allowed(ends) {
+        let bend = ends.iter().position(|end| self.is_bend(*end));
+        if bend.is_none() && self.length(ends) >= self.allowed(ends) {
             return;
         }
-        // The end that walls hold stays in place.
-        let held = self.walls[w as usize].len() > self.walls[u as usize].len();
-        let [kept, gone] = if held { [w, u] } else { [u, w] };
+        // The end that walls hold stays in place, and so does what is more than a bend.
+        let first_goes = match bend {
+            Some(bend) => bend == 0,
+            None => self.walls[w as usize].len() > self.walls[u as usize].len(),
+        };
+        let [kept, gone] = if first_goes { [w, u] } else { [u, w] };
         let Some(closing) = self.closing_faces(kept, gone) else { return };
         if !self.walls_allow(kept, gone) {
             return;
         }
-        let place = if self.walls[kept as usize].len() == self.walls[gone as usize].len() {
+        let place = if bend.is_none() && self.walls[u as usize].len() == self.walls[w as usize].len() {
             let [a, b] = [kept, gone].map(|end| self.weights[end as usize]);
             (self.vertices[kept as usize] * a + self.vertices[gone as usize] * b) / (a + b)
         } else {
@@ -254,7 +277,11 @@ impl<'a> Complex<'a> {
         })
     }
 
-    fn merge(&mut self, kept: u32, gone: u32, place: DVec3, closing: &[u32]) {
+    fn merge(&mut self, kept: u32, gone: u32, mut place: DVec3, closing: &[u32]) {
+        // A mean of equal coordinates may miss them by a last place.
+        for wall in &self.walls[kept as usize] {
+            place[wall.axis()] = self.original.domain().wall_coordinate(*wall);
+        }
         self.vertices[kept as usize] = place;
         self.weights[kept as usize] += self.weights[gone as usize];
         for face in std::mem::take(&mut self.faces_at[gone as usize]) {
@@ -305,7 +332,7 @@ impl<'a> Complex<'a> {
 fn cell_of(side: Side) -> Option<CellId> {
     match side {
         Side::Cell(cell) => Some(cell),
-        Side::Wall(_) => None,
+        Side::Image(..) | Side::Wall(_) => None,
     }
 }
 
@@ -316,8 +343,8 @@ fn edges_of(corners: &[u32]) -> impl Iterator<Item = [u32; 2]> {
     corners.iter().zip(after).take(count).map(|(a, b)| [*a.min(b), *a.max(b)])
 }
 
-/// Whether no triangle from the ring's centre to an edge turns its back to the others. Rings thinner than `short` may: they
-/// are about to close themselves.
+/// Whether no triangle from the ring's centre to an edge turns its back to the others. Rings thinner than `short` may, and
+/// tiny edges: they are about to go themselves.
 fn is_star_shaped(ring: &[DVec3], short: f64) -> bool {
     let edges = || ring.iter().zip(ring.iter().cycle().skip(1)).filter(|(a, b)| a != b);
     let perimeter: f64 = edges().map(|(a, b)| a.distance(*b)).sum();
@@ -326,7 +353,8 @@ fn is_star_shaped(ring: &[DVec3], short: f64) -> bool {
     if 0.5 * normal.length() < 0.5 * short * perimeter {
         return true;
     }
-    edges().all(|(a, b)| {
+    let matters = |(a, b): &(&DVec3, &DVec3)| a.distance(**b) > TINY * short;
+    edges().filter(matters).all(|(a, b)| {
         let triangle = (*a - center).cross(*b - center);
         triangle.dot(normal) > LARGEST_BEND * triangle.length() * normal.length()
     })

@@ -158,6 +158,13 @@ impl<'a> Flow<'a> {
             })
     }
 
+    /// As [`Self::restore_volumes`] where a volume differs by more than rounding; else no point moves.
+    pub(super) fn restore_lost_volumes(&self, points: &mut [DVec3]) -> Result<(), NetworkError> {
+        let surface = self.network.subdivide_between(self.level, self.finest(), points);
+        let missing = self.missing(&self.network.grain_volumes(self.network.finest(), &surface));
+        if self.largest_error(&missing).1 <= VOLUME_LIMIT { Ok(()) } else { self.restore_volumes(points) }
+    }
+
     fn restore_with(&self, clusters: &Clusters, points: &mut [DVec3]) -> Result<(), NetworkError> {
         let terms = self.patches.terms(points);
         let system = self.system(points, &terms, clusters, 0.0);
@@ -197,7 +204,8 @@ impl<'a> Flow<'a> {
 
     /// The feature size as control edges of this level have it.
     fn feature_size(&self) -> f64 {
-        self.network.feature_size() * 0.5f64.powi(i32::try_from(self.level).expect("a level is a small number"))
+        self.network.feature_size()
+            * 0.5f64.powi(i32::try_from(self.level).expect("a level is a small number"))
     }
 
     fn finest(&self) -> usize {
@@ -246,7 +254,8 @@ impl<'a> Flow<'a> {
             normals[a as usize].normalize_or_zero().dot(normals[b as usize].normalize_or_zero())
         };
         let bent = folded_edges(self.surface(), &refined, LARGEST_BEND);
-        let bent = bent.into_iter().filter(|pair| cosine(&after, *pair) < cosine(before, *pair) - SLIGHT_BEND);
+        let bent =
+            bent.into_iter().filter(|pair| cosine(&after, *pair) < cosine(before, *pair) - SLIGHT_BEND);
         let turned = (0u32..).zip(before.iter().zip(&after)).filter(|(_, (before, after))| {
             before.dot(**after) < LARGEST_TURN * before.length() * after.length()
         });
@@ -265,7 +274,8 @@ impl<'a> Flow<'a> {
                 self.clusters.join_all(vertices);
                 continue;
             }
-            let rows = vertices.iter().map(|vertex| self.network.stencils(self.level).row(*vertex as usize).0);
+            let rows =
+                vertices.iter().map(|vertex| self.network.stencils(self.level).row(*vertex as usize).0);
             let depends_on: Vec<u32> = rows.flatten().copied().collect();
             self.clusters.join_all(&depends_on);
         }

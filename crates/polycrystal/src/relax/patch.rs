@@ -100,8 +100,7 @@ impl Patch {
             }
             Some(refinement) => {
                 let surface = refinement.apply(&local);
-                let (gradient, sweep, volume) =
-                    first_variation(&refinement.elements, &surface, self.tension);
+                let (gradient, sweep, volume) = first_variation(&refinement.elements, &surface, self.tension);
                 let gradient = refinement.pull_back(&gradient, count);
                 let sweep = refinement.pull_back(&sweep, count);
                 PatchTerms { gradient, sweep, mass, stiffness, volume }

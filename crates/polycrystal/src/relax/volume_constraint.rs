@@ -49,7 +49,12 @@ impl<T: Copy> Rows<T> {
 }
 
 impl VolumeConstraint {
-    pub(super) fn new(network: &Network, patches: &Patches, terms: &[PatchTerms], clusters: &Numbering) -> Self {
+    pub(super) fn new(
+        network: &Network,
+        patches: &Patches,
+        terms: &[PatchTerms],
+        clusters: &Numbering,
+    ) -> Self {
         let gradients: Vec<DVec3> = terms.iter().flat_map(|terms| terms.sweep.iter().copied()).collect();
         let row = |cluster: usize| {
             let mut row: Vec<(u32, DVec3)> = Vec::new();

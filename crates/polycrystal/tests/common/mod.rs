@@ -29,7 +29,22 @@ pub fn random_network(
     network(domain, &random_seeds(domain, count, random_seed), levels)
 }
 
-/// The control points after relaxation of the default time.
+/// The network of 200 or so random grains whose short edges have collapsed, as the program makes it.
+pub fn regular_network(
+    domain: &Domain,
+    count: usize,
+    random_seed: u64,
+    levels: usize,
+) -> (Network, Vec<DVec3>) {
+    let tessellation =
+        Tessellation::new(domain, &random_seeds(domain, count, random_seed)).expect("valid seeds");
+    let volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
+    let (regular, _) = tessellation.regularized(0.1);
+    let (network, flat) = Network::new(&regular, Junctions::Crease, levels).expect("a small network");
+    (network.with_cell_volumes(volumes), flat)
+}
+
+/// The points of the finest level after relaxation of the default time.
 pub fn relaxed(network: &Network, flat: &[DVec3]) -> Vec<DVec3> {
-    relax(network, flat, &Relaxation::default(), |_, _| ()).expect("relaxes").control_points
+    relax(network, flat, &Relaxation::default(), |_, _| ()).expect("relaxes").finest_points(network)
 }

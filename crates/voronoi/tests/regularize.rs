@@ -1,0 +1,137 @@
+//! Regularisation: every cell stays a closed ball, the box stays full, and what is short goes.
+
+mod common;
+
+use std::collections::HashSet;
+
+use common::{assert_complex, complex_counts, random_seeds, tessellate};
+use glam::DVec3;
+use proptest::prelude::*;
+use voronoi::{CellId, Domain, Side, Tessellation, VertexId};
+
+/// A complex all of whose cells are balls: their surfaces are spheres, and around each of their vertices the faces form
+/// one ring.
+fn assert_balls(tessellation: &Tessellation) {
+    assert_complex(tessellation);
+    for cell in (0u32..).take(tessellation.cell_count()).map(CellId) {
+        let faces: Vec<&[VertexId]> =
+            tessellation.cell_faces(cell).iter().map(|face| tessellation.face_corners(*face)).collect();
+        let edges_of = |face: &&[VertexId]| -> Vec<[VertexId; 2]> {
+            let after = face.iter().cycle().skip(1);
+            face.iter().zip(after).map(|(a, b)| [*a.min(b), *a.max(b)]).collect()
+        };
+        let vertices: HashSet<VertexId> = faces.iter().flat_map(|face| face.iter().copied()).collect();
+        let edges: HashSet<[VertexId; 2]> = faces.iter().flat_map(edges_of).collect();
+        assert_eq!(vertices.len() + faces.len(), edges.len() + 2, "{cell:?} is no sphere");
+        for vertex in vertices {
+            let around: Vec<Vec<[VertexId; 2]>> = faces
+                .iter()
+                .filter(|face| face.contains(&vertex))
+                .map(|face| edges_of(face).into_iter().filter(|edge| edge.contains(&vertex)).collect())
+                .collect();
+            assert!(around.iter().all(|edges| edges.len() == 2), "{cell:?} has a pinched face at {vertex:?}");
+            let mut reached = vec![0];
+            let mut next = 0;
+            while next < reached.len() {
+                let from = &around[reached[next]];
+                let touching = (0..around.len()).filter(|at| around[*at].iter().any(|e| from.contains(e)));
+                let new: Vec<usize> = touching.filter(|at| !reached.contains(at)).collect();
+                reached.extend(new);
+                next += 1;
+            }
+            assert_eq!(reached.len(), around.len(), "{cell:?} is pinched at {vertex:?}");
+        }
+    }
+}
+
+/// Edges in the plane are faces, with two corners.
+fn shortest_edge(tessellation: &Tessellation) -> f64 {
+    let at = |vertex: VertexId| tessellation.vertices()[vertex.index()];
+    let ring = |face| {
+        let corners = tessellation.face_corners(face);
+        corners.iter().zip(corners.iter().cycle().skip(1)).map(|(a, b)| at(*a).distance(at(*b)))
+    };
+    tessellation.faces().flat_map(ring).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn a_jittered_lattice_becomes_the_lattice() {
+    let jitter = random_seeds(64, 5);
+    for size in [0.0, 1e-9, 1e-6] {
+        let seeds: Vec<DVec3> = (0..64)
+            .map(|i| DVec3::new(f64::from(i % 4), f64::from(i / 4 % 4), f64::from(i / 16)) + 0.5)
+            .zip(&jitter)
+            .map(|(place, jitter)| (place + (*jitter - 0.5) * size) / 4.0)
+            .collect();
+        let (regular, _) = tessellate(&seeds).regularized(0.1);
+        assert_balls(&regular);
+        let counts = complex_counts(&regular);
+        assert_eq!((counts.vertices, counts.edges, counts.faces), (125, 300, 240), "jitter {size}");
+        for vertex in regular.vertices() {
+            assert!((*vertex * 4.0).distance((*vertex * 4.0).round()) <= if size > 0.0 { 0.1 } else { 0.0 });
+        }
+    }
+}
+
+#[test]
+fn a_jittered_lattice_in_the_plane_becomes_the_lattice() {
+    let jitter = random_seeds(16, 5);
+    let seeds: Vec<DVec3> = (0..16)
+        .map(|i| DVec3::new(f64::from(i % 4) + 0.5, f64::from(i / 4) + 0.5, 0.0))
+        .zip(&jitter)
+        .map(|(place, jitter)| ((place + (*jitter - 0.5) * 1e-7) / 4.0).with_z(0.0))
+        .collect();
+    let (regular, _) = Tessellation::new(&Domain::unit_square(), &seeds).expect("seeds").regularized(0.1);
+    assert_complex(&regular);
+    assert_eq!((regular.vertices().len(), regular.face_count()), (25, 40));
+}
+
+#[test]
+fn most_short_edges_go_and_what_has_gone_is_counted() {
+    let cells = tessellate(&random_seeds(200, 3));
+    let (regular, collapsed) = cells.regularized(0.1);
+    assert_balls(&regular);
+    assert_eq!(cells.vertices().len() - regular.vertices().len(), collapsed.edges);
+    assert_eq!(cells.face_count() - regular.face_count(), collapsed.faces);
+    // A quarter of a grain's edges are shorter than a tenth of its size or so.
+    assert!((150..350).contains(&collapsed.edges), "{collapsed:?}");
+    assert!(shortest_edge(&regular) > 100.0 * shortest_edge(&cells));
+}
+
+#[test]
+fn length_zero_changes_nothing() {
+    let cells = tessellate(&random_seeds(50, 3));
+    assert_eq!(cells.regularized(0.0).0, cells);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn cells_stay_balls_and_walls_stay_flat(
+        random_seed in 0u64..1_000_000,
+        count in 1usize..80,
+        length in 0.0..0.6f64,
+        height in 0.05..3.0f64,
+    ) {
+        let domain = Domain::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, height)).expect("a box");
+        let seeds: Vec<DVec3> = random_seeds(count, random_seed).iter().map(|s| *s * domain.size()).collect();
+        let (regular, _) = Tessellation::new(&domain, &seeds).expect("seeds").regularized(length);
+        assert_balls(&regular);
+        for face in regular.faces() {
+            if let Side::Wall(wall) = regular.face_sides(face)[1] {
+                for corner in regular.face_corners(face) {
+                    let corner = regular.vertices()[corner.index()];
+                    prop_assert_eq!(corner[wall.axis()], domain.wall_coordinate(wall));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn cells_in_the_plane_stay_closed(random_seed in 0u64..1_000_000, count in 1usize..80, length in 0.0..0.6f64) {
+        let seeds: Vec<DVec3> = random_seeds(count, random_seed).iter().map(|seed| seed.with_z(0.0)).collect();
+        let cells = Tessellation::new(&Domain::unit_square(), &seeds).expect("seeds");
+        assert_complex(&cells.regularized(length).0);
+    }
+}
