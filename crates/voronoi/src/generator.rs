@@ -3,7 +3,7 @@ use crate::tessellation::{CellId, Side};
 
 /// What a cell's plane comes from: a seed (the bisector with it) or a wall of the domain. Seeds sort before walls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) struct Generator(u32);
+pub(crate) struct Generator(pub(crate) u32);
 
 /// First code of a wall; the six walls take the last codes that 32 bits offer but one, which stays free.
 const FIRST_WALL: u32 = u32::MAX - 7;
@@ -25,19 +25,14 @@ impl Generator {
         (self.0 < FIRST_WALL).then_some(self.0)
     }
 
+    pub(crate) fn as_wall(self) -> Option<Wall> {
+        (self.0 >= FIRST_WALL).then(|| Wall::ALL[(self.0 - FIRST_WALL) as usize])
+    }
+
     pub(crate) fn side(self) -> Side {
-        match self.as_seed() {
-            Some(id) => Side::Cell(CellId(id)),
-            None => Side::Wall(Wall::ALL[(self.0 - FIRST_WALL) as usize]),
+        match self.as_wall() {
+            None => Side::Cell(CellId(self.0)),
+            Some(wall) => Side::Wall(wall),
         }
     }
-}
-
-/// The four generators whose bisectors and walls meet in a vertex in general position, sorted.
-pub(crate) type VertexKey = [Generator; 4];
-
-pub(crate) fn vertex_key(seed: u32, planes: [Generator; 3]) -> VertexKey {
-    let mut key = [Generator::seed(seed), planes[0], planes[1], planes[2]];
-    key.sort_unstable();
-    key
 }

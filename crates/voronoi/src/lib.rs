@@ -15,19 +15,22 @@
 //! # Ok::<(), voronoi::VoronoiError>(())
 //! ```
 
-mod batch;
+mod candidates;
 mod convex_cell;
 mod domain;
+mod edge_ends;
 mod error;
 mod flat_cells;
 mod generator;
 mod grid;
 mod measure;
 mod near_seeds;
-mod planar;
+mod open_cell;
+mod plane;
 mod polygon;
 mod predicate;
 mod tessellation;
+mod tile;
 mod weld;
 
 pub use domain::{Dimension, Domain, Wall};

@@ -75,6 +75,13 @@ impl ExactInput<'_> {
         }
     }
 
+    /// Whether three planes are in positive orientation: the determinant of their normals is positive.
+    pub(crate) fn is_positive(self, seed: u32, planes: [Generator; 3]) -> bool {
+        let exponent = self.common_exponent(seed, &planes);
+        let [a, b, c] = planes.map(|generator| self.plane(seed, generator, exponent).normal);
+        dot(&a, &cross(&b, &c)).is_positive()
+    }
+
     /// The vertex of three planes relative to the seed, each coordinate rounded to nearest but for one or two last places.
     pub(crate) fn vertex(self, seed: u32, planes: [Generator; 3]) -> DVec3 {
         let exponent = self.common_exponent(seed, &planes);

@@ -1,12 +1,14 @@
 use glam::DVec3;
+use rayon::prelude::*;
 
-use crate::batch::cut_cells;
 use crate::generator::Generator;
+use crate::grid::SeedGrid;
 use crate::measure::{CellMeasure, cell_measures};
-use crate::planar::cut_polygons;
+use crate::near_seeds::NearSeeds;
 use crate::predicate::ExactInput;
+use crate::tile::cut_tile;
 use crate::weld::weld;
-use crate::{Dimension, Domain, VoronoiError, Wall};
+use crate::{Domain, VoronoiError, Wall};
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
@@ -90,13 +92,19 @@ impl Tessellation {
     }
 
     fn cut(input: ExactInput) -> Result<Self, VoronoiError> {
-        let ExactInput { domain, seeds, .. } = input;
+        let ExactInput { domain, seeds, weights } = input;
         check_seeds(domain, seeds)?;
-        let batches = match domain.dimension() {
-            Dimension::Three => cut_cells(input),
-            Dimension::Two => cut_polygons(input)?,
-        };
-        Ok(weld(input, &batches))
+        let grid = SeedGrid::new(seeds);
+        if let Some((first, second)) = grid.duplicates() {
+            let [first, second] = [first, second].map(|id| id as usize);
+            return Err(VoronoiError::DuplicateSeeds { first, second, position: seeds[first] });
+        }
+        let sorted_weights: Option<Vec<f64>> =
+            weights.map(|weights| grid.ids.iter().map(|id| weights[*id as usize]).collect());
+        let input = ExactInput { domain, seeds: &grid.positions, weights: sorted_weights.as_deref() };
+        let near = NearSeeds::new(input, &grid);
+        let tiles = grid.tiles().par_iter().map(|seeds| cut_tile(near, seeds.clone())).collect();
+        Ok(weld(domain, seeds, &grid, tiles))
     }
 
     /// The domain that is divided up.
@@ -223,18 +231,5 @@ fn check_seeds(domain: &Domain, seeds: &[DVec3]) -> Result<(), VoronoiError> {
             return Err(VoronoiError::OutsideDomain { seed, position, domain: domain.to_string() });
         }
     }
-    let mut order: Vec<usize> = (0..seeds.len()).collect();
-    // Adding zero makes -0 and 0 the same place.
-    let key = |seed: usize| (seeds[seed] + DVec3::ZERO).to_array();
-    let compare = |a: &usize, b: &usize| {
-        let (left, right) = (key(*a), key(*b));
-        let by_axis = |axis: usize| left[axis].total_cmp(&right[axis]);
-        by_axis(0).then_with(|| by_axis(1)).then_with(|| by_axis(2)).then(a.cmp(b))
-    };
-    order.sort_unstable_by(compare);
-    let duplicates = order.windows(2).filter(|pair| key(pair[0]) == key(pair[1]));
-    match duplicates.map(|pair| (pair[0], pair[1])).min() {
-        Some((first, second)) => Err(VoronoiError::DuplicateSeeds { first, second, position: seeds[first] }),
-        None => Ok(()),
-    }
+    Ok(())
 }
