@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::generator::Generator;
-use crate::plane::Plane;
+use crate::half_space::HalfSpace;
 
 /// Coordinates of planes `normal . y <= offset`, and bounds on what their rounding errors are relative to.
 #[derive(Debug, Default)]
@@ -50,7 +50,7 @@ impl Candidates {
         self.largest_offset_size = self.largest_offset_size.max(offset_size);
     }
 
-    pub(crate) fn push_plane(&mut self, plane: &Plane) {
+    pub(crate) fn push_plane(&mut self, plane: &HalfSpace) {
         self.push(plane.generator, plane.normal, plane.offset, plane.offset_size);
     }
 
@@ -72,7 +72,8 @@ impl Candidates {
 
     /// The first plane that the ray meets after the last [`Self::cross`], by its number among those crossed, and where.
     pub(crate) fn first_crossing(&self) -> (usize, f64) {
-        let nearest = self.crossings.iter().fold(f64::INFINITY, |least, t| if *t < least { *t } else { least });
+        let nearest =
+            self.crossings.iter().fold(f64::INFINITY, |least, t| if *t < least { *t } else { least });
         (self.crossings.iter().position(|t| *t == nearest).unwrap_or(0), nearest)
     }
 
@@ -92,11 +93,11 @@ impl Candidates {
         let count = self.generators.len();
         let (x, y, z) = (&self.x[..count], &self.y[..count], &self.z[..count]);
         let offsets = &self.offsets[..count];
-        let mut beyond = 0u64;
+        let mut beyond = 0usize;
         for c in 0..count {
             let excess = x[c] * point.x + y[c] * point.y + z[c] * point.z - offsets[c];
-            beyond += u64::from(excess >= -slack);
+            beyond += usize::from(excess >= -slack);
         }
-        beyond as usize
+        beyond
     }
 }

@@ -5,9 +5,9 @@
 //! removes the vertices beyond it and closes the hole with one new vertex for each polyhedron edge cut.
 
 use crate::generator::Generator;
-use crate::near_seeds::Cutting;
-use crate::plane::{EVALUATION_ERROR, Intersection, Plane};
+use crate::half_space::{EVALUATION_ERROR, HalfSpace, Intersection};
 use crate::predicate::ExactInput;
+use crate::search::Cutting;
 
 /// Relative error bound of a vertex above which its coordinates are computed exactly while cutting: a loose bound sends
 /// every later decision about the vertex to exact arithmetic, which costs more than the vertex.
@@ -17,7 +17,7 @@ const LOOSE: f64 = 1e-7;
 #[derive(Debug)]
 pub(crate) struct ConvexCell {
     seed: u32,
-    planes: Vec<Plane>,
+    planes: Vec<HalfSpace>,
     /// Of each vertex, the planes that meet there.
     triples: Vec<[u16; 3]>,
     x: Vec<f64>,
@@ -32,11 +32,11 @@ pub(crate) struct ConvexCell {
 }
 
 impl ConvexCell {
-    /// The whole domain, a box, as the cell of `seed`.
+    /// The cell of `seed` among its own images: the whole domain, a box, where there are none.
     pub(crate) fn new(seed: u32, input: ExactInput) -> Self {
         let mut cell = Self {
             seed,
-            planes: input.domain.walls().iter().map(|wall| Plane::wall(seed, *wall, input)).collect(),
+            planes: input.outermost_planes(seed).map(|plane| HalfSpace::new(seed, plane, input)).collect(),
             triples: Vec::new(),
             x: Vec::new(),
             y: Vec::new(),
@@ -58,8 +58,8 @@ impl ConvexCell {
     }
 
     /// Fills `self.cut` with the vertices beyond the plane; false where there are none.
-    fn find_cut(&mut self, plane: &Plane, input: ExactInput) -> bool {
-        let Plane { normal, offset, offset_size, .. } = *plane;
+    fn find_cut(&mut self, plane: &HalfSpace, input: ExactInput) -> bool {
+        let HalfSpace { normal, offset, offset_size, .. } = *plane;
         let sum = normal.x.abs() + normal.y.abs() + normal.z.abs();
         let own_error = EVALUATION_ERROR * offset_size;
         let count = self.triples.len();
@@ -94,7 +94,7 @@ impl ConvexCell {
     }
 
     /// Replaces the vertices in `self.cut` by those of the new plane.
-    fn close_hole(&mut self, plane: Plane, input: ExactInput) {
+    fn close_hole(&mut self, plane: HalfSpace, input: ExactInput) {
         // Of a directed dual edge (a, b) of a vertex removed, the twin (b, a) belongs to the vertex at the other end of
         // the polyhedron edge a-b. Where that is removed too the two cancel; the rest runs round the hole.
         self.hole.clear();
@@ -173,7 +173,7 @@ impl Cutting for ConvexCell {
     }
 
     fn cut_with_bisector(&mut self, other: u32, input: ExactInput) {
-        let plane = Plane::bisector(self.seed, other, input);
+        let plane = HalfSpace::new(self.seed, Generator::site(other), input);
         if self.find_cut(&plane, input) {
             self.close_hole(plane, input);
             self.update_radius();

@@ -25,13 +25,13 @@ pub(crate) struct SeedGrid {
     starts: Vec<u32>,
     tiles: Vec<Range<u32>>,
     /// The seeds' places in the input.
-    pub(crate) ids: Vec<u32>,
-    pub(crate) positions: Vec<DVec3>,
+    pub(crate) order: Vec<u32>,
+    positions: Vec<DVec3>,
 }
 
 impl SeedGrid {
     /// Sorts the seeds into blocks that are as close to cubes as the seeds' bounding box allows.
-    pub(crate) fn new(seeds: &[DVec3]) -> Self {
+    pub(crate) fn new(seeds: Vec<DVec3>) -> Self {
         let lower = seeds.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let upper = seeds.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
         let size = upper - lower;
@@ -52,7 +52,8 @@ impl SeedGrid {
         let tile_steps = [1, tile_counts.x, tile_counts.x * tile_counts.y];
         let offsets = [0, 1, 2].map(|axis| {
             let offset = |b: i32| {
-                (b % tile[axis] * steps[axis] + b / tile[axis] * tile_steps[axis] * tile_blocks).cast_unsigned()
+                (b % tile[axis] * steps[axis] + b / tile[axis] * tile_steps[axis] * tile_blocks)
+                    .cast_unsigned()
             };
             (0..counts[axis]).map(offset).collect()
         });
@@ -63,13 +64,14 @@ impl SeedGrid {
             offsets,
             starts: Vec::new(),
             tiles: Vec::new(),
-            ids: Vec::new(),
+            order: Vec::new(),
             positions: Vec::new(),
         };
-        grid.sort(seeds, (tile_counts.element_product() * tile_blocks).unsigned_abs() as usize);
+        grid.sort(&seeds, (tile_counts.element_product() * tile_blocks).unsigned_abs() as usize);
         let tile_starts = grid.starts.iter().copied().step_by(tile_blocks.unsigned_abs() as usize);
         let tile_starts: Vec<u32> = tile_starts.collect();
-        grid.tiles = tile_starts.windows(2).map(|pair| pair[0]..pair[1]).filter(|tile| !tile.is_empty()).collect();
+        grid.tiles =
+            tile_starts.windows(2).map(|pair| pair[0]..pair[1]).filter(|tile| !tile.is_empty()).collect();
         grid
     }
 
@@ -89,29 +91,34 @@ impl SeedGrid {
             starts[block + 1] += starts[block];
         }
         let mut next = starts.clone();
-        self.ids = vec![0; seeds.len()];
+        self.order = vec![0; seeds.len()];
         for (seed, block) in (0u32..).zip(&blocks) {
             let slot = &mut next[*block as usize];
-            self.ids[*slot as usize] = seed;
+            self.order[*slot as usize] = seed;
             *slot += 1;
         }
         for block in starts.windows(2) {
             // Adding zero makes -0 and 0 the same place.
             let key = |id: &u32| (seeds[*id as usize] + DVec3::ZERO).to_array();
-            self.ids[block[0] as usize..block[1] as usize].sort_unstable_by(|a, b| {
+            self.order[block[0] as usize..block[1] as usize].sort_unstable_by(|a, b| {
                 let (left, right) = (key(a), key(b));
                 let by_axis = |axis: usize| left[axis].total_cmp(&right[axis]);
                 by_axis(0).then_with(|| by_axis(1)).then_with(|| by_axis(2)).then(a.cmp(b))
             });
         }
-        self.positions = self.ids.iter().map(|id| seeds[*id as usize]).collect();
+        self.positions = self.order.iter().map(|id| seeds[*id as usize]).collect();
         self.starts = starts;
     }
 
     /// The ids of two seeds at one place, the smallest such pair.
     pub(crate) fn duplicates(&self) -> Option<(u32, u32)> {
-        let pairs = self.positions.windows(2).zip(self.ids.windows(2));
+        let pairs = self.positions.windows(2).zip(self.order.windows(2));
         pairs.filter(|(positions, _)| positions[0] == positions[1]).map(|(_, ids)| (ids[0], ids[1])).min()
+    }
+
+    /// The same grid for seeds that were brought into its order.
+    pub(crate) fn renumbered(self) -> Self {
+        Self { order: (0u32..).take(self.order.len()).collect(), ..self }
     }
 
     /// The ranges of seeds, by place in the grid's order, that make up compact parts of space.
@@ -125,7 +132,7 @@ impl SeedGrid {
         sides.reduce(f64::max).unwrap_or(f64::INFINITY)
     }
 
-    /// Visits all seeds further than `from` and at most `to` from a place, as their number in the grid's order, the vector to
+    /// Visits all seeds further than `from` and at most `to` from a place, as their number in the input, the vector to
     /// them and its squared length.
     #[inline]
     pub(crate) fn for_each_within(
@@ -167,11 +174,12 @@ impl SeedGrid {
                     }
                     let start = self.starts[(row + self.offsets[0][x]) as usize];
                     let stop = self.starts[(row + self.offsets[0][last]) as usize + 1];
-                    for (seed, position) in (start..).zip(&self.positions[start as usize..stop as usize]) {
+                    let places = start as usize..stop as usize;
+                    for (seed, position) in self.order[places.clone()].iter().zip(&self.positions[places]) {
                         let to_seed = *position - center;
                         let squared = to_seed.length_squared();
                         if squared > from && squared <= to_squared {
-                            visit(seed, to_seed, squared);
+                            visit(*seed, to_seed, squared);
                         }
                     }
                     x = last + 1;
@@ -210,19 +218,21 @@ mod tests {
 
     fn seeds() -> Vec<DVec3> {
         let fraction = |i: u32, k: f64| (f64::from(i) * k).fract();
-        let seed = |i: u32| DVec3::new(fraction(i, 0.618_034) * 5.0, fraction(i, 0.754_878), fraction(i, 0.569_84) * 0.1);
+        let seed = |i: u32| {
+            DVec3::new(fraction(i, 0.618_034) * 5.0, fraction(i, 0.754_878), fraction(i, 0.569_84) * 0.1)
+        };
         (0..5000).map(seed).collect()
     }
 
     #[test]
     fn rings_of_distance_hold_every_seed_once() {
         let seeds = seeds();
-        let grid = SeedGrid::new(&seeds);
+        let grid = SeedGrid::new(seeds.clone());
         for center in [seeds[0], seeds[17], seeds[499]] {
             let mut seen = vec![0; seeds.len()];
             for [from, to] in [[-1.0, 0.0], [0.0, 0.03], [0.03, 0.3], [0.3, 10.0]] {
-                grid.for_each_within(center, from, to, |place, to_seed, squared| {
-                    let id = grid.ids[place as usize] as usize;
+                grid.for_each_within(center, from, to, |id, to_seed, squared| {
+                    let id = id as usize;
                     seen[id] += 1;
                     assert_eq!(to_seed, seeds[id] - center);
                     assert!(squared.sqrt() > from && squared.sqrt() <= to);
@@ -235,10 +245,10 @@ mod tests {
     #[test]
     fn tiles_hold_every_seed_and_the_order_does_not_depend_on_that_of_the_seeds() {
         let mut seeds = seeds();
-        let grid = SeedGrid::new(&seeds);
+        let grid = SeedGrid::new(seeds.clone());
         assert!(grid.tiles().len() > 1);
         assert!(grid.tiles().iter().cloned().flatten().eq(0..5000));
         seeds.reverse();
-        assert_eq!(SeedGrid::new(&seeds).positions, grid.positions);
+        assert_eq!(SeedGrid::new(seeds.clone()).positions, grid.positions);
     }
 }

@@ -10,9 +10,9 @@ use glam::DVec3;
 use crate::candidates::Candidates;
 use crate::edge_ends::EdgeEnds;
 use crate::generator::Generator;
-use crate::near_seeds::NearSeeds;
-use crate::plane::{EVALUATION_ERROR, Intersection, Plane};
+use crate::half_space::{EVALUATION_ERROR, HalfSpace, Intersection};
 use crate::predicate::Decision;
+use crate::search::{ImagesMissing, Search};
 use crate::{Dimension, Wall};
 
 /// In two dimensions the plane z = 0 is a third plane through every corner, so that polygons are faces of polyhedra.
@@ -56,10 +56,9 @@ pub(crate) struct NewVertex {
 
 /// The cell of one seed while it is being completed. Reused from seed to seed so that the buffers are allocated once.
 pub(crate) struct OpenCell<'a> {
-    near: NearSeeds<'a>,
+    search: &'a Search<'a>,
     seed: u32,
-    own: DVec3,
-    planes: Vec<Plane>,
+    planes: Vec<HalfSpace>,
     vertices: Vec<CellVertex>,
     ends: EdgeEnds,
     /// For each plane another that shares a corner with it, coming first in the corner's order.
@@ -74,11 +73,10 @@ pub(crate) struct OpenCell<'a> {
 }
 
 impl<'a> OpenCell<'a> {
-    pub(crate) fn new(near: NearSeeds<'a>) -> Self {
+    pub(crate) fn new(search: &'a Search<'a>) -> Self {
         Self {
-            near,
+            search,
             seed: 0,
-            own: DVec3::ZERO,
             planes: Vec::new(),
             vertices: Vec::new(),
             ends: EdgeEnds::default(),
@@ -93,7 +91,6 @@ impl<'a> OpenCell<'a> {
     /// Starts anew without a vertex.
     pub(crate) fn start(&mut self, seed: u32) {
         self.seed = seed;
-        self.own = self.near.input.seeds[seed as usize];
         self.planes.clear();
         self.vertices.clear();
         self.ends.clear();
@@ -104,7 +101,7 @@ impl<'a> OpenCell<'a> {
         self.radius = 0.0;
     }
 
-    pub(crate) fn planes(&self) -> &[Plane] {
+    pub(crate) fn planes(&self) -> &[HalfSpace] {
         &self.planes
     }
 
@@ -113,12 +110,7 @@ impl<'a> OpenCell<'a> {
         self.radius = self.radius.max(distance(vertex.position, vertex.error));
         let planes = vertex.generators.map(|generator| self.plane(generator));
         let place = u16::try_from(self.vertices.len()).expect("a cell has fewer than 65 536 vertices");
-        self.vertices.push(CellVertex {
-            planes,
-            number,
-            position: vertex.position,
-            has_tie: vertex.has_tie,
-        });
+        self.vertices.push(CellVertex { planes, number, position: vertex.position, has_tie: vertex.has_tie });
         let [a, b, c] = planes;
         // A new plane comes with its first corner.
         for (p, incoming) in [(a, b), (b, c), (c, a)] {
@@ -138,26 +130,26 @@ impl<'a> OpenCell<'a> {
     fn plane(&mut self, generator: Generator) -> u16 {
         let known = self.planes.iter().position(|plane| plane.generator == generator);
         let number = known.unwrap_or_else(|| {
-            self.planes.push(Plane::new(self.seed, generator, self.near.input));
+            self.planes.push(HalfSpace::new(self.seed, generator, self.search.input()));
             self.planes.len() - 1
         });
         u16::try_from(number).expect("a cell has fewer than 65 536 faces")
     }
 
     /// Follows an edge without a second end to that end; none when the cell is complete.
-    pub(crate) fn next_vertex(&mut self) -> Option<NewVertex> {
-        while let Some(([from, to], vertex)) = self.open.pop() {
-            if self.is_wanted([from, to]) {
-                return Some(self.other_end([from, to], vertex));
+    pub(crate) fn next_vertex(&mut self) -> Result<Option<NewVertex>, ImagesMissing> {
+        while let Some((edge, vertex)) = self.open.pop() {
+            if self.is_wanted(edge) {
+                return self.other_end(edge, vertex).map(Some);
             }
         }
-        None
+        Ok(None)
     }
 
     /// Whether an edge lacks its other end. In the plane only the edges in it count.
     fn is_wanted(&self, [from, to]: [u16; 2]) -> bool {
         let in_plane = |p: u16| self.planes[usize::from(p)].generator == Generator::wall(PLANE);
-        let counts = match self.near.input.domain.dimension() {
+        let counts = match self.search.input().domain.dimension() {
             Dimension::Three => true,
             Dimension::Two => in_plane(from) || in_plane(to),
         };
@@ -165,8 +157,8 @@ impl<'a> OpenCell<'a> {
     }
 
     /// The other end of an edge from a vertex.
-    fn other_end(&mut self, [from, to]: [u16; 2], vertex: u16) -> NewVertex {
-        self.gather(self.near.reach(self.seed, self.radius));
+    fn other_end(&mut self, [from, to]: [u16; 2], vertex: u16) -> Result<NewVertex, ImagesMissing> {
+        self.gather(self.search.reach(self.seed, self.radius))?;
         let CellVertex { planes, position: start, .. } = self.vertices[usize::from(vertex)];
         // Seen from the other end the edge's planes change places.
         let edge = [to, from].map(|p| self.planes[usize::from(p)]);
@@ -195,32 +187,35 @@ impl<'a> OpenCell<'a> {
             }
             let (generator, at, _) = *end.get_or_insert_with(|| self.any_end(&edge));
             first = self.candidates.len();
-            let wanted = self.near.reach(self.seed, distance(at.position, at.error));
+            let wanted = self.search.reach(self.seed, distance(at.position, at.error));
             if wanted <= self.reach {
-                return self.confirm(&edge, generator, at);
+                return Ok(self.confirm(&edge, generator, at));
             }
-            self.gather(self.near.grow(self.reach, wanted));
+            self.gather(self.search.grow(self.reach, wanted))?;
         }
     }
 
-    /// A wall that cuts an edge somewhere, for when rounding hides all.
-    fn any_end(&self, edge: &[Plane; 2]) -> (Generator, Intersection, f64) {
-        let mut walls = self.near.input.domain.walls().iter().map(|wall| Generator::wall(*wall));
-        let end = walls.find_map(|wall| self.intersect(edge, wall).map(|at| (wall, at, f64::INFINITY)));
-        end.expect("walls end every edge in a bounded domain")
+    /// One of the outermost planes that cuts an edge somewhere, for when rounding hides all.
+    fn any_end(&self, edge: &[HalfSpace; 2]) -> (Generator, Intersection, f64) {
+        let cut = |plane| self.intersect(edge, plane).map(|at| (plane, at, f64::INFINITY));
+        self.search
+            .input()
+            .outermost_planes(self.seed)
+            .find_map(cut)
+            .expect("a cell's outermost planes end every edge")
     }
 
     /// The vertex of three planes, which the cell is known to have.
-    pub(crate) fn vertex_of(&mut self, [a, b, c]: [Generator; 3]) -> NewVertex {
-        let edge = [a, b].map(|generator| Plane::new(self.seed, generator, self.near.input));
+    pub(crate) fn vertex_of(&mut self, [a, b, c]: [Generator; 3]) -> Result<NewVertex, ImagesMissing> {
+        let edge = [a, b].map(|generator| HalfSpace::new(self.seed, generator, self.search.input()));
         let at = self.intersect(&edge, c).expect("the planes of a vertex are in positive orientation");
-        self.gather(self.near.reach(self.seed, distance(at.position, at.error)));
-        self.confirm(&edge, c, at)
+        self.gather(self.search.reach(self.seed, distance(at.position, at.error)))?;
+        Ok(self.confirm(&edge, c, at))
     }
 
     /// The first end of an edge, given a plane that ends it there or later: whatever cuts that end off comes first.
-    fn confirm(&self, edge: &[Plane; 2], mut generator: Generator, mut at: Intersection) -> NewVertex {
-        let input = self.near.input;
+    fn confirm(&self, edge: &[HalfSpace; 2], mut generator: Generator, mut at: Intersection) -> NewVertex {
+        let input = self.search.input();
         let mut has_tie = false;
         'confirm: loop {
             let generators = [edge[0].generator, edge[1].generator, generator];
@@ -236,7 +231,7 @@ impl<'a> OpenCell<'a> {
                     if excess < -slack || generators.contains(&other) {
                         continue;
                     }
-                    let plane = Plane::new(self.seed, other, input);
+                    let plane = HalfSpace::new(self.seed, other, input);
                     let error = plane.sum() * per_sum + EVALUATION_ERROR * plane.offset_size;
                     let decision = if excess.abs() > error {
                         Decision { beyond: excess > 0.0, tie: false }
@@ -246,7 +241,9 @@ impl<'a> OpenCell<'a> {
                     has_tie |= decision.tie;
                     if decision.beyond {
                         generator = other;
-                        at = self.intersect(edge, other).expect("a plane that cuts a vertex off ends the edge");
+                        at = self
+                            .intersect(edge, other)
+                            .expect("a plane that cuts a vertex off ends the edge");
                         continue 'confirm;
                     }
                 }
@@ -256,9 +253,9 @@ impl<'a> OpenCell<'a> {
     }
 
     /// Where a plane cuts an edge; none where it runs along it or faces the other way.
-    fn intersect(&self, edge: &[Plane; 2], generator: Generator) -> Option<Intersection> {
-        let input = self.near.input;
-        let third = Plane::new(self.seed, generator, input);
+    fn intersect(&self, edge: &[HalfSpace; 2], generator: Generator) -> Option<Intersection> {
+        let input = self.search.input();
+        let third = HalfSpace::new(self.seed, generator, input);
         let planes = [&edge[0], &edge[1], &third];
         if let Some(at) = Intersection::rounded(planes).filter(|at| at.is_good_to(LOOSE)) {
             return Some(at);
@@ -268,29 +265,28 @@ impl<'a> OpenCell<'a> {
             .then(|| Intersection::exact(self.seed, planes, input))
     }
 
-    /// Makes all seeds up to a distance candidates, and before them the walls.
-    fn gather(&mut self, reach: f64) {
+    /// Makes all sites up to a distance candidates, and before them the outermost planes.
+    fn gather(&mut self, reach: f64) -> Result<(), ImagesMissing> {
         if reach <= self.reach {
-            return;
+            return Ok(());
         }
-        let (seed, input) = (self.seed, self.near.input);
-        let candidates = &mut self.candidates;
-        if candidates.len() == 0 {
-            input.domain.walls().iter().for_each(|wall| candidates.push_plane(&Plane::wall(seed, *wall, input)));
-            if input.domain.dimension() == Dimension::Two {
-                candidates.push_plane(&Plane::wall(seed, PLANE, input));
+        let (seed, input) = (self.seed, self.search.input());
+        if self.candidates.len() == 0 {
+            let plane = (input.domain.dimension() == Dimension::Two).then_some(Generator::wall(PLANE));
+            for generator in input.outermost_planes(seed).chain(plane) {
+                self.candidates.push_plane(&HalfSpace::new(seed, generator, input));
             }
         }
         let own_weight = input.weight(seed);
-        self.near.grid.for_each_within(self.own, self.reach, reach, |other, normal, squared| {
-            if other != seed {
-                let weight = input.weight(other);
-                let offset = 0.5 * (squared + (own_weight - weight));
-                let offset_size = 0.5 * (squared + own_weight.abs() + weight.abs());
-                candidates.push(Generator::seed(other), normal, offset, offset_size);
-            }
-        });
+        let candidates = &mut self.candidates;
+        self.search.for_each_within(seed, [self.reach, reach], |site, normal, squared| {
+            let weight = input.weight(site);
+            let offset = 0.5 * (squared + (own_weight - weight));
+            let offset_size = 0.5 * (squared + own_weight.abs() + weight.abs());
+            candidates.push(Generator::site(site), normal, offset, offset_size);
+        })?;
         self.reach = reach;
+        Ok(())
     }
 
     /// Visits the edges of the face on a plane in counter-clockwise order as seen from outside: the vertex where each starts,
@@ -323,7 +319,7 @@ impl<'a> OpenCell<'a> {
         }
         let generators = |vertex: &CellVertex| vertex.planes.map(|p| self.planes[usize::from(p)].generator);
         let other = generators(w).into_iter().find(|generator| !generators(v).contains(generator));
-        other.is_some_and(|generator| self.near.input.decide(self.seed, generators(v), generator).tie)
+        other.is_some_and(|generator| self.search.input().decide(self.seed, generators(v), generator).tie)
     }
 }
 

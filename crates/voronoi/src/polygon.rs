@@ -4,9 +4,10 @@ use glam::DVec2;
 
 use crate::Wall;
 use crate::generator::Generator;
-use crate::near_seeds::Cutting;
+use crate::half_space::HalfSpace;
 use crate::open_cell::PLANE;
 use crate::predicate::ExactInput;
+use crate::search::Cutting;
 
 /// Bound on the rounding errors of a corner and of its distance to a line, in units of the sums of absolute products:
 /// some twenty roundings of 1.1e-16, with a margin of two.
@@ -25,6 +26,13 @@ struct Line {
     offset_size: f64,
 }
 
+impl Line {
+    fn new(seed: u32, generator: Generator, input: ExactInput) -> Self {
+        let HalfSpace { normal, offset, offset_size, .. } = HalfSpace::new(seed, generator, input);
+        Self { generator, normal: normal.truncate(), offset, offset_size }
+    }
+}
+
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     position: DVec2,
@@ -41,20 +49,12 @@ pub(crate) struct ConvexPolygon {
 }
 
 impl ConvexPolygon {
-    /// The whole rectangle as the cell of `seed`.
+    /// The cell of `seed` among its own images: the whole rectangle, where there are none.
     pub(crate) fn new(seed: u32, input: ExactInput) -> Self {
         let mut polygon = Self { seed, lines: Vec::new(), corners: Vec::new() };
-        let own = input.seeds[seed as usize];
         // y0, x1, y1, x0: counter-clockwise from the lower left corner.
         for wall in [2, 1, 3, 0].map(|index| Wall::ALL[index]) {
-            let normal = wall.outward_normal();
-            let offset = normal[wall.axis()] * (input.domain.wall_coordinate(wall) - own[wall.axis()]);
-            polygon.lines.push(Line {
-                generator: Generator::wall(wall),
-                normal: normal.truncate(),
-                offset,
-                offset_size: offset.abs(),
-            });
+            polygon.lines.push(Line::new(seed, input.outermost(seed, wall), input));
         }
         for k in 0..4 {
             polygon.corners.push(polygon.intersect(polygon.lines[(k + 3) % 4], polygon.lines[k], input));
@@ -106,15 +106,7 @@ impl Cutting for ConvexPolygon {
     }
 
     fn cut_with_bisector(&mut self, other: u32, input: ExactInput) {
-        let normal = (input.seeds[other as usize] - input.seeds[self.seed as usize]).truncate();
-        let (own_weight, weight) = (input.weight(self.seed), input.weight(other));
-        let squared_length = normal.length_squared();
-        let line = Line {
-            generator: Generator::seed(other),
-            normal,
-            offset: 0.5 * (squared_length + (own_weight - weight)),
-            offset_size: 0.5 * (squared_length + own_weight.abs() + weight.abs()),
-        };
+        let line = Line::new(self.seed, Generator::site(other), input);
         let count = self.corners.len();
         let beyond: Vec<bool> = (0..count).map(|k| self.is_beyond(k, &line, input)).collect();
         let Some(first) = (0..count).find(|k| beyond[*k] && !beyond[(k + count - 1) % count]) else {

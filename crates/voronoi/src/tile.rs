@@ -6,21 +6,21 @@
 use std::ops::Range;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::Dimension;
 use crate::convex_cell::ConvexCell;
-use crate::generator::Generator;
-use crate::near_seeds::NearSeeds;
-use crate::open_cell::{NewVertex, OpenCell, PLANE};
+use crate::generator::{Generator, VertexKey};
+use crate::half_space::HalfSpace;
+use crate::open_cell::{CellVertex, NewVertex, OpenCell, PLANE};
 use crate::polygon::ConvexPolygon;
-
-/// The four generators whose bisectors and walls meet in a vertex in general position: a seed, and the planes of its cell in
-/// positive orientation.
-pub(crate) type VertexGenerators = [Generator; 4];
+use crate::search::{ImagesMissing, Search};
+use crate::torus::FaceEnd;
 
 /// A vertex while its cells are completed.
 struct TileVertex {
-    generators: VertexGenerators,
+    /// A seed, and the planes of its cell in positive orientation.
+    generators: [Generator; 4],
     /// Relative to the first generator.
     position: DVec3,
     /// Bound on the error of each coordinate.
@@ -36,23 +36,37 @@ const END: u32 = u32::MAX;
 /// Cells without what they share with one another twice.
 pub(crate) struct Tile {
     pub(crate) seeds: Range<u32>,
-    pub(crate) vertices: Vec<VertexGenerators>,
+    pub(crate) vertices: Vec<VertexKey>,
     pub(crate) positions: Vec<DVec3>,
-    /// The seed of each face, and the generator beyond: a wall or a seed of greater number.
-    pub(crate) faces: Vec<[Generator; 2]>,
+    /// The seed of each face, and the generator beyond: a wall or a site that comes after it in the user's numbering.
+    faces: Vec<[Generator; 2]>,
     /// The corners of face f are `corners[corner_starts[f]..corner_starts[f + 1]]`, counter-clockwise from outside the first cell.
-    pub(crate) corner_starts: Vec<u32>,
-    pub(crate) corners: Vec<u32>,
+    corner_starts: Vec<u32>,
+    corners: Vec<u32>,
     /// Pairs of vertices that are one point.
     pub(crate) coincident: Vec<[u32; 2]>,
 }
 
+/// Cuts all cells in parallel, with wider search for those that ask for it.
+pub(crate) fn cut_tiles(search: &mut Search) -> Vec<Tile> {
+    let mut tiles: Vec<Option<Tile>> = search.tiles().iter().map(|_| None).collect();
+    loop {
+        let missing = tiles.par_iter_mut().zip(search.tiles()).filter(|(tile, _)| tile.is_none());
+        missing.for_each(|(tile, seeds)| *tile = cut_tile(search, seeds.clone()).ok());
+        if tiles.iter().all(Option::is_some) {
+            return tiles.into_iter().flatten().collect();
+        }
+        search.widen();
+    }
+}
+
 /// Completes the cells of consecutive seeds.
-pub(crate) fn cut_tile(near: NearSeeds, seeds: Range<u32>) -> Tile {
+fn cut_tile(search: &Search, seeds: Range<u32>) -> Result<Tile, ImagesMissing> {
     let mut builder = Builder {
-        near,
+        search,
         vertices: Vec::new(),
         lists: vec![END; seeds.len()],
+        order: Vec::new(),
         tile: Tile {
             seeds: seeds.clone(),
             vertices: Vec::new(),
@@ -63,39 +77,42 @@ pub(crate) fn cut_tile(near: NearSeeds, seeds: Range<u32>) -> Tile {
             coincident: Vec::new(),
         },
     };
-    let mut cell = OpenCell::new(near);
+    let mut cell = OpenCell::new(search);
     for seed in seeds {
-        builder.complete(&mut cell, seed);
+        builder.complete(&mut cell, seed)?;
         builder.push_faces(&cell, seed);
     }
-    builder.finish()
+    Ok(builder.finish())
 }
 
 struct Builder<'a> {
-    near: NearSeeds<'a>,
+    search: &'a Search<'a>,
     vertices: Vec<TileVertex>,
     /// First entry of the list of each cell's known vertices. An entry is a vertex's number times four and the place
     /// of the cell among its generators.
     lists: Vec<u32>,
+    /// The faces of the cell under way by what lies beyond.
+    order: Vec<(FaceEnd, u16)>,
     tile: Tile,
 }
 
 impl Builder<'_> {
-    fn complete(&mut self, cell: &mut OpenCell, seed: u32) {
+    fn complete(&mut self, cell: &mut OpenCell, seed: u32) -> Result<(), ImagesMissing> {
         cell.start(seed);
-        let own = self.near.input.seeds[seed as usize];
+        let own = self.search.input().seeds[seed as usize];
         let mut entry = self.lists[(seed - self.tile.seeds.start) as usize];
         if entry == END {
-            let Some(planes) = self.first_vertex(seed) else { return };
-            let vertex = cell.vertex_of(planes);
+            let Some(planes) = self.first_vertex(seed)? else { return Ok(()) };
+            let vertex = cell.vertex_of(planes)?;
             self.push(cell, seed, &vertex);
         }
         while entry != END {
             let vertex = &self.vertices[(entry / 4) as usize];
             let [p, a, b, c] = vertex.generators;
             // The orientation of the planes as the others of the four see it.
-            let (place, generators) = [(0, [p, c, b]), (1, [p, a, c]), (2, [p, b, a])][(entry % 4) as usize - 1];
-            let shift = self.near.input.seeds[p.0 as usize] - own;
+            let (place, generators) =
+                [(0, [p, c, b]), (1, [p, a, c]), (2, [p, b, a])][(entry % 4) as usize - 1];
+            let shift = self.search.input().seeds[p.0 as usize] - own;
             let position = vertex.position + shift;
             let rounding = f64::EPSILON * (vertex.position.abs() + shift.abs()).max_element();
             let has_tie = vertex.has_tie;
@@ -103,20 +120,18 @@ impl Builder<'_> {
             cell.add(entry / 4, &known);
             entry = vertex.next[place];
         }
-        while let Some(vertex) = cell.next_vertex() {
+        while let Some(vertex) = cell.next_vertex()? {
             self.push(cell, seed, &vertex);
         }
+        Ok(())
     }
 
     /// The planes of one vertex of a cell of which none is known; none if the cell is empty.
-    fn first_vertex(&self, seed: u32) -> Option<[Generator; 3]> {
-        fn cut(near: &NearSeeds, mut cell: impl crate::near_seeds::Cutting, seed: u32) -> Option<[Generator; 3]> {
-            near.cut(&mut cell, seed);
-            cell.any_vertex()
-        }
-        match self.near.input.domain.dimension() {
-            Dimension::Three => cut(&self.near, ConvexCell::new(seed, self.near.input), seed),
-            Dimension::Two => cut(&self.near, ConvexPolygon::new(seed, self.near.input), seed),
+    fn first_vertex(&self, seed: u32) -> Result<Option<[Generator; 3]>, ImagesMissing> {
+        let input = self.search.input();
+        match input.domain.dimension() {
+            Dimension::Three => self.search.any_vertex(ConvexCell::new(seed, input), seed),
+            Dimension::Two => self.search.any_vertex(ConvexPolygon::new(seed, input), seed),
         }
     }
 
@@ -134,7 +149,7 @@ impl Builder<'_> {
         }
         let [a, b, c] = vertex.generators;
         self.vertices.push(TileVertex {
-            generators: [Generator::seed(seed), a, b, c],
+            generators: [Generator::site(seed), a, b, c],
             position: vertex.position,
             error: vertex.error,
             next,
@@ -142,30 +157,32 @@ impl Builder<'_> {
         });
     }
 
-    /// Adds the faces of a complete cell towards greater cells and walls.
+    /// Adds the faces of a complete cell that it is the first side of, sorted by what lies beyond.
     fn push_faces(&mut self, cell: &OpenCell, seed: u32) {
-        let own = Generator::seed(seed);
-        let tile = &mut self.tile;
-        let planes = (0u16..).zip(cell.planes());
-        match self.near.input.domain.dimension() {
+        let own = Generator::site(seed);
+        let own_end = self.search.end(own);
+        let (tile, search) = (&mut self.tile, self.search);
+        match search.input().domain.dimension() {
             Dimension::Three => {
-                for (p, plane) in planes.filter(|(_, plane)| plane.generator > own) {
-                    cell.for_each_edge(p, |from, _, to| {
+                self.order.clear();
+                let ends = cell.planes().iter().map(|plane| search.end(plane.generator));
+                self.order.extend(ends.zip(0u16..).filter(|(end, _)| *end > own_end));
+                self.order.sort_unstable();
+                for (_, p) in &self.order {
+                    cell.for_each_edge(*p, |from, _, to| {
                         tile.corners.push(from.number);
-                        if cell.coincide(from, to) {
-                            tile.coincident.push([from.number, to.number]);
-                        }
+                        tile.note_edge(cell, from, to);
                     });
-                    tile.finish_face([own, plane.generator]);
+                    tile.finish_face([own, cell.planes()[usize::from(*p)].generator]);
                 }
             }
             Dimension::Two => {
-                for (p, _) in planes.filter(|(_, plane)| plane.generator == Generator::wall(PLANE)) {
+                // The polygon is the face in the plane, and its edges are the faces of the tessellation.
+                let is_plane = |(_, plane): &(u16, &HalfSpace)| plane.generator == Generator::wall(PLANE);
+                for (p, _) in (0u16..).zip(cell.planes()).filter(is_plane) {
                     cell.for_each_edge(p, |from, beyond, to| {
-                        if cell.coincide(from, to) {
-                            tile.coincident.push([from.number, to.number]);
-                        }
-                        if beyond > own {
+                        tile.note_edge(cell, from, to);
+                        if search.end(beyond) > own_end {
                             tile.corners.extend([from.number, to.number]);
                             tile.finish_face([own, beyond]);
                         }
@@ -176,8 +193,13 @@ impl Builder<'_> {
     }
 
     fn finish(mut self) -> Tile {
-        self.tile.vertices = self.vertices.iter().map(|vertex| vertex.generators).collect();
-        let seeds = self.near.input.seeds;
+        let key = |vertex: &TileVertex| {
+            let mut key = vertex.generators;
+            key.sort_unstable();
+            key
+        };
+        self.tile.vertices = self.vertices.iter().map(key).collect();
+        let seeds = self.search.input().seeds;
         let absolute = |vertex: &TileVertex| seeds[vertex.generators[0].0 as usize] + vertex.position;
         self.tile.positions = self.vertices.iter().map(absolute).collect();
         self.tile
@@ -185,9 +207,23 @@ impl Builder<'_> {
 }
 
 impl Tile {
+    /// The faces with their corners.
+    pub(crate) fn faces(&self) -> impl Iterator<Item = (&[Generator; 2], &[u32])> {
+        let corners = self.corner_starts.windows(2).map(|range| range[0] as usize..range[1] as usize);
+        self.faces.iter().zip(corners.map(|range| &self.corners[range]))
+    }
+
+    /// Notes an edge of a cell that has no length.
+    fn note_edge(&mut self, cell: &OpenCell, from: &CellVertex, to: &CellVertex) {
+        if cell.coincide(from, to) {
+            self.coincident.push([from.number, to.number]);
+        }
+    }
+
     /// Makes the corners since the last face a face.
     fn finish_face(&mut self, sides: [Generator; 2]) {
         self.faces.push(sides);
-        self.corner_starts.push(u32::try_from(self.corners.len()).expect("a tile has fewer than 2^32 corners"));
+        self.corner_starts
+            .push(u32::try_from(self.corners.len()).expect("a tile has fewer than 2^32 corners"));
     }
 }

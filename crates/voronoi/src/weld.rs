@@ -9,34 +9,45 @@ use std::collections::HashMap;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::Dimension;
 use crate::flat_cells::remove_flat_cells;
-use crate::generator::Generator;
-use crate::grid::SeedGrid;
-use crate::tessellation::{CellId, FaceId, Side, Tessellation, VertexId};
-use crate::tile::{Tile, VertexGenerators};
-use crate::{Dimension, Domain};
+use crate::generator::{Generator, VertexKey};
+use crate::periodic_weld::{canonical, side};
+use crate::predicate::ExactInput;
+use crate::search::Search;
+use crate::tessellation::{FaceId, Shift, Side, Tessellation, VertexId};
+use crate::tile::Tile;
+
+/// A vertex moved by whole periods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct MovedVertex {
+    pub(crate) vertex: u32,
+    pub(crate) shift: Shift,
+}
 
 /// The vertices that a tile owns.
 struct Owned {
     /// For each vertex of the tile, its rank among those that the tile owns.
     ranks: Vec<Option<u32>>,
     count: u32,
-    /// The ranks of those that other tiles know as well, by their sorted generators.
-    shared: HashMap<VertexGenerators, u32>,
+    /// The ranks of those that are known elsewhere as well.
+    shared: HashMap<VertexKey, u32>,
 }
 
 impl Owned {
-    fn new(tile: &Tile) -> Self {
-        let mut owned = Self { ranks: Vec::with_capacity(tile.vertices.len()), count: 0, shared: HashMap::new() };
-        for generators in &tile.vertices {
-            let is_owned = generators.iter().all(|generator| generator.0 >= tile.seeds.start);
+    fn new(input: ExactInput, tile: &Tile) -> Self {
+        let mut owned =
+            Self { ranks: Vec::with_capacity(tile.vertices.len()), count: 0, shared: HashMap::new() };
+        for key in &tile.vertices {
+            let is_inner =
+                |generator: &Generator| generator.as_site().is_none_or(|site| tile.seeds.contains(&site));
+            let is_shared = !key.iter().all(is_inner);
+            let is_owned =
+                !is_shared || (key[0].0 >= tile.seeds.start && canonical(input, key) == (*key, Shift::NONE));
             owned.ranks.push(is_owned.then_some(owned.count));
             if is_owned {
-                let is_inner = |generator: &Generator| {
-                    generator.as_seed().is_none_or(|seed| seed < tile.seeds.end)
-                };
-                if !generators.iter().all(is_inner) {
-                    owned.shared.insert(sorted(*generators), owned.count);
+                if is_shared {
+                    owned.shared.insert(*key, owned.count);
                 }
                 owned.count += 1;
             }
@@ -45,52 +56,56 @@ impl Owned {
     }
 }
 
-fn sorted(mut generators: VertexGenerators) -> VertexGenerators {
-    generators.sort_unstable();
-    generators
-}
-
-/// The number of every vertex of every tile in the whole, and how many there are.
-fn number_vertices(tiles: &[Tile]) -> (Vec<Vec<u32>>, usize) {
-    let owned: Vec<Owned> = tiles.par_iter().map(Owned::new).collect();
+/// The number of every vertex of every tile in the whole, with the shift to where it is from there.
+pub(crate) fn number_vertices(input: ExactInput, tiles: &[Tile]) -> Vec<Vec<MovedVertex>> {
+    let owned: Vec<Owned> = tiles.par_iter().map(|tile| Owned::new(input, tile)).collect();
     let mut starts = vec![0u32];
     for tile in &owned {
         starts.push(starts[starts.len() - 1].checked_add(tile.count).expect("vertex ids fit 32 bits"));
     }
     let numbers = tiles.par_iter().zip(&owned).zip(&starts).map(|((tile, own), start)| {
-        let number = |(rank, generators): (&Option<u32>, &VertexGenerators)| match rank {
-            Some(rank) => start + rank,
+        let number = |(rank, key): (&Option<u32>, &VertexKey)| match rank {
+            Some(rank) => MovedVertex { vertex: start + rank, shift: Shift::NONE },
             None => {
-                let key = sorted(*generators);
+                let (key, shift) = canonical(input, key);
                 let owner = tiles.partition_point(|tile| tile.seeds.start <= key[0].0) - 1;
                 let rank = owned[owner].shared.get(&key);
-                starts[owner] + rank.expect("exact decisions give every tile the same vertices")
+                let rank = rank.expect("exact decisions give every tile the same vertices");
+                MovedVertex { vertex: starts[owner] + rank, shift }
             }
         };
         own.ranks.iter().zip(&tile.vertices).map(number).collect()
     });
-    (numbers.collect(), starts[starts.len() - 1] as usize)
+    numbers.collect()
+}
+
+/// The positions of all vertices by number.
+pub(crate) fn positions(tiles: &[Tile], numbers: &[Vec<MovedVertex>]) -> Vec<DVec3> {
+    let mut positions = Vec::new();
+    for (tile, numbers) in tiles.iter().zip(numbers) {
+        for (position, number) in tile.positions.iter().zip(numbers) {
+            // Each tile's own vertices come in order.
+            if number.shift == Shift::NONE && number.vertex as usize == positions.len() {
+                positions.push(*position);
+            }
+        }
+    }
+    positions
 }
 
 /// Makes one complex of all tiles; `seeds` and the result's cells are in the order of the input.
-pub(crate) fn weld(domain: &Domain, seeds: &[DVec3], grid: &SeedGrid, mut tiles: Vec<Tile>) -> Tessellation {
-    let (mut numbers, vertex_count) = number_vertices(&tiles);
-    let mut vertices = vec![DVec3::ZERO; vertex_count];
-    for (tile, numbers) in tiles.iter().zip(&numbers) {
-        for (position, number) in tile.positions.iter().zip(numbers) {
-            vertices[*number as usize] = *position;
-        }
-    }
+pub(crate) fn weld(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Tessellation {
+    let domain = search.input().domain;
+    let moved = number_vertices(search.input(), &tiles);
+    let mut vertices = positions(&tiles, &moved);
+    let mut numbers: Vec<Vec<u32>> =
+        moved.iter().map(|tile| tile.iter().map(|vertex| vertex.vertex).collect()).collect();
     let are_coincident = tiles.iter().any(|tile| !tile.coincident.is_empty());
     if are_coincident {
-        let (ids, representatives) = unite_coincident(vertex_count, &tiles, &numbers);
+        let (ids, representatives) = unite_coincident(vertices.len(), &tiles, &numbers);
         numbers.iter_mut().flatten().for_each(|number| *number = ids[*number as usize]);
         vertices = representatives.iter().map(|v| vertices[*v as usize]).collect();
     }
-    let side = |generator: Generator| match generator.as_wall() {
-        Some(wall) => Side::Wall(wall),
-        None => Side::Cell(CellId(grid.ids[generator.0 as usize])),
-    };
     let fewest_corners = match domain.dimension() {
         Dimension::Two => 2,
         Dimension::Three => 3,
@@ -104,13 +119,14 @@ pub(crate) fn weld(domain: &Domain, seeds: &[DVec3], grid: &SeedGrid, mut tiles:
         face_corners: Vec::new(),
         cell_starts: Vec::new(),
         cell_faces: Vec::new(),
+        periodic_vertices: Vec::new(),
+        periodic_faces: Vec::new(),
     };
     for (tile, numbers) in tiles.drain(..).zip(&numbers) {
-        for (face, [first, second]) in tile.faces.iter().enumerate() {
-            let corners = tile.corner_starts[face] as usize..tile.corner_starts[face + 1] as usize;
+        for (sides, corners) in tile.faces() {
             let start = tessellation.face_corners.len();
             let ring = &mut tessellation.face_corners;
-            ring.extend(tile.corners[corners].iter().map(|corner| VertexId(numbers[*corner as usize])));
+            ring.extend(corners.iter().map(|corner| VertexId(numbers[*corner as usize])));
             if are_coincident {
                 drop_repeated(ring, start);
             }
@@ -118,12 +134,7 @@ pub(crate) fn weld(domain: &Domain, seeds: &[DVec3], grid: &SeedGrid, mut tiles:
                 ring.truncate(start);
                 continue;
             }
-            let mut sides = [side(*first), side(*second)];
-            if sides[1] < sides[0] {
-                sides.swap(0, 1);
-                ring[start..].reverse();
-            }
-            tessellation.face_sides.push(sides);
+            tessellation.face_sides.push(sides.map(|generator| side(search.end(generator), Shift::NONE)));
             tessellation.face_starts.push(ring.len());
         }
     }
@@ -156,8 +167,7 @@ fn unite_coincident(vertex_count: usize, tiles: &[Tile], numbers: &[Vec<u32>]) -
     let mut parents: Vec<u32> = (0..count).collect();
     for (tile, numbers) in tiles.iter().zip(numbers) {
         for [v, w] in &tile.coincident {
-            let (v, w) =
-                (root(&mut parents, numbers[*v as usize]), root(&mut parents, numbers[*w as usize]));
+            let (v, w) = (root(&mut parents, numbers[*v as usize]), root(&mut parents, numbers[*w as usize]));
             // The smaller number stays, so the result does not depend on the order of the pairs.
             parents[v.max(w) as usize] = v.min(w);
         }
@@ -186,7 +196,7 @@ fn root(parents: &mut [u32], mut v: u32) -> u32 {
 }
 
 /// Rounding may leave a vertex of a wall's face a last place beside the wall: it gets the wall's own coordinate.
-fn put_vertices_on_walls(tessellation: &mut Tessellation) {
+pub(crate) fn put_vertices_on_walls(tessellation: &mut Tessellation) {
     for face in 0..tessellation.face_sides.len() {
         if let Side::Wall(wall) = tessellation.face_sides[face][1] {
             let corners = tessellation.face_starts[face]..tessellation.face_starts[face + 1];
@@ -198,11 +208,11 @@ fn put_vertices_on_walls(tessellation: &mut Tessellation) {
     }
 }
 
-fn list_faces_of_cells(tessellation: &mut Tessellation) {
+pub(crate) fn list_faces_of_cells(tessellation: &mut Tessellation) {
     let cells_of = |sides: &[Side; 2]| {
         sides.map(|side| match side {
             Side::Cell(cell) => Some(cell.index()),
-            Side::Wall(_) => None,
+            Side::Image(..) | Side::Wall(_) => None,
         })
     };
     let mut starts = vec![0; tessellation.seeds.len() + 1];

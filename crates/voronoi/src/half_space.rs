@@ -1,7 +1,6 @@
 use glam::DVec3;
 
-use crate::Wall;
-use crate::generator::Generator;
+use crate::generator::{Generator, Plane};
 use crate::predicate::ExactInput;
 
 /// Half the distance between 1 and the next double: the largest relative error of one rounding.
@@ -15,7 +14,7 @@ const INTERSECTION_ERROR: f64 = 32.0 * ROUNDOFF;
 
 /// A closed half-space `normal . y <= offset`, y relative to the cell's seed.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Plane {
+pub(crate) struct HalfSpace {
     pub(crate) generator: Generator,
     pub(crate) normal: DVec3,
     pub(crate) offset: f64,
@@ -25,34 +24,27 @@ pub(crate) struct Plane {
     pub(crate) length: f64,
 }
 
-impl Plane {
-    /// What is nearer to `seed` than to another seed, by power distance.
-    pub(crate) fn bisector(seed: u32, other: u32, input: ExactInput) -> Self {
-        let normal = input.seeds[other as usize] - input.seeds[seed as usize];
-        let squared_length = normal.length_squared();
-        let (own_weight, weight) = (input.weight(seed), input.weight(other));
-        Self {
-            generator: Generator::seed(other),
-            normal,
-            offset: 0.5 * (squared_length + (own_weight - weight)),
-            offset_size: 0.5 * (squared_length + own_weight.abs() + weight.abs()),
-            length: squared_length.sqrt(),
-        }
-    }
-
-    /// The inner side of a wall.
-    pub(crate) fn wall(seed: u32, wall: Wall, input: ExactInput) -> Self {
-        let normal = wall.outward_normal();
-        let own = input.seeds[seed as usize];
-        let offset = normal[wall.axis()] * (input.domain.wall_coordinate(wall) - own[wall.axis()]);
-        Self { generator: Generator::wall(wall), normal, offset, offset_size: offset.abs(), length: 1.0 }
-    }
-
-    /// The plane of `generator` around `seed`.
+impl HalfSpace {
+    /// The side on which `seed` lies of a generator's plane.
     pub(crate) fn new(seed: u32, generator: Generator, input: ExactInput) -> Self {
-        match generator.as_wall() {
-            Some(wall) => Self::wall(seed, wall, input),
-            None => Self::bisector(seed, generator.0, input),
+        match generator.plane() {
+            Plane::Wall(wall) => {
+                let offset = input.outermost_distance(seed, wall);
+                let normal = wall.outward_normal();
+                Self { generator, normal, offset, offset_size: offset, length: 1.0 }
+            }
+            Plane::Site(site) => {
+                let normal = input.difference(seed, site);
+                let squared_length = normal.length_squared();
+                let (own_weight, weight) = (input.weight(seed), input.weight(site));
+                Self {
+                    generator,
+                    normal,
+                    offset: 0.5 * (squared_length + (own_weight - weight)),
+                    offset_size: 0.5 * (squared_length + own_weight.abs() + weight.abs()),
+                    length: squared_length.sqrt(),
+                }
+            }
         }
     }
 
@@ -72,7 +64,7 @@ pub(crate) struct Intersection {
 
 impl Intersection {
     /// In floating point, if that can tell that the planes are in positive orientation.
-    pub(crate) fn rounded([a, b, c]: [&Plane; 3]) -> Option<Self> {
+    pub(crate) fn rounded([a, b, c]: [&HalfSpace; 3]) -> Option<Self> {
         let bc = b.normal.cross(c.normal);
         let ca = c.normal.cross(a.normal);
         let ab = a.normal.cross(b.normal);
@@ -91,7 +83,7 @@ impl Intersection {
     }
 
     /// To nearly the last place.
-    pub(crate) fn exact(seed: u32, planes: [&Plane; 3], input: ExactInput) -> Self {
+    pub(crate) fn exact(seed: u32, planes: [&HalfSpace; 3], input: ExactInput) -> Self {
         let position = input.vertex(seed, planes.map(|plane| plane.generator));
         Self { position, error: 4.0 * ROUNDOFF * position.abs().max_element() }
     }
