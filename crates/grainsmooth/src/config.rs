@@ -1,7 +1,7 @@
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 use polycrystal::Junctions;
 use voronoi::{Dimension, Domain};
 
@@ -30,6 +30,8 @@ pub struct Config {
     pub dimension: Dimension,
     /// Side lengths of the box, which has its lower corner in the origin; in 2D the last is ignored.
     pub box_size: DVec3,
+    /// Axes along which the box repeats; in 2D the last is ignored.
+    pub periodic: BVec3,
     /// Relaxation time in units of the mean grain size squared; 0 leaves boundaries flat.
     pub relaxation_time: f64,
     /// Number of subdivisions.
@@ -47,6 +49,7 @@ impl Default for Config {
             random_seed: 1,
             dimension: Dimension::Three,
             box_size: DVec3::ONE,
+            periodic: BVec3::FALSE,
             relaxation_time: polycrystal::Relaxation::default().time,
             levels: 3,
             junctions: Junctions::Crease,
@@ -71,10 +74,11 @@ impl Config {
         {
             return Err(Error::BoxSide { axis, length });
         }
-        Ok(match self.dimension {
+        let domain = match self.dimension {
             Dimension::Two => Domain::rectangle(DVec3::ZERO, self.box_size)?,
             Dimension::Three => Domain::cuboid(DVec3::ZERO, self.box_size)?,
-        })
+        };
+        Ok(domain.with_periods(self.periodic))
     }
 
     /// The command line that makes the same result, all settings spelled out.
@@ -90,6 +94,10 @@ impl Config {
             Dimension::Two => format!("--dim 2 --box {x} {y}"),
             Dimension::Three => format!("--dim 3 --box {x} {y} {z}"),
         };
+        let axes = ["x", "y", "z"].into_iter().zip(<[bool; 3]>::from(self.periodic));
+        let axes: Vec<&str> = axes.filter(|(_, is_periodic)| *is_periodic).map(|(axis, _)| axis).collect();
+        let periodic =
+            if axes.is_empty() { String::new() } else { format!(" --periodic {}", axes.join(",")) };
         let junctions = match self.junctions {
             Junctions::Crease => "crease",
             Junctions::Corner => "corner",
@@ -97,7 +105,7 @@ impl Config {
         let drop_empty = if self.drop_empty { " --drop-empty" } else { "" };
         let Self { relaxation_time, levels, .. } = self;
         format!(
-            "grainsmooth {seeds}{drop_empty} {space} --relax {relaxation_time} -n {levels} --junctions {junctions}"
+            "grainsmooth {seeds}{drop_empty} {space}{periodic} --relax {relaxation_time} -n {levels} --junctions {junctions}"
         )
     }
 }
