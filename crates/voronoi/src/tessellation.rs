@@ -169,6 +169,17 @@ impl Tessellation {
         cell_measures(self)
     }
 
+    /// The centroid of every cell, in the domain: where a step of Lloyd's algorithm moves the seeds. That of an empty cell is
+    /// its seed.
+    ///
+    /// Seeds in the centroids of their cells, again and again, even the cells out: each step lowers the sum over all cells
+    /// of the integral of `|x - s|^2 - w`.
+    pub fn centroids(&self) -> Vec<DVec3> {
+        let (lower, upper) = (self.domain.lower(), self.domain.upper());
+        // Rounding may put the centroid of a very thin cell a last place outside.
+        self.cell_measures().iter().map(|cell| cell.centroid.clamp(lower, upper)).collect()
+    }
+
     /// The edges between corners of the faces (three dimensions), or the faces' own (in the plane).
     pub fn edges(&self) -> Edges {
         Edges::new(self)
