@@ -3,7 +3,7 @@
 mod common;
 
 use common::{assert_complex, random_seeds};
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 use voronoi::{CellId, Dimension, Domain, Side, Tessellation};
 
 /// The sum over all cells of the integral of `|x - s|^2 - w`, from the second moments of simplices.
@@ -42,7 +42,8 @@ fn every_step_lowers_the_energy() {
     let mut weights: Vec<f64> = random_seeds(60, 2).iter().map(|point| 0.01 * point.x).collect();
     // Seed 0 is outweighed by all: it has no cell at first, and stays where it is.
     weights[0] = -0.2;
-    for domain in [Domain::unit_cube(), Domain::unit_square()] {
+    let half_periodic = Domain::unit_cube().with_periods(BVec3::new(true, false, true));
+    for domain in [Domain::unit_cube(), half_periodic, Domain::unit_square()] {
         let start = random_seeds(60, 1);
         let flat = domain.dimension() == Dimension::Two;
         let mut seeds: Vec<DVec3> =
