@@ -20,6 +20,9 @@ impl fmt::Display for Summary<'_> {
         let (points, elements) = (finest.vertex_count(), finest.element_count());
         let levels = polycrystal.config.levels;
         writeln!(out, "grains      {} in {}", network.grain_count(), network.domain())?;
+        if let Some(fit) = polycrystal.config.lattice_fit() {
+            writeln!(out, "lattice     {fit}")?;
+        }
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
         let through_walls = count(|boundary| boundary.twin.is_some()) / 2;
         let between_grains = count(Boundary::is_interior) + through_walls;
