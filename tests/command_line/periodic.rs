@@ -59,11 +59,14 @@ fn grains_are_whole_and_copies_match() {
         let periods = shift.round();
         assert_eq!(surface.points[usize::try_from(*original).unwrap()] + periods, *point);
     }
-    let twins = integers(&path, "PeriodicTwin");
-    for (cell, (twin, labels)) in twins.iter().zip(&surface.face_labels).enumerate() {
-        assert_eq!(*twin >= 0, labels[1] == -1, "only periodic boundaries are on the outside");
-        let back = surface.boundary_ids.iter().position(|boundary| boundary == twin);
-        assert!(back.is_none_or(|back| twins[back] == surface.boundary_ids[cell]));
+    let neighbors = integers(&path, "PeriodicNeighbor");
+    for (cell, labels) in surface.face_labels.iter().enumerate() {
+        assert_ne!(labels[1], -1, "there is no exterior");
+        assert_eq!(neighbors[cell] >= 0, labels[1] < -1);
+        if labels[1] < -1 {
+            let twin = surface.boundary_ids.iter().position(|boundary| *boundary == -2 - labels[1]).unwrap();
+            assert_eq!(surface.face_labels[twin], [neighbors[cell], -2 - surface.boundary_ids[cell]]);
+        }
     }
     let outside: f64 =
         surface.points.iter().map(|point| (*point - point.clamp(DVec3::ZERO, DVec3::ONE)).length()).sum();

@@ -12,9 +12,9 @@ impl Polycrystal {
     /// (DREAM.3D's codes) and `Generation`. Normals point from the first to the second side. In 2D the cells are the boundaries'
     /// polylines, with their first side on the left.
     ///
-    /// Grains of a periodic domain are whole. A boundary between grains a period apart comes at both, with the exterior beyond;
-    /// the cell array `PeriodicTwin` has the `BoundaryId` at the other grain (-1 elsewhere), the point array
-    /// `PeriodicOriginal` the point that each is a copy of, its own number where it is none.
+    /// Grains of a periodic domain are whole. A boundary between grains a period apart comes at both; its second label is -2 - b
+    /// with the `BoundaryId` b of the other one. The cell array `PeriodicNeighbor` has the grain there (-1 elsewhere), the
+    /// point array `PeriodicOriginal` the point that each is a copy of, its own number where it is none.
     ///
     /// # Errors
     /// [`Error::WriteOutput`]; nothing is left behind then.
@@ -43,10 +43,10 @@ impl Polycrystal {
             Array { name: "FaceLabels", values: Values::Int32Pairs(&face_labels) },
             Array { name: "BoundaryId", values: Values::Int32(&boundary_ids) },
         ];
-        let (twins, originals);
+        let (neighbors, originals);
         if self.network.domain().is_periodic() {
-            (twins, originals) = (self.twins(&boundary_of), self.originals());
-            cell_arrays.push(Array { name: "PeriodicTwin", values: Values::Int32(&twins) });
+            (neighbors, originals) = (self.periodic_neighbors(&boundary_of), self.originals());
+            cell_arrays.push(Array { name: "PeriodicNeighbor", values: Values::Int32(&neighbors) });
             point_arrays.push(Array { name: "PeriodicOriginal", values: Values::Int32(&originals) });
         }
         let data = PolyData {
@@ -63,12 +63,16 @@ impl Polycrystal {
         output.write(|out| write_vtk(&data, output.format(), out))
     }
 
-    /// Of each cell, the boundary that is its own one period or more away; -1 where there is none.
-    fn twins(&self, boundary_of: &[BoundaryId]) -> Vec<i32> {
-        let twin = |boundary: &BoundaryId| {
-            self.network.boundaries()[boundary.index()].twin.map_or(-1, |twin| signed(twin.boundary.0))
+    /// Of each cell, the grain that lies beyond it a period or more away; -1 where there is none.
+    fn periodic_neighbors(&self, boundary_of: &[BoundaryId]) -> Vec<i32> {
+        let boundaries = self.network.boundaries();
+        let beyond =
+            |boundary: &Boundary| boundary.twin.map(|twin| boundaries[twin.boundary.index()].sides[0]);
+        let neighbor = |boundary: &BoundaryId| match beyond(&boundaries[boundary.index()]) {
+            Some(Side::Grain(grain)) => signed(grain.0),
+            Some(Side::Exterior) | None => -1,
         };
-        boundary_of.iter().map(twin).collect()
+        boundary_of.iter().map(neighbor).collect()
     }
 
     /// Of each point, the one that it is a copy of, or itself.
@@ -100,7 +104,7 @@ fn boundary_polylines(level: &Level) -> (Vec<Vec<u32>>, Vec<BoundaryId>) {
 fn face_labels(boundary: &Boundary) -> [i32; 2] {
     boundary.sides.map(|side| match side {
         Side::Grain(grain) => signed(grain.0),
-        Side::Exterior => -1,
+        Side::Exterior => boundary.twin.map_or(-1, |twin| -2 - signed(twin.boundary.0)),
     })
 }
 
