@@ -251,6 +251,27 @@ impl Tessellation {
         cell_measures(self)
     }
 
+    /// The centroid of every cell, in the domain: where a step of Lloyd's algorithm moves the seeds. That of an empty cell is
+    /// its seed.
+    ///
+    /// Seeds in the centroids of their cells, again and again, even the cells out: each step lowers the sum over all cells
+    /// of the integral of `|x - s|^2 - w`.
+    pub fn centroids(&self) -> Vec<DVec3> {
+        let (lower, upper) = (self.domain.lower(), self.domain.upper());
+        let measures = self.cell_measures();
+        let inside = measures.iter().map(|cell| {
+            // Across periodic walls the cell of a seed inside may have its centroid outside.
+            let below = self.domain.periodic() & cell.centroid.cmplt(lower);
+            let above = self.domain.periodic() & cell.centroid.cmpge(upper);
+            let period = self.domain.size();
+            let wrapped = cell.centroid + DVec3::select(below, period, DVec3::ZERO)
+                - DVec3::select(above, period, DVec3::ZERO);
+            // Rounding may put the centroid of a very thin cell a last place outside.
+            wrapped.clamp(lower, upper)
+        });
+        inside.collect()
+    }
+
     /// The edges between corners of the faces (three dimensions), or the faces' own (in the plane).
     pub fn edges(&self) -> Edges {
         Edges::new(self)
