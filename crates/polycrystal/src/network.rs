@@ -45,8 +45,9 @@ impl Network {
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
         check_size(tessellation, level_count)?;
-        let ControlMesh { level, points, boundaries, junctions: counts } =
+        let ControlMesh { level, mut points, boundaries, junctions: counts } =
             ControlMesh::new(tessellation, junctions)?;
+        level.copies.place(tessellation.domain(), &mut points);
         let mut normals = element_normals(&level, &points).into_iter().zip(&level.boundary_of);
         if let Some((_, boundary)) = normals.find(|(normal, _)| normal.length() == 0.0 || normal.is_nan()) {
             return Err(NetworkError::BoundaryTooSmall { sides: boundaries[boundary.index()].sides });
@@ -149,10 +150,12 @@ impl Network {
     /// When there are fewer points than level `from` has vertices, or no level `to`.
     pub fn subdivide_between(&self, from: usize, to: usize, points: &[DVec3]) -> Vec<DVec3> {
         let mut points = points.to_vec();
+        self.levels[from].copies.place(&self.domain, &mut points);
         for (stencils, finer) in self.stencils[from..to].iter().zip(&self.levels[from + 1..=to]) {
             points = stencils.apply(&points);
             let on_walls = points.par_iter_mut().zip(&finer.walls).filter(|(_, walls)| !walls.is_empty());
             on_walls.for_each(|(point, walls)| *point = walls.put_on_walls(&self.domain, *point));
+            finer.copies.place(&self.domain, &mut points);
         }
         points
     }

@@ -85,7 +85,7 @@ pub fn relax(
     if !(time.is_finite() && time >= 0.0) {
         return Err(NetworkError::BadRelaxationTime(time));
     }
-    let has_tension = network.boundaries().iter().any(|boundary| boundary.is_interior());
+    let has_tension = network.boundaries().iter().any(|boundary| boundary.wall.is_none());
     let mut points = control_points.to_vec();
     if time == 0.0 || !has_tension {
         // Cells that were regularised have lost the volumes that their grains are to have.
@@ -99,11 +99,19 @@ pub fn relax(
     for level in 0..=last {
         let count = if level == 0 { COARSE_STEPS } else { FINE_STEPS };
         let stage = Stage { step_time: whole_time / count as f64, steps: count, is_last: level == last };
-        points =
-            Flow::new(network, level).run(points, &stage, &|done| progress(done_before + done, steps))?;
+        let start =
+            if level > 0 { network.subdivide_between(level - 1, level, &points) } else { points.clone() };
+        let run = Flow::new(network, level).run(start, &stage, &|done| progress(done_before + done, steps));
         done_before += count;
-        if level < last {
-            points = network.subdivide_between(level, level + 1, &points);
+        match run {
+            Ok(moved) => points = moved,
+            Err(error) if level == 0 => return Err(error),
+            Err(_) => {
+                // Finer points fold where coarser ones do not: these will have to do.
+                let end = Stage { step_time: 0.0, steps: 0, is_last: true };
+                points = Flow::new(network, level - 1).run(points, &end, &|_| ())?;
+                return Ok(Relaxed { level: level - 1, points, steps: done_before - count });
+            }
         }
     }
     Ok(Relaxed { level: last, points, steps })

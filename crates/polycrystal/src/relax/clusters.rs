@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::Mesh;
+use crate::{Level, Mesh};
 
 /// Groups of control points that are displaced by the same vector, so that what lies between them keeps its shape.
 ///
@@ -15,9 +15,11 @@ pub(super) struct Clusters {
 }
 
 impl Clusters {
-    /// Every control point on its own.
-    pub(super) fn new(point_count: usize) -> Self {
-        Self { parents: (0u32..).take(point_count).collect() }
+    /// Every point of a level on its own, but for those that are others moved by whole periods.
+    pub(super) fn new(level: &Level) -> Self {
+        let mut clusters = Self { parents: (0u32..).take(level.vertex_count()).collect() };
+        level.copies.vertices.iter().for_each(|pair| clusters.join(pair.secondary, pair.primary));
+        clusters
     }
 
     fn root(&self, mut point: u32) -> u32 {

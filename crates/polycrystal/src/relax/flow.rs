@@ -66,8 +66,8 @@ pub(super) struct Flow<'a> {
 impl<'a> Flow<'a> {
     pub(super) fn new(network: &'a Network, level: usize) -> Self {
         let surface = (network.levels().len() - 1).min(level + 1);
-        let clusters = Clusters::new(network.levels()[level].vertex_count());
-        let tension = |boundary: &Boundary| if boundary.is_interior() { 1.0 } else { 0.0 };
+        let clusters = Clusters::new(&network.levels()[level]);
+        let tension = |boundary: &Boundary| if boundary.wall.is_none() { 1.0 } else { 0.0 };
         let tensions: Vec<f64> = network.boundaries().iter().map(tension).collect();
         let patches = Patches::new(network, level, surface, &tensions);
         let corners = FaceCorners::new(network, level);
@@ -143,7 +143,7 @@ impl<'a> Flow<'a> {
     /// Where much has become rigid, some grain may be unable to change its volume: then only short edges stay rigid, and
     /// at last none.
     fn restore_volumes(&self, points: &mut [DVec3]) -> Result<(), NetworkError> {
-        let free = Clusters::new(points.len());
+        let free = Clusters::new(&self.network.levels()[self.level]);
         let mut short = free.clone();
         short.join_short_edges(self.control_mesh(), points, self.rigid_length());
         let start = points.to_vec();

@@ -32,6 +32,8 @@ pub(super) struct Patch {
     pub(super) refinement: Option<Refinement>,
     /// Energy per area.
     pub(super) tension: f64,
+    /// 1, or 1/2 for a boundary that a periodic network holds twice.
+    pub(super) share: f64,
 }
 
 /// Triangles or segments, as numbers of points.
@@ -95,12 +97,14 @@ impl Patch {
         let count = local.len();
         match &self.refinement {
             None => {
-                let (gradient, sweep, volume) = first_variation(&self.elements, &local, self.tension);
+                let (gradient, sweep, volume) =
+                    first_variation(&self.elements, &local, self.share * self.tension);
                 PatchTerms { gradient, sweep, mass, stiffness, volume }
             }
             Some(refinement) => {
                 let surface = refinement.apply(&local);
-                let (gradient, sweep, volume) = first_variation(&refinement.elements, &surface, self.tension);
+                let (gradient, sweep, volume) =
+                    first_variation(&refinement.elements, &surface, self.share * self.tension);
                 let gradient = refinement.pull_back(&gradient, count);
                 let sweep = refinement.pull_back(&sweep, count);
                 PatchTerms { gradient, sweep, mass, stiffness, volume }
@@ -126,16 +130,16 @@ impl Patch {
                         // A triangle without area has no cotangent: the upper limit stands in.
                         let cotangent = (from - apex).dot(to - apex) / doubled_area.max(f64::MIN_POSITIVE);
                         let cotangent = cotangent.clamp(SMALLEST_COTANGENT, LARGEST_COTANGENT);
-                        stiffness[across[k] as usize] += 0.5 * self.tension * cotangent;
-                        mass[corners[k] as usize] += doubled_area / 6.0;
+                        stiffness[across[k] as usize] += 0.5 * self.share * self.tension * cotangent;
+                        mass[corners[k] as usize] += self.share * doubled_area / 6.0;
                     }
                 }
             }
             Elements::Segments(segments) => {
                 for (ends, stiffness) in segments.iter().zip(&mut stiffness) {
                     let length = at(ends[0]).distance(at(ends[1])).max(f64::MIN_POSITIVE);
-                    *stiffness += self.tension / length;
-                    ends.iter().for_each(|end| mass[*end as usize] += 0.5 * length);
+                    *stiffness += self.share * self.tension / length;
+                    ends.iter().for_each(|end| mass[*end as usize] += 0.5 * self.share * length);
                 }
             }
         }

@@ -38,7 +38,9 @@ impl Patches {
                 let surface = (surface > control).then(|| {
                     (network.stencils(control), &surface_level.mesh, surface_elements[boundary].as_slice())
                 });
-                new_patch(&control_level.mesh, &control_elements[boundary], surface, tensions[boundary])
+                let share = if network.boundaries()[boundary].twin.is_some() { 0.5 } else { 1.0 };
+                let tension = (tensions[boundary], share);
+                new_patch(&control_level.mesh, &control_elements[boundary], surface, tension)
             })
             .collect();
         let mut place_starts = vec![0; control_level.vertex_count() + 1];
@@ -138,7 +140,7 @@ fn new_patch(
     control: &Mesh,
     elements: &[u32],
     surface: Option<(&StencilTable, &Mesh, &[u32])>,
-    tension: f64,
+    (tension, share): (f64, f64),
 ) -> Patch {
     let (control_points, elements) = local_elements(control, elements);
     let (edges, edges_across) = edges(&elements);
@@ -154,7 +156,7 @@ fn new_patch(
         }
         Refinement { starts, ids, weights, elements }
     });
-    Patch { control_points, elements, edges, edges_across, refinement, tension }
+    Patch { control_points, elements, edges, edges_across, refinement, tension, share }
 }
 
 /// The edges of some elements, each once, and of each triangle those across from its corners.

@@ -61,7 +61,7 @@ impl VolumeConstraint {
             for place in patches.places_of_cluster(clusters, cluster) {
                 let boundary = &network.boundaries()[patches.patch_of_place(place)];
                 // Walls do not move, so what lies on them changes no volume.
-                for (grain, sign) in boundary.signed_grains().filter(|_| boundary.is_interior()) {
+                for (grain, sign) in boundary.signed_grains().filter(|_| boundary.wall.is_none()) {
                     let gradient = gradients[place] * sign;
                     match row.iter_mut().find(|(known, _)| *known == grain.0) {
                         Some((_, sum)) => *sum += gradient,
