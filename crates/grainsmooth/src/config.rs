@@ -1,11 +1,11 @@
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 use polycrystal::Junctions;
 use voronoi::{Dimension, Domain};
 
-use crate::Error;
+use crate::{Error, Lattice, LatticeFit};
 
 /// Where seeds come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -14,6 +14,18 @@ pub enum SeedSource {
     Random {
         /// Number of seeds, at least 1.
         count: usize,
+    },
+    /// Random in the box, but apart from each other, see [`poisson_disc_seeds`](crate::poisson_disc_seeds).
+    PoissonDisc {
+        /// Number of seeds, at least 1.
+        count: usize,
+    },
+    /// A lattice, see [`LatticeFit`].
+    Lattice {
+        /// Its kind, of the config's dimension.
+        lattice: Lattice,
+        /// Number of conventional cells along the side of the box that holds the fewest, at least 1.
+        cells: u32,
     },
     /// A text file, see [`read_seed_file`](crate::read_seed_file).
     File(PathBuf),
@@ -26,10 +38,14 @@ pub struct Config {
     pub seeds: SeedSource,
     /// Starts the random generator.
     pub random_seed: u64,
+    /// Number of times that every seed moves to the centroid of its cell (Lloyd's algorithm).
+    pub lloyd_steps: u32,
     /// Two or three dimensions.
     pub dimension: Dimension,
     /// Side lengths of the box, which has its lower corner in the origin; in 2D the last is ignored.
     pub box_size: DVec3,
+    /// Axes along which the box repeats; in 2D the last is ignored.
+    pub periodic: BVec3,
     /// Relaxation time in units of the mean grain size squared; 0 leaves boundaries flat.
     pub relaxation_time: f64,
     /// Number of subdivisions.
@@ -45,8 +61,10 @@ impl Default for Config {
         Self {
             seeds: SeedSource::Random { count: 200 },
             random_seed: 1,
+            lloyd_steps: 0,
             dimension: Dimension::Three,
             box_size: DVec3::ONE,
+            periodic: BVec3::FALSE,
             relaxation_time: polycrystal::Relaxation::default().time,
             levels: 3,
             junctions: Junctions::Crease,
@@ -60,7 +78,15 @@ impl Config {
     /// stay within the range of doubles.
     pub const SIDE_RANGE: RangeInclusive<f64> = 1e-30..=1e30;
 
-    /// The box that the grains fill.
+    /// The lattice that the seeds form, if they do.
+    pub fn lattice_fit(&self) -> Option<LatticeFit> {
+        match self.seeds {
+            SeedSource::Lattice { lattice, cells } => Some(LatticeFit::new(lattice, cells, self.box_size)),
+            _ => None,
+        }
+    }
+
+    /// The box that the grains fill: that of [`LatticeFit::box_size`] for a lattice.
     ///
     /// # Errors
     /// [`Error::BoxSide`] when a side is not positive and finite, or beyond what doubles can compute with.
@@ -71,10 +97,12 @@ impl Config {
         {
             return Err(Error::BoxSide { axis, length });
         }
-        Ok(match self.dimension {
-            Dimension::Two => Domain::rectangle(DVec3::ZERO, self.box_size)?,
-            Dimension::Three => Domain::cuboid(DVec3::ZERO, self.box_size)?,
-        })
+        let upper = self.lattice_fit().map_or(self.box_size, |fit| fit.box_size());
+        let domain = match self.dimension {
+            Dimension::Two => Domain::rectangle(DVec3::ZERO, upper)?,
+            Dimension::Three => Domain::cuboid(DVec3::ZERO, upper)?,
+        };
+        Ok(domain.with_periods(self.periodic))
     }
 
     /// The command line that makes the same result, all settings spelled out.
@@ -83,13 +111,23 @@ impl Config {
     pub fn command_line(&self) -> String {
         let seeds = match &self.seeds {
             SeedSource::Random { count } => format!("--seeds {count} --rng-seed {}", self.random_seed),
+            SeedSource::PoissonDisc { count } => {
+                format!("--seeding poisson-disc --seeds {count} --rng-seed {}", self.random_seed)
+            }
+            SeedSource::Lattice { lattice, cells } => format!("--lattice {} {cells}", lattice.name()),
             SeedSource::File(path) => format!("--seeds-file {}", path.display()),
         };
+        let lloyd =
+            if self.lloyd_steps == 0 { String::new() } else { format!(" --lloyd {}", self.lloyd_steps) };
         let DVec3 { x, y, z } = self.box_size;
         let space = match self.dimension {
             Dimension::Two => format!("--dim 2 --box {x} {y}"),
             Dimension::Three => format!("--dim 3 --box {x} {y} {z}"),
         };
+        let axes = ["x", "y", "z"].into_iter().zip(<[bool; 3]>::from(self.periodic));
+        let axes: Vec<&str> = axes.filter(|(_, is_periodic)| *is_periodic).map(|(axis, _)| axis).collect();
+        let periodic =
+            if axes.is_empty() { String::new() } else { format!(" --periodic {}", axes.join(",")) };
         let junctions = match self.junctions {
             Junctions::Crease => "crease",
             Junctions::Corner => "corner",
@@ -97,7 +135,7 @@ impl Config {
         let drop_empty = if self.drop_empty { " --drop-empty" } else { "" };
         let Self { relaxation_time, levels, .. } = self;
         format!(
-            "grainsmooth {seeds}{drop_empty} {space} --relax {relaxation_time} -n {levels} --junctions {junctions}"
+            "grainsmooth {seeds}{drop_empty}{lloyd} {space}{periodic} --relax {relaxation_time} -n {levels} --junctions {junctions}"
         )
     }
 }
