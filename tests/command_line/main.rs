@@ -6,6 +6,7 @@ mod bad_outputs;
 mod bad_seed_files;
 mod check;
 mod good_runs;
+mod periodic;
 mod seed_sources;
 mod surface_file;
 mod weights_and_tables;

@@ -148,13 +148,13 @@ impl fmt::Display for CheckReport {
         }
         for faults in self.faults.chunk_by(|a, b| a.kind == b.kind) {
             for fault in faults.iter().take(NAMED) {
-                write!(out, "\n  {:12}{}", fault.kind, fault.message)?;
+                write!(out, "\n  {:18}{}", fault.kind, fault.message)?;
                 if let Some([x, y, z]) = fault.position {
                     write!(out, ", at ({x}, {y}, {z})")?;
                 }
             }
             if faults.len() > NAMED {
-                write!(out, "\n  {:12}and {} more", faults[0].kind, faults.len() - NAMED)?;
+                write!(out, "\n  {:18}and {} more", faults[0].kind, faults.len() - NAMED)?;
             }
         }
         Ok(())

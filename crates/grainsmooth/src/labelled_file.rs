@@ -19,7 +19,7 @@ pub struct LabelledFile {
     pub points: Vec<DVec3>,
     /// Triangles or segments.
     pub elements: FileElements,
-    /// The boundary of each element: one for each pair of labels.
+    /// The boundary of each element: one for each pair of labels in the file.
     pub boundary_of: Vec<BoundaryId>,
     /// The two sides of each boundary, in the order in which normals point from first to second.
     pub sides: Vec<[Side; 2]>,
@@ -43,7 +43,7 @@ pub enum FileElements {
 impl LabelledFile {
     /// Reads a network from a .vtp, .vtu or .vtk file.
     ///
-    /// The sides are those of the cell array `FaceLabels` (grains and, as -1, the exterior), else of `boundary_labels` or
+    /// The sides are those of the cell array `FaceLabels` (grains and, below 0, the exterior), else of `boundary_labels` or
     /// `BoundaryLabels` (where 0 is the exterior too). Programs differ in which way triangles wind: the two ways, inside and
     /// at the exterior, that close most grains are taken for the file's.
     ///
@@ -70,19 +70,20 @@ impl LabelledFile {
     fn of_cells(cells: LabelledCells) -> Result<Self, MeshFileProblem> {
         let LabelledCells { mesh, is_plane, labels, label_array, node_types } = cells;
         let zero_is_exterior = label_array != "FaceLabels";
-        let mut boundaries: BTreeMap<[Side; 2], BoundaryId> = BTreeMap::new();
+        let mut boundaries: BTreeMap<[i64; 2], BoundaryId> = BTreeMap::new();
         let mut sides = Vec::new();
         let mut of_cell = Vec::with_capacity(labels.len());
         for (cell, labels) in labels.iter().enumerate() {
             let side = |label: i64| match label {
-                -1 => Some(Side::Exterior),
+                // This program's labels below -1 tell periodic boundaries apart.
+                ..0 => Some(Side::Exterior),
                 0 if zero_is_exterior => Some(Side::Exterior),
                 _ => u32::try_from(label).ok().map(|grain| Side::Grain(GrainId(grain))),
             };
             let side = |label| side(label).ok_or(MeshFileProblem::BadLabel { cell, label });
             let pair = [side(labels[0])?, side(labels[1])?];
             let next = BoundaryId(u32::try_from(sides.len()).unwrap_or(u32::MAX));
-            of_cell.push(*boundaries.entry(pair).or_insert_with(|| {
+            of_cell.push(*boundaries.entry(*labels).or_insert_with(|| {
                 sides.push(pair);
                 next
             }));
@@ -103,7 +104,10 @@ impl LabelledFile {
             let triangles = mesh.faces.iter().enumerate().map(triangle).collect::<Result<_, _>>()?;
             (FileElements::Triangles(triangles), of_cell)
         };
-        let node_types = node_types.map(|codes| codes.into_iter().map(node_type).collect());
+        // In a periodic network they count grains a period away, which are not at the point.
+        let is_periodic = labels.iter().flatten().any(|label| *label < -1);
+        let node_types =
+            node_types.filter(|_| !is_periodic).map(|codes| codes.into_iter().map(node_type).collect());
         Ok(Self {
             points: mesh.points,
             elements,

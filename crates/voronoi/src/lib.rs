@@ -15,22 +15,24 @@
 //! # Ok::<(), voronoi::VoronoiError>(())
 //! ```
 
-mod batch;
+mod candidates;
 mod convex_cell;
 mod domain;
+mod edge_ends;
 mod error;
 mod flat_cells;
 mod generator;
 mod grid;
+mod half_space;
 mod images;
 mod measure;
-mod near_seeds;
+mod open_cell;
 mod periodic_weld;
-mod planar;
 mod polygon;
 mod predicate;
 mod search;
 mod tessellation;
+mod tile;
 mod torus;
 mod weld;
 

@@ -35,8 +35,8 @@ pub enum MeshFileProblem {
     /// The file does not say what its cells lie between.
     #[error("has no cell array {}; add one with two labels for each triangle", LABEL_ARRAYS.join(" or "))]
     NoLabels,
-    /// A label is none of a grain, nor -1 for the exterior.
-    #[error("cell {cell} has the label {label}; number grains from 0, and the exterior -1")]
+    /// A label is beyond all that can number a grain.
+    #[error("cell {cell} has the label {label}; number grains from 0 to 4294967295, and the exterior -1")]
     BadLabel {
         /// The cell, counted from 0.
         cell: usize,
