@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use polycrystal::{AngleStatistics, Network, NetworkError, Relaxation, Validation};
+use polycrystal::{AngleStatistics, Certificate, Network, NetworkError, Relaxation};
 use polycrystal::{dihedral_angles, relax, validate};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
@@ -62,10 +62,8 @@ pub struct Polycrystal {
     pub collapsed: Collapsed,
     /// Angles between boundaries of the flat network, if boundaries meet inside the domain.
     pub angles_before: Option<AngleStatistics>,
-    /// The same of the finished network.
-    pub angles_after: Option<AngleStatistics>,
-    /// What validation measured.
-    pub validation: Validation,
+    /// What validation found: the angles of the finished network, volumes and how true they are.
+    pub validation: Certificate,
     /// Time that each stage took.
     pub times: Vec<(Stage, Duration)>,
 }
@@ -150,14 +148,13 @@ pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result
         relax(&network, &flat, &relaxation, |done, count| progress(Stage::Relaxation, done, count))
     })?;
     let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
-    let (validation, angles_before, angles_after) = clock.time(Stage::Validation, || {
+    let (validation, angles_before) = clock.time(Stage::Validation, || {
         let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
-        let before = dihedral_angles(&network, network.control_mesh(), &flat);
-        Ok::<_, Error>((validation, before, dihedral_angles(&network, network.finest(), &points)))
+        Ok::<_, Error>((validation, dihedral_angles(&network, network.control_mesh(), &flat)))
     })?;
     let times = clock.times;
     let config = config.clone();
-    Ok(Polycrystal { config, network, points, collapsed, angles_before, angles_after, validation, times })
+    Ok(Polycrystal { config, network, points, collapsed, angles_before, validation, times })
 }
 
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.

@@ -125,6 +125,9 @@ impl<'a> ExactInput<'a> {
         let image = self.image(site);
         let other = self.seeds[image.seed as usize];
         DVec3::from_array([0, 1, 2].map(|axis| {
+            if image.shift.0[axis] == 0 {
+                return other[axis] - own[axis];
+            }
             // Shifts of at most two periods keep the products exact.
             let shift = f64::from(image.shift.0[axis]);
             let (lower, upper) = (self.domain.lower()[axis], self.domain.upper()[axis]);

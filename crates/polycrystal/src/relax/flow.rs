@@ -8,7 +8,8 @@ use super::face_corners::FaceCorners;
 use super::patch::PatchTerms;
 use super::patches::Patches;
 use super::system::System;
-use crate::folds::{element_normals, folded_edges};
+use crate::folds::{element_normals, folded_edges, folded_pairs};
+use crate::seams::Seams;
 use crate::volume::sum_over_grains;
 use crate::{Boundary, GrainId, Level, Mesh, Network, NetworkError};
 
@@ -57,6 +58,8 @@ pub(super) struct Flow<'a> {
     level: usize,
     /// The level whose surface carries energy and volumes during the flow: one subdivision on, if there is any.
     surface: usize,
+    /// Neighbouring elements of each boundary on that level.
+    neighbors: Vec<[u32; 2]>,
     corners: FaceCorners,
     clusters: Clusters,
     /// Whether each step is checked for folds on the finest level too, which is seldom worth its time.
@@ -71,7 +74,8 @@ impl<'a> Flow<'a> {
         let tensions: Vec<f64> = network.boundaries().iter().map(tension).collect();
         let patches = Patches::new(network, level, surface, &tensions);
         let corners = FaceCorners::new(network, level);
-        Self { network, patches, level, surface, corners, clusters, checks_finest: false }
+        let neighbors = Seams::of_level(&network.levels()[surface]).inner;
+        Self { network, patches, level, surface, neighbors, corners, clusters, checks_finest: false }
     }
 
     /// Takes the steps of a stage. Where the finest level folds though no step did, goes back to where it did not.
@@ -253,7 +257,7 @@ impl<'a> Flow<'a> {
         let cosine = |normals: &[DVec3], [a, b]: [u32; 2]| {
             normals[a as usize].normalize_or_zero().dot(normals[b as usize].normalize_or_zero())
         };
-        let bent = folded_edges(self.surface(), &refined, LARGEST_BEND);
+        let bent = folded_pairs(&self.neighbors, &after, LARGEST_BEND);
         let bent =
             bent.into_iter().filter(|pair| cosine(&after, *pair) < cosine(before, *pair) - SLIGHT_BEND);
         let turned = (0u32..).zip(before.iter().zip(&after)).filter(|(_, (before, after))| {
