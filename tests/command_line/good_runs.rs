@@ -69,8 +69,18 @@ fn summary_counts_what_the_file_holds() {
         assert!(said.lines().any(|said| said == line), "{line}\nis not in\n{said}");
     }
     let first_words = said.lines().map(|line| line.split(' ').next().unwrap());
-    let expected =
-        ["grains", "boundaries", "junctions", "mesh", "angles", "volumes", "validation", "time", "written"];
+    let expected = [
+        "grains",
+        "boundaries",
+        "collapsed",
+        "junctions",
+        "mesh",
+        "angles",
+        "volumes",
+        "validation",
+        "time",
+        "written",
+    ];
     assert!(first_words.eq(expected), "{said}");
     for stage in ["seeds", "cells", "network", "relaxation", "subdivision", "validation", "writing"] {
         assert!(said.contains(&format!(" {stage} 0.")), "{stage} has no time in\n{said}");
