@@ -9,7 +9,7 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use grainsmooth::{Config, Lattice, OutputFormat, SeedSource};
-use polycrystal::Junctions;
+use polycrystal::{FaceMesh, Junctions};
 use voronoi::Dimension;
 
 use crate::mesh_cli::MeshArguments;
@@ -60,6 +60,15 @@ pub struct Arguments {
     /// Side lengths of the box in your unit of length, X Y in 2D; a corner is at 0 0 0 [default: 1 1 1]
     #[arg(long = "box", value_names = ["X", "Y", "Z"], num_args = 2.., value_parser = parse_length, allow_negative_numbers = true, help_heading = DOMAIN)]
     box_size: Option<Vec<f64>>,
+
+    /// Control points inside boundaries: a fan of triangles round one in the middle (fan), or none (plain)
+    #[arg(long, value_enum, default_value_t = FaceRule::Fan, help_heading = SMOOTHING)]
+    faces: FaceRule,
+
+    /// Refine the control mesh instead until no edge is longer than H, in the unit of --box; a grain is about as wide as the
+    /// cube root of its volume
+    #[arg(long, value_name = "H", value_parser = parse_edge_length, allow_negative_numbers = true, conflicts_with = "faces", help_heading = SMOOTHING)]
+    edge_length: Option<f64>,
 
     /// Relaxation time, in units of the mean grain size squared; 0 keeps boundaries flat
     #[arg(long, value_name = "T", default_value_t = Config::default().relaxation_time, value_parser = parse_time, allow_negative_numbers = true, help_heading = SMOOTHING)]
@@ -133,6 +142,13 @@ enum LatticeValue {
     Cells(u32),
 }
 
+/// `--faces` as it is spelled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FaceRule {
+    Fan,
+    Plain,
+}
+
 /// `--junctions` as it is spelled.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum JunctionRule {
@@ -161,12 +177,18 @@ impl Arguments {
             JunctionRule::Crease => Junctions::Crease,
             JunctionRule::Corner => Junctions::Corner,
         };
+        let face_mesh = match (self.edge_length, self.faces) {
+            (Some(edge_length), _) => FaceMesh::Refined { edge_length },
+            (None, FaceRule::Fan) => FaceMesh::Fan,
+            (None, FaceRule::Plain) => FaceMesh::Plain,
+        };
         Config {
             seeds,
             random_seed: self.rng_seed,
             lloyd_steps: self.lloyd,
             dimension: self.dim,
             box_size,
+            face_mesh,
             relaxation_time: self.relax,
             levels: self.levels,
             junctions,
@@ -233,6 +255,11 @@ fn parse_dimension(text: &str) -> Result<Dimension, String> {
 fn parse_length(text: &str) -> Result<f64, String> {
     let length = text.parse().ok().filter(|length| Config::SIDE_RANGE.contains(length));
     length.ok_or_else(|| "a side of the box is a positive number between 1e-30 and 1e30".to_owned())
+}
+
+fn parse_edge_length(text: &str) -> Result<f64, String> {
+    let length = text.parse().ok().filter(|length| Config::SIDE_RANGE.contains(length));
+    length.ok_or_else(|| "an edge length is a positive number between 1e-30 and 1e30".to_owned())
 }
 
 fn parse_time(text: &str) -> Result<f64, String> {
