@@ -21,8 +21,8 @@ pub enum FaceMesh {
     /// Points on triple lines and inside, so that no edge is longer than `edge_length` and, where the outline allows, no angle
     /// is below 25 degrees.
     ///
-    /// Lines are divided first, into equal parts and at least in two, for all their boundaries at once. A boundary that
-    /// gets no point inside gets the fan.
+    /// Lines are divided first, into equal parts and at least in two, for all their boundaries at once. A boundary
+    /// that needs no point inside gets the fan, unless it is a sliver in which the fan has longer edges.
     Refined {
         /// In the unit of the domain.
         edge_length: f64,
