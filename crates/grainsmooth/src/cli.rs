@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 use grainsmooth::{Config, Lattice, OutputFormat, SeedSource};
 use polycrystal::{FaceMesh, Junctions};
 use voronoi::Dimension;
@@ -60,6 +60,10 @@ pub struct Arguments {
     /// Side lengths of the box in your unit of length, X Y in 2D; a corner is at 0 0 0 [default: 1 1 1]
     #[arg(long = "box", value_names = ["X", "Y", "Z"], num_args = 2.., value_parser = parse_length, allow_negative_numbers = true, help_heading = DOMAIN)]
     box_size: Option<Vec<f64>>,
+
+    /// Axes along which the box repeats, such as x,y,z: grains are whole there and grow through the walls
+    #[arg(long, value_name = "AXES", value_parser = parse_axes, help_heading = DOMAIN)]
+    periodic: Option<BVec3>,
 
     /// Control points inside boundaries: a fan of triangles round one in the middle (fan), or none (plain)
     #[arg(long, value_enum, default_value_t = FaceRule::Fan, help_heading = SMOOTHING)]
@@ -123,6 +127,7 @@ Examples:
   grainsmooth --seeds 200 -n 3                    200 grains in a unit cube, to grains.vtp
   grainsmooth --seeds 500 --box 3 1 0.2 -o a.vtu  a plate
   grainsmooth --seeds 300 --dim 2                 grains in a square
+  grainsmooth --periodic x,y,z --relax 0          grains that fill space by repeating the cube
   grainsmooth --lattice bcc 4                     Kelvin's foam: 128 truncated octahedra, cut by the walls
   grainsmooth --seeds-file seeds.csv --relax 0    flat Voronoi grains from your own seeds
 
@@ -182,6 +187,13 @@ impl Arguments {
             (None, FaceRule::Fan) => FaceMesh::Fan,
             (None, FaceRule::Plain) => FaceMesh::Plain,
         };
+        let periodic = self.periodic.unwrap_or(BVec3::FALSE);
+        if periodic.z && self.dim == Dimension::Two {
+            usage("--periodic z needs three dimensions; with --dim 2 give x, y or x,y");
+        }
+        if periodic.any() && self.relax > 0.0 && !self.no_mesh {
+            usage("periodic grains cannot be relaxed yet; add --relax 0");
+        }
         Config {
             seeds,
             random_seed: self.rng_seed,
@@ -189,6 +201,7 @@ impl Arguments {
             dimension: self.dim,
             box_size,
             face_mesh,
+            periodic,
             relaxation_time: self.relax,
             levels: self.levels,
             junctions,
@@ -260,6 +273,20 @@ fn parse_length(text: &str) -> Result<f64, String> {
 fn parse_edge_length(text: &str) -> Result<f64, String> {
     let length = text.parse().ok().filter(|length| Config::SIDE_RANGE.contains(length));
     length.ok_or_else(|| "an edge length is a positive number between 1e-30 and 1e30".to_owned())
+}
+
+fn parse_axes(text: &str) -> Result<BVec3, String> {
+    let mut axes = [false; 3];
+    let known =
+        text.split(',').all(|name| match ["x", "y", "z"].iter().position(|axis| *axis == name.trim()) {
+            Some(axis) => !std::mem::replace(&mut axes[axis], true),
+            None => false,
+        });
+    if known {
+        Ok(axes.into())
+    } else {
+        Err("name each axis once, with commas between: x, y, z, x,y or x,y,z".to_owned())
+    }
 }
 
 fn parse_time(text: &str) -> Result<f64, String> {

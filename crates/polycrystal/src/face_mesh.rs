@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use voronoi::{Dimension, Edges, FaceId, Tessellation, VertexId, triangulate_polygon};
+use voronoi::{Dimension, Edges, FaceId, PeriodicPair, Shift, Tessellation, VertexId, triangulate_polygon};
 
 /// Fewest segments of a triple line: one middle, so that every line can curve.
 const FEWEST_SEGMENTS: u32 = 2;
@@ -92,16 +92,13 @@ impl FaceMesh {
             }
         }
     }
+}
 
-    /// The points between two ends that divide the line into equal segments.
-    pub(crate) fn divide(self, [start, end]: [DVec3; 2]) -> Vec<DVec3> {
-        let count = self.segment_count([start, end]);
-        let point = |k: u32| match 2 * k == count {
-            true => start.midpoint(end),
-            false => start.lerp(end, f64::from(k) / f64::from(count)),
-        };
-        (1..count).map(point).collect()
-    }
+/// The points between two ends that divide the line into so many equal segments.
+fn divide([start, end]: [DVec3; 2], count: u32) -> impl Iterator<Item = DVec3> {
+    (1..count).map(move |k| {
+        if 2 * k == count { start.midpoint(end) } else { start.lerp(end, f64::from(k) / f64::from(count)) }
+    })
 }
 
 /// The area of a planar face.
@@ -115,21 +112,60 @@ fn area(tessellation: &Tessellation, face: FaceId) -> f64 {
 
 /// The inner points of all triple lines, numbered after the tessellation's vertices.
 pub(crate) struct LinePoints {
-    /// Of line e, inner points `starts[e]..starts[e + 1]`, from the end of smaller number.
+    /// Of line e, inner points `starts[e]..starts[e + 1]`, from the first of its ends.
     starts: Vec<u32>,
     pub(crate) positions: Vec<DVec3>,
 }
 
 impl LinePoints {
-    pub(crate) fn new(tessellation: &Tessellation, lines: &[[VertexId; 2]], face_mesh: FaceMesh) -> Self {
-        let vertices = tessellation.vertices();
-        let first = id(vertices.len());
+    /// Divides all lines, copied ones as their originals.
+    pub(crate) fn new(
+        tessellation: &Tessellation,
+        lines: &[[VertexId; 2]],
+        copied_lines: &[PeriodicPair<u32>],
+        face_mesh: FaceMesh,
+    ) -> Self {
+        let ends_at = |line: usize| lines[line].map(|end| tessellation.vertices()[end.index()]);
+        let mut counts: Vec<u32> =
+            (0..lines.len()).map(|line| face_mesh.segment_count(ends_at(line))).collect();
+        for pair in copied_lines {
+            counts[pair.secondary as usize] = counts[pair.primary as usize];
+        }
+        let first = id(tessellation.vertices().len());
         let mut points = Self { starts: vec![first], positions: Vec::with_capacity(lines.len()) };
-        for ends in lines {
-            points.positions.extend(face_mesh.divide(ends.map(|end| vertices[end.index()])));
+        for (line, count) in counts.into_iter().enumerate() {
+            points.positions.extend(divide(ends_at(line), count));
             points.starts.push(first + id(points.positions.len()));
         }
         points
+    }
+
+    /// The inner points of copied lines as copies.
+    pub(crate) fn copies(
+        &self,
+        tessellation: &Tessellation,
+        lines: &[[VertexId; 2]],
+        copied_lines: &[PeriodicPair<u32>],
+    ) -> Vec<PeriodicPair<u32>> {
+        let place = |vertex: VertexId| {
+            let pairs = tessellation.periodic_vertices();
+            match pairs.binary_search_by_key(&vertex, |pair| pair.secondary) {
+                Ok(found) => (pairs[found].primary, pairs[found].shift),
+                Err(_) => (vertex, Shift::NONE),
+            }
+        };
+        let of_pair = |&PeriodicPair { secondary, primary, shift }: &PeriodicPair<u32>| {
+            let [(vertex, at), (original, original_at)] =
+                [secondary, primary].map(|line| place(lines[line as usize][0]));
+            let is_along = (vertex, at) == (original, original_at + shift);
+            let (own, other) = (self.of_line(secondary), self.of_line(primary));
+            let count = other.end - other.start;
+            (0..count).map(move |k| {
+                let matching = if is_along { k } else { count - 1 - k };
+                PeriodicPair { secondary: own.start + k, primary: other.start + matching, shift }
+            })
+        };
+        copied_lines.iter().flat_map(of_pair).collect()
     }
 
     /// The inner points of a line.
@@ -160,7 +196,18 @@ pub(crate) struct FaceTriangles {
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
-/// Triangulates all faces, in parallel. `points` are the tessellation's vertices and those on lines.
+impl FaceTriangles {
+    /// The triangles of a copy of the face, which winds the other way round, beginning at this one's last corner.
+    fn turned_round(&self, last_corner: u32) -> Vec<[u32; 3]> {
+        let count = id(self.outline.len());
+        let start = self.outline.iter().position(|point| *point == last_corner);
+        let start = id(start.expect("a corner is part of the outline"));
+        let place = |old: u32| if old < count { (start + count - old) % count } else { old };
+        self.triangles.iter().map(|&[a, b, c]| [a, c, b].map(place)).collect()
+    }
+}
+
+/// Triangulates all faces, in parallel; copied ones as their originals. `points` are the tessellation's vertices and those on lines.
 pub(crate) fn triangulate_faces(
     tessellation: &Tessellation,
     edges: &Edges,
@@ -190,7 +237,16 @@ pub(crate) fn triangulate_faces(
         let (inner_points, triangles) = fill(&outline, points, face_mesh);
         FaceTriangles { outline, lines: lines_of, inner_points, triangles }
     };
-    first_corners.par_iter().map(triangulate).collect()
+    let mut faces: Vec<FaceTriangles> = first_corners.par_iter().map(triangulate).collect();
+    for pair in tessellation.periodic_faces() {
+        let (secondary, primary) = (pair.secondary.index(), pair.primary.index());
+        let last_corner = tessellation.face_corners(pair.primary).last().expect("a face has corners").0;
+        let shift = pair.shift.vector(tessellation.domain());
+        let inner_points = faces[primary].inner_points.iter().map(|point| *point + shift).collect();
+        faces[secondary].triangles = faces[primary].turned_round(last_corner);
+        faces[secondary].inner_points = inner_points;
+    }
+    faces
 }
 
 fn fill(outline: &[u32], points: &[DVec3], face_mesh: FaceMesh) -> (Vec<DVec3>, Vec<[u32; 3]>) {
@@ -199,7 +255,10 @@ fn fill(outline: &[u32], points: &[DVec3], face_mesh: FaceMesh) -> (Vec<DVec3>, 
         FaceMesh::Fan => None,
         FaceMesh::Plain => triangulate_polygon(&positions, None),
         FaceMesh::Refined { edge_length } => {
-            triangulate_polygon(&positions, Some(edge_length)).filter(|mesh| !mesh.inner_points.is_empty())
+            let center = outline_center(&positions);
+            let is_small = || positions.iter().all(|point| point.distance(center) <= edge_length);
+            triangulate_polygon(&positions, Some(edge_length))
+                .filter(|mesh| !(mesh.inner_points.is_empty() && is_small()))
         }
     };
     match mesh {

@@ -6,7 +6,7 @@ mod common;
 use std::collections::BTreeSet;
 
 use common::{random_seeds, relaxed};
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 use polycrystal::{FaceMesh, Junctions, Level, Mesh, Network, NetworkError, NodeType, Side, validate};
 use voronoi::{Domain, Tessellation};
 
@@ -30,6 +30,21 @@ fn tessellations() -> Vec<Tessellation> {
     random.into_iter().chain([lattice.expect("valid seeds")]).collect()
 }
 
+/// One and more seeds in domains that repeat, in space and in the plane.
+fn periodic_tessellations() -> impl Iterator<Item = Tessellation> {
+    let axes = [BVec3::TRUE, BVec3::new(true, false, false)];
+    let domains =
+        axes.map(|axes| [Domain::unit_cube(), Domain::unit_square()].map(|domain| domain.with_periods(axes)));
+    domains.into_iter().flatten().flat_map(|domain| {
+        [1, 2, 20].map(|count| {
+            let flat = domain.size().z == 0.0;
+            let seeds = random_seeds(&domain, count, 4).into_iter();
+            let seeds: Vec<DVec3> = seeds.map(|seed| if flat { seed.with_z(0.0) } else { seed }).collect();
+            Tessellation::new(&domain, &seeds).expect("valid seeds")
+        })
+    })
+}
+
 fn network(tessellation: &Tessellation, face_mesh: FaceMesh, levels: usize) -> (Network, Vec<DVec3>) {
     Network::with_face_mesh(tessellation, face_mesh, Junctions::Crease, levels).expect("a small network")
 }
@@ -44,7 +59,7 @@ fn elements(level: &Level) -> Vec<Vec<usize>> {
 
 #[test]
 fn networks_are_valid_on_every_level() {
-    for tessellation in tessellations() {
+    for tessellation in tessellations().into_iter().chain(periodic_tessellations()) {
         for face_mesh in MESHES {
             for levels in 0..=2 {
                 let (network, flat) = network(&tessellation, face_mesh, levels);
@@ -82,7 +97,7 @@ fn node_types_are_those_of_the_sides_around() {
 
 #[test]
 fn boundaries_have_the_area_of_their_faces_and_end_at_their_lines() {
-    for tessellation in tessellations() {
+    for tessellation in tessellations().into_iter().chain(periodic_tessellations()) {
         for face_mesh in MESHES {
             let (network, points) = network(&tessellation, face_mesh, 0);
             let Mesh::Triangles(mesh) = &network.control_mesh().mesh else { continue };

@@ -15,23 +15,25 @@
 //! # Ok::<(), voronoi::VoronoiError>(())
 //! ```
 
-mod batch;
+mod candidates;
 mod convex_cell;
 mod domain;
+mod edge_ends;
 mod error;
 mod flat_cells;
 mod generator;
 mod grid;
+mod half_space;
 mod images;
 mod measure;
-mod near_seeds;
+mod open_cell;
 mod periodic_weld;
-mod planar;
 mod polygon;
 mod polygon_triangulation;
 mod predicate;
 mod search;
 mod tessellation;
+mod tile;
 mod torus;
 mod weld;
 
