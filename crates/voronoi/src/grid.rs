@@ -18,6 +18,8 @@ const BLOCK_MARGIN: f64 = 1e-9;
 pub(crate) struct SeedGrid {
     lower: DVec3,
     block: DVec3,
+    /// Blocks per length.
+    density: DVec3,
     counts: IVec3,
     /// The number of block (x, y, z) is `offsets[0][x] + offsets[1][y] + offsets[2][z]`.
     offsets: [Vec<u32>; 3],
@@ -60,6 +62,7 @@ impl SeedGrid {
         let mut grid = Self {
             lower,
             block,
+            density: 1.0 / block,
             counts,
             offsets,
             starts: Vec::new(),
@@ -77,7 +80,7 @@ impl SeedGrid {
 
     fn sort(&mut self, seeds: &[DVec3], block_count: usize) {
         let block_of = |seed: &DVec3| {
-            let place = (*seed - self.lower) / self.block;
+            let place = (*seed - self.lower) * self.density;
             // Casting saturates, and the clamp takes in the seed on the upper side.
             let block = place.as_ivec3().clamp(IVec3::ZERO, self.counts - 1).as_usizevec3();
             self.offsets[0][block.x] + self.offsets[1][block.y] + self.offsets[2][block.z]
@@ -143,10 +146,10 @@ impl SeedGrid {
         mut visit: impl FnMut(u32, DVec3, f64),
     ) {
         let (from, to_squared) = (if from < 0.0 { -1.0 } else { from * from }, to * to);
-        let place = (center - self.lower) / self.block;
-        let steps = DVec3::splat(to) / self.block + BLOCK_MARGIN;
-        let first = (place - steps).floor().as_ivec3().clamp(IVec3::ZERO, self.counts - 1);
-        let last = (place + steps).floor().as_ivec3().clamp(IVec3::ZERO, self.counts - 1);
+        let place = (center - self.lower) * self.density;
+        let steps = to * self.density + BLOCK_MARGIN;
+        let first = (place - steps).max(DVec3::ZERO).as_ivec3().clamp(IVec3::ZERO, self.counts - 1);
+        let last = (place + steps).max(DVec3::ZERO).as_ivec3().clamp(IVec3::ZERO, self.counts - 1);
         // Squared distance from a row of blocks along one axis.
         let beside = |axis: usize, b: i32| {
             let below = f64::from(b) - place[axis] - BLOCK_MARGIN;
@@ -161,10 +164,10 @@ impl SeedGrid {
                 if rest < 0.0 {
                     continue;
                 }
-                let step = rest.sqrt() / self.block.x + BLOCK_MARGIN;
+                let step = rest.sqrt() * self.density.x + BLOCK_MARGIN;
                 #[expect(clippy::cast_possible_truncation, reason = "saturates, then clamped")]
                 let [mut x, end] = [place.x - step, place.x + step]
-                    .map(|x| (x.floor() as i32).clamp(0, self.counts.x - 1) as usize);
+                    .map(|x| (x.max(0.0) as i32).min(self.counts.x - 1) as usize);
                 let row = self.offsets[1][y as usize] + self.offsets[2][z as usize];
                 while x <= end {
                     // Blocks follow one another up to the end of the tile.

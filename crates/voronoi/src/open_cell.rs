@@ -19,15 +19,15 @@ use crate::{Dimension, Wall};
 pub(crate) const PLANE: Wall = Wall::ALL[5];
 
 /// Relative error bound above which the coordinates of a vertex are computed exactly. The bound overestimates by an order
-/// of magnitude, so coordinates are good to about 1e-14 of the cell's size.
-const LOOSE: f64 = 2e-13;
+/// of magnitude, so coordinates are good to about 1e-13 of the cell's size.
+const LOOSE: f64 = 2e-12;
 
 /// Sine of the angle between a plane and an edge below which the plane is not suggested as the edge's end: there rounding
 /// decides where they meet. Planes through the edge are such.
 const GRAZING: f64 = 1e-10;
 
 /// Distance of two vertices, relative to their distance from the seed, beyond which they cannot coincide: far above
-/// the 1e-13 to which coordinates are known, so that only true candidates go to exact arithmetic.
+/// the 1e-12 to which coordinates are known, so that only true candidates go to exact arithmetic.
 const POSSIBLY_COINCIDENT: f64 = 1e-9;
 
 /// A vertex of the cell under way.
@@ -59,6 +59,8 @@ pub(crate) struct OpenCell<'a> {
     search: &'a Search<'a>,
     seed: u32,
     planes: Vec<HalfSpace>,
+    /// Those of the planes.
+    generators: Vec<Generator>,
     vertices: Vec<CellVertex>,
     ends: EdgeEnds,
     /// For each plane another that shares a corner with it, coming first in the corner's order.
@@ -78,6 +80,7 @@ impl<'a> OpenCell<'a> {
             search,
             seed: 0,
             planes: Vec::new(),
+            generators: Vec::new(),
             vertices: Vec::new(),
             ends: EdgeEnds::default(),
             first_corners: Vec::new(),
@@ -92,6 +95,7 @@ impl<'a> OpenCell<'a> {
     pub(crate) fn start(&mut self, seed: u32) {
         self.seed = seed;
         self.planes.clear();
+        self.generators.clear();
         self.vertices.clear();
         self.ends.clear();
         self.first_corners.clear();
@@ -108,7 +112,8 @@ impl<'a> OpenCell<'a> {
     /// Adds a vertex.
     pub(crate) fn add(&mut self, number: u32, vertex: &NewVertex) {
         self.radius = self.radius.max(distance(vertex.position, vertex.error));
-        let planes = vertex.generators.map(|generator| self.plane(generator));
+        let [a, b, c] = vertex.generators;
+        let planes = [self.plane(a), self.plane(b), self.plane(c)];
         let place = u16::try_from(self.vertices.len()).expect("a cell has fewer than 65 536 vertices");
         self.vertices.push(CellVertex { planes, number, position: vertex.position, has_tie: vertex.has_tie });
         let [a, b, c] = planes;
@@ -127,9 +132,11 @@ impl<'a> OpenCell<'a> {
     }
 
     /// The number of a plane among the cell's.
+    #[inline]
     fn plane(&mut self, generator: Generator) -> u16 {
-        let known = self.planes.iter().position(|plane| plane.generator == generator);
+        let known = self.generators.iter().position(|known| *known == generator);
         let number = known.unwrap_or_else(|| {
+            self.generators.push(generator);
             self.planes.push(HalfSpace::new(self.seed, generator, self.search.input()));
             self.planes.len() - 1
         });
@@ -148,7 +155,7 @@ impl<'a> OpenCell<'a> {
 
     /// Whether an edge lacks its other end. In the plane only the edges in it count.
     fn is_wanted(&self, [from, to]: [u16; 2]) -> bool {
-        let in_plane = |p: u16| self.planes[usize::from(p)].generator == Generator::wall(PLANE);
+        let in_plane = |p: u16| self.generators[usize::from(p)] == Generator::wall(PLANE);
         let counts = match self.search.input().domain.dimension() {
             Dimension::Three => true,
             Dimension::Two => in_plane(from) || in_plane(to),
@@ -161,9 +168,9 @@ impl<'a> OpenCell<'a> {
         self.gather(self.search.reach(self.seed, self.radius))?;
         let CellVertex { planes, position: start, .. } = self.vertices[usize::from(vertex)];
         // Seen from the other end the edge's planes change places.
-        let edge = [to, from].map(|p| self.planes[usize::from(p)]);
+        let edge = [self.planes[usize::from(to)], self.planes[usize::from(from)]];
         let direction = edge[0].normal.cross(edge[1].normal);
-        let used = planes.map(|p| self.planes[usize::from(p)].generator);
+        let used = planes.map(|p| self.generators[usize::from(p)]);
         let threshold = GRAZING * direction.length() * self.candidates.largest_sum;
 
         let mut first = 0;
@@ -301,7 +308,7 @@ impl<'a> OpenCell<'a> {
         let mut from = first;
         loop {
             let to = end(from.across);
-            let beyond = self.planes[usize::from(from.across)].generator;
+            let beyond = self.generators[usize::from(from.across)];
             visit(&self.vertices[usize::from(from.vertex)], beyond, &self.vertices[usize::from(to.vertex)]);
             if to.vertex == first.vertex {
                 return;
@@ -317,7 +324,7 @@ impl<'a> OpenCell<'a> {
         {
             return false;
         }
-        let generators = |vertex: &CellVertex| vertex.planes.map(|p| self.planes[usize::from(p)].generator);
+        let generators = |vertex: &CellVertex| vertex.planes.map(|p| self.generators[usize::from(p)]);
         let other = generators(w).into_iter().find(|generator| !generators(v).contains(generator));
         other.is_some_and(|generator| self.search.input().decide(self.seed, generators(v), generator).tie)
     }

@@ -122,6 +122,11 @@ pub(crate) fn weld(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Te
         periodic_vertices: Vec::new(),
         periodic_faces: Vec::new(),
     };
+    let (face_count, corner_count) =
+        tiles.iter().map(Tile::counts).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+    tessellation.face_sides.reserve_exact(face_count);
+    tessellation.face_starts.reserve_exact(face_count);
+    tessellation.face_corners.reserve_exact(corner_count);
     for (tile, numbers) in tiles.drain(..).zip(&numbers) {
         for (sides, corners) in tile.faces() {
             let start = tessellation.face_corners.len();
