@@ -12,6 +12,7 @@ use grainsmooth::{Config, Lattice, OutputFormat, SeedSource};
 use polycrystal::{FaceMesh, Junctions};
 use voronoi::Dimension;
 
+use crate::check_run::CheckArguments;
 use crate::mesh_cli::MeshArguments;
 
 /// Make a virtual polycrystal: smooth, closed grains of exact volume, as a VTK file for ParaView.
@@ -115,6 +116,7 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Mesh(MeshArguments),
+    Check(CheckArguments),
 }
 
 const SEEDS: &str = "Seeds";

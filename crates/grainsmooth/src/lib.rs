@@ -15,8 +15,10 @@
 //! ```
 
 mod cell_table;
+mod check_report;
 mod config;
 mod error;
+mod labelled_file;
 mod lattice;
 pub mod memory;
 mod mesh_bezier;
@@ -34,8 +36,10 @@ mod summary;
 pub mod vtk;
 
 pub use cell_table::{CellTable, TableFormat};
+pub use check_report::{CheckReport, ReportedFault, Spread, Statistic};
 pub use config::{Config, SeedSource};
 pub use error::Error;
+pub use labelled_file::{FileElements, LabelledFile};
 pub use lattice::{Lattice, LatticeFit};
 pub use mesh_bezier::{BezierFile, read_bezier};
 pub use mesh_edit::{EdgeEdit, edit_edges};

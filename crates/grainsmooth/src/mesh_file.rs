@@ -14,7 +14,7 @@ mod off;
 mod ply;
 mod problem;
 mod stl;
-mod vtk;
+pub(crate) mod vtk;
 mod write;
 
 pub use problem::MeshFileProblem;

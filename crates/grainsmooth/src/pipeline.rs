@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use polycrystal::{AngleStatistics, MeshSize, Network, NetworkError, Relaxation, Validation};
+use polycrystal::{AngleStatistics, Certificate, MeshSize, Network, NetworkError, Relaxation};
 use polycrystal::{dihedral_angles, relax, validate};
 use voronoi::{Dimension, Tessellation, VoronoiError};
 
@@ -60,10 +60,8 @@ pub struct Polycrystal {
     pub points: Vec<DVec3>,
     /// Angles between boundaries of the flat network, if boundaries meet inside the domain.
     pub angles_before: Option<AngleStatistics>,
-    /// The same of the finished network.
-    pub angles_after: Option<AngleStatistics>,
-    /// What validation measured.
-    pub validation: Validation,
+    /// What validation found: the angles of the finished network, volumes and how true they are.
+    pub validation: Certificate,
     /// Time that each stage took.
     pub times: Vec<(Stage, Duration)>,
 }
@@ -152,14 +150,13 @@ pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result
         relax(&network, &flat, &relaxation, |done, count| progress(Stage::Relaxation, done, count))
     })?;
     let points = clock.time(Stage::Subdivision, || network.subdivide(&relaxed.control_points));
-    let (validation, angles_before, angles_after) = clock.time(Stage::Validation, || {
+    let (validation, angles_before) = clock.time(Stage::Validation, || {
         let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
-        let before = dihedral_angles(&network, network.control_mesh(), &flat);
-        Ok::<_, Error>((validation, before, dihedral_angles(&network, network.finest(), &points)))
+        Ok::<_, Error>((validation, dihedral_angles(&network, network.control_mesh(), &flat)))
     })?;
     let times = clock.times;
     let config = config.clone();
-    Ok(Polycrystal { config, network, points, angles_before, angles_after, validation, times })
+    Ok(Polycrystal { config, network, points, angles_before, validation, times })
 }
 
 /// Runs stages one after the other and remembers how long each took.

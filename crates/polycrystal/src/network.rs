@@ -6,7 +6,7 @@ use voronoi::{Domain, Tessellation};
 use crate::control_mesh::{ControlMesh, JunctionCounts};
 use crate::folds::element_normals;
 use crate::volume::{boundary_volumes, sum_over_grains};
-use crate::{Boundary, FaceMesh, Level, NetworkError};
+use crate::{Boundary, FaceMesh, Level, NetworkError, Surface};
 
 /// How triple lines and the domain's edges are smoothed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -161,7 +161,7 @@ impl Network {
     /// Volume (in the plane: area) of each grain, for points of the given level.
     pub fn grain_volumes(&self, level: &Level, points: &[DVec3]) -> Vec<f64> {
         let origin = self.domain.lower().midpoint(self.domain.upper());
-        let volumes = boundary_volumes(level, self.boundaries.len(), points, origin);
+        let volumes = boundary_volumes(&Surface::of_level(level, points, &self.sides()), origin);
         sum_over_grains(&self.boundaries, &volumes, self.grain_count())
     }
 
