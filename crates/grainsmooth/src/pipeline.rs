@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use polycrystal::{AngleStatistics, Certificate, Network, NetworkError, Relaxation};
+use polycrystal::{AngleStatistics, Certificate, MeshSize, Network, NetworkError, Relaxation};
 use polycrystal::{dihedral_angles, relax, validate};
 use voronoi::{Dimension, Tessellation, VoronoiError};
 
@@ -139,9 +139,12 @@ pub fn make_polycrystal(config: &Config, progress: Progress) -> Result<Polycryst
 pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result<Polycrystal, Error> {
     let Tessellated { tessellation, times, .. } = cells;
     let mut clock = Clock { progress, times };
-    check_levels(control_mesh_size(&tessellation), config.levels, available_memory())?;
-    let (network, flat) = clock
-        .time(Stage::Network, || Network::new(&tessellation, config.junctions, config.levels as usize))?;
+    let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(&tessellation);
+    check_levels(LevelSize { points, edges, triangles }, config.levels, available_memory())?;
+    let (network, flat) = clock.time(Stage::Network, || {
+        let Config { face_mesh, junctions, levels, .. } = *config;
+        Network::with_face_mesh(&tessellation, face_mesh, junctions, levels as usize)
+    })?;
     let relaxation = Relaxation { time: config.relaxation_time };
     let relaxed = clock.time(Stage::Relaxation, || {
         relax(&network, &flat, &relaxation, |done, count| progress(Stage::Relaxation, done, count))
@@ -211,25 +214,6 @@ fn located(error: VoronoiError, config: &Config, seeds: &[FileSeed]) -> Error {
         _ => return error.into(),
     };
     Error::SeedInFile { path: path.clone(), line: seeds[seed].line, cause: error }
-}
-
-/// The size of a tessellation's control mesh: a point per vertex, edge and face, two triangles per corner of a face.
-fn control_mesh_size(tessellation: &Tessellation) -> LevelSize {
-    let corners: usize = tessellation.faces().map(|face| tessellation.face_corners(face).len()).sum();
-    let (vertices, faces) = (tessellation.vertices().len(), tessellation.face_count());
-    match tessellation.domain().dimension() {
-        Dimension::Two => {
-            LevelSize { points: (vertices + faces) as u128, edges: 2 * faces as u128, triangles: 0 }
-        }
-        Dimension::Three => {
-            let lines = tessellation.edges().ends.len();
-            LevelSize {
-                points: (vertices + lines + faces) as u128,
-                edges: 2 * (lines + corners) as u128,
-                triangles: 2 * corners as u128,
-            }
-        }
-    }
 }
 
 /// The size for so many random seeds, from the means of Poisson-Voronoi cells (walls not counted): in space 15.54 faces,
