@@ -9,7 +9,7 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use glam::{BVec3, DVec3};
 use grainsmooth::{Config, Lattice, OutputFormat, SeedSource};
-use polycrystal::Junctions;
+use polycrystal::{FaceMesh, Junctions};
 use voronoi::Dimension;
 
 use crate::check_run::CheckArguments;
@@ -65,6 +65,15 @@ pub struct Arguments {
     /// Axes along which the box repeats, such as x,y,z: grains are whole there and grow through the walls
     #[arg(long, value_name = "AXES", value_parser = parse_axes, help_heading = DOMAIN)]
     periodic: Option<BVec3>,
+
+    /// Control points inside boundaries: a fan of triangles round one in the middle (fan), or none (plain)
+    #[arg(long, value_enum, default_value_t = FaceRule::Fan, help_heading = SMOOTHING)]
+    faces: FaceRule,
+
+    /// Refine the control mesh instead until no edge is longer than H, in the unit of --box; a grain is about as wide as the
+    /// cube root of its volume
+    #[arg(long, value_name = "H", value_parser = parse_edge_length, allow_negative_numbers = true, conflicts_with = "faces", help_heading = SMOOTHING)]
+    edge_length: Option<f64>,
 
     /// Relaxation time, in units of the mean grain size squared; 0 keeps boundaries flat
     #[arg(long, value_name = "T", default_value_t = Config::default().relaxation_time, value_parser = parse_time, allow_negative_numbers = true, help_heading = SMOOTHING)]
@@ -145,6 +154,13 @@ enum LatticeValue {
     Cells(u32),
 }
 
+/// `--faces` as it is spelled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FaceRule {
+    Fan,
+    Plain,
+}
+
 /// `--junctions` as it is spelled.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum JunctionRule {
@@ -173,6 +189,11 @@ impl Arguments {
             JunctionRule::Crease => Junctions::Crease,
             JunctionRule::Corner => Junctions::Corner,
         };
+        let face_mesh = match (self.edge_length, self.faces) {
+            (Some(edge_length), _) => FaceMesh::Refined { edge_length },
+            (None, FaceRule::Fan) => FaceMesh::Fan,
+            (None, FaceRule::Plain) => FaceMesh::Plain,
+        };
         let periodic = self.periodic.unwrap_or(BVec3::FALSE);
         if periodic.z && self.dim == Dimension::Two {
             usage("--periodic z needs three dimensions; with --dim 2 give x, y or x,y");
@@ -183,6 +204,7 @@ impl Arguments {
             lloyd_steps: self.lloyd,
             dimension: self.dim,
             box_size,
+            face_mesh,
             periodic,
             relaxation_time: self.relax,
             // What is not relaxed shall stay flat, for which no vertex may move.
@@ -252,6 +274,11 @@ fn parse_dimension(text: &str) -> Result<Dimension, String> {
 fn parse_length(text: &str) -> Result<f64, String> {
     let length = text.parse().ok().filter(|length| Config::SIDE_RANGE.contains(length));
     length.ok_or_else(|| "a side of the box is a positive number between 1e-30 and 1e30".to_owned())
+}
+
+fn parse_edge_length(text: &str) -> Result<f64, String> {
+    let length = text.parse().ok().filter(|length| Config::SIDE_RANGE.contains(length));
+    length.ok_or_else(|| "an edge length is a positive number between 1e-30 and 1e30".to_owned())
 }
 
 fn parse_axes(text: &str) -> Result<BVec3, String> {

@@ -2,7 +2,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use glam::{BVec3, DVec3};
-use polycrystal::Junctions;
+use polycrystal::{FaceMesh, Junctions};
 use voronoi::{Dimension, Domain};
 
 use crate::{Error, Lattice, LatticeFit};
@@ -46,6 +46,8 @@ pub struct Config {
     pub box_size: DVec3,
     /// Axes along which the box repeats; in 2D the last is ignored.
     pub periodic: BVec3,
+    /// Control points on boundaries.
+    pub face_mesh: FaceMesh,
     /// Relaxation time in units of the mean grain size squared; 0 leaves boundaries flat.
     pub relaxation_time: f64,
     /// Length, in units of the mean grain size, below which edges of cells collapse before relaxation; 0 keeps all.
@@ -67,6 +69,7 @@ impl Default for Config {
             dimension: Dimension::Three,
             box_size: DVec3::ONE,
             periodic: BVec3::FALSE,
+            face_mesh: FaceMesh::Fan,
             relaxation_time: polycrystal::Relaxation::default().time,
             regularize: Self::REGULARIZE,
             levels: 3,
@@ -141,10 +144,15 @@ impl Config {
             Junctions::Crease => "crease",
             Junctions::Corner => "corner",
         };
+        let faces = match self.face_mesh {
+            FaceMesh::Fan => "--faces fan".to_owned(),
+            FaceMesh::Plain => "--faces plain".to_owned(),
+            FaceMesh::Refined { edge_length } => format!("--edge-length {edge_length}"),
+        };
         let drop_empty = if self.drop_empty { " --drop-empty" } else { "" };
         let Self { relaxation_time, regularize, levels, .. } = self;
         format!(
-            "grainsmooth {seeds}{drop_empty}{lloyd} {space}{periodic} --relax {relaxation_time} --regularize {regularize} -n {levels} --junctions {junctions}"
+            "grainsmooth {seeds}{drop_empty}{lloyd} {space}{periodic} {faces} --relax {relaxation_time} --regularize {regularize} -n {levels} --junctions {junctions}"
         )
     }
 }

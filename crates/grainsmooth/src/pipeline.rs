@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use polycrystal::{AngleStatistics, Certificate, Network, NetworkError, Relaxation};
+use polycrystal::{AngleStatistics, Certificate, MeshSize, Network, NetworkError, Relaxation};
 use polycrystal::{dihedral_angles, relax, validate};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
@@ -141,7 +141,8 @@ pub fn make_polycrystal(config: &Config, progress: Progress) -> Result<Polycryst
 pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result<Polycrystal, Error> {
     let Tessellated { tessellation, times, .. } = cells;
     let mut clock = Clock { progress, times };
-    check_levels(control_mesh_size(&tessellation), config.levels, available_memory())?;
+    let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(&tessellation);
+    check_levels(LevelSize { points, edges, triangles }, config.levels, available_memory())?;
     let (network, flat, collapsed) = clock.time(Stage::Network, || network(config, &tessellation))?;
     let relaxation = Relaxation { time: config.relaxation_time };
     let relaxed = clock.time(Stage::Relaxation, || {
@@ -162,14 +163,15 @@ fn network(
     config: &Config,
     tessellation: &Tessellation,
 ) -> Result<(Network, Vec<DVec3>, Collapsed), NetworkError> {
-    let levels = config.levels as usize;
+    let Config { face_mesh, junctions, levels, .. } = *config;
+    let network_of = |cells| Network::with_face_mesh(cells, face_mesh, junctions, levels as usize);
     if config.regularize == 0.0 {
-        let (network, flat) = Network::new(tessellation, config.junctions, levels)?;
+        let (network, flat) = network_of(tessellation)?;
         return Ok((network, flat, Collapsed::default()));
     }
     let volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
     let (regular, collapsed) = tessellation.regularized(config.regularize);
-    let (network, flat) = Network::new(&regular, config.junctions, levels)?;
+    let (network, flat) = network_of(&regular)?;
     Ok((network.with_cell_volumes(volumes), flat, collapsed))
 }
 
@@ -228,25 +230,6 @@ fn located(error: VoronoiError, config: &Config, seeds: &[FileSeed]) -> Error {
         _ => return error.into(),
     };
     Error::SeedInFile { path: path.clone(), line: seeds[seed].line, cause: error }
-}
-
-/// The size of a tessellation's control mesh: a point per vertex, edge and face, two triangles per corner of a face.
-fn control_mesh_size(tessellation: &Tessellation) -> LevelSize {
-    let corners: usize = tessellation.faces().map(|face| tessellation.face_corners(face).len()).sum();
-    let (vertices, faces) = (tessellation.vertices().len(), tessellation.face_count());
-    match tessellation.domain().dimension() {
-        Dimension::Two => {
-            LevelSize { points: (vertices + faces) as u128, edges: 2 * faces as u128, triangles: 0 }
-        }
-        Dimension::Three => {
-            let lines = tessellation.edges().ends.len();
-            LevelSize {
-                points: (vertices + lines + faces) as u128,
-                edges: 2 * (lines + corners) as u128,
-                triangles: 2 * corners as u128,
-            }
-        }
-    }
 }
 
 /// The size for so many random seeds, from the means of Poisson-Voronoi cells (walls not counted): in space 15.54 faces,

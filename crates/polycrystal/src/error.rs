@@ -28,6 +28,9 @@ pub enum NetworkError {
         /// The sides of the boundary.
         sides: [Side; 2],
     },
+    /// The edge length of the control mesh is no length.
+    #[error("the edge length is {0}; it must be a positive, finite number")]
+    BadEdgeLength(f64),
     /// The relaxation time is negative or not a number.
     #[error("the relaxation time is {0}; it must be 0 (off) or a positive, finite number")]
     BadRelaxationTime(f64),
