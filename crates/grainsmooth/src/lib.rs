@@ -17,6 +17,7 @@
 mod cell_table;
 mod config;
 mod error;
+mod formats;
 pub mod memory;
 mod mesh_bezier;
 mod mesh_edit;
@@ -32,12 +33,14 @@ mod summary;
 pub mod vtk;
 
 pub use cell_table::{CellTable, TableFormat};
-pub use config::{Config, SeedSource};
+pub use config::{Config, FileOptions, SeedSource};
 pub use error::Error;
+pub use formats::{LabelGrid, Names, StlEncoding};
+pub use formats::{Oriented, Tess, TessDomain, TessFace, TessProblem, TessSeed, read_tess};
 pub use mesh_bezier::{BezierFile, read_bezier};
 pub use mesh_edit::{EdgeEdit, edit_edges};
 pub use mesh_json::{bezier_json, levels_json, mesh_json};
-pub use output::{Output, OutputFormat};
+pub use output::{Output, OutputDirectory, OutputFormat};
 pub use pipeline::{Polycrystal, Progress, Stage, Tessellated, make_polycrystal, smooth, tessellate};
 pub use seed_file::{FileSeed, SeedLineProblem, read_seed_file};
 pub use seeding::random_seeds;

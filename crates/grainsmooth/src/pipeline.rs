@@ -52,6 +52,8 @@ pub type Progress<'a> = &'a (dyn Fn(Stage, usize, usize) + Sync);
 pub struct Polycrystal {
     /// What was asked for.
     pub config: Config,
+    /// The flat cells that the grains come from.
+    pub cells: Tessellated,
     /// Connectivity of all levels.
     pub network: Network,
     /// Points of the finest level.
@@ -131,11 +133,11 @@ pub fn make_polycrystal(config: &Config, progress: Progress) -> Result<Polycryst
 /// [`Error::LevelsExceedMemory`] and [`Error::LevelsExceedIds`]; [`Error::Network`] when the network cannot be relaxed, or
 /// is invalid.
 pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result<Polycrystal, Error> {
-    let Tessellated { tessellation, times, .. } = cells;
-    let mut clock = Clock { progress, times };
-    check_levels(control_mesh_size(&tessellation), config.levels, available_memory())?;
+    let tessellation = &cells.tessellation;
+    let mut clock = Clock { progress, times: cells.times.clone() };
+    check_levels(control_mesh_size(tessellation), config.levels, available_memory())?;
     let (network, flat) = clock
-        .time(Stage::Network, || Network::new(&tessellation, config.junctions, config.levels as usize))?;
+        .time(Stage::Network, || Network::new(tessellation, config.junctions, config.levels as usize))?;
     let relaxation = Relaxation { time: config.relaxation_time };
     let relaxed = clock.time(Stage::Relaxation, || {
         relax(&network, &flat, &relaxation, |done, count| progress(Stage::Relaxation, done, count))
@@ -148,7 +150,7 @@ pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result
     })?;
     let times = clock.times;
     let config = config.clone();
-    Ok(Polycrystal { config, network, points, angles_before, angles_after, validation, times })
+    Ok(Polycrystal { config, cells, network, points, angles_before, angles_after, validation, times })
 }
 
 /// Runs stages one after the other and remembers how long each took.
