@@ -116,7 +116,7 @@ fn help_tells_defaults_units_examples_and_exit_codes() {
     // Lines break where the terminal is narrow.
     let help = String::from_utf8(help).unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
     for text in [
-        "--seeds <N> Number of grains, grown from uniform random seeds [default: 200]",
+        "--seeds <N> Number of grains, grown from random seeds [default: 200]",
         "--box <X> <Y> [Z]... Side lengths of the box in your unit of length",
         "[default: 1 1 1]",
         "--rng-seed <S>",

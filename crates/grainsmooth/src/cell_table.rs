@@ -63,7 +63,7 @@ impl CellTable {
         let tessellation = &cells.tessellation;
         let rows = (0u32..).zip(tessellation.cell_measures()).map(|(id, measure)| {
             let number = |side: Side| match side {
-                Side::Cell(cell) => i64::from(cell.0),
+                Side::Cell(cell) | Side::Image(cell, _) => i64::from(cell.0),
                 Side::Wall(wall) => -1 - i64::from(wall.number()),
             };
             let mut neighbors: Vec<i64> =

@@ -10,7 +10,9 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use grainsmooth::vtk::VtkFormat;
-use grainsmooth::{Config, FileOptions, Names, OutputDirectory, OutputFormat, SeedSource, StlEncoding};
+use grainsmooth::{
+    Config, FileOptions, Lattice, Names, OutputDirectory, OutputFormat, SeedSource, StlEncoding,
+};
 use polycrystal::Junctions;
 use voronoi::Dimension;
 
@@ -27,17 +29,29 @@ pub struct Arguments {
     #[command(subcommand)]
     pub command: Option<Command>,
 
-    /// Number of grains, grown from uniform random seeds
+    /// Number of grains, grown from random seeds
     #[arg(long, value_name = "N", default_value_t = 200_u32, value_parser = whole_number(1..=4_000_000_000_u32), allow_negative_numbers = true, help_heading = SEEDS)]
     seeds: u32,
 
+    /// Random seeds uniform (random), or at least 0.75 mean spacings apart (poisson-disc)
+    #[arg(long, value_enum, default_value_t = Seeding::Random, help_heading = SEEDS)]
+    seeding: Seeding,
+
+    /// Seeds on a lattice instead: sc, bcc, fcc or hcp (square or hex in 2D), with N unit cells along the shortest side
+    #[arg(long, value_names = ["LATTICE", "N"], num_args = 2, value_parser = parse_lattice, allow_negative_numbers = true, conflicts_with_all = ["seeds", "rng_seed", "seeding"], help_heading = SEEDS)]
+    lattice: Option<Vec<LatticeValue>>,
+
     /// Read seeds from a text file instead: x, y, z on each line (x, y in 2D); a last column radius weights the cells
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["seeds", "rng_seed"], help_heading = SEEDS)]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["seeds", "rng_seed", "seeding", "lattice"], help_heading = SEEDS)]
     seeds_file: Option<PathBuf>,
 
     /// Go on without seeds whose neighbours outweigh them; else that is an error
     #[arg(long, requires = "seeds_file", help_heading = SEEDS)]
     drop_empty: bool,
+
+    /// Even out the grains: move every seed to the centroid of its cell, N times
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = whole_number(0..=100_000_u32), allow_negative_numbers = true, help_heading = SEEDS)]
+    lloyd: u32,
 
     /// Start of the random generator: the same number gives the same grains on every machine
     #[arg(long, value_name = "S", default_value_t = 1, value_parser = whole_number(0..=u64::MAX), allow_negative_numbers = true, help_heading = SEEDS)]
@@ -126,9 +140,24 @@ Examples:
   grainsmooth --seeds 200 -n 3                    200 grains in a unit cube, to grains.vtp
   grainsmooth --seeds 500 --box 3 1 0.2 -o a.vtu  a plate
   grainsmooth --seeds 300 --dim 2                 grains in a square
+  grainsmooth --lattice bcc 4                     Kelvin's foam: 128 truncated octahedra, cut by the walls
   grainsmooth --seeds-file seeds.csv --relax 0    flat Voronoi grains from your own seeds
 
 Exit status: 0 good, 1 the run failed or its result is invalid, 2 a mistake on the command line.";
+
+/// `--seeding` as it is spelled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Seeding {
+    Random,
+    PoissonDisc,
+}
+
+/// One of the two values of `--lattice`.
+#[derive(Debug, Clone, Copy)]
+enum LatticeValue {
+    Kind(Lattice),
+    Cells(u32),
+}
 
 /// `--junctions` as it is spelled.
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -179,10 +208,7 @@ impl Arguments {
     ///
     /// Ends the program with exit status 2 where they do not fit together.
     pub fn config(&self) -> Config {
-        let seeds = match &self.seeds_file {
-            Some(path) => SeedSource::File(path.clone()),
-            None => SeedSource::Random { count: self.seeds as usize },
-        };
+        let seeds = self.seed_source();
         let box_size = match (self.box_size.as_deref(), self.dim) {
             (None, _) => DVec3::ONE,
             (Some(&[x, y]), Dimension::Two) => DVec3::new(x, y, 1.0),
@@ -201,6 +227,7 @@ impl Arguments {
         Config {
             seeds,
             random_seed: self.rng_seed,
+            lloyd_steps: self.lloyd,
             dimension: self.dim,
             box_size,
             relaxation_time: self.relax,
@@ -235,6 +262,27 @@ impl Arguments {
         let at_least_one = |count| NonZeroU32::new(count).unwrap_or(NonZeroU32::MIN);
         FileOptions { names, voxels: voxels.map(|counts| counts.map(at_least_one)), stl }
     }
+
+    fn seed_source(&self) -> SeedSource {
+        if let Some(path) = &self.seeds_file {
+            return SeedSource::File(path.clone());
+        }
+        let count = self.seeds as usize;
+        match (self.lattice.as_deref(), self.seeding) {
+            (None, Seeding::Random) => SeedSource::Random { count },
+            (None, Seeding::PoissonDisc) => SeedSource::PoissonDisc { count },
+            (Some(&[LatticeValue::Kind(lattice), LatticeValue::Cells(cells)]), _) => {
+                match (lattice.dimension(), self.dim) {
+                    (Dimension::Three, Dimension::Two) => usage("--dim 2 has the lattices square and hex"),
+                    (Dimension::Two, Dimension::Three) => {
+                        usage("the lattices square and hex are for --dim 2; give sc, bcc, fcc or hcp")
+                    }
+                    _ => SeedSource::Lattice { lattice, cells },
+                }
+            }
+            (Some(_), _) => usage("--lattice takes a lattice and the number of its cells, such as bcc 4"),
+        }
+    }
 }
 
 /// Ends the program as clap does on a mistake.
@@ -250,6 +298,17 @@ where
         let number = text.parse().ok().filter(|number| range.contains(number));
         number.ok_or_else(|| format!("give a whole number from {} to {}", range.start(), range.end()))
     }
+}
+
+fn parse_lattice(text: &str) -> Result<LatticeValue, String> {
+    if let Some(lattice) = Lattice::ALL.into_iter().find(|lattice| lattice.name() == text) {
+        return Ok(LatticeValue::Kind(lattice));
+    }
+    // A cube of so many cells has as many seeds as ids can name.
+    let cells = whole_number(1..=1600_u32)(text).map(LatticeValue::Cells);
+    cells.map_err(|remedy| {
+        format!("the lattices are sc, bcc, fcc and hcp, and square and hex in 2D; then {remedy}")
+    })
 }
 
 fn parse_dimension(text: &str) -> Result<Dimension, String> {

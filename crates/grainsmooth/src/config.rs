@@ -6,7 +6,7 @@ use glam::DVec3;
 use polycrystal::Junctions;
 use voronoi::{Dimension, Domain};
 
-use crate::{Error, Names, StlEncoding};
+use crate::{Error, Lattice, LatticeFit, Names, StlEncoding};
 
 /// Where seeds come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,6 +15,18 @@ pub enum SeedSource {
     Random {
         /// Number of seeds, at least 1.
         count: usize,
+    },
+    /// Random in the box, but apart from each other, see [`poisson_disc_seeds`](crate::poisson_disc_seeds).
+    PoissonDisc {
+        /// Number of seeds, at least 1.
+        count: usize,
+    },
+    /// A lattice, see [`LatticeFit`].
+    Lattice {
+        /// Its kind, of the config's dimension.
+        lattice: Lattice,
+        /// Number of conventional cells along the side of the box that holds the fewest, at least 1.
+        cells: u32,
     },
     /// A text file, see [`read_seed_file`](crate::read_seed_file).
     File(PathBuf),
@@ -27,6 +39,8 @@ pub struct Config {
     pub seeds: SeedSource,
     /// Starts the random generator.
     pub random_seed: u64,
+    /// Number of times that every seed moves to the centroid of its cell (Lloyd's algorithm).
+    pub lloyd_steps: u32,
     /// Two or three dimensions.
     pub dimension: Dimension,
     /// Side lengths of the box, which has its lower corner in the origin; in 2D the last is ignored.
@@ -65,6 +79,7 @@ impl Default for Config {
         Self {
             seeds: SeedSource::Random { count: 200 },
             random_seed: 1,
+            lloyd_steps: 0,
             dimension: Dimension::Three,
             box_size: DVec3::ONE,
             relaxation_time: polycrystal::Relaxation::default().time,
@@ -81,7 +96,15 @@ impl Config {
     /// stay within the range of doubles.
     pub const SIDE_RANGE: RangeInclusive<f64> = 1e-30..=1e30;
 
-    /// The box that the grains fill.
+    /// The lattice that the seeds form, if they do.
+    pub fn lattice_fit(&self) -> Option<LatticeFit> {
+        match self.seeds {
+            SeedSource::Lattice { lattice, cells } => Some(LatticeFit::new(lattice, cells, self.box_size)),
+            _ => None,
+        }
+    }
+
+    /// The box that the grains fill: that of [`LatticeFit::box_size`] for a lattice.
     ///
     /// # Errors
     /// [`Error::BoxSide`] when a side is not positive and finite, or beyond what doubles can compute with.
@@ -92,9 +115,10 @@ impl Config {
         {
             return Err(Error::BoxSide { axis, length });
         }
+        let upper = self.lattice_fit().map_or(self.box_size, |fit| fit.box_size());
         Ok(match self.dimension {
-            Dimension::Two => Domain::rectangle(DVec3::ZERO, self.box_size)?,
-            Dimension::Three => Domain::cuboid(DVec3::ZERO, self.box_size)?,
+            Dimension::Two => Domain::rectangle(DVec3::ZERO, upper)?,
+            Dimension::Three => Domain::cuboid(DVec3::ZERO, upper)?,
         })
     }
 
@@ -104,8 +128,14 @@ impl Config {
     pub fn command_line(&self) -> String {
         let seeds = match &self.seeds {
             SeedSource::Random { count } => format!("--seeds {count} --rng-seed {}", self.random_seed),
+            SeedSource::PoissonDisc { count } => {
+                format!("--seeding poisson-disc --seeds {count} --rng-seed {}", self.random_seed)
+            }
+            SeedSource::Lattice { lattice, cells } => format!("--lattice {} {cells}", lattice.name()),
             SeedSource::File(path) => format!("--seeds-file {}", path.display()),
         };
+        let lloyd =
+            if self.lloyd_steps == 0 { String::new() } else { format!(" --lloyd {}", self.lloyd_steps) };
         let DVec3 { x, y, z } = self.box_size;
         let space = match self.dimension {
             Dimension::Two => format!("--dim 2 --box {x} {y}"),
@@ -118,7 +148,7 @@ impl Config {
         let drop_empty = if self.drop_empty { " --drop-empty" } else { "" };
         let Self { relaxation_time, levels, file, .. } = self;
         format!(
-            "grainsmooth {seeds}{drop_empty} {space} --relax {relaxation_time} -n {levels} --junctions {junctions}{}",
+            "grainsmooth {seeds}{drop_empty}{lloyd} {space} --relax {relaxation_time} -n {levels} --junctions {junctions}{}",
             file.arguments(self.dimension)
         )
     }

@@ -108,7 +108,12 @@ fn compute(arguments: &Arguments, files: &Files, line: &ProgressLine) -> Result<
     }
     let Some(output) = &files.output else {
         let tessellation = &tessellated.tessellation;
-        return Ok(format!("cells       {} in {}", tessellation.cell_count(), tessellation.domain()));
+        let lattice = config.lattice_fit().map_or(String::new(), |fit| format!("\nlattice     {fit}"));
+        return Ok(format!(
+            "cells       {} in {}{lattice}",
+            tessellation.cell_count(),
+            tessellation.domain()
+        ));
     };
     let mut polycrystal = smooth(&config, tessellated, &progress)?;
     line.show(Stage::Writing, 0, 1);

@@ -8,7 +8,9 @@ use polycrystal::{dihedral_angles, relax, validate};
 use voronoi::{Dimension, Tessellation, VoronoiError};
 
 use crate::memory::{LevelSize, available_memory, check_levels};
-use crate::{Config, Error, FileSeed, SeedSource, random_seeds, read_seed_file};
+use crate::{
+    Config, Error, FileSeed, LatticeFit, SeedSource, poisson_disc_seeds, random_seeds, read_seed_file,
+};
 
 /// A part of a run, in the order in which they follow each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,9 +88,15 @@ pub struct Tessellated {
 pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Error> {
     let mut clock = Clock { progress, times: Vec::new() };
     let domain = config.domain()?;
-    let seeds = clock.time(Stage::Seeds, || seeds(config, &domain))?;
+    let mut seeds = clock.time(Stage::Seeds, || seeds(config, &domain))?;
     let (tessellation, weights) = clock.time(Stage::Cells, || {
-        let all = cells_of(config, &domain, &seeds)?;
+        let mut all = cells_of(config, &domain, &seeds)?;
+        for step in 1..=config.lloyd_steps {
+            let centroids = all.0.centroids();
+            seeds.iter_mut().zip(centroids).for_each(|(seed, centroid)| seed.position = centroid);
+            all = cells_of(config, &domain, &seeds)?;
+            progress(Stage::Cells, step as usize, config.lloyd_steps as usize);
+        }
         let empty = all.0.empty_cells();
         if empty.is_empty() {
             return Ok(all);
@@ -170,16 +178,28 @@ impl Clock<'_> {
 }
 
 fn seeds(config: &Config, domain: &voronoi::Domain) -> Result<Vec<FileSeed>, Error> {
-    match &config.seeds {
-        SeedSource::File(path) => read_seed_file(path, config.dimension),
+    // Known before the first cell is cut: a count beyond all means must not eat the memory first.
+    let check_count = |count| {
+        let expected = expected_control_mesh_size(count, config.dimension);
+        check_levels(expected, config.levels, available_memory())
+    };
+    let positions = match &config.seeds {
+        SeedSource::File(path) => return read_seed_file(path, config.dimension),
         SeedSource::Random { count } => {
-            // Known before the first cell is cut: a count beyond all means must not eat the memory first.
-            let expected = expected_control_mesh_size(*count, config.dimension);
-            check_levels(expected, config.levels, available_memory())?;
-            let positions = random_seeds(*count, domain, config.random_seed).into_iter();
-            Ok(positions.map(|position| FileSeed { position, radius: None, line: 0 }).collect())
+            check_count(*count)?;
+            random_seeds(*count, domain, config.random_seed)
         }
-    }
+        SeedSource::PoissonDisc { count } => {
+            check_count(*count)?;
+            poisson_disc_seeds(*count, domain, config.random_seed)
+        }
+        SeedSource::Lattice { lattice, cells } => {
+            let fit = LatticeFit::new(*lattice, *cells, config.box_size);
+            check_count(fit.seed_count())?;
+            fit.seeds()
+        }
+    };
+    Ok(positions.into_iter().map(|position| FileSeed { position, radius: None, line: 0 }).collect())
 }
 
 /// The error with the line of the seed file that it comes from.

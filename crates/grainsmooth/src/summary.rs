@@ -20,6 +20,9 @@ impl fmt::Display for Summary<'_> {
         let (points, elements) = (finest.vertex_count(), finest.element_count());
         let levels = polycrystal.config.levels;
         writeln!(out, "grains      {} in {}", network.grain_count(), network.domain())?;
+        if let Some(fit) = polycrystal.config.lattice_fit() {
+            writeln!(out, "lattice     {fit}")?;
+        }
         let interior = network.boundaries().iter().filter(|boundary| boundary.is_interior()).count();
         let walls = network.boundaries().len() - interior;
         writeln!(out, "boundaries  {interior} between grains, {walls} on the walls")?;

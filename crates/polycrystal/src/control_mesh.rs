@@ -38,11 +38,11 @@ impl ControlMesh {
 fn boundary(sides: [voronoi::Side; 2]) -> Boundary {
     let wall = match sides[1] {
         voronoi::Side::Wall(wall) => Some(wall),
-        voronoi::Side::Cell(_) => None,
+        voronoi::Side::Cell(_) | voronoi::Side::Image(..) => None,
     };
     let sides = sides.map(|side| match side {
         voronoi::Side::Cell(cell) => Side::Grain(GrainId(cell.0)),
-        voronoi::Side::Wall(_) => Side::Exterior,
+        voronoi::Side::Image(..) | voronoi::Side::Wall(_) => Side::Exterior,
     });
     Boundary { sides, wall }
 }

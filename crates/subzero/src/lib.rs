@@ -20,6 +20,7 @@
 //! # Ok::<(), subzero::MeshError>(())
 //! ```
 
+mod base_rings;
 mod bezier;
 mod butterfly;
 mod catmull_clark;

@@ -1,5 +1,6 @@
 //! A mesh refined several times by Loop's scheme.
 
+use crate::base_rings::BaseRings;
 use crate::large_vec;
 use crate::{LoopWeights, Point, StencilTable, TriangleMesh};
 
@@ -8,6 +9,8 @@ use crate::{LoopWeights, Point, StencilTable, TriangleMesh};
 pub struct LoopHierarchy {
     /// The meshes, coarsest first.
     levels: Vec<TriangleMesh>,
+    /// Rings of the coarsest.
+    rings: BaseRings,
     weights: LoopWeights,
 }
 
@@ -24,12 +27,13 @@ impl TriangleMesh {
         levels: usize,
         weights: LoopWeights,
     ) -> (Self, Vec<P>) {
+        let rings = BaseRings::new(&self, weights);
         let mut ancestors = Vec::with_capacity(levels);
         let mut mesh = self;
         let mut points = points.to_vec();
         for _ in 0..levels {
             let mut refined = large_vec::zeros(mesh.vertex_count() + mesh.edge_count());
-            mesh.loop_points(&ancestors, &points, weights, &mut refined);
+            mesh.loop_points(&ancestors, &rings, &points, weights, &mut refined);
             points = refined;
             let finer = mesh.refine_connectivity();
             ancestors.push(std::mem::replace(&mut mesh, finer));
@@ -44,11 +48,12 @@ impl LoopHierarchy {
     /// # Panics
     /// If the finest mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
     pub fn new(mesh: TriangleMesh, levels: usize, weights: LoopWeights) -> Self {
+        let rings = BaseRings::new(&mesh, weights);
         let mut meshes = vec![mesh];
         for level in 0..levels {
             meshes.push(meshes[level].refine_connectivity());
         }
-        Self { levels: meshes, weights }
+        Self { levels: meshes, rings, weights }
     }
 
     /// The meshes, from the one given to the finest.
@@ -87,7 +92,7 @@ impl LoopHierarchy {
         for (level, mesh) in self.levels[..levels.len()].iter().enumerate() {
             let (coarser, finer) = levels.split_at_mut(level);
             let points = coarser.last().map_or(points, Vec::as_slice);
-            mesh.loop_points(&self.levels[..level], points, self.weights, &mut finer[0]);
+            mesh.loop_points(&self.levels[..level], &self.rings, points, self.weights, &mut finer[0]);
         }
     }
 

@@ -6,6 +6,7 @@
 
 use rayon::prelude::*;
 
+use crate::base_rings::BaseRings;
 use crate::ids::{id, next, prev};
 use crate::{LoopWeights, Point, TriangleMesh, VertexRule};
 
@@ -14,49 +15,116 @@ const PER_TASK: usize = 1024;
 
 impl TriangleMesh {
     /// Writes the points one level on: what the rows of [`loop_refine_with`](Self::loop_refine_with) make of `points`, up to
-    /// rounding. `ancestors` are the meshes from which this one was refined, coarsest first.
+    /// rounding. `ancestors` are the meshes from which this one was refined, coarsest first, and `rings` the rings of the first of
+    /// all these meshes.
     pub(crate) fn loop_points<P: Point>(
         &self,
         ancestors: &[Self],
+        rings: &BaseRings,
         points: &[P],
         weights: LoopWeights,
         refined: &mut [P],
     ) {
         assert_eq!(points.len(), self.vertex_count(), "there must be one point per vertex");
+        // Sector weights depend on more than ancestors' edges can tell.
+        if weights == LoopWeights::BiermannLevinZorin {
+            return self.points_by_rows(points, weights, refined);
+        }
+        let (moved, placed) = refined.split_at_mut(self.vertex_count());
         match ancestors {
-            // Sector weights depend on more than ancestors' edges can tell.
-            [.., grandparent, parent] if weights != LoopWeights::BiermannLevinZorin => {
-                let (moved, rest) = refined.split_at_mut(parent.vertex_count());
-                self.move_vertices(ancestors, points, weights, moved);
-                let (on_edges, rest) = rest.split_at_mut(parent.edge_count());
-                let (on_halves, inside) = rest.split_at_mut(2 * parent.edge_count());
+            [] => {
+                self.move_oldest(points, rings, weights, moved, |spoke| self.end(spoke));
+                self.place_on_all_edges(points, weights, placed);
+            }
+            [parent] => {
+                let (oldest, middles) = moved.split_at_mut(parent.vertex_count());
+                let middle = |spoke: u32| id(parent.vertex_count()) + spoke / 2;
+                self.move_oldest(points, rings, weights, oldest, middle);
+                self.move_middles(parent, points, weights, middles);
+                self.place_on_all_edges(points, weights, placed);
+            }
+            [.., grandparent, parent] => {
+                let (moved, on_edges) = moved.split_at_mut(parent.vertex_count());
+                self.move_vertices(ancestors, rings, points, weights, moved);
+                let (on_halves, inside) = placed.split_at_mut(2 * parent.edge_count());
                 let (outer, inner) = on_edges.split_at_mut(2 * grandparent.edge_count());
                 let (outer_halves, inner_halves) = on_halves.split_at_mut(4 * grandparent.edge_count());
                 self.place_on_edges(grandparent, points, weights, (outer, outer_halves));
                 grandparent.place_in_triangles(points, (inner, inner_halves, inside));
             }
-            _ => self.points_by_rows(points, weights, refined),
         }
     }
 
     /// Any points, each from its own neighbours.
     fn points_by_rows<P: Point>(&self, points: &[P], weights: LoopWeights, refined: &mut [P]) {
         let (moved, placed) = refined.split_at_mut(self.vertex_count());
-        moved.par_iter_mut().zip(&self.vertex_rules).with_min_len(PER_TASK).enumerate().for_each(
-            |(v, (new, rule))| {
-                *new = if matches!(rule, VertexRule::Smooth | VertexRule::Dart) {
-                    let ring = self.ring(self.outgoing[v]).map(|h| points[self.start(next(h)) as usize]);
-                    smooth_point(points[v], ring, weights)
-                } else {
-                    sum_row(points, |mut add| self.loop_vertex_row(id(v), weights, &mut add))
-                };
-            },
-        );
+        let moved = moved.par_iter_mut().with_min_len(PER_TASK).enumerate();
+        moved.for_each(|(v, new)| *new = self.point_by_row(id(v), points, weights));
+        let placed = placed.par_iter_mut().with_min_len(PER_TASK).enumerate();
+        placed.for_each(|(e, new)| *new = self.edge_point_by_row(id(e), points, weights));
+    }
+
+    fn point_by_row<P: Point>(&self, vertex: u32, points: &[P], weights: LoopWeights) -> P {
+        sum_row(points, |mut add| self.loop_vertex_row(vertex, weights, &mut add))
+    }
+
+    fn edge_point_by_row<P: Point>(&self, edge: u32, points: &[P], weights: LoopWeights) -> P {
+        sum_row(points, |mut add| self.loop_edge_row(edge, weights, &mut add))
+    }
+
+    /// Whether a vertex has a rule of its own: its ring is not enough to move it.
+    fn is_sharp(&self, vertex: usize) -> bool {
+        !matches!(self.vertex_rules[vertex], VertexRule::Smooth | VertexRule::Dart)
+    }
+
+    /// Where a spoke leads: the vertex at which it does not start.
+    fn end(&self, spoke: u32) -> u32 {
+        let [along, _] = self.edges[(spoke / 2) as usize];
+        self.start(if spoke.is_multiple_of(2) { next(along) } else { along })
+    }
+
+    /// Moves the vertices of the coarsest mesh; `neighbour` is the vertex on a spoke.
+    fn move_oldest<P: Point>(
+        &self,
+        points: &[P],
+        rings: &BaseRings,
+        weights: LoopWeights,
+        oldest: &mut [P],
+        neighbour: impl Fn(u32) -> u32 + Sync,
+    ) {
+        oldest.par_iter_mut().with_min_len(PER_TASK).enumerate().for_each(|(v, new)| {
+            *new = if self.is_sharp(v) {
+                self.point_by_row(id(v), points, weights)
+            } else {
+                let ring = rings.spokes(v).iter().map(|&spoke| points[neighbour(spoke) as usize]);
+                smooth_point(points[v], ring, rings.weight(v))
+            };
+        });
+    }
+
+    /// Moves the vertices that the parent's edges got.
+    fn move_middles<P: Point>(&self, parent: &Self, points: &[P], weights: LoopWeights, middles: &mut [P]) {
+        let middles = middles.par_iter_mut().zip(&parent.edges).with_min_len(PER_TASK).enumerate();
+        middles.for_each(|(e, (new, &[along, against]))| {
+            let v = parent.vertex_count() + e;
+            *new = if self.is_sharp(v) {
+                self.point_by_row(id(v), points, weights)
+            } else {
+                let old = |h: u32| points[parent.start(h) as usize];
+                let middle = |h: u32| points[parent.vertex_count() + (parent.directed_edge(h) / 2) as usize];
+                let [left, right] = [along, against].map(|h| [middle(next(h)), middle(prev(h))]);
+                vertex_point(points[v], [old(along), old(against), left[0], left[1], right[0], right[1]])
+            };
+        });
+    }
+
+    /// Places the vertices on all edges.
+    fn place_on_all_edges<P: Point>(&self, points: &[P], weights: LoopWeights, placed: &mut [P]) {
         let edges = self.edges.par_iter().zip(&self.sharp_edges);
         placed.par_iter_mut().zip(edges).with_min_len(PER_TASK).enumerate().for_each(
             |(e, (new, (&[along, against], &sharp)))| {
-                *new = if sharp || weights == LoopWeights::BiermannLevinZorin {
-                    sum_row(points, |mut add| self.loop_edge_row(id(e), weights, &mut add))
+                *new = if sharp {
+                    self.edge_point_by_row(id(e), points, weights)
                 } else {
                     let at = |h: u32| points[self.start(h) as usize];
                     edge_point(at(along), at(next(along)), at(prev(along)), at(prev(against)))
@@ -78,18 +146,16 @@ impl TriangleMesh {
         let on_old = |v: u32| points[v as usize];
         let on_parent_edge = |e: u32| points[(parent_vertices + e) as usize];
         let old = grandparent.edges.par_iter().zip(&grandparent.sharp_edges);
-        let new = on_halves.par_chunks_exact_mut(2).zip(on_quarters.par_chunks_exact_mut(4));
+        let new = on_halves.as_chunks_mut::<2>().0.par_iter_mut().zip(on_quarters.as_chunks_mut::<4>().0);
         new.zip(old).with_min_len(PER_TASK).enumerate().for_each(
             |(e, ((on_halves, on_quarters), (&[along, against], &sharp)))| {
                 let e = id(e);
                 if sharp {
-                    for (half, new) in (0..).zip(on_halves) {
-                        let vertex = parent_vertices + 2 * e + half;
-                        *new = sum_row(points, |mut add| self.loop_vertex_row(vertex, weights, &mut add));
+                    for (vertex, new) in (parent_vertices + 2 * e..).zip(on_halves) {
+                        *new = self.point_by_row(vertex, points, weights);
                     }
-                    for (quarter, new) in (0..).zip(on_quarters) {
-                        *new =
-                            sum_row(points, |mut add| self.loop_edge_row(4 * e + quarter, weights, &mut add));
+                    for (quarter, new) in (4 * e..).zip(on_quarters) {
+                        *new = self.edge_point_by_row(quarter, points, weights);
                     }
                     return;
                 }
@@ -125,30 +191,22 @@ impl TriangleMesh {
         let parent_vertices = counts.vertices + counts.edges;
         let on_parent_edge = |e: u32| points[(parent_vertices + e) as usize];
         let (in_corners, in_centres) = inside.split_at_mut(9 * self.triangles.len());
-        let new = (on_cuts.par_chunks_exact_mut(3).zip(on_halves.par_chunks_exact_mut(6)))
-            .zip(in_corners.par_chunks_exact_mut(9).zip(in_centres.par_chunks_exact_mut(3)));
+        let new = (on_cuts.as_chunks_mut().0.par_iter_mut().zip(on_halves.as_chunks_mut().0))
+            .zip(in_corners.as_chunks_mut().0.par_iter_mut().zip(in_centres.as_chunks_mut().0));
         let old = self.triangles.par_iter().zip(&self.directed_edges);
         new.zip(old).with_min_len(PER_TASK).enumerate().for_each(
             |(t, (((on_cuts, on_halves), (in_corners, in_centre)), (corners, directed)))| {
                 let first_cut = 2 * counts.edges + 3 * id(t);
-                let cuts =
-                    [on_parent_edge(first_cut), on_parent_edge(first_cut + 1), on_parent_edge(first_cut + 2)];
-                let middle = |k: usize| points[(counts.vertices + directed[k] / 2) as usize];
-                let middles = [middle(0), middle(1), middle(2)];
-                for (k, after, before) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
-                    // The triangle at corner k: the corner, the middles of the edges after and before it, and what
-                    // lies between the three.
-                    let corner = points[corners[k] as usize];
-                    let [out, back] = [on_parent_edge(directed[k]), on_parent_edge(directed[before] ^ 1)];
-                    let [ahead, behind, cut] = [middles[k], middles[before], cuts[k]];
-                    on_cuts[k] = vertex_point(cut, [ahead, behind, out, back, cuts[after], cuts[before]]);
-                    on_halves[2 * k] = edge_point(cut, ahead, out, cuts[after]);
-                    on_halves[2 * k + 1] = edge_point(cut, behind, back, cuts[before]);
-                    in_corners[3 * k] = edge_point(out, back, corner, cut);
-                    in_corners[3 * k + 1] = edge_point(cut, out, ahead, back);
-                    in_corners[3 * k + 2] = edge_point(back, cut, behind, out);
-                    in_centre[k] = edge_point(cut, cuts[before], behind, cuts[after]);
-                }
+                let cuts = [first_cut, first_cut + 1, first_cut + 2].map(on_parent_edge);
+                let middles = directed.map(|directed| points[(counts.vertices + directed / 2) as usize]);
+                let mut inside = Inside { on_cuts, on_halves, in_corners, in_centre };
+                let corner = |k: usize| points[corners[k] as usize];
+                let out = |k: usize| on_parent_edge(directed[k]);
+                let back = |k: usize| on_parent_edge(directed[k] ^ 1);
+                // Written out, so that the compiler knows every index.
+                inside.fill_corner([0, 1, 2], corner(0), [out(0), back(2)], &middles, &cuts);
+                inside.fill_corner([1, 2, 0], corner(1), [out(1), back(0)], &middles, &cuts);
+                inside.fill_corner([2, 0, 1], corner(2), [out(2), back(1)], &middles, &cuts);
             },
         );
     }
@@ -158,6 +216,7 @@ impl TriangleMesh {
     fn move_vertices<P: Point>(
         &self,
         ancestors: &[Self],
+        rings: &BaseRings,
         points: &[P],
         weights: LoopWeights,
         moved: &mut [P],
@@ -166,22 +225,10 @@ impl TriangleMesh {
         let on_spoke = |directed: u32, levels: usize| {
             // Half after half at the vertex: twice the id, and plus 1 again if the edge ends there.
             let ones = (directed & 1) * ((1 << levels) - 1);
-            points[parent.vertex_count() + (((directed << levels) + ones) / 2) as usize]
+            id(parent.vertex_count()) + ((directed << levels) + ones) / 2
         };
-        let is_sharp = |v: usize| !matches!(self.vertex_rules[v], VertexRule::Smooth | VertexRule::Dart);
-        let sharp = |v: usize| sum_row(points, |mut add| self.loop_vertex_row(id(v), weights, &mut add));
-
         let (oldest, mut rest) = moved.split_at_mut(ancestors[0].vertex_count());
-        oldest.par_iter_mut().with_min_len(PER_TASK).enumerate().for_each(|(v, new)| {
-            if is_sharp(v) {
-                *new = sharp(v);
-                return;
-            }
-            let base = &ancestors[0];
-            let spokes =
-                base.ring(base.outgoing[v]).map(|h| on_spoke(base.directed_edge(h), ancestors.len() - 1));
-            *new = smooth_point(points[v], spokes, weights);
-        });
+        self.move_oldest(points, rings, weights, oldest, |spoke| on_spoke(spoke, ancestors.len() - 1));
         for (level, born_on) in ancestors[..ancestors.len() - 1].iter().enumerate() {
             let (born, younger) = rest.split_at_mut(born_on.edge_count());
             rest = younger;
@@ -190,12 +237,12 @@ impl TriangleMesh {
             born.par_iter_mut().zip(&born_on.edges).with_min_len(PER_TASK).enumerate().for_each(
                 |(e, (new, &[along, against]))| {
                     let v = born_on.vertex_count() + e;
-                    if is_sharp(v) {
-                        *new = sharp(v);
+                    if self.is_sharp(v) {
+                        *new = self.point_by_row(id(v), points, weights);
                         return;
                     }
                     let [first_half, inner] = [4 * id(e), 2 * first_inner];
-                    let spoke = |directed: u32| on_spoke(directed, levels);
+                    let spoke = |directed: u32| points[on_spoke(directed, levels) as usize];
                     let ring = [
                         spoke(first_half + 1),
                         spoke(first_half + 2),
@@ -228,27 +275,56 @@ impl TriangleMesh {
     }
 }
 
-/// The new place of a smooth vertex.
-fn smooth_point<P: Point>(vertex: P, ring: impl Iterator<Item = P>, weights: LoopWeights) -> P {
-    let (valence, sum) = ring.fold((0, P::zero()), |(valence, sum), p| (valence + 1, sum.add_scaled(p, 1.0)));
-    let neighbour = weights.neighbour(valence);
+/// The new points inside a triangle of the grandparent.
+struct Inside<'a, P> {
+    /// On the edges that cut off its corners, moved.
+    on_cuts: &'a mut [P; 3],
+    /// On these edges' halves.
+    on_halves: &'a mut [P; 6],
+    /// Inside the parent's triangles at its corners.
+    in_corners: &'a mut [P; 9],
+    /// Inside the parent's triangle at its centre.
+    in_centre: &'a mut [P; 3],
+}
+
+impl<P: Point> Inside<'_, P> {
+    /// What lies next to corner `k`, from the corner, the middles of the halves there of the edges after and before it, the middles of all
+    /// edges, and those of the edges that cut off the corners.
+    #[inline(always)]
+    fn fill_corner(
+        &mut self,
+        [k, after, before]: [usize; 3],
+        corner: P,
+        [out, back]: [P; 2],
+        middles: &[P; 3],
+        cuts: &[P; 3],
+    ) {
+        let [ahead, behind, cut] = [middles[k], middles[before], cuts[k]];
+        self.on_cuts[k] = vertex_point(cut, [ahead, back, behind, out, cuts[after], cuts[before]]);
+        self.on_halves[2 * k] = edge_point(cut, ahead, out, cuts[after]);
+        self.on_halves[2 * k + 1] = edge_point(cut, behind, back, cuts[before]);
+        self.in_corners[3 * k] = edge_point(out, back, corner, cut);
+        self.in_corners[3 * k + 1] = edge_point(cut, out, ahead, back);
+        self.in_corners[3 * k + 2] = edge_point(back, cut, behind, out);
+        self.in_centre[k] = edge_point(cut, cuts[before], behind, cuts[after]);
+    }
+}
+
+/// The new place of a smooth vertex, of which each neighbour has this weight.
+fn smooth_point<P: Point>(vertex: P, ring: impl ExactSizeIterator<Item = P>, neighbour: f64) -> P {
     #[allow(clippy::cast_precision_loss)]
-    let own = 1.0 - valence as f64 * neighbour;
-    P::zero().add_scaled(vertex, own).add_scaled(sum, neighbour)
+    let own = 1.0 - ring.len() as f64 * neighbour;
+    let sum = ring.fold(P::zero(), |sum, p| sum.add_scaled(p, 1.0));
+    vertex.scaled(own).add_scaled(sum, neighbour)
 }
 
 /// The new place of a smooth vertex with six neighbours, the same for Loop's and Warren's weights.
 #[inline(always)]
 fn vertex_point<P: Point>(vertex: P, ring: [P; 6]) -> P {
     let [a, b, c, d, e, f] = ring;
-    let ring = a
-        .add_scaled(b, 1.0)
-        .add_scaled(c, 1.0)
-        .add_scaled(d, 1.0)
-        .add_scaled(e, 1.0)
-        .add_scaled(f, 1.0)
-        .add_scaled(vertex, 10.0);
-    P::zero().add_scaled(ring, 0.0625)
+    let pairs = [a.add_scaled(b, 1.0), c.add_scaled(d, 1.0), e.add_scaled(f, 1.0)];
+    let ring = pairs[0].add_scaled(pairs[1], 1.0).add_scaled(pairs[2], 1.0);
+    vertex.scaled(0.625).add_scaled(ring, 0.0625)
 }
 
 /// The point on a smooth edge from its ends and the apexes of its triangles.
@@ -256,7 +332,7 @@ fn vertex_point<P: Point>(vertex: P, ring: [P; 6]) -> P {
 fn edge_point<P: Point>(a: P, b: P, c: P, d: P) -> P {
     let ends = a.add_scaled(b, 1.0);
     let apexes = c.add_scaled(d, 1.0);
-    P::zero().add_scaled(apexes.add_scaled(ends, 3.0), 0.125)
+    ends.scaled(0.375).add_scaled(apexes, 0.125)
 }
 
 fn sum_row<P: Point>(points: &[P], row: impl FnOnce(&mut dyn FnMut(u32, f64))) -> P {

@@ -14,11 +14,20 @@ pub trait Point: Copy + Send + Sync + Zeroable {
 
     /// `self + weight * other`.
     fn add_scaled(self, other: Self, weight: f64) -> Self;
+
+    /// `weight * self`.
+    fn scaled(self, weight: f64) -> Self {
+        Self::zero().add_scaled(self, weight)
+    }
 }
 
 impl Point for f64 {
     fn add_scaled(self, other: Self, weight: f64) -> Self {
         self + weight * other
+    }
+
+    fn scaled(self, weight: f64) -> Self {
+        weight * self
     }
 }
 
@@ -26,10 +35,18 @@ impl Point for DVec2 {
     fn add_scaled(self, other: Self, weight: f64) -> Self {
         self + other * weight
     }
+
+    fn scaled(self, weight: f64) -> Self {
+        self * weight
+    }
 }
 
 impl Point for DVec3 {
     fn add_scaled(self, other: Self, weight: f64) -> Self {
         self + other * weight
+    }
+
+    fn scaled(self, weight: f64) -> Self {
+        self * weight
     }
 }

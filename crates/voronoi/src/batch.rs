@@ -1,12 +1,14 @@
 //! Cells as they come from the cutters: each with vertices of its own, named by the generators that meet there.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::convex_cell::ConvexCell;
 use crate::generator::{Generator, VertexKey, vertex_key};
-use crate::near_seeds::NearSeeds;
 use crate::predicate::ExactInput;
+use crate::search::Search;
 
 /// Cells that one task cuts: enough to spread the cost of its buffers, few enough to share the work evenly.
 const BATCH: usize = 256;
@@ -134,27 +136,37 @@ fn coincide(cell: &ConvexCell, seed: u32, v: usize, w: usize, input: ExactInput)
 }
 
 /// Cuts all cells in parallel; cell c of the result's batch b is that of seed `b * BATCH + c`.
-pub(crate) fn cut_cells(input: ExactInput) -> Vec<CellBatch> {
-    let near_seeds = NearSeeds::new(input);
-    in_batches(input.seeds.len(), |seeds| {
+pub(crate) fn cut_cells(search: &mut Search) -> Vec<CellBatch> {
+    in_batches(search, |search, seeds| {
         let mut batch = CellBatch::new();
         let mut cell = ConvexCell::new();
         let mut buffer = Vec::new();
         for seed in seeds {
-            cell.start(seed, input);
-            near_seeds.cut(&mut cell, seed, &mut buffer);
+            let input = search.cut(&mut cell, seed, &mut buffer)?;
             batch.push_cell(seed, &cell, input);
         }
-        batch
+        Some(batch)
     })
 }
 
-/// Runs `cut` over consecutive ranges of seeds in parallel.
-pub(crate) fn in_batches(
-    seed_count: usize,
-    cut: impl Fn(std::ops::Range<u32>) -> CellBatch + Sync,
+/// Runs `cut` over consecutive ranges of seeds in parallel, again with wider search for those that ask for it.
+pub(crate) fn in_batches<'a>(
+    search: &mut Search<'a>,
+    cut: impl Fn(&Search<'a>, Range<u32>) -> Option<CellBatch> + Sync,
 ) -> Vec<CellBatch> {
     let seed_id = |count: usize| u32::try_from(count).expect("seed ids were checked to fit");
+    let seed_count = search.seed_count();
     let starts: Vec<usize> = (0..seed_count).step_by(BATCH).collect();
-    starts.par_iter().map(|start| cut(seed_id(*start)..seed_id(seed_count.min(start + BATCH)))).collect()
+    let mut batches: Vec<Option<CellBatch>> = starts.iter().map(|_| None).collect();
+    loop {
+        batches.par_iter_mut().zip(&starts).filter(|(batch, _)| batch.is_none()).for_each(
+            |(batch, start)| {
+                *batch = cut(search, seed_id(*start)..seed_id(seed_count.min(start + BATCH)));
+            },
+        );
+        if batches.iter().all(Option::is_some) {
+            return batches.into_iter().flatten().collect();
+        }
+        search.widen();
+    }
 }

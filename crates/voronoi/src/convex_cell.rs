@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 
+use crate::Wall;
 use crate::generator::Generator;
 use crate::near_seeds::Cutting;
 use crate::predicate::ExactInput;
@@ -80,37 +81,6 @@ impl ConvexCell {
             cut: Vec::new(),
             hole: Vec::new(),
         }
-    }
-
-    /// Starts anew with the whole domain, a box, as the cell of `seed`.
-    pub(crate) fn start(&mut self, seed: u32, input: ExactInput) {
-        self.seed = seed;
-        self.planes.clear();
-        self.triples.clear();
-        for buffer in [&mut self.x, &mut self.y, &mut self.z, &mut self.errors] {
-            buffer.clear();
-        }
-        self.has_ties = false;
-        let own = input.seeds[seed as usize];
-        for wall in input.domain.walls() {
-            let normal = wall.outward_normal();
-            let offset = normal[wall.axis()] * (input.domain.wall_coordinate(*wall) - own[wall.axis()]);
-            self.planes.push(Plane {
-                generator: Generator::wall(*wall),
-                normal,
-                offset,
-                offset_size: offset.abs(),
-                length: 1.0,
-            });
-        }
-        for corner in 0..8u16 {
-            let upper = [corner & 1, (corner >> 1) & 1, (corner >> 2) & 1];
-            let [a, b, c] = [upper[0], 2 + upper[1], 4 + upper[2]];
-            // Each lower wall turns the orientation of the triple round once.
-            let triple = if upper.iter().sum::<u16>() % 2 == 1 { [a, b, c] } else { [a, c, b] };
-            self.push_vertex(triple, input);
-        }
-        self.update_radius();
     }
 
     /// Fills `self.cut` with the vertices beyond the plane; false where there are none.
@@ -299,6 +269,27 @@ impl ConvexCell {
 }
 
 impl Cutting for ConvexCell {
+    fn start(&mut self, seed: u32, input: ExactInput) {
+        self.seed = seed;
+        self.planes.clear();
+        self.triples.clear();
+        for buffer in [&mut self.x, &mut self.y, &mut self.z, &mut self.errors] {
+            buffer.clear();
+        }
+        self.has_ties = false;
+        for wall in Wall::ALL {
+            self.planes.push(outermost_plane(seed, wall, input));
+        }
+        for corner in 0..8u16 {
+            let upper = [corner & 1, (corner >> 1) & 1, (corner >> 2) & 1];
+            let [a, b, c] = [upper[0], 2 + upper[1], 4 + upper[2]];
+            // Each lower wall turns the orientation of the triple round once.
+            let triple = if upper.iter().sum::<u16>() % 2 == 1 { [a, b, c] } else { [a, c, b] };
+            self.push_vertex(triple, input);
+        }
+        self.update_radius();
+    }
+
     fn security_radius(&self, weight_excess: f64) -> f64 {
         if self.triples.is_empty() {
             return -1.0;
@@ -308,19 +299,34 @@ impl Cutting for ConvexCell {
     }
 
     fn cut_with_bisector(&mut self, other: u32, input: ExactInput) {
-        let normal = input.seeds[other as usize] - input.seeds[self.seed as usize];
-        let squared_length = normal.length_squared();
-        let (own_weight, weight) = (input.weight(self.seed), input.weight(other));
-        let plane = Plane {
-            generator: Generator::seed(other),
-            normal,
-            offset: 0.5 * (squared_length + (own_weight - weight)),
-            offset_size: 0.5 * (squared_length + own_weight.abs() + weight.abs()),
-            length: squared_length.sqrt(),
-        };
+        let plane = bisector(self.seed, other, input);
         if self.find_cut(&plane, input) {
             self.close_hole(plane, input);
             self.update_radius();
         }
     }
+}
+
+fn bisector(seed: u32, other: u32, input: ExactInput) -> Plane {
+    let normal = input.difference(seed, other);
+    let squared_length = normal.length_squared();
+    let (own_weight, weight) = (input.weight(seed), input.weight(other));
+    Plane {
+        generator: Generator::site(other),
+        normal,
+        offset: 0.5 * (squared_length + (own_weight - weight)),
+        offset_size: 0.5 * (squared_length + own_weight.abs() + weight.abs()),
+        length: squared_length.sqrt(),
+    }
+}
+
+/// The plane of a wall, or across a periodic axis the one half a period away.
+fn outermost_plane(seed: u32, wall: Wall, input: ExactInput) -> Plane {
+    let generator = input.outermost(seed, wall);
+    if let Some(image) = generator.as_site() {
+        return bisector(seed, image, input);
+    }
+    let normal = wall.outward_normal();
+    let offset = input.outermost_distance(seed, wall);
+    Plane { generator, normal, offset, offset_size: offset.abs(), length: 1.0 }
 }

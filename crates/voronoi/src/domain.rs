@@ -1,6 +1,6 @@
 use std::fmt;
 
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 
 use crate::VoronoiError;
 
@@ -48,12 +48,13 @@ impl Wall {
     }
 }
 
-/// An axis-parallel box, or a rectangle in the plane z = 0.
+/// An axis-parallel box, or a rectangle in the plane z = 0, that may repeat periodically along some of its axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Domain {
     lower: DVec3,
     upper: DVec3,
     dimension: Dimension,
+    periodic: BVec3,
 }
 
 impl Domain {
@@ -75,16 +76,26 @@ impl Domain {
 
     /// The cube [0, 1]^3.
     pub fn unit_cube() -> Self {
-        Self { lower: DVec3::ZERO, upper: DVec3::ONE, dimension: Dimension::Three }
+        Self { lower: DVec3::ZERO, upper: DVec3::ONE, dimension: Dimension::Three, periodic: BVec3::FALSE }
     }
 
     /// The square [0, 1]^2.
     pub fn unit_square() -> Self {
-        Self { lower: DVec3::ZERO, upper: DVec3::new(1.0, 1.0, 0.0), dimension: Dimension::Two }
+        let upper = DVec3::new(1.0, 1.0, 0.0);
+        Self { lower: DVec3::ZERO, upper, dimension: Dimension::Two, periodic: BVec3::FALSE }
+    }
+
+    /// The same domain, repeating along the given axes: its two walls there are one, and bound nothing.
+    ///
+    /// A rectangle cannot repeat along z, which is ignored.
+    #[must_use]
+    pub fn with_periods(self, axes: BVec3) -> Self {
+        let in_domain = BVec3::new(true, true, self.dimension == Dimension::Three);
+        Self { periodic: axes & in_domain, ..self }
     }
 
     fn checked(lower: DVec3, upper: DVec3, dimension: Dimension) -> Result<Self, VoronoiError> {
-        let domain = Self { lower, upper, dimension };
+        let domain = Self { lower, upper, dimension, periodic: BVec3::FALSE };
         let size = domain.size();
         for axis in 0..domain.axes() {
             let length = size[axis];
@@ -121,9 +132,20 @@ impl Domain {
         (0..self.axes()).map(|axis| size[axis]).product()
     }
 
-    /// The walls that bound the domain: six, or four in the plane.
-    pub fn walls(&self) -> &'static [Wall] {
-        &Wall::ALL[..2 * self.axes()]
+    /// The axes along which the domain repeats.
+    pub fn periodic(&self) -> BVec3 {
+        self.periodic
+    }
+
+    /// Whether the domain repeats along some axis.
+    pub fn is_periodic(&self) -> bool {
+        self.periodic.any()
+    }
+
+    /// The walls that bound the domain: six, or four in the plane, but for those across periodic axes.
+    pub fn walls(&self) -> impl Iterator<Item = Wall> {
+        let periodic = self.periodic;
+        Wall::ALL[..2 * self.axes()].iter().copied().filter(move |wall| !periodic.test(wall.axis()))
     }
 
     /// Coordinate of a wall along its axis.

@@ -1,18 +1,27 @@
 use crate::Wall;
-use crate::tessellation::{CellId, Side};
 
-/// What a cell's plane comes from: a seed (the bisector with it) or a wall of the domain. Seeds sort before walls.
+/// What a cell's plane comes from: a site (the bisector with it) or a wall of the domain. Sites sort before walls.
+///
+/// Sites are the seeds, by number, then the periodic images of seeds. A wall across a periodic axis stands for the plane
+/// half a period away from the cell's own seed; no finished cell has such a plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Generator(u32);
+
+/// A generator, told apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Plane {
+    Site(u32),
+    Wall(Wall),
+}
 
 /// First code of a wall; the six walls take the last codes that 32 bits offer but one, which stays free.
 const FIRST_WALL: u32 = u32::MAX - 7;
 
 impl Generator {
-    /// Number of seeds that can be told from walls.
-    pub(crate) const MAX_SEEDS: usize = FIRST_WALL as usize;
+    /// Number of sites that can be told from walls.
+    pub(crate) const MAX_SITES: usize = FIRST_WALL as usize;
 
-    pub(crate) fn seed(id: u32) -> Self {
+    pub(crate) fn site(id: u32) -> Self {
         debug_assert!(id < FIRST_WALL);
         Self(id)
     }
@@ -21,14 +30,14 @@ impl Generator {
         Self(FIRST_WALL + u32::from(wall.0))
     }
 
-    pub(crate) fn as_seed(self) -> Option<u32> {
+    pub(crate) fn as_site(self) -> Option<u32> {
         (self.0 < FIRST_WALL).then_some(self.0)
     }
 
-    pub(crate) fn side(self) -> Side {
-        match self.as_seed() {
-            Some(id) => Side::Cell(CellId(id)),
-            None => Side::Wall(Wall::ALL[(self.0 - FIRST_WALL) as usize]),
+    pub(crate) fn plane(self) -> Plane {
+        match self.as_site() {
+            Some(id) => Plane::Site(id),
+            None => Plane::Wall(Wall::ALL[(self.0 - FIRST_WALL) as usize]),
         }
     }
 }
@@ -37,7 +46,7 @@ impl Generator {
 pub(crate) type VertexKey = [Generator; 4];
 
 pub(crate) fn vertex_key(seed: u32, planes: [Generator; 3]) -> VertexKey {
-    let mut key = [Generator::seed(seed), planes[0], planes[1], planes[2]];
+    let mut key = [Generator::site(seed), planes[0], planes[1], planes[2]];
     key.sort_unstable();
     key
 }

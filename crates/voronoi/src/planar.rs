@@ -7,39 +7,45 @@ use spade::{DelaunayTriangulation, Point2, Triangulation};
 
 use crate::batch::{CellBatch, in_batches};
 use crate::generator::{Generator, vertex_key};
-use crate::near_seeds::{Cutting, NearSeeds};
+use crate::near_seeds::Cutting;
 use crate::polygon::ConvexPolygon;
 use crate::predicate::ExactInput;
+use crate::search::Search;
 use crate::{Domain, VoronoiError};
 
 type Delaunay = DelaunayTriangulation<Point2<f64>>;
 type Edge<'a> = DirectedEdgeHandle<'a, Point2<f64>, (), (), ()>;
 
-/// Cuts all cells in parallel: with the neighbours in the Delaunay triangulation, or, if there are weights, with all seeds
-/// that are near enough.
-pub(crate) fn cut_polygons(input: ExactInput) -> Result<Vec<CellBatch>, VoronoiError> {
-    if input.weights.is_some() {
-        let near_seeds = NearSeeds::new(input);
-        return Ok(cut_with(input, |polygon, seed| near_seeds.cut(polygon, seed, &mut Vec::new())));
+/// Cuts all cells in parallel: with the neighbours in the Delaunay triangulation, or, if there are weights or periods, with
+/// all sites that are near enough.
+pub(crate) fn cut_polygons(search: &mut Search) -> Result<Vec<CellBatch>, VoronoiError> {
+    let input = search.input();
+    if input.weights.is_some() || input.domain.is_periodic() {
+        return Ok(cut_with(search, |search, polygon, seed| search.cut(polygon, seed, &mut Vec::new())));
     }
     let delaunay = triangulate(input)?;
-    Ok(cut_with(input, |polygon, seed| {
+    Ok(cut_with(search, |search, polygon, seed| {
+        let input = search.input();
+        polygon.start(seed, input);
         for other in sharing_a_circle(&delaunay, seed) {
             polygon.cut_with_bisector(other, input);
         }
+        Some(input)
     }))
 }
 
-fn cut_with(input: ExactInput, cut: impl Fn(&mut ConvexPolygon, u32) + Sync) -> Vec<CellBatch> {
-    in_batches(input.seeds.len(), |seeds| {
+fn cut_with<'a>(
+    search: &mut Search<'a>,
+    cut: impl for<'b> Fn(&'b Search<'a>, &mut ConvexPolygon, u32) -> Option<ExactInput<'b>> + Sync,
+) -> Vec<CellBatch> {
+    in_batches(search, |search, seeds| {
         let mut batch = CellBatch::new();
         let mut polygon = ConvexPolygon::new();
         for seed in seeds {
-            polygon.start(seed, input);
-            cut(&mut polygon, seed);
+            let input = cut(search, &mut polygon, seed)?;
             push_cell(&mut batch, seed, &polygon, input);
         }
-        batch
+        Some(batch)
     })
 }
 

@@ -48,29 +48,6 @@ impl ConvexPolygon {
         Self { seed: 0, lines: Vec::new(), corners: Vec::new(), has_ties: false }
     }
 
-    /// Starts anew with the whole rectangle as the cell of `seed`.
-    pub(crate) fn start(&mut self, seed: u32, input: ExactInput) {
-        self.seed = seed;
-        self.has_ties = false;
-        self.lines.clear();
-        self.corners.clear();
-        let own = input.seeds[seed as usize];
-        // y0, x1, y1, x0: counter-clockwise from the lower left corner.
-        for wall in [2, 1, 3, 0].map(|index| Wall::ALL[index]) {
-            let normal = wall.outward_normal();
-            let offset = normal[wall.axis()] * (input.domain.wall_coordinate(wall) - own[wall.axis()]);
-            self.lines.push(Line {
-                generator: Generator::wall(wall),
-                normal: normal.truncate(),
-                offset,
-                offset_size: offset.abs(),
-            });
-        }
-        for k in 0..4 {
-            self.corners.push(self.intersect(self.lines[(k + 3) % 4], self.lines[k], input));
-        }
-    }
-
     fn is_beyond(&mut self, corner: usize, line: &Line, input: ExactInput) -> bool {
         let Corner { position, error } = self.corners[corner];
         let value = line.normal.dot(position) - line.offset;
@@ -131,6 +108,20 @@ impl ConvexPolygon {
 }
 
 impl Cutting for ConvexPolygon {
+    fn start(&mut self, seed: u32, input: ExactInput) {
+        self.seed = seed;
+        self.has_ties = false;
+        self.lines.clear();
+        self.corners.clear();
+        // y0, x1, y1, x0: counter-clockwise from the lower left corner.
+        for wall in [2, 1, 3, 0].map(|index| Wall::ALL[index]) {
+            self.lines.push(outermost_line(seed, wall, input));
+        }
+        for k in 0..4 {
+            self.corners.push(self.intersect(self.lines[(k + 3) % 4], self.lines[k], input));
+        }
+    }
+
     fn security_radius(&self, weight_excess: f64) -> f64 {
         let reach = |corner: &Corner| corner.position.length() + 2.0 * corner.error;
         let radius = self.corners.iter().map(reach).fold(f64::NEG_INFINITY, f64::max);
@@ -138,15 +129,7 @@ impl Cutting for ConvexPolygon {
     }
 
     fn cut_with_bisector(&mut self, other: u32, input: ExactInput) {
-        let normal = (input.seeds[other as usize] - input.seeds[self.seed as usize]).truncate();
-        let (own_weight, weight) = (input.weight(self.seed), input.weight(other));
-        let squared_length = normal.length_squared();
-        let line = Line {
-            generator: Generator::seed(other),
-            normal,
-            offset: 0.5 * (squared_length + (own_weight - weight)),
-            offset_size: 0.5 * (squared_length + own_weight.abs() + weight.abs()),
-        };
+        let line = bisector(self.seed, other, input);
         let count = self.corners.len();
         let beyond: Vec<bool> = (0..count).map(|k| self.is_beyond(k, &line, input)).collect();
         let Some(first) = (0..count).find(|k| beyond[*k] && !beyond[(k + count - 1) % count]) else {
@@ -167,4 +150,26 @@ impl Cutting for ConvexPolygon {
         self.corners.push(self.intersect(entering, line, input));
         self.lines.push(line);
     }
+}
+
+fn bisector(seed: u32, other: u32, input: ExactInput) -> Line {
+    let normal = input.difference(seed, other).truncate();
+    let squared_length = normal.length_squared();
+    let (own_weight, weight) = (input.weight(seed), input.weight(other));
+    Line {
+        generator: Generator::site(other),
+        normal,
+        offset: 0.5 * (squared_length + (own_weight - weight)),
+        offset_size: 0.5 * (squared_length + own_weight.abs() + weight.abs()),
+    }
+}
+
+/// The line of a wall, or across a periodic axis the one half a period away.
+fn outermost_line(seed: u32, wall: Wall, input: ExactInput) -> Line {
+    let generator = input.outermost(seed, wall);
+    if let Some(image) = generator.as_site() {
+        return bisector(seed, image, input);
+    }
+    let offset = input.outermost_distance(seed, wall);
+    Line { generator, normal: wall.outward_normal().truncate(), offset, offset_size: offset.abs() }
 }

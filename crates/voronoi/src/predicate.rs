@@ -8,17 +8,23 @@
 //!
 //! For four seeds this is the in-sphere determinant, so its sign is the same whichever of the cells asks.
 //!
-//! Ties are broken by simulation of simplicity (Edelsbrunner and Mücke 1990) on the power weights: seed j gets the weight
-//! e_j, infinitesimal, with e_0 >> e_1 >> ... . D changes by e_i - e_j, the expression is linear in the D, and the first seed
-//! whose coefficient is not zero decides. One always exists: the vertex itself moves with the weights in all directions.
+//! Ties are broken by simulation of simplicity (Edelsbrunner and Mücke 1990) on the power weights: each seed j gets an
+//! infinitesimal weight e_j, and e_j >> e_k where j comes before k in the lexicographic order of positions. D changes by
+//! e_i - e_j, the expression is linear in the D, and the first seed whose coefficient is not zero decides. One always
+//! exists: that of the fourth seed is the determinant. Only the order among the seeds involved counts, which neither their
+//! numbering nor a shift changes, so all periodic copies of a decision come out the same (as in CGAL's periodic
+//! triangulations, Caroli and Teillaud 2009).
+//!
+//! A periodic image of a seed is exact, too: the seed moved by whole multiples of the exact difference of two opposite walls.
 
 use glam::DVec3;
 use num_bigint::{BigInt, Sign};
 use num_traits::{Signed, ToPrimitive, Zero};
 
-use crate::Domain;
-use crate::generator::Generator;
-use crate::tessellation::Side;
+use crate::generator::{Generator, Plane};
+use crate::images::{Image, ImageTable};
+use crate::tessellation::Shift;
+use crate::{Domain, Wall};
 
 /// On which side of a plane a vertex lies once ties are broken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,24 +35,96 @@ pub(crate) struct Decision {
     pub(crate) tie: bool,
 }
 
-/// The input that exact decisions are made from.
+/// The input that exact decisions are made from. Sites are the seeds, then the periodic images of seeds.
 #[derive(Clone, Copy)]
 pub(crate) struct ExactInput<'a> {
     pub(crate) domain: &'a Domain,
     pub(crate) seeds: &'a [DVec3],
     /// Power weights, one per seed; all 0 if there are none.
     pub(crate) weights: Option<&'a [f64]>,
+    pub(crate) images: &'a ImageTable,
 }
 
 struct ExactPlane {
     normal: [BigInt; 3],
     doubled_offset: BigInt,
+    is_bisector: bool,
 }
 
 impl ExactInput<'_> {
-    /// Power weight of a seed.
-    pub(crate) fn weight(self, seed: u32) -> f64 {
-        self.weights.map_or(0.0, |weights| weights[seed as usize])
+    /// The seed, and by how many periods it is moved, that a site is the image of.
+    pub(crate) fn image(self, site: u32) -> Image {
+        match (site as usize).checked_sub(self.seeds.len()) {
+            None => Image { seed: site, shift: Shift::NONE },
+            Some(image) => self.images.list()[image],
+        }
+    }
+
+    /// The site that is an image of a seed, if there is one.
+    pub(crate) fn site(self, image: Image) -> Option<u32> {
+        if image.shift == Shift::NONE {
+            return Some(image.seed);
+        }
+        let place = self.images.find(image)?;
+        Some(u32::try_from(self.seeds.len() + place).expect("site ids were checked to fit"))
+    }
+
+    /// Number of sites.
+    pub(crate) fn site_count(self) -> u32 {
+        let count = self.seeds.len() + self.images.list().len();
+        u32::try_from(count).expect("site ids were checked to fit")
+    }
+
+    /// Where a site lies, rounded.
+    pub(crate) fn position(self, site: u32) -> DVec3 {
+        let Image { seed, shift } = self.image(site);
+        self.seeds[seed as usize] + shift.vector(self.domain)
+    }
+
+    /// What bounds the cell of a seed across an axis before any other seed does: a wall, or its own image one period away.
+    pub(crate) fn outermost(self, seed: u32, wall: Wall) -> Generator {
+        if !self.domain.periodic().test(wall.axis()) {
+            return Generator::wall(wall);
+        }
+        let mut shift = [0; 3];
+        shift[wall.axis()] = if wall.is_upper() { 1 } else { -1 };
+        self.site(Image { seed, shift: Shift(shift) }).map_or(Generator::wall(wall), Generator::site)
+    }
+
+    /// Distance of a seed from a wall, across a periodic axis half a period.
+    pub(crate) fn outermost_distance(self, seed: u32, wall: Wall) -> f64 {
+        let axis = wall.axis();
+        if self.domain.periodic().test(axis) {
+            return 0.5 * self.domain.size()[axis];
+        }
+        (self.domain.wall_coordinate(wall) - self.seeds[seed as usize][axis]).abs()
+    }
+
+    /// Whether a site is one of those that a cell begins with: the seed itself or one of its nearest images.
+    pub(crate) fn bounds_from_start(self, seed: u32, site: u32) -> bool {
+        let image = self.image(site);
+        image.seed == seed && image.shift.0.iter().map(|shift| shift.unsigned_abs()).sum::<u8>() <= 1
+    }
+
+    /// Power weight of a site.
+    pub(crate) fn weight(self, site: u32) -> f64 {
+        self.weights.map_or(0.0, |weights| weights[self.image(site).seed as usize])
+    }
+
+    /// The vector from a seed to a site, each coordinate rounded once or twice.
+    pub(crate) fn difference(self, seed: u32, site: u32) -> DVec3 {
+        let own = self.seeds[seed as usize];
+        if let Some(other) = self.seeds.get(site as usize) {
+            return other - own;
+        }
+        let image = self.image(site);
+        let other = self.seeds[image.seed as usize];
+        DVec3::from_array([0, 1, 2].map(|axis| {
+            // Shifts of at most two periods keep the products exact.
+            let shift = f64::from(image.shift.0[axis]);
+            let (lower, upper) = (self.domain.lower()[axis], self.domain.upper()[axis]);
+            accurate_sum([other[axis], -own[axis], shift * upper, -shift * lower])
+        }))
     }
 
     /// Whether plane `cutter` cuts off the vertex of `planes` (in positive orientation) from the cell of `seed`.
@@ -62,16 +140,16 @@ impl ExactInput<'_> {
 
         // Coefficients of D_a, D_b, D_c and D_m.
         let coefficients = [dot(&m.normal, &bc), dot(&m.normal, &ca), dot(&m.normal, &ab), -determinant];
-        let offsets = [&a.doubled_offset, &b.doubled_offset, &c.doubled_offset, &m.doubled_offset];
-        let value: BigInt =
-            coefficients.iter().zip(offsets).map(|(coefficient, offset)| coefficient * offset).sum();
+        let planes = [&a, &b, &c, &m];
+        let value: BigInt = coefficients
+            .iter()
+            .zip(planes)
+            .map(|(coefficient, plane)| coefficient * &plane.doubled_offset)
+            .sum();
         match value.sign() {
             Sign::Plus => Decision { beyond: true, tie: false },
             Sign::Minus => Decision { beyond: false, tie: false },
-            Sign::NoSign => {
-                let generators = [planes[0], planes[1], planes[2], cutter];
-                Decision { beyond: break_tie(seed, &generators, &coefficients), tie: true }
-            }
+            Sign::NoSign => Decision { beyond: break_tie(planes, coefficients), tie: true },
         }
     }
 
@@ -94,58 +172,98 @@ impl ExactInput<'_> {
     /// The smallest exponent such that all coordinates involved are integers times two to it, and all weights integers times
     /// two to twice it.
     fn common_exponent(self, seed: u32, generators: &[Generator]) -> i32 {
-        let smallest = |point: DVec3| {
-            let exponents = point.to_array().map(decompose);
-            exponents.into_iter().filter(|(mantissa, _)| *mantissa != 0).map(|(_, e)| e).min()
+        let of_number = |number: f64| {
+            let (mantissa, exponent) = decompose(number);
+            (mantissa != 0).then_some(exponent)
         };
-        let of_seed = |seed: u32| {
-            let (mantissa, exponent) = decompose(self.weight(seed));
-            let of_weight = (mantissa != 0).then_some(exponent.div_euclid(2));
-            of_weight.into_iter().chain(smallest(self.seeds[seed as usize])).min()
+        let of_point = |point: DVec3| point.to_array().into_iter().filter_map(of_number).min();
+        let of_site = |site: u32| {
+            let image = self.image(site);
+            let of_period = (0..3).filter(|axis| image.shift.0[*axis] != 0).flat_map(|axis| {
+                [self.domain.lower()[axis], self.domain.upper()[axis]].into_iter().filter_map(of_number)
+            });
+            let of_weight = of_number(self.weight(site)).map(|exponent| exponent.div_euclid(2));
+            of_weight.into_iter().chain(of_point(self.seeds[image.seed as usize])).chain(of_period).min()
         };
-        let of_planes = generators.iter().filter_map(|generator| match generator.side() {
-            Side::Cell(cell) => of_seed(cell.0),
-            Side::Wall(wall) => smallest(DVec3::splat(self.domain.wall_coordinate(wall))),
+        let of_wall = |wall: Wall| {
+            let ends = [self.domain.lower()[wall.axis()], self.domain.upper()[wall.axis()]];
+            ends.into_iter().filter_map(of_number).min()
+        };
+        let of_planes = generators.iter().filter_map(|generator| match generator.plane() {
+            Plane::Site(site) => of_site(site),
+            Plane::Wall(wall) => of_wall(wall),
         });
-        of_planes.chain(of_seed(seed)).min().unwrap_or(0)
+        of_planes.chain(of_site(seed)).min().unwrap_or(0)
     }
 
     fn plane(self, seed: u32, generator: Generator, exponent: i32) -> ExactPlane {
         let own = self.seeds[seed as usize];
-        match generator.side() {
-            Side::Cell(cell) => {
-                let other = self.seeds[cell.index()];
-                let normal =
-                    [0, 1, 2].map(|axis| to_integer(other[axis], exponent) - to_integer(own[axis], exponent));
-                let weight = |seed: u32| to_integer(self.weight(seed), 2 * exponent);
-                let doubled_offset = dot(&normal, &normal) + weight(seed) - weight(cell.0);
-                ExactPlane { normal, doubled_offset }
+        let integer = |number: f64| to_integer(number, exponent);
+        let period = |axis: usize| integer(self.domain.upper()[axis]) - integer(self.domain.lower()[axis]);
+        match generator.plane() {
+            Plane::Site(site) => {
+                let image = self.image(site);
+                let other = self.seeds[image.seed as usize];
+                let normal = [0, 1, 2].map(|axis| {
+                    let difference = integer(other[axis]) - integer(own[axis]);
+                    match image.shift.0[axis] {
+                        0 => difference,
+                        shift => difference + period(axis) * shift,
+                    }
+                });
+                let weight = |site: u32| to_integer(self.weight(site), 2 * exponent);
+                let doubled_offset = dot(&normal, &normal) + weight(seed) - weight(site);
+                ExactPlane { normal, doubled_offset, is_bisector: true }
             }
-            Side::Wall(wall) => {
+            Plane::Wall(wall) => {
+                let axis = wall.axis();
                 let direction = if wall.is_upper() { 1 } else { -1 };
                 let mut normal = [BigInt::zero(), BigInt::zero(), BigInt::zero()];
-                normal[wall.axis()] = BigInt::from(direction);
-                let distance = to_integer(self.domain.wall_coordinate(wall), exponent)
-                    - to_integer(own[wall.axis()], exponent);
-                ExactPlane { normal, doubled_offset: distance * (2 * direction) }
+                normal[axis] = BigInt::from(direction);
+                let doubled_offset = if self.domain.periodic().test(axis) {
+                    period(axis)
+                } else {
+                    (integer(self.domain.wall_coordinate(wall)) - integer(own[axis])) * (2 * direction)
+                };
+                ExactPlane { normal, doubled_offset, is_bisector: false }
             }
         }
     }
 }
 
 /// The sign of the expression's change under the symbolic weights.
-fn break_tie(seed: u32, generators: &[Generator; 4], coefficients: &[BigInt; 4]) -> bool {
-    let mut terms: Vec<(u32, BigInt)> = Vec::with_capacity(5);
+fn break_tie(planes: [&ExactPlane; 4], coefficients: [BigInt; 4]) -> bool {
+    let origin = [BigInt::zero(), BigInt::zero(), BigInt::zero()];
+    // The normal of a bisector is the other site's position relative to the seed.
+    let mut terms: Vec<(&[BigInt; 3], BigInt)> = Vec::with_capacity(5);
     let mut own = BigInt::zero();
-    for (generator, coefficient) in generators.iter().zip(coefficients) {
-        if let Some(id) = generator.as_seed() {
-            own += coefficient;
-            terms.push((id, -coefficient));
+    for (plane, coefficient) in planes.into_iter().zip(coefficients) {
+        if plane.is_bisector {
+            own += &coefficient;
+            terms.push((&plane.normal, -coefficient));
         }
     }
-    terms.push((seed, own));
-    terms.sort_unstable_by_key(|(id, _)| *id);
+    terms.push((&origin, own));
+    terms.sort_unstable();
     terms.iter().map(|(_, term)| term).find(|term| !term.is_zero()).is_some_and(Signed::is_positive)
+}
+
+/// A sum good to one or two last places whatever cancels: the partial sums are kept with all their digits
+/// (Shewchuk 1997).
+fn accurate_sum(terms: [f64; 4]) -> f64 {
+    // Numbers whose digits do not overlap, from small to large.
+    let mut parts = [0.0; 4];
+    for (count, term) in terms.into_iter().enumerate() {
+        let mut carry = term;
+        for part in &mut parts[..count] {
+            let sum = carry + *part;
+            let of_part = sum - carry;
+            *part = (carry - (sum - of_part)) + (*part - of_part);
+            carry = sum;
+        }
+        parts[count] = carry;
+    }
+    parts.iter().sum()
 }
 
 fn cross(a: &[BigInt; 3], b: &[BigInt; 3]) -> [BigInt; 3] {
@@ -209,8 +327,9 @@ mod tests {
 
     fn decide(seeds: &[DVec3], seed: u32, planes: [u32; 3], cutter: u32) -> Decision {
         let domain = Domain::unit_cube();
-        let input = ExactInput { domain: &domain, seeds, weights: None };
-        input.decide(seed, planes.map(Generator::seed), Generator::seed(cutter))
+        let images = ImageTable::default();
+        let input = ExactInput { domain: &domain, seeds, weights: None, images: &images };
+        input.decide(seed, planes.map(Generator::site), Generator::site(cutter))
     }
 
     #[test]
@@ -239,22 +358,24 @@ mod tests {
     #[test]
     fn exact_vertex_is_the_circumcentre() {
         let domain = Domain::unit_cube();
+        let images = ImageTable::default();
         let seeds = seeds();
-        let input = ExactInput { domain: &domain, seeds: &seeds, weights: None };
-        let vertex = input.vertex(0, [1, 2, 3].map(Generator::seed));
+        let input = ExactInput { domain: &domain, seeds: &seeds, weights: None, images: &images };
+        let vertex = input.vertex(0, [1, 2, 3].map(Generator::site));
         assert_eq!(vertex, DVec3::splat(0.5));
         let tiny: Vec<DVec3> = seeds.iter().map(|seed| *seed * 1e-200).collect();
-        let input = ExactInput { domain: &domain, seeds: &tiny, weights: None };
-        assert_eq!(input.vertex(0, [1, 2, 3].map(Generator::seed)), DVec3::splat(0.5e-200));
+        let input = ExactInput { domain: &domain, seeds: &tiny, weights: None, images: &images };
+        assert_eq!(input.vertex(0, [1, 2, 3].map(Generator::site)), DVec3::splat(0.5e-200));
     }
 
     #[test]
     fn walls_take_part_in_decisions() {
         let domain = Domain::unit_cube();
+        let images = ImageTable::default();
         let seeds = [DVec3::new(0.25, 0.5, 0.5), DVec3::new(0.75, 0.5, 0.5)];
-        let input = ExactInput { domain: &domain, seeds: &seeds, weights: None };
+        let input = ExactInput { domain: &domain, seeds: &seeds, weights: None, images: &images };
         let walls = [Wall::ALL[1], Wall::ALL[3], Wall::ALL[5]].map(Generator::wall);
-        assert!(input.decide(0, walls, Generator::seed(1)).beyond);
+        assert!(input.decide(0, walls, Generator::site(1)).beyond);
         assert_eq!(input.vertex(0, walls), DVec3::new(0.75, 0.5, 0.5));
     }
 }

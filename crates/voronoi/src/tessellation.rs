@@ -1,10 +1,13 @@
+use std::ops::{Add, Sub};
+
 use glam::DVec3;
 
 use crate::batch::cut_cells;
 use crate::generator::Generator;
 use crate::measure::{CellMeasure, cell_measures};
+use crate::periodic_weld::weld_periodic;
 use crate::planar::cut_polygons;
-use crate::predicate::ExactInput;
+use crate::search::Search;
 use crate::weld::weld;
 use crate::{Dimension, Domain, VoronoiError, Wall};
 
@@ -36,11 +39,54 @@ id!(
     FaceId
 );
 
+/// Whole periods of the domain along x, y and z.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Shift(pub [i8; 3]);
+
+impl Shift {
+    /// No period at all.
+    pub const NONE: Self = Self([0; 3]);
+
+    /// The shift as a length.
+    pub fn vector(self, domain: &Domain) -> DVec3 {
+        DVec3::from_array(self.0.map(f64::from)) * domain.size()
+    }
+}
+
+impl Add for Shift {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self([0, 1, 2].map(|axis| self.0[axis] + other.0[axis]))
+    }
+}
+
+impl Sub for Shift {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self([0, 1, 2].map(|axis| self.0[axis] - other.0[axis]))
+    }
+}
+
+/// A vertex, edge or face that is another one moved by whole periods: `secondary = primary + shift`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PeriodicPair<Id> {
+    /// The moved one.
+    pub secondary: Id,
+    /// The one that stands for all of its kind.
+    pub primary: Id,
+    /// How far the secondary is from the primary.
+    pub shift: Shift,
+}
+
 /// What lies on one side of a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Side {
     /// A cell.
     Cell(CellId),
+    /// A cell of a periodic domain, moved by whole periods from where it stands.
+    Image(CellId, Shift),
     /// The outside of the domain, beyond a wall.
     Wall(Wall),
 }
@@ -48,6 +94,12 @@ pub enum Side {
 /// The cells of all seeds as one cell complex: shared vertices once, shared faces once.
 ///
 /// In three dimensions a face is a convex polygon. In the plane it is the edge between two cells, with two corners.
+///
+/// In a periodic domain every cell is whole: it stands around its seed and may stick out of the domain. A face between a
+/// cell and a moved one then comes twice, once at each of the two cells, and so do vertices and edges, once at each place
+/// where cells meet there. One of them is the primary, the others are its secondaries and listed with the shift between
+/// them ([`Self::periodic_faces`], [`Self::periodic_vertices`], [`Self::periodic_edges`]). Primaries alone are the complex
+/// of the periodic domain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tessellation {
     pub(crate) domain: Domain,
@@ -58,6 +110,8 @@ pub struct Tessellation {
     pub(crate) face_corners: Vec<VertexId>,
     pub(crate) cell_starts: Vec<usize>,
     pub(crate) cell_faces: Vec<FaceId>,
+    pub(crate) periodic_vertices: Vec<PeriodicPair<VertexId>>,
+    pub(crate) periodic_faces: Vec<PeriodicPair<FaceId>>,
 }
 
 impl Tessellation {
@@ -68,7 +122,7 @@ impl Tessellation {
     /// # Errors
     /// [`VoronoiError`] names the first seed that is not finite, outside the domain or a duplicate.
     pub fn new(domain: &Domain, seeds: &[DVec3]) -> Result<Self, VoronoiError> {
-        Self::cut(ExactInput { domain, seeds, weights: None })
+        Self::cut(domain, seeds, None)
     }
 
     /// Cuts the domain into the power (Laguerre) cells of the seeds: a point belongs to the seed s with the smallest
@@ -86,17 +140,26 @@ impl Tessellation {
         if let Some((seed, weight)) = weights.iter().enumerate().find(|(_, weight)| !weight.is_finite()) {
             return Err(VoronoiError::BadWeight { seed, weight: *weight });
         }
-        Self::cut(ExactInput { domain, seeds, weights: Some(weights) })
+        Self::cut(domain, seeds, Some(weights))
     }
 
-    fn cut(input: ExactInput) -> Result<Self, VoronoiError> {
-        let ExactInput { domain, seeds, .. } = input;
+    fn cut(domain: &Domain, seeds: &[DVec3], weights: Option<&[f64]>) -> Result<Self, VoronoiError> {
         check_seeds(domain, seeds)?;
+        let mut search = Search::new(domain, seeds, weights);
         let batches = match domain.dimension() {
-            Dimension::Three => cut_cells(input),
-            Dimension::Two => cut_polygons(input)?,
+            Dimension::Three => cut_cells(&mut search),
+            Dimension::Two => cut_polygons(&mut search)?,
         };
-        Ok(weld(input, &batches))
+        let input = search.input();
+        Ok(if domain.is_periodic() { weld_periodic(input, &batches) } else { weld(input, &batches) })
+    }
+
+    pub(crate) fn push_face(&mut self, sides: [Side; 2], corners: impl Iterator<Item = VertexId>) -> FaceId {
+        let face = FaceId(u32::try_from(self.face_count()).expect("face ids fit 32 bits"));
+        self.face_sides.push(sides);
+        self.face_corners.extend(corners);
+        self.face_starts.push(self.face_corners.len());
+        face
     }
 
     /// The domain that is divided up.
@@ -129,7 +192,7 @@ impl Tessellation {
         (0..u32::try_from(self.face_count()).expect("face ids fit 32 bits")).map(FaceId)
     }
 
-    /// The two sides of a face: a cell first, then a cell of greater number or a wall.
+    /// The two sides of a face: a cell first, then a cell of greater number, any moved cell or a wall.
     pub fn face_sides(&self, face: FaceId) -> [Side; 2] {
         self.face_sides[face.index()]
     }
@@ -152,7 +215,7 @@ impl Tessellation {
         cells.filter(|cell| self.cell_faces(*cell).is_empty()).collect()
     }
 
-    /// What lies beyond the faces of a cell, sorted: other cells by number, then walls.
+    /// What lies beyond the faces of a cell, sorted: cells by number, then moved cells, then walls.
     pub fn neighbors(&self, cell: CellId) -> Vec<Side> {
         let own = Side::Cell(cell);
         let across = |face: &FaceId| {
@@ -164,9 +227,50 @@ impl Tessellation {
         sides
     }
 
+    /// The vertices that are others moved by whole periods; none unless the domain is periodic. Secondaries have the last
+    /// ids, in order, and stand at the primary's position plus [`Shift::vector`].
+    pub fn periodic_vertices(&self) -> &[PeriodicPair<VertexId>] {
+        &self.periodic_vertices
+    }
+
+    /// The faces that are others moved by whole periods; none unless the domain is periodic. Secondaries have the last ids,
+    /// in order.
+    ///
+    /// As each face's first side is a cell, a secondary is turned round: its corner k is the moved corner n - 1 - k of its
+    /// primary, with n corners.
+    pub fn periodic_faces(&self) -> &[PeriodicPair<FaceId>] {
+        &self.periodic_faces
+    }
+
+    /// Of the given edges, those that are others moved by whole periods, in order.
+    pub fn periodic_edges(&self, edges: &Edges) -> Vec<PeriodicPair<u32>> {
+        edges.periodic_pairs(&self.periodic_vertices)
+    }
+
     /// Volume, surface and counts of every cell.
     pub fn cell_measures(&self) -> Vec<CellMeasure> {
         cell_measures(self)
+    }
+
+    /// The centroid of every cell, in the domain: where a step of Lloyd's algorithm moves the seeds. That of an empty cell is
+    /// its seed.
+    ///
+    /// Seeds in the centroids of their cells, again and again, even the cells out: each step lowers the sum over all cells
+    /// of the integral of `|x - s|^2 - w`.
+    pub fn centroids(&self) -> Vec<DVec3> {
+        let (lower, upper) = (self.domain.lower(), self.domain.upper());
+        let measures = self.cell_measures();
+        let inside = measures.iter().map(|cell| {
+            // Across periodic walls the cell of a seed inside may have its centroid outside.
+            let below = self.domain.periodic() & cell.centroid.cmplt(lower);
+            let above = self.domain.periodic() & cell.centroid.cmpge(upper);
+            let period = self.domain.size();
+            let wrapped = cell.centroid + DVec3::select(below, period, DVec3::ZERO)
+                - DVec3::select(above, period, DVec3::ZERO);
+            // Rounding may put the centroid of a very thin cell a last place outside.
+            wrapped.clamp(lower, upper)
+        });
+        inside.collect()
     }
 
     /// The edges between corners of the faces (three dimensions), or the faces' own (in the plane).
@@ -206,13 +310,45 @@ impl Edges {
         }
         edges
     }
+
+    fn periodic_pairs(&self, vertices: &[PeriodicPair<VertexId>]) -> Vec<PeriodicPair<u32>> {
+        let Some(first_secondary) = vertices.first().map(|pair| pair.secondary) else { return Vec::new() };
+        let primary = |vertex: VertexId| match vertex.0.checked_sub(first_secondary.0) {
+            None => (vertex, Shift::NONE),
+            Some(place) => (vertices[place as usize].primary, vertices[place as usize].shift),
+        };
+        // An edge of the torus is a primary vertex, another one, and the shift of the other as seen from the first.
+        let mut places: Vec<_> = (0u32..)
+            .zip(&self.ends)
+            .map(|(edge, ends)| {
+                let [(a, at_a), (b, at_b)] = ends.map(primary);
+                let (name, shift) = ((a, b, at_b - at_a), at_a).min(((b, a, at_a - at_b), at_b));
+                (name, edge, shift)
+            })
+            .collect();
+        places.sort_unstable();
+        let same = places.chunk_by(|left, right| left.0 == right.0);
+        let mut pairs: Vec<PeriodicPair<u32>> = same
+            .flat_map(|same| {
+                let (_, primary, at_primary) = same[0];
+                let pair = move |&(_, secondary, shift): &_| PeriodicPair {
+                    secondary,
+                    primary,
+                    shift: shift - at_primary,
+                };
+                same[1..].iter().map(pair)
+            })
+            .collect();
+        pairs.sort_unstable_by_key(|pair| pair.secondary);
+        pairs
+    }
 }
 
 fn check_seeds(domain: &Domain, seeds: &[DVec3]) -> Result<(), VoronoiError> {
     if seeds.is_empty() {
         return Err(VoronoiError::NoSeeds);
     }
-    if seeds.len() > Generator::MAX_SEEDS {
+    if seeds.len() > Generator::MAX_SITES {
         return Err(VoronoiError::TooManySeeds { count: seeds.len() });
     }
     for (seed, &position) in seeds.iter().enumerate() {
@@ -224,8 +360,11 @@ fn check_seeds(domain: &Domain, seeds: &[DVec3]) -> Result<(), VoronoiError> {
         }
     }
     let mut order: Vec<usize> = (0..seeds.len()).collect();
-    // Adding zero makes -0 and 0 the same place.
-    let key = |seed: usize| (seeds[seed] + DVec3::ZERO).to_array();
+    // Adding zero makes -0 and 0 the same place, and periodic walls are one.
+    let key = |seed: usize| {
+        let is_at_end = domain.periodic() & seeds[seed].cmpeq(domain.upper());
+        (DVec3::select(is_at_end, domain.lower(), seeds[seed]) + DVec3::ZERO).to_array()
+    };
     let compare = |a: &usize, b: &usize| {
         let (left, right) = (key(*a), key(*b));
         let by_axis = |axis: usize| left[axis].total_cmp(&right[axis]);

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::batch::{CellBatch, CellView};
 use crate::flat_cells::remove_flat_cells;
-use crate::generator::Generator;
+use crate::generator::{Generator, Plane};
 use crate::predicate::ExactInput;
 use crate::tessellation::{CellId, FaceId, Side, Tessellation, VertexId};
 use crate::{Dimension, Domain};
@@ -42,13 +42,13 @@ impl<'a> Cells<'a> {
     fn owned(&self, cell: usize) -> (CellView<'a>, usize) {
         let view = self.cell(cell);
         let own = u32::try_from(cell).expect("cell ids fit 32 bits");
-        let first = view.keys.partition_point(|key| key[0] < Generator::seed(own));
+        let first = view.keys.partition_point(|key| key[0] < Generator::site(own));
         (view, first)
     }
 
     /// Number of the vertex with the given key.
     fn vertex(&self, key: &[Generator; 4]) -> u32 {
-        let owner = key[0].as_seed().expect("every vertex belongs to a cell") as usize;
+        let owner = key[0].as_site().expect("every vertex belongs to a cell") as usize;
         let (view, first) = self.owned(owner);
         let place = view.keys[first..].binary_search(key);
         let place = place.expect("exact decisions give every cell the same vertices");
@@ -103,11 +103,11 @@ pub(crate) fn weld(input: ExactInput, batches: &[CellBatch]) -> Tessellation {
         face_corners: Vec::new(),
         cell_starts: Vec::new(),
         cell_faces: Vec::new(),
+        periodic_vertices: Vec::new(),
+        periodic_faces: Vec::new(),
     };
     for face in faces.into_iter().flatten() {
-        tessellation.face_sides.push(face.sides);
-        tessellation.face_corners.extend(face.corners);
-        tessellation.face_starts.push(tessellation.face_corners.len());
+        tessellation.push_face(face.sides, face.corners.into_iter());
     }
     put_vertices_on_walls(&mut tessellation);
     list_faces_of_cells(&mut tessellation);
@@ -131,7 +131,7 @@ fn owned_faces(
         Dimension::Three => 3,
     };
     let mut faces = Vec::new();
-    for (generator, corners) in view.faces().filter(|(generator, _)| *generator > Generator::seed(own)) {
+    for (generator, corners) in view.faces().filter(|(generator, _)| *generator > Generator::site(own)) {
         let id = |corner: &u32| vertex_ids[numbers[*corner as usize] as usize];
         let mut corners: Vec<VertexId> = corners.iter().map(id).collect();
         corners.dedup();
@@ -139,7 +139,7 @@ fn owned_faces(
             corners.pop();
         }
         if corners.len() >= fewest_corners {
-            faces.push(LooseFace { sides: [Side::Cell(CellId(own)), generator.side()], corners });
+            faces.push(LooseFace { sides: [Side::Cell(CellId(own)), side(generator)], corners });
         }
     }
     faces
@@ -184,7 +184,7 @@ fn root(parents: &mut [u32], mut v: u32) -> u32 {
 }
 
 /// Rounding may leave a vertex of a wall's face a last place beside the wall: it gets the wall's own coordinate.
-fn put_vertices_on_walls(tessellation: &mut Tessellation) {
+pub(crate) fn put_vertices_on_walls(tessellation: &mut Tessellation) {
     for face in 0..tessellation.face_sides.len() {
         if let Side::Wall(wall) = tessellation.face_sides[face][1] {
             let corners = tessellation.face_starts[face]..tessellation.face_starts[face + 1];
@@ -196,11 +196,11 @@ fn put_vertices_on_walls(tessellation: &mut Tessellation) {
     }
 }
 
-fn list_faces_of_cells(tessellation: &mut Tessellation) {
+pub(crate) fn list_faces_of_cells(tessellation: &mut Tessellation) {
     let cells_of = |sides: &[Side; 2]| {
         sides.map(|side| match side {
             Side::Cell(cell) => Some(cell.index()),
-            Side::Wall(_) => None,
+            Side::Image(..) | Side::Wall(_) => None,
         })
     };
     let mut starts = vec![0; tessellation.seeds.len() + 1];
@@ -220,4 +220,11 @@ fn list_faces_of_cells(tessellation: &mut Tessellation) {
     }
     tessellation.cell_starts = starts;
     tessellation.cell_faces = cell_faces;
+}
+
+fn side(generator: Generator) -> Side {
+    match generator.plane() {
+        Plane::Site(seed) => Side::Cell(CellId(seed)),
+        Plane::Wall(wall) => Side::Wall(wall),
+    }
 }

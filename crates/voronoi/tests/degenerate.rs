@@ -2,35 +2,11 @@
 
 mod common;
 
-use common::{assert_complex, random_seeds, tessellate};
+use common::{
+    BODY_CENTRED, FACE_CENTRED, SIMPLE_CUBIC, assert_complex, jittered, lattice, random_seeds, tessellate,
+};
 use glam::DVec3;
 use voronoi::{Domain, Side, Tessellation, VoronoiError};
-
-/// Centres of the n x n x n cubes that fill the unit cube, and `offsets` from there in units of their edge.
-fn lattice(n: u32, offsets: &[DVec3]) -> Vec<DVec3> {
-    let mut seeds = Vec::new();
-    for (x, y, z) in (0..n).flat_map(|x| (0..n).flat_map(move |y| (0..n).map(move |z| (x, y, z)))) {
-        for offset in offsets {
-            let corner = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
-            seeds.push((corner + *offset) / f64::from(n));
-        }
-    }
-    seeds
-}
-
-fn jittered(seeds: &[DVec3], size: f64) -> Vec<DVec3> {
-    let noise = random_seeds(seeds.len(), 5);
-    seeds.iter().zip(noise).map(|(seed, noise)| *seed + (noise - 0.5) * size).collect()
-}
-
-const SIMPLE_CUBIC: [DVec3; 1] = [DVec3::splat(0.5)];
-const BODY_CENTRED: [DVec3; 2] = [DVec3::splat(0.25), DVec3::splat(0.75)];
-const FACE_CENTRED: [DVec3; 4] = [
-    DVec3::splat(0.25),
-    DVec3::new(0.25, 0.75, 0.75),
-    DVec3::new(0.75, 0.25, 0.75),
-    DVec3::new(0.75, 0.75, 0.25),
-];
 
 /// Face and vertex counts of the cell that holds the centre of the cube's inner part.
 fn inner_counts(tessellation: &Tessellation, near: DVec3) -> (usize, usize) {

@@ -1,11 +1,13 @@
 //! What several test files need: random seeds, and the check that a tessellation is a cell complex.
 
+#![allow(dead_code, reason = "each test file uses its share")]
+
 use std::collections::HashMap;
 
 use glam::DVec3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use voronoi::{Dimension, Domain, Side, Tessellation, VertexId};
+use voronoi::{Dimension, Domain, PeriodicPair, Shift, Side, Tessellation, VertexId};
 
 /// Uniform random seeds in the unit cube.
 pub fn random_seeds(count: usize, random_seed: u64) -> Vec<DVec3> {
@@ -14,8 +16,8 @@ pub fn random_seeds(count: usize, random_seed: u64) -> Vec<DVec3> {
     (0..count).map(|_| DVec3::new(fraction(), fraction(), fraction())).collect()
 }
 
-/// Volumes sum to the domain, only cells without faces are empty, the Euler number is that of a box, and each cell is a
-/// closed polyhedron.
+/// Volumes sum to the domain, only cells without faces are empty, the Euler number is that of a box (of a torus where the
+/// domain is periodic), each cell is a closed polyhedron, and periodic copies match.
 pub fn assert_complex(tessellation: &Tessellation) {
     let measures = tessellation.cell_measures();
     let volumes: Vec<f64> = measures.iter().map(|cell| cell.volume).collect();
@@ -23,14 +25,14 @@ pub fn assert_complex(tessellation: &Tessellation) {
     let cell_count = tessellation.cell_count() - tessellation.empty_cells().len();
     let (sum, whole) = (volumes.iter().sum::<f64>(), tessellation.domain().measure());
     assert!((sum - whole).abs() <= 1e-12 * whole, "volumes sum to {sum}, not {whole}");
+    assert_copies_match(tessellation);
+    let euler_number = usize::from(!tessellation.domain().is_periodic());
+    let counts = complex_counts(tessellation);
     if tessellation.domain().dimension() == Dimension::Two {
-        let (vertices, edges) = (tessellation.vertices().len(), tessellation.face_count());
-        assert_eq!(vertices + cell_count, edges + 1, "Euler number in the plane");
+        assert_eq!(counts.vertices + cell_count, counts.faces + euler_number, "Euler number in the plane");
         return;
     }
-    let edge_count = tessellation.edges().ends.len();
-    let even = tessellation.vertices().len() + tessellation.face_count();
-    assert_eq!(even, edge_count + cell_count + 1, "Euler number of a box");
+    assert_eq!(counts.vertices + counts.faces, counts.edges + cell_count + euler_number, "Euler number");
     let mut walks: HashMap<(Side, VertexId, VertexId), i32> = HashMap::new();
     for face in tessellation.faces() {
         let corners = tessellation.face_corners(face);
@@ -47,6 +49,89 @@ pub fn assert_complex(tessellation: &Tessellation) {
         }
     }
 }
+
+/// Numbers of vertices, edges and faces, periodic copies not counted.
+pub struct ComplexCounts {
+    pub vertices: usize,
+    pub edges: usize,
+    pub faces: usize,
+}
+
+pub fn complex_counts(tessellation: &Tessellation) -> ComplexCounts {
+    let edges = tessellation.edges();
+    ComplexCounts {
+        vertices: tessellation.vertices().len() - tessellation.periodic_vertices().len(),
+        edges: edges.ends.len() - tessellation.periodic_edges(&edges).len(),
+        faces: tessellation.face_count() - tessellation.periodic_faces().len(),
+    }
+}
+
+/// Secondaries stand at their primaries plus the shift, bit for bit, and are named by both of their cells.
+fn assert_copies_match(tessellation: &Tessellation) {
+    let domain = tessellation.domain();
+    let mut place: Vec<(VertexId, Shift)> =
+        (0u32..).take(tessellation.vertices().len()).map(|vertex| (VertexId(vertex), Shift::NONE)).collect();
+    for &PeriodicPair { secondary, primary, shift } in tessellation.periodic_vertices() {
+        let moved = tessellation.vertices()[primary.index()] + shift.vector(domain);
+        assert_eq!(place[primary.index()], (primary, Shift::NONE), "a primary is no secondary");
+        assert!(shift != Shift::NONE);
+        place[secondary.index()] = (primary, shift);
+        for axis in 0..3 {
+            let on_wall = !domain.periodic().test(axis);
+            assert!(on_wall || tessellation.vertices()[secondary.index()][axis] == moved[axis]);
+        }
+    }
+    let images =
+        tessellation.faces().filter(|face| matches!(tessellation.face_sides(*face)[1], Side::Image(..)));
+    assert_eq!(images.count(), 2 * tessellation.periodic_faces().len());
+    for &PeriodicPair { secondary, primary, shift } in tessellation.periodic_faces() {
+        let [Side::Cell(first), Side::Image(second, to_second)] = tessellation.face_sides(primary) else {
+            panic!("a primary face with a copy has a moved cell beyond it")
+        };
+        let back = Shift::NONE - to_second;
+        assert_eq!(shift, back);
+        assert_eq!(tessellation.face_sides(secondary), [Side::Cell(second), Side::Image(first, back)]);
+        let moved = tessellation.face_corners(primary).iter().rev().map(|corner| {
+            let (vertex, at) = place[corner.index()];
+            (vertex, at + shift)
+        });
+        let corners = tessellation.face_corners(secondary).iter().map(|corner| place[corner.index()]);
+        assert!(corners.eq(moved), "{secondary:?} is not the moved {primary:?}");
+    }
+    let edges = tessellation.edges();
+    for PeriodicPair { secondary, primary, shift } in tessellation.periodic_edges(&edges) {
+        let ends = |edge: u32| edges.ends[edge as usize].map(|end| place[end.index()]);
+        let moved = ends(primary).map(|(vertex, at)| (vertex, at + shift));
+        let [a, b] = ends(secondary);
+        assert!(moved == [a, b] || moved == [b, a], "edge {secondary} is not the moved {primary}");
+    }
+}
+
+/// Centres of the n x n x n cubes that fill the unit cube, and `offsets` from there in units of their edge.
+pub fn lattice(n: u32, offsets: &[DVec3]) -> Vec<DVec3> {
+    let mut seeds = Vec::new();
+    for (x, y, z) in (0..n).flat_map(|x| (0..n).flat_map(move |y| (0..n).map(move |z| (x, y, z)))) {
+        for offset in offsets {
+            let corner = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
+            seeds.push((corner + *offset) / f64::from(n));
+        }
+    }
+    seeds
+}
+
+pub fn jittered(seeds: &[DVec3], size: f64) -> Vec<DVec3> {
+    let noise = random_seeds(seeds.len(), 5);
+    seeds.iter().zip(noise).map(|(seed, noise)| *seed + (noise - 0.5) * size).collect()
+}
+
+pub const SIMPLE_CUBIC: [DVec3; 1] = [DVec3::splat(0.5)];
+pub const BODY_CENTRED: [DVec3; 2] = [DVec3::splat(0.25), DVec3::splat(0.75)];
+pub const FACE_CENTRED: [DVec3; 4] = [
+    DVec3::splat(0.25),
+    DVec3::new(0.25, 0.75, 0.75),
+    DVec3::new(0.75, 0.25, 0.75),
+    DVec3::new(0.75, 0.75, 0.25),
+];
 
 pub fn tessellate(seeds: &[DVec3]) -> Tessellation {
     Tessellation::new(&Domain::unit_cube(), seeds).expect("valid seeds")

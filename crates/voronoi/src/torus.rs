@@ -1,0 +1,166 @@
+//! The faces of a periodic tessellation, each once.
+
+use std::collections::HashMap;
+
+use crate::images::Image;
+use crate::tessellation::Shift;
+use crate::{Dimension, Wall};
+
+/// A vertex moved by whole periods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct MovedVertex {
+    pub(crate) vertex: u32,
+    pub(crate) shift: Shift,
+}
+
+/// What lies on one side of a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum FaceEnd {
+    Cell(Image),
+    Wall(Wall),
+}
+
+impl FaceEnd {
+    fn moved(self, shift: Shift) -> Self {
+        match self {
+            Self::Cell(image) => Self::Cell(Image { shift: image.shift + shift, ..image }),
+            Self::Wall(wall) => Self::Wall(wall),
+        }
+    }
+
+    fn shift(self) -> Shift {
+        match self {
+            Self::Cell(image) => image.shift,
+            Self::Wall(_) => Shift::NONE,
+        }
+    }
+
+    fn is(self, cell: u32) -> bool {
+        matches!(self, Self::Cell(image) if image.seed == cell)
+    }
+}
+
+/// Faces in flat arrays. The first end is a cell that is not moved; the second is a greater cell, moved or not, the same
+/// cell moved, or a wall.
+pub(crate) struct TorusFaces {
+    fewest_corners: usize,
+    ends: Vec<[FaceEnd; 2]>,
+    starts: Vec<usize>,
+    corners: Vec<MovedVertex>,
+}
+
+impl TorusFaces {
+    pub(crate) fn new(dimension: Dimension) -> Self {
+        let fewest_corners = match dimension {
+            Dimension::Two => 2,
+            Dimension::Three => 3,
+        };
+        Self { fewest_corners, ends: Vec::new(), starts: vec![0], corners: Vec::new() }
+    }
+
+    pub(crate) fn concatenated(dimension: Dimension, parts: Vec<Self>) -> Self {
+        let mut all = Self::new(dimension);
+        for part in parts {
+            let before = all.corners.len();
+            all.ends.extend(part.ends);
+            all.starts.extend(part.starts[1..].iter().map(|start| before + start));
+            all.corners.extend(part.corners);
+        }
+        all
+    }
+
+    /// Adds a face, unless it has shrunk to a line or a point.
+    pub(crate) fn push(&mut self, ends: [FaceEnd; 2], corners: impl Iterator<Item = MovedVertex>) {
+        let first = self.corners.len();
+        for corner in corners {
+            if self.corners.len() == first || self.corners[self.corners.len() - 1] != corner {
+                self.corners.push(corner);
+            }
+        }
+        if self.corners.len() > first + 1 && self.corners[self.corners.len() - 1] == self.corners[first] {
+            self.corners.pop();
+        }
+        if self.corners.len() - first < self.fewest_corners {
+            self.corners.truncate(first);
+            return;
+        }
+        self.ends.push(ends);
+        self.starts.push(self.corners.len());
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = ([FaceEnd; 2], &[MovedVertex])> {
+        let corners = self.starts.windows(2).map(|range| &self.corners[range[0]..range[1]]);
+        self.ends.iter().copied().zip(corners)
+    }
+
+    /// Takes cells out that have two faces only, so that the cells beyond share one: see `flat_cells`.
+    pub(crate) fn remove_flat_cells(&mut self, cell_count: usize) {
+        let mut face_counts = vec![0u32; cell_count];
+        for end in self.ends.iter().flatten() {
+            if let FaceEnd::Cell(image) = end {
+                face_counts[image.seed as usize] += 1;
+            }
+        }
+        let fewest_faces = if self.fewest_corners == 2 { 3 } else { 4 };
+        let is_flat = |end: &FaceEnd| matches!(end, FaceEnd::Cell(image) if face_counts[image.seed as usize] < fewest_faces);
+        let mut faces_of: HashMap<u32, Vec<usize>> = HashMap::new();
+        for (face, ends) in self.ends.iter().enumerate() {
+            for end in ends.iter().filter(|end| is_flat(end)) {
+                if let FaceEnd::Cell(image) = end {
+                    faces_of.entry(image.seed).or_default().push(face);
+                }
+            }
+        }
+        let mut flat: Vec<u32> = faces_of.keys().copied().collect();
+        flat.sort_unstable();
+        let mut is_dropped = vec![false; self.ends.len()];
+        for cell in flat {
+            let &[kept, dropped] = &faces_of[&cell][..] else {
+                unreachable!("what a flat cell has beside its two faces has shrunk to lines")
+            };
+            let [here, there] = [kept, dropped].map(|face| usize::from(self.ends[face][1].is(cell)));
+            let shift = self.ends[kept][here].shift() - self.ends[dropped][there].shift();
+            let beyond = self.ends[dropped][1 - there];
+            self.ends[kept][here] = beyond.moved(shift);
+            is_dropped[dropped] = true;
+            if let FaceEnd::Cell(image) = beyond
+                && let Some(faces) = faces_of.get_mut(&image.seed)
+            {
+                faces.iter_mut().filter(|face| **face == dropped).for_each(|face| *face = kept);
+            }
+        }
+        if faces_of.is_empty() {
+            return;
+        }
+        let mut rest = Self {
+            fewest_corners: self.fewest_corners,
+            ends: Vec::new(),
+            starts: vec![0],
+            corners: Vec::new(),
+        };
+        for (face, (ends, corners)) in self.iter().enumerate() {
+            if !is_dropped[face] {
+                let (ends, back, is_turned) = in_order(ends);
+                let moved = |corner: &MovedVertex| MovedVertex { shift: corner.shift + back, ..*corner };
+                if is_turned {
+                    rest.push(ends, corners.iter().rev().map(moved));
+                } else {
+                    rest.push(ends, corners.iter().map(moved));
+                }
+            }
+        }
+        *self = rest;
+    }
+}
+
+/// The ends of a face in the order of [`TorusFaces`], by how much they were moved, and whether they changed places.
+fn in_order(ends: [FaceEnd; 2]) -> ([FaceEnd; 2], Shift, bool) {
+    let [straight, turned] = [ends, [ends[1], ends[0]]].map(|ends| {
+        let back = Shift::NONE - ends[0].shift();
+        (ends.map(|end| end.moved(back)), back)
+    });
+    let is_turned =
+        turned.0[0] < straight.0[0] || (turned.0[0] == straight.0[0] && turned.0[1] > straight.0[1]);
+    let (ends, back) = if is_turned { turned } else { straight };
+    (ends, back, is_turned)
+}
