@@ -25,7 +25,7 @@ pub(crate) fn write(
             out,
             "constraint {}\nformula: {axis} = {:?}\n",
             wall.number() + 1,
-            domain.wall_coordinate(*wall)
+            domain.wall_coordinate(wall)
         )?;
     }
     writeln!(out, "vertices")?;

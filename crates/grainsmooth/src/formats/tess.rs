@@ -81,7 +81,8 @@ impl Tess {
     pub fn new(cells: &Tessellated) -> Self {
         let tessellation = &cells.tessellation;
         let domain = tessellation.domain();
-        let mut walls = vec![Vec::new(); domain.walls().len()];
+        let wall_count = if domain.dimension() == Dimension::Two { 4 } else { 6 };
+        let mut walls = vec![Vec::new(); wall_count];
         for face in tessellation.faces() {
             if let Side::Wall(wall) = tessellation.face_sides(face)[1] {
                 walls[wall.index()].push(face.0);
