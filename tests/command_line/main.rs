@@ -5,6 +5,7 @@ mod bad_arguments;
 mod bad_outputs;
 mod bad_seed_files;
 mod good_runs;
+mod periodic;
 mod seed_sources;
 mod surface_file;
 mod weights_and_tables;

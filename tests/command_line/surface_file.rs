@@ -54,6 +54,14 @@ impl SurfaceFile {
     }
 }
 
+/// An array of integers of a .vtp file that not every file has.
+pub fn integers(path: &Path, name: &str) -> Vec<i32> {
+    let DataSet::PolyData { pieces, .. } = Vtk::import(path).unwrap().data else { panic!("no PolyData") };
+    let Some(Piece::Inline(piece)) = pieces.into_iter().next() else { panic!("no piece in the file") };
+    let PolyDataPiece { data, .. } = *piece;
+    values(&[data.cell, data.point].concat(), name)
+}
+
 fn values(attributes: &[Attribute], name: &str) -> Vec<i32> {
     let array = attributes.iter().find_map(|attribute| match attribute {
         Attribute::DataArray(array) if array.name == name => Some(array),

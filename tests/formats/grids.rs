@@ -8,7 +8,7 @@ use polycrystal::{Mesh, Side};
 use voronoi::Dimension;
 use vtkio::model::{Attribute, DataSet, Piece, Vtk};
 
-use crate::workplace::{GRAINS, PLANE, SPACE, make, write};
+use crate::workplace::{BOX, GRAINS, PLANE, SPACE, TORUS, make, write};
 
 fn size(counts: [u32; 3]) -> [NonZeroU32; 3] {
     counts.map(|count| NonZeroU32::new(count).unwrap())
@@ -123,6 +123,21 @@ fn centres_on_boundaries_belong_to_exactly_one_grain() {
                 assert_eq!(label.0, upper[0] + 2 * upper[1] + 4 * upper[2], "{center}");
             }
         }
+    }
+}
+
+/// Without walls, a grain's voxels are those within any of its images.
+#[test]
+fn voxels_of_periodic_grains_lie_inside_an_image() {
+    let grid = LabelGrid::new(&TORUS, size([7, 6, 5]));
+    for (center, label) in centers(&grid).into_iter().zip(&grid.labels) {
+        let mut inside = 0.0;
+        for shift in
+            (0..27).map(|k| DVec3::new(f64::from(k % 3), f64::from(k / 3 % 3), f64::from(k / 9)) - 1.0)
+        {
+            inside += winding(&TORUS, label.index(), center - shift * BOX);
+        }
+        assert!((inside - 1.0).abs() < 1e-6, "{center} in grain {} winds {inside}", label.0);
     }
 }
 

@@ -5,7 +5,7 @@ use grainsmooth::{Tess, read_tess};
 use proptest::prelude::*;
 use voronoi::{CellId, Dimension, Wall};
 
-use crate::workplace::{BOX, GRAINS, PLANE, SPACE, write};
+use crate::workplace::{BOX, GRAINS, PLANE, SPACE, TORUS, write};
 
 fn written(dimension: Dimension) -> String {
     let polycrystal = if dimension == Dimension::Two { &*PLANE } else { &*SPACE };
@@ -21,6 +21,41 @@ fn written_cells_come_back_bit_for_bit() {
         assert_eq!(tess.seeds.len(), GRAINS);
         assert_eq!(tess.domain.upper, if dimension == Dimension::Two { BOX.with_z(0.0) } else { BOX });
     }
+}
+
+#[test]
+fn periodic_cells_come_back_with_their_copies() {
+    let (_folder, path) = write(&TORUS, "cells.tess");
+    let tess = read_tess(&fs::read_to_string(path).unwrap()).unwrap();
+    assert_eq!(tess, Tess::new(&TORUS.cells));
+    let periodicity = tess.periodicity.unwrap();
+    assert_eq!((periodicity.axes, periodicity.lengths), ([true; 3], BOX));
+    assert_eq!(periodicity.seeds.len(), 26 * GRAINS);
+    assert!(tess.domain.walls.iter().all(Vec::is_empty));
+    let moved = |vertex: u32, shift: [i32; 3]| {
+        tess.vertices[vertex as usize] + DVec3::from_array(shift.map(f64::from)) * BOX
+    };
+    for copy in &periodicity.vertices {
+        let error = moved(copy.primary.index, copy.shift) - tess.vertices[copy.secondary as usize];
+        assert!(error.length() < 1e-12);
+    }
+    for copy in &periodicity.edges {
+        let mut ends = tess.edges[copy.primary.index as usize];
+        if copy.primary.is_reversed {
+            ends.reverse();
+        }
+        for (end, of_copy) in ends.into_iter().zip(tess.edges[copy.secondary as usize]) {
+            assert!((moved(end, copy.shift) - tess.vertices[of_copy as usize]).length() < 1e-12);
+        }
+    }
+    for copy in &periodicity.faces {
+        let [face, of_copy] = [copy.primary.index, copy.secondary].map(|face| &tess.faces[face as usize]);
+        let sign = if copy.primary.is_reversed { -1.0 } else { 1.0 };
+        let [normal, of_copy_s] = [face, of_copy].map(|face| DVec3::from_slice(&face.plane[1..]));
+        assert!((normal * sign - of_copy_s).length() < 1e-9);
+        assert_eq!(face.vertices.len(), of_copy.vertices.len());
+    }
+    assert!(!periodicity.faces.is_empty() && !periodicity.edges.is_empty());
 }
 
 /// Polyhedra are closed by their faces, planes hold the corners, and signed volumes are those of the cells.

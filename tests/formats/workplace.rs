@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 use grainsmooth::{Config, FileOptions, Output, Polycrystal, SeedSource, make_polycrystal};
 use tempfile::TempDir;
 use voronoi::Dimension;
@@ -16,8 +16,18 @@ pub const GRAINS: usize = 12;
 pub static SPACE: LazyLock<Polycrystal> = LazyLock::new(|| make(Dimension::Three, 0.3));
 pub static PLANE: LazyLock<Polycrystal> = LazyLock::new(|| make(Dimension::Two, 0.3));
 
+/// The same seeds without walls.
+pub static TORUS: LazyLock<Polycrystal> = LazyLock::new(|| {
+    make_polycrystal(&Config { periodic: BVec3::TRUE, ..config(Dimension::Three, 0.3) }, &|_, _, _| ())
+        .unwrap()
+});
+
 pub fn make(dimension: Dimension, relaxation_time: f64) -> Polycrystal {
-    let config = Config {
+    make_polycrystal(&config(dimension, relaxation_time), &|_, _, _| ()).unwrap()
+}
+
+pub fn config(dimension: Dimension, relaxation_time: f64) -> Config {
+    Config {
         seeds: SeedSource::Random { count: GRAINS },
         dimension,
         box_size: BOX,
@@ -28,8 +38,7 @@ pub fn make(dimension: Dimension, relaxation_time: f64) -> Polycrystal {
             ..FileOptions::default()
         },
         ..Config::default()
-    };
-    make_polycrystal(&config, &|_, _, _| ()).unwrap()
+    }
 }
 
 /// Writes the polycrystal and returns the folder, which goes when dropped, and the file.

@@ -8,7 +8,7 @@ use std::str::FromStr;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 use grainsmooth::vtk::VtkFormat;
 use grainsmooth::{
     Config, FileOptions, Lattice, Names, OutputDirectory, OutputFormat, SeedSource, StlEncoding,
@@ -64,6 +64,10 @@ pub struct Arguments {
     /// Side lengths of the box in your unit of length, X Y in 2D; a corner is at 0 0 0 [default: 1 1 1]
     #[arg(long = "box", value_names = ["X", "Y", "Z"], num_args = 2.., value_parser = parse_length, allow_negative_numbers = true, help_heading = DOMAIN)]
     box_size: Option<Vec<f64>>,
+
+    /// Axes along which the box repeats, such as x,y,z: grains are whole there and grow through the walls
+    #[arg(long, value_name = "AXES", value_parser = parse_axes, help_heading = DOMAIN)]
+    periodic: Option<BVec3>,
 
     /// Relaxation time, in units of the mean grain size squared; 0 keeps boundaries flat
     #[arg(long, value_name = "T", default_value_t = Config::default().relaxation_time, value_parser = parse_time, allow_negative_numbers = true, help_heading = SMOOTHING)]
@@ -140,6 +144,7 @@ Examples:
   grainsmooth --seeds 200 -n 3                    200 grains in a unit cube, to grains.vtp
   grainsmooth --seeds 500 --box 3 1 0.2 -o a.vtu  a plate
   grainsmooth --seeds 300 --dim 2                 grains in a square
+  grainsmooth --periodic x,y,z --relax 0          grains that fill space by repeating the cube
   grainsmooth --lattice bcc 4                     Kelvin's foam: 128 truncated octahedra, cut by the walls
   grainsmooth --seeds-file seeds.csv --relax 0    flat Voronoi grains from your own seeds
 
@@ -224,12 +229,20 @@ impl Arguments {
             JunctionRule::Crease => Junctions::Crease,
             JunctionRule::Corner => Junctions::Corner,
         };
+        let periodic = self.periodic.unwrap_or(BVec3::FALSE);
+        if periodic.z && self.dim == Dimension::Two {
+            usage("--periodic z needs three dimensions; with --dim 2 give x, y or x,y");
+        }
+        if periodic.any() && self.relax > 0.0 && !self.no_mesh {
+            usage("periodic grains cannot be relaxed yet; add --relax 0");
+        }
         Config {
             seeds,
             random_seed: self.rng_seed,
             lloyd_steps: self.lloyd,
             dimension: self.dim,
             box_size,
+            periodic,
             relaxation_time: self.relax,
             levels: self.levels,
             junctions,
@@ -322,6 +335,20 @@ fn parse_dimension(text: &str) -> Result<Dimension, String> {
 fn parse_length(text: &str) -> Result<f64, String> {
     let length = text.parse().ok().filter(|length| Config::SIDE_RANGE.contains(length));
     length.ok_or_else(|| "a side of the box is a positive number between 1e-30 and 1e30".to_owned())
+}
+
+fn parse_axes(text: &str) -> Result<BVec3, String> {
+    let mut axes = [false; 3];
+    let known =
+        text.split(',').all(|name| match ["x", "y", "z"].iter().position(|axis| *axis == name.trim()) {
+            Some(axis) => !std::mem::replace(&mut axes[axis], true),
+            None => false,
+        });
+    if known {
+        Ok(axes.into())
+    } else {
+        Err("name each axis once, with commas between: x, y, z, x,y or x,y,z".to_owned())
+    }
 }
 
 fn parse_time(text: &str) -> Result<f64, String> {

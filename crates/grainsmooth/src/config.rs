@@ -2,7 +2,7 @@ use std::num::NonZeroU32;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 use polycrystal::Junctions;
 use voronoi::{Dimension, Domain};
 
@@ -45,6 +45,8 @@ pub struct Config {
     pub dimension: Dimension,
     /// Side lengths of the box, which has its lower corner in the origin; in 2D the last is ignored.
     pub box_size: DVec3,
+    /// Axes along which the box repeats; in 2D the last is ignored.
+    pub periodic: BVec3,
     /// Relaxation time in units of the mean grain size squared; 0 leaves boundaries flat.
     pub relaxation_time: f64,
     /// Number of subdivisions.
@@ -82,6 +84,7 @@ impl Default for Config {
             lloyd_steps: 0,
             dimension: Dimension::Three,
             box_size: DVec3::ONE,
+            periodic: BVec3::FALSE,
             relaxation_time: polycrystal::Relaxation::default().time,
             levels: 3,
             junctions: Junctions::Crease,
@@ -116,10 +119,11 @@ impl Config {
             return Err(Error::BoxSide { axis, length });
         }
         let upper = self.lattice_fit().map_or(self.box_size, |fit| fit.box_size());
-        Ok(match self.dimension {
+        let domain = match self.dimension {
             Dimension::Two => Domain::rectangle(DVec3::ZERO, upper)?,
             Dimension::Three => Domain::cuboid(DVec3::ZERO, upper)?,
-        })
+        };
+        Ok(domain.with_periods(self.periodic))
     }
 
     /// The command line that makes the same result, all settings spelled out.
@@ -141,6 +145,10 @@ impl Config {
             Dimension::Two => format!("--dim 2 --box {x} {y}"),
             Dimension::Three => format!("--dim 3 --box {x} {y} {z}"),
         };
+        let axes = ["x", "y", "z"].into_iter().zip(<[bool; 3]>::from(self.periodic));
+        let axes: Vec<&str> = axes.filter(|(_, is_periodic)| *is_periodic).map(|(axis, _)| axis).collect();
+        let periodic =
+            if axes.is_empty() { String::new() } else { format!(" --periodic {}", axes.join(",")) };
         let junctions = match self.junctions {
             Junctions::Crease => "crease",
             Junctions::Corner => "corner",
@@ -148,7 +156,7 @@ impl Config {
         let drop_empty = if self.drop_empty { " --drop-empty" } else { "" };
         let Self { relaxation_time, levels, file, .. } = self;
         format!(
-            "grainsmooth {seeds}{drop_empty}{lloyd} {space} --relax {relaxation_time} -n {levels} --junctions {junctions}{}",
+            "grainsmooth {seeds}{drop_empty}{lloyd} {space}{periodic} --relax {relaxation_time} -n {levels} --junctions {junctions}{}",
             file.arguments(self.dimension)
         )
     }

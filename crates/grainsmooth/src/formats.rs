@@ -18,7 +18,9 @@ mod tess;
 pub use label_grid::LabelGrid;
 pub use names::Names;
 pub use stl::StlEncoding;
-pub use tess::{Oriented, Tess, TessDomain, TessFace, TessProblem, TessSeed, read_tess};
+pub use tess::{
+    Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
+};
 
 pub(crate) use gmsh::write_script as write_gmsh_script;
 pub(crate) use surface::Surface;

@@ -38,7 +38,9 @@ pub use cell_table::{CellTable, TableFormat};
 pub use config::{Config, FileOptions, SeedSource};
 pub use error::Error;
 pub use formats::{LabelGrid, Names, StlEncoding};
-pub use formats::{Oriented, Tess, TessDomain, TessFace, TessProblem, TessSeed, read_tess};
+pub use formats::{
+    Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
+};
 pub use lattice::{Lattice, LatticeFit};
 pub use mesh_bezier::{BezierFile, read_bezier};
 pub use mesh_edit::{EdgeEdit, edit_edges};

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::io::{self, Write};
 
-use polycrystal::{Boundary, BoundaryId, Level, Mesh};
+use polycrystal::{Boundary, BoundaryId, Level, Mesh, Side};
 
 use crate::formats::{Surface, write_ang, write_evolver, write_gmsh, write_npy, write_obj, write_ply};
 use crate::formats::{write_gmsh_script, write_stl, write_tess};
@@ -16,6 +16,10 @@ impl Polycrystal {
     ///
     /// In the plane each boundary is one polyline. VTK files are written with the arrays `FaceLabels`, `BoundaryId`,
     /// `NodeTypes` and `Generation`, and say by which version, command line and random seed they were made.
+    ///
+    /// Grains of a periodic domain are whole. A boundary between grains a period apart comes at both; its second label is -2 - b
+    /// with the `BoundaryId` b of the other one. The cell array `PeriodicNeighbor` has the grain there (-1 elsewhere), the
+    /// point array `PeriodicOriginal` the point that each is a copy of, its own number where it is none.
     ///
     /// # Errors
     /// [`Error::WriteOutput`]; nothing is left behind then. As of [`Output::check_fits`].
@@ -89,26 +93,46 @@ impl Polycrystal {
         let count = boundary_of_cell.len();
         let boundary = |cell: usize| &self.network.boundaries()[boundary_of_cell[cell].index()];
         let labels = |cell: usize| names.labels(boundary(cell));
-        // Boundaries are far fewer than 2^31, for each has many triangles and those have 32-bit ids.
+        // Boundaries and points are far fewer than 2^31: edges have two directions with 32-bit ids.
         let boundary_id = |cell: usize| boundary_of_cell[cell].0.cast_signed();
         let node_type = |point: usize| level.node_types[point].code();
         // There are fewer than 128 levels.
         let generation = |point: usize| level.generations[point].cast_signed();
         let of_points = |value| Values::Int8Of(Each { count: self.points.len(), value });
-        let data = PolyData {
-            points: &self.points,
-            cells,
-            point_arrays: vec![
-                Array { name: "NodeTypes", values: of_points(&node_type) },
-                Array { name: "Generation", values: of_points(&generation) },
-            ],
-            cell_arrays: vec![
-                Array { name: names.sides(), values: Values::Int32PairsOf(Each { count, value: &labels }) },
-                Array { name: "BoundaryId", values: Values::Int32Of(Each { count, value: &boundary_id }) },
-            ],
-            field: self.field(),
-        };
+        let of_cells = |value| Values::Int32Of(Each { count, value });
+        let mut point_arrays = vec![
+            Array { name: "NodeTypes", values: of_points(&node_type) },
+            Array { name: "Generation", values: of_points(&generation) },
+        ];
+        let mut cell_arrays = vec![
+            Array { name: names.sides(), values: Values::Int32PairsOf(Each { count, value: &labels }) },
+            Array { name: "BoundaryId", values: of_cells(&boundary_id) },
+        ];
+        let neighbor = |cell: usize| self.periodic_neighbor(boundary(cell));
+        let originals;
+        if self.network.domain().is_periodic() {
+            originals = self.originals();
+            cell_arrays.push(Array { name: "PeriodicNeighbor", values: of_cells(&neighbor) });
+            point_arrays.push(Array { name: "PeriodicOriginal", values: Values::Int32(&originals) });
+        }
+        let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field: self.field() };
         write_vtk(&data, format, out)
+    }
+
+    /// The number of the grain that lies beyond a boundary a period or more away; that of the exterior where there is none.
+    fn periodic_neighbor(&self, boundary: &Boundary) -> i32 {
+        let twin = boundary.twin.map(|twin| self.network.boundaries()[twin.boundary.index()].sides[0]);
+        self.config.file.names.side_number(twin.unwrap_or(Side::Exterior))
+    }
+
+    /// Of each point, the one that it is a copy of, or itself.
+    fn originals(&self) -> Vec<i32> {
+        let level = self.network.finest();
+        let mut originals: Vec<i32> = (0..).take(level.vertex_count()).collect();
+        for pair in &level.copies.vertices {
+            originals[pair.secondary as usize] = pair.primary.cast_signed();
+        }
+        originals
     }
 
     /// What every VTK file says about itself.

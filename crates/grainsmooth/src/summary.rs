@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use polycrystal::AngleStatistics;
+use polycrystal::{AngleStatistics, Boundary};
 use voronoi::Dimension;
 
 use crate::{Polycrystal, Stage};
@@ -23,9 +23,15 @@ impl fmt::Display for Summary<'_> {
         if let Some(fit) = polycrystal.config.lattice_fit() {
             writeln!(out, "lattice     {fit}")?;
         }
-        let interior = network.boundaries().iter().filter(|boundary| boundary.is_interior()).count();
-        let walls = network.boundaries().len() - interior;
-        writeln!(out, "boundaries  {interior} between grains, {walls} on the walls")?;
+        let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
+        let through_walls = count(|boundary| boundary.twin.is_some()) / 2;
+        let between_grains = count(Boundary::is_interior) + through_walls;
+        let on_walls = count(|boundary| boundary.wall.is_some());
+        write!(out, "boundaries  {between_grains} between grains, {on_walls} on the walls")?;
+        if network.domain().is_periodic() {
+            write!(out, ", {through_walls} of the first twice, a period apart")?;
+        }
+        writeln!(out)?;
         let (junctions, element, measure, size) = match network.domain().dimension() {
             Dimension::Two => {
                 (format!("{} triple points", counts.triple_lines), "segment", "areas", "length")

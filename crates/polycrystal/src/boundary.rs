@@ -1,4 +1,4 @@
-use voronoi::Wall;
+use voronoi::{Shift, Wall};
 
 /// Number of a grain: that of its seed in the input, from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -32,12 +32,26 @@ pub enum Side {
 }
 
 /// The surface (in the plane: the line) between two grains, or between a grain and one wall of the domain.
+///
+/// Grains of a periodic domain are whole. The boundary between a grain and one that stands a period away so comes twice, once
+/// at each of the two grains, with the exterior beyond and the other one as its twin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Boundary {
     /// The two sides: a grain first, then a grain of greater number or the exterior. Normals point from first to second.
     pub sides: [Side; 2],
     /// The wall that the boundary lies on, if its second side is the exterior.
     pub wall: Option<Wall>,
+    /// The same boundary at the grain beyond, whole periods away.
+    pub twin: Option<Twin>,
+}
+
+/// Where a boundary of a periodic network comes a second time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Twin {
+    /// The boundary there. The greater number of the two is the copy.
+    pub boundary: BoundaryId,
+    /// From here to there.
+    pub shift: Shift,
 }
 
 impl Boundary {
@@ -49,8 +63,8 @@ impl Boundary {
         })
     }
 
-    /// Whether grains lie on both sides.
+    /// Whether grains lie on both sides, without a period between them.
     pub fn is_interior(&self) -> bool {
-        self.wall.is_none()
+        self.wall.is_none() && self.twin.is_none()
     }
 }

@@ -3,9 +3,12 @@
 
 use glam::DVec3;
 use subzero::{Crease, CurveMesh, Features, TriangleMesh};
-use voronoi::{Dimension, Edges, FaceId, Tessellation};
+use voronoi::{Dimension, Edges, FaceId, PeriodicPair, Shift, Tessellation};
 
-use crate::{Boundary, BoundaryId, GrainId, Junctions, Level, Mesh, NetworkError, NodeType, Side, WallSet};
+use crate::periodic::PeriodicCopies;
+use crate::{
+    Boundary, BoundaryId, GrainId, Junctions, Level, Mesh, NetworkError, NodeType, Side, Twin, WallSet,
+};
 
 /// The connectivity of the control mesh, its points, and the boundaries: one for each face of the tessellation.
 pub(crate) struct ControlMesh {
@@ -26,8 +29,13 @@ pub struct JunctionCounts {
 
 impl ControlMesh {
     pub(crate) fn new(tessellation: &Tessellation, junctions: Junctions) -> Result<Self, NetworkError> {
-        let boundaries: Vec<Boundary> =
+        let mut boundaries: Vec<Boundary> =
             tessellation.faces().map(|face| boundary(tessellation.face_sides(face))).collect();
+        for PeriodicPair { secondary, primary, shift } in tessellation.periodic_faces() {
+            let twin = |face: &FaceId, shift| Some(Twin { boundary: BoundaryId(face.0), shift });
+            boundaries[primary.index()].twin = twin(secondary, *shift);
+            boundaries[secondary.index()].twin = twin(primary, Shift::NONE - *shift);
+        }
         match tessellation.domain().dimension() {
             Dimension::Three => surfaces(tessellation, boundaries, junctions),
             Dimension::Two => lines(tessellation, boundaries),
@@ -44,7 +52,7 @@ fn boundary(sides: [voronoi::Side; 2]) -> Boundary {
         voronoi::Side::Cell(cell) => Side::Grain(GrainId(cell.0)),
         voronoi::Side::Image(..) | voronoi::Side::Wall(_) => Side::Exterior,
     });
-    Boundary { sides, wall }
+    Boundary { sides, wall, twin: None }
 }
 
 fn surfaces(
@@ -92,10 +100,12 @@ fn surfaces(
     let features = Features { creases: &creases, corners: &corners, ..Features::default() };
     let mesh = TriangleMesh::new(points.len(), triangles, &features)?;
 
-    let (mut node_types, line_types) = junction_types(tessellation, &edges);
+    let copies = PeriodicCopies::of_control_mesh(tessellation, &edges, middle, |face| center(FaceId(face)));
+    let copied_lines = tessellation.periodic_edges(&edges);
+    let (mut node_types, line_types) = junction_types(tessellation, &edges, &copied_lines);
     let counts = JunctionCounts {
-        triple_lines: line_types.iter().filter(|line| line.side_count() >= 3).count(),
-        quadruple_points: node_types.iter().filter(|point| point.side_count() >= 4).count(),
+        triple_lines: count_originals(&line_types, 3, copied_lines.iter().map(|pair| pair.secondary)),
+        quadruple_points: count_originals(&node_types, 4, copied_vertices(tessellation)),
     };
     node_types.extend(&line_types);
     node_types.extend(boundaries.iter().map(NodeType::inside));
@@ -113,8 +123,15 @@ fn surfaces(
     );
     walls.extend(boundaries.iter().map(walls_inside));
     let generations = vec![0; points.len()];
-    let level =
-        Level { mesh: Mesh::Triangles(mesh), boundary_of, node_types, generations, walls, edge_node_types };
+    let level = Level {
+        mesh: Mesh::Triangles(mesh),
+        boundary_of,
+        node_types,
+        generations,
+        walls,
+        copies,
+        edge_node_types,
+    };
     Ok(ControlMesh { level, points, boundaries, junctions: counts })
 }
 
@@ -123,25 +140,29 @@ fn lines(tessellation: &Tessellation, boundaries: Vec<Boundary>) -> Result<Contr
     let mut points = tessellation.vertices().to_vec();
     let mut segments = Vec::with_capacity(2 * tessellation.face_count());
     let mut boundary_of = Vec::with_capacity(segments.capacity());
-    let mut sides_at: Vec<(usize, Side)> = Vec::with_capacity(4 * tessellation.face_count());
-    for (face, boundary) in tessellation.faces().zip(&boundaries) {
+    let mut meetings = Meetings::new(vertex_count, tessellation.periodic_vertices().iter().map(vertex_pair));
+    for face in tessellation.faces() {
         let ends = tessellation.face_corners(face);
         let middle = id(points.len());
         points.push(points[ends[0].index()].midpoint(points[ends[1].index()]));
         segments.extend([[ends[0].0, middle], [middle, ends[1].0]]);
         boundary_of.extend([BoundaryId(face.0); 2]);
-        sides_at.extend(ends.iter().flat_map(|end| boundary.sides.map(|side| (end.index(), side))));
+        for end in ends {
+            meetings.note(end.index(), tessellation.face_sides(face));
+        }
     }
     let mut walls = walls_of_vertices(tessellation, &boundaries);
     walls.extend(boundaries.iter().map(walls_inside));
     let corners: Vec<u32> = (0..id(vertex_count)).collect();
-    let mut node_types = types_by_place(vertex_count, sides_at);
-    let at_least = |count| node_types.iter().filter(|point| point.side_count() >= count).count();
+    let mut node_types = meetings.types();
+    let at_least = |count| count_originals(&node_types, count, copied_vertices(tessellation));
     let counts = JunctionCounts { triple_lines: at_least(3), quadruple_points: at_least(4) };
     node_types.extend(boundaries.iter().map(NodeType::inside));
     let mesh = Mesh::Segments(CurveMesh::new(points.len(), segments, &corners)?);
     let generations = vec![0; points.len()];
-    let level = Level { mesh, boundary_of, node_types, generations, walls, edge_node_types: Vec::new() };
+    let copies = PeriodicCopies::of_control_lines(tessellation);
+    let level =
+        Level { mesh, boundary_of, node_types, generations, walls, copies, edge_node_types: Vec::new() };
     Ok(ControlMesh { level, points, boundaries, junctions: counts })
 }
 
@@ -160,30 +181,82 @@ fn face_center(tessellation: &Tessellation, face: FaceId) -> DVec3 {
 }
 
 /// The types of the tessellation's vertices and of the points inside its edges.
-fn junction_types(tessellation: &Tessellation, edges: &Edges) -> (Vec<NodeType>, Vec<NodeType>) {
-    let (mut at_vertices, mut at_edges) = (Vec::new(), Vec::new());
+fn junction_types(
+    tessellation: &Tessellation,
+    edges: &Edges,
+    copied_lines: &[PeriodicPair<u32>],
+) -> (Vec<NodeType>, Vec<NodeType>) {
+    let vertices = tessellation.periodic_vertices().iter().map(vertex_pair);
+    let mut at_vertices = Meetings::new(tessellation.vertices().len(), vertices);
+    let mut at_edges = Meetings::new(edges.ends.len(), copied_lines.iter().copied());
     let mut next_corner = edges.of_corner.iter();
     for face in tessellation.faces() {
-        let sides = boundary(tessellation.face_sides(face)).sides;
+        let sides = tessellation.face_sides(face);
         for (corner, edge) in tessellation.face_corners(face).iter().zip(&mut next_corner) {
-            at_vertices.extend(sides.map(|side| (corner.index(), side)));
-            at_edges.extend(sides.map(|side| (*edge as usize, side)));
+            at_vertices.note(corner.index(), sides);
+            at_edges.note(*edge as usize, sides);
         }
     }
-    let vertices = types_by_place(tessellation.vertices().len(), at_vertices);
-    (vertices, types_by_place(edges.ends.len(), at_edges))
+    (at_vertices.types(), at_edges.types())
 }
 
-/// Node types from pairs of a place and a side that touches it.
-fn types_by_place(count: usize, mut sides_at: Vec<(usize, Side)>) -> Vec<NodeType> {
-    sides_at.sort_unstable();
-    sides_at.dedup();
-    let mut types = vec![NodeType::INTERIOR; count];
-    for at_place in sides_at.chunk_by(|left, right| left.0 == right.0) {
-        let sides: Vec<Side> = at_place.iter().map(|(_, side)| *side).collect();
-        types[at_place[0].0] = NodeType::of_sides(&sides);
+fn vertex_pair(pair: &PeriodicPair<voronoi::VertexId>) -> PeriodicPair<u32> {
+    PeriodicPair { secondary: pair.secondary.0, primary: pair.primary.0, shift: pair.shift }
+}
+
+/// How many places, periodic copies left out, have so many sides.
+fn count_originals(types: &[NodeType], side_count: i8, copies: impl Iterator<Item = u32>) -> usize {
+    let has_enough = |node_type: &NodeType| node_type.side_count() >= side_count;
+    let all = types.iter().filter(|node_type| has_enough(node_type)).count();
+    all - copies.filter(|copy| has_enough(&types[*copy as usize])).count()
+}
+
+fn copied_vertices(tessellation: &Tessellation) -> impl Iterator<Item = u32> {
+    tessellation.periodic_vertices().iter().map(|pair| pair.secondary.0)
+}
+
+/// The sides that meet at places: cells, each in the place where it is seen from an original, or the exterior.
+struct Meetings {
+    /// Of each place, its original and the shift from there.
+    originals: Vec<(usize, Shift)>,
+    /// Originals and sides that touch them, with repeats.
+    sides: Vec<(usize, Side, Shift)>,
+    is_outer: Vec<bool>,
+}
+
+impl Meetings {
+    fn new(count: usize, copies: impl Iterator<Item = PeriodicPair<u32>>) -> Self {
+        let mut originals: Vec<(usize, Shift)> = (0..count).map(|place| (place, Shift::NONE)).collect();
+        for pair in copies {
+            originals[pair.secondary as usize] = (pair.primary as usize, pair.shift);
+        }
+        Self { originals, sides: Vec::new(), is_outer: vec![false; count] }
     }
-    types
+
+    /// Notes that a face with these sides touches a place.
+    fn note(&mut self, place: usize, sides: [voronoi::Side; 2]) {
+        let (original, shift) = self.originals[place];
+        for side in sides {
+            let (side, moved, is_outside) = match side {
+                voronoi::Side::Cell(cell) => (Side::Grain(GrainId(cell.0)), Shift::NONE - shift, false),
+                voronoi::Side::Image(cell, image) => (Side::Grain(GrainId(cell.0)), image - shift, true),
+                voronoi::Side::Wall(_) => (Side::Exterior, Shift::NONE, true),
+            };
+            self.sides.push((original, side, moved));
+            self.is_outer[place] |= is_outside;
+        }
+    }
+
+    fn types(mut self) -> Vec<NodeType> {
+        self.sides.sort_unstable();
+        self.sides.dedup();
+        let mut side_counts = vec![0; self.originals.len()];
+        for (original, ..) in &self.sides {
+            side_counts[*original] += 1;
+        }
+        let places = self.originals.iter().zip(&self.is_outer);
+        places.map(|((original, _), is_outer)| NodeType::new(side_counts[*original], *is_outer)).collect()
+    }
 }
 
 fn walls_inside(boundary: &Boundary) -> WallSet {

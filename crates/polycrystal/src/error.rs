@@ -33,6 +33,9 @@ pub enum NetworkError {
     /// The relaxation time is negative or not a number.
     #[error("the relaxation time is {0}; it must be 0 (off) or a positive, finite number")]
     BadRelaxationTime(f64),
+    /// Relaxation does not move periodic networks.
+    #[error("a network in a periodic domain cannot be relaxed; give the relaxation time 0")]
+    PeriodicRelaxation,
     /// The grains' volumes could not be restored.
     #[error(
         "grain {} misses its volume by {relative_error:e} of it after relaxation; relax for a shorter time",

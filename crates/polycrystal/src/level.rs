@@ -1,6 +1,7 @@
 use rayon::prelude::*;
 use subzero::{CurveMesh, Refinement, StencilTable, TriangleMesh};
 
+use crate::periodic::PeriodicCopies;
 use crate::{Boundary, BoundaryId, NodeType, WallSet};
 
 /// The elements of the network: triangles in space, segments in the plane.
@@ -25,6 +26,8 @@ pub struct Level {
     pub generations: Vec<u8>,
     /// The walls that each vertex stays on.
     pub walls: Vec<WallSet>,
+    /// Which vertices are others moved by whole periods.
+    pub copies: PeriodicCopies,
     /// Of each edge of the triangles, the type of a point inside it; empty in the plane.
     pub(crate) edge_node_types: Vec<NodeType>,
 }
@@ -86,7 +89,8 @@ impl Level {
         let mut walls = self.walls.clone();
         // A line between two points of a wall lies in the wall: no element joins walls through the inside.
         walls.extend(ends.iter().map(|[a, b]| self.walls[*a as usize].intersection(self.walls[*b as usize])));
-        Self { mesh, boundary_of, node_types, generations, walls, edge_node_types }
+        let copies = self.copies.refined(self.vertex_count(), self.element_count(), &mesh);
+        Self { mesh, boundary_of, node_types, generations, walls, copies, edge_node_types }
     }
 
     /// The type of a point inside an element.

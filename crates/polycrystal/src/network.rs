@@ -45,8 +45,9 @@ impl Network {
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
         check_size(tessellation, level_count)?;
-        let ControlMesh { level, points, boundaries, junctions: counts } =
+        let ControlMesh { level, mut points, boundaries, junctions: counts } =
             ControlMesh::new(tessellation, junctions)?;
+        level.copies.place(tessellation.domain(), &mut points);
         let mut normals = element_normals(&level, &points).into_iter().zip(&level.boundary_of);
         if let Some((_, boundary)) = normals.find(|(normal, _)| normal.length() == 0.0 || normal.is_nan()) {
             return Err(NetworkError::BoundaryTooSmall { sides: boundaries[boundary.index()].sides });
@@ -129,10 +130,12 @@ impl Network {
     /// When there are fewer points than the control mesh has vertices.
     pub fn subdivide(&self, control_points: &[DVec3]) -> Vec<DVec3> {
         let mut points = control_points.to_vec();
+        self.levels[0].copies.place(&self.domain, &mut points);
         for (stencils, finer) in self.stencils.iter().zip(&self.levels[1..]) {
             points = stencils.apply(&points);
             let on_walls = points.par_iter_mut().zip(&finer.walls).filter(|(_, walls)| !walls.is_empty());
             on_walls.for_each(|(point, walls)| *point = walls.put_on_walls(&self.domain, *point));
+            finer.copies.place(&self.domain, &mut points);
         }
         points
     }

@@ -1,7 +1,7 @@
 use crate::{Boundary, Side};
 
 /// What a point is part of, in DREAM.3D's codes: 2 inside a boundary, 3 on a triple line, 4 a quadruple point; 10 more on
-/// the domain's outer surface.
+/// the domain's outer surface, in a periodic domain that of all whole grains together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NodeType(i8);
 
@@ -19,14 +19,18 @@ impl NodeType {
 
     /// The type of a point by the sides that meet there, sorted and without duplicates. The exterior counts as one side.
     pub fn of_sides(sides: &[Side]) -> Self {
+        Self::new(sides.len(), sides.contains(&Side::Exterior))
+    }
+
+    /// The type of a point where so many sides meet.
+    pub(crate) fn new(side_count: usize, is_outer: bool) -> Self {
         // DREAM.3D knows no more than four grains: what has more counts as a quadruple point.
-        let kind = match sides.len() {
+        let kind = match side_count {
             0..=2 => 2,
             3 => 3,
             _ => 4,
         };
-        let outer = if sides.contains(&Side::Exterior) { 10 } else { 0 };
-        Self(kind + outer)
+        Self(if is_outer { kind + 10 } else { kind })
     }
 
     /// Number of sides that meet, from 2 to 4; what has more counts as 4.

@@ -83,7 +83,7 @@ pub struct Relaxed {
 /// `progress` is called after each step with the number of steps done and their total.
 ///
 /// # Errors
-/// [`NetworkError::BadRelaxationTime`]; [`NetworkError::Folded`] or [`NetworkError::VolumeNotRestored`] when the
+/// [`NetworkError::BadRelaxationTime`]; [`NetworkError::PeriodicRelaxation`]; [`NetworkError::Folded`] or [`NetworkError::VolumeNotRestored`] when the
 /// network cannot be relaxed for so long without a change of its topology.
 pub fn relax(
     network: &Network,
@@ -94,6 +94,9 @@ pub fn relax(
     let time = relaxation.time;
     if !(time.is_finite() && time >= 0.0) {
         return Err(NetworkError::BadRelaxationTime(time));
+    }
+    if time > 0.0 && network.domain().is_periodic() {
+        return Err(NetworkError::PeriodicRelaxation);
     }
     let has_tension = network.boundaries().iter().any(|boundary| boundary.is_interior());
     if time == 0.0 || !has_tension {

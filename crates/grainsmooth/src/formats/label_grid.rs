@@ -3,7 +3,8 @@
 //! Exact on the smoothed network: rows of voxels along x are followed through the boundaries that they cross, and every
 //! decision, whether a row meets a triangle and on which side of it a centre lies, is made by Shewchuk's adaptive predicates.
 //! Where a row meets an edge or a point, it counts as moved by an infinitesimal in y and a yet smaller one in z; a centre on a
-//! boundary counts as moved in +x. So every centre belongs to exactly one grain.
+//! boundary counts as moved in +x. So every centre belongs to exactly one grain. The whole grains of a periodic domain are
+//! looked at together with their images a period away.
 
 use std::num::NonZeroU32;
 
@@ -41,9 +42,6 @@ struct Crossing {
 
 impl LabelGrid {
     /// Labels `size` voxels, slices in parallel; in 2D the third number is not used.
-    ///
-    /// # Panics
-    /// When the network does not fill the domain, which validation rules out.
     pub fn new(polycrystal: &Polycrystal, size: [NonZeroU32; 3]) -> Self {
         let domain = polycrystal.network.domain();
         let mut size = size.map(|count| count.get() as usize);
@@ -93,40 +91,50 @@ impl Centers {
 /// All crossings of rows with boundaries, for each slice of constant z.
 fn crossings_by_slice(polycrystal: &Polycrystal, centers: &Centers) -> Vec<Vec<Crossing>> {
     let level = polycrystal.network.finest();
-    let boundaries = polycrystal.network.boundaries();
-    let points = &polycrystal.points;
-    let boundary = |element: usize| &boundaries[level.boundary_of[element].index()];
+    let boundary =
+        |element: u32| &polycrystal.network.boundaries()[level.boundary_of[element as usize].index()];
+    let images = images(polycrystal.network.domain());
+    let at = |point: u32, image: usize| polycrystal.points[point as usize] + images[image];
+    let count = u32::try_from(level.element_count()).expect("ids of elements fit 32 bits");
+    let all = (0..images.len()).flat_map(|image| (0..count).map(move |element| (element, image)));
     match &level.mesh {
         Mesh::Segments(mesh) => {
-            let ends = |element: usize| mesh.segments()[element].map(|point| points[point as usize]);
-            let all = 0..mesh.segments().len();
-            vec![
-                all.flat_map(|element| segment_crossings(centers, ends(element), boundary(element)))
-                    .collect(),
-            ]
+            let ends = |element: u32, image| mesh.segments()[element as usize].map(|point| at(point, image));
+            let crossings = all.flat_map(|(element, image)| {
+                segment_crossings(centers, ends(element, image), boundary(element))
+            });
+            vec![crossings.collect()]
         }
         Mesh::Triangles(mesh) => {
             let corners =
-                |element: u32| mesh.triangles()[element as usize].map(|point| points[point as usize]);
-            let slices = |element: u32| {
-                let [a, b, c] = corners(element).map(|corner| corner.z);
-                let last = centers.first_at(2, a.max(b).max(c));
-                centers.first_at(2, a.min(b).min(c))..(last + 1).min(centers.size[2])
-            };
-            let elements = 0..u32::try_from(mesh.triangles().len()).expect("ids of triangles fit 32 bits");
+                |element: u32, image| mesh.triangles()[element as usize].map(|point| at(point, image));
             let mut of_slice = vec![Vec::new(); centers.size[2]];
-            for element in elements {
-                of_slice[slices(element)].iter_mut().for_each(|slice: &mut Vec<u32>| slice.push(element));
+            for (element, image) in all {
+                let [a, b, c] = corners(element, image).map(|corner| corner.z);
+                let end = (centers.first_at(2, a.max(b).max(c)) + 1).min(centers.size[2]);
+                let start = centers.first_at(2, a.min(b).min(c)).min(end);
+                of_slice[start..end].iter_mut().for_each(|slice: &mut Vec<_>| slice.push((element, image)));
             }
             let crossings = of_slice.into_par_iter().enumerate().map(|(slice, elements)| {
-                let of_triangle = |&element: &u32| {
-                    triangle_crossings(centers, slice, corners(element), boundary(element as usize))
+                let of_triangle = |&(element, image): &(u32, usize)| {
+                    triangle_crossings(centers, slice, corners(element, image), boundary(element))
                 };
                 elements.iter().flat_map(of_triangle).collect()
             });
             crossings.collect()
         }
     }
+}
+
+/// Where grains stand beside their own place: a whole grain reaches less than a period beyond the domain.
+fn images(domain: &Domain) -> Vec<DVec3> {
+    let size = domain.size();
+    let mut images = vec![DVec3::ZERO];
+    for axis in (0..3).filter(|axis| domain.periodic().test(*axis)) {
+        let period = DVec3::AXES[axis] * size[axis];
+        images = images.into_iter().flat_map(|image| [image - period, image, image + period]).collect();
+    }
+    images
 }
 
 /// The crossings of a slice's rows with a triangle.
@@ -226,18 +234,19 @@ fn fill_slice(size: [usize; 3], mut crossings: Vec<Crossing>) -> Vec<GrainId> {
     let mut crossings = crossings.into_iter().peekable();
     let mut labels = Vec::with_capacity(size[0] * size[1]);
     for row in 0..size[1] {
-        let mut current = Side::Exterior;
+        // Grains that the row is in, and how often: more than one only where images of grains round differently.
+        let mut counts: Vec<(GrainId, i32)> = Vec::new();
         for voxel in 0..size[0] {
-            let mut counts = vec![(current, 1)];
             while let Some(Crossing { left, entered, .. }) =
                 crossings.next_if(|crossing| (crossing.row, crossing.voxel) <= (row, voxel))
             {
                 add(&mut counts, left, -1);
                 add(&mut counts, entered, 1);
             }
-            current = counts.iter().find(|(_, count)| *count == 1).map_or(current, |(side, _)| *side);
-            let Side::Grain(grain) = current else { panic!("the network does not fill the domain") };
-            labels.push(grain);
+            counts.retain(|(_, count)| *count != 0);
+            let grain = counts.iter().max_by_key(|(_, count)| *count).map(|(grain, _)| *grain);
+            // Between images that round differently there may be a gap.
+            labels.push(grain.or(labels.last().copied()).unwrap_or(GrainId(0)));
         }
         // What lies beyond the last centre.
         while crossings.next_if(|crossing| crossing.row <= row).is_some() {}
@@ -245,9 +254,10 @@ fn fill_slice(size: [usize; 3], mut crossings: Vec<Crossing>) -> Vec<GrainId> {
     labels
 }
 
-fn add(counts: &mut Vec<(Side, i32)>, side: Side, change: i32) {
-    match counts.iter_mut().find(|(other, _)| *other == side) {
+fn add(counts: &mut Vec<(GrainId, i32)>, side: Side, change: i32) {
+    let Side::Grain(grain) = side else { return };
+    match counts.iter_mut().find(|(other, _)| *other == grain) {
         Some((_, count)) => *count += change,
-        None => counts.push((side, change)),
+        None => counts.push((grain, change)),
     }
 }

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use voronoi::{CellId, Dimension, Side, Wall};
+use voronoi::{CellId, Dimension, Shift, Side, Wall};
 
 use crate::Tessellated;
 
@@ -32,6 +32,8 @@ pub struct Tess {
     pub polyhedra: Vec<Vec<Oriented>>,
     /// What the cells fill.
     pub domain: TessDomain,
+    /// What comes again a period away; nothing unless the tessellation is periodic.
+    pub periodicity: Option<TessPeriodicity>,
 }
 
 /// A seed as Neper has it.
@@ -76,6 +78,34 @@ pub struct TessDomain {
     pub walls: Vec<Vec<u32>>,
 }
 
+/// Vertices, edges and faces that are others moved by whole periods.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TessPeriodicity {
+    /// Whether each axis is periodic.
+    pub axes: [bool; 3],
+    /// Side lengths of the domain.
+    pub lengths: DVec3,
+    /// Images of seeds: the cell, and by how many periods it is moved.
+    pub seeds: Vec<(u32, [i32; 3])>,
+    /// Vertices.
+    pub vertices: Vec<TessCopy>,
+    /// Edges.
+    pub edges: Vec<TessCopy>,
+    /// Faces; empty in 2D.
+    pub faces: Vec<TessCopy>,
+}
+
+/// `secondary = primary + shift`, in periods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TessCopy {
+    /// The moved one.
+    pub secondary: u32,
+    /// The other one, and whether the two run, or their normals point, opposite ways.
+    pub primary: Oriented,
+    /// Periods along x, y and z.
+    pub shift: [i32; 3],
+}
+
 impl Tess {
     /// The flat cells of a run.
     pub fn new(cells: &Tessellated) -> Self {
@@ -97,10 +127,14 @@ impl Tess {
             faces: Vec::new(),
             polyhedra: Vec::new(),
             domain: TessDomain { kind: String::new(), lower: domain.lower(), upper: domain.upper(), walls },
+            periodicity: None,
         };
         match tess.dimension {
             Dimension::Three => tess.fill_space(cells),
             Dimension::Two => tess.fill_plane(cells),
+        }
+        if domain.is_periodic() {
+            tess.periodicity = Some(TessPeriodicity::new(cells, &tess));
         }
         tess
     }
@@ -160,6 +194,61 @@ impl Tess {
             }
             self.faces.push(face);
         }
+    }
+}
+
+impl TessPeriodicity {
+    fn new(cells: &Tessellated, tess: &Tess) -> Self {
+        let tessellation = &cells.tessellation;
+        let domain = tessellation.domain();
+        let axes: [bool; 3] = domain.periodic().into();
+        let range = |axis: usize| if axes[axis] { -1..=1 } else { 0..=0 };
+        let mut seeds = Vec::new();
+        for z in range(2) {
+            for y in range(1) {
+                for x in range(0).filter(|x| [*x, y, z] != [0; 3]) {
+                    seeds.extend((0u32..).take(tessellation.cell_count()).map(|cell| (cell, [x, y, z])));
+                }
+            }
+        }
+        let copy = |secondary, index, is_reversed, shift: Shift| TessCopy {
+            secondary,
+            primary: Oriented { index, is_reversed },
+            shift: shift.0.map(i32::from),
+        };
+        let pairs = tessellation.periodic_vertices();
+        let vertices: Vec<TessCopy> =
+            pairs.iter().map(|pair| copy(pair.secondary.0, pair.primary.0, false, pair.shift)).collect();
+        let primary_of = |vertex: u32| {
+            let place = vertices.binary_search_by_key(&vertex, |copy| copy.secondary);
+            place.map_or(vertex, |place| vertices[place].primary.index)
+        };
+        // Copies of an edge may run the other way, as both begin at the vertex with the smaller number.
+        let runs_back = |secondary: u32, primary: u32| {
+            let [secondary, primary] =
+                [secondary, primary].map(|edge| tess.edges[edge as usize].map(primary_of));
+            secondary != primary
+        };
+        let edges = tessellation.periodic_edges(&tessellation.edges());
+        let faces = tessellation.periodic_faces();
+        let (edges, faces) = match tess.dimension {
+            Dimension::Three => (
+                edges
+                    .iter()
+                    .map(|pair| {
+                        let is_reversed = runs_back(pair.secondary, pair.primary);
+                        copy(pair.secondary, pair.primary, is_reversed, pair.shift)
+                    })
+                    .collect(),
+                faces.iter().map(|pair| copy(pair.secondary.0, pair.primary.0, true, pair.shift)).collect(),
+            ),
+            // The edges of the plane are its boundaries, whose copies are turned round.
+            Dimension::Two => (
+                faces.iter().map(|pair| copy(pair.secondary.0, pair.primary.0, true, pair.shift)).collect(),
+                Vec::new(),
+            ),
+        };
+        Self { axes, lengths: domain.size(), seeds, vertices, edges, faces }
     }
 }
 

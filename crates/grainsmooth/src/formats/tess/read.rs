@@ -3,7 +3,7 @@
 use glam::DVec3;
 use voronoi::{Dimension, Wall};
 
-use super::{Oriented, Tess, TessDomain, TessFace, TessSeed};
+use super::{Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessSeed};
 
 /// What is wrong with a .tess file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -21,7 +21,7 @@ const VERSIONS: [&str; 3] = ["3.3", "3.4", "3.5"];
 /// The version from which on an edge of the domain says what curve it is.
 const VERSION_WITH_CURVES: &str = "3.5";
 
-/// Reads a tessellation, standard or periodic; orientations, scales and the pairs of a periodic one are passed over.
+/// Reads a tessellation, standard or periodic; orientations and scales are passed over.
 ///
 /// # Errors
 /// [`TessProblem`] at the first word that is not what it must be, or that refers to what does not exist.
@@ -59,6 +59,7 @@ pub fn read_tess(text: &str) -> Result<Tess, TessProblem> {
             "**face" => tess.faces = reader.faces(&tess)?,
             "**polyhedron" => tess.polyhedra = reader.polyhedra(tess.faces.len())?,
             "**domain" => tess.domain = reader.domain(&tess)?,
+            "**periodicity" => tess.periodicity = Some(reader.periodicity(&tess)?),
             section if section.starts_with("**") => reader.words.skip_section(),
             word => return Err(reader.words.problem(format!("{word:?} where a section must begin"))),
         }
@@ -155,6 +156,29 @@ impl<'a> Words<'a> {
             Some(index) => Ok(Oriented { index, is_reversed: number < 0 }),
             None => Err(self.problem(format!("{what} {number} does not exist, there are {count}"))),
         }
+    }
+
+    fn shift(&mut self) -> Result<[i32; 3], TessProblem> {
+        let mut shift = [0; 3];
+        for periods in &mut shift {
+            let word = self.next("a number of periods")?;
+            *periods =
+                word.parse().map_err(|_| self.problem(format!("{word:?} is not a number of periods")))?;
+        }
+        Ok(shift)
+    }
+
+    /// A part of the periodicity; edges and faces say last whether they run the same way.
+    fn copies(&mut self, what: &str, count: usize, has_sense: bool) -> Result<Vec<TessCopy>, TessProblem> {
+        self.expect(&format!("*{what}"))?;
+        let length = self.count("a number of copies")?;
+        self.list(length, |words, _| {
+            let secondary = words.index(what, count)?;
+            let index = words.index(what, count)?;
+            let shift = words.shift()?;
+            let is_reversed = has_sense && words.next("1 or -1")? == "-1";
+            Ok(TessCopy { secondary, primary: Oriented { index, is_reversed }, shift })
+        })
     }
 
     /// So many items; memory grows with what is read, not with what a corrupt file announces.
@@ -287,6 +311,30 @@ impl Reader<'_> {
             _ => self.words.skip_section(),
         }
         Ok(domain)
+    }
+
+    fn periodicity(&mut self, tess: &Tess) -> Result<TessPeriodicity, TessProblem> {
+        let words = &mut self.words;
+        let cell_count = self.cell_count;
+        words.expect("*general")?;
+        let mut axes = [false; 3];
+        for is_periodic in &mut axes {
+            *is_periodic = words.count("0 or 1")? != 0;
+        }
+        let lengths = words.point()?;
+        words.expect("*seed")?;
+        let count = words.count("the number of seeds")?;
+        let seeds = words.list(count, |words, index| {
+            words.id("seed", cell_count + index)?;
+            Ok((words.index("seed", cell_count)?, words.shift()?))
+        })?;
+        let vertices = words.copies("vertex", tess.vertices.len(), false)?;
+        let edges = words.copies("edge", tess.edges.len(), true)?;
+        let faces = match tess.dimension {
+            Dimension::Two => Vec::new(),
+            Dimension::Three => words.copies("face", tess.faces.len(), true)?,
+        };
+        Ok(TessPeriodicity { axes, lengths, seeds, vertices, edges, faces })
     }
 
     /// The edges of the domain, which are its walls in the plane.

@@ -5,12 +5,13 @@ use std::io::{self, Write};
 use glam::DVec3;
 use voronoi::{Dimension, Wall};
 
-use super::{Oriented, Tess, TessDomain};
+use super::{Oriented, Tess, TessCopy, TessDomain, TessPeriodicity};
 
 /// Writes the file.
 pub(crate) fn write(tess: &Tess, out: &mut dyn Write) -> io::Result<()> {
     let dimension = if tess.dimension == Dimension::Two { 2 } else { 3 };
-    writeln!(out, "***tess\n **format\n   3.5\n **general\n   {dimension} standard")?;
+    let kind = if tess.periodicity.is_some() { "periodic" } else { "standard" };
+    writeln!(out, "***tess\n **format\n   3.5\n **general\n   {dimension} {kind}")?;
     let cell_count = if dimension == 2 { tess.faces.len() } else { tess.polyhedra.len() };
     writeln!(out, " **cell\n  {cell_count}")?;
     if !tess.seeds.is_empty() {
@@ -45,7 +46,38 @@ pub(crate) fn write(tess: &Tess, out: &mut dyn Write) -> io::Result<()> {
     if !tess.domain.walls.is_empty() {
         write_domain(tess, out)?;
     }
+    if let Some(periodicity) = &tess.periodicity {
+        write_periodicity(periodicity, tess, out)?;
+    }
     writeln!(out, "***end")
+}
+
+fn write_periodicity(periodicity: &TessPeriodicity, tess: &Tess, out: &mut dyn Write) -> io::Result<()> {
+    let [x, y, z] = periodicity.axes.map(u8::from);
+    writeln!(out, " **periodicity\n  *general\n   {x} {y} {z}\n   {}", coordinates(periodicity.lengths))?;
+    // Images of seeds are numbered on from the seeds.
+    writeln!(out, "  *seed\n   {}", periodicity.seeds.len())?;
+    for (id, (cell, [x, y, z])) in (tess.seeds.len() + 1..).zip(&periodicity.seeds) {
+        writeln!(out, "   {id} {} {x} {y} {z}", cell + 1)?;
+    }
+    let mut part = |name: &str, copies: &[TessCopy], has_sense: bool| {
+        writeln!(out, "  *{name}\n   {}", copies.len())?;
+        for TessCopy { secondary, primary, shift: [x, y, z] } in copies {
+            let sense = match (has_sense, primary.is_reversed) {
+                (false, _) => "",
+                (true, false) => " 1",
+                (true, true) => " -1",
+            };
+            writeln!(out, "   {} {} {x} {y} {z}{sense}", secondary + 1, primary.index + 1)?;
+        }
+        Ok(())
+    };
+    part("vertex", &periodicity.vertices, false)?;
+    part("edge", &periodicity.edges, true)?;
+    match tess.dimension {
+        Dimension::Two => Ok(()),
+        Dimension::Three => part("face", &periodicity.faces, true),
+    }
 }
 
 /// The box: its corners, edges and faces, each with the vertices, edges and faces of the tessellation that lie on it.

@@ -1,0 +1,159 @@
+//! Periodic networks: whole, closed grains, and copies that match their originals on every level.
+
+#[allow(dead_code, reason = "every test file uses its own share")]
+mod common;
+
+use std::collections::BTreeSet;
+
+use common::random_seeds;
+use glam::{BVec3, DVec3};
+use polycrystal::{
+    Junctions, Level, Mesh, Network, NetworkError, NodeType, Relaxation, Side, relax, validate,
+};
+use voronoi::{Domain, PeriodicPair, Shift, Tessellation};
+
+fn domains() -> [Domain; 5] {
+    let x = BVec3::new(true, false, false);
+    let plate = Domain::cuboid(DVec3::ZERO, DVec3::new(3.0, 1.0, 0.2)).expect("positive sides");
+    [
+        Domain::unit_cube().with_periods(BVec3::TRUE),
+        Domain::unit_cube().with_periods(x),
+        plate.with_periods(BVec3::new(true, true, false)),
+        Domain::unit_square().with_periods(BVec3::TRUE),
+        Domain::unit_square().with_periods(x),
+    ]
+}
+
+fn network(domain: &Domain, seeds: &[DVec3], levels: usize) -> (Tessellation, Network, Vec<DVec3>) {
+    let tessellation = Tessellation::new(domain, seeds).expect("valid seeds");
+    let (network, flat) = Network::new(&tessellation, Junctions::Crease, levels).expect("a small network");
+    (tessellation, network, flat)
+}
+
+fn elements(level: &Level) -> Vec<Vec<usize>> {
+    let indices = |corners: &[u32]| corners.iter().map(|corner| *corner as usize).collect();
+    match &level.mesh {
+        Mesh::Triangles(mesh) => mesh.triangles().iter().map(|corners| indices(corners)).collect(),
+        Mesh::Segments(mesh) => mesh.segments().iter().map(|ends| indices(ends)).collect(),
+    }
+}
+
+/// Of each vertex, its original and the shift from there.
+fn originals(level: &Level) -> Vec<(usize, Shift)> {
+    let mut originals: Vec<(usize, Shift)> = (0..level.vertex_count()).map(|v| (v, Shift::NONE)).collect();
+    for pair in &level.copies.vertices {
+        originals[pair.secondary as usize] = (pair.primary as usize, pair.shift);
+    }
+    originals
+}
+
+#[test]
+fn periodic_networks_are_valid() {
+    for domain in domains() {
+        for count in [1, 2, 5, 40] {
+            let (_, network, flat) = network(&domain, &random_seeds(&domain, count, 3), 2);
+            let validation = validate(&network, &network.subdivide(&flat)).expect("valid");
+            assert!(validation.largest_volume_error < 1e-12, "{count} in {domain}");
+        }
+    }
+}
+
+#[test]
+fn copies_stand_a_shift_from_their_originals_on_every_level() {
+    for domain in domains() {
+        for count in [1, 3, 40] {
+            let seeds = random_seeds(&domain, count, 1);
+            for level in 0..3 {
+                let (_, network, flat) = network(&domain, &seeds, level);
+                let points = network.subdivide(&flat);
+                let originals = originals(network.finest());
+                for &PeriodicPair { secondary, primary, shift } in &network.finest().copies.vertices {
+                    assert_eq!(originals[primary as usize], (primary as usize, Shift::NONE));
+                    let moved = points[primary as usize] + shift.vector(&domain);
+                    assert_eq!(points[secondary as usize], moved);
+                }
+            }
+        }
+    }
+}
+
+/// The elements of a boundary and those of its twin have the same corners but for the shift, the other way round.
+#[test]
+fn twins_are_the_same_triangles_turned_round() {
+    for domain in domains() {
+        for count in [1, 3, 40] {
+            let (_, network, _) = network(&domain, &random_seeds(&domain, count, 2), 2);
+            let level = network.finest();
+            let originals = originals(level);
+            let corners_of = |boundary: usize, shift: Shift| -> BTreeSet<Vec<(usize, Shift)>> {
+                let of_boundary = elements(level).into_iter().zip(&level.boundary_of);
+                let of_boundary = of_boundary.filter(|(_, of)| of.index() == boundary);
+                let named = |corners: Vec<usize>| -> Vec<(usize, Shift)> {
+                    corners.iter().map(|v| (originals[*v].0, originals[*v].1 + shift)).collect()
+                };
+                of_boundary.map(|(corners, _)| named(corners)).collect()
+            };
+            let first_smallest = |mut corners: Vec<(usize, Shift)>| {
+                let smallest = (0..corners.len()).min_by_key(|k| corners[*k]).expect("corners");
+                if corners.len() == 3 {
+                    corners.rotate_left(smallest);
+                }
+                corners
+            };
+            let mut twins = 0;
+            for (id, boundary) in network.boundaries().iter().enumerate() {
+                let Some(twin) = boundary.twin else { continue };
+                assert_eq!(boundary.sides[1], Side::Exterior);
+                let back = network.boundaries()[twin.boundary.index()].twin.expect("twins know each other");
+                assert_eq!((back.boundary.index(), back.shift), (id, Shift::NONE - twin.shift));
+                if twins < 6 {
+                    let turned = |mut corners: Vec<(usize, Shift)>| {
+                        corners.reverse();
+                        first_smallest(corners)
+                    };
+                    let here: BTreeSet<_> = corners_of(id, twin.shift).into_iter().map(turned).collect();
+                    let there = corners_of(twin.boundary.index(), Shift::NONE);
+                    assert_eq!(here, there.into_iter().map(first_smallest).collect());
+                }
+                twins += 1;
+            }
+            assert!(twins > 0);
+        }
+    }
+}
+
+#[test]
+fn junctions_are_counted_once() {
+    let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
+    let (tessellation, network, _) = network(&domain, &random_seeds(&domain, 60, 4), 1);
+    let edges = tessellation.edges();
+    let lines = edges.ends.len() - tessellation.periodic_edges(&edges).len();
+    let points = tessellation.vertices().len() - tessellation.periodic_vertices().len();
+    // In general position three grains meet at each edge and four at each vertex.
+    assert_eq!(network.junction_counts().triple_lines, lines);
+    assert_eq!(network.junction_counts().quadruple_points, points);
+    assert_eq!(lines, 2 * points);
+    for level in network.levels() {
+        for pair in &level.copies.vertices {
+            let [copy, original] =
+                [pair.secondary, pair.primary].map(|v| level.node_types[v as usize].code() % 10);
+            assert_eq!(copy, original);
+        }
+    }
+    let outer = |boundary: usize| network.boundaries()[boundary].twin.is_some();
+    for (corners, boundary) in elements(network.finest()).iter().zip(&network.finest().boundary_of) {
+        let is_outer = corners.iter().all(|v| network.finest().node_types[*v].code() >= 10);
+        assert!(!outer(boundary.index()) || is_outer);
+    }
+    assert!(network.finest().node_types.contains(&NodeType::OUTER));
+}
+
+#[test]
+fn periodic_networks_are_not_relaxed() {
+    let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
+    let (_, network, flat) = network(&domain, &random_seeds(&domain, 5, 4), 1);
+    let still = relax(&network, &flat, &Relaxation { time: 0.0 }, |_, _| ()).expect("nothing to do");
+    assert_eq!(still.control_points, flat);
+    let refused = relax(&network, &flat, &Relaxation::default(), |_, _| ());
+    assert!(matches!(refused, Err(NetworkError::PeriodicRelaxation)));
+}
