@@ -44,7 +44,6 @@ assert np.array_equal(mesh.points, points)
 assert np.allclose(
     signed_volumes(points, mesh.cells[0].data, mesh.cell_data["FaceLabels"][0], -1), volumes, rtol=1e-9
 )
-assert meshio.read(folder / "b.vtu").cells[0].type.startswith("poly") or True
 
 blocks = pyvista.read(folder / "a.vtm")
 assert blocks.keys() == ["boundaries", "grains", "triple_lines", "quadruple_points"], blocks.keys()
@@ -67,7 +66,9 @@ for grain, volume in enumerate(volumes):
     of_grain = boundaries["FaceLabels"][(boundaries["FaceLabels"] == grain).any(axis=1)]
     assert one["Neighbors"][0] == len(set(of_grain.ravel()) - {grain, -1})
 
-for name in ("a.stl", "a.ply", "a.obj"):
+# meshio fails on any PLY whose faces have numbers of their own.
+assert pyvista.read(folder / "a.ply").n_cells == expected["triangles"]
+for name in ("a.stl", "a.obj"):
     mesh = meshio.read(folder / name)
     assert sum(len(block.data) for block in mesh.cells) == expected["triangles"], name
 mesh = trimesh.load(folder / "a.ply", process=False)
@@ -79,7 +80,8 @@ for grain, volume in enumerate(volumes):
 
 mesh = meshio.read(folder / "a.msh")
 assert sum(len(block.data) for block in mesh.cells if block.type == "triangle") == expected["triangles"]
-assert len([name for name in mesh.field_data if name.startswith("boundary")]) == expected["boundaries"]
+tags = [tags for block, tags in zip(mesh.cells, mesh.cell_data["gmsh:geometrical"]) if block.type == "triangle"]
+assert np.array_equal(np.unique(np.concatenate(tags)), np.arange(expected["boundaries"]) + 1)
 
 image = pyvista.read(folder / "a.vti")
 labels = np.load(folder / "a.npy")

@@ -16,9 +16,9 @@ pub const GRAINS: usize = 12;
 pub static SPACE: LazyLock<Polycrystal> = LazyLock::new(|| make(Dimension::Three, 0.3));
 pub static PLANE: LazyLock<Polycrystal> = LazyLock::new(|| make(Dimension::Two, 0.3));
 
-/// The same seeds without walls.
+/// The same seeds without walls, flat.
 pub static TORUS: LazyLock<Polycrystal> = LazyLock::new(|| {
-    make_polycrystal(&Config { periodic: BVec3::TRUE, ..config(Dimension::Three, 0.3) }, &|_, _, _| ())
+    make_polycrystal(&Config { periodic: BVec3::TRUE, ..config(Dimension::Three, 0.0) }, &|_, _, _| ())
         .unwrap()
 });
 

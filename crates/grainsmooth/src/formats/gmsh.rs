@@ -26,6 +26,11 @@ pub(crate) fn write_script(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     writeln!(out, "// grainsmooth {}\nMerge \"{mesh}\";", env!("CARGO_PKG_VERSION"))?;
+    for part in &surface.parts {
+        let ([from, to], tag) = (part.sides.map(side_name), tag(part.boundary));
+        let number = part.boundary.0;
+        writeln!(out, "Physical Surface(\"boundary{number} {from} {to}\", {tag}) = {{{tag}}};")?;
+    }
     for (grain, parts) in surface.parts_of_grains(grain_count).iter().enumerate() {
         let tag = grain + 1;
         let surfaces = parts.iter().map(|(part, is_inward)| {
@@ -39,23 +44,13 @@ pub(crate) fn write_script(
     Ok(())
 }
 
-/// Writes the mesh file.
+/// Writes the mesh file. Names stand in the script: meshio wants them for every cell, or for none.
 pub(crate) fn write(surface: &Surface<'_>, out: &mut dyn Write) -> io::Result<()> {
     let junctions = Junctions::of(surface);
     writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat")?;
-    write_names(surface, out)?;
     write_entities(surface, &junctions, out)?;
     write_nodes(surface, &junctions, out)?;
     write_elements(surface, &junctions, out)
-}
-
-fn write_names(surface: &Surface<'_>, out: &mut dyn Write) -> io::Result<()> {
-    writeln!(out, "$PhysicalNames\n{}", surface.parts.len())?;
-    for part in &surface.parts {
-        let [from, to] = part.sides.map(side_name);
-        writeln!(out, "2 {} \"boundary{} {from} {to}\"", tag(part.boundary), part.boundary.0)?;
-    }
-    writeln!(out, "$EndPhysicalNames")
 }
 
 fn write_entities(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Write) -> io::Result<()> {

@@ -49,6 +49,7 @@ pub fn read_tess(text: &str) -> Result<Tess, TessProblem> {
         faces: Vec::new(),
         polyhedra: Vec::new(),
         domain: TessDomain { kind: String::new(), lower: DVec3::ZERO, upper: DVec3::ZERO, walls: Vec::new() },
+        periodicity: None,
     };
     loop {
         match reader.words.next("***end")? {
