@@ -208,8 +208,7 @@ fn located(error: VoronoiError, config: &Config, seeds: &[FileSeed]) -> Error {
     let seed = match &error {
         VoronoiError::NotFinite { seed, .. }
         | VoronoiError::OutsideDomain { seed, .. }
-        | VoronoiError::BadWeight { seed, .. }
-        | VoronoiError::NotTriangulable { seed, .. } => *seed,
+        | VoronoiError::BadWeight { seed, .. } => *seed,
         VoronoiError::DuplicateSeeds { first, second, position } => {
             let lines = [seeds[*first].line, seeds[*second].line];
             return Error::DuplicateSeedsInFile { path: path.clone(), lines, position: *position };

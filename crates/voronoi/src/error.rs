@@ -56,16 +56,6 @@ pub enum VoronoiError {
         /// Their common coordinates.
         position: DVec3,
     },
-    /// The Delaunay triangulation refused a coordinate (2D only).
-    #[error("seed {seed} at {} cannot be triangulated: {reason}", Point(*.position))]
-    NotTriangulable {
-        /// Position of the seed in the input.
-        seed: usize,
-        /// Its coordinates.
-        position: DVec3,
-        /// What the triangulation says.
-        reason: String,
-    },
 }
 
 /// Writes a point as `(x, y, z)` with as many digits as its doubles need.

@@ -5,7 +5,7 @@ use crate::Wall;
 /// Sites are the seeds, by number, then the periodic images of seeds. A wall across a periodic axis stands for the plane
 /// half a period away from the cell's own seed; no finished cell has such a plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) struct Generator(u32);
+pub(crate) struct Generator(pub(crate) u32);
 
 /// A generator, told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,9 +44,3 @@ impl Generator {
 
 /// The four generators whose bisectors and walls meet in a vertex in general position, sorted.
 pub(crate) type VertexKey = [Generator; 4];
-
-pub(crate) fn vertex_key(seed: u32, planes: [Generator; 3]) -> VertexKey {
-    let mut key = [Generator::site(seed), planes[0], planes[1], planes[2]];
-    key.sort_unstable();
-    key
-}

@@ -1,69 +1,194 @@
-//! Seeds sorted into the blocks of a regular grid, visited from near to far.
+//! Seeds sorted into the blocks of a regular grid, so that what is near in space is near in memory.
+
+use std::ops::Range;
 
 use glam::{DVec3, IVec3};
 
 /// Seeds a block holds on average: fewer make more empty blocks to visit, more make more seeds to sort out.
-const SEEDS_PER_BLOCK: f64 = 3.0;
+const SEEDS_PER_BLOCK: f64 = 2.0;
 
+/// Blocks in a tile, at most: what lies on the sides of a tile is worked out on both sides, and a tile is the unit of work
+/// that threads share out.
+const BLOCKS_PER_TILE: f64 = 4096.0;
+
+/// Covers the rounding of a position in units of blocks, at most 1024.
+const BLOCK_MARGIN: f64 = 1e-9;
+
+/// The seeds in order of tiles, in these of blocks, in these of coordinates: an order that permuting the seeds does not change.
 pub(crate) struct SeedGrid {
     lower: DVec3,
     block: DVec3,
+    /// Blocks per length.
+    density: DVec3,
     counts: IVec3,
-    /// Seeds of block b are `seeds[starts[b]..starts[b + 1]]`.
+    /// The number of block (x, y, z) is `offsets[0][x] + offsets[1][y] + offsets[2][z]`.
+    offsets: [Vec<u32>; 3],
+    /// Seeds of block b are `starts[b]..starts[b + 1]`.
     starts: Vec<u32>,
-    seeds: Vec<u32>,
+    tiles: Vec<Range<u32>>,
+    /// The seeds' places in the input.
+    pub(crate) order: Vec<u32>,
+    positions: Vec<DVec3>,
 }
 
 impl SeedGrid {
     /// Sorts the seeds into blocks that are as close to cubes as the seeds' bounding box allows.
-    pub(crate) fn new(positions: &[DVec3]) -> Self {
-        let lower = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let upper = positions.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    pub(crate) fn new(seeds: Vec<DVec3>) -> Self {
+        let lower = seeds.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let upper = seeds.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
         let size = upper - lower;
-        let counts = block_counts(size, positions.len() as f64 / SEEDS_PER_BLOCK);
+        let counts = block_counts(size, seeds.len() as f64 / SEEDS_PER_BLOCK);
         // An axis without extent gets one block of any positive width.
         let block = DVec3::from_array([0, 1, 2].map(|axis| {
             let width = size[axis] / f64::from(counts[axis]);
             if width > 0.0 { width } else { 1.0 }
         }));
-        let mut grid = Self { lower, block, counts, starts: Vec::new(), seeds: Vec::new() };
-        grid.sort(positions);
+        let axes = counts.to_array().into_iter().filter(|count| *count > 1).count().max(1);
+        #[expect(clippy::cast_possible_truncation, reason = "a small number")]
+        let tile_edge = BLOCKS_PER_TILE.powf(1.0 / axes as f64).round() as i32;
+        let tile_counts = (counts + (tile_edge - 1)) / tile_edge;
+        let tile = (counts + (tile_counts - 1)) / tile_counts;
+        let tile_blocks = tile.element_product();
+        // Blocks between one block and the next along each axis: within a tile, and from tile to tile.
+        let steps = [1, tile.x, tile.x * tile.y];
+        let tile_steps = [1, tile_counts.x, tile_counts.x * tile_counts.y];
+        let offsets = [0, 1, 2].map(|axis| {
+            let offset = |b: i32| {
+                (b % tile[axis] * steps[axis] + b / tile[axis] * tile_steps[axis] * tile_blocks)
+                    .cast_unsigned()
+            };
+            (0..counts[axis]).map(offset).collect()
+        });
+        let mut grid = Self {
+            lower,
+            block,
+            density: 1.0 / block,
+            counts,
+            offsets,
+            starts: Vec::new(),
+            tiles: Vec::new(),
+            order: Vec::new(),
+            positions: Vec::new(),
+        };
+        grid.sort(&seeds, (tile_counts.element_product() * tile_blocks).unsigned_abs() as usize);
+        let tile_starts = grid.starts.iter().copied().step_by(tile_blocks.unsigned_abs() as usize);
+        let tile_starts: Vec<u32> = tile_starts.collect();
+        grid.tiles =
+            tile_starts.windows(2).map(|pair| pair[0]..pair[1]).filter(|tile| !tile.is_empty()).collect();
         grid
     }
 
-    fn sort(&mut self, positions: &[DVec3]) {
-        let block_count = self.counts.as_usizevec3().element_product();
+    fn sort(&mut self, seeds: &[DVec3], block_count: usize) {
+        let block_of = |seed: &DVec3| {
+            let place = (*seed - self.lower) * self.density;
+            // Casting saturates, and the clamp takes in the seed on the upper side.
+            let block = place.as_ivec3().clamp(IVec3::ZERO, self.counts - 1).as_usizevec3();
+            self.offsets[0][block.x] + self.offsets[1][block.y] + self.offsets[2][block.z]
+        };
+        let blocks: Vec<u32> = seeds.iter().map(block_of).collect();
         let mut starts = vec![0u32; block_count + 1];
-        for position in positions {
-            starts[self.block_index(self.block_of(*position)) + 1] += 1;
+        for block in &blocks {
+            starts[*block as usize + 1] += 1;
         }
         for block in 0..block_count {
             starts[block + 1] += starts[block];
         }
         let mut next = starts.clone();
-        self.seeds = vec![0; positions.len()];
-        for (seed, position) in (0u32..).zip(positions) {
-            let slot = &mut next[self.block_index(self.block_of(*position))];
-            self.seeds[*slot as usize] = seed;
+        self.order = vec![0; seeds.len()];
+        for (seed, block) in (0u32..).zip(&blocks) {
+            let slot = &mut next[*block as usize];
+            self.order[*slot as usize] = seed;
             *slot += 1;
         }
+        for block in starts.windows(2) {
+            // Adding zero makes -0 and 0 the same place.
+            let key = |id: &u32| (seeds[*id as usize] + DVec3::ZERO).to_array();
+            self.order[block[0] as usize..block[1] as usize].sort_unstable_by(|a, b| {
+                let (left, right) = (key(a), key(b));
+                let by_axis = |axis: usize| left[axis].total_cmp(&right[axis]);
+                by_axis(0).then_with(|| by_axis(1)).then_with(|| by_axis(2)).then(a.cmp(b))
+            });
+        }
+        self.positions = self.order.iter().map(|id| seeds[*id as usize]).collect();
         self.starts = starts;
     }
 
-    fn block_of(&self, position: DVec3) -> IVec3 {
-        // Casting saturates, and the clamp takes in the seed on the upper side.
-        ((position - self.lower) / self.block).as_ivec3().clamp(IVec3::ZERO, self.counts - 1)
+    /// The ids of two seeds at one place, the smallest such pair.
+    pub(crate) fn duplicates(&self) -> Option<(u32, u32)> {
+        let pairs = self.positions.windows(2).zip(self.order.windows(2));
+        pairs.filter(|(positions, _)| positions[0] == positions[1]).map(|(_, ids)| (ids[0], ids[1])).min()
     }
 
-    fn block_index(&self, block: IVec3) -> usize {
-        let [x, y, z] = block.as_usizevec3().to_array();
-        let counts = self.counts.as_usizevec3();
-        (z * counts.y + y) * counts.x + x
+    /// The same grid for seeds that were brought into its order.
+    pub(crate) fn renumbered(self) -> Self {
+        Self { order: (0u32..).take(self.order.len()).collect(), ..self }
     }
 
-    /// Starts a visit of all seeds around a place, shell by shell of blocks.
-    pub(crate) fn shells(&self, center: DVec3) -> Shells<'_> {
-        Shells { grid: self, center, home: self.block_of(center), ring: 0 }
+    /// The ranges of seeds, by place in the grid's order, that make up compact parts of space.
+    pub(crate) fn tiles(&self) -> &[Range<u32>] {
+        &self.tiles
+    }
+
+    /// Longest side of a block along the axes that have several; infinite if there are none.
+    pub(crate) fn block_size(&self) -> f64 {
+        let sides = (0..3).filter(|axis| self.counts[*axis] > 1).map(|axis| self.block[axis]);
+        sides.reduce(f64::max).unwrap_or(f64::INFINITY)
+    }
+
+    /// Visits all seeds further than `from` and at most `to` from a place, as their number in the input, the vector to
+    /// them and its squared length.
+    #[inline]
+    pub(crate) fn for_each_within(
+        &self,
+        center: DVec3,
+        from: f64,
+        to: f64,
+        mut visit: impl FnMut(u32, DVec3, f64),
+    ) {
+        let (from, to_squared) = (if from < 0.0 { -1.0 } else { from * from }, to * to);
+        let place = (center - self.lower) * self.density;
+        let steps = to * self.density + BLOCK_MARGIN;
+        let first = (place - steps).max(DVec3::ZERO).as_ivec3().clamp(IVec3::ZERO, self.counts - 1);
+        let last = (place + steps).max(DVec3::ZERO).as_ivec3().clamp(IVec3::ZERO, self.counts - 1);
+        // Squared distance from a row of blocks along one axis.
+        let beside = |axis: usize, b: i32| {
+            let below = f64::from(b) - place[axis] - BLOCK_MARGIN;
+            let above = place[axis] - f64::from(b + 1) - BLOCK_MARGIN;
+            let distance = below.max(above).max(0.0) * self.block[axis];
+            distance * distance
+        };
+        for z in first.z..=last.z {
+            let beside_z = beside(2, z);
+            for y in first.y..=last.y {
+                let rest = to_squared - (beside_z + beside(1, y));
+                if rest < 0.0 {
+                    continue;
+                }
+                let step = rest.sqrt() * self.density.x + BLOCK_MARGIN;
+                #[expect(clippy::cast_possible_truncation, reason = "saturates, then clamped")]
+                let [mut x, end] = [place.x - step, place.x + step]
+                    .map(|x| (x.max(0.0) as i32).min(self.counts.x - 1) as usize);
+                let row = self.offsets[1][y as usize] + self.offsets[2][z as usize];
+                while x <= end {
+                    // Blocks follow one another up to the end of the tile.
+                    let mut last = x;
+                    while last < end && self.offsets[0][last + 1] == self.offsets[0][last] + 1 {
+                        last += 1;
+                    }
+                    let start = self.starts[(row + self.offsets[0][x]) as usize];
+                    let stop = self.starts[(row + self.offsets[0][last]) as usize + 1];
+                    let places = start as usize..stop as usize;
+                    for (seed, position) in self.order[places.clone()].iter().zip(&self.positions[places]) {
+                        let to_seed = *position - center;
+                        let squared = to_seed.length_squared();
+                        if squared > from && squared <= to_squared {
+                            visit(*seed, to_seed, squared);
+                        }
+                    }
+                    x = last + 1;
+                }
+            }
+        }
     }
 }
 
@@ -90,89 +215,43 @@ fn block_counts(size: DVec3, blocks_wanted: f64) -> IVec3 {
     counts
 }
 
-/// A visit of blocks in growing distance from a place.
-pub(crate) struct Shells<'a> {
-    grid: &'a SeedGrid,
-    center: DVec3,
-    home: IVec3,
-    ring: i32,
-}
-
-impl Shells<'_> {
-    /// A lower bound on the distance of all seeds not handed out yet; nothing when there are none.
-    pub(crate) fn distance_ahead(&self) -> Option<f64> {
-        if self.ring == 0 {
-            return Some(0.0);
-        }
-        let mut distance = f64::INFINITY;
-        let mut has_more = false;
-        for axis in 0..3 {
-            let below = self.home[axis] - self.ring;
-            let above = self.home[axis] + self.ring;
-            // A block's rounded limits may be off by some last places: the margin is that of the coordinates.
-            let edge = |index: i32| self.grid.lower[axis] + f64::from(index) * self.grid.block[axis];
-            let margin = 1e-12 * self.grid.block[axis] * f64::from(self.grid.counts[axis]);
-            has_more |= below >= 0 || above < self.grid.counts[axis];
-            if below >= 0 {
-                distance = distance.min(self.center[axis] - edge(below + 1) - margin);
-            }
-            if above < self.grid.counts[axis] {
-                distance = distance.min(edge(above) - self.center[axis] - margin);
-            }
-        }
-        has_more.then_some(distance.max(0.0))
-    }
-
-    /// Hands out the seeds of the next shell: the blocks `ring` steps from the home block.
-    pub(crate) fn next_shell(&mut self, mut visit: impl FnMut(u32)) {
-        let ring = self.ring;
-        let lower = (self.home - ring).max(IVec3::ZERO);
-        let upper = (self.home + ring).min(self.grid.counts - 1);
-        for z in lower.z..=upper.z {
-            for y in lower.y..=upper.y {
-                let on_shell = (z - self.home.z).abs() == ring || (y - self.home.y).abs() == ring;
-                // Inside the shell only its two ends along x are new.
-                let step = if on_shell || ring == 0 { 1 } else { 2 * ring };
-                let first = if on_shell { lower.x } else { self.home.x - ring };
-                let last = if on_shell { upper.x } else { self.home.x + ring };
-                let mut x = first;
-                while x <= last {
-                    if x >= lower.x && x <= upper.x {
-                        let block = self.grid.block_index(IVec3::new(x, y, z));
-                        let range = self.grid.starts[block] as usize..self.grid.starts[block + 1] as usize;
-                        self.grid.seeds[range].iter().copied().for_each(&mut visit);
-                    }
-                    x += step;
-                }
-            }
-        }
-        self.ring += 1;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn seeds() -> Vec<DVec3> {
+        let fraction = |i: u32, k: f64| (f64::from(i) * k).fract();
+        let seed = |i: u32| {
+            DVec3::new(fraction(i, 0.618_034) * 5.0, fraction(i, 0.754_878), fraction(i, 0.569_84) * 0.1)
+        };
+        (0..5000).map(seed).collect()
+    }
+
     #[test]
-    fn every_seed_is_handed_out_once_and_never_nearer_than_promised() {
-        let seeds: Vec<DVec3> = (0..500)
-            .map(|i| {
-                let fraction = |k: f64| (f64::from(i) * k).fract();
-                DVec3::new(fraction(0.618_034) * 5.0, fraction(0.754_878), fraction(0.569_84) * 0.1)
-            })
-            .collect();
-        let grid = SeedGrid::new(&seeds);
+    fn rings_of_distance_hold_every_seed_once() {
+        let seeds = seeds();
+        let grid = SeedGrid::new(seeds.clone());
         for center in [seeds[0], seeds[17], seeds[499]] {
-            let mut shells = grid.shells(center);
             let mut seen = vec![0; seeds.len()];
-            while let Some(promised) = shells.distance_ahead() {
-                shells.next_shell(|seed| {
-                    seen[seed as usize] += 1;
-                    assert!(seeds[seed as usize].distance(center) >= promised);
+            for [from, to] in [[-1.0, 0.0], [0.0, 0.03], [0.03, 0.3], [0.3, 10.0]] {
+                grid.for_each_within(center, from, to, |id, to_seed, squared| {
+                    let id = id as usize;
+                    seen[id] += 1;
+                    assert_eq!(to_seed, seeds[id] - center);
+                    assert!(squared.sqrt() > from && squared.sqrt() <= to);
                 });
             }
             assert!(seen.iter().all(|count| *count == 1));
         }
+    }
+
+    #[test]
+    fn tiles_hold_every_seed_and_the_order_does_not_depend_on_that_of_the_seeds() {
+        let mut seeds = seeds();
+        let grid = SeedGrid::new(seeds.clone());
+        assert!(grid.tiles().len() > 1);
+        assert!(grid.tiles().iter().cloned().flatten().eq(0..5000));
+        seeds.reverse();
+        assert_eq!(SeedGrid::new(seeds.clone()).positions, grid.positions);
     }
 }

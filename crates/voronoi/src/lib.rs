@@ -14,23 +14,42 @@
 //! assert_eq!(tessellation.vertices().len(), 12);
 //! # Ok::<(), voronoi::VoronoiError>(())
 //! ```
+//!
+//! A domain may repeat along any axes. Its cells are whole and stick out of the box, and what a cell meets a period away is
+//! an image, be it of itself:
+//!
+//! ```
+//! use glam::{BVec3, DVec3};
+//! use voronoi::{CellId, Domain, Shift, Side, Tessellation};
+//!
+//! let domain = Domain::unit_cube().with_periods(BVec3::new(true, false, false));
+//! let tessellation = Tessellation::new(&domain, &[DVec3::new(0.1, 0.5, 0.5)])?;
+//! let neighbors = tessellation.neighbors(CellId(0));
+//! assert_eq!(neighbors[..2], [-1, 1].map(|x| Side::Image(CellId(0), Shift([x, 0, 0]))));
+//! assert_eq!(neighbors.len(), 6, "two images and four walls");
+//! // The face at x = -0.4 is the primary of that at x = 0.6, or the other way round.
+//! assert_eq!(tessellation.periodic_faces().len(), 1);
+//! # Ok::<(), voronoi::VoronoiError>(())
+//! ```
 
-mod batch;
+mod candidates;
 mod convex_cell;
 mod domain;
+mod edge_ends;
 mod error;
 mod flat_cells;
 mod generator;
 mod grid;
+mod half_space;
 mod images;
 mod measure;
-mod near_seeds;
+mod open_cell;
 mod periodic_weld;
-mod planar;
 mod polygon;
 mod predicate;
 mod search;
 mod tessellation;
+mod tile;
 mod torus;
 mod weld;
 

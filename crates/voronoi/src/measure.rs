@@ -22,17 +22,40 @@ pub struct CellMeasure {
 }
 
 pub(crate) fn cell_measures(tessellation: &Tessellation) -> Vec<CellMeasure> {
-    let count = u32::try_from(tessellation.cell_count()).expect("cell ids fit 32 bits");
-    (0..count).into_par_iter().map(|cell| measure(tessellation, CellId(cell))).collect()
+    let order = in_space(tessellation);
+    let sorted: Vec<CellMeasure> = order.par_iter().map(|cell| measure(tessellation, *cell)).collect();
+    let mut measures = sorted.clone();
+    for (cell, measure) in order.iter().zip(sorted) {
+        measures[cell.index()] = measure;
+    }
+    measures
+}
+
+/// The cells in the order of the faces, which is that of space: what neighbours read is in the cache.
+fn in_space(tessellation: &Tessellation) -> Vec<CellId> {
+    let mut is_listed = vec![false; tessellation.cell_count()];
+    let mut order = Vec::with_capacity(tessellation.cell_count());
+    let mut list = |cell: CellId| {
+        if !std::mem::replace(&mut is_listed[cell.index()], true) {
+            order.push(cell);
+        }
+    };
+    for [first, _] in &tessellation.face_sides {
+        if let Side::Cell(cell) = first {
+            list(*cell);
+        }
+    }
+    (0u32..).take(tessellation.cell_count()).map(CellId).for_each(list);
+    order
 }
 
 fn measure(tessellation: &Tessellation, cell: CellId) -> CellMeasure {
     let seed = tessellation.seeds[cell.index()];
     let (mut volume, mut area, mut moment) = (0.0, 0.0, DVec3::ZERO);
-    let mut corners = Vec::new();
+    let mut corner_count = 0;
     for &face in tessellation.cell_faces(cell) {
         let ring = tessellation.face_corners(face);
-        corners.extend_from_slice(ring);
+        corner_count += ring.len();
         // Relative to the seed, for a cell far from the origin would lose digits.
         let at = |k: usize| tessellation.vertices[ring[k].index()] - seed;
         let outward = if tessellation.face_sides(face)[0] == Side::Cell(cell) { 1.0 } else { -1.0 };
@@ -56,14 +79,11 @@ fn measure(tessellation: &Tessellation, cell: CellId) -> CellMeasure {
             }
         }
     }
-    corners.sort_unstable();
-    corners.dedup();
     let face_count = tessellation.cell_faces(cell).len();
-    let vertex_count = corners.len();
-    let edge_count = match tessellation.domain.dimension() {
-        Dimension::Two => face_count,
-        // Euler's formula for a convex polyhedron, which an empty cell is not.
-        Dimension::Three => (face_count + vertex_count).saturating_sub(2),
+    let (edge_count, vertex_count) = match tessellation.domain.dimension() {
+        Dimension::Two => (face_count, face_count),
+        // Each edge has a corner in either of its faces, and Euler's formula holds but for an empty cell.
+        Dimension::Three => (corner_count / 2, (corner_count / 2 + 2).saturating_sub(face_count.max(2))),
     };
     let centroid = if volume > 0.0 { seed + moment / volume } else { seed };
     CellMeasure { volume, area, face_count, vertex_count, edge_count, centroid }

@@ -8,104 +8,44 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::batch::{CellBatch, CellView};
+use crate::Domain;
 use crate::generator::{Generator, Plane, VertexKey};
 use crate::images::Image;
 use crate::predicate::ExactInput;
+use crate::search::Search;
 use crate::tessellation::{CellId, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};
-use crate::torus::{FaceEnd, MovedVertex, TorusFaces};
-use crate::weld::{list_faces_of_cells, put_vertices_on_walls};
+use crate::tile::Tile;
+use crate::torus::{FaceEnd, TorusFaces};
+use crate::weld::{MovedVertex, list_faces_of_cells, number_vertices, positions, put_vertices_on_walls};
 
-pub(crate) fn weld_periodic(input: ExactInput, batches: &[CellBatch]) -> Tessellation {
-    let owned = OwnedVertices::new(input, batches);
-    let mut vertices = UnitedVertices::new(owned.keys.len());
-    let moved: Vec<Vec<MovedVertex>> = batches
-        .par_iter()
-        .map(|batch| {
-            let of_cell = |cell: usize| batch.cell(cell).keys.iter().map(|key| owned.find(input, key));
-            (0..batch.cell_count()).flat_map(of_cell).collect()
-        })
-        .collect();
-    for (batch, moved) in batches.iter().zip(&moved) {
-        for [v, w] in &batch.coincident {
-            vertices.unite(moved[*v], moved[*w]);
+pub(crate) fn weld_periodic(search: &Search, seeds: &[DVec3], tiles: &[Tile]) -> Tessellation {
+    let dimension = search.input().domain.dimension();
+    let numbers = number_vertices(search.input(), tiles);
+    let positions = positions(tiles, &numbers);
+    let mut vertices = UnitedVertices::new(positions.len());
+    for (tile, numbers) in tiles.iter().zip(&numbers) {
+        for [v, w] in &tile.coincident {
+            vertices.unite(numbers[*v as usize], numbers[*w as usize]);
         }
     }
     let roots = vertices.roots();
-    let batch_size = batches.first().map_or(1, CellBatch::cell_count);
-    let faces: Vec<TorusFaces> = (0..batches.len())
-        .into_par_iter()
-        .map(|b| {
-            let mut faces = TorusFaces::new(input.domain.dimension());
-            for cell in 0..batches[b].cell_count() {
-                let view = batches[b].cell(cell);
-                let corners = &moved[b][view.first_vertex..];
-                push_owned_faces(&mut faces, input, &view, b * batch_size + cell, corners, &roots);
-            }
+    let faces: Vec<TorusFaces> = tiles
+        .par_iter()
+        .zip(&numbers)
+        .map(|(tile, numbers)| {
+            let mut faces = TorusFaces::new(dimension);
+            push_faces(&mut faces, search, tile, numbers, &roots);
             faces
         })
         .collect();
-    drop(moved);
-    let mut faces = TorusFaces::concatenated(input.domain.dimension(), faces);
-    faces.remove_flat_cells(input.seeds.len());
-    unwrapped(input, &faces, &owned.positions(batches))
-}
-
-/// The vertices of the torus in the order of the cells that own them: all their generators, none moved by less than they
-/// are in the owner's own list.
-struct OwnedVertices {
-    /// The keys that cell c owns are `keys[starts[c]..starts[c + 1]]`, sorted.
-    starts: Vec<u32>,
-    keys: Vec<VertexKey>,
-    /// Place of each among the cell's vertices.
-    places: Vec<u32>,
-}
-
-impl OwnedVertices {
-    fn new(input: ExactInput, batches: &[CellBatch]) -> Self {
-        let mut owned = Self { starts: vec![0], keys: Vec::new(), places: Vec::new() };
-        let mut own = 0u32;
-        let id = |count: usize| u32::try_from(count).expect("vertex ids fit 32 bits");
-        for batch in batches {
-            for cell in 0..batch.cell_count() {
-                let view = batch.cell(cell);
-                for (place, key) in view.keys.iter().enumerate() {
-                    if canonical(input, key) == (*key, Shift::NONE) && key[0] == Generator::site(own) {
-                        owned.keys.push(*key);
-                        owned.places.push(id(place));
-                    }
-                }
-                owned.starts.push(id(owned.keys.len()));
-                own += 1;
-            }
-        }
-        owned
-    }
-
-    /// The vertex of a cell as an owned vertex and how it is moved.
-    fn find(&self, input: ExactInput, key: &VertexKey) -> MovedVertex {
-        let (key, shift) = canonical(input, key);
-        let owner = key[0].as_site().expect("every vertex belongs to a cell") as usize;
-        let (first, end) = (self.starts[owner], self.starts[owner + 1]);
-        let place = self.keys[first as usize..end as usize].binary_search(&key);
-        let place = place.expect("exact decisions give every cell the same vertices");
-        MovedVertex { vertex: first + u32::try_from(place).expect("vertex ids fit 32 bits"), shift }
-    }
-
-    fn positions(&self, batches: &[CellBatch]) -> Vec<DVec3> {
-        let batch_size = batches.first().map_or(1, CellBatch::cell_count);
-        let cells = self.starts.windows(2).enumerate();
-        let of_cell = cells.flat_map(|(cell, range)| {
-            let positions = batches[cell / batch_size].cell(cell % batch_size).positions;
-            self.places[range[0] as usize..range[1] as usize].iter().map(|place| positions[*place as usize])
-        });
-        of_cell.collect()
-    }
+    let mut faces = TorusFaces::concatenated(dimension, faces);
+    faces.remove_flat_cells(seeds.len());
+    unwrapped(search.input().domain, seeds, &faces, &positions)
 }
 
 /// The generators of a vertex, all moved by whole periods to where the cell of the smallest number among them owns it, and
 /// the shift from there back. Where that cell meets the vertex in several places, the smallest list of generators tells.
-fn canonical(input: ExactInput, key: &VertexKey) -> (VertexKey, Shift) {
+pub(crate) fn canonical(input: ExactInput, key: &VertexKey) -> (VertexKey, Shift) {
     let first_image =
         Generator::site(u32::try_from(input.seeds.len()).expect("site ids were checked to fit"));
     let is_image = |generator: &Generator| *generator >= first_image && generator.as_site().is_some();
@@ -177,39 +117,30 @@ impl UnitedVertices {
     }
 }
 
-/// Adds the faces of a cell towards greater cells, its own images in the positive direction, and walls.
-fn push_owned_faces(
+/// Adds the faces of a tile, in the user's numbers of cells.
+fn push_faces(
     faces: &mut TorusFaces,
-    input: ExactInput,
-    view: &CellView,
-    cell: usize,
-    moved: &[MovedVertex],
+    search: &Search,
+    tile: &Tile,
+    numbers: &[MovedVertex],
     roots: &[MovedVertex],
 ) {
-    let own =
-        FaceEnd::Cell(Image { seed: u32::try_from(cell).expect("cell ids fit 32 bits"), shift: Shift::NONE });
-    for (generator, corners) in view.faces() {
-        let beyond = match generator.plane() {
-            Plane::Site(site) => FaceEnd::Cell(input.image(site)),
-            Plane::Wall(wall) => FaceEnd::Wall(wall),
-        };
-        if beyond > own {
-            let corners = corners.iter().map(|corner| {
-                let MovedVertex { vertex, shift } = moved[*corner as usize];
-                let root = roots[vertex as usize];
-                MovedVertex { shift: shift + root.shift, ..root }
-            });
-            faces.push([own, beyond], corners);
-        }
+    for (ends, corners) in tile.faces() {
+        let corners = corners.iter().map(|corner| {
+            let MovedVertex { vertex, shift } = numbers[*corner as usize];
+            let root = roots[vertex as usize];
+            MovedVertex { shift: shift + root.shift, ..root }
+        });
+        faces.push(ends.map(|generator| search.end(generator)), corners);
     }
 }
 
 /// The tessellation with whole cells: of a face between a cell and a moved one, a copy at each.
-fn unwrapped(input: ExactInput, faces: &TorusFaces, positions: &[DVec3]) -> Tessellation {
+fn unwrapped(domain: &Domain, seeds: &[DVec3], faces: &TorusFaces, positions: &[DVec3]) -> Tessellation {
     let places = VertexPlaces::new(faces, positions.len());
     let mut tessellation = Tessellation {
-        domain: *input.domain,
-        seeds: input.seeds.to_vec(),
+        domain: *domain,
+        seeds: seeds.to_vec(),
         vertices: Vec::with_capacity(places.count()),
         face_sides: Vec::new(),
         face_starts: vec![0],
@@ -219,7 +150,7 @@ fn unwrapped(input: ExactInput, faces: &TorusFaces, positions: &[DVec3]) -> Tess
         periodic_vertices: Vec::new(),
         periodic_faces: Vec::new(),
     };
-    let period = |shift: Shift| shift.vector(input.domain);
+    let period = |shift: Shift| shift.vector(domain);
     tessellation.vertices.extend(
         places.originals.iter().map(|original| positions[original.vertex as usize] + period(original.shift)),
     );
@@ -251,7 +182,8 @@ fn unwrapped(input: ExactInput, faces: &TorusFaces, positions: &[DVec3]) -> Tess
     tessellation
 }
 
-fn side(end: FaceEnd, shift: Shift) -> Side {
+/// What lies on a side of a face that is moved by `shift`.
+pub(crate) fn side(end: FaceEnd, shift: Shift) -> Side {
     match end {
         FaceEnd::Cell(image) => match image.shift + shift {
             Shift::NONE => Side::Cell(CellId(image.seed)),

@@ -51,7 +51,7 @@ struct ExactPlane {
     is_bisector: bool,
 }
 
-impl ExactInput<'_> {
+impl<'a> ExactInput<'a> {
     /// The seed, and by how many periods it is moved, that a site is the image of.
     pub(crate) fn image(self, site: u32) -> Image {
         match (site as usize).checked_sub(self.seeds.len()) {
@@ -91,6 +91,11 @@ impl ExactInput<'_> {
         self.site(Image { seed, shift: Shift(shift) }).map_or(Generator::wall(wall), Generator::site)
     }
 
+    /// The planes that bound the cell of a seed before any other seed does, two for each axis.
+    pub(crate) fn outermost_planes(self, seed: u32) -> impl Iterator<Item = Generator> + use<'a> {
+        Wall::ALL[..2 * self.domain.axes()].iter().map(move |wall| self.outermost(seed, *wall))
+    }
+
     /// Distance of a seed from a wall, across a periodic axis half a period.
     pub(crate) fn outermost_distance(self, seed: u32, wall: Wall) -> f64 {
         let axis = wall.axis();
@@ -120,6 +125,9 @@ impl ExactInput<'_> {
         let image = self.image(site);
         let other = self.seeds[image.seed as usize];
         DVec3::from_array([0, 1, 2].map(|axis| {
+            if image.shift.0[axis] == 0 {
+                return other[axis] - own[axis];
+            }
             // Shifts of at most two periods keep the products exact.
             let shift = f64::from(image.shift.0[axis]);
             let (lower, upper) = (self.domain.lower()[axis], self.domain.upper()[axis]);
@@ -151,6 +159,13 @@ impl ExactInput<'_> {
             Sign::Minus => Decision { beyond: false, tie: false },
             Sign::NoSign => Decision { beyond: break_tie(planes, coefficients), tie: true },
         }
+    }
+
+    /// Whether three planes are in positive orientation: the determinant of their normals is positive.
+    pub(crate) fn is_positive(self, seed: u32, planes: [Generator; 3]) -> bool {
+        let exponent = self.common_exponent(seed, &planes);
+        let [a, b, c] = planes.map(|generator| self.plane(seed, generator, exponent).normal);
+        dot(&a, &cross(&b, &c)).is_positive()
     }
 
     /// The vertex of three planes relative to the seed, each coordinate rounded to nearest but for one or two last places.

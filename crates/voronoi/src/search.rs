@@ -1,24 +1,55 @@
 //! The search for the sites around a cell, with as many periodic images as the cell needs.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
-use crate::Domain;
-use crate::images::ImageTable;
-use crate::near_seeds::{Cutting, NearSeeds};
+use crate::generator::{Generator, Plane};
+use crate::grid::SeedGrid;
+use crate::images::{Image, ImageTable};
 use crate::predicate::ExactInput;
+use crate::torus::FaceEnd;
+use crate::{Domain, VoronoiError};
 
 /// Thickness of the first layer of images in units of the mean distance of seeds. Cells of random seeds look no farther
 /// than that: a sphere of half the radius without a seed in it has a chance of 1e-14.
 const FIRST_THICKNESS: f64 = 4.0;
 
 /// How much thicker each further layer is than the one before.
-const GROWTH: f64 = 3.0;
+const LAYER_GROWTH: f64 = 3.0;
 
-/// Seeds and the images around them. Each layer's images begin with those of the one before, so sites keep their numbers.
+/// Covers the rounding of distances and radii, relative to them.
+const RADIUS_MARGIN: f64 = 1.0 + 1e-12;
+
+/// Growth of the reach from one round of the search around a cell to the next: twice the volume.
+const REACH_GROWTH: f64 = 1.26;
+
+/// A cell that is being cut: polyhedron or polygon.
+pub(crate) trait Cutting {
+    /// A radius around the seed that holds the cell; negative for an empty cell.
+    fn radius(&self) -> f64;
+
+    /// Cuts off what lies nearer to another site, by power distance.
+    fn cut_with_bisector(&mut self, other: u32, input: ExactInput);
+
+    /// The planes of one vertex, in positive orientation; none for an empty cell.
+    fn any_vertex(&self) -> Option<[Generator; 3]>;
+}
+
+/// A cell needs images of seeds that are farther away than those known.
+#[derive(Debug)]
+pub(crate) struct ImagesMissing;
+
+/// Seeds, sorted in space, and the images around them. Each layer's images begin with those of the one before, so sites keep
+/// their numbers.
 pub(crate) struct Search<'a> {
     domain: &'a Domain,
-    seeds: &'a [DVec3],
-    weights: Option<&'a [f64]>,
+    seeds: Vec<DVec3>,
+    weights: Option<Vec<f64>>,
+    largest_weight: f64,
+    /// The seeds' places in the user's input.
+    ids: Vec<u32>,
+    tiles: Vec<Range<u32>>,
     layers: Vec<Layer>,
 }
 
@@ -26,27 +57,76 @@ struct Layer {
     /// Along each axis, how far beyond the domain all images are known; infinite where there are no more to know.
     thickness: DVec3,
     images: ImageTable,
-    near_seeds: NearSeeds,
+    grid: SeedGrid,
 }
 
 impl<'a> Search<'a> {
-    pub(crate) fn new(domain: &'a Domain, seeds: &'a [DVec3], weights: Option<&'a [f64]>) -> Self {
-        let mut search = Self { domain, seeds, weights, layers: Vec::new() };
-        search.widen();
-        search
+    /// Sorts the seeds.
+    ///
+    /// # Errors
+    /// [`VoronoiError::DuplicateSeeds`].
+    pub(crate) fn new(
+        domain: &'a Domain,
+        seeds: &[DVec3],
+        weights: Option<&[f64]>,
+    ) -> Result<Self, VoronoiError> {
+        // Periodic walls are one.
+        let canonical = |seed: &DVec3| {
+            DVec3::select(domain.periodic() & seed.cmpeq(domain.upper()), domain.lower(), *seed)
+        };
+        let grid = SeedGrid::new(seeds.iter().map(canonical).collect());
+        if let Some((first, second)) = grid.duplicates() {
+            let [first, second] = [first, second].map(|id| id as usize);
+            return Err(VoronoiError::DuplicateSeeds { first, second, position: seeds[first] });
+        }
+        let ids = grid.order.clone();
+        let weights: Option<Vec<f64>> =
+            weights.map(|weights| ids.iter().map(|id| weights[*id as usize]).collect());
+        let largest_weight = match &weights {
+            Some(weights) => weights.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            None => 0.0,
+        };
+        let mut search = Self {
+            domain,
+            seeds: ids.iter().map(|id| seeds[*id as usize]).collect(),
+            weights,
+            largest_weight,
+            ids,
+            tiles: grid.tiles().to_vec(),
+            layers: Vec::new(),
+        };
+        if domain.is_periodic() {
+            search.widen();
+        } else {
+            let (thickness, images) = (DVec3::INFINITY, ImageTable::default());
+            search.layers.push(Layer { thickness, images, grid: grid.renumbered() });
+        }
+        Ok(search)
     }
 
-    pub(crate) fn seed_count(&self) -> usize {
-        self.seeds.len()
+    /// The ranges of seeds that make up compact parts of space.
+    pub(crate) fn tiles(&self) -> &[Range<u32>] {
+        &self.tiles
+    }
+
+    /// What lies beyond a generator's plane, in the user's numbering of cells.
+    pub(crate) fn end(&self, generator: Generator) -> FaceEnd {
+        match generator.plane() {
+            Plane::Wall(wall) => FaceEnd::Wall(wall),
+            Plane::Site(site) => {
+                let image = self.input().image(site);
+                FaceEnd::Cell(Image { seed: self.ids[image.seed as usize], ..image })
+            }
+        }
     }
 
     /// The seeds and all images that were looked at.
     pub(crate) fn input(&self) -> ExactInput<'_> {
-        self.layer_input(&self.layers[self.layers.len() - 1])
+        self.input_with(&self.layers[self.layers.len() - 1].images)
     }
 
-    fn layer_input<'b>(&'b self, layer: &'b Layer) -> ExactInput<'b> {
-        ExactInput { domain: self.domain, seeds: self.seeds, weights: self.weights, images: &layer.images }
+    fn input_with<'b>(&'b self, images: &'b ImageTable) -> ExactInput<'b> {
+        ExactInput { domain: self.domain, seeds: &self.seeds, weights: self.weights.as_deref(), images }
     }
 
     /// Adds a layer of images, until there are enough for every cell.
@@ -54,7 +134,7 @@ impl<'a> Search<'a> {
         let size = self.domain.size();
         let spacing = (self.domain.measure() / self.seeds.len() as f64).powf(1.0 / self.domain.axes() as f64);
         let exponent = i32::try_from(self.layers.len()).unwrap_or(i32::MAX);
-        let wanted = FIRST_THICKNESS * spacing * GROWTH.powi(exponent);
+        let wanted = FIRST_THICKNESS * spacing * LAYER_GROWTH.powi(exponent);
         let thickness = DVec3::from_array([0, 1, 2].map(|axis| {
             // Below half a period, so that a cell which does not yet know its own image cannot pass as finished.
             let is_partial = self.domain.periodic().test(axis) && wanted < 0.45 * size[axis];
@@ -62,32 +142,77 @@ impl<'a> Search<'a> {
         }));
         let none = ImageTable::default();
         let before = self.layers.last().map_or(&none, |layer| &layer.images);
-        let images = if self.domain.is_periodic() {
-            before.widened(self.domain, self.seeds, thickness.min(size))
-        } else {
-            none
-        };
-        let input =
-            ExactInput { domain: self.domain, seeds: self.seeds, weights: self.weights, images: &images };
-        let near_seeds = NearSeeds::new(input);
-        self.layers.push(Layer { thickness, images, near_seeds });
+        let images = before.widened(self.domain, &self.seeds, thickness.min(size));
+        let input = self.input_with(&images);
+        let grid = SeedGrid::new((0..input.site_count()).map(|site| input.position(site)).collect());
+        self.layers.push(Layer { thickness, images, grid });
     }
 
-    /// Cuts the cell of a seed and returns the input of its generators; nothing when it needs one more layer.
-    pub(crate) fn cut(
+    /// The distance from a seed within which all sites lie that can touch or cut the part of its cell within `radius`.
+    pub(crate) fn reach(&self, seed: u32, radius: f64) -> f64 {
+        // The bisector with a site at distance d lies (d^2 - excess) / (2 d) away.
+        let excess = self.largest_weight - self.input().weight(seed);
+        let reach = (radius + (radius * radius + excess).sqrt()) * RADIUS_MARGIN;
+        if self.domain.is_periodic() {
+            // The positions of images are rounded.
+            return reach + 1e-15 * self.domain.lower().abs().max(self.domain.upper().abs()).max_element();
+        }
+        reach
+    }
+
+    /// Next reach of a search that has come to `reach` and needs to go to `wanted`.
+    pub(crate) fn grow(&self, reach: f64, wanted: f64) -> f64 {
+        wanted.min((reach * REACH_GROWTH).max(self.layers[0].grid.block_size()))
+    }
+
+    /// Visits all sites further than `from` and at most `to` from a seed but itself and those that its cell begins with, with
+    /// the vector to each and its squared length.
+    #[inline]
+    pub(crate) fn for_each_within(
         &self,
-        cell: &mut impl Cutting,
         seed: u32,
-        buffer: &mut Vec<(f64, u32)>,
-    ) -> Option<ExactInput<'_>> {
-        self.layers.iter().find_map(|layer| {
-            let input = self.layer_input(layer);
-            cell.start(seed, input);
-            let reach = layer.near_seeds.cut(cell, seed, input, buffer);
-            let position = self.seeds[seed as usize];
-            let below = position - self.domain.lower() + layer.thickness;
-            let above = self.domain.upper() - position + layer.thickness;
-            (reach <= below.min(above).min_element()).then_some(input)
-        })
+        [from, to]: [f64; 2],
+        mut visit: impl FnMut(u32, DVec3, f64),
+    ) -> Result<(), ImagesMissing> {
+        let input = self.input();
+        let own = self.seeds[seed as usize];
+        let to_outside = (own - self.domain.lower()).min(self.domain.upper() - own);
+        let knows_all = |layer: &&Layer| to <= (to_outside + layer.thickness).min_element();
+        let layer = self.layers.iter().find(knows_all).ok_or(ImagesMissing)?;
+        layer.grid.for_each_within(own, from, to, |site, difference, squared| {
+            if (site as usize) < self.seeds.len() {
+                if site != seed {
+                    visit(site, difference, squared);
+                }
+            } else if !input.bounds_from_start(seed, site) {
+                let difference = input.difference(seed, site);
+                visit(site, difference, difference.length_squared());
+            }
+        });
+        Ok(())
+    }
+
+    /// The planes of one vertex of the cell that a cut with all near sites makes of `cell`; none if that is empty.
+    pub(crate) fn any_vertex(
+        &self,
+        mut cell: impl Cutting,
+        seed: u32,
+    ) -> Result<Option<[Generator; 3]>, ImagesMissing> {
+        let mut near = Vec::new();
+        let mut reach = -1.0;
+        while cell.radius() >= 0.0 && self.reach(seed, cell.radius()) > reach {
+            let next = self.grow(reach, self.reach(seed, cell.radius()));
+            near.clear();
+            self.for_each_within(seed, [reach, next], |site, _, squared| near.push((squared, site)))?;
+            near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            for (squared, site) in &near {
+                if cell.radius() < 0.0 || squared.sqrt() > self.reach(seed, cell.radius()) {
+                    break;
+                }
+                cell.cut_with_bisector(*site, self.input());
+            }
+            reach = next;
+        }
+        Ok(cell.any_vertex())
     }
 }

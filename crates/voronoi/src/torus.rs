@@ -4,14 +4,8 @@ use std::collections::HashMap;
 
 use crate::images::Image;
 use crate::tessellation::Shift;
+use crate::weld::MovedVertex;
 use crate::{Dimension, Wall};
-
-/// A vertex moved by whole periods.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct MovedVertex {
-    pub(crate) vertex: u32,
-    pub(crate) shift: Shift,
-}
 
 /// What lies on one side of a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,103 +1,119 @@
-//! From cells with vertices of their own to one complex.
+//! From tiles to one complex.
 //!
-//! A vertex is the set of generators that meet there; all its cells know the same set, and the cell with the smallest
-//! number owns it. Vertices that coincide (more than four generators through one point) are united afterwards, guided by
+//! A vertex is the set of generators that meet there; all tiles around it know the same set, and the one with the smallest
+//! seed owns it. Vertices that coincide (more than four generators through one point) are united afterwards, guided by
 //! exact ties and never by distance.
 
+use std::collections::HashMap;
+
+use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::batch::{CellBatch, CellView};
+use crate::Dimension;
 use crate::flat_cells::remove_flat_cells;
-use crate::generator::{Generator, Plane};
+use crate::generator::{Generator, VertexKey};
+use crate::periodic_weld::{canonical, side};
 use crate::predicate::ExactInput;
-use crate::tessellation::{CellId, FaceId, Side, Tessellation, VertexId};
-use crate::{Dimension, Domain};
+use crate::search::Search;
+use crate::tessellation::{FaceId, Shift, Side, Tessellation, VertexId};
+use crate::tile::Tile;
 
-/// The cells of all batches by number, with the numbering of the vertices that they own.
-struct Cells<'a> {
-    batches: &'a [CellBatch],
-    /// Cells in every batch but the last.
-    batch_size: usize,
-    /// Number of the first vertex that each cell owns.
-    owned_starts: Vec<u32>,
+/// A vertex moved by whole periods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct MovedVertex {
+    pub(crate) vertex: u32,
+    pub(crate) shift: Shift,
 }
 
-impl<'a> Cells<'a> {
-    fn new(batches: &'a [CellBatch]) -> Self {
-        let batch_size = batches.first().map_or(1, CellBatch::cell_count);
-        let mut cells = Self { batches, batch_size, owned_starts: vec![0] };
-        let mut count = 0;
-        for cell in 0..batches.iter().map(CellBatch::cell_count).sum() {
-            count += cells.owned(cell).0.keys.len() - cells.owned(cell).1;
-            cells.owned_starts.push(u32::try_from(count).expect("vertex ids fit 32 bits"));
+/// The vertices that a tile owns.
+struct Owned {
+    /// For each vertex of the tile, its rank among those that the tile owns.
+    ranks: Vec<Option<u32>>,
+    count: u32,
+    /// The ranks of those that are known elsewhere as well.
+    shared: HashMap<VertexKey, u32>,
+}
+
+impl Owned {
+    fn new(input: ExactInput, tile: &Tile) -> Self {
+        let mut owned =
+            Self { ranks: Vec::with_capacity(tile.vertices.len()), count: 0, shared: HashMap::new() };
+        for key in &tile.vertices {
+            let is_inner =
+                |generator: &Generator| generator.as_site().is_none_or(|site| tile.seeds.contains(&site));
+            let is_shared = !key.iter().all(is_inner);
+            let is_owned =
+                !is_shared || (key[0].0 >= tile.seeds.start && canonical(input, key) == (*key, Shift::NONE));
+            owned.ranks.push(is_owned.then_some(owned.count));
+            if is_owned {
+                if is_shared {
+                    owned.shared.insert(*key, owned.count);
+                }
+                owned.count += 1;
+            }
         }
-        cells
-    }
-
-    fn cell(&self, cell: usize) -> CellView<'a> {
-        self.batches[cell / self.batch_size].cell(cell % self.batch_size)
-    }
-
-    /// A cell and the place of the first vertex that it owns: keys are sorted, so vertices of smaller cells come first.
-    fn owned(&self, cell: usize) -> (CellView<'a>, usize) {
-        let view = self.cell(cell);
-        let own = u32::try_from(cell).expect("cell ids fit 32 bits");
-        let first = view.keys.partition_point(|key| key[0] < Generator::site(own));
-        (view, first)
-    }
-
-    /// Number of the vertex with the given key.
-    fn vertex(&self, key: &[Generator; 4]) -> u32 {
-        let owner = key[0].as_site().expect("every vertex belongs to a cell") as usize;
-        let (view, first) = self.owned(owner);
-        let place = view.keys[first..].binary_search(key);
-        let place = place.expect("exact decisions give every cell the same vertices");
-        self.owned_starts[owner] + u32::try_from(place).expect("a cell has fewer than 2^32 vertices")
+        owned
     }
 }
 
-/// A face while the complex is put together.
-struct LooseFace {
-    sides: [Side; 2],
-    corners: Vec<VertexId>,
+/// The number of every vertex of every tile in the whole, with the shift to where it is from there.
+pub(crate) fn number_vertices(input: ExactInput, tiles: &[Tile]) -> Vec<Vec<MovedVertex>> {
+    let owned: Vec<Owned> = tiles.par_iter().map(|tile| Owned::new(input, tile)).collect();
+    let mut starts = vec![0u32];
+    for tile in &owned {
+        starts.push(starts[starts.len() - 1].checked_add(tile.count).expect("vertex ids fit 32 bits"));
+    }
+    let numbers = tiles.par_iter().zip(&owned).zip(&starts).map(|((tile, own), start)| {
+        let number = |(rank, key): (&Option<u32>, &VertexKey)| match rank {
+            Some(rank) => MovedVertex { vertex: start + rank, shift: Shift::NONE },
+            None => {
+                let (key, shift) = canonical(input, key);
+                let owner = tiles.partition_point(|tile| tile.seeds.start <= key[0].0) - 1;
+                let rank = owned[owner].shared.get(&key);
+                let rank = rank.expect("exact decisions give every tile the same vertices");
+                MovedVertex { vertex: starts[owner] + rank, shift }
+            }
+        };
+        own.ranks.iter().zip(&tile.vertices).map(number).collect()
+    });
+    numbers.collect()
 }
 
-pub(crate) fn weld(input: ExactInput, batches: &[CellBatch]) -> Tessellation {
-    let cells = Cells::new(batches);
-    // Number of every cell vertex, batch by batch.
-    let numbers: Vec<Vec<u32>> = batches
-        .par_iter()
-        .map(|batch| {
-            let of_cell = |cell: usize| batch.cell(cell).keys.iter().map(|key| cells.vertex(key));
-            (0..batch.cell_count()).flat_map(of_cell).collect()
-        })
-        .collect();
-    let vertex_count = cells.owned_starts[cells.owned_starts.len() - 1] as usize;
-    let (vertex_ids, representatives) = unite_coincident(vertex_count, batches, &numbers);
-
-    let faces: Vec<Vec<LooseFace>> = (0..batches.len())
-        .into_par_iter()
-        .map(|batch| {
-            let first_cell = batch * cells.batch_size;
-            (0..batches[batch].cell_count())
-                .flat_map(|cell| {
-                    let view = batches[batch].cell(cell);
-                    let numbers = &numbers[batch][view.first_vertex..];
-                    owned_faces(&view, first_cell + cell, numbers, &vertex_ids, input.domain)
-                })
-                .collect()
-        })
-        .collect();
-
-    let mut owned_positions = Vec::with_capacity(vertex_count);
-    for cell in 0..input.seeds.len() {
-        let (view, first) = cells.owned(cell);
-        owned_positions.extend_from_slice(&view.positions[first..]);
+/// The positions of all vertices by number.
+pub(crate) fn positions(tiles: &[Tile], numbers: &[Vec<MovedVertex>]) -> Vec<DVec3> {
+    let mut positions = Vec::new();
+    for (tile, numbers) in tiles.iter().zip(numbers) {
+        for (position, number) in tile.positions.iter().zip(numbers) {
+            // Each tile's own vertices come in order.
+            if number.shift == Shift::NONE && number.vertex as usize == positions.len() {
+                positions.push(*position);
+            }
+        }
     }
+    positions
+}
+
+/// Makes one complex of all tiles; `seeds` and the result's cells are in the order of the input.
+pub(crate) fn weld(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Tessellation {
+    let domain = search.input().domain;
+    let moved = number_vertices(search.input(), &tiles);
+    let mut vertices = positions(&tiles, &moved);
+    let mut numbers: Vec<Vec<u32>> =
+        moved.iter().map(|tile| tile.iter().map(|vertex| vertex.vertex).collect()).collect();
+    let are_coincident = tiles.iter().any(|tile| !tile.coincident.is_empty());
+    if are_coincident {
+        let (ids, representatives) = unite_coincident(vertices.len(), &tiles, &numbers);
+        numbers.iter_mut().flatten().for_each(|number| *number = ids[*number as usize]);
+        vertices = representatives.iter().map(|v| vertices[*v as usize]).collect();
+    }
+    let fewest_corners = match domain.dimension() {
+        Dimension::Two => 2,
+        Dimension::Three => 3,
+    };
     let mut tessellation = Tessellation {
-        domain: *input.domain,
-        seeds: input.seeds.to_vec(),
-        vertices: representatives.iter().map(|v| owned_positions[*v as usize]).collect(),
+        domain: *domain,
+        seeds: seeds.to_vec(),
+        vertices,
         face_sides: Vec::new(),
         face_starts: vec![0],
         face_corners: Vec::new(),
@@ -106,8 +122,26 @@ pub(crate) fn weld(input: ExactInput, batches: &[CellBatch]) -> Tessellation {
         periodic_vertices: Vec::new(),
         periodic_faces: Vec::new(),
     };
-    for face in faces.into_iter().flatten() {
-        tessellation.push_face(face.sides, face.corners.into_iter());
+    let (face_count, corner_count) =
+        tiles.iter().map(Tile::counts).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+    tessellation.face_sides.reserve_exact(face_count);
+    tessellation.face_starts.reserve_exact(face_count);
+    tessellation.face_corners.reserve_exact(corner_count);
+    for (tile, numbers) in tiles.drain(..).zip(&numbers) {
+        for (sides, corners) in tile.faces() {
+            let start = tessellation.face_corners.len();
+            let ring = &mut tessellation.face_corners;
+            ring.extend(corners.iter().map(|corner| VertexId(numbers[*corner as usize])));
+            if are_coincident {
+                drop_repeated(ring, start);
+            }
+            if ring.len() - start < fewest_corners {
+                ring.truncate(start);
+                continue;
+            }
+            tessellation.face_sides.push(sides.map(|generator| side(search.end(generator), Shift::NONE)));
+            tessellation.face_starts.push(ring.len());
+        }
     }
     put_vertices_on_walls(&mut tessellation);
     list_faces_of_cells(&mut tessellation);
@@ -117,61 +151,44 @@ pub(crate) fn weld(input: ExactInput, batches: &[CellBatch]) -> Tessellation {
     tessellation
 }
 
-/// The faces of a cell towards greater cells and walls, without those that have shrunk to a line or a point.
-fn owned_faces(
-    view: &CellView,
-    cell: usize,
-    numbers: &[u32],
-    vertex_ids: &[VertexId],
-    domain: &Domain,
-) -> Vec<LooseFace> {
-    let own = u32::try_from(cell).expect("cell ids fit 32 bits");
-    let fewest_corners = match domain.dimension() {
-        Dimension::Two => 2,
-        Dimension::Three => 3,
-    };
-    let mut faces = Vec::new();
-    for (generator, corners) in view.faces().filter(|(generator, _)| *generator > Generator::site(own)) {
-        let id = |corner: &u32| vertex_ids[numbers[*corner as usize] as usize];
-        let mut corners: Vec<VertexId> = corners.iter().map(id).collect();
-        corners.dedup();
-        if corners.len() > 1 && corners.first() == corners.last() {
-            corners.pop();
-        }
-        if corners.len() >= fewest_corners {
-            faces.push(LooseFace { sides: [Side::Cell(CellId(own)), side(generator)], corners });
+/// Leaves out corners that follow themselves in the ring from `start` on.
+fn drop_repeated(ring: &mut Vec<VertexId>, start: usize) {
+    let mut kept = start;
+    for corner in start..ring.len() {
+        if kept == start || ring[corner] != ring[kept - 1] {
+            ring[kept] = ring[corner];
+            kept += 1;
         }
     }
-    faces
+    while kept > start + 1 && ring[kept - 1] == ring[start] {
+        kept -= 1;
+    }
+    ring.truncate(kept);
 }
 
-/// Unites vertices that are one point. Returns the new id of every old one, and an old one for every new id.
-fn unite_coincident(
-    vertex_count: usize,
-    batches: &[CellBatch],
-    numbers: &[Vec<u32>],
-) -> (Vec<VertexId>, Vec<u32>) {
+/// Unites vertices that are one point. Returns the new number of every old one, and an old one for every new.
+fn unite_coincident(vertex_count: usize, tiles: &[Tile], numbers: &[Vec<u32>]) -> (Vec<u32>, Vec<u32>) {
     let count = u32::try_from(vertex_count).expect("vertex ids fit 32 bits");
     let mut parents: Vec<u32> = (0..count).collect();
-    for (batch, numbers) in batches.iter().zip(numbers) {
-        for [v, w] in &batch.coincident {
-            let (v, w) = (root(&mut parents, numbers[*v]), root(&mut parents, numbers[*w]));
+    for (tile, numbers) in tiles.iter().zip(numbers) {
+        for [v, w] in &tile.coincident {
+            let (v, w) = (root(&mut parents, numbers[*v as usize]), root(&mut parents, numbers[*w as usize]));
             // The smaller number stays, so the result does not depend on the order of the pairs.
             parents[v.max(w) as usize] = v.min(w);
         }
     }
-    let mut ids = vec![VertexId(0); vertex_count];
+    let mut new = vec![0; vertex_count];
     let mut representatives = Vec::new();
     for v in 0..count {
         let root = root(&mut parents, v);
-        ids[v as usize] = if root == v {
+        new[v as usize] = if root == v {
             representatives.push(v);
-            VertexId(u32::try_from(representatives.len() - 1).expect("no more ids than before"))
+            u32::try_from(representatives.len() - 1).expect("no more vertices than before")
         } else {
-            ids[root as usize]
+            new[root as usize]
         };
     }
-    (ids, representatives)
+    (new, representatives)
 }
 
 /// The representative of a union-find tree, with path halving.
@@ -220,11 +237,4 @@ pub(crate) fn list_faces_of_cells(tessellation: &mut Tessellation) {
     }
     tessellation.cell_starts = starts;
     tessellation.cell_faces = cell_faces;
-}
-
-fn side(generator: Generator) -> Side {
-    match generator.plane() {
-        Plane::Site(seed) => Side::Cell(CellId(seed)),
-        Plane::Wall(wall) => Side::Wall(wall),
-    }
 }

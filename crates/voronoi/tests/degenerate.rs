@@ -190,6 +190,16 @@ fn cells_that_are_flat_are_empty() {
     assert_eq!(tessellation.neighbors(voronoi::CellId(0))[0], Side::Cell(voronoi::CellId(3)));
 }
 
+/// In decimals both bisectors of the first seed are one line; as doubles they are not quite.
+#[test]
+fn cells_thinner_than_the_last_place() {
+    let seeds = [(0.875, 0.25), (0.9, 0.2), (0.75, 0.5)].map(|(x, y)| DVec3::new(x, y, 0.0));
+    let weights = [0.0, 0.015625, 0.015625];
+    let tessellation = Tessellation::power(&Domain::unit_square(), &seeds, &weights).expect("valid seeds");
+    assert_complex(&tessellation);
+    assert!(tessellation.cell_measures()[0].volume.abs() < 1e-15);
+}
+
 #[test]
 fn one_weight_can_take_all() {
     let seeds = random_seeds(30, 9);
