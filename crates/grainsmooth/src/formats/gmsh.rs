@@ -78,7 +78,7 @@ fn write_entities(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Wr
         let curves = curves_of.get(&part.boundary).map(Vec::as_slice).unwrap_or_default();
         write!(
             out,
-            "{tag} {} 1 {tag} {}",
+            "{tag} {} 0 {}",
             bounds(surface, surface.triangles_of(part).flatten()),
             curves.len()
         )?;
