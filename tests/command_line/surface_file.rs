@@ -56,7 +56,10 @@ impl SurfaceFile {
 
 /// An array of integers of a .vtp file that not every file has.
 pub fn integers(path: &Path, name: &str) -> Vec<i32> {
-    let DataSet::PolyData { pieces, .. } = Vtk::import(path).unwrap().data else { panic!("no PolyData") };
+    let file = inlined(&std::fs::read(path).unwrap());
+    let DataSet::PolyData { pieces, .. } = Vtk::parse_xml(&file[..]).unwrap().data else {
+        panic!("no PolyData")
+    };
     let Some(Piece::Inline(piece)) = pieces.into_iter().next() else { panic!("no piece in the file") };
     let PolyDataPiece { data, .. } = *piece;
     values(&[data.cell, data.point].concat(), name)

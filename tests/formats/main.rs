@@ -1,6 +1,6 @@
 //! What is written for other tools, read back by what others wrote: crates, and where they are installed gmsh, Surface
 //! Evolver, and Python with VTK, meshio and trimesh.
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, clippy::cast_possible_truncation, reason = "a test may panic")]
 
 mod grids;
 mod surfaces;

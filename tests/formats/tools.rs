@@ -14,12 +14,15 @@ fn run(test: &str, command: &mut Command) -> Option<Output> {
     match command.output() {
         Ok(output) => Some(output),
         Err(error) => {
-            // Not through `eprintln`, which the test harness keeps to itself.
-            let program = command.get_program().display();
-            writeln!(std::io::stderr(), "SKIPPED {test}: cannot run {program}: {error}").unwrap();
+            skip(test, &format!("cannot run {}: {error}", command.get_program().display()));
             None
         }
     }
+}
+
+/// Not through `eprintln`, which the test harness keeps to itself.
+fn skip(test: &str, why: &str) {
+    std::io::stderr().write_all(format!("SKIPPED {test}: {why}\n").as_bytes()).unwrap();
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -142,7 +145,7 @@ fn vtk_meshio_and_trimesh_read_every_format() {
     let Some(output) = run("vtk_meshio_and_trimesh_read_every_format", &mut python) else { return };
     let said = text(&output.stdout) + &text(&output.stderr);
     if output.status.code() == Some(77) {
-        writeln!(std::io::stderr(), "SKIPPED vtk_meshio_and_trimesh_read_every_format: {said}").unwrap();
+        skip("vtk_meshio_and_trimesh_read_every_format", said.trim_end());
         return;
     }
     assert!(output.status.success(), "{said}");

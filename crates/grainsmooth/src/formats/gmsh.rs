@@ -76,12 +76,7 @@ fn write_entities(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Wr
     for part in &surface.parts {
         let tag = tag(part.boundary);
         let curves = curves_of.get(&part.boundary).map(Vec::as_slice).unwrap_or_default();
-        write!(
-            out,
-            "{tag} {} 0 {}",
-            bounds(surface, surface.triangles_of(part).flatten()),
-            curves.len()
-        )?;
+        write!(out, "{tag} {} 0 {}", bounds(surface, surface.triangles_of(part).flatten()), curves.len())?;
         for curve in curves {
             write!(out, " {curve}")?;
         }

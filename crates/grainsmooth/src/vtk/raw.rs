@@ -18,6 +18,9 @@ const BLOCK_NUMBERS: usize = 1 << 20;
 /// Numbers that one task computes.
 const TASK_NUMBERS: usize = 1 << 15;
 
+/// Fills in the bytes of values from a position on.
+type Fill<'a> = Box<dyn Fn(usize, &mut [u8]) + Sync + 'a>;
+
 /// The bytes of one array.
 pub(crate) enum Numbers<'a> {
     /// Bytes in memory.
@@ -29,7 +32,7 @@ pub(crate) enum Numbers<'a> {
         /// Bytes of each.
         width: usize,
         /// Fills in the bytes of values from a position on.
-        fill: Box<dyn Fn(usize, &mut [u8]) + Sync + 'a>,
+        fill: Fill<'a>,
     },
 }
 
