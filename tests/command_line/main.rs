@@ -4,6 +4,8 @@
 mod bad_arguments;
 mod bad_outputs;
 mod bad_seed_files;
+mod check;
+mod control_meshes;
 mod good_runs;
 mod periodic;
 mod seed_sources;

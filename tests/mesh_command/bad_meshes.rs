@@ -31,12 +31,21 @@ fn bad_meshes_are_refused_by_name() {
     }
     for (command, message) in [
         ("loop range.obj", "range.obj: line 4: a face refers to vertex 4, but the file has 3 vertices"),
-        ("loop range.json", "range.json: face 0 refers to vertex 3, but there are only 3 vertices"),
+        (
+            "loop range.json",
+            "range.json: face 0 refers to vertex 3, but there are only 3 vertices, counted from 0",
+        ),
         ("loop range.off", "range.off: line 6: face 0 refers to vertex 3, but the file has 3 vertices"),
-        ("loop degenerate.obj", "degenerate.obj: triangle 0 is degenerate: it uses vertex 0 twice"),
-        ("catmull-clark degenerate.obj", "degenerate.obj: face 0 is degenerate: it uses vertex 0 twice"),
-        ("butterfly twice.obj", "twice.obj: faces 0 and 1 have the same vertices"),
-        ("doo-sabin twice.obj", "twice.obj: faces 0 and 1 have the same vertices"),
+        (
+            "loop degenerate.obj",
+            "degenerate.obj: triangle 0 is degenerate: it uses vertex 0 twice; remove it",
+        ),
+        (
+            "catmull-clark degenerate.obj",
+            "degenerate.obj: face 0 is degenerate: it uses vertex 0 twice; remove it",
+        ),
+        ("butterfly twice.obj", "twice.obj: faces 0 and 1 have the same vertices; remove one"),
+        ("doo-sabin twice.obj", "twice.obj: faces 0 and 1 have the same vertices; remove one"),
         ("loop nan.obj", "nan.obj: line 2: NaN is a z coordinate that is not finite"),
         ("loop inf.off", "inf.off: line 4: inf is an x coordinate that is not finite"),
         ("loop nan.json", "nan.json: line 1: expected value at line 1 column 22"),
@@ -45,14 +54,29 @@ fn bad_meshes_are_refused_by_name() {
             "winding.obj: faces 0 and 1 both run along edge 0-1 in the same direction: turn one round, or crease the \
              edge infinitely",
         ),
-        ("loop --closed open.off", "open.off: the surface is open: edge 0-1 has one face only"),
-        ("doo-sabin --closed open.off", "open.off: the surface is open: edge 0-1 has one face only"),
-        ("normals fin.obj", "fin.obj: 3 faces share edge 0-1: a manifold mesh has at most two"),
-        ("flip --edge 0-1 fin.obj", "fin.obj: 3 faces share edge 0-1: a manifold mesh has at most two"),
-        ("catmull-clark fin.obj", "fin.obj: 3 faces share edge 0-1: a manifold mesh has at most two"),
+        (
+            "loop --closed open.off",
+            "open.off: the surface is open: edge 0-1 has one face only; close the hole",
+        ),
+        (
+            "doo-sabin --closed open.off",
+            "open.off: the surface is open: edge 0-1 has one face only; close the hole",
+        ),
+        (
+            "normals fin.obj",
+            "fin.obj: 3 faces share edge 0-1: a manifold mesh has at most two; split it there into several",
+        ),
+        (
+            "flip --edge 0-1 fin.obj",
+            "fin.obj: 3 faces share edge 0-1: a manifold mesh has at most two; split it there into several",
+        ),
+        (
+            "catmull-clark fin.obj",
+            "fin.obj: 3 faces share edge 0-1: a manifold mesh has at most two; split it there into several",
+        ),
         (
             "normals bowtie.obj",
-            "bowtie.obj: the faces around vertex 0 touch only in this point: a manifold mesh has one fan around it",
+            "bowtie.obj: the faces around vertex 0 touch only in this point: a manifold mesh has one fan around it; give each fan a vertex of its own",
         ),
         ("loop two.obj", "two.obj: line 3: a face with 2 corners; three are the least"),
         ("loop two.json", "two.json: face 0 has 2 corners: three are the least"),
@@ -64,15 +88,15 @@ fn bad_meshes_are_refused_by_name() {
         ),
         (
             "doo-sabin valence.off",
-            "valence.off: vertex 1 has only two edges: Doo-Sabin subdivision would give it a face with two corners",
+            "valence.off: vertex 1 has only two edges: Doo-Sabin subdivision would give it a face with two corners; merge the faces beside it",
         ),
         (
             "catmull-clark cube.obj --crease 0-6",
-            "cube.obj: crease 0 joins vertices 0 and 6, but the mesh has no such edge",
+            "cube.obj: crease 0 joins vertices 0 and 6, but the mesh has no such edge; name the ends of a face's side",
         ),
         (
             "catmull-clark cube.obj --corners 8",
-            "cube.obj: corner 0 refers to vertex 8, but there are only 8 vertices",
+            "cube.obj: corner 0 refers to vertex 8, but there are only 8 vertices, counted from 0",
         ),
         (
             "limit --scheme catmull-clark cube.obj --crease 0-1:1.5",

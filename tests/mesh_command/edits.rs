@@ -55,9 +55,9 @@ fn edits_that_would_break_the_mesh_are_refused() {
     workplace.put("in.off", SQUARE);
     for (command, message) in [
         ("flip in.off --edge 0-1", "edge 0-1 cannot be flipped: it lies on the boundary"),
-        ("split in.off --edge 0-2", "there is no edge 0-2"),
-        ("split in.off --edge 0-99", "there is no edge 0-99"),
-        ("collapse in.off --edge 4-2,4-3", "there is no edge 4-3"),
+        ("split in.off --edge 0-2", "there is no edge 0-2; name two neighbours"),
+        ("split in.off --edge 0-99", "there is no edge 0-99; name two neighbours"),
+        ("collapse in.off --edge 4-2,4-3", "there is no edge 4-3; name two neighbours"),
     ] {
         workplace.refuses(&format!("mesh {command} -o out.obj"), 1, &format!("in.off: {message}"));
     }

@@ -13,9 +13,10 @@ use grainsmooth::vtk::VtkFormat;
 use grainsmooth::{
     Config, FileOptions, Lattice, Names, OutputDirectory, OutputFormat, SeedSource, StlEncoding,
 };
-use polycrystal::Junctions;
+use polycrystal::{FaceMesh, Junctions};
 use voronoi::Dimension;
 
+use crate::check_run::CheckArguments;
 use crate::mesh_cli::MeshArguments;
 
 /// Make a virtual polycrystal: smooth, closed grains of exact volume, as a VTK file for ParaView.
@@ -68,6 +69,15 @@ pub struct Arguments {
     /// Axes along which the box repeats, such as x,y,z: grains are whole there and grow through the walls
     #[arg(long, value_name = "AXES", value_parser = parse_axes, help_heading = DOMAIN)]
     periodic: Option<BVec3>,
+
+    /// Control points inside boundaries: a fan of triangles round one in the middle (fan), or none (plain)
+    #[arg(long, value_enum, default_value_t = FaceRule::Fan, help_heading = SMOOTHING)]
+    faces: FaceRule,
+
+    /// Refine the control mesh instead until no edge is longer than H, in the unit of --box; a grain is about as wide as the
+    /// cube root of its volume
+    #[arg(long, value_name = "H", value_parser = parse_edge_length, allow_negative_numbers = true, conflicts_with = "faces", help_heading = SMOOTHING)]
+    edge_length: Option<f64>,
 
     /// Relaxation time, in units of the mean grain size squared; 0 keeps boundaries flat
     #[arg(long, value_name = "T", default_value_t = Config::default().relaxation_time, value_parser = parse_time, allow_negative_numbers = true, help_heading = SMOOTHING)]
@@ -131,6 +141,7 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Mesh(MeshArguments),
+    Check(CheckArguments),
 }
 
 const SEEDS: &str = "Seeds";
@@ -162,6 +173,13 @@ enum Seeding {
 enum LatticeValue {
     Kind(Lattice),
     Cells(u32),
+}
+
+/// `--faces` as it is spelled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FaceRule {
+    Fan,
+    Plain,
 }
 
 /// `--junctions` as it is spelled.
@@ -229,6 +247,11 @@ impl Arguments {
             JunctionRule::Crease => Junctions::Crease,
             JunctionRule::Corner => Junctions::Corner,
         };
+        let face_mesh = match (self.edge_length, self.faces) {
+            (Some(edge_length), _) => FaceMesh::Refined { edge_length },
+            (None, FaceRule::Fan) => FaceMesh::Fan,
+            (None, FaceRule::Plain) => FaceMesh::Plain,
+        };
         let periodic = self.periodic.unwrap_or(BVec3::FALSE);
         if periodic.z && self.dim == Dimension::Two {
             usage("--periodic z needs three dimensions; with --dim 2 give x, y or x,y");
@@ -242,6 +265,7 @@ impl Arguments {
             lloyd_steps: self.lloyd,
             dimension: self.dim,
             box_size,
+            face_mesh,
             periodic,
             relaxation_time: self.relax,
             levels: self.levels,
@@ -335,6 +359,11 @@ fn parse_dimension(text: &str) -> Result<Dimension, String> {
 fn parse_length(text: &str) -> Result<f64, String> {
     let length = text.parse().ok().filter(|length| Config::SIDE_RANGE.contains(length));
     length.ok_or_else(|| "a side of the box is a positive number between 1e-30 and 1e30".to_owned())
+}
+
+fn parse_edge_length(text: &str) -> Result<f64, String> {
+    let length = text.parse().ok().filter(|length| Config::SIDE_RANGE.contains(length));
+    length.ok_or_else(|| "an edge length is a positive number between 1e-30 and 1e30".to_owned())
 }
 
 fn parse_axes(text: &str) -> Result<BVec3, String> {

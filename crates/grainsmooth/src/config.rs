@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use glam::{BVec3, DVec3};
-use polycrystal::Junctions;
+use polycrystal::{FaceMesh, Junctions};
 use voronoi::{Dimension, Domain};
 
 use crate::{Error, Lattice, LatticeFit, Names, StlEncoding};
@@ -47,6 +47,8 @@ pub struct Config {
     pub box_size: DVec3,
     /// Axes along which the box repeats; in 2D the last is ignored.
     pub periodic: BVec3,
+    /// Control points on boundaries.
+    pub face_mesh: FaceMesh,
     /// Relaxation time in units of the mean grain size squared; 0 leaves boundaries flat.
     pub relaxation_time: f64,
     /// Number of subdivisions.
@@ -85,6 +87,7 @@ impl Default for Config {
             dimension: Dimension::Three,
             box_size: DVec3::ONE,
             periodic: BVec3::FALSE,
+            face_mesh: FaceMesh::Fan,
             relaxation_time: polycrystal::Relaxation::default().time,
             levels: 3,
             junctions: Junctions::Crease,
@@ -153,10 +156,15 @@ impl Config {
             Junctions::Crease => "crease",
             Junctions::Corner => "corner",
         };
+        let faces = match self.face_mesh {
+            FaceMesh::Fan => "--faces fan".to_owned(),
+            FaceMesh::Plain => "--faces plain".to_owned(),
+            FaceMesh::Refined { edge_length } => format!("--edge-length {edge_length}"),
+        };
         let drop_empty = if self.drop_empty { " --drop-empty" } else { "" };
         let Self { relaxation_time, levels, file, .. } = self;
         format!(
-            "grainsmooth {seeds}{drop_empty}{lloyd} {space}{periodic} --relax {relaxation_time} -n {levels} --junctions {junctions}{}",
+            "grainsmooth {seeds}{drop_empty}{lloyd} {space}{periodic} {faces} --relax {relaxation_time} -n {levels} --junctions {junctions}{}",
             file.arguments(self.dimension)
         )
     }

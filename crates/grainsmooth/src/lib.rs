@@ -15,9 +15,11 @@
 //! ```
 
 mod cell_table;
+mod check_report;
 mod config;
 mod error;
 mod formats;
+mod labelled_file;
 mod lattice;
 pub mod memory;
 mod mesh_bezier;
@@ -35,12 +37,14 @@ mod summary;
 pub mod vtk;
 
 pub use cell_table::{CellTable, TableFormat};
+pub use check_report::{CheckReport, ReportedFault, Spread, Statistic};
 pub use config::{Config, FileOptions, SeedSource};
 pub use error::Error;
 pub use formats::{LabelGrid, Names, StlEncoding};
 pub use formats::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
 };
+pub use labelled_file::{FileElements, LabelledFile};
 pub use lattice::{Lattice, LatticeFit};
 pub use mesh_bezier::{BezierFile, read_bezier};
 pub use mesh_edit::{EdgeEdit, edit_edges};

@@ -1,5 +1,6 @@
 //! The `grainsmooth` program: reads the command line, runs the pipeline, reports.
 
+mod check_run;
 mod cli;
 mod mesh_cli;
 mod mesh_run;
@@ -20,7 +21,7 @@ use progress::ProgressLine;
 
 fn main() -> ExitCode {
     match run(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         Err(error) => {
             say(&format!("error: {error}"));
             ExitCode::FAILURE
@@ -43,10 +44,13 @@ fn keep_reader_quiet() {
     }));
 }
 
-fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    if let Some(Command::Mesh(mesh)) = &arguments.command {
+fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+    if let Some(command) = &arguments.command {
         keep_reader_quiet();
-        return Ok(mesh_run::run(&mesh.command)?);
+        return match command {
+            Command::Mesh(mesh) => Ok(mesh_run::run(&mesh.command).map(|()| ExitCode::SUCCESS)?),
+            Command::Check(check) => check_run::run(check),
+        };
     }
     // An output that cannot be written is found before hours of work, not after.
     let tables = tables(arguments)?;
@@ -72,7 +76,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let names: Vec<String> = files.paths().map(|path| path.display().to_string()).collect();
         say(&format!("{summary}\nwritten     {}", names.join(", ")));
     }
-    Ok(())
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The tables asked for, found writable.

@@ -244,6 +244,9 @@ mod tests {
         }
         let ragged = r#"{"surface": [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0]]]}"#;
         let error = from_json(ragged.as_bytes()).unwrap_err().to_string();
-        assert_eq!(error, "row 1 of the control points has 1 points, but the first row has 2");
+        assert_eq!(
+            error,
+            "row 1 of the control points has 1 points, but the first row has 2; make all rows as long"
+        );
     }
 }

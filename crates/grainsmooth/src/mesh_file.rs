@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::DVec3;
-use subzero::{BoundaryRule, Crease, Features, INFINITE_SHARPNESS, PolygonMesh, TriangleMesh};
+use subzero::{BoundaryRule, Crease, Features, PolygonMesh, TriangleMesh};
 
 use crate::Error;
 
@@ -14,7 +14,7 @@ mod off;
 mod ply;
 mod problem;
 mod stl;
-mod vtk;
+pub(crate) mod vtk;
 mod write;
 
 pub use problem::MeshFileProblem;
@@ -114,14 +114,7 @@ impl MeshFile {
     }
 
     fn with_features<T>(&self, make: impl FnOnce(&Features<'_>) -> T) -> T {
-        let is_hard = |corner: &&(u32, f32)| corner.1 >= INFINITE_SHARPNESS;
-        let corners: Vec<u32> = self.corners.iter().filter(is_hard).map(|corner| corner.0).collect();
-        let soft: Vec<(u32, f32)> = self.corners.iter().filter(|corner| !is_hard(corner)).copied().collect();
-        make(&Features {
-            creases: &self.creases,
-            corners: &corners,
-            soft_corners: &soft,
-            boundary: self.boundary,
-        })
+        let (soft_corners, boundary) = (&self.corners[..], self.boundary);
+        make(&Features { creases: &self.creases, corners: &[], soft_corners, boundary })
     }
 }

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use polycrystal::{AngleStatistics, Network, NetworkError, Relaxation, Validation};
+use polycrystal::{AngleStatistics, Certificate, MeshSize, Network, NetworkError, Relaxation};
 use polycrystal::{dihedral_angles, relax, validate};
 use voronoi::{Dimension, Tessellation, VoronoiError};
 
@@ -62,10 +62,8 @@ pub struct Polycrystal {
     pub points: Vec<DVec3>,
     /// Angles between boundaries of the flat network, if boundaries meet inside the domain.
     pub angles_before: Option<AngleStatistics>,
-    /// The same of the finished network.
-    pub angles_after: Option<AngleStatistics>,
-    /// What validation measured.
-    pub validation: Validation,
+    /// What validation found: the angles of the finished network, volumes and how true they are.
+    pub validation: Certificate,
     /// Time that each stage took.
     pub times: Vec<(Stage, Duration)>,
 }
@@ -143,22 +141,24 @@ pub fn make_polycrystal(config: &Config, progress: Progress) -> Result<Polycryst
 pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result<Polycrystal, Error> {
     let tessellation = &cells.tessellation;
     let mut clock = Clock { progress, times: cells.times.clone() };
-    check_levels(control_mesh_size(tessellation), config.levels, available_memory())?;
-    let (network, flat) = clock
-        .time(Stage::Network, || Network::new(tessellation, config.junctions, config.levels as usize))?;
+    let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
+    check_levels(LevelSize { points, edges, triangles }, config.levels, available_memory())?;
+    let (network, flat) = clock.time(Stage::Network, || {
+        let Config { face_mesh, junctions, levels, .. } = *config;
+        Network::with_face_mesh(tessellation, face_mesh, junctions, levels as usize)
+    })?;
     let relaxation = Relaxation { time: config.relaxation_time };
     let relaxed = clock.time(Stage::Relaxation, || {
         relax(&network, &flat, &relaxation, |done, count| progress(Stage::Relaxation, done, count))
     })?;
     let points = clock.time(Stage::Subdivision, || network.subdivide(&relaxed.control_points));
-    let (validation, angles_before, angles_after) = clock.time(Stage::Validation, || {
+    let (validation, angles_before) = clock.time(Stage::Validation, || {
         let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
-        let before = dihedral_angles(&network, network.control_mesh(), &flat);
-        Ok::<_, Error>((validation, before, dihedral_angles(&network, network.finest(), &points)))
+        Ok::<_, Error>((validation, dihedral_angles(&network, network.control_mesh(), &flat)))
     })?;
     let times = clock.times;
     let config = config.clone();
-    Ok(Polycrystal { config, cells, network, points, angles_before, angles_after, validation, times })
+    Ok(Polycrystal { config, cells, network, points, angles_before, validation, times })
 }
 
 /// Runs stages one after the other and remembers how long each took.
@@ -216,25 +216,6 @@ fn located(error: VoronoiError, config: &Config, seeds: &[FileSeed]) -> Error {
         _ => return error.into(),
     };
     Error::SeedInFile { path: path.clone(), line: seeds[seed].line, cause: error }
-}
-
-/// The size of a tessellation's control mesh: a point per vertex, edge and face, two triangles per corner of a face.
-fn control_mesh_size(tessellation: &Tessellation) -> LevelSize {
-    let corners: usize = tessellation.faces().map(|face| tessellation.face_corners(face).len()).sum();
-    let (vertices, faces) = (tessellation.vertices().len(), tessellation.face_count());
-    match tessellation.domain().dimension() {
-        Dimension::Two => {
-            LevelSize { points: (vertices + faces) as u128, edges: 2 * faces as u128, triangles: 0 }
-        }
-        Dimension::Three => {
-            let lines = tessellation.edges().ends.len();
-            LevelSize {
-                points: (vertices + lines + faces) as u128,
-                edges: 2 * (lines + corners) as u128,
-                triangles: 2 * corners as u128,
-            }
-        }
-    }
 }
 
 /// The size for so many random seeds, from the means of Poisson-Voronoi cells (walls not counted): in space 15.54 faces,

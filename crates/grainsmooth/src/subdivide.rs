@@ -170,25 +170,34 @@ pub fn limits(level: &Level, scheme: Scheme) -> Result<Option<Limits>, MeshFileP
         (Connectivity::Triangles(mesh), Scheme::Loop(weights)) => {
             let limits = mesh.loop_limits(weights)?;
             let normals = limits.sector_normals(&level.points).into_iter();
-            let sectors = limits.sectors.iter().zip(normals).filter(|(sector, _)| {
-                !matches!(mesh.vertex_rule(sector.vertex), VertexRule::Smooth | VertexRule::Dart)
-            });
+            let sectors = limits.sectors.iter().zip(normals);
             Ok(Some(Limits {
                 positions: limits.project(&level.points),
                 normals: limits.vertex_normals(&level.points),
                 sectors: sectors
+                    .filter(|(sector, _)| is_at_crease(mesh.vertex_rule(sector.vertex)))
                     .map(|(sector, normal)| (sector.vertex, mesh.sector_ring(*sector), normal))
                     .collect(),
             }))
         }
         (Connectivity::Polygons(mesh), Scheme::CatmullClark) => {
             let limits = mesh.catmull_clark_limits()?;
+            let normals = limits.sector_normals(&level.points).into_iter();
+            let sectors = limits.sectors.iter().zip(normals);
             Ok(Some(Limits {
                 positions: limits.positions.apply(&level.points),
-                normals: limits.normals(&level.points),
-                sectors: Vec::new(),
+                normals: limits.vertex_normals(&level.points),
+                sectors: sectors
+                    .filter(|(sector, _)| is_at_crease(mesh.vertex_rule(sector.vertex)))
+                    .map(|(sector, normal)| (sector.vertex, mesh.sector_ring(*sector), normal))
+                    .collect(),
             }))
         }
         _ => Ok(None),
     }
+}
+
+/// Whether the surface around a vertex falls into sectors.
+fn is_at_crease(rule: VertexRule) -> bool {
+    matches!(rule, VertexRule::Crease | VertexRule::Corner)
 }

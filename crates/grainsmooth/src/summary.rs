@@ -46,7 +46,7 @@ impl fmt::Display for Summary<'_> {
         };
         writeln!(out, "junctions   {junctions}")?;
         writeln!(out, "mesh        {points} points, {elements} {element}s at level {levels}")?;
-        if let (Some(before), Some(after)) = (polycrystal.angles_before, polycrystal.angles_after) {
+        if let (Some(before), Some(after)) = (polycrystal.angles_before, polycrystal.validation.angles) {
             writeln!(out, "angles      {} before relaxation, {} after", Angle(before), Angle(after))?;
         }
         let validation = &polycrystal.validation;
@@ -54,7 +54,7 @@ impl fmt::Display for Summary<'_> {
         writeln!(out, "{measure:12}largest relative error of a grain {error:.1e}")?;
         writeln!(
             out,
-            "validation  good: every grain closed, no fold, no point twice, no {element} without {size}"
+            "validation  good: every grain closed, nothing crossed or folded, no point twice, no {element} without {size}"
         )?;
         write!(out, "time       ")?;
         for (stage, time) in &polycrystal.times {

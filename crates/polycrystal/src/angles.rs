@@ -1,7 +1,7 @@
 use glam::DVec3;
 
-use crate::crease_uses::{CreaseUse, crease_uses};
-use crate::{Level, Mesh, Network};
+use crate::seams::{Seams, Use};
+use crate::{Elements, Level, Network, Side, Surface};
 
 /// Mean and spread of the angles between boundaries, in degrees.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,18 +17,19 @@ pub struct AngleStatistics {
 ///
 /// Random Voronoi grains have 120 +- 23.8 degrees, equilibrium has 120 +- 0.
 pub fn dihedral_angles(network: &Network, level: &Level, points: &[DVec3]) -> Option<AngleStatistics> {
-    let interior =
-        |at: &CreaseUse| network.boundaries()[level.boundary_of[at.element as usize].index()].is_interior();
-    let uses = crease_uses(level);
-    let triple = uses.chunk_by(|a, b| a.place == b.place);
-    let triple = triple.filter(|at| at.len() == 3 && at.iter().all(interior));
+    let sides = network.sides();
+    angle_statistics(&Surface::of_level(level, points, &sides), &Seams::of_level(level))
+}
+
+/// The same of any surface.
+pub(crate) fn angle_statistics(surface: &Surface<'_>, seams: &Seams) -> Option<AngleStatistics> {
+    let is_interior = |at: &Use| !surface.sides_of(at.element).contains(&Side::Exterior);
+    let triple = seams.places().filter(|at| at.len() == 3 && at.iter().all(is_interior));
     // Sums of weight, weight * angle and weight * angle^2.
     let mut sums = [0.0; 3];
     for at in triple {
-        let (weight, legs) = match &level.mesh {
-            Mesh::Triangles(_) => legs_at_edge(level, points, at),
-            Mesh::Segments(_) => legs_at_vertex(level, points, at),
-        };
+        let weight = place_length(surface, at);
+        let legs = [0, 1, 2].map(|k| leg(surface, &at[k]));
         for [a, b] in [[0, 1], [1, 2], [2, 0]] {
             let angle = legs[a].dot(legs[b]).clamp(-1.0, 1.0).acos().to_degrees();
             for (sum, power) in sums.iter_mut().zip([1.0, angle, angle * angle]) {
@@ -43,24 +44,30 @@ pub fn dihedral_angles(network: &Network, level: &Level, points: &[DVec3]) -> Op
     })
 }
 
-/// The edge's length and the unit vectors from it into its three triangles, square to it.
-fn legs_at_edge(level: &Level, points: &[DVec3], uses: &[CreaseUse]) -> (f64, [DVec3; 3]) {
-    let Mesh::Triangles(mesh) = &level.mesh else { unreachable!("called for triangles") };
-    let [start, end] = mesh.edge(uses[0].place).map(|vertex| points[vertex as usize]);
-    let along = (end - start).normalize_or_zero();
-    let leg = |at: &CreaseUse| {
-        let apex = mesh.triangles()[at.element as usize][usize::from((at.corner + 2) % 3)];
-        (points[apex as usize] - start).reject_from_normalized(along).normalize_or_zero()
-    };
-    (start.distance(end), [leg(&uses[0]), leg(&uses[1]), leg(&uses[2])])
+/// The length of an edge; in the plane every point counts alike.
+pub(crate) fn place_length(surface: &Surface<'_>, at: &[Use]) -> f64 {
+    match surface.elements {
+        Elements::Triangles(_) => {
+            let [start, end] = at[0].ends(surface.elements).map(|end| surface.points[end as usize]);
+            start.distance(end)
+        }
+        Elements::Segments(_) => 1.0,
+    }
 }
 
-/// The unit vectors from a triple point along its three segments; every point counts alike.
-fn legs_at_vertex(level: &Level, points: &[DVec3], uses: &[CreaseUse]) -> (f64, [DVec3; 3]) {
-    let Mesh::Segments(mesh) = &level.mesh else { unreachable!("called for segments") };
-    let leg = |at: &CreaseUse| {
-        let other = mesh.segments()[at.element as usize][usize::from(1 - at.corner)];
-        (points[other as usize] - points[at.place as usize]).normalize_or_zero()
-    };
-    (1.0, [leg(&uses[0]), leg(&uses[1]), leg(&uses[2])])
+/// The unit vector from an edge into its triangle, square to the edge; in the plane, from a point along its segment.
+pub(crate) fn leg(surface: &Surface<'_>, at: &Use) -> DVec3 {
+    let corners = surface.elements.corners(at.element);
+    let [start, end] = at.ends(surface.elements).map(|end| surface.points[end as usize]);
+    match surface.elements {
+        Elements::Triangles(_) => {
+            let apex = surface.points[corners[usize::from((at.corner + 2) % 3)] as usize];
+            let along = (end - start).normalize_or_zero();
+            (apex - start).reject_from_normalized(along).normalize_or_zero()
+        }
+        Elements::Segments(_) => {
+            let other = surface.points[corners[usize::from(1 - at.corner)] as usize];
+            (other - start).normalize_or_zero()
+        }
+    }
 }

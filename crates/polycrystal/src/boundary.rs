@@ -1,3 +1,5 @@
+use std::fmt;
+
 use voronoi::{Shift, Wall};
 
 /// Number of a grain: that of its seed in the input, from 0.
@@ -31,6 +33,25 @@ pub enum Side {
     Exterior,
 }
 
+impl Side {
+    /// The grain, if it is one.
+    pub fn grain(self) -> Option<GrainId> {
+        match self {
+            Self::Grain(grain) => Some(grain),
+            Self::Exterior => None,
+        }
+    }
+}
+
+impl fmt::Display for Side {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Grain(grain) => write!(out, "grain {}", grain.0),
+            Self::Exterior => write!(out, "the exterior"),
+        }
+    }
+}
+
 /// The surface (in the plane: the line) between two grains, or between a grain and one wall of the domain.
 ///
 /// Grains of a periodic domain are whole. The boundary between a grain and one that stands a period away so comes twice, once
@@ -57,10 +78,7 @@ pub struct Twin {
 impl Boundary {
     /// The grains on either side with the sign of the boundary's contribution to their volume.
     pub fn signed_grains(&self) -> impl Iterator<Item = (GrainId, f64)> {
-        self.sides.into_iter().zip([1.0, -1.0]).filter_map(|(side, sign)| match side {
-            Side::Grain(grain) => Some((grain, sign)),
-            Side::Exterior => None,
-        })
+        self.sides.into_iter().zip([1.0, -1.0]).filter_map(|(side, sign)| Some((side.grain()?, sign)))
     }
 
     /// Whether grains lie on both sides, without a period between them.

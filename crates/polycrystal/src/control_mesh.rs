@@ -1,13 +1,15 @@
-//! The triangulated network whose vertices are VirMat's control points: the vertices of the tessellation, the middles of
-//! its triple lines, and the centres of its faces. In the plane: its vertices and the middles of its edges.
+//! The triangulated network whose vertices are the control points: the vertices of the tessellation, points on its triple
+//! lines, and points inside its faces. In the plane: its vertices and points on its edges.
 
 use glam::DVec3;
 use subzero::{Crease, CurveMesh, Features, TriangleMesh};
 use voronoi::{Dimension, Edges, FaceId, PeriodicPair, Shift, Tessellation};
 
+use crate::face_mesh::{LinePoints, id, triangulate_faces};
 use crate::periodic::PeriodicCopies;
 use crate::{
-    Boundary, BoundaryId, GrainId, Junctions, Level, Mesh, NetworkError, NodeType, Side, Twin, WallSet,
+    Boundary, BoundaryId, FaceMesh, GrainId, Junctions, Level, Mesh, NetworkError, NodeType, Side, Twin,
+    WallSet,
 };
 
 /// The connectivity of the control mesh, its points, and the boundaries: one for each face of the tessellation.
@@ -28,7 +30,11 @@ pub struct JunctionCounts {
 }
 
 impl ControlMesh {
-    pub(crate) fn new(tessellation: &Tessellation, junctions: Junctions) -> Result<Self, NetworkError> {
+    pub(crate) fn new(
+        tessellation: &Tessellation,
+        face_mesh: FaceMesh,
+        junctions: Junctions,
+    ) -> Result<Self, NetworkError> {
         let mut boundaries: Vec<Boundary> =
             tessellation.faces().map(|face| boundary(tessellation.face_sides(face))).collect();
         for PeriodicPair { secondary, primary, shift } in tessellation.periodic_faces() {
@@ -37,8 +43,8 @@ impl ControlMesh {
             boundaries[secondary.index()].twin = twin(primary, Shift::NONE - *shift);
         }
         match tessellation.domain().dimension() {
-            Dimension::Three => surfaces(tessellation, boundaries, junctions),
-            Dimension::Two => lines(tessellation, boundaries),
+            Dimension::Three => surfaces(tessellation, boundaries, face_mesh, junctions),
+            Dimension::Two => lines(tessellation, boundaries, face_mesh),
         }
     }
 }
@@ -58,70 +64,82 @@ fn boundary(sides: [voronoi::Side; 2]) -> Boundary {
 fn surfaces(
     tessellation: &Tessellation,
     boundaries: Vec<Boundary>,
+    face_mesh: FaceMesh,
     junctions: Junctions,
 ) -> Result<ControlMesh, NetworkError> {
     let edges = tessellation.edges();
     let vertex_count = tessellation.vertices().len();
-    let middle = |edge: u32| id(vertex_count) + edge;
-    let center = |face: FaceId| id(vertex_count + edges.ends.len()) + face.0;
-
+    let copied_lines = tessellation.periodic_edges(&edges);
+    let lines = LinePoints::new(tessellation, &edges.ends, &copied_lines, face_mesh);
     let mut points = tessellation.vertices().to_vec();
-    points.extend(edges.ends.iter().map(|ends| {
-        let [start, end] = ends.map(|vertex| tessellation.vertices()[vertex.index()]);
-        start.midpoint(end)
-    }));
-    points.extend(tessellation.faces().map(|face| face_center(tessellation, face)));
-
-    let mut triangles = Vec::with_capacity(2 * edges.of_corner.len());
-    let mut boundary_of = Vec::with_capacity(triangles.capacity());
-    // Of each triangle, the tessellation's edge that its first edge is half of.
-    let mut line_of = Vec::with_capacity(triangles.capacity());
-    let mut next_corner = edges.of_corner.iter();
-    for face in tessellation.faces() {
-        let corners = tessellation.face_corners(face);
-        for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
-            let edge = *next_corner.next().expect("one edge for each corner");
-            triangles.push([from.0, middle(edge), center(face)]);
-            triangles.push([middle(edge), to.0, center(face)]);
-            boundary_of.extend([BoundaryId(face.0); 2]);
-            line_of.extend([edge; 2]);
-        }
-    }
-
-    let creases: Vec<Crease> = (0u32..)
-        .zip(&edges.ends)
-        .flat_map(|(edge, ends)| ends.map(|end| Crease::infinite([end.0, middle(edge)])))
-        .collect();
+    points.extend(&lines.positions);
     let corner_count = match junctions {
         Junctions::Crease => vertex_count,
-        Junctions::Corner => vertex_count + edges.ends.len(),
+        Junctions::Corner => points.len(),
     };
-    let corners: Vec<u32> = (0..id(corner_count)).collect();
-    let features = Features { creases: &creases, corners: &corners, ..Features::default() };
-    let mesh = TriangleMesh::new(points.len(), triangles, &features)?;
 
-    let copies = PeriodicCopies::of_control_mesh(tessellation, &edges, middle, |face| center(FaceId(face)));
-    let copied_lines = tessellation.periodic_edges(&edges);
     let (mut node_types, line_types) = junction_types(tessellation, &edges, &copied_lines);
     let counts = JunctionCounts {
         triple_lines: count_originals(&line_types, 3, copied_lines.iter().map(|pair| pair.secondary)),
         quadruple_points: count_originals(&node_types, 4, copied_vertices(tessellation)),
     };
-    node_types.extend(&line_types);
-    node_types.extend(boundaries.iter().map(NodeType::inside));
-    let mut edge_node_types = vec![NodeType::INTERIOR; mesh.edge_count()];
-    for (triangle, (boundary, line)) in (0u32..).zip(boundary_of.iter().zip(line_of)) {
-        let [along_line, spoke, other_spoke] = mesh.triangle_edges(triangle).map(|edge| edge as usize);
-        edge_node_types[along_line] = line_types[line as usize];
-        edge_node_types[spoke] = NodeType::inside(&boundaries[boundary.index()]);
-        edge_node_types[other_spoke] = edge_node_types[spoke];
-    }
-
+    node_types.extend(lines.lines().map(|line| line_types[line]));
     let mut walls = walls_of_vertices(tessellation, &boundaries);
-    walls.extend(
-        edges.ends.iter().map(|[a, b]| walls[a.index()].intersection(walls[b.index()])).collect::<Vec<_>>(),
-    );
-    walls.extend(boundaries.iter().map(walls_inside));
+    let walls_of_line = |line: usize| {
+        let [start, end] = edges.ends[line];
+        walls[start.index()].intersection(walls[end.index()])
+    };
+    let on_lines: Vec<WallSet> = lines.lines().map(walls_of_line).collect();
+    walls.extend(on_lines);
+
+    let faces = triangulate_faces(tessellation, &edges, &lines, &points, face_mesh);
+    let mut copies = PeriodicCopies::of_vertices(tessellation);
+    copies.vertices.extend(lines.copies(tessellation, &edges.ends, &copied_lines));
+    copies.add_faces(tessellation.periodic_faces(), &faces, points.len());
+    let (mut triangles, mut boundary_of, mut triangle_edge_types) = (Vec::new(), Vec::new(), Vec::new());
+    for ((face, boundary), mesh) in (0u32..).zip(&boundaries).zip(faces) {
+        let outline_count = id(mesh.outline.len());
+        let first_inner = id(points.len());
+        let inside = NodeType::inside(boundary);
+        let number = |place: u32| match place.checked_sub(outline_count) {
+            None => mesh.outline[place as usize],
+            Some(inner) => first_inner + inner,
+        };
+        // Neighbours on the outline are joined by nothing but the line that they lie on.
+        let edge_type = |[from, to]: [u32; 2]| {
+            let is_on_line = from < outline_count && to == (from + 1) % outline_count;
+            if is_on_line { line_types[mesh.lines[from as usize] as usize] } else { inside }
+        };
+        for &[a, b, c] in &mesh.triangles {
+            triangles.push([a, b, c].map(number));
+            triangle_edge_types.push([[a, b], [b, c], [c, a]].map(edge_type));
+            boundary_of.push(BoundaryId(face));
+        }
+        let inner_count = mesh.inner_points.len();
+        points.extend(mesh.inner_points);
+        node_types.resize(node_types.len() + inner_count, inside);
+        walls.resize(walls.len() + inner_count, walls_inside(boundary));
+    }
+    // Dividing lines and faces may miss a wall by a last place.
+    let domain = tessellation.domain();
+    points.iter_mut().zip(&walls).for_each(|(point, walls)| *point = walls.put_on_walls(domain, *point));
+
+    let creases: Vec<Crease> = (0u32..)
+        .zip(&edges.ends)
+        .flat_map(|(line, ends)| {
+            let along = lines.whole_line(line, *ends);
+            along.windows(2).map(|ends| Crease::infinite([ends[0], ends[1]])).collect::<Vec<_>>()
+        })
+        .collect();
+    let corners: Vec<u32> = (0..id(corner_count)).collect();
+    let features = Features { creases: &creases, corners: &corners, ..Features::default() };
+    let mesh = TriangleMesh::new(points.len(), triangles, &features)?;
+    let mut edge_node_types = vec![NodeType::INTERIOR; mesh.edge_count()];
+    for (triangle, types) in (0u32..).zip(triangle_edge_types) {
+        for (edge, edge_type) in mesh.triangle_edges(triangle).into_iter().zip(types) {
+            edge_node_types[edge as usize] = edge_type;
+        }
+    }
     let generations = vec![0; points.len()];
     let level = Level {
         mesh: Mesh::Triangles(mesh),
@@ -135,49 +153,52 @@ fn surfaces(
     Ok(ControlMesh { level, points, boundaries, junctions: counts })
 }
 
-fn lines(tessellation: &Tessellation, boundaries: Vec<Boundary>) -> Result<ControlMesh, NetworkError> {
+fn lines(
+    tessellation: &Tessellation,
+    boundaries: Vec<Boundary>,
+    face_mesh: FaceMesh,
+) -> Result<ControlMesh, NetworkError> {
     let vertex_count = tessellation.vertices().len();
+    let ends: Vec<[voronoi::VertexId; 2]> = tessellation
+        .faces()
+        .map(|face| tessellation.face_corners(face).try_into().expect("an edge has two ends"))
+        .collect();
+    let copied_lines: Vec<PeriodicPair<u32>> = tessellation
+        .periodic_faces()
+        .iter()
+        .map(|pair| PeriodicPair { secondary: pair.secondary.0, primary: pair.primary.0, shift: pair.shift })
+        .collect();
+    let lines = LinePoints::new(tessellation, &ends, &copied_lines, face_mesh);
     let mut points = tessellation.vertices().to_vec();
-    let mut segments = Vec::with_capacity(2 * tessellation.face_count());
-    let mut boundary_of = Vec::with_capacity(segments.capacity());
+    points.extend(&lines.positions);
+    let (mut segments, mut boundary_of) = (Vec::new(), Vec::new());
+    let mut first_segments = vec![0];
     let mut meetings = Meetings::new(vertex_count, tessellation.periodic_vertices().iter().map(vertex_pair));
-    for face in tessellation.faces() {
-        let ends = tessellation.face_corners(face);
-        let middle = id(points.len());
-        points.push(points[ends[0].index()].midpoint(points[ends[1].index()]));
-        segments.extend([[ends[0].0, middle], [middle, ends[1].0]]);
-        boundary_of.extend([BoundaryId(face.0); 2]);
+    for (face, ends) in tessellation.faces().zip(&ends) {
+        segments.extend(lines.whole_line(face.0, *ends).windows(2).map(|ends| [ends[0], ends[1]]));
+        boundary_of.resize(segments.len(), BoundaryId(face.0));
+        first_segments.push(id(segments.len()));
         for end in ends {
             meetings.note(end.index(), tessellation.face_sides(face));
         }
     }
     let mut walls = walls_of_vertices(tessellation, &boundaries);
-    walls.extend(boundaries.iter().map(walls_inside));
+    walls.extend(lines.lines().map(|line| walls_inside(&boundaries[line])));
+    let domain = tessellation.domain();
+    points.iter_mut().zip(&walls).for_each(|(point, walls)| *point = walls.put_on_walls(domain, *point));
     let corners: Vec<u32> = (0..id(vertex_count)).collect();
     let mut node_types = meetings.types();
     let at_least = |count| count_originals(&node_types, count, copied_vertices(tessellation));
     let counts = JunctionCounts { triple_lines: at_least(3), quadruple_points: at_least(4) };
-    node_types.extend(boundaries.iter().map(NodeType::inside));
+    node_types.extend(lines.lines().map(|line| NodeType::inside(&boundaries[line])));
     let mesh = Mesh::Segments(CurveMesh::new(points.len(), segments, &corners)?);
     let generations = vec![0; points.len()];
-    let copies = PeriodicCopies::of_control_lines(tessellation);
+    let mut copies = PeriodicCopies::of_vertices(tessellation);
+    copies.vertices.extend(lines.copies(tessellation, &ends, &copied_lines));
+    copies.add_lines(&copied_lines, &first_segments);
     let level =
         Level { mesh, boundary_of, node_types, generations, walls, copies, edge_node_types: Vec::new() };
     Ok(ControlMesh { level, points, boundaries, junctions: counts })
-}
-
-/// The centroid of a face's outline: inside the face, and well defined for the thinnest of slivers.
-fn face_center(tessellation: &Tessellation, face: FaceId) -> DVec3 {
-    let corners = tessellation.face_corners(face);
-    let at = |k: usize| tessellation.vertices()[corners[k % corners.len()].index()];
-    let origin = at(0);
-    let (mut weighted, mut perimeter) = (DVec3::ZERO, 0.0);
-    for k in 0..corners.len() {
-        let length = at(k).distance(at(k + 1));
-        weighted += (at(k).midpoint(at(k + 1)) - origin) * length;
-        perimeter += length;
-    }
-    origin + weighted / perimeter
 }
 
 /// The types of the tessellation's vertices and of the points inside its edges.
@@ -273,9 +294,4 @@ fn walls_of_vertices(tessellation: &Tessellation, boundaries: &[Boundary]) -> Ve
         }
     }
     walls
-}
-
-/// Control points are far fewer than 2^32: [`crate::Network::new`] has checked the number of their triangles.
-fn id(index: usize) -> u32 {
-    u32::try_from(index).expect("the control mesh was checked to fit 32-bit ids")
 }

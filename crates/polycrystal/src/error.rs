@@ -1,6 +1,4 @@
-use std::fmt;
-
-use crate::{Fault, GrainId, Side};
+use crate::{Faults, GrainId, Side};
 
 /// Why a network could not be made or relaxed.
 #[derive(Debug, thiserror::Error)]
@@ -22,14 +20,17 @@ pub enum NetworkError {
     Mesh(#[from] subzero::MeshError),
     /// A boundary is so small that rounding leaves parts of it without area (in the plane: without length).
     #[error(
-        "the boundary between {} is too small for double precision: more than four grains nearly meet there; move their \
+        "the boundary between {} and {} is too small for double precision: more than four grains nearly meet there; move their \
          seeds by 1e-9 of the box or more, or to a lattice that binary numbers hold exactly",
-        Sides(*sides)
+        sides[0], sides[1]
     )]
     BoundaryTooSmall {
         /// The sides of the boundary.
         sides: [Side; 2],
     },
+    /// The edge length of the control mesh is no length.
+    #[error("the edge length is {0}; it must be a positive, finite number")]
+    BadEdgeLength(f64),
     /// The relaxation time is negative or not a number.
     #[error("the relaxation time is {0}; it must be 0 (off) or a positive, finite number")]
     BadRelaxationTime(f64),
@@ -57,20 +58,5 @@ pub enum NetworkError {
     },
     /// The finished network does not keep its contract.
     #[error("the network is invalid: {0}")]
-    Invalid(Fault),
-}
-
-/// Writes two sides as `grain 3 and grain 17`.
-struct Sides([Side; 2]);
-
-impl fmt::Display for Sides {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (side, end) in self.0.into_iter().zip([" and ", ""]) {
-            match side {
-                Side::Grain(grain) => write!(out, "grain {}{end}", grain.0)?,
-                Side::Exterior => write!(out, "the exterior{end}")?,
-            }
-        }
-        Ok(())
-    }
+    Invalid(Faults),
 }

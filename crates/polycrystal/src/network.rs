@@ -6,7 +6,7 @@ use voronoi::{Domain, Tessellation};
 use crate::control_mesh::{ControlMesh, JunctionCounts};
 use crate::folds::element_normals;
 use crate::volume::{boundary_volumes, sum_over_grains};
-use crate::{Boundary, Level, NetworkError};
+use crate::{Boundary, FaceMesh, Level, NetworkError, Surface};
 
 /// How triple lines and the domain's edges are smoothed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -44,9 +44,27 @@ impl Network {
         junctions: Junctions,
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
-        check_size(tessellation, level_count)?;
+        Self::with_face_mesh(tessellation, FaceMesh::Fan, junctions, level_count)
+    }
+
+    /// As [`Self::new`], with a choice of control points.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; [`NetworkError::BadEdgeLength`].
+    pub fn with_face_mesh(
+        tessellation: &Tessellation,
+        face_mesh: FaceMesh,
+        junctions: Junctions,
+        level_count: usize,
+    ) -> Result<(Self, Vec<DVec3>), NetworkError> {
+        if let FaceMesh::Refined { edge_length } = face_mesh
+            && !(edge_length.is_finite() && edge_length > 0.0)
+        {
+            return Err(NetworkError::BadEdgeLength(edge_length));
+        }
+        check_size(tessellation, face_mesh, level_count)?;
         let ControlMesh { level, mut points, boundaries, junctions: counts } =
-            ControlMesh::new(tessellation, junctions)?;
+            ControlMesh::new(tessellation, face_mesh, junctions)?;
         level.copies.place(tessellation.domain(), &mut points);
         let mut normals = element_normals(&level, &points).into_iter().zip(&level.boundary_of);
         if let Some((_, boundary)) = normals.find(|(normal, _)| normal.length() == 0.0 || normal.is_nan()) {
@@ -143,7 +161,7 @@ impl Network {
     /// Volume (in the plane: area) of each grain, for points of the given level.
     pub fn grain_volumes(&self, level: &Level, points: &[DVec3]) -> Vec<f64> {
         let origin = self.domain.lower().midpoint(self.domain.upper());
-        let volumes = boundary_volumes(level, self.boundaries.len(), points, origin);
+        let volumes = boundary_volumes(&Surface::of_level(level, points, &self.sides()), origin);
         sum_over_grains(&self.boundaries, &volumes, self.grain_count())
     }
 
@@ -168,15 +186,19 @@ impl Network {
 }
 
 /// Subdivision multiplies elements by four (in the plane: two); the largest ids are those of half-edges, three a triangle.
-fn check_size(tessellation: &Tessellation, level_count: usize) -> Result<(), NetworkError> {
-    let corners: usize = tessellation.faces().map(|face| tessellation.face_corners(face).len()).sum();
-    let (factor, parts, ids_per_corner) = match tessellation.domain().dimension() {
-        voronoi::Dimension::Two => (2u128, "segments", 1),
-        voronoi::Dimension::Three => (4u128, "half-edges", 6),
+fn check_size(
+    tessellation: &Tessellation,
+    face_mesh: FaceMesh,
+    level_count: usize,
+) -> Result<(), NetworkError> {
+    let size = face_mesh.control_mesh_size(tessellation);
+    let (factor, parts, of_control_mesh) = match tessellation.domain().dimension() {
+        voronoi::Dimension::Two => (2u128, "segments", size.edges),
+        voronoi::Dimension::Three => (4u128, "half-edges", 3 * size.triangles),
     };
     for level in 0..=level_count {
         let growth = factor.saturating_pow(u32::try_from(level).unwrap_or(u32::MAX));
-        let count = growth.saturating_mul(ids_per_corner * corners as u128);
+        let count = growth.saturating_mul(of_control_mesh);
         if count >= u128::from(u32::MAX) {
             return Err(NetworkError::TooLarge { level, count, parts });
         }

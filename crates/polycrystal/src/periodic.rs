@@ -1,9 +1,10 @@
 //! Parts of a periodic network that are others moved by whole periods.
 
 use glam::DVec3;
-use voronoi::{Domain, Edges, PeriodicPair, Shift, Tessellation};
+use voronoi::{Domain, FaceId, PeriodicPair, Shift, Tessellation};
 
 use crate::Mesh;
+use crate::face_mesh::{FaceTriangles, id};
 
 /// On one level, the vertices and elements that are others moved by whole periods; none in a domain with walls only.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -15,64 +16,53 @@ pub struct PeriodicCopies {
 }
 
 impl PeriodicCopies {
-    /// Those of a control mesh, with `middle` and `center` as the numbers of its points on edges and faces.
-    pub(crate) fn of_control_mesh(
-        tessellation: &Tessellation,
-        edges: &Edges,
-        middle: impl Fn(u32) -> u32,
-        center: impl Fn(u32) -> u32,
-    ) -> Self {
-        let mut copies = Self::of_vertices(tessellation);
-        copies
-            .vertices
-            .extend(tessellation.periodic_edges(edges).into_iter().map(|pair| map_ids(pair, &middle)));
-        copies
-            .vertices
-            .extend(tessellation.periodic_faces().iter().map(|pair| map_ids(*pair, |face| center(face.0))));
-        // Two triangles for each corner of a face, in order.
-        let mut first_triangle = Vec::with_capacity(tessellation.face_count());
-        let mut count = 0;
-        for face in tessellation.faces() {
-            first_triangle.push(count);
-            count +=
-                2 * u32::try_from(tessellation.face_corners(face).len()).expect("checked to fit 32-bit ids");
-        }
-        for pair in tessellation.periodic_faces() {
-            let corners = u32::try_from(tessellation.face_corners(pair.primary).len()).expect("as above");
-            for corner in 0..corners {
-                // Corner k of the secondary is corner n - 1 - k of the primary, where the edge before it ends.
-                let before = (2 * corners - 2 - corner) % corners;
-                for half in 0..2 {
-                    copies.elements.push(PeriodicPair {
-                        secondary: first_triangle[pair.secondary.index()] + 2 * corner + half,
-                        primary: first_triangle[pair.primary.index()] + 2 * before + 1 - half,
-                        shift: pair.shift,
-                    });
-                }
-            }
-        }
-        copies
-    }
-
-    /// Those of the control mesh in the plane: its segments come in pairs, one pair for each face.
-    pub(crate) fn of_control_lines(tessellation: &Tessellation) -> Self {
-        let mut copies = Self::of_vertices(tessellation);
-        let vertex_count = u32::try_from(tessellation.vertices().len()).expect("checked to fit 32-bit ids");
-        for pair in tessellation.periodic_faces() {
-            copies.vertices.push(map_ids(*pair, |face| vertex_count + face.0));
-            let halves = [0, 1].map(|half| PeriodicPair {
-                secondary: 2 * pair.secondary.0 + half,
-                primary: 2 * pair.primary.0 + 1 - half,
-                shift: pair.shift,
-            });
-            copies.elements.extend(halves);
-        }
-        copies
-    }
-
-    fn of_vertices(tessellation: &Tessellation) -> Self {
+    /// The vertices of a tessellation that are copies.
+    pub(crate) fn of_vertices(tessellation: &Tessellation) -> Self {
         let vertices = tessellation.periodic_vertices().iter().map(|pair| map_ids(*pair, |vertex| vertex.0));
         Self { vertices: vertices.collect(), elements: Vec::new() }
+    }
+
+    /// Adds the triangles and inner points of copied faces; inner points are numbered face by face from `first_inner`.
+    pub(crate) fn add_faces(
+        &mut self,
+        pairs: &[PeriodicPair<FaceId>],
+        faces: &[FaceTriangles],
+        first_inner: usize,
+    ) {
+        if pairs.is_empty() {
+            return;
+        }
+        let (mut triangle, mut inner) = (0, id(first_inner));
+        let firsts: Vec<[u32; 2]> = faces
+            .iter()
+            .map(|face| {
+                let firsts = [triangle, inner];
+                triangle += id(face.triangles.len());
+                inner += id(face.inner_points.len());
+                firsts
+            })
+            .collect();
+        for &PeriodicPair { secondary, primary, shift } in pairs {
+            let [secondary_firsts, primary_firsts] = [secondary, primary].map(|face| firsts[face.index()]);
+            let pair = |kind: usize, k: u32| PeriodicPair {
+                secondary: secondary_firsts[kind] + k,
+                primary: primary_firsts[kind] + k,
+                shift,
+            };
+            let face = &faces[primary.index()];
+            self.elements.extend((0..id(face.triangles.len())).map(|k| pair(0, k)));
+            self.vertices.extend((0..id(face.inner_points.len())).map(|k| pair(1, k)));
+        }
+    }
+
+    /// Adds the segments of copied lines in the plane, which run the other way; those of line k begin with `firsts[k]`.
+    pub(crate) fn add_lines(&mut self, pairs: &[PeriodicPair<u32>], firsts: &[u32]) {
+        for &PeriodicPair { secondary, primary, shift } in pairs {
+            let [own, other] = [secondary, primary].map(|line| firsts[line as usize]);
+            let count = firsts[secondary as usize + 1] - own;
+            let pair = |k| PeriodicPair { secondary: own + k, primary: other + count - 1 - k, shift };
+            self.elements.extend((0..count).map(pair));
+        }
     }
 
     /// Those of the next level, whose elements are numbered as [`subzero::MeshCounts`] says.
@@ -82,19 +72,21 @@ impl PeriodicCopies {
         }
         let mut finer_copies = Self { vertices: self.vertices.clone(), elements: Vec::new() };
         let mut new = NewVertices::new(vertex_count);
-        let id = |index: usize| u32::try_from(index).expect("ids fit 32 bits");
         match finer {
             Mesh::Triangles(finer) => {
-                let mut originals: Vec<u32> = (0..id(vertex_count)).collect();
+                let mut places: Vec<(u32, Shift)> =
+                    (0..id(vertex_count)).map(|vertex| (vertex, Shift::NONE)).collect();
                 for pair in &self.vertices {
-                    originals[pair.secondary as usize] = pair.primary;
+                    places[pair.secondary as usize] = (pair.primary, pair.shift);
                 }
                 let corners = finer.triangles();
                 for &PeriodicPair { secondary, primary, shift } in &self.elements {
                     for own in (0..3).map(|k| 3 * secondary + k) {
-                        let original = |child: u32| originals[corners[child as usize][0] as usize];
-                        let matching =
-                            (0..3).map(|k| 3 * primary + k).find(|child| original(*child) == original(own));
+                        let place = |child: u32| places[corners[child as usize][0] as usize];
+                        let (vertex, at) = place(own);
+                        let matching = (0..3)
+                            .map(|k| 3 * primary + k)
+                            .find(|child| place(*child) == (vertex, at - shift));
                         let other = matching.expect("a copied triangle has copied corners");
                         let ([_, a, b], [_, d, c]) = (corners[own as usize], corners[other as usize]);
                         new.unite(a, c, shift);

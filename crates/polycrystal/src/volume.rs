@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::{Boundary, Level, Mesh};
+use crate::{Boundary, Elements, Surface};
 
 /// Six times the volume of the tetrahedron that a triangle spans with the origin.
 pub(crate) fn triangle_volume(corners: [DVec3; 3]) -> f64 {
@@ -16,22 +16,17 @@ pub(crate) fn segment_area(ends: [DVec3; 2]) -> f64 {
 }
 
 /// Per boundary, the volume of the cone from the origin; positive where the origin lies on its first side.
-pub(crate) fn boundary_volumes(
-    level: &Level,
-    boundary_count: usize,
-    points: &[DVec3],
-    origin: DVec3,
-) -> Vec<f64> {
-    let at = |vertex: u32| points[vertex as usize] - origin;
-    let of_elements: Vec<f64> = match &level.mesh {
-        Mesh::Triangles(mesh) => {
-            mesh.triangles().par_iter().map(|corners| triangle_volume(corners.map(at))).collect()
+pub(crate) fn boundary_volumes(surface: &Surface<'_>, origin: DVec3) -> Vec<f64> {
+    let at = |vertex: u32| surface.points[vertex as usize] - origin;
+    let of_elements: Vec<f64> = match surface.elements {
+        Elements::Triangles(triangles) => {
+            triangles.par_iter().map(|corners| triangle_volume(corners.map(at))).collect()
         }
-        Mesh::Segments(mesh) => mesh.segments().par_iter().map(|ends| segment_area(ends.map(at))).collect(),
+        Elements::Segments(segments) => segments.par_iter().map(|ends| segment_area(ends.map(at))).collect(),
     };
     // One thread sums, for the order of a sum decides its last digit.
-    let mut volumes = vec![0.0; boundary_count];
-    for (volume, boundary) in of_elements.iter().zip(&level.boundary_of) {
+    let mut volumes = vec![0.0; surface.sides.len()];
+    for (volume, boundary) in of_elements.iter().zip(surface.boundary_of) {
         volumes[boundary.index()] += volume;
     }
     volumes

@@ -116,6 +116,11 @@ impl<P: Point> BezierSurface<P> {
         Self { rows: control.map(|row| BezierCurve { control: row.to_vec() }).to_vec() }
     }
 
+    /// The control points i, j, one curve in v for each i.
+    pub fn rows(&self) -> &[BezierCurve<P>] {
+        &self.rows
+    }
+
     /// The point at `(u, v)`.
     pub fn point(&self, u: f64, v: f64) -> P {
         self.curve_along_u(|row| row.point(v)).point(u)

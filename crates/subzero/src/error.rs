@@ -5,7 +5,7 @@
 #[non_exhaustive]
 pub enum MeshError {
     /// More vertices or half-edges than 32-bit ids can count.
-    #[error("{count} {what} are too many: ids are 32 bits wide")]
+    #[error("{count} {what} are too many: ids are 32 bits wide; take fewer levels or a part of the mesh")]
     TooLarge {
         /// What there are too many of.
         what: &'static str,
@@ -13,7 +13,9 @@ pub enum MeshError {
         count: usize,
     },
     /// A face or segment refers to a vertex that does not exist.
-    #[error("{what} {index} refers to vertex {vertex}, but there are only {vertex_count} vertices")]
+    #[error(
+        "{what} {index} refers to vertex {vertex}, but there are only {vertex_count} vertices, counted from 0"
+    )]
     VertexOutOfRange {
         /// "triangle", "segment", "crease", ...
         what: &'static str,
@@ -25,7 +27,7 @@ pub enum MeshError {
         vertex_count: usize,
     },
     /// A face or segment has the same vertex twice.
-    #[error("{what} {index} is degenerate: it uses vertex {vertex} twice")]
+    #[error("{what} {index} is degenerate: it uses vertex {vertex} twice; remove it")]
     Degenerate {
         /// "triangle" or "segment".
         what: &'static str,
@@ -43,7 +45,7 @@ pub enum MeshError {
         point: [f64; 3],
     },
     /// An edge with one face where a closed surface is needed.
-    #[error("the surface is open: edge {}-{} has one face only", ends[0], ends[1])]
+    #[error("the surface is open: edge {}-{} has one face only; close the hole", ends[0], ends[1])]
     Open {
         /// The ends of the edge.
         ends: [u32; 2],
@@ -57,7 +59,7 @@ pub enum MeshError {
         corners: usize,
     },
     /// More than two faces share an edge of a mesh that has to be manifold.
-    #[error("{faces} faces share edge {}-{}: a manifold mesh has at most two", ends[0], ends[1])]
+    #[error("{faces} faces share edge {}-{}: a manifold mesh has at most two; split it there into several", ends[0], ends[1])]
     NonManifoldEdge {
         /// The ends of the edge.
         ends: [u32; 2],
@@ -66,7 +68,7 @@ pub enum MeshError {
     },
     /// The faces around a vertex of a mesh that has to be manifold form more than one fan.
     #[error(
-        "the faces around vertex {vertex} touch only in this point: a manifold mesh has one fan around it"
+        "the faces around vertex {vertex} touch only in this point: a manifold mesh has one fan around it; give each fan a vertex of its own"
     )]
     NonManifoldVertex {
         /// The vertex.
@@ -74,14 +76,14 @@ pub enum MeshError {
     },
     /// Doo-Sabin subdivision of an inner vertex with two edges.
     #[error(
-        "vertex {vertex} has only two edges: Doo-Sabin subdivision would give it a face with two corners"
+        "vertex {vertex} has only two edges: Doo-Sabin subdivision would give it a face with two corners; merge the faces beside it"
     )]
     ValenceTwo {
         /// The vertex.
         vertex: u32,
     },
     /// Two faces have the same vertices.
-    #[error("faces {first} and {second} have the same vertices")]
+    #[error("faces {first} and {second} have the same vertices; remove one")]
     DuplicateFace {
         /// The face with the lower number.
         first: u32,
@@ -102,7 +104,7 @@ pub enum MeshError {
         ends: [u32; 2],
     },
     /// A crease joins two vertices that share no edge.
-    #[error("crease {index} joins vertices {} and {}, but the mesh has no such edge", ends[0], ends[1])]
+    #[error("crease {index} joins vertices {} and {}, but the mesh has no such edge; name the ends of a face's side", ends[0], ends[1])]
     CreaseWithoutEdge {
         /// Which crease, counted from 0.
         index: usize,
@@ -129,7 +131,9 @@ pub enum MeshError {
     #[error("a Bezier curve or surface needs a control point at least")]
     NoControlPoints,
     /// The control points of a Bezier surface form no grid.
-    #[error("row {row} of the control points has {found} points, but the first row has {length}")]
+    #[error(
+        "row {row} of the control points has {found} points, but the first row has {length}; make all rows as long"
+    )]
     RaggedControlPoints {
         /// The first row that differs.
         row: usize,
@@ -149,13 +153,13 @@ pub enum MeshError {
         why: &'static str,
     },
     /// A half-edge that does not exist, or does no longer.
-    #[error("there is no half-edge {half_edge}")]
+    #[error("there is no half-edge {half_edge}; it is out of range, or an edit has removed it")]
     NoHalfEdge {
         /// The half-edge.
         half_edge: u32,
     },
     /// Two vertices that share no edge.
-    #[error("there is no edge {}-{}", ends[0], ends[1])]
+    #[error("there is no edge {}-{}; name two neighbours", ends[0], ends[1])]
     NoEdge {
         /// The vertices.
         ends: [u32; 2],

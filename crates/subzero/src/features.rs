@@ -36,7 +36,8 @@ pub struct Features<'a> {
     pub creases: &'a [Crease],
     /// Vertices that stay where they are.
     pub corners: &'a [u32],
-    /// Vertices that stay where they are until their sharpness has run out, as `(vertex, sharpness)`.
+    /// Vertices that stay where they are until their sharpness has run out, as `(vertex, sharpness)`; one of
+    /// [`INFINITE_SHARPNESS`] is a corner.
     pub soft_corners: &'a [(u32, f32)],
     /// The rule for boundary vertices of a single triangle.
     pub boundary: BoundaryRule,

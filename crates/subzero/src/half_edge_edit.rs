@@ -1,5 +1,8 @@
 //! Edge flip, edge split and edge collapse.
 
+use smallvec::SmallVec;
+
+use crate::half_edge_mesh::HalfEdge;
 use crate::ids::{NONE, id, next, prev};
 use crate::mesh_checks::check_size;
 use crate::{HalfEdgeMesh, MeshError, Point};
@@ -16,20 +19,18 @@ impl HalfEdgeMesh {
         self.check_exists(half_edge)?;
         let ends = [self.start(half_edge), self.end(half_edge)];
         let refuse = |why| Err(MeshError::Edit { edit: "flipped", ends, why });
-        let [h, other] = [half_edge, self.twins[half_edge as usize]];
+        let [h, other] = [half_edge, self.half_edges[half_edge as usize].twin];
         if other == NONE {
             return refuse("it lies on the boundary");
         }
         // Around h: a b c; around its twin: b a d.
         let [b_c, c_a, a_d, d_b] = [next(h), prev(h), next(other), prev(other)];
         let [a, b, c, d] = [self.start(h), self.start(b_c), self.start(c_a), self.start(d_b)];
-        // Every neighbour of c is a corner of some triangle around it.
-        let has_d = |h: u32| [self.start(next(h)), self.start(prev(h))].contains(&d);
-        if self.outgoing_half_edges(c).any(has_d) {
+        if self.leads_to(c_a, d) {
             return refuse("its far corners share an edge already");
         }
         let [beyond_bc, beyond_ca, beyond_ad, beyond_db] =
-            [b_c, c_a, a_d, d_b].map(|h| self.twins[h as usize]);
+            [b_c, c_a, a_d, d_b].map(|h| self.half_edges[h as usize].twin);
         // The triangles become d c a and c d b.
         for (h, start, twin) in [
             (h, d, other),
@@ -39,7 +40,7 @@ impl HalfEdgeMesh {
             (a_d, d, beyond_db),
             (d_b, b, beyond_bc),
         ] {
-            self.starts[h as usize] = start;
+            self.half_edges[h as usize].start = start;
             self.link(h, twin);
         }
         for (vertex, left, now) in
@@ -61,8 +62,8 @@ impl HalfEdgeMesh {
     pub fn split(&mut self, half_edge: u32) -> Result<u32, MeshError> {
         self.check_exists(half_edge)?;
         check_size("vertices", self.vertex_count() + 1)?;
-        check_size("half-edges", self.starts.len() + 6)?;
-        let [h, other] = [half_edge, self.twins[half_edge as usize]];
+        check_size("half-edges", self.half_edges.len() + 6)?;
+        let [h, other] = [half_edge, self.half_edges[half_edge as usize].twin];
         let middle = id(self.vertex_count());
         let far_half = self.split_triangle(h, middle);
         self.outgoing.push(far_half);
@@ -78,12 +79,11 @@ impl HalfEdgeMesh {
     fn split_triangle(&mut self, h: u32, middle: u32) -> u32 {
         let [b_c, c_a] = [next(h), prev(h)];
         let [b, c] = [self.start(b_c), self.start(c_a)];
-        let far_half = id(self.starts.len());
-        let beyond_bc = self.twins[b_c as usize];
-        self.starts.extend([middle, b, c]);
-        self.twins.extend([NONE; 3]);
+        let far_half = id(self.half_edges.len());
+        let beyond_bc = self.half_edges[b_c as usize].twin;
+        self.half_edges.extend([middle, b, c].map(|start| HalfEdge { start, twin: NONE }));
         self.link(far_half + 1, beyond_bc);
-        self.starts[b_c as usize] = middle;
+        self.half_edges[b_c as usize].start = middle;
         self.link(b_c, far_half + 2);
         if self.outgoing[b as usize] == b_c {
             self.outgoing[b as usize] = far_half + 1;
@@ -123,7 +123,7 @@ impl HalfEdgeMesh {
     /// or change its topology. The mesh is unchanged then.
     pub fn collapse(&mut self, half_edge: u32) -> Result<(), MeshError> {
         self.check_exists(half_edge)?;
-        let [h, other] = [half_edge, self.twins[half_edge as usize]];
+        let [h, other] = [half_edge, self.half_edges[half_edge as usize].twin];
         let [a, b] = [self.start(h), self.end(h)];
         if let Some(why) = self.breaks_link_condition(h) {
             return Err(MeshError::Edit { edit: "collapsed", ends: [a, b], why });
@@ -133,8 +133,8 @@ impl HalfEdgeMesh {
         let mut first = self.outgoing[if a_leads { a } else { b } as usize];
         let mut turning = self.outgoing[a as usize];
         loop {
-            self.starts[turning as usize] = b;
-            turning = self.twins[prev(turning) as usize];
+            self.half_edges[turning as usize].start = b;
+            turning = self.half_edges[prev(turning) as usize].twin;
             if turning == NONE || turning == self.outgoing[a as usize] {
                 break;
             }
@@ -142,10 +142,10 @@ impl HalfEdgeMesh {
         for side in [h, other].into_iter().filter(|&side| side != NONE) {
             // The triangle's other two edges become one.
             let [after, before] = [next(side), prev(side)];
-            let [beyond_after, beyond_before] = [after, before].map(|h| self.twins[h as usize]);
+            let [beyond_after, beyond_before] = [after, before].map(|h| self.half_edges[h as usize].twin);
             for (h, twin) in [(beyond_after, beyond_before), (beyond_before, beyond_after)] {
                 if h != NONE {
-                    self.twins[h as usize] = twin;
+                    self.half_edges[h as usize].twin = twin;
                 }
             }
             let apex = self.start(before) as usize;
@@ -156,8 +156,7 @@ impl HalfEdgeMesh {
                 first = beyond_before;
             }
             for removed in [side, after, before] {
-                self.starts[removed as usize] = NONE;
-                self.twins[removed as usize] = NONE;
+                self.half_edges[removed as usize] = HalfEdge { start: NONE, twin: NONE };
             }
         }
         self.outgoing[b as usize] = first;
@@ -178,43 +177,67 @@ impl HalfEdgeMesh {
         self.collapse(half_edge)?;
         let around: Vec<u32> = self.outgoing_half_edges(from).collect();
         for h in around {
-            self.starts[h as usize] = into;
+            self.half_edges[h as usize].start = into;
         }
         self.outgoing[into as usize] = std::mem::replace(&mut self.outgoing[from as usize], NONE);
         Ok(())
     }
 
+    /// Whether an edge joins the start of `h` to `vertex`, which is no corner of the triangle of `h`.
+    fn leads_to(&self, h: u32, vertex: u32) -> bool {
+        // Both ways round until they meet: what is read depends on what was read before, so two short chains are faster than a long
+        // one.
+        let [mut left, mut right] = [Some(h); 2];
+        while left.is_some() || right.is_some() {
+            left = left.and_then(|h| self.twin(prev(h)));
+            if left.is_some_and(|h| self.start(prev(h)) == vertex) {
+                return true;
+            }
+            if left == right {
+                return false;
+            }
+            right = right.and_then(|h| self.twin(h)).map(next);
+            if right.is_some_and(|h| self.end(h) == vertex) {
+                return true;
+            }
+            if left == right {
+                return false;
+            }
+        }
+        false
+    }
+
     /// What would go wrong if an edge collapsed.
     fn breaks_link_condition(&self, h: u32) -> Option<&'static str> {
         let [a, b] = [self.start(h), self.end(h)];
-        let around_b: Vec<u32> = self.neighbours(b).collect();
-        let shared = self.neighbours(a).filter(|x| around_b.contains(x)).count();
-        let Some(other) = self.twin(h) else {
+        let around_b: SmallVec<[u32; 16]> = self.neighbours(b).collect();
+        let (valence_of_a, shared) = self.neighbours(a).fold((0, 0), |(valence, shared), neighbour| {
+            // Counted to the end: where a search would stop cannot be predicted.
+            (valence + 1, shared + around_b.iter().filter(|&&other| other == neighbour).count())
+        });
+        if self.twin(h).is_none() {
             let alone = self.twin(next(h)).is_none() && self.twin(prev(h)).is_none();
             return match (shared, alone) {
                 (1, false) => None,
                 (1, true) => Some("nothing else holds its triangle"),
                 _ => Some("its ends share a neighbour beyond its triangle"),
             };
-        };
+        }
         let boundary_ends = [a, b].map(|v| self.is_boundary_vertex(v));
-        // An inner vertex has a valence of 3 when a turn around it takes three steps.
-        let has_three = |h: u32| {
-            let turn = |h: u32| self.twin(prev(h));
-            turn(h).and_then(turn).and_then(turn) == Some(h)
-        };
         match boundary_ends {
             [true, true] => Some("it joins two boundary vertices across the inside"),
             _ if shared != 2 => Some("its ends share a neighbour beyond its triangles"),
-            [false, false] if has_three(h) && has_three(other) => Some("a tetrahedron would fall flat"),
+            [false, false] if valence_of_a == 3 && around_b.len() == 3 => {
+                Some("a tetrahedron would fall flat")
+            }
             _ => None,
         }
     }
 
     fn link(&mut self, h: u32, twin: u32) {
-        self.twins[h as usize] = twin;
+        self.half_edges[h as usize].twin = twin;
         if twin != NONE {
-            self.twins[twin as usize] = h;
+            self.half_edges[twin as usize].twin = h;
         }
     }
 

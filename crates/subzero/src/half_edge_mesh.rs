@@ -8,16 +8,22 @@ use crate::mesh_checks::check_size;
 use crate::triangle_build::check_triangles;
 use crate::{MeshError, TriangleMesh};
 
+/// What an edit needs to know of a half-edge, in one place in memory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HalfEdge {
+    /// The vertex where it starts, [`NONE`] in triangles that are gone.
+    pub start: u32,
+    /// The half-edge on the other side, [`NONE`] on the boundary.
+    pub twin: u32,
+}
+
 /// A manifold triangle mesh, possibly with boundary, that can be edited; positions live beside it.
 ///
 /// The half-edge h = 3 t + k runs from corner k to corner k + 1 of triangle t. Edits keep the ids of everything they leave
 /// in place: a split adds a vertex and triangles at the end, a collapse leaves gaps that [`triangles`](Self::triangles) skips.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HalfEdgeMesh {
-    /// Per half-edge: the vertex where it starts, [`NONE`] in triangles that are gone.
-    pub(crate) starts: Vec<u32>,
-    /// Per half-edge: the half-edge on the other side, [`NONE`] on the boundary.
-    pub(crate) twins: Vec<u32>,
+    pub(crate) half_edges: Vec<HalfEdge>,
     /// Per vertex: a half-edge that starts there, on the boundary the one without twin; [`NONE`] at unused vertices.
     pub(crate) outgoing: Vec<u32>,
 }
@@ -44,14 +50,15 @@ impl HalfEdgeMesh {
             let ends = half_edges[first as usize];
             return Err(MeshError::Winding { first: first / 3, second: second / 3, ends });
         }
-        let mut twins = vec![NONE; half_edges.len()];
+        let starts = triangles.as_flattened().iter();
+        let mut half_edges: Vec<HalfEdge> = starts.map(|&start| HalfEdge { start, twin: NONE }).collect();
         for &[along, against] in table.edges.iter().filter(|edge| edge[1] != NONE) {
-            twins[along as usize] = against;
-            twins[against as usize] = along;
+            half_edges[along as usize].twin = against;
+            half_edges[against as usize].twin = along;
         }
-        let mut mesh = Self { starts: triangles.concat(), twins, outgoing: vec![NONE; vertex_count] };
+        let mut mesh = Self { half_edges, outgoing: vec![NONE; vertex_count] };
         let mut triangles_at = vec![0_usize; vertex_count];
-        for h in 0..id(mesh.starts.len()) {
+        for h in 0..id(mesh.half_edges.len()) {
             let vertex = mesh.start(h) as usize;
             triangles_at[vertex] += 1;
             if mesh.outgoing[vertex] == NONE || mesh.twin(h).is_none() {
@@ -81,27 +88,27 @@ impl HalfEdgeMesh {
 
     /// Number of half-edges, counting those that collapses removed.
     pub fn half_edge_count(&self) -> usize {
-        self.starts.len()
+        self.half_edges.len()
     }
 
     /// The triangles that are there, with their ids.
     pub fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3])> {
-        let (triangles, _) = self.starts.as_chunks::<3>();
+        let (triangles, _) = self.half_edges.as_chunks::<3>();
         triangles
             .iter()
             .enumerate()
-            .filter(|(_, corners)| corners[0] != NONE)
-            .map(|(t, &corners)| (id(t), corners))
+            .filter(|(_, half_edges)| half_edges[0].start != NONE)
+            .map(|(t, half_edges)| (id(t), half_edges.map(|half_edge| half_edge.start)))
     }
 
     /// One half-edge of each edge: the only one, or that with the lower id.
     pub fn edges(&self) -> impl Iterator<Item = u32> {
-        (0..id(self.starts.len())).filter(|&h| self.exists(h) && self.twin(h).is_none_or(|twin| h < twin))
+        (0..id(self.half_edges.len())).filter(|&h| self.exists(h) && self.twin(h).is_none_or(|twin| h < twin))
     }
 
     /// Whether a half-edge is there, and not out of range or removed.
     pub fn exists(&self, half_edge: u32) -> bool {
-        self.starts.get(half_edge as usize).is_some_and(|&start| start != NONE)
+        self.half_edges.get(half_edge as usize).is_some_and(|half_edge| half_edge.start != NONE)
     }
 
     /// The vertex where a half-edge starts.
@@ -109,7 +116,7 @@ impl HalfEdgeMesh {
     /// # Panics
     /// If the half-edge is out of range.
     pub fn start(&self, half_edge: u32) -> u32 {
-        self.starts[half_edge as usize]
+        self.half_edges[half_edge as usize].start
     }
 
     /// The vertex where a half-edge ends.
@@ -125,7 +132,7 @@ impl HalfEdgeMesh {
     /// # Panics
     /// If the half-edge is out of range.
     pub fn twin(&self, half_edge: u32) -> Option<u32> {
-        Some(self.twins[half_edge as usize]).filter(|&twin| twin != NONE)
+        Some(self.half_edges[half_edge as usize].twin).filter(|&twin| twin != NONE)
     }
 
     /// The three half-edges around the triangle of a half-edge, from this one on.

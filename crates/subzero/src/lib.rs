@@ -24,6 +24,7 @@ mod base_rings;
 mod bezier;
 mod butterfly;
 mod catmull_clark;
+mod catmull_clark_limits;
 mod counts;
 mod curve_mesh;
 mod doo_sabin;
@@ -52,7 +53,7 @@ mod triangle_refine;
 mod vertex_rows;
 
 pub use bezier::{BezierCurve, BezierSurface};
-pub use catmull_clark::CatmullClarkLimits;
+pub use catmull_clark_limits::CatmullClarkLimits;
 pub use counts::{EdgeParent, MeshCounts, VertexParent};
 pub use curve_mesh::CurveMesh;
 pub use doo_sabin::{DooSabinLimits, DooSabinWeights};

@@ -18,7 +18,7 @@ pub struct Sector {
     /// The vertex.
     pub vertex: u32,
     /// The first half-edge, counter-clockwise; it lies on a crease unless the sector goes all round.
-    first: u32,
+    pub(crate) first: u32,
 }
 
 /// Limit positions and tangents of all vertices of a mesh, as averages of its points.
@@ -158,16 +158,7 @@ impl LoopLimits {
     /// # Panics
     /// If `points` has fewer points than the mesh has vertices.
     pub fn vertex_normals(&self, points: &[DVec3]) -> Vec<Option<DVec3>> {
-        let normals = self.sector_normals(points);
-        let mut of_vertices = vec![None; self.positions.len()];
-        let mut first = 0;
-        for sectors in self.sectors.chunk_by(|a, b| a.vertex == b.vertex) {
-            if sectors.len() == 1 {
-                of_vertices[sectors[0].vertex as usize] = normals[first];
-            }
-            first += sectors.len();
-        }
-        of_vertices
+        normals_of_vertices(self.positions.len(), &self.sectors, &self.sector_normals(points))
     }
 
     /// The points moved to their limit positions.
@@ -177,6 +168,23 @@ impl LoopLimits {
     pub fn project<P: Point>(&self, points: &[P]) -> Vec<P> {
         self.positions.apply(points)
     }
+}
+
+/// Of the normals of all sectors, those of vertices with one sector.
+pub(crate) fn normals_of_vertices(
+    vertex_count: usize,
+    sectors: &[Sector],
+    normals: &[Option<DVec3>],
+) -> Vec<Option<DVec3>> {
+    let mut of_vertices = vec![None; vertex_count];
+    let mut first = 0;
+    for sectors in sectors.chunk_by(|a, b| a.vertex == b.vertex) {
+        if sectors.len() == 1 {
+            of_vertices[sectors[0].vertex as usize] = normals[first];
+        }
+        first += sectors.len();
+    }
+    of_vertices
 }
 
 fn add_row(rows: &mut Rows, vertex: u32, ring: &[u32], mask: &RingMask) {

@@ -17,6 +17,8 @@ const PROFILES: [[DVec2; 4]; 6] = [
 
 /// How far, in radii, the inner control points of a quarter circle lie from its ends' axes.
 const QUARTER: f64 = 0.56;
+/// The same on the knob, the only ring with a radius of 0.8: Newell rounded 0.448 to 0.45.
+const KNOB_QUARTER: f64 = 0.5625;
 
 /// Rings of the handle and of the spout, two patches each that share a ring: x and z of their two points in the plane of
 /// symmetry, and their half width.
@@ -43,15 +45,15 @@ const TUBES: [[(DVec2, DVec2, f64); 7]; 2] = [
 
 /// The Utah teapot (Newell 1975) as 32 bicubic patches with normals outward, 3.15 high on the plane z = 0, about the z axis.
 ///
-/// Handle and spout run into the body, and the lid does not touch the rim. The knob's widest ring has 0.56 of its radius where Newell
-/// rounded to 0.45.
+/// Handle and spout run into the body, and the lid does not touch the rim.
 pub fn teapot() -> Vec<BezierSurface<DVec3>> {
     let mut patches = Vec::with_capacity(32);
     for profile in PROFILES {
         for quarter in [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y] {
             patches.push(profile.map(|ring| {
                 let at = |x: f64, y: f64| (quarter.rotate(dvec2(x, y)) * ring.x).extend(ring.y);
-                [at(0.0, -1.0), at(QUARTER, -1.0), at(1.0, -QUARTER), at(1.0, 0.0)]
+                let inner = if ring.x == 0.8 { KNOB_QUARTER } else { QUARTER };
+                [at(0.0, -1.0), at(inner, -1.0), at(1.0, -inner), at(1.0, 0.0)]
             }));
         }
     }

@@ -2,6 +2,8 @@ use std::io;
 
 use subzero::MeshError;
 
+use super::vtk::labelled::LABEL_ARRAYS;
+
 /// Why a mesh file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum MeshFileProblem {
@@ -30,6 +32,28 @@ pub enum MeshFileProblem {
     /// The file has no faces.
     #[error("holds no faces; give a surface mesh")]
     NoFaces,
+    /// The file does not say what its cells lie between.
+    #[error("has no cell array {}; add one with two labels for each triangle", LABEL_ARRAYS.join(" or "))]
+    NoLabels,
+    /// A label is beyond all that can number a grain.
+    #[error("cell {cell} has the label {label}; number grains from 0 to 4294967295, and the exterior -1")]
+    BadLabel {
+        /// The cell, counted from 0.
+        cell: usize,
+        /// Its label.
+        label: i64,
+    },
+    /// A cell of a network is a polygon with more than three corners.
+    #[error("cell {cell} has {corners} corners; cut it into triangles")]
+    NotTriangulated {
+        /// The cell, counted from 0.
+        cell: usize,
+        /// How many corners it has.
+        corners: usize,
+    },
+    /// The extension names no format that can hold a network.
+    #[error("unknown extension; give a network as *.vtp, *.vtu or *.vtk")]
+    NotANetworkFormat,
     /// A scheme for triangles was given another polygon.
     #[error(
         "face {face} has {corners} corners where triangles are needed; cut it, or take catmull-clark or doo-sabin"

@@ -9,6 +9,7 @@ use vtkio::model::{CellType, DataSet, Piece, PieceData, VertexNumbers, Vtk};
 use super::{MeshFile, MeshFileProblem};
 
 mod field;
+pub(crate) mod labelled;
 mod xml_parts;
 
 /// The name of the thread in which `vtkio` reads.
@@ -20,26 +21,26 @@ pub const READER_THREAD: &str = "vtkio reader";
 /// Reads a legacy file.
 pub(super) fn read_legacy(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
     let bytes = field::without_field_data(bytes);
-    in_thread(|| Vtk::parse_legacy_be(&bytes[..]).map_err(problem))
+    in_thread(|| mesh_of(Vtk::parse_legacy_be(&bytes[..]).map_err(problem)?.data))
 }
 
 /// Reads a .vtp or .vtu file.
 pub(super) fn read_xml(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
     let bytes = xml_parts::points_and_faces(bytes);
-    in_thread(|| Vtk::parse_xml(&bytes[..]).map_err(problem))
+    in_thread(|| mesh_of(Vtk::parse_xml(&bytes[..]).map_err(problem)?.data))
 }
 
 fn problem(error: impl ToString) -> MeshFileProblem {
     MeshFileProblem::corrupt("VTK", error)
 }
 
-fn in_thread(
-    parse: impl FnOnce() -> Result<Vtk, MeshFileProblem> + Send,
-) -> Result<MeshFile, MeshFileProblem> {
+fn in_thread<T: Send>(
+    read: impl FnOnce() -> Result<T, MeshFileProblem> + Send,
+) -> Result<T, MeshFileProblem> {
     thread::scope(|scope| {
         thread::Builder::new()
             .name(READER_THREAD.to_owned())
-            .spawn_scoped(scope, || mesh_of(parse()?.data))
+            .spawn_scoped(scope, read)
             .map_err(MeshFileProblem::Unreadable)?
             .join()
             .unwrap_or_else(|_| Err(problem("its parts do not fit together")))

@@ -7,7 +7,7 @@ use std::path::Path;
 use glam::DVec3;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use subzero::{BoundaryRule, Crease, Features, INFINITE_SHARPNESS, TriangleMesh};
+use subzero::{BoundaryRule, Crease, Features, TriangleMesh};
 
 #[derive(Deserialize)]
 pub struct TriangleReference {
@@ -50,27 +50,37 @@ pub struct SectorNormal {
 }
 
 pub fn load<T: DeserializeOwned>(name: &str) -> T {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/data/subdivision")
-        .join(name)
-        .with_extension("json");
+    load_from("subdivision", name)
+}
+
+pub fn load_from<T: DeserializeOwned>(folder: &str, name: &str) -> T {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let path = data.join(folder).join(name).with_extension("json");
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
+/// Makes a mesh with the features of a reference file.
+pub fn with_features<T>(
+    creases: &[(u32, u32, f32)],
+    corners: &[(u32, f32)],
+    boundary: Option<&str>,
+    make: impl FnOnce(&Features) -> T,
+) -> T {
+    let creases: Vec<Crease> =
+        creases.iter().map(|&(a, b, sharpness)| Crease { ends: [a, b], sharpness }).collect();
+    let boundary = match boundary {
+        Some("edge_corner") => BoundaryRule::EdgeCorner,
+        _ => BoundaryRule::Edge,
+    };
+    make(&Features { creases: &creases, corners: &[], soft_corners: corners, boundary })
+}
+
 impl TriangleReference {
     pub fn mesh(&self) -> TriangleMesh {
-        let creases: Vec<Crease> =
-            self.creases.iter().map(|&(a, b, sharpness)| Crease { ends: [a, b], sharpness }).collect();
-        let is_hard = |corner: &&(u32, f32)| corner.1 >= INFINITE_SHARPNESS;
-        let corners: Vec<u32> = self.corners.iter().filter(is_hard).map(|c| c.0).collect();
-        let soft: Vec<(u32, f32)> = self.corners.iter().filter(|c| !is_hard(c)).copied().collect();
-        let boundary = match self.boundary.as_deref() {
-            Some("edge_corner") => BoundaryRule::EdgeCorner,
-            _ => BoundaryRule::Edge,
-        };
-        let features = Features { creases: &creases, corners: &corners, soft_corners: &soft, boundary };
-        TriangleMesh::new(self.vertices.len(), self.faces.clone(), &features).unwrap()
+        with_features(&self.creases, &self.corners, self.boundary.as_deref(), |features| {
+            TriangleMesh::new(self.vertices.len(), self.faces.clone(), features).unwrap()
+        })
     }
 }
 

@@ -11,20 +11,53 @@ use crate::vtk::{attribute, find, inlined};
 const NOT_NEEDED: [&str; 5] = ["FieldData", "PointData", "CellData", "Verts", "Lines"];
 
 /// Kinds of cell that are left out of the file when there are none, and the attribute with their number.
-const PERHAPS_EMPTY: [(&str, &str); 2] = [("Strips", "NumberOfStrips"), ("Polys", "NumberOfPolys")];
+const PERHAPS_EMPTY: [(&str, &str); 4] = [
+    ("Verts", "NumberOfVerts"),
+    ("Lines", "NumberOfLines"),
+    ("Strips", "NumberOfStrips"),
+    ("Polys", "NumberOfPolys"),
+];
 
 /// The file with points and faces alone.
 ///
 /// What is no XML comes back as it is, for `vtkio` to refuse.
 pub(super) fn points_and_faces(bytes: &[u8]) -> Vec<u8> {
+    parts(bytes, |head| NOT_NEEDED.iter().for_each(|name| remove(head, name)))
+}
+
+/// The file with points, cells, and those of their arrays whose names are wanted.
+///
+/// What is no XML comes back as it is, for `vtkio` to refuse.
+pub(super) fn network(bytes: &[u8], wanted: &[&str]) -> Vec<u8> {
+    parts(bytes, |head| {
+        remove(head, "FieldData");
+        for name in ["PointData", "CellData"] {
+            let Some(found) = element(head, name) else { continue };
+            let mut rest = &head[found.clone()];
+            let mut kept = format!("<{name}>");
+            while let Some(array) = element(rest, "DataArray") {
+                let is_wanted =
+                    attribute(&rest[array.clone()], "Name").is_some_and(|name| wanted.contains(&name));
+                kept.push_str(if is_wanted { &rest[array.clone()] } else { "" });
+                rest = &rest[array.end..];
+            }
+            head.replace_range(found, &format!("{kept}</{name}>"));
+        }
+    })
+}
+
+fn remove(head: &mut String, name: &str) {
+    while let Some(element) = element(head, name) {
+        head.replace_range(element, "");
+    }
+}
+
+/// The file after `reduce` has taken away from what stands before its appended data.
+fn parts(bytes: &[u8], reduce: impl FnOnce(&mut String)) -> Vec<u8> {
     let appended = find(bytes, b"<AppendedData").unwrap_or(bytes.len());
     let (head, appended) = bytes.split_at(appended);
     let mut head = String::from_utf8_lossy(head).into_owned();
-    for name in NOT_NEEDED {
-        while let Some(element) = element(&head, name) {
-            head.replace_range(element, "");
-        }
-    }
+    reduce(&mut head);
     for (name, count) in PERHAPS_EMPTY {
         let mut kept = 0;
         while let Some(found) = element(&head[kept..], name) {

@@ -1,0 +1,201 @@
+//! What `grainsmooth check` says about a network from a file.
+
+use std::fmt;
+use std::path::Path;
+
+use polycrystal::{Certificate, Elements, Fault, Side, Surface, certify};
+use serde::Serialize;
+
+use crate::LabelledFile;
+
+/// Faults of one kind that the text names; JSON has all.
+const NAMED: usize = 5;
+
+/// The certificate of one file. Its text is for people; serialized it is for programs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CheckReport {
+    /// The file as it was named.
+    pub file: String,
+    /// Whether nothing is wrong.
+    pub good: bool,
+    /// The cell array that the sides were read from.
+    pub labels: &'static str,
+    /// Number of grains.
+    pub grains: usize,
+    /// Number of pairs of sides.
+    pub boundaries: usize,
+    /// Number of points.
+    pub points: usize,
+    /// Number of triangles; in the plane, of segments.
+    pub elements: usize,
+    /// What the elements are.
+    pub element: &'static str,
+    /// Volume of all grains together (in the plane: area), in the file's unit of length.
+    pub volume: f64,
+    /// Difference to the volume of the box that the file names, as a share of it, if it names one.
+    pub volume_error: Option<f64>,
+    /// Angles between boundaries at triple lines inside, in degrees.
+    pub dihedral: Option<Spread>,
+    /// For random seeds: what the network is like beside exact values of Poisson-Voronoi grains without walls.
+    pub statistics: Vec<Statistic>,
+    /// All that is wrong.
+    pub faults: Vec<ReportedFault>,
+}
+
+/// Mean and standard deviation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Spread {
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation.
+    pub standard_deviation: f64,
+}
+
+/// A number that has an exact value for Poisson-Voronoi grains.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Statistic {
+    /// What it is.
+    pub name: &'static str,
+    /// Its value in the file.
+    pub value: f64,
+    /// The exact value for flat grains without walls.
+    pub exact: f64,
+}
+
+/// A fault with its place.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReportedFault {
+    /// Kind in a word or two.
+    pub kind: &'static str,
+    /// What is wrong, in words.
+    pub message: String,
+    /// Points named, from 0.
+    pub points: Vec<u32>,
+    /// Triangles (in the plane: segments) named, from 0.
+    pub elements: Vec<u32>,
+    /// Grains named.
+    pub grains: Vec<u32>,
+    /// Coordinates, if it is somewhere.
+    pub position: Option<[f64; 3]>,
+}
+
+impl CheckReport {
+    /// Examines a network.
+    pub fn new(path: &Path, file: &LabelledFile) -> Self {
+        let surface = file.surface();
+        let claims = file.claims();
+        let certificate = certify(&surface, &claims);
+        let report = |fault: &Fault| ReportedFault {
+            kind: fault.kind(),
+            message: fault.to_string(),
+            points: fault.ids().0,
+            elements: fault.ids().1,
+            grains: fault.grains().iter().map(|grain| grain.0).collect(),
+            position: fault.position(&surface).map(|place| place.to_array()),
+        };
+        let element = match surface.elements {
+            Elements::Triangles(_) => "triangles",
+            Elements::Segments(_) => "segments",
+        };
+        let mut pairs: Vec<[Side; 2]> = surface.sides.to_vec();
+        pairs.iter_mut().for_each(|sides| sides.sort_unstable());
+        pairs.sort_unstable();
+        pairs.dedup();
+        Self {
+            file: path.display().to_string(),
+            good: certificate.is_good(),
+            labels: file.label_array,
+            grains: surface.grains().len(),
+            boundaries: pairs.len(),
+            points: surface.points.len(),
+            elements: surface.elements.len(),
+            element,
+            volume: certificate.grain_volumes.iter().map(|(_, volume)| volume).sum(),
+            volume_error: claims.domain_volume.map(|_| certificate.total_volume_error),
+            dihedral: certificate
+                .angles
+                .map(|angles| Spread { mean: angles.mean, standard_deviation: angles.standard_deviation }),
+            statistics: statistics(file, &surface, &certificate),
+            faults: certificate.faults.0.iter().map(report).collect(),
+        }
+    }
+}
+
+impl fmt::Display for CheckReport {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let verdict = match self.faults.len() {
+            0 => "good".to_owned(),
+            1 => "1 fault".to_owned(),
+            count => format!("{count} faults"),
+        };
+        writeln!(out, "{}: {verdict}", self.file)?;
+        writeln!(
+            out,
+            "  network     {} grains, {} boundaries by {}",
+            self.grains, self.boundaries, self.labels
+        )?;
+        write!(out, "  mesh        {} points, {} {}", self.points, self.elements, self.element)?;
+        let volume = if self.element == "segments" { "area" } else { "volume" };
+        write!(out, "\n  {volume:12}{}", self.volume)?;
+        if let Some(error) = self.volume_error {
+            write!(out, ", off the box's by {error:.1e} of it")?;
+        }
+        if let Some(angles) = self.dihedral {
+            write!(out, "\n  angles      {:.2} +- {:.2} degrees", angles.mean, angles.standard_deviation)?;
+        }
+        for Statistic { name, value, exact } in &self.statistics {
+            write!(out, "\n  statistics  {name} {value:.4}; flat random grains without walls have {exact}")?;
+        }
+        for faults in self.faults.chunk_by(|a, b| a.kind == b.kind) {
+            for fault in faults.iter().take(NAMED) {
+                write!(out, "\n  {:18}{}", fault.kind, fault.message)?;
+                if let Some([x, y, z]) = fault.position {
+                    write!(out, ", at ({x}, {y}, {z})")?;
+                }
+            }
+            if faults.len() > NAMED {
+                write!(out, "\n  {:18}and {} more", faults[0].kind, faults.len() - NAMED)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Options that leave random seeds the Poisson process that they are.
+const PLAIN_OPTIONS: [&str; 7] = ["--seeds", "--rng-seed", "--dim", "--box", "--relax", "-n", "--junctions"];
+
+/// Numbers with exact values, where the file says that its seeds are uniform and random: Meijering 1953 for means in space,
+/// and in the plane, r being the number of grains per volume (area).
+fn statistics(file: &LabelledFile, surface: &Surface<'_>, certificate: &Certificate) -> Vec<Statistic> {
+    let Some(command_line) = &file.command_line else { return Vec::new() };
+    let mut options = command_line.split(' ').filter(|word| word.starts_with('-'));
+    if !certificate.is_good()
+        || !command_line.contains("--seeds ")
+        || !options.all(|option| PLAIN_OPTIONS.contains(&option))
+    {
+        return Vec::new();
+    }
+    let is_inner = |element: &u32| !surface.sides_of(*element).contains(&Side::Exterior);
+    let elements = (0u32..).take(surface.elements.len()).filter(is_inner);
+    let at = |point: &u32| surface.points[*point as usize];
+    let size = elements.map(|element| match surface.elements.corners(element) {
+        [a, b, c] => (at(b) - at(a)).cross(at(c) - at(a)).length() / 2.0,
+        [a, b] => at(a).distance(at(b)),
+        _ => 0.0,
+    });
+    let size: f64 = size.sum();
+    let volume: f64 = certificate.grain_volumes.iter().map(|(_, volume)| volume).sum();
+    let density = certificate.grain_volumes.len() as f64 / volume;
+    vec![match surface.elements {
+        Elements::Triangles(_) => Statistic {
+            name: "boundary area per volume, over r^(1/3),",
+            value: size / volume / density.cbrt(),
+            exact: 2.91044,
+        },
+        Elements::Segments(_) => Statistic {
+            name: "boundary length per area, over r^(1/2),",
+            value: size / volume / density.sqrt(),
+            exact: 2.0,
+        },
+    }]
+}

@@ -1,0 +1,167 @@
+//! Networks from files, of this program or of others.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use glam::DVec3;
+use polycrystal::{BoundaryId, Claims, Elements, GrainId, NodeType, Side, Surface, outward_sides};
+
+use crate::Error;
+use crate::mesh_file::MeshFileProblem;
+use crate::mesh_file::vtk::labelled::{LabelledCells, read_legacy, read_xml};
+use crate::vtk::{field_text, find};
+
+/// A labelled surface (in the plane: lines) from a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LabelledFile {
+    /// Coordinates.
+    pub points: Vec<DVec3>,
+    /// Triangles or segments.
+    pub elements: FileElements,
+    /// The boundary of each element: one for each pair of labels in the file.
+    pub boundary_of: Vec<BoundaryId>,
+    /// The two sides of each boundary, in the order in which normals point from first to second.
+    pub sides: Vec<[Side; 2]>,
+    /// Types of points; nothing where the file has none, or a code that means nothing.
+    pub node_types: Option<Vec<Option<NodeType>>>,
+    /// The cell array that the labels are from.
+    pub label_array: &'static str,
+    /// What the command line in the file says, if this program wrote it.
+    pub command_line: Option<String>,
+}
+
+/// The elements of a [`LabelledFile`].
+#[derive(Debug, Clone, PartialEq)]
+pub enum FileElements {
+    /// In space.
+    Triangles(Vec<[u32; 3]>),
+    /// In the plane; polylines are cut into their segments.
+    Segments(Vec<[u32; 2]>),
+}
+
+impl LabelledFile {
+    /// Reads a network from a .vtp, .vtu or .vtk file.
+    ///
+    /// The sides are those of the cell array `FaceLabels` (grains and, below 0, the exterior), else of `boundary_labels` or
+    /// `BoundaryLabels` (where 0 is the exterior too). Programs differ in which way triangles wind: the two ways, inside and
+    /// at the exterior, that close most grains are taken for the file's.
+    ///
+    /// # Errors
+    /// [`Error::MeshFile`] when the file cannot be read, is corrupt, has no labels, or cells that are not triangles.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        Self::try_read(path).map_err(|problem| Error::MeshFile { path: path.to_owned(), problem })
+    }
+
+    fn try_read(path: &Path) -> Result<Self, MeshFileProblem> {
+        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+        let read = match extension.to_str() {
+            Some("vtk") => read_legacy,
+            Some("vtp" | "vtu") => read_xml,
+            _ => return Err(MeshFileProblem::NotANetworkFormat),
+        };
+        let bytes = std::fs::read(path).map_err(MeshFileProblem::Unreadable)?;
+        let mut file = Self::of_cells(read(&bytes)?)?;
+        file.command_line = command_line(&bytes);
+        file.sides = outward_sides(&file.surface());
+        Ok(file)
+    }
+
+    fn of_cells(cells: LabelledCells) -> Result<Self, MeshFileProblem> {
+        let LabelledCells { mesh, is_plane, labels, label_array, node_types } = cells;
+        let zero_is_exterior = label_array != "FaceLabels";
+        let mut boundaries: BTreeMap<[i64; 2], BoundaryId> = BTreeMap::new();
+        let mut sides = Vec::new();
+        let mut of_cell = Vec::with_capacity(labels.len());
+        for (cell, labels) in labels.iter().enumerate() {
+            let side = |label: i64| match label {
+                // This program's labels below -1 tell periodic boundaries apart.
+                ..0 => Some(Side::Exterior),
+                0 if zero_is_exterior => Some(Side::Exterior),
+                _ => u32::try_from(label).ok().map(|grain| Side::Grain(GrainId(grain))),
+            };
+            let side = |label| side(label).ok_or(MeshFileProblem::BadLabel { cell, label });
+            let pair = [side(labels[0])?, side(labels[1])?];
+            let next = BoundaryId(u32::try_from(sides.len()).unwrap_or(u32::MAX));
+            of_cell.push(*boundaries.entry(*labels).or_insert_with(|| {
+                sides.push(pair);
+                next
+            }));
+        }
+        let (elements, boundary_of) = if is_plane {
+            let mut segments = Vec::new();
+            let mut boundary_of = Vec::new();
+            for (cell, boundary) in mesh.faces.iter().zip(of_cell) {
+                segments.extend(cell.windows(2).map(|ends| [ends[0], ends[1]]));
+                boundary_of.resize(segments.len(), boundary);
+            }
+            (FileElements::Segments(segments), boundary_of)
+        } else {
+            let triangle = |(cell, corners): (usize, &Vec<u32>)| {
+                <[u32; 3]>::try_from(corners.as_slice())
+                    .map_err(|_| MeshFileProblem::NotTriangulated { cell, corners: corners.len() })
+            };
+            let triangles = mesh.faces.iter().enumerate().map(triangle).collect::<Result<_, _>>()?;
+            (FileElements::Triangles(triangles), of_cell)
+        };
+        // In a periodic network they count grains a period away, which are not at the point.
+        let is_periodic = labels.iter().flatten().any(|label| *label < -1);
+        let node_types =
+            node_types.filter(|_| !is_periodic).map(|codes| codes.into_iter().map(node_type).collect());
+        Ok(Self {
+            points: mesh.points,
+            elements,
+            boundary_of,
+            sides,
+            node_types,
+            label_array,
+            command_line: None,
+        })
+    }
+
+    /// The surface, for the library to look at.
+    pub fn surface(&self) -> Surface<'_> {
+        let elements = match &self.elements {
+            FileElements::Triangles(triangles) => Elements::Triangles(triangles),
+            FileElements::Segments(segments) => Elements::Segments(segments),
+        };
+        Surface { points: &self.points, elements, boundary_of: &self.boundary_of, sides: &self.sides }
+    }
+
+    /// What the file says about its network.
+    pub fn claims(&self) -> Claims<'_> {
+        Claims {
+            node_types: self.node_types.as_deref(),
+            grain_volumes: None,
+            domain_volume: self.command_line.as_deref().and_then(domain_volume),
+        }
+    }
+}
+
+fn node_type(code: i64) -> Option<NodeType> {
+    // Surface nets count up to eight grains.
+    let code = match code {
+        5..=8 => 4,
+        15..=18 => 14,
+        code => i8::try_from(code).ok()?,
+    };
+    NodeType::of_code(code)
+}
+
+/// The command line that this program writes into the field data of its files.
+fn command_line(bytes: &[u8]) -> Option<String> {
+    let text = field_text(bytes, "CommandLine").or_else(|| {
+        // Legacy: the text follows its length.
+        let rest = &bytes[find(bytes, b"CommandLine")?..];
+        let text = rest[find(rest, b"grainsmooth ")?..].split(|byte| *byte == b'\n').next()?;
+        String::from_utf8(text.to_vec()).ok()
+    });
+    text.filter(|text| text.starts_with("grainsmooth "))
+}
+
+/// The volume (in the plane: area) of the box that a command line names.
+fn domain_volume(command_line: &str) -> Option<f64> {
+    let mut words = command_line.split(' ').skip_while(|word| *word != "--box");
+    words.next()?;
+    let sides: Vec<f64> = words.map_while(|word| word.parse().ok()).collect();
+    (sides.len() == 2 || sides.len() == 3).then(|| sides.iter().product())
+}

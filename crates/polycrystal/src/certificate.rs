@@ -1,0 +1,242 @@
+use std::collections::BTreeMap;
+use std::fmt;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::angles::angle_statistics;
+use crate::closing::faults_of_closing;
+use crate::fault::Fault;
+use crate::folds::folded_pairs;
+use crate::intersections::crossing_elements;
+use crate::seams::Seams;
+use crate::volume::boundary_volumes;
+use crate::{AngleStatistics, GrainId, NodeType, Side, Surface};
+
+/// Cosine of the angle between normals beyond which neighbours in one boundary are folded: 90 degrees, and as much more as
+/// single precision, in which many files keep coordinates, blurs the right angles of a box.
+const FOLD_COSINE: f64 = -1e-6;
+
+/// Largest difference of a volume from what it should be, as a share of that.
+const VOLUME_TOLERANCE: f64 = 1e-9;
+
+/// What is said about a surface, to be compared with what it is.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Claims<'a> {
+    /// Type of each point; nothing where a file leaves it open.
+    pub node_types: Option<&'a [Option<NodeType>]>,
+    /// Volume of each grain (in the plane: area).
+    pub grain_volumes: Option<&'a [(GrainId, f64)]>,
+    /// Volume of the domain (in the plane: area).
+    pub domain_volume: Option<f64>,
+}
+
+/// What was found about a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Certificate {
+    /// All that is wrong, kind by kind; nothing if the network is valid.
+    pub faults: Faults,
+    /// Volume of each grain (in the plane: area); in order of the grains' numbers.
+    pub grain_volumes: Vec<(GrainId, f64)>,
+    /// Largest difference of a grain's volume from the claimed, as a share of that; 0 when nothing was claimed.
+    pub largest_volume_error: f64,
+    /// Difference of the total volume from the domain's, as a share of that; 0 when nothing was claimed.
+    pub total_volume_error: f64,
+    /// Angles between boundaries, if boundaries meet inside the domain.
+    pub angles: Option<AngleStatistics>,
+}
+
+/// What is wrong with a surface. Its text names the first fault of each kind.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Faults(pub Vec<Fault>);
+
+impl std::error::Error for Faults {}
+
+impl fmt::Display for Faults {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kinds = self.0.chunk_by(|a, b| a.kind() == b.kind());
+        for (index, faults) in kinds.enumerate() {
+            let start = if index == 0 { "" } else { "; " };
+            write!(out, "{start}{}", faults[0])?;
+            if faults.len() > 1 {
+                write!(out, " ({} such)", faults.len())?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Looks for all that can be wrong with a network: points and elements that should not be there, grains that are not closed
+/// or wind the wrong way, folds, elements that cross (decided exactly), and claims that do not hold.
+///
+/// Where a point is not finite the search ends with these points, and where the grains are not closed volumes are not
+/// compared with claims.
+///
+/// # Panics
+/// When elements refer to points or boundaries that there are not, or claims are not as many as points.
+pub fn certify(surface: &Surface<'_>, claims: &Claims<'_>) -> Certificate {
+    inspect(surface, &Seams::of_elements(surface.elements, surface.boundary_of), claims)
+}
+
+/// The same with seams that are known.
+pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>) -> Certificate {
+    let mut certificate = Certificate {
+        faults: Faults::default(),
+        grain_volumes: Vec::new(),
+        largest_volume_error: 0.0,
+        total_volume_error: 0.0,
+        angles: None,
+    };
+    let ids = |count: usize| 0..u32::try_from(count).expect("ids fit 32 bits");
+    let not_finite = ids(surface.points.len()).filter(|point| !surface.points[*point as usize].is_finite());
+    certificate.faults.0.extend(not_finite.map(|point| Fault::NotFinite { point }));
+    if !certificate.faults.0.is_empty() {
+        return certificate;
+    }
+    let normals = surface.elements.normals(surface.points);
+    let faults = &mut certificate.faults.0;
+    let flat = ids(normals.len()).filter(|element| normals[*element as usize] == DVec3::ZERO);
+    faults.extend(flat.map(|element| Fault::NoArea { element }));
+    faults.extend(duplicate_points(surface.points).map(|points| Fault::DuplicatePoints { points }));
+    let node_types = node_types(surface);
+    let orphans = ids(node_types.len()).filter(|point| node_types[*point as usize].is_none());
+    faults.extend(orphans.map(|point| Fault::Orphan { point }));
+    let mut closing = faults_of_closing(surface, seams);
+    closing.sort_by_key(Fault::kind);
+    let is_closed = closing.is_empty();
+    faults.extend(closing);
+    let has_area = |pair: &[u32; 2]| pair.iter().all(|element| normals[*element as usize] != DVec3::ZERO);
+    let folded = folded_pairs(&seams.inner, &normals, FOLD_COSINE).into_iter().filter(has_area);
+    faults.extend(folded.map(|elements| Fault::Folded { elements }));
+    let crossing = crossing_elements(surface, seams).into_iter();
+    faults.extend(crossing.map(|elements| Fault::Crossing { elements }));
+    if let Some(stated) = claims.node_types {
+        faults.extend(wrong_node_types(stated, &node_types));
+    }
+    certificate.grain_volumes = grain_volumes(surface);
+    certificate.check_volumes(claims, is_closed);
+    certificate.angles = angle_statistics(surface, seams);
+    certificate
+}
+
+impl Certificate {
+    /// Whether nothing is wrong.
+    pub fn is_good(&self) -> bool {
+        self.faults.0.is_empty()
+    }
+
+    fn check_volumes(&mut self, claims: &Claims<'_>, is_closed: bool) {
+        let faults = &mut self.faults.0;
+        let empty = self.grain_volumes.iter().filter(|(_, volume)| is_closed && *volume <= 0.0);
+        faults.extend(empty.map(|&(grain, volume)| Fault::NoVolume { grain, volume }));
+        for (grain, claimed) in claims.grain_volumes.into_iter().flatten() {
+            let found = self.grain_volumes.binary_search_by_key(grain, |(grain, _)| *grain);
+            let volume = found.map_or(0.0, |index| self.grain_volumes[index].1);
+            let relative_error = (volume / claimed - 1.0).abs();
+            self.largest_volume_error = self.largest_volume_error.max(relative_error);
+            if is_closed && relative_error > VOLUME_TOLERANCE {
+                faults.push(Fault::WrongVolume { grain: *grain, relative_error });
+            }
+        }
+        if let Some(whole) = claims.domain_volume {
+            let total: f64 = self.grain_volumes.iter().map(|(_, volume)| volume).sum();
+            let relative_error = (total / whole - 1.0).abs();
+            self.total_volume_error = relative_error;
+            if is_closed && relative_error > VOLUME_TOLERANCE {
+                faults.push(Fault::WrongTotal { relative_error });
+            }
+        }
+    }
+}
+
+/// Points with the coordinates of an earlier one, each with the first of these.
+fn duplicate_points(points: &[DVec3]) -> impl Iterator<Item = [u32; 2]> {
+    // Adding zero gives -0 the bits of 0.
+    let bits = |point: u32| (points[point as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
+    let count = u32::try_from(points.len()).expect("ids fit 32 bits");
+    // Sorting short keys is fast, and points of equal keys are few.
+    let key = |point: u32| {
+        let [x, y, z] = bits(point);
+        let mixed =
+            x.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ y.rotate_left(23).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
+        (mixed ^ z.rotate_left(41)).wrapping_mul(0x1656_67b1_9e37_79f9)
+    };
+    let mut keys: Vec<(u64, u32)> = (0..count).into_par_iter().map(|point| (key(point), point)).collect();
+    keys.par_sort_unstable();
+    let mut pairs = Vec::new();
+    for equal in keys.chunk_by(|a, b| a.0 == b.0).filter(|equal| equal.len() > 1) {
+        let mut same: Vec<([u64; 3], u32)> = equal.iter().map(|(_, point)| (bits(*point), *point)).collect();
+        same.sort_unstable();
+        for same in same.chunk_by(|a, b| a.0 == b.0) {
+            pairs.extend(same[1..].iter().map(|(_, point)| [same[0].1, *point]));
+        }
+    }
+    pairs.sort_unstable();
+    pairs.into_iter()
+}
+
+/// The type of each point by the sides around it; nothing where there is no element.
+fn node_types(surface: &Surface<'_>) -> Vec<Option<NodeType>> {
+    const NONE: u32 = u32::MAX;
+    const SEVERAL: u32 = u32::MAX - 1;
+    let mut boundaries = vec![NONE; surface.points.len()];
+    let elements = || (0u32..).zip(surface.boundary_of).take(surface.elements.len());
+    for (element, boundary) in elements() {
+        for corner in surface.elements.corners(element) {
+            let at = &mut boundaries[*corner as usize];
+            *at = if *at == NONE || *at == boundary.0 { boundary.0 } else { SEVERAL };
+        }
+    }
+    let mut around: Vec<(u32, Side)> = Vec::new();
+    for (element, boundary) in elements() {
+        let corners = surface.elements.corners(element).iter();
+        for corner in corners.filter(|corner| boundaries[**corner as usize] == SEVERAL) {
+            around.extend(surface.sides[boundary.index()].map(|side| (*corner, side)));
+        }
+    }
+    around.par_sort_unstable();
+    around.dedup();
+    let of_one = |boundary: u32| {
+        let mut sides = surface.sides.get(boundary as usize).copied()?;
+        sides.sort_unstable();
+        Some(NodeType::of_sides(&sides))
+    };
+    let mut types: Vec<Option<NodeType>> = boundaries.into_iter().map(of_one).collect();
+    for at in around.chunk_by(|a, b| a.0 == b.0) {
+        let sides: Vec<Side> = at.iter().map(|(_, side)| *side).collect();
+        types[at[0].0 as usize] = Some(NodeType::of_sides(&sides));
+    }
+    types
+}
+
+fn wrong_node_types(
+    stated: &[Option<NodeType>],
+    derived: &[Option<NodeType>],
+) -> impl Iterator<Item = Fault> {
+    assert_eq!(stated.len(), derived.len(), "one node type for each point");
+    let points = (0u32..).zip(stated.iter().zip(derived));
+    points.filter_map(|(point, types)| match types {
+        (Some(stated), Some(derived)) if stated != derived => {
+            Some(Fault::WrongNodeType { point, stated: *stated, derived: *derived })
+        }
+        _ => None,
+    })
+}
+
+fn grain_volumes(surface: &Surface<'_>) -> Vec<(GrainId, f64)> {
+    // Far from the origin of coordinates volumes would lose digits.
+    let [lower, upper] =
+        surface.points.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[lower, upper], point| {
+            [lower.min(*point), upper.max(*point)]
+        });
+    let of_boundaries = boundary_volumes(surface, lower.midpoint(upper));
+    let mut volumes: BTreeMap<GrainId, f64> = BTreeMap::new();
+    for (sides, volume) in surface.sides.iter().zip(of_boundaries) {
+        for (side, volume) in sides.iter().zip([volume, -volume]) {
+            if let Side::Grain(grain) = side {
+                *volumes.entry(*grain).or_default() += volume;
+            }
+        }
+    }
+    volumes.into_iter().collect()
+}

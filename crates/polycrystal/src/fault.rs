@@ -1,0 +1,236 @@
+use std::fmt;
+
+use glam::DVec3;
+
+use crate::{GrainId, NodeType, Side, Surface};
+
+/// What makes a network invalid. Points, elements (triangles, in the plane segments) and grains have the numbers of the
+/// surface that was looked at.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Fault {
+    /// A point has a coordinate that is NaN or infinite.
+    #[error("point {point} is not finite")]
+    NotFinite {
+        /// The point.
+        point: u32,
+    },
+    /// No element uses a point.
+    #[error("point {point} belongs to no triangle or segment")]
+    Orphan {
+        /// The point.
+        point: u32,
+    },
+    /// Two points stand at the same place.
+    #[error("points {} and {} stand at the same place", points[0], points[1])]
+    DuplicatePoints {
+        /// The points, the lower first.
+        points: [u32; 2],
+    },
+    /// An element has no area (in the plane: no length).
+    #[error("element {element} has no area or length")]
+    NoArea {
+        /// The element.
+        element: u32,
+    },
+    /// Two elements have the same corners.
+    #[error("elements {} and {} have the same corners", elements[0], elements[1])]
+    DuplicateElements {
+        /// The elements, the lower first.
+        elements: [u32; 2],
+    },
+    /// The surfaces of grains have a hole.
+    #[error("{} not closed at {place}", Grains(grains))]
+    Open {
+        /// Where.
+        place: Place,
+        /// The grains.
+        grains: Vec<GrainId>,
+    },
+    /// One element winds against all around it.
+    #[error("element {element} winds the wrong way")]
+    Turned {
+        /// The element.
+        element: u32,
+    },
+    /// One element names other sides than all around it.
+    #[error(
+        "element {element} lies between {} and {} by its label, where {} and {} fit",
+        stated[0], stated[1], fitting[0], fitting[1]
+    )]
+    WrongSides {
+        /// The element.
+        element: u32,
+        /// Its sides as they are.
+        stated: [Side; 2],
+        /// The sides that would close the grains around.
+        fitting: [Side; 2],
+    },
+    /// Elements wind against each other.
+    #[error("elements {elements:?} wind against each other at {place}")]
+    Winding {
+        /// Where.
+        place: Place,
+        /// The elements there.
+        elements: Vec<u32>,
+    },
+    /// A grain's surface touches itself.
+    #[error("grain {} has {elements} triangles or segments at {place}, where a closed surface has 2", grain.0)]
+    Pinched {
+        /// Where.
+        place: Place,
+        /// The grain.
+        grain: GrainId,
+        /// Number of its elements there.
+        elements: usize,
+    },
+    /// Two neighbours in one boundary are folded over each other.
+    #[error("elements {} and {} of one boundary are folded by more than 90 degrees", elements[0], elements[1])]
+    Folded {
+        /// The elements.
+        elements: [u32; 2],
+    },
+    /// Two elements cross.
+    #[error("elements {} and {} cross each other", elements[0], elements[1])]
+    Crossing {
+        /// The elements, the lower first.
+        elements: [u32; 2],
+    },
+    /// A point's type is not that of the sides around it.
+    #[error("point {point} has the node type {}, the sides around it make {}", stated.code(), derived.code())]
+    WrongNodeType {
+        /// The point.
+        point: u32,
+        /// Its type as it is.
+        stated: NodeType,
+        /// The type that fits.
+        derived: NodeType,
+    },
+    /// A grain has no volume, or a negative one: its surface is turned inside out.
+    #[error("grain {} has the volume {volume:e}", grain.0)]
+    NoVolume {
+        /// The grain.
+        grain: GrainId,
+        /// Its volume.
+        volume: f64,
+    },
+    /// A grain does not have the volume that it should.
+    #[error("the volume of grain {} is off by {relative_error:e} of what it should be", grain.0)]
+    WrongVolume {
+        /// The grain.
+        grain: GrainId,
+        /// The difference as a share of the volume that it should have.
+        relative_error: f64,
+    },
+    /// The grains do not fill the domain.
+    #[error("the grains' volumes sum to the domain's but for {relative_error:e} of it")]
+    WrongTotal {
+        /// The difference as a share of the domain's volume.
+        relative_error: f64,
+    },
+}
+
+/// Where boundaries meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Place {
+    /// Along an edge of triangles, between these points.
+    Edge([u32; 2]),
+    /// In the plane: in a point.
+    Point(u32),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Edge([a, b]) => write!(out, "the edge of points {a} and {b}"),
+            Self::Point(point) => write!(out, "point {point}"),
+        }
+    }
+}
+
+impl Fault {
+    /// The kind of fault in a word or two, such as `open` or `duplicate points`.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::NotFinite { .. } => "not finite",
+            Self::Orphan { .. } => "orphan point",
+            Self::DuplicatePoints { .. } => "duplicate points",
+            Self::NoArea { .. } => "no area",
+            Self::DuplicateElements { .. } => "duplicate elements",
+            Self::Open { .. } => "open",
+            Self::Turned { .. } | Self::Winding { .. } => "winding",
+            Self::WrongSides { .. } => "wrong sides",
+            Self::Pinched { .. } => "pinched",
+            Self::Folded { .. } => "folded",
+            Self::Crossing { .. } => "crossing",
+            Self::WrongNodeType { .. } => "wrong node type",
+            Self::NoVolume { .. } => "no volume",
+            Self::WrongVolume { .. } => "wrong volume",
+            Self::WrongTotal { .. } => "wrong total",
+        }
+    }
+
+    /// The points and elements that the fault names.
+    pub fn ids(&self) -> (Vec<u32>, Vec<u32>) {
+        match self {
+            Self::NotFinite { point } | Self::Orphan { point } | Self::WrongNodeType { point, .. } => {
+                (vec![*point], Vec::new())
+            }
+            Self::DuplicatePoints { points } => (points.to_vec(), Vec::new()),
+            Self::NoArea { element } | Self::Turned { element } | Self::WrongSides { element, .. } => {
+                (Vec::new(), vec![*element])
+            }
+            Self::DuplicateElements { elements }
+            | Self::Folded { elements }
+            | Self::Crossing { elements } => (Vec::new(), elements.to_vec()),
+            Self::Open { place, .. } | Self::Pinched { place, .. } => (place.points(), Vec::new()),
+            Self::Winding { place, elements } => (place.points(), elements.clone()),
+            Self::NoVolume { .. } | Self::WrongVolume { .. } | Self::WrongTotal { .. } => {
+                (Vec::new(), Vec::new())
+            }
+        }
+    }
+
+    /// The grains that the fault names.
+    pub fn grains(&self) -> Vec<GrainId> {
+        match self {
+            Self::Open { grains, .. } => grains.clone(),
+            Self::Pinched { grain, .. } | Self::NoVolume { grain, .. } | Self::WrongVolume { grain, .. } => {
+                vec![*grain]
+            }
+            Self::WrongSides { stated, .. } => stated.iter().filter_map(|side| side.grain()).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Where it is, for faults that are somewhere.
+    ///
+    /// # Panics
+    /// When the fault is one of another surface.
+    pub fn position(&self, surface: &Surface<'_>) -> Option<DVec3> {
+        let (points, elements) = self.ids();
+        let points = points.iter().map(|point| surface.points[*point as usize]);
+        let elements = elements.iter().map(|element| surface.middle(*element));
+        let places: Vec<DVec3> = points.chain(elements).collect();
+        (!places.is_empty()).then(|| places.iter().sum::<DVec3>() / places.len() as f64)
+    }
+}
+
+impl Place {
+    fn points(self) -> Vec<u32> {
+        match self {
+            Self::Edge(ends) => ends.to_vec(),
+            Self::Point(point) => vec![point],
+        }
+    }
+}
+
+/// Writes grains as `grain 3 is`, or `grains 3, 17 are`.
+struct Grains<'a>(&'a [GrainId]);
+
+impl fmt::Display for Grains<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (noun, verb) = if self.0.len() == 1 { ("grain", "is") } else { ("grains", "are") };
+        let names: Vec<String> = self.0.iter().map(|grain| grain.0.to_string()).collect();
+        write!(out, "{noun} {} {verb}", names.join(", "))
+    }
+}
