@@ -162,7 +162,8 @@ impl fmt::Display for CheckReport {
 }
 
 /// Options that leave random seeds the Poisson process that they are.
-const PLAIN_OPTIONS: [&str; 7] = ["--seeds", "--rng-seed", "--dim", "--box", "--relax", "-n", "--junctions"];
+const PLAIN_OPTIONS: [&str; 9] =
+    ["--seeds", "--rng-seed", "--dim", "--box", "--faces", "--edge-length", "--relax", "-n", "--junctions"];
 
 /// Numbers with exact values, where the file says that its seeds are uniform and random: Meijering 1953 for means in space,
 /// and in the plane, r being the number of grains per volume (area).
