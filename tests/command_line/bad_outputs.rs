@@ -9,10 +9,10 @@ const BEFORE_COMPUTING: &str = "--seeds 100000 -n 0";
 #[test]
 fn extension_that_names_no_format() {
     let workplace = Workplace::new();
-    for name in ["grains.obj", "grains", "vtp", ".vtp", "grains.vtp.gz"] {
-        let message = format!(
-            "invalid value '{name}' for '--output <PATH>': unknown extension; name the file *.vtp, *.vtu or *.vtk"
-        );
+    let known = "*.vtp, *.vtu, *.vtk, *.vtm, *.stl, *.ply, *.obj, *.msh, *.fe, *.tess, *.vti, *.npy or *.ang";
+    for name in ["grains.off", "grains", "vtp", ".vtp", "grains.vtp.gz"] {
+        let message =
+            format!("invalid value '{name}' for '--output <PATH>': unknown extension; name the file {known}");
         workplace.refuses(&format!("{BEFORE_COMPUTING} -o {name}"), USAGE, &message);
     }
 }
@@ -84,4 +84,41 @@ fn full_disk() {
     );
     assert!(lines[0].ends_with("; make room or choose another path"), "{said}");
     assert_eq!(lines[1..], ["grains.vtp", "old"], "the old file stays and nothing else is left");
+}
+
+#[test]
+fn format_that_cannot_hold_the_grains() {
+    let workplace = Workplace::new();
+    for name in ["a.stl", "a.ply", "a.obj", "a.msh", "a.fe", "a.vtm"] {
+        let message = format!("{name}: this format holds 3D grains only; choose another, such as .vtp");
+        workplace.refuses(&format!("{BEFORE_COMPUTING} --dim 2 -o {name}"), FAILED, &message);
+    }
+    let message = "a.ang: this format holds 2D grains only; choose another, such as .vtp";
+    workplace.refuses(&format!("{BEFORE_COMPUTING} -o a.ang --voxels 2 2 2"), FAILED, message);
+    for name in ["a.vti", "a.npy"] {
+        let message = format!(
+            "{name}: this format holds voxels; give their number with --voxels NX NY NZ (NX NY in 2D)"
+        );
+        workplace.refuses(&format!("{BEFORE_COMPUTING} -o {name}"), FAILED, &message);
+    }
+    workplace.refuses(
+        &format!("{BEFORE_COMPUTING} -o a.vti --voxels 4 4"),
+        USAGE,
+        "--voxels takes three numbers, NX NY NZ, without --dim 2; 2 given",
+    );
+}
+
+#[test]
+fn directory_of_grains_that_is_taken() {
+    let workplace = Workplace::new();
+    for name in ["taken", "grains.vtp"] {
+        if name == "taken" {
+            fs::create_dir(workplace.path(name)).unwrap();
+            workplace.put("taken/file", "");
+        }
+        let message = format!("{name}: is not an empty directory; remove it or choose another path");
+        workplace.refuses(&format!("{BEFORE_COMPUTING} --grains-dir {name}"), FAILED, &message);
+    }
+    let message = "no/such: no directory no; create it or choose another path";
+    workplace.refuses(&format!("{BEFORE_COMPUTING} --grains-dir no/such"), FAILED, message);
 }

@@ -6,7 +6,9 @@ use predicates::prelude::*;
 use predicates::str::contains;
 use voronoi::Domain;
 
-use crate::surface_file::{SurfaceFile, field};
+use grainsmooth::vtk::{field_bytes, field_text};
+
+use crate::surface_file::SurfaceFile;
 use crate::workplace::Workplace;
 
 fn made_by(workplace: &Workplace, arguments: &str) -> SurfaceFile {
@@ -164,12 +166,11 @@ fn file_says_how_it_was_made() {
     let workplace = Workplace::new();
     workplace.run("--seeds 4 --rng-seed 77 --box 2 1 0.5 --junctions corner -n 1 --relax 0.1 --threads 1");
     let file = workplace.bytes("grains.vtp");
-    // A string array ends its text with a zero.
-    let version = concat!("grainsmooth ", env!("CARGO_PKG_VERSION"), "\0");
-    assert_eq!(field(&file, "Version"), version.as_bytes());
-    assert_eq!(field(&file, "RandomSeed"), 77u64.to_ne_bytes());
-    let command_line = String::from_utf8(field(&file, "CommandLine")).unwrap();
-    let arguments = command_line.trim_end_matches('\0').strip_prefix("grainsmooth ").unwrap();
+    let version = concat!("grainsmooth ", env!("CARGO_PKG_VERSION"));
+    assert_eq!(field_text(&file, "Version").as_deref(), Some(version));
+    assert_eq!(field_bytes(&file, "RandomSeed"), Some(&77u64.to_ne_bytes()[..]));
+    let command_line = field_text(&file, "CommandLine").unwrap();
+    let arguments = command_line.strip_prefix("grainsmooth ").unwrap();
     assert!(arguments.contains("--seeds 4 --rng-seed 77"), "{arguments}");
 
     workplace.run(arguments);

@@ -1,3 +1,4 @@
+use grainsmooth::vtk::field_text;
 use serde_json::Value;
 
 use crate::workplace::{USAGE, Workplace};
@@ -129,8 +130,8 @@ fn files_say_where_their_seeds_came_from() {
     for arguments in ["--lattice bcc 2", "--seeding poisson-disc --seeds 9 --lloyd 3"] {
         workplace.run(&format!("{arguments} -n 0 --relax 0"));
         let file = workplace.bytes("grains.vtp");
-        let command_line = String::from_utf8(crate::surface_file::field(&file, "CommandLine")).unwrap();
-        workplace.run(command_line.trim_end_matches('\0').strip_prefix("grainsmooth ").unwrap());
+        let command_line = field_text(&file, "CommandLine").unwrap();
+        workplace.run(command_line.strip_prefix("grainsmooth ").unwrap());
         assert!(workplace.bytes("grains.vtp") == file, "{command_line}");
     }
 }

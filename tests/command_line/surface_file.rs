@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
+use grainsmooth::vtk::inlined;
 use vtkio::model::{Attribute, DataSet, Piece, PolyDataPiece, VertexNumbers, Vtk};
 
 /// What a .vtp file holds, but for its field data.
@@ -21,7 +20,10 @@ pub struct SurfaceFile {
 
 impl SurfaceFile {
     pub fn read(path: &Path) -> Self {
-        let DataSet::PolyData { pieces, .. } = Vtk::import(path).unwrap().data else { panic!("no PolyData") };
+        let file = inlined(&std::fs::read(path).unwrap());
+        let DataSet::PolyData { pieces, .. } = Vtk::parse_xml(&file[..]).unwrap().data else {
+            panic!("no PolyData")
+        };
         let Some(Piece::Inline(piece)) = pieces.into_iter().next() else { panic!("no piece in the file") };
         let PolyDataPiece { points, polys, lines, data, .. } = *piece;
         let points: Vec<f64> = points.into_vec().unwrap();
@@ -54,7 +56,10 @@ impl SurfaceFile {
 
 /// An array of integers of a .vtp file that not every file has.
 pub fn integers(path: &Path, name: &str) -> Vec<i32> {
-    let DataSet::PolyData { pieces, .. } = Vtk::import(path).unwrap().data else { panic!("no PolyData") };
+    let file = inlined(&std::fs::read(path).unwrap());
+    let DataSet::PolyData { pieces, .. } = Vtk::parse_xml(&file[..]).unwrap().data else {
+        panic!("no PolyData")
+    };
     let Some(Piece::Inline(piece)) = pieces.into_iter().next() else { panic!("no piece in the file") };
     let PolyDataPiece { data, .. } = *piece;
     values(&[data.cell, data.point].concat(), name)
@@ -74,18 +79,4 @@ fn split(vertices: VertexNumbers) -> Vec<Vec<usize>> {
     let ends: Vec<usize> = ends.into_iter().map(|end| usize::try_from(end).unwrap()).collect();
     let starts = std::iter::once(0).chain(ends.iter().copied());
     starts.zip(&ends).map(|(start, end)| connectivity[start..*end].to_vec()).collect()
-}
-
-/// The bytes of an entry of a .vtp file's field data, which `vtkio` does not read.
-pub fn field(file: &[u8], name: &str) -> Vec<u8> {
-    let text = str::from_utf8(file).unwrap();
-    let (_, entry) = text.split_once(&format!("Name=\"{name}\"")).unwrap();
-    let (_, offset) = entry.split_once("offset=\"").unwrap();
-    let offset: usize = offset.split('"').next().unwrap().parse().unwrap();
-    let (_, numbers) = text.split_once("<AppendedData encoding=\"base64\">\n_").unwrap();
-    let numbers = &numbers[offset..];
-    let count = STANDARD.decode(&numbers[..12]).unwrap()[..8].try_into().unwrap();
-    let count = usize::try_from(u64::from_ne_bytes(count)).unwrap();
-    let bytes = STANDARD.decode(&numbers[..(8 + count).div_ceil(3) * 4]).unwrap();
-    bytes[8..8 + count].to_vec()
 }

@@ -1,6 +1,7 @@
 //! The command line.
 
 use std::fmt::Display;
+use std::num::NonZeroU32;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -8,7 +9,10 @@ use std::str::FromStr;
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use glam::{BVec3, DVec3};
-use grainsmooth::{Config, Lattice, OutputFormat, SeedSource};
+use grainsmooth::vtk::VtkFormat;
+use grainsmooth::{
+    Config, FileOptions, Lattice, Names, OutputDirectory, OutputFormat, SeedSource, StlEncoding,
+};
 use polycrystal::{FaceMesh, Junctions};
 use voronoi::Dimension;
 
@@ -92,9 +96,30 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = JunctionRule::Crease, help_heading = SMOOTHING)]
     junctions: JunctionRule,
 
-    /// File to write; its extension names the format: .vtp, .vtu or .vtk
-    #[arg(short, long, value_name = "PATH", default_value = "grains.vtp", value_parser = parse_output, help_heading = RUN)]
+    /// File to write; its extension names the format: .vtp, .vtu, .vtk, .vtm, .stl, .ply, .obj, .msh (Gmsh), .fe (Surface Evolver),
+    /// .tess (Neper), and voxels .vti (DAMASK), .npy, .ang
+    #[arg(short, long, value_name = "PATH", default_value = "grains.vtp", value_parser = parse_output, help_heading = FILES)]
     pub output: PathBuf,
+
+    /// Write each grain as a closed surface of its own into this new directory
+    #[arg(long, value_name = "DIR", help_heading = FILES)]
+    pub grains_dir: Option<PathBuf>,
+
+    /// Format of the grains' own files
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t = GrainFormat::Vtp, requires = "grains_dir", help_heading = FILES)]
+    pub grains_format: GrainFormat,
+
+    /// Number of voxels along each axis for .vti, .npy and .ang, X Y in 2D
+    #[arg(long, value_names = ["NX", "NY", "NZ"], num_args = 2.., value_parser = whole_number(1..=65_536_u32), allow_negative_numbers = true, help_heading = FILES)]
+    voxels: Option<Vec<u32>>,
+
+    /// Write STL as text
+    #[arg(long, help_heading = FILES)]
+    ascii: bool,
+
+    /// Names and numbers of arrays as another tool expects them
+    #[arg(long, value_name = "TOOL", value_enum, default_value_t = NameScheme::Grainsmooth, help_heading = FILES)]
+    names: NameScheme,
 
     /// Write a table of the flat cells as JSON
     #[arg(long, value_name = "PATH", help_heading = RUN)]
@@ -127,6 +152,7 @@ pub enum Command {
 const SEEDS: &str = "Seeds";
 const DOMAIN: &str = "Domain";
 const SMOOTHING: &str = "Smoothing";
+const FILES: &str = "Files";
 const RUN: &str = "Run";
 
 const EXAMPLES: &str = "\
@@ -166,6 +192,43 @@ enum FaceRule {
 enum JunctionRule {
     Crease,
     Corner,
+}
+
+/// `--grains-format` as it is spelled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum GrainFormat {
+    Vtp,
+    Stl,
+    Ply,
+    Obj,
+}
+
+impl GrainFormat {
+    /// The directory for files of this format, found fit to be made.
+    pub fn check(self, path: &Path) -> Result<OutputDirectory, grainsmooth::Error> {
+        OutputDirectory::check(path, self.into())
+    }
+}
+
+impl From<GrainFormat> for OutputFormat {
+    fn from(format: GrainFormat) -> Self {
+        match format {
+            GrainFormat::Vtp => Self::Vtk(VtkFormat::Vtp),
+            GrainFormat::Stl => Self::Stl,
+            GrainFormat::Ply => Self::Ply,
+            GrainFormat::Obj => Self::Obj,
+        }
+    }
+}
+
+/// `--names` as it is spelled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum NameScheme {
+    Grainsmooth,
+    Dream3d,
+    Pyvista,
+    Virmat,
+    Neper,
 }
 
 impl Arguments {
@@ -212,7 +275,33 @@ impl Arguments {
             levels: self.levels,
             junctions,
             drop_empty: self.drop_empty,
+            file: self.file_options(),
         }
+    }
+
+    fn file_options(&self) -> FileOptions {
+        let voxels = match (self.voxels.as_deref(), self.dim) {
+            (None, _) => None,
+            (Some(&[x, y]), Dimension::Two) => Some([x, y, 1]),
+            (Some(&[x, y, z]), Dimension::Three) => Some([x, y, z]),
+            (Some(counts), Dimension::Two) => {
+                usage(&format!("--voxels takes two numbers, NX NY, with --dim 2; {} given", counts.len()))
+            }
+            (Some(counts), Dimension::Three) => usage(&format!(
+                "--voxels takes three numbers, NX NY NZ, without --dim 2; {} given",
+                counts.len()
+            )),
+        };
+        let names = match self.names {
+            NameScheme::Grainsmooth => Names::Grainsmooth,
+            NameScheme::Dream3d => Names::Dream3d,
+            NameScheme::Pyvista => Names::Pyvista,
+            NameScheme::Virmat => Names::Virmat,
+            NameScheme::Neper => Names::Neper,
+        };
+        let stl = if self.ascii { StlEncoding::Ascii } else { StlEncoding::Binary };
+        let at_least_one = |count| NonZeroU32::new(count).unwrap_or(NonZeroU32::MIN);
+        FileOptions { names, voxels: voxels.map(|counts| counts.map(at_least_one)), stl }
     }
 
     fn seed_source(&self) -> SeedSource {
@@ -309,6 +398,6 @@ fn parse_output(text: &str) -> Result<PathBuf, String> {
     let path = Path::new(text);
     match OutputFormat::of_path(path) {
         Some(_) => Ok(path.to_owned()),
-        None => Err("unknown extension; name the file *.vtp, *.vtu or *.vtk".to_owned()),
+        None => Err(format!("unknown extension; name the file {}", OutputFormat::known_extensions())),
     }
 }

@@ -1,3 +1,4 @@
+use std::num::NonZeroU32;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
@@ -5,7 +6,7 @@ use glam::{BVec3, DVec3};
 use polycrystal::{FaceMesh, Junctions};
 use voronoi::{Dimension, Domain};
 
-use crate::{Error, Lattice, LatticeFit};
+use crate::{Error, Lattice, LatticeFit, Names, StlEncoding};
 
 /// Where seeds come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -58,6 +59,25 @@ pub struct Config {
     pub junctions: Junctions,
     /// Whether to go on without seeds that have no cell, as their neighbours outweigh them; else that is an error.
     pub drop_empty: bool,
+    /// How files are written, apart from their formats.
+    pub file: FileOptions,
+}
+
+/// How files are written, apart from their formats.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FileOptions {
+    /// Whose names and numbers arrays have.
+    pub names: Names,
+    /// Number of voxels along each axis, for formats of voxels; the third is not used in 2D.
+    pub voxels: Option<[NonZeroU32; 3]>,
+    /// How STL spells its numbers.
+    pub stl: StlEncoding,
+}
+
+impl Default for FileOptions {
+    fn default() -> Self {
+        Self { names: Names::default(), voxels: None, stl: StlEncoding::Binary }
+    }
 }
 
 impl Default for Config {
@@ -75,6 +95,7 @@ impl Default for Config {
             levels: 3,
             junctions: Junctions::Crease,
             drop_empty: false,
+            file: FileOptions::default(),
         }
     }
 }
@@ -150,9 +171,27 @@ impl Config {
             FaceMesh::Refined { edge_length } => format!("--edge-length {edge_length}"),
         };
         let drop_empty = if self.drop_empty { " --drop-empty" } else { "" };
-        let Self { relaxation_time, regularize, levels, .. } = self;
+        let Self { relaxation_time, regularize, levels, file, .. } = self;
         format!(
-            "grainsmooth {seeds}{drop_empty}{lloyd} {space}{periodic} {faces} --relax {relaxation_time} --regularize {regularize} -n {levels} --junctions {junctions}"
+            "grainsmooth {seeds}{drop_empty}{lloyd} {space}{periodic} {faces} --relax {relaxation_time} --regularize {regularize} -n {levels} --junctions {junctions}{}",
+            file.arguments(self.dimension)
         )
+    }
+}
+
+impl FileOptions {
+    /// The options that are not the default, each after a blank.
+    fn arguments(&self, dimension: Dimension) -> String {
+        let names = match self.names {
+            Names::Grainsmooth => String::new(),
+            names => format!(" --names {}", names.name()),
+        };
+        let voxels = match (self.voxels, dimension) {
+            (None, _) => String::new(),
+            (Some([x, y, _]), Dimension::Two) => format!(" --voxels {x} {y}"),
+            (Some([x, y, z]), Dimension::Three) => format!(" --voxels {x} {y} {z}"),
+        };
+        let stl = if self.stl == StlEncoding::Ascii { " --ascii" } else { "" };
+        format!("{names}{voxels}{stl}")
     }
 }

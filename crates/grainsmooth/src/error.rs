@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 use polycrystal::NetworkError;
-use voronoi::VoronoiError;
+use voronoi::{Dimension, VoronoiError};
 
 use crate::memory::{self, LevelSize};
 use crate::mesh_file::MeshFileProblem;
@@ -21,6 +21,29 @@ pub enum Error {
         /// The path as given.
         path: PathBuf,
     },
+    /// The output's format cannot hold grains of this dimension.
+    #[error(
+        "{}: this format holds {} only; choose another, such as .vtp", path.display(),
+        if *dimension == Dimension::Two { "2D grains" } else { "3D grains" }
+    )]
+    FormatDimension {
+        /// The path as given.
+        path: PathBuf,
+        /// The dimension that the format holds.
+        dimension: Dimension,
+    },
+    /// The output's format is not written of a periodic domain.
+    #[error("{}: this format is not written of periodic grains; choose another, such as .vtp", path.display())]
+    FormatPeriodic {
+        /// The path as given.
+        path: PathBuf,
+    },
+    /// The output's format holds voxels, and nothing says how many.
+    #[error("{}: this format holds voxels; give their number with --voxels NX NY NZ (NX NY in 2D)", path.display())]
+    NoVoxels {
+        /// The path as given.
+        path: PathBuf,
+    },
     /// The directory that the output shall go to does not exist.
     #[error("{}: no directory {}; create it or choose another path", path.display(), directory.display())]
     NoOutputDirectory {
@@ -32,6 +55,12 @@ pub enum Error {
     /// The output path is taken by something that is not a regular file.
     #[error("{}: is not a regular file; choose another path", path.display())]
     OutputNotAFile {
+        /// The path as given.
+        path: PathBuf,
+    },
+    /// The directory for files of grains is not empty, or is no directory.
+    #[error("{}: is not an empty directory; remove it or choose another path", path.display())]
+    OutputDirectoryTaken {
         /// The path as given.
         path: PathBuf,
     },

@@ -3,14 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
 use polycrystal::{BoundaryId, Claims, Elements, GrainId, NodeType, Side, Surface, outward_sides};
 
 use crate::Error;
 use crate::mesh_file::MeshFileProblem;
 use crate::mesh_file::vtk::labelled::{LabelledCells, read_legacy, read_xml};
+use crate::vtk::{field_text, find};
 
 /// A labelled surface (in the plane: lines) from a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -150,27 +149,13 @@ fn node_type(code: i64) -> Option<NodeType> {
 
 /// The command line that this program writes into the field data of its files.
 fn command_line(bytes: &[u8]) -> Option<String> {
-    let start = find(bytes, b"CommandLine")?;
-    let rest = &bytes[start..];
-    let text = match find(&rest[..rest.len().min(200)], b"offset=\"") {
-        Some(offset) => {
-            let digits: Vec<u8> = rest[offset + 8..].iter().copied().take_while(u8::is_ascii_digit).collect();
-            let offset: usize = str::from_utf8(&digits).ok()?.parse().ok()?;
-            let data = find(bytes, b"<AppendedData encoding=\"base64\">")?;
-            let data = data + find(&bytes[data..], b"_")? + 1;
-            let start = data.checked_add(offset)?;
-            let header = STANDARD.decode(bytes.get(start..start.checked_add(12)?)?).ok()?;
-            let count = usize::try_from(u64::from_ne_bytes(header[..8].try_into().ok()?)).ok()?;
-            let end = count.checked_add(8)?.div_ceil(3).checked_mul(4)?.checked_add(start)?;
-            STANDARD.decode(bytes.get(start..end)?).ok()?.get(8..8 + count)?.to_vec()
-        }
+    let text = field_text(bytes, "CommandLine").or_else(|| {
         // Legacy: the text follows its length.
-        None => {
-            rest.get(find(rest, b"grainsmooth ")?..)?.iter().copied().take_while(|b| *b != b'\n').collect()
-        }
-    };
-    let text = String::from_utf8(text).ok()?;
-    Some(text.trim_end_matches('\0').to_owned()).filter(|text| text.starts_with("grainsmooth "))
+        let rest = &bytes[find(bytes, b"CommandLine")?..];
+        let text = rest[find(rest, b"grainsmooth ")?..].split(|byte| *byte == b'\n').next()?;
+        String::from_utf8(text.to_vec()).ok()
+    });
+    text.filter(|text| text.starts_with("grainsmooth "))
 }
 
 /// The volume (in the plane: area) of the box that a command line names.
@@ -179,8 +164,4 @@ fn domain_volume(command_line: &str) -> Option<f64> {
     words.next()?;
     let sides: Vec<f64> = words.map_while(|word| word.parse().ok()).collect();
     (sides.len() == 2 || sides.len() == 3).then(|| sides.iter().product())
-}
-
-fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
-    bytes.windows(what.len()).position(|window| window == what)
 }

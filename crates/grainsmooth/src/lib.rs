@@ -18,6 +18,7 @@ mod cell_table;
 mod check_report;
 mod config;
 mod error;
+mod formats;
 mod labelled_file;
 mod lattice;
 pub mod memory;
@@ -37,14 +38,18 @@ pub mod vtk;
 
 pub use cell_table::{CellTable, TableFormat};
 pub use check_report::{CheckReport, ReportedFault, Spread, Statistic};
-pub use config::{Config, SeedSource};
+pub use config::{Config, FileOptions, SeedSource};
 pub use error::Error;
+pub use formats::{LabelGrid, Names, StlEncoding};
+pub use formats::{
+    Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
+};
 pub use labelled_file::{FileElements, LabelledFile};
 pub use lattice::{Lattice, LatticeFit};
 pub use mesh_bezier::{BezierFile, read_bezier};
 pub use mesh_edit::{EdgeEdit, edit_edges};
 pub use mesh_json::{bezier_json, levels_json, mesh_json};
-pub use output::{Output, OutputFormat};
+pub use output::{Output, OutputDirectory, OutputFormat};
 pub use pipeline::{Polycrystal, Progress, Stage, Tessellated, make_polycrystal, smooth, tessellate};
 pub use poisson_disc::poisson_disc_seeds;
 pub use seed_file::{FileSeed, SeedLineProblem, read_seed_file};

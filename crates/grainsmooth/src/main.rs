@@ -7,13 +7,14 @@ mod mesh_run;
 mod progress;
 
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::anyhow;
 use clap::Parser;
 use grainsmooth::mesh_file::READER_THREAD;
-use grainsmooth::{CellTable, Output, Stage, Summary, TableFormat, smooth, tessellate};
+use grainsmooth::{CellTable, Output, OutputDirectory, Stage, Summary, TableFormat, smooth, tessellate};
 
 use cli::{Arguments, Command};
 use progress::ProgressLine;
@@ -54,18 +55,25 @@ fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     // An output that cannot be written is found before hours of work, not after.
     let tables = tables(arguments)?;
     let output = if arguments.no_mesh { None } else { Some(Output::check(&arguments.output)?) };
+    if let Some(output) = &output {
+        output.check_fits(&arguments.config())?;
+    }
+    let grains = arguments.grains_dir.as_ref().map(|path| arguments.grains_format.check(path)).transpose()?;
+    if let Some(grains) = &grains {
+        grains.check_fits(&arguments.config())?;
+    }
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .map_err(|cause| anyhow!("cannot start {threads} threads: {cause}; give fewer with --threads"))?;
     let line = ProgressLine::new(arguments.quiet);
-    let result = pool.install(|| compute(arguments, &tables, output.as_ref(), &line));
+    let files = Files { tables, output, grains };
+    let result = pool.install(|| compute(arguments, &files, &line));
     line.clear();
     let summary = result?;
     if !arguments.quiet {
-        let written = tables.iter().map(Output::path).chain(output.as_ref().map(Output::path));
-        let names: Vec<String> = written.map(|path| path.display().to_string()).collect();
+        let names: Vec<String> = files.paths().map(|path| path.display().to_string()).collect();
         say(&format!("{summary}\nwritten     {}", names.join(", ")));
     }
     Ok(ExitCode::SUCCESS)
@@ -78,21 +86,31 @@ fn tables(arguments: &Arguments) -> Result<Vec<Output<TableFormat>>, grainsmooth
     json.chain(csv).collect()
 }
 
+/// What is written, all found writable.
+struct Files {
+    tables: Vec<Output<TableFormat>>,
+    output: Option<Output>,
+    grains: Option<OutputDirectory>,
+}
+
+impl Files {
+    fn paths(&self) -> impl Iterator<Item = &Path> {
+        let tables = self.tables.iter().map(Output::path);
+        let grains = self.grains.as_ref().map(OutputDirectory::path);
+        tables.chain(self.output.as_ref().map(Output::path)).chain(grains)
+    }
+}
+
 /// Computes and writes what is asked for, and returns the summary.
-fn compute(
-    arguments: &Arguments,
-    tables: &[Output<TableFormat>],
-    output: Option<&Output>,
-    line: &ProgressLine,
-) -> Result<String, grainsmooth::Error> {
+fn compute(arguments: &Arguments, files: &Files, line: &ProgressLine) -> Result<String, grainsmooth::Error> {
     let config = arguments.config();
     let progress = |stage, done, count| line.show(stage, done, count);
     let tessellated = tessellate(&config, &progress)?;
-    if !tables.is_empty() {
+    if !files.tables.is_empty() {
         let table = CellTable::new(&tessellated);
-        tables.iter().try_for_each(|output| table.write(output))?;
+        files.tables.iter().try_for_each(|output| table.write(output))?;
     }
-    let Some(output) = output else {
+    let Some(output) = &files.output else {
         let tessellation = &tessellated.tessellation;
         let lattice = config.lattice_fit().map_or(String::new(), |fit| format!("\nlattice     {fit}"));
         return Ok(format!(
@@ -105,6 +123,9 @@ fn compute(
     line.show(Stage::Writing, 0, 1);
     let start = Instant::now();
     polycrystal.write(output)?;
+    if let Some(grains) = &files.grains {
+        polycrystal.write_grains(grains)?;
+    }
     polycrystal.add_time(Stage::Writing, start.elapsed());
     Ok(Summary(&polycrystal).to_string())
 }

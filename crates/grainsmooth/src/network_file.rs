@@ -1,78 +1,128 @@
-//! A polycrystal as VTK data.
+//! A polycrystal's network as a file of any format.
+
+use std::borrow::Cow;
+use std::io::{self, Write};
 
 use polycrystal::{Boundary, BoundaryId, Level, Mesh, Side};
 
-use crate::vtk::{Array, Cells, FieldEntry, FieldValue, PolyData, Values, write_vtk};
-use crate::{Error, Output, Polycrystal};
+use crate::formats::{Surface, write_ang, write_evolver, write_gmsh, write_npy, write_obj, write_ply};
+use crate::formats::{write_gmsh_script, write_stl, write_tess};
+use crate::vtk::{Array, Cells, Each, FieldEntry, FieldValue, ImageData, PolyData, Values, VtkFormat};
+use crate::vtk::{write_vti, write_vtk};
+use crate::{Error, LabelGrid, Names, Output, OutputFormat, Polycrystal, Tess};
 
 impl Polycrystal {
-    /// Writes the finest level: every boundary once, every shared point once.
+    /// Writes the network, every boundary and every point once; its voxels; or its flat cells.
     ///
-    /// Cell arrays `FaceLabels` (the two sides: grains from 0, the exterior is -1) and `BoundaryId`; point arrays `NodeTypes`
-    /// (DREAM.3D's codes) and `Generation`. Normals point from the first to the second side. In 2D the cells are the boundaries'
-    /// polylines, with their first side on the left.
+    /// In the plane each boundary is one polyline. VTK files are written with the arrays `FaceLabels`, `BoundaryId`,
+    /// `NodeTypes` and `Generation`, and say by which version, command line and random seed they were made.
     ///
     /// Grains of a periodic domain are whole. A boundary between grains a period apart comes at both; its second label is -2 - b
     /// with the `BoundaryId` b of the other one. The cell array `PeriodicNeighbor` has the grain there (-1 elsewhere), the
     /// point array `PeriodicOriginal` the point that each is a copy of, its own number where it is none.
     ///
     /// # Errors
-    /// [`Error::WriteOutput`]; nothing is left behind then.
+    /// [`Error::WriteOutput`]; nothing is left behind then. As of [`Output::check_fits`].
     pub fn write(&self, output: &Output) -> Result<(), Error> {
-        let level = self.network.finest();
-        let node_types: Vec<i8> = level.node_types.iter().map(|node_type| node_type.code()).collect();
-        let generations: Vec<i8> = level.generations.iter().map(|g| g.cast_signed()).collect();
-        let polylines;
-        let (cells, boundary_of) = match &level.mesh {
-            Mesh::Triangles(mesh) => (Cells::Triangles(mesh.triangles()), level.boundary_of.clone()),
-            Mesh::Segments(_) => {
-                let ids;
-                (polylines, ids) = boundary_polylines(level);
-                (Cells::Polylines(&polylines), ids)
-            }
-        };
-        let boundary_ids: Vec<i32> = boundary_of.iter().map(|boundary| signed(boundary.0)).collect();
-        let labels: Vec<[i32; 2]> = self.network.boundaries().iter().map(face_labels).collect();
-        let face_labels: Vec<[i32; 2]> =
-            boundary_of.iter().map(|boundary| labels[boundary.index()]).collect();
-        let mut point_arrays = vec![
-            Array { name: "NodeTypes", values: Values::Int8(&node_types) },
-            Array { name: "Generation", values: Values::Int8(&generations) },
-        ];
-        let mut cell_arrays = vec![
-            Array { name: "FaceLabels", values: Values::Int32Pairs(&face_labels) },
-            Array { name: "BoundaryId", values: Values::Int32(&boundary_ids) },
-        ];
-        let (neighbors, originals);
-        if self.network.domain().is_periodic() {
-            (neighbors, originals) = (self.periodic_neighbors(&boundary_of), self.originals());
-            cell_arrays.push(Array { name: "PeriodicNeighbor", values: Values::Int32(&neighbors) });
-            point_arrays.push(Array { name: "PeriodicOriginal", values: Values::Int32(&originals) });
+        output.check_fits(&self.config)?;
+        match output.format() {
+            OutputFormat::Vtm => return self.write_blocks(output),
+            OutputFormat::Msh => self.write_gmsh_script(output)?,
+            _ => {}
         }
-        let data = PolyData {
-            points: &self.points,
-            cells,
-            point_arrays,
-            cell_arrays,
-            field: vec![
-                text("Version", format!("grainsmooth {}", env!("CARGO_PKG_VERSION"))),
-                text("CommandLine", self.config.command_line()),
-                FieldEntry { name: "RandomSeed", value: FieldValue::Integer(self.config.random_seed) },
-            ],
-        };
-        output.write(|out| write_vtk(&data, output.format(), out))
+        output.write(|out| match output.format() {
+            OutputFormat::Vtk(format) => self.write_vtk(format, out),
+            OutputFormat::Vtm => Err(io::Error::other("several files are not written as one")),
+            OutputFormat::Stl => write_stl(&self.surface()?, "network", self.config.file.stl, out),
+            OutputFormat::Ply => write_ply(&self.surface()?, out),
+            OutputFormat::Obj => write_obj(&self.surface()?, out),
+            OutputFormat::Msh => write_gmsh(&self.surface()?, out),
+            OutputFormat::Fe => {
+                let walls = &self.network.finest().walls;
+                write_evolver(
+                    &self.surface()?,
+                    self.network.domain(),
+                    walls,
+                    self.network.cell_volumes(),
+                    out,
+                )
+            }
+            OutputFormat::Tess => write_tess(&Tess::new(&self.cells), out),
+            OutputFormat::Vti => self.write_vti(out),
+            OutputFormat::Npy => write_npy(&self.label_grid()?, self.config.file.names, out),
+            OutputFormat::Ang => write_ang(&self.label_grid()?, self.config.random_seed, out),
+        })
     }
 
-    /// Of each cell, the grain that lies beyond it a period or more away; -1 where there is none.
-    fn periodic_neighbors(&self, boundary_of: &[BoundaryId]) -> Vec<i32> {
-        let boundaries = self.network.boundaries();
-        let beyond =
-            |boundary: &Boundary| boundary.twin.map(|twin| boundaries[twin.boundary.index()].sides[0]);
-        let neighbor = |boundary: &BoundaryId| match beyond(&boundaries[boundary.index()]) {
-            Some(Side::Grain(grain)) => signed(grain.0),
-            Some(Side::Exterior) | None => -1,
+    /// The script that makes volumes of the grains, beside the mesh file.
+    fn write_gmsh_script(&self, output: &Output) -> Result<(), Error> {
+        let script = Output::check_as(output.path().with_extension("geo"), OutputFormat::Msh)?;
+        let mesh = output.path().file_name().unwrap_or_default().to_string_lossy();
+        script.write(|out| write_gmsh_script(&self.surface()?, self.network.grain_count(), &mesh, out))
+    }
+
+    pub(crate) fn surface(&self) -> io::Result<Surface<'_>> {
+        Surface::network(self).ok_or_else(|| io::Error::other("boundaries in the plane are no surfaces"))
+    }
+
+    fn label_grid(&self) -> io::Result<LabelGrid> {
+        let voxels =
+            self.config.file.voxels.ok_or_else(|| io::Error::other("no number of voxels is given"))?;
+        Ok(LabelGrid::new(self, voxels))
+    }
+
+    fn write_vti(&self, out: &mut dyn Write) -> io::Result<()> {
+        let LabelGrid { size, origin, spacing, labels } = self.label_grid()?;
+        let names = self.config.file.names;
+        let number = |voxel: usize| names.number(labels[voxel]);
+        let values = Values::Int32Of(Each { count: labels.len(), value: &number });
+        let cell_arrays = vec![Array { name: names.voxel(), values }];
+        write_vti(&ImageData { size, origin, spacing, cell_arrays, field: self.field() }, out)
+    }
+
+    fn write_vtk(&self, format: VtkFormat, out: &mut dyn Write) -> io::Result<()> {
+        let level = self.network.finest();
+        let names = self.config.file.names;
+        let (polylines, boundaries_of_lines) = boundary_polylines(level);
+        let (cells, boundary_of_cell) = match &level.mesh {
+            Mesh::Triangles(_) => (None, &level.boundary_of),
+            Mesh::Segments(_) => (Some(Cells::Polylines(&polylines)), &boundaries_of_lines),
         };
-        boundary_of.iter().map(neighbor).collect()
+        let triangles = triangles(level, self.network.boundaries(), names);
+        let cells = cells.unwrap_or(Cells::Triangles(&triangles));
+        let count = boundary_of_cell.len();
+        let boundary = |cell: usize| &self.network.boundaries()[boundary_of_cell[cell].index()];
+        let labels = |cell: usize| names.labels(boundary(cell));
+        // Boundaries and points are far fewer than 2^31: edges have two directions with 32-bit ids.
+        let boundary_id = |cell: usize| boundary_of_cell[cell].0.cast_signed();
+        let node_type = |point: usize| level.node_types[point].code();
+        // There are fewer than 128 levels.
+        let generation = |point: usize| level.generations[point].cast_signed();
+        let of_points = |value| Values::Int8Of(Each { count: self.points.len(), value });
+        let of_cells = |value| Values::Int32Of(Each { count, value });
+        let mut point_arrays = vec![
+            Array { name: "NodeTypes", values: of_points(&node_type) },
+            Array { name: "Generation", values: of_points(&generation) },
+        ];
+        let mut cell_arrays = vec![
+            Array { name: names.sides(), values: Values::Int32PairsOf(Each { count, value: &labels }) },
+            Array { name: "BoundaryId", values: of_cells(&boundary_id) },
+        ];
+        let neighbor = |cell: usize| self.periodic_neighbor(boundary(cell));
+        let originals;
+        if self.network.domain().is_periodic() {
+            originals = self.originals();
+            cell_arrays.push(Array { name: "PeriodicNeighbor", values: of_cells(&neighbor) });
+            point_arrays.push(Array { name: "PeriodicOriginal", values: Values::Int32(&originals) });
+        }
+        let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field: self.field() };
+        write_vtk(&data, format, out)
+    }
+
+    /// The number of the grain that lies beyond a boundary a period or more away; that of the exterior where there is none.
+    fn periodic_neighbor(&self, boundary: &Boundary) -> i32 {
+        let twin = boundary.twin.map(|twin| self.network.boundaries()[twin.boundary.index()].sides[0]);
+        self.config.file.names.side_number(twin.unwrap_or(Side::Exterior))
     }
 
     /// Of each point, the one that it is a copy of, or itself.
@@ -80,10 +130,35 @@ impl Polycrystal {
         let level = self.network.finest();
         let mut originals: Vec<i32> = (0..).take(level.vertex_count()).collect();
         for pair in &level.copies.vertices {
-            originals[pair.secondary as usize] = signed(pair.primary);
+            originals[pair.secondary as usize] = pair.primary.cast_signed();
         }
         originals
     }
+
+    /// What every VTK file says about itself.
+    pub(crate) fn field(&self) -> Vec<FieldEntry> {
+        vec![
+            text("Version", format!("grainsmooth {}", env!("CARGO_PKG_VERSION"))),
+            text("CommandLine", self.config.command_line()),
+            FieldEntry { name: "RandomSeed", value: FieldValue::Integer(self.config.random_seed) },
+        ]
+    }
+}
+
+/// The triangles, wound as a scheme of names wants them.
+fn triangles<'a>(level: &'a Level, boundaries: &[Boundary], names: Names) -> Cow<'a, [[u32; 3]]> {
+    let Mesh::Triangles(mesh) = &level.mesh else { return Cow::default() };
+    if !boundaries.iter().any(|boundary| names.reverses(boundary)) {
+        return Cow::Borrowed(mesh.triangles());
+    }
+    let numbered = mesh.triangles().iter().zip(&level.boundary_of);
+    let wound =
+        numbered.map(
+            |(&[a, b, c], boundary)| {
+                if names.reverses(&boundaries[boundary.index()]) { [a, c, b] } else { [a, b, c] }
+            },
+        );
+    wound.collect()
 }
 
 /// One polyline for each boundary, and the boundaries in the same order.
@@ -99,18 +174,6 @@ fn boundary_polylines(level: &Level) -> (Vec<Vec<u32>>, Vec<BoundaryId>) {
         (polyline, segments[0].0)
     };
     boundaries.map(polyline).unzip()
-}
-
-fn face_labels(boundary: &Boundary) -> [i32; 2] {
-    boundary.sides.map(|side| match side {
-        Side::Grain(grain) => signed(grain.0),
-        Side::Exterior => boundary.twin.map_or(-1, |twin| -2 - signed(twin.boundary.0)),
-    })
-}
-
-/// Grains and boundaries are far fewer than 2^31, for each has many triangles and those have 32-bit ids; so are points.
-fn signed(id: u32) -> i32 {
-    i32::try_from(id).expect("fewer grains and boundaries than 2^31")
 }
 
 fn text(name: &'static str, value: String) -> FieldEntry {

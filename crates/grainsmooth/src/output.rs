@@ -5,31 +5,71 @@ use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, TempDir};
+use voronoi::Dimension;
 
-use crate::Error;
+use crate::vtk::VtkFormat;
+use crate::{Config, Error};
 
 /// A file format that results are written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OutputFormat {
-    /// XML PolyData.
-    Vtp,
-    /// XML UnstructuredGrid.
-    Vtu,
-    /// Legacy PolyData.
-    Vtk,
+    /// One of VTK's for surfaces.
+    Vtk(VtkFormat),
+    /// VTK's multi-block file, with its blocks in a folder of the same name.
+    Vtm,
+    /// STL, every boundary once.
+    Stl,
+    /// PLY, binary.
+    Ply,
+    /// OBJ with a group for each boundary.
+    Obj,
+    /// Gmsh's mesh format 4.1.
+    Msh,
+    /// Surface Evolver's datafile.
+    Fe,
+    /// Neper's tessellation of the flat cells.
+    Tess,
+    /// The grain of each voxel as VTK ImageData.
+    Vti,
+    /// The grain of each voxel as a NumPy array.
+    Npy,
+    /// The orientation of each pixel.
+    Ang,
 }
 
 impl OutputFormat {
     /// Every format, the default first.
-    pub const ALL: [Self; 3] = [Self::Vtp, Self::Vtu, Self::Vtk];
+    pub const ALL: [Self; 13] = [
+        Self::Vtk(VtkFormat::Vtp),
+        Self::Vtk(VtkFormat::Vtu),
+        Self::Vtk(VtkFormat::Vtk),
+        Self::Vtm,
+        Self::Stl,
+        Self::Ply,
+        Self::Obj,
+        Self::Msh,
+        Self::Fe,
+        Self::Tess,
+        Self::Vti,
+        Self::Npy,
+        Self::Ang,
+    ];
 
     /// The extension that stands for the format, without its dot.
     pub fn extension(self) -> &'static str {
         match self {
-            Self::Vtp => "vtp",
-            Self::Vtu => "vtu",
-            Self::Vtk => "vtk",
+            Self::Vtk(format) => format.extension(),
+            Self::Vtm => "vtm",
+            Self::Stl => "stl",
+            Self::Ply => "ply",
+            Self::Obj => "obj",
+            Self::Msh => "msh",
+            Self::Fe => "fe",
+            Self::Tess => "tess",
+            Self::Vti => "vti",
+            Self::Npy => "npy",
+            Self::Ang => "ang",
         }
     }
 
@@ -40,9 +80,23 @@ impl OutputFormat {
     }
 
     /// The extensions as a message lists them: `*.vtp, *.vtu or *.vtk`.
-    pub(crate) fn known_extensions() -> String {
+    pub fn known_extensions() -> String {
         let [others @ .., last] = Self::ALL.map(|format| format!("*.{}", format.extension()));
         format!("{} or {last}", others.join(", "))
+    }
+
+    /// Whether the format holds voxels.
+    pub fn has_voxels(self) -> bool {
+        matches!(self, Self::Vti | Self::Npy | Self::Ang)
+    }
+
+    /// The only dimension that the format can hold, if there is such a one.
+    fn only_dimension(self) -> Option<Dimension> {
+        match self {
+            Self::Vtm | Self::Stl | Self::Ply | Self::Obj | Self::Msh | Self::Fe => Some(Dimension::Three),
+            Self::Ang => Some(Dimension::Two),
+            Self::Vtk(_) | Self::Tess | Self::Vti | Self::Npy => None,
+        }
     }
 }
 
@@ -67,6 +121,26 @@ impl Output {
         match OutputFormat::of_path(&path) {
             Some(format) => Self::check_as(path, format),
             None => Err(Error::UnknownExtension { path }),
+        }
+    }
+
+    /// Checks that the format can hold what a config makes.
+    ///
+    /// # Errors
+    /// [`Error::FormatDimension`]; [`Error::FormatPeriodic`]; [`Error::NoVoxels`] for a format of voxels when their number is not given.
+    pub fn check_fits(&self, config: &Config) -> Result<(), Error> {
+        let path = || self.path.clone();
+        match self.format.only_dimension() {
+            Some(dimension) if dimension != config.dimension => {
+                Err(Error::FormatDimension { path: path(), dimension })
+            }
+            _ if self.format == OutputFormat::Fe && config.periodic.any() => {
+                Err(Error::FormatPeriodic { path: path() })
+            }
+            _ if self.format.has_voxels() && config.file.voxels.is_none() => {
+                Err(Error::NoVoxels { path: path() })
+            }
+            _ => Ok(()),
         }
     }
 }
@@ -137,10 +211,9 @@ impl<Format: Copy> Output<Format> {
     }
 
     fn temporary_file(&self) -> io::Result<NamedTempFile> {
-        let mut prefix = OsString::from(".");
-        prefix.push(self.target.file_name().unwrap_or_default());
+        let prefix = hidden(&self.target);
         let mut builder = tempfile::Builder::new();
-        builder.prefix(&prefix).suffix(".part");
+        builder.prefix(&prefix).suffix(PARTIAL);
         // What any new file gets; the system takes the umask away from it.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
@@ -148,10 +221,108 @@ impl<Format: Copy> Output<Format> {
     }
 
     fn directory(&self) -> &Path {
-        match self.target.parent() {
-            Some(directory) if directory != Path::new("") => directory,
-            _ => Path::new("."),
+        parent(&self.target)
+    }
+}
+
+/// A directory for files that was found fit to be made, and the format of the files.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OutputDirectory {
+    path: PathBuf,
+    format: OutputFormat,
+}
+
+impl OutputDirectory {
+    /// Checks that a directory can be made at `path`, or that an empty one is there.
+    ///
+    /// # Errors
+    /// [`Error::OutputDirectoryTaken`] when something else is there; [`Error::NoOutputDirectory`];
+    /// [`Error::OutputNotWritable`].
+    pub fn check(path: impl Into<PathBuf>, format: OutputFormat) -> Result<Self, Error> {
+        let directory = Self { path: path.into(), format };
+        let path = || directory.path.clone();
+        let is_free = match fs::read_dir(&directory.path) {
+            Ok(mut entries) => entries.next().is_none(),
+            Err(error) => error.kind() == io::ErrorKind::NotFound,
+        };
+        if !is_free {
+            return Err(Error::OutputDirectoryTaken { path: path() });
         }
+        if !directory.parent().is_dir() {
+            return Err(Error::NoOutputDirectory { path: path(), directory: directory.parent().to_owned() });
+        }
+        match directory.temporary() {
+            Ok(_) => Ok(directory),
+            Err(cause) => Err(Error::OutputNotWritable { path: path(), cause }),
+        }
+    }
+
+    /// Checks that a config makes grains with surfaces.
+    ///
+    /// # Errors
+    /// [`Error::FormatDimension`] in 2D.
+    pub fn check_fits(&self, config: &Config) -> Result<(), Error> {
+        let dimension = Dimension::Three;
+        match config.dimension {
+            Dimension::Three => Ok(()),
+            Dimension::Two => Err(Error::FormatDimension { path: self.path.clone(), dimension }),
+        }
+    }
+
+    /// The path as it was given.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The format of the files.
+    pub fn format(&self) -> OutputFormat {
+        self.format
+    }
+
+    /// Fills the directory: `content` writes into a temporary one beside it, which takes the name when complete.
+    ///
+    /// # Errors
+    /// [`Error::WriteOutput`]; nothing is left behind then.
+    pub fn write(&self, content: impl FnOnce(&Path) -> io::Result<()>) -> Result<(), Error> {
+        let write = || {
+            let temporary = self.temporary()?;
+            content(temporary.path())?;
+            if self.path.is_dir() {
+                fs::remove_dir(&self.path)?;
+            }
+            fs::rename(temporary.keep(), &self.path)
+        };
+        write().map_err(|cause| Error::WriteOutput { path: self.path.clone(), cause })
+    }
+
+    fn temporary(&self) -> io::Result<TempDir> {
+        let mut builder = tempfile::Builder::new();
+        // What any new directory gets; the system takes the umask away from it.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+        builder.prefix(&hidden(&self.path)).suffix(PARTIAL).tempdir_in(self.parent())
+    }
+
+    fn parent(&self) -> &Path {
+        parent(&self.path)
+    }
+}
+
+/// The end of the names of what is not complete.
+const PARTIAL: &str = ".part";
+
+/// The beginning of the name of a temporary neighbour.
+fn hidden(path: &Path) -> OsString {
+    let mut name = OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name
+}
+
+/// The directory that the path is in.
+fn parent(path: &Path) -> &Path {
+    match path.parent() {
+        Some(directory) if directory != Path::new("") => directory,
+        _ => Path::new("."),
     }
 }
 
@@ -165,7 +336,7 @@ mod tests {
 
     #[test]
     fn extension_names_the_format() {
-        assert_eq!(OutputFormat::of_path(Path::new("a.b.VTU")), Some(OutputFormat::Vtu));
+        assert_eq!(OutputFormat::of_path(Path::new("a.b.VTU")), Some(OutputFormat::Vtk(VtkFormat::Vtu)));
         assert_eq!(OutputFormat::of_path(Path::new("vtp")), None);
         for format in OutputFormat::ALL {
             assert_eq!(
@@ -174,9 +345,11 @@ mod tests {
             );
         }
 
-        for name in ["grains", "grains.obj", ".vtp"] {
+        let known =
+            "*.vtp, *.vtu, *.vtk, *.vtm, *.stl, *.ply, *.obj, *.msh, *.fe, *.tess, *.vti, *.npy or *.ang";
+        for name in ["grains", "grains.off", ".vtp"] {
             let error = Output::check(name).unwrap_err().to_string();
-            assert_eq!(error, format!("{name}: unknown extension; name the file *.vtp, *.vtu or *.vtk"));
+            assert_eq!(error, format!("{name}: unknown extension; name the file {known}"));
         }
     }
 
@@ -211,7 +384,7 @@ mod tests {
         let path = directory.path().join("grains.vtk");
         for text in ["first", "second"] {
             let output = Output::check(&path).unwrap();
-            assert_eq!((output.path(), output.format()), (&*path, OutputFormat::Vtk));
+            assert_eq!((output.path(), output.format()), (&*path, OutputFormat::Vtk(VtkFormat::Vtk)));
             output.write(|out| out.write_all(text.as_bytes())).unwrap();
             assert_eq!(fs::read_to_string(&path).unwrap(), text);
             assert_eq!(names_in(directory.path()), ["grains.vtk"]);

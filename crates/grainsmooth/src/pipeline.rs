@@ -54,6 +54,8 @@ pub type Progress<'a> = &'a (dyn Fn(Stage, usize, usize) + Sync);
 pub struct Polycrystal {
     /// What was asked for.
     pub config: Config,
+    /// The flat cells that the grains come from.
+    pub cells: Tessellated,
     /// Connectivity of all levels.
     pub network: Network,
     /// Points of the finest level.
@@ -139,11 +141,11 @@ pub fn make_polycrystal(config: &Config, progress: Progress) -> Result<Polycryst
 /// [`Error::LevelsExceedMemory`] and [`Error::LevelsExceedIds`]; [`Error::Network`] when the network cannot be relaxed, or
 /// is invalid.
 pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result<Polycrystal, Error> {
-    let Tessellated { tessellation, times, .. } = cells;
-    let mut clock = Clock { progress, times };
-    let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(&tessellation);
+    let tessellation = &cells.tessellation;
+    let mut clock = Clock { progress, times: cells.times.clone() };
+    let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
     check_levels(LevelSize { points, edges, triangles }, config.levels, available_memory())?;
-    let (network, flat, collapsed) = clock.time(Stage::Network, || network(config, &tessellation))?;
+    let (network, flat, collapsed) = clock.time(Stage::Network, || network(config, tessellation))?;
     let relaxation = Relaxation { time: config.relaxation_time };
     let relaxed = clock.time(Stage::Relaxation, || {
         relax(&network, &flat, &relaxation, |done, count| progress(Stage::Relaxation, done, count))
@@ -155,7 +157,7 @@ pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result
     })?;
     let times = clock.times;
     let config = config.clone();
-    Ok(Polycrystal { config, network, points, collapsed, angles_before, validation, times })
+    Ok(Polycrystal { config, cells, network, points, collapsed, angles_before, validation, times })
 }
 
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.

@@ -1,18 +1,49 @@
-//! Surfaces and polylines as VTK files, written through the `vtkio` crate.
+//! Surfaces and polylines as VTK files.
 //!
 //! One data set, [`PolyData`], is written as XML PolyData, XML UnstructuredGrid or legacy PolyData.
-//! Coordinates are 64-bit and come back bit for bit.
+//! Coordinates are 64-bit and come back bit for bit. XML files hold their numbers as raw bytes at the end.
 
+use std::fmt;
 use std::io::{self, Write};
 
 use glam::DVec3;
 use vtkio::xml::ScalarType;
 
-use crate::OutputFormat;
 use xml::XmlFormat;
 
+mod image;
 mod legacy;
+mod raw;
 mod xml;
+
+pub use image::{ImageData, write_vti};
+pub(crate) use raw::{attribute, find};
+pub use raw::{field_bytes, field_text, inlined};
+
+/// A format of VTK files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VtkFormat {
+    /// XML PolyData, .vtp.
+    Vtp,
+    /// XML UnstructuredGrid, .vtu.
+    Vtu,
+    /// Legacy PolyData, .vtk.
+    Vtk,
+}
+
+impl VtkFormat {
+    /// Every format.
+    pub const ALL: [Self; 3] = [Self::Vtp, Self::Vtu, Self::Vtk];
+
+    /// The extension that stands for the format, without its dot.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Vtp => "vtp",
+            Self::Vtu => "vtu",
+            Self::Vtk => "vtk",
+        }
+    }
+}
 
 /// Points, the cells between them, and what is known about both: the content of one VTK file.
 #[derive(Debug, Clone)]
@@ -38,6 +69,8 @@ pub enum Cells<'a> {
     Polygons(&'a [Vec<u32>]),
     /// Two or more points each, in order along the curve.
     Polylines(&'a [Vec<u32>]),
+    /// So many first points, each a cell.
+    Vertices(usize),
 }
 
 impl Cells<'_> {
@@ -46,6 +79,7 @@ impl Cells<'_> {
         match self {
             Self::Triangles(triangles) => triangles.len(),
             Self::Polygons(cells) | Self::Polylines(cells) => cells.len(),
+            Self::Vertices(count) => *count,
         }
     }
 
@@ -59,6 +93,7 @@ impl Cells<'_> {
         match self {
             Self::Triangles(triangles) => 3 * triangles.len(),
             Self::Polygons(cells) | Self::Polylines(cells) => cells.iter().map(Vec::len).sum(),
+            Self::Vertices(count) => *count,
         }
     }
 }
@@ -81,8 +116,44 @@ pub enum Values<'a> {
     Int32(&'a [i32]),
     /// Two 32-bit integers each.
     Int32Pairs(&'a [[i32; 2]]),
+    /// One 64-bit floating point number each.
+    Float64(&'a [f64]),
     /// Three 64-bit floating point numbers each.
     Vectors(&'a [DVec3]),
+    /// One 8-bit integer each, computed when it is written.
+    Int8Of(Each<'a, i8>),
+    /// One 32-bit integer each, computed when it is written.
+    Int32Of(Each<'a, i32>),
+    /// Two 32-bit integers each, computed when they are written.
+    Int32PairsOf(Each<'a, [i32; 2]>),
+    /// Several 32-bit integers each.
+    Int32Tuples(Tuples<'a>),
+    /// One 64-bit floating point number each, computed when it is written.
+    Float64Of(Each<'a, f64>),
+}
+
+/// Tuples of any number of components.
+#[derive(Debug, Clone, Copy)]
+pub struct Tuples<'a> {
+    /// Number of components, at least 1.
+    pub components: usize,
+    /// All components, one tuple after the other.
+    pub values: &'a [i32],
+}
+
+/// Tuples that need no memory, as each follows from its position.
+#[derive(Clone, Copy)]
+pub struct Each<'a, T> {
+    /// Number of tuples.
+    pub count: usize,
+    /// The tuple at a position.
+    pub value: &'a (dyn Fn(usize) -> T + Sync),
+}
+
+impl<T> fmt::Debug for Each<'_, T> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{} values", self.count)
+    }
 }
 
 impl<'a> Values<'a> {
@@ -92,7 +163,13 @@ impl<'a> Values<'a> {
             Self::Int8(values) => values.len(),
             Self::Int32(values) => values.len(),
             Self::Int32Pairs(pairs) => pairs.len(),
+            Self::Float64(values) => values.len(),
             Self::Vectors(vectors) => vectors.len(),
+            Self::Int8Of(each) => each.count,
+            Self::Int32Of(each) => each.count,
+            Self::Int32PairsOf(each) => each.count,
+            Self::Float64Of(each) => each.count,
+            Self::Int32Tuples(tuples) => tuples.values.len() / tuples.components,
         }
     }
 
@@ -101,28 +178,22 @@ impl<'a> Values<'a> {
         self.len() == 0
     }
 
-    fn component_count(&self) -> u32 {
+    fn component_count(&self) -> usize {
         match self {
-            Self::Int8(_) | Self::Int32(_) => 1,
-            Self::Int32Pairs(_) => 2,
+            Self::Int8(_) | Self::Int8Of(_) | Self::Int32(_) | Self::Int32Of(_) => 1,
+            Self::Float64(_) | Self::Float64Of(_) => 1,
+            Self::Int32Pairs(_) | Self::Int32PairsOf(_) => 2,
             Self::Vectors(_) => 3,
+            Self::Int32Tuples(tuples) => tuples.components,
         }
     }
 
     fn scalar_type(&self) -> ScalarType {
         match self {
-            Self::Int8(_) => ScalarType::Int8,
-            Self::Int32(_) | Self::Int32Pairs(_) => ScalarType::Int32,
-            Self::Vectors(_) => ScalarType::Float64,
-        }
-    }
-
-    fn bytes(&self) -> &'a [u8] {
-        match self {
-            Self::Int8(values) => bytemuck::cast_slice(values),
-            Self::Int32(values) => bytemuck::cast_slice(values),
-            Self::Int32Pairs(pairs) => bytemuck::cast_slice(pairs),
-            Self::Vectors(vectors) => bytemuck::cast_slice(vectors),
+            Self::Int8(_) | Self::Int8Of(_) => ScalarType::Int8,
+            Self::Int32(_) | Self::Int32Of(_) => ScalarType::Int32,
+            Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Int32Tuples(_) => ScalarType::Int32,
+            Self::Float64(_) | Self::Float64Of(_) | Self::Vectors(_) => ScalarType::Float64,
         }
     }
 }
@@ -156,7 +227,7 @@ pub enum FieldValue {
 ///
 /// # Panics
 /// When an array has another length than the points or cells that it describes.
-pub fn write_vtk(data: &PolyData<'_>, format: OutputFormat, out: &mut dyn Write) -> io::Result<()> {
+pub fn write_vtk(data: &PolyData<'_>, format: VtkFormat, out: &mut dyn Write) -> io::Result<()> {
     for array in &data.point_arrays {
         assert_eq!(array.values.len(), data.points.len(), "point array {}", array.name);
     }
@@ -164,8 +235,8 @@ pub fn write_vtk(data: &PolyData<'_>, format: OutputFormat, out: &mut dyn Write)
         assert_eq!(array.values.len(), data.cells.len(), "cell array {}", array.name);
     }
     match format {
-        OutputFormat::Vtp => xml::write(data, XmlFormat::PolyData, out),
-        OutputFormat::Vtu => xml::write(data, XmlFormat::UnstructuredGrid, out),
-        OutputFormat::Vtk => legacy::write(data, out),
+        VtkFormat::Vtp => xml::write(data, XmlFormat::PolyData, out),
+        VtkFormat::Vtu => xml::write(data, XmlFormat::UnstructuredGrid, out),
+        VtkFormat::Vtk => legacy::write(data, out),
     }
 }

@@ -5,14 +5,14 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use crate::vtk::{Array, Cells, FieldEntry, FieldValue, PolyData, Values, write_vtk};
-use crate::{Error, Output, OutputFormat};
+use crate::vtk::{Array, Cells, FieldEntry, FieldValue, PolyData, Values, VtkFormat, write_vtk};
+use crate::{Error, Output};
 
 /// A file format that meshes are written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeshFormat {
     /// One of VTK's.
-    Vtk(OutputFormat),
+    Vtk(VtkFormat),
     /// Wavefront OBJ.
     Obj,
     /// Binary PLY.
@@ -31,7 +31,9 @@ impl MeshFormat {
             "ply" => Some(Self::Ply),
             "stl" => Some(Self::Stl),
             "json" => Some(Self::Json),
-            _ => OutputFormat::of_path(path).map(Self::Vtk),
+            extension => {
+                VtkFormat::ALL.into_iter().find(|format| format.extension() == extension).map(Self::Vtk)
+            }
         }
     }
 }
@@ -86,6 +88,7 @@ fn for_each_cell(cells: Cells<'_>, mut visit: impl FnMut(&[u32]) -> io::Result<(
     match cells {
         Cells::Triangles(triangles) => triangles.iter().try_for_each(|cell| visit(cell)),
         Cells::Polygons(cells) | Cells::Polylines(cells) => cells.iter().try_for_each(|cell| visit(cell)),
+        Cells::Vertices(_) => Ok(()),
     }
 }
 

@@ -33,11 +33,16 @@ pub(super) fn write(data: &PolyData<'_>, out: &mut dyn Write) -> io::Result<()> 
 fn to_vtkio(data: &PolyData<'_>) -> io::Result<Vtk> {
     // Each cell is stored as its number of points and their ids.
     checked_count(data.points.len().max(data.cells.len() + data.cells.corner_count()))?;
-    let (lines, polys) = match data.cells {
-        Cells::Triangles(triangles) => (None, Some(counted_cells(triangles.iter().map(|cell| &cell[..]))?)),
-        Cells::Polygons(polygons) => (None, Some(counted_cells(polygons.iter().map(|cell| &cell[..]))?)),
-        Cells::Polylines(polylines) => (Some(counted_cells(polylines.iter().map(|cell| &cell[..]))?), None),
-    };
+    let (mut verts, mut lines, mut polys) = (None, None, None);
+    match data.cells {
+        Cells::Triangles(triangles) => polys = Some(counted_cells(triangles.iter().map(|cell| &cell[..]))?),
+        Cells::Polygons(polygons) => polys = Some(counted_cells(polygons.iter().map(|cell| &cell[..]))?),
+        Cells::Polylines(polylines) => lines = Some(counted_cells(polylines.iter().map(|cell| &cell[..]))?),
+        Cells::Vertices(count) => {
+            let ids: Vec<u32> = (0..checked_count(count)?).collect();
+            verts = Some(counted_cells(ids.iter().map(std::slice::from_ref))?);
+        }
+    }
     let coordinates: &[f64] = bytemuck::cast_slice(data.points);
     Ok(Vtk {
         version: Version::new_legacy(VERSION.0, VERSION.1),
@@ -46,6 +51,7 @@ fn to_vtkio(data: &PolyData<'_>) -> io::Result<Vtk> {
         file_path: None,
         data: DataSet::inline(PolyDataPiece {
             points: coordinates.to_vec().into(),
+            verts,
             lines,
             polys,
             data: Attributes { point: attributes(&data.point_arrays), cell: attributes(&data.cell_arrays) },
@@ -80,12 +86,18 @@ fn attributes(arrays: &[Array<'_>]) -> Vec<Attribute> {
     }
     let arrays = arrays.iter().map(|Array { name, values }| FieldArray {
         name: (*name).to_owned(),
-        elem: values.component_count(),
+        elem: u32::try_from(values.component_count()).expect("few components"),
         data: match values {
             Values::Int8(values) => IOBuffer::I8(values.to_vec()),
             Values::Int32(values) => IOBuffer::I32(values.to_vec()),
             Values::Int32Pairs(pairs) => IOBuffer::I32(pairs.as_flattened().to_vec()),
+            Values::Float64(values) => IOBuffer::F64(values.to_vec()),
             Values::Vectors(vectors) => IOBuffer::F64(bytemuck::cast_slice(vectors).to_vec()),
+            Values::Int8Of(each) => IOBuffer::I8((0..each.count).map(each.value).collect()),
+            Values::Int32Of(each) => IOBuffer::I32((0..each.count).map(each.value).collect()),
+            Values::Int32PairsOf(each) => IOBuffer::I32((0..each.count).flat_map(each.value).collect()),
+            Values::Int32Tuples(tuples) => IOBuffer::I32(tuples.values.to_vec()),
+            Values::Float64Of(each) => IOBuffer::F64((0..each.count).map(each.value).collect()),
         },
     });
     vec![Attribute::field("FieldData").with_field_data(arrays)]

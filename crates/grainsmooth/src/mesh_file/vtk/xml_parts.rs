@@ -1,12 +1,11 @@
 //! The parts of an XML file that make the mesh, put so that `vtkio` can read them.
 //!
 //! `vtkio` fails on compressed arrays without numbers, which VTK writes for the kinds of cell that a file lacks, and knows no raw
-//! appended data, which ParaView writes. So what is not needed goes, and raw data move into their elements as base64.
+//! appended data, which we and ParaView write. So what is not needed goes, and raw data move into their elements as base64.
 
 use std::ops::Range;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
+use crate::vtk::{attribute, find, inlined};
 
 /// Elements that no mesh needs.
 const NOT_NEEDED: [&str; 5] = ["FieldData", "PointData", "CellData", "Verts", "Lines"];
@@ -71,10 +70,7 @@ fn parts(bytes: &[u8], reduce: impl FnOnce(&mut String)) -> Vec<u8> {
             }
         }
     }
-    match raw_data(appended).and_then(|data| inline(&head, data)) {
-        Some(inlined) => (inlined + "</VTKFile>").into_bytes(),
-        None => [head.as_bytes(), appended].concat(),
-    }
+    inlined(&[head.as_bytes(), appended].concat())
 }
 
 /// Where the first element of this name stands.
@@ -95,78 +91,4 @@ fn element(text: &str, name: &str) -> Option<Range<usize>> {
         let closing = format!("</{name}>");
         return Some(start..tag_end + text[tag_end..].find(&closing)? + closing.len());
     }
-}
-
-/// The value of an attribute within a tag.
-fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
-    let (_, value) = tag.split_once(&format!(" {name}=\""))?;
-    value.split('"').next()
-}
-
-/// The bytes behind the underscore, if they are raw.
-fn raw_data(appended: &[u8]) -> Option<&[u8]> {
-    let tag_end = find(appended, b">")?;
-    let tag = String::from_utf8_lossy(&appended[..tag_end]);
-    (attribute(&tag, "encoding") == Some("raw")).then_some(())?;
-    let start = find(&appended[tag_end..], b"_")?;
-    appended.get(tag_end + start + 1..)
-}
-
-/// The document with the arrays of `data` within its elements; nothing if they do not fit together.
-fn inline(head: &str, data: &[u8]) -> Option<String> {
-    let file = &head[head.find("<VTKFile")?..];
-    let width = if attribute(file, "header_type") == Some("UInt64") { 8 } else { 4 };
-    let is_big = attribute(file, "byte_order") == Some("BigEndian");
-    let is_compressed = attribute(file.split('>').next()?, "compressor").is_some();
-    let number = |at: usize| -> Option<usize> {
-        let bytes = data.get(at..at.checked_add(width)?)?;
-        let add = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
-        let number = if is_big { bytes.iter().fold(0, add) } else { bytes.iter().rev().fold(0, add) };
-        usize::try_from(number).ok()
-    };
-    let mut inlined = String::new();
-    let mut rest = head;
-    while let Some(start) = rest.find("<DataArray") {
-        let end = start + rest[start..].find('>')? + 1;
-        let tag = &rest[start..end];
-        inlined.push_str(&rest[..start]);
-        rest = &rest[end..];
-        let Some(offset) = attribute(tag, "offset").filter(|_| attribute(tag, "format") == Some("appended"))
-        else {
-            inlined.push_str(tag);
-            continue;
-        };
-        let at: usize = offset.parse().ok()?;
-        let (header, length) = if is_compressed {
-            // The number of blocks, their size, that of the last, and how many bytes each takes.
-            let blocks = number(at)?;
-            let header = width.checked_mul(blocks.checked_add(3)?)?;
-            data.get(at..at.checked_add(header)?)?;
-            let sizes = (0..blocks).map(|block| number(at + width * (3 + block)));
-            (header, sizes.sum::<Option<usize>>()?)
-        } else {
-            (width, number(at)?)
-        };
-        let start = at.checked_add(header)?;
-        let (header, array) = (&data[at..start], data.get(start..start.checked_add(length)?)?);
-        inlined.push_str(&tag.trim_end_matches('>').trim_end_matches('/').replacen("appended", "binary", 1));
-        inlined.push('>');
-        // The header of compressed data is a base64 text of its own.
-        if is_compressed {
-            inlined.push_str(&STANDARD.encode(header));
-            inlined.push_str(&STANDARD.encode(array));
-        } else {
-            inlined.push_str(&STANDARD.encode([header, array].concat()));
-        }
-        inlined.push_str("</DataArray>");
-        // An element that was not empty closes itself.
-        if !tag.ends_with("/>") {
-            rest = rest.split_once("</DataArray>")?.1;
-        }
-    }
-    Some(inlined + rest)
-}
-
-fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
-    bytes.windows(what.len()).position(|window| window == what)
 }

@@ -3,19 +3,19 @@
 //! `vtkio` has the same tree, but without field data and with parts that only its own conversion can fill;
 //! from it come the names of types and the serializer.
 
-use std::borrow::Cow;
-
 use serde::Serialize;
 use vtkio::model::ByteOrder;
 use vtkio::xml::{DataArrayFormat, DataSetType, ScalarType};
 
+use super::super::raw::{AppendedNumbers, Numbers};
 use super::super::{Array, Cells, FieldEntry, FieldValue, PolyData};
-use super::{AppendedNumbers, XmlFormat};
+use super::XmlFormat;
 
 /// The one file version that VTK, ParaView, pyvista and meshio all read.
 const VERSION: &str = "1.0";
 
 /// VTK's codes for the kinds of cell.
+const VERTEX: u8 = 1;
 const POLY_LINE: u8 = 4;
 const TRIANGLE: u8 = 5;
 const POLYGON: u8 = 7;
@@ -53,6 +53,8 @@ struct Grid {
 struct Piece {
     #[serde(rename = "@NumberOfPoints")]
     number_of_points: usize,
+    #[serde(rename = "@NumberOfVerts", skip_serializing_if = "Option::is_none")]
+    number_of_verts: Option<usize>,
     #[serde(rename = "@NumberOfLines", skip_serializing_if = "Option::is_none")]
     number_of_lines: Option<usize>,
     #[serde(rename = "@NumberOfPolys", skip_serializing_if = "Option::is_none")]
@@ -68,6 +70,7 @@ struct Piece {
 
 #[derive(Serialize)]
 enum Topology {
+    Verts(Arrays),
     Lines(Arrays),
     Polys(Arrays),
     Cells(Arrays),
@@ -99,7 +102,7 @@ struct Header<Type> {
     #[serde(rename = "@Name")]
     name: &'static str,
     #[serde(rename = "@NumberOfComponents")]
-    number_of_components: u32,
+    number_of_components: usize,
     /// Only field data need this: other arrays have as many tuples as there are points or cells.
     #[serde(rename = "@NumberOfTuples", skip_serializing_if = "Option::is_none")]
     number_of_tuples: Option<usize>,
@@ -134,10 +137,10 @@ impl Document {
 
 impl Piece {
     fn new<'a>(data: &PolyData<'a>, format: XmlFormat, numbers: &mut AppendedNumbers<'a>) -> Self {
-        let points =
-            array("Points", ScalarType::Float64, 3, numbers.append(bytemuck::cast_slice(data.points)));
+        let points = array("Points", ScalarType::Float64, 3, numbers.append(Numbers::slice(data.points)));
         let mut piece = Self {
             number_of_points: data.points.len(),
+            number_of_verts: None,
             number_of_lines: None,
             number_of_polys: None,
             number_of_cells: None,
@@ -147,6 +150,7 @@ impl Piece {
             topology: Topology::new(data, format, numbers),
         };
         let number_of = match piece.topology {
+            Topology::Verts(_) => &mut piece.number_of_verts,
             Topology::Lines(_) => &mut piece.number_of_lines,
             Topology::Polys(_) => &mut piece.number_of_polys,
             Topology::Cells(_) => &mut piece.number_of_cells,
@@ -170,13 +174,20 @@ impl Topology {
         match (format, data.cells) {
             (XmlFormat::PolyData, Cells::Triangles(_) | Cells::Polygons(_)) => Self::Polys(Arrays { arrays }),
             (XmlFormat::PolyData, Cells::Polylines(_)) => Self::Lines(Arrays { arrays }),
+            (XmlFormat::PolyData, Cells::Vertices(_)) => Self::Verts(Arrays { arrays }),
             (XmlFormat::UnstructuredGrid, cells) => {
                 let kind = match cells {
                     Cells::Triangles(_) => TRIANGLE,
                     Cells::Polygons(_) => POLYGON,
                     Cells::Polylines(_) => POLY_LINE,
+                    Cells::Vertices(_) => VERTEX,
                 };
-                arrays.push(array("types", ScalarType::UInt8, 1, numbers.append(vec![kind; cells.len()])));
+                arrays.push(array(
+                    "types",
+                    ScalarType::UInt8,
+                    1,
+                    numbers.append(Numbers::each(cells.len(), move |_| kind)),
+                ));
                 Self::Cells(Arrays { arrays })
             }
         }
@@ -184,23 +195,34 @@ impl Topology {
 }
 
 /// The point ids of all cells in a row, and where in that row each cell ends.
-fn cell_ids(cells: Cells<'_>, wide: bool) -> (Cow<'_, [u8]>, Vec<u8>) {
+fn cell_ids(cells: Cells<'_>, wide: bool) -> (Numbers<'_>, Numbers<'_>) {
     match cells {
         Cells::Triangles(triangles) => {
-            let connectivity = if wide {
-                id_bytes(triangles.as_flattened().iter().map(|&id| u64::from(id)), wide).into()
-            } else {
-                bytemuck::cast_slice(triangles).into()
+            let connectivity = match wide {
+                false => Numbers::slice(triangles),
+                true => {
+                    let ids = triangles.as_flattened();
+                    Numbers::each(ids.len(), |corner| i64::from(ids[corner]))
+                }
             };
-            (connectivity, id_bytes((1..=triangles.len() as u64).map(|cell| 3 * cell), wide))
+            let end = |cell: usize| 3 * (cell as u64 + 1);
+            (connectivity, ids(triangles.len(), end, wide))
         }
         Cells::Polygons(cells) | Cells::Polylines(cells) => {
-            let ends = cells.iter().scan(0, |end, cell| {
-                *end += cell.len() as u64;
-                Some(*end)
-            });
-            let connectivity = id_bytes(cells.iter().flatten().map(|&id| u64::from(id)), wide);
-            (connectivity.into(), id_bytes(ends, wide))
+            let corners: Vec<u32> = cells.iter().flatten().copied().collect();
+            let ends: Vec<u64> = cells
+                .iter()
+                .scan(0, |end, cell| {
+                    *end += cell.len() as u64;
+                    Some(*end)
+                })
+                .collect();
+            let corner = move |index: usize| u64::from(corners[index]);
+            let count = usize::try_from(ends.last().copied().unwrap_or(0)).expect("as many as in memory");
+            (ids(count, corner, wide), ids(ends.len(), move |cell: usize| ends[cell], wide))
+        }
+        Cells::Vertices(count) => {
+            (ids(count, |cell| cell as u64, wide), ids(count, |cell| cell as u64 + 1, wide))
         }
     }
 }
@@ -209,19 +231,15 @@ fn cell_ids(cells: Cells<'_>, wide: bool) -> (Cow<'_, [u8]>, Vec<u8>) {
     clippy::cast_possible_truncation,
     reason = "the caller asks for wide ids where 32 bits do not hold them"
 )]
-fn id_bytes(ids: impl Iterator<Item = u64>, wide: bool) -> Vec<u8> {
-    if wide {
-        bytemuck::cast_slice(&ids.collect::<Vec<_>>()).to_vec()
-    } else {
-        bytemuck::cast_slice(&ids.map(|id| id as u32).collect::<Vec<_>>()).to_vec()
-    }
+fn ids<'a>(count: usize, id: impl Fn(usize) -> u64 + Sync + 'a, wide: bool) -> Numbers<'a> {
+    if wide { Numbers::each(count, id) } else { Numbers::each(count, move |index| id(index) as u32) }
 }
 
 fn attributes<'a>(arrays: &[Array<'a>], numbers: &mut AppendedNumbers<'a>) -> Vec<Element> {
     arrays
         .iter()
         .map(|Array { name, values }| {
-            array(name, values.scalar_type(), values.component_count(), numbers.append(values.bytes()))
+            array(name, values.scalar_type(), values.component_count(), numbers.append(Numbers::of(*values)))
         })
         .collect()
 }
@@ -229,26 +247,26 @@ fn attributes<'a>(arrays: &[Array<'a>], numbers: &mut AppendedNumbers<'a>) -> Ve
 fn field(entry: &FieldEntry, format: XmlFormat, numbers: &mut AppendedNumbers<'_>) -> Element {
     match (&entry.value, format) {
         (FieldValue::Integer(number), _) => {
-            let offset = numbers.append(number.to_ne_bytes().to_vec());
+            let offset = numbers.append(Numbers::bytes(number.to_ne_bytes().to_vec()));
             Element::DataArray(Header::new(entry.name, ScalarType::UInt64, 1, offset).with_tuples(1))
         }
         (FieldValue::Text(text), XmlFormat::UnstructuredGrid) => {
-            let offset = numbers.append(text.clone().into_bytes());
+            let offset = numbers.append(Numbers::bytes(text.clone().into_bytes()));
             Element::DataArray(Header::new(entry.name, ScalarType::UInt8, 1, offset).with_tuples(text.len()))
         }
         (FieldValue::Text(text), XmlFormat::PolyData) => {
-            let offset = numbers.append(format!("{text}\0").into_bytes());
+            let offset = numbers.append(Numbers::bytes(format!("{text}\0").into_bytes()));
             Element::Array(Header::new(entry.name, NotNumeric::String, 1, offset).with_tuples(1))
         }
     }
 }
 
-fn array(name: &'static str, scalar_type: ScalarType, number_of_components: u32, offset: u64) -> Element {
+fn array(name: &'static str, scalar_type: ScalarType, number_of_components: usize, offset: u64) -> Element {
     Element::DataArray(Header::new(name, scalar_type, number_of_components, offset))
 }
 
 impl<Type> Header<Type> {
-    fn new(name: &'static str, value_type: Type, number_of_components: u32, offset: u64) -> Self {
+    fn new(name: &'static str, value_type: Type, number_of_components: usize, offset: u64) -> Self {
         let format = DataArrayFormat::Appended;
         Self { value_type, name, number_of_components, number_of_tuples: None, format, offset }
     }
@@ -267,12 +285,12 @@ mod tests {
         let as_bytes = |ids: &[i64]| bytemuck::cast_slice::<i64, u8>(ids).to_vec();
         let triangles = [[0, 1, 2], [2, 1, u32::MAX]];
         let (connectivity, ends) = cell_ids(Cells::Triangles(&triangles), true);
-        assert_eq!(connectivity, as_bytes(&[0, 1, 2, 2, 1, i64::from(u32::MAX)]));
-        assert_eq!(ends, as_bytes(&[3, 6]));
+        assert_eq!(connectivity.to_vec(), as_bytes(&[0, 1, 2, 2, 1, i64::from(u32::MAX)]));
+        assert_eq!(ends.to_vec(), as_bytes(&[3, 6]));
 
         let polylines = [vec![0, 1], vec![2, 1, 3]];
         let (connectivity, ends) = cell_ids(Cells::Polylines(&polylines), true);
-        assert_eq!(connectivity, as_bytes(&[0, 1, 2, 1, 3]));
-        assert_eq!(ends, as_bytes(&[2, 5]));
+        assert_eq!(connectivity.to_vec(), as_bytes(&[0, 1, 2, 1, 3]));
+        assert_eq!(ends.to_vec(), as_bytes(&[2, 5]));
     }
 }

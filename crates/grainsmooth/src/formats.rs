@@ -1,0 +1,29 @@
+//! One file for each format that is written.
+
+mod ang;
+mod blocks;
+mod evolver;
+mod gmsh;
+mod grains;
+mod label_grid;
+mod lines;
+mod names;
+mod npy;
+mod obj;
+mod ply;
+mod stl;
+mod surface;
+mod tess;
+
+pub use label_grid::LabelGrid;
+pub use names::Names;
+pub use stl::StlEncoding;
+pub use tess::{
+    Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
+};
+
+pub(crate) use gmsh::write_script as write_gmsh_script;
+pub(crate) use surface::Surface;
+pub(crate) use {ang::write as write_ang, evolver::write as write_evolver, gmsh::write as write_gmsh};
+pub(crate) use {npy::write as write_npy, obj::write as write_obj, ply::write as write_ply};
+pub(crate) use {stl::write as write_stl, tess::write as write_tess};

@@ -1,0 +1,97 @@
+//! Surface Evolver's datafile: every grain a body of fixed volume, walls as constraints, and tension between grains only.
+//!
+//! <https://kenbrakke.com/evolver/html/datafile.htm>. It counts from 1, so grain 0 is body 1.
+
+use std::io::{self, Write};
+
+use glam::DVec3;
+use polycrystal::WallSet;
+use voronoi::Domain;
+
+use super::surface::{Surface, side_name};
+
+/// Writes the file; each point stays on its walls, and each body keeps its volume.
+pub(crate) fn write(
+    surface: &Surface<'_>,
+    domain: &Domain,
+    walls: &[WallSet],
+    volumes: &[f64],
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    writeln!(out, "// grainsmooth {}\n", env!("CARGO_PKG_VERSION"))?;
+    for wall in domain.walls() {
+        let axis = ["x", "y", "z"][wall.axis()];
+        writeln!(
+            out,
+            "constraint {}\nformula: {axis} = {:?}\n",
+            wall.number() + 1,
+            domain.wall_coordinate(wall)
+        )?;
+    }
+    writeln!(out, "vertices")?;
+    for (id, (DVec3 { x, y, z }, walls)) in (1u64..).zip(surface.points.iter().zip(walls)) {
+        writeln!(out, "{id} {x:?} {y:?} {z:?}{}", constraints(*walls))?;
+    }
+
+    let edges = edges(surface);
+    writeln!(out, "\nedges")?;
+    for (id, [a, b]) in (1u64..).zip(&edges) {
+        let common = walls[*a as usize].intersection(walls[*b as usize]);
+        writeln!(out, "{id} {} {}{}", u64::from(*a) + 1, u64::from(*b) + 1, constraints(common))?;
+    }
+
+    writeln!(out, "\nfaces")?;
+    let mut next = 1u64..;
+    let mut ids = Vec::with_capacity(surface.parts.len());
+    for part in &surface.parts {
+        let first = next.start;
+        let [from, to] = part.sides.map(side_name);
+        writeln!(out, "// boundary {}: {from} to {to}", part.boundary.0)?;
+        for (corners, face) in surface.triangles_of(part).zip(&mut next) {
+            write!(out, "{face}")?;
+            let [a, b, c] = corners;
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                let sign = if from < to { "" } else { "-" };
+                let edge = edges.binary_search(&[from.min(to), from.max(to)]).unwrap_or_default() + 1;
+                write!(out, " {sign}{edge}")?;
+            }
+            let common = corners.map(|corner| walls[corner as usize]);
+            let common = common[0].intersection(common[1]).intersection(common[2]);
+            // Walls carry no energy.
+            let density = if common.is_empty() { "" } else { " density 0" };
+            writeln!(out, "{}{density}", constraints(common))?;
+        }
+        ids.push(first..next.start);
+    }
+
+    writeln!(out, "\nbodies")?;
+    for (body, (parts, volume)) in (1..).zip(surface.parts_of_grains(volumes.len()).iter().zip(volumes)) {
+        write!(out, "{body}")?;
+        for (part, is_inward) in parts {
+            let sign = if *is_inward { "-" } else { "" };
+            for face in ids[*part].clone() {
+                write!(out, " {sign}{face}")?;
+            }
+        }
+        writeln!(out, " volume {volume:?}")?;
+    }
+    writeln!(out, "\nread")
+}
+
+/// All edges, smaller point first, sorted.
+fn edges(surface: &Surface<'_>) -> Vec<[u32; 2]> {
+    let of_triangle = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]);
+    let mut edges: Vec<[u32; 2]> = surface.triangles().flat_map(of_triangle).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}
+
+fn constraints(walls: WallSet) -> String {
+    if walls.is_empty() {
+        return String::new();
+    }
+    let numbers = walls.iter();
+    let numbers: Vec<String> = numbers.map(|wall| format!(" {}", wall.number() + 1)).collect();
+    format!(" constraints{}", numbers.concat())
+}

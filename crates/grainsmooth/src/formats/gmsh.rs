@@ -1,0 +1,162 @@
+//! Gmsh's mesh format 4.1 with the boundaries as discrete surfaces, and a script with the grains as volumes between them.
+//!
+//! <https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format>. Gmsh fills only volumes that a script makes, never those of a
+//! mesh file; `gmsh -3` on the script does. Gmsh counts from 1, so grain 0 is volume 1, and boundary 0 surface 1. Quadruple
+//! points are its points, triple lines and the edges of the domain its curves.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use glam::DVec3;
+use polycrystal::BoundaryId;
+
+use super::lines::Junctions;
+use super::surface::{Surface, side_name};
+
+/// Gmsh's codes for elements.
+const LINE: u32 = 1;
+const TRIANGLE: u32 = 2;
+const POINT: u32 = 15;
+
+/// Writes the script, which reads the mesh file of the given name beside it.
+pub(crate) fn write_script(
+    surface: &Surface<'_>,
+    grain_count: usize,
+    mesh: &str,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    writeln!(out, "// grainsmooth {}\nMerge \"{mesh}\";", env!("CARGO_PKG_VERSION"))?;
+    for part in &surface.parts {
+        let ([from, to], tag) = (part.sides.map(side_name), tag(part.boundary));
+        let number = part.boundary.0;
+        writeln!(out, "Physical Surface(\"boundary{number} {from} {to}\", {tag}) = {{{tag}}};")?;
+    }
+    for (grain, parts) in surface.parts_of_grains(grain_count).iter().enumerate() {
+        let tag = grain + 1;
+        let surfaces = parts.iter().map(|(part, is_inward)| {
+            let sign = if *is_inward { "-" } else { "" };
+            format!("{sign}{}", self::tag(surface.parts[*part].boundary))
+        });
+        let surfaces: Vec<String> = surfaces.collect();
+        writeln!(out, "Surface Loop({tag}) = {{{}}};", surfaces.join(", "))?;
+        writeln!(out, "Volume({tag}) = {{{tag}}};\nPhysical Volume(\"grain{grain}\", {tag}) = {{{tag}}};")?;
+    }
+    Ok(())
+}
+
+/// Writes the mesh file. Names stand in the script: meshio wants them for every cell, or for none.
+pub(crate) fn write(surface: &Surface<'_>, out: &mut dyn Write) -> io::Result<()> {
+    let junctions = Junctions::of(surface);
+    writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat")?;
+    write_entities(surface, &junctions, out)?;
+    write_nodes(surface, &junctions, out)?;
+    write_elements(surface, &junctions, out)
+}
+
+fn write_entities(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Write) -> io::Result<()> {
+    let Junctions { lines, corners } = junctions;
+    let mut curves_of: BTreeMap<BoundaryId, Vec<usize>> = BTreeMap::new();
+    writeln!(out, "$Entities\n{} {} {} 0", corners.len(), lines.len(), surface.parts.len())?;
+    for (tag, corner) in (1..).zip(corners) {
+        let DVec3 { x, y, z } = surface.points[*corner as usize];
+        writeln!(out, "{tag} {x:?} {y:?} {z:?} 0")?;
+    }
+    for (tag, line) in (1..).zip(lines) {
+        write!(out, "{tag} {} 0", bounds(surface, line.points.iter().copied()))?;
+        let [start, end] =
+            [line.points[0], line.points[line.points.len() - 1]].map(|end| corners.binary_search(&end));
+        match (start, end) {
+            (Ok(start), Ok(end)) => writeln!(out, " 2 {} -{}", start + 1, end + 1)?,
+            _ => writeln!(out, " 0")?,
+        }
+        for boundary in &line.boundaries {
+            curves_of.entry(*boundary).or_default().push(tag);
+        }
+    }
+    for part in &surface.parts {
+        let tag = tag(part.boundary);
+        let curves = curves_of.get(&part.boundary).map(Vec::as_slice).unwrap_or_default();
+        write!(out, "{tag} {} 0 {}", bounds(surface, surface.triangles_of(part).flatten()), curves.len())?;
+        for curve in curves {
+            write!(out, " {curve}")?;
+        }
+        writeln!(out)?;
+    }
+    writeln!(out, "$EndEntities")
+}
+
+/// The box around some points, as the format spells it.
+fn bounds(surface: &Surface<'_>, points: impl Iterator<Item = u32>) -> String {
+    let (mut lower, mut upper) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for point in points.map(|point| surface.points[point as usize]) {
+        lower = lower.min(point);
+        upper = upper.max(point);
+    }
+    format!("{:?} {:?} {:?} {:?} {:?} {:?}", lower.x, lower.y, lower.z, upper.x, upper.y, upper.z)
+}
+
+fn write_nodes(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Write) -> io::Result<()> {
+    let Junctions { lines, corners } = junctions;
+    let count = surface.points.len();
+    let block_count = corners.len() + lines.len() + surface.parts.len();
+    writeln!(out, "$Nodes\n{block_count} {count} 1 {count}")?;
+    let mut is_written = vec![false; count];
+    let mut block = |dimension: u32, tag: usize, points: &mut dyn Iterator<Item = u32>| {
+        let mut new: Vec<u32> = Vec::new();
+        for point in points {
+            if !std::mem::replace(&mut is_written[point as usize], true) {
+                new.push(point);
+            }
+        }
+        writeln!(out, "{dimension} {tag} 0 {}", new.len())?;
+        for point in &new {
+            writeln!(out, "{}", u64::from(*point) + 1)?;
+        }
+        for DVec3 { x, y, z } in new.iter().map(|point| surface.points[*point as usize]) {
+            writeln!(out, "{x:?} {y:?} {z:?}")?;
+        }
+        Ok::<(), io::Error>(())
+    };
+    for (tag, corner) in (1..).zip(corners) {
+        block(0, tag, &mut std::iter::once(*corner))?;
+    }
+    for (tag, line) in (1..).zip(lines) {
+        block(1, tag, &mut line.points.iter().copied())?;
+    }
+    for part in &surface.parts {
+        block(2, tag(part.boundary), &mut surface.triangles_of(part).flatten())?;
+    }
+    writeln!(out, "$EndNodes")
+}
+
+fn write_elements(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Write) -> io::Result<()> {
+    let Junctions { lines, corners } = junctions;
+    let segments: usize = lines.iter().map(|line| line.points.len() - 1).sum();
+    let count = corners.len() + segments + surface.triangle_count();
+    let block_count = corners.len() + lines.len() + surface.parts.len();
+    writeln!(out, "$Elements\n{block_count} {count} 1 {count}")?;
+    let mut element = 1u64..;
+    let mut next = move || element.next().unwrap_or_default();
+    for (tag, corner) in (1..).zip(corners) {
+        writeln!(out, "0 {tag} {POINT} 1\n{} {}", next(), u64::from(*corner) + 1)?;
+    }
+    for (tag, line) in (1..).zip(lines) {
+        writeln!(out, "1 {tag} {LINE} {}", line.points.len() - 1)?;
+        for ends in line.points.windows(2) {
+            writeln!(out, "{} {} {}", next(), u64::from(ends[0]) + 1, u64::from(ends[1]) + 1)?;
+        }
+    }
+    for part in &surface.parts {
+        let triangles = surface.triangles_of(part);
+        writeln!(out, "2 {} {TRIANGLE} {}", tag(part.boundary), surface.triangles_of(part).count())?;
+        for [a, b, c] in triangles.map(|triangle| triangle.map(|id| u64::from(id) + 1)) {
+            writeln!(out, "{} {a} {b} {c}", next())?;
+        }
+    }
+    writeln!(out, "$EndElements")
+}
+
+/// Number of a boundary's surface.
+fn tag(boundary: BoundaryId) -> usize {
+    boundary.index() + 1
+}

@@ -1,0 +1,125 @@
+//! Every grain as a closed surface of its own.
+
+use std::f64::consts::PI;
+use std::io::{self, Write};
+
+use polycrystal::{GrainId, Side};
+use rayon::prelude::*;
+
+use super::surface::Surface;
+use super::{Names, obj, ply, stl};
+use crate::output::OutputDirectory;
+use crate::vtk::{Array, Cells, Each, FieldEntry, PolyData, Values, VtkFormat, write_vtk};
+use crate::{Error, OutputFormat, Polycrystal};
+
+/// What is measured of a grain's surface, its parts on walls included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct GrainMeasure {
+    pub(crate) volume: f64,
+    pub(crate) area: f64,
+    /// Number of other grains that it touches.
+    pub(crate) neighbors: i32,
+    /// Area of the ball of the same volume, as a share of the grain's area.
+    pub(crate) sphericity: f64,
+}
+
+impl GrainMeasure {
+    /// Measures the closed surface of a grain.
+    pub(crate) fn of(surface: &Surface<'_>) -> Self {
+        let origin = surface.points[0];
+        let (mut volume, mut area) = (0.0, 0.0);
+        for [a, b, c] in
+            surface.triangles().map(|triangle| surface.corners(triangle).map(|corner| corner - origin))
+        {
+            volume += a.dot(b.cross(c)) / 6.0;
+            area += (b - a).cross(c - a).length() / 2.0;
+        }
+        let mut beyond: Vec<Side> = surface.parts.iter().map(|part| part.sides[1]).collect();
+        beyond.retain(|side| matches!(side, Side::Grain(_)));
+        beyond.sort_unstable();
+        beyond.dedup();
+        let neighbors = i32::try_from(beyond.len()).expect("fewer grains than 2^31");
+        let sphericity = (36.0 * PI * volume * volume).cbrt() / area;
+        Self { volume, area, neighbors, sphericity }
+    }
+}
+
+impl Polycrystal {
+    /// Writes a file for each grain, `grain_0.vtp` and so on: its closed surface, all normals outward.
+    ///
+    /// # Errors
+    /// [`Error::WriteOutput`]; nothing is left behind then. [`Error::FormatDimension`] in 2D.
+    pub fn write_grains(&self, directory: &OutputDirectory) -> Result<(), Error> {
+        directory.check_fits(&self.config)?;
+        let failed = |cause| Error::WriteOutput { path: directory.path().to_owned(), cause };
+        let network = self.surface().map_err(failed)?;
+        let parts = network.parts_of_grains(self.network.grain_count());
+        let format = directory.format();
+        directory.write(|folder| {
+            let grains = (0u32..).zip(&parts).collect::<Vec<_>>().into_par_iter();
+            grains.try_for_each(|(id, parts)| {
+                let surface = network.grain(GrainId(id), parts);
+                let name = format!("grain_{id}.{}", format.extension());
+                let mut out = io::BufWriter::new(std::fs::File::create(folder.join(name))?);
+                self.write_grain(&surface, GrainId(id), format, &mut out)?;
+                out.flush()
+            })
+        })
+    }
+
+    fn write_grain(
+        &self,
+        surface: &Surface<'_>,
+        grain: GrainId,
+        format: OutputFormat,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
+        match format {
+            OutputFormat::Stl => stl::write(surface, &format!("grain{}", grain.0), self.config.file.stl, out),
+            OutputFormat::Ply => ply::write(surface, out),
+            OutputFormat::Obj => obj::write(surface, out),
+            OutputFormat::Vtk(format) => {
+                write_vtk_grain(surface, self.config.file.names, self.field(), format, out)
+            }
+            _ => Err(io::Error::other("this format holds no surfaces")),
+        }
+    }
+}
+
+/// A grain with the arrays of the `grains` block, and what lies beyond each triangle.
+fn write_vtk_grain(
+    surface: &Surface<'_>,
+    names: Names,
+    field: Vec<FieldEntry>,
+    format: VtkFormat,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let triangles: Vec<[u32; 3]> = surface.triangles().collect();
+    let of_triangle = surface.parts.iter().flat_map(|part| surface.triangles_of(part).map(move |_| part));
+    let parts: Vec<_> = of_triangle.collect();
+    let GrainMeasure { volume, area, neighbors, sphericity } = GrainMeasure::of(surface);
+    let count = triangles.len();
+    let grain = |index: usize| names.side_number(parts[index].sides[0]);
+    let beyond = |index: usize| names.side_number(parts[index].sides[1]);
+    let boundary_id = |index: usize| parts[index].boundary.0.cast_signed();
+    let (volume, area, sphericity) = (|_| volume, |_| area, |_| sphericity);
+    let neighbors = |_| neighbors;
+    let doubles = |value| Values::Float64Of(Each { count, value });
+    let integers = |value| Values::Int32Of(Each { count, value });
+    let data = PolyData {
+        points: &surface.points,
+        cells: Cells::Triangles(&triangles),
+        point_arrays: Vec::new(),
+        cell_arrays: vec![
+            Array { name: names.grain(), values: integers(&grain) },
+            Array { name: "Beyond", values: integers(&beyond) },
+            Array { name: "BoundaryId", values: integers(&boundary_id) },
+            Array { name: "Volume", values: doubles(&volume) },
+            Array { name: "Area", values: doubles(&area) },
+            Array { name: "Neighbors", values: integers(&neighbors) },
+            Array { name: "Sphericity", values: doubles(&sphericity) },
+        ],
+        field,
+    };
+    write_vtk(&data, format, out)
+}

@@ -1,0 +1,27 @@
+//! NumPy's array file, version 1.0: the labels as `<i4` of shape (nx, ny, nz), x fastest.
+//!
+//! <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>
+
+use std::io::{self, Write};
+
+use super::{LabelGrid, Names};
+
+/// Header and magic together must be a multiple of this.
+const ALIGNMENT: usize = 64;
+
+/// Writes the labels.
+pub(crate) fn write(grid: &LabelGrid, names: Names, out: &mut dyn Write) -> io::Result<()> {
+    let [nx, ny, nz] = grid.size;
+    let mut header = format!("{{'descr': '<i4', 'fortran_order': True, 'shape': ({nx}, {ny}, {nz}), }}");
+    let magic = b"\x93NUMPY\x01\x00";
+    // Two bytes for the length, one for the line's end.
+    let length = (magic.len() + 2 + header.len() + 1).next_multiple_of(ALIGNMENT);
+    while header.len() < length - magic.len() - 2 - 1 {
+        header.push(' ');
+    }
+    header.push('\n');
+    out.write_all(magic)?;
+    out.write_all(&u16::try_from(header.len()).map_err(io::Error::other)?.to_le_bytes())?;
+    out.write_all(header.as_bytes())?;
+    grid.labels.iter().try_for_each(|grain| out.write_all(&names.number(*grain).to_le_bytes()))
+}

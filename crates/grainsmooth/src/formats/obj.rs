@@ -1,0 +1,23 @@
+//! OBJ: text, one group for each boundary.
+
+use std::io::{self, Write};
+
+use glam::DVec3;
+
+use super::surface::{Surface, side_name};
+
+/// Writes all points, in the fewest digits that give the same number back, then the boundaries.
+pub(crate) fn write(surface: &Surface<'_>, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "# grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
+    for DVec3 { x, y, z } in surface.points.iter() {
+        writeln!(out, "v {x:?} {y:?} {z:?}")?;
+    }
+    for part in &surface.parts {
+        let [from, to] = part.sides.map(side_name);
+        writeln!(out, "g boundary{} {from} {to}", part.boundary.0)?;
+        for [a, b, c] in surface.triangles_of(part).map(|triangle| triangle.map(|id| u64::from(id) + 1)) {
+            writeln!(out, "f {a} {b} {c}")?;
+        }
+    }
+    Ok(())
+}

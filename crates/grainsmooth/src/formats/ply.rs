@@ -1,0 +1,34 @@
+//! PLY: binary, little-endian, with the boundary and the two sides of each triangle.
+
+use std::io::{self, Write};
+
+use super::surface::{Surface, label};
+
+/// Writes all points and triangles.
+pub(crate) fn write(surface: &Surface<'_>, out: &mut dyn Write) -> io::Result<()> {
+    write!(
+        out,
+        "ply\nformat binary_little_endian 1.0\ncomment grainsmooth {}\n\
+         element vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+         element face {}\nproperty list uchar uint vertex_indices\n\
+         property int boundary\nproperty int grain\nproperty int neighbor\nend_header\n",
+        env!("CARGO_PKG_VERSION"),
+        surface.points.len(),
+        surface.triangle_count()
+    )?;
+    for coordinate in surface.points.iter().flat_map(|point| point.to_array()) {
+        out.write_all(&coordinate.to_le_bytes())?;
+    }
+    for part in &surface.parts {
+        let mut end = i64::from(part.boundary.0).to_le_bytes()[..4].to_vec();
+        for side in part.sides {
+            end.extend_from_slice(&label(side).to_le_bytes()[..4]);
+        }
+        for triangle in surface.triangles_of(part) {
+            out.write_all(&[3])?;
+            out.write_all(bytemuck::bytes_of(&triangle.map(u32::to_le)))?;
+            out.write_all(&end)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,74 @@
+//! STL: triangles without shared points, in single precision.
+
+use std::io::{self, Write};
+
+use glam::DVec3;
+
+use super::surface::Surface;
+
+/// How an STL file spells its numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StlEncoding {
+    /// 50 bytes for each triangle.
+    Binary,
+    /// Text.
+    Ascii,
+}
+
+/// What the header of a binary file begins with must not be `solid`, which would make it text to many readers.
+const HEADER_BYTES: usize = 80;
+
+/// Writes all triangles as one solid.
+pub(crate) fn write(
+    surface: &Surface<'_>,
+    name: &str,
+    encoding: StlEncoding,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    if let Some(point) = surface.points.iter().find(|point| !point.as_vec3().is_finite()) {
+        return Err(io::Error::other(format!("{point} is too far out for STL's single precision")));
+    }
+    match encoding {
+        StlEncoding::Binary => write_binary(surface, name, out),
+        StlEncoding::Ascii => write_ascii(surface, name, out),
+    }
+}
+
+fn write_binary(surface: &Surface<'_>, name: &str, out: &mut dyn Write) -> io::Result<()> {
+    let count = u32::try_from(surface.triangle_count())
+        .map_err(|_| io::Error::other("more triangles than STL can count; write .vtp instead"))?;
+    let mut header = format!("grainsmooth {name}").into_bytes();
+    header.resize(HEADER_BYTES, b' ');
+    out.write_all(&header)?;
+    out.write_all(&count.to_le_bytes())?;
+    let mut record = [0; 50];
+    for triangle in surface.triangles() {
+        let corners = surface.corners(triangle);
+        let vectors = [normal(corners), corners[0], corners[1], corners[2]];
+        let numbers = vectors.iter().flat_map(|vector| vector.as_vec3().to_array());
+        for (place, number) in record.as_chunks_mut::<4>().0.iter_mut().zip(numbers) {
+            *place = number.to_le_bytes();
+        }
+        out.write_all(&record)?;
+    }
+    Ok(())
+}
+
+fn write_ascii(surface: &Surface<'_>, name: &str, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "solid {name}")?;
+    for triangle in surface.triangles() {
+        let corners = surface.corners(triangle);
+        let [x, y, z] = normal(corners).as_vec3().to_array();
+        writeln!(out, "facet normal {x:e} {y:e} {z:e}\nouter loop")?;
+        for [x, y, z] in corners.map(|corner| corner.as_vec3().to_array()) {
+            writeln!(out, "vertex {x:e} {y:e} {z:e}")?;
+        }
+        writeln!(out, "endloop\nendfacet")?;
+    }
+    writeln!(out, "endsolid {name}")
+}
+
+fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    // Of edges of length one: the product of tiny ones would vanish.
+    (b - a).normalize_or_zero().cross((c - a).normalize_or_zero()).normalize_or_zero()
+}

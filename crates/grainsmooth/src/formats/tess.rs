@@ -1,0 +1,269 @@
+//! Neper's tessellation file, version 3.5: the flat cells, before any relaxation.
+//!
+//! <https://neper.info/doc/fileformat.html>. Neper counts from 1; here everything counts from 0.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use voronoi::{CellId, Dimension, Shift, Side, Wall};
+
+use crate::Tessellated;
+
+mod read;
+mod write;
+
+pub use read::{TessProblem, read_tess};
+pub(crate) use write::write;
+
+/// What a .tess file holds of a tessellation with one scale.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tess {
+    /// Two or three dimensions.
+    pub dimension: Dimension,
+    /// One seed for each cell; none where the file has none.
+    pub seeds: Vec<TessSeed>,
+    /// Positions of the vertices; z = 0 in 2D.
+    pub vertices: Vec<DVec3>,
+    /// The two vertices of each edge.
+    pub edges: Vec<[u32; 2]>,
+    /// Polygons; in 2D these are the cells.
+    pub faces: Vec<TessFace>,
+    /// The faces of each cell, not reversed where their normal points outward; empty in 2D.
+    pub polyhedra: Vec<Vec<Oriented>>,
+    /// What the cells fill.
+    pub domain: TessDomain,
+    /// What comes again a period away; nothing unless the tessellation is periodic.
+    pub periodicity: Option<TessPeriodicity>,
+}
+
+/// A seed as Neper has it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TessSeed {
+    /// Coordinates.
+    pub position: DVec3,
+    /// Neper's weight: the radius of the seed's sphere, 0 in a Voronoi tessellation.
+    pub radius: f64,
+}
+
+/// A polygon.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TessFace {
+    /// Its corners in order.
+    pub vertices: Vec<u32>,
+    /// Its edges, the first from the first corner to the second.
+    pub edges: Vec<Oriented>,
+    /// The plane a x + b y + c z = d as [d, a, b, c], with a unit normal.
+    pub plane: [f64; 4],
+}
+
+/// An edge of a face or a face of a cell, with its sense.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Oriented {
+    /// Which.
+    pub index: u32,
+    /// Whether it runs, or its normal points, the other way.
+    pub is_reversed: bool,
+}
+
+/// What the cells fill.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TessDomain {
+    /// Neper's name for it; `cube` is any box, `square` any rectangle.
+    pub kind: String,
+    /// The corner of its bounding box with the smallest coordinates.
+    pub lower: DVec3,
+    /// The corner of its bounding box with the largest coordinates.
+    pub upper: DVec3,
+    /// For each wall of a box, in the order of [`Wall::ALL`], the faces on it; in 2D, the edges. Empty for other domains.
+    pub walls: Vec<Vec<u32>>,
+}
+
+/// Vertices, edges and faces that are others moved by whole periods.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TessPeriodicity {
+    /// Whether each axis is periodic.
+    pub axes: [bool; 3],
+    /// Side lengths of the domain.
+    pub lengths: DVec3,
+    /// Images of seeds: the cell, and by how many periods it is moved.
+    pub seeds: Vec<(u32, [i32; 3])>,
+    /// Vertices.
+    pub vertices: Vec<TessCopy>,
+    /// Edges.
+    pub edges: Vec<TessCopy>,
+    /// Faces; empty in 2D.
+    pub faces: Vec<TessCopy>,
+}
+
+/// `secondary = primary + shift`, in periods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TessCopy {
+    /// The moved one.
+    pub secondary: u32,
+    /// The other one, and whether the two run, or their normals point, opposite ways.
+    pub primary: Oriented,
+    /// Periods along x, y and z.
+    pub shift: [i32; 3],
+}
+
+impl Tess {
+    /// The flat cells of a run.
+    pub fn new(cells: &Tessellated) -> Self {
+        let tessellation = &cells.tessellation;
+        let domain = tessellation.domain();
+        let wall_count = if domain.dimension() == Dimension::Two { 4 } else { 6 };
+        let mut walls = vec![Vec::new(); wall_count];
+        for face in tessellation.faces() {
+            if let Side::Wall(wall) = tessellation.face_sides(face)[1] {
+                walls[wall.index()].push(face.0);
+            }
+        }
+        let seeds = tessellation.seeds().iter().zip(&cells.weights);
+        let mut tess = Self {
+            dimension: domain.dimension(),
+            seeds: seeds.map(|(&position, weight)| TessSeed { position, radius: weight.sqrt() }).collect(),
+            vertices: tessellation.vertices().to_vec(),
+            edges: Vec::new(),
+            faces: Vec::new(),
+            polyhedra: Vec::new(),
+            domain: TessDomain { kind: String::new(), lower: domain.lower(), upper: domain.upper(), walls },
+            periodicity: None,
+        };
+        match tess.dimension {
+            Dimension::Three => tess.fill_space(cells),
+            Dimension::Two => tess.fill_plane(cells),
+        }
+        if domain.is_periodic() {
+            tess.periodicity = Some(TessPeriodicity::new(cells, &tess));
+        }
+        tess
+    }
+
+    fn fill_space(&mut self, cells: &Tessellated) {
+        let tessellation = &cells.tessellation;
+        let edges = tessellation.edges();
+        self.domain.kind = "cube".to_owned();
+        self.edges = edges.ends.iter().map(|ends| ends.map(|vertex| vertex.0)).collect();
+        let mut next_edge = edges.of_corner.iter();
+        for face in tessellation.faces() {
+            let vertices: Vec<u32> = tessellation.face_corners(face).iter().map(|corner| corner.0).collect();
+            let of_face = vertices.iter().zip(&mut next_edge);
+            let edges = of_face.map(|(&corner, &index)| Oriented {
+                index,
+                is_reversed: self.edges[index as usize][0] != corner,
+            });
+            let edges = edges.collect();
+            let plane = plane(vertices.iter().map(|&corner| self.vertices[corner as usize]));
+            self.faces.push(TessFace { vertices, edges, plane });
+        }
+        let cells = (0u32..).take(tessellation.cell_count()).map(CellId);
+        self.polyhedra = cells
+            .map(|cell| {
+                let is_reversed = |face| tessellation.face_sides(face)[0] != Side::Cell(cell);
+                let faces = tessellation.cell_faces(cell).iter();
+                faces.map(|&face| Oriented { index: face.0, is_reversed: is_reversed(face) }).collect()
+            })
+            .collect();
+    }
+
+    fn fill_plane(&mut self, cells: &Tessellated) {
+        let tessellation = &cells.tessellation;
+        self.domain.kind = "square".to_owned();
+        let ends = |face| {
+            let corners = tessellation.face_corners(face);
+            [corners[0].0, corners[1].0]
+        };
+        self.edges = tessellation.faces().map(ends).collect();
+        for cell in (0u32..).take(tessellation.cell_count()).map(CellId) {
+            // Around the cell counter-clockwise: from each corner, the edge to the next and that corner.
+            let mut next = BTreeMap::new();
+            for &face in tessellation.cell_faces(cell) {
+                let is_reversed = tessellation.face_sides(face)[0] != Side::Cell(cell);
+                let [start, end] = ends(face);
+                let (start, end) = if is_reversed { (end, start) } else { (start, end) };
+                next.insert(start, (end, Oriented { index: face.0, is_reversed }));
+            }
+            let mut face = TessFace { vertices: Vec::new(), edges: Vec::new(), plane: [0.0, 0.0, 0.0, 1.0] };
+            let mut corner = next.keys().next().copied();
+            while let Some(start) = corner
+                && let Some((end, edge)) = next.remove(&start)
+            {
+                face.vertices.push(start);
+                face.edges.push(edge);
+                corner = Some(end);
+            }
+            self.faces.push(face);
+        }
+    }
+}
+
+impl TessPeriodicity {
+    fn new(cells: &Tessellated, tess: &Tess) -> Self {
+        let tessellation = &cells.tessellation;
+        let domain = tessellation.domain();
+        let axes: [bool; 3] = domain.periodic().into();
+        let range = |axis: usize| if axes[axis] { -1..=1 } else { 0..=0 };
+        let mut seeds = Vec::new();
+        for z in range(2) {
+            for y in range(1) {
+                for x in range(0).filter(|x| [*x, y, z] != [0; 3]) {
+                    seeds.extend((0u32..).take(tessellation.cell_count()).map(|cell| (cell, [x, y, z])));
+                }
+            }
+        }
+        let copy = |secondary, index, is_reversed, shift: Shift| TessCopy {
+            secondary,
+            primary: Oriented { index, is_reversed },
+            shift: shift.0.map(i32::from),
+        };
+        let pairs = tessellation.periodic_vertices();
+        let vertices: Vec<TessCopy> =
+            pairs.iter().map(|pair| copy(pair.secondary.0, pair.primary.0, false, pair.shift)).collect();
+        let primary_of = |vertex: u32| {
+            let place = vertices.binary_search_by_key(&vertex, |copy| copy.secondary);
+            place.map_or(vertex, |place| vertices[place].primary.index)
+        };
+        // Copies of an edge may run the other way, as both begin at the vertex with the smaller number.
+        let runs_back = |secondary: u32, primary: u32| {
+            let [secondary, primary] =
+                [secondary, primary].map(|edge| tess.edges[edge as usize].map(primary_of));
+            secondary != primary
+        };
+        let edges = tessellation.periodic_edges(&tessellation.edges());
+        let faces = tessellation.periodic_faces();
+        let (edges, faces) = match tess.dimension {
+            Dimension::Three => (
+                edges
+                    .iter()
+                    .map(|pair| {
+                        let is_reversed = runs_back(pair.secondary, pair.primary);
+                        copy(pair.secondary, pair.primary, is_reversed, pair.shift)
+                    })
+                    .collect(),
+                faces.iter().map(|pair| copy(pair.secondary.0, pair.primary.0, true, pair.shift)).collect(),
+            ),
+            // The edges of the plane are its boundaries, whose copies are turned round.
+            Dimension::Two => (
+                faces.iter().map(|pair| copy(pair.secondary.0, pair.primary.0, true, pair.shift)).collect(),
+                Vec::new(),
+            ),
+        };
+        Self { axes, lengths: domain.size(), seeds, vertices, edges, faces }
+    }
+}
+
+impl TessDomain {
+    /// Neper's name of a wall: `x0` to `z1`.
+    fn label(wall: Wall) -> String {
+        format!("{}{}", ['x', 'y', 'z'][wall.axis()], u8::from(wall.is_upper()))
+    }
+}
+
+/// The plane of a polygon by Newell's formula, about its first corner so that none of its digits cancel.
+fn plane(corners: impl Iterator<Item = DVec3>) -> [f64; 4] {
+    let corners: Vec<DVec3> = corners.collect();
+    let at = |k: usize| corners[k % corners.len()] - corners[0];
+    let normal: DVec3 = (0..corners.len()).map(|k| at(k).cross(at(k + 1))).sum();
+    let normal = normal.normalize_or_zero();
+    [normal.dot(corners[0]), normal.x, normal.y, normal.z]
+}

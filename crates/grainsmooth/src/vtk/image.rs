@@ -1,0 +1,78 @@
+//! Regular grids as VTK's ImageData, .vti.
+
+use std::io::{self, Write};
+
+use glam::DVec3;
+use vtkio::model::ByteOrder;
+
+use super::raw::{AppendedNumbers, Numbers};
+use super::{Array, FieldEntry, FieldValue};
+
+/// A regular grid of cells.
+#[derive(Debug, Clone)]
+pub struct ImageData<'a> {
+    /// Number of cells along each axis.
+    pub size: [usize; 3],
+    /// The corner with the smallest coordinates.
+    pub origin: DVec3,
+    /// Side lengths of a cell.
+    pub spacing: DVec3,
+    /// Arrays with one tuple for each cell, x fastest, then y, then z.
+    pub cell_arrays: Vec<Array<'a>>,
+    /// What is said about the file as a whole.
+    pub field: Vec<FieldEntry>,
+}
+
+/// Writes the grid.
+///
+/// # Errors
+/// Whatever `out` reports.
+///
+/// # Panics
+/// When an array has another length than there are cells.
+pub fn write_vti(data: &ImageData<'_>, out: &mut dyn Write) -> io::Result<()> {
+    let [nx, ny, nz] = data.size;
+    let (origin, spacing) = (numbers(data.origin), numbers(data.spacing));
+    let byte_order = match ByteOrder::native() {
+        ByteOrder::LittleEndian => "LittleEndian",
+        ByteOrder::BigEndian => "BigEndian",
+    };
+    let mut appended = AppendedNumbers::default();
+    writeln!(
+        out,
+        "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"{byte_order}\" header_type=\"UInt64\">"
+    )?;
+    writeln!(
+        out,
+        "<ImageData WholeExtent=\"0 {nx} 0 {ny} 0 {nz}\" Origin=\"{origin}\" Spacing=\"{spacing}\" Direction=\"1 0 0 0 1 0 0 0 1\">"
+    )?;
+    writeln!(out, "<FieldData>")?;
+    for FieldEntry { name, value } in &data.field {
+        let (element, kind, bytes) = match value {
+            FieldValue::Text(text) => ("Array", "String", format!("{text}\0").into_bytes()),
+            FieldValue::Integer(number) => ("DataArray", "UInt64", number.to_ne_bytes().to_vec()),
+        };
+        let offset = appended.append(Numbers::bytes(bytes));
+        writeln!(
+            out,
+            "<{element} type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"appended\" offset=\"{offset}\"/>"
+        )?;
+    }
+    writeln!(out, "</FieldData>\n<Piece Extent=\"0 {nx} 0 {ny} 0 {nz}\">\n<PointData/>\n<CellData>")?;
+    for Array { name, values } in &data.cell_arrays {
+        assert_eq!(values.len(), nx * ny * nz, "cell array {name}");
+        let (kind, components) = (values.scalar_type(), values.component_count());
+        let offset = appended.append(Numbers::of(*values));
+        writeln!(
+            out,
+            "<DataArray type=\"{kind:?}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"{offset}\"/>"
+        )?;
+    }
+    writeln!(out, "</CellData>\n</Piece>\n</ImageData>")?;
+    appended.write(out)?;
+    writeln!(out, "</VTKFile>")
+}
+
+fn numbers(vector: DVec3) -> String {
+    format!("{:?} {:?} {:?}", vector.x, vector.y, vector.z)
+}

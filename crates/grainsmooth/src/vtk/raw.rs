@@ -1,0 +1,148 @@
+//! Raw bytes at the end of an XML file: `<AppendedData encoding="raw">`.
+
+use std::borrow::Cow;
+use std::io::{self, Write};
+
+use rayon::prelude::*;
+
+use super::Values;
+
+mod inline;
+
+pub(crate) use inline::{attribute, find};
+pub use inline::{field_bytes, field_text, inlined};
+
+/// Numbers that are computed before they are written; bounds the memory that they take.
+const BLOCK_NUMBERS: usize = 1 << 20;
+
+/// Numbers that one task computes.
+const TASK_NUMBERS: usize = 1 << 15;
+
+/// Fills in the bytes of values from a position on.
+type Fill<'a> = Box<dyn Fn(usize, &mut [u8]) + Sync + 'a>;
+
+/// The bytes of one array.
+pub(crate) enum Numbers<'a> {
+    /// Bytes in memory.
+    Bytes(Cow<'a, [u8]>),
+    /// Bytes computed when they are written.
+    Computed {
+        /// Number of values.
+        count: usize,
+        /// Bytes of each.
+        width: usize,
+        /// Fills in the bytes of values from a position on.
+        fill: Fill<'a>,
+    },
+}
+
+impl<'a> Numbers<'a> {
+    /// Bytes as they are.
+    pub(crate) fn bytes(bytes: Vec<u8>) -> Self {
+        Self::Bytes(bytes.into())
+    }
+
+    /// Values in memory.
+    pub(crate) fn slice<T: bytemuck::NoUninit>(values: &'a [T]) -> Self {
+        Self::Bytes(bytemuck::cast_slice(values).into())
+    }
+
+    /// Values that follow from their positions.
+    pub(crate) fn each<T: bytemuck::NoUninit>(count: usize, value: impl Fn(usize) -> T + Sync + 'a) -> Self {
+        let width = size_of::<T>();
+        let fill = move |first: usize, bytes: &mut [u8]| {
+            for (index, place) in bytes.chunks_exact_mut(width).enumerate() {
+                place.copy_from_slice(bytemuck::bytes_of(&value(first + index)));
+            }
+        };
+        Self::Computed { count, width, fill: Box::new(fill) }
+    }
+
+    /// The values of an array.
+    pub(crate) fn of(values: Values<'a>) -> Self {
+        match values {
+            Values::Int8(values) => Self::slice(values),
+            Values::Int32(values) => Self::slice(values),
+            Values::Int32Pairs(pairs) => Self::slice(pairs),
+            Values::Float64(values) => Self::slice(values),
+            Values::Vectors(vectors) => Self::slice(vectors),
+            Values::Int8Of(each) => Self::each(each.count, each.value),
+            Values::Int32Of(each) => Self::each(each.count, each.value),
+            Values::Int32PairsOf(each) => Self::each(each.count, each.value),
+            Values::Int32Tuples(tuples) => Self::slice(tuples.values),
+            Values::Float64Of(each) => Self::each(each.count, each.value),
+        }
+    }
+
+    fn byte_count(&self) -> u64 {
+        match self {
+            Self::Bytes(bytes) => bytes.len() as u64,
+            Self::Computed { count, width, .. } => (count * width) as u64,
+        }
+    }
+
+    fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        let (count, width, fill) = match self {
+            Self::Bytes(bytes) => return out.write_all(bytes),
+            Self::Computed { count, width, fill } => (*count, *width, fill),
+        };
+        let mut block = vec![0; BLOCK_NUMBERS.min(count) * width];
+        for first in (0..count).step_by(BLOCK_NUMBERS) {
+            let bytes = &mut block[..BLOCK_NUMBERS.min(count - first) * width];
+            let tasks = bytes.par_chunks_mut(TASK_NUMBERS * width).enumerate();
+            tasks.for_each(|(task, bytes)| fill(first + task * TASK_NUMBERS, bytes));
+            out.write_all(bytes)?;
+        }
+        Ok(())
+    }
+
+    #[cfg(test)]
+    pub(super) fn to_vec(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        self.write(&mut bytes).unwrap();
+        bytes
+    }
+}
+
+/// The arrays of a file, in the order in which they are appended.
+#[derive(Default)]
+pub(crate) struct AppendedNumbers<'a> {
+    arrays: Vec<Numbers<'a>>,
+    next_offset: u64,
+}
+
+impl<'a> AppendedNumbers<'a> {
+    /// Adds an array and returns where its bytes will begin.
+    pub(crate) fn append(&mut self, numbers: Numbers<'a>) -> u64 {
+        let offset = self.next_offset;
+        self.next_offset += size_of::<u64>() as u64 + numbers.byte_count();
+        self.arrays.push(numbers);
+        offset
+    }
+
+    /// Writes the element: before each array its number of bytes.
+    pub(crate) fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        write!(out, "<AppendedData encoding=\"raw\">\n_")?;
+        for array in &self.arrays {
+            out.write_all(&array.byte_count().to_ne_bytes())?;
+            array.write(out)?;
+        }
+        writeln!(out, "\n</AppendedData>")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn computed_numbers_are_those_in_memory() {
+        for count in [0, 1, TASK_NUMBERS, TASK_NUMBERS + 1, BLOCK_NUMBERS, BLOCK_NUMBERS + 5] {
+            let values: Vec<i32> = (0..).take(count).map(|value| value * 7 - 3).collect();
+            assert!(Numbers::each(count, |index| values[index]).to_vec() == Numbers::slice(&values).to_vec());
+            let mut numbers = AppendedNumbers::default();
+            assert_eq!(numbers.append(Numbers::slice(&values)), 0);
+            assert_eq!(numbers.append(Numbers::bytes(vec![])), 8 + 4 * count as u64);
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! What is written for other tools, read back by what others wrote: crates, and where they are installed gmsh, Surface
+//! Evolver, and Python with VTK, meshio and trimesh.
+#![allow(clippy::unwrap_used, clippy::cast_possible_truncation, reason = "a test may panic")]
+
+mod grids;
+mod surfaces;
+mod tess;
+mod tools;
+mod workplace;

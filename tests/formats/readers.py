@@ -1,0 +1,93 @@
+"""Reads with VTK, meshio and trimesh what the test has written, and compares counts, volumes and labels."""
+import json
+import pathlib
+import sys
+
+try:
+    import meshio
+    import numpy as np
+    import pyvista
+    import trimesh
+except ImportError as error:
+    print(error)
+    sys.exit(77)
+
+folder = pathlib.Path(sys.argv[1])
+expected = json.loads((folder / "expected.json").read_text())
+points = np.array(expected["points"])
+volumes = np.array(expected["volumes"])
+
+
+def signed_volumes(mesh_points, triangles, labels, exterior):
+    """Volume of every grain from the boundaries around it, each once."""
+    a, b, c = (mesh_points[triangles[:, corner]] for corner in range(3))
+    cones = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
+    result = np.zeros(len(volumes))
+    for side, sign in ((0, 1), (1, -1)):
+        inside = labels[:, side] != exterior
+        np.add.at(result, labels[inside, side], sign * cones[inside])
+    return result
+
+
+for name in ("a.vtp", "a.vtu", "a.vtk"):
+    mesh = pyvista.read(folder / name)
+    assert np.array_equal(mesh.points, points), name
+    triangles = mesh.regular_faces if name != "a.vtu" else mesh.cells_dict[5]
+    assert len(triangles) == expected["triangles"], name
+    assert np.allclose(signed_volumes(points, triangles, mesh["FaceLabels"], -1), volumes, rtol=1e-9), name
+    assert mesh["BoundaryId"].max() + 1 == expected["boundaries"], name
+    assert set(np.unique(mesh["NodeTypes"])) <= {2, 3, 4, 12, 13, 14}, name
+    assert set(mesh.field_data.keys()) >= {"Version", "CommandLine", "RandomSeed"}, name
+
+mesh = meshio.read(folder / "a.vtu")
+assert np.array_equal(mesh.points, points)
+assert np.allclose(
+    signed_volumes(points, mesh.cells[0].data, mesh.cell_data["FaceLabels"][0], -1), volumes, rtol=1e-9
+)
+
+blocks = pyvista.read(folder / "a.vtm")
+assert blocks.keys() == ["boundaries", "grains", "triple_lines", "quadruple_points"], blocks.keys()
+assert blocks["triple_lines"].n_lines == expected["triple_lines"]
+assert blocks["quadruple_points"].n_points == expected["quadruple_points"]
+boundaries = blocks["boundaries"]
+assert boundaries.n_cells == expected["triangles"]
+assert np.array_equal(boundaries.points, points[boundaries["PointId"]])
+assert np.allclose(np.linalg.norm(boundaries["Normals"], axis=1), 1)
+faces = boundaries.regular_faces
+a, b, c = (boundaries.points[faces[:, corner]] for corner in range(3))
+assert (np.einsum("ij,ij->i", np.cross(b - a, c - a), boundaries["Normals"][faces[:, 0]]) > 0).all()
+grains = blocks["grains"]
+assert grains.n_open_edges == 0
+for grain, volume in enumerate(volumes):
+    one = grains.extract_cells(grains["GrainId"] == grain).extract_surface(algorithm=None)
+    assert np.isclose(one.volume, volume, rtol=1e-9)
+    assert np.isclose(one["Volume"][0], volume, rtol=1e-9) and np.isclose(one["Area"][0], one.area, rtol=1e-9)
+    assert np.isclose(one["Sphericity"][0], np.cbrt(36 * np.pi * volume**2) / one.area, rtol=1e-9)
+    of_grain = boundaries["FaceLabels"][(boundaries["FaceLabels"] == grain).any(axis=1)]
+    assert one["Neighbors"][0] == len(set(of_grain.ravel()) - {grain, -1})
+
+# meshio fails on any PLY whose faces have numbers of their own.
+assert pyvista.read(folder / "a.ply").n_cells == expected["triangles"]
+for name in ("a.stl", "a.obj"):
+    mesh = meshio.read(folder / name)
+    assert sum(len(block.data) for block in mesh.cells) == expected["triangles"], name
+mesh = trimesh.load(folder / "a.ply", process=False)
+assert np.array_equal(mesh.vertices, points) and len(mesh.faces) == expected["triangles"]
+for grain, volume in enumerate(volumes):
+    mesh = trimesh.load(folder / "each" / f"grain_{grain}.stl")
+    assert mesh.is_watertight and mesh.is_winding_consistent, grain
+    assert np.isclose(mesh.volume, volume, rtol=1e-5), grain
+
+mesh = meshio.read(folder / "a.msh")
+assert sum(len(block.data) for block in mesh.cells if block.type == "triangle") == expected["triangles"]
+tags = [tags for block, tags in zip(mesh.cells, mesh.cell_data["gmsh:geometrical"]) if block.type == "triangle"]
+assert np.array_equal(np.unique(np.concatenate(tags)), np.arange(expected["boundaries"]) + 1)
+
+image = pyvista.read(folder / "a.vti")
+labels = np.load(folder / "a.npy")
+assert image.dimensions == tuple(count + 1 for count in labels.shape) == (21, 16, 11)
+assert np.array_equal(image["material"], labels.ravel(order="F"))
+assert np.array_equal(np.unique(labels), np.arange(len(volumes)))
+assert pyvista.read(folder / "b.vti").dimensions == (21, 16, 2)
+plane = pyvista.read(folder / "b.vtp")
+assert plane.n_lines == plane["BoundaryId"].max() + 1

@@ -1,0 +1,152 @@
+//! Programs that others wrote, where they are installed.
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use grainsmooth::{OutputDirectory, OutputFormat};
+
+use crate::workplace::{GRAINS, PLANE, SPACE, write};
+
+/// Runs a program; nothing, said loudly, where it is not installed.
+fn run(test: &str, command: &mut Command) -> Option<Output> {
+    match command.output() {
+        Ok(output) => Some(output),
+        Err(error) => {
+            skip(test, &format!("cannot run {}: {error}", command.get_program().display()));
+            None
+        }
+    }
+}
+
+/// Not through `eprintln`, which the test harness keeps to itself.
+fn skip(test: &str, why: &str) {
+    std::io::stderr().write_all(format!("SKIPPED {test}: {why}\n").as_bytes()).unwrap();
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Volumes of the tetrahedra of each volume in a Gmsh file of version 2.2.
+fn tetrahedra(path: &Path) -> Vec<f64> {
+    let file = fs::read_to_string(path).unwrap();
+    let section = |name: &str| {
+        let after = file.split_once(&format!("${name}\n")).unwrap().1;
+        let lines = after.split_once(&format!("$End{name}")).unwrap().0;
+        lines
+            .lines()
+            .skip(1)
+            .map(|line| line.split_whitespace().map(str::to_owned).collect())
+            .collect::<Vec<Vec<String>>>()
+    };
+    let nodes: std::collections::BTreeMap<String, glam::DVec3> = section("Nodes")
+        .into_iter()
+        .map(|words| {
+            let coordinates: Vec<f64> = words[1..].iter().map(|word| word.parse().unwrap()).collect();
+            (words[0].clone(), glam::DVec3::from_slice(&coordinates))
+        })
+        .collect();
+    let mut volumes = vec![0.0; GRAINS];
+    for element in section("Elements").iter().filter(|words| words[1] == "4") {
+        let [a, b, c, d] = [5, 6, 7, 8].map(|place| nodes[&element[place]]);
+        let volume = (b - a).cross(c - a).dot(d - a) / 6.0;
+        assert!(volume > 0.0, "tetrahedron {} has volume {volume}", element[0]);
+        let grain: usize = element[4].parse().unwrap();
+        volumes[grain - 1] += volume;
+    }
+    volumes
+}
+
+#[test]
+fn gmsh_fills_every_grain_with_tetrahedra() {
+    let (folder, path) = write(&SPACE, "grains.msh");
+    let filled = folder.path().join("filled.msh");
+    let mut gmsh = Command::new("gmsh");
+    gmsh.arg("-3").arg(path.with_extension("geo")).args(["-format", "msh22", "-nt", "1", "-o"]).arg(&filled);
+    let Some(output) = run("gmsh_fills_every_grain_with_tetrahedra", &mut gmsh) else { return };
+    let said = text(&output.stdout) + &text(&output.stderr);
+    assert!(output.status.success() && !said.contains("Error"), "{said}");
+    for (volume, expected) in tetrahedra(&filled).into_iter().zip(SPACE.network.cell_volumes()) {
+        // The format in which gmsh writes here has 16 digits.
+        assert!((volume / expected - 1.0).abs() < 1e-9, "{volume} {expected}");
+    }
+}
+
+#[test]
+fn surface_evolver_finds_every_volume_and_the_area() {
+    let (_folder, path) = write(&SPACE, "grains.fe");
+    let mut script = "printf \"area %20.15g\\n\", total_energy\n".to_owned();
+    script += "foreach body bb do printf \"body %g %20.15g %20.15g\\n\", id, volume, target\nq\nq\n";
+    let directory = tempfile::tempdir().unwrap();
+    let commands = directory.path().join("commands");
+    fs::write(&commands, script).unwrap();
+    let mut evolver = Command::new("evolver");
+    evolver.arg(&path).stdin(fs::File::open(commands).unwrap());
+    let Some(output) = run("surface_evolver_finds_every_volume_and_the_area", &mut evolver) else { return };
+    let said = text(&output.stdout);
+    let numbers = |word: &str| -> Vec<Vec<f64>> {
+        // Other lines repeat the commands.
+        let lines = said.lines().filter_map(|line| line.strip_prefix(&format!("{word} ")));
+        lines.map(|rest| rest.split_whitespace().map(|number| number.parse().unwrap()).collect()).collect()
+    };
+    let bodies = numbers("body");
+    assert_eq!(bodies.len(), GRAINS, "{said}{}", text(&output.stderr));
+    for (body, expected) in bodies.iter().zip(SPACE.network.cell_volumes()) {
+        assert!((body[1] / expected - 1.0).abs() < 1e-9, "{body:?}");
+        assert!((body[2] / expected - 1.0).abs() < 1e-12, "{body:?}");
+    }
+    // Only boundaries between grains have tension.
+    let level = SPACE.network.finest();
+    let polycrystal::Mesh::Triangles(mesh) = &level.mesh else { panic!("not in space") };
+    let inside = mesh.triangles().iter().zip(&level.boundary_of);
+    let inside = inside.filter(|(_, boundary)| SPACE.network.boundaries()[boundary.index()].is_interior());
+    let area: f64 = inside
+        .map(|(triangle, _)| {
+            let [a, b, c] = triangle.map(|corner| SPACE.points[corner as usize]);
+            (b - a).cross(c - a).length() / 2.0
+        })
+        .sum();
+    let said_area = numbers("area")[0][0];
+    assert!((said_area / area - 1.0).abs() < 1e-9, "{said_area} {area}");
+}
+
+/// `readers.py` says which of the files that it is given disagree with what is expected, and exits with 77 where a library is
+/// missing.
+#[test]
+fn vtk_meshio_and_trimesh_read_every_format() {
+    let directory = tempfile::tempdir().unwrap();
+    let names = ["a.vtp", "a.vtu", "a.vtk", "a.vtm", "a.stl", "a.ply", "a.obj", "a.msh", "a.vti", "a.npy"];
+    for name in names {
+        let output = grainsmooth::Output::check(directory.path().join(name)).unwrap();
+        SPACE.write(&output).unwrap();
+    }
+    for name in ["b.vtp", "b.vtu", "b.vti"] {
+        PLANE.write(&grainsmooth::Output::check(directory.path().join(name)).unwrap()).unwrap();
+    }
+    let grains = OutputDirectory::check(directory.path().join("each"), OutputFormat::Stl).unwrap();
+    SPACE.write_grains(&grains).unwrap();
+    let level = SPACE.network.finest();
+    let counts = SPACE.network.junction_counts();
+    let expected = serde_json::json!({
+        "points": SPACE.points.iter().map(|point| point.to_array()).collect::<Vec<_>>(),
+        "triangles": level.element_count(),
+        "boundaries": SPACE.network.boundaries().len(),
+        "triple_lines": counts.triple_lines,
+        "quadruple_points": counts.quadruple_points,
+        "volumes": SPACE.network.cell_volumes(),
+        "areas_2d": PLANE.network.cell_volumes(),
+    });
+    fs::write(directory.path().join("expected.json"), expected.to_string()).unwrap();
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/formats/readers.py");
+    let mut python = Command::new("python3");
+    python.arg(script).arg(directory.path());
+    let Some(output) = run("vtk_meshio_and_trimesh_read_every_format", &mut python) else { return };
+    let said = text(&output.stdout) + &text(&output.stderr);
+    if output.status.code() == Some(77) {
+        skip("vtk_meshio_and_trimesh_read_every_format", said.trim_end());
+        return;
+    }
+    assert!(output.status.success(), "{said}");
+}
