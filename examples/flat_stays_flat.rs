@@ -10,7 +10,8 @@ use polycrystal::{BoundaryId, Mesh};
 fn main() -> Result<(), grainsmooth::Error> {
     for relaxation_time in [0.0, Config::default().relaxation_time] {
         let seeds = SeedSource::Random { count: 50 };
-        let config = Config { seeds, relaxation_time, ..Config::default() };
+        // Collapsed edges would leave faces that are not plane before anything is relaxed.
+        let config = Config { seeds, relaxation_time, regularize: 0.0, ..Config::default() };
         let polycrystal = make_polycrystal(&config, &|_, _, _| ())?;
         let bulge = largest_bulge(&polycrystal);
         println!("--relax {relaxation_time}: boundaries bulge by up to {bulge:.1e} of the box");
