@@ -32,6 +32,8 @@ pub fn config(dimension: Dimension, relaxation_time: f64) -> Config {
         dimension,
         box_size: BOX,
         relaxation_time,
+        // What is not relaxed is to stay flat.
+        regularize: if relaxation_time > 0.0 { Config::REGULARIZE } else { 0.0 },
         levels: 2,
         file: FileOptions {
             voxels: Some([20, 15, 10].map(|n| NonZeroU32::new(n).unwrap())),

@@ -157,7 +157,7 @@ impl Network {
     /// Costs one pass over the points of each level: connectivity is not touched.
     ///
     /// # Panics
-    /// When there are fewer points than the control mesh has vertices.
+    /// When there is not one point per vertex of the control mesh.
     pub fn subdivide(&self, control_points: &[DVec3]) -> Vec<DVec3> {
         self.subdivide_between(0, self.levels.len() - 1, control_points)
     }
@@ -165,8 +165,9 @@ impl Network {
     /// The points of level `to` for those of level `from`.
     ///
     /// # Panics
-    /// When there are fewer points than level `from` has vertices, or no level `to`.
+    /// When there is not one point per vertex of level `from`, or no level `to`.
     pub fn subdivide_between(&self, from: usize, to: usize, points: &[DVec3]) -> Vec<DVec3> {
+        assert_eq!(points.len(), self.levels[from].vertex_count(), "there must be one point per vertex");
         let mut points = points.to_vec();
         self.levels[from].copies.place(&self.domain, &mut points);
         for (stencils, finer) in self.stencils[from..to].iter().zip(&self.levels[from + 1..=to]) {

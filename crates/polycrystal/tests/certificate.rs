@@ -24,7 +24,7 @@ struct Parts {
 impl Parts {
     fn good() -> Self {
         let (network, flat) = random_network(&Domain::unit_cube(), 12, 7, 1);
-        let points = network.subdivide(&relaxed(&network, &flat));
+        let points = relaxed(&network, &flat);
         let Level { mesh: Mesh::Triangles(mesh), boundary_of, node_types, .. } = network.finest() else {
             panic!("a network in space")
         };
@@ -234,7 +234,7 @@ fn a_grain_that_touches_itself_is_found() {
 #[test]
 fn lines_in_the_plane_are_certified() {
     let (network, flat) = random_network(&Domain::unit_square(), 20, 3, 2);
-    let mut points = network.subdivide(&relaxed(&network, &flat));
+    let mut points = relaxed(&network, &flat);
     points.iter_mut().for_each(|point| point.z = 0.0);
     let sides = network.sides();
     let claims = Claims { domain_volume: Some(1.0), ..Claims::default() };
