@@ -138,6 +138,11 @@ fn more_than_memory_holds() {
         ("--dim 2 -n 40", "40 levels would take", "levels would fit"),
         ("--seeds 4000000000", "3 levels would take", "not even 0 levels would fit, take fewer seeds"),
         ("--seeds 4000000000 --dim 2", "3 levels would take", "take fewer seeds"),
+        (
+            "--seeds 4000000000 --no-mesh",
+            "4000000000 cells would take 6.4 TB of memory and",
+            "take fewer seeds",
+        ),
     ] {
         workplace.refuses(arguments, FAILED, &format!("{start} ... {end}"));
     }

@@ -158,6 +158,19 @@ pub enum Error {
         /// Why.
         problem: MeshFileProblem,
     },
+    /// So many cells need more memory than there is.
+    #[error(
+        "{count} cells would take {} of memory and {} are available; take fewer seeds",
+        memory::in_words(*needed), memory::in_words(u128::from(*available))
+    )]
+    CellsExceedMemory {
+        /// Number of seeds asked for.
+        count: usize,
+        /// Bytes that they would take.
+        needed: u128,
+        /// Bytes that there are.
+        available: u64,
+    },
     /// So many levels of subdivision need more memory than there is.
     #[error(
         "{levels} levels would take {} of memory and {} are available; {}",

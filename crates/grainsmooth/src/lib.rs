@@ -50,7 +50,9 @@ pub use mesh_bezier::{BezierFile, read_bezier};
 pub use mesh_edit::{EdgeEdit, edit_edges};
 pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputDirectory, OutputFormat};
-pub use pipeline::{Polycrystal, Progress, Stage, Tessellated, make_polycrystal, smooth, tessellate};
+pub use pipeline::{
+    Polycrystal, Progress, Stage, Tessellated, check_expected_size, make_polycrystal, smooth, tessellate,
+};
 pub use poisson_disc::poisson_disc_seeds;
 pub use seed_file::{FileSeed, SeedLineProblem, read_seed_file};
 pub use seeding::random_seeds;

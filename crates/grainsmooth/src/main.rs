@@ -14,7 +14,9 @@ use std::time::Instant;
 use anyhow::anyhow;
 use clap::Parser;
 use grainsmooth::mesh_file::READER_THREAD;
-use grainsmooth::{CellTable, Output, OutputDirectory, Stage, Summary, TableFormat, smooth, tessellate};
+use grainsmooth::{
+    CellTable, Output, OutputDirectory, Stage, Summary, TableFormat, check_expected_size, smooth, tessellate,
+};
 
 use cli::{Arguments, Command};
 use progress::ProgressLine;
@@ -105,6 +107,9 @@ impl Files {
 fn compute(arguments: &Arguments, files: &Files, line: &ProgressLine) -> Result<String, grainsmooth::Error> {
     let config = arguments.config();
     let progress = |stage, done, count| line.show(stage, done, count);
+    if files.output.is_some() {
+        check_expected_size(&config)?;
+    }
     let tessellated = tessellate(&config, &progress)?;
     if !files.tables.is_empty() {
         let table = CellTable::new(&tessellated);

@@ -16,6 +16,9 @@ const BYTES_PER_TRIANGLE: u128 = 24;
 /// The same for each edge of the control mesh: the cells, and relaxation's matrices. Matters where levels are few.
 const BYTES_PER_CONTROL_EDGE: u128 = 600;
 
+/// Bytes that cells without a network take for each seed: a million random ones took 1.46 GB.
+const BYTES_PER_CELL: u128 = 1600;
+
 /// Taken to be available where the system does not tell: 8 GiB.
 const AVAILABLE_WHERE_UNKNOWN: u64 = 8 << 30;
 
@@ -86,6 +89,18 @@ pub fn check_levels(control_mesh: LevelSize, levels: u32, available: u64) -> Res
     } else {
         Err(Error::LevelsExceedIds { levels, size: control_mesh.after(levels), largest })
     }
+}
+
+/// Checks that so many cells can be held in `available` bytes.
+///
+/// # Errors
+/// [`Error::CellsExceedMemory`].
+pub fn check_cells(count: usize, available: u64) -> Result<(), Error> {
+    let needed = (count as u128).saturating_mul(BYTES_PER_CELL);
+    if needed <= u128::from(available) {
+        return Ok(());
+    }
+    Err(Error::CellsExceedMemory { count, needed, available })
 }
 
 /// Bytes of memory that the system can give without swapping: `MemAvailable` on Linux; 8 GiB where there is

@@ -7,7 +7,7 @@ use polycrystal::{AngleStatistics, Certificate, MeshSize, Network, NetworkError,
 use polycrystal::{dihedral_angles, relax, validate};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
-use crate::memory::{LevelSize, available_memory, check_levels};
+use crate::memory::{LevelSize, available_memory, check_cells, check_levels};
 use crate::{
     Config, Error, FileSeed, LatticeFit, SeedSource, poisson_disc_seeds, random_seeds, read_seed_file,
 };
@@ -132,7 +132,28 @@ fn cells_of(
 /// # Errors
 /// Whatever is wrong with the input, or the first fault that makes the result invalid.
 pub fn make_polycrystal(config: &Config, progress: Progress) -> Result<Polycrystal, Error> {
+    check_expected_size(config)?;
     smooth(config, tessellate(config, progress)?, progress)
+}
+
+/// Checks that the network of as many seeds as the config asks for will fit, before the first cell is cut: a count beyond all
+/// means must not eat the memory first. The count of a seed file is known only when it is read.
+///
+/// # Errors
+/// [`Error::LevelsExceedMemory`] and [`Error::LevelsExceedIds`].
+pub fn check_expected_size(config: &Config) -> Result<(), Error> {
+    let Some(count) = seed_count(config) else { return Ok(()) };
+    check_levels(expected_control_mesh_size(count, config.dimension), config.levels, available_memory())
+}
+
+fn seed_count(config: &Config) -> Option<usize> {
+    match &config.seeds {
+        SeedSource::File(_) => None,
+        SeedSource::Random { count } | SeedSource::PoissonDisc { count } => Some(*count),
+        SeedSource::Lattice { lattice, cells } => {
+            Some(LatticeFit::new(*lattice, *cells, config.box_size).seed_count())
+        }
+    }
 }
 
 /// Relaxes, subdivides and validates the network of some cells.
@@ -194,26 +215,14 @@ impl Clock<'_> {
 }
 
 fn seeds(config: &Config, domain: &voronoi::Domain) -> Result<Vec<FileSeed>, Error> {
-    // Known before the first cell is cut: a count beyond all means must not eat the memory first.
-    let check_count = |count| {
-        let expected = expected_control_mesh_size(count, config.dimension);
-        check_levels(expected, config.levels, available_memory())
-    };
+    if let Some(count) = seed_count(config) {
+        check_cells(count, available_memory())?;
+    }
     let positions = match &config.seeds {
         SeedSource::File(path) => return read_seed_file(path, config.dimension),
-        SeedSource::Random { count } => {
-            check_count(*count)?;
-            random_seeds(*count, domain, config.random_seed)
-        }
-        SeedSource::PoissonDisc { count } => {
-            check_count(*count)?;
-            poisson_disc_seeds(*count, domain, config.random_seed)
-        }
-        SeedSource::Lattice { lattice, cells } => {
-            let fit = LatticeFit::new(*lattice, *cells, config.box_size);
-            check_count(fit.seed_count())?;
-            fit.seeds()
-        }
+        SeedSource::Random { count } => random_seeds(*count, domain, config.random_seed),
+        SeedSource::PoissonDisc { count } => poisson_disc_seeds(*count, domain, config.random_seed),
+        SeedSource::Lattice { lattice, cells } => LatticeFit::new(*lattice, *cells, config.box_size).seeds(),
     };
     Ok(positions.into_iter().map(|position| FileSeed { position, radius: None, line: 0 }).collect())
 }
