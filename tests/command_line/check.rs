@@ -103,6 +103,17 @@ fn files_of_this_program_pass_in_every_format() {
 }
 
 #[test]
+fn a_single_grain_has_no_statistics_of_boundaries() {
+    let workplace = Workplace::new();
+    for (seeds, expected) in [(1, 0), (2, 1)] {
+        workplace.run(&format!("--seeds {seeds} -n 1 -o few.vtp"));
+        let output = workplace.command("check few.vtp").assert().success().get_output().clone();
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert_eq!(said.matches("boundary area per volume").count(), expected, "{said}");
+    }
+}
+
+#[test]
 fn each_damage_is_named() {
     let workplace = Workplace::new();
     workplace.put("good.vtk", Cubes::new().file("FaceLabels"));

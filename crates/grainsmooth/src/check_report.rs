@@ -180,7 +180,9 @@ const PLAIN_OPTIONS: [&str; 10] = [
 fn statistics(file: &LabelledFile, surface: &Surface<'_>, certificate: &Certificate) -> Vec<Statistic> {
     let Some(command_line) = &file.command_line else { return Vec::new() };
     let mut options = command_line.split(' ').filter(|word| word.starts_with('-'));
+    // One grain has nothing but walls.
     if !certificate.is_good()
+        || certificate.grain_volumes.len() < 2
         || !command_line.contains("--seeds ")
         || !options.all(|option| PLAIN_OPTIONS.contains(&option))
     {
