@@ -4,7 +4,7 @@
 use glam::DVec3;
 use grainsmooth::vtk::{Array, Cells, Each, FieldEntry, FieldValue, PolyData, Tuples, Values, VtkFormat};
 use grainsmooth::vtk::{field_text, inlined, write_vtk};
-use vtkio::model::{Attribute, CellType, DataSet, IOBuffer, Piece, VertexNumbers, Vtk};
+use vtkio::model::{Attribute, Attributes, CellType, DataSet, IOBuffer, Piece, VertexNumbers, Vtk};
 
 /// Coordinates that lose digits in anything but 64-bit floats.
 const POINTS: [DVec3; 5] = [
@@ -57,6 +57,20 @@ fn inline<P>(pieces: Vec<Piece<P>>) -> P {
     match pieces.into_iter().next() {
         Some(Piece::Inline(piece)) => *piece,
         _ => panic!("no inline piece"),
+    }
+}
+
+/// The arrays of a data set, written and read.
+fn attributes_of(data: &PolyData<'_>, format: VtkFormat) -> Attributes {
+    let file = bytes(data, format);
+    let file = match format {
+        VtkFormat::Vtk => Vtk::parse_legacy_be(&file[..]).unwrap(),
+        _ => Vtk::parse_xml(&inlined(&file)[..]).unwrap(),
+    };
+    match file.data {
+        DataSet::PolyData { pieces, .. } => inline(pieces).data,
+        DataSet::UnstructuredGrid { pieces, .. } => inline(pieces).data,
+        _ => panic!("neither PolyData nor UnstructuredGrid"),
     }
 }
 
@@ -193,16 +207,7 @@ fn computed_values_and_tuples_come_back() {
         field: vec![],
     };
     for format in VtkFormat::ALL {
-        let file = bytes(&data, format);
-        let file = match format {
-            VtkFormat::Vtk => Vtk::parse_legacy_be(&file[..]).unwrap(),
-            _ => Vtk::parse_xml(&inlined(&file)[..]).unwrap(),
-        };
-        let attributes = match file.data {
-            DataSet::PolyData { pieces, .. } => inline(pieces).data,
-            DataSet::UnstructuredGrid { pieces, .. } => inline(pieces).data,
-            _ => panic!("neither PolyData nor UnstructuredGrid"),
-        };
+        let attributes = attributes_of(&data, format);
         assert_eq!(named(attributes.point), [("NodeTypes".to_owned(), 1, IOBuffer::I8(NODE_TYPES.to_vec()))]);
         assert_eq!(
             named(attributes.cell),
@@ -282,16 +287,7 @@ fn vectors_come_back() {
     };
     let expected: Vec<f64> = POINTS.iter().flat_map(|point| point.to_array()).collect();
     for format in VtkFormat::ALL {
-        let file = bytes(&data, format);
-        let file = match format {
-            VtkFormat::Vtk => Vtk::parse_legacy_be(&file[..]).unwrap(),
-            _ => Vtk::parse_xml(&inlined(&file)[..]).unwrap(),
-        };
-        let attributes = match file.data {
-            DataSet::PolyData { pieces, .. } => inline(pieces).data,
-            DataSet::UnstructuredGrid { pieces, .. } => inline(pieces).data,
-            _ => panic!("neither PolyData nor UnstructuredGrid"),
-        };
+        let attributes = attributes_of(&data, format);
         let arrays = named(attributes.point);
         assert_eq!(arrays, [("Normals".to_owned(), 3, IOBuffer::F64(expected.clone()))], "{format:?}");
     }

@@ -138,18 +138,8 @@ fn push_faces(
 /// The tessellation with whole cells: of a face between a cell and a moved one, a copy at each.
 fn unwrapped(domain: &Domain, seeds: &[DVec3], faces: &TorusFaces, positions: &[DVec3]) -> Tessellation {
     let places = VertexPlaces::new(faces, positions.len());
-    let mut tessellation = Tessellation {
-        domain: *domain,
-        seeds: seeds.to_vec(),
-        vertices: Vec::with_capacity(places.count()),
-        face_sides: Vec::new(),
-        face_starts: vec![0],
-        face_corners: Vec::new(),
-        cell_starts: Vec::new(),
-        cell_faces: Vec::new(),
-        periodic_vertices: Vec::new(),
-        periodic_faces: Vec::new(),
-    };
+    let vertices = Vec::with_capacity(places.count());
+    let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);
     let period = |shift: Shift| shift.vector(domain);
     tessellation.vertices.extend(
         places.originals.iter().map(|original| positions[original.vertex as usize] + period(original.shift)),

@@ -114,6 +114,22 @@ pub struct Tessellation {
 }
 
 impl Tessellation {
+    /// Cells to which faces are yet to be added.
+    pub(crate) fn without_faces(domain: &Domain, seeds: &[DVec3], vertices: Vec<DVec3>) -> Self {
+        Self {
+            domain: *domain,
+            seeds: seeds.to_vec(),
+            vertices,
+            face_sides: Vec::new(),
+            face_starts: vec![0],
+            face_corners: Vec::new(),
+            cell_starts: Vec::new(),
+            cell_faces: Vec::new(),
+            periodic_vertices: Vec::new(),
+            periodic_faces: Vec::new(),
+        }
+    }
+
     /// Cuts the domain into the Voronoi cells of the seeds, in parallel. In the plane the seeds' z must be 0.
     ///
     /// The same seeds give the same result bit by bit whatever the number of threads.

@@ -110,18 +110,7 @@ pub(crate) fn weld(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Te
         Dimension::Two => 2,
         Dimension::Three => 3,
     };
-    let mut tessellation = Tessellation {
-        domain: *domain,
-        seeds: seeds.to_vec(),
-        vertices,
-        face_sides: Vec::new(),
-        face_starts: vec![0],
-        face_corners: Vec::new(),
-        cell_starts: Vec::new(),
-        cell_faces: Vec::new(),
-        periodic_vertices: Vec::new(),
-        periodic_faces: Vec::new(),
-    };
+    let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);
     let (face_count, corner_count) =
         tiles.iter().map(Tile::counts).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
     tessellation.face_sides.reserve_exact(face_count);

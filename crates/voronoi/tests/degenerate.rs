@@ -3,7 +3,8 @@
 mod common;
 
 use common::{
-    BODY_CENTRED, FACE_CENTRED, SIMPLE_CUBIC, assert_complex, jittered, lattice, random_seeds, tessellate,
+    BODY_CENTRED, FACE_CENTRED, SIMPLE_CUBIC, assert_complex, jittered, lattice, random_seeds, square,
+    tessellate,
 };
 use glam::DVec3;
 use voronoi::{Domain, Side, Tessellation, VoronoiError};
@@ -138,10 +139,6 @@ fn clusters_and_extreme_boxes() {
 
 #[test]
 fn degenerate_seeds_in_the_plane() {
-    let square = |n: u32| -> Vec<DVec3> {
-        let center = |i: u32| (f64::from(i) + 0.5) / f64::from(n);
-        (0..n * n).map(|i| DVec3::new(center(i % n), center(i / n), 0.0)).collect()
-    };
     let circle: Vec<DVec3> = [(3.0, 4.0), (4.0, 3.0), (5.0, 0.0), (0.0, 5.0)]
         .iter()
         .flat_map(|(x, y)| [(*x, *y), (-*x, *y), (*x, -*y), (-*x, -*y)])

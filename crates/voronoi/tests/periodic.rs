@@ -5,7 +5,8 @@
 mod common;
 
 use common::{
-    BODY_CENTRED, FACE_CENTRED, SIMPLE_CUBIC, assert_complex, complex_counts, jittered, lattice, random_seeds,
+    BODY_CENTRED, FACE_CENTRED, SIMPLE_CUBIC, assert_complex, complex_counts, jittered, lattice,
+    random_seeds, square,
 };
 use glam::{BVec3, DVec3};
 use proptest::prelude::*;
@@ -245,10 +246,6 @@ fn extreme_boxes() {
 
 #[test]
 fn degenerate_seeds_in_the_plane() {
-    let square = |n: u32| -> Vec<DVec3> {
-        let center = |i: u32| (f64::from(i) + 0.5) / f64::from(n);
-        (0..n * n).map(|i| DVec3::new(center(i % n), center(i / n), 0.0)).collect()
-    };
     let line: Vec<DVec3> = (0..8).map(|i| DVec3::new(f64::from(i) / 8.0, 0.5, 0.0)).collect();
     let diagonal: Vec<DVec3> = line.iter().map(|seed| DVec3::new(seed.x, seed.x, 0.0)).collect();
     for seeds in [square(2), square(3), square(4), square(10), jittered(&square(4), 1e-15), line, diagonal] {

@@ -125,6 +125,12 @@ pub fn lattice(n: u32, offsets: &[DVec3]) -> Vec<DVec3> {
     seeds
 }
 
+/// The centres of n x n squares in the unit square.
+pub fn square(n: u32) -> Vec<DVec3> {
+    let center = |i: u32| (f64::from(i) + 0.5) / f64::from(n);
+    (0..n * n).map(|i| DVec3::new(center(i % n), center(i / n), 0.0)).collect()
+}
+
 pub fn jittered(seeds: &[DVec3], size: f64) -> Vec<DVec3> {
     let noise = random_seeds(seeds.len(), 5);
     seeds.iter().zip(noise).map(|(seed, noise)| *seed + (noise - 0.5) * size).collect()
