@@ -21,6 +21,9 @@ impl Generator {
     /// Number of sites that can be told from walls.
     pub(crate) const MAX_SITES: usize = FIRST_WALL as usize;
 
+    /// No generator at all.
+    pub(crate) const NONE: Self = Self(u32::MAX);
+
     pub(crate) fn site(id: u32) -> Self {
         debug_assert!(id < FIRST_WALL);
         Self(id)

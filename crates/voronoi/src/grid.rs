@@ -14,6 +14,14 @@ const BLOCKS_PER_TILE: f64 = 4096.0;
 /// Covers the rounding of a position in units of blocks, at most 1024.
 const BLOCK_MARGIN: f64 = 1e-9;
 
+/// Seeds that follow one another in the grid's order: their numbers in the input and their coordinates.
+pub(crate) struct Run<'a> {
+    pub(crate) sites: &'a [u32],
+    pub(crate) x: &'a [f64],
+    pub(crate) y: &'a [f64],
+    pub(crate) z: &'a [f64],
+}
+
 /// The seeds in order of tiles, in these of blocks, in these of coordinates: an order that permuting the seeds does not change.
 pub(crate) struct SeedGrid {
     lower: DVec3,
@@ -23,12 +31,14 @@ pub(crate) struct SeedGrid {
     counts: IVec3,
     /// The number of block (x, y, z) is `offsets[0][x] + offsets[1][y] + offsets[2][z]`.
     offsets: [Vec<u32>; 3],
+    /// Of each block along x, the last one in the same tile.
+    tile_ends: Vec<u32>,
     /// Seeds of block b are `starts[b]..starts[b + 1]`.
     starts: Vec<u32>,
     tiles: Vec<Range<u32>>,
     /// The seeds' places in the input.
     pub(crate) order: Vec<u32>,
-    positions: Vec<DVec3>,
+    columns: [Vec<f64>; 3],
 }
 
 impl SeedGrid {
@@ -65,10 +75,11 @@ impl SeedGrid {
             density: 1.0 / block,
             counts,
             offsets,
+            tile_ends: (0..counts.x).map(|x| ((x / tile.x + 1) * tile.x - 1).cast_unsigned()).collect(),
             starts: Vec::new(),
             tiles: Vec::new(),
             order: Vec::new(),
-            positions: Vec::new(),
+            columns: [const { Vec::new() }; 3],
         };
         grid.sort(&seeds, (tile_counts.element_product() * tile_blocks).unsigned_abs() as usize);
         let tile_starts = grid.starts.iter().copied().step_by(tile_blocks.unsigned_abs() as usize);
@@ -109,14 +120,16 @@ impl SeedGrid {
                 by_axis(0).then_with(|| by_axis(1)).then_with(|| by_axis(2)).then(a.cmp(b))
             });
         }
-        self.positions = self.order.iter().map(|id| seeds[*id as usize]).collect();
+        self.columns = [0, 1, 2].map(|axis| self.order.iter().map(|id| seeds[*id as usize][axis]).collect());
         self.starts = starts;
     }
 
     /// The ids of two seeds at one place, the smallest such pair.
     pub(crate) fn duplicates(&self) -> Option<(u32, u32)> {
-        let pairs = self.positions.windows(2).zip(self.order.windows(2));
-        pairs.filter(|(positions, _)| positions[0] == positions[1]).map(|(_, ids)| (ids[0], ids[1])).min()
+        let places = 1..self.order.len();
+        let pairs =
+            places.filter(|place| self.columns.iter().all(|column| column[place - 1] == column[*place]));
+        pairs.map(|place| (self.order[place - 1], self.order[place])).min()
     }
 
     /// The same grid for seeds that were brought into its order.
@@ -137,7 +150,6 @@ impl SeedGrid {
 
     /// Visits all seeds further than `from` and at most `to` from a place, as their number in the input, the vector to
     /// them and its squared length.
-    #[inline]
     pub(crate) fn for_each_within(
         &self,
         center: DVec3,
@@ -146,6 +158,21 @@ impl SeedGrid {
         mut visit: impl FnMut(u32, DVec3, f64),
     ) {
         let (from, to_squared) = (if from < 0.0 { -1.0 } else { from * from }, to * to);
+        self.for_each_run(center, to, |run| {
+            for (k, site) in run.sites.iter().enumerate() {
+                let to_seed = DVec3::new(run.x[k], run.y[k], run.z[k]) - center;
+                let squared = to_seed.length_squared();
+                if squared > from && squared <= to_squared {
+                    visit(*site, to_seed, squared);
+                }
+            }
+        });
+    }
+
+    /// Visits runs of seeds, among which are all those at most `to` from a place.
+    #[inline]
+    pub(crate) fn for_each_run(&self, center: DVec3, to: f64, mut visit: impl FnMut(Run)) {
+        let to_squared = to * to;
         let place = (center - self.lower) * self.density;
         let steps = to * self.density + BLOCK_MARGIN;
         let first = (place - steps).max(DVec3::ZERO).as_ivec3().clamp(IVec3::ZERO, self.counts - 1);
@@ -171,24 +198,20 @@ impl SeedGrid {
                 let row = self.offsets[1][y as usize] + self.offsets[2][z as usize];
                 while x <= end {
                     // Blocks follow one another up to the end of the tile.
-                    let mut last = x;
-                    while last < end && self.offsets[0][last + 1] == self.offsets[0][last] + 1 {
-                        last += 1;
-                    }
+                    let last = end.min(self.tile_ends[x] as usize);
                     let start = self.starts[(row + self.offsets[0][x]) as usize];
                     let stop = self.starts[(row + self.offsets[0][last]) as usize + 1];
-                    let places = start as usize..stop as usize;
-                    for (seed, position) in self.order[places.clone()].iter().zip(&self.positions[places]) {
-                        let to_seed = *position - center;
-                        let squared = to_seed.length_squared();
-                        if squared > from && squared <= to_squared {
-                            visit(*seed, to_seed, squared);
-                        }
-                    }
+                    visit(self.run(start as usize..stop as usize));
                     x = last + 1;
                 }
             }
         }
+    }
+
+    fn run(&self, places: Range<usize>) -> Run<'_> {
+        let [x, y, z] = &self.columns;
+        let sites = &self.order[places.clone()];
+        Run { sites, x: &x[places.clone()], y: &y[places.clone()], z: &z[places] }
     }
 }
 
@@ -252,6 +275,6 @@ mod tests {
         assert!(grid.tiles().len() > 1);
         assert!(grid.tiles().iter().cloned().flatten().eq(0..5000));
         seeds.reverse();
-        assert_eq!(SeedGrid::new(seeds.clone()).positions, grid.positions);
+        assert_eq!(SeedGrid::new(seeds.clone()).columns, grid.columns);
     }
 }

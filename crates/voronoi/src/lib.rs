@@ -35,7 +35,7 @@
 mod candidates;
 mod convex_cell;
 mod domain;
-mod edge_ends;
+mod end_search;
 mod error;
 mod flat_cells;
 mod generator;
@@ -43,7 +43,7 @@ mod grid;
 mod half_space;
 mod images;
 mod measure;
-mod open_cell;
+mod open_edges;
 mod periodic_weld;
 mod polygon;
 mod polygon_triangulation;
@@ -52,8 +52,10 @@ mod regularize;
 mod search;
 mod tessellation;
 mod tile;
+mod tile_vertex;
 mod torus;
 mod weld;
+mod wide;
 
 pub use domain::{Dimension, Domain, Wall};
 pub use error::VoronoiError;

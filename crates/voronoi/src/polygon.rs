@@ -3,9 +3,9 @@
 use glam::DVec2;
 
 use crate::Wall;
+use crate::end_search::PLANE;
 use crate::generator::Generator;
 use crate::half_space::HalfSpace;
-use crate::open_cell::PLANE;
 use crate::predicate::ExactInput;
 use crate::search::Cutting;
 

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use crate::candidates::Candidates;
 use crate::generator::{Generator, Plane};
 use crate::grid::SeedGrid;
 use crate::images::{Image, ImageTable};
@@ -165,28 +166,70 @@ impl<'a> Search<'a> {
         wanted.min((reach * REACH_GROWTH).max(self.layers[0].grid.block_size()))
     }
 
-    /// Visits all sites further than `from` and at most `to` from a seed but itself and those that its cell begins with, with
-    /// the vector to each and its squared length.
-    #[inline]
-    pub(crate) fn for_each_within(
-        &self,
-        seed: u32,
-        [from, to]: [f64; 2],
-        mut visit: impl FnMut(u32, DVec3, f64),
-    ) -> Result<(), ImagesMissing> {
-        let input = self.input();
+    /// The first layer that knows all sites at most `to` from a seed.
+    fn layer(&self, seed: u32, to: f64) -> Result<&Layer, ImagesMissing> {
         let own = self.seeds[seed as usize];
         let to_outside = (own - self.domain.lower()).min(self.domain.upper() - own);
         let knows_all = |layer: &&Layer| to <= (to_outside + layer.thickness).min_element();
-        let layer = self.layers.iter().find(knows_all).ok_or(ImagesMissing)?;
-        layer.grid.for_each_within(own, from, to, |site, difference, squared| {
-            if (site as usize) < self.seeds.len() {
-                if site != seed {
-                    visit(site, difference, squared);
+        self.layers.iter().find(knows_all).ok_or(ImagesMissing)
+    }
+
+    /// Adds the bisectors of a seed with all sites further than `from` and at most `to` away but those that its cell begins
+    /// with.
+    pub(crate) fn gather(
+        &self,
+        candidates: &mut Candidates,
+        seed: u32,
+        [from, to]: [f64; 2],
+    ) -> Result<(), ImagesMissing> {
+        let layer = self.layer(seed, to)?;
+        let own = self.seeds[seed as usize];
+        let first = candidates.len();
+        let squares = [if from < 0.0 { -1.0 } else { from * from }, to * to];
+        layer.grid.for_each_run(own, to, |run| candidates.push_within(seed, own, &run, squares));
+        let input = self.input();
+        if self.domain.is_periodic() {
+            let seed_count =
+                Generator::site(u32::try_from(self.seeds.len()).expect("site ids were checked to fit"));
+            candidates.revise(first, |generator, normal, offset| {
+                if generator < seed_count {
+                    return Some((normal, offset));
                 }
-            } else if !input.bounds_from_start(seed, site) {
-                let difference = input.difference(seed, site);
-                visit(site, difference, difference.length_squared());
+                let is_new = !input.bounds_from_start(seed, generator.0);
+                let normal = input.difference(seed, generator.0);
+                is_new.then(|| (normal, 0.5 * normal.length_squared()))
+            });
+        }
+        let mut largest_weight = 0.0f64;
+        if self.weights.is_some() {
+            let own_weight = input.weight(seed);
+            candidates.revise(first, |generator, normal, _| {
+                let weight = input.weight(generator.0);
+                largest_weight = largest_weight.max(weight.abs());
+                Some((normal, 0.5 * (normal.length_squared() + (own_weight - weight))))
+            });
+            largest_weight += own_weight.abs();
+        }
+        // The 1-norm of a vector is at most the root of 3 times its length; images may be a last place farther away.
+        candidates.raise_bounds(2.0 * to, 0.5 * (1.5 * to * to + largest_weight));
+        candidates.fill_lanes();
+        Ok(())
+    }
+
+    /// Visits all sites further than `from` and at most `to` from a seed but itself and those that its cell begins with, with
+    /// the square of the distance.
+    fn for_each_within(
+        &self,
+        seed: u32,
+        [from, to]: [f64; 2],
+        mut visit: impl FnMut(u32, f64),
+    ) -> Result<(), ImagesMissing> {
+        let input = self.input();
+        let grid = &self.layer(seed, to)?.grid;
+        grid.for_each_within(self.seeds[seed as usize], from, to, |site, _, squared| {
+            let is_image = site as usize >= self.seeds.len();
+            if site != seed && !(is_image && input.bounds_from_start(seed, site)) {
+                visit(site, squared);
             }
         });
         Ok(())
@@ -203,7 +246,7 @@ impl<'a> Search<'a> {
         while cell.radius() >= 0.0 && self.reach(seed, cell.radius()) > reach {
             let next = self.grow(reach, self.reach(seed, cell.radius()));
             near.clear();
-            self.for_each_within(seed, [reach, next], |site, _, squared| near.push((squared, site)))?;
+            self.for_each_within(seed, [reach, next], |site, squared| near.push((squared, site)))?;
             near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             for (squared, site) in &near {
                 if cell.radius() < 0.0 || squared.sqrt() > self.reach(seed, cell.radius()) {

@@ -1,7 +1,7 @@
 //! The cells of one compact part of the seeds.
 //!
-//! Cells are completed one after the other. Each starts from the vertices that those before it have found, on average three
-//! quarters of its own, and finds the rest.
+//! Seeds are taken one after the other. Each follows the edges of its cell of which one end is known so far to the other end; what
+//! it finds there are vertices of three more cells, and the ends of their edges.
 
 use std::ops::Range;
 
@@ -10,28 +10,16 @@ use rayon::prelude::*;
 
 use crate::Dimension;
 use crate::convex_cell::ConvexCell;
+use crate::end_search::{EndSearch, NewVertex, PLANE};
 use crate::generator::{Generator, VertexKey};
-use crate::half_space::HalfSpace;
-use crate::open_cell::{CellVertex, NewVertex, OpenCell, PLANE};
+use crate::open_edges::OpenEdges;
 use crate::polygon::ConvexPolygon;
 use crate::search::{ImagesMissing, Search};
-use crate::torus::FaceEnd;
+use crate::tile_vertex::{EDGE_SLOTS, NONE, TileVertex};
 
-/// A vertex while its cells are completed.
-struct TileVertex {
-    /// A seed, and the planes of its cell in positive orientation.
-    generators: [Generator; 4],
-    /// Relative to the first generator.
-    position: DVec3,
-    /// Bound on the error of each coordinate.
-    error: f64,
-    /// For each generator but the first, the next vertex of the tile in the list of its cell.
-    next: [u32; 3],
-    has_tie: bool,
-}
-
-/// End of a list of vertices.
-const END: u32 = u32::MAX;
+/// Distance of two vertices, relative to their distance from the seed, beyond which they cannot coincide: far above
+/// the 1e-12 to which coordinates are known, so that only true candidates go to exact arithmetic.
+const POSSIBLY_COINCIDENT: f64 = 1e-9;
 
 /// Cells without what they share with one another twice.
 pub(crate) struct Tile {
@@ -62,75 +50,104 @@ pub(crate) fn cut_tiles(search: &mut Search) -> Vec<Tile> {
 
 /// Completes the cells of consecutive seeds.
 fn cut_tile(search: &Search, seeds: Range<u32>) -> Result<Tile, ImagesMissing> {
-    // Random cells have 6.77 vertices, 7.77 faces and 40.6 corners each, in the plane 2, 3 and 6; walls add to that.
+    // Random cells have 6.77 vertices, 7.77 faces and 40.6 corners each, in the plane 2, 3 and 6; walls and what
+    // lies on the sides of the tile add to that.
     let [vertices, faces, corners] = match search.input().domain.dimension() {
         Dimension::Two => [3, 4, 8].map(|count| count * seeds.len()),
-        Dimension::Three => [8, 9, 46].map(|count| count * seeds.len()),
+        Dimension::Three => [9, 9, 46].map(|count| count * seeds.len()),
     };
-    let mut corner_starts = Vec::with_capacity(faces);
-    corner_starts.push(0);
     let mut builder = Builder {
         search,
+        seeds: seeds.clone(),
+        is_flat: search.input().domain.dimension() == Dimension::Two,
         vertices: Vec::with_capacity(vertices),
-        lists: vec![END; seeds.len()],
-        order: Vec::new(),
-        tile: Tile {
-            seeds: seeds.clone(),
-            vertices: Vec::new(),
-            positions: Vec::new(),
-            faces: Vec::with_capacity(faces),
-            corner_starts,
-            corners: Vec::with_capacity(corners),
-            coincident: Vec::new(),
-        },
+        open: OpenEdges::new(),
+        has_vertex: vec![false; seeds.len()],
+        first_waiting: vec![NONE; seeds.len()],
+        waiting: Vec::new(),
+        current: Vec::new(),
+        coincident: Vec::new(),
     };
-    let mut cell = OpenCell::new(search);
-    for seed in seeds {
-        builder.complete(&mut cell, seed)?;
-        builder.push_faces(&cell, seed);
+    let mut end_search = EndSearch::new(search);
+    for seed in seeds.clone() {
+        builder.complete(&mut end_search, seed)?;
     }
-    Ok(builder.finish())
+    let mut corner_starts = Vec::with_capacity(faces);
+    corner_starts.push(0);
+    let mut tile = Tile {
+        seeds,
+        vertices: Vec::new(),
+        positions: Vec::new(),
+        faces: Vec::with_capacity(faces),
+        corner_starts,
+        corners: Vec::with_capacity(corners),
+        coincident: std::mem::take(&mut builder.coincident),
+    };
+    tile.push_faces(search, &mut builder.vertices);
+    tile.take_vertices(search, &builder.vertices);
+    Ok(tile)
 }
+
+/// An edge of a vertex, as one number: four times the vertex's, and the edge's.
+type EdgeOf = u32;
 
 struct Builder<'a> {
     search: &'a Search<'a>,
+    seeds: Range<u32>,
+    is_flat: bool,
     vertices: Vec<TileVertex>,
-    /// First entry of the list of each cell's known vertices. An entry is a vertex's number times four and the place
-    /// of the cell among its generators.
-    lists: Vec<u32>,
-    /// The faces of the cell under way by what lies beyond.
-    order: Vec<(FaceEnd, u16)>,
-    tile: Tile,
+    open: OpenEdges,
+    /// Whether some vertex of the cell is known, seed by seed.
+    has_vertex: Vec<bool>,
+    /// Edges that wait for the first of their seeds to follow them, as lists.
+    first_waiting: Vec<u32>,
+    waiting: Vec<WaitingEdge>,
+    /// Edges of the cell under way that may lack their other end.
+    current: Vec<EdgeOf>,
+    coincident: Vec<[u32; 2]>,
+}
+
+struct WaitingEdge {
+    edge: EdgeOf,
+    next: u32,
 }
 
 impl Builder<'_> {
-    fn complete(&mut self, cell: &mut OpenCell, seed: u32) -> Result<(), ImagesMissing> {
-        cell.start(seed);
-        let own = self.search.input().seeds[seed as usize];
-        let mut entry = self.lists[(seed - self.tile.seeds.start) as usize];
-        if entry == END {
+    fn complete(&mut self, end_search: &mut EndSearch, seed: u32) -> Result<(), ImagesMissing> {
+        end_search.start(seed);
+        let own = Generator::site(seed);
+        let place = self.place(seed);
+        if !self.has_vertex[place] {
             let Some(planes) = self.first_vertex(seed)? else { return Ok(()) };
-            let vertex = cell.vertex_of(planes)?;
-            self.push(cell, seed, &vertex);
+            let vertex = end_search.vertex_of(planes)?;
+            self.push(seed, &vertex);
         }
-        while entry != END {
-            let vertex = &self.vertices[(entry / 4) as usize];
-            let [p, a, b, c] = vertex.generators;
-            // The orientation of the planes as the others of the four see it.
-            let (place, generators) =
-                [(0, [p, c, b]), (1, [p, a, c]), (2, [p, b, a])][(entry % 4) as usize - 1];
-            let shift = self.search.input().seeds[p.0 as usize] - own;
-            let position = vertex.position + shift;
-            let rounding = f64::EPSILON * (vertex.position.abs() + shift.abs()).max_element();
-            let has_tie = vertex.has_tie;
-            let known = NewVertex { generators, position, error: vertex.error + rounding, has_tie };
-            cell.add(entry / 4, &known);
-            entry = vertex.next[place];
+        let mut next = self.first_waiting[place];
+        while let Some(waiting) = self.waiting.get(next as usize) {
+            self.current.push(waiting.edge);
+            next = waiting.next;
         }
-        while let Some(vertex) = cell.next_vertex()? {
-            self.push(cell, seed, &vertex);
+        while let Some(edge_of) = self.current.pop() {
+            let (vertex, edge) = (&self.vertices[(edge_of / 4) as usize], (edge_of % 4) as usize);
+            if vertex.ends[edge] == NONE {
+                let slot = vertex.slot(own);
+                let start = self.relative_to(seed, vertex);
+                let found =
+                    end_search.other_end(vertex.edge_planes(slot, edge), vertex.planes(slot), start)?;
+                self.push(seed, &found);
+            }
         }
         Ok(())
+    }
+
+    fn place(&self, seed: u32) -> usize {
+        (seed - self.seeds.start) as usize
+    }
+
+    /// The position of a vertex relative to a seed.
+    fn relative_to(&self, seed: u32, vertex: &TileVertex) -> DVec3 {
+        let seeds = self.search.input().seeds;
+        vertex.position + (seeds[vertex.generators[0].0 as usize] - seeds[seed as usize])
     }
 
     /// The planes of one vertex of a cell of which none is known; none if the cell is empty.
@@ -142,78 +159,131 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds a vertex to the cell under way and to the lists of the others.
-    fn push(&mut self, cell: &mut OpenCell, seed: u32, vertex: &NewVertex) {
-        let number = u32::try_from(self.vertices.len()).expect("a tile has fewer than 2^30 vertices");
-        cell.add(number, vertex);
-        let mut next = [END; 3];
-        for (place, generator) in (0u32..).zip(vertex.generators) {
-            if self.tile.seeds.contains(&generator.0) {
-                let list = &mut self.lists[(generator.0 - self.tile.seeds.start) as usize];
-                next[place as usize] = *list;
-                *list = 4 * number + place + 1;
+    /// Adds a vertex of the cell under way, and joins it to those at the other ends of its edges that are known.
+    fn push(&mut self, seed: u32, found: &NewVertex) {
+        let number = u32::try_from(self.vertices.len())
+            .ok()
+            .filter(|number| *number < NONE / 4)
+            .expect("a tile has fewer than 2^30 vertices");
+        let [a, b, c] = found.planes;
+        let generators = [Generator::site(seed), a, b, c];
+        self.vertices.push(TileVertex {
+            generators,
+            position: found.position,
+            ends: [NONE; 4],
+            has_tie: found.has_tie,
+            done_faces: 0,
+        });
+        for generator in generators.into_iter().filter(|generator| self.seeds.contains(&generator.0)) {
+            let place = self.place(generator.0);
+            self.has_vertex[place] = true;
+        }
+        for (edge, slots) in (0u32..).zip(EDGE_SLOTS) {
+            let mut key = slots.map(|slot| generators[slot]);
+            if self.is_flat && !key.contains(&Generator::wall(PLANE)) {
+                continue;
+            }
+            key.sort_unstable();
+            // Edges of earlier seeds have both ends, so one that lacks an end waits for its first seed in the tile.
+            let Some(first) = key.into_iter().find(|generator| self.seeds.contains(&generator.0)) else {
+                continue;
+            };
+            let edge_of = 4 * number + edge;
+            if let Some(other) = self.open.add(key, edge_of) {
+                self.vertices[number as usize].ends[edge as usize] = other / 4;
+                self.vertices[(other / 4) as usize].ends[(other % 4) as usize] = number;
+                if found.has_tie && self.coincide(first, number, other) {
+                    self.coincident.push([number, other / 4]);
+                }
+            } else if first.0 == seed {
+                self.current.push(edge_of);
+            } else {
+                let place = self.place(first.0);
+                let next = std::mem::replace(
+                    &mut self.first_waiting[place],
+                    u32::try_from(self.waiting.len()).expect("a tile has fewer than 2^32 edges"),
+                );
+                self.waiting.push(WaitingEdge { edge: edge_of, next });
             }
         }
-        let [a, b, c] = vertex.generators;
-        self.vertices.push(TileVertex {
-            generators: [Generator::site(seed), a, b, c],
-            position: vertex.position,
-            error: vertex.error,
-            next,
-            has_tie: vertex.has_tie,
+    }
+
+    /// Whether the two ends of an edge of a cell are one point, exactly: then the plane that they do not share passes through
+    /// both.
+    fn coincide(&self, cell: Generator, number: u32, other: EdgeOf) -> bool {
+        let v = &self.vertices[number as usize];
+        let (w, edge) = (&self.vertices[(other / 4) as usize], (other % 4) as usize);
+        let [at_v, at_w] = [v, w].map(|vertex| self.relative_to(cell.0, vertex));
+        v.has_tie
+            && w.has_tie
+            && at_v.distance(at_w) <= POSSIBLY_COINCIDENT * at_v.length()
+            && self.search.input().decide(cell.0, v.planes(v.slot(cell)), w.generators[edge]).tie
+    }
+}
+
+impl Tile {
+    /// Adds the faces between a seed of the tile and a wall or a site that comes after it in the user's numbering.
+    fn push_faces(&mut self, search: &Search, vertices: &mut [TileVertex]) {
+        let is_flat = search.input().domain.dimension() == Dimension::Two;
+        for number in (0u32..).take(vertices.len()) {
+            for i in 0..4 {
+                for j in i + 1..4 {
+                    let vertex = &vertices[number as usize];
+                    if vertex.is_done(i, j) {
+                        continue;
+                    }
+                    let sides = [vertex.generators[i], vertex.generators[j]];
+                    let Some([own, beyond]) = self.in_order(search, sides) else { continue };
+                    let is_plane = beyond == Generator::wall(PLANE);
+                    match (is_flat, is_plane) {
+                        (false, _) => {
+                            self.push_ring(vertices, number, own, beyond);
+                        }
+                        (true, true) => self.push_polygon(search, vertices, number, own),
+                        (true, false) => {}
+                    }
+                }
+            }
+        }
+    }
+
+    /// The two sides of a face in the order in which this tile has it; none if it is another tile's, or between walls.
+    fn in_order(&self, search: &Search, [a, b]: [Generator; 2]) -> Option<[Generator; 2]> {
+        let is_first = |own: Generator, beyond: Generator| {
+            self.seeds.contains(&own.0) && search.end(own) < search.end(beyond)
+        };
+        if is_first(a, b) { Some([a, b]) } else { is_first(b, a).then_some([b, a]) }
+    }
+
+    /// Adds a face of a cell in space.
+    fn push_ring(&mut self, vertices: &mut [TileVertex], first: u32, own: Generator, beyond: Generator) {
+        for_each_corner(vertices, first, own, beyond, |number, _, _| self.corners.push(number));
+        self.finish_face([own, beyond]);
+    }
+
+    /// Adds the edges of a cell in the plane.
+    fn push_polygon(&mut self, search: &Search, vertices: &mut [TileVertex], first: u32, own: Generator) {
+        let own_end = search.end(own);
+        for_each_corner(vertices, first, own, Generator::wall(PLANE), |from, beyond, to| {
+            if search.end(beyond) > own_end {
+                self.corners.extend([from, to]);
+                self.finish_face([own, beyond]);
+            }
         });
     }
 
-    /// Adds the faces of a complete cell that it is the first side of, sorted by what lies beyond.
-    fn push_faces(&mut self, cell: &OpenCell, seed: u32) {
-        let own = Generator::site(seed);
-        let own_end = self.search.end(own);
-        let (tile, search) = (&mut self.tile, self.search);
-        match search.input().domain.dimension() {
-            Dimension::Three => {
-                self.order.clear();
-                let ends = cell.planes().iter().map(|plane| search.end(plane.generator));
-                self.order.extend(ends.zip(0u16..).filter(|(end, _)| *end > own_end));
-                self.order.sort_unstable();
-                for (_, p) in &self.order {
-                    cell.for_each_edge(*p, |from, _, to| {
-                        tile.corners.push(from.number);
-                        tile.note_edge(cell, from, to);
-                    });
-                    tile.finish_face([own, cell.planes()[usize::from(*p)].generator]);
-                }
-            }
-            Dimension::Two => {
-                // The polygon is the face in the plane, and its edges are the faces of the tessellation.
-                let is_plane = |(_, plane): &(u16, &HalfSpace)| plane.generator == Generator::wall(PLANE);
-                for (p, _) in (0u16..).zip(cell.planes()).filter(is_plane) {
-                    cell.for_each_edge(p, |from, beyond, to| {
-                        tile.note_edge(cell, from, to);
-                        if search.end(beyond) > own_end {
-                            tile.corners.extend([from.number, to.number]);
-                            tile.finish_face([own, beyond]);
-                        }
-                    });
-                }
-            }
-        }
-    }
-
-    fn finish(mut self) -> Tile {
+    fn take_vertices(&mut self, search: &Search, vertices: &[TileVertex]) {
         let key = |vertex: &TileVertex| {
             let mut key = vertex.generators;
             key.sort_unstable();
             key
         };
-        self.tile.vertices = self.vertices.iter().map(key).collect();
-        let seeds = self.search.input().seeds;
+        self.vertices = vertices.iter().map(key).collect();
+        let seeds = search.input().seeds;
         let absolute = |vertex: &TileVertex| seeds[vertex.generators[0].0 as usize] + vertex.position;
-        self.tile.positions = self.vertices.iter().map(absolute).collect();
-        self.tile
+        self.positions = vertices.iter().map(absolute).collect();
     }
-}
 
-impl Tile {
     /// Numbers of faces and of their corners.
     pub(crate) fn counts(&self) -> (usize, usize) {
         (self.faces.len(), self.corners.len())
@@ -225,17 +295,34 @@ impl Tile {
         self.faces.iter().zip(corners.map(|range| &self.corners[range]))
     }
 
-    /// Notes an edge of a cell that has no length.
-    fn note_edge(&mut self, cell: &OpenCell, from: &CellVertex, to: &CellVertex) {
-        if cell.coincide(from, to) {
-            self.coincident.push([from.number, to.number]);
-        }
-    }
-
     /// Makes the corners since the last face a face.
     fn finish_face(&mut self, sides: [Generator; 2]) {
         self.faces.push(sides);
         self.corner_starts
             .push(u32::try_from(self.corners.len()).expect("a tile has fewer than 2^32 corners"));
+    }
+}
+
+/// Visits the corners of a face of a cell of the tile in counter-clockwise order as seen from outside: each corner, what
+/// lies beyond the edge from it to the next, and that. Marks the face as done.
+fn for_each_corner(
+    vertices: &mut [TileVertex],
+    first: u32,
+    own: Generator,
+    other: Generator,
+    mut visit: impl FnMut(u32, Generator, u32),
+) {
+    let mut at = first;
+    loop {
+        let vertex = &mut vertices[at as usize];
+        let (cell, plane) = (vertex.slot(own), vertex.slot(other));
+        vertex.mark_done(cell, plane);
+        let (edge, beyond) = TileVertex::next_edge(cell, plane);
+        let next = vertex.ends[edge];
+        visit(at, vertex.generators[beyond], next);
+        if next == first {
+            return;
+        }
+        at = next;
     }
 }

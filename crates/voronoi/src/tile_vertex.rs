@@ -1,0 +1,86 @@
+use glam::DVec3;
+
+use crate::generator::Generator;
+
+/// A vertex while the cells of its tile are completed: four generators and the vertex at the other end of each of the four
+/// edges that leave it. Edge k runs along the planes of all generators but the one in slot k.
+///
+/// Vertices and edges are the tetrahedra and triangles of the dual (Delaunay) complex.
+pub(crate) struct TileVertex {
+    /// A seed of the tile, and the planes of its cell in positive orientation.
+    pub(crate) generators: [Generator; 4],
+    /// Relative to the first generator.
+    pub(crate) position: DVec3,
+    /// The vertex at the other end of each edge; [`NONE`] until it is found.
+    pub(crate) ends: [u32; 4],
+    /// Whether a fifth plane passes through the vertex, exactly.
+    pub(crate) has_tie: bool,
+    /// For each two slots a bit: whether the face between the two generators is done.
+    pub(crate) done_faces: u8,
+}
+
+/// In place of a vertex's number.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// The other slots of a vertex as the generator in one of them sees them: planes in positive orientation.
+const SEEN_FROM: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+
+/// `SUCCESSOR[i][j]` comes after slot j, cyclically, as slot i sees it.
+const SUCCESSOR: [[usize; 4]; 4] = {
+    let mut successor = [[0; 4]; 4];
+    let mut i = 0;
+    while i < 4 {
+        let [a, b, c] = SEEN_FROM[i];
+        (successor[i][a], successor[i][b], successor[i][c]) = (b, c, a);
+        i += 1;
+    }
+    successor
+};
+
+/// The slots of the three generators of each edge.
+pub(crate) const EDGE_SLOTS: [[usize; 3]; 4] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
+
+/// A bit for each pair of slots.
+const FACE_BIT: [[u8; 4]; 4] = [[0, 1, 2, 4], [1, 0, 8, 16], [2, 8, 0, 32], [4, 16, 32, 0]];
+
+impl TileVertex {
+    /// The slot of a generator of the vertex.
+    #[inline]
+    pub(crate) fn slot(&self, generator: Generator) -> usize {
+        let [_, b, c, d] = self.generators.map(|own| own == generator);
+        debug_assert!(b || c || d || self.generators[0] == generator);
+        usize::from(b) + 2 * usize::from(c) + 3 * usize::from(d)
+    }
+
+    /// The planes of the vertex as the cell in a slot sees them, in positive orientation.
+    pub(crate) fn planes(&self, slot: usize) -> [Generator; 3] {
+        SEEN_FROM[slot].map(|other| self.generators[other])
+    }
+
+    /// The two planes along which an edge runs, in the order in which they come before the next vertex's own plane in
+    /// positive orientation, as the cell in `slot` sees it.
+    pub(crate) fn edge_planes(&self, slot: usize, edge: usize) -> [Generator; 2] {
+        let from = SUCCESSOR[slot][edge];
+        let to = SUCCESSOR[slot][from];
+        [self.generators[to], self.generators[from]]
+    }
+
+    /// The edge from this vertex to the next one, counter-clockwise as seen from outside the cell in slot `cell`, of that
+    /// cell's face with the generator in slot `other`; and the slot of what lies beyond the edge in the face's plane.
+    #[inline]
+    pub(crate) fn next_edge(cell: usize, other: usize) -> (usize, usize) {
+        let edge = SUCCESSOR[cell][other];
+        (edge, SUCCESSOR[cell][edge])
+    }
+
+    /// Whether the face between the generators in two slots is done.
+    #[inline]
+    pub(crate) fn is_done(&self, i: usize, j: usize) -> bool {
+        self.done_faces & FACE_BIT[i][j] != 0
+    }
+
+    #[inline]
+    pub(crate) fn mark_done(&mut self, i: usize, j: usize) {
+        self.done_faces |= FACE_BIT[i][j];
+    }
+}
