@@ -24,6 +24,10 @@ const LOOSE: f64 = 2e-12;
 /// decides where they meet. Planes through the edge are such.
 const GRAZING: f64 = 1e-10;
 
+/// How much farther than from known vertices the search looks at first: most of the vertices that it finds are within that, and
+/// another round would cost more than the additional sites.
+const FORESIGHT: f64 = 1.12;
+
 /// A vertex of a cell.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NewVertex {
@@ -55,6 +59,12 @@ impl<'a> EndSearch<'a> {
         self.seed = seed;
         self.candidates.clear();
         self.reach = -1.0;
+    }
+
+    /// Prepares for the ends of edges from vertices up to a distance.
+    pub(crate) fn expect(&mut self, distance: f64) -> Result<(), ImagesMissing> {
+        let reach = self.search.reach(self.seed, distance);
+        self.gather(FORESIGHT * reach).or_else(|ImagesMissing| self.gather(reach))
     }
 
     /// The other end of an edge from a vertex with the planes `used` at `start`. The edge runs along two of these, which are in

@@ -2,7 +2,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::Dimension;
-use crate::tessellation::{CellId, Side, Tessellation};
+use crate::tessellation::{CellId, FaceId, Side, Tessellation, VertexId};
 
 /// Size and counts of one cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +23,12 @@ pub struct CellMeasure {
 
 pub(crate) fn cell_measures(tessellation: &Tessellation) -> Vec<CellMeasure> {
     let order = in_space(tessellation);
-    let sorted: Vec<CellMeasure> = order.par_iter().map(|cell| measure(tessellation, *cell)).collect();
+    let faces = 0..tessellation.face_count();
+    let face_id = |face: usize| FaceId(u32::try_from(face).expect("face ids fit 32 bits"));
+    let face_measures: Vec<FaceMeasure> =
+        faces.into_par_iter().map(|face| face_measure(tessellation, face_id(face))).collect();
+    let sorted: Vec<CellMeasure> =
+        order.par_iter().map(|cell| measure(tessellation, &face_measures, *cell)).collect();
     let mut measures = sorted.clone();
     for (cell, measure) in order.iter().zip(sorted) {
         measures[cell.index()] = measure;
@@ -49,42 +54,61 @@ fn in_space(tessellation: &Tessellation) -> Vec<CellId> {
     order
 }
 
-fn measure(tessellation: &Tessellation, cell: CellId) -> CellMeasure {
+/// What both cells of a face need of it.
+#[derive(Clone, Copy)]
+struct FaceMeasure {
+    /// Normal toward the second side, as long as twice the area; in the plane, as the edge.
+    normal: DVec3,
+    centroid: DVec3,
+}
+
+fn face_measure(tessellation: &Tessellation, face: FaceId) -> FaceMeasure {
+    let ring = tessellation.face_corners(face);
+    let first = tessellation.vertices[ring[0].index()];
+    // Relative to a corner, for a face far from the origin would lose digits.
+    let at = |corner: &VertexId| tessellation.vertices[corner.index()] - first;
+    if tessellation.domain.dimension() == Dimension::Two {
+        let edge = at(&ring[1]);
+        return FaceMeasure { normal: DVec3::new(edge.y, -edge.x, 0.0), centroid: first + 0.5 * edge };
+    }
+    let triangles = || ring[1..].windows(2).map(|ends| [at(&ends[0]), at(&ends[1])]);
+    let normal: DVec3 = triangles().map(|[b, c]| b.cross(c)).sum();
+    let (mut weights, mut moment) = (0.0, DVec3::ZERO);
+    for [b, c] in triangles() {
+        let weight = b.cross(c).dot(normal);
+        weights += weight;
+        moment += weight * (b + c);
+    }
+    let centroid = if weights > 0.0 { first + moment / (3.0 * weights) } else { first };
+    FaceMeasure { normal, centroid }
+}
+
+fn measure(tessellation: &Tessellation, face_measures: &[FaceMeasure], cell: CellId) -> CellMeasure {
     let seed = tessellation.seeds[cell.index()];
-    let (mut volume, mut area, mut moment) = (0.0, 0.0, DVec3::ZERO);
+    // The cell's cones from the seed to its faces: six times their volumes (in the plane, twice their areas).
+    let (mut cones, mut lengths, mut moment) = (0.0, 0.0, DVec3::ZERO);
     let mut corner_count = 0;
     for &face in tessellation.cell_faces(cell) {
-        let ring = tessellation.face_corners(face);
-        corner_count += ring.len();
-        // Relative to the seed, for a cell far from the origin would lose digits.
-        let at = |k: usize| tessellation.vertices[ring[k].index()] - seed;
-        let outward = if tessellation.face_sides(face)[0] == Side::Cell(cell) { 1.0 } else { -1.0 };
-        match tessellation.domain.dimension() {
-            Dimension::Two => {
-                let triangle = outward * 0.5 * at(0).truncate().perp_dot(at(1).truncate());
-                volume += triangle;
-                moment += (at(0) + at(1)) * (triangle / 3.0);
-                area += at(0).distance(at(1));
-            }
-            Dimension::Three => {
-                let mut doubled = DVec3::ZERO;
-                for k in 1..ring.len() - 1 {
-                    let normal = (at(k) - at(0)).cross(at(k + 1) - at(0));
-                    let tetrahedron = outward * at(0).dot(normal) / 6.0;
-                    doubled += normal;
-                    moment += (at(0) + at(k) + at(k + 1)) * (tetrahedron / 4.0);
-                }
-                volume += outward * at(0).dot(doubled) / 6.0;
-                area += 0.5 * doubled.length();
-            }
-        }
+        corner_count += tessellation.face_corners(face).len();
+        let FaceMeasure { normal, centroid } = face_measures[face.index()];
+        let to_face = centroid - seed;
+        let is_first = tessellation.face_sides(face)[0] == Side::Cell(cell);
+        let cone = if is_first { to_face.dot(normal) } else { -to_face.dot(normal) };
+        cones += cone;
+        moment += cone * to_face;
+        lengths += normal.length();
     }
     let face_count = tessellation.cell_faces(cell).len();
+    // A cone's centroid lies at d / (d + 1) of the way from its tip to that of its base in d dimensions.
+    let (volume, area, share) = match tessellation.domain.dimension() {
+        Dimension::Two => (cones / 2.0, lengths, 2.0 / 3.0),
+        Dimension::Three => (cones / 6.0, lengths / 2.0, 3.0 / 4.0),
+    };
     let (edge_count, vertex_count) = match tessellation.domain.dimension() {
         Dimension::Two => (face_count, face_count),
         // Each edge has a corner in either of its faces, and Euler's formula holds but for an empty cell.
         Dimension::Three => (corner_count / 2, (corner_count / 2 + 2).saturating_sub(face_count.max(2))),
     };
-    let centroid = if volume > 0.0 { seed + moment / volume } else { seed };
+    let centroid = if cones > 0.0 { seed + moment * (share / cones) } else { seed };
     CellMeasure { volume, area, face_count, vertex_count, edge_count, centroid }
 }

@@ -123,9 +123,17 @@ impl Builder<'_> {
             self.push(seed, &vertex);
         }
         let mut next = self.first_waiting[place];
+        let mut radius = 0.0f64;
         while let Some(waiting) = self.waiting.get(next as usize) {
-            self.current.push(waiting.edge);
             next = waiting.next;
+            let vertex = &self.vertices[(waiting.edge / 4) as usize];
+            if vertex.ends[(waiting.edge % 4) as usize] == NONE {
+                radius = radius.max(self.relative_to(seed, vertex).length());
+                self.current.push(waiting.edge);
+            }
+        }
+        if !self.current.is_empty() {
+            end_search.expect(radius)?;
         }
         while let Some(edge_of) = self.current.pop() {
             let (vertex, edge) = (&self.vertices[(edge_of / 4) as usize], (edge_of % 4) as usize);
