@@ -13,7 +13,7 @@ use grainsmooth::vtk::VtkFormat;
 use grainsmooth::{
     Config, FileOptions, Lattice, Names, OutputDirectory, OutputFormat, SeedSource, StlEncoding,
 };
-use polycrystal::{FaceMesh, Junctions};
+use polycrystal::{FaceMesh, Junctions, Relaxation};
 use voronoi::Dimension;
 
 use crate::check_run::CheckArguments;
@@ -79,9 +79,9 @@ pub struct Arguments {
     #[arg(long, value_name = "H", value_parser = parse_edge_length, allow_negative_numbers = true, conflicts_with = "faces", help_heading = SMOOTHING)]
     edge_length: Option<f64>,
 
-    /// Relaxation time, in units of the mean grain size squared; 0 keeps boundaries flat
-    #[arg(long, value_name = "T", default_value_t = Config::default().relaxation_time, value_parser = parse_time, allow_negative_numbers = true, help_heading = SMOOTHING)]
-    relax: f64,
+    /// Relaxation time, in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat
+    #[arg(long, value_name = "T", default_value = "0.3", value_parser = parse_relaxation, allow_negative_numbers = true, help_heading = SMOOTHING)]
+    relax: Relaxation,
 
     /// Length, in units of the mean grain size, below which edges between grains collapse; 0 keeps all
     /// [default: 0.1, but 0 with --relax 0]
@@ -269,9 +269,13 @@ impl Arguments {
             box_size,
             face_mesh,
             periodic,
-            relaxation_time: self.relax,
+            relaxation: self.relax,
             // What is not relaxed shall stay flat, for which no vertex may move.
-            regularize: self.regularize.unwrap_or(if self.relax > 0.0 { Config::REGULARIZE } else { 0.0 }),
+            regularize: self.regularize.unwrap_or(if self.relax == Relaxation::Time(0.0) {
+                0.0
+            } else {
+                Config::REGULARIZE
+            }),
             levels: self.levels,
             junctions,
             drop_empty: self.drop_empty,
@@ -384,9 +388,15 @@ fn parse_axes(text: &str) -> Result<BVec3, String> {
     }
 }
 
-fn parse_time(text: &str) -> Result<f64, String> {
+fn parse_relaxation(text: &str) -> Result<Relaxation, String> {
+    if text == "equilibrium" {
+        return Ok(Relaxation::Equilibrium);
+    }
     let time = text.parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0);
-    time.ok_or_else(|| "the relaxation time is 0 (off) or a positive, finite number".to_owned())
+    let time = time.ok_or_else(|| {
+        "the relaxation time is 0 (off) or a positive, finite number, or equilibrium".to_owned()
+    });
+    time.map(Relaxation::Time)
 }
 
 fn parse_regularize(text: &str) -> Result<f64, String> {
