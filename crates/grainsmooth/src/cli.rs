@@ -2,7 +2,7 @@
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
-use grainsmooth::Config;
+use grainsmooth::{Config, read_file_domain};
 
 use crate::check_run::CheckArguments;
 use crate::mesh_cli::MeshArguments;
@@ -77,23 +77,28 @@ impl Arguments {
     /// What the arguments ask to compute.
     ///
     /// Ends the program with exit status 2 where they do not fit together.
-    pub fn config(&self) -> Config {
+    ///
+    /// # Errors
+    /// When the file of the seeds cannot tell what they fill.
+    pub fn config(&self) -> Result<Config, grainsmooth::Error> {
         let Self { seeds, domain, smoothing, files, .. } = self;
-        Config {
-            seeds: seeds.source(domain.dim),
+        let of_file = seeds.seeds_file.as_deref().map(read_file_domain).transpose()?.flatten();
+        let domain = domain.with_defaults_of(of_file);
+        Ok(Config {
+            seeds: seeds.source(domain.dimension),
             random_seed: seeds.rng_seed,
             lloyd_steps: seeds.lloyd,
-            dimension: domain.dim,
-            box_size: domain.box_size(),
+            dimension: domain.dimension,
+            box_size: domain.box_size,
             face_mesh: smoothing.face_mesh(),
-            periodic: domain.periodic(),
+            periodic: domain.periodic,
             relaxation_time: smoothing.relax,
             regularize: smoothing.regularize(),
             levels: smoothing.levels,
             junctions: smoothing.junctions(),
             drop_empty: seeds.drop_empty,
-            file: files.options(domain.dim),
-        }
+            file: files.options(domain.dimension),
+        })
     }
 }
 

@@ -55,7 +55,7 @@ pub use pipeline::{
     Polycrystal, Progress, Stage, Tessellated, check_expected_size, make_polycrystal, smooth, tessellate,
 };
 pub use poisson_disc::poisson_disc_seeds;
-pub use seed_file::{FileSeed, SeedLineProblem, read_seed_file};
+pub use seed_file::{FileDomain, FileSeed, SeedPlace, SeedProblem, read_file_domain, read_seed_file};
 pub use seeding::random_seeds;
 pub use settings::embedded_config;
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};

@@ -14,7 +14,8 @@ use std::time::Instant;
 use anyhow::anyhow;
 use grainsmooth::mesh_file::READER_THREAD;
 use grainsmooth::{
-    CellTable, Output, OutputDirectory, Stage, Summary, TableFormat, check_expected_size, smooth, tessellate,
+    CellTable, Config, Output, OutputDirectory, Stage, Summary, TableFormat, check_expected_size, smooth,
+    tessellate,
 };
 
 use cli::{Arguments, Command};
@@ -53,11 +54,12 @@ fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
             Command::Check(check) => check_run::run(check),
         };
     }
+    let config = arguments.config()?;
     // An output that cannot be written is found before hours of work, not after.
     let tables = tables(arguments)?;
     let output = if arguments.run.no_mesh { None } else { Some(Output::check(&arguments.files.output)?) };
     if let Some(output) = &output {
-        output.check_fits(&arguments.config())?;
+        output.check_fits(&config)?;
     }
     let grains = arguments
         .files
@@ -66,7 +68,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         .map(|path| arguments.files.grains_format.check(path))
         .transpose()?;
     if let Some(grains) = &grains {
-        grains.check_fits(&arguments.config())?;
+        grains.check_fits(&config)?;
     }
     let threads = arguments.run.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new()
@@ -75,7 +77,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         .map_err(|cause| anyhow!("cannot start {threads} threads: {cause}; give fewer with --threads"))?;
     let line = ProgressLine::new(arguments.run.quiet);
     let files = Files { tables, output, grains };
-    let result = pool.install(|| compute(arguments, &files, &line));
+    let result = pool.install(|| compute(&config, &files, &line));
     line.clear();
     let summary = result?;
     if !arguments.run.quiet {
@@ -108,13 +110,12 @@ impl Files {
 }
 
 /// Computes and writes what is asked for, and returns the summary.
-fn compute(arguments: &Arguments, files: &Files, line: &ProgressLine) -> Result<String, grainsmooth::Error> {
-    let config = arguments.config();
+fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String, grainsmooth::Error> {
     let progress = |stage, done, count| line.show(stage, done, count);
     if files.output.is_some() {
-        check_expected_size(&config)?;
+        check_expected_size(config)?;
     }
-    let tessellated = tessellate(&config, &progress)?;
+    let tessellated = tessellate(config, &progress)?;
     if !files.tables.is_empty() {
         let table = CellTable::new(&tessellated);
         files.tables.iter().try_for_each(|output| table.write(output))?;
@@ -128,7 +129,7 @@ fn compute(arguments: &Arguments, files: &Files, line: &ProgressLine) -> Result<
             tessellation.domain()
         ));
     };
-    let mut polycrystal = smooth(&config, tessellated, &progress)?;
+    let mut polycrystal = smooth(config, tessellated, &progress)?;
     line.show(Stage::Writing, 0, 1);
     let start = Instant::now();
     polycrystal.write(output)?;
