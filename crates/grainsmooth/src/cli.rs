@@ -2,12 +2,14 @@
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
+use clap_complete::Shell;
 use grainsmooth::{Config, read_file_domain};
 
 use crate::check_run::CheckArguments;
 use crate::mesh_cli::MeshArguments;
 
 mod config_file;
+mod documents;
 mod domain;
 mod files;
 mod run;
@@ -15,6 +17,7 @@ mod seeds;
 mod smoothing;
 mod values;
 
+pub use documents::{print_completions, print_manual};
 use domain::DomainArguments;
 use files::FileArguments;
 use run::RunArguments;
@@ -48,6 +51,17 @@ pub struct Arguments {
 pub enum Command {
     Mesh(MeshArguments),
     Check(CheckArguments),
+    /// Print what completes options and values in a shell
+    ///
+    /// Example: grainsmooth completions bash > ~/.local/share/bash-completion/completions/grainsmooth
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the manual page
+    ///
+    /// Example: grainsmooth man | man -l -
+    Man,
 }
 
 const EXAMPLES: &str = "\
@@ -103,6 +117,6 @@ impl Arguments {
 }
 
 /// Ends the program as clap does on a mistake.
-fn usage(message: &str) -> ! {
+pub fn usage(message: &str) -> ! {
     Arguments::command().error(ErrorKind::WrongNumberOfValues, message).exit()
 }

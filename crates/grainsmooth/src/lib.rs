@@ -18,6 +18,7 @@ mod cell_table;
 mod check_report;
 mod config;
 mod error;
+mod estimate;
 mod formats;
 mod labelled_file;
 mod lattice;
@@ -35,12 +36,15 @@ mod seeding;
 mod settings;
 mod subdivide;
 mod summary;
+mod summary_record;
+mod unfinished;
 pub mod vtk;
 
 pub use cell_table::{CellTable, TableFormat};
 pub use check_report::{CheckReport, ReportedFault, Spread, Statistic};
 pub use config::{Config, FileOptions, SeedSource};
 pub use error::Error;
+pub use estimate::Estimate;
 pub use formats::{LabelGrid, Names, StlEncoding};
 pub use formats::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
@@ -60,3 +64,5 @@ pub use seeding::random_seeds;
 pub use settings::embedded_config;
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};
 pub use summary::Summary;
+pub use summary_record::SummaryRecord;
+pub use unfinished::discard_unfinished;

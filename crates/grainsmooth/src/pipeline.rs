@@ -33,6 +33,17 @@ pub enum Stage {
 }
 
 impl Stage {
+    /// Every stage, in the order in which they follow each other.
+    pub const ALL: [Self; 7] = [
+        Self::Seeds,
+        Self::Cells,
+        Self::Network,
+        Self::Relaxation,
+        Self::Subdivision,
+        Self::Validation,
+        Self::Writing,
+    ];
+
     /// The stage in one word.
     pub fn name(self) -> &'static str {
         match self {
