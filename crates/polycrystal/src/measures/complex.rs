@@ -122,13 +122,9 @@ impl<'a> Complex<'a> {
             })
             .collect();
         spokes.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let next = spokes.iter().cycle().skip(1);
-        let last = spokes.len() - 1;
-        let wedge = |(k, (&(angle, side), &(next, _))): (usize, (&(f64, Side), &(f64, Side)))| {
-            let turn = if k == last { std::f64::consts::TAU } else { 0.0 };
-            Wedge { side, angle: next - angle + turn }
-        };
-        spokes.iter().zip(next).enumerate().map(wedge).collect()
+        let next = spokes[1..].iter().map(|(angle, _)| *angle);
+        let ends = next.chain([spokes[0].0 + std::f64::consts::TAU]);
+        spokes.iter().zip(ends).map(|(&(start, side), end)| Wedge { side, angle: end - start }).collect()
     }
 }
 

@@ -371,7 +371,7 @@ fn quadruple_points(
     }
     around.sort_unstable();
     around.dedup();
-    let measure = |(ends, sides): (&&[(u32, DVec3)], &[(u32, Side)])| {
+    let measure = |ends: &[(u32, DVec3)], sides: &[(u32, Side)]| {
         let mut sum = 0.0;
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
         for (index, (_, one)) in ends.iter().enumerate() {
@@ -392,7 +392,8 @@ fn quadruple_points(
             largest_angle: range[1],
         }
     };
-    ends.iter().zip(around.chunk_by(|a, b| a.0 == b.0)).map(measure).collect()
+    let points = ends.iter().zip(around.chunk_by(|a, b| a.0 == b.0));
+    points.map(|(ends, sides)| measure(ends, sides)).collect()
 }
 
 /// Counts the corners on each grain's own surface, where a periodic network has those that are copies too.
