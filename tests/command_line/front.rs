@@ -216,9 +216,9 @@ fn interrupted_run_leaves_nothing() {
         names
     };
     for (arguments, signal, code) in [
-        ("--seeds 150 -n 4 --relax 0 -o a.obj", "-INT", 130),
-        ("--seeds 150 -n 4 --relax 0 -o a.vtm", "-INT", 130),
-        ("--seeds 150 -n 4 --relax 0 --grains-dir d --grains-format obj", "-TERM", 143),
+        ("--seeds 100 -n 3 --relax 0 -o a.obj", "-INT", 130),
+        ("--seeds 100 -n 3 --relax 0 -o a.vtm", "-INT", 130),
+        ("--seeds 100 -n 3 --relax 0 --grains-dir d --grains-format obj", "-TERM", 143),
     ] {
         let workplace = Workplace::new();
         let program = workplace.command("").get_program().to_owned();
