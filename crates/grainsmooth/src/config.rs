@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use glam::{BVec3, DVec3};
-use polycrystal::{FaceMesh, Junctions};
+use polycrystal::{FaceMesh, Junctions, Relaxation};
 use voronoi::{Dimension, Domain};
 
 use crate::{Error, Lattice, LatticeFit, Names, StlEncoding};
@@ -49,8 +49,8 @@ pub struct Config {
     pub periodic: BVec3,
     /// Control points on boundaries.
     pub face_mesh: FaceMesh,
-    /// Relaxation time in units of the mean grain size squared; 0 leaves boundaries flat.
-    pub relaxation_time: f64,
+    /// How far boundaries relax; time 0 leaves them flat.
+    pub relaxation: Relaxation,
     /// Length, in units of the mean grain size, below which edges of cells collapse before relaxation; 0 keeps all.
     pub regularize: f64,
     /// Number of subdivisions.
@@ -90,7 +90,7 @@ impl Default for Config {
             box_size: DVec3::ONE,
             periodic: BVec3::FALSE,
             face_mesh: FaceMesh::Fan,
-            relaxation_time: polycrystal::Relaxation::default().time,
+            relaxation: Relaxation::default(),
             regularize: Self::REGULARIZE,
             levels: 3,
             junctions: Junctions::Crease,
@@ -136,62 +136,5 @@ impl Config {
             Dimension::Three => Domain::cuboid(DVec3::ZERO, upper)?,
         };
         Ok(domain.with_periods(self.periodic))
-    }
-
-    /// The command line that makes the same result, all settings spelled out.
-    ///
-    /// What does not change the result (output path, number of threads) is left out, so files can be compared.
-    pub fn command_line(&self) -> String {
-        let seeds = match &self.seeds {
-            SeedSource::Random { count } => format!("--seeds {count} --rng-seed {}", self.random_seed),
-            SeedSource::PoissonDisc { count } => {
-                format!("--seeding poisson-disc --seeds {count} --rng-seed {}", self.random_seed)
-            }
-            SeedSource::Lattice { lattice, cells } => format!("--lattice {} {cells}", lattice.name()),
-            SeedSource::File(path) => format!("--seeds-file {}", path.display()),
-        };
-        let lloyd =
-            if self.lloyd_steps == 0 { String::new() } else { format!(" --lloyd {}", self.lloyd_steps) };
-        let DVec3 { x, y, z } = self.box_size;
-        let space = match self.dimension {
-            Dimension::Two => format!("--dim 2 --box {x} {y}"),
-            Dimension::Three => format!("--dim 3 --box {x} {y} {z}"),
-        };
-        let axes = ["x", "y", "z"].into_iter().zip(<[bool; 3]>::from(self.periodic));
-        let axes: Vec<&str> = axes.filter(|(_, is_periodic)| *is_periodic).map(|(axis, _)| axis).collect();
-        let periodic =
-            if axes.is_empty() { String::new() } else { format!(" --periodic {}", axes.join(",")) };
-        let junctions = match self.junctions {
-            Junctions::Crease => "crease",
-            Junctions::Corner => "corner",
-        };
-        let faces = match self.face_mesh {
-            FaceMesh::Fan => "--faces fan".to_owned(),
-            FaceMesh::Plain => "--faces plain".to_owned(),
-            FaceMesh::Refined { edge_length } => format!("--edge-length {edge_length}"),
-        };
-        let drop_empty = if self.drop_empty { " --drop-empty" } else { "" };
-        let Self { relaxation_time, regularize, levels, file, .. } = self;
-        format!(
-            "grainsmooth {seeds}{drop_empty}{lloyd} {space}{periodic} {faces} --relax {relaxation_time} --regularize {regularize} -n {levels} --junctions {junctions}{}",
-            file.arguments(self.dimension)
-        )
-    }
-}
-
-impl FileOptions {
-    /// The options that are not the default, each after a blank.
-    fn arguments(&self, dimension: Dimension) -> String {
-        let names = match self.names {
-            Names::Grainsmooth => String::new(),
-            names => format!(" --names {}", names.name()),
-        };
-        let voxels = match (self.voxels, dimension) {
-            (None, _) => String::new(),
-            (Some([x, y, _]), Dimension::Two) => format!(" --voxels {x} {y}"),
-            (Some([x, y, z]), Dimension::Three) => format!(" --voxels {x} {y} {z}"),
-        };
-        let stl = if self.stl == StlEncoding::Ascii { " --ascii" } else { "" };
-        format!("{names}{voxels}{stl}")
     }
 }
