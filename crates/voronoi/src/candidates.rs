@@ -142,7 +142,7 @@ impl Candidates {
     }
 
     /// Number of planes from which the point is at most `slack` inside.
-    pub(crate) fn count_beyond(&self, point: DVec3, slack: f64) -> u64 {
+    pub(crate) fn count_beyond(&self, point: DVec3, slack: f64) -> usize {
         count_beyond(self.columns(), point, slack)
     }
 }

@@ -52,8 +52,8 @@ fn first_crossing_avx2(columns: PlaneColumns, ray: &Ray) -> (f64, usize) {
 #[inline(always)]
 fn first_crossing_anywhere([x, y, z, offsets]: PlaneColumns, ray: &Ray) -> (f64, usize) {
     let mut nearest = [f64::INFINITY; LANES];
-    let mut chunks = [0u64; LANES];
-    for (chunk, (((x, y), z), offsets)) in (0u64..).zip(x.iter().zip(y).zip(z).zip(offsets)) {
+    let mut chunks = [0usize; LANES];
+    for (chunk, (((x, y), z), offsets)) in (0..).zip(x.iter().zip(y).zip(z).zip(offsets)) {
         for lane in 0..LANES {
             let crossing = ray.crossing(x[lane], y[lane], z[lane], offsets[lane]);
             let is_nearer = crossing < nearest[lane];
@@ -63,14 +63,14 @@ fn first_crossing_anywhere([x, y, z, offsets]: PlaneColumns, ray: &Ray) -> (f64,
     }
     let mut first = (f64::INFINITY, usize::MAX);
     for lane in 0..LANES {
-        let own = (nearest[lane], chunks[lane] as usize * LANES + lane);
+        let own = (nearest[lane], chunks[lane] * LANES + lane);
         first = if own < first { own } else { first };
     }
     first
 }
 
 /// Number of planes from which a point is at most `slack` inside.
-pub(crate) fn count_beyond(columns: PlaneColumns, point: DVec3, slack: f64) -> u64 {
+pub(crate) fn count_beyond(columns: PlaneColumns, point: DVec3, slack: f64) -> usize {
     #[cfg(target_arch = "x86_64")]
     if is_x86_feature_detected!("avx2") {
         // SAFETY: the processor has AVX2.
@@ -81,17 +81,17 @@ pub(crate) fn count_beyond(columns: PlaneColumns, point: DVec3, slack: f64) -> u
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn count_beyond_avx2(columns: PlaneColumns, point: DVec3, slack: f64) -> u64 {
+fn count_beyond_avx2(columns: PlaneColumns, point: DVec3, slack: f64) -> usize {
     count_beyond_anywhere(columns, point, slack)
 }
 
 #[inline(always)]
-fn count_beyond_anywhere([x, y, z, offsets]: PlaneColumns, point: DVec3, slack: f64) -> u64 {
-    let mut beyond = [0u64; LANES];
+fn count_beyond_anywhere([x, y, z, offsets]: PlaneColumns, point: DVec3, slack: f64) -> usize {
+    let mut beyond = [0usize; LANES];
     for (((x, y), z), offsets) in x.iter().zip(y).zip(z).zip(offsets) {
         for lane in 0..LANES {
             let excess = x[lane] * point.x + y[lane] * point.y + z[lane] * point.z - offsets[lane];
-            beyond[lane] += u64::from(excess >= -slack);
+            beyond[lane] += usize::from(excess >= -slack);
         }
     }
     beyond.iter().sum()
