@@ -3,13 +3,17 @@
 use std::ops::Range;
 
 use glam::{DVec3, IVec3};
+use rayon::prelude::*;
 
 /// Seeds a block holds on average: fewer make more empty blocks to visit, more make more seeds to sort out.
-const SEEDS_PER_BLOCK: f64 = 2.0;
+const SEEDS_PER_BLOCK: f64 = 3.0;
 
 /// Blocks in a tile, at most: what lies on the sides of a tile is worked out on both sides, and a tile is the unit of work
 /// that threads share out.
-const BLOCKS_PER_TILE: f64 = 4096.0;
+const BLOCKS_PER_TILE: f64 = 2744.0;
+
+/// Blocks that a thread sorts at once: as many as in a tile.
+const BLOCKS_SORTED_AT_ONCE: usize = 2744;
 
 /// Covers the rounding of a position in units of blocks, at most 1024.
 const BLOCK_MARGIN: f64 = 1e-9;
@@ -96,7 +100,7 @@ impl SeedGrid {
             let block = place.as_ivec3().clamp(IVec3::ZERO, self.counts - 1).as_usizevec3();
             self.offsets[0][block.x] + self.offsets[1][block.y] + self.offsets[2][block.z]
         };
-        let blocks: Vec<u32> = seeds.iter().map(block_of).collect();
+        let blocks: Vec<u32> = seeds.par_iter().map(block_of).collect();
         let mut starts = vec![0u32; block_count + 1];
         for block in &blocks {
             starts[*block as usize + 1] += 1;
@@ -111,15 +115,26 @@ impl SeedGrid {
             self.order[*slot as usize] = seed;
             *slot += 1;
         }
-        for block in starts.windows(2) {
-            // Adding zero makes -0 and 0 the same place.
-            let key = |id: &u32| (seeds[*id as usize] + DVec3::ZERO).to_array();
-            self.order[block[0] as usize..block[1] as usize].sort_unstable_by(|a, b| {
-                let (left, right) = (key(a), key(b));
-                let by_axis = |axis: usize| left[axis].total_cmp(&right[axis]);
-                by_axis(0).then_with(|| by_axis(1)).then_with(|| by_axis(2)).then(a.cmp(b))
-            });
+        // Adding zero makes -0 and 0 the same place.
+        let key = |id: &u32| (seeds[*id as usize] + DVec3::ZERO).to_array();
+        let before = |a: &u32, b: &u32| {
+            let (left, right) = (key(a), key(b));
+            let by_axis = |axis: usize| left[axis].total_cmp(&right[axis]);
+            by_axis(0).then_with(|| by_axis(1)).then_with(|| by_axis(2)).then(a.cmp(b))
+        };
+        let (mut rest, mut parts) = (&mut self.order[..], Vec::new());
+        for first in (0..block_count).step_by(BLOCKS_SORTED_AT_ONCE) {
+            let starts = &starts[first..=(first + BLOCKS_SORTED_AT_ONCE).min(block_count)];
+            let (part, others) = rest.split_at_mut((starts[starts.len() - 1] - starts[0]) as usize);
+            parts.push((starts, part));
+            rest = others;
         }
+        parts.into_par_iter().for_each(|(starts, part)| {
+            for block in starts.windows(2) {
+                let [from, to] = [block[0], block[1]].map(|start| (start - starts[0]) as usize);
+                part[from..to].sort_unstable_by(before);
+            }
+        });
         self.columns = [0, 1, 2].map(|axis| self.order.iter().map(|id| seeds[*id as usize][axis]).collect());
         self.starts = starts;
     }

@@ -18,6 +18,8 @@ pub(crate) struct ImageTable {
     list: Vec<Image>,
     /// Places in `list`, sorted by what stands there.
     order: Vec<u32>,
+    /// Those of the images of seed s are `order[starts[s]..starts[s + 1]]`.
+    starts: Vec<u32>,
 }
 
 impl ImageTable {
@@ -27,8 +29,10 @@ impl ImageTable {
 
     /// Place of an image in the list.
     pub(crate) fn find(&self, image: Image) -> Option<usize> {
-        let place = self.order.binary_search_by_key(&image, |place| self.list[*place as usize]).ok()?;
-        Some(self.order[place] as usize)
+        let seed = image.seed as usize;
+        let (start, end) = (*self.starts.get(seed)?, *self.starts.get(seed + 1)?);
+        let of_seed = &self.order[start as usize..end as usize];
+        of_seed.iter().map(|place| *place as usize).find(|place| self.list[*place] == image)
     }
 
     /// This table and, after what it has, all images within a distance of the domain along each axis.
@@ -65,6 +69,13 @@ impl ImageTable {
         }
         let mut order: Vec<u32> = (0u32..).take(list.len()).collect();
         order.sort_unstable_by_key(|place| list[*place as usize]);
-        Self { list, order }
+        let mut starts = vec![0; seeds.len() + 1];
+        for image in &list {
+            starts[image.seed as usize + 1] += 1;
+        }
+        for seed in 0..seeds.len() {
+            starts[seed + 1] += starts[seed];
+        }
+        Self { list, order, starts }
     }
 }

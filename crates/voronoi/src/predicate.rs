@@ -131,6 +131,13 @@ impl<'a> ExactInput<'a> {
             // Shifts of at most two periods keep the products exact.
             let shift = f64::from(image.shift.0[axis]);
             let (lower, upper) = (self.domain.lower()[axis], self.domain.upper()[axis]);
+            let (period, period_rest) = sum_and_rest(upper, -lower);
+            if period_rest == 0.0 {
+                // Either the second sum is exact, or it cancels too little for the rests to count.
+                let (difference, rest) = sum_and_rest(other[axis], -own[axis]);
+                let (sum, second_rest) = sum_and_rest(difference, shift * period);
+                return sum + (rest + second_rest);
+            }
             accurate_sum([other[axis], -own[axis], shift * upper, -shift * lower])
         }))
     }
@@ -263,6 +270,13 @@ fn break_tie(planes: [&ExactPlane; 4], coefficients: [BigInt; 4]) -> bool {
     terms.iter().map(|(_, term)| term).find(|term| !term.is_zero()).is_some_and(Signed::is_positive)
 }
 
+/// A rounded sum, and what rounding left out (Knuth 1969).
+fn sum_and_rest(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
+}
+
 /// A sum good to one or two last places whatever cancels: the partial sums are kept with all their digits
 /// (Shewchuk 1997).
 fn accurate_sum(terms: [f64; 4]) -> f64 {
@@ -271,9 +285,8 @@ fn accurate_sum(terms: [f64; 4]) -> f64 {
     for (count, term) in terms.into_iter().enumerate() {
         let mut carry = term;
         for part in &mut parts[..count] {
-            let sum = carry + *part;
-            let of_part = sum - carry;
-            *part = (carry - (sum - of_part)) + (*part - of_part);
+            let (sum, rest) = sum_and_rest(carry, *part);
+            *part = rest;
             carry = sum;
         }
         parts[count] = carry;

@@ -12,10 +12,10 @@ use crate::Dimension;
 use crate::convex_cell::ConvexCell;
 use crate::end_search::{EndSearch, NewVertex, PLANE};
 use crate::generator::{Generator, VertexKey};
-use crate::open_edges::OpenEdges;
+use crate::open_edges::{EdgeKey, OpenEdges};
 use crate::polygon::ConvexPolygon;
 use crate::search::{ImagesMissing, Search};
-use crate::tile_vertex::{EDGE_SLOTS, NONE, TileVertex};
+use crate::tile_vertex::{EDGE_SLOTS, FACE_SLOTS, NONE, TileVertex};
 
 /// Distance of two vertices, relative to their distance from the seed, beyond which they cannot coincide: far above
 /// the 1e-12 to which coordinates are known, so that only true candidates go to exact arithmetic.
@@ -24,15 +24,23 @@ const POSSIBLY_COINCIDENT: f64 = 1e-9;
 /// Cells without what they share with one another twice.
 pub(crate) struct Tile {
     pub(crate) seeds: Range<u32>,
-    pub(crate) vertices: Vec<VertexKey>,
+    /// Where the vertices are.
     pub(crate) positions: Vec<DVec3>,
+    /// The vertices of which other tiles know as well, or which are others moved by periods.
+    pub(crate) shared: Vec<SharedVertex>,
     /// The seed of each face, and the generator beyond: a wall or a site that comes after it in the user's numbering.
-    faces: Vec<[Generator; 2]>,
+    pub(crate) faces: Vec<[Generator; 2]>,
     /// The corners of face f are `corners[corner_starts[f]..corner_starts[f + 1]]`, counter-clockwise from outside the first cell.
-    corner_starts: Vec<u32>,
-    corners: Vec<u32>,
+    pub(crate) corner_starts: Vec<u32>,
+    pub(crate) corners: Vec<u32>,
     /// Pairs of vertices that are one point.
     pub(crate) coincident: Vec<[u32; 2]>,
+}
+
+/// A vertex with generators outside its tile.
+pub(crate) struct SharedVertex {
+    pub(crate) vertex: u32,
+    pub(crate) key: VertexKey,
 }
 
 /// Cuts all cells in parallel, with wider search for those that ask for it.
@@ -76,8 +84,8 @@ fn cut_tile(search: &Search, seeds: Range<u32>) -> Result<Tile, ImagesMissing> {
     corner_starts.push(0);
     let mut tile = Tile {
         seeds,
-        vertices: Vec::new(),
         positions: Vec::new(),
+        shared: Vec::new(),
         faces: Vec::with_capacity(faces),
         corner_starts,
         corners: Vec::with_capacity(corners),
@@ -187,11 +195,11 @@ impl Builder<'_> {
             self.has_vertex[place] = true;
         }
         for (edge, slots) in (0u32..).zip(EDGE_SLOTS) {
-            let mut key = slots.map(|slot| generators[slot]);
+            let key = slots.map(|slot| generators[slot]);
             if self.is_flat && !key.contains(&Generator::wall(PLANE)) {
                 continue;
             }
-            key.sort_unstable();
+            let key = in_order(key);
             // Edges of earlier seeds have both ends, so one that lacks an end waits for its first seed in the tile.
             let Some(first) = key.into_iter().find(|generator| self.seeds.contains(&generator.0)) else {
                 continue;
@@ -234,22 +242,18 @@ impl Tile {
     fn push_faces(&mut self, search: &Search, vertices: &mut [TileVertex]) {
         let is_flat = search.input().domain.dimension() == Dimension::Two;
         for number in (0u32..).take(vertices.len()) {
-            for i in 0..4 {
-                for j in i + 1..4 {
-                    let vertex = &vertices[number as usize];
-                    if vertex.is_done(i, j) {
-                        continue;
-                    }
-                    let sides = [vertex.generators[i], vertex.generators[j]];
-                    let Some([own, beyond]) = self.in_order(search, sides) else { continue };
-                    let is_plane = beyond == Generator::wall(PLANE);
-                    match (is_flat, is_plane) {
-                        (false, _) => {
-                            self.push_ring(vertices, number, own, beyond);
-                        }
-                        (true, true) => self.push_polygon(search, vertices, number, own),
-                        (true, false) => {}
-                    }
+            let mut faces = vertices[number as usize].open_faces();
+            while faces != 0 {
+                let [i, j] = FACE_SLOTS[faces.trailing_zeros() as usize];
+                faces &= faces - 1;
+                let vertex = &vertices[number as usize];
+                let sides = [vertex.generators[i], vertex.generators[j]];
+                let Some([own, beyond]) = self.in_order(search, sides) else { continue };
+                let is_plane = beyond == Generator::wall(PLANE);
+                match (is_flat, is_plane) {
+                    (false, _) => self.push_ring(vertices, number, own, beyond),
+                    (true, true) => self.push_polygon(search, vertices, number, own),
+                    (true, false) => {}
                 }
             }
         }
@@ -281,12 +285,15 @@ impl Tile {
     }
 
     fn take_vertices(&mut self, search: &Search, vertices: &[TileVertex]) {
-        let key = |vertex: &TileVertex| {
-            let mut key = vertex.generators;
-            key.sort_unstable();
-            key
-        };
-        self.vertices = vertices.iter().map(key).collect();
+        let is_inner =
+            |generator: &Generator| self.seeds.contains(&generator.0) || generator.as_site().is_none();
+        for (vertex, TileVertex { generators, .. }) in (0u32..).zip(vertices) {
+            if !generators.iter().all(is_inner) {
+                let mut key = *generators;
+                key.sort_unstable();
+                self.shared.push(SharedVertex { vertex, key });
+            }
+        }
         let seeds = search.input().seeds;
         let absolute = |vertex: &TileVertex| seeds[vertex.generators[0].0 as usize] + vertex.position;
         self.positions = vertices.iter().map(absolute).collect();
@@ -303,12 +310,41 @@ impl Tile {
         self.faces.iter().zip(corners.map(|range| &self.corners[range]))
     }
 
+    /// Leaves out corners that have the same number as the one before them, and then faces with fewer than some corners.
+    pub(crate) fn drop_repeated_corners(&mut self, number: impl Fn(u32) -> u32, fewest: usize) {
+        let (faces, starts, corners) = (
+            std::mem::take(&mut self.faces),
+            std::mem::take(&mut self.corner_starts),
+            std::mem::take(&mut self.corners),
+        );
+        self.corner_starts.push(0);
+        let mut ring: Vec<u32> = Vec::new();
+        for (sides, range) in faces.iter().zip(starts.windows(2)) {
+            ring.clear();
+            ring.extend(&corners[range[0] as usize..range[1] as usize]);
+            ring.dedup_by_key(|corner| number(*corner));
+            while ring.len() > 1 && number(ring[ring.len() - 1]) == number(ring[0]) {
+                ring.pop();
+            }
+            if ring.len() >= fewest {
+                self.corners.extend(&ring);
+                self.finish_face(*sides);
+            }
+        }
+    }
+
     /// Makes the corners since the last face a face.
     fn finish_face(&mut self, sides: [Generator; 2]) {
         self.faces.push(sides);
         self.corner_starts
             .push(u32::try_from(self.corners.len()).expect("a tile has fewer than 2^32 corners"));
     }
+}
+
+/// The same generators sorted, without branches that would be mispredicted.
+fn in_order([a, b, c]: EdgeKey) -> EdgeKey {
+    let (low, high) = (a.min(b), a.max(b));
+    [low.min(c), low.max(high.min(c)), high.max(c)]
 }
 
 /// Visits the corners of a face of a cell of the tile in counter-clockwise order as seen from outside: each corner, what

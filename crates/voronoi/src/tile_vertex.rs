@@ -40,7 +40,10 @@ const SUCCESSOR: [[usize; 4]; 4] = {
 /// The slots of the three generators of each edge.
 pub(crate) const EDGE_SLOTS: [[usize; 3]; 4] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
 
-/// A bit for each pair of slots.
+/// The slots of the two generators of each face.
+pub(crate) const FACE_SLOTS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+
+/// The bit of the face of each two slots.
 const FACE_BIT: [[u8; 4]; 4] = [[0, 1, 2, 4], [1, 0, 8, 16], [2, 8, 0, 32], [4, 16, 32, 0]];
 
 impl TileVertex {
@@ -73,10 +76,10 @@ impl TileVertex {
         (edge, SUCCESSOR[cell][edge])
     }
 
-    /// Whether the face between the generators in two slots is done.
+    /// The bits of the faces that are not done, in the order of [`FACE_SLOTS`].
     #[inline]
-    pub(crate) fn is_done(&self, i: usize, j: usize) -> bool {
-        self.done_faces & FACE_BIT[i][j] != 0
+    pub(crate) fn open_faces(&self) -> u8 {
+        !self.done_faces & 0b11_1111
     }
 
     #[inline]

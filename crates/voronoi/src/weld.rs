@@ -17,6 +17,7 @@ use crate::predicate::ExactInput;
 use crate::search::Search;
 use crate::tessellation::{FaceId, Shift, Side, Tessellation, VertexId};
 use crate::tile::Tile;
+use crate::tile_vertex::NONE;
 
 /// A vertex moved by whole periods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,8 +28,8 @@ pub(crate) struct MovedVertex {
 
 /// The vertices that a tile owns.
 struct Owned {
-    /// For each vertex of the tile, its rank among those that the tile owns.
-    ranks: Vec<Option<u32>>,
+    /// For each vertex of the tile, its rank among those that the tile owns; [`NONE`] for others.
+    ranks: Vec<u32>,
     count: u32,
     /// The ranks of those that are known elsewhere as well.
     shared: HashMap<VertexKey, u32>,
@@ -36,23 +37,20 @@ struct Owned {
 
 impl Owned {
     fn new(input: ExactInput, tile: &Tile) -> Self {
-        let mut owned =
-            Self { ranks: Vec::with_capacity(tile.vertices.len()), count: 0, shared: HashMap::new() };
-        for key in &tile.vertices {
-            let is_inner =
-                |generator: &Generator| generator.as_site().is_none_or(|site| tile.seeds.contains(&site));
-            let is_shared = !key.iter().all(is_inner);
-            let is_owned =
-                !is_shared || (key[0].0 >= tile.seeds.start && canonical(input, key) == (*key, Shift::NONE));
-            owned.ranks.push(is_owned.then_some(owned.count));
-            if is_owned {
-                if is_shared {
-                    owned.shared.insert(*key, owned.count);
-                }
-                owned.count += 1;
-            }
+        let is_owned =
+            |key: &VertexKey| key[0].0 >= tile.seeds.start && canonical(input, key) == (*key, Shift::NONE);
+        let mut ranks = vec![0; tile.positions.len()];
+        for shared in tile.shared.iter().filter(|shared| !is_owned(&shared.key)) {
+            ranks[shared.vertex as usize] = NONE;
         }
-        owned
+        let mut count = 0;
+        for rank in ranks.iter_mut().filter(|rank| **rank != NONE) {
+            *rank = count;
+            count += 1;
+        }
+        let with_rank = tile.shared.iter().map(|shared| (shared.key, ranks[shared.vertex as usize]));
+        let shared = with_rank.filter(|(_, rank)| *rank != NONE).collect();
+        Self { ranks, count, shared }
     }
 }
 
@@ -64,17 +62,17 @@ pub(crate) fn number_vertices(input: ExactInput, tiles: &[Tile]) -> Vec<Vec<Move
         starts.push(starts[starts.len() - 1].checked_add(tile.count).expect("vertex ids fit 32 bits"));
     }
     let numbers = tiles.par_iter().zip(&owned).zip(&starts).map(|((tile, own), start)| {
-        let number = |(rank, key): (&Option<u32>, &VertexKey)| match rank {
-            Some(rank) => MovedVertex { vertex: start + rank, shift: Shift::NONE },
-            None => {
-                let (key, shift) = canonical(input, key);
-                let owner = tiles.partition_point(|tile| tile.seeds.start <= key[0].0) - 1;
-                let rank = owned[owner].shared.get(&key);
-                let rank = rank.expect("exact decisions give every tile the same vertices");
-                MovedVertex { vertex: starts[owner] + rank, shift }
-            }
-        };
-        own.ranks.iter().zip(&tile.vertices).map(number).collect()
+        // Those of vertices that others own come out wrong here, and right below.
+        let number = |rank: &u32| MovedVertex { vertex: start.wrapping_add(*rank), shift: Shift::NONE };
+        let mut numbers: Vec<MovedVertex> = own.ranks.iter().map(number).collect();
+        for shared in tile.shared.iter().filter(|shared| own.ranks[shared.vertex as usize] == NONE) {
+            let (key, shift) = canonical(input, &shared.key);
+            let owner = tiles.partition_point(|tile| tile.seeds.start <= key[0].0) - 1;
+            let rank = owned[owner].shared.get(&key);
+            let rank = rank.expect("exact decisions give every tile the same vertices");
+            numbers[shared.vertex as usize] = MovedVertex { vertex: starts[owner] + rank, shift };
+        }
+        numbers
     });
     numbers.collect()
 }
@@ -99,17 +97,22 @@ pub(crate) fn weld(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Te
     let moved = number_vertices(search.input(), &tiles);
     let mut vertices = positions(&tiles, &moved);
     let mut numbers: Vec<Vec<u32>> =
-        moved.iter().map(|tile| tile.iter().map(|vertex| vertex.vertex).collect()).collect();
+        moved.into_par_iter().map(|tile| tile.iter().map(|vertex| vertex.vertex).collect()).collect();
     let are_coincident = tiles.iter().any(|tile| !tile.coincident.is_empty());
     if are_coincident {
         let (ids, representatives) = unite_coincident(vertices.len(), &tiles, &numbers);
         numbers.iter_mut().flatten().for_each(|number| *number = ids[*number as usize]);
         vertices = representatives.iter().map(|v| vertices[*v as usize]).collect();
     }
-    let fewest_corners = match domain.dimension() {
-        Dimension::Two => 2,
-        Dimension::Three => 3,
-    };
+    if are_coincident {
+        let fewest_corners = match domain.dimension() {
+            Dimension::Two => 2,
+            Dimension::Three => 3,
+        };
+        tiles.par_iter_mut().zip(&numbers).for_each(|(tile, numbers)| {
+            tile.drop_repeated_corners(|corner| numbers[corner as usize], fewest_corners);
+        });
+    }
     let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);
     let (face_count, corner_count) =
         tiles.iter().map(Tile::counts).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
@@ -117,20 +120,13 @@ pub(crate) fn weld(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Te
     tessellation.face_starts.reserve_exact(face_count);
     tessellation.face_corners.reserve_exact(corner_count);
     for (tile, numbers) in tiles.drain(..).zip(&numbers) {
-        for (sides, corners) in tile.faces() {
-            let start = tessellation.face_corners.len();
-            let ring = &mut tessellation.face_corners;
-            ring.extend(corners.iter().map(|corner| VertexId(numbers[*corner as usize])));
-            if are_coincident {
-                drop_repeated(ring, start);
-            }
-            if ring.len() - start < fewest_corners {
-                ring.truncate(start);
-                continue;
-            }
-            tessellation.face_sides.push(sides.map(|generator| side(search.end(generator), Shift::NONE)));
-            tessellation.face_starts.push(ring.len());
-        }
+        let before = tessellation.face_corners.len();
+        let corner = |corner: &u32| VertexId(numbers[*corner as usize]);
+        let sides = |sides: &[Generator; 2]| sides.map(|side_of| side(search.end(side_of), Shift::NONE));
+        let starts = tile.corner_starts[1..].par_iter().map(|start| before + *start as usize);
+        tessellation.face_corners.par_extend(tile.corners.par_iter().map(corner));
+        tessellation.face_starts.par_extend(starts);
+        tessellation.face_sides.par_extend(tile.faces.par_iter().map(sides));
     }
     put_vertices_on_walls(&mut tessellation);
     list_faces_of_cells(&mut tessellation);
@@ -138,21 +134,6 @@ pub(crate) fn weld(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Te
         list_faces_of_cells(&mut tessellation);
     }
     tessellation
-}
-
-/// Leaves out corners that follow themselves in the ring from `start` on.
-fn drop_repeated(ring: &mut Vec<VertexId>, start: usize) {
-    let mut kept = start;
-    for corner in start..ring.len() {
-        if kept == start || ring[corner] != ring[kept - 1] {
-            ring[kept] = ring[corner];
-            kept += 1;
-        }
-    }
-    while kept > start + 1 && ring[kept - 1] == ring[start] {
-        kept -= 1;
-    }
-    ring.truncate(kept);
 }
 
 /// Unites vertices that are one point. Returns the new number of every old one, and an old one for every new.
@@ -202,28 +183,48 @@ pub(crate) fn put_vertices_on_walls(tessellation: &mut Tessellation) {
     }
 }
 
+/// Lists the faces of each cell in order. Each thread takes some of the cells and looks for them through all faces.
 pub(crate) fn list_faces_of_cells(tessellation: &mut Tessellation) {
-    let cells_of = |sides: &[Side; 2]| {
-        sides.map(|side| match side {
-            Side::Cell(cell) => Some(cell.index()),
+    let cell_count = tessellation.seeds.len();
+    let some_cells = cell_count.div_ceil(rayon::current_num_threads());
+    let face_sides = &tessellation.face_sides;
+    // The cells of a face among `count` from `first` on, counted from there.
+    let cells_of = |sides: [Side; 2], first: usize, count: usize| {
+        let place = move |side: Side| match side {
+            Side::Cell(cell) => Some(cell.index().wrapping_sub(first)).filter(|place| *place < count),
             Side::Image(..) | Side::Wall(_) => None,
-        })
+        };
+        sides.into_iter().filter_map(place)
     };
-    let mut starts = vec![0; tessellation.seeds.len() + 1];
-    for cell in tessellation.face_sides.iter().flat_map(cells_of).flatten() {
-        starts[cell + 1] += 1;
-    }
-    for cell in 1..starts.len() {
-        starts[cell] += starts[cell - 1];
-    }
-    let mut next = starts.clone();
-    let mut cell_faces = vec![FaceId(0); starts[starts.len() - 1]];
-    for (face, sides) in (0u32..).zip(&tessellation.face_sides) {
-        for cell in cells_of(sides).into_iter().flatten() {
-            cell_faces[next[cell]] = FaceId(face);
-            next[cell] += 1;
+    let mut starts = vec![0; cell_count + 1];
+    starts[1..].par_chunks_mut(some_cells).enumerate().for_each(|(chunk, counts)| {
+        for sides in face_sides {
+            for place in cells_of(*sides, chunk * some_cells, counts.len()) {
+                counts[place] += 1;
+            }
         }
+    });
+    for cell in 0..cell_count {
+        starts[cell + 1] += starts[cell];
     }
+    let mut cell_faces = vec![FaceId(0); starts[cell_count]];
+    let mut rest = &mut cell_faces[..];
+    let mut parts = Vec::new();
+    for (chunk, cells) in starts[..cell_count].chunks(some_cells).enumerate() {
+        let end = starts[chunk * some_cells + cells.len()];
+        let (part, others) = rest.split_at_mut(end - cells[0]);
+        parts.push((chunk * some_cells, cells, part));
+        rest = others;
+    }
+    parts.into_par_iter().for_each(|(first, starts, part)| {
+        let mut next: Vec<usize> = starts.iter().map(|start| start - starts[0]).collect();
+        for (face, sides) in (0u32..).zip(face_sides) {
+            for place in cells_of(*sides, first, starts.len()) {
+                part[next[place]] = FaceId(face);
+                next[place] += 1;
+            }
+        }
+    });
     tessellation.cell_starts = starts;
     tessellation.cell_faces = cell_faces;
 }
