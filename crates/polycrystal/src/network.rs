@@ -79,7 +79,7 @@ impl Network {
         }
         let cell_volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
         let network = Self {
-            domain: *tessellation.domain(),
+            domain: tessellation.domain().clone(),
             boundaries,
             junctions: counts,
             cell_volumes,
