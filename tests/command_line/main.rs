@@ -5,6 +5,7 @@ mod bad_arguments;
 mod bad_outputs;
 mod bad_seed_files;
 mod check;
+mod config_files;
 mod control_meshes;
 mod good_runs;
 mod periodic;

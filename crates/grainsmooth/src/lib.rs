@@ -32,6 +32,7 @@ mod pipeline;
 mod poisson_disc;
 mod seed_file;
 mod seeding;
+mod settings;
 mod subdivide;
 mod summary;
 pub mod vtk;
@@ -56,5 +57,6 @@ pub use pipeline::{
 pub use poisson_disc::poisson_disc_seeds;
 pub use seed_file::{FileSeed, SeedLineProblem, read_seed_file};
 pub use seeding::random_seeds;
+pub use settings::embedded_config;
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};
 pub use summary::Summary;
