@@ -55,6 +55,7 @@ Examples:
   grainsmooth --seeds 200 -n 3                    200 grains in a unit cube, to grains.vtp
   grainsmooth --seeds 500 --box 3 1 0.2 -o a.vtu  a plate
   grainsmooth --seeds 300 --dim 2                 grains in a square
+  grainsmooth --domain sphere                     grains that fill a ball
   grainsmooth --periodic x,y,z                    grains that fill space by repeating the cube
   grainsmooth --lattice bcc 4                     Kelvin's foam: 128 truncated octahedra, cut by the walls
   grainsmooth --seeds-file seeds.csv --relax 0    flat Voronoi grains from your own seeds
@@ -85,6 +86,7 @@ impl Arguments {
             lloyd_steps: seeds.lloyd,
             dimension: domain.dim,
             box_size: domain.box_size(),
+            shape: domain.shape(),
             face_mesh: smoothing.face_mesh(),
             periodic: domain.periodic(),
             relaxation_time: smoothing.relax,

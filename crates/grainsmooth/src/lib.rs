@@ -17,6 +17,7 @@
 mod cell_table;
 mod check_report;
 mod config;
+mod domain_file;
 mod error;
 mod formats;
 mod labelled_file;
@@ -39,7 +40,7 @@ pub mod vtk;
 
 pub use cell_table::{CellTable, TableFormat};
 pub use check_report::{CheckReport, ReportedFault, Spread, Statistic};
-pub use config::{Config, FileOptions, SeedSource};
+pub use config::{Config, FileOptions, SeedSource, Shape};
 pub use error::Error;
 pub use formats::{LabelGrid, Names, StlEncoding};
 pub use formats::{

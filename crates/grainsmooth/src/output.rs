@@ -9,7 +9,7 @@ use tempfile::{NamedTempFile, TempDir};
 use voronoi::Dimension;
 
 use crate::vtk::VtkFormat;
-use crate::{Config, Error};
+use crate::{Config, Error, Shape};
 
 /// A file format that results are written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -136,6 +136,9 @@ impl Output {
             }
             _ if self.format == OutputFormat::Fe && config.periodic.any() => {
                 Err(Error::FormatPeriodic { path: path() })
+            }
+            _ if self.format.has_voxels() && config.shape != Shape::Box => {
+                Err(Error::FormatNeedsBox { path: path() })
             }
             _ if self.format.has_voxels() && config.file.voxels.is_none() => {
                 Err(Error::NoVoxels { path: path() })

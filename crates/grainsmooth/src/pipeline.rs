@@ -8,9 +8,7 @@ use polycrystal::{dihedral_angles, relax, validate};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
 use crate::memory::{LevelSize, available_memory, check_cells, check_levels};
-use crate::{
-    Config, Error, FileSeed, LatticeFit, SeedSource, poisson_disc_seeds, random_seeds, read_seed_file,
-};
+use crate::{Config, Error, FileSeed, SeedSource, poisson_disc_seeds, random_seeds, read_seed_file};
 
 /// A part of a run, in the order in which they follow each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -150,9 +148,7 @@ fn seed_count(config: &Config) -> Option<usize> {
     match &config.seeds {
         SeedSource::File(_) => None,
         SeedSource::Random { count } | SeedSource::PoissonDisc { count } => Some(*count),
-        SeedSource::Lattice { lattice, cells } => {
-            Some(LatticeFit::new(*lattice, *cells, config.box_size).seed_count())
-        }
+        SeedSource::Lattice { .. } => config.lattice_fit().map(|fit| fit.seed_count()),
     }
 }
 
@@ -222,7 +218,7 @@ fn seeds(config: &Config, domain: &voronoi::Domain) -> Result<Vec<FileSeed>, Err
         SeedSource::File(path) => return read_seed_file(path, config.dimension),
         SeedSource::Random { count } => random_seeds(*count, domain, config.random_seed),
         SeedSource::PoissonDisc { count } => poisson_disc_seeds(*count, domain, config.random_seed),
-        SeedSource::Lattice { lattice, cells } => LatticeFit::new(*lattice, *cells, config.box_size).seeds(),
+        SeedSource::Lattice { lattice, cells } => config.lattice_seeds(*lattice, *cells, domain),
     };
     Ok(positions.into_iter().map(|position| FileSeed { position, radius: None, line: 0 }).collect())
 }

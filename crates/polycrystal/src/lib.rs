@@ -67,4 +67,4 @@ pub use periodic::PeriodicCopies;
 pub use relax::{Relaxation, Relaxed, relax};
 pub use surface::{Elements, Surface};
 pub use validate::validate;
-pub use wall_set::WallSet;
+pub use wall_set::{Freedom, WallSet, WallSets};

@@ -10,6 +10,9 @@ use glam::DVec3;
 use crate::domain::MOST_WALLS;
 use crate::{Dimension, Domain, VoronoiError, WallPlane};
 
+/// Divisions of the icosahedron's edges that still give few enough walls: 10 * 57^2 + 2.
+const MOST_DIVISIONS: u32 = 57;
+
 impl Domain {
     /// A ball in space with as many flat faces, hexagons and twelve pentagons, as keep its surface within `chord_error` of
     /// the sphere; volume and centre are those of the ball.
@@ -22,27 +25,17 @@ impl Domain {
     pub fn ball(center: DVec3, radius: f64, chord_error: f64) -> Result<Self, VoronoiError> {
         check([("radius", radius), ("chord error", chord_error)])?;
         let share = chord_error / radius;
-        // Even one wall more than the most is refused before many are made.
-        let most_divisions = ((MOST_WALLS as f64 - 2.0) / 10.0).sqrt();
-        let mut divisions = 1;
-        loop {
-            let (normals, distance, deviation) = goldberg(divisions);
-            if deviation <= share {
-                let wall = |normal: &DVec3| WallPlane::HalfSpace {
-                    normal: *normal,
-                    offset: normal.dot(center) + distance * radius,
-                };
-                let name = format!("a ball of radius {radius} with {} faces", normals.len());
-                return Self::cut_out(normals.iter().map(wall).collect(), Dimension::Three, Some(name));
-            }
-            // The deviation falls with the square of the divisions; guesses come from below.
-            let guess = (f64::from(divisions) * (deviation / share).sqrt() * 0.95).floor().min(1e6);
-            if guess > most_divisions {
-                let count = (10.0 * guess * guess + 2.0) as usize;
-                return Err(VoronoiError::TooManyWalls { count, most: MOST_WALLS });
-            }
-            divisions = (divisions + 1).max(guess as u32);
-        }
+        // At worst some hundred thousand normals are made in vain.
+        let (normals, distance, _) = (1..=MOST_DIVISIONS)
+            .map(goldberg)
+            .find(|(.., deviation)| *deviation <= share)
+            .ok_or(VoronoiError::TooManyWalls { most: MOST_WALLS })?;
+        let wall = |normal: &DVec3| WallPlane::HalfSpace {
+            normal: *normal,
+            offset: normal.dot(center) + distance * radius,
+        };
+        let name = format!("a ball of radius {radius} with {} faces", normals.len());
+        Self::cut_out(normals.iter().map(wall).collect(), Dimension::Three, Some(name))
     }
 
     /// A cylinder along z with as many flat faces as keep its mantle within `chord_error` of the true one; volume and centre
@@ -88,16 +81,16 @@ fn regular_polygon(center: DVec3, radius: f64, chord_error: f64) -> Result<Vec<W
         let side = (PI / (count * (PI / count).tan())).sqrt();
         (side, side / (PI / count).cos())
     };
-    let is_enough = |count: &usize| {
-        let (side, corner) = distances(*count as f64);
+    let is_enough = |count: &u16| {
+        let (side, corner) = distances(f64::from(*count));
         (1.0 - side).max(corner - 1.0) * radius <= chord_error
     };
-    let most = MOST_WALLS - 2;
-    let count =
-        (3..=most).find(is_enough).ok_or(VoronoiError::TooManyWalls { count: most + 3, most: MOST_WALLS })?;
-    let side = distances(count as f64).0 * radius;
-    let wall = |k: usize| {
-        let (sine, cosine) = (2.0 * PI * k as f64 / count as f64).sin_cos();
+    // A cylinder has two more.
+    let mut counts = 3..=MOST_WALLS - 2;
+    let count = counts.find(is_enough).ok_or(VoronoiError::TooManyWalls { most: MOST_WALLS })?;
+    let side = distances(f64::from(count)).0 * radius;
+    let wall = |k: u16| {
+        let (sine, cosine) = (2.0 * PI * f64::from(k) / f64::from(count)).sin_cos();
         let normal = DVec3::new(cosine, sine, 0.0);
         WallPlane::HalfSpace { normal, offset: normal.dot(center) + side }
     };

@@ -223,6 +223,16 @@ impl Domain {
         self.unit_normals().get(wall.index()).copied().unwrap_or_else(|| wall.outward_normal())
     }
 
+    /// The plane of a wall: its unit outward normal, and the distance from the origin along it; rounded for an oblique wall.
+    pub fn wall_equation(&self, wall: Wall) -> (DVec3, f64) {
+        let normal = self.outward_normal(wall);
+        let distance = match self.across_axis(wall) {
+            Some((axis, coordinate)) => normal[axis] * coordinate,
+            None => HalfSpace::of_wall(DVec3::ZERO, wall, self).offset,
+        };
+        (normal, distance)
+    }
+
     /// The axis that a wall is perpendicular to and the coordinate of the wall there; none for an oblique wall.
     pub fn across_axis(&self, wall: Wall) -> Option<(usize, f64)> {
         match self.wall_planes().get(wall.index()) {

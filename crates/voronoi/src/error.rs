@@ -54,13 +54,11 @@ pub enum VoronoiError {
     },
     /// A domain has more walls than can be told apart.
     #[error(
-        "{count} walls are more than the {most} that a domain can have; take fewer half-spaces or a larger chord error"
+        "more than the {most} walls that a domain can have; take fewer half-spaces or a larger chord error"
     )]
     TooManyWalls {
-        /// Number of walls.
-        count: usize,
         /// The largest number.
-        most: usize,
+        most: u16,
     },
     /// A length of a curved domain is not positive and finite.
     #[error("the domain's {what} is {length}; it must be positive and finite")]

@@ -8,7 +8,7 @@ use super::patch::PatchTerms;
 use super::patches::Patches;
 use super::springs::add_springs;
 use super::volume_constraint::{Compliance, VolumeConstraint};
-use crate::{Network, WallSet};
+use crate::{Freedom, Network, WallSet};
 
 /// Share of its first residual at which a step is solved: a step is one of several, and the next one starts from where it ends.
 const TOLERANCE: f64 = 1e-3;
@@ -25,8 +25,7 @@ pub(super) struct System<'a> {
     springs: Vec<Vec<f64>>,
     /// `-dt g`.
     forces: Vec<DVec3>,
-    /// 1 over the diagonal of the matrix, 0 along axes that walls lock.
-    mobility: Vec<DVec3>,
+    mobility: Vec<Mobility>,
     constraint: VolumeConstraint,
     compliance: Compliance,
 }
@@ -61,7 +60,8 @@ impl<'a> System<'a> {
         let force =
             |c| patches.places_of_cluster(&clusters, c).map(|place| of_places[place]).sum::<DVec3>() * -time;
         let forces: Vec<DVec3> = (0..count).into_par_iter().map(force).collect();
-        let mobility = mobility(walls, patches, &clusters, &springs, &masses);
+        let freedom = |point: u32| network.wall_sets().freedom(walls[point as usize]);
+        let mobility = mobility(freedom, patches, &clusters, &springs, &masses);
         let constraint = VolumeConstraint::new(network, patches, terms, &clusters);
         let compliance = constraint.compliance(&mobility);
         Self { patches, clusters, masses, springs, forces, mobility, constraint, compliance }
@@ -110,7 +110,7 @@ impl<'a> System<'a> {
     /// The preconditioned residual without its part that changes volumes.
     fn project(&self, residual: &[DVec3]) -> Vec<DVec3> {
         let mut moved: Vec<DVec3> =
-            residual.iter().zip(&self.mobility).map(|(r, mobility)| *r * *mobility).collect();
+            residual.iter().zip(&self.mobility).map(|(r, mobility)| mobility.of(*r)).collect();
         let pressures = self.compliance.pressures(&self.constraint.volume_change(&moved));
         moved.iter_mut().zip(self.push(&pressures)).for_each(|(moved, push)| *moved -= push);
         moved
@@ -118,7 +118,7 @@ impl<'a> System<'a> {
 
     /// The displacement under pressures of the grains if there were only the diagonal of the matrix.
     fn push(&self, pressures: &[f64]) -> Vec<DVec3> {
-        let force = |cluster: usize| self.mobility[cluster] * self.constraint.force(pressures, cluster);
+        let force = |cluster: usize| self.mobility[cluster].of(self.constraint.force(pressures, cluster));
         (0..self.mobility.len()).into_par_iter().map(force).collect()
     }
 
@@ -148,14 +148,28 @@ impl<'a> System<'a> {
     }
 }
 
-/// 1 over the diagonal of `M + dt (K + S)`, 0 along the axes in which a point of the cluster is locked by a wall.
+/// How a cluster answers to a force if there is only the diagonal of the matrix.
+pub(super) struct Mobility {
+    /// 1 over the diagonal of `M + dt (K + S)`.
+    inverse: f64,
+    /// What the walls leave to all points of the cluster.
+    freedom: Freedom,
+}
+
+impl Mobility {
+    /// The displacement under a force.
+    pub(super) fn of(&self, force: DVec3) -> DVec3 {
+        self.freedom.project(force) * self.inverse
+    }
+}
+
 fn mobility(
-    walls: &[WallSet],
+    freedom: impl Fn(u32) -> Freedom,
     patches: &Patches,
     clusters: &Numbering,
     springs: &[Vec<f64>],
     masses: &[f64],
-) -> Vec<DVec3> {
+) -> Vec<Mobility> {
     let mut diagonal = masses.to_vec();
     for (springs, patch) in springs.iter().zip(&patches.patches) {
         for (ends, spring) in patch.edges.iter().zip(springs) {
@@ -167,10 +181,9 @@ fn mobility(
         }
     }
     let of_cluster = |(cluster, diagonal): (usize, &f64)| {
-        let free = clusters.members(cluster).iter().map(|point| walls[*point as usize].free_axes());
-        let free = free.fold(glam::BVec3::TRUE, |all, free| all & free);
+        let of_members = clusters.members(cluster).iter().map(|point| freedom(*point));
         let inverse = if *diagonal > 0.0 { 1.0 / diagonal } else { 0.0 };
-        DVec3::select(free, DVec3::splat(inverse), DVec3::ZERO)
+        Mobility { inverse, freedom: of_members.fold(Freedom::Everywhere, Freedom::and) }
     };
     diagonal.iter().enumerate().map(of_cluster).collect()
 }

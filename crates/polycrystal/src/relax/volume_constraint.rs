@@ -7,6 +7,7 @@ use super::clusters::Numbering;
 use super::conjugate_gradients::{Limits, solve};
 use super::patch::PatchTerms;
 use super::patches::Patches;
+use super::system::Mobility;
 use crate::Network;
 
 /// The pressures are the inner solve of a projection, whose error shows directly in the volumes.
@@ -97,11 +98,11 @@ impl VolumeConstraint {
     }
 
     /// `J D J^T` for the mobility D of the clusters.
-    pub(super) fn compliance(&self, mobility: &[DVec3]) -> Compliance {
+    pub(super) fn compliance(&self, mobility: &[Mobility]) -> Compliance {
         let row = |grain: usize| {
             let mut row: Vec<(u32, f64)> = Vec::new();
             for (cluster, gradient) in self.by_grain.row(grain) {
-                let moved = *gradient * mobility[*cluster as usize];
+                let moved = mobility[*cluster as usize].of(*gradient);
                 for (other, gradient) in self.by_cluster.row(*cluster as usize) {
                     let change = moved.dot(*gradient);
                     match row.iter_mut().find(|(known, _)| known == other) {
