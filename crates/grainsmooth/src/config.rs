@@ -60,8 +60,8 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The usual chord error in units of the radius: some 250 faces on a sphere, each about as large as a grain of 200, so that
-    /// the surface looks round and its grains still have few faces each.
+    /// The usual chord error in units of the radius: some 500 faces on a sphere, so that it looks
+    /// round while the grains at its surface have a handful of flat parts each.
     pub const CHORD_ERROR: f64 = 0.005;
 
     /// Whether a file tells where the domain is.

@@ -1,5 +1,6 @@
 //! Networks in domains other than boxes: closed, of true volume, and on their walls.
 
+#[allow(dead_code, reason = "every test file uses its own share")]
 mod common;
 
 use common::random_seeds;

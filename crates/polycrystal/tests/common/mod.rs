@@ -1,7 +1,5 @@
 //! Random grains, flat and relaxed.
 
-#![allow(dead_code, reason = "each test file uses its share")]
-
 use glam::DVec3;
 use polycrystal::{Junctions, Network, Relaxation, relax};
 use rand_chacha::ChaCha8Rng;
