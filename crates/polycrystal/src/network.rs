@@ -6,7 +6,7 @@ use voronoi::{Domain, Tessellation};
 use crate::control_mesh::{ControlMesh, JunctionCounts};
 use crate::folds::element_normals;
 use crate::volume::{boundary_volumes, sum_over_grains};
-use crate::{Boundary, FaceMesh, Level, NetworkError, Surface, WallSets};
+use crate::{Boundary, FaceMesh, Freedom, Level, NetworkError, Surface, WallSet, WallSets};
 
 /// How triple lines and the domain's edges are smoothed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -137,6 +137,11 @@ impl Network {
     /// What the sets of walls in [`Level::walls`] are.
     pub fn wall_sets(&self) -> &WallSets {
         &self.wall_sets
+    }
+
+    /// How a point can move without leaving its walls.
+    pub(crate) fn freedom(&self, walls: WallSet) -> Freedom {
+        self.wall_sets.freedom(walls)
     }
 
     /// The connectivity of all levels, from the control mesh to the finest.
