@@ -28,8 +28,10 @@ pub mod mesh_file;
 mod mesh_json;
 mod network_file;
 mod output;
+mod picture;
 mod pipeline;
 mod poisson_disc;
+mod report;
 mod seed_file;
 mod seeding;
 mod subdivide;
@@ -50,10 +52,12 @@ pub use mesh_bezier::{BezierFile, read_bezier};
 pub use mesh_edit::{EdgeEdit, edit_edges};
 pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputDirectory, OutputFormat};
+pub use picture::{Coloring, Picture, Png};
 pub use pipeline::{
     Polycrystal, Progress, Stage, Tessellated, check_expected_size, make_polycrystal, smooth, tessellate,
 };
 pub use poisson_disc::poisson_disc_seeds;
+pub use report::Html;
 pub use seed_file::{FileSeed, SeedLineProblem, read_seed_file};
 pub use seeding::random_seeds;
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};

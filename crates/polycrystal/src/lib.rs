@@ -46,7 +46,7 @@ mod validate;
 mod volume;
 mod wall_set;
 
-pub use angles::{AngleStatistics, dihedral_angles};
+pub use angles::{AngleStatistics, WeightedAngle, angles_between_boundaries, dihedral_angles};
 pub use boundary::{Boundary, BoundaryId, GrainId, Side, Twin};
 pub use certificate::{Certificate, Claims, Faults, certify};
 pub use control_mesh::JunctionCounts;
