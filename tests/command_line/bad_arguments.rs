@@ -103,7 +103,7 @@ fn option_that_does_not_exist() {
 #[test]
 fn value_that_does_not_exist() {
     let workplace = Workplace::new();
-    workplace.refuses("--junctions round", USAGE, "invalid value 'round' for '--junctions <JUNCTIONS>'");
+    workplace.refuses("--junctions round", USAGE, "invalid value 'round' for '--junctions <RULE>'");
     let said = workplace.command("--junctions round").assert().get_output().stderr.clone();
     assert!(String::from_utf8(said).unwrap().contains("[possible values: crease, corner]"));
 }

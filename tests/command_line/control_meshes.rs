@@ -35,7 +35,7 @@ fn edge_lengths_that_are_none_are_refused() {
         );
         workplace.refuses(&format!("--edge-length {value}"), USAGE, &message);
     }
-    let message = "the argument '--edge-length <H>' cannot be used with '--faces <FACES>'";
+    let message = "the argument '--edge-length <H>' cannot be used with '--faces <RULE>'";
     workplace.refuses("--edge-length 0.1 --faces plain", USAGE, message);
     // Its points would not fit into any memory.
     workplace.refuses(

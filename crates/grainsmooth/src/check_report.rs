@@ -161,9 +161,11 @@ impl fmt::Display for CheckReport {
     }
 }
 
-/// Options that leave random seeds the Poisson process that they are.
-const PLAIN_OPTIONS: [&str; 10] = [
+/// Options that leave random seeds the Poisson process that they are, whatever or with what follows them.
+const PLAIN_OPTIONS: [&str; 16] = [
     "--seeds",
+    "--seeding random",
+    "--lloyd 0",
     "--rng-seed",
     "--dim",
     "--box",
@@ -172,19 +174,28 @@ const PLAIN_OPTIONS: [&str; 10] = [
     "--relax",
     "--regularize",
     "-n",
+    "--levels",
     "--junctions",
+    "--names",
+    "--voxels",
+    "--ascii",
 ];
 
 /// Numbers with exact values, where the file says that its seeds are uniform and random: Meijering 1953 for means in space,
 /// and in the plane, r being the number of grains per volume (area).
 fn statistics(file: &LabelledFile, surface: &Surface<'_>, certificate: &Certificate) -> Vec<Statistic> {
     let Some(command_line) = &file.command_line else { return Vec::new() };
-    let mut options = command_line.split(' ').filter(|word| word.starts_with('-'));
+    let mut options = command_line.split(" -").skip(1);
+    let is_plain = |option: &str| {
+        let option = format!("-{option}");
+        let name = option.split(' ').next();
+        PLAIN_OPTIONS.iter().any(|plain| option == *plain || name == Some(*plain))
+    };
     // One grain has nothing but walls.
     if !certificate.is_good()
         || certificate.grain_volumes.len() < 2
         || !command_line.contains("--seeds ")
-        || !options.all(|option| PLAIN_OPTIONS.contains(&option))
+        || !options.all(is_plain)
     {
         return Vec::new();
     }

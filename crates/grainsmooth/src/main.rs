@@ -12,17 +12,17 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::anyhow;
-use clap::Parser;
 use grainsmooth::mesh_file::READER_THREAD;
 use grainsmooth::{
-    CellTable, Output, OutputDirectory, Stage, Summary, TableFormat, check_expected_size, smooth, tessellate,
+    CellTable, Html, Output, OutputDirectory, Picture, Png, Stage, Summary, TableFormat, check_expected_size,
+    smooth, tessellate,
 };
 
 use cli::{Arguments, Command};
 use progress::ProgressLine;
 
 fn main() -> ExitCode {
-    match run(&Arguments::parse()) {
+    match run(&Arguments::read()) {
         Ok(code) => code,
         Err(error) => {
             say(&format!("error: {error}"));
@@ -56,25 +56,32 @@ fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     }
     // An output that cannot be written is found before hours of work, not after.
     let tables = tables(arguments)?;
-    let output = if arguments.no_mesh { None } else { Some(Output::check(&arguments.output)?) };
+    let output = if arguments.run.no_mesh { None } else { Some(Output::check(&arguments.files.output)?) };
     if let Some(output) = &output {
         output.check_fits(&arguments.config())?;
     }
-    let grains = arguments.grains_dir.as_ref().map(|path| arguments.grains_format.check(path)).transpose()?;
+    let grains = arguments
+        .files
+        .grains_dir
+        .as_ref()
+        .map(|path| arguments.files.grains_format.check(path))
+        .transpose()?;
     if let Some(grains) = &grains {
         grains.check_fits(&arguments.config())?;
     }
-    let threads = arguments.threads.map_or(0, usize::from);
+    let picture = arguments.pictures.picture()?;
+    let report = arguments.pictures.report()?;
+    let threads = arguments.run.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .map_err(|cause| anyhow!("cannot start {threads} threads: {cause}; give fewer with --threads"))?;
-    let line = ProgressLine::new(arguments.quiet);
-    let files = Files { tables, output, grains };
+    let line = ProgressLine::new(arguments.run.quiet);
+    let files = Files { tables, output, grains, picture, report };
     let result = pool.install(|| compute(arguments, &files, &line));
     line.clear();
     let summary = result?;
-    if !arguments.quiet {
+    if !arguments.run.quiet {
         let names: Vec<String> = files.paths().map(|path| path.display().to_string()).collect();
         say(&format!("{summary}\nwritten     {}", names.join(", ")));
     }
@@ -83,8 +90,8 @@ fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
 
 /// The tables asked for, found writable.
 fn tables(arguments: &Arguments) -> Result<Vec<Output<TableFormat>>, grainsmooth::Error> {
-    let json = arguments.cells_json.iter().map(|path| Output::check_as(path, TableFormat::Json));
-    let csv = arguments.cells_csv.iter().map(|path| Output::check_as(path, TableFormat::Csv));
+    let json = arguments.files.cells_json.iter().map(|path| Output::check_as(path, TableFormat::Json));
+    let csv = arguments.files.cells_csv.iter().map(|path| Output::check_as(path, TableFormat::Csv));
     json.chain(csv).collect()
 }
 
@@ -93,13 +100,17 @@ struct Files {
     tables: Vec<Output<TableFormat>>,
     output: Option<Output>,
     grains: Option<OutputDirectory>,
+    picture: Option<(Picture, Output<Png>)>,
+    report: Option<Output<Html>>,
 }
 
 impl Files {
     fn paths(&self) -> impl Iterator<Item = &Path> {
         let tables = self.tables.iter().map(Output::path);
         let grains = self.grains.as_ref().map(OutputDirectory::path);
-        tables.chain(self.output.as_ref().map(Output::path)).chain(grains)
+        let picture = self.picture.as_ref().map(|(_, output)| output.path());
+        let report = self.report.as_ref().map(Output::path);
+        tables.chain(self.output.as_ref().map(Output::path)).chain(grains).chain(picture).chain(report)
     }
 }
 
@@ -131,6 +142,13 @@ fn compute(arguments: &Arguments, files: &Files, line: &ProgressLine) -> Result<
     if let Some(grains) = &files.grains {
         polycrystal.write_grains(grains)?;
     }
+    if let Some((picture, output)) = &files.picture {
+        polycrystal.write_picture(picture, output)?;
+    }
     polycrystal.add_time(Stage::Writing, start.elapsed());
+    // Last, for it tells the times.
+    if let Some(output) = &files.report {
+        polycrystal.write_report(output)?;
+    }
     Ok(Summary(&polycrystal).to_string())
 }

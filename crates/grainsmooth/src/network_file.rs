@@ -34,9 +34,9 @@ impl Polycrystal {
             OutputFormat::Vtk(format) => self.write_vtk(format, out),
             OutputFormat::Vtm => Err(io::Error::other("several files are not written as one")),
             OutputFormat::Stl => write_stl(&self.surface()?, "network", self.config.file.stl, out),
-            OutputFormat::Ply => write_ply(&self.surface()?, out),
-            OutputFormat::Obj => write_obj(&self.surface()?, out),
-            OutputFormat::Msh => write_gmsh(&self.surface()?, out),
+            OutputFormat::Ply => write_ply(&self.surface()?, &self.config, out),
+            OutputFormat::Obj => write_obj(&self.surface()?, &self.config, out),
+            OutputFormat::Msh => write_gmsh(&self.surface()?, &self.config, out),
             OutputFormat::Fe => {
                 let walls = &self.network.finest().walls;
                 write_evolver(
@@ -44,13 +44,14 @@ impl Polycrystal {
                     self.network.domain(),
                     walls,
                     self.network.cell_volumes(),
+                    &self.config,
                     out,
                 )
             }
             OutputFormat::Tess => write_tess(&Tess::new(&self.cells), out),
             OutputFormat::Vti => self.write_vti(out),
             OutputFormat::Npy => write_npy(&self.label_grid()?, self.config.file.names, out),
-            OutputFormat::Ang => write_ang(&self.label_grid()?, self.config.random_seed, out),
+            OutputFormat::Ang => write_ang(&self.label_grid()?, &self.config, out),
         })
     }
 
@@ -140,6 +141,7 @@ impl Polycrystal {
         vec![
             text("Version", format!("grainsmooth {}", env!("CARGO_PKG_VERSION"))),
             text("CommandLine", self.config.command_line()),
+            text("Config", self.config.to_toml()),
             FieldEntry { name: "RandomSeed", value: FieldValue::Integer(self.config.random_seed) },
         ]
     }

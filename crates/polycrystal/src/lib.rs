@@ -55,7 +55,11 @@ pub use face_mesh::{FaceMesh, MeshSize};
 pub use fault::{Fault, Place};
 pub use folds::folded_edges;
 pub use level::{Level, Mesh};
-pub use measures::{BoundaryMeasures, GrainMeasures, Measures, measure};
+pub use measures::{
+    BoundaryMeasures, GrainMeasures, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures, PlaneMeasures,
+    PointCurvature, QuadruplePointMeasures, SpaceMeasures, TripleLineMeasures, TriplePointMeasures, measure,
+    measure_network, point_curvatures,
+};
 pub use network::{Junctions, Network};
 pub use node_type::NodeType;
 pub use orientation::outward_sides;

@@ -9,6 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::LabelGrid;
+use crate::Config;
 
 /// The generator's stream for orientations, apart from that of the seeds' positions.
 const STREAM: u64 = 1;
@@ -17,9 +18,10 @@ const STREAM: u64 = 1;
 ///
 /// The columns are the three Euler angles after Bunge, x, y, image quality 1, confidence 1, phase 1, detector signal 1 and
 /// fit 0; y points down, as everywhere in such maps.
-pub(crate) fn write(grid: &LabelGrid, random_seed: u64, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(grid: &LabelGrid, config: &Config, out: &mut dyn Write) -> io::Result<()> {
     let [columns, rows, _] = grid.size;
     let (x_step, y_step) = (grid.spacing.x, grid.spacing.y);
+    config.write_comments("# ", out)?;
     write!(
         out,
         "# TEM_PIXperUM          1.000000\n# x-star                0.000000\n# y-star                0.000000\n\
@@ -30,7 +32,7 @@ pub(crate) fn write(grid: &LabelGrid, random_seed: u64, out: &mut dyn Write) -> 
          # NROWS: {rows}\n#\n# OPERATOR: grainsmooth {}\n#\n# SAMPLEID: \n#\n# SCANID: \n#\n",
         env!("CARGO_PKG_VERSION")
     )?;
-    let angles = euler_angles(grid, random_seed);
+    let angles = euler_angles(grid, config.random_seed);
     for row in 0..rows {
         for column in 0..columns {
             // The first row of a map is the topmost.

@@ -9,6 +9,7 @@ use polycrystal::WallSet;
 use voronoi::Domain;
 
 use super::surface::{Surface, side_name};
+use crate::Config;
 
 /// Writes the file; each point stays on its walls, and each body keeps its volume.
 pub(crate) fn write(
@@ -16,9 +17,12 @@ pub(crate) fn write(
     domain: &Domain,
     walls: &[WallSet],
     volumes: &[f64],
+    config: &Config,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    writeln!(out, "// grainsmooth {}\n", env!("CARGO_PKG_VERSION"))?;
+    writeln!(out, "// grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
+    config.write_comments("// ", out)?;
+    writeln!(out)?;
     for wall in domain.walls() {
         let axis = ["x", "y", "z"][wall.axis()];
         writeln!(

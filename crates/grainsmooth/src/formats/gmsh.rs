@@ -12,6 +12,7 @@ use polycrystal::BoundaryId;
 
 use super::lines::Junctions;
 use super::surface::{Surface, side_name};
+use crate::Config;
 
 /// Gmsh's codes for elements.
 const LINE: u32 = 1;
@@ -45,9 +46,9 @@ pub(crate) fn write_script(
 }
 
 /// Writes the mesh file. Names stand in the script: meshio wants them for every cell, or for none.
-pub(crate) fn write(surface: &Surface<'_>, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(surface: &Surface<'_>, config: &Config, out: &mut dyn Write) -> io::Result<()> {
     let junctions = Junctions::of(surface);
-    writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat")?;
+    writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n{}$EndComments", config.to_toml())?;
     write_entities(surface, &junctions, out)?;
     write_nodes(surface, &junctions, out)?;
     write_elements(surface, &junctions, out)

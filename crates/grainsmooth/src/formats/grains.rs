@@ -76,8 +76,8 @@ impl Polycrystal {
     ) -> io::Result<()> {
         match format {
             OutputFormat::Stl => stl::write(surface, &format!("grain{}", grain.0), self.config.file.stl, out),
-            OutputFormat::Ply => ply::write(surface, out),
-            OutputFormat::Obj => obj::write(surface, out),
+            OutputFormat::Ply => ply::write(surface, &self.config, out),
+            OutputFormat::Obj => obj::write(surface, &self.config, out),
             OutputFormat::Vtk(format) => {
                 write_vtk_grain(surface, self.config.file.names, self.field(), format, out)
             }

@@ -3,16 +3,17 @@
 use std::io::{self, Write};
 
 use super::surface::{Surface, label};
+use crate::Config;
 
 /// Writes all points and triangles.
-pub(crate) fn write(surface: &Surface<'_>, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(surface: &Surface<'_>, config: &Config, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
+    config.write_comments("comment ", out)?;
     write!(
         out,
-        "ply\nformat binary_little_endian 1.0\ncomment grainsmooth {}\n\
-         element vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+        "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
          element face {}\nproperty list uchar uint vertex_indices\n\
          property int boundary\nproperty int grain\nproperty int neighbor\nend_header\n",
-        env!("CARGO_PKG_VERSION"),
         surface.points.len(),
         surface.triangle_count()
     )?;

@@ -40,7 +40,10 @@ impl Patch {
         ids.sort_unstable();
         ids.dedup();
         let points: Vec<DVec3> = ids.iter().map(|&id| surface.points[id as usize] + shift).collect();
-        let local = |id: u32| ids.partition_point(|other| *other < id) as u32;
+        let local = |id: u32| {
+            let place = ids.partition_point(|other| *other < id);
+            u32::try_from(place).expect("a boundary has no more points than the network")
+        };
         triangles.iter_mut().flatten().for_each(|id| *id = local(*id));
         let mut normals = vec![DVec3::ZERO; points.len()];
         for triangle in &triangles {

@@ -1,0 +1,142 @@
+//! Options about the files that are written.
+
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use grainsmooth::vtk::VtkFormat;
+use grainsmooth::{FileOptions, Names, OutputDirectory, OutputFormat, StlEncoding};
+use voronoi::Dimension;
+
+use super::usage;
+use super::values::{nearest, whole_number};
+
+/// What is written, where and how.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Files")]
+pub struct FileArguments {
+    /// File to write; its extension names the format: .vtp, .vtu, .vtk, .vtm, .stl, .ply, .obj, .msh (Gmsh), .fe (Surface Evolver),
+    /// .tess (Neper), and voxels .vti (DAMASK), .npy, .ang
+    ///
+    /// Example: -o grains.vtm
+    #[arg(short, long, value_name = "PATH", default_value = "grains.vtp", value_parser = parse_output)]
+    pub output: PathBuf,
+
+    /// Write each grain as a closed surface of its own into this new directory
+    ///
+    /// Example: --grains-dir grains
+    #[arg(long, value_name = "DIR")]
+    pub grains_dir: Option<PathBuf>,
+
+    /// Format of the grains' own files
+    ///
+    /// Example: --grains-dir grains --grains-format stl
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t = GrainFormat::Vtp, requires = "grains_dir")]
+    pub grains_format: GrainFormat,
+
+    /// Number of voxels along each axis for .vti, .npy and .ang, X Y in 2D
+    ///
+    /// Example: --voxels 64 64 64 -o grains.vti
+    #[arg(long, value_names = ["NX", "NY", "NZ"], num_args = 2.., value_parser = whole_number(1..=65_536_u32), allow_negative_numbers = true)]
+    voxels: Option<Vec<u32>>,
+
+    /// Write STL as text
+    ///
+    /// Example: --ascii -o grains.stl
+    #[arg(long)]
+    ascii: bool,
+
+    /// Names and numbers of arrays as another tool expects them
+    ///
+    /// Example: --names dream3d
+    #[arg(long, value_name = "TOOL", value_enum, default_value_t = NameScheme::Grainsmooth)]
+    names: NameScheme,
+
+    /// Write a table of the flat cells as JSON
+    ///
+    /// Example: --cells-json cells.json
+    #[arg(long, value_name = "PATH")]
+    pub cells_json: Option<PathBuf>,
+
+    /// Write a table of the flat cells as CSV
+    ///
+    /// Example: --cells-csv cells.csv
+    #[arg(long, value_name = "PATH")]
+    pub cells_csv: Option<PathBuf>,
+}
+
+/// `--grains-format` as it is spelled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum GrainFormat {
+    Vtp,
+    Stl,
+    Ply,
+    Obj,
+}
+
+impl GrainFormat {
+    /// The directory for files of this format, found fit to be made.
+    pub fn check(self, path: &Path) -> Result<OutputDirectory, grainsmooth::Error> {
+        OutputDirectory::check(path, self.into())
+    }
+}
+
+impl From<GrainFormat> for OutputFormat {
+    fn from(format: GrainFormat) -> Self {
+        match format {
+            GrainFormat::Vtp => Self::Vtk(VtkFormat::Vtp),
+            GrainFormat::Stl => Self::Stl,
+            GrainFormat::Ply => Self::Ply,
+            GrainFormat::Obj => Self::Obj,
+        }
+    }
+}
+
+/// `--names` as it is spelled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum NameScheme {
+    Grainsmooth,
+    Dream3d,
+    Pyvista,
+    Virmat,
+    Neper,
+}
+
+impl FileArguments {
+    /// How files are written of grains of a dimension.
+    pub fn options(&self, dimension: Dimension) -> FileOptions {
+        let voxels = match (self.voxels.as_deref(), dimension) {
+            (None, _) => None,
+            (Some(&[x, y]), Dimension::Two) => Some([x, y, 1]),
+            (Some(&[x, y, z]), Dimension::Three) => Some([x, y, z]),
+            (Some(counts), Dimension::Two) => {
+                usage(&format!("--voxels takes two numbers, NX NY, with --dim 2; {} given", counts.len()))
+            }
+            (Some(counts), Dimension::Three) => usage(&format!(
+                "--voxels takes three numbers, NX NY NZ, without --dim 2; {} given",
+                counts.len()
+            )),
+        };
+        let names = match self.names {
+            NameScheme::Grainsmooth => Names::Grainsmooth,
+            NameScheme::Dream3d => Names::Dream3d,
+            NameScheme::Pyvista => Names::Pyvista,
+            NameScheme::Virmat => Names::Virmat,
+            NameScheme::Neper => Names::Neper,
+        };
+        let stl = if self.ascii { StlEncoding::Ascii } else { StlEncoding::Binary };
+        let at_least_one = |count| NonZeroU32::new(count).unwrap_or(NonZeroU32::MIN);
+        FileOptions { names, voxels: voxels.map(|counts| counts.map(at_least_one)), stl }
+    }
+}
+
+fn parse_output(text: &str) -> Result<PathBuf, String> {
+    let path = Path::new(text);
+    if OutputFormat::of_path(path).is_some() {
+        return Ok(path.to_owned());
+    }
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    let meant = nearest(&extension, OutputFormat::ALL.map(OutputFormat::extension));
+    let hint = meant.map_or(String::new(), |name| format!("; did you mean .{name}?"));
+    Err(format!("unknown extension{hint}; name the file {}", OutputFormat::known_extensions()))
+}

@@ -1,0 +1,38 @@
+//! Options about the run itself.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::values::whole_number;
+
+/// How the program goes about it.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Run")]
+pub struct RunArguments {
+    /// Read options from a TOML file, or from a file that an earlier run wrote; those given here override them
+    ///
+    /// A key is the long name of an option, as in seeds = 500 or box = [2, 1, 1].
+    ///
+    /// Example: --config run.toml --rng-seed 2
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+
+    /// Stop after the cells and their tables: no relaxation, no mesh
+    ///
+    /// Example: --no-mesh --cells-csv cells.csv
+    #[arg(long, conflicts_with = "output")]
+    pub no_mesh: bool,
+
+    /// Number of threads [default: all processors]; the file does not depend on it
+    ///
+    /// Example: --threads 4
+    #[arg(long, value_name = "N", value_parser = whole_number(1..=1024_u16), allow_negative_numbers = true)]
+    pub threads: Option<u16>,
+
+    /// Say nothing unless something is wrong
+    ///
+    /// Example: --quiet
+    #[arg(short, long)]
+    pub quiet: bool,
+}

@@ -1,0 +1,108 @@
+//! Options about seeds.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use grainsmooth::{Lattice, SeedSource};
+use voronoi::Dimension;
+
+use super::usage;
+use super::values::{nearest, whole_number};
+
+/// Where seeds come from.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Seeds")]
+pub struct SeedArguments {
+    /// Number of grains, grown from random seeds
+    ///
+    /// Example: --seeds 5000
+    #[arg(long, value_name = "N", default_value_t = 200_u32, value_parser = whole_number(1..=4_000_000_000_u32), allow_negative_numbers = true)]
+    seeds: u32,
+
+    /// Random seeds uniform (random), or at least 0.75 mean spacings apart (poisson-disc)
+    ///
+    /// Example: --seeding poisson-disc
+    #[arg(long, value_name = "HOW", value_enum, default_value_t = Seeding::Random)]
+    seeding: Seeding,
+
+    /// Seeds on a lattice instead: sc, bcc, fcc or hcp (square or hex in 2D), with N unit cells along the shortest side
+    ///
+    /// Example: --lattice bcc 4
+    #[arg(long, value_names = ["LATTICE", "N"], num_args = 2, value_parser = parse_lattice, allow_negative_numbers = true, conflicts_with_all = ["seeds", "rng_seed", "seeding"])]
+    lattice: Option<Vec<LatticeValue>>,
+
+    /// Read seeds from a text file instead: x, y, z on each line (x, y in 2D); a last column radius weights the cells
+    ///
+    /// Example: --seeds-file seeds.csv
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["seeds", "rng_seed", "seeding", "lattice"])]
+    seeds_file: Option<PathBuf>,
+
+    /// Go on without seeds whose neighbours outweigh them; else that is an error
+    ///
+    /// Example: --seeds-file spheres.csv --drop-empty
+    #[arg(long, requires = "seeds_file")]
+    pub drop_empty: bool,
+
+    /// Even out the grains: move every seed to the centroid of its cell, N times
+    ///
+    /// Example: --lloyd 10
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = whole_number(0..=100_000_u32), allow_negative_numbers = true)]
+    pub lloyd: u32,
+
+    /// Start of the random generator: the same number gives the same grains on every machine
+    ///
+    /// Example: --rng-seed 7
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = whole_number(0..=u64::MAX), allow_negative_numbers = true)]
+    pub rng_seed: u64,
+}
+
+/// `--seeding` as it is spelled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Seeding {
+    Random,
+    PoissonDisc,
+}
+
+/// One of the two values of `--lattice`.
+#[derive(Debug, Clone, Copy)]
+enum LatticeValue {
+    Kind(Lattice),
+    Cells(u32),
+}
+
+impl SeedArguments {
+    /// Where seeds of a dimension come from.
+    pub fn source(&self, dimension: Dimension) -> SeedSource {
+        if let Some(path) = &self.seeds_file {
+            return SeedSource::File(path.clone());
+        }
+        let count = self.seeds as usize;
+        match (self.lattice.as_deref(), self.seeding) {
+            (None, Seeding::Random) => SeedSource::Random { count },
+            (None, Seeding::PoissonDisc) => SeedSource::PoissonDisc { count },
+            (Some(&[LatticeValue::Kind(lattice), LatticeValue::Cells(cells)]), _) => {
+                match (lattice.dimension(), dimension) {
+                    (Dimension::Three, Dimension::Two) => usage("--dim 2 has the lattices square and hex"),
+                    (Dimension::Two, Dimension::Three) => {
+                        usage("the lattices square and hex are for --dim 2; give sc, bcc, fcc or hcp")
+                    }
+                    _ => SeedSource::Lattice { lattice, cells },
+                }
+            }
+            (Some(_), _) => usage("--lattice takes a lattice and the number of its cells, such as bcc 4"),
+        }
+    }
+}
+
+fn parse_lattice(text: &str) -> Result<LatticeValue, String> {
+    if let Some(lattice) = Lattice::ALL.into_iter().find(|lattice| lattice.name() == text) {
+        return Ok(LatticeValue::Kind(lattice));
+    }
+    // A cube of so many cells has as many seeds as ids can name.
+    let cells = whole_number(1..=1600_u32)(text).map(LatticeValue::Cells);
+    cells.map_err(|remedy| {
+        let meant = nearest(text, Lattice::ALL.map(Lattice::name));
+        let hint = meant.map_or(String::new(), |name| format!("did you mean {name}? "));
+        format!("{hint}the lattices are sc, bcc, fcc and hcp, and square and hex in 2D; then {remedy}")
+    })
+}

@@ -1,0 +1,103 @@
+//! Options about the control mesh, relaxation and subdivision.
+
+use clap::{Args, ValueEnum};
+use grainsmooth::Config;
+use polycrystal::{FaceMesh, Junctions};
+
+use super::values::{length, whole_number};
+
+/// How flat cells become smooth grains.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Smoothing")]
+pub struct SmoothingArguments {
+    /// Control points inside boundaries: a fan of triangles round one in the middle (fan), or none (plain)
+    ///
+    /// Example: --faces plain
+    #[arg(long, value_name = "RULE", value_enum, default_value_t = FaceRule::Fan)]
+    faces: FaceRule,
+
+    /// Refine the control mesh instead until no edge is longer than H, in the unit of --box; a grain is about as wide as the
+    /// cube root of its volume
+    ///
+    /// Example: --edge-length 0.05
+    #[arg(long, value_name = "H", value_parser = parse_edge_length, allow_negative_numbers = true, conflicts_with = "faces")]
+    edge_length: Option<f64>,
+
+    /// Relaxation time, in units of the mean grain size squared; 0 keeps boundaries flat
+    ///
+    /// Example: --relax 0.1
+    #[arg(long, value_name = "T", default_value_t = Config::default().relaxation_time, value_parser = parse_time, allow_negative_numbers = true)]
+    pub relax: f64,
+
+    /// Length, in units of the mean grain size, below which edges between grains collapse; 0 keeps all
+    /// [default: 0.1, but 0 with --relax 0]
+    ///
+    /// Example: --regularize 0.05
+    #[arg(long, value_name = "L", value_parser = parse_regularize, allow_negative_numbers = true)]
+    regularize: Option<f64>,
+
+    /// Number of subdivisions; each makes four triangles of one (two segments in 2D)
+    ///
+    /// Example: -n 2
+    #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = Config::default().levels, value_parser = whole_number(0..=99_u32), allow_negative_numbers = true)]
+    pub levels: u32,
+
+    /// Triple lines as smooth curves (crease) or as polylines through all their control points (corner)
+    ///
+    /// Example: --junctions corner
+    #[arg(long, value_name = "RULE", value_enum, default_value_t = JunctionRule::Crease)]
+    junctions: JunctionRule,
+}
+
+/// `--faces` as it is spelled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FaceRule {
+    Fan,
+    Plain,
+}
+
+/// `--junctions` as it is spelled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum JunctionRule {
+    Crease,
+    Corner,
+}
+
+impl SmoothingArguments {
+    /// Control points on boundaries.
+    pub fn face_mesh(&self) -> FaceMesh {
+        match (self.edge_length, self.faces) {
+            (Some(edge_length), _) => FaceMesh::Refined { edge_length },
+            (None, FaceRule::Fan) => FaceMesh::Fan,
+            (None, FaceRule::Plain) => FaceMesh::Plain,
+        }
+    }
+
+    /// How triple lines are smoothed.
+    pub fn junctions(&self) -> Junctions {
+        match self.junctions {
+            JunctionRule::Crease => Junctions::Crease,
+            JunctionRule::Corner => Junctions::Corner,
+        }
+    }
+
+    /// Length below which edges collapse.
+    pub fn regularize(&self) -> f64 {
+        // What is not relaxed shall stay flat, for which no vertex may move.
+        self.regularize.unwrap_or(if self.relax > 0.0 { Config::REGULARIZE } else { 0.0 })
+    }
+}
+
+fn parse_edge_length(text: &str) -> Result<f64, String> {
+    length(text).ok_or_else(|| "an edge length is a positive number between 1e-30 and 1e30".to_owned())
+}
+
+fn parse_time(text: &str) -> Result<f64, String> {
+    let time = text.parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0);
+    time.ok_or_else(|| "the relaxation time is 0 (off) or a positive, finite number".to_owned())
+}
+
+fn parse_regularize(text: &str) -> Result<f64, String> {
+    let length = text.parse().ok().filter(|length| (0.0..=Config::LARGEST_REGULARIZE).contains(length));
+    length.ok_or_else(|| format!("give a length from 0 (off) to {}", Config::LARGEST_REGULARIZE))
+}

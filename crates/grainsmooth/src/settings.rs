@@ -1,0 +1,189 @@
+//! A config spelled out: as the options of a command line, and as the TOML text that every file carries.
+
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::path::Path;
+
+use glam::DVec3;
+use polycrystal::{FaceMesh, Junctions};
+use toml::Value;
+use voronoi::Dimension;
+
+use crate::vtk::find;
+use crate::{Config, FileOptions, SeedSource, StlEncoding};
+
+/// The first words of the text in a file.
+const BEGIN: &str = "# grainsmooth configuration";
+
+/// The last line of the text in a file.
+const END: &str = "# end of configuration";
+
+/// What stands before each line of the text where a format has its own sign for comments.
+const PREFIXES: [&str; 3] = ["comment ", "# ", "// "];
+
+/// Every format has the text near its beginning: so many bytes are searched.
+const SEARCHED_BYTES: u64 = 1 << 20;
+
+impl Config {
+    /// Every setting by the long name of its option, the default ones too.
+    ///
+    /// What does not change the result (output path, number of threads) is left out, so files can be compared.
+    pub fn settings(&self) -> Vec<(&'static str, Value)> {
+        let mut settings = match &self.seeds {
+            SeedSource::Random { count } => self.random("random", *count),
+            SeedSource::PoissonDisc { count } => self.random("poisson-disc", *count),
+            SeedSource::Lattice { lattice, cells } => {
+                vec![("lattice", Value::Array(vec![lattice.name().into(), i64::from(*cells).into()]))]
+            }
+            SeedSource::File(path) => vec![("seeds-file", path.display().to_string().into())],
+        };
+        let mut add = |name, value: Value| settings.push((name, value));
+        if self.drop_empty {
+            add("drop-empty", true.into());
+        }
+        add("lloyd", i64::from(self.lloyd_steps).into());
+        let DVec3 { x, y, z } = self.box_size;
+        match self.dimension {
+            Dimension::Two => {
+                add("dim", 2.into());
+                add("box", vec![x, y].into());
+            }
+            Dimension::Three => {
+                add("dim", 3.into());
+                add("box", vec![x, y, z].into());
+            }
+        }
+        let axes = ["x", "y", "z"].into_iter().zip(<[bool; 3]>::from(self.periodic));
+        let axes: Vec<&str> = axes.filter(|(_, is_periodic)| *is_periodic).map(|(axis, _)| axis).collect();
+        if !axes.is_empty() {
+            add("periodic", axes.join(",").into());
+        }
+        match self.face_mesh {
+            FaceMesh::Fan => add("faces", "fan".into()),
+            FaceMesh::Plain => add("faces", "plain".into()),
+            FaceMesh::Refined { edge_length } => add("edge-length", edge_length.into()),
+        }
+        add("relax", self.relaxation_time.into());
+        add("regularize", self.regularize.into());
+        add("levels", i64::from(self.levels).into());
+        let junctions = match self.junctions {
+            Junctions::Crease => "crease",
+            Junctions::Corner => "corner",
+        };
+        add("junctions", junctions.into());
+        settings.extend(self.file.settings(self.dimension));
+        settings
+    }
+
+    fn random(&self, seeding: &str, count: usize) -> Vec<(&'static str, Value)> {
+        vec![
+            ("seeds", number(count as u64)),
+            ("seeding", seeding.into()),
+            ("rng-seed", number(self.random_seed)),
+        ]
+    }
+
+    /// The command line that makes the same result, all settings spelled out.
+    pub fn command_line(&self) -> String {
+        let mut line = String::from("grainsmooth");
+        for (name, value) in self.settings() {
+            line += &format!(" --{name}");
+            match value {
+                Value::Boolean(_) => {}
+                Value::Array(values) => line.extend(values.iter().map(|value| format!(" {}", word(value)))),
+                value => line += &format!(" {}", word(&value)),
+            }
+        }
+        line
+    }
+
+    /// All settings as TOML, which [`embedded_config`] finds in any file.
+    pub fn to_toml(&self) -> String {
+        let lines = self.settings().into_iter().map(|(name, value)| format!("{name} = {value}\n"));
+        format!(
+            "{BEGIN}: `grainsmooth --config` with this file runs it again\n{}{END}\n",
+            lines.collect::<String>()
+        )
+    }
+
+    /// Writes [`to_toml`](Self::to_toml) with a format's sign for comments before each line.
+    pub(crate) fn write_comments(&self, sign: &str, out: &mut dyn Write) -> io::Result<()> {
+        debug_assert!(PREFIXES.contains(&sign), "embedded_config knows the sign");
+        self.to_toml().lines().try_for_each(|line| writeln!(out, "{sign}{line}"))
+    }
+}
+
+impl FileOptions {
+    fn settings(&self, dimension: Dimension) -> Vec<(&'static str, Value)> {
+        let mut settings = vec![("names", self.names.name().into())];
+        if let Some([x, y, z]) = self.voxels.map(|counts| counts.map(|count| i64::from(count.get()))) {
+            let counts = if dimension == Dimension::Two { vec![x, y] } else { vec![x, y, z] };
+            settings.push(("voxels", counts.into()));
+        }
+        if self.stl == StlEncoding::Ascii {
+            settings.push(("ascii", true.into()));
+        }
+        settings
+    }
+}
+
+/// The settings that a file carries, as TOML; nothing where it has none.
+///
+/// # Errors
+/// Whatever the file system reports.
+pub fn embedded_config(path: &Path) -> io::Result<Option<String>> {
+    // A file of blocks has it in its blocks.
+    let first_block = path.with_extension("").join("boundaries.vtp");
+    let is_vtm = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vtm"));
+    let mut bytes = Vec::new();
+    File::open(if is_vtm { &first_block } else { path })?.take(SEARCHED_BYTES).read_to_end(&mut bytes)?;
+    Ok(extracted(&bytes))
+}
+
+fn extracted(bytes: &[u8]) -> Option<String> {
+    let begin = find(bytes, BEGIN.as_bytes())?;
+    let end = begin + find(&bytes[begin..], END.as_bytes())?;
+    let prefix = PREFIXES.iter().find(|prefix| bytes[..begin].ends_with(prefix.as_bytes()));
+    let text = std::str::from_utf8(&bytes[begin..end]).ok()?;
+    // The first line is a comment of TOML.
+    let lines = text.lines().skip(1);
+    let lines = lines.map(|line| prefix.and_then(|prefix| line.strip_prefix(prefix)).unwrap_or(line));
+    Some(lines.map(|line| format!("{line}\n")).collect())
+}
+
+/// A number of any size: TOML's own end at 2^63, from where on it is a text.
+fn number(number: u64) -> Value {
+    i64::try_from(number).map_or_else(|_| number.to_string().into(), Value::Integer)
+}
+
+/// A value as a word of the command line.
+fn word(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Float(number) => number.to_string(),
+        value => value.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_found_behind_any_sign() {
+        let config = Config { random_seed: u64::MAX, ..Config::default() };
+        let table: toml::Table = config.to_toml().parse().unwrap();
+        assert_eq!(table["rng-seed"].as_str(), Some("18446744073709551615"));
+        assert_eq!(table["box"].as_array().map(Vec::len), Some(3));
+        for sign in PREFIXES {
+            let mut bytes = b"ply\n".to_vec();
+            config.write_comments(sign, &mut bytes).unwrap();
+            bytes.extend([0xff, 0, 1]);
+            assert_eq!(extracted(&bytes).unwrap().parse(), Ok(table.clone()), "{sign}");
+            assert_eq!(extracted(&bytes[..bytes.len() - 60]), None, "cut off");
+        }
+        let raw = [&[7, 0, 0, 0, 0, 0, 0, 0xff], config.to_toml().as_bytes(), &[0, 0xfe]].concat();
+        assert_eq!(extracted(&raw).unwrap().parse(), Ok(table));
+        assert_eq!(extracted(b"seeds = 200"), None);
+    }
+}

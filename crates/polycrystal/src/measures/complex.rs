@@ -1,0 +1,161 @@
+use std::borrow::Cow;
+
+use glam::DVec3;
+use voronoi::Shift;
+
+use crate::angles::leg;
+use crate::seams::{Seams, Use};
+use crate::{BoundaryId, Elements, Level, Network, Side, Surface};
+
+/// A surface with every place once: in a periodic network without what is a copy of something else, and with the grains
+/// beyond the period as sides.
+pub(super) struct Complex<'a> {
+    pub(super) surface: Surface<'a>,
+    /// The two sides of each boundary.
+    pub(super) sides: Cow<'a, [[Side; 2]]>,
+    /// Of each boundary the one that it is a copy of, or itself.
+    pub(super) originals: Vec<BoundaryId>,
+    /// Of each point the one that it is a copy of; empty where there are no copies.
+    points: Vec<u32>,
+    /// Places inside boundaries: two elements each.
+    pub(super) inner: Vec<[u32; 2]>,
+    /// The uses of all other places, sorted by place.
+    uses: Vec<Use>,
+}
+
+impl<'a> Complex<'a> {
+    /// Any surface.
+    pub(super) fn of_surface(surface: &Surface<'a>) -> Self {
+        let Seams { inner, uses } = Seams::of_elements(surface.elements, surface.boundary_of);
+        let originals = (0u32..).take(surface.sides.len()).map(BoundaryId).collect();
+        let sides = Cow::Borrowed(surface.sides);
+        Self { surface: *surface, sides, originals, points: Vec::new(), inner, uses }
+    }
+
+    /// A level of a network, whose surface this is.
+    pub(super) fn of_level(network: &Network, level: &Level, surface: &Surface<'a>) -> Self {
+        let Seams { mut inner, mut uses } = Seams::of_level(level);
+        let boundaries = network.boundaries();
+        let originals: Vec<BoundaryId> = (0u32..)
+            .map(BoundaryId)
+            .zip(boundaries)
+            .map(|(id, boundary)| boundary.twin.map_or(id, |twin| twin.boundary.min(id)))
+            .collect();
+        let with_twin = |sides: &[Side; 2], boundary: &crate::Boundary| match boundary.twin {
+            Some(twin) => [sides[0], boundaries[twin.boundary.index()].sides[0]],
+            None => *sides,
+        };
+        let sides: Vec<[Side; 2]> =
+            surface.sides.iter().zip(boundaries).map(|(sides, at)| with_twin(sides, at)).collect();
+        let mut points = Vec::new();
+        if network.domain().is_periodic() {
+            let is_original = |element: u32| {
+                let boundary = surface.boundary_of[element as usize];
+                originals[boundary.index()] == boundary
+            };
+            inner.retain(|pair| is_original(pair[0]));
+            uses.retain(|at| is_original(at.element));
+            let mut places: Vec<(u32, Shift)> = ids(level.vertex_count()).map(|v| (v, Shift::NONE)).collect();
+            for pair in &level.copies.vertices {
+                places[pair.secondary as usize] = (pair.primary, pair.shift);
+            }
+            unite_places(&mut uses, surface.elements, &places);
+            points = places.into_iter().map(|(original, _)| original).collect();
+        }
+        Self { surface: *surface, sides: Cow::Owned(sides), originals, points, inner, uses }
+    }
+
+    /// The point that a point is a copy of, or itself.
+    pub(super) fn original(&self, point: u32) -> u32 {
+        self.points.get(point as usize).copied().unwrap_or(point)
+    }
+
+    /// Whether a boundary is not a copy of another.
+    pub(super) fn is_original(&self, boundary: BoundaryId) -> bool {
+        self.originals[boundary.index()] == boundary
+    }
+
+    /// The boundary of an element that is no copy.
+    pub(super) fn boundary(&self, at: &Use) -> BoundaryId {
+        self.surface.boundary_of[at.element as usize]
+    }
+
+    /// The uses of each place where not two elements of one boundary meet.
+    pub(super) fn places(&self) -> impl Iterator<Item = &[Use]> {
+        self.uses.chunk_by(|a, b| a.place == b.place)
+    }
+
+    /// The boundaries that meet at a place, sorted.
+    pub(super) fn boundaries(&self, at: &[Use]) -> Vec<BoundaryId> {
+        let mut boundaries: Vec<BoundaryId> = at.iter().map(|at| self.boundary(at)).collect();
+        boundaries.sort_unstable();
+        boundaries
+    }
+
+    /// The sectors into which boundaries divide what surrounds a place, in order around it.
+    pub(super) fn wedges(&self, at: &[Use]) -> Vec<Wedge> {
+        let ends = |at: &Use| at.ends(self.surface.elements).map(|end| self.surface.points[end as usize]);
+        let axis = match self.surface.elements {
+            Elements::Triangles(_) => {
+                let [start, end] = ends(&at[0]);
+                (end - start).normalize_or_zero()
+            }
+            Elements::Segments(_) => DVec3::Z,
+        };
+        let zero = leg(&self.surface, &at[0]);
+        let quarter = axis.cross(zero);
+        let mut spokes: Vec<(f64, Side)> = at
+            .iter()
+            .map(|at| {
+                let [first, second] = self.sides[self.boundary(at).index()];
+                // A triangle that runs along the axis has its second side counter-clockwise of it.
+                let is_along = match self.surface.elements {
+                    Elements::Triangles(_) => {
+                        let [start, end] = ends(at);
+                        (end - start).dot(axis) > 0.0
+                    }
+                    // A segment that starts here has its first side on the left.
+                    Elements::Segments(_) => at.corner == 1,
+                };
+                let leg = leg(&self.surface, at);
+                (leg.dot(quarter).atan2(leg.dot(zero)), if is_along { second } else { first })
+            })
+            .collect();
+        spokes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let next = spokes[1..].iter().map(|(angle, _)| *angle);
+        let ends = next.chain([spokes[0].0 + std::f64::consts::TAU]);
+        spokes.iter().zip(ends).map(|(&(start, side), end)| Wedge { side, angle: end - start }).collect()
+    }
+}
+
+/// A sector around a place where boundaries meet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Wedge {
+    /// What fills it.
+    pub(super) side: Side,
+    /// Between the boundaries that bound it, in radians.
+    pub(super) angle: f64,
+}
+
+/// Numbers places anew, copies like their originals.
+fn unite_places(uses: &mut [Use], elements: Elements<'_>, places: &[(u32, Shift)]) {
+    let key = |at: &Use| {
+        let [start, end] = at.ends(elements).map(|end| places[end as usize]);
+        let along = end.1 - start.1;
+        let against = start.1 - end.1;
+        match start.0.cmp(&end.0) {
+            std::cmp::Ordering::Less => ([start.0, end.0], along),
+            std::cmp::Ordering::Greater => ([end.0, start.0], against),
+            std::cmp::Ordering::Equal => ([start.0, end.0], along.max(against)),
+        }
+    };
+    let mut keyed: Vec<_> = uses.iter().map(|at| (key(at), *at)).collect();
+    keyed.sort_unstable();
+    let groups = (0u32..).zip(keyed.chunk_by(|a, b| a.0 == b.0));
+    let numbered = groups.flat_map(|(place, group)| group.iter().map(move |(_, at)| Use { place, ..*at }));
+    uses.iter_mut().zip(numbered).for_each(|(at, numbered)| *at = numbered);
+}
+
+fn ids(count: usize) -> impl Iterator<Item = u32> {
+    0..u32::try_from(count).expect("ids fit 32 bits")
+}

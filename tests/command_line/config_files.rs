@@ -1,0 +1,150 @@
+//! `--config`: options from a file, and runs that are run again.
+
+use std::fs;
+
+use crate::workplace::{USAGE, Workplace};
+
+#[test]
+fn files_run_their_run_again() {
+    let solid = "--seeds 5 --rng-seed 12345678901234567890 --box 2 1 0.5 --periodic x --edge-length 0.4 --relax 0.1 -n 1";
+    let flat = "--dim 2 --seeding poisson-disc --seeds 6 --lloyd 1 --junctions corner -n 2 --voxels 9 8 --names neper";
+    let walls = "--lattice fcc 1 --faces plain -n 1";
+    for (name, arguments) in [
+        ("a.vtp", solid),
+        ("a.vtu", solid),
+        ("a.vtk", solid),
+        ("a.vtm", solid),
+        ("a.ply", solid),
+        ("a.obj", solid),
+        ("a.msh", solid),
+        ("a.fe", walls),
+        ("a.vti", flat),
+        ("a.ang", flat),
+        ("a.vtp", flat),
+    ] {
+        let workplace = Workplace::new();
+        workplace.run(&format!("{arguments} -o {name}"));
+        let before = workplace.bytes(name);
+        fs::create_dir(workplace.path("again")).unwrap();
+        workplace.run(&format!("--config {name} -o again/{name} --threads 1"));
+        assert!(workplace.bytes(&format!("again/{name}")) == before, "{name} of {arguments}");
+    }
+}
+
+#[test]
+fn grains_of_a_directory_run_their_run_again() {
+    let workplace = Workplace::new();
+    for format in ["vtp", "ply", "obj"] {
+        workplace.run(&format!("--seeds 4 -n 0 --grains-dir {format} --grains-format {format}"));
+        let before = workplace.bytes("grains.vtp");
+        workplace.run(&format!("--config {format}/grain_3.{format}"));
+        assert!(workplace.bytes("grains.vtp") == before, "{format}");
+    }
+}
+
+#[test]
+fn keys_are_the_options_of_the_command_line() {
+    let workplace = Workplace::new();
+    workplace.put(
+        "run.toml",
+        "# a plate\nseeds = 7\nbox = [3, 1, 0.5]\nperiodic = \"x,y\"\nrelax = 1e-1\nlevels = 1\noutput = \"plate.vtp\"\n\
+         drop-empty = false\nquiet = true\ncells-csv = 'plate.csv'\n",
+    );
+    assert_eq!(workplace.run("--config run.toml"), "");
+    workplace.run("--seeds 7 --box 3 1 0.5 --periodic x,y --relax 0.1 -n 1");
+    assert!(workplace.bytes("plate.vtp") == workplace.bytes("grains.vtp"));
+    assert!(workplace.path("plate.csv").is_file());
+}
+
+#[test]
+fn command_line_overrides_the_file() {
+    let workplace = Workplace::new();
+    workplace.put("run.toml", "seeds = 7\nrng-seed = 3\nedge-length = 0.5\nlevels = 0\n");
+    for (given, same) in [
+        ("--seeds 8", "--seeds 8 --rng-seed 3 --edge-length 0.5 -n 0"),
+        ("-n 1 --faces plain", "--seeds 7 --rng-seed 3 --faces plain -n 1"),
+        // What excludes a key of the file takes its place.
+        ("--lattice bcc 1", "--lattice bcc 1 --edge-length 0.5 -n 0"),
+    ] {
+        workplace.run(&format!("{given} --config run.toml -o one.vtp"));
+        workplace.run(&format!("{same} -o two.vtp"));
+        assert!(workplace.bytes("one.vtp") == workplace.bytes("two.vtp"), "{given}");
+    }
+    workplace.put("lattice.toml", "lattice = ['sc', 2]\nlevels = 0\n");
+    workplace.run("--config=lattice.toml --seeds 5 -o one.vtp");
+    workplace.run("--seeds 5 -n 0 -o two.vtp");
+    assert!(workplace.bytes("one.vtp") == workplace.bytes("two.vtp"));
+}
+
+#[test]
+fn each_mistake_is_named_with_its_line() {
+    let workplace = Workplace::new();
+    for (content, message) in [
+        ("\nseed = 3\n", "run.toml line 2: unknown key 'seed'; did you mean 'seeds'?"),
+        ("seeds = 3\nrelaxation = 1\n", "run.toml line 2: unknown key 'relaxation'; did you mean 'relax'?"),
+        (
+            "zzz = 1",
+            "run.toml line 1: unknown key 'zzz'; keys are the long names of the options that --help lists",
+        ),
+        (
+            "# c\n\nseeds = -1\n",
+            "run.toml line 3: invalid value '-1' for '--seeds <N>': give a whole number from 1 to 4000000000",
+        ),
+        (
+            "seeds = 3.5",
+            "run.toml line 1: invalid value '3.5' for '--seeds <N>': give a whole number from 1 to 4000000000",
+        ),
+        (
+            "faces = 'fann'",
+            "run.toml line 1: invalid value 'fann' for '--faces <RULE>'; tip: a similar value exists: 'fan'",
+        ),
+        ("quiet = 1", "run.toml line 1: 'quiet' is true or false"),
+        ("box = [[1, 1], 1]", "run.toml line 1: 'box' is a decimal number, a text, or a list of them"),
+        ("config = 'other.toml'", "run.toml line 1: unknown key 'config'; ... "),
+        ("seeds = 3\nseeds = 4", "run.toml line 2: duplicate key"),
+        ("seeds 3", "run.toml line 1: ... "),
+        (
+            "lattice = ['bcc', 2]\nseeds = 3",
+            "the argument '--lattice <LATTICE> <N>' cannot be used with '--seeds <N>'",
+        ),
+        ("box = [1, 1]", "--box takes three numbers, X Y Z, without --dim 2; 2 given"),
+    ] {
+        workplace.put("run.toml", content);
+        workplace.refuses("--config run.toml", USAGE, message);
+    }
+    workplace.put("run.toml", [0xff, 0xfe]);
+    workplace.refuses("--config run.toml", USAGE, "run.toml: is not UTF-8 text; save it as UTF-8");
+    workplace.refuses(
+        "--config grains.vtp",
+        USAGE,
+        "grains.vtp: holds no configuration; give a .toml file, or a .vtp or other file that grainsmooth wrote",
+    );
+    workplace.refuses(
+        "--config none.toml",
+        USAGE,
+        "none.toml: cannot be read: ... ; give the path of a readable file",
+    );
+}
+
+#[test]
+fn truncated_and_corrupt_files_are_refused_or_read() {
+    let workplace = Workplace::new();
+    workplace.run("--seeds 2 -n 0 -o whole.vtp");
+    let whole = workplace.bytes("whole.vtp");
+    let begin = whole.windows(15).position(|window| window == b"# grainsmooth c").unwrap();
+    for (name, content) in [("cut.toml", &whole[begin..begin + 420]), ("cut.vtp", &whole[..])] {
+        for round in 0..12 {
+            let mut content = content.to_vec();
+            // Into the configuration, at places that are far apart and not at regular ones.
+            let at = (if name == "cut.vtp" { begin } else { 0 }) + round * 31 % 400;
+            match round % 3 {
+                0 => content.truncate(at),
+                1 => content[at] ^= 0x80,
+                _ => content[at] = b"=['\n"[round % 4],
+            }
+            workplace.put(name, content);
+            let code = workplace.command(&format!("--config {name}")).output().unwrap().status.code();
+            assert!(matches!(code, Some(0 | 1 | USAGE)), "{name} {round}: {code:?}");
+        }
+    }
+}
