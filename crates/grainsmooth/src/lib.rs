@@ -18,6 +18,7 @@ mod cell_table;
 mod check_report;
 mod config;
 mod error;
+mod estimate;
 mod formats;
 mod labelled_file;
 mod lattice;
@@ -37,12 +38,15 @@ mod seeding;
 mod settings;
 mod subdivide;
 mod summary;
+mod summary_record;
+mod unfinished;
 pub mod vtk;
 
 pub use cell_table::{CellTable, TableFormat};
 pub use check_report::{CheckReport, ReportedFault, Spread, Statistic};
 pub use config::{Config, FileOptions, SeedSource};
 pub use error::Error;
+pub use estimate::Estimate;
 pub use formats::{LabelGrid, Names, StlEncoding};
 pub use formats::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
@@ -59,8 +63,10 @@ pub use pipeline::{
 };
 pub use poisson_disc::poisson_disc_seeds;
 pub use report::Html;
-pub use seed_file::{FileSeed, SeedLineProblem, read_seed_file};
+pub use seed_file::{FileDomain, FileSeed, SeedPlace, SeedProblem, read_file_domain, read_seed_file};
 pub use seeding::random_seeds;
 pub use settings::embedded_config;
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};
 pub use summary::Summary;
+pub use summary_record::SummaryRecord;
+pub use unfinished::discard_unfinished;

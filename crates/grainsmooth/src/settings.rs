@@ -5,7 +5,7 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 
 use glam::DVec3;
-use polycrystal::{FaceMesh, Junctions};
+use polycrystal::{FaceMesh, Junctions, Relaxation};
 use toml::Value;
 use voronoi::Dimension;
 
@@ -55,15 +55,16 @@ impl Config {
         }
         let axes = ["x", "y", "z"].into_iter().zip(<[bool; 3]>::from(self.periodic));
         let axes: Vec<&str> = axes.filter(|(_, is_periodic)| *is_periodic).map(|(axis, _)| axis).collect();
-        if !axes.is_empty() {
-            add("periodic", axes.join(",").into());
-        }
+        add("periodic", if axes.is_empty() { "none".into() } else { axes.join(",").into() });
         match self.face_mesh {
             FaceMesh::Fan => add("faces", "fan".into()),
             FaceMesh::Plain => add("faces", "plain".into()),
             FaceMesh::Refined { edge_length } => add("edge-length", edge_length.into()),
         }
-        add("relax", self.relaxation_time.into());
+        match self.relaxation {
+            Relaxation::Time(time) => add("relax", time.into()),
+            Relaxation::Equilibrium => add("relax", "equilibrium".into()),
+        }
         add("regularize", self.regularize.into());
         add("levels", i64::from(self.levels).into());
         let junctions = match self.junctions {
