@@ -10,6 +10,7 @@ mod control_meshes;
 mod good_runs;
 mod periodic;
 mod seed_sources;
+mod statistics;
 mod surface_file;
 mod weights_and_tables;
 mod workplace;

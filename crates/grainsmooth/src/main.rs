@@ -7,14 +7,15 @@ mod mesh_run;
 mod progress;
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::anyhow;
 use grainsmooth::mesh_file::READER_THREAD;
 use grainsmooth::{
-    CellTable, Output, OutputDirectory, Stage, Summary, TableFormat, check_expected_size, smooth, tessellate,
+    CellTable, Output, OutputDirectory, Stage, StatisticsOutput, Summary, TableFormat, check_expected_size,
+    smooth, tessellate,
 };
 
 use cli::{Arguments, Command};
@@ -68,18 +69,19 @@ fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     if let Some(grains) = &grains {
         grains.check_fits(&arguments.config())?;
     }
+    let statistics = arguments.files.statistics(arguments.config().dimension)?;
     let threads = arguments.run.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .map_err(|cause| anyhow!("cannot start {threads} threads: {cause}; give fewer with --threads"))?;
     let line = ProgressLine::new(arguments.run.quiet);
-    let files = Files { tables, output, grains };
+    let files = Files { tables, output, grains, statistics };
     let result = pool.install(|| compute(arguments, &files, &line));
     line.clear();
     let summary = result?;
     if !arguments.run.quiet {
-        let names: Vec<String> = files.paths().map(|path| path.display().to_string()).collect();
+        let names: Vec<String> = files.paths().iter().map(|path| path.display().to_string()).collect();
         say(&format!("{summary}\nwritten     {}", names.join(", ")));
     }
     Ok(ExitCode::SUCCESS)
@@ -97,13 +99,16 @@ struct Files {
     tables: Vec<Output<TableFormat>>,
     output: Option<Output>,
     grains: Option<OutputDirectory>,
+    statistics: Option<StatisticsOutput>,
 }
 
 impl Files {
-    fn paths(&self) -> impl Iterator<Item = &Path> {
+    fn paths(&self) -> Vec<PathBuf> {
         let tables = self.tables.iter().map(Output::path);
         let grains = self.grains.as_ref().map(OutputDirectory::path);
-        tables.chain(self.output.as_ref().map(Output::path)).chain(grains)
+        let meshes = tables.chain(self.output.as_ref().map(Output::path)).chain(grains);
+        let statistics = self.statistics.iter().flat_map(StatisticsOutput::paths);
+        meshes.map(Path::to_owned).chain(statistics).collect()
     }
 }
 
@@ -134,6 +139,9 @@ fn compute(arguments: &Arguments, files: &Files, line: &ProgressLine) -> Result<
     polycrystal.write(output)?;
     if let Some(grains) = &files.grains {
         polycrystal.write_grains(grains)?;
+    }
+    if let Some(statistics) = &files.statistics {
+        polycrystal.statistics().write(statistics)?;
     }
     polycrystal.add_time(Stage::Writing, start.elapsed());
     Ok(Summary(&polycrystal).to_string())
