@@ -17,6 +17,11 @@ fn rows<'a>(document: &'a Value, table: &str) -> &'a Vec<Value> {
     document[table].as_array().unwrap()
 }
 
+/// The row of a number.
+fn row<'a>(document: &'a Value, table: &str, id: f64) -> &'a Value {
+    rows(document, table).iter().find(|row| row["id"].as_f64() == Some(id)).unwrap()
+}
+
 fn sum(document: &Value, table: &str, column: &str) -> f64 {
     rows(document, table).iter().map(|row| row[column].as_f64().unwrap()).sum()
 }
@@ -136,14 +141,14 @@ fn arrays_are_what_statistics_say() {
     let labels = numbers(&workplace, "grains.vtp", "FaceLabels");
     let volumes = numbers(&workplace, "grains.vtp", "GrainVolumes");
     for (cell, id) in ids.iter().enumerate() {
-        let boundary = &rows(&all, "boundaries")[*id as usize];
+        let boundary = row(&all, "boundaries", *id);
         assert_eq!(boundary["area"].as_f64(), Some(areas[cell]));
         assert_eq!(boundary["mean_curvature"].as_f64(), Some(curvatures[cell]));
         for side in [2 * cell, 2 * cell + 1] {
             match labels[side] {
                 -1.0 => assert!(volumes[side].is_nan()),
                 grain => {
-                    let row = &rows(&all, "grains")[grain as usize];
+                    let row = row(&all, "grains", grain);
                     assert_eq!(row["volume"].as_f64(), Some(volumes[side]));
                 }
             }
@@ -178,7 +183,7 @@ fn arrays_of_blocks_are_what_statistics_say() {
     let grains = numbers(&workplace, "a/grains.vtp", "GrainId");
     let rates = numbers(&workplace, "a/grains.vtp", "GrowthRate");
     for (grain, rate) in grains.iter().zip(rates) {
-        assert_eq!(rows(&all, "grains")[*grain as usize]["growth_rate"].as_f64(), Some(rate));
+        assert_eq!(row(&all, "grains", *grain)["growth_rate"].as_f64(), Some(rate));
     }
     // Copies have what their originals have: no length but those known.
     let known: Vec<f64> =
