@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use polycrystal::{AngleStatistics, Certificate, MeshSize, Network, NetworkError, Relaxation};
+use polycrystal::{AngleStatistics, Certificate, MeshSize, Network, NetworkError};
 use polycrystal::{dihedral_angles, relax, validate};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
@@ -179,9 +179,8 @@ pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result
     let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
     check_levels(LevelSize { points, edges, triangles }, config.levels, available_memory())?;
     let (network, flat, collapsed) = clock.time(Stage::Network, || network(config, tessellation))?;
-    let relaxation = Relaxation { time: config.relaxation_time };
     let relaxed = clock.time(Stage::Relaxation, || {
-        relax(&network, &flat, &relaxation, |done, count| progress(Stage::Relaxation, done, count))
+        relax(&network, &flat, &config.relaxation, |done, count| progress(Stage::Relaxation, done, count))
     })?;
     let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
     let (validation, angles_before) = clock.time(Stage::Validation, || {
