@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::anyhow;
 use grainsmooth::{
     CellTable, Config, Error, Estimate, Html, Output, OutputDirectory, Picture, Png, Polycrystal, Stage,
-    Summary, SummaryRecord, TableFormat, check_expected_size, smooth, tessellate,
+    StatisticsOutput, Summary, SummaryRecord, TableFormat, check_expected_size, smooth, tessellate,
 };
 
 use crate::cli::{Arguments, usage};
@@ -38,7 +38,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     line.clear();
     let summary = result?;
     if !arguments.run.quiet {
-        let names: Vec<String> = files.paths().map(|path| path.display().to_string()).collect();
+        let names: Vec<String> = files.paths().iter().map(|path| path.display().to_string()).collect();
         say(&format!("{summary}\nwritten     {}", names.join(", ")));
     }
     Ok(ExitCode::SUCCESS)
@@ -52,6 +52,7 @@ struct Files {
     picture: Option<(Picture, Output<Png>)>,
     report: Option<Output<Html>>,
     summary: Option<Output<()>>,
+    statistics: Option<StatisticsOutput>,
 }
 
 impl Files {
@@ -76,15 +77,18 @@ impl Files {
             false => Output::check_as(path, ()),
         });
         let (picture, report) = (arguments.pictures.picture()?, arguments.pictures.report()?);
-        Ok(Self { tables, output, grains, picture, report, summary: summary.transpose()? })
+        let statistics = files.statistics(config.dimension)?;
+        Ok(Self { tables, output, grains, picture, report, summary: summary.transpose()?, statistics })
     }
 
-    fn paths(&self) -> impl Iterator<Item = &Path> {
+    fn paths(&self) -> Vec<PathBuf> {
         let tables = self.tables.iter().map(Output::path);
         let grains = self.grains.as_ref().map(OutputDirectory::path);
         let picture = self.picture.as_ref().map(|(_, output)| output.path());
         let report = self.report.as_ref().map(Output::path);
-        tables.chain(self.output.as_ref().map(Output::path)).chain(grains).chain(picture).chain(report)
+        let meshes = tables.chain(self.output.as_ref().map(Output::path)).chain(grains);
+        let statistics = self.statistics.iter().flat_map(StatisticsOutput::paths);
+        meshes.chain(picture).chain(report).map(Path::to_owned).chain(statistics).collect()
     }
 }
 
@@ -121,6 +125,9 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     if let Some(grains) = &files.grains {
         polycrystal.write_grains(grains)?;
     }
+    if let Some(statistics) = &files.statistics {
+        polycrystal.statistics().write(statistics)?;
+    }
     if let Some((picture, output)) = &files.picture {
         polycrystal.write_picture(picture, output)?;
     }
@@ -130,7 +137,7 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
         polycrystal.write_report(output)?;
     }
     if let Some(summary) = &files.summary {
-        write_summary(&polycrystal, files.paths().map(PathBuf::from).collect(), summary)?;
+        write_summary(&polycrystal, files.paths(), summary)?;
     }
     Ok(Summary(&polycrystal).to_string())
 }

@@ -29,6 +29,7 @@ mod contact;
 mod control_mesh;
 mod error;
 mod face_mesh;
+mod fans;
 mod fault;
 mod folds;
 mod intersections;
@@ -58,7 +59,7 @@ pub use level::{Level, Mesh};
 pub use measures::{
     BoundaryMeasures, GrainMeasures, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures, PlaneMeasures,
     PointCurvature, QuadruplePointMeasures, SpaceMeasures, TripleLineMeasures, TriplePointMeasures, measure,
-    measure_network, point_curvatures,
+    measure_network, point_curvatures, point_dihedral_angles,
 };
 pub use network::{Junctions, Network};
 pub use node_type::NodeType;
