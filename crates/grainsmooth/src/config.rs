@@ -112,11 +112,13 @@ pub struct FileOptions {
     pub voxels: Option<[NonZeroU32; 3]>,
     /// How STL spells its numbers.
     pub stl: StlEncoding,
+    /// Whether VTK files have arrays of what is measured.
+    pub arrays: bool,
 }
 
 impl Default for FileOptions {
     fn default() -> Self {
-        Self { names: Names::default(), voxels: None, stl: StlEncoding::Binary }
+        Self { names: Names::default(), voxels: None, stl: StlEncoding::Binary, arrays: false }
     }
 }
 

@@ -69,6 +69,8 @@ pub struct Polycrystal {
     pub cells: Tessellated,
     /// Connectivity of all levels.
     pub network: Network,
+    /// Control points of the flat network, before relaxation.
+    pub flat: Vec<DVec3>,
     /// Points of the finest level.
     pub points: Vec<DVec3>,
     /// What regularisation took out.
@@ -186,7 +188,7 @@ pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result
     })?;
     let times = clock.times;
     let config = config.clone();
-    Ok(Polycrystal { config, cells, network, points, collapsed, angles_before, validation, times })
+    Ok(Polycrystal { config, cells, network, flat, points, collapsed, angles_before, validation, times })
 }
 
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.

@@ -144,6 +144,9 @@ impl FileOptions {
         if self.stl == StlEncoding::Ascii {
             settings.push(("ascii", true.into()));
         }
+        if self.arrays {
+            settings.push(("arrays", true.into()));
+        }
         settings
     }
 }
