@@ -9,8 +9,7 @@ use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
 use crate::memory::{LevelSize, available_memory, check_cells, check_levels};
 use crate::{
-    Config, Error, FileSeed, LatticeFit, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds,
-    read_seed_file,
+    Config, Error, FileSeed, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds, read_seed_file,
 };
 
 /// A part of a run, in the order in which they follow each other.
@@ -70,6 +69,8 @@ pub struct Polycrystal {
     pub cells: Tessellated,
     /// Connectivity of all levels.
     pub network: Network,
+    /// Control points of the flat network, before relaxation.
+    pub flat: Vec<DVec3>,
     /// Points of the finest level.
     pub points: Vec<DVec3>,
     /// What regularisation took out.
@@ -162,9 +163,7 @@ fn seed_count(config: &Config) -> Option<usize> {
     match &config.seeds {
         SeedSource::File(_) => None,
         SeedSource::Random { count } | SeedSource::PoissonDisc { count } => Some(*count),
-        SeedSource::Lattice { lattice, cells } => {
-            Some(LatticeFit::new(*lattice, *cells, config.box_size).seed_count())
-        }
+        SeedSource::Lattice { .. } => config.lattice_fit().map(|fit| fit.seed_count()),
     }
 }
 
@@ -189,7 +188,7 @@ pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result
     })?;
     let times = clock.times;
     let config = config.clone();
-    Ok(Polycrystal { config, cells, network, points, collapsed, angles_before, validation, times })
+    Ok(Polycrystal { config, cells, network, flat, points, collapsed, angles_before, validation, times })
 }
 
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.
@@ -233,7 +232,7 @@ fn seeds(config: &Config, domain: &voronoi::Domain) -> Result<Vec<FileSeed>, Err
         SeedSource::File(path) => return read_seed_file(path, config.dimension),
         SeedSource::Random { count } => random_seeds(*count, domain, config.random_seed),
         SeedSource::PoissonDisc { count } => poisson_disc_seeds(*count, domain, config.random_seed),
-        SeedSource::Lattice { lattice, cells } => LatticeFit::new(*lattice, *cells, config.box_size).seeds(),
+        SeedSource::Lattice { lattice, cells } => config.lattice_seeds(*lattice, *cells, domain),
     };
     let numbered = (1..).map(SeedPlace::Entry).zip(positions);
     Ok(numbered.map(|(place, position)| FileSeed { position, weight: None, place }).collect())

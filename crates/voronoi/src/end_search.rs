@@ -185,12 +185,15 @@ impl<'a> EndSearch<'a> {
         }
         let (seed, input) = (self.seed, self.search.input());
         if self.candidates.len() == 0 {
-            let plane = (input.domain.dimension() == Dimension::Two).then_some(Generator::wall(PLANE));
+            let plane = (input.domain.dimension() == Dimension::Two).then_some(Generator::side(PLANE));
             for generator in input.outermost_planes(seed).chain(plane) {
                 self.candidates.push(&HalfSpace::new(seed, generator, input));
             }
         }
         self.search.gather(&mut self.candidates, seed, [self.reach, reach])?;
+        let candidates = &mut self.candidates;
+        input.for_each_facet_within(seed, [self.reach, reach], |plane, _| candidates.push(&plane));
+        candidates.fill_lanes();
         self.reach = reach;
         Ok(())
     }

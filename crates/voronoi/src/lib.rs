@@ -34,6 +34,8 @@
 
 mod candidates;
 mod convex_cell;
+mod convex_surface;
+mod curved_domain;
 mod domain;
 mod end_search;
 mod error;
@@ -50,6 +52,7 @@ mod planar_squares;
 mod planar_weld;
 mod polygon;
 mod polygon_triangulation;
+mod polyhedron;
 mod predicate;
 mod regularize;
 mod search;
@@ -57,12 +60,14 @@ mod tessellation;
 mod tile;
 mod tile_vertex;
 mod torus;
+mod wall;
 mod weld;
 mod wide;
 
-pub use domain::{Dimension, Domain, Wall};
+pub use domain::{Dimension, Domain};
 pub use error::VoronoiError;
 pub use measure::CellMeasure;
 pub use polygon_triangulation::{PolygonTriangulation, triangulate_polygon};
 pub use regularize::Collapsed;
 pub use tessellation::{CellId, Edges, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};
+pub use wall::{Wall, WallPlane};

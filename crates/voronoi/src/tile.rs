@@ -196,7 +196,7 @@ impl Builder<'_> {
         }
         for (edge, slots) in (0u32..).zip(EDGE_SLOTS) {
             let key = slots.map(|slot| generators[slot]);
-            if self.is_flat && !key.contains(&Generator::wall(PLANE)) {
+            if self.is_flat && !key.contains(&Generator::side(PLANE)) {
                 continue;
             }
             let key = in_order(key);
@@ -249,7 +249,7 @@ impl Tile {
                 let vertex = &vertices[number as usize];
                 let sides = [vertex.generators[i], vertex.generators[j]];
                 let Some([own, beyond]) = self.in_order(search, sides) else { continue };
-                let is_plane = beyond == Generator::wall(PLANE);
+                let is_plane = beyond == Generator::side(PLANE);
                 match (is_flat, is_plane) {
                     (false, _) => self.push_ring(vertices, number, own, beyond),
                     (true, true) => self.push_polygon(search, vertices, number, own),
@@ -276,7 +276,7 @@ impl Tile {
     /// Adds the edges of a cell in the plane.
     fn push_polygon(&mut self, search: &Search, vertices: &mut [TileVertex], first: u32, own: Generator) {
         let own_end = search.end(own);
-        for_each_corner(vertices, first, own, Generator::wall(PLANE), |from, beyond, to| {
+        for_each_corner(vertices, first, own, Generator::side(PLANE), |from, beyond, to| {
             if search.end(beyond) > own_end {
                 self.corners.extend([from, to]);
                 self.finish_face([own, beyond]);
