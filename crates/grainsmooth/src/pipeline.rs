@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use polycrystal::{AngleStatistics, Certificate, MeshSize, Network, NetworkError};
+use polycrystal::{AngleStatistics, Boundary, Certificate, FaceMesh, MeshSize, Network, NetworkError};
 use polycrystal::{dihedral_angles, relax, validate};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
@@ -197,15 +197,20 @@ fn network(
     config: &Config,
     tessellation: &Tessellation,
 ) -> Result<(Network, Vec<DVec3>, Collapsed), NetworkError> {
-    let Config { face_mesh, junctions, levels, .. } = *config;
-    let network_of = |cells| Network::with_face_mesh(cells, face_mesh, junctions, levels as usize);
+    let Config { face_mesh, junctions, levels, wall_tension, .. } = *config;
+    let tension = |boundary: &Boundary| if boundary.wall.is_some() { wall_tension } else { 1.0 };
+    let network_of = |cells, face_mesh| {
+        let (network, flat) = Network::with_face_mesh(cells, face_mesh, junctions, levels as usize)?;
+        Ok::<_, NetworkError>((network.with_tensions(tension)?, flat))
+    };
     if config.regularize == 0.0 {
-        let (network, flat) = network_of(tessellation)?;
+        let (network, flat) = network_of(tessellation, face_mesh)?;
         return Ok((network, flat, Collapsed::default()));
     }
     let volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
     let (regular, collapsed) = tessellation.regularized(config.regularize);
-    let (network, flat) = network_of(&regular)?;
+    let (network, flat) =
+        network_of(&regular, if face_mesh == FaceMesh::Fan { FaceMesh::SparseFan } else { face_mesh })?;
     Ok((network.with_cell_volumes(volumes), flat, collapsed))
 }
 

@@ -57,7 +57,7 @@ impl Config {
         let axes: Vec<&str> = axes.filter(|(_, is_periodic)| *is_periodic).map(|(axis, _)| axis).collect();
         add("periodic", if axes.is_empty() { "none".into() } else { axes.join(",").into() });
         match self.face_mesh {
-            FaceMesh::Fan => add("faces", "fan".into()),
+            FaceMesh::Fan | FaceMesh::SparseFan => add("faces", "fan".into()),
             FaceMesh::Plain => add("faces", "plain".into()),
             FaceMesh::Refined { edge_length } => add("edge-length", edge_length.into()),
         }
@@ -65,6 +65,7 @@ impl Config {
             Relaxation::Time(time) => add("relax", time.into()),
             Relaxation::Equilibrium => add("relax", "equilibrium".into()),
         }
+        add("wall-tension", self.wall_tension.into());
         add("regularize", self.regularize.into());
         add("levels", i64::from(self.levels).into());
         let junctions = match self.junctions {

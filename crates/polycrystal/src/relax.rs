@@ -18,6 +18,7 @@ mod patches;
 mod rows;
 mod springs;
 mod system;
+mod tangential;
 mod volume_constraint;
 
 use glam::DVec3;
@@ -107,7 +108,7 @@ pub fn relax(
         Relaxation::Time(time) => return Err(NetworkError::BadRelaxationTime(time)),
         Relaxation::Equilibrium => (LONG_STEP, FINEST_BALANCED),
     };
-    let has_tension = network.boundaries().iter().any(|boundary| boundary.wall.is_none());
+    let has_tension = network.tensions().iter().any(|tension| *tension > 0.0);
     let mut points = control_points.to_vec();
     if time == 0.0 || !has_tension {
         // Cells that were regularised have lost the volumes that their grains are to have.

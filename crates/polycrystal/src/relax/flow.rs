@@ -8,10 +8,11 @@ use super::face_corners::FaceCorners;
 use super::patch::PatchTerms;
 use super::patches::Patches;
 use super::system::System;
+use super::tangential::tangential_moves;
 use crate::folds::{element_normals, folded_edges, folded_pairs};
 use crate::seams::Seams;
 use crate::volume::sum_over_grains;
-use crate::{Boundary, GrainId, Level, Mesh, Network, NetworkError};
+use crate::{GrainId, Level, Mesh, Network, NetworkError};
 
 /// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
 const ATTEMPTS: usize = 24;
@@ -73,9 +74,7 @@ impl<'a> Flow<'a> {
     pub(super) fn new(network: &'a Network, level: usize) -> Self {
         let surface = (network.levels().len() - 1).min(level + 1);
         let clusters = Clusters::new(&network.levels()[level]);
-        let tension = |boundary: &Boundary| if boundary.wall.is_none() { 1.0 } else { 0.0 };
-        let tensions: Vec<f64> = network.boundaries().iter().map(tension).collect();
-        let patches = Patches::new(network, level, surface, &tensions);
+        let patches = Patches::new(network, level, surface);
         let corners = FaceCorners::new(network, level);
         let neighbors = Seams::of_level(&network.levels()[surface]).inner;
         Self { network, patches, level, surface, neighbors, corners, clusters }
@@ -133,6 +132,9 @@ impl<'a> Flow<'a> {
         let missing = self.missing(&volumes);
         self.clusters.join_short_edges(self.control_mesh(), points, self.rigid_length());
         let mut moves = self.system(points, &terms, &self.clusters, time).displacement(&missing);
+        let within = tangential_moves(&self.network.levels()[self.level], points);
+        moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
+        self.unite(&mut moves, 0);
         let mut count = 0;
         for attempt in 0..ATTEMPTS {
             let moved = displaced(points, &moves);
