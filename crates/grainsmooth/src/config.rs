@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use glam::{BVec3, DVec3};
-use polycrystal::{FaceMesh, Junctions};
+use polycrystal::{FaceMesh, Junctions, Volumes};
 use voronoi::{Dimension, Domain};
 
 use crate::{Error, Lattice, LatticeFit, Names, StlEncoding};
@@ -51,6 +51,8 @@ pub struct Config {
     pub face_mesh: FaceMesh,
     /// Relaxation time in units of the mean grain size squared; 0 leaves boundaries flat.
     pub relaxation_time: f64,
+    /// Whether relaxation keeps the grains' volumes.
+    pub volumes: Volumes,
     /// Length, in units of the mean grain size, below which edges of cells collapse before relaxation; 0 keeps all.
     pub regularize: f64,
     /// Number of subdivisions.
@@ -93,6 +95,7 @@ impl Default for Config {
             periodic: BVec3::FALSE,
             face_mesh: FaceMesh::Fan,
             relaxation_time: polycrystal::Relaxation::default().time,
+            volumes: Volumes::Kept,
             regularize: Self::REGULARIZE,
             levels: 3,
             junctions: Junctions::Crease,

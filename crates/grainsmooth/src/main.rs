@@ -14,8 +14,8 @@ use std::time::Instant;
 use anyhow::anyhow;
 use grainsmooth::mesh_file::READER_THREAD;
 use grainsmooth::{
-    CellTable, Output, OutputDirectory, Stage, StatisticsOutput, Summary, TableFormat, check_expected_size,
-    smooth, tessellate,
+    CellTable, Output, OutputDirectory, Series, SeriesOutput, Stage, StatisticsOutput, Summary, TableFormat,
+    check_expected_size, smooth_watched, tessellate,
 };
 
 use cli::{Arguments, Command};
@@ -70,13 +70,14 @@ fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         grains.check_fits(&arguments.config())?;
     }
     let statistics = arguments.files.statistics(arguments.config().dimension)?;
+    let series = arguments.files.series()?;
     let threads = arguments.run.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .map_err(|cause| anyhow!("cannot start {threads} threads: {cause}; give fewer with --threads"))?;
     let line = ProgressLine::new(arguments.run.quiet);
-    let files = Files { tables, output, grains, statistics };
+    let files = Files { tables, output, grains, statistics, series };
     let result = pool.install(|| compute(arguments, &files, &line));
     line.clear();
     let summary = result?;
@@ -100,6 +101,7 @@ struct Files {
     output: Option<Output>,
     grains: Option<OutputDirectory>,
     statistics: Option<StatisticsOutput>,
+    series: Option<SeriesOutput>,
 }
 
 impl Files {
@@ -108,7 +110,8 @@ impl Files {
         let grains = self.grains.as_ref().map(OutputDirectory::path);
         let meshes = tables.chain(self.output.as_ref().map(Output::path)).chain(grains);
         let statistics = self.statistics.iter().flat_map(StatisticsOutput::paths);
-        meshes.map(Path::to_owned).chain(statistics).collect()
+        let series = self.series.iter().map(|series| series.path().to_owned());
+        meshes.map(Path::to_owned).chain(statistics).chain(series).collect()
     }
 }
 
@@ -133,7 +136,12 @@ fn compute(arguments: &Arguments, files: &Files, line: &ProgressLine) -> Result<
             tessellation.domain()
         ));
     };
-    let mut polycrystal = smooth(&config, tessellated, &progress)?;
+    let mut series = Series::new(arguments.files.every);
+    let mut polycrystal = smooth_watched(&config, tessellated, &progress, |step| {
+        if files.series.is_some() {
+            series.add(&step);
+        }
+    })?;
     line.show(Stage::Writing, 0, 1);
     let start = Instant::now();
     polycrystal.write(output)?;
@@ -142,6 +150,9 @@ fn compute(arguments: &Arguments, files: &Files, line: &ProgressLine) -> Result<
     }
     if let Some(statistics) = &files.statistics {
         polycrystal.statistics().write(statistics)?;
+    }
+    if let Some(output) = &files.series {
+        series.write(&mut polycrystal, output)?;
     }
     polycrystal.add_time(Stage::Writing, start.elapsed());
     Ok(Summary(&polycrystal).to_string())

@@ -5,7 +5,7 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 
 use glam::DVec3;
-use polycrystal::{FaceMesh, Junctions};
+use polycrystal::{FaceMesh, Junctions, Volumes};
 use toml::Value;
 use voronoi::Dimension;
 
@@ -64,6 +64,9 @@ impl Config {
             FaceMesh::Refined { edge_length } => add("edge-length", edge_length.into()),
         }
         add("relax", self.relaxation_time.into());
+        if self.volumes == Volumes::Free {
+            add("free", true.into());
+        }
         add("regularize", self.regularize.into());
         add("levels", i64::from(self.levels).into());
         let junctions = match self.junctions {
@@ -122,6 +125,9 @@ impl FileOptions {
         }
         if self.stl == StlEncoding::Ascii {
             settings.push(("ascii", true.into()));
+        }
+        if self.arrays {
+            settings.push(("arrays", true.into()));
         }
         settings
     }

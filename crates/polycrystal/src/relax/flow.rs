@@ -11,7 +11,7 @@ use super::system::System;
 use crate::folds::{element_normals, folded_edges, folded_pairs};
 use crate::seams::Seams;
 use crate::volume::sum_over_grains;
-use crate::{Boundary, GrainId, Level, Mesh, Network, NetworkError};
+use crate::{Boundary, GrainId, Level, Mesh, Network, NetworkError, Volumes};
 
 /// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
 const ATTEMPTS: usize = 12;
@@ -64,10 +64,11 @@ pub(super) struct Flow<'a> {
     clusters: Clusters,
     /// Whether each step is checked for folds on the finest level too, which is seldom worth its time.
     checks_finest: bool,
+    volumes: Volumes,
 }
 
 impl<'a> Flow<'a> {
-    pub(super) fn new(network: &'a Network, level: usize) -> Self {
+    pub(super) fn new(network: &'a Network, level: usize, volumes: Volumes) -> Self {
         let surface = (network.levels().len() - 1).min(level + 1);
         let clusters = Clusters::new(&network.levels()[level]);
         let tension = |boundary: &Boundary| if boundary.wall.is_none() { 1.0 } else { 0.0 };
@@ -75,27 +76,27 @@ impl<'a> Flow<'a> {
         let patches = Patches::new(network, level, surface, &tensions);
         let corners = FaceCorners::new(network, level);
         let neighbors = Seams::of_level(&network.levels()[surface]).inner;
-        Self { network, patches, level, surface, neighbors, corners, clusters, checks_finest: false }
+        Self { network, patches, level, surface, neighbors, corners, clusters, checks_finest: false, volumes }
     }
 
     /// Takes the steps of a stage. Where the finest level folds though no step did, goes back to where it did not.
     ///
-    /// `progress` is told the number of steps done.
+    /// `progress` is told the number of steps done and where the points are.
     pub(super) fn run(
         &mut self,
         start: Vec<DVec3>,
         stage: &Stage,
-        progress: &impl Fn(usize),
+        progress: &mut impl FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
         let mut states = vec![start];
         let mut count = 0;
         for _ in 0..ATTEMPTS {
             while states.len() <= stage.steps {
                 states.push(self.step(&states[states.len() - 1], stage.step_time)?);
-                progress(states.len() - 1);
+                progress(states.len() - 1, &states[states.len() - 1]);
             }
             let mut points = states[stage.steps].clone();
-            if stage.is_last {
+            if stage.is_last && self.volumes == Volumes::Kept {
                 self.restore_volumes(&mut points)?;
             }
             let folds = self.finest_folds(&points);
@@ -203,7 +204,16 @@ impl<'a> Flow<'a> {
     fn system(&self, points: &[DVec3], terms: &[PatchTerms], clusters: &Clusters, time: f64) -> System<'_> {
         let size = self.feature_size();
         let walls = &self.network.levels()[self.level].walls;
-        System::new(self.network, &self.patches, terms, points, clusters.number(), (time, size), walls)
+        System::new(
+            self.network,
+            &self.patches,
+            terms,
+            points,
+            clusters.number(),
+            (time, size),
+            walls,
+            self.volumes,
+        )
     }
 
     /// The feature size as control edges of this level have it.

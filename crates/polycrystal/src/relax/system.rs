@@ -8,7 +8,7 @@ use super::patch::PatchTerms;
 use super::patches::Patches;
 use super::springs::add_springs;
 use super::volume_constraint::{Compliance, VolumeConstraint};
-use crate::{Network, WallSet};
+use crate::{Network, Volumes, WallSet};
 
 /// Share of its first residual at which a step is solved: a step is one of several, and the next one starts from where it ends.
 const TOLERANCE: f64 = 1e-3;
@@ -27,8 +27,8 @@ pub(super) struct System<'a> {
     forces: Vec<DVec3>,
     /// 1 over the diagonal of the matrix, 0 along axes that walls lock.
     mobility: Vec<DVec3>,
-    constraint: VolumeConstraint,
-    compliance: Compliance,
+    /// Nothing where volumes are free.
+    constraint: Option<(VolumeConstraint, Compliance)>,
 }
 
 impl<'a> System<'a> {
@@ -41,6 +41,7 @@ impl<'a> System<'a> {
         clusters: Numbering,
         (time, feature_size): (f64, f64),
         walls: &[WallSet],
+        volumes: Volumes,
     ) -> Self {
         let springs: Vec<Vec<f64>> = patches
             .patches
@@ -62,16 +63,18 @@ impl<'a> System<'a> {
             |c| patches.places_of_cluster(&clusters, c).map(|place| of_places[place]).sum::<DVec3>() * -time;
         let forces: Vec<DVec3> = (0..count).into_par_iter().map(force).collect();
         let mobility = mobility(walls, patches, &clusters, &springs, &masses);
-        let constraint = VolumeConstraint::new(network, patches, terms, &clusters);
-        let compliance = constraint.compliance(&mobility);
-        Self { patches, clusters, masses, springs, forces, mobility, constraint, compliance }
+        let constraint = (volumes == Volumes::Kept).then(|| {
+            let constraint = VolumeConstraint::new(network, patches, terms, &clusters);
+            let compliance = constraint.compliance(&mobility);
+            (constraint, compliance)
+        });
+        Self { patches, clusters, masses, springs, forces, mobility, constraint }
     }
 
     /// The displacement of every control point that changes the grains' volumes by `changes`, to first order, and is
     /// otherwise that of the flow. Solved by projected conjugate gradients (Gould, Hribar and Nocedal 2001).
     pub(super) fn displacement(&self, changes: &[f64]) -> Vec<DVec3> {
-        let pressures = self.compliance.pressures(changes);
-        let mut displacement = self.push(&pressures);
+        let mut displacement = self.push(changes);
         let mut at_places = vec![DVec3::ZERO; self.patches.place_count()];
         let mut image = vec![DVec3::ZERO; displacement.len()];
         self.apply(&displacement, &mut image, &mut at_places);
@@ -100,7 +103,7 @@ impl<'a> System<'a> {
     /// The least motion by area of the control points that changes the grains' volumes by `changes`, to first order,
     /// for a system of time 0.
     pub(super) fn volume_correction(&self, changes: &[f64]) -> Vec<DVec3> {
-        self.of_points(&self.push(&self.compliance.pressures(changes)))
+        self.of_points(&self.push(changes))
     }
 
     fn of_points(&self, of_clusters: &[DVec3]) -> Vec<DVec3> {
@@ -111,14 +114,21 @@ impl<'a> System<'a> {
     fn project(&self, residual: &[DVec3]) -> Vec<DVec3> {
         let mut moved: Vec<DVec3> =
             residual.iter().zip(&self.mobility).map(|(r, mobility)| *r * *mobility).collect();
-        let pressures = self.compliance.pressures(&self.constraint.volume_change(&moved));
-        moved.iter_mut().zip(self.push(&pressures)).for_each(|(moved, push)| *moved -= push);
+        if let Some((constraint, _)) = &self.constraint {
+            let pushed = self.push(&constraint.volume_change(&moved));
+            moved.iter_mut().zip(pushed).for_each(|(moved, push)| *moved -= push);
+        }
         moved
     }
 
-    /// The displacement under pressures of the grains if there were only the diagonal of the matrix.
-    fn push(&self, pressures: &[f64]) -> Vec<DVec3> {
-        let force = |cluster: usize| self.mobility[cluster] * self.constraint.force(pressures, cluster);
+    /// The displacement by pressures that changes volumes by `changes` if there were only the diagonal of the matrix; none
+    /// where volumes are free.
+    fn push(&self, changes: &[f64]) -> Vec<DVec3> {
+        let Some((constraint, compliance)) = &self.constraint else {
+            return vec![DVec3::ZERO; self.mobility.len()];
+        };
+        let pressures = compliance.pressures(changes);
+        let force = |cluster: usize| self.mobility[cluster] * constraint.force(&pressures, cluster);
         (0..self.mobility.len()).into_par_iter().map(force).collect()
     }
 
