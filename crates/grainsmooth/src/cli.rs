@@ -2,12 +2,14 @@
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
-use grainsmooth::Config;
+use clap_complete::Shell;
+use grainsmooth::{Config, read_file_domain};
 
 use crate::check_run::CheckArguments;
 use crate::mesh_cli::MeshArguments;
 
 mod config_file;
+mod documents;
 mod domain;
 mod files;
 mod run;
@@ -15,6 +17,7 @@ mod seeds;
 mod smoothing;
 mod values;
 
+pub use documents::{print_completions, print_manual};
 use domain::DomainArguments;
 use files::FileArguments;
 use run::RunArguments;
@@ -48,6 +51,17 @@ pub struct Arguments {
 pub enum Command {
     Mesh(MeshArguments),
     Check(CheckArguments),
+    /// Print what completes options and values in a shell
+    ///
+    /// Example: grainsmooth completions bash > ~/.local/share/bash-completion/completions/grainsmooth
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the manual page
+    ///
+    /// Example: grainsmooth man | man -l -
+    Man,
 }
 
 const EXAMPLES: &str = "\
@@ -77,28 +91,33 @@ impl Arguments {
     /// What the arguments ask to compute.
     ///
     /// Ends the program with exit status 2 where they do not fit together.
-    pub fn config(&self) -> Config {
+    ///
+    /// # Errors
+    /// When the file of the seeds cannot tell what they fill.
+    pub fn config(&self) -> Result<Config, grainsmooth::Error> {
         let Self { seeds, domain, smoothing, files, .. } = self;
-        Config {
-            seeds: seeds.source(domain.dim),
+        let of_file = seeds.seeds_file.as_deref().map(read_file_domain).transpose()?.flatten();
+        let domain = domain.with_defaults_of(of_file);
+        Ok(Config {
+            seeds: seeds.source(domain.dimension),
             random_seed: seeds.rng_seed,
             lloyd_steps: seeds.lloyd,
-            dimension: domain.dim,
-            box_size: domain.box_size(),
+            dimension: domain.dimension,
+            box_size: domain.box_size,
             face_mesh: smoothing.face_mesh(),
-            periodic: domain.periodic(),
+            periodic: domain.periodic,
             relaxation_time: smoothing.relax,
             volumes: smoothing.volumes(),
             regularize: smoothing.regularize(),
             levels: smoothing.levels,
             junctions: smoothing.junctions(),
             drop_empty: seeds.drop_empty,
-            file: files.options(domain.dim),
-        }
+            file: files.options(domain.dimension),
+        })
     }
 }
 
 /// Ends the program as clap does on a mistake.
-fn usage(message: &str) -> ! {
+pub fn usage(message: &str) -> ! {
     Arguments::command().error(ErrorKind::WrongNumberOfValues, message).exit()
 }

@@ -18,6 +18,7 @@ mod cell_table;
 mod check_report;
 mod config;
 mod error;
+mod estimate;
 mod formats;
 mod labelled_file;
 mod lattice;
@@ -38,13 +39,16 @@ mod settings;
 mod statistics;
 mod subdivide;
 mod summary;
+mod summary_record;
 mod table;
+mod unfinished;
 pub mod vtk;
 
 pub use cell_table::{CellTable, TableFormat};
 pub use check_report::{CheckReport, ReportedFault, Spread, Statistic};
 pub use config::{Config, FileOptions, SeedSource};
 pub use error::Error;
+pub use estimate::Estimate;
 pub use formats::{LabelGrid, Names, StlEncoding};
 pub use formats::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
@@ -60,10 +64,12 @@ pub use pipeline::{
     tessellate,
 };
 pub use poisson_disc::poisson_disc_seeds;
-pub use seed_file::{FileSeed, SeedLineProblem, read_seed_file};
+pub use seed_file::{FileDomain, FileSeed, SeedPlace, SeedProblem, read_file_domain, read_seed_file};
 pub use seeding::random_seeds;
 pub use series::{Series, SeriesOutput};
 pub use settings::embedded_config;
 pub use statistics::{NetworkStatistics, StatisticsOutput};
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};
 pub use summary::Summary;
+pub use summary_record::SummaryRecord;
+pub use unfinished::discard_unfinished;

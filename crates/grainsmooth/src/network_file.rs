@@ -26,10 +26,8 @@ impl Polycrystal {
     /// [`Error::WriteOutput`]; nothing is left behind then. As of [`Output::check_fits`].
     pub fn write(&self, output: &Output) -> Result<(), Error> {
         output.check_fits(&self.config)?;
-        match output.format() {
-            OutputFormat::Vtm => return self.write_blocks(output),
-            OutputFormat::Msh => self.write_gmsh_script(output)?,
-            _ => {}
+        if output.format() == OutputFormat::Vtm {
+            return self.write_blocks(output);
         }
         output.write(|out| match output.format() {
             OutputFormat::Vtk(format) => self.write_vtk(format, out),
@@ -53,7 +51,11 @@ impl Polycrystal {
             OutputFormat::Vti => self.write_vti(out),
             OutputFormat::Npy => write_npy(&self.label_grid()?, self.config.file.names, out),
             OutputFormat::Ang => write_ang(&self.label_grid()?, &self.config, out),
-        })
+        })?;
+        match output.format() {
+            OutputFormat::Msh => self.write_gmsh_script(output),
+            _ => Ok(()),
+        }
     }
 
     /// The script that makes volumes of the grains, beside the mesh file.

@@ -11,7 +11,8 @@ use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
 use crate::memory::{LevelSize, available_memory, check_cells, check_levels};
 use crate::{
-    Config, Error, FileSeed, LatticeFit, SeedSource, poisson_disc_seeds, random_seeds, read_seed_file,
+    Config, Error, FileSeed, LatticeFit, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds,
+    read_seed_file,
 };
 
 /// A part of a run, in the order in which they follow each other.
@@ -34,6 +35,17 @@ pub enum Stage {
 }
 
 impl Stage {
+    /// Every stage, in the order in which they follow each other.
+    pub const ALL: [Self; 7] = [
+        Self::Seeds,
+        Self::Cells,
+        Self::Network,
+        Self::Relaxation,
+        Self::Subdivision,
+        Self::Validation,
+        Self::Writing,
+    ];
+
     /// The stage in one word.
     pub fn name(self) -> &'static str {
         match self {
@@ -122,8 +134,8 @@ fn cells_of(
     seeds: &[FileSeed],
 ) -> Result<(Tessellation, Vec<f64>), Error> {
     let positions: Vec<DVec3> = seeds.iter().map(|seed| seed.position).collect();
-    let weights: Vec<f64> = seeds.iter().map(|seed| seed.radius.unwrap_or(0.0).powi(2)).collect();
-    let tessellation = if seeds.iter().any(|seed| seed.radius.is_some()) {
+    let weights: Vec<f64> = seeds.iter().map(|seed| seed.weight.unwrap_or(0.0)).collect();
+    let tessellation = if seeds.iter().any(|seed| seed.weight.is_some()) {
         Tessellation::power(domain, &positions, &weights)
     } else {
         Tessellation::new(domain, &positions)
@@ -248,7 +260,8 @@ fn seeds(config: &Config, domain: &voronoi::Domain) -> Result<Vec<FileSeed>, Err
         SeedSource::PoissonDisc { count } => poisson_disc_seeds(*count, domain, config.random_seed),
         SeedSource::Lattice { lattice, cells } => LatticeFit::new(*lattice, *cells, config.box_size).seeds(),
     };
-    Ok(positions.into_iter().map(|position| FileSeed { position, radius: None, line: 0 }).collect())
+    let numbered = (1..).map(SeedPlace::Entry).zip(positions);
+    Ok(numbered.map(|(place, position)| FileSeed { position, weight: None, place }).collect())
 }
 
 /// The error with the line of the seed file that it comes from.
@@ -259,12 +272,12 @@ fn located(error: VoronoiError, config: &Config, seeds: &[FileSeed]) -> Error {
         | VoronoiError::OutsideDomain { seed, .. }
         | VoronoiError::BadWeight { seed, .. } => *seed,
         VoronoiError::DuplicateSeeds { first, second, position } => {
-            let lines = [seeds[*first].line, seeds[*second].line];
-            return Error::DuplicateSeedsInFile { path: path.clone(), lines, position: *position };
+            let places = [seeds[*first].place, seeds[*second].place];
+            return Error::DuplicateSeedsInFile { path: path.clone(), places, position: *position };
         }
         _ => return error.into(),
     };
-    Error::SeedInFile { path: path.clone(), line: seeds[seed].line, cause: error }
+    Error::SeedInFile { path: path.clone(), place: seeds[seed].place, cause: error }
 }
 
 /// The size for so many random seeds, from the means of Poisson-Voronoi cells (walls not counted): in space 15.54 faces,

@@ -55,9 +55,7 @@ impl Config {
         }
         let axes = ["x", "y", "z"].into_iter().zip(<[bool; 3]>::from(self.periodic));
         let axes: Vec<&str> = axes.filter(|(_, is_periodic)| *is_periodic).map(|(axis, _)| axis).collect();
-        if !axes.is_empty() {
-            add("periodic", axes.join(",").into());
-        }
+        add("periodic", if axes.is_empty() { "none".into() } else { axes.join(",").into() });
         match self.face_mesh {
             FaceMesh::Fan => add("faces", "fan".into()),
             FaceMesh::Plain => add("faces", "plain".into()),

@@ -232,7 +232,7 @@ fn a_grain_that_touches_itself_is_found() {
 }
 
 /// Tetrahedra with one corner in common, and all of these within a larger one.
-fn touching_tetrahedra(grains: [u32; 2]) -> Certificate {
+fn pinches_of_touching_tetrahedra(grains: [u32; 2]) -> Vec<Fault> {
     let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
     let points = [
         DVec3::ZERO,
@@ -259,15 +259,17 @@ fn touching_tetrahedra(grains: [u32; 2]) -> Certificate {
     ];
     let elements = Elements::Triangles(&triangles);
     let surface = Surface { points: &points, elements, boundary_of: &boundary_of, sides: &sides };
-    certify(&surface, &Claims::default())
+    let faults = certify(&surface, &Claims::default()).faults.0;
+    // The edges of the tetrahedra are folds within their boundaries.
+    faults.into_iter().filter(|fault| fault.kind() != "folded").collect()
 }
 
 #[test]
 fn grains_that_touch_in_one_point_only_are_found() {
     // Of two grains each is closed, but that around them is pinched.
     let pinched = |grain: u32| Fault::PinchedPoint { point: 0, grain: GrainId(grain), fans: 2 };
-    assert_eq!(touching_tetrahedra([0, 1]).faults.0, [pinched(7)]);
-    assert_eq!(touching_tetrahedra([3, 3]).faults.0, [pinched(3), pinched(7)]);
+    assert_eq!(pinches_of_touching_tetrahedra([0, 1]), [pinched(7)]);
+    assert_eq!(pinches_of_touching_tetrahedra([3, 3]), [pinched(3), pinched(7)]);
 }
 
 #[test]

@@ -57,9 +57,16 @@ impl ConvexPolygon {
             polygon.lines.push(Line::new(seed, input.outermost(seed, wall), input));
         }
         for k in 0..4 {
-            polygon.corners.push(polygon.intersect(polygon.lines[(k + 3) % 4], polygon.lines[k], input));
+            polygon.corners.push(intersect(seed, polygon.lines[(k + 3) % 4], polygon.lines[k], input));
         }
         polygon
+    }
+
+    /// The corners, counter-clockwise and relative to the seed, with what lies beyond the edges that end and that start there.
+    pub(crate) fn corners(&self) -> impl Iterator<Item = ([Generator; 2], DVec2)> {
+        let before = self.lines.iter().cycle().skip(self.lines.len().saturating_sub(1));
+        let lines = before.zip(&self.lines).map(|(before, after)| [before.generator, after.generator]);
+        lines.zip(self.corners.iter().map(|corner| corner.position))
     }
 
     fn is_beyond(&self, corner: usize, line: &Line, input: ExactInput) -> bool {
@@ -72,23 +79,6 @@ impl ConvexPolygon {
             return value > 0.0;
         }
         input.decide(self.seed, self.corner_planes(corner), line.generator).beyond
-    }
-
-    fn intersect(&self, incoming: Line, outgoing: Line, input: ExactInput) -> Corner {
-        let determinant = incoming.normal.perp_dot(outgoing.normal);
-        let position = (incoming.normal.perp() * outgoing.offset - outgoing.normal.perp() * incoming.offset)
-            / determinant;
-        let lengths = incoming.normal.length() * outgoing.normal.length();
-        let numerators =
-            outgoing.offset_size * incoming.normal.length() + incoming.offset_size * outgoing.normal.length();
-        let size = position.abs().max_element();
-        let error = ROUNDING_ERROR * (numerators + size * lengths) / (determinant - ROUNDING_ERROR * lengths);
-        if error >= 0.0 && error <= LOOSE * position.length() {
-            return Corner { position, error };
-        }
-        let planes = [incoming.generator, outgoing.generator, Generator::wall(PLANE)];
-        let position = input.vertex(self.seed, planes).truncate();
-        Corner { position, error: 2.0 * f64::EPSILON * position.abs().max_element() }
     }
 
     /// The planes that meet in a corner, in positive orientation.
@@ -123,12 +113,35 @@ impl Cutting for ConvexPolygon {
         self.lines.drain(..removed - 1);
         self.corners.drain(..removed);
         let (leaving, entering) = (self.lines[0], self.lines[self.lines.len() - 1]);
-        self.corners.insert(0, self.intersect(line, leaving, input));
-        self.corners.push(self.intersect(entering, line, input));
+        self.corners.insert(0, intersect(self.seed, line, leaving, input));
+        self.corners.push(intersect(self.seed, entering, line, input));
         self.lines.push(line);
     }
 
     fn any_vertex(&self) -> Option<[Generator; 3]> {
         (!self.lines.is_empty()).then(|| self.corner_planes(0))
     }
+}
+
+/// The centre, relative to a seed, of the circle through it and two others, the three being in counter-clockwise order.
+pub(crate) fn circumcentre(seed: u32, others: [u32; 2], input: ExactInput) -> DVec2 {
+    let [incoming, outgoing] = others.map(|other| Line::new(seed, Generator::site(other), input));
+    intersect(seed, incoming, outgoing, input).position
+}
+
+fn intersect(seed: u32, incoming: Line, outgoing: Line, input: ExactInput) -> Corner {
+    let determinant = incoming.normal.perp_dot(outgoing.normal);
+    let position =
+        (incoming.normal.perp() * outgoing.offset - outgoing.normal.perp() * incoming.offset) / determinant;
+    let lengths = incoming.normal.length() * outgoing.normal.length();
+    let numerators =
+        outgoing.offset_size * incoming.normal.length() + incoming.offset_size * outgoing.normal.length();
+    let size = position.abs().max_element();
+    let error = ROUNDING_ERROR * (numerators + size * lengths) / (determinant - ROUNDING_ERROR * lengths);
+    if error >= 0.0 && error <= LOOSE * position.length() {
+        return Corner { position, error };
+    }
+    let planes = [incoming.generator, outgoing.generator, Generator::wall(PLANE)];
+    let position = input.vertex(seed, planes).truncate();
+    Corner { position, error: 2.0 * f64::EPSILON * position.abs().max_element() }
 }

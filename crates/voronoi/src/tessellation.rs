@@ -8,7 +8,7 @@ use crate::periodic_weld::weld_periodic;
 use crate::search::Search;
 use crate::tile::cut_tiles;
 use crate::weld::weld;
-use crate::{Domain, VoronoiError, Wall};
+use crate::{Dimension, Domain, VoronoiError, Wall, planar_cells};
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
@@ -160,6 +160,13 @@ impl Tessellation {
 
     fn cut(domain: &Domain, seeds: &[DVec3], weights: Option<&[f64]>) -> Result<Self, VoronoiError> {
         check_seeds(domain, seeds)?;
+        let is_plain = weights.is_none() && !domain.is_periodic();
+        if is_plain
+            && domain.dimension() == Dimension::Two
+            && let Some(tessellation) = planar_cells::tessellate(domain, seeds)
+        {
+            return Ok(tessellation);
+        }
         let mut search = Search::new(domain, seeds, weights)?;
         let tiles = cut_tiles(&mut search);
         Ok(if domain.is_periodic() {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use grainsmooth::vtk::VtkFormat;
 use grainsmooth::{
-    FileOptions, Names, OutputDirectory, OutputFormat, SeriesOutput, StatisticsOutput, StlEncoding,
+    FileOptions, Names, Output, OutputDirectory, OutputFormat, SeriesOutput, StatisticsOutput, StlEncoding,
     TableFormat,
 };
 use voronoi::Dimension;
@@ -19,11 +19,17 @@ use super::values::{nearest, whole_number};
 #[command(next_help_heading = "Files")]
 pub struct FileArguments {
     /// File to write; its extension names the format: .vtp, .vtu, .vtk, .vtm, .stl, .ply, .obj, .msh (Gmsh), .fe (Surface Evolver),
-    /// .tess (Neper), and voxels .vti (DAMASK), .npy, .ang
+    /// .tess (Neper), and voxels .vti (DAMASK), .npy, .ang; - is standard output
     ///
     /// Example: -o grains.vtm
     #[arg(short, long, value_name = "PATH", default_value = "grains.vtp", value_parser = parse_output)]
-    pub output: PathBuf,
+    output: PathBuf,
+
+    /// Format of what goes to standard output, named by its extension [default: vtp]
+    ///
+    /// Example: -o - --format ply
+    #[arg(long, value_name = "FORMAT", value_parser = parse_format)]
+    format: Option<OutputFormat>,
 
     /// Write each grain as a closed surface of its own into this new directory
     ///
@@ -142,6 +148,20 @@ impl FileArguments {
         self.series.as_deref().map(SeriesOutput::check).transpose()
     }
 
+    /// Where the network goes, found writable.
+    pub fn output(&self) -> Result<Output, grainsmooth::Error> {
+        match (self.is_standard_output(), self.format) {
+            (true, format) => Output::standard_output(format.unwrap_or(OutputFormat::Vtk(VtkFormat::Vtp))),
+            (false, None) => Output::check(&self.output),
+            (false, Some(_)) => usage("--format is for -o -; the extension of a file names its format"),
+        }
+    }
+
+    /// Whether the network goes to standard output.
+    pub fn is_standard_output(&self) -> bool {
+        self.output.as_os_str() == "-"
+    }
+
     /// How files are written of grains of a dimension.
     pub fn options(&self, dimension: Dimension) -> FileOptions {
         let voxels = match (self.voxels.as_deref(), dimension) {
@@ -191,11 +211,20 @@ fn parse_every(text: &str) -> Result<NonZeroU32, String> {
 
 fn parse_output(text: &str) -> Result<PathBuf, String> {
     let path = Path::new(text);
-    if OutputFormat::of_path(path).is_some() {
+    if text == "-" || OutputFormat::of_path(path).is_some() {
         return Ok(path.to_owned());
     }
     let extension = path.extension().unwrap_or_default().to_string_lossy();
-    let meant = nearest(&extension, OutputFormat::ALL.map(OutputFormat::extension));
-    let hint = meant.map_or(String::new(), |name| format!("; did you mean .{name}?"));
+    let hint = nearest_format(&extension).map_or(String::new(), |name| format!("; did you mean .{name}?"));
     Err(format!("unknown extension{hint}; name the file {}", OutputFormat::known_extensions()))
+}
+
+fn parse_format(text: &str) -> Result<OutputFormat, String> {
+    let format = OutputFormat::ALL.into_iter().find(|format| format.extension() == text);
+    let hint = || nearest_format(text).map_or(String::new(), |name| format!("did you mean {name}? "));
+    format.ok_or_else(|| format!("{}the formats are those of {}", hint(), OutputFormat::known_extensions()))
+}
+
+fn nearest_format(text: &str) -> Option<&'static str> {
+    nearest(text, OutputFormat::ALL.map(OutputFormat::extension))
 }

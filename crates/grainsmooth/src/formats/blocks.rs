@@ -1,7 +1,7 @@
 //! VTK's multi-block file: `boundaries`, `grains`, `triple_lines` and `quadruple_points`, each in a file of its own.
 
-use std::fs;
-use std::io::{self, Write};
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
@@ -13,6 +13,7 @@ use super::lines::Junctions;
 use super::surface::Surface;
 use crate::measured_arrays::{MeasuredArrays, NumberArrays};
 use crate::network_file::triangles;
+use crate::output::temporary_directory;
 use crate::vtk::{Array, Cells, Each, PolyData, Tuples, Values, VtkFormat, write_vtk};
 use crate::{Error, Output, Polycrystal};
 
@@ -28,19 +29,24 @@ impl Polycrystal {
         let failed = |cause| Error::WriteOutput { path: output.path().to_owned(), cause };
         let surface = self.surface().map_err(failed)?;
         let folder = folder(output.path());
-        fs::create_dir_all(&folder).map_err(failed)?;
         let junctions = Junctions::of(&surface);
         let measured = self.measured_arrays();
         let measured = measured.as_ref();
-        for block in BLOCKS {
-            let file = Output::check(folder.join(block).with_extension("vtp"))?;
-            file.write(|out| match block {
-                "boundaries" => self.write_boundaries(&surface, measured, out),
-                "grains" => self.write_grain_block(&surface, measured, out),
-                "triple_lines" => self.write_triple_lines(&surface, &junctions, measured, out),
-                _ => self.write_quadruple_points(&surface, &junctions, measured, out),
-            })?;
-        }
+        // All blocks or none get their names.
+        let unfinished = temporary_directory(&folder).map_err(failed)?;
+        let write = |block: &str| {
+            let file = File::create(unfinished.path().join(block).with_extension("vtp"))?;
+            let mut out = BufWriter::new(file);
+            match block {
+                "boundaries" => self.write_boundaries(&surface, measured, &mut out)?,
+                "grains" => self.write_grain_block(&surface, measured, &mut out)?,
+                "triple_lines" => self.write_triple_lines(&surface, &junctions, measured, &mut out)?,
+                _ => self.write_quadruple_points(&surface, &junctions, measured, &mut out)?,
+            }
+            out.flush()
+        };
+        BLOCKS.into_iter().try_for_each(write).map_err(failed)?;
+        unfinished.persist_files(&folder).map_err(failed)?;
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         output.write(|out| {
             writeln!(out, "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\">\n<vtkMultiBlockDataSet>")?;

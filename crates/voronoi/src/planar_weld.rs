@@ -1,0 +1,111 @@
+//! From the squares of the plane to one complex.
+
+use glam::DVec3;
+
+use crate::Domain;
+use crate::generator::{Generator, Plane};
+use crate::planar_cells::SquareCells;
+use crate::tessellation::{CellId, FaceId, Side, Tessellation, VertexId};
+use crate::weld::put_vertices_on_walls;
+
+/// Makes one complex of the cells of all squares. `seeds` and the result's cells are in the user's order, which `ids` tells.
+pub(crate) fn weld_squares(
+    domain: &Domain,
+    seeds: &[DVec3],
+    ids: &[u32],
+    squares: &[SquareCells],
+) -> Tessellation {
+    let vertex_ids = number(squares, |cells| (cells.vertices.len(), &cells.shared_vertices));
+    let face_ids = number(squares, |cells| (cells.edges.len(), &cells.shared_edges));
+    let mut vertices = Vec::with_capacity(squares.iter().map(|cells| cells.vertices.len()).sum());
+    for (cells, ids) in squares.iter().zip(&vertex_ids) {
+        for (position, id) in cells.vertices.iter().zip(ids) {
+            if *id as usize == vertices.len() {
+                vertices.push(position.extend(0.0));
+            }
+        }
+    }
+    let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);
+    let most_faces = squares.iter().map(|cells| cells.edges.len()).sum();
+    tessellation.face_sides.reserve_exact(most_faces);
+    tessellation.face_corners.reserve_exact(2 * most_faces);
+    let side = |generator: Generator| match generator.plane() {
+        Plane::Site(site) => Side::Cell(CellId(ids[site as usize])),
+        Plane::Wall(wall) => Side::Wall(wall),
+    };
+    for ((cells, vertex_ids), face_ids) in squares.iter().zip(&vertex_ids).zip(&face_ids) {
+        for ((sides, ends), id) in cells.edges.iter().zip(face_ids) {
+            if *id as usize == tessellation.face_sides.len() {
+                let mut sides = sides.map(side);
+                let mut ends = ends.map(|end| VertexId(vertex_ids[end as usize]));
+                if sides[1] < sides[0] {
+                    sides.swap(0, 1);
+                    ends.swap(0, 1);
+                }
+                tessellation.face_sides.push(sides);
+                tessellation.face_corners.extend(ends);
+            }
+        }
+    }
+    tessellation.face_starts = (0..=tessellation.face_sides.len()).map(|face| 2 * face).collect();
+    put_vertices_on_walls(&mut tessellation);
+    list_faces(&mut tessellation, ids, squares, &face_ids);
+    tessellation
+}
+
+/// Numbers what the squares have, of which several may know the same: it has its number from the first of them. What is new in a
+/// square is numbered in order.
+fn number<Key: Copy + Ord>(
+    squares: &[SquareCells],
+    part: impl Fn(&SquareCells) -> (usize, &Vec<(Key, u32)>),
+) -> Vec<Vec<u32>> {
+    const FOUND_BEFORE: u32 = u32::MAX;
+    let mut shared: Vec<(Key, usize, u32)> = Vec::new();
+    let mut numbers = Vec::with_capacity(squares.len());
+    for (square, cells) in squares.iter().enumerate() {
+        let (count, known_elsewhere) = part(cells);
+        shared.extend(known_elsewhere.iter().map(|(key, place)| (*key, square, *place)));
+        numbers.push(vec![0; count]);
+    }
+    shared.sort_unstable();
+    let same = || shared.chunk_by(|(left, ..), (right, ..)| left == right);
+    for same in same() {
+        for &(_, square, place) in &same[1..] {
+            numbers[square][place as usize] = FOUND_BEFORE;
+        }
+    }
+    let new = numbers.iter_mut().flatten().filter(|number| **number != FOUND_BEFORE);
+    for (number, next) in new.zip(0..) {
+        *number = next;
+    }
+    for same in same() {
+        let (_, square, place) = same[0];
+        let first = numbers[square][place as usize];
+        for &(_, square, place) in &same[1..] {
+            numbers[square][place as usize] = first;
+        }
+    }
+    numbers
+}
+
+fn list_faces(tessellation: &mut Tessellation, ids: &[u32], squares: &[SquareCells], face_ids: &[Vec<u32>]) {
+    let mut starts = vec![0; ids.len() + 1];
+    for (seed, count) in squares.iter().flat_map(|cells| &cells.edge_counts) {
+        starts[ids[*seed as usize] as usize + 1] = *count as usize;
+    }
+    for cell in 1..starts.len() {
+        starts[cell] += starts[cell - 1];
+    }
+    let mut cell_faces = vec![FaceId(0); starts[ids.len()]];
+    for (cells, face_ids) in squares.iter().zip(face_ids) {
+        let mut edges = cells.cell_edges.iter();
+        for (seed, count) in &cells.edge_counts {
+            let places = starts[ids[*seed as usize] as usize]..;
+            for (face, edge) in cell_faces[places].iter_mut().zip(edges.by_ref().take(*count as usize)) {
+                *face = FaceId(face_ids[*edge as usize]);
+            }
+        }
+    }
+    tessellation.cell_starts = starts;
+    tessellation.cell_faces = cell_faces;
+}
