@@ -106,7 +106,7 @@ impl Arguments {
             box_size: domain.box_size,
             face_mesh: smoothing.face_mesh(),
             periodic: domain.periodic,
-            relaxation_time: smoothing.relax,
+            relaxation: smoothing.relax,
             volumes: smoothing.volumes(),
             regularize: smoothing.regularize(),
             levels: smoothing.levels,

@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use glam::{BVec3, DVec3};
-use polycrystal::{FaceMesh, Junctions, Volumes};
+use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
 use voronoi::{Dimension, Domain};
 
 use crate::{Error, Lattice, LatticeFit, Names, StlEncoding};
@@ -49,8 +49,8 @@ pub struct Config {
     pub periodic: BVec3,
     /// Control points on boundaries.
     pub face_mesh: FaceMesh,
-    /// Relaxation time in units of the mean grain size squared; 0 leaves boundaries flat.
-    pub relaxation_time: f64,
+    /// How far boundaries relax; time 0 leaves them flat.
+    pub relaxation: Relaxation,
     /// Whether relaxation keeps the grains' volumes.
     pub volumes: Volumes,
     /// Length, in units of the mean grain size, below which edges of cells collapse before relaxation; 0 keeps all.
@@ -94,7 +94,7 @@ impl Default for Config {
             box_size: DVec3::ONE,
             periodic: BVec3::FALSE,
             face_mesh: FaceMesh::Fan,
-            relaxation_time: polycrystal::Relaxation::default().time,
+            relaxation: Relaxation::default(),
             volumes: Volumes::Kept,
             regularize: Self::REGULARIZE,
             levels: 3,

@@ -3,9 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use polycrystal::{
-    AngleStatistics, Certificate, MeshSize, Network, NetworkError, Relaxation, RelaxationStep,
-};
+use polycrystal::{AngleStatistics, Certificate, MeshSize, Network, NetworkError, RelaxationStep};
 use polycrystal::{Relaxed, Volumes, dihedral_angles, relax_watched, validate};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
@@ -196,9 +194,8 @@ pub fn smooth_watched(
     let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
     check_levels(LevelSize { points, edges, triangles }, config.levels, available_memory())?;
     let (mut network, flat, collapsed) = clock.time(Stage::Network, || network(config, tessellation))?;
-    let relaxation = Relaxation { time: config.relaxation_time };
     let relaxed = clock.time(Stage::Relaxation, || {
-        relax_watched(&network, &flat, &relaxation, config.volumes, |step| {
+        relax_watched(&network, &flat, &config.relaxation, config.volumes, |step| {
             progress(Stage::Relaxation, step.done, step.count);
             watch(step);
         })

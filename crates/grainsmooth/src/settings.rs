@@ -5,7 +5,7 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 
 use glam::DVec3;
-use polycrystal::{FaceMesh, Junctions, Volumes};
+use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
 use toml::Value;
 use voronoi::Dimension;
 
@@ -61,7 +61,10 @@ impl Config {
             FaceMesh::Plain => add("faces", "plain".into()),
             FaceMesh::Refined { edge_length } => add("edge-length", edge_length.into()),
         }
-        add("relax", self.relaxation_time.into());
+        match self.relaxation {
+            Relaxation::Time(time) => add("relax", time.into()),
+            Relaxation::Equilibrium => add("relax", "equilibrium".into()),
+        }
         if self.volumes == Volumes::Free {
             add("free", true.into());
         }

@@ -28,7 +28,7 @@ fn fine_network(count: usize, random_seed: u64) -> (Network, Vec<DVec3>) {
 }
 
 fn flow(network: &Network, points: &[DVec3], time: f64) -> Result<Relaxed, NetworkError> {
-    relax_watched(network, points, &Relaxation { time }, Volumes::Free, |_| ())
+    relax_watched(network, points, &Relaxation::Time(time), Volumes::Free, |_| ())
 }
 
 fn measures(network: &Network, points: &[DVec3]) -> PlaneMeasures {
@@ -85,7 +85,7 @@ fn a_honeycomb_stays_as_it_is() {
 #[test]
 fn kept_volumes_are_the_default_and_free_ones_change() {
     let (network, flat) = common::random_network(&Domain::unit_cube(), 12, 7, 1);
-    let relaxation = Relaxation { time: 0.02 };
+    let relaxation = Relaxation::Time(0.02);
     let errors = [Volumes::Kept, Volumes::Free].map(|volumes| {
         let mut times = Vec::new();
         let relaxed = relax_watched(&network, &flat, &relaxation, volumes, |step| {
