@@ -12,6 +12,7 @@ mod good_runs;
 mod periodic;
 mod seed_formats;
 mod seed_sources;
+mod series;
 mod statistics;
 mod surface_file;
 mod weights_and_tables;

@@ -34,6 +34,7 @@ mod pipeline;
 mod poisson_disc;
 mod seed_file;
 mod seeding;
+mod series;
 mod settings;
 mod statistics;
 mod subdivide;
@@ -59,11 +60,13 @@ pub use mesh_edit::{EdgeEdit, edit_edges};
 pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputDirectory, OutputFormat};
 pub use pipeline::{
-    Polycrystal, Progress, Stage, Tessellated, check_expected_size, make_polycrystal, smooth, tessellate,
+    Polycrystal, Progress, Stage, Tessellated, check_expected_size, make_polycrystal, smooth, smooth_watched,
+    tessellate,
 };
 pub use poisson_disc::poisson_disc_seeds;
 pub use seed_file::{FileDomain, FileSeed, SeedPlace, SeedProblem, read_file_domain, read_seed_file};
 pub use seeding::random_seeds;
+pub use series::{Series, SeriesOutput};
 pub use settings::embedded_config;
 pub use statistics::{NetworkStatistics, StatisticsOutput};
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};

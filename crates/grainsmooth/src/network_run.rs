@@ -1,14 +1,15 @@
 //! A run of the pipeline: from the command line to files and summary.
 
 use std::io::Write;
+use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::anyhow;
 use grainsmooth::{
-    CellTable, Config, Error, Estimate, Output, OutputDirectory, Polycrystal, Stage, StatisticsOutput,
-    Summary, SummaryRecord, TableFormat, check_expected_size, smooth, tessellate,
+    CellTable, Config, Error, Estimate, Output, OutputDirectory, Polycrystal, Series, SeriesOutput, Stage,
+    StatisticsOutput, Summary, SummaryRecord, TableFormat, check_expected_size, smooth_watched, tessellate,
 };
 
 use crate::cli::{Arguments, usage};
@@ -51,6 +52,7 @@ struct Files {
     grains: Option<OutputDirectory>,
     summary: Option<Output<()>>,
     statistics: Option<StatisticsOutput>,
+    series: Option<(SeriesOutput, NonZeroU32)>,
 }
 
 impl Files {
@@ -75,7 +77,8 @@ impl Files {
             false => Output::check_as(path, ()),
         });
         let statistics = files.statistics(config.dimension)?;
-        Ok(Self { tables, output, grains, summary: summary.transpose()?, statistics })
+        let series = files.series()?.map(|output| (output, files.every));
+        Ok(Self { tables, output, grains, summary: summary.transpose()?, statistics, series })
     }
 
     fn paths(&self) -> Vec<PathBuf> {
@@ -83,7 +86,8 @@ impl Files {
         let grains = self.grains.as_ref().map(OutputDirectory::path);
         let meshes = tables.chain(self.output.as_ref().map(Output::path)).chain(grains);
         let statistics = self.statistics.iter().flat_map(StatisticsOutput::paths);
-        meshes.map(Path::to_owned).chain(statistics).collect()
+        let series = self.series.iter().map(|(output, _)| output.path().to_owned());
+        meshes.map(Path::to_owned).chain(statistics).chain(series).collect()
     }
 }
 
@@ -113,7 +117,12 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
             tessellation.domain()
         ));
     };
-    let mut polycrystal = smooth(config, tessellated, &progress)?;
+    let mut series = files.series.as_ref().map(|(output, every)| (output, Series::new(*every)));
+    let mut polycrystal = smooth_watched(config, tessellated, &progress, |step| {
+        if let Some((_, series)) = &mut series {
+            series.add(&step);
+        }
+    })?;
     line.show(Stage::Writing, 0, 1);
     let start = Instant::now();
     polycrystal.write(output)?;
@@ -122,6 +131,9 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     }
     if let Some(statistics) = &files.statistics {
         polycrystal.statistics().write(statistics)?;
+    }
+    if let Some((output, series)) = &series {
+        series.write(&mut polycrystal, output)?;
     }
     polycrystal.add_time(Stage::Writing, start.elapsed());
     if let Some(summary) = &files.summary {

@@ -9,7 +9,7 @@ use super::patches::Patches;
 use super::rows::Rows;
 use super::springs::add_springs;
 use super::volume_constraint::{Compliance, VolumeConstraint};
-use crate::{Network, WallSet};
+use crate::{Network, Volumes, WallSet};
 
 /// Share of its first residual at which a step is solved: a step is one of several, and the next one starts from where it ends.
 const TOLERANCE: f64 = 1e-3;
@@ -37,8 +37,16 @@ pub(super) struct System {
     forces: Vec<DVec3>,
     /// 1 over the diagonal of the matrix, 0 along axes that walls lock.
     mobility: Vec<DVec3>,
-    constraint: VolumeConstraint,
-    compliance: Compliance,
+    /// Nothing where volumes are free.
+    constraint: Option<(VolumeConstraint, Compliance)>,
+}
+
+/// What a step is like.
+pub(super) struct Step {
+    pub(super) time: f64,
+    /// The feature size as control edges have it.
+    pub(super) feature_size: f64,
+    pub(super) volumes: Volumes,
 }
 
 impl System {
@@ -49,7 +57,7 @@ impl System {
         terms: &[PatchTerms],
         points: &[DVec3],
         clusters: Numbering,
-        (time, feature_size): (f64, f64),
+        Step { time, feature_size, volumes }: Step,
         walls: &[WallSet],
     ) -> Self {
         let springs: Vec<Vec<f64>> = patches
@@ -89,9 +97,12 @@ impl System {
             DVec3::select(clusters.free_axes(cluster, walls), DVec3::splat(inverse), DVec3::ZERO)
         };
         let mobility: Vec<DVec3> = diagonal.iter().enumerate().map(mobility).collect();
-        let constraint = VolumeConstraint::new(network, patches, terms, &clusters);
-        let compliance = constraint.compliance(&mobility);
-        Self { clusters, diagonal, springs, forces, mobility, constraint, compliance }
+        let constraint = (volumes == Volumes::Kept).then(|| {
+            let constraint = VolumeConstraint::new(network, patches, terms, &clusters);
+            let compliance = constraint.compliance(&mobility);
+            (constraint, compliance)
+        });
+        Self { clusters, diagonal, springs, forces, mobility, constraint }
     }
 
     /// The displacement of every control point that changes the grains' volumes by `changes`, to first order, and is
@@ -100,7 +111,7 @@ impl System {
     /// Solved by projected conjugate gradients. Their residual is freed of what pressures balance again and again, so that
     /// these need not be exact (Gould, Hribar and Nocedal 2001, section 5).
     pub(super) fn displacement(&self, changes: &[f64]) -> Vec<DVec3> {
-        let mut displacement = self.push(&self.compliance.pressures(changes, TIGHT));
+        let mut displacement = self.push(changes);
         let mut residual = self.forces.clone();
         add(&mut residual, -1.0, &self.apply(&displacement));
         let mut direction = self.project(&mut residual);
@@ -129,7 +140,7 @@ impl System {
     /// The least motion by area of the control points that changes the grains' volumes by `changes`, to first order,
     /// for a system of time 0.
     pub(super) fn volume_correction(&self, changes: &[f64]) -> Vec<DVec3> {
-        self.of_points(&self.push(&self.compliance.pressures(changes, TIGHT)))
+        self.of_points(&self.push(changes))
     }
 
     fn of_points(&self, of_clusters: &[DVec3]) -> Vec<DVec3> {
@@ -141,17 +152,23 @@ impl System {
     fn project(&self, residual: &mut [DVec3]) -> Vec<DVec3> {
         let moved: Vec<DVec3> =
             residual.iter().zip(&self.mobility).map(|(r, mobility)| *r * *mobility).collect();
-        let pressures = self.compliance.pressures(&self.constraint.volume_change(&moved), LOOSE);
+        let Some((constraint, compliance)) = &self.constraint else { return moved };
+        let pressures = compliance.pressures(&constraint.volume_change(&moved), LOOSE);
         let project = |(cluster, residual): (usize, &mut DVec3)| {
-            *residual -= self.constraint.force(&pressures, cluster);
+            *residual -= constraint.force(&pressures, cluster);
             *residual * self.mobility[cluster]
         };
         residual.par_iter_mut().with_min_len(CHUNK).enumerate().map(project).collect()
     }
 
-    /// The displacement under pressures of the grains if there were only the diagonal of the matrix.
-    fn push(&self, pressures: &[f64]) -> Vec<DVec3> {
-        let force = |cluster: usize| self.mobility[cluster] * self.constraint.force(pressures, cluster);
+    /// The displacement under the pressures that change volumes by `changes`, if there were only the diagonal of the matrix;
+    /// none where volumes are free.
+    fn push(&self, changes: &[f64]) -> Vec<DVec3> {
+        let Some((constraint, compliance)) = &self.constraint else {
+            return vec![DVec3::ZERO; self.mobility.len()];
+        };
+        let pressures = compliance.pressures(changes, TIGHT);
+        let force = |cluster: usize| self.mobility[cluster] * constraint.force(&pressures, cluster);
         (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect()
     }
 
