@@ -131,9 +131,12 @@ impl System {
             direction = projected;
             size = next;
         }
-        let change = self.constraint.volume_change(&displacement);
-        let left: Vec<f64> = changes.iter().zip(&change).map(|(wanted, change)| wanted - change).collect();
-        add(&mut displacement, 1.0, &self.push(&self.compliance.pressures(&left, TIGHT)));
+        if let Some((constraint, _)) = &self.constraint {
+            let change = constraint.volume_change(&displacement);
+            let left: Vec<f64> =
+                changes.iter().zip(&change).map(|(wanted, change)| wanted - change).collect();
+            add(&mut displacement, 1.0, &self.push(&left));
+        }
         self.of_points(&displacement)
     }
 
