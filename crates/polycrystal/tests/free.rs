@@ -22,7 +22,7 @@ fn fine_network(count: usize, random_seed: u64) -> (Network, Vec<DVec3>) {
     let tessellation = (0..20).fold(tessellation, |cells, _| {
         Tessellation::new(&domain, &cells.centroids()).expect("centroids lie in their cells")
     });
-    let edge_length = 0.08 / (count as f64).sqrt();
+    let edge_length = 0.0125 / (count as f64).sqrt();
     Network::with_face_mesh(&tessellation, FaceMesh::Refined { edge_length }, Junctions::Crease, 0)
         .expect("a small network")
 }
@@ -39,12 +39,16 @@ fn measures(network: &Network, points: &[DVec3]) -> PlaneMeasures {
 #[test]
 fn grains_in_the_plane_grow_by_the_law_of_von_neumann_and_mullins() {
     let (network, flat) = fine_network(30, 4);
-    // Angles come to equilibrium long before areas change much.
-    let start = flow(&network, &flat, 0.05).expect("no side vanishes").points;
-    let time = 1e-4;
+    // Angles come to equilibrium long before areas change much. Shorter and shorter steps, for triple points are to move by
+    // less than an edge in each.
+    let times = [0.1].into_iter().chain([1e-3; 8]).chain([1e-4; 3]).chain([2e-5; 3]);
+    let start =
+        times.fold(flat, |points, time| flow(&network, &points, time).expect("no side vanishes").points);
+    let time = 2e-5;
     let end = flow(&network, &start, time).expect("no side vanishes").points;
     let whole_time = time * network.mean_grain_size().powi(2);
     let [before, after] = [&start, &end].map(|points| measures(&network, points));
+    assert!(before.dihedral_angles.expect("triple points").standard_deviation < 0.5);
     let mut sides = Vec::new();
     for (before, after) in before.grains.iter().zip(&after.grains) {
         let rate = (after.area - before.area) / whole_time;
@@ -53,7 +57,8 @@ fn grains_in_the_plane_grow_by_the_law_of_von_neumann_and_mullins() {
         let tolerance = 0.02 * law.abs().max(FRAC_PI_3);
         assert!((rate - law).abs() < tolerance, "{} sides: {rate}, not {law}", before.side_count);
         assert!((before.growth_rate.expect("no walls") - law).abs() < 1e-12);
-        assert!((before.curvature_rate - law).abs() < tolerance, "{} not {law}", before.curvature_rate);
+        // What the boundaries' own curvature says lacks half an edge at each end.
+        assert!((before.curvature_rate - law).abs() < 4.0 * tolerance, "{} not {law}", before.curvature_rate);
         sides.push(before.side_count);
     }
     sides.sort_unstable();

@@ -219,8 +219,8 @@ impl<'a> Flow<'a> {
 
     fn system(&self, points: &[DVec3], terms: &[PatchTerms], clusters: &Clusters, time: f64) -> System {
         let step = Step { time, feature_size: self.feature_size(), volumes: self.volumes };
-        let walls = &self.network.levels()[self.level].walls;
-        System::new(self.network, &self.patches, terms, points, clusters.number(), step, walls)
+        let level = &self.network.levels()[self.level];
+        System::new(self.network, &self.patches, terms, points, clusters.number(), step, level)
     }
 
     /// The feature size as control edges of this level have it.
@@ -233,8 +233,12 @@ impl<'a> Flow<'a> {
         self.network.levels().len() - 1
     }
 
+    /// Where volumes are free the flow itself is asked for: nothing is held but what a step would fold.
     fn rigid_length(&self) -> f64 {
-        RIGID_LENGTH * self.feature_size()
+        match self.volumes {
+            Volumes::Kept => RIGID_LENGTH * self.feature_size(),
+            Volumes::Free => 0.0,
+        }
     }
 
     /// What each grain's volume lacks.

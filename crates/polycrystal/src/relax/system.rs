@@ -9,7 +9,7 @@ use super::patches::Patches;
 use super::rows::Rows;
 use super::springs::add_springs;
 use super::volume_constraint::{Compliance, VolumeConstraint};
-use crate::{Network, Volumes, WallSet};
+use crate::{Level, Mesh, Network, Volumes};
 
 /// Share of its first residual at which a step is solved: a step is one of several, and the next one starts from where it ends.
 const TOLERANCE: f64 = 1e-3;
@@ -58,7 +58,7 @@ impl System {
         points: &[DVec3],
         clusters: Numbering,
         Step { time, feature_size, volumes }: Step,
-        walls: &[WallSet],
+        level: &Level,
     ) -> Self {
         let springs: Vec<Vec<f64>> = patches
             .patches
@@ -73,7 +73,18 @@ impl System {
             .collect();
         let count = clusters.cluster_count();
         let of_places: Vec<f64> = terms.iter().flat_map(|terms| terms.mass.iter().copied()).collect();
-        let mass = |c| patches.places_of_cluster(&clusters, c).map(|place| of_places[place]).sum();
+        let masses_of_point = |point: &u32| {
+            let share = match volumes {
+                Volumes::Kept => 1.0,
+                Volumes::Free => resisting_share(level, *point as usize),
+            };
+            patches
+                .places_of_point(*point as usize)
+                .iter()
+                .map(|place| share * of_places[*place])
+                .collect::<Vec<_>>()
+        };
+        let mass = |c| clusters.members(c).iter().flat_map(masses_of_point).sum();
         let mut diagonal: Vec<f64> = (0..count).into_par_iter().map(mass).collect();
         let of_places: Vec<DVec3> = terms.iter().flat_map(|terms| terms.gradient.iter().copied()).collect();
         let force =
@@ -94,7 +105,7 @@ impl System {
         let springs = Rows::of_entries(count, both_ways);
         let mobility = |(cluster, diagonal): (usize, &f64)| {
             let inverse = if *diagonal > 0.0 { 1.0 / diagonal } else { 0.0 };
-            DVec3::select(clusters.free_axes(cluster, walls), DVec3::splat(inverse), DVec3::ZERO)
+            DVec3::select(clusters.free_axes(cluster, &level.walls), DVec3::splat(inverse), DVec3::ZERO)
         };
         let mobility: Vec<DVec3> = diagonal.iter().enumerate().map(mobility).collect();
         let constraint = (volumes == Volumes::Kept).then(|| {
@@ -197,4 +208,18 @@ fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
     let chunks = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK));
     let sums: Vec<f64> = chunks.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()).collect();
     sums.iter().sum()
+}
+
+/// The share of a point's mass that resists its motion. Boundaries resist to be moved along their normals only: where the normals
+/// n of several point all ways, the mean of `n n^T` is a half of the identity (across a triple line) or a third (in a
+/// quadruple point). Physical junctions have no drag of their own.
+///
+/// Curvature flow of kept volumes leads to equilibrium with any masses.
+fn resisting_share(level: &Level, point: usize) -> f64 {
+    let on_wall = i8::from(!level.walls[point].is_empty());
+    match (level.node_types[point].side_count() - on_wall, &level.mesh) {
+        (..=2, _) => 1.0,
+        (4.., Mesh::Triangles(_)) => 1.0 / 3.0,
+        _ => 0.5,
+    }
 }
