@@ -10,6 +10,7 @@ mod control_meshes;
 mod front;
 mod good_runs;
 mod periodic;
+mod pictures;
 mod seed_formats;
 mod seed_sources;
 mod series;

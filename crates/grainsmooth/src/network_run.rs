@@ -8,8 +8,9 @@ use std::time::Instant;
 
 use anyhow::anyhow;
 use grainsmooth::{
-    CellTable, Config, Error, Estimate, Output, OutputDirectory, Polycrystal, Series, SeriesOutput, Stage,
-    StatisticsOutput, Summary, SummaryRecord, TableFormat, check_expected_size, smooth_watched, tessellate,
+    CellTable, Config, Error, Estimate, Html, Output, OutputDirectory, Picture, Png, Polycrystal, Series,
+    SeriesOutput, Stage, StatisticsOutput, Summary, SummaryRecord, TableFormat, check_expected_size,
+    smooth_watched, tessellate,
 };
 
 use crate::cli::{Arguments, usage};
@@ -50,6 +51,8 @@ struct Files {
     tables: Vec<Output<TableFormat>>,
     output: Option<Output>,
     grains: Option<OutputDirectory>,
+    picture: Option<(Picture, Output<Png>)>,
+    report: Option<Output<Html>>,
     summary: Option<Output<()>>,
     statistics: Option<StatisticsOutput>,
     series: Option<(SeriesOutput, NonZeroU32)>,
@@ -76,18 +79,30 @@ impl Files {
             true => Ok(Output::to_standard_output(())),
             false => Output::check_as(path, ()),
         });
+        let (picture, report) = (arguments.pictures.picture()?, arguments.pictures.report()?);
         let statistics = files.statistics(config.dimension)?;
         let series = files.series()?.map(|output| (output, files.every));
-        Ok(Self { tables, output, grains, summary: summary.transpose()?, statistics, series })
+        Ok(Self {
+            tables,
+            output,
+            grains,
+            picture,
+            report,
+            summary: summary.transpose()?,
+            statistics,
+            series,
+        })
     }
 
     fn paths(&self) -> Vec<PathBuf> {
         let tables = self.tables.iter().map(Output::path);
         let grains = self.grains.as_ref().map(OutputDirectory::path);
+        let picture = self.picture.as_ref().map(|(_, output)| output.path());
+        let report = self.report.as_ref().map(Output::path);
         let meshes = tables.chain(self.output.as_ref().map(Output::path)).chain(grains);
         let statistics = self.statistics.iter().flat_map(StatisticsOutput::paths);
         let series = self.series.iter().map(|(output, _)| output.path().to_owned());
-        meshes.map(Path::to_owned).chain(statistics).chain(series).collect()
+        meshes.chain(picture).chain(report).map(Path::to_owned).chain(statistics).chain(series).collect()
     }
 }
 
@@ -135,7 +150,14 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     if let Some((output, series)) = &series {
         series.write(&mut polycrystal, output)?;
     }
+    if let Some((picture, output)) = &files.picture {
+        polycrystal.write_picture(picture, output)?;
+    }
     polycrystal.add_time(Stage::Writing, start.elapsed());
+    // After the time is taken, for the report tells it.
+    if let Some(output) = &files.report {
+        polycrystal.write_report(output)?;
+    }
     if let Some(summary) = &files.summary {
         write_summary(&polycrystal, files.paths(), summary)?;
     }

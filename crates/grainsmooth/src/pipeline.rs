@@ -9,8 +9,7 @@ use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
 use crate::memory::{LevelSize, available_memory, check_cells, check_levels};
 use crate::{
-    Config, Error, FileSeed, LatticeFit, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds,
-    read_seed_file,
+    Config, Error, FileSeed, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds, read_seed_file,
 };
 
 /// A part of a run, in the order in which they follow each other.
@@ -70,6 +69,8 @@ pub struct Polycrystal {
     pub cells: Tessellated,
     /// Connectivity of all levels.
     pub network: Network,
+    /// Control points of the flat network, before relaxation.
+    pub flat: Vec<DVec3>,
     /// Points of the finest level.
     pub points: Vec<DVec3>,
     /// What relaxation gave, before the last subdivisions: points to move by hand.
@@ -164,9 +165,7 @@ fn seed_count(config: &Config) -> Option<usize> {
     match &config.seeds {
         SeedSource::File(_) => None,
         SeedSource::Random { count } | SeedSource::PoissonDisc { count } => Some(*count),
-        SeedSource::Lattice { lattice, cells } => {
-            Some(LatticeFit::new(*lattice, *cells, config.box_size).seed_count())
-        }
+        SeedSource::Lattice { .. } => config.lattice_fit().map(|fit| fit.seed_count()),
     }
 }
 
@@ -211,7 +210,18 @@ pub fn smooth_watched(
     })?;
     let times = clock.times;
     let config = config.clone();
-    Ok(Polycrystal { config, cells, network, points, relaxed, collapsed, angles_before, validation, times })
+    Ok(Polycrystal {
+        config,
+        cells,
+        network,
+        flat,
+        points,
+        relaxed,
+        collapsed,
+        angles_before,
+        validation,
+        times,
+    })
 }
 
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.
@@ -255,7 +265,7 @@ fn seeds(config: &Config, domain: &voronoi::Domain) -> Result<Vec<FileSeed>, Err
         SeedSource::File(path) => return read_seed_file(path, config.dimension),
         SeedSource::Random { count } => random_seeds(*count, domain, config.random_seed),
         SeedSource::PoissonDisc { count } => poisson_disc_seeds(*count, domain, config.random_seed),
-        SeedSource::Lattice { lattice, cells } => LatticeFit::new(*lattice, *cells, config.box_size).seeds(),
+        SeedSource::Lattice { lattice, cells } => config.lattice_seeds(*lattice, *cells, domain),
     };
     let numbered = (1..).map(SeedPlace::Entry).zip(positions);
     Ok(numbered.map(|(place, position)| FileSeed { position, weight: None, place }).collect())

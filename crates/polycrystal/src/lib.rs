@@ -47,7 +47,7 @@ mod validate;
 mod volume;
 mod wall_set;
 
-pub use angles::{AngleStatistics, dihedral_angles};
+pub use angles::{AngleStatistics, WeightedAngle, angles_between_boundaries, dihedral_angles};
 pub use boundary::{Boundary, BoundaryId, GrainId, Side, Twin};
 pub use certificate::{Certificate, Claims, Faults, certify};
 pub use control_mesh::JunctionCounts;
@@ -68,4 +68,4 @@ pub use periodic::PeriodicCopies;
 pub use relax::{Relaxation, RelaxationStep, Relaxed, Volumes, relax, relax_watched};
 pub use surface::{Elements, Surface};
 pub use validate::validate;
-pub use wall_set::WallSet;
+pub use wall_set::{Freedom, WallSet, WallSets};

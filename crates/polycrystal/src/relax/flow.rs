@@ -153,7 +153,8 @@ impl<'a> Flow<'a> {
 
     /// Makes the points of each cluster move as one.
     fn unite(&self, moves: &mut [DVec3], attempt: usize) {
-        self.clusters.number().unite(moves, &self.network.levels()[self.level].walls);
+        let walls = &self.network.levels()[self.level].walls;
+        self.clusters.number().unite(moves, |point| self.network.freedom(walls[point as usize]));
         if attempt >= WHOLE_ATTEMPTS {
             moves.iter_mut().for_each(|by| *by *= 0.5);
         }

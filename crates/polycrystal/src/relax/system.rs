@@ -9,7 +9,7 @@ use super::patches::Patches;
 use super::rows::Rows;
 use super::springs::add_springs;
 use super::volume_constraint::{Compliance, VolumeConstraint};
-use crate::{Level, Mesh, Network, Volumes};
+use crate::{Freedom, Level, Mesh, Network, Volumes};
 
 /// Share of its first residual at which a step is solved: a step is one of several, and the next one starts from where it ends.
 const TOLERANCE: f64 = 1e-3;
@@ -35,8 +35,7 @@ pub(super) struct System {
     springs: Rows<f64>,
     /// `-dt g`.
     forces: Vec<DVec3>,
-    /// 1 over the diagonal of the matrix, 0 along axes that walls lock.
-    mobility: Vec<DVec3>,
+    mobility: Vec<Mobility>,
     /// Nothing where volumes are free.
     constraint: Option<(VolumeConstraint, Compliance)>,
 }
@@ -105,9 +104,12 @@ impl System {
         let springs = Rows::of_entries(count, both_ways);
         let mobility = |(cluster, diagonal): (usize, &f64)| {
             let inverse = if *diagonal > 0.0 { 1.0 / diagonal } else { 0.0 };
-            DVec3::select(clusters.free_axes(cluster, &level.walls), DVec3::splat(inverse), DVec3::ZERO)
+            Mobility {
+                inverse,
+                freedom: clusters.freedom(cluster, |point| network.freedom(level.walls[point as usize])),
+            }
         };
-        let mobility: Vec<DVec3> = diagonal.iter().enumerate().map(mobility).collect();
+        let mobility: Vec<Mobility> = diagonal.iter().enumerate().map(mobility).collect();
         let constraint = (volumes == Volumes::Kept).then(|| {
             let constraint = VolumeConstraint::new(network, patches, terms, &clusters);
             let compliance = constraint.compliance(&mobility);
@@ -165,12 +167,12 @@ impl System {
     /// diagonal of the matrix.
     fn project(&self, residual: &mut [DVec3]) -> Vec<DVec3> {
         let moved: Vec<DVec3> =
-            residual.iter().zip(&self.mobility).map(|(r, mobility)| *r * *mobility).collect();
+            residual.iter().zip(&self.mobility).map(|(r, mobility)| mobility.of(*r)).collect();
         let Some((constraint, compliance)) = &self.constraint else { return moved };
         let pressures = compliance.pressures(&constraint.volume_change(&moved), LOOSE);
         let project = |(cluster, residual): (usize, &mut DVec3)| {
             *residual -= constraint.force(&pressures, cluster);
-            *residual * self.mobility[cluster]
+            self.mobility[cluster].of(*residual)
         };
         residual.par_iter_mut().with_min_len(CHUNK).enumerate().map(project).collect()
     }
@@ -182,7 +184,7 @@ impl System {
             return vec![DVec3::ZERO; self.mobility.len()];
         };
         let pressures = compliance.pressures(changes, TIGHT);
-        let force = |cluster: usize| self.mobility[cluster] * constraint.force(&pressures, cluster);
+        let force = |cluster: usize| self.mobility[cluster].of(constraint.force(&pressures, cluster));
         (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect()
     }
 
@@ -194,6 +196,21 @@ impl System {
             springs.fold(own, |sum, (other, spring)| sum - displacement[*other as usize] * *spring)
         };
         (0..displacement.len()).into_par_iter().with_min_len(CHUNK).map(row).collect()
+    }
+}
+
+/// How a cluster answers to a force if there were only the diagonal of the matrix.
+pub(super) struct Mobility {
+    /// 1 over the diagonal.
+    inverse: f64,
+    /// What the walls leave to all points of the cluster.
+    freedom: Freedom,
+}
+
+impl Mobility {
+    /// The displacement under a force.
+    pub(super) fn of(&self, force: DVec3) -> DVec3 {
+        self.freedom.project(force) * self.inverse
     }
 }
 
