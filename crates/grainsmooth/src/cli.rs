@@ -115,6 +115,7 @@ impl Arguments {
             face_mesh: smoothing.face_mesh(),
             periodic: domain.periodic,
             relaxation: smoothing.relax,
+            volumes: smoothing.volumes(),
             regularize: smoothing.regularize(),
             levels: smoothing.levels,
             junctions: smoothing.junctions(),

@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use glam::{BVec3, DVec3};
-use polycrystal::{FaceMesh, Junctions, Relaxation};
+use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
 use voronoi::{Dimension, Domain};
 
 use crate::domain_file::{half_space_domain, surface_domain};
@@ -91,6 +91,8 @@ pub struct Config {
     pub face_mesh: FaceMesh,
     /// How far boundaries relax; time 0 leaves them flat.
     pub relaxation: Relaxation,
+    /// Whether relaxation keeps the grains' volumes.
+    pub volumes: Volumes,
     /// Length, in units of the mean grain size, below which edges of cells collapse before relaxation; 0 keeps all.
     pub regularize: f64,
     /// Number of subdivisions.
@@ -134,6 +136,7 @@ impl Default for Config {
             periodic: BVec3::FALSE,
             face_mesh: FaceMesh::Fan,
             relaxation: Relaxation::default(),
+            volumes: Volumes::Kept,
             regularize: Self::REGULARIZE,
             levels: 3,
             junctions: Junctions::Crease,

@@ -5,7 +5,7 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 
 use glam::DVec3;
-use polycrystal::{FaceMesh, Junctions, Relaxation};
+use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
 use toml::Value;
 use voronoi::Dimension;
 
@@ -84,6 +84,9 @@ impl Config {
         match self.relaxation {
             Relaxation::Time(time) => add("relax", time.into()),
             Relaxation::Equilibrium => add("relax", "equilibrium".into()),
+        }
+        if self.volumes == Volumes::Free {
+            add("free", true.into());
         }
         add("regularize", self.regularize.into());
         add("levels", i64::from(self.levels).into());
