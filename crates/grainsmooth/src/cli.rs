@@ -12,6 +12,7 @@ mod config_file;
 mod documents;
 mod domain;
 mod files;
+mod pictures;
 mod run;
 mod seeds;
 mod smoothing;
@@ -20,6 +21,7 @@ mod values;
 pub use documents::{print_completions, print_manual};
 use domain::DomainArguments;
 use files::FileArguments;
+use pictures::PictureArguments;
 use run::RunArguments;
 use seeds::SeedArguments;
 use smoothing::SmoothingArguments;
@@ -42,6 +44,8 @@ pub struct Arguments {
     smoothing: SmoothingArguments,
     #[command(flatten)]
     pub files: FileArguments,
+    #[command(flatten)]
+    pub pictures: PictureArguments,
     #[command(flatten)]
     pub run: RunArguments,
 }
@@ -69,9 +73,12 @@ Examples:
   grainsmooth --seeds 200 -n 3                    200 grains in a unit cube, to grains.vtp
   grainsmooth --seeds 500 --box 3 1 0.2 -o a.vtu  a plate
   grainsmooth --seeds 300 --dim 2                 grains in a square
+  grainsmooth --domain sphere                     grains that fill a ball
   grainsmooth --periodic x,y,z                    grains that fill space by repeating the cube
   grainsmooth --lattice bcc 4                     Kelvin's foam: 128 truncated octahedra, cut by the walls
   grainsmooth --seeds-file seeds.csv --relax 0    flat Voronoi grains from your own seeds
+  grainsmooth --picture grains.png --explode 0.4  a picture of the grains, moved apart
+  grainsmooth --report grains.html                a page with the grains to turn round, and their statistics
   grainsmooth --config grains.vtp                 the run that wrote grains.vtp once more
 
 Exit status: 0 good, 1 the run failed or its result is invalid, 2 a mistake on the command line.";
@@ -95,19 +102,21 @@ impl Arguments {
     /// # Errors
     /// When the file of the seeds cannot tell what they fill.
     pub fn config(&self) -> Result<Config, grainsmooth::Error> {
-        let Self { seeds, domain, smoothing, files, .. } = self;
+        let Self { seeds, domain: arguments, smoothing, files, .. } = self;
         let of_file = seeds.seeds_file.as_deref().map(read_file_domain).transpose()?.flatten();
-        let domain = domain.with_defaults_of(of_file);
+        let domain = arguments.with_defaults_of(of_file);
         Ok(Config {
             seeds: seeds.source(domain.dimension),
             random_seed: seeds.rng_seed,
             lloyd_steps: seeds.lloyd,
             dimension: domain.dimension,
             box_size: domain.box_size,
+            shape: arguments.shape(&domain),
             face_mesh: smoothing.face_mesh(),
             periodic: domain.periodic,
             relaxation: smoothing.relax,
             wall_tension: smoothing.wall_tension,
+            volumes: smoothing.volumes(),
             regularize: smoothing.regularize(),
             levels: smoothing.levels,
             junctions: smoothing.junctions(),

@@ -1,14 +1,16 @@
 //! A run of the pipeline: from the command line to files and summary.
 
 use std::io::Write;
+use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::anyhow;
 use grainsmooth::{
-    CellTable, Config, Error, Estimate, Output, OutputDirectory, Polycrystal, Stage, Summary, SummaryRecord,
-    TableFormat, check_expected_size, smooth, tessellate,
+    CellTable, Config, Error, Estimate, Html, Output, OutputDirectory, Picture, Png, Polycrystal, Series,
+    SeriesOutput, Stage, StatisticsOutput, Summary, SummaryRecord, TableFormat, check_expected_size,
+    smooth_watched, tessellate,
 };
 
 use crate::cli::{Arguments, usage};
@@ -38,7 +40,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     line.clear();
     let summary = result?;
     if !arguments.run.quiet {
-        let names: Vec<String> = files.paths().map(|path| path.display().to_string()).collect();
+        let names: Vec<String> = files.paths().iter().map(|path| path.display().to_string()).collect();
         say(&format!("{summary}\nwritten     {}", names.join(", ")));
     }
     Ok(ExitCode::SUCCESS)
@@ -49,7 +51,11 @@ struct Files {
     tables: Vec<Output<TableFormat>>,
     output: Option<Output>,
     grains: Option<OutputDirectory>,
+    picture: Option<(Picture, Output<Png>)>,
+    report: Option<Output<Html>>,
     summary: Option<Output<()>>,
+    statistics: Option<StatisticsOutput>,
+    series: Option<(SeriesOutput, NonZeroU32)>,
 }
 
 impl Files {
@@ -73,13 +79,30 @@ impl Files {
             true => Ok(Output::to_standard_output(())),
             false => Output::check_as(path, ()),
         });
-        Ok(Self { tables, output, grains, summary: summary.transpose()? })
+        let (picture, report) = (arguments.pictures.picture()?, arguments.pictures.report()?);
+        let statistics = files.statistics(config.dimension)?;
+        let series = files.series()?.map(|output| (output, files.every));
+        Ok(Self {
+            tables,
+            output,
+            grains,
+            picture,
+            report,
+            summary: summary.transpose()?,
+            statistics,
+            series,
+        })
     }
 
-    fn paths(&self) -> impl Iterator<Item = &Path> {
+    fn paths(&self) -> Vec<PathBuf> {
         let tables = self.tables.iter().map(Output::path);
         let grains = self.grains.as_ref().map(OutputDirectory::path);
-        tables.chain(self.output.as_ref().map(Output::path)).chain(grains)
+        let picture = self.picture.as_ref().map(|(_, output)| output.path());
+        let report = self.report.as_ref().map(Output::path);
+        let meshes = tables.chain(self.output.as_ref().map(Output::path)).chain(grains);
+        let statistics = self.statistics.iter().flat_map(StatisticsOutput::paths);
+        let series = self.series.iter().map(|(output, _)| output.path().to_owned());
+        meshes.chain(picture).chain(report).map(Path::to_owned).chain(statistics).chain(series).collect()
     }
 }
 
@@ -109,16 +132,34 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
             tessellation.domain()
         ));
     };
-    let mut polycrystal = smooth(config, tessellated, &progress)?;
+    let mut series = files.series.as_ref().map(|(output, every)| (output, Series::new(*every)));
+    let mut polycrystal = smooth_watched(config, tessellated, &progress, |step| {
+        if let Some((_, series)) = &mut series {
+            series.add(&step);
+        }
+    })?;
     line.show(Stage::Writing, 0, 1);
     let start = Instant::now();
     polycrystal.write(output)?;
     if let Some(grains) = &files.grains {
         polycrystal.write_grains(grains)?;
     }
+    if let Some(statistics) = &files.statistics {
+        polycrystal.statistics().write(statistics)?;
+    }
+    if let Some((output, series)) = &series {
+        series.write(&mut polycrystal, output)?;
+    }
+    if let Some((picture, output)) = &files.picture {
+        polycrystal.write_picture(picture, output)?;
+    }
     polycrystal.add_time(Stage::Writing, start.elapsed());
+    // After the time is taken, for the report tells it.
+    if let Some(output) = &files.report {
+        polycrystal.write_report(output)?;
+    }
     if let Some(summary) = &files.summary {
-        write_summary(&polycrystal, files.paths().map(PathBuf::from).collect(), summary)?;
+        write_summary(&polycrystal, files.paths(), summary)?;
     }
     Ok(Summary(&polycrystal).to_string())
 }

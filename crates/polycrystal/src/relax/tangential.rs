@@ -6,13 +6,14 @@
 use glam::DVec3;
 use subzero::VertexRule;
 
-use crate::{Level, Mesh};
+use crate::{Mesh, Network};
 
 /// Share of the way to the mean of its neighbours that a point goes in a step; ten steps go four fifths of it.
 const RATE: f64 = 0.15;
 
 /// A step of each point inside a boundary, within its tangent plane; the others stay, and in the plane all do.
-pub(super) fn tangential_moves(level: &Level, points: &[DVec3]) -> Vec<DVec3> {
+pub(super) fn tangential_moves(network: &Network, level: usize, points: &[DVec3]) -> Vec<DVec3> {
+    let level = &network.levels()[level];
     let mut moves = vec![DVec3::ZERO; points.len()];
     let Mesh::Triangles(mesh) = &level.mesh else { return moves };
     let mut normals = moves.clone();
@@ -32,9 +33,8 @@ pub(super) fn tangential_moves(level: &Level, points: &[DVec3]) -> Vec<DVec3> {
         let is_inside = mesh.vertex_rule(point) == VertexRule::Smooth;
         let normal = normals[place].normalize_or_zero();
         let within = *by - normal * normal.dot(*by);
-        let free = level.walls[place].free_axes();
         *by = if is_inside {
-            DVec3::select(free, within * (RATE / counts[place]), DVec3::ZERO)
+            network.freedom(level.walls[place]).project(within * (RATE / counts[place]))
         } else {
             DVec3::ZERO
         };
