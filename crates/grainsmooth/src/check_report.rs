@@ -162,7 +162,8 @@ impl fmt::Display for CheckReport {
 }
 
 /// Options that leave random seeds the Poisson process that they are, whatever or with what follows them.
-const PLAIN_OPTIONS: [&str; 17] = [
+const PLAIN_OPTIONS: [&str; 18] = [
+    "--arrays",
     "--seeds",
     "--seeding random",
     "--lloyd 0",

@@ -12,6 +12,7 @@ mod config_file;
 mod documents;
 mod domain;
 mod files;
+mod pictures;
 mod run;
 mod seeds;
 mod smoothing;
@@ -20,6 +21,7 @@ mod values;
 pub use documents::{print_completions, print_manual};
 use domain::DomainArguments;
 use files::FileArguments;
+use pictures::PictureArguments;
 use run::RunArguments;
 use seeds::SeedArguments;
 use smoothing::SmoothingArguments;
@@ -42,6 +44,8 @@ pub struct Arguments {
     smoothing: SmoothingArguments,
     #[command(flatten)]
     pub files: FileArguments,
+    #[command(flatten)]
+    pub pictures: PictureArguments,
     #[command(flatten)]
     pub run: RunArguments,
 }
@@ -72,6 +76,8 @@ Examples:
   grainsmooth --periodic x,y,z                    grains that fill space by repeating the cube
   grainsmooth --lattice bcc 4                     Kelvin's foam: 128 truncated octahedra, cut by the walls
   grainsmooth --seeds-file seeds.csv --relax 0    flat Voronoi grains from your own seeds
+  grainsmooth --picture grains.png --explode 0.4  a picture of the grains, moved apart
+  grainsmooth --report grains.html                a page with the grains to turn round, and their statistics
   grainsmooth --config grains.vtp                 the run that wrote grains.vtp once more
 
 Exit status: 0 good, 1 the run failed or its result is invalid, 2 a mistake on the command line.";
@@ -106,7 +112,7 @@ impl Arguments {
             box_size: domain.box_size,
             face_mesh: smoothing.face_mesh(),
             periodic: domain.periodic,
-            relaxation_time: smoothing.relax,
+            relaxation: smoothing.relax,
             regularize: smoothing.regularize(),
             levels: smoothing.levels,
             junctions: smoothing.junctions(),

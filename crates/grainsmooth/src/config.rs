@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use glam::{BVec3, DVec3};
-use polycrystal::{FaceMesh, Junctions};
+use polycrystal::{FaceMesh, Junctions, Relaxation};
 use voronoi::{Dimension, Domain};
 
 use crate::{Error, Lattice, LatticeFit, Names, StlEncoding};
@@ -49,8 +49,8 @@ pub struct Config {
     pub periodic: BVec3,
     /// Control points on boundaries.
     pub face_mesh: FaceMesh,
-    /// Relaxation time in units of the mean grain size squared; 0 leaves boundaries flat.
-    pub relaxation_time: f64,
+    /// How far boundaries relax; time 0 leaves them flat.
+    pub relaxation: Relaxation,
     /// Length, in units of the mean grain size, below which edges of cells collapse before relaxation; 0 keeps all.
     pub regularize: f64,
     /// Number of subdivisions.
@@ -72,11 +72,13 @@ pub struct FileOptions {
     pub voxels: Option<[NonZeroU32; 3]>,
     /// How STL spells its numbers.
     pub stl: StlEncoding,
+    /// Whether VTK files have arrays of what is measured.
+    pub arrays: bool,
 }
 
 impl Default for FileOptions {
     fn default() -> Self {
-        Self { names: Names::default(), voxels: None, stl: StlEncoding::Binary }
+        Self { names: Names::default(), voxels: None, stl: StlEncoding::Binary, arrays: false }
     }
 }
 
@@ -90,7 +92,7 @@ impl Default for Config {
             box_size: DVec3::ONE,
             periodic: BVec3::FALSE,
             face_mesh: FaceMesh::Fan,
-            relaxation_time: polycrystal::Relaxation::default().time,
+            relaxation: Relaxation::default(),
             regularize: Self::REGULARIZE,
             levels: 3,
             junctions: Junctions::Crease,

@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use anyhow::anyhow;
 use grainsmooth::{
-    CellTable, Config, Error, Estimate, Output, OutputDirectory, Polycrystal, Stage, Summary, SummaryRecord,
-    TableFormat, check_expected_size, smooth, tessellate,
+    CellTable, Config, Error, Estimate, Html, Output, OutputDirectory, Picture, Png, Polycrystal, Stage,
+    StatisticsOutput, Summary, SummaryRecord, TableFormat, check_expected_size, smooth, tessellate,
 };
 
 use crate::cli::{Arguments, usage};
@@ -38,7 +38,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     line.clear();
     let summary = result?;
     if !arguments.run.quiet {
-        let names: Vec<String> = files.paths().map(|path| path.display().to_string()).collect();
+        let names: Vec<String> = files.paths().iter().map(|path| path.display().to_string()).collect();
         say(&format!("{summary}\nwritten     {}", names.join(", ")));
     }
     Ok(ExitCode::SUCCESS)
@@ -49,7 +49,10 @@ struct Files {
     tables: Vec<Output<TableFormat>>,
     output: Option<Output>,
     grains: Option<OutputDirectory>,
+    picture: Option<(Picture, Output<Png>)>,
+    report: Option<Output<Html>>,
     summary: Option<Output<()>>,
+    statistics: Option<StatisticsOutput>,
 }
 
 impl Files {
@@ -73,13 +76,19 @@ impl Files {
             true => Ok(Output::to_standard_output(())),
             false => Output::check_as(path, ()),
         });
-        Ok(Self { tables, output, grains, summary: summary.transpose()? })
+        let (picture, report) = (arguments.pictures.picture()?, arguments.pictures.report()?);
+        let statistics = files.statistics(config.dimension)?;
+        Ok(Self { tables, output, grains, picture, report, summary: summary.transpose()?, statistics })
     }
 
-    fn paths(&self) -> impl Iterator<Item = &Path> {
+    fn paths(&self) -> Vec<PathBuf> {
         let tables = self.tables.iter().map(Output::path);
         let grains = self.grains.as_ref().map(OutputDirectory::path);
-        tables.chain(self.output.as_ref().map(Output::path)).chain(grains)
+        let picture = self.picture.as_ref().map(|(_, output)| output.path());
+        let report = self.report.as_ref().map(Output::path);
+        let meshes = tables.chain(self.output.as_ref().map(Output::path)).chain(grains);
+        let statistics = self.statistics.iter().flat_map(StatisticsOutput::paths);
+        meshes.chain(picture).chain(report).map(Path::to_owned).chain(statistics).collect()
     }
 }
 
@@ -116,9 +125,19 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     if let Some(grains) = &files.grains {
         polycrystal.write_grains(grains)?;
     }
+    if let Some(statistics) = &files.statistics {
+        polycrystal.statistics().write(statistics)?;
+    }
+    if let Some((picture, output)) = &files.picture {
+        polycrystal.write_picture(picture, output)?;
+    }
     polycrystal.add_time(Stage::Writing, start.elapsed());
+    // After the time is taken, for the report tells it.
+    if let Some(output) = &files.report {
+        polycrystal.write_report(output)?;
+    }
     if let Some(summary) = &files.summary {
-        write_summary(&polycrystal, files.paths().map(PathBuf::from).collect(), summary)?;
+        write_summary(&polycrystal, files.paths(), summary)?;
     }
     Ok(Summary(&polycrystal).to_string())
 }

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use polycrystal::{AngleStatistics, Certificate, MeshSize, Network, NetworkError, Relaxation};
+use polycrystal::{AngleStatistics, Certificate, MeshSize, Network, NetworkError};
 use polycrystal::{dihedral_angles, relax, validate};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
@@ -70,6 +70,8 @@ pub struct Polycrystal {
     pub cells: Tessellated,
     /// Connectivity of all levels.
     pub network: Network,
+    /// Control points of the flat network, before relaxation.
+    pub flat: Vec<DVec3>,
     /// Points of the finest level.
     pub points: Vec<DVec3>,
     /// What regularisation took out.
@@ -179,9 +181,8 @@ pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result
     let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
     check_levels(LevelSize { points, edges, triangles }, config.levels, available_memory())?;
     let (network, flat, collapsed) = clock.time(Stage::Network, || network(config, tessellation))?;
-    let relaxation = Relaxation { time: config.relaxation_time };
     let relaxed = clock.time(Stage::Relaxation, || {
-        relax(&network, &flat, &relaxation, |done, count| progress(Stage::Relaxation, done, count))
+        relax(&network, &flat, &config.relaxation, |done, count| progress(Stage::Relaxation, done, count))
     })?;
     let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
     let (validation, angles_before) = clock.time(Stage::Validation, || {
@@ -190,7 +191,7 @@ pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result
     })?;
     let times = clock.times;
     let config = config.clone();
-    Ok(Polycrystal { config, cells, network, points, collapsed, angles_before, validation, times })
+    Ok(Polycrystal { config, cells, network, flat, points, collapsed, angles_before, validation, times })
 }
 
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.

@@ -5,7 +5,7 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 
 use glam::DVec3;
-use polycrystal::{FaceMesh, Junctions};
+use polycrystal::{FaceMesh, Junctions, Relaxation};
 use toml::Value;
 use voronoi::Dimension;
 
@@ -61,7 +61,10 @@ impl Config {
             FaceMesh::Plain => add("faces", "plain".into()),
             FaceMesh::Refined { edge_length } => add("edge-length", edge_length.into()),
         }
-        add("relax", self.relaxation_time.into());
+        match self.relaxation {
+            Relaxation::Time(time) => add("relax", time.into()),
+            Relaxation::Equilibrium => add("relax", "equilibrium".into()),
+        }
         add("regularize", self.regularize.into());
         add("levels", i64::from(self.levels).into());
         let junctions = match self.junctions {
@@ -120,6 +123,9 @@ impl FileOptions {
         }
         if self.stl == StlEncoding::Ascii {
             settings.push(("ascii", true.into()));
+        }
+        if self.arrays {
+            settings.push(("arrays", true.into()));
         }
         settings
     }

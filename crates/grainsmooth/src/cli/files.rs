@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use grainsmooth::vtk::VtkFormat;
-use grainsmooth::{FileOptions, Names, Output, OutputDirectory, OutputFormat, StlEncoding};
+use grainsmooth::{
+    FileOptions, Names, Output, OutputDirectory, OutputFormat, StatisticsOutput, StlEncoding, TableFormat,
+};
 use voronoi::Dimension;
 
 use super::usage;
@@ -58,6 +60,18 @@ pub struct FileArguments {
     #[arg(long, value_name = "TOOL", value_enum, default_value_t = NameScheme::Grainsmooth)]
     names: NameScheme,
 
+    /// Add arrays of what is measured to VTK files: curvatures, dihedral angles, areas, volumes, growth rates
+    ///
+    /// Example: --arrays -o grains.vtm
+    #[arg(long)]
+    arrays: bool,
+
+    /// Write measures of the smooth network: as JSON, or as CSV of the grains with F.boundaries.csv and so on beside it
+    ///
+    /// Example: --stats grains.json
+    #[arg(long, value_name = "F", value_parser = parse_statistics, conflicts_with = "no_mesh")]
+    stats: Option<PathBuf>,
+
     /// Write a table of the flat cells as JSON
     ///
     /// Example: --cells-json cells.json
@@ -109,6 +123,13 @@ enum NameScheme {
 }
 
 impl FileArguments {
+    /// Where statistics go, if they are asked for, found writable.
+    pub fn statistics(&self, dimension: Dimension) -> Result<Option<StatisticsOutput>, grainsmooth::Error> {
+        let formats = self.stats.iter().filter_map(|path| Some((path, TableFormat::of_path(path)?)));
+        let mut outputs = formats.map(|(path, format)| StatisticsOutput::check(path, format, dimension));
+        outputs.next().transpose()
+    }
+
     /// Where the network goes, found writable.
     pub fn output(&self) -> Result<Output, grainsmooth::Error> {
         match (self.is_standard_output(), self.format) {
@@ -146,7 +167,15 @@ impl FileArguments {
         };
         let stl = if self.ascii { StlEncoding::Ascii } else { StlEncoding::Binary };
         let at_least_one = |count| NonZeroU32::new(count).unwrap_or(NonZeroU32::MIN);
-        FileOptions { names, voxels: voxels.map(|counts| counts.map(at_least_one)), stl }
+        FileOptions { names, voxels: voxels.map(|counts| counts.map(at_least_one)), stl, arrays: self.arrays }
+    }
+}
+
+fn parse_statistics(text: &str) -> Result<PathBuf, String> {
+    let path = Path::new(text);
+    match TableFormat::of_path(path) {
+        Some(_) => Ok(path.to_owned()),
+        None => Err("unknown extension; name the file *.json or *.csv".to_owned()),
     }
 }
 

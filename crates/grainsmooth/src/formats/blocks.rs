@@ -5,12 +5,14 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use polycrystal::{GrainId, Side};
+use polycrystal::{BoundaryId, GrainId, Mesh, Side};
 use rayon::prelude::*;
 
 use super::grains::GrainMeasure;
 use super::lines::Junctions;
 use super::surface::Surface;
+use crate::measured_arrays::{MeasuredArrays, NumberArrays};
+use crate::network_file::{boundary_polylines, triangles};
 use crate::output::temporary_directory;
 use crate::vtk::{Array, Cells, PolyData, Tuples, Values, VtkFormat, write_vtk};
 use crate::vtk::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
@@ -29,19 +31,23 @@ impl Polycrystal {
         let folder = folder(output.path());
         let surface = Surface::network(self);
         let space = surface.as_ref().map(|surface| (surface, Junctions::of(surface)));
+        let measured = self.measured_arrays();
+        let measured = measured.as_ref();
         // All blocks or none get their names.
         let unfinished = temporary_directory(&folder).map_err(failed)?;
         let write = |block: &str| {
             let file = File::create(unfinished.path().join(block).with_extension("vtp"))?;
             let out = &mut BufWriter::new(file);
             match (block, &space) {
-                ("boundaries", Some((surface, _))) => self.write_boundaries(surface, out)?,
-                ("grains", Some((surface, _))) => self.write_grain_block(surface, out)?,
+                ("boundaries", Some((surface, _))) => self.write_boundaries(surface, measured, out)?,
+                ("grains", Some((surface, _))) => self.write_grain_block(surface, measured, out)?,
                 ("triple_lines", Some((surface, junctions))) => {
-                    self.write_triple_lines(surface, junctions, out)?;
+                    self.write_triple_lines(surface, junctions, measured, out)?;
                 }
-                (_, Some((surface, junctions))) => self.write_quadruple_points(surface, junctions, out)?,
-                ("boundaries", None) => self.write_plane_boundaries(out)?,
+                (_, Some((surface, junctions))) => {
+                    self.write_quadruple_points(surface, junctions, measured, out)?
+                }
+                ("boundaries", None) => self.write_plane_boundaries(measured, out)?,
                 ("grains", None) => self.write_plane_grains(out)?,
                 ("triple_lines", None) => self.write_plane_junctions(3, out)?,
                 (_, None) => self.write_plane_junctions(4, out)?,
@@ -62,7 +68,12 @@ impl Polycrystal {
     }
 
     /// Each boundary with points of its own, so that each has a normal of its own.
-    fn write_boundaries(&self, surface: &Surface<'_>, out: &mut dyn Write) -> io::Result<()> {
+    fn write_boundaries(
+        &self,
+        surface: &Surface<'_>,
+        measured: Option<&MeasuredArrays<'_>>,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
         let names = self.config.file.names;
         let boundaries = self.network.boundaries();
         let boundary_of = |piece: usize| &boundaries[surface.parts[piece].boundary.index()];
@@ -96,7 +107,13 @@ impl Polycrystal {
         };
         let labels = |piece: usize| names.labels(boundary_of(piece));
         let boundary_id = |piece: usize| surface.parts[piece].boundary.0.cast_signed();
-        let data = PieceData {
+        let of_parts: Vec<BoundaryId> = surface.parts.iter().map(|part| part.boundary).collect();
+        let of_parts = measured.map_or_else(NumberArrays::default, |all| all.of_cells(&of_parts));
+        let curvatures = |piece: usize, which: usize| {
+            measured.map_or_else(Vec::new, |all| all.curvatures_at(&ids(piece)).single.swap_remove(which).1)
+        };
+        let (mean, gaussian) = (|piece: usize| curvatures(piece, 0), |piece: usize| curvatures(piece, 1));
+        let mut data = PieceData {
             sizes: &sizes,
             points: &|piece| points_of(&ids(piece)),
             triangles: &|piece| triangles_of(piece, &ids(piece)),
@@ -110,28 +127,40 @@ impl Polycrystal {
             ],
             field: self.field(),
         };
+        data.cell_arrays.extend(measured_pieces(&of_parts));
+        if measured.is_some() {
+            data.point_arrays.push(("MeanCurvature", PieceVectors::Float64(&mean)));
+            data.point_arrays.push(("GaussianCurvature", PieceVectors::Float64(&gaussian)));
+        }
         write_pieces(&data, out)
     }
 
     /// All grains, each a closed surface with points of its own and all normals outward.
-    fn write_grain_block(&self, surface: &Surface<'_>, out: &mut dyn Write) -> io::Result<()> {
+    fn write_grain_block(
+        &self,
+        surface: &Surface<'_>,
+        measured: Option<&MeasuredArrays<'_>>,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
         let names = self.config.file.names;
         let parts = surface.parts_of_grains(self.network.grain_count());
         let id = |number: usize| GrainId(point_id(number));
         // Grains are made anew for each array: all at once they take more memory than the network.
         let grain = |number: usize| surface.grain(id(number), &parts[number]);
-        let measured = (0..parts.len()).into_par_iter().map(|number| {
+        let found = (0..parts.len()).into_par_iter().map(|number| {
             let grain = grain(number);
             let size = PieceSize { points: grain.points.len(), triangles: grain.triangle_count() };
             (size, GrainMeasure::of(&grain))
         });
-        let (sizes, measures): (Vec<PieceSize>, Vec<GrainMeasure>) = measured.unzip();
+        let (sizes, measures): (Vec<PieceSize>, Vec<GrainMeasure>) = found.unzip();
         let name = |number: usize| names.number(id(number));
         let volume = |number: usize| measures[number].volume;
         let area = |number: usize| measures[number].area;
         let neighbors = |number: usize| measures[number].neighbors;
         let sphericity = |number: usize| measures[number].sphericity;
-        let data = PieceData {
+        let numbers: Vec<usize> = (0..parts.len()).collect();
+        let of_grains = measured.map_or_else(NumberArrays::default, |all| all.of_grains(&numbers));
+        let mut data = PieceData {
             sizes: &sizes,
             points: &|number| grain(number).points.into_owned(),
             triangles: &|number| grain(number).triangles().collect(),
@@ -145,6 +174,7 @@ impl Polycrystal {
             ],
             field: self.field(),
         };
+        data.cell_arrays.extend(measured_pieces(&of_grains));
         write_pieces(&data, out)
     }
 
@@ -153,6 +183,7 @@ impl Polycrystal {
         &self,
         surface: &Surface<'_>,
         junctions: &Junctions,
+        measured: Option<&MeasuredArrays<'_>>,
         out: &mut dyn Write,
     ) -> io::Result<()> {
         let around = |line: &super::lines::JunctionLine| {
@@ -170,13 +201,16 @@ impl Polycrystal {
         let cells: Vec<Vec<u32>> =
             lines.iter().map(|(line, _)| line.points.iter().map(renumbered).collect()).collect();
         let sides = self.side_table(lines.iter().map(|(_, sides)| sides));
-        let data = PolyData {
+        let polylines = lines.iter().map(|(line, _)| &line.points[..]);
+        let of_lines = measured.map_or_else(NumberArrays::default, |all| all.of_lines(polylines));
+        let mut data = PolyData {
             points: &points,
             cells: Cells::Polylines(&cells),
             point_arrays: Vec::new(),
             cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
             field: self.field(),
         };
+        data.cell_arrays.extend(of_lines.arrays());
         write_vtk(&data, VtkFormat::Vtp, out)
     }
 
@@ -185,6 +219,7 @@ impl Polycrystal {
         &self,
         surface: &Surface<'_>,
         junctions: &Junctions,
+        measured: Option<&MeasuredArrays<'_>>,
         out: &mut dyn Write,
     ) -> io::Result<()> {
         let mut at: Vec<(u32, Side)> = Vec::new();
@@ -197,19 +232,34 @@ impl Polycrystal {
         at.sort_unstable();
         at.dedup();
         let points = at.chunk_by(|a, b| a.0 == b.0).filter(|sides| sides.len() >= 4);
-        let points: Vec<(DVec3, Vec<Side>)> = points
-            .map(|at| (surface.points[at[0].0 as usize], at.iter().map(|(_, side)| *side).collect()))
-            .collect();
+        let points: Vec<(u32, Vec<Side>)> =
+            points.map(|at| (at[0].0, at.iter().map(|(_, side)| *side).collect())).collect();
         let sides = self.side_table(points.iter().map(|(_, sides)| sides));
-        let points: Vec<DVec3> = points.iter().map(|(point, _)| *point).collect();
-        let data = PolyData {
+        let ids: Vec<u32> = points.iter().map(|(point, _)| *point).collect();
+        let points: Vec<DVec3> = ids.iter().map(|point| surface.points[*point as usize]).collect();
+        let of_points = measured.map_or_else(NumberArrays::default, |all| all.of_quadruple_points(&ids));
+        let mut data = PolyData {
             points: &points,
             cells: Cells::Vertices(points.len()),
             point_arrays: Vec::new(),
             cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
             field: self.field(),
         };
+        data.cell_arrays.extend(of_points.arrays());
         write_vtk(&data, VtkFormat::Vtp, out)
+    }
+
+    /// What is measured, wound as the files want it, if they are to have it.
+    fn measured_arrays(&self) -> Option<MeasuredArrays<'_>> {
+        let (level, boundaries, names) =
+            (self.network.finest(), self.network.boundaries(), self.config.file.names);
+        let triangles = triangles(level, boundaries, names);
+        let (polylines, _) = boundary_polylines(level, boundaries, names);
+        let cells = match &level.mesh {
+            Mesh::Triangles(_) => Cells::Triangles(&triangles),
+            Mesh::Segments(_) => Cells::Polylines(&polylines),
+        };
+        self.config.file.arrays.then(|| MeasuredArrays::new(self, cells))
     }
 
     /// The numbers of the sides that meet in each of some places.
@@ -264,6 +314,12 @@ fn normals(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
         }
     }
     normals.into_iter().map(DVec3::normalize_or_zero).collect()
+}
+
+/// What is measured of each piece.
+fn measured_pieces(arrays: &NumberArrays) -> impl Iterator<Item = (&'static str, PieceValue<'_>)> {
+    let single = arrays.single.iter().map(|(name, values)| (*name, PieceValue::Float64s(values)));
+    single.chain(arrays.pairs.iter().map(|(name, pairs)| (*name, PieceValue::Float64Pairs(pairs))))
 }
 
 /// A number of points or grains as an id.

@@ -10,6 +10,7 @@ use polycrystal::{GrainId, Side};
 
 use super::blocks::{SideTable, point_id};
 use crate::Polycrystal;
+use crate::measured_arrays::{MeasuredArrays, NumberArrays};
 use crate::network_file::boundary_polylines;
 use crate::vtk::{Array, Cells, Each, PolyData, Values, VtkFormat, write_vtk};
 
@@ -30,7 +31,11 @@ impl PlaneMeasure {
 
 impl Polycrystal {
     /// Each boundary as a polyline with points and normals of its own, which point from its first side to its second.
-    pub(super) fn write_plane_boundaries(&self, out: &mut dyn Write) -> io::Result<()> {
+    pub(super) fn write_plane_boundaries(
+        &self,
+        measured: Option<&MeasuredArrays<'_>>,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
         let names = self.config.file.names;
         let boundaries = self.network.boundaries();
         let (polylines, boundary_of) = boundary_polylines(self.network.finest(), boundaries, names);
@@ -44,7 +49,9 @@ impl Polycrystal {
         let labels = |line: usize| names.labels(&boundaries[boundary_of[line].index()]);
         let boundary_id = |line: usize| boundary_of[line].0.cast_signed();
         let id = |point: usize| ids[point].cast_signed();
-        let data = PolyData {
+        let of_lines = measured.map_or_else(NumberArrays::default, |all| all.of_cells(&boundary_of));
+        let of_points = measured.map_or_else(NumberArrays::default, |all| all.curvatures_at(&ids));
+        let mut data = PolyData {
             points: &points,
             cells: Cells::Polylines(&cells),
             point_arrays: vec![
@@ -57,6 +64,8 @@ impl Polycrystal {
             ],
             field: self.field(),
         };
+        data.cell_arrays.extend(of_lines.arrays());
+        data.point_arrays.extend(of_points.arrays());
         write_vtk(&data, VtkFormat::Vtp, out)
     }
 

@@ -35,6 +35,7 @@ pub(crate) struct PieceData<'a> {
 /// Values at the points of a piece.
 pub(crate) enum PieceVectors<'a> {
     Int32(&'a (dyn Fn(usize) -> Vec<i32> + Sync)),
+    Float64(&'a (dyn Fn(usize) -> Vec<f64> + Sync)),
     Vectors(&'a (dyn Fn(usize) -> Vec<DVec3> + Sync)),
 }
 
@@ -43,6 +44,10 @@ pub(crate) enum PieceValue<'a> {
     Int32(&'a (dyn Fn(usize) -> i32 + Sync)),
     Int32Pair(&'a (dyn Fn(usize) -> [i32; 2] + Sync)),
     Float64(&'a (dyn Fn(usize) -> f64 + Sync)),
+    /// One for each piece.
+    Float64s(&'a [f64]),
+    /// Two for each piece.
+    Float64Pairs(&'a [[f64; 2]]),
 }
 
 /// Writes the file.
@@ -75,6 +80,9 @@ pub(crate) fn write_pieces(data: &PieceData<'_>, out: &mut dyn Write) -> io::Res
             PieceVectors::Int32(make) => {
                 list.array(name, "Int32", 1, pieces(4 * points, count, |piece| bytes(&make(piece))))?;
             }
+            PieceVectors::Float64(make) => {
+                list.array(name, "Float64", 1, pieces(8 * points, count, |piece| bytes(&make(piece))))?;
+            }
             PieceVectors::Vectors(make) => {
                 list.array(name, "Float64", 3, pieces(24 * points, count, |piece| bytes(&make(piece))))?;
             }
@@ -95,6 +103,14 @@ pub(crate) fn write_pieces(data: &PieceData<'_>, out: &mut dyn Write) -> io::Res
             PieceValue::Float64(value) => {
                 let make = |piece| repeated(value(piece), sizes[piece].triangles);
                 list.array(name, "Float64", 1, pieces(8 * triangles, count, make))?;
+            }
+            PieceValue::Float64s(values) => {
+                let make = |piece: usize| repeated(values[piece], sizes[piece].triangles);
+                list.array(name, "Float64", 1, pieces(8 * triangles, count, make))?;
+            }
+            PieceValue::Float64Pairs(values) => {
+                let make = |piece: usize| repeated(values[piece], sizes[piece].triangles);
+                list.array(name, "Float64", 2, pieces(16 * triangles, count, make))?;
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Control points that move as one.
 
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 
-use crate::{Level, Mesh};
+use crate::{Level, Mesh, WallSet};
 
 /// Groups of control points that are displaced by the same vector, so that what lies between them keeps its shape.
 ///
@@ -104,9 +104,21 @@ impl Numbering {
         &self.numbers
     }
 
-    /// The cluster of a control point.
-    pub(super) fn cluster_of(&self, point: u32) -> usize {
-        self.numbers[point as usize] as usize
+    /// The axes along which no wall holds a point of a cluster.
+    pub(super) fn free_axes(&self, cluster: usize, walls: &[WallSet]) -> BVec3 {
+        let free = self.members(cluster).iter().map(|point| walls[*point as usize].free_axes());
+        free.fold(BVec3::TRUE, |all, free| all & free)
+    }
+
+    /// Gives all points of each cluster the mean of their displacements.
+    pub(super) fn unite(&self, moves: &mut [DVec3], walls: &[WallSet]) {
+        for cluster in (0..self.cluster_count()).filter(|cluster| self.members(*cluster).len() > 1) {
+            let members = self.members(cluster);
+            let sum: DVec3 = members.iter().map(|point| moves[*point as usize]).sum();
+            let free = self.free_axes(cluster, walls);
+            let mean = DVec3::select(free, sum / members.len() as f64, DVec3::ZERO);
+            members.iter().for_each(|point| moves[*point as usize] = mean);
+        }
     }
 
     /// The control points of a cluster.
