@@ -54,12 +54,12 @@ fn seeds_outside_the_domain() {
     refuses(
         "0.1,0.2,0.3\n\n2,0.5,0.5\n",
         "",
-        "seeds.csv line 3: seed 1 at (2, 0.5, 0.5) lies outside the domain [0, 1] x [0, 1] x [0, 1]; move it inside or enlarge the box",
+        "seeds.csv line 3: seed 1 at (2, 0.5, 0.5) lies outside the domain [0, 1] x [0, 1] x [0, 1]; move it inside or enlarge the domain",
     );
     refuses(
         "0.1,-0.2\n",
         "--dim 2 --box 3 4",
-        "seeds.csv line 1: seed 0 at (0.1, -0.2, 0) lies outside the domain [0, 3] x [0, 4]; move it inside or enlarge the box",
+        "seeds.csv line 1: seed 0 at (0.1, -0.2, 0) lies outside the domain [0, 3] x [0, 4]; move it inside or enlarge the domain",
     );
 }
 

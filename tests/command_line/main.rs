@@ -13,6 +13,7 @@ mod periodic;
 mod pictures;
 mod seed_formats;
 mod seed_sources;
+mod series;
 mod statistics;
 mod surface_file;
 mod weights_and_tables;

@@ -73,6 +73,7 @@ Examples:
   grainsmooth --seeds 200 -n 3                    200 grains in a unit cube, to grains.vtp
   grainsmooth --seeds 500 --box 3 1 0.2 -o a.vtu  a plate
   grainsmooth --seeds 300 --dim 2                 grains in a square
+  grainsmooth --domain sphere                     grains that fill a ball
   grainsmooth --periodic x,y,z                    grains that fill space by repeating the cube
   grainsmooth --lattice bcc 4                     Kelvin's foam: 128 truncated octahedra, cut by the walls
   grainsmooth --seeds-file seeds.csv --relax 0    flat Voronoi grains from your own seeds
@@ -101,18 +102,20 @@ impl Arguments {
     /// # Errors
     /// When the file of the seeds cannot tell what they fill.
     pub fn config(&self) -> Result<Config, grainsmooth::Error> {
-        let Self { seeds, domain, smoothing, files, .. } = self;
+        let Self { seeds, domain: arguments, smoothing, files, .. } = self;
         let of_file = seeds.seeds_file.as_deref().map(read_file_domain).transpose()?.flatten();
-        let domain = domain.with_defaults_of(of_file);
+        let domain = arguments.with_defaults_of(of_file);
         Ok(Config {
             seeds: seeds.source(domain.dimension),
             random_seed: seeds.rng_seed,
             lloyd_steps: seeds.lloyd,
             dimension: domain.dimension,
             box_size: domain.box_size,
+            shape: arguments.shape(&domain),
             face_mesh: smoothing.face_mesh(),
             periodic: domain.periodic,
             relaxation: smoothing.relax,
+            volumes: smoothing.volumes(),
             regularize: smoothing.regularize(),
             levels: smoothing.levels,
             junctions: smoothing.junctions(),

@@ -115,6 +115,51 @@ pub enum Error {
         /// The side as given.
         length: f64,
     },
+    /// A file's surface or half-spaces bound no domain.
+    #[error("{}: {cause}", path.display())]
+    DomainInFile {
+        /// The path as given.
+        path: PathBuf,
+        /// What is wrong.
+        cause: VoronoiError,
+    },
+    /// A half-space of a file bounds no domain.
+    #[error("{} line {line}: {cause}", path.display())]
+    HalfSpaceInFile {
+        /// The path as given.
+        path: PathBuf,
+        /// Line of the file, counted from 1.
+        line: usize,
+        /// What is wrong.
+        cause: VoronoiError,
+    },
+    /// A line of a file of half-spaces is none.
+    #[error(
+        "{} line {line}: write {} as decimal numbers", path.display(),
+        if *dimension == Dimension::Two { "nx, ny, d" } else { "nx, ny, nz, d" }
+    )]
+    BadHalfSpaceLine {
+        /// The path as given.
+        path: PathBuf,
+        /// Line of the file, counted from 1.
+        line: usize,
+        /// What the file is read for.
+        dimension: Dimension,
+    },
+    /// A file of half-spaces cannot be read.
+    #[error("{}: cannot be read: {cause}; give the path of a readable text file", path.display())]
+    DomainFileUnreadable {
+        /// The path as given.
+        path: PathBuf,
+        /// Why.
+        cause: io::Error,
+    },
+    /// The output's format fills a box, and the domain is none.
+    #[error("{}: voxels fill a box, and the domain is none; choose another format, such as .vtp", path.display())]
+    FormatNeedsBox {
+        /// The path as given.
+        path: PathBuf,
+    },
     /// A seed of a file has no cell.
     #[error("{} {place}: {cause}", path.display())]
     SeedInFile {

@@ -17,6 +17,7 @@
 mod cell_table;
 mod check_report;
 mod config;
+mod domain_file;
 mod error;
 mod estimate;
 mod formats;
@@ -36,6 +37,7 @@ mod poisson_disc;
 mod report;
 mod seed_file;
 mod seeding;
+mod series;
 mod settings;
 mod statistics;
 mod subdivide;
@@ -47,7 +49,7 @@ pub mod vtk;
 
 pub use cell_table::{CellTable, TableFormat};
 pub use check_report::{CheckReport, ReportedFault, Spread, Statistic};
-pub use config::{Config, FileOptions, SeedSource};
+pub use config::{Config, FileOptions, SeedSource, Shape};
 pub use error::Error;
 pub use estimate::Estimate;
 pub use formats::{LabelGrid, Names, StlEncoding};
@@ -62,12 +64,14 @@ pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputDirectory, OutputFormat};
 pub use picture::{Coloring, Picture, Png};
 pub use pipeline::{
-    Polycrystal, Progress, Stage, Tessellated, check_expected_size, make_polycrystal, smooth, tessellate,
+    Polycrystal, Progress, Stage, Tessellated, check_expected_size, make_polycrystal, smooth, smooth_watched,
+    tessellate,
 };
 pub use poisson_disc::poisson_disc_seeds;
 pub use report::Html;
 pub use seed_file::{FileDomain, FileSeed, SeedPlace, SeedProblem, read_file_domain, read_seed_file};
 pub use seeding::random_seeds;
+pub use series::{Series, SeriesOutput};
 pub use settings::embedded_config;
 pub use statistics::{NetworkStatistics, StatisticsOutput};
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};

@@ -40,7 +40,7 @@ impl Polycrystal {
                 let walls = &self.network.finest().walls;
                 write_evolver(
                     &self.surface()?,
-                    self.network.domain(),
+                    (self.network.domain(), self.network.wall_sets()),
                     walls,
                     self.network.cell_volumes(),
                     &self.config,

@@ -10,7 +10,7 @@ use voronoi::Dimension;
 
 use crate::unfinished::Unfinished;
 use crate::vtk::VtkFormat;
-use crate::{Config, Error};
+use crate::{Config, Error, Shape};
 
 /// A file format that results are written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -155,6 +155,9 @@ impl Output {
             }
             _ if self.format == OutputFormat::Fe && config.periodic.any() => {
                 Err(Error::FormatPeriodic { path: path() })
+            }
+            _ if self.format.has_voxels() && config.shape != Shape::Box => {
+                Err(Error::FormatNeedsBox { path: path() })
             }
             _ if self.format.has_voxels() && config.file.voxels.is_none() => {
                 Err(Error::NoVoxels { path: path() })

@@ -31,7 +31,7 @@ pub(crate) fn weld_squares(
     tessellation.face_corners.reserve_exact(2 * most_faces);
     let side = |generator: Generator| match generator.plane() {
         Plane::Site(site) => Side::Cell(CellId(ids[site as usize])),
-        Plane::Wall(wall) => Side::Wall(wall),
+        Plane::Side(wall) | Plane::Facet(wall) => Side::Wall(wall),
     };
     for ((cells, vertex_ids), face_ids) in squares.iter().zip(&vertex_ids).zip(&face_ids) {
         for ((sides, ends), id) in cells.edges.iter().zip(face_ids) {

@@ -1,8 +1,10 @@
 //! Options about the domain.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use glam::{BVec3, DVec3};
-use grainsmooth::FileDomain;
+use grainsmooth::{FileDomain, Shape};
 use voronoi::Dimension;
 
 use super::usage;
@@ -24,6 +26,28 @@ pub struct DomainArguments {
     /// Example: --box 100 100 20
     #[arg(long = "box", value_names = ["X", "Y", "Z"], num_args = 2.., value_parser = parse_side, allow_negative_numbers = true)]
     box_size: Option<Vec<f64>>,
+
+    /// Shape of the domain: box, sphere, cylinder (along z), disc (2D), or the file of a closed convex surface, such as .obj or .stl
+    ///
+    /// A sphere, cylinder or disc touches the sides of --box, which must be equal across its axis, and becomes a polyhedron of
+    /// the same volume. A file has its own coordinates, so --box has no meaning with it.
+    ///
+    /// Example: --domain sphere
+    #[arg(long, value_name = "SHAPE", default_value = "box", value_parser = parse_shape)]
+    domain: ShapeName,
+
+    /// Read the domain as half-spaces n . x <= d from a text file: nx, ny, nz, d on each line (nx, ny, d in 2D)
+    ///
+    /// Example: --half-spaces octahedron.csv
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["domain", "box_size"])]
+    half_spaces: Option<PathBuf>,
+
+    /// How far the flat faces of a sphere, cylinder or disc may be from the true surface, in the unit of --box
+    /// [default: 0.005 of its radius]
+    ///
+    /// Example: --chord-error 0.001
+    #[arg(long, value_name = "E", value_parser = parse_chord_error, allow_negative_numbers = true)]
+    chord_error: Option<f64>,
 
     /// Axes along which the box repeats, such as x,y,z: grains are whole there and grow through the walls [default: none, or
     /// those of a .tess file]
@@ -52,6 +76,60 @@ impl DomainArguments {
         let box_size = self.box_size.as_deref().map_or(file.box_size, |sides| box_size(sides, dimension));
         FileDomain { dimension, box_size, periodic }
     }
+
+    /// What of the box the grains fill.
+    pub fn shape(&self, &FileDomain { dimension, box_size, .. }: &FileDomain) -> Shape {
+        let DVec3 { x, y, z } = box_size;
+        let chord_error = self.chord_error.unwrap_or(Shape::CHORD_ERROR * 0.5 * x);
+        let shape = match (&self.half_spaces, &self.domain) {
+            (Some(path), _) => Shape::HalfSpaces(path.clone()),
+            (None, ShapeName::File(path)) => {
+                if self.box_size.is_some() {
+                    usage("--box has no meaning with a --domain from a file, which has its own size");
+                }
+                Shape::Surface(path.clone())
+            }
+            (None, ShapeName::Box) => Shape::Box,
+            (None, ShapeName::Sphere) => {
+                if x != y || x != z {
+                    usage(&format!(
+                        "--domain sphere needs a --box of equal sides, its diameter; {x} {y} {z} given"
+                    ));
+                }
+                Shape::Sphere { chord_error }
+            }
+            (None, ShapeName::Cylinder | ShapeName::Disc) => {
+                if x != y {
+                    let name = if self.domain == ShapeName::Disc { "disc" } else { "cylinder" };
+                    usage(&format!(
+                        "--domain {name} needs a --box as wide as deep, its diameter; {x} {y} given"
+                    ));
+                }
+                if self.domain == ShapeName::Disc {
+                    Shape::Disc { chord_error }
+                } else {
+                    Shape::Cylinder { chord_error }
+                }
+            }
+        };
+        match (&shape, dimension) {
+            (Shape::Sphere { .. } | Shape::Cylinder { .. } | Shape::Surface(_), Dimension::Two) => {
+                usage("with --dim 2 the domain is a box, a disc, or --half-spaces")
+            }
+            (Shape::Disc { .. }, Dimension::Three) => {
+                usage("--domain disc is for --dim 2; give sphere or cylinder")
+            }
+            _ => {}
+        }
+        let is_curved = matches!(shape, Shape::Sphere { .. } | Shape::Cylinder { .. } | Shape::Disc { .. });
+        if self.chord_error.is_some() && !is_curved {
+            usage("--chord-error is for --domain sphere, cylinder or disc; others have flat faces");
+        }
+        if self.periodic.is_some() && shape != Shape::Box {
+            usage("--periodic is for boxes; other domains do not repeat");
+        }
+        shape
+    }
 }
 
 /// Side lengths of the box; the last is 1 in 2D.
@@ -66,6 +144,31 @@ fn box_size(sides: &[f64], dimension: Dimension) -> DVec3 {
             usage(&format!("--box takes three numbers, X Y Z, without --dim 2; {} given", sides.len()))
         }
     }
+}
+
+/// `--domain` as it is spelled.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum ShapeName {
+    Box,
+    Sphere,
+    Cylinder,
+    Disc,
+    File(PathBuf),
+}
+
+fn parse_shape(text: &str) -> Result<ShapeName, String> {
+    match text {
+        "box" => Ok(ShapeName::Box),
+        "sphere" => Ok(ShapeName::Sphere),
+        "cylinder" => Ok(ShapeName::Cylinder),
+        "disc" => Ok(ShapeName::Disc),
+        path if path.contains('.') => Ok(ShapeName::File(path.into())),
+        _ => Err("give box, sphere, cylinder, disc or a file with an extension, such as body.obj".to_owned()),
+    }
+}
+
+fn parse_chord_error(text: &str) -> Result<f64, String> {
+    length(text).ok_or_else(|| "a chord error is a positive length".to_owned())
 }
 
 fn parse_dimension(text: &str) -> Result<Dimension, String> {

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use grainsmooth::Config;
-use polycrystal::{FaceMesh, Junctions, Relaxation};
+use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
 
 use super::values::{length, whole_number};
 
@@ -28,6 +28,12 @@ pub struct SmoothingArguments {
     /// Example: --relax 0.1
     #[arg(long, value_name = "T", default_value = "0.3", value_parser = parse_relaxation, allow_negative_numbers = true)]
     pub relax: Relaxation,
+
+    /// Let grains grow and shrink by curvature instead of keeping their volumes (in 2D: areas); none may vanish
+    ///
+    /// Example: --relax 0.02 --free
+    #[arg(long)]
+    free: bool,
 
     /// Length, in units of the mean grain size, below which edges between grains collapse; 0 keeps all
     /// [default: 0.1, but 0 with --relax 0]
@@ -79,6 +85,11 @@ impl SmoothingArguments {
             JunctionRule::Crease => Junctions::Crease,
             JunctionRule::Corner => Junctions::Corner,
         }
+    }
+
+    /// Whether relaxation keeps volumes.
+    pub fn volumes(&self) -> Volumes {
+        if self.free { Volumes::Free } else { Volumes::Kept }
     }
 
     /// Length below which edges collapse.

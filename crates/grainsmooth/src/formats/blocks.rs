@@ -300,7 +300,7 @@ fn folder(path: &Path) -> PathBuf {
 }
 
 /// A text within an XML attribute.
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 

@@ -1,8 +1,8 @@
 //! Control points that move as one.
 
-use glam::{BVec3, DVec3};
+use glam::DVec3;
 
-use crate::{Level, Mesh, WallSet};
+use crate::{Freedom, Level, Mesh};
 
 /// Groups of control points that are displaced by the same vector, so that what lies between them keeps its shape.
 ///
@@ -104,19 +104,17 @@ impl Numbering {
         &self.numbers
     }
 
-    /// The axes along which no wall holds a point of a cluster.
-    pub(super) fn free_axes(&self, cluster: usize, walls: &[WallSet]) -> BVec3 {
-        let free = self.members(cluster).iter().map(|point| walls[*point as usize].free_axes());
-        free.fold(BVec3::TRUE, |all, free| all & free)
+    /// How the points of a cluster can move as one, given how each can.
+    pub(super) fn freedom(&self, cluster: usize, of_point: impl Fn(u32) -> Freedom) -> Freedom {
+        self.members(cluster).iter().map(|point| of_point(*point)).fold(Freedom::Everywhere, Freedom::and)
     }
 
     /// Gives all points of each cluster the mean of their displacements.
-    pub(super) fn unite(&self, moves: &mut [DVec3], walls: &[WallSet]) {
+    pub(super) fn unite(&self, moves: &mut [DVec3], of_point: impl Fn(u32) -> Freedom) {
         for cluster in (0..self.cluster_count()).filter(|cluster| self.members(*cluster).len() > 1) {
             let members = self.members(cluster);
             let sum: DVec3 = members.iter().map(|point| moves[*point as usize]).sum();
-            let free = self.free_axes(cluster, walls);
-            let mean = DVec3::select(free, sum / members.len() as f64, DVec3::ZERO);
+            let mean = self.freedom(cluster, &of_point).project(sum / members.len() as f64);
             members.iter().for_each(|point| moves[*point as usize] = mean);
         }
     }

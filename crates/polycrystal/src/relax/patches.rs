@@ -67,7 +67,7 @@ impl Patches {
     }
 
     /// The places of a control point, patch after patch.
-    fn places_of_point(&self, point: usize) -> &[usize] {
+    pub(super) fn places_of_point(&self, point: usize) -> &[usize] {
         &self.places[self.place_starts[point]..self.place_starts[point + 1]]
     }
 

@@ -9,6 +9,7 @@ use super::multigrid::Multigrid;
 use super::patch::PatchTerms;
 use super::patches::Patches;
 use super::rows::Rows;
+use super::system::Mobility;
 use crate::Network;
 
 /// Most iterations. Without rounding as many as there are grains are enough; where rigid parts leave a grain no way to
@@ -72,11 +73,11 @@ impl VolumeConstraint {
     }
 
     /// `J D J^T` for the mobility D of the clusters.
-    pub(super) fn compliance(&self, mobility: &[DVec3]) -> Compliance {
+    pub(super) fn compliance(&self, mobility: &[Mobility]) -> Compliance {
         let row = |grain: usize| {
             let mut row: Vec<(u32, f64)> = Vec::new();
             for (cluster, gradient) in self.by_grain.row(grain) {
-                let moved = *gradient * mobility[*cluster as usize];
+                let moved = mobility[*cluster as usize].of(*gradient);
                 for (other, gradient) in self.by_cluster.row(*cluster as usize) {
                     let change = moved.dot(*gradient);
                     match row.iter_mut().find(|(known, _)| known == other) {
