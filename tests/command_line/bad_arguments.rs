@@ -50,12 +50,22 @@ fn random_seed() {
 }
 
 #[test]
+fn length_to_regularise_by() {
+    refuses_values(
+        "--regularize",
+        "--regularize <L>",
+        &["-1", "0.51", "nan", "inf", "short"],
+        "give a length from 0 (off) to 0.5",
+    );
+}
+
+#[test]
 fn relaxation_time() {
     refuses_values(
         "--relax",
         "--relax <T>",
         &["-1", "-0.1", "nan", "inf", "long"],
-        "the relaxation time is 0 (off) or a positive, finite number",
+        "the relaxation time is 0 (off), a positive, finite number, or equilibrium",
     );
 }
 

@@ -54,12 +54,12 @@ fn seeds_outside_the_domain() {
     refuses(
         "0.1,0.2,0.3\n\n2,0.5,0.5\n",
         "",
-        "seeds.csv line 3: seed 1 at (2, 0.5, 0.5) lies outside the domain [0, 1] x [0, 1] x [0, 1]; move it inside or enlarge the box",
+        "seeds.csv line 3: seed 1 at (2, 0.5, 0.5) lies outside the domain [0, 1] x [0, 1] x [0, 1]; move it inside or enlarge the domain",
     );
     refuses(
         "0.1,-0.2\n",
         "--dim 2 --box 3 4",
-        "seeds.csv line 1: seed 0 at (0.1, -0.2, 0) lies outside the domain [0, 3] x [0, 4]; move it inside or enlarge the box",
+        "seeds.csv line 1: seed 0 at (0.1, -0.2, 0) lies outside the domain [0, 3] x [0, 4]; move it inside or enlarge the domain",
     );
 }
 
@@ -68,12 +68,12 @@ fn seeds_at_the_same_place() {
     refuses(
         "# twice\n0.1,0.2,0.3\n0.5,0.5,0.5\n0.1,0.2,0.3\n",
         "",
-        "seeds.csv lines 2 and 4: the same seed (0.1, 0.2, 0.3) twice; remove one of them",
+        "seeds.csv line 2 and line 4: the same seed (0.1, 0.2, 0.3) twice; remove one of them",
     );
     refuses(
         "0.5,0.5\n0.5,0.5\n",
         "--dim 2",
-        "seeds.csv lines 1 and 2: the same seed (0.5, 0.5, 0) twice; remove one of them",
+        "seeds.csv line 1 and line 2: the same seed (0.5, 0.5, 0) twice; remove one of them",
     );
 }
 
@@ -89,7 +89,7 @@ fn file_that_is_not_text() {
 #[test]
 fn file_that_cannot_be_read() {
     let workplace = Workplace::new();
-    let message = |name| format!("{name}: cannot be read: ... ; give the path of a readable CSV file");
+    let message = |name| format!("{name}: cannot be read: ... ; give the path of a readable file");
     workplace.refuses("--seeds-file missing.csv", FAILED, &message("missing.csv"));
     std::fs::create_dir(workplace.path("folder")).unwrap();
     workplace.refuses("--seeds-file folder", FAILED, &message("folder"));

@@ -9,7 +9,7 @@ fn axes_are_refused_where_they_make_no_sense() {
     let workplace = Workplace::new();
     for value in ["w", "x,w", "x,x", "xyz", ",", "x,", "1"] {
         let message = format!(
-            "invalid value '{value}' for '--periodic <AXES>': name each axis once, with commas between: x, y, z, x,y or x,y,z"
+            "invalid value '{value}' for '--periodic <AXES>': name each axis once, with commas between: x, y, z, x,y or x,y,z; or none"
         );
         workplace.refuses(&format!("--periodic {value} --relax 0"), USAGE, &message);
     }
@@ -27,7 +27,7 @@ fn duplicates_across_a_period_are_named() {
     workplace.refuses(
         "--seeds-file seeds.csv --periodic x --relax 0",
         FAILED,
-        "seeds.csv lines 1 and 3: the same seed (0, 0.5, 0.5) twice; remove one of them",
+        "seeds.csv line 1 and line 3: the same seed (0, 0.5, 0.5) twice; remove one of them",
     );
     workplace.run("--seeds-file seeds.csv --periodic y --relax 0 -n 0");
 }

@@ -110,7 +110,7 @@ fn centres_on_boundaries_belong_to_exactly_one_grain() {
     for levels in [0, 2] {
         let config = grainsmooth::Config {
             seeds: grainsmooth::SeedSource::File(path.clone()),
-            relaxation_time: 0.0,
+            relaxation: polycrystal::Relaxation::Time(0.0),
             levels,
             ..grainsmooth::Config::default()
         };

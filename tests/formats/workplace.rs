@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 
 use glam::{BVec3, DVec3};
 use grainsmooth::{Config, FileOptions, Output, Polycrystal, SeedSource, make_polycrystal};
+use polycrystal::Relaxation;
 use tempfile::TempDir;
 use voronoi::Dimension;
 
@@ -22,18 +23,18 @@ pub static TORUS: LazyLock<Polycrystal> = LazyLock::new(|| {
         .unwrap()
 });
 
-pub fn make(dimension: Dimension, relaxation_time: f64) -> Polycrystal {
-    make_polycrystal(&config(dimension, relaxation_time), &|_, _, _| ()).unwrap()
+pub fn make(dimension: Dimension, time: f64) -> Polycrystal {
+    make_polycrystal(&config(dimension, time), &|_, _, _| ()).unwrap()
 }
 
-pub fn config(dimension: Dimension, relaxation_time: f64) -> Config {
+pub fn config(dimension: Dimension, time: f64) -> Config {
     Config {
         seeds: SeedSource::Random { count: GRAINS },
         dimension,
         box_size: BOX,
-        relaxation_time,
+        relaxation: Relaxation::Time(time),
         // What is not relaxed is to stay flat.
-        regularize: if relaxation_time > 0.0 { Config::REGULARIZE } else { 0.0 },
+        regularize: if time > 0.0 { Config::REGULARIZE } else { 0.0 },
         levels: 2,
         file: FileOptions {
             voxels: Some([20, 15, 10].map(|n| NonZeroU32::new(n).unwrap())),

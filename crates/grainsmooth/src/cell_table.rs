@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 use std::io::{self, Write};
+use std::path::Path;
 
 use glam::DVec3;
 use serde::Serialize;
@@ -16,6 +17,16 @@ pub enum TableFormat {
     Json,
     /// A header line, then one line a cell; lists have blanks between their numbers.
     Csv,
+}
+
+impl TableFormat {
+    /// The format that the path's extension names, in upper or lower case.
+    pub fn of_path(path: &Path) -> Option<Self> {
+        let extension = path.extension()?;
+        let formats = [("json", Self::Json), ("csv", Self::Csv)];
+        let named = formats.into_iter().find(|(name, _)| extension.eq_ignore_ascii_case(name));
+        named.map(|(_, format)| format)
+    }
 }
 
 /// One row for each cell of a tessellation: the flat cells, before any relaxation.

@@ -162,10 +162,12 @@ impl fmt::Display for CheckReport {
 }
 
 /// Options that leave random seeds the Poisson process that they are, whatever or with what follows them.
-const PLAIN_OPTIONS: [&str; 16] = [
+const PLAIN_OPTIONS: [&str; 18] = [
+    "--arrays",
     "--seeds",
     "--seeding random",
     "--lloyd 0",
+    "--periodic none",
     "--rng-seed",
     "--dim",
     "--box",

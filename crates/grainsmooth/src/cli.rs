@@ -2,21 +2,26 @@
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
-use grainsmooth::Config;
+use clap_complete::Shell;
+use grainsmooth::{Config, read_file_domain};
 
 use crate::check_run::CheckArguments;
 use crate::mesh_cli::MeshArguments;
 
 mod config_file;
+mod documents;
 mod domain;
 mod files;
+mod pictures;
 mod run;
 mod seeds;
 mod smoothing;
 mod values;
 
+pub use documents::{print_completions, print_manual};
 use domain::DomainArguments;
 use files::FileArguments;
+use pictures::PictureArguments;
 use run::RunArguments;
 use seeds::SeedArguments;
 use smoothing::SmoothingArguments;
@@ -40,6 +45,8 @@ pub struct Arguments {
     #[command(flatten)]
     pub files: FileArguments,
     #[command(flatten)]
+    pub pictures: PictureArguments,
+    #[command(flatten)]
     pub run: RunArguments,
 }
 
@@ -48,6 +55,17 @@ pub struct Arguments {
 pub enum Command {
     Mesh(MeshArguments),
     Check(CheckArguments),
+    /// Print what completes options and values in a shell
+    ///
+    /// Example: grainsmooth completions bash > ~/.local/share/bash-completion/completions/grainsmooth
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the manual page
+    ///
+    /// Example: grainsmooth man | man -l -
+    Man,
 }
 
 const EXAMPLES: &str = "\
@@ -55,9 +73,12 @@ Examples:
   grainsmooth --seeds 200 -n 3                    200 grains in a unit cube, to grains.vtp
   grainsmooth --seeds 500 --box 3 1 0.2 -o a.vtu  a plate
   grainsmooth --seeds 300 --dim 2                 grains in a square
+  grainsmooth --domain sphere                     grains that fill a ball
   grainsmooth --periodic x,y,z                    grains that fill space by repeating the cube
   grainsmooth --lattice bcc 4                     Kelvin's foam: 128 truncated octahedra, cut by the walls
   grainsmooth --seeds-file seeds.csv --relax 0    flat Voronoi grains from your own seeds
+  grainsmooth --picture grains.png --explode 0.4  a picture of the grains, moved apart
+  grainsmooth --report grains.html                a page with the grains to turn round, and their statistics
   grainsmooth --config grains.vtp                 the run that wrote grains.vtp once more
 
 Exit status: 0 good, 1 the run failed or its result is invalid, 2 a mistake on the command line.";
@@ -77,27 +98,34 @@ impl Arguments {
     /// What the arguments ask to compute.
     ///
     /// Ends the program with exit status 2 where they do not fit together.
-    pub fn config(&self) -> Config {
-        let Self { seeds, domain, smoothing, files, .. } = self;
-        Config {
-            seeds: seeds.source(domain.dim),
+    ///
+    /// # Errors
+    /// When the file of the seeds cannot tell what they fill.
+    pub fn config(&self) -> Result<Config, grainsmooth::Error> {
+        let Self { seeds, domain: arguments, smoothing, files, .. } = self;
+        let of_file = seeds.seeds_file.as_deref().map(read_file_domain).transpose()?.flatten();
+        let domain = arguments.with_defaults_of(of_file);
+        Ok(Config {
+            seeds: seeds.source(domain.dimension),
             random_seed: seeds.rng_seed,
             lloyd_steps: seeds.lloyd,
-            dimension: domain.dim,
-            box_size: domain.box_size(),
+            dimension: domain.dimension,
+            box_size: domain.box_size,
+            shape: arguments.shape(&domain),
             face_mesh: smoothing.face_mesh(),
-            periodic: domain.periodic(),
-            relaxation_time: smoothing.relax,
+            periodic: domain.periodic,
+            relaxation: smoothing.relax,
+            volumes: smoothing.volumes(),
             regularize: smoothing.regularize(),
             levels: smoothing.levels,
             junctions: smoothing.junctions(),
             drop_empty: seeds.drop_empty,
-            file: files.options(domain.dim),
-        }
+            file: files.options(domain.dimension),
+        })
     }
 }
 
 /// Ends the program as clap does on a mistake.
-fn usage(message: &str) -> ! {
+pub fn usage(message: &str) -> ! {
     Arguments::command().error(ErrorKind::WrongNumberOfValues, message).exit()
 }

@@ -3,9 +3,10 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use glam::{BVec3, DVec3};
-use polycrystal::{FaceMesh, Junctions};
+use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
 use voronoi::{Dimension, Domain};
 
+use crate::domain_file::{half_space_domain, surface_domain};
 use crate::{Error, Lattice, LatticeFit, Names, StlEncoding};
 
 /// Where seeds come from.
@@ -32,6 +33,43 @@ pub enum SeedSource {
     File(PathBuf),
 }
 
+/// What the grains fill.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// The box.
+    Box,
+    /// The ball that touches the box's sides, which are equal.
+    Sphere {
+        /// Largest distance of its polyhedron from the sphere.
+        chord_error: f64,
+    },
+    /// The cylinder along z that touches the box's sides, of which those along x and y are equal.
+    Cylinder {
+        /// Largest distance of its polyhedron from the mantle.
+        chord_error: f64,
+    },
+    /// In 2D, the disc that touches the rectangle's sides, which are equal.
+    Disc {
+        /// Largest distance of its polygon from the circle.
+        chord_error: f64,
+    },
+    /// The body in a closed convex surface, see [`read_mesh`](crate::mesh_file::read_mesh). The box has no meaning.
+    Surface(PathBuf),
+    /// What the half-spaces in a text file have in common. The box has no meaning.
+    HalfSpaces(PathBuf),
+}
+
+impl Shape {
+    /// The usual chord error in units of the radius: some 500 faces on a sphere, so that it looks
+    /// round while the grains at its surface have a handful of flat parts each.
+    pub const CHORD_ERROR: f64 = 0.005;
+
+    /// Whether a file tells where the domain is.
+    pub fn is_from_file(&self) -> bool {
+        matches!(self, Self::Surface(_) | Self::HalfSpaces(_))
+    }
+}
+
 /// Everything that decides what a run computes. The same config gives the same bytes on every machine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Config {
@@ -45,12 +83,16 @@ pub struct Config {
     pub dimension: Dimension,
     /// Side lengths of the box, which has its lower corner in the origin; in 2D the last is ignored.
     pub box_size: DVec3,
+    /// What of the box, or instead of it, the grains fill.
+    pub shape: Shape,
     /// Axes along which the box repeats; in 2D the last is ignored.
     pub periodic: BVec3,
     /// Control points on boundaries.
     pub face_mesh: FaceMesh,
-    /// Relaxation time in units of the mean grain size squared; 0 leaves boundaries flat.
-    pub relaxation_time: f64,
+    /// How far boundaries relax; time 0 leaves them flat.
+    pub relaxation: Relaxation,
+    /// Whether relaxation keeps the grains' volumes.
+    pub volumes: Volumes,
     /// Length, in units of the mean grain size, below which edges of cells collapse before relaxation; 0 keeps all.
     pub regularize: f64,
     /// Number of subdivisions.
@@ -72,11 +114,13 @@ pub struct FileOptions {
     pub voxels: Option<[NonZeroU32; 3]>,
     /// How STL spells its numbers.
     pub stl: StlEncoding,
+    /// Whether VTK files have arrays of what is measured.
+    pub arrays: bool,
 }
 
 impl Default for FileOptions {
     fn default() -> Self {
-        Self { names: Names::default(), voxels: None, stl: StlEncoding::Binary }
+        Self { names: Names::default(), voxels: None, stl: StlEncoding::Binary, arrays: false }
     }
 }
 
@@ -88,9 +132,11 @@ impl Default for Config {
             lloyd_steps: 0,
             dimension: Dimension::Three,
             box_size: DVec3::ONE,
+            shape: Shape::Box,
             periodic: BVec3::FALSE,
             face_mesh: FaceMesh::Fan,
-            relaxation_time: polycrystal::Relaxation::default().time,
+            relaxation: Relaxation::default(),
+            volumes: Volumes::Kept,
             regularize: Self::REGULARIZE,
             levels: 3,
             junctions: Junctions::Crease,
@@ -112,23 +158,48 @@ impl Config {
     pub const LARGEST_REGULARIZE: f64 = 0.5;
 
     /// The lattice that the seeds form, if they do.
+    ///
+    /// For a domain from a file only its sides tell, see [`Self::lattice_seeds`].
     pub fn lattice_fit(&self) -> Option<LatticeFit> {
         match self.seeds {
+            SeedSource::Lattice { .. } if self.shape.is_from_file() => None,
             SeedSource::Lattice { lattice, cells } => Some(LatticeFit::new(lattice, cells, self.box_size)),
             _ => None,
         }
     }
 
-    /// The box that the grains fill: that of [`LatticeFit::box_size`] for a lattice.
+    /// The seeds of a lattice that lie in the domain.
+    pub(crate) fn lattice_seeds(&self, lattice: Lattice, cells: u32, domain: &Domain) -> Vec<DVec3> {
+        let (fit, corner) = match self.lattice_fit() {
+            Some(fit) => (fit, DVec3::ZERO),
+            None => (LatticeFit::new(lattice, cells, domain.size()), domain.lower()),
+        };
+        let seeds = fit.seeds().into_iter().map(|seed| corner + seed);
+        seeds.filter(|seed| domain.contains(*seed)).collect()
+    }
+
+    /// What the grains fill; a box is that of [`LatticeFit::box_size`] for a lattice.
     ///
     /// # Errors
-    /// [`Error::BoxSide`] when a side is not positive and finite, or beyond what doubles can compute with.
+    /// [`Error::BoxSide`] when a side is not positive and finite, or beyond what doubles can compute with;
+    /// whatever is wrong with the domain's file.
     pub fn domain(&self) -> Result<Domain, Error> {
         let axes = if self.dimension == Dimension::Two { 2 } else { 3 };
         let sides = ['x', 'y', 'z'].into_iter().zip(self.box_size.to_array());
         if let Some((axis, length)) = sides.take(axes).find(|(_, length)| !Self::SIDE_RANGE.contains(length))
         {
             return Err(Error::BoxSide { axis, length });
+        }
+        let center = 0.5 * self.box_size;
+        match &self.shape {
+            Shape::Box => {}
+            Shape::Sphere { chord_error } => return Ok(Domain::ball(center, center.x, *chord_error)?),
+            Shape::Cylinder { chord_error } => {
+                return Ok(Domain::cylinder(center, center.x, self.box_size.z, *chord_error)?);
+            }
+            Shape::Disc { chord_error } => return Ok(Domain::disc(center, center.x, *chord_error)?),
+            Shape::Surface(path) => return surface_domain(path),
+            Shape::HalfSpaces(path) => return half_space_domain(path, self.dimension),
         }
         let upper = self.lattice_fit().map_or(self.box_size, |fit| fit.box_size());
         let domain = match self.dimension {

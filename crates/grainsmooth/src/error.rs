@@ -7,7 +7,7 @@ use voronoi::{Dimension, VoronoiError};
 
 use crate::memory::{self, LevelSize};
 use crate::mesh_file::MeshFileProblem;
-use crate::{OutputFormat, SeedLineProblem};
+use crate::{OutputFormat, SeedPlace, SeedProblem};
 
 /// What can go wrong between the user's input and the files written. Each message is one line that names the
 /// value, the place and the remedy.
@@ -44,6 +44,9 @@ pub enum Error {
         /// The path as given.
         path: PathBuf,
     },
+    /// The output's format makes several files, which standard output cannot take.
+    #[error("standard output takes a single file; choose another format, such as vtp, or give a path")]
+    FormatSeveralFiles,
     /// The directory that the output shall go to does not exist.
     #[error("{}: no directory {}; create it or choose another path", path.display(), directory.display())]
     NoOutputDirectory {
@@ -81,7 +84,7 @@ pub enum Error {
         cause: io::Error,
     },
     /// A seed file cannot be opened or read.
-    #[error("{}: cannot be read: {cause}; give the path of a readable CSV file", path.display())]
+    #[error("{}: cannot be read: {cause}; give the path of a readable file", path.display())]
     SeedFileUnreadable {
         /// The path as given.
         path: PathBuf,
@@ -94,15 +97,15 @@ pub enum Error {
         /// The path as given.
         path: PathBuf,
     },
-    /// A line of a seed file is not a seed.
-    #[error("{} line {line}: {problem}", path.display())]
-    BadSeedLine {
+    /// A place of a seed file holds no seed.
+    #[error("{} {place}: {problem}", path.display())]
+    BadSeed {
         /// The path as given.
         path: PathBuf,
-        /// Line of the file, counted from 1.
-        line: usize,
+        /// Where in the file.
+        place: SeedPlace,
         /// What is wrong with it.
-        problem: SeedLineProblem,
+        problem: SeedProblem,
     },
     /// A side of the box is not a length that can be computed with.
     #[error("the box's side along {axis} is {length:?}; give a positive number between 1e-30 and 1e30")]
@@ -112,26 +115,71 @@ pub enum Error {
         /// The side as given.
         length: f64,
     },
-    /// A seed of a file has no cell.
+    /// A file's surface or half-spaces bound no domain.
+    #[error("{}: {cause}", path.display())]
+    DomainInFile {
+        /// The path as given.
+        path: PathBuf,
+        /// What is wrong.
+        cause: VoronoiError,
+    },
+    /// A half-space of a file bounds no domain.
     #[error("{} line {line}: {cause}", path.display())]
-    SeedInFile {
+    HalfSpaceInFile {
         /// The path as given.
         path: PathBuf,
         /// Line of the file, counted from 1.
         line: usize,
+        /// What is wrong.
+        cause: VoronoiError,
+    },
+    /// A line of a file of half-spaces is none.
+    #[error(
+        "{} line {line}: write {} as decimal numbers", path.display(),
+        if *dimension == Dimension::Two { "nx, ny, d" } else { "nx, ny, nz, d" }
+    )]
+    BadHalfSpaceLine {
+        /// The path as given.
+        path: PathBuf,
+        /// Line of the file, counted from 1.
+        line: usize,
+        /// What the file is read for.
+        dimension: Dimension,
+    },
+    /// A file of half-spaces cannot be read.
+    #[error("{}: cannot be read: {cause}; give the path of a readable text file", path.display())]
+    DomainFileUnreadable {
+        /// The path as given.
+        path: PathBuf,
+        /// Why.
+        cause: io::Error,
+    },
+    /// The output's format fills a box, and the domain is none.
+    #[error("{}: voxels fill a box, and the domain is none; choose another format, such as .vtp", path.display())]
+    FormatNeedsBox {
+        /// The path as given.
+        path: PathBuf,
+    },
+    /// A seed of a file has no cell.
+    #[error("{} {place}: {cause}", path.display())]
+    SeedInFile {
+        /// The path as given.
+        path: PathBuf,
+        /// Where in the file.
+        place: SeedPlace,
         /// What is wrong with the seed.
         cause: VoronoiError,
     },
     /// Two seeds of a file stand at the same place.
     #[error(
-        "{} lines {} and {}: the same seed ({}, {}, {}) twice; remove one of them",
-        path.display(), lines[0], lines[1], position.x, position.y, position.z
+        "{} {} and {}: the same seed ({}, {}, {}) twice; remove one of them",
+        path.display(), places[0], places[1], position.x, position.y, position.z
     )]
     DuplicateSeedsInFile {
         /// The path as given.
         path: PathBuf,
-        /// Lines of the file, counted from 1.
-        lines: [usize; 2],
+        /// Where in the file.
+        places: [SeedPlace; 2],
         /// The seeds' coordinates.
         position: DVec3,
     },

@@ -17,10 +17,13 @@
 mod cell_table;
 mod check_report;
 mod config;
+mod domain_file;
 mod error;
+mod estimate;
 mod formats;
 mod labelled_file;
 mod lattice;
+mod measured_arrays;
 pub mod memory;
 mod mesh_bezier;
 mod mesh_edit;
@@ -28,19 +31,27 @@ pub mod mesh_file;
 mod mesh_json;
 mod network_file;
 mod output;
+mod picture;
 mod pipeline;
 mod poisson_disc;
+mod report;
 mod seed_file;
 mod seeding;
+mod series;
 mod settings;
+mod statistics;
 mod subdivide;
 mod summary;
+mod summary_record;
+mod table;
+mod unfinished;
 pub mod vtk;
 
 pub use cell_table::{CellTable, TableFormat};
 pub use check_report::{CheckReport, ReportedFault, Spread, Statistic};
-pub use config::{Config, FileOptions, SeedSource};
+pub use config::{Config, FileOptions, SeedSource, Shape};
 pub use error::Error;
+pub use estimate::Estimate;
 pub use formats::{LabelGrid, Names, StlEncoding};
 pub use formats::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
@@ -51,12 +62,19 @@ pub use mesh_bezier::{BezierFile, read_bezier};
 pub use mesh_edit::{EdgeEdit, edit_edges};
 pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputDirectory, OutputFormat};
+pub use picture::{Coloring, Picture, Png};
 pub use pipeline::{
-    Polycrystal, Progress, Stage, Tessellated, check_expected_size, make_polycrystal, smooth, tessellate,
+    Polycrystal, Progress, Stage, Tessellated, check_expected_size, make_polycrystal, smooth, smooth_watched,
+    tessellate,
 };
 pub use poisson_disc::poisson_disc_seeds;
-pub use seed_file::{FileSeed, SeedLineProblem, read_seed_file};
+pub use report::Html;
+pub use seed_file::{FileDomain, FileSeed, SeedPlace, SeedProblem, read_file_domain, read_seed_file};
 pub use seeding::random_seeds;
+pub use series::{Series, SeriesOutput};
 pub use settings::embedded_config;
+pub use statistics::{NetworkStatistics, StatisticsOutput};
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};
 pub use summary::Summary;
+pub use summary_record::SummaryRecord;
+pub use unfinished::discard_unfinished;

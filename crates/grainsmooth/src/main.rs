@@ -2,27 +2,25 @@
 
 mod check_run;
 mod cli;
+#[cfg(unix)]
+mod interruption;
 mod mesh_cli;
 mod mesh_run;
+mod network_run;
 mod progress;
 
-use std::io::Write;
-use std::path::Path;
+use std::io::{self, Write};
 use std::process::ExitCode;
-use std::time::Instant;
 
-use anyhow::anyhow;
 use grainsmooth::mesh_file::READER_THREAD;
-use grainsmooth::{
-    CellTable, Output, OutputDirectory, Stage, Summary, TableFormat, check_expected_size, smooth, tessellate,
-};
 
 use cli::{Arguments, Command};
-use progress::ProgressLine;
 
 fn main() -> ExitCode {
     match run(&Arguments::read()) {
         Ok(code) => code,
+        // Whoever reads what we print may stop when there is enough of it.
+        Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             say(&format!("error: {error}"));
             ExitCode::FAILURE
@@ -30,9 +28,18 @@ fn main() -> ExitCode {
     }
 }
 
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    let kind = match (error.downcast_ref(), error.downcast_ref()) {
+        (Some(grainsmooth::Error::WriteOutput { cause, .. }), _) => Some(cause.kind()),
+        (_, Some(error)) => serde_json::Error::io_error_kind(error),
+        _ => error.downcast_ref().map(io::Error::kind),
+    };
+    kind == Some(io::ErrorKind::BrokenPipe)
+}
+
 /// Writes a line to standard error. Where nobody can read it the run is no worse for that.
 fn say(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(io::stderr(), "{line}");
 }
 
 /// A panic over a corrupt VTK file becomes an error, and needs no words of its own.
@@ -46,95 +53,15 @@ fn keep_reader_quiet() {
 }
 
 fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
-    if let Some(command) = &arguments.command {
-        keep_reader_quiet();
-        return match command {
-            Command::Mesh(mesh) => Ok(mesh_run::run(&mesh.command).map(|()| ExitCode::SUCCESS)?),
-            Command::Check(check) => check_run::run(check),
-        };
-    }
-    // An output that cannot be written is found before hours of work, not after.
-    let tables = tables(arguments)?;
-    let output = if arguments.run.no_mesh { None } else { Some(Output::check(&arguments.files.output)?) };
-    if let Some(output) = &output {
-        output.check_fits(&arguments.config())?;
-    }
-    let grains = arguments
-        .files
-        .grains_dir
-        .as_ref()
-        .map(|path| arguments.files.grains_format.check(path))
-        .transpose()?;
-    if let Some(grains) = &grains {
-        grains.check_fits(&arguments.config())?;
-    }
-    let threads = arguments.run.threads.map_or(0, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|cause| anyhow!("cannot start {threads} threads: {cause}; give fewer with --threads"))?;
-    let line = ProgressLine::new(arguments.run.quiet);
-    let files = Files { tables, output, grains };
-    let result = pool.install(|| compute(arguments, &files, &line));
-    line.clear();
-    let summary = result?;
-    if !arguments.run.quiet {
-        let names: Vec<String> = files.paths().map(|path| path.display().to_string()).collect();
-        say(&format!("{summary}\nwritten     {}", names.join(", ")));
+    #[cfg(unix)]
+    interruption::leave_nothing_when_interrupted()?;
+    let Some(command) = &arguments.command else { return network_run::run(arguments) };
+    keep_reader_quiet();
+    match command {
+        Command::Mesh(mesh) => mesh_run::run(&mesh.command)?,
+        Command::Check(check) => return check_run::run(check),
+        Command::Completions { shell } => cli::print_completions(*shell)?,
+        Command::Man => cli::print_manual()?,
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// The tables asked for, found writable.
-fn tables(arguments: &Arguments) -> Result<Vec<Output<TableFormat>>, grainsmooth::Error> {
-    let json = arguments.files.cells_json.iter().map(|path| Output::check_as(path, TableFormat::Json));
-    let csv = arguments.files.cells_csv.iter().map(|path| Output::check_as(path, TableFormat::Csv));
-    json.chain(csv).collect()
-}
-
-/// What is written, all found writable.
-struct Files {
-    tables: Vec<Output<TableFormat>>,
-    output: Option<Output>,
-    grains: Option<OutputDirectory>,
-}
-
-impl Files {
-    fn paths(&self) -> impl Iterator<Item = &Path> {
-        let tables = self.tables.iter().map(Output::path);
-        let grains = self.grains.as_ref().map(OutputDirectory::path);
-        tables.chain(self.output.as_ref().map(Output::path)).chain(grains)
-    }
-}
-
-/// Computes and writes what is asked for, and returns the summary.
-fn compute(arguments: &Arguments, files: &Files, line: &ProgressLine) -> Result<String, grainsmooth::Error> {
-    let config = arguments.config();
-    let progress = |stage, done, count| line.show(stage, done, count);
-    if files.output.is_some() {
-        check_expected_size(&config)?;
-    }
-    let tessellated = tessellate(&config, &progress)?;
-    if !files.tables.is_empty() {
-        let table = CellTable::new(&tessellated);
-        files.tables.iter().try_for_each(|output| table.write(output))?;
-    }
-    let Some(output) = &files.output else {
-        let tessellation = &tessellated.tessellation;
-        let lattice = config.lattice_fit().map_or(String::new(), |fit| format!("\nlattice     {fit}"));
-        return Ok(format!(
-            "cells       {} in {}{lattice}",
-            tessellation.cell_count(),
-            tessellation.domain()
-        ));
-    };
-    let mut polycrystal = smooth(&config, tessellated, &progress)?;
-    line.show(Stage::Writing, 0, 1);
-    let start = Instant::now();
-    polycrystal.write(output)?;
-    if let Some(grains) = &files.grains {
-        polycrystal.write_grains(grains)?;
-    }
-    polycrystal.add_time(Stage::Writing, start.elapsed());
-    Ok(Summary(&polycrystal).to_string())
 }

@@ -7,6 +7,7 @@ use polycrystal::{Boundary, BoundaryId, Level, Mesh, Side};
 
 use crate::formats::{Surface, write_ang, write_evolver, write_gmsh, write_npy, write_obj, write_ply};
 use crate::formats::{write_gmsh_script, write_stl, write_tess};
+use crate::measured_arrays::MeasuredArrays;
 use crate::vtk::{Array, Cells, Each, FieldEntry, FieldValue, ImageData, PolyData, Values, VtkFormat};
 use crate::vtk::{write_vti, write_vtk};
 use crate::{Error, LabelGrid, Names, Output, OutputFormat, Polycrystal, Tess};
@@ -25,10 +26,8 @@ impl Polycrystal {
     /// [`Error::WriteOutput`]; nothing is left behind then. As of [`Output::check_fits`].
     pub fn write(&self, output: &Output) -> Result<(), Error> {
         output.check_fits(&self.config)?;
-        match output.format() {
-            OutputFormat::Vtm => return self.write_blocks(output),
-            OutputFormat::Msh => self.write_gmsh_script(output)?,
-            _ => {}
+        if output.format() == OutputFormat::Vtm {
+            return self.write_blocks(output);
         }
         output.write(|out| match output.format() {
             OutputFormat::Vtk(format) => self.write_vtk(format, out),
@@ -41,7 +40,7 @@ impl Polycrystal {
                 let walls = &self.network.finest().walls;
                 write_evolver(
                     &self.surface()?,
-                    self.network.domain(),
+                    (self.network.domain(), self.network.wall_sets()),
                     walls,
                     self.network.cell_volumes(),
                     &self.config,
@@ -52,7 +51,11 @@ impl Polycrystal {
             OutputFormat::Vti => self.write_vti(out),
             OutputFormat::Npy => write_npy(&self.label_grid()?, self.config.file.names, out),
             OutputFormat::Ang => write_ang(&self.label_grid()?, &self.config, out),
-        })
+        })?;
+        match output.format() {
+            OutputFormat::Msh => self.write_gmsh_script(output),
+            _ => Ok(()),
+        }
     }
 
     /// The script that makes volumes of the grains, beside the mesh file.
@@ -116,6 +119,14 @@ impl Polycrystal {
             cell_arrays.push(Array { name: "PeriodicNeighbor", values: of_cells(&neighbor) });
             point_arrays.push(Array { name: "PeriodicOriginal", values: Values::Int32(&originals) });
         }
+        let measured = self.config.file.arrays.then(|| MeasuredArrays::new(self, cells));
+        let (of_cells, of_points);
+        if let Some(measured) = &measured {
+            of_cells = measured.of_cells(boundary_of_cell);
+            of_points = measured.of_points();
+            cell_arrays.extend(of_cells.arrays());
+            point_arrays.extend(of_points.arrays());
+        }
         let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field: self.field() };
         write_vtk(&data, format, out)
     }
@@ -127,7 +138,7 @@ impl Polycrystal {
     }
 
     /// Of each point, the one that it is a copy of, or itself.
-    fn originals(&self) -> Vec<i32> {
+    pub(crate) fn originals(&self) -> Vec<i32> {
         let level = self.network.finest();
         let mut originals: Vec<i32> = (0..).take(level.vertex_count()).collect();
         for pair in &level.copies.vertices {
@@ -148,7 +159,7 @@ impl Polycrystal {
 }
 
 /// The triangles, wound as a scheme of names wants them.
-fn triangles<'a>(level: &'a Level, boundaries: &[Boundary], names: Names) -> Cow<'a, [[u32; 3]]> {
+pub(crate) fn triangles<'a>(level: &'a Level, boundaries: &[Boundary], names: Names) -> Cow<'a, [[u32; 3]]> {
     let Mesh::Triangles(mesh) = &level.mesh else { return Cow::default() };
     if !boundaries.iter().any(|boundary| names.reverses(boundary)) {
         return Cow::Borrowed(mesh.triangles());

@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 use tempfile::{NamedTempFile, TempDir};
 use voronoi::Dimension;
 
+use crate::unfinished::Unfinished;
 use crate::vtk::VtkFormat;
-use crate::{Config, Error};
+use crate::{Config, Error, Shape};
 
 /// A file format that results are written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,9 +105,16 @@ impl OutputFormat {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Output<Format = OutputFormat> {
     path: PathBuf,
-    /// Where the file goes: `path`, or what it links to.
-    target: PathBuf,
+    target: Target,
     format: Format,
+}
+
+/// Where bytes go.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Target {
+    /// The path as given, or what it links to.
+    File(PathBuf),
+    StandardOutput,
 }
 
 impl Output {
@@ -124,6 +132,17 @@ impl Output {
         }
     }
 
+    /// Standard output, for a format that is a single file.
+    ///
+    /// # Errors
+    /// [`Error::FormatSeveralFiles`].
+    pub fn standard_output(format: OutputFormat) -> Result<Self, Error> {
+        match format {
+            OutputFormat::Vtm | OutputFormat::Msh => Err(Error::FormatSeveralFiles),
+            _ => Ok(Self::to_standard_output(format)),
+        }
+    }
+
     /// Checks that the format can hold what a config makes.
     ///
     /// # Errors
@@ -137,6 +156,9 @@ impl Output {
             _ if self.format == OutputFormat::Fe && config.periodic.any() => {
                 Err(Error::FormatPeriodic { path: path() })
             }
+            _ if self.format.has_voxels() && config.shape != Shape::Box => {
+                Err(Error::FormatNeedsBox { path: path() })
+            }
             _ if self.format.has_voxels() && config.file.voxels.is_none() => {
                 Err(Error::NoVoxels { path: path() })
             }
@@ -146,6 +168,11 @@ impl Output {
 }
 
 impl<Format: Copy> Output<Format> {
+    /// Standard output, whatever the format.
+    pub fn to_standard_output(format: Format) -> Self {
+        Self { path: PathBuf::from("standard output"), target: Target::StandardOutput, format }
+    }
+
     /// Checks that a file can be written at `path`, whatever its extension, without changing what is there.
     ///
     /// # Errors
@@ -163,17 +190,17 @@ impl<Format: Copy> Output<Format> {
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(path.clone()),
             Err(error) => Err(error),
         };
-        let output = match target {
-            Ok(target) => Self { path, target, format },
+        let target = match target {
+            Ok(target) => target,
             Err(cause) => return Err(Error::OutputNotWritable { path, cause }),
         };
-        if !output.directory().is_dir() {
-            let directory = output.directory().to_owned();
-            return Err(Error::NoOutputDirectory { path: output.path, directory });
+        let directory = parent(&target);
+        if !directory.is_dir() {
+            return Err(Error::NoOutputDirectory { path, directory: directory.to_owned() });
         }
-        match output.temporary_file() {
-            Ok(_) => Ok(output),
-            Err(cause) => Err(Error::OutputNotWritable { path: output.path, cause }),
+        match temporary_file(&target) {
+            Ok(_) => Ok(Self { path, target: Target::File(target), format }),
+            Err(cause) => Err(Error::OutputNotWritable { path, cause }),
         }
     }
 
@@ -188,7 +215,7 @@ impl<Format: Copy> Output<Format> {
     }
 
     /// Writes the file: `content` into a temporary file in the same directory, which takes the name when
-    /// complete. A present file is replaced then, keeping its permissions.
+    /// complete. A present file is replaced then, keeping its permissions. What goes to standard output goes there at once.
     ///
     /// # Errors
     /// [`Error::WriteOutput`] when `content` or the file system fails. The temporary file is removed then,
@@ -198,31 +225,46 @@ impl<Format: Copy> Output<Format> {
     }
 
     fn try_to_write(&self, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-        let file = self.temporary_file()?;
+        let target = match &self.target {
+            Target::File(target) => target,
+            Target::StandardOutput => {
+                let mut writer = BufWriter::new(io::stdout().lock());
+                content(&mut writer)?;
+                return writer.flush();
+            }
+        };
+        let file = temporary_file(target)?;
         let mut writer = BufWriter::new(file.as_file());
         content(&mut writer)?;
         writer.flush()?;
         drop(writer);
-        if let Ok(present) = fs::metadata(&self.target) {
+        if let Ok(present) = fs::metadata(target) {
             file.as_file().set_permissions(present.permissions())?;
         }
-        file.persist(&self.target)?;
-        Ok(())
+        file.persist(target)
     }
+}
 
-    fn temporary_file(&self) -> io::Result<NamedTempFile> {
-        let prefix = hidden(&self.target);
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(&prefix).suffix(PARTIAL);
-        // What any new file gets; the system takes the umask away from it.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        builder.tempfile_in(self.directory())
-    }
+/// A hidden file in the directory of another.
+fn temporary_file(target: &Path) -> io::Result<Unfinished<NamedTempFile>> {
+    let prefix = hidden(target);
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix).suffix(PARTIAL);
+    // What any new file gets; the system takes the umask away from it.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    Unfinished::new(|| builder.tempfile_in(parent(target)), NamedTempFile::path)
+}
 
-    fn directory(&self) -> &Path {
-        parent(&self.target)
-    }
+/// A hidden directory in the directory of another.
+pub(crate) fn temporary_directory(target: &Path) -> io::Result<Unfinished<TempDir>> {
+    let mut builder = tempfile::Builder::new();
+    // What any new directory gets; the system takes the umask away from it.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+    let prefix = hidden(target);
+    builder.prefix(&prefix).suffix(PARTIAL);
+    Unfinished::new(|| builder.tempdir_in(parent(target)), TempDir::path)
 }
 
 /// A directory for files that was found fit to be made, and the format of the files.
@@ -248,10 +290,13 @@ impl OutputDirectory {
         if !is_free {
             return Err(Error::OutputDirectoryTaken { path: path() });
         }
-        if !directory.parent().is_dir() {
-            return Err(Error::NoOutputDirectory { path: path(), directory: directory.parent().to_owned() });
+        if !parent(&directory.path).is_dir() {
+            return Err(Error::NoOutputDirectory {
+                path: path(),
+                directory: parent(&directory.path).to_owned(),
+            });
         }
-        match directory.temporary() {
+        match temporary_directory(&directory.path) {
             Ok(_) => Ok(directory),
             Err(cause) => Err(Error::OutputNotWritable { path: path(), cause }),
         }
@@ -285,26 +330,14 @@ impl OutputDirectory {
     /// [`Error::WriteOutput`]; nothing is left behind then.
     pub fn write(&self, content: impl FnOnce(&Path) -> io::Result<()>) -> Result<(), Error> {
         let write = || {
-            let temporary = self.temporary()?;
+            let temporary = temporary_directory(&self.path)?;
             content(temporary.path())?;
             if self.path.is_dir() {
                 fs::remove_dir(&self.path)?;
             }
-            fs::rename(temporary.keep(), &self.path)
+            temporary.persist(&self.path)
         };
         write().map_err(|cause| Error::WriteOutput { path: self.path.clone(), cause })
-    }
-
-    fn temporary(&self) -> io::Result<TempDir> {
-        let mut builder = tempfile::Builder::new();
-        // What any new directory gets; the system takes the umask away from it.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-        builder.prefix(&hidden(&self.path)).suffix(PARTIAL).tempdir_in(self.parent())
-    }
-
-    fn parent(&self) -> &Path {
-        parent(&self.path)
     }
 }
 

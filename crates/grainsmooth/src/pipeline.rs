@@ -3,13 +3,13 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use polycrystal::{AngleStatistics, Certificate, MeshSize, Network, NetworkError, Relaxation};
-use polycrystal::{dihedral_angles, relax, validate};
+use polycrystal::{AngleStatistics, Certificate, MeshSize, Network, NetworkError, RelaxationStep};
+use polycrystal::{Relaxed, Volumes, dihedral_angles, relax_watched, validate};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
 use crate::memory::{LevelSize, available_memory, check_cells, check_levels};
 use crate::{
-    Config, Error, FileSeed, LatticeFit, SeedSource, poisson_disc_seeds, random_seeds, read_seed_file,
+    Config, Error, FileSeed, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds, read_seed_file,
 };
 
 /// A part of a run, in the order in which they follow each other.
@@ -32,6 +32,17 @@ pub enum Stage {
 }
 
 impl Stage {
+    /// Every stage, in the order in which they follow each other.
+    pub const ALL: [Self; 7] = [
+        Self::Seeds,
+        Self::Cells,
+        Self::Network,
+        Self::Relaxation,
+        Self::Subdivision,
+        Self::Validation,
+        Self::Writing,
+    ];
+
     /// The stage in one word.
     pub fn name(self) -> &'static str {
         match self {
@@ -58,8 +69,12 @@ pub struct Polycrystal {
     pub cells: Tessellated,
     /// Connectivity of all levels.
     pub network: Network,
+    /// Control points of the flat network, before relaxation.
+    pub flat: Vec<DVec3>,
     /// Points of the finest level.
     pub points: Vec<DVec3>,
+    /// What relaxation gave, before the last subdivisions: points to move by hand.
+    pub relaxed: Relaxed,
     /// What regularisation took out.
     pub collapsed: Collapsed,
     /// Angles between boundaries of the flat network, if boundaries meet inside the domain.
@@ -118,8 +133,8 @@ fn cells_of(
     seeds: &[FileSeed],
 ) -> Result<(Tessellation, Vec<f64>), Error> {
     let positions: Vec<DVec3> = seeds.iter().map(|seed| seed.position).collect();
-    let weights: Vec<f64> = seeds.iter().map(|seed| seed.radius.unwrap_or(0.0).powi(2)).collect();
-    let tessellation = if seeds.iter().any(|seed| seed.radius.is_some()) {
+    let weights: Vec<f64> = seeds.iter().map(|seed| seed.weight.unwrap_or(0.0)).collect();
+    let tessellation = if seeds.iter().any(|seed| seed.weight.is_some()) {
         Tessellation::power(domain, &positions, &weights)
     } else {
         Tessellation::new(domain, &positions)
@@ -150,9 +165,7 @@ fn seed_count(config: &Config) -> Option<usize> {
     match &config.seeds {
         SeedSource::File(_) => None,
         SeedSource::Random { count } | SeedSource::PoissonDisc { count } => Some(*count),
-        SeedSource::Lattice { lattice, cells } => {
-            Some(LatticeFit::new(*lattice, *cells, config.box_size).seed_count())
-        }
+        SeedSource::Lattice { .. } => config.lattice_fit().map(|fit| fit.seed_count()),
     }
 }
 
@@ -162,23 +175,53 @@ fn seed_count(config: &Config) -> Option<usize> {
 /// [`Error::LevelsExceedMemory`] and [`Error::LevelsExceedIds`]; [`Error::Network`] when the network cannot be relaxed, or
 /// is invalid.
 pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result<Polycrystal, Error> {
+    smooth_watched(config, cells, progress, |_| ())
+}
+
+/// As [`smooth`], with the start and every step of the relaxation shown to `watch`.
+///
+/// # Errors
+/// As of [`smooth`].
+pub fn smooth_watched(
+    config: &Config,
+    cells: Tessellated,
+    progress: Progress,
+    mut watch: impl FnMut(RelaxationStep<'_>),
+) -> Result<Polycrystal, Error> {
     let tessellation = &cells.tessellation;
     let mut clock = Clock { progress, times: cells.times.clone() };
     let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
     check_levels(LevelSize { points, edges, triangles }, config.levels, available_memory())?;
-    let (network, flat, collapsed) = clock.time(Stage::Network, || network(config, tessellation))?;
-    let relaxation = Relaxation { time: config.relaxation_time };
+    let (mut network, flat, collapsed) = clock.time(Stage::Network, || network(config, tessellation))?;
     let relaxed = clock.time(Stage::Relaxation, || {
-        relax(&network, &flat, &relaxation, |done, count| progress(Stage::Relaxation, done, count))
+        relax_watched(&network, &flat, &config.relaxation, config.volumes, |step| {
+            progress(Stage::Relaxation, step.done, step.count);
+            watch(step);
+        })
     })?;
     let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
+    if config.volumes == Volumes::Free {
+        let volumes = network.grain_volumes(network.finest(), &points);
+        network = network.with_cell_volumes(volumes);
+    }
     let (validation, angles_before) = clock.time(Stage::Validation, || {
         let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
         Ok::<_, Error>((validation, dihedral_angles(&network, network.control_mesh(), &flat)))
     })?;
     let times = clock.times;
     let config = config.clone();
-    Ok(Polycrystal { config, cells, network, points, collapsed, angles_before, validation, times })
+    Ok(Polycrystal {
+        config,
+        cells,
+        network,
+        flat,
+        points,
+        relaxed,
+        collapsed,
+        angles_before,
+        validation,
+        times,
+    })
 }
 
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.
@@ -222,9 +265,10 @@ fn seeds(config: &Config, domain: &voronoi::Domain) -> Result<Vec<FileSeed>, Err
         SeedSource::File(path) => return read_seed_file(path, config.dimension),
         SeedSource::Random { count } => random_seeds(*count, domain, config.random_seed),
         SeedSource::PoissonDisc { count } => poisson_disc_seeds(*count, domain, config.random_seed),
-        SeedSource::Lattice { lattice, cells } => LatticeFit::new(*lattice, *cells, config.box_size).seeds(),
+        SeedSource::Lattice { lattice, cells } => config.lattice_seeds(*lattice, *cells, domain),
     };
-    Ok(positions.into_iter().map(|position| FileSeed { position, radius: None, line: 0 }).collect())
+    let numbered = (1..).map(SeedPlace::Entry).zip(positions);
+    Ok(numbered.map(|(place, position)| FileSeed { position, weight: None, place }).collect())
 }
 
 /// The error with the line of the seed file that it comes from.
@@ -235,12 +279,12 @@ fn located(error: VoronoiError, config: &Config, seeds: &[FileSeed]) -> Error {
         | VoronoiError::OutsideDomain { seed, .. }
         | VoronoiError::BadWeight { seed, .. } => *seed,
         VoronoiError::DuplicateSeeds { first, second, position } => {
-            let lines = [seeds[*first].line, seeds[*second].line];
-            return Error::DuplicateSeedsInFile { path: path.clone(), lines, position: *position };
+            let places = [seeds[*first].place, seeds[*second].place];
+            return Error::DuplicateSeedsInFile { path: path.clone(), places, position: *position };
         }
         _ => return error.into(),
     };
-    Error::SeedInFile { path: path.clone(), line: seeds[seed].line, cause: error }
+    Error::SeedInFile { path: path.clone(), place: seeds[seed].place, cause: error }
 }
 
 /// The size for so many random seeds, from the means of Poisson-Voronoi cells (walls not counted): in space 15.54 faces,

@@ -20,7 +20,7 @@ const SHRINKAGE: f64 = 0.95;
 ///
 /// The points are the first ones of the stream behind [`random_seeds`](crate::random_seeds) that lie at least 0.75 mean spacings
 /// from those before. (Should there be no room left for that, the distance is lowered by 5 % after every 10 000 darts in
-/// vain.) Distances are measured across opposite walls too, so that the seeds suit a periodic box.
+/// vain.) In a box distances are measured across opposite walls too, so that the seeds suit one that repeats.
 pub fn poisson_disc_seeds(count: usize, domain: &Domain, random_seed: u64) -> Vec<DVec3> {
     throw_darts(count, domain, random_seed, CLEARANCE)
 }
@@ -56,6 +56,7 @@ fn throw_darts(count: usize, domain: &Domain, random_seed: u64, clearance: f64) 
 struct Bins {
     lower: DVec3,
     size: DVec3,
+    is_box: bool,
     counts: [usize; 3],
     points: Vec<Vec<DVec3>>,
 }
@@ -77,7 +78,13 @@ impl Bins {
             let largest = counts.iter_mut().max().expect("three axes");
             *largest = largest.div_ceil(2);
         }
-        Self { lower, size, counts, points: vec![Vec::new(); counts.iter().product()] }
+        Self {
+            lower,
+            size,
+            is_box: domain.is_box(),
+            counts,
+            points: vec![Vec::new(); counts.iter().product()],
+        }
     }
 
     fn bin(&self, point: DVec3) -> [usize; 3] {
@@ -122,9 +129,12 @@ impl Bins {
         })
     }
 
-    /// The distance of two points in the box whose opposite walls are joined.
+    /// The distance of two points; in a box, of one whose opposite walls are joined.
     fn distance(&self, a: DVec3, b: DVec3) -> f64 {
         let apart = (a - b).abs();
+        if !self.is_box {
+            return apart.length();
+        }
         apart.min(self.size - apart).length()
     }
 }

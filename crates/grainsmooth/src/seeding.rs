@@ -13,19 +13,22 @@ use voronoi::{Dimension, Domain};
 /// `seed_from_u64` of `rand_core`. Nonce and counter start at 0. Each coordinate takes the next 64 bits b of
 /// the stream (little-endian) as lower + floor(b / 2^11) 2^-53 side, in the order x, y and, in 3D, z, one
 /// seed after the other.
+///
+/// In a domain that is no box, the sides are those of the box around it, and points outside the domain are left out.
 pub fn random_seeds(count: usize, domain: &Domain, random_seed: u64) -> Vec<DVec3> {
     random_points(domain, random_seed).take(count).collect()
 }
 
 /// The stream of points behind [`random_seeds`], without end.
-pub(crate) fn random_points(domain: &Domain, random_seed: u64) -> impl Iterator<Item = DVec3> {
+pub(crate) fn random_points(domain: &Domain, random_seed: u64) -> impl Iterator<Item = DVec3> + use<'_> {
     let mut generator = ChaCha8Rng::seed_from_u64(random_seed);
     let (lower, size, dimension) = (domain.lower(), domain.size(), domain.dimension());
     let mut coordinate = move |axis: usize| lower[axis] + unit_fraction(generator.next_u64()) * size[axis];
-    std::iter::repeat_with(move || match dimension {
+    let in_box = std::iter::repeat_with(move || match dimension {
         Dimension::Two => DVec3::new(coordinate(0), coordinate(1), 0.0),
         Dimension::Three => DVec3::new(coordinate(0), coordinate(1), coordinate(2)),
-    })
+    });
+    in_box.filter(|point| domain.is_box() || domain.contains(*point))
 }
 
 /// A number in [0, 1) from the upper 53 bits, as many as a double holds.

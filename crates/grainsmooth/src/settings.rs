@@ -5,12 +5,12 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 
 use glam::DVec3;
-use polycrystal::{FaceMesh, Junctions};
+use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
 use toml::Value;
 use voronoi::Dimension;
 
 use crate::vtk::find;
-use crate::{Config, FileOptions, SeedSource, StlEncoding};
+use crate::{Config, FileOptions, SeedSource, Shape, StlEncoding};
 
 /// The first words of the text in a file.
 const BEGIN: &str = "# grainsmooth configuration";
@@ -43,27 +43,51 @@ impl Config {
         }
         add("lloyd", i64::from(self.lloyd_steps).into());
         let DVec3 { x, y, z } = self.box_size;
-        match self.dimension {
+        let sides = match self.dimension {
             Dimension::Two => {
                 add("dim", 2.into());
-                add("box", vec![x, y].into());
+                vec![x, y]
             }
             Dimension::Three => {
                 add("dim", 3.into());
-                add("box", vec![x, y, z].into());
+                vec![x, y, z]
             }
+        };
+        if !self.shape.is_from_file() {
+            add("box", sides.into());
+        }
+        match &self.shape {
+            Shape::Box => {}
+            Shape::Sphere { chord_error } => {
+                add("domain", "sphere".into());
+                add("chord-error", (*chord_error).into());
+            }
+            Shape::Cylinder { chord_error } => {
+                add("domain", "cylinder".into());
+                add("chord-error", (*chord_error).into());
+            }
+            Shape::Disc { chord_error } => {
+                add("domain", "disc".into());
+                add("chord-error", (*chord_error).into());
+            }
+            Shape::Surface(path) => add("domain", path.display().to_string().into()),
+            Shape::HalfSpaces(path) => add("half-spaces", path.display().to_string().into()),
         }
         let axes = ["x", "y", "z"].into_iter().zip(<[bool; 3]>::from(self.periodic));
         let axes: Vec<&str> = axes.filter(|(_, is_periodic)| *is_periodic).map(|(axis, _)| axis).collect();
-        if !axes.is_empty() {
-            add("periodic", axes.join(",").into());
-        }
+        add("periodic", if axes.is_empty() { "none".into() } else { axes.join(",").into() });
         match self.face_mesh {
             FaceMesh::Fan => add("faces", "fan".into()),
             FaceMesh::Plain => add("faces", "plain".into()),
             FaceMesh::Refined { edge_length } => add("edge-length", edge_length.into()),
         }
-        add("relax", self.relaxation_time.into());
+        match self.relaxation {
+            Relaxation::Time(time) => add("relax", time.into()),
+            Relaxation::Equilibrium => add("relax", "equilibrium".into()),
+        }
+        if self.volumes == Volumes::Free {
+            add("free", true.into());
+        }
         add("regularize", self.regularize.into());
         add("levels", i64::from(self.levels).into());
         let junctions = match self.junctions {
@@ -122,6 +146,9 @@ impl FileOptions {
         }
         if self.stl == StlEncoding::Ascii {
             settings.push(("ascii", true.into()));
+        }
+        if self.arrays {
+            settings.push(("arrays", true.into()));
         }
         settings
     }

@@ -118,6 +118,8 @@ pub enum Values<'a> {
     Int32Pairs(&'a [[i32; 2]]),
     /// One 64-bit floating point number each.
     Float64(&'a [f64]),
+    /// Two 64-bit floating point numbers each.
+    Float64Pairs(&'a [[f64; 2]]),
     /// Three 64-bit floating point numbers each.
     Vectors(&'a [DVec3]),
     /// One 8-bit integer each, computed when it is written.
@@ -164,6 +166,7 @@ impl<'a> Values<'a> {
             Self::Int32(values) => values.len(),
             Self::Int32Pairs(pairs) => pairs.len(),
             Self::Float64(values) => values.len(),
+            Self::Float64Pairs(pairs) => pairs.len(),
             Self::Vectors(vectors) => vectors.len(),
             Self::Int8Of(each) => each.count,
             Self::Int32Of(each) => each.count,
@@ -182,7 +185,7 @@ impl<'a> Values<'a> {
         match self {
             Self::Int8(_) | Self::Int8Of(_) | Self::Int32(_) | Self::Int32Of(_) => 1,
             Self::Float64(_) | Self::Float64Of(_) => 1,
-            Self::Int32Pairs(_) | Self::Int32PairsOf(_) => 2,
+            Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Float64Pairs(_) => 2,
             Self::Vectors(_) => 3,
             Self::Int32Tuples(tuples) => tuples.components,
         }
@@ -193,7 +196,8 @@ impl<'a> Values<'a> {
             Self::Int8(_) | Self::Int8Of(_) => ScalarType::Int8,
             Self::Int32(_) | Self::Int32Of(_) => ScalarType::Int32,
             Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Int32Tuples(_) => ScalarType::Int32,
-            Self::Float64(_) | Self::Float64Of(_) | Self::Vectors(_) => ScalarType::Float64,
+            Self::Float64(_) | Self::Float64Of(_) => ScalarType::Float64,
+            Self::Float64Pairs(_) | Self::Vectors(_) => ScalarType::Float64,
         }
     }
 }

@@ -21,20 +21,41 @@ pub fn dihedral_angles(network: &Network, level: &Level, points: &[DVec3]) -> Op
     angle_statistics(&Surface::of_level(level, points, &sides), &Seams::of_level(level))
 }
 
-/// The same of any surface.
-pub(crate) fn angle_statistics(surface: &Surface<'_>, seams: &Seams) -> Option<AngleStatistics> {
+/// An angle between two boundaries at a triple line, in the plane at a triple point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WeightedAngle {
+    /// The angle, from 0 to 180 degrees.
+    pub degrees: f64,
+    /// The length of the line over which it holds; in the plane 1.
+    pub weight: f64,
+}
+
+/// All angles that [`dihedral_angles`] takes the statistics of: three at each edge of a triple line.
+pub fn angles_between_boundaries(network: &Network, level: &Level, points: &[DVec3]) -> Vec<WeightedAngle> {
+    let sides = network.sides();
+    angles(&Surface::of_level(level, points, &sides), &Seams::of_level(level)).collect()
+}
+
+fn angles(surface: &Surface<'_>, seams: &Seams) -> impl Iterator<Item = WeightedAngle> {
     let is_interior = |at: &Use| !surface.sides_of(at.element).contains(&Side::Exterior);
-    let triple = seams.places().filter(|at| at.len() == 3 && at.iter().all(is_interior));
-    // Sums of weight, weight * angle and weight * angle^2.
-    let mut sums = [0.0; 3];
-    for at in triple {
+    let triple = seams.places().filter(move |at| at.len() == 3 && at.iter().all(is_interior));
+    triple.flat_map(|at| {
         let weight = place_length(surface, at);
         let legs = [0, 1, 2].map(|k| leg(surface, &at[k]));
-        for [a, b] in [[0, 1], [1, 2], [2, 0]] {
-            let angle = legs[a].dot(legs[b]).clamp(-1.0, 1.0).acos().to_degrees();
-            for (sum, power) in sums.iter_mut().zip([1.0, angle, angle * angle]) {
-                *sum += weight * power;
-            }
+        [[0, 1], [1, 2], [2, 0]].map(|[a, b]| {
+            let degrees = legs[a].dot(legs[b]).clamp(-1.0, 1.0).acos().to_degrees();
+            WeightedAngle { degrees, weight }
+        })
+    })
+}
+
+/// The same of any surface.
+pub(crate) fn angle_statistics(surface: &Surface<'_>, seams: &Seams) -> Option<AngleStatistics> {
+    // Sums of weight, weight * angle and weight * angle^2.
+    let mut sums = [0.0; 3];
+    for WeightedAngle { degrees, weight } in angles(surface, seams) {
+        for (sum, power) in sums.iter_mut().zip([1.0, degrees, degrees * degrees]) {
+            *sum += weight * power;
         }
     }
     let [weight, first, second] = sums;

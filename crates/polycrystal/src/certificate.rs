@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::angles::angle_statistics;
 use crate::closing::faults_of_closing;
+use crate::fans::pinched_points;
 use crate::fault::Fault;
 use crate::folds::folded_pairs;
 use crate::intersections::crossing_elements;
@@ -102,8 +103,11 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>)
     let orphans = ids(node_types.len()).filter(|point| node_types[*point as usize].is_none());
     faults.extend(orphans.map(|point| Fault::Orphan { point }));
     let mut closing = faults_of_closing(surface, seams);
-    closing.sort_by_key(Fault::kind);
     let is_closed = closing.is_empty();
+    if is_closed {
+        closing = pinched_points(surface, seams);
+    }
+    closing.sort_by_key(Fault::kind);
     faults.extend(closing);
     let has_area = |pair: &[u32; 2]| pair.iter().all(|element| normals[*element as usize] != DVec3::ZERO);
     let folded = folded_pairs(&seams.inner, &normals, FOLD_COSINE).into_iter().filter(has_area);

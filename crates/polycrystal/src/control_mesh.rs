@@ -9,7 +9,7 @@ use crate::face_mesh::{LinePoints, id, triangulate_faces};
 use crate::periodic::PeriodicCopies;
 use crate::{
     Boundary, BoundaryId, FaceMesh, GrainId, Junctions, Level, Mesh, NetworkError, NodeType, Side, Twin,
-    WallSet,
+    WallSet, WallSets,
 };
 
 /// The connectivity of the control mesh, its points, and the boundaries: one for each face of the tessellation.
@@ -17,6 +17,7 @@ pub(crate) struct ControlMesh {
     pub(crate) level: Level,
     pub(crate) points: Vec<DVec3>,
     pub(crate) boundaries: Vec<Boundary>,
+    pub(crate) wall_sets: WallSets,
     pub(crate) junctions: JunctionCounts,
 }
 
@@ -84,10 +85,11 @@ fn surfaces(
         quadruple_points: count_originals(&node_types, 4, copied_vertices(tessellation)),
     };
     node_types.extend(lines.lines().map(|line| line_types[line]));
-    let mut walls = walls_of_vertices(tessellation, &boundaries);
+    let ends = edges.ends.iter().map(|ends| ends.map(voronoi::VertexId::index));
+    let (wall_sets, mut walls) = WallSets::new(tessellation, &boundaries, ends);
     let walls_of_line = |line: usize| {
         let [start, end] = edges.ends[line];
-        walls[start.index()].intersection(walls[end.index()])
+        wall_sets.intersection(walls[start.index()], walls[end.index()])
     };
     let on_lines: Vec<WallSet> = lines.lines().map(walls_of_line).collect();
     walls.extend(on_lines);
@@ -118,11 +120,10 @@ fn surfaces(
         let inner_count = mesh.inner_points.len();
         points.extend(mesh.inner_points);
         node_types.resize(node_types.len() + inner_count, inside);
-        walls.resize(walls.len() + inner_count, walls_inside(boundary));
+        walls.resize(walls.len() + inner_count, wall_sets.only(boundary.wall));
     }
     // Dividing lines and faces may miss a wall by a last place.
-    let domain = tessellation.domain();
-    points.iter_mut().zip(&walls).for_each(|(point, walls)| *point = walls.put_on_walls(domain, *point));
+    points.iter_mut().zip(&walls).for_each(|(point, walls)| *point = wall_sets.put_on_walls(*walls, *point));
 
     let creases: Vec<Crease> = (0u32..)
         .zip(&edges.ends)
@@ -150,7 +151,7 @@ fn surfaces(
         copies,
         edge_node_types,
     };
-    Ok(ControlMesh { level, points, boundaries, junctions: counts })
+    Ok(ControlMesh { level, points, boundaries, wall_sets, junctions: counts })
 }
 
 fn lines(
@@ -182,10 +183,9 @@ fn lines(
             meetings.note(end.index(), tessellation.face_sides(face));
         }
     }
-    let mut walls = walls_of_vertices(tessellation, &boundaries);
-    walls.extend(lines.lines().map(|line| walls_inside(&boundaries[line])));
-    let domain = tessellation.domain();
-    points.iter_mut().zip(&walls).for_each(|(point, walls)| *point = walls.put_on_walls(domain, *point));
+    let (wall_sets, mut walls) = WallSets::new(tessellation, &boundaries, std::iter::empty());
+    walls.extend(lines.lines().map(|line| wall_sets.only(boundaries[line].wall)));
+    points.iter_mut().zip(&walls).for_each(|(point, walls)| *point = wall_sets.put_on_walls(*walls, *point));
     let corners: Vec<u32> = (0..id(vertex_count)).collect();
     let mut node_types = meetings.types();
     let at_least = |count| count_originals(&node_types, count, copied_vertices(tessellation));
@@ -198,7 +198,7 @@ fn lines(
     copies.add_lines(&copied_lines, &first_segments);
     let level =
         Level { mesh, boundary_of, node_types, generations, walls, copies, edge_node_types: Vec::new() };
-    Ok(ControlMesh { level, points, boundaries, junctions: counts })
+    Ok(ControlMesh { level, points, boundaries, wall_sets, junctions: counts })
 }
 
 /// The types of the tessellation's vertices and of the points inside its edges.
@@ -278,20 +278,4 @@ impl Meetings {
         let places = self.originals.iter().zip(&self.is_outer);
         places.map(|((original, _), is_outer)| NodeType::new(side_counts[*original], *is_outer)).collect()
     }
-}
-
-fn walls_inside(boundary: &Boundary) -> WallSet {
-    boundary.wall.map_or(WallSet::NONE, |wall| WallSet::NONE.with(wall))
-}
-
-fn walls_of_vertices(tessellation: &Tessellation, boundaries: &[Boundary]) -> Vec<WallSet> {
-    let mut walls = vec![WallSet::NONE; tessellation.vertices().len()];
-    for (face, boundary) in tessellation.faces().zip(boundaries) {
-        if let Some(wall) = boundary.wall {
-            for corner in tessellation.face_corners(face) {
-                walls[corner.index()] = walls[corner.index()].with(wall);
-            }
-        }
-    }
-    walls
 }

@@ -59,7 +59,7 @@ impl FaceMesh {
         let lines = tessellation.edges();
         let segments: u128 = lines.ends.iter().map(|ends| count(*ends)).sum();
         let mut corner_edges = lines.of_corner.iter();
-        let (mut inner, mut triangles) = (0, 0);
+        let (mut inner, mut inner_edges, mut triangles) = (0, 0, 0);
         for face in tessellation.faces() {
             let corners = tessellation.face_corners(face);
             let of_face = corner_edges.by_ref().take(corners.len());
@@ -76,11 +76,12 @@ impl FaceMesh {
                 }
             };
             inner += more_points;
+            // Each has a triangle on either side, and each of the outline one within the face.
+            inner_edges += (3 * more_triangles - outline) / 2;
             triangles += more_triangles;
         }
         let points = vertex_count + segments - lines.ends.len() as u128 + inner;
-        // An edge inside a boundary has a triangle on either side; outlines are few beside those.
-        MeshSize { points, edges: segments + (3 * triangles).div_ceil(2), triangles }
+        MeshSize { points, edges: segments + inner_edges, triangles }
     }
 
     fn segment_count(self, [start, end]: [DVec3; 2]) -> u32 {

@@ -83,6 +83,16 @@ pub enum Fault {
         /// Number of its elements there.
         elements: usize,
     },
+    /// In space, a grain's surface touches itself in one point, with no edge in common.
+    #[error("the surface of grain {} touches itself in point {point}: {fans} fans of triangles meet there, not one", grain.0)]
+    PinchedPoint {
+        /// The point.
+        point: u32,
+        /// The grain.
+        grain: GrainId,
+        /// Number of fans of its triangles around the point.
+        fans: usize,
+    },
     /// Two neighbours in one boundary are folded over each other.
     #[error("elements {} and {} of one boundary are folded by more than 90 degrees", elements[0], elements[1])]
     Folded {
@@ -159,7 +169,7 @@ impl Fault {
             Self::Open { .. } => "open",
             Self::Turned { .. } | Self::Winding { .. } => "winding",
             Self::WrongSides { .. } => "wrong sides",
-            Self::Pinched { .. } => "pinched",
+            Self::Pinched { .. } | Self::PinchedPoint { .. } => "pinched",
             Self::Folded { .. } => "folded",
             Self::Crossing { .. } => "crossing",
             Self::WrongNodeType { .. } => "wrong node type",
@@ -172,9 +182,10 @@ impl Fault {
     /// The points and elements that the fault names.
     pub fn ids(&self) -> (Vec<u32>, Vec<u32>) {
         match self {
-            Self::NotFinite { point } | Self::Orphan { point } | Self::WrongNodeType { point, .. } => {
-                (vec![*point], Vec::new())
-            }
+            Self::NotFinite { point }
+            | Self::Orphan { point }
+            | Self::PinchedPoint { point, .. }
+            | Self::WrongNodeType { point, .. } => (vec![*point], Vec::new()),
             Self::DuplicatePoints { points } => (points.to_vec(), Vec::new()),
             Self::NoArea { element } | Self::Turned { element } | Self::WrongSides { element, .. } => {
                 (Vec::new(), vec![*element])
@@ -194,9 +205,10 @@ impl Fault {
     pub fn grains(&self) -> Vec<GrainId> {
         match self {
             Self::Open { grains, .. } => grains.clone(),
-            Self::Pinched { grain, .. } | Self::NoVolume { grain, .. } | Self::WrongVolume { grain, .. } => {
-                vec![*grain]
-            }
+            Self::Pinched { grain, .. }
+            | Self::PinchedPoint { grain, .. }
+            | Self::NoVolume { grain, .. }
+            | Self::WrongVolume { grain, .. } => vec![*grain],
             Self::WrongSides { stated, .. } => stated.iter().filter_map(|side| side.grain()).collect(),
             _ => Vec::new(),
         }

@@ -2,7 +2,7 @@ use rayon::prelude::*;
 use subzero::{CurveMesh, Refinement, StencilTable, TriangleMesh};
 
 use crate::periodic::PeriodicCopies;
-use crate::{Boundary, BoundaryId, NodeType, WallSet};
+use crate::{Boundary, BoundaryId, NodeType, WallSet, WallSets};
 
 /// The elements of the network: triangles in space, segments in the plane.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +44,7 @@ impl Level {
     }
 
     /// The next level, and how its points follow from this one's.
-    pub(crate) fn refine(&self, boundaries: &[Boundary]) -> (Self, StencilTable) {
+    pub(crate) fn refine(&self, boundaries: &[Boundary], sets: &WallSets) -> (Self, StencilTable) {
         match &self.mesh {
             Mesh::Triangles(mesh) => {
                 let Refinement { mesh: finer, stencils } = mesh.loop_refine();
@@ -61,13 +61,17 @@ impl Level {
                 let inside = (0..triangles).flat_map(|t| [self.type_inside(t, boundaries); 3]);
                 let edge_node_types = halves.chain(inside).collect();
                 let born = self.edge_node_types.clone();
-                (self.child(Mesh::Triangles(finer), boundary_of, &ends, born, edge_node_types), stencils)
+                (
+                    self.child(Mesh::Triangles(finer), boundary_of, (&ends, sets), born, edge_node_types),
+                    stencils,
+                )
             }
             Mesh::Segments(mesh) => {
                 let Refinement { mesh: finer, stencils } = mesh.refine();
                 let boundary_of = self.boundary_of.iter().flat_map(|boundary| [*boundary; 2]).collect();
                 let born = (0..self.element_count()).map(|s| self.type_inside(s, boundaries)).collect();
-                (self.child(Mesh::Segments(finer), boundary_of, mesh.segments(), born, Vec::new()), stencils)
+                let ends = (mesh.segments(), sets);
+                (self.child(Mesh::Segments(finer), boundary_of, ends, born, Vec::new()), stencils)
             }
         }
     }
@@ -77,7 +81,7 @@ impl Level {
         &self,
         mesh: Mesh,
         boundary_of: Vec<BoundaryId>,
-        ends: &[[u32; 2]],
+        (ends, sets): (&[[u32; 2]], &WallSets),
         born: Vec<NodeType>,
         edge_node_types: Vec<NodeType>,
     ) -> Self {
@@ -88,7 +92,8 @@ impl Level {
         node_types.extend(born);
         let mut walls = self.walls.clone();
         // A line between two points of a wall lies in the wall: no element joins walls through the inside.
-        walls.extend(ends.iter().map(|[a, b]| self.walls[*a as usize].intersection(self.walls[*b as usize])));
+        let common = |[a, b]: &[u32; 2]| sets.intersection(self.walls[*a as usize], self.walls[*b as usize]);
+        walls.extend(ends.iter().map(common));
         let copies = self.copies.refined(self.vertex_count(), self.element_count(), &mesh);
         Self { mesh, boundary_of, node_types, generations, walls, copies, edge_node_types }
     }

@@ -29,6 +29,7 @@ mod contact;
 mod control_mesh;
 mod error;
 mod face_mesh;
+mod fans;
 mod fault;
 mod folds;
 mod intersections;
@@ -46,7 +47,7 @@ mod validate;
 mod volume;
 mod wall_set;
 
-pub use angles::{AngleStatistics, dihedral_angles};
+pub use angles::{AngleStatistics, WeightedAngle, angles_between_boundaries, dihedral_angles};
 pub use boundary::{Boundary, BoundaryId, GrainId, Side, Twin};
 pub use certificate::{Certificate, Claims, Faults, certify};
 pub use control_mesh::JunctionCounts;
@@ -58,13 +59,13 @@ pub use level::{Level, Mesh};
 pub use measures::{
     BoundaryMeasures, GrainMeasures, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures, PlaneMeasures,
     PointCurvature, QuadruplePointMeasures, SpaceMeasures, TripleLineMeasures, TriplePointMeasures, measure,
-    measure_network, point_curvatures,
+    measure_network, point_curvatures, point_dihedral_angles,
 };
 pub use network::{Junctions, Network};
 pub use node_type::NodeType;
 pub use orientation::outward_sides;
 pub use periodic::PeriodicCopies;
-pub use relax::{Relaxation, Relaxed, relax};
+pub use relax::{Relaxation, RelaxationStep, Relaxed, Volumes, relax, relax_watched};
 pub use surface::{Elements, Surface};
 pub use validate::validate;
-pub use wall_set::WallSet;
+pub use wall_set::{Freedom, WallSet, WallSets};

@@ -12,7 +12,7 @@ pub use curvatures::{PointCurvature, point_curvatures};
 pub use plane::{PlaneBoundaryMeasures, PlaneGrainMeasures, PlaneMeasures, TriplePointMeasures};
 pub use space::{BoundaryMeasures, GrainMeasures, QuadruplePointMeasures, SpaceMeasures, TripleLineMeasures};
 
-use crate::{AngleStatistics, Elements, Network, Surface};
+use crate::{AngleStatistics, Elements, Network, Side, Surface};
 use complex::Complex;
 
 /// What a network is like. Lengths are in the unit of its points, angles in degrees.
@@ -65,6 +65,37 @@ pub fn measure_network(network: &Network, points: &[DVec3]) -> Measures {
     let sides = network.sides();
     let surface = Surface::of_level(level, points, &sides);
     of_complex(&Complex::of_level(network, level, &surface))
+}
+
+/// The smallest and the largest dihedral angle of the triple lines (in the plane: of the triple point) at each point, in
+/// degrees; NaN where there is none, and where the exterior is one of the sides. Copies have what their originals have.
+///
+/// # Panics
+/// When there is not one point per vertex.
+pub fn point_dihedral_angles(network: &Network, points: &[DVec3]) -> Vec<[f64; 2]> {
+    let level = network.finest();
+    assert_eq!(points.len(), level.vertex_count(), "there must be one point per vertex");
+    let sides = network.sides();
+    let surface = Surface::of_level(level, points, &sides);
+    let complex = Complex::of_level(network, level, &surface);
+    // The minimum with NaN is the other number.
+    let mut angles = vec![[f64::NAN; 2]; points.len()];
+    for place in complex.places().filter(|at| at.len() >= 3) {
+        let wedges = complex.wedges(place);
+        if wedges.iter().any(|wedge| wedge.side == Side::Exterior) {
+            continue;
+        }
+        for end in place[0].ends(surface.elements).map(|end| complex.original(end)) {
+            for degrees in wedges.iter().map(|wedge| wedge.angle.to_degrees()) {
+                let [smallest, largest] = angles[end as usize];
+                angles[end as usize] = [smallest.min(degrees), largest.max(degrees)];
+            }
+        }
+    }
+    for pair in &level.copies.vertices {
+        angles[pair.secondary as usize] = angles[pair.primary as usize];
+    }
+    angles
 }
 
 fn of_complex(complex: &Complex<'_>) -> Measures {

@@ -6,7 +6,7 @@ use voronoi::{Domain, Tessellation};
 use crate::control_mesh::{ControlMesh, JunctionCounts};
 use crate::folds::element_normals;
 use crate::volume::{boundary_volumes, sum_over_grains};
-use crate::{Boundary, FaceMesh, Level, NetworkError, Surface};
+use crate::{Boundary, FaceMesh, Freedom, Level, NetworkError, Surface, WallSet, WallSets};
 
 /// How triple lines and the domain's edges are smoothed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -27,6 +27,7 @@ pub struct Network {
     boundaries: Vec<Boundary>,
     junctions: JunctionCounts,
     cell_volumes: Vec<f64>,
+    wall_sets: WallSets,
     /// From the control mesh to the finest.
     levels: Vec<Level>,
     /// How the points of each level but the first follow from those of the level before.
@@ -63,7 +64,7 @@ impl Network {
             return Err(NetworkError::BadEdgeLength(edge_length));
         }
         check_size(tessellation, face_mesh, level_count)?;
-        let ControlMesh { level, mut points, boundaries, junctions: counts } =
+        let ControlMesh { level, mut points, boundaries, wall_sets, junctions: counts } =
             ControlMesh::new(tessellation, face_mesh, junctions)?;
         level.copies.place(tessellation.domain(), &mut points);
         let mut normals = element_normals(&level, &points).into_iter().zip(&level.boundary_of);
@@ -73,16 +74,17 @@ impl Network {
         let mut levels = vec![level];
         let mut stencils = Vec::new();
         for coarser in 0..level_count {
-            let (finer, table) = levels[coarser].refine(&boundaries);
+            let (finer, table) = levels[coarser].refine(&boundaries, &wall_sets);
             levels.push(finer);
             stencils.push(table);
         }
         let cell_volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
         let network = Self {
-            domain: *tessellation.domain(),
+            domain: tessellation.domain().clone(),
             boundaries,
             junctions: counts,
             cell_volumes,
+            wall_sets,
             levels,
             stencils,
         };
@@ -132,6 +134,16 @@ impl Network {
         &self.cell_volumes
     }
 
+    /// What the sets of walls in [`Level::walls`] are.
+    pub fn wall_sets(&self) -> &WallSets {
+        &self.wall_sets
+    }
+
+    /// How a point can move without leaving its walls.
+    pub(crate) fn freedom(&self, walls: WallSet) -> Freedom {
+        self.wall_sets.freedom(walls)
+    }
+
     /// The connectivity of all levels, from the control mesh to the finest.
     pub fn levels(&self) -> &[Level] {
         &self.levels
@@ -173,7 +185,7 @@ impl Network {
         for (stencils, finer) in self.stencils[from..to].iter().zip(&self.levels[from + 1..=to]) {
             points = stencils.apply(&points);
             let on_walls = points.par_iter_mut().zip(&finer.walls).filter(|(_, walls)| !walls.is_empty());
-            on_walls.for_each(|(point, walls)| *point = walls.put_on_walls(&self.domain, *point));
+            on_walls.for_each(|(point, walls)| *point = self.wall_sets.put_on_walls(*walls, *point));
             finer.copies.place(&self.domain, &mut points);
         }
         points

@@ -231,6 +231,59 @@ fn a_grain_that_touches_itself_is_found() {
     assert_eq!((pinched.count(), certificate.faults.0.len()), (4, 4), "{}", certificate.faults);
 }
 
+/// Tetrahedra with one corner in common, and all of these within a larger one.
+fn pinches_of_touching_tetrahedra(grains: [u32; 2]) -> Vec<Fault> {
+    let corner = |x: f64, y: f64, z: f64| DVec3::new(x, y, z);
+    let points = [
+        DVec3::ZERO,
+        corner(1.0, 0.0, 0.0),
+        corner(1.0, 1.0, 0.0),
+        corner(1.0, 0.0, 1.0),
+        corner(-1.0, 0.0, 0.0),
+        corner(-1.0, 1.0, 0.0),
+        corner(-1.0, 0.0, 1.0),
+        corner(-9.0, -9.0, -9.0),
+        corner(29.0, -9.0, -9.0),
+        corner(-9.0, 29.0, -9.0),
+        corner(-9.0, -9.0, 29.0),
+    ];
+    let faces = |[a, b, c, d]: [u32; 4]| [[a, c, b], [a, b, d], [b, c, d], [a, d, c]];
+    // The second is the first's mirror image.
+    let triangles = [faces([0, 1, 2, 3]), faces([0, 5, 4, 6]), faces([7, 8, 9, 10])].concat();
+    let boundary_of: Vec<BoundaryId> = (0u32..12).map(|triangle| BoundaryId(triangle / 4)).collect();
+    let around = Side::Grain(GrainId(7));
+    let sides = [
+        [Side::Grain(GrainId(grains[0])), around],
+        [Side::Grain(GrainId(grains[1])), around],
+        [around, Side::Exterior],
+    ];
+    let elements = Elements::Triangles(&triangles);
+    let surface = Surface { points: &points, elements, boundary_of: &boundary_of, sides: &sides };
+    let faults = certify(&surface, &Claims::default()).faults.0;
+    // The edges of the tetrahedra are folds within their boundaries.
+    faults.into_iter().filter(|fault| fault.kind() != "folded").collect()
+}
+
+#[test]
+fn grains_that_touch_in_one_point_only_are_found() {
+    // Of two grains each is closed, but that around them is pinched.
+    let pinched = |grain: u32| Fault::PinchedPoint { point: 0, grain: GrainId(grain), fans: 2 };
+    assert_eq!(pinches_of_touching_tetrahedra([0, 1]), [pinched(7)]);
+    assert_eq!(pinches_of_touching_tetrahedra([3, 3]), [pinched(3), pinched(7)]);
+}
+
+#[test]
+fn points_of_many_grains_are_no_pinches() {
+    let centre = |i: u32| (f64::from(i) + 0.5) / 3.0;
+    let seeds: Vec<DVec3> =
+        (0..27).map(|i| DVec3::new(centre(i % 3), centre(i / 3 % 3), centre(i / 9))).collect();
+    let (network, flat) = common::network(&Domain::unit_cube(), &seeds, 1);
+    let points = network.subdivide(&flat);
+    let sides = network.sides();
+    let certificate = certify(&Surface::of_level(network.finest(), &points, &sides), &Claims::default());
+    assert!(certificate.is_good(), "{}", certificate.faults);
+}
+
 #[test]
 fn lines_in_the_plane_are_certified() {
     let (network, flat) = random_network(&Domain::unit_square(), 20, 3, 2);

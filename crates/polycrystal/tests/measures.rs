@@ -218,7 +218,7 @@ fn a_grain_may_be_its_own_neighbor() {
 #[test]
 fn lines_and_points_are_those_of_the_cells() {
     let x = BVec3::new(true, false, false);
-    for domain in [Domain::unit_cube(), Domain::unit_cube().with_periods(x), tori()[0]] {
+    for domain in [Domain::unit_cube(), Domain::unit_cube().with_periods(x), tori()[0].clone()] {
         for count in [2, 5, 30] {
             let (network, flat) = random_network(&domain, count, 3, 1);
             let measures = in_space(&network, &network.subdivide(&flat));

@@ -156,7 +156,7 @@ fn periodic_grains_relax_and_stay_periodic() {
         (Domain::unit_square().with_periods(BVec3::TRUE), 40, 2),
     ] {
         let (_, network, flat) = network(&domain, &random_seeds(&domain, count, 4), levels);
-        let still = relax(&network, &flat, &Relaxation { time: 0.0 }, |_, _| ()).expect("nothing to do");
+        let still = relax(&network, &flat, &Relaxation::Time(0.0), |_, _| ()).expect("nothing to do");
         assert_eq!(still.points, flat);
         let relaxed = relax(&network, &flat, &Relaxation::default(), |_, _| ()).expect("relaxes");
         let smooth = relaxed.finest_points(&network);

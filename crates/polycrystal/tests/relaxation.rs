@@ -6,7 +6,7 @@ mod common;
 use common::{network, random_network, random_seeds, regular_network, relaxed};
 use glam::DVec3;
 use polycrystal::{
-    Junctions, Network, NetworkError, Relaxation, dihedral_angles, folded_edges, relax, validate,
+    Junctions, Mesh, Network, NetworkError, Relaxation, dihedral_angles, folded_edges, relax, validate,
 };
 use proptest::prelude::*;
 use voronoi::{Domain, Tessellation};
@@ -47,7 +47,7 @@ fn grains_with_small_features_relax_too() {
 fn time_zero_gives_regularised_grains_the_volumes_of_their_cells() {
     let (network, flat) = regular_network(&Domain::unit_cube(), 50, 4, 1);
     assert!(validate(&network, &network.subdivide(&flat)).is_err());
-    let restored = relax(&network, &flat, &Relaxation { time: 0.0 }, |_, _| ()).expect("restores volumes");
+    let restored = relax(&network, &flat, &Relaxation::Time(0.0), |_, _| ()).expect("restores volumes");
     assert!(validate(&network, &restored.finest_points(&network)).is_ok());
 }
 
@@ -97,6 +97,33 @@ fn grains_that_all_but_meet_are_named() {
     assert!(error.to_string().starts_with("the boundary between grain "), "{error}");
 }
 
+/// Kelvin's foam: 5.3063 V^(2/3) a cell in equilibrium, 5.3147 while its faces are flat (Kusner and Sullivan 1996).
+#[test]
+fn kelvins_foam_has_its_area() {
+    let mut seeds = Vec::new();
+    for i in 0..8 {
+        let corner = DVec3::new(f64::from(i % 2), f64::from(i / 2 % 2), f64::from(i / 4));
+        seeds.extend([(corner + 0.25) / 2.0, (corner + 0.75) / 2.0]);
+    }
+    let domain = Domain::unit_cube().with_periods(glam::BVec3::TRUE);
+    let (network, flat) = network(&domain, &seeds, 3);
+    // Boundaries through the walls come twice, once for each of their grains.
+    let area_of_a_cell = |points: &[DVec3]| {
+        let Mesh::Triangles(mesh) = &network.finest().mesh else { unreachable!("three dimensions") };
+        let areas = mesh.triangles().iter().zip(&network.finest().boundary_of).map(|(corners, boundary)| {
+            let [a, b, c] = corners.map(|corner| points[corner as usize]);
+            let share = if network.boundaries()[boundary.index()].twin.is_some() { 0.5 } else { 1.0 };
+            0.5 * share * (b - a).cross(c - a).length()
+        });
+        areas.sum::<f64>() / 8.0 / (1.0f64 / 16.0).powf(2.0 / 3.0)
+    };
+    assert!((area_of_a_cell(&network.subdivide(&flat)) / 5.3147 - 1.0).abs() < 1e-4);
+    let relaxed = relax(&network, &flat, &Relaxation::Equilibrium, |_, _| ()).expect("relaxes");
+    let smooth = relaxed.finest_points(&network);
+    assert!((area_of_a_cell(&smooth) / 5.3063 - 1.0).abs() < 5e-4, "{}", area_of_a_cell(&smooth));
+    assert!(spread(&network, &smooth) < 2.0, "{}", spread(&network, &smooth));
+}
+
 #[test]
 fn flat_equilibria_stay_as_they_are() {
     let two = vec![DVec3::new(0.25, 0.5, 0.5), DVec3::new(0.75, 0.5, 0.5)];
@@ -116,7 +143,7 @@ fn one_grain_and_time_zero_change_nothing() {
     let (one, points) = network(&Domain::unit_cube(), &[DVec3::splat(0.3)], 2);
     assert_eq!(relaxed(&one, &points), one.subdivide(&points));
     let (many, points) = random_network(&Domain::unit_cube(), 20, 1, 1);
-    let off = Relaxation { time: 0.0 };
+    let off = Relaxation::Time(0.0);
     assert_eq!(relax(&many, &points, &off, |_, _| ()).expect("nothing to do").points, points);
 }
 
@@ -124,7 +151,7 @@ fn one_grain_and_time_zero_change_nothing() {
 fn times_that_are_no_times_are_refused() {
     let (network, points) = random_network(&Domain::unit_cube(), 5, 1, 0);
     for time in [-1.0, f64::NAN, f64::INFINITY] {
-        let result = relax(&network, &points, &Relaxation { time }, |_, _| ());
+        let result = relax(&network, &points, &Relaxation::Time(time), |_, _| ());
         assert!(matches!(result, Err(NetworkError::BadRelaxationTime(_))));
     }
 }
@@ -167,7 +194,7 @@ fn volumes_are_restored_in_thin_boxes_and_where_much_is_rigid() {
     ] {
         let domain = Domain::cuboid(DVec3::ZERO, size).expect("positive sides");
         let (network, flat) = random_network(&domain, count, random_seed, 2);
-        let relaxed = relax(&network, &flat, &Relaxation { time }, |_, _| ()).expect("relaxes");
+        let relaxed = relax(&network, &flat, &Relaxation::Time(time), |_, _| ()).expect("relaxes");
         assert!(validate(&network, &relaxed.finest_points(&network)).is_ok());
     }
 }
@@ -204,7 +231,7 @@ proptest! {
     ) {
         let domain = Domain::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, height)).expect("positive sides");
         let (network, flat) = regular_network(&domain, count, random_seed, levels);
-        let relaxed = relax(&network, &flat, &Relaxation { time }, |_, _| ()).expect("relaxes");
+        let relaxed = relax(&network, &flat, &Relaxation::Time(time), |_, _| ()).expect("relaxes");
         prop_assert!(validate(&network, &relaxed.finest_points(&network)).is_ok());
     }
 

@@ -172,15 +172,16 @@ impl Cutting for ConvexCell {
         if self.triples.is_empty() { -1.0 } else { self.radius }
     }
 
-    fn cut_with_bisector(&mut self, other: u32, input: ExactInput) {
-        let plane = HalfSpace::new(self.seed, Generator::site(other), input);
+    fn cut(&mut self, generator: Generator, input: ExactInput) {
+        let plane = HalfSpace::new(self.seed, generator, input);
         if self.find_cut(&plane, input) {
             self.close_hole(plane, input);
             self.update_radius();
         }
     }
 
-    fn any_vertex(&self) -> Option<[Generator; 3]> {
-        self.triples.first().map(|triple| triple.map(|p| self.planes[usize::from(p)].generator))
+    fn vertices(&self) -> Vec<[Generator; 3]> {
+        let generators = |triple: &[u16; 3]| triple.map(|p| self.planes[usize::from(p)].generator);
+        self.triples.iter().map(generators).collect()
     }
 }

@@ -1,8 +1,12 @@
 use std::fmt;
+use std::sync::Arc;
 
 use glam::{BVec3, DVec3};
 
-use crate::VoronoiError;
+use crate::half_space::{EVALUATION_ERROR, HalfSpace};
+use crate::polyhedron::{Extent, Polyhedron};
+use crate::predicate::{is_outside, unit_normal};
+use crate::{Tessellation, VoronoiError, Wall, WallPlane};
 
 /// Number of space dimensions of a tessellation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,48 +17,18 @@ pub enum Dimension {
     Three,
 }
 
-/// A side of the box, numbered 0 to 5 in the order x0, x1, y0, y1, z0, z1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Wall(pub(crate) u8);
+/// Most walls of a polyhedron: with twice as many vertices, places in one cell fit 16 bits.
+pub(crate) const MOST_WALLS: u16 = 1 << 15;
 
-impl Wall {
-    /// The walls of a box in space; the first four are those of a rectangle.
-    pub const ALL: [Wall; 6] = [Wall(0), Wall(1), Wall(2), Wall(3), Wall(4), Wall(5)];
-
-    /// The axis that the wall is perpendicular to: 0, 1 or 2.
-    pub fn axis(self) -> usize {
-        usize::from(self.0 / 2)
-    }
-
-    /// Whether the wall bounds its axis from above (x1, y1, z1).
-    pub fn is_upper(self) -> bool {
-        self.0 % 2 == 1
-    }
-
-    /// Number from 0 to 5.
-    pub fn number(self) -> u8 {
-        self.0
-    }
-
-    /// Position in [`Wall::ALL`].
-    pub fn index(self) -> usize {
-        usize::from(self.0)
-    }
-
-    /// Unit normal that points out of the box.
-    pub fn outward_normal(self) -> DVec3 {
-        let direction = if self.is_upper() { 1.0 } else { -1.0 };
-        DVec3::AXES[self.axis()] * direction
-    }
-}
-
-/// An axis-parallel box, or a rectangle in the plane z = 0, that may repeat periodically along some of its axes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// An axis-parallel box, or a rectangle in the plane z = 0, that may repeat periodically along some of its axes; or a convex
+/// polyhedron, or polygon in the plane, whose bounding box that box is.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Domain {
     lower: DVec3,
     upper: DVec3,
     dimension: Dimension,
     periodic: BVec3,
+    polyhedron: Option<Arc<Polyhedron>>,
 }
 
 impl Domain {
@@ -76,26 +50,102 @@ impl Domain {
 
     /// The cube [0, 1]^3.
     pub fn unit_cube() -> Self {
-        Self { lower: DVec3::ZERO, upper: DVec3::ONE, dimension: Dimension::Three, periodic: BVec3::FALSE }
+        Self::boxed(DVec3::ZERO, DVec3::ONE, Dimension::Three)
     }
 
     /// The square [0, 1]^2.
     pub fn unit_square() -> Self {
-        let upper = DVec3::new(1.0, 1.0, 0.0);
-        Self { lower: DVec3::ZERO, upper, dimension: Dimension::Two, periodic: BVec3::FALSE }
+        Self::boxed(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0), Dimension::Two)
+    }
+
+    /// What half-spaces have in common: a convex polyhedron, whose walls are numbered like the half-spaces.
+    ///
+    /// Half-spaces that bound nothing do no harm. Decisions are exact here as well: the numbers of a half-space are taken
+    /// as they are, and walls that meet in a point do so however many they are.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use voronoi::{Domain, WallPlane};
+    ///
+    /// let signs = [-1.0, 1.0];
+    /// let normals = signs.map(|x| signs.map(|y| signs.map(|z| DVec3::new(x, y, z))));
+    /// let half_space = |normal| WallPlane::HalfSpace { normal, offset: 1.0 };
+    /// let octahedron = Domain::polyhedron(normals.as_flattened().as_flattened().iter().copied().map(half_space).collect())?;
+    /// assert!((octahedron.measure() - 4.0 / 3.0).abs() < 1e-14);
+    /// assert_eq!(octahedron.lower(), DVec3::NEG_ONE);
+    /// # Ok::<(), voronoi::VoronoiError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`VoronoiError::BadHalfSpace`] names a half-space without a normal, [`VoronoiError::EmptyDomain`] one with nothing in
+    /// common with those before it; [`VoronoiError::UnboundedDomain`] a direction without end;
+    /// [`VoronoiError::FlatDomain`] when the polyhedron has no volume; [`VoronoiError::TooManyWalls`].
+    pub fn polyhedron(walls: Vec<WallPlane>) -> Result<Self, VoronoiError> {
+        Self::cut_out(walls, Dimension::Three, None)
+    }
+
+    /// What half-planes of the plane z = 0 have in common: a convex polygon. Their normals' z must be 0.
+    ///
+    /// # Errors
+    /// As [`Self::polyhedron`].
+    pub fn polygon(walls: Vec<WallPlane>) -> Result<Self, VoronoiError> {
+        Self::cut_out(walls, Dimension::Two, None)
+    }
+
+    /// A polyhedron with a name to print.
+    pub(crate) fn cut_out(
+        walls: Vec<WallPlane>,
+        dimension: Dimension,
+        name: Option<String>,
+    ) -> Result<Self, VoronoiError> {
+        let Extent { lower, upper, center } = Extent::of(&walls, dimension)?;
+        let mut domain = Self::cut_out_of_box(lower, upper, dimension, walls, name);
+        let flat = VoronoiError::FlatDomain { lower, upper };
+        if !domain.contains(center) {
+            return Err(flat);
+        }
+        // The polyhedron is the cell of its only seed.
+        let measure = Tessellation::new(&domain, &[center])?.cell_measures()[0].volume;
+        if !(measure > 0.0 && measure.is_finite()) {
+            return Err(flat);
+        }
+        domain.polyhedron =
+            domain.polyhedron.map(|all| Arc::new(Polyhedron { measure, ..Arc::unwrap_or_clone(all) }));
+        Ok(domain)
+    }
+
+    /// A polyhedron whose volume is yet to be measured, in a box that holds it.
+    pub(crate) fn cut_out_of_box(
+        lower: DVec3,
+        upper: DVec3,
+        dimension: Dimension,
+        walls: Vec<WallPlane>,
+        name: Option<String>,
+    ) -> Self {
+        let normals = walls.iter().map(unit_normal).collect();
+        let polyhedron = Polyhedron { walls, normals, measure: f64::NAN, name };
+        Self { polyhedron: Some(Arc::new(polyhedron)), ..Self::boxed(lower, upper, dimension) }
+    }
+
+    fn boxed(lower: DVec3, upper: DVec3, dimension: Dimension) -> Self {
+        Self { lower, upper, dimension, periodic: BVec3::FALSE, polyhedron: None }
     }
 
     /// The same domain, repeating along the given axes: its two walls there are one, and bound nothing.
     ///
     /// A rectangle cannot repeat along z, which is ignored.
+    ///
+    /// # Panics
+    /// For a polyhedron, if there are axes: only boxes repeat.
     #[must_use]
     pub fn with_periods(self, axes: BVec3) -> Self {
+        assert!(self.is_box() || !axes.any(), "only boxes repeat");
         let in_domain = BVec3::new(true, true, self.dimension == Dimension::Three);
         Self { periodic: axes & in_domain, ..self }
     }
 
     fn checked(lower: DVec3, upper: DVec3, dimension: Dimension) -> Result<Self, VoronoiError> {
-        let domain = Self { lower, upper, dimension, periodic: BVec3::FALSE };
+        let domain = Self::boxed(lower, upper, dimension);
         let size = domain.size();
         for axis in 0..domain.axes() {
             let length = size[axis];
@@ -106,17 +156,17 @@ impl Domain {
         Ok(domain)
     }
 
-    /// The corner with the smallest coordinates.
+    /// The corner of the (bounding) box with the smallest coordinates.
     pub fn lower(&self) -> DVec3 {
         self.lower
     }
 
-    /// The corner with the largest coordinates.
+    /// The corner of the (bounding) box with the largest coordinates.
     pub fn upper(&self) -> DVec3 {
         self.upper
     }
 
-    /// Side lengths; z is 0 for a rectangle.
+    /// Side lengths of the (bounding) box; z is 0 in the plane.
     pub fn size(&self) -> DVec3 {
         self.upper - self.lower
     }
@@ -126,10 +176,11 @@ impl Domain {
         self.dimension
     }
 
-    /// Volume of the box, or area of the rectangle.
+    /// Volume; in the plane, area.
     pub fn measure(&self) -> f64 {
         let size = self.size();
-        (0..self.axes()).map(|axis| size[axis]).product()
+        let of_box = || (0..self.axes()).map(|axis| size[axis]).product();
+        self.polyhedron.as_ref().map_or_else(of_box, |polyhedron| polyhedron.measure)
     }
 
     /// The axes along which the domain repeats.
@@ -142,20 +193,83 @@ impl Domain {
         self.periodic.any()
     }
 
-    /// The walls that bound the domain: six, or four in the plane, but for those across periodic axes.
-    pub fn walls(&self) -> impl Iterator<Item = Wall> {
-        let periodic = self.periodic;
-        Wall::ALL[..2 * self.axes()].iter().copied().filter(move |wall| !periodic.test(wall.axis()))
+    /// Whether the domain is its box, and not a polyhedron in it.
+    pub fn is_box(&self) -> bool {
+        self.polyhedron.is_none()
     }
 
-    /// Coordinate of a wall along its axis.
+    /// The walls that bound the domain. Of a box six, or four in the plane, but for those across periodic axes; of a
+    /// polyhedron all that it was given.
+    pub fn walls(&self) -> impl Iterator<Item = Wall> {
+        let periodic = self.periodic;
+        let is_box = self.is_box();
+        let count = if is_box { 2 * self.axes() } else { self.wall_planes().len() };
+        let walls = (0u32..).take(count).map(Wall);
+        walls.filter(move |wall| !is_box || !periodic.test(wall.axis()))
+    }
+
+    /// The walls of a polyhedron, by number; none for a box.
+    pub fn wall_planes(&self) -> &[WallPlane] {
+        self.polyhedron.as_ref().map_or(&[], |polyhedron| &polyhedron.walls)
+    }
+
+    /// Normals of the walls of a polyhedron.
+    pub(crate) fn unit_normals(&self) -> &[DVec3] {
+        self.polyhedron.as_ref().map_or(&[], |polyhedron| &polyhedron.normals)
+    }
+
+    /// Unit normal of a wall that points out of the domain.
+    pub fn outward_normal(&self, wall: Wall) -> DVec3 {
+        self.unit_normals().get(wall.index()).copied().unwrap_or_else(|| wall.outward_normal())
+    }
+
+    /// The plane of a wall: its unit outward normal, and the distance from the origin along it; rounded for an oblique wall.
+    pub fn wall_equation(&self, wall: Wall) -> (DVec3, f64) {
+        let normal = self.outward_normal(wall);
+        let distance = match self.across_axis(wall) {
+            Some((axis, coordinate)) => normal[axis] * coordinate,
+            None => HalfSpace::of_wall(DVec3::ZERO, wall, self).offset,
+        };
+        (normal, distance)
+    }
+
+    /// The axis that a wall is perpendicular to and the coordinate of the wall there; none for an oblique wall.
+    pub fn across_axis(&self, wall: Wall) -> Option<(usize, f64)> {
+        match self.wall_planes().get(wall.index()) {
+            None => Some((wall.axis(), self.wall_coordinate(wall))),
+            Some(plane) => plane.across_axis(),
+        }
+    }
+
+    /// Coordinate of a wall of a box along its axis.
+    ///
+    /// # Panics
+    /// For a wall of a polyhedron, see [`Self::across_axis`].
     pub fn wall_coordinate(&self, wall: Wall) -> f64 {
+        assert!(self.is_box(), "walls of a polyhedron are not perpendicular to axes");
         if wall.is_upper() { self.upper[wall.axis()] } else { self.lower[wall.axis()] }
     }
 
-    /// Whether a point lies in the domain or on its walls.
+    /// Where cells begin before anything cuts them: coordinate of a side of the box, of one thrice as large around a polyhedron.
+    pub(crate) fn side_coordinate(&self, side: Wall) -> f64 {
+        let axis = side.axis();
+        let (lower, upper) = (self.lower[axis], self.upper[axis]);
+        let room = if self.is_box() { 0.0 } else { upper - lower };
+        if side.is_upper() { upper + room } else { lower - room }
+    }
+
+    /// Whether a point lies in the domain or on its walls; exact.
     pub fn contains(&self, point: DVec3) -> bool {
-        point.cmpge(self.lower).all() && point.cmple(self.upper).all()
+        if self.is_box() {
+            return point.cmpge(self.lower).all() && point.cmple(self.upper).all();
+        }
+        self.walls().all(|wall| {
+            let HalfSpace { offset, offset_size, .. } = HalfSpace::of_wall(point, wall, self);
+            if offset.abs() > EVALUATION_ERROR * offset_size {
+                return offset > 0.0;
+            }
+            !is_outside(&self.wall_planes()[wall.index()], point)
+        })
     }
 
     /// Number of axes along which the domain extends.
@@ -169,6 +283,12 @@ impl Domain {
 
 impl fmt::Display for Domain {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(polyhedron) = &self.polyhedron {
+            match &polyhedron.name {
+                Some(name) => write!(formatter, "{name} in ")?,
+                None => write!(formatter, "{} half-spaces in ", polyhedron.walls.len())?,
+            }
+        }
         for axis in 0..self.axes() {
             let separator = if axis == 0 { "" } else { " x " };
             write!(formatter, "{separator}[{}, {}]", self.lower[axis], self.upper[axis])?;

@@ -1,5 +1,7 @@
 use glam::DVec3;
 
+use crate::generator::Generator;
+
 /// Why a tessellation could not be made. Seeds are named by their position in the input, counted from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum VoronoiError {
@@ -7,7 +9,7 @@ pub enum VoronoiError {
     #[error("no seeds: give at least one")]
     NoSeeds,
     /// More seeds than 32-bit ids can name.
-    #[error("{count} seeds are more than the {} that ids can name", u32::MAX - 8)]
+    #[error("{count} seeds are more than the {} that ids can name", Generator::MAX_SITES)]
     TooManySeeds {
         /// Number of seeds given.
         count: usize,
@@ -20,6 +22,71 @@ pub enum VoronoiError {
         /// The offending length.
         length: f64,
     },
+    /// A half-space has a number that is not finite, no normal, or in the plane one that leaves it.
+    #[error(
+        "half-space {wall} has no direction; its normal must be finite and not 0, in the plane without a part along z"
+    )]
+    BadHalfSpace {
+        /// Position of the half-space in the input.
+        wall: usize,
+    },
+    /// Half-spaces have no point in common.
+    #[error(
+        "half-space {wall} leaves nothing of what those before it have in common; turn its normal outward or move it"
+    )]
+    EmptyDomain {
+        /// Position of the half-space in the input.
+        wall: usize,
+    },
+    /// Half-spaces bound nothing in some direction.
+    #[error("the half-spaces have no end in the direction {}; add one with a normal that points there", Point(*.direction))]
+    UnboundedDomain {
+        /// A unit vector.
+        direction: DVec3,
+    },
+    /// Half-spaces have a point, a line or a polygon in common, but no volume (in the plane: area).
+    #[error("the domain between {} and {} is flat; move its half-spaces apart", Point(*.lower), Point(*.upper))]
+    FlatDomain {
+        /// Corner of its bounding box.
+        lower: DVec3,
+        /// The opposite corner.
+        upper: DVec3,
+    },
+    /// A domain has more walls than can be told apart.
+    #[error(
+        "more than the {most} walls that a domain can have; take fewer half-spaces or a larger chord error"
+    )]
+    TooManyWalls {
+        /// The largest number.
+        most: u16,
+    },
+    /// A length of a curved domain is not positive and finite.
+    #[error("the domain's {what} is {length}; it must be positive and finite")]
+    BadLength {
+        /// Which length.
+        what: &'static str,
+        /// The offending length.
+        length: f64,
+    },
+    /// A surface has a border, or winds both ways.
+    #[error(
+        "face {face} has no neighbour across its edge from vertex {} to vertex {}, or one that winds the other way; close the surface",
+        .ends[0], .ends[1]
+    )]
+    OpenSurface {
+        /// Position of the face in the input.
+        face: usize,
+        /// Positions of the edge's ends.
+        ends: [u32; 2],
+    },
+    /// A surface is not that of a convex body.
+    #[error("vertex {vertex} lies outside face {face}: the surface is not convex, which a domain must be")]
+    NotConvex {
+        /// Position of the face in the input.
+        face: usize,
+        /// Position of the vertex.
+        vertex: usize,
+    },
     /// A seed has a coordinate that is NaN or infinite.
     #[error("seed {seed} at {} has a coordinate that is not a finite number", Point(*.position))]
     NotFinite {
@@ -29,7 +96,7 @@ pub enum VoronoiError {
         position: DVec3,
     },
     /// A seed lies outside the domain.
-    #[error("seed {seed} at {} lies outside the domain {domain}; move it inside or enlarge the box", Point(*.position))]
+    #[error("seed {seed} at {} lies outside the domain {domain}; move it inside or enlarge the domain", Point(*.position))]
     OutsideDomain {
         /// Position of the seed in the input.
         seed: usize,

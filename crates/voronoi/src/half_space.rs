@@ -2,6 +2,7 @@ use glam::DVec3;
 
 use crate::generator::{Generator, Plane};
 use crate::predicate::ExactInput;
+use crate::{Domain, Wall, WallPlane};
 
 /// Half the distance between 1 and the next double: the largest relative error of one rounding.
 pub(crate) const ROUNDOFF: f64 = f64::EPSILON / 2.0;
@@ -28,11 +29,12 @@ impl HalfSpace {
     /// The side on which `seed` lies of a generator's plane.
     pub(crate) fn new(seed: u32, generator: Generator, input: ExactInput) -> Self {
         match generator.plane() {
-            Plane::Wall(wall) => {
-                let offset = input.outermost_distance(seed, wall);
-                let normal = wall.outward_normal();
+            Plane::Side(side) => {
+                let offset = input.outermost_distance(seed, side);
+                let normal = side.outward_normal();
                 Self { generator, normal, offset, offset_size: offset, length: 1.0 }
             }
+            Plane::Facet(wall) => Self::of_wall(input.seeds[seed as usize], wall, input.domain),
             Plane::Site(site) => {
                 let normal = input.difference(seed, site);
                 let squared_length = normal.length_squared();
@@ -46,6 +48,24 @@ impl HalfSpace {
                 }
             }
         }
+    }
+
+    /// What lies behind a wall of a polyhedron.
+    pub(crate) fn of_wall(seed: DVec3, wall: Wall, domain: &Domain) -> Self {
+        let generator = Generator::facet(wall);
+        let normal = domain.unit_normals()[wall.index()];
+        let (offset, offset_size) = match domain.wall_planes()[wall.index()] {
+            WallPlane::HalfSpace { normal: exact, offset } => {
+                let terms = exact * seed;
+                let scale = exact.dot(normal);
+                ((offset - terms.element_sum()) / scale, (offset.abs() + terms.abs().element_sum()) / scale)
+            }
+            WallPlane::Through([a, ..]) => {
+                let terms = normal * (a - seed);
+                (terms.element_sum(), terms.abs().element_sum())
+            }
+        };
+        Self { generator, normal, offset, offset_size, length: 1.0 }
     }
 
     /// Sum of the normal's absolute coordinates.

@@ -34,6 +34,8 @@
 
 mod candidates;
 mod convex_cell;
+mod convex_surface;
+mod curved_domain;
 mod domain;
 mod edge_ends;
 mod error;
@@ -51,17 +53,20 @@ mod planar_squares;
 mod planar_weld;
 mod polygon;
 mod polygon_triangulation;
+mod polyhedron;
 mod predicate;
 mod regularize;
 mod search;
 mod tessellation;
 mod tile;
 mod torus;
+mod wall;
 mod weld;
 
-pub use domain::{Dimension, Domain, Wall};
+pub use domain::{Dimension, Domain};
 pub use error::VoronoiError;
 pub use measure::CellMeasure;
 pub use polygon_triangulation::{PolygonTriangulation, triangulate_polygon};
 pub use regularize::Collapsed;
 pub use tessellation::{CellId, Edges, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};
+pub use wall::{Wall, WallPlane};

@@ -155,7 +155,7 @@ impl<'a> OpenCell<'a> {
 
     /// Whether an edge lacks its other end. In the plane only the edges in it count.
     fn is_wanted(&self, [from, to]: [u16; 2]) -> bool {
-        let in_plane = |p: u16| self.generators[usize::from(p)] == Generator::wall(PLANE);
+        let in_plane = |p: u16| self.generators[usize::from(p)] == Generator::side(PLANE);
         let counts = match self.search.input().domain.dimension() {
             Dimension::Three => true,
             Dimension::Two => in_plane(from) || in_plane(to),
@@ -279,13 +279,14 @@ impl<'a> OpenCell<'a> {
         }
         let (seed, input) = (self.seed, self.search.input());
         if self.candidates.len() == 0 {
-            let plane = (input.domain.dimension() == Dimension::Two).then_some(Generator::wall(PLANE));
+            let plane = (input.domain.dimension() == Dimension::Two).then_some(Generator::side(PLANE));
             for generator in input.outermost_planes(seed).chain(plane) {
                 self.candidates.push_plane(&HalfSpace::new(seed, generator, input));
             }
         }
         let own_weight = input.weight(seed);
         let candidates = &mut self.candidates;
+        input.for_each_facet_within(seed, [self.reach, reach], |plane, _| candidates.push_plane(&plane));
         self.search.for_each_within(seed, [self.reach, reach], |site, normal, squared| {
             let weight = input.weight(site);
             let offset = 0.5 * (squared + (own_weight - weight));

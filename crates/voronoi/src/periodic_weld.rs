@@ -55,7 +55,7 @@ pub(crate) fn canonical(input: ExactInput, key: &VertexKey) -> (VertexKey, Shift
     let planes = key.map(Generator::plane);
     let images = planes.map(|plane| match plane {
         Plane::Site(site) => Some(input.image(site)),
-        Plane::Wall(_) => None,
+        Plane::Side(_) | Plane::Facet(_) => None,
     });
     let smallest = images.iter().flatten().map(|image| image.seed).min();
     let candidates = images.iter().flatten().filter(|image| Some(image.seed) == smallest);
@@ -70,7 +70,8 @@ pub(crate) fn canonical(input: ExactInput, key: &VertexKey) -> (VertexKey, Shift
         moved.iter().flatten().map(|image| input.site(*image).expect("the owner was cut by these sites"));
     let mut owned = planes.map(|plane| match plane {
         Plane::Site(_) => Generator::site(sites.next().expect("as many sites as before")),
-        Plane::Wall(wall) => Generator::wall(wall),
+        Plane::Side(wall) => Generator::side(wall),
+        Plane::Facet(wall) => Generator::facet(wall),
     });
     owned.sort_unstable();
     (owned, shift)

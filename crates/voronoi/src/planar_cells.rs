@@ -183,7 +183,7 @@ impl<'a> Finder<'a> {
     fn add_cell_at_wall(&mut self, seed: u32, spokes: &[Edge]) -> Result<(), Failure> {
         let mut polygon = ConvexPolygon::new(seed, self.input);
         for spoke in spokes {
-            polygon.cut_with_bisector(self.id(*spoke), self.input);
+            polygon.cut(Generator::site(self.id(*spoke)), self.input);
         }
         let mut corners = Vec::new();
         for ([before, after], position) in polygon.corners() {

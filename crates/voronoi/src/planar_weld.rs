@@ -52,7 +52,7 @@ fn faces(
     let (mut all_sides, mut corners) = (Vec::with_capacity(most), Vec::with_capacity(2 * most));
     let side = |generator: Generator| match generator.plane() {
         Plane::Site(site) => Side::Cell(CellId(ids[site as usize])),
-        Plane::Wall(wall) => Side::Wall(wall),
+        Plane::Side(wall) | Plane::Facet(wall) => Side::Wall(wall),
     };
     for ((cells, vertex_ids), face_ids) in squares.iter().zip(vertex_ids).zip(face_ids) {
         for ((sides, ends), id) in cells.edges.iter().zip(face_ids) {

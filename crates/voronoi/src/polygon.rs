@@ -85,7 +85,7 @@ impl ConvexPolygon {
     fn corner_planes(&self, corner: usize) -> [Generator; 3] {
         let count = self.lines.len();
         let incoming = self.lines[(corner + count - 1) % count].generator;
-        [incoming, self.lines[corner].generator, Generator::wall(PLANE)]
+        [incoming, self.lines[corner].generator, Generator::side(PLANE)]
     }
 }
 
@@ -95,8 +95,8 @@ impl Cutting for ConvexPolygon {
         self.corners.iter().map(distance).fold(-1.0, f64::max)
     }
 
-    fn cut_with_bisector(&mut self, other: u32, input: ExactInput) {
-        let line = Line::new(self.seed, Generator::site(other), input);
+    fn cut(&mut self, generator: Generator, input: ExactInput) {
+        let line = Line::new(self.seed, generator, input);
         let count = self.corners.len();
         let beyond: Vec<bool> = (0..count).map(|k| self.is_beyond(k, &line, input)).collect();
         let Some(first) = (0..count).find(|k| beyond[*k] && !beyond[(k + count - 1) % count]) else {
@@ -118,8 +118,8 @@ impl Cutting for ConvexPolygon {
         self.lines.push(line);
     }
 
-    fn any_vertex(&self) -> Option<[Generator; 3]> {
-        (!self.lines.is_empty()).then(|| self.corner_planes(0))
+    fn vertices(&self) -> Vec<[Generator; 3]> {
+        (0..self.corners.len()).map(|corner| self.corner_planes(corner)).collect()
     }
 }
 
@@ -153,7 +153,7 @@ fn intersect(seed: u32, incoming: Line, outgoing: Line, input: ExactInput) -> Co
     if error >= 0.0 && error <= LOOSE * position.length() {
         return Corner { position, error };
     }
-    let planes = [incoming.generator, outgoing.generator, Generator::wall(PLANE)];
+    let planes = [incoming.generator, outgoing.generator, Generator::side(PLANE)];
     let position = input.vertex(seed, planes).truncate();
     Corner { position, error: 2.0 * f64::EPSILON * position.abs().max_element() }
 }

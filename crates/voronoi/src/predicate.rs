@@ -15,6 +15,9 @@
 //! numbering nor a shift changes, so all periodic copies of a decision come out the same (as in CGAL's periodic
 //! triangulations, Caroli and Teillaud 2009).
 //!
+//! Walls move, too: the D of wall k grows by an infinitesimal d_k far below all e_j, with d_k >> d_l where k < l. It only
+//! matters where four walls of a polyhedron meet in a point, or one touches a corner or an edge that others make.
+//!
 //! A periodic image of a seed is exact, too: the seed moved by whole multiples of the exact difference of two opposite walls.
 
 use glam::DVec3;
@@ -22,9 +25,10 @@ use num_bigint::{BigInt, Sign};
 use num_traits::{Signed, ToPrimitive, Zero};
 
 use crate::generator::{Generator, Plane};
+use crate::half_space::{EVALUATION_ERROR, HalfSpace};
 use crate::images::{Image, ImageTable};
 use crate::tessellation::Shift;
-use crate::{Domain, Wall};
+use crate::{Domain, Wall, WallPlane};
 
 /// On which side of a plane a vertex lies once ties are broken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +52,7 @@ pub(crate) struct ExactInput<'a> {
 struct ExactPlane {
     normal: [BigInt; 3],
     doubled_offset: BigInt,
-    is_bisector: bool,
+    generator: Generator,
 }
 
 impl<'a> ExactInput<'a> {
@@ -84,11 +88,11 @@ impl<'a> ExactInput<'a> {
     /// What bounds the cell of a seed across an axis before any other seed does: a wall, or its own image one period away.
     pub(crate) fn outermost(self, seed: u32, wall: Wall) -> Generator {
         if !self.domain.periodic().test(wall.axis()) {
-            return Generator::wall(wall);
+            return Generator::side(wall);
         }
         let mut shift = [0; 3];
         shift[wall.axis()] = if wall.is_upper() { 1 } else { -1 };
-        self.site(Image { seed, shift: Shift(shift) }).map_or(Generator::wall(wall), Generator::site)
+        self.site(Image { seed, shift: Shift(shift) }).map_or(Generator::side(wall), Generator::site)
     }
 
     /// The planes that bound the cell of a seed before any other seed does, two for each axis.
@@ -102,7 +106,27 @@ impl<'a> ExactInput<'a> {
         if self.domain.periodic().test(axis) {
             return 0.5 * self.domain.size()[axis];
         }
-        (self.domain.wall_coordinate(wall) - self.seeds[seed as usize][axis]).abs()
+        (self.domain.side_coordinate(wall) - self.seeds[seed as usize][axis]).abs()
+    }
+
+    /// Visits the walls of a polyhedron that are so far from a seed that their mirror image of it is further away than `from`
+    /// and at most `to`, with that distance: they come into reach like the bisectors with these images.
+    #[inline]
+    pub(crate) fn for_each_facet_within(
+        self,
+        seed: u32,
+        [from, to]: [f64; 2],
+        mut visit: impl FnMut(HalfSpace, f64),
+    ) {
+        let own = self.seeds[seed as usize];
+        for wall in (0u32..).take(self.domain.wall_planes().len()).map(Wall) {
+            let plane = HalfSpace::of_wall(own, wall, self.domain);
+            // Rounding must not make it farther than it is.
+            let doubled = (2.0 * (plane.offset - EVALUATION_ERROR * plane.offset_size)).max(0.0);
+            if doubled > from && doubled <= to {
+                visit(plane, doubled);
+            }
+        }
     }
 
     /// Whether a site is one of those that a cell begins with: the seed itself or one of its nearest images.
@@ -200,13 +224,18 @@ impl<'a> ExactInput<'a> {
             let of_weight = of_number(self.weight(site)).map(|exponent| exponent.div_euclid(2));
             of_weight.into_iter().chain(of_point(self.seeds[image.seed as usize])).chain(of_period).min()
         };
-        let of_wall = |wall: Wall| {
-            let ends = [self.domain.lower()[wall.axis()], self.domain.upper()[wall.axis()]];
-            ends.into_iter().filter_map(of_number).min()
+        let of_side = |side: Wall| {
+            let opposite = Wall(side.0 ^ 1);
+            [side, opposite].into_iter().filter_map(|side| of_number(self.domain.side_coordinate(side))).min()
         };
         let of_planes = generators.iter().filter_map(|generator| match generator.plane() {
             Plane::Site(site) => of_site(site),
-            Plane::Wall(wall) => of_wall(wall),
+            Plane::Side(side) => of_side(side),
+            Plane::Facet(wall) => match &self.domain.wall_planes()[wall.index()] {
+                // Has units of its own.
+                WallPlane::HalfSpace { .. } => None,
+                WallPlane::Through(points) => points.iter().copied().filter_map(of_point).min(),
+            },
         });
         of_planes.chain(of_site(seed)).min().unwrap_or(0)
     }
@@ -228,39 +257,101 @@ impl<'a> ExactInput<'a> {
                 });
                 let weight = |site: u32| to_integer(self.weight(site), 2 * exponent);
                 let doubled_offset = dot(&normal, &normal) + weight(seed) - weight(site);
-                ExactPlane { normal, doubled_offset, is_bisector: true }
+                ExactPlane { normal, doubled_offset, generator }
             }
-            Plane::Wall(wall) => {
-                let axis = wall.axis();
-                let direction = if wall.is_upper() { 1 } else { -1 };
+            Plane::Facet(wall) => {
+                let (normal, offset) = wall_plane(&self.domain.wall_planes()[wall.index()], own, exponent);
+                ExactPlane { normal, doubled_offset: offset * 2, generator }
+            }
+            Plane::Side(side) => {
+                let axis = side.axis();
+                let direction = if side.is_upper() { 1 } else { -1 };
                 let mut normal = [BigInt::zero(), BigInt::zero(), BigInt::zero()];
                 normal[axis] = BigInt::from(direction);
                 let doubled_offset = if self.domain.periodic().test(axis) {
                     period(axis)
                 } else {
-                    (integer(self.domain.wall_coordinate(wall)) - integer(own[axis])) * (2 * direction)
+                    (integer(self.domain.side_coordinate(side)) - integer(own[axis])) * (2 * direction)
                 };
-                ExactPlane { normal, doubled_offset, is_bisector: false }
+                ExactPlane { normal, doubled_offset, generator }
             }
         }
     }
 }
 
-/// The sign of the expression's change under the symbolic weights.
+/// The normal of a wall and its distance from a point in units of the normal's length, for coordinates in units of two to an
+/// exponent.
+fn wall_plane(plane: &WallPlane, point: DVec3, exponent: i32) -> ([BigInt; 3], BigInt) {
+    let integers = |point: DVec3| point.to_array().map(|coordinate| to_integer(coordinate, exponent));
+    let point = integers(point);
+    match plane {
+        WallPlane::HalfSpace { normal, offset } => {
+            let of_number = |number: f64| {
+                let (mantissa, exponent) = decompose(number);
+                (mantissa != 0).then_some(exponent)
+            };
+            let of_normal = normal.to_array().into_iter().filter_map(of_number);
+            let unit = of_normal.chain(of_number(*offset).map(|of_offset| of_offset - exponent)).min();
+            let unit = unit.unwrap_or(0);
+            let normal = normal.to_array().map(|coordinate| to_integer(coordinate, unit));
+            let offset = to_integer(*offset, unit + exponent) - dot(&normal, &point);
+            (normal, offset)
+        }
+        WallPlane::Through(corners) => {
+            let [a, b, c] = corners.map(integers);
+            let normal = cross(&minus(&b, &a), &minus(&c, &a));
+            let offset = dot(&normal, &minus(&a, &point));
+            (normal, offset)
+        }
+    }
+}
+
+/// Whether a point lies beyond a wall, exactly.
+pub(crate) fn is_outside(plane: &WallPlane, point: DVec3) -> bool {
+    wall_plane(plane, point, exponent_of(plane, point)).1.is_negative()
+}
+
+/// The outward normal of a wall, of length 1, each coordinate rounded twice; 0 if there is none.
+pub(crate) fn unit_normal(plane: &WallPlane) -> DVec3 {
+    let (normal, _) = wall_plane(plane, DVec3::ZERO, exponent_of(plane, DVec3::ZERO));
+    let largest = normal.iter().map(Signed::abs).max().unwrap_or_default();
+    if largest.is_zero() {
+        return DVec3::ZERO;
+    }
+    DVec3::from_array(normal.map(|coordinate| ratio(coordinate, &largest, 0))).normalize()
+}
+
+/// An exponent such that the coordinates of a point and of a wall's are integers times two to it.
+fn exponent_of(plane: &WallPlane, point: DVec3) -> i32 {
+    let points: &[DVec3] = match plane {
+        WallPlane::HalfSpace { .. } => &[],
+        WallPlane::Through(points) => points,
+    };
+    let coordinates = points.iter().chain([&point]).flat_map(|point| point.to_array());
+    let exponents = coordinates.map(decompose).filter(|(mantissa, _)| *mantissa != 0);
+    exponents.map(|(_, exponent)| exponent).min().unwrap_or(0)
+}
+
+/// The sign of the expression's change under the symbolic weights, or else the symbolic motion of walls.
 fn break_tie(planes: [&ExactPlane; 4], coefficients: [BigInt; 4]) -> bool {
     let origin = [BigInt::zero(), BigInt::zero(), BigInt::zero()];
     // The normal of a bisector is the other site's position relative to the seed.
-    let mut terms: Vec<(&[BigInt; 3], BigInt)> = Vec::with_capacity(5);
+    let mut of_sites: Vec<(&[BigInt; 3], BigInt)> = Vec::with_capacity(5);
+    let mut of_walls: Vec<(Generator, BigInt)> = Vec::new();
     let mut own = BigInt::zero();
     for (plane, coefficient) in planes.into_iter().zip(coefficients) {
-        if plane.is_bisector {
+        if plane.generator.as_site().is_some() {
             own += &coefficient;
-            terms.push((&plane.normal, -coefficient));
+            of_sites.push((&plane.normal, -coefficient));
+        } else {
+            of_walls.push((plane.generator, coefficient));
         }
     }
-    terms.push((&origin, own));
-    terms.sort_unstable();
-    terms.iter().map(|(_, term)| term).find(|term| !term.is_zero()).is_some_and(Signed::is_positive)
+    of_sites.push((&origin, own));
+    of_sites.sort_unstable();
+    of_walls.sort_unstable();
+    let terms = of_sites.into_iter().map(|(_, term)| term).chain(of_walls.into_iter().map(|(_, term)| term));
+    terms.into_iter().find(|term| !term.is_zero()).is_some_and(|term| term.is_positive())
 }
 
 /// A sum good to one or two last places whatever cancels: the partial sums are kept with all their digits
@@ -283,6 +374,10 @@ fn accurate_sum(terms: [f64; 4]) -> f64 {
 
 fn cross(a: &[BigInt; 3], b: &[BigInt; 3]) -> [BigInt; 3] {
     [&a[1] * &b[2] - &a[2] * &b[1], &a[2] * &b[0] - &a[0] * &b[2], &a[0] * &b[1] - &a[1] * &b[0]]
+}
+
+fn minus(a: &[BigInt; 3], b: &[BigInt; 3]) -> [BigInt; 3] {
+    [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
 }
 
 fn dot(a: &[BigInt; 3], b: &[BigInt; 3]) -> BigInt {
@@ -389,7 +484,7 @@ mod tests {
         let images = ImageTable::default();
         let seeds = [DVec3::new(0.25, 0.5, 0.5), DVec3::new(0.75, 0.5, 0.5)];
         let input = ExactInput { domain: &domain, seeds: &seeds, weights: None, images: &images };
-        let walls = [Wall::ALL[1], Wall::ALL[3], Wall::ALL[5]].map(Generator::wall);
+        let walls = [Wall::ALL[1], Wall::ALL[3], Wall::ALL[5]].map(Generator::side);
         assert!(input.decide(0, walls, Generator::site(1)).beyond);
         assert_eq!(input.vertex(0, walls), DVec3::new(0.75, 0.5, 0.5));
     }

@@ -280,7 +280,9 @@ impl<'a> Complex<'a> {
     fn merge(&mut self, kept: u32, gone: u32, mut place: DVec3, closing: &[u32]) {
         // A mean of equal coordinates may miss them by a last place.
         for wall in &self.walls[kept as usize] {
-            place[wall.axis()] = self.original.domain().wall_coordinate(*wall);
+            if let Some((axis, coordinate)) = self.original.domain().across_axis(*wall) {
+                place[axis] = coordinate;
+            }
         }
         self.vertices[kept as usize] = place;
         self.weights[kept as usize] += self.weights[gone as usize];

@@ -29,11 +29,11 @@ pub(crate) trait Cutting {
     /// A radius around the seed that holds the cell; negative for an empty cell.
     fn radius(&self) -> f64;
 
-    /// Cuts off what lies nearer to another site, by power distance.
-    fn cut_with_bisector(&mut self, other: u32, input: ExactInput);
+    /// Cuts off what lies beyond a plane.
+    fn cut(&mut self, generator: Generator, input: ExactInput);
 
-    /// The planes of one vertex, in positive orientation; none for an empty cell.
-    fn any_vertex(&self) -> Option<[Generator; 3]>;
+    /// The planes of each vertex, in positive orientation.
+    fn vertices(&self) -> Vec<[Generator; 3]>;
 }
 
 /// A cell needs images of seeds that are farther away than those known.
@@ -112,7 +112,7 @@ impl<'a> Search<'a> {
     /// What lies beyond a generator's plane, in the user's numbering of cells.
     pub(crate) fn end(&self, generator: Generator) -> FaceEnd {
         match generator.plane() {
-            Plane::Wall(wall) => FaceEnd::Wall(wall),
+            Plane::Side(wall) | Plane::Facet(wall) => FaceEnd::Wall(wall),
             Plane::Site(site) => {
                 let image = self.input().image(site);
                 FaceEnd::Cell(Image { seed: self.ids[image.seed as usize], ..image })
@@ -203,16 +203,21 @@ impl<'a> Search<'a> {
         while cell.radius() >= 0.0 && self.reach(seed, cell.radius()) > reach {
             let next = self.grow(reach, self.reach(seed, cell.radius()));
             near.clear();
-            self.for_each_within(seed, [reach, next], |site, _, squared| near.push((squared, site)))?;
+            self.for_each_within(seed, [reach, next], |site, _, squared| {
+                near.push((squared, Generator::site(site)));
+            })?;
+            self.input().for_each_facet_within(seed, [reach, next], |facet, doubled| {
+                near.push((doubled * doubled, facet.generator));
+            });
             near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            for (squared, site) in &near {
+            for (squared, generator) in &near {
                 if cell.radius() < 0.0 || squared.sqrt() > self.reach(seed, cell.radius()) {
                     break;
                 }
-                cell.cut_with_bisector(*site, self.input());
+                cell.cut(*generator, self.input());
             }
             reach = next;
         }
-        Ok(cell.any_vertex())
+        Ok(cell.vertices().first().copied())
     }
 }

@@ -117,7 +117,7 @@ impl Tessellation {
     /// Cells to which faces are yet to be added.
     pub(crate) fn without_faces(domain: &Domain, seeds: &[DVec3], vertices: Vec<DVec3>) -> Self {
         Self {
-            domain: *domain,
+            domain: domain.clone(),
             seeds: seeds.to_vec(),
             vertices,
             face_sides: Vec::new(),
@@ -160,7 +160,7 @@ impl Tessellation {
 
     fn cut(domain: &Domain, seeds: &[DVec3], weights: Option<&[f64]>) -> Result<Self, VoronoiError> {
         check_seeds(domain, seeds)?;
-        let is_plain = weights.is_none() && !domain.is_periodic();
+        let is_plain = weights.is_none() && !domain.is_periodic() && domain.is_box();
         if is_plain
             && domain.dimension() == Dimension::Two
             && let Some(tessellation) = planar_cells::tessellate(domain, seeds)
@@ -282,7 +282,7 @@ impl Tessellation {
     pub fn centroids(&self) -> Vec<DVec3> {
         let (lower, upper) = (self.domain.lower(), self.domain.upper());
         let measures = self.cell_measures();
-        let inside = measures.iter().map(|cell| {
+        let inside = measures.iter().zip(&self.seeds).map(|(cell, seed)| {
             // Across periodic walls the cell of a seed inside may have its centroid outside.
             let below = self.domain.periodic() & cell.centroid.cmplt(lower);
             let above = self.domain.periodic() & cell.centroid.cmpge(upper);
@@ -290,7 +290,11 @@ impl Tessellation {
             let wrapped = cell.centroid + DVec3::select(below, period, DVec3::ZERO)
                 - DVec3::select(above, period, DVec3::ZERO);
             // Rounding may put the centroid of a very thin cell a last place outside.
-            wrapped.clamp(lower, upper)
+            let clamped = wrapped.clamp(lower, upper);
+            // The same beside an oblique wall, where the way to the seed leads inside.
+            let steps = (-52..=0).map(|exponent| clamped.lerp(*seed, 2f64.powi(exponent)));
+            let mut places = std::iter::once(clamped).chain(steps);
+            places.find(|place| self.domain.contains(*place)).unwrap_or(*seed)
         });
         inside.collect()
     }

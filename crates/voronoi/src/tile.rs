@@ -185,7 +185,7 @@ impl Builder<'_> {
             }
             Dimension::Two => {
                 // The polygon is the face in the plane, and its edges are the faces of the tessellation.
-                let is_plane = |(_, plane): &(u16, &HalfSpace)| plane.generator == Generator::wall(PLANE);
+                let is_plane = |(_, plane): &(u16, &HalfSpace)| plane.generator == Generator::side(PLANE);
                 for (p, _) in (0u16..).zip(cell.planes()).filter(is_plane) {
                     cell.for_each_edge(p, |from, beyond, to| {
                         tile.note_edge(cell, from, to);

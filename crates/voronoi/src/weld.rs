@@ -189,14 +189,16 @@ fn root(parents: &mut [u32], mut v: u32) -> u32 {
     v
 }
 
-/// Rounding may leave a vertex of a wall's face a last place beside the wall: it gets the wall's own coordinate.
+/// Rounding may leave a vertex of a wall's face a last place beside the wall: it gets the wall's own coordinate, unless the
+/// wall is oblique.
 pub(crate) fn put_vertices_on_walls(tessellation: &mut Tessellation) {
     for face in 0..tessellation.face_sides.len() {
-        if let Side::Wall(wall) = tessellation.face_sides[face][1] {
+        if let Side::Wall(wall) = tessellation.face_sides[face][1]
+            && let Some((axis, coordinate)) = tessellation.domain.across_axis(wall)
+        {
             let corners = tessellation.face_starts[face]..tessellation.face_starts[face + 1];
             for corner in &tessellation.face_corners[corners] {
-                tessellation.vertices[corner.index()][wall.axis()] =
-                    tessellation.domain.wall_coordinate(wall);
+                tessellation.vertices[corner.index()][axis] = coordinate;
             }
         }
     }

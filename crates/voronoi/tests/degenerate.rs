@@ -219,7 +219,7 @@ fn bad_seeds_are_named() {
     seeds[17] = DVec3::new(1.2, 0.0, 0.0);
     assert_eq!(
         message(&seeds),
-        Err("seed 17 at (1.2, 0, 0) lies outside the domain [0, 1] x [0, 1] x [0, 1]; move it inside or enlarge the box"
+        Err("seed 17 at (1.2, 0, 0) lies outside the domain [0, 1] x [0, 1] x [0, 1]; move it inside or enlarge the domain"
             .to_string())
     );
     seeds[17] = DVec3::new(0.5, f64::NAN, 0.0);

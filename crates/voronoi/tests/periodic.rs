@@ -229,7 +229,7 @@ fn extreme_boxes() {
                     .collect();
                 for axes in [XYZ, X, YZ] {
                     assert_complex(
-                        &Tessellation::new(&domain.with_periods(axes), &seeds).expect("valid seeds"),
+                        &Tessellation::new(&domain.clone().with_periods(axes), &seeds).expect("valid seeds"),
                     );
                 }
             }

@@ -1,7 +1,10 @@
 //! Options about the domain.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use glam::{BVec3, DVec3};
+use grainsmooth::{FileDomain, Shape};
 use voronoi::Dimension;
 
 use super::usage;
@@ -11,19 +14,43 @@ use super::values::length;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Domain")]
 pub struct DomainArguments {
-    /// Dimensions: 3 for grains in a box, 2 for grains in a rectangle
+    /// Dimensions: 3 for grains in a box, 2 for grains in a rectangle [default: 3, or those of a .tess file]
     ///
     /// Example: --dim 2
-    #[arg(long, value_name = "2|3", default_value = "3", value_parser = parse_dimension)]
-    pub dim: Dimension,
+    #[arg(long, value_name = "2|3", value_parser = parse_dimension)]
+    dim: Option<Dimension>,
 
-    /// Side lengths of the box in your unit of length, X Y in 2D; a corner is at 0 0 0 [default: 1 1 1]
+    /// Side lengths of the box in your unit of length, X Y in 2D; a corner is at 0 0 0 [default: 1 1 1, or those of a .tess
+    /// file]
     ///
     /// Example: --box 100 100 20
     #[arg(long = "box", value_names = ["X", "Y", "Z"], num_args = 2.., value_parser = parse_side, allow_negative_numbers = true)]
     box_size: Option<Vec<f64>>,
 
-    /// Axes along which the box repeats, such as x,y,z: grains are whole there and grow through the walls
+    /// Shape of the domain: box, sphere, cylinder (along z), disc (2D), or the file of a closed convex surface, such as .obj or .stl
+    ///
+    /// A sphere, cylinder or disc touches the sides of --box, which must be equal across its axis, and becomes a polyhedron of
+    /// the same volume. A file has its own coordinates, so --box has no meaning with it.
+    ///
+    /// Example: --domain sphere
+    #[arg(long, value_name = "SHAPE", default_value = "box", value_parser = parse_shape)]
+    domain: ShapeName,
+
+    /// Read the domain as half-spaces n . x <= d from a text file: nx, ny, nz, d on each line (nx, ny, d in 2D)
+    ///
+    /// Example: --half-spaces octahedron.csv
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["domain", "box_size"])]
+    half_spaces: Option<PathBuf>,
+
+    /// How far the flat faces of a sphere, cylinder or disc may be from the true surface, in the unit of --box
+    /// [default: 0.005 of its radius]
+    ///
+    /// Example: --chord-error 0.001
+    #[arg(long, value_name = "E", value_parser = parse_chord_error, allow_negative_numbers = true)]
+    chord_error: Option<f64>,
+
+    /// Axes along which the box repeats, such as x,y,z: grains are whole there and grow through the walls [default: none, or
+    /// those of a .tess file]
     ///
     /// Example: --periodic x,y
     #[arg(long, value_name = "AXES", value_parser = parse_axes)]
@@ -31,29 +58,117 @@ pub struct DomainArguments {
 }
 
 impl DomainArguments {
-    /// Side lengths of the box; the last is 1 in 2D.
-    pub fn box_size(&self) -> DVec3 {
-        match (self.box_size.as_deref(), self.dim) {
-            (None, _) => DVec3::ONE,
-            (Some(&[x, y]), Dimension::Two) => DVec3::new(x, y, 1.0),
-            (Some(&[x, y, z]), Dimension::Three) => DVec3::new(x, y, z),
-            (Some(sides), Dimension::Two) => {
-                usage(&format!("--box takes two numbers, X Y, with --dim 2; {} given", sides.len()))
-            }
-            (Some(sides), Dimension::Three) => {
-                usage(&format!("--box takes three numbers, X Y Z, without --dim 2; {} given", sides.len()))
-            }
+    /// What the grains fill: what is not given is as in the file of the seeds, if that tells.
+    pub fn with_defaults_of(&self, file: Option<FileDomain>) -> FileDomain {
+        let file = file.unwrap_or(FileDomain {
+            dimension: self.dim.unwrap_or(Dimension::Three),
+            box_size: DVec3::ONE,
+            periodic: BVec3::FALSE,
+        });
+        let dimension = self.dim.unwrap_or(file.dimension);
+        if dimension != file.dimension {
+            usage("--dim is not the dimension of the seeds' file; leave it out");
         }
-    }
-
-    /// Axes along which the box repeats.
-    pub fn periodic(&self) -> BVec3 {
-        let periodic = self.periodic.unwrap_or(BVec3::FALSE);
-        if periodic.z && self.dim == Dimension::Two {
+        let periodic = self.periodic.unwrap_or(file.periodic);
+        if periodic.z && dimension == Dimension::Two {
             usage("--periodic z needs three dimensions; with --dim 2 give x, y or x,y");
         }
-        periodic
+        let box_size = self.box_size.as_deref().map_or(file.box_size, |sides| box_size(sides, dimension));
+        FileDomain { dimension, box_size, periodic }
     }
+
+    /// What of the box the grains fill.
+    pub fn shape(&self, &FileDomain { dimension, box_size, .. }: &FileDomain) -> Shape {
+        let DVec3 { x, y, z } = box_size;
+        let chord_error = self.chord_error.unwrap_or(Shape::CHORD_ERROR * 0.5 * x);
+        let shape = match (&self.half_spaces, &self.domain) {
+            (Some(path), _) => Shape::HalfSpaces(path.clone()),
+            (None, ShapeName::File(path)) => {
+                if self.box_size.is_some() {
+                    usage("--box has no meaning with a --domain from a file, which has its own size");
+                }
+                Shape::Surface(path.clone())
+            }
+            (None, ShapeName::Box) => Shape::Box,
+            (None, ShapeName::Sphere) => {
+                if x != y || x != z {
+                    usage(&format!(
+                        "--domain sphere needs a --box of equal sides, its diameter; {x} {y} {z} given"
+                    ));
+                }
+                Shape::Sphere { chord_error }
+            }
+            (None, ShapeName::Cylinder | ShapeName::Disc) => {
+                if x != y {
+                    let name = if self.domain == ShapeName::Disc { "disc" } else { "cylinder" };
+                    usage(&format!(
+                        "--domain {name} needs a --box as wide as deep, its diameter; {x} {y} given"
+                    ));
+                }
+                if self.domain == ShapeName::Disc {
+                    Shape::Disc { chord_error }
+                } else {
+                    Shape::Cylinder { chord_error }
+                }
+            }
+        };
+        match (&shape, dimension) {
+            (Shape::Sphere { .. } | Shape::Cylinder { .. } | Shape::Surface(_), Dimension::Two) => {
+                usage("with --dim 2 the domain is a box, a disc, or --half-spaces")
+            }
+            (Shape::Disc { .. }, Dimension::Three) => {
+                usage("--domain disc is for --dim 2; give sphere or cylinder")
+            }
+            _ => {}
+        }
+        let is_curved = matches!(shape, Shape::Sphere { .. } | Shape::Cylinder { .. } | Shape::Disc { .. });
+        if self.chord_error.is_some() && !is_curved {
+            usage("--chord-error is for --domain sphere, cylinder or disc; others have flat faces");
+        }
+        if self.periodic.is_some() && shape != Shape::Box {
+            usage("--periodic is for boxes; other domains do not repeat");
+        }
+        shape
+    }
+}
+
+/// Side lengths of the box; the last is 1 in 2D.
+fn box_size(sides: &[f64], dimension: Dimension) -> DVec3 {
+    match (sides, dimension) {
+        (&[x, y], Dimension::Two) => DVec3::new(x, y, 1.0),
+        (&[x, y, z], Dimension::Three) => DVec3::new(x, y, z),
+        (sides, Dimension::Two) => {
+            usage(&format!("--box takes two numbers, X Y, with --dim 2; {} given", sides.len()))
+        }
+        (sides, Dimension::Three) => {
+            usage(&format!("--box takes three numbers, X Y Z, without --dim 2; {} given", sides.len()))
+        }
+    }
+}
+
+/// `--domain` as it is spelled.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum ShapeName {
+    Box,
+    Sphere,
+    Cylinder,
+    Disc,
+    File(PathBuf),
+}
+
+fn parse_shape(text: &str) -> Result<ShapeName, String> {
+    match text {
+        "box" => Ok(ShapeName::Box),
+        "sphere" => Ok(ShapeName::Sphere),
+        "cylinder" => Ok(ShapeName::Cylinder),
+        "disc" => Ok(ShapeName::Disc),
+        path if path.contains('.') => Ok(ShapeName::File(path.into())),
+        _ => Err("give box, sphere, cylinder, disc or a file with an extension, such as body.obj".to_owned()),
+    }
+}
+
+fn parse_chord_error(text: &str) -> Result<f64, String> {
+    length(text).ok_or_else(|| "a chord error is a positive length".to_owned())
 }
 
 fn parse_dimension(text: &str) -> Result<Dimension, String> {
@@ -69,6 +184,9 @@ fn parse_side(text: &str) -> Result<f64, String> {
 }
 
 fn parse_axes(text: &str) -> Result<BVec3, String> {
+    if text == "none" {
+        return Ok(BVec3::FALSE);
+    }
     let mut axes = [false; 3];
     let known =
         text.split(',').all(|name| match ["x", "y", "z"].iter().position(|axis| *axis == name.trim()) {
@@ -78,6 +196,6 @@ fn parse_axes(text: &str) -> Result<BVec3, String> {
     if known {
         Ok(axes.into())
     } else {
-        Err("name each axis once, with commas between: x, y, z, x,y or x,y,z".to_owned())
+        Err("name each axis once, with commas between: x, y, z, x,y or x,y,z; or none".to_owned())
     }
 }

@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use grainsmooth::vtk::VtkFormat;
-use grainsmooth::{FileOptions, Names, OutputDirectory, OutputFormat, StlEncoding};
+use grainsmooth::{
+    FileOptions, Names, Output, OutputDirectory, OutputFormat, SeriesOutput, StatisticsOutput, StlEncoding,
+    TableFormat,
+};
 use voronoi::Dimension;
 
 use super::usage;
@@ -16,11 +19,17 @@ use super::values::{nearest, whole_number};
 #[command(next_help_heading = "Files")]
 pub struct FileArguments {
     /// File to write; its extension names the format: .vtp, .vtu, .vtk, .vtm, .stl, .ply, .obj, .msh (Gmsh), .fe (Surface Evolver),
-    /// .tess (Neper), and voxels .vti (DAMASK), .npy, .ang
+    /// .tess (Neper), and voxels .vti (DAMASK), .npy, .ang; - is standard output
     ///
     /// Example: -o grains.vtm
     #[arg(short, long, value_name = "PATH", default_value = "grains.vtp", value_parser = parse_output)]
-    pub output: PathBuf,
+    output: PathBuf,
+
+    /// Format of what goes to standard output, named by its extension [default: vtp]
+    ///
+    /// Example: -o - --format ply
+    #[arg(long, value_name = "FORMAT", value_parser = parse_format)]
+    format: Option<OutputFormat>,
 
     /// Write each grain as a closed surface of its own into this new directory
     ///
@@ -51,6 +60,30 @@ pub struct FileArguments {
     /// Example: --names dream3d
     #[arg(long, value_name = "TOOL", value_enum, default_value_t = NameScheme::Grainsmooth)]
     names: NameScheme,
+
+    /// Add arrays of what is measured to VTK files: curvatures, dihedral angles, areas, volumes, growth rates
+    ///
+    /// Example: --arrays -o grains.vtm
+    #[arg(long)]
+    arrays: bool,
+
+    /// Write measures of the smooth network: as JSON, or as CSV of the grains with F.boundaries.csv and so on beside it
+    ///
+    /// Example: --stats grains.json
+    #[arg(long, value_name = "F", value_parser = parse_statistics, conflicts_with = "no_mesh")]
+    stats: Option<PathBuf>,
+
+    /// Write the relaxation as a time series for ParaView: F.pvd, with F_0000.vtp and so on beside it
+    ///
+    /// Example: --series relaxation.pvd --every 2
+    #[arg(long, value_name = "F", value_parser = parse_series, conflicts_with = "no_mesh")]
+    series: Option<PathBuf>,
+
+    /// Steps of the relaxation between two of the series
+    ///
+    /// Example: --series relaxation.pvd --every 2
+    #[arg(long, value_name = "K", default_value_t = NonZeroU32::MIN, value_parser = parse_every, allow_negative_numbers = true, requires = "series")]
+    pub every: NonZeroU32,
 
     /// Write a table of the flat cells as JSON
     ///
@@ -103,6 +136,32 @@ enum NameScheme {
 }
 
 impl FileArguments {
+    /// Where statistics go, if they are asked for, found writable.
+    pub fn statistics(&self, dimension: Dimension) -> Result<Option<StatisticsOutput>, grainsmooth::Error> {
+        let formats = self.stats.iter().filter_map(|path| Some((path, TableFormat::of_path(path)?)));
+        let mut outputs = formats.map(|(path, format)| StatisticsOutput::check(path, format, dimension));
+        outputs.next().transpose()
+    }
+
+    /// Where a series goes, if one is asked for, found writable.
+    pub fn series(&self) -> Result<Option<SeriesOutput>, grainsmooth::Error> {
+        self.series.as_deref().map(SeriesOutput::check).transpose()
+    }
+
+    /// Where the network goes, found writable.
+    pub fn output(&self) -> Result<Output, grainsmooth::Error> {
+        match (self.is_standard_output(), self.format) {
+            (true, format) => Output::standard_output(format.unwrap_or(OutputFormat::Vtk(VtkFormat::Vtp))),
+            (false, None) => Output::check(&self.output),
+            (false, Some(_)) => usage("--format is for -o -; the extension of a file names its format"),
+        }
+    }
+
+    /// Whether the network goes to standard output.
+    pub fn is_standard_output(&self) -> bool {
+        self.output.as_os_str() == "-"
+    }
+
     /// How files are written of grains of a dimension.
     pub fn options(&self, dimension: Dimension) -> FileOptions {
         let voxels = match (self.voxels.as_deref(), dimension) {
@@ -126,17 +185,46 @@ impl FileArguments {
         };
         let stl = if self.ascii { StlEncoding::Ascii } else { StlEncoding::Binary };
         let at_least_one = |count| NonZeroU32::new(count).unwrap_or(NonZeroU32::MIN);
-        FileOptions { names, voxels: voxels.map(|counts| counts.map(at_least_one)), stl }
+        FileOptions { names, voxels: voxels.map(|counts| counts.map(at_least_one)), stl, arrays: self.arrays }
     }
+}
+
+fn parse_statistics(text: &str) -> Result<PathBuf, String> {
+    let path = Path::new(text);
+    match TableFormat::of_path(path) {
+        Some(_) => Ok(path.to_owned()),
+        None => Err("unknown extension; name the file *.json or *.csv".to_owned()),
+    }
+}
+
+fn parse_series(text: &str) -> Result<PathBuf, String> {
+    let path = Path::new(text);
+    match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("pvd") => Ok(path.to_owned()),
+        _ => Err("unknown extension; name the file *.pvd".to_owned()),
+    }
+}
+
+fn parse_every(text: &str) -> Result<NonZeroU32, String> {
+    text.parse().map_err(|_| "give a whole number from 1".to_owned())
 }
 
 fn parse_output(text: &str) -> Result<PathBuf, String> {
     let path = Path::new(text);
-    if OutputFormat::of_path(path).is_some() {
+    if text == "-" || OutputFormat::of_path(path).is_some() {
         return Ok(path.to_owned());
     }
     let extension = path.extension().unwrap_or_default().to_string_lossy();
-    let meant = nearest(&extension, OutputFormat::ALL.map(OutputFormat::extension));
-    let hint = meant.map_or(String::new(), |name| format!("; did you mean .{name}?"));
+    let hint = nearest_format(&extension).map_or(String::new(), |name| format!("; did you mean .{name}?"));
     Err(format!("unknown extension{hint}; name the file {}", OutputFormat::known_extensions()))
+}
+
+fn parse_format(text: &str) -> Result<OutputFormat, String> {
+    let format = OutputFormat::ALL.into_iter().find(|format| format.extension() == text);
+    let hint = || nearest_format(text).map_or(String::new(), |name| format!("did you mean {name}? "));
+    format.ok_or_else(|| format!("{}the formats are those of {}", hint(), OutputFormat::known_extensions()))
+}
+
+fn nearest_format(text: &str) -> Option<&'static str> {
+    nearest(text, OutputFormat::ALL.map(OutputFormat::extension))
 }

@@ -24,6 +24,18 @@ pub struct RunArguments {
     #[arg(long, conflicts_with = "output")]
     pub no_mesh: bool,
 
+    /// Say how many grains, points and triangles there would be, and what file and memory they would take; write nothing
+    ///
+    /// Example: --seeds 100000 -n 3 --dry-run
+    #[arg(long, conflicts_with = "no_mesh")]
+    pub dry_run: bool,
+
+    /// Write the summary as JSON, to a file or, with -, to standard output
+    ///
+    /// Example: --json-summary run.json
+    #[arg(long, value_name = "PATH", conflicts_with = "no_mesh")]
+    pub json_summary: Option<PathBuf>,
+
     /// Number of threads [default: all processors]; the file does not depend on it
     ///
     /// Example: --threads 4

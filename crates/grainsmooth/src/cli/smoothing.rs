@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use grainsmooth::Config;
-use polycrystal::{FaceMesh, Junctions};
+use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
 
 use super::values::{length, whole_number};
 
@@ -23,11 +23,17 @@ pub struct SmoothingArguments {
     #[arg(long, value_name = "H", value_parser = parse_edge_length, allow_negative_numbers = true, conflicts_with = "faces")]
     edge_length: Option<f64>,
 
-    /// Relaxation time, in units of the mean grain size squared; 0 keeps boundaries flat
+    /// Relaxation time, in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat
     ///
     /// Example: --relax 0.1
-    #[arg(long, value_name = "T", default_value_t = Config::default().relaxation_time, value_parser = parse_time, allow_negative_numbers = true)]
-    pub relax: f64,
+    #[arg(long, value_name = "T", default_value = "0.3", value_parser = parse_relaxation, allow_negative_numbers = true)]
+    pub relax: Relaxation,
+
+    /// Let grains grow and shrink by curvature instead of keeping their volumes (in 2D: areas); none may vanish
+    ///
+    /// Example: --relax 0.02 --free
+    #[arg(long)]
+    free: bool,
 
     /// Length, in units of the mean grain size, below which edges between grains collapse; 0 keeps all
     /// [default: 0.1, but 0 with --relax 0]
@@ -81,10 +87,16 @@ impl SmoothingArguments {
         }
     }
 
+    /// Whether relaxation keeps volumes.
+    pub fn volumes(&self) -> Volumes {
+        if self.free { Volumes::Free } else { Volumes::Kept }
+    }
+
     /// Length below which edges collapse.
     pub fn regularize(&self) -> f64 {
         // What is not relaxed shall stay flat, for which no vertex may move.
-        self.regularize.unwrap_or(if self.relax > 0.0 { Config::REGULARIZE } else { 0.0 })
+        let is_flat = self.relax == Relaxation::Time(0.0);
+        self.regularize.unwrap_or(if is_flat { 0.0 } else { Config::REGULARIZE })
     }
 }
 
@@ -92,9 +104,15 @@ fn parse_edge_length(text: &str) -> Result<f64, String> {
     length(text).ok_or_else(|| "an edge length is a positive number between 1e-30 and 1e30".to_owned())
 }
 
-fn parse_time(text: &str) -> Result<f64, String> {
+fn parse_relaxation(text: &str) -> Result<Relaxation, String> {
+    if text == "equilibrium" {
+        return Ok(Relaxation::Equilibrium);
+    }
     let time = text.parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0);
-    time.ok_or_else(|| "the relaxation time is 0 (off) or a positive, finite number".to_owned())
+    let time = time.ok_or_else(|| {
+        "the relaxation time is 0 (off), a positive, finite number, or equilibrium".to_owned()
+    });
+    time.map(Relaxation::Time)
 }
 
 fn parse_regularize(text: &str) -> Result<f64, String> {

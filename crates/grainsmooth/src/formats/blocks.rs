@@ -1,16 +1,19 @@
 //! VTK's multi-block file: `boundaries`, `grains`, `triple_lines` and `quadruple_points`, each in a file of its own.
 
-use std::fs;
-use std::io::{self, Write};
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use polycrystal::{GrainId, Side};
+use polycrystal::{BoundaryId, GrainId, Side};
 use rayon::prelude::*;
 
 use super::grains::GrainMeasure;
 use super::lines::Junctions;
 use super::surface::Surface;
+use crate::measured_arrays::{MeasuredArrays, NumberArrays};
+use crate::network_file::triangles;
+use crate::output::temporary_directory;
 use crate::vtk::{Array, Cells, Each, PolyData, Tuples, Values, VtkFormat, write_vtk};
 use crate::{Error, Output, Polycrystal};
 
@@ -26,17 +29,24 @@ impl Polycrystal {
         let failed = |cause| Error::WriteOutput { path: output.path().to_owned(), cause };
         let surface = self.surface().map_err(failed)?;
         let folder = folder(output.path());
-        fs::create_dir_all(&folder).map_err(failed)?;
         let junctions = Junctions::of(&surface);
-        for block in BLOCKS {
-            let file = Output::check(folder.join(block).with_extension("vtp"))?;
-            file.write(|out| match block {
-                "boundaries" => self.write_boundaries(&surface, out),
-                "grains" => self.write_grain_block(&surface, out),
-                "triple_lines" => self.write_triple_lines(&surface, &junctions, out),
-                _ => self.write_quadruple_points(&surface, &junctions, out),
-            })?;
-        }
+        let measured = self.measured_arrays();
+        let measured = measured.as_ref();
+        // All blocks or none get their names.
+        let unfinished = temporary_directory(&folder).map_err(failed)?;
+        let write = |block: &str| {
+            let file = File::create(unfinished.path().join(block).with_extension("vtp"))?;
+            let mut out = BufWriter::new(file);
+            match block {
+                "boundaries" => self.write_boundaries(&surface, measured, &mut out)?,
+                "grains" => self.write_grain_block(&surface, measured, &mut out)?,
+                "triple_lines" => self.write_triple_lines(&surface, &junctions, measured, &mut out)?,
+                _ => self.write_quadruple_points(&surface, &junctions, measured, &mut out)?,
+            }
+            out.flush()
+        };
+        BLOCKS.into_iter().try_for_each(write).map_err(failed)?;
+        unfinished.persist_files(&folder).map_err(failed)?;
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         output.write(|out| {
             writeln!(out, "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\">\n<vtkMultiBlockDataSet>")?;
@@ -49,7 +59,12 @@ impl Polycrystal {
     }
 
     /// Each boundary with points of its own, so that each has a normal of its own.
-    fn write_boundaries(&self, surface: &Surface<'_>, out: &mut dyn Write) -> io::Result<()> {
+    fn write_boundaries(
+        &self,
+        surface: &Surface<'_>,
+        measured: Option<&MeasuredArrays<'_>>,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
         let names = self.config.file.names;
         let boundaries = self.network.boundaries();
         let (mut ids, mut triangles, mut part_of) = (Vec::new(), Vec::new(), Vec::new());
@@ -74,7 +89,10 @@ impl Polycrystal {
         let boundary_id = |triangle: usize| boundary(triangle).0.cast_signed();
         // Points are fewer than 2^31: each has an edge of two directions with a 32-bit id.
         let id = |point: usize| ids[point].cast_signed();
-        let data = PolyData {
+        let of_boundaries: Vec<BoundaryId> = (0..count).map(boundary).collect();
+        let of_cells = measured.map_or_else(NumberArrays::default, |all| all.of_cells(&of_boundaries));
+        let of_points = measured.map_or_else(NumberArrays::default, |all| all.curvatures_at(&ids));
+        let mut data = PolyData {
             points: &points,
             cells: Cells::Triangles(&triangles),
             point_arrays: vec![
@@ -87,11 +105,18 @@ impl Polycrystal {
             ],
             field: self.field(),
         };
+        data.cell_arrays.extend(of_cells.arrays());
+        data.point_arrays.extend(of_points.arrays());
         write_vtk(&data, VtkFormat::Vtp, out)
     }
 
     /// All grains, each a closed surface with points of its own and all normals outward.
-    fn write_grain_block(&self, surface: &Surface<'_>, out: &mut dyn Write) -> io::Result<()> {
+    fn write_grain_block(
+        &self,
+        surface: &Surface<'_>,
+        measured: Option<&MeasuredArrays<'_>>,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
         let names = self.config.file.names;
         let parts = surface.parts_of_grains(self.network.grain_count());
         let ids = (0u32..).map(GrainId).zip(&parts).collect::<Vec<_>>();
@@ -120,7 +145,8 @@ impl Polycrystal {
         let area = |triangle: usize| measure(triangle).area;
         let neighbors = |triangle: usize| measure(triangle).neighbors;
         let sphericity = |triangle: usize| measure(triangle).sphericity;
-        let data = PolyData {
+        let of_grains = measured.map_or_else(NumberArrays::default, |all| all.of_grains(&grain_of));
+        let mut data = PolyData {
             points: &points,
             cells: Cells::Triangles(&triangles),
             point_arrays: Vec::new(),
@@ -133,6 +159,7 @@ impl Polycrystal {
             ],
             field: self.field(),
         };
+        data.cell_arrays.extend(of_grains.arrays());
         write_vtk(&data, VtkFormat::Vtp, out)
     }
 
@@ -141,6 +168,7 @@ impl Polycrystal {
         &self,
         surface: &Surface<'_>,
         junctions: &Junctions,
+        measured: Option<&MeasuredArrays<'_>>,
         out: &mut dyn Write,
     ) -> io::Result<()> {
         let around = |line: &super::lines::JunctionLine| {
@@ -158,13 +186,16 @@ impl Polycrystal {
         let cells: Vec<Vec<u32>> =
             lines.iter().map(|(line, _)| line.points.iter().map(renumbered).collect()).collect();
         let sides = self.side_table(lines.iter().map(|(_, sides)| sides));
-        let data = PolyData {
+        let polylines = lines.iter().map(|(line, _)| &line.points[..]);
+        let of_lines = measured.map_or_else(NumberArrays::default, |all| all.of_lines(polylines));
+        let mut data = PolyData {
             points: &points,
             cells: Cells::Polylines(&cells),
             point_arrays: Vec::new(),
             cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
             field: self.field(),
         };
+        data.cell_arrays.extend(of_lines.arrays());
         write_vtk(&data, VtkFormat::Vtp, out)
     }
 
@@ -173,6 +204,7 @@ impl Polycrystal {
         &self,
         surface: &Surface<'_>,
         junctions: &Junctions,
+        measured: Option<&MeasuredArrays<'_>>,
         out: &mut dyn Write,
     ) -> io::Result<()> {
         let mut at: Vec<(u32, Side)> = Vec::new();
@@ -185,19 +217,28 @@ impl Polycrystal {
         at.sort_unstable();
         at.dedup();
         let points = at.chunk_by(|a, b| a.0 == b.0).filter(|sides| sides.len() >= 4);
-        let points: Vec<(DVec3, Vec<Side>)> = points
-            .map(|at| (surface.points[at[0].0 as usize], at.iter().map(|(_, side)| *side).collect()))
-            .collect();
+        let points: Vec<(u32, Vec<Side>)> =
+            points.map(|at| (at[0].0, at.iter().map(|(_, side)| *side).collect())).collect();
         let sides = self.side_table(points.iter().map(|(_, sides)| sides));
-        let points: Vec<DVec3> = points.iter().map(|(point, _)| *point).collect();
-        let data = PolyData {
+        let ids: Vec<u32> = points.iter().map(|(point, _)| *point).collect();
+        let points: Vec<DVec3> = ids.iter().map(|point| surface.points[*point as usize]).collect();
+        let of_points = measured.map_or_else(NumberArrays::default, |all| all.of_quadruple_points(&ids));
+        let mut data = PolyData {
             points: &points,
             cells: Cells::Vertices(points.len()),
             point_arrays: Vec::new(),
             cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
             field: self.field(),
         };
+        data.cell_arrays.extend(of_points.arrays());
         write_vtk(&data, VtkFormat::Vtp, out)
+    }
+
+    /// What is measured, wound as the files want it, if they are to have it.
+    fn measured_arrays(&self) -> Option<MeasuredArrays<'_>> {
+        let level = self.network.finest();
+        let triangles = triangles(level, self.network.boundaries(), self.config.file.names);
+        self.config.file.arrays.then(|| MeasuredArrays::new(self, Cells::Triangles(&triangles)))
     }
 
     /// The numbers of the sides that meet in each of some places.
@@ -238,7 +279,7 @@ fn folder(path: &Path) -> PathBuf {
 }
 
 /// A text within an XML attribute.
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 

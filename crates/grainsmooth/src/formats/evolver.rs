@@ -5,8 +5,8 @@
 use std::io::{self, Write};
 
 use glam::DVec3;
-use polycrystal::WallSet;
-use voronoi::Domain;
+use polycrystal::{WallSet, WallSets};
+use voronoi::{Domain, Wall};
 
 use super::surface::{Surface, side_name};
 use crate::Config;
@@ -14,7 +14,7 @@ use crate::Config;
 /// Writes the file; each point stays on its walls, and each body keeps its volume.
 pub(crate) fn write(
     surface: &Surface<'_>,
-    domain: &Domain,
+    (domain, sets): (&Domain, &WallSets),
     walls: &[WallSet],
     volumes: &[f64],
     config: &Config,
@@ -24,23 +24,17 @@ pub(crate) fn write(
     config.write_comments("// ", out)?;
     writeln!(out)?;
     for wall in domain.walls() {
-        let axis = ["x", "y", "z"][wall.axis()];
-        writeln!(
-            out,
-            "constraint {}\nformula: {axis} = {:?}\n",
-            wall.number() + 1,
-            domain.wall_coordinate(wall)
-        )?;
+        writeln!(out, "constraint {}\nformula: {}\n", wall.number() + 1, formula(domain, wall))?;
     }
     writeln!(out, "vertices")?;
     for (id, (DVec3 { x, y, z }, walls)) in (1u64..).zip(surface.points.iter().zip(walls)) {
-        writeln!(out, "{id} {x:?} {y:?} {z:?}{}", constraints(*walls))?;
+        writeln!(out, "{id} {x:?} {y:?} {z:?}{}", constraints(sets.walls(*walls)))?;
     }
 
     let edges = edges(surface);
     writeln!(out, "\nedges")?;
     for (id, [a, b]) in (1u64..).zip(&edges) {
-        let common = walls[*a as usize].intersection(walls[*b as usize]);
+        let common = sets.walls(sets.intersection(walls[*a as usize], walls[*b as usize]));
         writeln!(out, "{id} {} {}{}", u64::from(*a) + 1, u64::from(*b) + 1, constraints(common))?;
     }
 
@@ -60,7 +54,7 @@ pub(crate) fn write(
                 write!(out, " {sign}{edge}")?;
             }
             let common = corners.map(|corner| walls[corner as usize]);
-            let common = common[0].intersection(common[1]).intersection(common[2]);
+            let common = sets.walls(sets.intersection(sets.intersection(common[0], common[1]), common[2]));
             // Walls carry no energy.
             let density = if common.is_empty() { "" } else { " density 0" };
             writeln!(out, "{}{density}", constraints(common))?;
@@ -91,11 +85,19 @@ fn edges(surface: &Surface<'_>) -> Vec<[u32; 2]> {
     edges
 }
 
-fn constraints(walls: WallSet) -> String {
+fn formula(domain: &Domain, wall: Wall) -> String {
+    if let Some((axis, coordinate)) = domain.across_axis(wall) {
+        return format!("{} = {coordinate:?}", ["x", "y", "z"][axis]);
+    }
+    let (DVec3 { x, y, z }, distance) = domain.wall_equation(wall);
+    format!("({x:?})*x + ({y:?})*y + ({z:?})*z = {distance:?}")
+}
+
+fn constraints(walls: &[Wall]) -> String {
     if walls.is_empty() {
         return String::new();
     }
-    let numbers = walls.iter();
-    let numbers: Vec<String> = numbers.map(|wall| format!(" {}", wall.number() + 1)).collect();
-    format!(" constraints{}", numbers.concat())
+    // Three walls hold a point; more, as in the apex of a pyramid, would hold it twice.
+    let numbers = walls.iter().take(3).map(|wall| format!(" {}", wall.number() + 1));
+    format!(" constraints{}", numbers.collect::<String>())
 }

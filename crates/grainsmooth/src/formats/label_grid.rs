@@ -53,7 +53,7 @@ impl LabelGrid {
         if domain.dimension() == Dimension::Two {
             spacing.z = spacing.x;
         }
-        let centers = Centers { domain: *domain, size };
+        let centers = Centers { domain: domain.clone(), size };
         let crossings = crossings_by_slice(polycrystal, &centers);
         let slices: Vec<Vec<GrainId>> =
             crossings.into_par_iter().map(|crossings| fill_slice(size, crossings)).collect();

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use glam::DVec3;
-use polycrystal::{Boundary, BoundaryId, GrainId, Mesh, Side};
+use polycrystal::{Boundary, BoundaryId, GrainId, Level, Mesh, Side};
 
 use crate::Polycrystal;
 
@@ -32,7 +32,11 @@ pub(crate) struct Part {
 impl<'a> Surface<'a> {
     /// The finest level of a polycrystal, every boundary once; nothing in the plane, where boundaries are lines.
     pub(crate) fn network(polycrystal: &'a Polycrystal) -> Option<Self> {
-        let level = polycrystal.network.finest();
+        Self::of_level(polycrystal, polycrystal.network.finest())
+    }
+
+    /// The same with the triangles of a coarser level, whose vertices stand where they are on the finest.
+    pub(crate) fn of_level(polycrystal: &'a Polycrystal, level: &'a Level) -> Option<Self> {
         let Mesh::Triangles(mesh) = &level.mesh else { return None };
         let boundaries = polycrystal.network.boundaries();
         let (order, ranges) = grouped(&level.boundary_of, boundaries.len());
@@ -43,7 +47,7 @@ impl<'a> Surface<'a> {
             range,
         };
         Some(Self {
-            points: Cow::Borrowed(&polycrystal.points),
+            points: Cow::Borrowed(&polycrystal.points[..level.vertex_count()]),
             triangles: Cow::Borrowed(mesh.triangles()),
             order,
             parts: numbered.map(part).collect(),

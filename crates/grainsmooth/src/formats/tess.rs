@@ -111,11 +111,17 @@ impl Tess {
     pub fn new(cells: &Tessellated) -> Self {
         let tessellation = &cells.tessellation;
         let domain = tessellation.domain();
-        let wall_count = if domain.dimension() == Dimension::Two { 4 } else { 6 };
+        let wall_count = match domain.dimension() {
+            _ if !domain.is_box() => 0,
+            Dimension::Two => 4,
+            Dimension::Three => 6,
+        };
         let mut walls = vec![Vec::new(); wall_count];
         for face in tessellation.faces() {
-            if let Side::Wall(wall) = tessellation.face_sides(face)[1] {
-                walls[wall.index()].push(face.0);
+            if let Side::Wall(wall) = tessellation.face_sides(face)[1]
+                && let Some(faces) = walls.get_mut(wall.index())
+            {
+                faces.push(face.0);
             }
         }
         let seeds = tessellation.seeds().iter().zip(&cells.weights);

@@ -92,6 +92,7 @@ fn attributes(arrays: &[Array<'_>]) -> Vec<Attribute> {
             Values::Int32(values) => IOBuffer::I32(values.to_vec()),
             Values::Int32Pairs(pairs) => IOBuffer::I32(pairs.as_flattened().to_vec()),
             Values::Float64(values) => IOBuffer::F64(values.to_vec()),
+            Values::Float64Pairs(pairs) => IOBuffer::F64(pairs.as_flattened().to_vec()),
             Values::Vectors(vectors) => IOBuffer::F64(bytemuck::cast_slice(vectors).to_vec()),
             Values::Int8Of(each) => IOBuffer::I8((0..each.count).map(each.value).collect()),
             Values::Int32Of(each) => IOBuffer::I32((0..each.count).map(each.value).collect()),

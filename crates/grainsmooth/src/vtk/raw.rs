@@ -65,6 +65,7 @@ impl<'a> Numbers<'a> {
             Values::Int32(values) => Self::slice(values),
             Values::Int32Pairs(pairs) => Self::slice(pairs),
             Values::Float64(values) => Self::slice(values),
+            Values::Float64Pairs(pairs) => Self::slice(pairs),
             Values::Vectors(vectors) => Self::slice(vectors),
             Values::Int8Of(each) => Self::each(each.count, each.value),
             Values::Int32Of(each) => Self::each(each.count, each.value),

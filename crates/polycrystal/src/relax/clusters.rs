@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{Level, Mesh};
+use crate::{Freedom, Level, Mesh};
 
 /// Groups of control points that are displaced by the same vector, so that what lies between them keeps its shape.
 ///
@@ -104,9 +104,19 @@ impl Numbering {
         &self.numbers
     }
 
-    /// The cluster of a control point.
-    pub(super) fn cluster_of(&self, point: u32) -> usize {
-        self.numbers[point as usize] as usize
+    /// How the points of a cluster can move as one, given how each can.
+    pub(super) fn freedom(&self, cluster: usize, of_point: impl Fn(u32) -> Freedom) -> Freedom {
+        self.members(cluster).iter().map(|point| of_point(*point)).fold(Freedom::Everywhere, Freedom::and)
+    }
+
+    /// Gives all points of each cluster the mean of their displacements.
+    pub(super) fn unite(&self, moves: &mut [DVec3], of_point: impl Fn(u32) -> Freedom) {
+        for cluster in (0..self.cluster_count()).filter(|cluster| self.members(*cluster).len() > 1) {
+            let members = self.members(cluster);
+            let sum: DVec3 = members.iter().map(|point| moves[*point as usize]).sum();
+            let mean = self.freedom(cluster, &of_point).project(sum / members.len() as f64);
+            members.iter().for_each(|point| moves[*point as usize] = mean);
+        }
     }
 
     /// The control points of a cluster.

@@ -7,14 +7,17 @@ use super::conjugate_gradients::dot;
 use super::face_corners::FaceCorners;
 use super::patch::PatchTerms;
 use super::patches::Patches;
-use super::system::System;
+use super::system::{Step, System};
 use crate::folds::{element_normals, folded_edges, folded_pairs};
 use crate::seams::Seams;
 use crate::volume::sum_over_grains;
-use crate::{Boundary, GrainId, Level, Mesh, Network, NetworkError};
+use crate::{Boundary, GrainId, Level, Mesh, Network, NetworkError, Volumes};
 
 /// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
-const ATTEMPTS: usize = 12;
+const ATTEMPTS: usize = 24;
+
+/// Attempts after which all displacements are halved with every other one: what moves at all may be too much.
+const WHOLE_ATTEMPTS: usize = 12;
 
 /// Length, in units of the feature size, below which a control edge no longer changes.
 const RIGID_LENGTH: f64 = 0.04;
@@ -46,6 +49,8 @@ const VOLUME_STEPS: usize = 40;
 pub(super) struct Stage {
     pub(super) step_time: f64,
     pub(super) steps: usize,
+    /// The stage ends early when a step lessens the energy by less than this share; never for 0.
+    pub(super) residual: f64,
     /// Whether the volumes of the finest level have to be right in the end.
     pub(super) is_last: bool,
 }
@@ -62,12 +67,11 @@ pub(super) struct Flow<'a> {
     neighbors: Vec<[u32; 2]>,
     corners: FaceCorners,
     clusters: Clusters,
-    /// Whether each step is checked for folds on the finest level too, which is seldom worth its time.
-    checks_finest: bool,
+    volumes: Volumes,
 }
 
 impl<'a> Flow<'a> {
-    pub(super) fn new(network: &'a Network, level: usize) -> Self {
+    pub(super) fn new(network: &'a Network, level: usize, volumes: Volumes) -> Self {
         let surface = (network.levels().len() - 1).min(level + 1);
         let clusters = Clusters::new(&network.levels()[level]);
         let tension = |boundary: &Boundary| if boundary.wall.is_none() { 1.0 } else { 0.0 };
@@ -75,71 +79,85 @@ impl<'a> Flow<'a> {
         let patches = Patches::new(network, level, surface, &tensions);
         let corners = FaceCorners::new(network, level);
         let neighbors = Seams::of_level(&network.levels()[surface]).inner;
-        Self { network, patches, level, surface, neighbors, corners, clusters, checks_finest: false }
+        Self { network, patches, level, surface, neighbors, corners, clusters, volumes }
     }
 
-    /// Takes the steps of a stage. Where the finest level folds though no step did, goes back to where it did not.
+    /// Takes the steps of a stage.
     ///
-    /// `progress` is told the number of steps done.
+    /// `progress` is told the number of steps done and where the points are.
     pub(super) fn run(
         &mut self,
-        start: Vec<DVec3>,
+        start: &[DVec3],
         stage: &Stage,
-        progress: &impl Fn(usize),
+        progress: &mut impl FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
-        let mut states = vec![start];
-        let mut count = 0;
-        for _ in 0..ATTEMPTS {
-            while states.len() <= stage.steps {
-                states.push(self.step(&states[states.len() - 1], stage.step_time)?);
-                progress(states.len() - 1);
+        let mut points = start.to_vec();
+        let mut last_energy = f64::INFINITY;
+        for step in 1..=stage.steps {
+            let energy = self.step(&mut points, stage.step_time)?;
+            progress(step, &points);
+            if (last_energy - energy).abs() < stage.residual * energy {
+                break;
             }
-            let mut points = states[stage.steps].clone();
-            if stage.is_last {
+            last_energy = energy;
+        }
+        // Where the finest level folds though no step did, all has moved too far from where it did not.
+        let mut count = 0;
+        for attempt in 0..ATTEMPTS {
+            if stage.is_last && self.volumes == Volumes::Kept {
                 self.restore_volumes(&mut points)?;
             }
             let folds = self.finest_folds(&points);
-            if folds.is_empty() {
+            count = folds.len();
+            if count == 0 {
                 return Ok(points);
             }
-            count = folds.len();
-            self.checks_finest = true;
             self.make_rigid(self.finest(), folds.into_iter().flatten());
-            states.pop();
-            while states.len() > 1 && !self.finest_folds(&states[states.len() - 1]).is_empty() {
-                states.pop();
-            }
+            let mut moves: Vec<DVec3> =
+                points.iter().zip(start).map(|(point, start)| *point - *start).collect();
+            self.unite(&mut moves, attempt);
+            points = displaced(start, &moves);
         }
         Err(NetworkError::Folded { count })
     }
 
-    /// One step of curvature flow; tried again where it folds.
-    fn step(&mut self, points: &[DVec3], time: f64) -> Result<Vec<DVec3>, NetworkError> {
+    /// One step of curvature flow; gives the energy before it.
+    ///
+    /// What the step folds is made rigid and moves by its mean displacement instead. That is local: to solve the step anew for
+    /// all grains would take as many attempts as the worst place of all.
+    fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<f64, NetworkError> {
         let terms = self.patches.terms(points);
+        let energy = terms.iter().map(|terms| terms.energy).sum();
         let before = element_normals(self.surface(), &self.refined(points));
         let volumes: Vec<f64> = terms.iter().map(|terms| terms.volume).collect();
         let volumes = sum_over_grains(self.network.boundaries(), &volumes, self.network.grain_count());
         let missing = self.missing(&volumes);
         self.clusters.join_short_edges(self.control_mesh(), points, self.rigid_length());
+        let mut moves = self.system(points, &terms, &self.clusters, time).displacement(&missing);
         let mut count = 0;
-        for _ in 0..ATTEMPTS {
-            let moves = self.system(points, &terms, &self.clusters, time).displacement(&missing);
-            let moved: Vec<DVec3> = points.iter().zip(&moves).map(|(point, by)| *point + *by).collect();
+        for attempt in 0..ATTEMPTS {
+            let moved = displaced(points, &moves);
             let broken = self.broken_elements(&before, &moved);
             let folding = self.corners.folding(points, &moved);
             count = broken.len() + folding.len();
+            if count == 0 {
+                *points = moved;
+                return Ok(energy);
+            }
             self.make_rigid(self.surface, broken.into_iter());
             folding.iter().for_each(|corner| self.clusters.join_all(corner));
-            if count == 0 && self.checks_finest {
-                let folds = self.finest_folds(&moved);
-                count = folds.len();
-                self.make_rigid(self.finest(), folds.into_iter().flatten());
-            }
-            if count == 0 {
-                return Ok(moved);
-            }
+            self.unite(&mut moves, attempt);
         }
         Err(NetworkError::Folded { count })
+    }
+
+    /// Makes the points of each cluster move as one.
+    fn unite(&self, moves: &mut [DVec3], attempt: usize) {
+        let walls = &self.network.levels()[self.level].walls;
+        self.clusters.number().unite(moves, |point| self.network.freedom(walls[point as usize]));
+        if attempt >= WHOLE_ATTEMPTS {
+            moves.iter_mut().for_each(|by| *by *= 0.5);
+        }
     }
 
     /// Moves points so that the grains of the finest level have the volumes of their cells.
@@ -200,10 +218,10 @@ impl<'a> Flow<'a> {
         Ok(())
     }
 
-    fn system(&self, points: &[DVec3], terms: &[PatchTerms], clusters: &Clusters, time: f64) -> System<'_> {
-        let size = self.feature_size();
-        let walls = &self.network.levels()[self.level].walls;
-        System::new(self.network, &self.patches, terms, points, clusters.number(), (time, size), walls)
+    fn system(&self, points: &[DVec3], terms: &[PatchTerms], clusters: &Clusters, time: f64) -> System {
+        let step = Step { time, feature_size: self.feature_size(), volumes: self.volumes };
+        let level = &self.network.levels()[self.level];
+        System::new(self.network, &self.patches, terms, points, clusters.number(), step, level)
     }
 
     /// The feature size as control edges of this level have it.
@@ -216,8 +234,12 @@ impl<'a> Flow<'a> {
         self.network.levels().len() - 1
     }
 
+    /// Where volumes are free the flow itself is asked for: nothing is held but what a step would fold.
     fn rigid_length(&self) -> f64 {
-        RIGID_LENGTH * self.feature_size()
+        match self.volumes {
+            Volumes::Kept => RIGID_LENGTH * self.feature_size(),
+            Volumes::Free => 0.0,
+        }
     }
 
     /// What each grain's volume lacks.
@@ -284,6 +306,10 @@ impl<'a> Flow<'a> {
             self.clusters.join_all(&depends_on);
         }
     }
+}
+
+fn displaced(points: &[DVec3], moves: &[DVec3]) -> Vec<DVec3> {
+    points.iter().zip(moves).map(|(point, by)| *point + *by).collect()
 }
 
 /// The element of the first of some consecutive levels that an element of the last descends from.

@@ -77,7 +77,9 @@ impl Refinement {
 /// What a patch brings to a step.
 #[derive(Debug)]
 pub(super) struct PatchTerms {
-    /// Gradient of the energy at each control point.
+    /// Area times tension.
+    pub(super) energy: f64,
+    /// Its gradient at each control point.
     pub(super) gradient: Vec<DVec3>,
     /// Volume swept from the first side to the second, per displacement of each control point.
     pub(super) sweep: Vec<DVec3>,
@@ -95,21 +97,18 @@ impl Patch {
         let local: Vec<DVec3> = self.control_points.iter().map(|p| points[*p as usize] - origin).collect();
         let (mass, stiffness) = self.mass_and_stiffness(&local);
         let count = local.len();
-        match &self.refinement {
-            None => {
-                let (gradient, sweep, volume) =
-                    first_variation(&self.elements, &local, self.share * self.tension);
-                PatchTerms { gradient, sweep, mass, stiffness, volume }
-            }
-            Some(refinement) => {
-                let surface = refinement.apply(&local);
-                let (gradient, sweep, volume) =
-                    first_variation(&refinement.elements, &surface, self.share * self.tension);
-                let gradient = refinement.pull_back(&gradient, count);
-                let sweep = refinement.pull_back(&sweep, count);
-                PatchTerms { gradient, sweep, mass, stiffness, volume }
-            }
-        }
+        let tension = self.share * self.tension;
+        let Some(refinement) = &self.refinement else {
+            let Variation { energy, gradient, sweep, volume } =
+                Variation::new(&self.elements, &local, tension);
+            return PatchTerms { energy, gradient, sweep, mass, stiffness, volume };
+        };
+        let surface = refinement.apply(&local);
+        let Variation { energy, gradient, sweep, volume } =
+            Variation::new(&refinement.elements, &surface, tension);
+        let gradient = refinement.pull_back(&gradient, count);
+        let sweep = refinement.pull_back(&sweep, count);
+        PatchTerms { energy, gradient, sweep, mass, stiffness, volume }
     }
 
     /// Lumped masses, and the cotangent Laplacian times the tension as a spring constant for each edge.
@@ -147,37 +146,48 @@ impl Patch {
     }
 }
 
-/// Gradient of `tension` times the area, swept volume, and volume.
-fn first_variation(elements: &Elements, points: &[DVec3], tension: f64) -> (Vec<DVec3>, Vec<DVec3>, f64) {
-    let mut gradient = vec![DVec3::ZERO; points.len()];
-    let mut sweep = gradient.clone();
-    let mut volume = 0.0;
-    let at = |point: u32| points[point as usize];
-    match elements {
-        Elements::Triangles(triangles) => {
-            for corners in triangles {
-                let [a, b, c] = corners.map(at);
-                let normal = (b - a).cross(c - a);
-                let unit = normal.normalize_or_zero() * (0.5 * tension);
-                for (corner, across) in corners.iter().zip([c - b, a - c, b - a]) {
-                    gradient[*corner as usize] += unit.cross(across);
-                    sweep[*corner as usize] += normal / 6.0;
+/// Energy and volume of a surface, and how they change with its points.
+struct Variation {
+    energy: f64,
+    gradient: Vec<DVec3>,
+    sweep: Vec<DVec3>,
+    volume: f64,
+}
+
+impl Variation {
+    fn new(elements: &Elements, points: &[DVec3], tension: f64) -> Self {
+        let (mut area, mut volume) = (0.0, 0.0);
+        let mut gradient = vec![DVec3::ZERO; points.len()];
+        let mut sweep = gradient.clone();
+        let at = |point: u32| points[point as usize];
+        match elements {
+            Elements::Triangles(triangles) => {
+                for corners in triangles {
+                    let [a, b, c] = corners.map(at);
+                    let normal = (b - a).cross(c - a);
+                    let unit = normal.normalize_or_zero() * (0.5 * tension);
+                    for (corner, across) in corners.iter().zip([c - b, a - c, b - a]) {
+                        gradient[*corner as usize] += unit.cross(across);
+                        sweep[*corner as usize] += normal / 6.0;
+                    }
+                    area += 0.5 * normal.length();
+                    volume += triangle_volume([a, b, c]);
                 }
-                volume += triangle_volume([a, b, c]);
+            }
+            Elements::Segments(segments) => {
+                for ends in segments {
+                    let [start, end] = ends.map(at);
+                    let along = end - start;
+                    let unit = along.normalize_or_zero() * tension;
+                    for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
+                        gradient[*end as usize] += unit * sign;
+                        sweep[*end as usize] += along.cross(DVec3::Z) / 2.0;
+                    }
+                    area += along.length();
+                    volume += segment_area([start, end]);
+                }
             }
         }
-        Elements::Segments(segments) => {
-            for ends in segments {
-                let [start, end] = ends.map(at);
-                let along = end - start;
-                let unit = along.normalize_or_zero() * tension;
-                for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
-                    gradient[*end as usize] += unit * sign;
-                    sweep[*end as usize] += along.cross(DVec3::Z) / 2.0;
-                }
-                volume += segment_area([start, end]);
-            }
-        }
+        Self { energy: tension * area, gradient, sweep, volume }
     }
-    (gradient, sweep, volume)
 }

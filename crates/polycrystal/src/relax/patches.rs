@@ -66,13 +66,8 @@ impl Patches {
         Self { patches, place_starts, places, patch_of_place, origin }
     }
 
-    /// Number of places in all patches.
-    pub(super) fn place_count(&self) -> usize {
-        self.places.len()
-    }
-
     /// The places of a control point, patch after patch.
-    fn places_of_point(&self, point: usize) -> &[usize] {
+    pub(super) fn places_of_point(&self, point: usize) -> &[usize] {
         &self.places[self.place_starts[point]..self.place_starts[point + 1]]
     }
 
@@ -89,17 +84,6 @@ impl Patches {
     /// The patch that a place belongs to.
     pub(super) fn patch_of_place(&self, place: usize) -> usize {
         self.patch_of_place[place] as usize
-    }
-
-    /// Splits a field over the places into one slice a patch.
-    pub(super) fn split<'a, T>(&self, mut field: &'a mut [T]) -> Vec<&'a mut [T]> {
-        let mut slices = Vec::with_capacity(self.patches.len());
-        for patch in &self.patches {
-            let (slice, rest) = field.split_at_mut(patch.control_points.len());
-            slices.push(slice);
-            field = rest;
-        }
-        slices
     }
 
     pub(super) fn terms(&self, points: &[DVec3]) -> Vec<PatchTerms> {

@@ -6,9 +6,10 @@ use rayon::prelude::*;
 use super::clusters::Numbering;
 use super::patch::PatchTerms;
 use super::patches::Patches;
+use super::rows::Rows;
 use super::springs::add_springs;
 use super::volume_constraint::{Compliance, VolumeConstraint};
-use crate::{Network, WallSet};
+use crate::{Freedom, Level, Mesh, Network, Volumes};
 
 /// Share of its first residual at which a step is solved: a step is one of several, and the next one starts from where it ends.
 const TOLERANCE: f64 = 1e-3;
@@ -16,31 +17,47 @@ const TOLERANCE: f64 = 1e-3;
 /// Most iterations for a step.
 const ITERATIONS: usize = 200;
 
+/// Error of the pressures within the iteration, which works on what they leave.
+const LOOSE: f64 = 0.1;
+
+/// Error of the pressures that give the volumes.
+const TIGHT: f64 = 1e-6;
+
+/// Unknowns that one task works on; fixed, so that no sum depends on the number of threads.
+const CHUNK: usize = 4096;
+
 /// `(M + dt (K + S)) d = -dt g + J^T p` for the displacements d of clusters, with pressures p such that `J d` is given.
-pub(super) struct System<'a> {
-    patches: &'a Patches,
+pub(super) struct System {
     clusters: Numbering,
-    masses: Vec<f64>,
-    /// `dt (K + S)` of each patch: a spring constant for each of its edges.
-    springs: Vec<Vec<f64>>,
+    /// The diagonal of `M + dt (K + S)`.
+    diagonal: Vec<f64>,
+    /// What is beside the diagonal, with the sign turned; columns may come more than once.
+    springs: Rows<f64>,
     /// `-dt g`.
     forces: Vec<DVec3>,
-    /// 1 over the diagonal of the matrix, 0 along axes that walls lock.
-    mobility: Vec<DVec3>,
-    constraint: VolumeConstraint,
-    compliance: Compliance,
+    mobility: Vec<Mobility>,
+    /// Nothing where volumes are free.
+    constraint: Option<(VolumeConstraint, Compliance)>,
 }
 
-impl<'a> System<'a> {
+/// What a step is like.
+pub(super) struct Step {
+    pub(super) time: f64,
+    /// The feature size as control edges have it.
+    pub(super) feature_size: f64,
+    pub(super) volumes: Volumes,
+}
+
+impl System {
     /// The system of a step of the given time from the given points.
     pub(super) fn new(
         network: &Network,
-        patches: &'a Patches,
+        patches: &Patches,
         terms: &[PatchTerms],
         points: &[DVec3],
         clusters: Numbering,
-        (time, feature_size): (f64, f64),
-        walls: &[WallSet],
+        Step { time, feature_size, volumes }: Step,
+        level: &Level,
     ) -> Self {
         let springs: Vec<Vec<f64>> = patches
             .patches
@@ -55,44 +72,83 @@ impl<'a> System<'a> {
             .collect();
         let count = clusters.cluster_count();
         let of_places: Vec<f64> = terms.iter().flat_map(|terms| terms.mass.iter().copied()).collect();
-        let mass = |c| patches.places_of_cluster(&clusters, c).map(|place| of_places[place]).sum();
-        let masses: Vec<f64> = (0..count).into_par_iter().map(mass).collect();
+        let masses_of_point = |point: &u32| {
+            let share = match volumes {
+                Volumes::Kept => 1.0,
+                Volumes::Free => resisting_share(level, *point as usize),
+            };
+            patches
+                .places_of_point(*point as usize)
+                .iter()
+                .map(|place| share * of_places[*place])
+                .collect::<Vec<_>>()
+        };
+        let mass = |c| clusters.members(c).iter().flat_map(masses_of_point).sum();
+        let mut diagonal: Vec<f64> = (0..count).into_par_iter().map(mass).collect();
         let of_places: Vec<DVec3> = terms.iter().flat_map(|terms| terms.gradient.iter().copied()).collect();
         let force =
             |c| patches.places_of_cluster(&clusters, c).map(|place| of_places[place]).sum::<DVec3>() * -time;
         let forces: Vec<DVec3> = (0..count).into_par_iter().map(force).collect();
-        let mobility = mobility(walls, patches, &clusters, &springs, &masses);
-        let constraint = VolumeConstraint::new(network, patches, terms, &clusters);
-        let compliance = constraint.compliance(&mobility);
-        Self { patches, clusters, masses, springs, forces, mobility, constraint, compliance }
+        let between_clusters = springs.iter().zip(&patches.patches).flat_map(|(springs, patch)| {
+            let ends = patch
+                .edges
+                .iter()
+                .map(|ends| ends.map(|end| clusters.numbers()[patch.control_points[end as usize] as usize]));
+            ends.zip(springs).filter(|([a, b], _)| a != b)
+        });
+        for ([a, b], spring) in between_clusters.clone() {
+            diagonal[a as usize] += spring;
+            diagonal[b as usize] += spring;
+        }
+        let both_ways = between_clusters.flat_map(|([a, b], spring)| [(a, b, *spring), (b, a, *spring)]);
+        let springs = Rows::of_entries(count, both_ways);
+        let mobility = |(cluster, diagonal): (usize, &f64)| {
+            let inverse = if *diagonal > 0.0 { 1.0 / diagonal } else { 0.0 };
+            Mobility {
+                inverse,
+                freedom: clusters.freedom(cluster, |point| network.freedom(level.walls[point as usize])),
+            }
+        };
+        let mobility: Vec<Mobility> = diagonal.iter().enumerate().map(mobility).collect();
+        let constraint = (volumes == Volumes::Kept).then(|| {
+            let constraint = VolumeConstraint::new(network, patches, terms, &clusters);
+            let compliance = constraint.compliance(&mobility);
+            (constraint, compliance)
+        });
+        Self { clusters, diagonal, springs, forces, mobility, constraint }
     }
 
     /// The displacement of every control point that changes the grains' volumes by `changes`, to first order, and is
-    /// otherwise that of the flow. Solved by projected conjugate gradients (Gould, Hribar and Nocedal 2001).
+    /// otherwise that of the flow.
+    ///
+    /// Solved by projected conjugate gradients. Their residual is freed of what pressures balance again and again, so that
+    /// these need not be exact (Gould, Hribar and Nocedal 2001, section 5).
     pub(super) fn displacement(&self, changes: &[f64]) -> Vec<DVec3> {
-        let pressures = self.compliance.pressures(changes);
-        let mut displacement = self.push(&pressures);
-        let mut at_places = vec![DVec3::ZERO; self.patches.place_count()];
-        let mut image = vec![DVec3::ZERO; displacement.len()];
-        self.apply(&displacement, &mut image, &mut at_places);
-        let mut residual: Vec<DVec3> =
-            self.forces.iter().zip(&image).map(|(force, image)| *force - *image).collect();
-        let mut direction = self.project(&residual);
+        let mut displacement = self.push(changes);
+        let mut residual = self.forces.clone();
+        add(&mut residual, -1.0, &self.apply(&displacement));
+        let mut direction = self.project(&mut residual);
         let mut size = dot(&residual, &direction);
         let enough = size * TOLERANCE * TOLERANCE;
         for _ in 0..ITERATIONS {
             if size <= enough || size <= 0.0 {
                 break;
             }
-            self.apply(&direction, &mut image, &mut at_places);
+            let image = self.apply(&direction);
             let step = size / dot(&direction, &image);
-            displacement.iter_mut().zip(&direction).for_each(|(d, p)| *d += *p * step);
-            residual.iter_mut().zip(&image).for_each(|(r, q)| *r -= *q * step);
-            let projected = self.project(&residual);
+            add(&mut displacement, step, &direction);
+            add(&mut residual, -step, &image);
+            let mut projected = self.project(&mut residual);
             let next = dot(&residual, &projected);
-            let growth = next / size;
-            direction.iter_mut().zip(&projected).for_each(|(p, v)| *p = *v + *p * growth);
+            add(&mut projected, next / size, &direction);
+            direction = projected;
             size = next;
+        }
+        if let Some((constraint, _)) = &self.constraint {
+            let change = constraint.volume_change(&displacement);
+            let left: Vec<f64> =
+                changes.iter().zip(&change).map(|(wanted, change)| wanted - change).collect();
+            add(&mut displacement, 1.0, &self.push(&left));
         }
         self.of_points(&displacement)
     }
@@ -100,87 +156,87 @@ impl<'a> System<'a> {
     /// The least motion by area of the control points that changes the grains' volumes by `changes`, to first order,
     /// for a system of time 0.
     pub(super) fn volume_correction(&self, changes: &[f64]) -> Vec<DVec3> {
-        self.of_points(&self.push(&self.compliance.pressures(changes)))
+        self.of_points(&self.push(changes))
     }
 
     fn of_points(&self, of_clusters: &[DVec3]) -> Vec<DVec3> {
         self.clusters.numbers().iter().map(|number| of_clusters[*number as usize]).collect()
     }
 
-    /// The preconditioned residual without its part that changes volumes.
-    fn project(&self, residual: &[DVec3]) -> Vec<DVec3> {
-        let mut moved: Vec<DVec3> =
-            residual.iter().zip(&self.mobility).map(|(r, mobility)| *r * *mobility).collect();
-        let pressures = self.compliance.pressures(&self.constraint.volume_change(&moved));
-        moved.iter_mut().zip(self.push(&pressures)).for_each(|(moved, push)| *moved -= push);
-        moved
+    /// Takes out of a residual what pressures balance, and gives the displacement under the rest if there were only the
+    /// diagonal of the matrix.
+    fn project(&self, residual: &mut [DVec3]) -> Vec<DVec3> {
+        let moved: Vec<DVec3> =
+            residual.iter().zip(&self.mobility).map(|(r, mobility)| mobility.of(*r)).collect();
+        let Some((constraint, compliance)) = &self.constraint else { return moved };
+        let pressures = compliance.pressures(&constraint.volume_change(&moved), LOOSE);
+        let project = |(cluster, residual): (usize, &mut DVec3)| {
+            *residual -= constraint.force(&pressures, cluster);
+            self.mobility[cluster].of(*residual)
+        };
+        residual.par_iter_mut().with_min_len(CHUNK).enumerate().map(project).collect()
     }
 
-    /// The displacement under pressures of the grains if there were only the diagonal of the matrix.
-    fn push(&self, pressures: &[f64]) -> Vec<DVec3> {
-        let force = |cluster: usize| self.mobility[cluster] * self.constraint.force(pressures, cluster);
-        (0..self.mobility.len()).into_par_iter().map(force).collect()
+    /// The displacement under the pressures that change volumes by `changes`, if there were only the diagonal of the matrix;
+    /// none where volumes are free.
+    fn push(&self, changes: &[f64]) -> Vec<DVec3> {
+        let Some((constraint, compliance)) = &self.constraint else {
+            return vec![DVec3::ZERO; self.mobility.len()];
+        };
+        let pressures = compliance.pressures(changes, TIGHT);
+        let force = |cluster: usize| self.mobility[cluster].of(constraint.force(&pressures, cluster));
+        (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect()
     }
 
     /// `(M + dt (K + S)) d`.
-    fn apply(&self, displacement: &[DVec3], image: &mut [DVec3], at_places: &mut [DVec3]) {
-        let slices = self.patches.split(at_places);
-        slices.into_par_iter().zip(&self.patches.patches).zip(&self.springs).for_each(
-            |((out, patch), springs)| {
-                let cluster = |point: &u32| displacement[self.clusters.cluster_of(*point)];
-                let local: Vec<DVec3> = patch.control_points.iter().map(cluster).collect();
-                out.fill(DVec3::ZERO);
-                for (ends, spring) in patch.edges.iter().zip(springs) {
-                    let [a, b] = ends.map(|end| end as usize);
-                    let pull = (local[a] - local[b]) * *spring;
-                    out[a] += pull;
-                    out[b] -= pull;
-                }
-            },
-        );
-        image.par_iter_mut().enumerate().for_each(|(cluster, image)| {
-            *image = displacement[cluster] * self.masses[cluster] + self.sum_of_places(at_places, cluster);
-        });
-    }
-
-    fn sum_of_places(&self, field: &[DVec3], cluster: usize) -> DVec3 {
-        self.patches.places_of_cluster(&self.clusters, cluster).map(|place| field[place]).sum()
+    fn apply(&self, displacement: &[DVec3]) -> Vec<DVec3> {
+        let row = |cluster: usize| {
+            let springs = self.springs.row(cluster).iter();
+            let own = displacement[cluster] * self.diagonal[cluster];
+            springs.fold(own, |sum, (other, spring)| sum - displacement[*other as usize] * *spring)
+        };
+        (0..displacement.len()).into_par_iter().with_min_len(CHUNK).map(row).collect()
     }
 }
 
-/// 1 over the diagonal of `M + dt (K + S)`, 0 along the axes in which a point of the cluster is locked by a wall.
-fn mobility(
-    walls: &[WallSet],
-    patches: &Patches,
-    clusters: &Numbering,
-    springs: &[Vec<f64>],
-    masses: &[f64],
-) -> Vec<DVec3> {
-    let mut diagonal = masses.to_vec();
-    for (springs, patch) in springs.iter().zip(&patches.patches) {
-        for (ends, spring) in patch.edges.iter().zip(springs) {
-            let [a, b] = ends.map(|end| clusters.cluster_of(patch.control_points[end as usize]));
-            if a != b {
-                diagonal[a] += spring;
-                diagonal[b] += spring;
-            }
-        }
-    }
-    let of_cluster = |(cluster, diagonal): (usize, &f64)| {
-        let free = clusters.members(cluster).iter().map(|point| walls[*point as usize].free_axes());
-        let free = free.fold(glam::BVec3::TRUE, |all, free| all & free);
-        let inverse = if *diagonal > 0.0 { 1.0 / diagonal } else { 0.0 };
-        DVec3::select(free, DVec3::splat(inverse), DVec3::ZERO)
-    };
-    diagonal.iter().enumerate().map(of_cluster).collect()
+/// How a cluster answers to a force if there were only the diagonal of the matrix.
+pub(super) struct Mobility {
+    /// 1 over the diagonal.
+    inverse: f64,
+    /// What the walls leave to all points of the cluster.
+    freedom: Freedom,
 }
 
-/// Clusters that one task sums over; fixed, so that no result depends on the number of threads.
-const SUM_CHUNK: usize = 4096;
+impl Mobility {
+    /// The displacement under a force.
+    pub(super) fn of(&self, force: DVec3) -> DVec3 {
+        self.freedom.project(force) * self.inverse
+    }
+}
+
+/// Adds a multiple of a vector to another one.
+fn add(to: &mut [DVec3], factor: f64, what: &[DVec3]) {
+    let pairs = to.par_iter_mut().with_min_len(CHUNK).zip(what);
+    pairs.for_each(|(to, what)| *to += *what * factor);
+}
 
 /// A sum whose order is that of the chunks, whichever thread adds them up.
 fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
-    let chunks = a.par_chunks(SUM_CHUNK).zip(b.par_chunks(SUM_CHUNK));
+    let chunks = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK));
     let sums: Vec<f64> = chunks.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()).collect();
     sums.iter().sum()
+}
+
+/// The share of a point's mass that resists its motion. Boundaries resist to be moved along their normals only: where the normals
+/// n of several point all ways, the mean of `n n^T` is a half of the identity (across a triple line) or a third (in a
+/// quadruple point). Physical junctions have no drag of their own.
+///
+/// Curvature flow of kept volumes leads to equilibrium with any masses.
+fn resisting_share(level: &Level, point: usize) -> f64 {
+    let on_wall = i8::from(!level.walls[point].is_empty());
+    match (level.node_types[point].side_count() - on_wall, &level.mesh) {
+        (..=2, _) => 1.0,
+        (4.., Mesh::Triangles(_)) => 1.0 / 3.0,
+        _ => 0.5,
+    }
 }

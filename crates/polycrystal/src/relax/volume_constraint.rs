@@ -5,12 +5,12 @@ use rayon::prelude::*;
 
 use super::clusters::Numbering;
 use super::conjugate_gradients::{Limits, solve};
+use super::multigrid::Multigrid;
 use super::patch::PatchTerms;
 use super::patches::Patches;
+use super::rows::Rows;
+use super::system::Mobility;
 use crate::Network;
-
-/// The pressures are the inner solve of a projection, whose error shows directly in the volumes.
-const TOLERANCE: f64 = 1e-9;
 
 /// Most iterations. Without rounding as many as there are grains are enough; where rigid parts leave a grain no way to
 /// change its volume there is no solution, and going on would only blow up what rounding leaves.
@@ -22,30 +22,6 @@ pub(super) struct VolumeConstraint {
     by_cluster: Rows<DVec3>,
     /// Of each grain, its clusters and the gradients of its volume.
     by_grain: Rows<DVec3>,
-}
-
-/// Rows of pairs of a column and a value.
-struct Rows<T> {
-    starts: Vec<usize>,
-    entries: Vec<(u32, T)>,
-}
-
-impl<T: Copy> Rows<T> {
-    fn new(rows: Vec<Vec<(u32, T)>>) -> Self {
-        let mut starts = vec![0];
-        for row in &rows {
-            starts.push(starts[starts.len() - 1] + row.len());
-        }
-        Self { starts, entries: rows.concat() }
-    }
-
-    fn row(&self, row: usize) -> &[(u32, T)] {
-        &self.entries[self.starts[row]..self.starts[row + 1]]
-    }
-
-    fn row_count(&self) -> usize {
-        self.starts.len() - 1
-    }
 }
 
 impl VolumeConstraint {
@@ -87,7 +63,7 @@ impl VolumeConstraint {
             let row = self.by_grain.row(grain).iter();
             row.map(|(cluster, gradient)| gradient.dot(displacement[*cluster as usize])).sum()
         };
-        (0..self.by_grain.row_count()).into_par_iter().map(change).collect()
+        (0..self.by_grain.len()).into_par_iter().map(change).collect()
     }
 
     /// The force of the grains' pressures on a cluster: a row of `J^T p`.
@@ -97,11 +73,11 @@ impl VolumeConstraint {
     }
 
     /// `J D J^T` for the mobility D of the clusters.
-    pub(super) fn compliance(&self, mobility: &[DVec3]) -> Compliance {
+    pub(super) fn compliance(&self, mobility: &[Mobility]) -> Compliance {
         let row = |grain: usize| {
             let mut row: Vec<(u32, f64)> = Vec::new();
             for (cluster, gradient) in self.by_grain.row(grain) {
-                let moved = *gradient * mobility[*cluster as usize];
+                let moved = mobility[*cluster as usize].of(*gradient);
                 for (other, gradient) in self.by_cluster.row(*cluster as usize) {
                     let change = moved.dot(*gradient);
                     match row.iter_mut().find(|(known, _)| known == other) {
@@ -112,38 +88,25 @@ impl VolumeConstraint {
             }
             row
         };
-        let rows: Vec<_> = (0..self.by_grain.row_count()).into_par_iter().map(row).collect();
-        let inverse_diagonal = (0u32..)
-            .zip(&rows)
-            .map(|(grain, row)| {
-                let own = row.iter().find(|(other, _)| *other == grain);
-                own.map_or(0.0, |(_, value)| if *value > 0.0 { 1.0 / value } else { 0.0 })
-            })
-            .collect();
-        Compliance { rows: Rows::new(rows), inverse_diagonal }
+        let rows: Vec<_> = (0..self.by_grain.len()).into_par_iter().map(row).collect();
+        Compliance { grids: Multigrid::new(Rows::new(rows)) }
     }
 }
 
 /// How the volumes of grains answer to pressures: a symmetric matrix over the grains.
 pub(super) struct Compliance {
-    rows: Rows<f64>,
-    inverse_diagonal: Vec<f64>,
+    grids: Multigrid,
 }
 
 impl Compliance {
-    /// The pressures that bring about the given changes of volume.
-    pub(super) fn pressures(&self, changes: &[f64]) -> Vec<f64> {
-        let apply = |pressures: &[f64], out: &mut [f64]| {
-            for (row, out) in out.iter_mut().enumerate() {
-                let row = self.rows.row(row).iter();
-                *out = row.map(|(column, value)| value * pressures[*column as usize]).sum();
-            }
-        };
+    /// The pressures that bring about the given changes of volume, up to an error of this share.
+    pub(super) fn pressures(&self, changes: &[f64], tolerance: f64) -> Vec<f64> {
         // The same pressure everywhere moves nothing, as the walls hold: a total other than zero, which rounding leaves,
         // has no answer and would grow without bound.
         let mean = changes.iter().sum::<f64>() / changes.len() as f64;
         let balanced: Vec<f64> = changes.iter().map(|change| change - mean).collect();
-        let limits = Limits { tolerance: TOLERANCE, steps: ITERATIONS.min(2 * changes.len() + 20) };
-        solve(apply, &balanced, &self.inverse_diagonal, &limits)
+        let limits = Limits { tolerance, steps: ITERATIONS.min(2 * changes.len() + 20) };
+        let precondition = |residual: &[f64]| self.grids.precondition(residual);
+        solve(|vector| self.grids.apply(vector), precondition, &balanced, &limits)
     }
 }

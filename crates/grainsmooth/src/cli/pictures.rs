@@ -1,0 +1,98 @@
+//! Options about pictures and the report.
+
+use std::num::NonZeroU16;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use grainsmooth::{Coloring, Error, Html, Output, Picture, Png};
+
+use super::values::whole_number;
+
+/// What is shown of the result.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Pictures")]
+pub struct PictureArguments {
+    /// Draw the network, seen from above one edge of the box; needs no display
+    ///
+    /// Example: --picture grains.png
+    #[arg(long, value_name = "PATH.png", value_parser = parse_png, conflicts_with = "no_mesh")]
+    picture: Option<PathBuf>,
+
+    /// Width and height of the picture in pixels [default: 1200 900]
+    ///
+    /// Example: --picture grains.png --picture-size 2400 1800
+    #[arg(long, value_names = ["W", "H"], num_args = 2, value_parser = whole_number(16..=16_384_u16), allow_negative_numbers = true, requires = "picture")]
+    picture_size: Option<Vec<u16>>,
+
+    /// What the colours of grains mean: nothing (grain), their diameter (size) or the number of their boundaries (neighbors)
+    ///
+    /// Example: --picture sizes.png --color-by size
+    #[arg(long, value_enum, default_value_t = ColorRule::Grain, requires = "picture")]
+    color_by: ColorRule,
+
+    /// Move the grains of the picture apart: each away from the middle, by X times its distance from there
+    ///
+    /// Example: --picture apart.png --explode 0.4
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = parse_explode, allow_negative_numbers = true, requires = "picture")]
+    explode: f64,
+
+    /// Write a page with a view of the grains to turn round, histograms and the figures of the run; it works offline
+    ///
+    /// Example: --report grains.html
+    #[arg(long, value_name = "PATH.html", value_parser = parse_html, conflicts_with = "no_mesh")]
+    report: Option<PathBuf>,
+}
+
+/// `--color-by` as it is spelled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum ColorRule {
+    Grain,
+    Size,
+    Neighbors,
+}
+
+impl PictureArguments {
+    /// The picture asked for, its path found writable.
+    pub fn picture(&self) -> Result<Option<(Picture, Output<Png>)>, Error> {
+        let Some(path) = &self.picture else { return Ok(None) };
+        let at_least_one = |side: &u16| NonZeroU16::new(*side).unwrap_or(NonZeroU16::MIN);
+        let size = match self.picture_size.as_deref() {
+            Some([width, height]) => [width, height].map(at_least_one),
+            _ => Picture::SIZE,
+        };
+        let coloring = match self.color_by {
+            ColorRule::Grain => Coloring::Grain,
+            ColorRule::Size => Coloring::Size,
+            ColorRule::Neighbors => Coloring::Neighbors,
+        };
+        Ok(Some((Picture { size, coloring, explode: self.explode }, Output::check_as(path, Png)?)))
+    }
+
+    /// The report asked for, its path found writable.
+    pub fn report(&self) -> Result<Option<Output<Html>>, Error> {
+        self.report.as_ref().map(|path| Output::check_as(path, Html)).transpose()
+    }
+}
+
+fn parse_png(text: &str) -> Result<PathBuf, String> {
+    parse_named(text, "png")
+}
+
+fn parse_html(text: &str) -> Result<PathBuf, String> {
+    parse_named(text, "html")
+}
+
+/// A path with the only extension that fits; another would tell its readers something untrue.
+fn parse_named(text: &str, extension: &str) -> Result<PathBuf, String> {
+    let path = Path::new(text);
+    if path.extension().is_some_and(|given| given.eq_ignore_ascii_case(extension)) {
+        return Ok(path.to_owned());
+    }
+    Err(format!("unknown extension; name the file *.{extension}"))
+}
+
+fn parse_explode(text: &str) -> Result<f64, String> {
+    // Beyond ten times their distance grains are dots.
+    let share = text.parse().ok().filter(|share| (0.0..=10.0).contains(share));
+    share.ok_or_else(|| "give a number from 0 (whole) to 10".to_owned())
+}

@@ -1,0 +1,111 @@
+//! What a run would make, told before it is made.
+
+use std::fmt;
+
+use voronoi::Dimension;
+
+use crate::memory::{LevelSize, available_memory, check_levels, in_words};
+use crate::vtk::VtkFormat;
+use crate::{Config, Error, OutputFormat, StlEncoding, Tessellated};
+
+/// Bytes of what stands before and after the numbers of a VTK file.
+const VTK_HEAD: u128 = 4000;
+
+/// Bytes of a line of text with a point, and with a triangle or an edge, as most numbers are spelled.
+const TEXT_POINT: u128 = 62;
+const TEXT_CORNERS: u128 = 24;
+
+/// The size of a run's result: counts are exact but for boundaries that `edge-length` refines, bytes are about right.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimate {
+    /// Number of grains.
+    pub grains: usize,
+    /// Points, edges and triangles of the finest level.
+    pub mesh: LevelSize,
+    /// Two or three dimensions.
+    pub dimension: Dimension,
+    /// Bytes of the file; nothing where none is written.
+    pub file: Option<u128>,
+    /// Bytes of memory that the run takes at its peak.
+    pub memory: u128,
+    /// Bytes of memory that there are.
+    pub available: u64,
+    control_mesh: LevelSize,
+    levels: u32,
+}
+
+impl Estimate {
+    /// The size of what becomes of some cells.
+    pub fn new(config: &Config, cells: &Tessellated, format: Option<OutputFormat>) -> Self {
+        let tessellation = &cells.tessellation;
+        let size = match config.regularize {
+            0.0 => config.face_mesh.control_mesh_size(tessellation),
+            length => config.face_mesh.control_mesh_size(&tessellation.regularized(length).0),
+        };
+        let control_mesh = LevelSize { points: size.points, edges: size.edges, triangles: size.triangles };
+        let mesh = control_mesh.after(config.levels);
+        let grains = tessellation.cell_count();
+        Self {
+            grains,
+            mesh,
+            dimension: config.dimension,
+            file: format.map(|format| file_bytes(format, &mesh, grains, config)),
+            memory: control_mesh.bytes_after(config.levels),
+            available: available_memory(),
+            control_mesh,
+            levels: config.levels,
+        }
+    }
+
+    /// Checks that it fits.
+    ///
+    /// # Errors
+    /// [`Error::LevelsExceedMemory`] and [`Error::LevelsExceedIds`].
+    pub fn check(&self) -> Result<(), Error> {
+        check_levels(self.control_mesh, self.levels, self.available)
+    }
+}
+
+impl fmt::Display for Estimate {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(out, "grains      {}", self.grains)?;
+        writeln!(out, "points      {}", self.mesh.points)?;
+        match self.dimension {
+            Dimension::Two => writeln!(out, "segments    {}", self.mesh.edges)?,
+            Dimension::Three => writeln!(out, "triangles   {}", self.mesh.triangles)?,
+        }
+        if let Some(bytes) = self.file {
+            writeln!(out, "file        about {bytes} bytes ({})", in_words(bytes))?;
+        }
+        let (needed, available) = (in_words(self.memory), in_words(self.available.into()));
+        write!(out, "memory      about {} bytes ({needed}), {available} available", self.memory)
+    }
+}
+
+/// Bytes of a file, from those of each point, triangle and grain.
+fn file_bytes(format: OutputFormat, mesh: &LevelSize, grains: usize, config: &Config) -> u128 {
+    let LevelSize { points, edges, triangles } = *mesh;
+    let is_flat = config.dimension == Dimension::Two;
+    // Coordinates and two arrays; corners, end and three numbers. In the plane lines share their arrays.
+    let (of_point, of_triangle) = if config.periodic.any() { (30, 32) } else { (26, 28) };
+    let network = VTK_HEAD + of_point * points + if is_flat { 4 * edges } else { of_triangle * triangles };
+    let voxels = config.file.voxels.map_or(0, |counts| {
+        counts.iter().take(if is_flat { 2 } else { 3 }).map(|count| u128::from(count.get())).product()
+    });
+    match format {
+        OutputFormat::Vtk(VtkFormat::Vtp | VtkFormat::Vtk) => network,
+        OutputFormat::Vtk(VtkFormat::Vtu) => network + triangles,
+        // Boundaries have normals, and every triangle comes at two grains, with five arrays.
+        OutputFormat::Vtm => network + 26 * points + 2 * (24 * points + 48 * triangles),
+        OutputFormat::Stl if config.file.stl == StlEncoding::Ascii => 270 * triangles,
+        OutputFormat::Stl => 84 + 50 * triangles,
+        OutputFormat::Ply => 24 * points + 25 * triangles,
+        OutputFormat::Obj => TEXT_POINT * points + TEXT_CORNERS * triangles,
+        OutputFormat::Msh => TEXT_POINT * points + (TEXT_CORNERS + 8) * triangles,
+        OutputFormat::Fe => TEXT_POINT * points + TEXT_CORNERS * (edges + triangles),
+        // Of a Poisson-Voronoi cell's share: 7 vertices, 14 edges and 8 faces of three lines.
+        OutputFormat::Tess => grains as u128 * (7 * TEXT_POINT + 14 * TEXT_CORNERS + 8 * 150),
+        OutputFormat::Vti | OutputFormat::Npy => VTK_HEAD + 4 * voxels,
+        OutputFormat::Ang => VTK_HEAD + TEXT_POINT * voxels,
+    }
+}

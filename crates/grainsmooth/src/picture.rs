@@ -1,0 +1,112 @@
+//! Pictures of the network, drawn in memory: no display and no graphics card is needed.
+
+mod camera;
+mod coloring;
+mod patch;
+mod plane;
+mod raster;
+
+use std::io;
+use std::num::NonZeroU16;
+
+use glam::DVec3;
+use polycrystal::Mesh;
+use tiny_skia::Pixmap;
+use voronoi::Dimension;
+
+use crate::{Error, Output, Polycrystal};
+
+pub use coloring::Coloring;
+
+/// The format of pictures, 8 bits a channel on white.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Png;
+
+/// What a picture shows, and how large it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Picture {
+    /// Width and height in pixels.
+    pub size: [NonZeroU16; 2],
+    /// What the colours mean.
+    pub coloring: Coloring,
+    /// How far every grain is moved away from the middle, as a share of its distance from there; 0 draws the whole.
+    pub explode: f64,
+}
+
+impl Default for Picture {
+    fn default() -> Self {
+        Self { size: Self::SIZE, coloring: Coloring::Grain, explode: 0.0 }
+    }
+}
+
+impl Picture {
+    /// The usual size: wide enough for a column of print at 300 dots an inch.
+    pub const SIZE: [NonZeroU16; 2] = [NonZeroU16::new(1200).unwrap(), NonZeroU16::new(900).unwrap()];
+
+    /// Share of the picture's width and height that stays free on each side.
+    const MARGIN: f64 = 0.04;
+
+    /// The width of a line, in pixels: one in 800 of the shorter side, which print still shows.
+    fn line_width(&self) -> f64 {
+        let shorter = self.size[0].min(self.size[1]);
+        (f64::from(shorter.get()) / 800.0).max(1.0)
+    }
+}
+
+impl Polycrystal {
+    /// Draws the network from above one of its upper edges, in the plane from straight above: every grain shaded in its
+    /// colour, the lines where boundaries meet in black.
+    ///
+    /// # Errors
+    /// [`Error::WriteOutput`].
+    pub fn write_picture(&self, picture: &Picture, output: &Output<Png>) -> Result<(), Error> {
+        output.write(|out| out.write_all(&self.png(picture)?))
+    }
+
+    /// The bytes of a PNG file.
+    pub(crate) fn png(&self, picture: &Picture) -> io::Result<Vec<u8>> {
+        let [width, height] = picture.size.map(|side| u32::from(side.get()));
+        let mut pixmap =
+            Pixmap::new(width, height).ok_or_else(|| io::Error::other("the picture is too large"))?;
+        pixmap.fill(tiny_skia::Color::WHITE);
+        let shifts = self.shifts(picture.explode);
+        let colors = picture.coloring.colors(self);
+        match &self.network.finest().mesh {
+            Mesh::Triangles(_) => {
+                let patches = patch::patches(self, &shifts, picture.explode > 0.0)?;
+                raster::draw(&patches, &colors, picture, &mut pixmap);
+            }
+            Mesh::Segments(lines) => plane::draw(self, lines, &shifts, &colors, picture, &mut pixmap),
+        }
+        pixmap.encode_png().map_err(io::Error::other)
+    }
+
+    /// How far each grain is moved.
+    pub(crate) fn shifts(&self, explode: f64) -> Vec<DVec3> {
+        let domain = self.network.domain();
+        let middle = domain.lower().midpoint(domain.upper());
+        let centroids = self.cells.tessellation.centroids();
+        centroids.into_iter().map(|centroid| (centroid - middle) * explode).collect()
+    }
+
+    /// Number of boundaries of each grain.
+    pub(crate) fn boundary_counts(&self) -> Vec<usize> {
+        let mut counts = vec![0; self.network.grain_count()];
+        for boundary in self.network.boundaries() {
+            for (grain, _) in boundary.signed_grains() {
+                counts[grain.index()] += 1;
+            }
+        }
+        counts
+    }
+
+    /// Diameter of the ball (in the plane: the disc) of each grain's volume.
+    pub(crate) fn equivalent_diameters(&self) -> Vec<f64> {
+        use std::f64::consts::PI;
+        let diameter = |volume: &f64| match self.config.dimension {
+            Dimension::Two => (4.0 * volume / PI).sqrt(),
+            Dimension::Three => (6.0 * volume / PI).cbrt(),
+        };
+        self.network.cell_volumes().iter().map(diameter).collect()
+    }
+}

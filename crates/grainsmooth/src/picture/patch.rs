@@ -1,0 +1,67 @@
+use std::io;
+
+use glam::DVec3;
+use polycrystal::Side;
+use rayon::prelude::*;
+
+use crate::Polycrystal;
+use crate::formats::{Part, Surface};
+
+/// One side of a boundary, where its grain is moved to.
+pub(super) struct Patch {
+    pub(super) grain: usize,
+    /// Points of its own.
+    pub(super) points: Vec<DVec3>,
+    /// Unit normals at the points, out of the grain.
+    pub(super) normals: Vec<DVec3>,
+    /// Triangles, winding counter-clockwise as seen from outside the grain.
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The edges at its rim.
+    pub(super) rim: Vec<[u32; 2]>,
+}
+
+/// What can be seen: of the whole network its outer surface, of grains that are moved apart both sides of every boundary.
+pub(super) fn patches(polycrystal: &Polycrystal, shifts: &[DVec3], is_apart: bool) -> io::Result<Vec<Patch>> {
+    let surface = polycrystal.surface()?;
+    let sides = surface.parts.iter().filter(|part| is_apart || part.sides[1] == Side::Exterior);
+    let sides: Vec<(&Part, usize)> = sides.flat_map(|part| [(part, 0), (part, 1)]).collect();
+    let patch = |(part, side): (&Part, usize)| {
+        let grain = part.sides[side].grain()?.index();
+        Some(Patch::new(&surface, part, side == 1, grain, shifts[grain]))
+    };
+    Ok(sides.into_par_iter().filter_map(patch).collect())
+}
+
+impl Patch {
+    fn new(surface: &Surface<'_>, part: &Part, is_second: bool, grain: usize, shift: DVec3) -> Self {
+        let turned = |[a, b, c]: [u32; 3]| if is_second { [a, c, b] } else { [a, b, c] };
+        let mut triangles: Vec<[u32; 3]> = surface.triangles_of(part).map(turned).collect();
+        let mut ids: Vec<u32> = triangles.iter().flatten().copied().collect();
+        ids.sort_unstable();
+        ids.dedup();
+        let points: Vec<DVec3> = ids.iter().map(|&id| surface.points[id as usize] + shift).collect();
+        let local = |id: u32| {
+            let place = ids.partition_point(|other| *other < id);
+            u32::try_from(place).expect("a boundary has no more points than the network")
+        };
+        triangles.iter_mut().flatten().for_each(|id| *id = local(*id));
+        let mut normals = vec![DVec3::ZERO; points.len()];
+        for triangle in &triangles {
+            let [a, b, c] = triangle.map(|point| points[point as usize]);
+            // Twice the area long, so that large triangles count more.
+            let normal = (b - a).cross(c - a);
+            triangle.iter().for_each(|point| normals[*point as usize] += normal);
+        }
+        normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
+        let rim = rim(&triangles);
+        Self { grain, points, normals, triangles, rim }
+    }
+}
+
+/// The edges that one triangle has.
+fn rim(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
+    let edges = triangles.iter().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let mut edges: Vec<[u32; 2]> = edges.map(|[a, b]| [*a.min(b), *a.max(b)]).collect();
+    edges.sort_unstable();
+    edges.chunk_by(|a, b| a == b).filter(|uses| uses.len() == 1).map(|uses| uses[0]).collect()
+}

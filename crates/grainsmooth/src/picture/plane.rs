@@ -1,0 +1,113 @@
+//! Pictures of grains in the plane.
+
+use glam::DVec3;
+use subzero::CurveMesh;
+use tiny_skia::{Color as Ink, FillRule, LineCap, Paint, Path, PathBuilder, Pixmap, Stroke, Transform};
+
+use super::Picture;
+use super::coloring::Color;
+use crate::Polycrystal;
+
+/// Draws every grain as a filled polygon with a black outline.
+pub(super) fn draw(
+    polycrystal: &Polycrystal,
+    lines: &CurveMesh,
+    shifts: &[DVec3],
+    colors: &[Color],
+    picture: &Picture,
+    pixmap: &mut Pixmap,
+) {
+    let outlines = outlines(polycrystal, lines);
+    let place = |grain: usize, point: u32| polycrystal.points[point as usize] + shifts[grain];
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for (grain, outline) in outlines.iter().enumerate() {
+        for point in outline.iter().flatten() {
+            low = low.min(place(grain, *point));
+            high = high.max(place(grain, *point));
+        }
+    }
+    let [width, height] = picture.size.map(|side| f64::from(side.get()));
+    let inner = 1.0 - 2.0 * Picture::MARGIN;
+    let scale = (inner * width / (high.x - low.x)).min(inner * height / (high.y - low.y));
+    let middle = low.midpoint(high);
+    let stroke = Stroke {
+        // Both neighbours draw the line; moved apart, each has its own.
+        width: single(picture.line_width()),
+        line_cap: LineCap::Round,
+        ..Stroke::default()
+    };
+    let path = |grain: usize, outline: &[Vec<u32>]| {
+        let on_picture = |point: &u32| {
+            let from_middle = (place(grain, *point) - middle) * scale;
+            [single(width / 2.0 + from_middle.x), single(height / 2.0 - from_middle.y)]
+        };
+        closed_path(outline.iter().map(|round| round.iter().map(on_picture)))
+    };
+    let paths: Vec<Option<Path>> =
+        outlines.iter().enumerate().map(|(grain, outline)| path(grain, outline)).collect();
+    let paint = |[r, g, b]: Color| {
+        let [r, g, b] = [r, g, b].map(single);
+        let mut paint = Paint { anti_alias: true, ..Paint::default() };
+        paint.set_color(Ink::from_rgba(r, g, b, 1.0).unwrap_or(Ink::BLACK));
+        paint
+    };
+    for (path, color) in paths.iter().zip(colors) {
+        if let Some(path) = path {
+            pixmap.fill_path(path, &paint(*color), FillRule::EvenOdd, Transform::identity(), None);
+        }
+    }
+    // After all fills, which would cover half of a line.
+    for path in paths.iter().flatten() {
+        pixmap.stroke_path(path, &paint([0.1; 3]), &stroke, Transform::identity(), None);
+    }
+}
+
+/// Pictures need no more digits than single precision has.
+#[allow(clippy::cast_possible_truncation)]
+fn single(number: f64) -> f32 {
+    number as f32
+}
+
+fn closed_path(rounds: impl Iterator<Item = impl Iterator<Item = [f32; 2]>>) -> Option<Path> {
+    let mut path = PathBuilder::new();
+    for round in rounds {
+        for (number, [x, y]) in round.enumerate() {
+            if number == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
+        }
+        path.close();
+    }
+    path.finish()
+}
+
+/// The closed lines round each grain, which keep it on their left.
+fn outlines(polycrystal: &Polycrystal, lines: &CurveMesh) -> Vec<Vec<Vec<u32>>> {
+    let level = polycrystal.network.finest();
+    let boundaries = polycrystal.network.boundaries();
+    let mut steps: Vec<Vec<[u32; 2]>> = vec![Vec::new(); polycrystal.network.grain_count()];
+    for (&[start, end], boundary) in lines.segments().iter().zip(&level.boundary_of) {
+        for (grain, sign) in boundaries[boundary.index()].signed_grains() {
+            steps[grain.index()].push(if sign > 0.0 { [start, end] } else { [end, start] });
+        }
+    }
+    steps.into_iter().map(rounds).collect()
+}
+
+/// Steps joined end to start.
+fn rounds(mut steps: Vec<[u32; 2]>) -> Vec<Vec<u32>> {
+    steps.sort_unstable();
+    let mut rounds = Vec::new();
+    while let Some([start, mut end]) = steps.pop() {
+        let mut round = vec![start];
+        while end != start {
+            round.push(end);
+            let next = steps.partition_point(|[from, _]| *from < end);
+            // A grain's lines close, as validation shows.
+            let Some(&[from, to]) = steps.get(next) else { break };
+            debug_assert_eq!(from, end, "the lines round a grain are closed");
+            steps.remove(next);
+            end = to;
+        }
+        rounds.push(round);
+    }
+    rounds
+}

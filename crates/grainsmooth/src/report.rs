@@ -1,0 +1,164 @@
+//! A page about a run: its grains to turn round, its statistics, its figures.
+
+mod chart;
+mod poisson_voronoi;
+mod view;
+
+use std::io;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD as BASE64;
+use polycrystal::{WeightedAngle, angles_between_boundaries};
+use voronoi::{CellId, Dimension};
+
+use crate::{Error, Output, Picture, Polycrystal, Summary};
+use chart::Chart;
+use poisson_voronoi::{SIZE_BIN, angle_density, face_shares, size_shares};
+
+/// The format of reports: one page that needs nothing else.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Html;
+
+/// Width of the bins of angles, in degrees: a run of 200 grains fills each between 90 and 150.
+const ANGLE_BIN: f64 = 5.0;
+
+impl Polycrystal {
+    /// Writes a page with a view of the grains, their statistics beside those of random cells, and the run's summary.
+    ///
+    /// The view shows the surfaces at the finest level that a browser turns fluently; in the plane it is a picture.
+    ///
+    /// # Errors
+    /// [`Error::WriteOutput`].
+    pub fn write_report(&self, output: &Output<Html>) -> Result<(), Error> {
+        output.write(|out| out.write_all(self.page()?.as_bytes()))
+    }
+
+    fn page(&self) -> io::Result<String> {
+        let view = match self.config.dimension {
+            Dimension::Two => {
+                let picture = BASE64.encode(self.png(&Picture::default())?);
+                format!("<img class=\"picture\" alt=\"the grains\" src=\"data:image/png;base64,{picture}\">")
+            }
+            Dimension::Three => filled(
+                include_str!("../assets/view.html"),
+                &[
+                    ("network", &view::network_json(self)?),
+                    ("three", include_str!("../assets/three.min.js")),
+                    ("viewer", include_str!("../assets/viewer.js")),
+                ],
+            ),
+        };
+        let charts: String =
+            [self.size_chart(), self.face_chart(), self.angle_chart()].iter().map(Chart::figure).collect();
+        let title = format!("{} grains", self.network.grain_count());
+        Ok(filled(
+            include_str!("../assets/report.html"),
+            &[
+                ("title", &title),
+                ("style", include_str!("../assets/report.css")),
+                ("command", &escaped(&self.config.command_line())),
+                ("view", &view),
+                ("charts", &charts),
+                ("rows", &self.rows()),
+            ],
+        ))
+    }
+
+    /// The summary as rows of a table.
+    fn rows(&self) -> String {
+        let version = concat!("made by     grainsmooth ", env!("CARGO_PKG_VERSION"));
+        let summary = Summary(self).to_string();
+        let lines = summary.lines().chain([version]);
+        let row = |line: &str| {
+            let (name, value) = line.split_once("  ").unwrap_or((line, ""));
+            format!("<tr><th>{}</th><td>{}</td></tr>", escaped(name), escaped(value.trim()))
+        };
+        lines.map(row).collect()
+    }
+
+    fn size_chart(&self) -> Chart {
+        let volumes = self.network.cell_volumes();
+        let mean = volumes.iter().sum::<f64>() / volumes.len() as f64;
+        let sizes = volumes.iter().map(|volume| (volume / mean, 1.0));
+        let exact = (0..)
+            .zip(size_shares(self.config.dimension))
+            .map(|(bin, share)| ((f64::from(bin) + 0.5) * SIZE_BIN, 2.0 * share));
+        let (title, unit) = match self.config.dimension {
+            Dimension::Two => ("Areas", "area / mean area"),
+            Dimension::Three => ("Volumes", "volume / mean volume"),
+        };
+        Chart {
+            title,
+            unit,
+            of: "grains",
+            // Twice the width of the curve's bins, hence twice its shares.
+            bins: chart::Bins { start: 0.0, width: 2.0 * SIZE_BIN },
+            before: Vec::new(),
+            after: sizes.collect(),
+            exact: exact.collect(),
+        }
+    }
+
+    fn face_chart(&self) -> Chart {
+        let tessellation = &self.cells.tessellation;
+        let cells =
+            (0..).take(tessellation.cell_count()).map(|cell| tessellation.cell_faces(CellId(cell)).len());
+        let count = |count: usize| (count as f64, 1.0);
+        let (least, shares) = face_shares(self.config.dimension);
+        let (title, unit) = match self.config.dimension {
+            Dimension::Two => ("Sides of a grain", "number of sides"),
+            Dimension::Three => ("Faces of a grain", "number of faces"),
+        };
+        Chart {
+            title,
+            unit,
+            of: "grains",
+            // Whole numbers in the middle of their bins.
+            bins: chart::Bins { start: -0.5, width: 1.0 },
+            before: cells.map(count).collect(),
+            after: self.boundary_counts().into_iter().map(count).collect(),
+            exact: (least..).zip(shares).map(|(count, share)| (count as f64, *share)).collect(),
+        }
+    }
+
+    fn angle_chart(&self) -> Chart {
+        let network = &self.network;
+        let weighted = |angles: Vec<WeightedAngle>| {
+            angles.into_iter().map(|angle| (angle.degrees, angle.weight)).collect()
+        };
+        let width = ANGLE_BIN.to_radians();
+        let exact = (0..=90)
+            .map(|step| 2.0 * f64::from(step))
+            .map(|degrees| (degrees, width * angle_density(self.config.dimension, degrees.to_radians())));
+        Chart {
+            title: "Angles between boundaries",
+            unit: "degrees",
+            of: match self.config.dimension {
+                Dimension::Two => "triple points",
+                Dimension::Three => "the length of triple lines",
+            },
+            bins: chart::Bins { start: 0.0, width: ANGLE_BIN },
+            before: weighted(angles_between_boundaries(network, network.control_mesh(), &self.flat)),
+            after: weighted(angles_between_boundaries(network, network.finest(), &self.points)),
+            exact: exact.collect(),
+        }
+    }
+}
+
+/// A template with each `{{name}}` replaced by its value, once: values may hold braces.
+fn filled(template: &str, values: &[(&str, &str)]) -> String {
+    let mut pieces = template.split("{{");
+    let mut text = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        let (name, rest) = piece.split_once("}}").expect("templates close their braces");
+        let value = values.iter().find(|(known, _)| *known == name).expect("templates name known values");
+        text.push_str(value.1);
+        text.push_str(rest);
+    }
+    text
+}
+
+/// Text as HTML shows it.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}

@@ -1,0 +1,90 @@
+//! What the page's view shows.
+
+use std::io;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD as BASE64;
+use glam::DVec3;
+use serde::Serialize;
+
+use crate::formats::{Surface, label};
+use crate::{Coloring, Polycrystal};
+
+/// Most triangles that are shown, both sides of each counted once: browsers without a graphics card still turn them.
+const MOST_TRIANGLES: usize = 120_000;
+
+/// A network in units of the domain's longest side, its middle at the origin.
+#[derive(Serialize)]
+struct Network {
+    /// Points as whole steps from the low corner: 16-bit numbers, three a point, little-endian in base 64.
+    points: String,
+    low: [f64; 3],
+    step: [f64; 3],
+    /// Points of the triangles, boundary after boundary: 32-bit numbers, little-endian in base 64.
+    triangles: String,
+    parts: Vec<Part>,
+    /// Where grains move when they move apart.
+    shifts: Vec<[f32; 3]>,
+    colors: Colors,
+}
+
+/// The triangles of one boundary.
+#[derive(Serialize)]
+struct Part {
+    count: usize,
+    sides: [i64; 2],
+}
+
+/// Red, green and blue of each grain, from 0 to 1.
+#[derive(Serialize)]
+struct Colors {
+    grain: Vec<[f32; 3]>,
+    size: Vec<[f32; 3]>,
+    neighbors: Vec<[f32; 3]>,
+}
+
+/// The network of the finest level that is not too fine, with points of the finest of all.
+pub(super) fn network_json(polycrystal: &Polycrystal) -> io::Result<String> {
+    let levels = polycrystal.network.levels();
+    let level =
+        levels.iter().rev().find(|level| level.element_count() <= MOST_TRIANGLES).unwrap_or(&levels[0]);
+    let surface = Surface::of_level(polycrystal, level)
+        .ok_or_else(|| io::Error::other("lines have no surface to turn"))?;
+    let domain = polycrystal.network.domain();
+    let middle = domain.lower().midpoint(domain.upper());
+    let unit = domain.size().max_element();
+    let points: Vec<DVec3> = surface.points.iter().map(|point| (*point - middle) / unit).collect();
+    let low = points.iter().copied().reduce(DVec3::min).unwrap_or_default();
+    let high = points.iter().copied().reduce(DVec3::max).unwrap_or_default();
+    let step = (high - low) / f64::from(u16::MAX);
+    let steps = points.iter().flat_map(|point| ((*point - low) / step).round().to_array());
+    // From 0 to 65535 without a remainder.
+    #[allow(clippy::cast_possible_truncation)]
+    let points: Vec<u8> = steps.flat_map(|steps| (steps as u16).to_le_bytes()).collect();
+    let triangles: Vec<u8> = surface.triangles().flatten().flat_map(u32::to_le_bytes).collect();
+    let part = |part: &crate::formats::Part| Part {
+        count: surface.triangles_of(part).count(),
+        sides: part.sides.map(label),
+    };
+    let colors = |coloring: Coloring| coloring.colors(polycrystal).into_iter().map(single).collect();
+    let network = Network {
+        points: BASE64.encode(points),
+        low: low.to_array(),
+        step: step.to_array(),
+        triangles: BASE64.encode(triangles),
+        parts: surface.parts.iter().map(part).collect(),
+        shifts: polycrystal.shifts(1.0 / unit).into_iter().map(|shift| single(shift.to_array())).collect(),
+        colors: Colors {
+            grain: colors(Coloring::Grain),
+            size: colors(Coloring::Size),
+            neighbors: colors(Coloring::Neighbors),
+        },
+    };
+    Ok(serde_json::to_string(&network)?)
+}
+
+/// Screens need no more digits than single precision has.
+#[allow(clippy::cast_possible_truncation)]
+fn single(numbers: [f64; 3]) -> [f32; 3] {
+    numbers.map(|number| number as f32)
+}

@@ -1,0 +1,89 @@
+//! What a run says about its result, for programs.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use polycrystal::{AngleStatistics, Boundary};
+use serde::Serialize;
+use voronoi::Dimension;
+
+use crate::Polycrystal;
+
+/// The numbers of [`Summary`](crate::Summary), to be written as JSON.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SummaryRecord {
+    version: &'static str,
+    command_line: String,
+    settings: BTreeMap<&'static str, toml::Value>,
+    dimension: u8,
+    grains: usize,
+    boundaries: Boundaries,
+    triple_lines: usize,
+    quadruple_points: usize,
+    collapsed_edges: usize,
+    collapsed_boundaries: usize,
+    points: usize,
+    /// Triangles, in the plane segments.
+    elements: usize,
+    level: u32,
+    /// In degrees.
+    angles_before: Option<Angles>,
+    angles_after: Option<Angles>,
+    largest_relative_volume_error: f64,
+    seconds: BTreeMap<&'static str, f64>,
+    written: Vec<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct Boundaries {
+    between_grains: usize,
+    on_walls: usize,
+    /// Of those between grains, how many stand in the file twice, a period apart.
+    twice: usize,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct Angles {
+    mean: f64,
+    standard_deviation: f64,
+}
+
+impl SummaryRecord {
+    /// The numbers of a result and the files that it was written to.
+    pub fn new(polycrystal: &Polycrystal, written: Vec<PathBuf>) -> Self {
+        let Polycrystal { config, network, .. } = polycrystal;
+        let finest = network.finest();
+        let junctions = network.junction_counts();
+        let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
+        let twice = count(|boundary| boundary.twin.is_some()) / 2;
+        let angles = |statistics: AngleStatistics| Angles {
+            mean: statistics.mean,
+            standard_deviation: statistics.standard_deviation,
+        };
+        let seconds = polycrystal.times.iter().map(|(stage, time)| (stage.name(), time.as_secs_f64()));
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            command_line: config.command_line(),
+            settings: config.settings().into_iter().collect(),
+            dimension: if config.dimension == Dimension::Two { 2 } else { 3 },
+            grains: network.grain_count(),
+            boundaries: Boundaries {
+                between_grains: count(Boundary::is_interior) + twice,
+                on_walls: count(|boundary| boundary.wall.is_some()),
+                twice,
+            },
+            triple_lines: junctions.triple_lines,
+            quadruple_points: junctions.quadruple_points,
+            collapsed_edges: polycrystal.collapsed.edges,
+            collapsed_boundaries: polycrystal.collapsed.faces,
+            points: finest.vertex_count(),
+            elements: finest.element_count(),
+            level: config.levels,
+            angles_before: polycrystal.angles_before.map(angles),
+            angles_after: polycrystal.validation.angles.map(angles),
+            largest_relative_volume_error: polycrystal.validation.largest_volume_error,
+            seconds: seconds.collect(),
+            written,
+        }
+    }
+}

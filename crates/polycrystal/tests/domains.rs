@@ -1,0 +1,87 @@
+//! Networks in domains other than boxes: closed, of true volume, and on their walls.
+
+#[allow(dead_code, reason = "every test file uses its own share")]
+mod common;
+
+use common::random_seeds;
+use glam::DVec3;
+use polycrystal::{Freedom, Junctions, Network, Relaxation, relax, validate};
+use voronoi::{Domain, Tessellation, WallPlane};
+
+fn domains() -> Vec<(&'static str, Domain)> {
+    let signs = [-1.0, 1.0];
+    let corners: Vec<DVec3> = signs
+        .iter()
+        .flat_map(|x| signs.iter().flat_map(move |y| signs.map(|z| DVec3::new(*x, *y, z))))
+        .collect();
+    let solid = |normals: &mut dyn Iterator<Item = &DVec3>| {
+        let walls = normals.map(|normal| WallPlane::HalfSpace { normal: *normal, offset: 1.0 });
+        Domain::polyhedron(walls.collect()).expect("a solid")
+    };
+    let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.4, 0.5, 0.9]]
+        .map(DVec3::from);
+    let faces = [vec![3, 2, 1, 0], vec![0, 1, 4], vec![1, 2, 4], vec![2, 3, 4], vec![3, 0, 4]];
+    vec![
+        ("octahedron", solid(&mut corners.iter())),
+        ("tetrahedron", solid(&mut corners.iter().filter(|corner| corner.element_product() > 0.0))),
+        ("pyramid", Domain::convex_surface(&points, &faces).expect("a pyramid")),
+        ("ball", Domain::ball(DVec3::splat(0.5), 0.5, 0.005).expect("a ball")),
+        ("cylinder", Domain::cylinder(DVec3::ZERO, 0.5, 0.8, 0.005).expect("a cylinder")),
+        ("disc", Domain::disc(DVec3::ZERO, 0.5, 0.005).expect("a disc")),
+    ]
+}
+
+#[test]
+fn networks_are_valid_flat_and_relaxed() {
+    for (name, domain) in domains() {
+        let seeds: Vec<DVec3> = random_seeds(&domain, 150, 2)
+            .into_iter()
+            .filter(|seed| domain.contains(*seed))
+            .take(25)
+            .collect();
+        for levels in [0, 2] {
+            let cells = Tessellation::new(&domain, &seeds).expect("seeds");
+            let (network, flat) = Network::new(&cells, Junctions::Crease, levels).expect("a network");
+            let certificate = validate(&network, &network.subdivide(&flat))
+                .unwrap_or_else(|fault| panic!("{name}: {fault}"));
+            assert!(certificate.largest_volume_error < 1e-12, "{name}");
+            let volumes = cells.cell_measures().iter().map(|cell| cell.volume).collect();
+            let (regular, _) = cells.regularized(0.1);
+            let (network, flat) = Network::new(&regular, Junctions::Crease, levels).expect("a network");
+            let network = network.with_cell_volumes(volumes);
+            let relaxed = relax(&network, &flat, &Relaxation::default(), |_, _| ())
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
+            let points = relaxed.finest_points(&network);
+            let certificate = validate(&network, &points).unwrap_or_else(|fault| panic!("{name}: {fault}"));
+            assert!(certificate.largest_volume_error < 1e-9, "{name}");
+            let sets = network.wall_sets();
+            let mut moved = 0.0f64;
+            let before = network.subdivide(&flat);
+            for ((point, before), set) in points.iter().zip(&before).zip(&network.finest().walls) {
+                for wall in sets.walls(*set) {
+                    let (normal, distance) = domain.wall_equation(*wall);
+                    assert!((normal.dot(*point) - distance).abs() < 1e-13, "{name}: {point} leaves {wall:?}");
+                }
+                if sets.freedom(*set) == Freedom::Nowhere {
+                    assert!(point.distance(*before) < 1e-13, "{name}: a corner of the domain moves");
+                }
+                moved = moved.max(point.distance(*before));
+            }
+            assert!(moved > 0.01, "{name}: nothing relaxes");
+        }
+    }
+}
+
+#[test]
+fn one_grain_is_the_domain() {
+    for (name, domain) in domains() {
+        let seed =
+            random_seeds(&domain, 50, 3).into_iter().find(|seed| domain.contains(*seed)).expect("one inside");
+        let cells = Tessellation::new(&domain, &[seed]).expect("a seed");
+        let (network, flat) = Network::new(&cells, Junctions::Crease, 1).expect("a network");
+        let points = network.subdivide(&flat);
+        validate(&network, &points).unwrap_or_else(|fault| panic!("{name}: {fault}"));
+        let volume = network.grain_volumes(network.finest(), &points)[0];
+        assert!((volume - domain.measure()).abs() < 1e-12 * volume, "{name}: {volume}");
+    }
+}

@@ -1,0 +1,256 @@
+//! What the program prints besides its summary: dry runs, summaries for programs, completions, the manual, files on standard
+//! output; and colours.
+
+use std::io::Read;
+use std::process::Stdio;
+
+use serde_json::Value;
+
+use crate::workplace::{FAILED, USAGE, Workplace};
+
+fn printed(workplace: &Workplace, arguments: &str) -> Vec<u8> {
+    workplace.command(arguments).assert().success().get_output().stdout.clone()
+}
+
+fn text(workplace: &Workplace, arguments: &str) -> String {
+    String::from_utf8(printed(workplace, arguments)).unwrap()
+}
+
+#[test]
+fn dry_run_foretells_the_run_and_writes_nothing() {
+    let workplace = Workplace::new();
+    for arguments in [
+        "--seeds 30 -n 2 -o a.vtp",
+        "--seeds 30 -n 2 -o a.vtu",
+        "--seeds 30 -n 2 -o a.vtk",
+        "--seeds 30 -n 2 -o a.stl",
+        "--seeds 30 -n 2 -o a.ply",
+        "--seeds 30 -n 2 -o a.obj",
+        "--seeds 30 -n 2 -o a.msh",
+        "--seeds 30 -n 2 -o a.fe",
+        "--seeds 90 --dim 2 -n 4 -o a.vtp",
+        "--seeds 30 --periodic x,y,z --faces plain -n 2 -o a.vtp",
+        "--seeds 300 -n 0 -o a.tess",
+    ] {
+        let foretold = text(&workplace, &format!("{arguments} --dry-run"));
+        let name = arguments.split(' ').next_back().unwrap();
+        assert!(!workplace.path(name).exists(), "{arguments}");
+        let said = workplace.run(&format!("{arguments} --json-summary run.json"));
+        let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+        let number = |line: &str| -> u64 {
+            let line = foretold.lines().find(|text| text.starts_with(line)).unwrap();
+            line.split_whitespace().find_map(|word| word.parse().ok()).unwrap()
+        };
+        let elements = if arguments.contains("--dim 2") { "segments" } else { "triangles" };
+        let exact = [number("grains"), number("points"), number(elements)];
+        assert_eq!(
+            exact.map(Value::from),
+            ["grains", "points", "elements"].map(|key| run[key].clone()),
+            "{said}"
+        );
+        let bytes = workplace.bytes(name).len() as f64;
+        assert!((number("file") as f64 / bytes - 1.0).abs() < 0.25, "{arguments}: {foretold}, but {bytes}");
+        assert!(number("memory") > 1_000_000);
+        std::fs::remove_file(workplace.path(name)).unwrap();
+    }
+    let too_much =
+        workplace.command("--seeds 100 -n 12 --dry-run").assert().code(FAILED).get_output().clone();
+    assert!(String::from_utf8(too_much.stdout).unwrap().contains("\nmemory      about "));
+    assert!(String::from_utf8(too_much.stderr).unwrap().contains(" levels would fit"));
+}
+
+#[test]
+fn summary_for_programs_holds_the_numbers_of_the_summary() {
+    let workplace = Workplace::new();
+    let record: Value =
+        serde_json::from_slice(&printed(&workplace, "--seeds 9 -n 1 --json-summary - -o a.vtp --quiet"))
+            .unwrap();
+    assert_eq!((&record["grains"], &record["dimension"]), (&Value::from(9), &Value::from(3)));
+    assert_eq!(record["settings"]["seeds"], 9);
+    assert_eq!(record["written"], serde_json::json!(["a.vtp"]));
+    assert!(record["largest_relative_volume_error"].as_f64().unwrap() < 1e-9);
+    assert!(
+        record["angles_after"]["standard_deviation"].as_f64()
+            < record["angles_before"]["standard_deviation"].as_f64()
+    );
+    assert!(record["seconds"]["relaxation"].as_f64().unwrap() > 0.0);
+    let command_line =
+        record["command_line"].as_str().unwrap().strip_prefix("grainsmooth ").unwrap().to_owned();
+    workplace.run(&format!("{command_line} -o b.vtp"));
+    assert!(workplace.bytes("a.vtp") == workplace.bytes("b.vtp"));
+    workplace.refuses(
+        "--json-summary none/run.json",
+        FAILED,
+        "none/run.json: no directory none; create it or choose another path",
+    );
+}
+
+#[test]
+fn standard_output_takes_the_bytes_of_the_file() {
+    let workplace = Workplace::new();
+    for (format, extension) in
+        [("", "vtp"), ("--format ply", "ply"), ("--format obj", "obj"), ("--format tess", "tess")]
+    {
+        let arguments = "--seeds 6 -n 1";
+        workplace.run(&format!("{arguments} -o a.{extension}"));
+        let bytes = printed(&workplace, &format!("{arguments} -o - {format}"));
+        assert!(bytes == workplace.bytes(&format!("a.{extension}")), "{format}");
+    }
+    workplace.refuses(
+        "-o - --format vtm",
+        FAILED,
+        "standard output takes a single file; choose another format, such as vtp, or give a path",
+    );
+    workplace.refuses(
+        "-o - --format pli",
+        USAGE,
+        "invalid value 'pli' for '--format <FORMAT>': did you mean ply? the formats are those of *.vtp, *.vtu, *.vtk, *.vtm, *.stl, *.ply, *.obj, *.msh, *.fe, *.tess, *.vti, *.npy or *.ang",
+    );
+    workplace.refuses(
+        "-o a.vtp --format ply",
+        USAGE,
+        "--format is for -o -; the extension of a file names its format",
+    );
+    workplace.refuses(
+        "-o - --json-summary -",
+        USAGE,
+        "-o - and --json-summary - both go to standard output; give one of them a path",
+    );
+}
+
+#[test]
+fn reader_that_stops_is_a_quiet_end() {
+    let workplace = Workplace::new();
+    for arguments in ["--seeds 20 -n 3 -o - --quiet", "man", "completions bash"] {
+        let program = workplace.command("").get_program().to_owned();
+        let mut child = std::process::Command::new(program)
+            .args(arguments.split(' '))
+            .current_dir(workplace.path(""))
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut first = [0; 8];
+        child.stdout.take().unwrap().read_exact(&mut first).unwrap();
+        let end = child.wait_with_output().unwrap();
+        assert_eq!(
+            (end.status.code(), String::from_utf8(end.stderr).unwrap().as_str()),
+            (Some(0), ""),
+            "{arguments}"
+        );
+    }
+}
+
+#[test]
+fn completions_and_manual_know_every_option() {
+    let workplace = Workplace::new();
+    let help = text(&workplace, "--help");
+    let options = help.split_whitespace().filter(|word| word.starts_with("--") && word.len() > 2);
+    let options: Vec<&str> = options.map(|word| word.trim_end_matches([',', '.', ';'])).collect();
+    assert!(options.contains(&"--seeds-file"));
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = text(&workplace, &format!("completions {shell}"));
+        for option in &options {
+            assert!(script.contains(option.trim_start_matches('-')), "{shell}: {option}");
+        }
+    }
+    let manual = text(&workplace, "man").replace("\\-", "-");
+    assert!(manual.contains(".TH grainsmooth 1"));
+    for option in options {
+        assert!(manual.contains(option), "{option}");
+    }
+}
+
+#[test]
+fn each_option_has_an_example_in_the_help() {
+    let help = text(&Workplace::new(), "--help");
+    let listed = help.split("\nSeeds:\n").nth(1).unwrap().split("\nExamples:\n").next().unwrap();
+    let starts_option = |line: &&str| {
+        line.starts_with("  ") && line.trim_start().starts_with('-') && !line.contains("Example")
+    };
+    let indented = |line: &&str| line.len() - line.trim_start().len() < 8;
+    let options = listed.lines().filter(starts_option).filter(indented).count();
+    assert!(options > 25, "{options}");
+    assert_eq!(listed.matches("Example: -").count(), options);
+}
+
+#[test]
+fn values_that_are_misspelled_are_suggested() {
+    let workplace = Workplace::new();
+    workplace.refuses(
+        "--lattice bbc 3",
+        USAGE,
+        "invalid value 'bbc' for '--lattice <LATTICE> <N>': did you mean bcc? the lattices are sc, bcc, fcc and hcp, and square and hex in 2D; then give a whole number from 1 to 1600",
+    );
+    let said = workplace.command("--sedes 3").assert().code(USAGE).get_output().stderr.clone();
+    assert!(String::from_utf8(said).unwrap().contains("a similar argument exists: '--seeds'"));
+    let said = workplace.command("-o a.vtpp").assert().code(USAGE).get_output().stderr.clone();
+    assert!(String::from_utf8(said).unwrap().contains("did you mean .vtp?"));
+}
+
+#[test]
+fn colours_obey_the_environment() {
+    let workplace = Workplace::new();
+    let has_colour = |no_color: Option<&str>| {
+        let mut command = workplace.command("--sedes 3");
+        command.env("CLICOLOR_FORCE", "1").env_remove("NO_COLOR");
+        if let Some(value) = no_color {
+            command.env("NO_COLOR", value);
+        }
+        command.assert().code(USAGE).get_output().stderr.contains(&0x1b)
+    };
+    assert!(has_colour(None), "the test can see colours");
+    assert!(!has_colour(Some("1")));
+}
+
+#[cfg(unix)]
+#[test]
+fn interrupted_run_leaves_nothing() {
+    use std::time::{Duration, Instant};
+
+    let names = |workplace: &Workplace| {
+        let entries = std::fs::read_dir(workplace.path("")).unwrap();
+        let mut names: Vec<_> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    };
+    for (arguments, signal, code) in [
+        ("--seeds 100 -n 3 --relax 0 -o a.obj", "-INT", 130),
+        ("--seeds 100 -n 3 --relax 0 -o a.vtm", "-INT", 130),
+        ("--seeds 100 -n 3 --relax 0 --grains-dir d --grains-format obj", "-TERM", 143),
+    ] {
+        let workplace = Workplace::new();
+        let program = workplace.command("").get_program().to_owned();
+        let mut child = std::process::Command::new(program)
+            .args(arguments.split(' '))
+            .current_dir(workplace.path(""))
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // Outputs are probed at once, so what is being written is what has bytes.
+        let is_writing = || {
+            let entries = std::fs::read_dir(workplace.path("")).unwrap().flatten();
+            entries.filter(|entry| entry.file_name().to_string_lossy().ends_with(".part")).any(|entry| {
+                let data = entry.metadata();
+                data.is_ok_and(|data| if data.is_dir() { has_files(&entry.path()) } else { data.len() > 0 })
+            })
+        };
+        let start = Instant::now();
+        while !is_writing() {
+            assert!(child.try_wait().unwrap().is_none(), "{arguments}: over before it was seen writing");
+            assert!(start.elapsed() < Duration::from_secs(120), "{arguments}");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        std::process::Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+        let end = child.wait_with_output().unwrap();
+        assert_eq!(end.status.code(), Some(code), "{arguments}");
+        assert_eq!(String::from_utf8(end.stderr).unwrap(), "\ninterrupted; nothing half written is left\n");
+        assert!(names(&workplace).iter().all(|name| name == "grains.vtp"), "{:?}", names(&workplace));
+    }
+}
+
+#[cfg(unix)]
+fn has_files(directory: &std::path::Path) -> bool {
+    std::fs::read_dir(directory).is_ok_and(|mut entries| entries.next().is_some())
+}

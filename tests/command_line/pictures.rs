@@ -1,0 +1,253 @@
+//! `--picture` and `--report`.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::Path;
+use std::process::Command;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD as BASE64;
+use tiny_skia::Pixmap;
+
+use crate::workplace::{FAILED, USAGE, Workplace};
+
+type Pixel = [u8; 3];
+
+/// Rows of pixels.
+fn pixels(path: &Path) -> Vec<Vec<Pixel>> {
+    let picture = Pixmap::load_png(path).unwrap();
+    let pixels: Vec<Pixel> =
+        picture.pixels().iter().map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]).collect();
+    pixels.chunks(picture.width() as usize).map(<[Pixel]>::to_vec).collect()
+}
+
+/// The colours of at least a hundredth of the pixels, with their shares; one step of a channel is no other colour.
+fn main_colors(rows: &[Vec<Pixel>]) -> BTreeMap<Pixel, f64> {
+    let count = rows.iter().map(Vec::len).sum::<usize>() as f64;
+    let mut shares: BTreeMap<Pixel, f64> = BTreeMap::new();
+    for pixel in rows.iter().flatten() {
+        let is_alike = |other: &&Pixel| (0..3).all(|channel| pixel[channel].abs_diff(other[channel]) <= 1);
+        let known = shares.keys().find(is_alike).copied().unwrap_or(*pixel);
+        *shares.entry(known).or_default() += 1.0 / count;
+    }
+    shares.retain(|_, share| *share >= 0.01);
+    shares
+}
+
+const WHITE: Pixel = [255; 3];
+
+#[test]
+fn single_grain_is_a_cube_with_three_faces() {
+    let workplace = Workplace::new();
+    workplace.run("--seeds 1 -n 0 --picture cube.png --picture-size 500 400 --quiet");
+    let rows = pixels(&workplace.path("cube.png"));
+    assert_eq!((rows.len(), rows[0].len()), (400, 500));
+    let colors = main_colors(&rows);
+    assert_eq!(colors.len(), 4, "three faces on white: {colors:?}");
+
+    // The shadow of a unit cube along a unit vector has the area of the sum of its components; its height is that of the unit
+    // vectors' shadows on the picture's upward direction, here the shorter side, of which 4 % are free at both ends.
+    let toward = glam::DVec3::new(0.55, -0.95, 0.62).normalize();
+    let right = glam::DVec3::Z.cross(toward).normalize();
+    let up = toward.cross(right);
+    let sum = |vector: glam::DVec3| vector.abs().element_sum();
+    let scale = (0.92 * 400.0 / sum(up)).min(0.92 * 500.0 / sum(right));
+    let shadow = sum(toward) * scale * scale / (400.0 * 500.0);
+    // Half the width of the outline and mixed colours at its rim are a hundredth.
+    assert!((1.0 - colors[&WHITE] - shadow).abs() < 0.01, "{} {shadow}", colors[&WHITE]);
+}
+
+#[test]
+fn colors_show_sizes() {
+    let workplace = Workplace::new();
+    workplace.put("two.csv", "0.25, 0.5, 0.5\n0.4, 0.5, 0.5\n");
+    workplace.run("--seeds-file two.csv --relax 0 -n 0 --picture sizes.png --color-by size --quiet");
+    // Viridis goes from (68, 1, 84) to (253, 231, 37); a face in shade has the same colour, darker.
+    let colors = main_colors(&pixels(&workplace.path("sizes.png")));
+    let is_shade_of = |pixel: &&Pixel, [r, g, b]: [f64; 3]| {
+        let brightness = f64::from(pixel[0]) / r;
+        brightness <= 1.0
+            && (f64::from(pixel[1]) - brightness * g).abs() < 2.0
+            && (f64::from(pixel[2]) - brightness * b).abs() < 2.0
+    };
+    let count = |color| colors.keys().filter(|pixel| is_shade_of(pixel, color)).count();
+    assert_eq!([count([253.0, 231.0, 37.0]), count([68.0, 1.0, 84.0])], [3, 2], "{colors:?}");
+}
+
+#[test]
+fn plane_is_drawn_from_above() {
+    let workplace = Workplace::new();
+    workplace.put("two.csv", "0.25, 0.5\n0.75, 0.5\n");
+    let arguments = "--seeds-file two.csv --dim 2 --box 1 1 -n 0 --picture-size 200 200 --quiet";
+    workplace.run(&format!("{arguments} --picture whole.png"));
+    let rows = pixels(&workplace.path("whole.png"));
+    let [left, right] = [rows[100][50], rows[100][150]];
+    assert!(left != right && left != WHITE && right != WHITE, "{left:?} {right:?}");
+    let colors = main_colors(&rows);
+    // Each half but for the lines, in a square without its margins.
+    for color in [left, right] {
+        assert!((colors[&color] - 0.92 * 0.92 / 2.0).abs() < 0.02, "{colors:?}");
+    }
+    assert_eq!(rows[100][2], WHITE);
+
+    // Apart, there is white between them.
+    workplace.run(&format!("{arguments} --picture apart.png --explode 1"));
+    let rows = pixels(&workplace.path("apart.png"));
+    assert_eq!((rows[100][100], rows[100][20] == WHITE, rows[100][180] == WHITE), (WHITE, false, false));
+}
+
+#[test]
+fn pictures_do_not_depend_on_threads() {
+    let workplace = Workplace::new();
+    for threads in [1, 2] {
+        workplace.run(&format!(
+            "--seeds 30 -n 1 --explode 0.3 --picture {threads}.png --threads {threads} --quiet"
+        ));
+    }
+    assert!(workplace.bytes("1.png") == workplace.bytes("2.png"));
+}
+
+#[test]
+fn mistakes_about_pictures_are_named() {
+    let workplace = Workplace::new();
+    for (arguments, message) in [
+        (
+            "--picture a.jpg",
+            "invalid value 'a.jpg' for '--picture <PATH.png>': unknown extension; name the file *.png",
+        ),
+        (
+            "--report a.htm",
+            "invalid value 'a.htm' for '--report <PATH.html>': unknown extension; name the file *.html",
+        ),
+        (
+            "--picture a.png --picture-size 0 5",
+            "invalid value '0' for '--picture-size <W> <H>': give a whole number from 16 to 16384",
+        ),
+        (
+            "--picture a.png --explode -1",
+            "invalid value '-1' for '--explode <X>': give a number from 0 (whole) to 10",
+        ),
+        ("--no-mesh --picture a.png", "the argument '--no-mesh' cannot be used with '--picture <PATH.png>'"),
+    ] {
+        workplace.refuses(arguments, USAGE, message);
+    }
+    workplace.refuses(
+        "--report no/a.html",
+        FAILED,
+        "no/a.html: no directory no; create it or choose another path",
+    );
+    workplace.refuses(
+        "--picture no/a.png",
+        FAILED,
+        "no/a.png: no directory no; create it or choose another path",
+    );
+}
+
+/// The network in a report.
+fn embedded_network(page: &str) -> serde_json::Value {
+    let (_, after) = page.split_once("<script type=\"application/json\" id=\"network\">").unwrap();
+    serde_json::from_str(after.split_once("</script>").unwrap().0).unwrap()
+}
+
+#[test]
+fn report_holds_the_network_and_the_run() {
+    let workplace = Workplace::new();
+    let said = workplace.run("--seeds 20 -n 2 --report grains.html");
+    let page = String::from_utf8(workplace.bytes("grains.html")).unwrap();
+    assert!(
+        !page.contains("{{") || page.find("{{") > page.find("var THREE"),
+        "all places of the template are filled"
+    );
+    for line in said.lines().filter(|line| line.starts_with("boundaries") || line.starts_with("angles")) {
+        let value = line.split_once("  ").unwrap().1.trim();
+        assert!(page.contains(&format!("<td>{value}</td>")), "{value}");
+    }
+    assert!(page.contains("<code>grainsmooth ") && page.contains("--seeds 20"));
+
+    let network = embedded_network(&page);
+    let decoded = |key: &str| BASE64.decode(network[key].as_str().unwrap()).unwrap();
+    let parts = network["parts"].as_array().unwrap();
+    let triangles: u64 = parts.iter().map(|part| part["count"].as_u64().unwrap()).sum();
+    let corners: Vec<u32> = decoded("triangles")
+        .chunks_exact(4)
+        .map(|bytes| u32::from_le_bytes(bytes.try_into().unwrap()))
+        .collect();
+    assert_eq!(corners.len() as u64, 3 * triangles);
+    let points = decoded("points").len() / 6;
+    assert_eq!(corners.iter().max().map(|point| *point as usize + 1), Some(points));
+    assert_eq!(network["shifts"].as_array().unwrap().len(), 20);
+    for colors in ["grain", "size", "neighbors"] {
+        assert_eq!(network["colors"][colors].as_array().unwrap().len(), 20);
+    }
+    // The cube, in units of its side, from its middle.
+    assert_eq!(network["low"], serde_json::json!([-0.5, -0.5, -0.5]));
+    assert_eq!(page.matches("<svg").count(), 3);
+}
+
+#[test]
+fn report_in_the_plane_holds_a_picture() {
+    let workplace = Workplace::new();
+    workplace.run("--seeds 20 --dim 2 --report grains.html --quiet");
+    let page = String::from_utf8(workplace.bytes("grains.html")).unwrap();
+    let (_, after) = page.split_once("src=\"data:image/png;base64,").unwrap();
+    let picture = BASE64.decode(after.split_once('"').unwrap().0).unwrap();
+    assert_eq!(Pixmap::decode_png(&picture).unwrap().width(), 1200);
+    assert_eq!(page.matches("<svg").count(), 3);
+}
+
+/// The screenshot stays in the folder for the tests' files, for people to look at.
+#[test]
+fn browser_shows_the_grains_of_a_report() {
+    let name = "browser_shows_the_grains_of_a_report";
+    let workplace = Workplace::new();
+    workplace.run("--seeds 20 -n 2 --report grains.html --quiet");
+    let page = workplace.path("grains.html");
+    let screenshot = Path::new(env!("CARGO_TARGET_TMPDIR")).join("report.png");
+    let browse = |arguments: &[&str]| {
+        let mut browser = Command::new("chromium");
+        browser.args([
+            "--headless",
+            "--no-sandbox",
+            "--enable-unsafe-swiftshader",
+            "--enable-logging=stderr",
+        ]);
+        // The page draws once and is done: no time of the clock passes.
+        browser.args(["--window-size=1000,1200", "--virtual-time-budget=10000"]).args(arguments).arg(&page);
+        browser.output()
+    };
+    let output = match browse(&["--dump-dom"]) {
+        Ok(output) => output,
+        Err(error) => {
+            // Not through `eprintln`, which the test harness keeps to itself.
+            let skipped = format!("SKIPPED {name}: cannot run chromium: {error}\n");
+            std::io::stderr().write_all(skipped.as_bytes()).unwrap();
+            return;
+        }
+    };
+    let said = String::from_utf8_lossy(&output.stderr);
+    // Taking a screenshot without a graphics card is slow, of which the driver tells.
+    let complaints =
+        said.lines().filter(|line| line.contains("CONSOLE") && !line.contains("GL Driver Message"));
+    let complaints: Vec<&str> = complaints.collect();
+    assert!(complaints.is_empty(), "{complaints:?}");
+
+    let network = embedded_network(&String::from_utf8(workplace.bytes("grains.html")).unwrap());
+    let sides = |part: &serde_json::Value| {
+        part["sides"].as_array().unwrap().iter().filter(|side| side.as_i64() >= Some(0)).count()
+    };
+    let triangles: u64 = network["parts"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|part| part["count"].as_u64().unwrap() * sides(part) as u64)
+        .sum();
+    let shown = format!("id=\"view\" data-triangles=\"{triangles}\"");
+    assert!(String::from_utf8_lossy(&output.stdout).contains(&shown), "{shown}");
+
+    browse(&[&format!("--screenshot={}", screenshot.display())]).unwrap();
+    let rows = pixels(&screenshot);
+    // Within the view, which begins under the controls, saturated colours are those of grains.
+    let is_colored = |pixel: &&Pixel| pixel.iter().max().unwrap() - pixel.iter().min().unwrap() > 60;
+    let colored = rows[150..650].iter().flatten().filter(is_colored).count();
+    assert!(colored > 500 * 1000 / 10, "{colored} of 500000 pixels are coloured");
+}
