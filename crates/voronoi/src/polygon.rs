@@ -138,7 +138,7 @@ pub(crate) fn circumcentre(seed: u32, others: [u32; 2], input: ExactInput) -> DV
         return centre;
     }
     let [a, b] = others.map(Generator::site);
-    input.vertex(seed, [a, b, Generator::wall(PLANE)]).truncate()
+    input.vertex(seed, [a, b, Generator::side(PLANE)]).truncate()
 }
 
 fn intersect(seed: u32, incoming: Line, outgoing: Line, input: ExactInput) -> Corner {
