@@ -7,6 +7,7 @@ mod bad_seed_files;
 mod check;
 mod config_files;
 mod control_meshes;
+mod domains;
 mod front;
 mod good_runs;
 mod periodic;
