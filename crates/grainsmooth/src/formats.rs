@@ -10,6 +10,7 @@ mod lines;
 mod names;
 mod npy;
 mod obj;
+mod plane_blocks;
 mod ply;
 mod stl;
 mod surface;

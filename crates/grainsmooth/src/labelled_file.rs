@@ -166,6 +166,10 @@ fn command_line(bytes: &[u8]) -> Option<String> {
 
 /// The volume (in the plane: area) of the box that a command line names.
 fn domain_volume(command_line: &str) -> Option<f64> {
+    // A sphere or cylinder in the box is smaller.
+    if command_line.split(' ').any(|word| word == "--domain") {
+        return None;
+    }
     let mut words = command_line.split(' ').skip_while(|word| *word != "--box");
     words.next()?;
     let sides: Vec<f64> = words.map_while(|word| word.parse().ok()).collect();

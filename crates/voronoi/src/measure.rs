@@ -2,6 +2,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::Dimension;
+use crate::planar_measures::planar_measures;
 use crate::tessellation::{CellId, Side, Tessellation};
 
 /// Size and counts of one cell.
@@ -22,6 +23,9 @@ pub struct CellMeasure {
 }
 
 pub(crate) fn cell_measures(tessellation: &Tessellation) -> Vec<CellMeasure> {
+    if tessellation.domain.dimension() == Dimension::Two {
+        return planar_measures(tessellation);
+    }
     let order = in_space(tessellation);
     let sorted: Vec<CellMeasure> = order.par_iter().map(|cell| measure(tessellation, *cell)).collect();
     let mut measures = sorted.clone();
@@ -59,32 +63,20 @@ fn measure(tessellation: &Tessellation, cell: CellId) -> CellMeasure {
         // Relative to the seed, for a cell far from the origin would lose digits.
         let at = |k: usize| tessellation.vertices[ring[k].index()] - seed;
         let outward = if tessellation.face_sides(face)[0] == Side::Cell(cell) { 1.0 } else { -1.0 };
-        match tessellation.domain.dimension() {
-            Dimension::Two => {
-                let triangle = outward * 0.5 * at(0).truncate().perp_dot(at(1).truncate());
-                volume += triangle;
-                moment += (at(0) + at(1)) * (triangle / 3.0);
-                area += at(0).distance(at(1));
-            }
-            Dimension::Three => {
-                let mut doubled = DVec3::ZERO;
-                for k in 1..ring.len() - 1 {
-                    let normal = (at(k) - at(0)).cross(at(k + 1) - at(0));
-                    let tetrahedron = outward * at(0).dot(normal) / 6.0;
-                    doubled += normal;
-                    moment += (at(0) + at(k) + at(k + 1)) * (tetrahedron / 4.0);
-                }
-                volume += outward * at(0).dot(doubled) / 6.0;
-                area += 0.5 * doubled.length();
-            }
+        let mut doubled = DVec3::ZERO;
+        for k in 1..ring.len() - 1 {
+            let normal = (at(k) - at(0)).cross(at(k + 1) - at(0));
+            let tetrahedron = outward * at(0).dot(normal) / 6.0;
+            doubled += normal;
+            moment += (at(0) + at(k) + at(k + 1)) * (tetrahedron / 4.0);
         }
+        volume += outward * at(0).dot(doubled) / 6.0;
+        area += 0.5 * doubled.length();
     }
     let face_count = tessellation.cell_faces(cell).len();
-    let (edge_count, vertex_count) = match tessellation.domain.dimension() {
-        Dimension::Two => (face_count, face_count),
-        // Each edge has a corner in either of its faces, and Euler's formula holds but for an empty cell.
-        Dimension::Three => (corner_count / 2, (corner_count / 2 + 2).saturating_sub(face_count.max(2))),
-    };
+    // Each edge has a corner in either of its faces, and Euler's formula holds but for an empty cell.
+    let edge_count = corner_count / 2;
+    let vertex_count = (edge_count + 2).saturating_sub(face_count.max(2));
     let centroid = if volume > 0.0 { seed + moment / volume } else { seed };
     CellMeasure { volume, area, face_count, vertex_count, edge_count, centroid }
 }
