@@ -188,6 +188,23 @@ fn conventions_of_other_programs_are_understood() {
     }
 }
 
+#[test]
+fn files_with_the_names_of_other_tools_pass() {
+    let workplace = Workplace::new();
+    for names in ["grainsmooth", "dream3d", "pyvista", "virmat", "neper"] {
+        for periodic in ["", "--periodic x,y,z"] {
+            workplace.run(&format!("--seeds 6 -n 1 {periodic} --names {names} -o a.vtp"));
+            let report = report(&workplace, "a.vtp", 0);
+            let array = if names == "pyvista" { "boundary_labels" } else { "FaceLabels" };
+            assert_eq!(
+                (&report["labels"], &report["grains"]),
+                (&Value::from(array), &Value::from(6)),
+                "{names}"
+            );
+        }
+    }
+}
+
 /// Where voxels touch along an edge, vtkSurfaceNets3D splits points, leaves the copies where the originals are and keeps one
 /// that nothing uses.
 #[test]

@@ -154,6 +154,9 @@ fn completions_and_manual_know_every_option() {
             assert!(script.contains(option.trim_start_matches('-')), "{shell}: {option}");
         }
     }
+    let page = include_str!("../../docs/options.md");
+    let unlisted: Vec<_> = options.iter().filter(|option| !page.contains(&format!("`{option}"))).collect();
+    assert!(unlisted.iter().all(|option| ["--help", "--version"].contains(option)), "{unlisted:?}");
     let manual = text(&workplace, "man").replace("\\-", "-");
     assert!(manual.contains(".TH grainsmooth 1"));
     for option in options {

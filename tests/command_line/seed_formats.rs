@@ -64,6 +64,6 @@ fn xyz_and_csv_of_the_same_spheres_are_the_same_grains() {
     workplace.refuses(
         "--seeds-file b.json",
         FAILED,
-        "b.json entry 2: seed 1 at (2, 0.5, 0.5) lies outside the domain [0, 1] x [0, 1] x [0, 1]; move it inside or enlarge the box",
+        "b.json entry 2: seed 1 at (2, 0.5, 0.5) lies outside the domain [0, 1] x [0, 1] x [0, 1]; move it inside or enlarge the domain",
     );
 }

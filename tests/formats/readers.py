@@ -91,3 +91,66 @@ assert np.array_equal(np.unique(labels), np.arange(len(volumes)))
 assert pyvista.read(folder / "b.vti").dimensions == (21, 16, 2)
 plane = pyvista.read(folder / "b.vtp")
 assert plane.n_lines == plane["BoundaryId"].max() + 1
+
+areas = np.array(expected["areas_2d"])
+blocks = pyvista.read(folder / "b.vtm")
+assert blocks.keys() == ["boundaries", "grains", "triple_lines", "quadruple_points"], blocks.keys()
+lines = blocks["boundaries"]
+assert lines.n_lines == plane.n_lines and np.array_equal(lines["FaceLabels"], plane["FaceLabels"])
+assert np.array_equal(lines.points, plane.points[lines["PointId"]])
+cells = [lines.get_cell(cell).point_ids for cell in range(lines.n_cells)]
+for ids in cells:
+    along = np.diff(lines.points[ids], axis=0)
+    # To the right of the line, where the second side is.
+    right = np.stack([along[:, 1], -along[:, 0]], axis=1)
+    assert (np.einsum("ij,ij->i", right, lines["Normals"][ids[:-1], :2]) > 0).all()
+grains = blocks["grains"]
+assert (np.cross(*np.diff(grains.points[grains.regular_faces], axis=1).swapaxes(0, 1))[:, 2] >= 0).all()
+for grain, area in enumerate(areas):
+    mine = grains["GrainId"] == grain
+    assert np.isclose(grains["Area"][mine][0], sum(
+        np.linalg.norm(np.diff(lines.points[ids], axis=0), axis=1).sum()
+        for ids, labels in zip(cells, lines["FaceLabels"]) if grain in labels
+    ))
+    area = grains["Volume"][mine][0]
+    assert np.isclose(area, areas[grain], rtol=1e-9)
+    # The triangles fill the grain.
+    assert np.isclose(grains.extract_cells(mine).area, area, rtol=1e-9)
+    of_grain = lines["FaceLabels"][(lines["FaceLabels"] == grain).any(axis=1)]
+    assert grains["Neighbors"][mine][0] == len(set(of_grain.ravel()) - {grain, -1})
+    assert np.isclose(grains["Sphericity"][mine][0], 2 * np.sqrt(np.pi * area) / grains["Area"][mine][0])
+assert blocks["triple_lines"].n_points == expected["triple_points_2d"]
+assert (blocks["triple_lines"]["Sides"] >= -1).sum(axis=1).min() == 3
+
+# Sides, grain's surface, first grain, exterior, and where that stands.
+names = {
+    "grainsmooth": ("FaceLabels", "GrainId", 0, -1, 1),
+    "dream3d": ("FaceLabels", "FeatureIds", 1, -1, 0),
+    "pyvista": ("boundary_labels", "GrainId", 1, 0, 1),
+    "virmat": ("FaceLabels", "GrainID", 1, 0, 1),
+    "neper": ("FaceLabels", "Id", 1, 0, 1),
+}
+for tool, (sides, grain_id, first, exterior, place) in names.items():
+    mesh = pyvista.read(folder / f"{tool}_3d.vtp")
+    labels = mesh[sides]
+    assert set(labels[:, 1 - place]) <= set(range(first, first + len(volumes))), tool
+    assert exterior in labels[:, place] and exterior not in labels[:, 1 - place], tool
+    numbers = np.where(labels == exterior, -1, labels - first)
+    assert np.allclose(signed_volumes(points, mesh.regular_faces, numbers, -1), volumes, rtol=1e-9), tool
+    for dimension, measures in (("3d", volumes), ("2d", areas)):
+        blocks = pyvista.read(folder / f"{tool}_{dimension}.vtm")
+        assert sides in blocks["boundaries"].cell_data, tool
+        grains = blocks["grains"]
+        assert np.array_equal(np.unique(grains[grain_id]), np.arange(len(measures)) + first), tool
+        for grain, measure in enumerate(measures):
+            assert np.isclose(grains["Volume"][grains[grain_id] == grain + first][0], measure, rtol=1e-9), tool
+    # In the plane the first side is on the left: the shoelace formula gives every area.
+    mesh = pyvista.read(folder / f"{tool}_2d.vtp")
+    found = np.zeros(len(areas))
+    for cell in range(mesh.n_cells):
+        line = mesh.points[mesh.get_cell(cell).point_ids]
+        swept = (line[:-1, 0] * line[1:, 1] - line[1:, 0] * line[:-1, 1]).sum() / 2
+        for label, sign in zip(mesh[sides][cell], (1, -1)):
+            if label != exterior:
+                found[label - first] += sign * swept
+    assert np.allclose(found, areas, rtol=1e-9), tool

@@ -122,8 +122,18 @@ fn vtk_meshio_and_trimesh_read_every_format() {
         let output = grainsmooth::Output::check(directory.path().join(name)).unwrap();
         SPACE.write(&output).unwrap();
     }
-    for name in ["b.vtp", "b.vtu", "b.vti"] {
+    for name in ["b.vtp", "b.vtu", "b.vti", "b.vtm"] {
         PLANE.write(&grainsmooth::Output::check(directory.path().join(name)).unwrap()).unwrap();
+    }
+    for names in grainsmooth::Names::ALL {
+        for (polycrystal, dimension) in [(&*SPACE, "3d"), (&*PLANE, "2d")] {
+            let mut renamed = polycrystal.clone();
+            renamed.config.file.names = names;
+            for extension in ["vtp", "vtm"] {
+                let name = format!("{}_{dimension}.{extension}", names.name());
+                renamed.write(&grainsmooth::Output::check(directory.path().join(name)).unwrap()).unwrap();
+            }
+        }
     }
     let grains = OutputDirectory::check(directory.path().join("each"), OutputFormat::Stl).unwrap();
     SPACE.write_grains(&grains).unwrap();
@@ -136,6 +146,7 @@ fn vtk_meshio_and_trimesh_read_every_format() {
         "triple_lines": counts.triple_lines,
         "quadruple_points": counts.quadruple_points,
         "volumes": SPACE.network.cell_volumes(),
+        "triple_points_2d": PLANE.network.junction_counts().triple_lines,
         "areas_2d": PLANE.network.cell_volumes(),
     });
     fs::write(directory.path().join("expected.json"), expected.to_string()).unwrap();

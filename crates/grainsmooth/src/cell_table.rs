@@ -69,7 +69,8 @@ enum Row {
 }
 
 impl CellTable {
-    /// Measures all cells. Walls among the `neighbors` are -1 (x0), -2 (x1), -3, -4 (y) and -5, -6 (z).
+    /// Measures all cells. Walls among the `neighbors` are -1 (x0), -2 (x1), -3, -4 (y) and -5, -6 (z), those of a
+    /// polyhedron -1 - number.
     pub fn new(cells: &Tessellated) -> Self {
         let tessellation = &cells.tessellation;
         let rows = (0u32..).zip(tessellation.cell_measures()).map(|(id, measure)| {

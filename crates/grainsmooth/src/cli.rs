@@ -115,6 +115,8 @@ impl Arguments {
             face_mesh: smoothing.face_mesh(),
             periodic: domain.periodic,
             relaxation: smoothing.relax,
+            wall_tension: smoothing.wall_tension,
+            volumes: smoothing.volumes(),
             regularize: smoothing.regularize(),
             levels: smoothing.levels,
             junctions: smoothing.junctions(),

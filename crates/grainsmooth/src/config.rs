@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use glam::{BVec3, DVec3};
-use polycrystal::{FaceMesh, Junctions, Relaxation};
+use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
 use voronoi::{Dimension, Domain};
 
 use crate::domain_file::{half_space_domain, surface_domain};
@@ -91,6 +91,10 @@ pub struct Config {
     pub face_mesh: FaceMesh,
     /// How far boundaries relax; time 0 leaves them flat.
     pub relaxation: Relaxation,
+    /// Tension of the walls, where that between grains is 1.
+    pub wall_tension: f64,
+    /// Whether relaxation keeps the grains' volumes.
+    pub volumes: Volumes,
     /// Length, in units of the mean grain size, below which edges of cells collapse before relaxation; 0 keeps all.
     pub regularize: f64,
     /// Number of subdivisions.
@@ -134,6 +138,8 @@ impl Default for Config {
             periodic: BVec3::FALSE,
             face_mesh: FaceMesh::Fan,
             relaxation: Relaxation::default(),
+            wall_tension: 0.0,
+            volumes: Volumes::Kept,
             regularize: Self::REGULARIZE,
             levels: 3,
             junctions: Junctions::Crease,
@@ -148,8 +154,8 @@ impl Config {
     /// stay within the range of doubles.
     pub const SIDE_RANGE: RangeInclusive<f64> = 1e-30..=1e30;
 
-    /// The usual length to regularise by: a tenth of a grain. Shorter edges would shrink to nothing during relaxation.
-    pub const REGULARIZE: f64 = 0.1;
+    /// The usual length to regularise by: 0.15 of a grain. Shorter edges would shrink to nothing during relaxation.
+    pub const REGULARIZE: f64 = 0.15;
 
     /// The largest: edges as long as half a grain are no small features.
     pub const LARGEST_REGULARIZE: f64 = 0.5;

@@ -10,6 +10,7 @@ mod lines;
 mod names;
 mod npy;
 mod obj;
+mod plane_blocks;
 mod ply;
 mod stl;
 mod surface;
@@ -22,6 +23,7 @@ pub use tess::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
 };
 
+pub(crate) use blocks::escaped;
 pub(crate) use gmsh::write_script as write_gmsh_script;
 pub(crate) use surface::{Part, Surface, label};
 pub(crate) use {ang::write as write_ang, evolver::write as write_evolver, gmsh::write as write_gmsh};

@@ -42,8 +42,8 @@ pub enum FileElements {
 impl LabelledFile {
     /// Reads a network from a .vtp, .vtu or .vtk file.
     ///
-    /// The sides are those of the cell array `FaceLabels` (grains and, below 0, the exterior), else of `boundary_labels` or
-    /// `BoundaryLabels` (where 0 is the exterior too). Programs differ in which way triangles wind: the two ways, inside and
+    /// The sides are those of the cell array `FaceLabels` (grains and, below 0, the exterior; where nothing is below 0, it is
+    /// 0), else of `boundary_labels` or `BoundaryLabels` (where 0 is the exterior too). Programs differ in which way triangles wind: the two ways, inside and
     /// at the exterior, that close most grains are taken for the file's.
     ///
     /// # Errors
@@ -62,13 +62,19 @@ impl LabelledFile {
         let bytes = std::fs::read(path).map_err(MeshFileProblem::Unreadable)?;
         let mut file = Self::of_cells(read(&bytes)?)?;
         file.command_line = command_line(&bytes);
+        // In a periodic network they count grains a period away, which are not at the point.
+        if file.command_line.as_ref().is_some_and(|line| line.contains(" --periodic ")) {
+            file.node_types = None;
+        }
         file.sides = outward_sides(&file.surface());
         Ok(file)
     }
 
     fn of_cells(cells: LabelledCells) -> Result<Self, MeshFileProblem> {
         let LabelledCells { mesh, is_plane, labels, label_array, node_types } = cells;
-        let zero_is_exterior = label_array != "FaceLabels";
+        // Without an exterior the volumes of all grains would sum to nothing.
+        let zero_is_exterior =
+            label_array != "FaceLabels" || !labels.iter().flatten().any(|label| *label < 0);
         let mut boundaries: BTreeMap<[i64; 2], BoundaryId> = BTreeMap::new();
         let mut sides = Vec::new();
         let mut of_cell = Vec::with_capacity(labels.len());
@@ -160,6 +166,10 @@ fn command_line(bytes: &[u8]) -> Option<String> {
 
 /// The volume (in the plane: area) of the box that a command line names.
 fn domain_volume(command_line: &str) -> Option<f64> {
+    // A sphere or cylinder in the box is smaller.
+    if command_line.split(' ').any(|word| word == "--domain") {
+        return None;
+    }
     let mut words = command_line.split(' ').skip_while(|word| *word != "--box");
     words.next()?;
     let sides: Vec<f64> = words.map_while(|word| word.parse().ok()).collect();

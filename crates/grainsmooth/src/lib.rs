@@ -37,6 +37,7 @@ mod poisson_disc;
 mod report;
 mod seed_file;
 mod seeding;
+mod series;
 mod settings;
 mod statistics;
 mod subdivide;
@@ -63,12 +64,14 @@ pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputDirectory, OutputFormat};
 pub use picture::{Coloring, Picture, Png};
 pub use pipeline::{
-    Polycrystal, Progress, Stage, Tessellated, check_expected_size, make_polycrystal, smooth, tessellate,
+    Polycrystal, Progress, Stage, Tessellated, check_expected_size, make_polycrystal, smooth, smooth_watched,
+    tessellate,
 };
 pub use poisson_disc::poisson_disc_seeds;
 pub use report::Html;
 pub use seed_file::{FileDomain, FileSeed, SeedPlace, SeedProblem, read_file_domain, read_seed_file};
 pub use seeding::random_seeds;
+pub use series::{Series, SeriesOutput};
 pub use settings::embedded_config;
 pub use statistics::{NetworkStatistics, StatisticsOutput};
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};

@@ -21,8 +21,8 @@ pub(crate) struct MeasuredArrays<'a> {
 /// Arrays of numbers.
 #[derive(Default)]
 pub(crate) struct NumberArrays {
-    single: Vec<(&'static str, Vec<f64>)>,
-    pairs: Vec<(&'static str, Vec<[f64; 2]>)>,
+    pub(crate) single: Vec<(&'static str, Vec<f64>)>,
+    pub(crate) pairs: Vec<(&'static str, Vec<[f64; 2]>)>,
 }
 
 impl NumberArrays {

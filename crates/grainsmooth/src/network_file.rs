@@ -87,7 +87,7 @@ impl Polycrystal {
     fn write_vtk(&self, format: VtkFormat, out: &mut dyn Write) -> io::Result<()> {
         let level = self.network.finest();
         let names = self.config.file.names;
-        let (polylines, boundaries_of_lines) = boundary_polylines(level);
+        let (polylines, boundaries_of_lines) = boundary_polylines(level, self.network.boundaries(), names);
         let (cells, boundary_of_cell) = match &level.mesh {
             Mesh::Triangles(_) => (None, &level.boundary_of),
             Mesh::Segments(_) => (Some(Cells::Polylines(&polylines)), &boundaries_of_lines),
@@ -174,19 +174,27 @@ pub(crate) fn triangles<'a>(level: &'a Level, boundaries: &[Boundary], names: Na
     wound.collect()
 }
 
-/// One polyline for each boundary, and the boundaries in the same order.
-fn boundary_polylines(level: &Level) -> (Vec<Vec<u32>>, Vec<BoundaryId>) {
+/// One polyline for each boundary, with its first side in a scheme of names on the left, and the boundaries in the same order.
+pub(crate) fn boundary_polylines(
+    level: &Level,
+    boundaries: &[Boundary],
+    names: Names,
+) -> (Vec<Vec<u32>>, Vec<BoundaryId>) {
     let Mesh::Segments(mesh) = &level.mesh else { return (Vec::new(), Vec::new()) };
     let segments: Vec<(BoundaryId, [u32; 2])> =
         level.boundary_of.iter().copied().zip(mesh.segments().iter().copied()).collect();
     // Refinement keeps a boundary's segments together and in order.
-    let boundaries = segments.chunk_by(|a, b| a.0 == b.0);
+    let of_boundaries = segments.chunk_by(|a, b| a.0 == b.0);
     let polyline = |segments: &[(BoundaryId, [u32; 2])]| {
-        let mut polyline = vec![segments[0].1[0]];
+        let (boundary, [start, _]) = segments[0];
+        let mut polyline = vec![start];
         polyline.extend(segments.iter().map(|(_, [_, end])| *end));
-        (polyline, segments[0].0)
+        if names.reverses(&boundaries[boundary.index()]) {
+            polyline.reverse();
+        }
+        (polyline, boundary)
     };
-    boundaries.map(polyline).unzip()
+    of_boundaries.map(polyline).unzip()
 }
 
 fn text(name: &'static str, value: String) -> FieldEntry {

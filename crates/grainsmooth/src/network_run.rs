@@ -1,14 +1,16 @@
 //! A run of the pipeline: from the command line to files and summary.
 
 use std::io::Write;
+use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::anyhow;
 use grainsmooth::{
-    CellTable, Config, Error, Estimate, Html, Output, OutputDirectory, Picture, Png, Polycrystal, Stage,
-    StatisticsOutput, Summary, SummaryRecord, TableFormat, check_expected_size, smooth, tessellate,
+    CellTable, Config, Error, Estimate, Html, Output, OutputDirectory, Picture, Png, Polycrystal, Series,
+    SeriesOutput, Stage, StatisticsOutput, Summary, SummaryRecord, TableFormat, check_expected_size,
+    smooth_watched, tessellate,
 };
 
 use crate::cli::{Arguments, usage};
@@ -53,6 +55,7 @@ struct Files {
     report: Option<Output<Html>>,
     summary: Option<Output<()>>,
     statistics: Option<StatisticsOutput>,
+    series: Option<(SeriesOutput, NonZeroU32)>,
 }
 
 impl Files {
@@ -78,7 +81,17 @@ impl Files {
         });
         let (picture, report) = (arguments.pictures.picture()?, arguments.pictures.report()?);
         let statistics = files.statistics(config.dimension)?;
-        Ok(Self { tables, output, grains, picture, report, summary: summary.transpose()?, statistics })
+        let series = files.series()?.map(|output| (output, files.every));
+        Ok(Self {
+            tables,
+            output,
+            grains,
+            picture,
+            report,
+            summary: summary.transpose()?,
+            statistics,
+            series,
+        })
     }
 
     fn paths(&self) -> Vec<PathBuf> {
@@ -88,7 +101,8 @@ impl Files {
         let report = self.report.as_ref().map(Output::path);
         let meshes = tables.chain(self.output.as_ref().map(Output::path)).chain(grains);
         let statistics = self.statistics.iter().flat_map(StatisticsOutput::paths);
-        meshes.chain(picture).chain(report).map(Path::to_owned).chain(statistics).collect()
+        let series = self.series.iter().map(|(output, _)| output.path().to_owned());
+        meshes.chain(picture).chain(report).map(Path::to_owned).chain(statistics).chain(series).collect()
     }
 }
 
@@ -118,7 +132,12 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
             tessellation.domain()
         ));
     };
-    let mut polycrystal = smooth(config, tessellated, &progress)?;
+    let mut series = files.series.as_ref().map(|(output, every)| (output, Series::new(*every)));
+    let mut polycrystal = smooth_watched(config, tessellated, &progress, |step| {
+        if let Some((_, series)) = &mut series {
+            series.add(&step);
+        }
+    })?;
     line.show(Stage::Writing, 0, 1);
     let start = Instant::now();
     polycrystal.write(output)?;
@@ -127,6 +146,9 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     }
     if let Some(statistics) = &files.statistics {
         polycrystal.statistics().write(statistics)?;
+    }
+    if let Some((output, series)) = &series {
+        series.write(&mut polycrystal, output)?;
     }
     if let Some((picture, output)) = &files.picture {
         polycrystal.write_picture(picture, output)?;

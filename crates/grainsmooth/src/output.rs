@@ -94,9 +94,9 @@ impl OutputFormat {
     /// The only dimension that the format can hold, if there is such a one.
     fn only_dimension(self) -> Option<Dimension> {
         match self {
-            Self::Vtm | Self::Stl | Self::Ply | Self::Obj | Self::Msh | Self::Fe => Some(Dimension::Three),
+            Self::Stl | Self::Ply | Self::Obj | Self::Msh | Self::Fe => Some(Dimension::Three),
             Self::Ang => Some(Dimension::Two),
-            Self::Vtk(_) | Self::Tess | Self::Vti | Self::Npy => None,
+            Self::Vtk(_) | Self::Vtm | Self::Tess | Self::Vti | Self::Npy => None,
         }
     }
 }

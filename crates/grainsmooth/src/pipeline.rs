@@ -3,8 +3,10 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use polycrystal::{AngleStatistics, Certificate, MeshSize, Network, NetworkError};
-use polycrystal::{dihedral_angles, relax, validate};
+use polycrystal::{
+    AngleStatistics, Boundary, Certificate, FaceMesh, MeshSize, Network, NetworkError, RelaxationStep,
+};
+use polycrystal::{Relaxed, Volumes, dihedral_angles, relax_watched, validate};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
 use crate::memory::{LevelSize, available_memory, check_cells, check_levels};
@@ -73,6 +75,8 @@ pub struct Polycrystal {
     pub flat: Vec<DVec3>,
     /// Points of the finest level.
     pub points: Vec<DVec3>,
+    /// What relaxation gave, before the last subdivisions: points to move by hand.
+    pub relaxed: Relaxed,
     /// What regularisation took out.
     pub collapsed: Collapsed,
     /// Angles between boundaries of the flat network, if boundaries meet inside the domain.
@@ -173,22 +177,53 @@ fn seed_count(config: &Config) -> Option<usize> {
 /// [`Error::LevelsExceedMemory`] and [`Error::LevelsExceedIds`]; [`Error::Network`] when the network cannot be relaxed, or
 /// is invalid.
 pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result<Polycrystal, Error> {
+    smooth_watched(config, cells, progress, |_| ())
+}
+
+/// As [`smooth`], with the start and every step of the relaxation shown to `watch`.
+///
+/// # Errors
+/// As of [`smooth`].
+pub fn smooth_watched(
+    config: &Config,
+    cells: Tessellated,
+    progress: Progress,
+    mut watch: impl FnMut(RelaxationStep<'_>),
+) -> Result<Polycrystal, Error> {
     let tessellation = &cells.tessellation;
     let mut clock = Clock { progress, times: cells.times.clone() };
     let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
     check_levels(LevelSize { points, edges, triangles }, config.levels, available_memory())?;
-    let (network, flat, collapsed) = clock.time(Stage::Network, || network(config, tessellation))?;
+    let (mut network, flat, collapsed) = clock.time(Stage::Network, || network(config, tessellation))?;
     let relaxed = clock.time(Stage::Relaxation, || {
-        relax(&network, &flat, &config.relaxation, |done, count| progress(Stage::Relaxation, done, count))
+        relax_watched(&network, &flat, &config.relaxation, config.volumes, |step| {
+            progress(Stage::Relaxation, step.done, step.count);
+            watch(step);
+        })
     })?;
     let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
+    if config.volumes == Volumes::Free {
+        let volumes = network.grain_volumes(network.finest(), &points);
+        network = network.with_cell_volumes(volumes);
+    }
     let (validation, angles_before) = clock.time(Stage::Validation, || {
         let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
         Ok::<_, Error>((validation, dihedral_angles(&network, network.control_mesh(), &flat)))
     })?;
     let times = clock.times;
     let config = config.clone();
-    Ok(Polycrystal { config, cells, network, flat, points, collapsed, angles_before, validation, times })
+    Ok(Polycrystal {
+        config,
+        cells,
+        network,
+        flat,
+        points,
+        relaxed,
+        collapsed,
+        angles_before,
+        validation,
+        times,
+    })
 }
 
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.
@@ -196,15 +231,20 @@ fn network(
     config: &Config,
     tessellation: &Tessellation,
 ) -> Result<(Network, Vec<DVec3>, Collapsed), NetworkError> {
-    let Config { face_mesh, junctions, levels, .. } = *config;
-    let network_of = |cells| Network::with_face_mesh(cells, face_mesh, junctions, levels as usize);
+    let Config { face_mesh, junctions, levels, wall_tension, .. } = *config;
+    let tension = |boundary: &Boundary| if boundary.wall.is_some() { wall_tension } else { 1.0 };
+    let network_of = |cells, face_mesh| {
+        let (network, flat) = Network::with_face_mesh(cells, face_mesh, junctions, levels as usize)?;
+        Ok::<_, NetworkError>((network.with_tensions(tension)?, flat))
+    };
     if config.regularize == 0.0 {
-        let (network, flat) = network_of(tessellation)?;
+        let (network, flat) = network_of(tessellation, face_mesh)?;
         return Ok((network, flat, Collapsed::default()));
     }
     let volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
     let (regular, collapsed) = tessellation.regularized(config.regularize);
-    let (network, flat) = network_of(&regular)?;
+    let (network, flat) =
+        network_of(&regular, if face_mesh == FaceMesh::Fan { FaceMesh::SparseFan } else { face_mesh })?;
     Ok((network.with_cell_volumes(volumes), flat, collapsed))
 }
 

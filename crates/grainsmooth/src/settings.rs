@@ -5,7 +5,7 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 
 use glam::DVec3;
-use polycrystal::{FaceMesh, Junctions, Relaxation};
+use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
 use toml::Value;
 use voronoi::Dimension;
 
@@ -77,13 +77,17 @@ impl Config {
         let axes: Vec<&str> = axes.filter(|(_, is_periodic)| *is_periodic).map(|(axis, _)| axis).collect();
         add("periodic", if axes.is_empty() { "none".into() } else { axes.join(",").into() });
         match self.face_mesh {
-            FaceMesh::Fan => add("faces", "fan".into()),
+            FaceMesh::Fan | FaceMesh::SparseFan => add("faces", "fan".into()),
             FaceMesh::Plain => add("faces", "plain".into()),
             FaceMesh::Refined { edge_length } => add("edge-length", edge_length.into()),
         }
         match self.relaxation {
             Relaxation::Time(time) => add("relax", time.into()),
             Relaxation::Equilibrium => add("relax", "equilibrium".into()),
+        }
+        add("wall-tension", self.wall_tension.into());
+        if self.volumes == Volumes::Free {
+            add("free", true.into());
         }
         add("regularize", self.regularize.into());
         add("levels", i64::from(self.levels).into());

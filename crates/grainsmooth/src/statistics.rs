@@ -133,10 +133,11 @@ fn in_space(measures: &SpaceMeasures) -> Tables {
         ("triple_line_length", lines_inside.map(|line| line.length).collect()),
     ]);
     add_angles(&mut distributions, measures.dihedral_angles, |range| {
-        for line in triple_lines.iter().filter(|line| is_inside(&line.sides)) {
+        let lines = triple_lines.iter().filter(|line| is_inside(&line.sides) && line.sides.len() == 3);
+        for line in lines.clone() {
             *range = [range[0].min(line.smallest_angle), range[1].max(line.largest_angle)];
         }
-        triple_lines.iter().filter(|line| is_inside(&line.sides)).map(|line| line.sides.len()).sum()
+        3 * lines.count()
     });
     let others = [
         ("boundaries", boundary_table(boundaries)),
@@ -159,7 +160,7 @@ fn in_plane(measures: &PlaneMeasures) -> Tables {
         ("boundary_length", inside.map(|boundary| boundary.length).collect()),
     ]);
     add_angles(&mut distributions, measures.dihedral_angles, |range| {
-        let inside = triple_points.iter().filter(|point| is_inside(&point.sides));
+        let inside = triple_points.iter().filter(|point| is_inside(&point.sides) && point.sides.len() == 3);
         let angles: Vec<f64> = inside.flat_map(|point| point.angles.iter().copied()).collect();
         *range = angles.iter().fold(*range, |range, angle| [range[0].min(*angle), range[1].max(*angle)]);
         angles.len()

@@ -54,6 +54,14 @@ impl fmt::Display for Summary<'_> {
         if let (Some(before), Some(after)) = (polycrystal.angles_before, polycrystal.validation.angles) {
             writeln!(out, "angles      {} before relaxation, {} after", Angle(before), Angle(after))?;
         }
+        if polycrystal.relaxed.fell_back {
+            let level = polycrystal.relaxed.level;
+            writeln!(
+                out,
+                "relaxation  of the points of level {level} only: those of level {} folded when moved too",
+                level + 1
+            )?;
+        }
         let validation = &polycrystal.validation;
         let error = validation.largest_volume_error;
         writeln!(out, "{measure:12}largest relative error of a grain {error:.1e}")?;

@@ -13,10 +13,12 @@ use xml::XmlFormat;
 
 mod image;
 mod legacy;
+mod pieces;
 mod raw;
 mod xml;
 
 pub use image::{ImageData, write_vti};
+pub(crate) use pieces::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
 pub(crate) use raw::{attribute, find};
 pub use raw::{field_bytes, field_text, inlined};
 

@@ -34,6 +34,17 @@ pub enum NetworkError {
     /// The relaxation time is negative or not a number.
     #[error("the relaxation time is {0}; it must be 0 (off) or a positive, finite number")]
     BadRelaxationTime(f64),
+    /// The tension of a boundary is negative or not a number.
+    #[error(
+        "the tension between {} and {} is {tension}; it must be 0 or a positive, finite number",
+        sides[0], sides[1]
+    )]
+    BadTension {
+        /// The sides of the boundary.
+        sides: [Side; 2],
+        /// Its tension.
+        tension: f64,
+    },
     /// The grains' volumes could not be restored.
     #[error(
         "grain {} misses its volume by {relative_error:e} of it after relaxation; relax for a shorter time",

@@ -7,6 +7,10 @@ use voronoi::{Dimension, Edges, FaceId, PeriodicPair, Shift, Tessellation, Verte
 /// Fewest segments of a triple line: one middle, so that every line can curve.
 const FEWEST_SEGMENTS: u32 = 2;
 
+/// Length, in units of the mean size of cells, below which a sparse fan leaves a triple line whole: halves would make needles of
+/// the triangles from there to the centres of its boundaries. Levels of subdivision divide and curve it all the same.
+const SHORT_LINE: f64 = 0.25;
+
 /// Triangles of a refined boundary, in units of equilateral triangles of the edge length; about 2 is usual.
 const REFINED_TRIANGLES: f64 = 3.0;
 
@@ -16,6 +20,9 @@ pub enum FaceMesh {
     /// The middles of its triple lines, and a fan of triangles from its centre: VirMat's control points.
     #[default]
     Fan,
+    /// The same, but in space lines shorter than a quarter of the mean size of cells have no middle, which makes better triangles:
+    /// for cells that are regularised.
+    SparseFan,
     /// The middles of its triple lines alone; no point inside (constrained Delaunay triangulation).
     Plain,
     /// Points on triple lines and inside, so that no edge is longer than `edge_length` and, where the outline allows, no angle
@@ -44,8 +51,10 @@ impl FaceMesh {
     /// The size of a tessellation's control mesh; estimated for boundaries that are refined.
     pub fn control_mesh_size(self, tessellation: &Tessellation) -> MeshSize {
         let vertices = tessellation.vertices();
-        let count =
-            |ends: [VertexId; 2]| u128::from(self.segment_count(ends.map(|end| vertices[end.index()])));
+        let short = self.short_line(tessellation);
+        let count = |ends: [VertexId; 2]| {
+            u128::from(self.segment_count(ends.map(|end| vertices[end.index()]), short))
+        };
         let vertex_count = vertices.len() as u128;
         if tessellation.domain().dimension() == Dimension::Two {
             let ends = |face| <[VertexId; 2]>::try_from(tessellation.face_corners(face)).expect("two ends");
@@ -65,7 +74,7 @@ impl FaceMesh {
             let of_face = corner_edges.by_ref().take(corners.len());
             let outline: u128 = of_face.map(|edge| count(lines.ends[*edge as usize])).sum();
             let (more_points, more_triangles) = match self {
-                Self::Fan => (1, outline),
+                Self::Fan | Self::SparseFan => (1, outline),
                 Self::Plain => (0, outline - 2),
                 Self::Refined { edge_length } => {
                     let equilateral = 3f64.sqrt() / 4.0 * edge_length * edge_length;
@@ -84,9 +93,21 @@ impl FaceMesh {
         MeshSize { points, edges: segments + inner_edges, triangles }
     }
 
-    fn segment_count(self, [start, end]: [DVec3; 2]) -> u32 {
+    /// The length below which lines stay whole.
+    fn short_line(self, tessellation: &Tessellation) -> f64 {
+        match (self, tessellation.domain().dimension()) {
+            (Self::SparseFan, Dimension::Three) => {
+                let mean_volume = tessellation.domain().measure() / tessellation.cell_count() as f64;
+                SHORT_LINE * mean_volume.cbrt()
+            }
+            _ => 0.0,
+        }
+    }
+
+    fn segment_count(self, [start, end]: [DVec3; 2], short: f64) -> u32 {
         match self {
-            Self::Fan | Self::Plain => FEWEST_SEGMENTS,
+            Self::SparseFan if start.distance(end) < short => 1,
+            Self::Fan | Self::SparseFan | Self::Plain => FEWEST_SEGMENTS,
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
             Self::Refined { edge_length } => {
                 ((start.distance(end) / edge_length).ceil() as u32).max(FEWEST_SEGMENTS)
@@ -127,8 +148,9 @@ impl LinePoints {
         face_mesh: FaceMesh,
     ) -> Self {
         let ends_at = |line: usize| lines[line].map(|end| tessellation.vertices()[end.index()]);
+        let short = face_mesh.short_line(tessellation);
         let mut counts: Vec<u32> =
-            (0..lines.len()).map(|line| face_mesh.segment_count(ends_at(line))).collect();
+            (0..lines.len()).map(|line| face_mesh.segment_count(ends_at(line), short)).collect();
         for pair in copied_lines {
             counts[pair.secondary as usize] = counts[pair.primary as usize];
         }
@@ -239,6 +261,12 @@ pub(crate) fn triangulate_faces(
         FaceTriangles { outline, lines: lines_of, inner_points, triangles }
     };
     let mut faces: Vec<FaceTriangles> = first_corners.par_iter().map(triangulate).collect();
+    copy_faces(tessellation, &mut faces);
+    faces
+}
+
+/// Gives copied faces the triangles of their originals.
+fn copy_faces(tessellation: &Tessellation, faces: &mut [FaceTriangles]) {
     for pair in tessellation.periodic_faces() {
         let (secondary, primary) = (pair.secondary.index(), pair.primary.index());
         let last_corner = tessellation.face_corners(pair.primary).last().expect("a face has corners").0;
@@ -247,13 +275,17 @@ pub(crate) fn triangulate_faces(
         faces[secondary].triangles = faces[primary].turned_round(last_corner);
         faces[secondary].inner_points = inner_points;
     }
-    faces
+}
+
+/// A fan of triangles round the point after so many of the outline.
+fn fan(count: u32) -> Vec<[u32; 3]> {
+    (0..count).map(|k| [k, (k + 1) % count, count]).collect()
 }
 
 fn fill(outline: &[u32], points: &[DVec3], face_mesh: FaceMesh) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let positions: Vec<DVec3> = outline.iter().map(|point| points[*point as usize]).collect();
     let mesh = match face_mesh {
-        FaceMesh::Fan => None,
+        FaceMesh::Fan | FaceMesh::SparseFan => None,
         FaceMesh::Plain => triangulate_polygon(&positions, None),
         FaceMesh::Refined { edge_length } => {
             let center = outline_center(&positions);
@@ -265,11 +297,7 @@ fn fill(outline: &[u32], points: &[DVec3], face_mesh: FaceMesh) -> (Vec<DVec3>, 
     match mesh {
         Some(mesh) => (mesh.inner_points, mesh.triangles),
         // Also what rounding leaves no triangulation of: the centre of a sliver still sees all of its outline.
-        None => {
-            let count = id(outline.len());
-            let triangles = (0..count).map(|k| [k, (k + 1) % count, count]).collect();
-            (vec![outline_center(&positions)], triangles)
-        }
+        None => (vec![outline_center(&positions)], fan(id(outline.len()))),
     }
 }
 

@@ -27,6 +27,8 @@ pub struct Network {
     boundaries: Vec<Boundary>,
     junctions: JunctionCounts,
     cell_volumes: Vec<f64>,
+    /// Of each boundary.
+    tensions: Vec<f64>,
     wall_sets: WallSets,
     /// From the control mesh to the finest.
     levels: Vec<Level>,
@@ -79,7 +81,9 @@ impl Network {
             stencils.push(table);
         }
         let cell_volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
+        let tension = |boundary: &Boundary| if boundary.wall.is_none() { 1.0 } else { 0.0 };
         let network = Self {
+            tensions: boundaries.iter().map(tension).collect(),
             domain: tessellation.domain().clone(),
             boundaries,
             junctions: counts,
@@ -101,6 +105,29 @@ impl Network {
         assert_eq!(volumes.len(), self.grain_count(), "one volume for each grain");
         self.cell_volumes = volumes;
         self
+    }
+
+    /// The network with other tensions: energies per area (in the plane: per length) of its boundaries, in any unit. Without,
+    /// boundaries between grains have 1 and walls 0.
+    ///
+    /// Both copies of a boundary of a periodic network must be given the same.
+    ///
+    /// # Errors
+    /// [`NetworkError::BadTension`] where one is negative or not finite.
+    pub fn with_tensions(mut self, tension: impl Fn(&Boundary) -> f64) -> Result<Self, NetworkError> {
+        self.tensions = self.boundaries.iter().map(tension).collect();
+        let mut given = self.boundaries.iter().zip(&self.tensions);
+        match given.find(|(_, tension)| !(tension.is_finite() && **tension >= 0.0)) {
+            Some((boundary, tension)) => {
+                Err(NetworkError::BadTension { sides: boundary.sides, tension: *tension })
+            }
+            None => Ok(self),
+        }
+    }
+
+    /// The tension of each boundary, by number.
+    pub fn tensions(&self) -> &[f64] {
+        &self.tensions
     }
 
     /// The domain that the grains fill.

@@ -18,6 +18,7 @@ mod patches;
 mod rows;
 mod springs;
 mod system;
+mod tangential;
 mod volume_constraint;
 
 use glam::DVec3;
@@ -68,6 +69,32 @@ impl Default for Relaxation {
     }
 }
 
+/// Whether grains keep their volumes (in the plane: areas).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Volumes {
+    /// Each grain has the volume of its cell on the finest level.
+    #[default]
+    Kept,
+    /// Grains grow and shrink as curvature has them: grain growth, as long as no boundary vanishes.
+    Free,
+}
+
+/// Where a relaxation is after one of its steps.
+#[derive(Debug, Clone, Copy)]
+pub struct RelaxationStep<'a> {
+    /// Steps done.
+    pub done: usize,
+    /// Steps in all.
+    pub count: usize,
+    /// Time passed under curvature flow with unit mobility, in units of the mean grain size squared. Levels follow each other:
+    /// each finer one takes the whole time once more.
+    pub time: f64,
+    /// The level whose points move now.
+    pub level: usize,
+    /// The points of that level.
+    pub points: &'a [DVec3],
+}
+
 /// What relaxation gives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Relaxed {
@@ -77,6 +104,10 @@ pub struct Relaxed {
     pub points: Vec<DVec3>,
     /// Steps taken.
     pub steps: usize,
+    /// Time passed, as of [`RelaxationStep::time`].
+    pub time: f64,
+    /// Whether the points of the level after that one should have moved too, but folded: then these are the last that were good.
+    pub fell_back: bool,
 }
 
 impl Relaxed {
@@ -102,22 +133,40 @@ pub fn relax(
     relaxation: &Relaxation,
     progress: impl Fn(usize, usize),
 ) -> Result<Relaxed, NetworkError> {
+    relax_watched(network, control_points, relaxation, Volumes::Kept, |step| progress(step.done, step.count))
+}
+
+/// As [`relax`], with a choice about volumes, and the start and every step shown to `watch`.
+///
+/// # Errors
+/// As of [`relax`].
+pub fn relax_watched(
+    network: &Network,
+    control_points: &[DVec3],
+    relaxation: &Relaxation,
+    volumes: Volumes,
+    mut watch: impl FnMut(RelaxationStep<'_>),
+) -> Result<Relaxed, NetworkError> {
     let (time, finest) = match *relaxation {
         Relaxation::Time(time) if time.is_finite() && time >= 0.0 => (time, FINEST_MOVED),
         Relaxation::Time(time) => return Err(NetworkError::BadRelaxationTime(time)),
         Relaxation::Equilibrium => (LONG_STEP, FINEST_BALANCED),
     };
-    let has_tension = network.boundaries().iter().any(|boundary| boundary.wall.is_none());
+    let has_tension = network.tensions().iter().any(|tension| *tension > 0.0);
     let mut points = control_points.to_vec();
     if time == 0.0 || !has_tension {
         // Cells that were regularised have lost the volumes that their grains are to have.
-        Flow::new(network, 0).restore_lost_volumes(&mut points)?;
-        return Ok(Relaxed { level: 0, points, steps: 0 });
+        if volumes == Volumes::Kept {
+            Flow::new(network, 0, volumes).restore_lost_volumes(&mut points)?;
+        }
+        return Ok(Relaxed { level: 0, points, steps: 0, time: 0.0, fell_back: false });
     }
     let last = (network.levels().len() - 1).min(finest);
     let whole_time = time * network.mean_grain_size().powi(2);
     let steps = COARSE_STEPS + last * FINE_STEPS;
+    watch(RelaxationStep { done: 0, count: steps, time: 0.0, level: 0, points: control_points });
     let mut done_before = 0;
+    let mut passed = 0.0;
     for level in 0..=last {
         let count = if level == 0 { COARSE_STEPS } else { FINE_STEPS };
         let is_last = level == last;
@@ -129,7 +178,13 @@ pub fn relax(
         };
         let start =
             if level > 0 { network.subdivide_between(level - 1, level, &points) } else { points.clone() };
-        let run = Flow::new(network, level).run(&start, &stage, &|done| progress(done_before + done, steps));
+        let before = passed;
+        let mut show = |done: usize, points: &[DVec3]| {
+            let time = before + done as f64 * time * (stage.step_time / whole_time);
+            passed = time;
+            watch(RelaxationStep { done: done_before + done, count: steps, time, level, points });
+        };
+        let run = Flow::new(network, level, volumes).run(&start, &stage, &mut show);
         done_before += count;
         match run {
             Ok(moved) => points = moved,
@@ -137,10 +192,11 @@ pub fn relax(
             Err(_) => {
                 // Finer points fold where coarser ones do not: these will have to do.
                 let end = Stage { step_time: 0.0, steps: 0, residual: 0.0, is_last: true };
-                points = Flow::new(network, level - 1).run(&points, &end, &|_| ())?;
-                return Ok(Relaxed { level: level - 1, points, steps: done_before - count });
+                points = Flow::new(network, level - 1, volumes).run(&points, &end, &mut |_, _| ())?;
+                let (level, steps) = (level - 1, done_before - count);
+                return Ok(Relaxed { level, points, steps, time: before, fell_back: true });
             }
         }
     }
-    Ok(Relaxed { level: last, points, steps })
+    Ok(Relaxed { level: last, points, steps, time: passed, fell_back: false })
 }

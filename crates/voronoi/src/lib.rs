@@ -48,6 +48,7 @@ mod measure;
 mod open_edges;
 mod periodic_weld;
 mod planar_cells;
+mod planar_measures;
 mod planar_squares;
 mod planar_weld;
 mod polygon;

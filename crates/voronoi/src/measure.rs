@@ -2,6 +2,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::Dimension;
+use crate::planar_measures::planar_measures;
 use crate::tessellation::{CellId, FaceId, Side, Tessellation, VertexId};
 
 /// Size and counts of one cell.
@@ -22,6 +23,9 @@ pub struct CellMeasure {
 }
 
 pub(crate) fn cell_measures(tessellation: &Tessellation) -> Vec<CellMeasure> {
+    if tessellation.domain.dimension() == Dimension::Two {
+        return planar_measures(tessellation);
+    }
     let order = in_space(tessellation);
     let faces = 0..tessellation.face_count();
     let face_id = |face: usize| FaceId(u32::try_from(face).expect("face ids fit 32 bits"));
@@ -57,7 +61,7 @@ fn in_space(tessellation: &Tessellation) -> Vec<CellId> {
 /// What both cells of a face need of it.
 #[derive(Clone, Copy)]
 struct FaceMeasure {
-    /// Normal toward the second side, as long as twice the area; in the plane, as the edge.
+    /// Normal toward the second side, as long as twice the area.
     normal: DVec3,
     centroid: DVec3,
 }
@@ -67,10 +71,6 @@ fn face_measure(tessellation: &Tessellation, face: FaceId) -> FaceMeasure {
     let first = tessellation.vertices[ring[0].index()];
     // Relative to a corner, for a face far from the origin would lose digits.
     let at = |corner: &VertexId| tessellation.vertices[corner.index()] - first;
-    if tessellation.domain.dimension() == Dimension::Two {
-        let edge = at(&ring[1]);
-        return FaceMeasure { normal: DVec3::new(edge.y, -edge.x, 0.0), centroid: first + 0.5 * edge };
-    }
     let triangles = || ring[1..].windows(2).map(|ends| [at(&ends[0]), at(&ends[1])]);
     let normal: DVec3 = triangles().map(|[b, c]| b.cross(c)).sum();
     let (mut weights, mut moment) = (0.0, DVec3::ZERO);
@@ -85,8 +85,8 @@ fn face_measure(tessellation: &Tessellation, face: FaceId) -> FaceMeasure {
 
 fn measure(tessellation: &Tessellation, face_measures: &[FaceMeasure], cell: CellId) -> CellMeasure {
     let seed = tessellation.seeds[cell.index()];
-    // The cell's cones from the seed to its faces: six times their volumes (in the plane, twice their areas).
-    let (mut cones, mut lengths, mut moment) = (0.0, 0.0, DVec3::ZERO);
+    // The cell consists of cones from its seed to its faces, here with six times their volumes.
+    let (mut cones, mut doubled_area, mut moment) = (0.0, 0.0, DVec3::ZERO);
     let mut corner_count = 0;
     for &face in tessellation.cell_faces(cell) {
         corner_count += tessellation.face_corners(face).len();
@@ -95,20 +95,15 @@ fn measure(tessellation: &Tessellation, face_measures: &[FaceMeasure], cell: Cel
         let is_first = tessellation.face_sides(face)[0] == Side::Cell(cell);
         let cone = if is_first { to_face.dot(normal) } else { -to_face.dot(normal) };
         cones += cone;
-        moment += cone * to_face;
-        lengths += normal.length();
+        // A cone's centroid lies at three quarters of the way from its tip to that of its base.
+        moment += to_face * (0.75 * cone);
+        doubled_area += normal.length();
     }
+    let (volume, area) = (cones / 6.0, doubled_area / 2.0);
     let face_count = tessellation.cell_faces(cell).len();
-    // A cone's centroid lies at d / (d + 1) of the way from its tip to that of its base in d dimensions.
-    let (volume, area, share) = match tessellation.domain.dimension() {
-        Dimension::Two => (cones / 2.0, lengths, 2.0 / 3.0),
-        Dimension::Three => (cones / 6.0, lengths / 2.0, 3.0 / 4.0),
-    };
-    let (edge_count, vertex_count) = match tessellation.domain.dimension() {
-        Dimension::Two => (face_count, face_count),
-        // Each edge has a corner in either of its faces, and Euler's formula holds but for an empty cell.
-        Dimension::Three => (corner_count / 2, (corner_count / 2 + 2).saturating_sub(face_count.max(2))),
-    };
-    let centroid = if cones > 0.0 { seed + moment * (share / cones) } else { seed };
+    // Each edge has a corner in either of its faces, and Euler's formula holds but for an empty cell.
+    let edge_count = corner_count / 2;
+    let vertex_count = (edge_count + 2).saturating_sub(face_count.max(2));
+    let centroid = if cones > 0.0 { seed + moment / cones } else { seed };
     CellMeasure { volume, area, face_count, vertex_count, edge_count, centroid }
 }

@@ -122,9 +122,6 @@ enum Number {
     Inside(u32),
 }
 
-/// A corner of the cell under way: its number, and where it is from the seed.
-type Corner = (u32, DVec2);
-
 impl<'a> Finder<'a> {
     fn new(input: ExactInput<'a>, known: Known) -> Result<Self, Failure> {
         let site = |(place, id): (u32, &u32)| {
@@ -155,10 +152,8 @@ impl<'a> Finder<'a> {
             let first: Edge = first.ok_or(Failure::Special)?;
             spokes.clear();
             spokes.push(first);
-            spokes.extend(
-                std::iter::successors(Some(first.ccw()), |edge| Some(edge.ccw()))
-                    .take_while(|edge| *edge != first),
-            );
+            let turned = std::iter::successors(Some(first.ccw()), |edge| Some(edge.ccw()));
+            spokes.extend(turned.take_while(|edge| *edge != first));
             let (seed, before) = (self.known.seeds[place], self.cells.cell_edges.len());
             self.add_cell(seed, &spokes, &mut corners)?;
             let count = self.cells.cell_edges.len() - before;
@@ -168,19 +163,17 @@ impl<'a> Finder<'a> {
     }
 
     /// Adds the cell of a seed, given the edges that leave it, counter-clockwise.
-    fn add_cell(&mut self, seed: u32, spokes: &[Edge], corners: &mut Vec<Corner>) -> Result<(), Failure> {
-        let own = self.input.seeds[seed as usize].truncate();
+    fn add_cell(&mut self, seed: u32, spokes: &[Edge], corners: &mut Vec<u32>) -> Result<(), Failure> {
         corners.clear();
-        for (k, spoke) in spokes.iter().enumerate() {
-            match self.vertex(seed, *spoke, spokes[(k + 1) % spokes.len()]) {
-                Some(number) => corners.push((number, self.cells.vertices[number as usize] - own)),
+        for (spoke, next) in spokes.iter().zip(spokes.iter().cycle().skip(1)) {
+            match self.vertex(seed, *spoke, *next)? {
+                Some(number) => corners.push(number),
                 None => return self.add_cell_at_wall(seed, spokes),
             }
         }
-        self.check_corners(own, corners)?;
-        let mut start = corners[corners.len() - 1].0;
-        for (spoke, (end, _)) in spokes.iter().zip(corners) {
-            self.push_edge_across(seed, *spoke, [start, *end]);
+        let mut start = corners[corners.len() - 1];
+        for (spoke, end) in spokes.iter().zip(corners) {
+            self.push_edge_across(seed, *spoke, [start, *end])?;
             start = *end;
         }
         Ok(())
@@ -194,82 +187,67 @@ impl<'a> Finder<'a> {
         }
         let mut corners = Vec::new();
         for ([before, after], position) in polygon.corners() {
-            let number = match (before.as_site(), after.as_site()) {
+            corners.push(match (before.as_site(), after.as_site()) {
                 (Some(before), Some(after)) => {
-                    let pairs = spokes.iter().zip(spokes.iter().cycle().skip(1));
-                    let mut triangles =
-                        pairs.filter(|(spoke, next)| [self.id(**spoke), self.id(**next)] == [before, after]);
-                    let (spoke, next) = triangles.next().ok_or(Failure::Special)?;
-                    self.vertex(seed, *spoke, *next).ok_or(Failure::Special)?
+                    let mut pairs = spokes.iter().zip(spokes.iter().cycle().skip(1));
+                    let is_there = |(spoke, next): &(&Edge, &Edge)| {
+                        [self.id(**spoke), self.id(**next)] == [before, after]
+                    };
+                    let (spoke, next) = pairs.find(is_there).ok_or(Failure::Special)?;
+                    self.vertex(seed, *spoke, *next)?.ok_or(Failure::Special)?
                 }
                 _ => {
-                    let own = self.input.seeds[seed as usize].truncate();
-                    self.push_vertex(own + position, [Generator::site(seed), before, after], true)
+                    let corner = self.position(seed) + position;
+                    self.check_known(corner, position.length())?;
+                    self.push_vertex(corner, [Generator::site(seed), before, after], true)
                 }
-            };
-            corners.push((number, position));
+            });
         }
-        self.check_corners(self.input.seeds[seed as usize].truncate(), &corners)?;
         for (k, ([_, beyond], _)) in polygon.corners().enumerate() {
-            let ends = [corners[k].0, corners[(k + 1) % corners.len()].0];
-            match beyond.as_site() {
-                None => {
-                    self.push_edge([Generator::site(seed), beyond], ends);
-                }
-                Some(other) => {
-                    let spoke = spokes.iter().find(|spoke| self.id(**spoke) == other);
-                    self.push_edge_across(seed, *spoke.ok_or(Failure::Special)?, ends);
-                }
+            let ends = [corners[k], corners[(k + 1) % corners.len()]];
+            if let Some(other) = beyond.as_site() {
+                let spoke = spokes.iter().find(|spoke| self.id(**spoke) == other);
+                self.push_edge_across(seed, *spoke.ok_or(Failure::Special)?, ends)?;
+            } else {
+                self.push_edge(seed, beyond, ends)?;
             }
-        }
-        Ok(())
-    }
-
-    /// Checks that no unknown seed cuts a corner off, and that no two corners are one point.
-    fn check_corners(&self, own: DVec2, corners: &[Corner]) -> Result<(), Failure> {
-        let [lower, upper] = self.known.bounds;
-        let (_, mut before) = *corners.last().ok_or(Failure::Special)?;
-        for &(_, corner) in corners {
-            let radius = corner.length();
-            let reach = DVec2::splat(radius * (1.0 + POSSIBLY_COINCIDENT));
-            if !((own + corner - reach).cmpge(lower).all() && (own + corner + reach).cmple(upper).all()) {
-                return Err(Failure::Unknown);
-            }
-            if corner.distance(before) <= uncertainty(own, radius) {
-                return Err(Failure::Special);
-            }
-            before = corner;
         }
         Ok(())
     }
 
     /// The number of the vertex of the triangle between two edges that leave a seed, if it certainly lies in the domain.
-    fn vertex(&mut self, seed: u32, spoke: Edge, next: Edge) -> Option<u32> {
-        let triangle = spoke.face().as_inner()?.index();
+    fn vertex(&mut self, seed: u32, spoke: Edge, next: Edge) -> Result<Option<u32>, Failure> {
+        let Some(triangle) = spoke.face().as_inner() else { return Ok(None) };
+        let triangle = triangle.index();
         if self.numbers[triangle] == Number::Unasked {
             let others = [spoke, next].map(|spoke| self.id(spoke));
-            let own = self.input.seeds[seed as usize].truncate();
             let from_seed = circumcentre(seed, others, self.input);
-            let centre = own + from_seed;
-            let margin = DVec2::splat(uncertainty(own, from_seed.length()));
+            let (centre, radius) = (self.position(seed) + from_seed, from_seed.length());
+            let margin = uncertainty(centre, radius);
             let [lower, upper] = [self.input.domain.lower(), self.input.domain.upper()].map(DVec3::truncate);
-            let is_inside = (centre - margin).cmpgt(lower).all() && (centre + margin).cmplt(upper).all();
-            self.numbers[triangle] = if is_inside {
-                let is_own = |spoke: Edge| (spoke.to().data().place as usize) < self.known.own;
-                let is_shared = !(is_own(spoke) && is_own(next));
-                Number::Inside(self.push_vertex(
-                    centre,
-                    [seed, others[0], others[1]].map(Generator::site),
-                    is_shared,
-                ))
-            } else {
-                Number::NotInside
-            };
+            self.numbers[triangle] =
+                if (centre - margin).cmpgt(lower).all() && (centre + margin).cmplt(upper).all() {
+                    self.check_known(centre, radius)?;
+                    let is_own = |spoke: Edge| (spoke.to().data().place as usize) < self.known.own;
+                    let is_shared = !(is_own(spoke) && is_own(next));
+                    let generators = [seed, others[0], others[1]].map(Generator::site);
+                    Number::Inside(self.push_vertex(centre, generators, is_shared))
+                } else {
+                    Number::NotInside
+                };
         }
-        match self.numbers[triangle] {
+        Ok(match self.numbers[triangle] {
             Number::Inside(number) => Some(number),
             Number::Unasked | Number::NotInside => None,
-        }
+        })
+    }
+
+    /// Checks that all seeds are known that may lie in a circle.
+    fn check_known(&self, centre: DVec2, radius: f64) -> Result<(), Failure> {
+        let [lower, upper] = self.known.bounds;
+        let reach = DVec2::splat(radius * (1.0 + POSSIBLY_COINCIDENT));
+        let is_known = (centre - reach).cmpge(lower).all() && (centre + reach).cmple(upper).all();
+        if is_known { Ok(()) } else { Err(Failure::Unknown) }
     }
 
     fn push_vertex(&mut self, position: DVec2, mut generators: PlanarKey, is_shared: bool) -> u32 {
@@ -283,25 +261,36 @@ impl<'a> Finder<'a> {
     }
 
     /// Adds the edge of a cell across an edge of the triangulation.
-    fn push_edge_across(&mut self, seed: u32, spoke: Edge, ends: [u32; 2]) {
+    fn push_edge_across(&mut self, seed: u32, spoke: Edge, ends: [u32; 2]) -> Result<(), Failure> {
         let across = spoke.as_undirected().index();
-        if self.edge_numbers[across] == NONE {
-            let sides = [seed, self.id(spoke)].map(Generator::site);
-            self.edge_numbers[across] = self.push_edge(sides, ends);
-            if spoke.to().data().place as usize >= self.known.own {
-                let [a, b] = sides;
-                self.cells.shared_edges.push(([a.min(b), a.max(b)], self.edge_numbers[across]));
-            }
-        } else {
+        if self.edge_numbers[across] != NONE {
             self.cells.cell_edges.push(self.edge_numbers[across]);
+            return Ok(());
         }
+        let other = self.id(spoke);
+        let number = self.push_edge(seed, Generator::site(other), ends)?;
+        self.edge_numbers[across] = number;
+        if spoke.to().data().place as usize >= self.known.own {
+            let key = [seed.min(other), seed.max(other)].map(Generator::site);
+            self.cells.shared_edges.push((key, number));
+        }
+        Ok(())
     }
 
-    fn push_edge(&mut self, sides: [Generator; 2], ends: [u32; 2]) -> u32 {
+    /// Adds an edge of a cell, unless its ends may be one point.
+    fn push_edge(&mut self, seed: u32, beyond: Generator, ends: [u32; 2]) -> Result<u32, Failure> {
+        let [start, end] = ends.map(|end| self.cells.vertices[end as usize]);
+        if start.distance(end) <= uncertainty(start, start.distance(self.position(seed))) {
+            return Err(Failure::Special);
+        }
         let number = u32::try_from(self.cells.edges.len()).expect("a square has fewer than 2^32 edges");
-        self.cells.edges.push((sides, ends));
+        self.cells.edges.push(([Generator::site(seed), beyond], ends));
         self.cells.cell_edges.push(number);
-        number
+        Ok(number)
+    }
+
+    fn position(&self, seed: u32) -> DVec2 {
+        self.input.seeds[seed as usize].truncate()
     }
 
     /// The seed to which an edge leads.
@@ -310,7 +299,7 @@ impl<'a> Finder<'a> {
     }
 }
 
-/// Distance below which two corners of a cell may be one point.
-fn uncertainty(own: DVec2, radius: f64) -> f64 {
-    POSSIBLY_COINCIDENT * radius + 4.0 * f64::EPSILON * own.abs().max_element()
+/// How far the centre of a circle may be from where it was computed, with a wide margin.
+fn uncertainty(centre: DVec2, radius: f64) -> f64 {
+    POSSIBLY_COINCIDENT * radius + 4.0 * f64::EPSILON * centre.abs().max_element()
 }

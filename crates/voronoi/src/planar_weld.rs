@@ -17,40 +17,80 @@ pub(crate) fn weld_squares(
 ) -> Tessellation {
     let vertex_ids = number(squares, |cells| (cells.vertices.len(), &cells.shared_vertices));
     let face_ids = number(squares, |cells| (cells.edges.len(), &cells.shared_edges));
-    let mut vertices = Vec::with_capacity(squares.iter().map(|cells| cells.vertices.len()).sum());
-    for (cells, ids) in squares.iter().zip(&vertex_ids) {
+    let (vertices, (faces, lists)) = rayon::join(
+        || positions(squares, &vertex_ids),
+        || rayon::join(|| faces(ids, squares, &vertex_ids, &face_ids), || lists(ids, squares, &face_ids)),
+    );
+    let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);
+    (tessellation.face_sides, tessellation.face_corners) = faces;
+    tessellation.face_starts = (0..=tessellation.face_sides.len()).map(|face| 2 * face).collect();
+    (tessellation.cell_starts, tessellation.cell_faces) = lists;
+    put_vertices_on_walls(&mut tessellation);
+    tessellation
+}
+
+fn positions(squares: &[SquareCells], vertex_ids: &[Vec<u32>]) -> Vec<DVec3> {
+    let mut positions = Vec::with_capacity(squares.iter().map(|cells| cells.vertices.len()).sum());
+    for (cells, ids) in squares.iter().zip(vertex_ids) {
         for (position, id) in cells.vertices.iter().zip(ids) {
-            if *id as usize == vertices.len() {
-                vertices.push(position.extend(0.0));
+            if *id as usize == positions.len() {
+                positions.push(position.extend(0.0));
             }
         }
     }
-    let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);
-    let most_faces = squares.iter().map(|cells| cells.edges.len()).sum();
-    tessellation.face_sides.reserve_exact(most_faces);
-    tessellation.face_corners.reserve_exact(2 * most_faces);
+    positions
+}
+
+/// Sides and ends of the edges.
+fn faces(
+    ids: &[u32],
+    squares: &[SquareCells],
+    vertex_ids: &[Vec<u32>],
+    face_ids: &[Vec<u32>],
+) -> (Vec<[Side; 2]>, Vec<VertexId>) {
+    let most = squares.iter().map(|cells| cells.edges.len()).sum();
+    let (mut all_sides, mut corners) = (Vec::with_capacity(most), Vec::with_capacity(2 * most));
     let side = |generator: Generator| match generator.plane() {
         Plane::Site(site) => Side::Cell(CellId(ids[site as usize])),
         Plane::Side(wall) | Plane::Facet(wall) => Side::Wall(wall),
     };
-    for ((cells, vertex_ids), face_ids) in squares.iter().zip(&vertex_ids).zip(&face_ids) {
+    for ((cells, vertex_ids), face_ids) in squares.iter().zip(vertex_ids).zip(face_ids) {
         for ((sides, ends), id) in cells.edges.iter().zip(face_ids) {
-            if *id as usize == tessellation.face_sides.len() {
+            if *id as usize == all_sides.len() {
                 let mut sides = sides.map(side);
                 let mut ends = ends.map(|end| VertexId(vertex_ids[end as usize]));
                 if sides[1] < sides[0] {
                     sides.swap(0, 1);
                     ends.swap(0, 1);
                 }
-                tessellation.face_sides.push(sides);
-                tessellation.face_corners.extend(ends);
+                all_sides.push(sides);
+                corners.extend(ends);
             }
         }
     }
-    tessellation.face_starts = (0..=tessellation.face_sides.len()).map(|face| 2 * face).collect();
-    put_vertices_on_walls(&mut tessellation);
-    list_faces(&mut tessellation, ids, squares, &face_ids);
-    tessellation
+    (all_sides, corners)
+}
+
+/// The faces of the cells: where those of each start, and all.
+fn lists(ids: &[u32], squares: &[SquareCells], face_ids: &[Vec<u32>]) -> (Vec<usize>, Vec<FaceId>) {
+    let mut starts = vec![0; ids.len() + 1];
+    for (seed, count) in squares.iter().flat_map(|cells| &cells.edge_counts) {
+        starts[ids[*seed as usize] as usize + 1] = *count as usize;
+    }
+    for cell in 1..starts.len() {
+        starts[cell] += starts[cell - 1];
+    }
+    let mut faces = vec![FaceId(0); starts[ids.len()]];
+    for (cells, face_ids) in squares.iter().zip(face_ids) {
+        let mut edges = cells.cell_edges.iter();
+        for (seed, count) in &cells.edge_counts {
+            let places = starts[ids[*seed as usize] as usize]..;
+            for (face, edge) in faces[places].iter_mut().zip(edges.by_ref().take(*count as usize)) {
+                *face = FaceId(face_ids[*edge as usize]);
+            }
+        }
+    }
+    (starts, faces)
 }
 
 /// Numbers what the squares have, of which several may know the same: it has its number from the first of them. What is new in a
@@ -86,26 +126,4 @@ fn number<Key: Copy + Ord>(
         }
     }
     numbers
-}
-
-fn list_faces(tessellation: &mut Tessellation, ids: &[u32], squares: &[SquareCells], face_ids: &[Vec<u32>]) {
-    let mut starts = vec![0; ids.len() + 1];
-    for (seed, count) in squares.iter().flat_map(|cells| &cells.edge_counts) {
-        starts[ids[*seed as usize] as usize + 1] = *count as usize;
-    }
-    for cell in 1..starts.len() {
-        starts[cell] += starts[cell - 1];
-    }
-    let mut cell_faces = vec![FaceId(0); starts[ids.len()]];
-    for (cells, face_ids) in squares.iter().zip(face_ids) {
-        let mut edges = cells.cell_edges.iter();
-        for (seed, count) in &cells.edge_counts {
-            let places = starts[ids[*seed as usize] as usize]..;
-            for (face, edge) in cell_faces[places].iter_mut().zip(edges.by_ref().take(*count as usize)) {
-                *face = FaceId(face_ids[*edge as usize]);
-            }
-        }
-    }
-    tessellation.cell_starts = starts;
-    tessellation.cell_faces = cell_faces;
 }

@@ -125,8 +125,20 @@ impl Cutting for ConvexPolygon {
 
 /// The centre, relative to a seed, of the circle through it and two others, the three being in counter-clockwise order.
 pub(crate) fn circumcentre(seed: u32, others: [u32; 2], input: ExactInput) -> DVec2 {
-    let [incoming, outgoing] = others.map(|other| Line::new(seed, Generator::site(other), input));
-    intersect(seed, incoming, outgoing, input).position
+    let [a, b] = others.map(|other| (input.seeds[other as usize] - input.seeds[seed as usize]).truncate());
+    let (a_squared, b_squared) = (a.length_squared(), b.length_squared());
+    let determinant = a.perp_dot(b);
+    let centre = (a.perp() * b_squared - b.perp() * a_squared) / (2.0 * determinant);
+    // As for the corner of two lines.
+    let lengths = (a_squared * b_squared).sqrt();
+    let numerators = lengths * (a_squared.sqrt() + b_squared.sqrt());
+    let error = ROUNDING_ERROR * (numerators + centre.abs().max_element() * lengths)
+        / (determinant - ROUNDING_ERROR * lengths);
+    if error >= 0.0 && error <= LOOSE * centre.length() {
+        return centre;
+    }
+    let [a, b] = others.map(Generator::site);
+    input.vertex(seed, [a, b, Generator::side(PLANE)]).truncate()
 }
 
 fn intersect(seed: u32, incoming: Line, outgoing: Line, input: ExactInput) -> Corner {

@@ -78,7 +78,7 @@ impl DomainArguments {
     }
 
     /// What of the box the grains fill.
-    pub fn shape(&self, &FileDomain { dimension, box_size, .. }: &FileDomain) -> Shape {
+    pub fn shape(&self, &FileDomain { dimension, box_size, periodic }: &FileDomain) -> Shape {
         let DVec3 { x, y, z } = box_size;
         let chord_error = self.chord_error.unwrap_or(Shape::CHORD_ERROR * 0.5 * x);
         let shape = match (&self.half_spaces, &self.domain) {
@@ -125,7 +125,7 @@ impl DomainArguments {
         if self.chord_error.is_some() && !is_curved {
             usage("--chord-error is for --domain sphere, cylinder or disc; others have flat faces");
         }
-        if self.periodic.is_some() && shape != Shape::Box {
+        if periodic.any() && shape != Shape::Box {
             usage("--periodic is for boxes; other domains do not repeat");
         }
         shape

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use grainsmooth::vtk::VtkFormat;
 use grainsmooth::{
-    FileOptions, Names, Output, OutputDirectory, OutputFormat, StatisticsOutput, StlEncoding, TableFormat,
+    FileOptions, Names, Output, OutputDirectory, OutputFormat, SeriesOutput, StatisticsOutput, StlEncoding,
+    TableFormat,
 };
 use voronoi::Dimension;
 
@@ -72,6 +73,18 @@ pub struct FileArguments {
     #[arg(long, value_name = "F", value_parser = parse_statistics, conflicts_with = "no_mesh")]
     stats: Option<PathBuf>,
 
+    /// Write the relaxation as a time series for ParaView: F.pvd, with F_0000.vtp and so on beside it
+    ///
+    /// Example: --series relaxation.pvd --every 2
+    #[arg(long, value_name = "F", value_parser = parse_series, conflicts_with = "no_mesh")]
+    series: Option<PathBuf>,
+
+    /// Steps of the relaxation between two of the series
+    ///
+    /// Example: --series relaxation.pvd --every 2
+    #[arg(long, value_name = "K", default_value_t = NonZeroU32::MIN, value_parser = parse_every, allow_negative_numbers = true, requires = "series")]
+    pub every: NonZeroU32,
+
     /// Write a table of the flat cells as JSON
     ///
     /// Example: --cells-json cells.json
@@ -130,6 +143,11 @@ impl FileArguments {
         outputs.next().transpose()
     }
 
+    /// Where a series goes, if one is asked for, found writable.
+    pub fn series(&self) -> Result<Option<SeriesOutput>, grainsmooth::Error> {
+        self.series.as_deref().map(SeriesOutput::check).transpose()
+    }
+
     /// Where the network goes, found writable.
     pub fn output(&self) -> Result<Output, grainsmooth::Error> {
         match (self.is_standard_output(), self.format) {
@@ -177,6 +195,18 @@ fn parse_statistics(text: &str) -> Result<PathBuf, String> {
         Some(_) => Ok(path.to_owned()),
         None => Err("unknown extension; name the file *.json or *.csv".to_owned()),
     }
+}
+
+fn parse_series(text: &str) -> Result<PathBuf, String> {
+    let path = Path::new(text);
+    match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("pvd") => Ok(path.to_owned()),
+        _ => Err("unknown extension; name the file *.pvd".to_owned()),
+    }
+}
+
+fn parse_every(text: &str) -> Result<NonZeroU32, String> {
+    text.parse().map_err(|_| "give a whole number from 1".to_owned())
 }
 
 fn parse_output(text: &str) -> Result<PathBuf, String> {

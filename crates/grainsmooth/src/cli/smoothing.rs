@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use grainsmooth::Config;
-use polycrystal::{FaceMesh, Junctions, Relaxation};
+use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
 
 use super::values::{length, whole_number};
 
@@ -29,8 +29,20 @@ pub struct SmoothingArguments {
     #[arg(long, value_name = "T", default_value = "0.3", value_parser = parse_relaxation, allow_negative_numbers = true)]
     pub relax: Relaxation,
 
+    /// Tension of the walls, in units of that between grains; 0 lets boundaries meet walls at right angles
+    ///
+    /// Example: --wall-tension 0.5
+    #[arg(long, value_name = "G", default_value_t = 0.0, value_parser = parse_tension, allow_negative_numbers = true)]
+    pub wall_tension: f64,
+
+    /// Let grains grow and shrink by curvature instead of keeping their volumes (in 2D: areas); none may vanish
+    ///
+    /// Example: --relax 0.02 --free
+    #[arg(long)]
+    free: bool,
+
     /// Length, in units of the mean grain size, below which edges between grains collapse; 0 keeps all
-    /// [default: 0.1, but 0 with --relax 0]
+    /// [default: 0.15, but 0 with --relax 0]
     ///
     /// Example: --regularize 0.05
     #[arg(long, value_name = "L", value_parser = parse_regularize, allow_negative_numbers = true)]
@@ -81,6 +93,11 @@ impl SmoothingArguments {
         }
     }
 
+    /// Whether relaxation keeps volumes.
+    pub fn volumes(&self) -> Volumes {
+        if self.free { Volumes::Free } else { Volumes::Kept }
+    }
+
     /// Length below which edges collapse.
     pub fn regularize(&self) -> f64 {
         // What is not relaxed shall stay flat, for which no vertex may move.
@@ -102,6 +119,11 @@ fn parse_relaxation(text: &str) -> Result<Relaxation, String> {
         "the relaxation time is 0 (off), a positive, finite number, or equilibrium".to_owned()
     });
     time.map(Relaxation::Time)
+}
+
+fn parse_tension(text: &str) -> Result<f64, String> {
+    let tension = text.parse().ok().filter(|tension: &f64| tension.is_finite() && *tension >= 0.0);
+    tension.ok_or_else(|| "a tension is 0 or a positive, finite number".to_owned())
 }
 
 fn parse_regularize(text: &str) -> Result<f64, String> {

@@ -5,16 +5,17 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use polycrystal::{BoundaryId, GrainId, Side};
+use polycrystal::{BoundaryId, GrainId, Mesh, Side};
 use rayon::prelude::*;
 
 use super::grains::GrainMeasure;
 use super::lines::Junctions;
 use super::surface::Surface;
 use crate::measured_arrays::{MeasuredArrays, NumberArrays};
-use crate::network_file::triangles;
+use crate::network_file::{boundary_polylines, triangles};
 use crate::output::temporary_directory;
-use crate::vtk::{Array, Cells, Each, PolyData, Tuples, Values, VtkFormat, write_vtk};
+use crate::vtk::{Array, Cells, PolyData, Tuples, Values, VtkFormat, write_vtk};
+use crate::vtk::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
 use crate::{Error, Output, Polycrystal};
 
 /// Stands in the arrays `Sides` where fewer sides meet than elsewhere.
@@ -27,21 +28,29 @@ impl Polycrystal {
     /// Writes the blocks into the folder of the file's name, and then the file itself.
     pub(crate) fn write_blocks(&self, output: &Output) -> Result<(), Error> {
         let failed = |cause| Error::WriteOutput { path: output.path().to_owned(), cause };
-        let surface = self.surface().map_err(failed)?;
         let folder = folder(output.path());
-        let junctions = Junctions::of(&surface);
+        let surface = Surface::network(self);
+        let space = surface.as_ref().map(|surface| (surface, Junctions::of(surface)));
         let measured = self.measured_arrays();
         let measured = measured.as_ref();
         // All blocks or none get their names.
         let unfinished = temporary_directory(&folder).map_err(failed)?;
         let write = |block: &str| {
             let file = File::create(unfinished.path().join(block).with_extension("vtp"))?;
-            let mut out = BufWriter::new(file);
-            match block {
-                "boundaries" => self.write_boundaries(&surface, measured, &mut out)?,
-                "grains" => self.write_grain_block(&surface, measured, &mut out)?,
-                "triple_lines" => self.write_triple_lines(&surface, &junctions, measured, &mut out)?,
-                _ => self.write_quadruple_points(&surface, &junctions, measured, &mut out)?,
+            let out = &mut BufWriter::new(file);
+            match (block, &space) {
+                ("boundaries", Some((surface, _))) => self.write_boundaries(surface, measured, out)?,
+                ("grains", Some((surface, _))) => self.write_grain_block(surface, measured, out)?,
+                ("triple_lines", Some((surface, junctions))) => {
+                    self.write_triple_lines(surface, junctions, measured, out)?;
+                }
+                (_, Some((surface, junctions))) => {
+                    self.write_quadruple_points(surface, junctions, measured, out)?
+                }
+                ("boundaries", None) => self.write_plane_boundaries(measured, out)?,
+                ("grains", None) => self.write_plane_grains(out)?,
+                ("triple_lines", None) => self.write_plane_junctions(3, out)?,
+                (_, None) => self.write_plane_junctions(4, out)?,
             }
             out.flush()
         };
@@ -67,47 +76,63 @@ impl Polycrystal {
     ) -> io::Result<()> {
         let names = self.config.file.names;
         let boundaries = self.network.boundaries();
-        let (mut ids, mut triangles, mut part_of) = (Vec::new(), Vec::new(), Vec::new());
-        for (number, part) in surface.parts.iter().enumerate() {
-            let first = ids.len();
-            ids.extend(surface.triangles_of(part).flatten());
-            ids[first..].sort_unstable();
-            dedup_from(&mut ids, first);
-            let is_reversed = names.reverses(&boundaries[part.boundary.index()]);
-            let renumbered = |id: u32| point_id(first + ids[first..].partition_point(|other| *other < id));
-            for corners in surface.triangles_of(part) {
-                let [a, b, c] = corners.map(renumbered);
-                triangles.push(if is_reversed { [a, c, b] } else { [a, b, c] });
-                part_of.push(number);
-            }
-        }
-        let points: Vec<DVec3> = ids.iter().map(|&id| surface.points[id as usize]).collect();
-        let normals = normals(&points, &triangles);
-        let count = triangles.len();
-        let boundary = |triangle: usize| surface.parts[part_of[triangle]].boundary;
-        let labels = |triangle: usize| names.labels(&boundaries[boundary(triangle).index()]);
-        let boundary_id = |triangle: usize| boundary(triangle).0.cast_signed();
+        let boundary_of = |piece: usize| &boundaries[surface.parts[piece].boundary.index()];
+        let ids = |piece: usize| {
+            let mut ids: Vec<u32> = surface.triangles_of(&surface.parts[piece]).flatten().collect();
+            ids.sort_unstable();
+            ids.dedup();
+            ids
+        };
+        let points_of =
+            |ids: &[u32]| -> Vec<DVec3> { ids.iter().map(|&id| surface.points[id as usize]).collect() };
+        let triangles_of = |piece: usize, ids: &[u32]| -> Vec<[u32; 3]> {
+            let is_reversed = names.reverses(boundary_of(piece));
+            let renumbered = |id: u32| point_id(ids.partition_point(|other| *other < id));
+            let triangles =
+                surface.triangles_of(&surface.parts[piece]).map(|corners| corners.map(renumbered));
+            triangles.map(|[a, b, c]| if is_reversed { [a, c, b] } else { [a, b, c] }).collect()
+        };
+        let sizes: Vec<PieceSize> = (0..surface.parts.len())
+            .into_par_iter()
+            .map(|piece| PieceSize {
+                points: ids(piece).len(),
+                triangles: surface.triangles_of(&surface.parts[piece]).count(),
+            })
+            .collect();
         // Points are fewer than 2^31: each has an edge of two directions with a 32-bit id.
-        let id = |point: usize| ids[point].cast_signed();
-        let of_boundaries: Vec<BoundaryId> = (0..count).map(boundary).collect();
-        let of_cells = measured.map_or_else(NumberArrays::default, |all| all.of_cells(&of_boundaries));
-        let of_points = measured.map_or_else(NumberArrays::default, |all| all.curvatures_at(&ids));
-        let mut data = PolyData {
-            points: &points,
-            cells: Cells::Triangles(&triangles),
+        let point_ids = |piece: usize| ids(piece).into_iter().map(u32::cast_signed).collect();
+        let normals = |piece: usize| {
+            let ids = ids(piece);
+            normals(&points_of(&ids), &triangles_of(piece, &ids))
+        };
+        let labels = |piece: usize| names.labels(boundary_of(piece));
+        let boundary_id = |piece: usize| surface.parts[piece].boundary.0.cast_signed();
+        let of_parts: Vec<BoundaryId> = surface.parts.iter().map(|part| part.boundary).collect();
+        let of_parts = measured.map_or_else(NumberArrays::default, |all| all.of_cells(&of_parts));
+        let curvatures = |piece: usize, which: usize| {
+            measured.map_or_else(Vec::new, |all| all.curvatures_at(&ids(piece)).single.swap_remove(which).1)
+        };
+        let (mean, gaussian) = (|piece: usize| curvatures(piece, 0), |piece: usize| curvatures(piece, 1));
+        let mut data = PieceData {
+            sizes: &sizes,
+            points: &|piece| points_of(&ids(piece)),
+            triangles: &|piece| triangles_of(piece, &ids(piece)),
             point_arrays: vec![
-                Array { name: "Normals", values: Values::Vectors(&normals) },
-                Array { name: "PointId", values: Values::Int32Of(Each { count: points.len(), value: &id }) },
+                ("Normals", PieceVectors::Vectors(&normals)),
+                ("PointId", PieceVectors::Int32(&point_ids)),
             ],
             cell_arrays: vec![
-                Array { name: names.sides(), values: Values::Int32PairsOf(Each { count, value: &labels }) },
-                Array { name: "BoundaryId", values: Values::Int32Of(Each { count, value: &boundary_id }) },
+                (names.sides(), PieceValue::Int32Pair(&labels)),
+                ("BoundaryId", PieceValue::Int32(&boundary_id)),
             ],
             field: self.field(),
         };
-        data.cell_arrays.extend(of_cells.arrays());
-        data.point_arrays.extend(of_points.arrays());
-        write_vtk(&data, VtkFormat::Vtp, out)
+        data.cell_arrays.extend(measured_pieces(&of_parts));
+        if measured.is_some() {
+            data.point_arrays.push(("MeanCurvature", PieceVectors::Float64(&mean)));
+            data.point_arrays.push(("GaussianCurvature", PieceVectors::Float64(&gaussian)));
+        }
+        write_pieces(&data, out)
     }
 
     /// All grains, each a closed surface with points of its own and all normals outward.
@@ -119,48 +144,38 @@ impl Polycrystal {
     ) -> io::Result<()> {
         let names = self.config.file.names;
         let parts = surface.parts_of_grains(self.network.grain_count());
-        let ids = (0u32..).map(GrainId).zip(&parts).collect::<Vec<_>>();
-        let grains: Vec<(Surface<'static>, GrainMeasure)> = ids
-            .into_par_iter()
-            .map(|(id, parts)| {
-                let grain = surface.grain(id, parts);
-                let measure = GrainMeasure::of(&grain);
-                (grain, measure)
-            })
-            .collect();
-        let (mut points, mut triangles, mut grain_of) = (Vec::new(), Vec::new(), Vec::new());
-        for (number, (grain, _)) in grains.iter().enumerate() {
-            let first = point_id(points.len());
-            points.extend_from_slice(&grain.points);
-            triangles.extend(grain.triangles().map(|corners| corners.map(|corner| first + corner)));
-            grain_of.resize(triangles.len(), number);
-        }
-        let measures: Vec<GrainMeasure> = grains.into_iter().map(|(_, measure)| measure).collect();
-        let count = triangles.len();
-        let integers = |value| Values::Int32Of(Each { count, value });
-        let doubles = |value| Values::Float64Of(Each { count, value });
-        let measure = |triangle: usize| &measures[grain_of[triangle]];
-        let number = |triangle: usize| names.number(GrainId(point_id(grain_of[triangle])));
-        let volume = |triangle: usize| measure(triangle).volume;
-        let area = |triangle: usize| measure(triangle).area;
-        let neighbors = |triangle: usize| measure(triangle).neighbors;
-        let sphericity = |triangle: usize| measure(triangle).sphericity;
-        let of_grains = measured.map_or_else(NumberArrays::default, |all| all.of_grains(&grain_of));
-        let mut data = PolyData {
-            points: &points,
-            cells: Cells::Triangles(&triangles),
+        let id = |number: usize| GrainId(point_id(number));
+        // Grains are made anew for each array: all at once they take more memory than the network.
+        let grain = |number: usize| surface.grain(id(number), &parts[number]);
+        let found = (0..parts.len()).into_par_iter().map(|number| {
+            let grain = grain(number);
+            let size = PieceSize { points: grain.points.len(), triangles: grain.triangle_count() };
+            (size, GrainMeasure::of(&grain))
+        });
+        let (sizes, measures): (Vec<PieceSize>, Vec<GrainMeasure>) = found.unzip();
+        let name = |number: usize| names.number(id(number));
+        let volume = |number: usize| measures[number].volume;
+        let area = |number: usize| measures[number].area;
+        let neighbors = |number: usize| measures[number].neighbors;
+        let sphericity = |number: usize| measures[number].sphericity;
+        let numbers: Vec<usize> = (0..parts.len()).collect();
+        let of_grains = measured.map_or_else(NumberArrays::default, |all| all.of_grains(&numbers));
+        let mut data = PieceData {
+            sizes: &sizes,
+            points: &|number| grain(number).points.into_owned(),
+            triangles: &|number| grain(number).triangles().collect(),
             point_arrays: Vec::new(),
             cell_arrays: vec![
-                Array { name: names.grain(), values: integers(&number) },
-                Array { name: "Volume", values: doubles(&volume) },
-                Array { name: "Area", values: doubles(&area) },
-                Array { name: "Neighbors", values: integers(&neighbors) },
-                Array { name: "Sphericity", values: doubles(&sphericity) },
+                (names.grain(), PieceValue::Int32(&name)),
+                ("Volume", PieceValue::Float64(&volume)),
+                ("Area", PieceValue::Float64(&area)),
+                ("Neighbors", PieceValue::Int32(&neighbors)),
+                ("Sphericity", PieceValue::Float64(&sphericity)),
             ],
             field: self.field(),
         };
-        data.cell_arrays.extend(of_grains.arrays());
-        write_vtk(&data, VtkFormat::Vtp, out)
+        data.cell_arrays.extend(measured_pieces(&of_grains));
+        write_pieces(&data, out)
     }
 
     /// The lines where at least three sides meet, as polylines.
@@ -236,13 +251,19 @@ impl Polycrystal {
 
     /// What is measured, wound as the files want it, if they are to have it.
     fn measured_arrays(&self) -> Option<MeasuredArrays<'_>> {
-        let level = self.network.finest();
-        let triangles = triangles(level, self.network.boundaries(), self.config.file.names);
-        self.config.file.arrays.then(|| MeasuredArrays::new(self, Cells::Triangles(&triangles)))
+        let (level, boundaries, names) =
+            (self.network.finest(), self.network.boundaries(), self.config.file.names);
+        let triangles = triangles(level, boundaries, names);
+        let (polylines, _) = boundary_polylines(level, boundaries, names);
+        let cells = match &level.mesh {
+            Mesh::Triangles(_) => Cells::Triangles(&triangles),
+            Mesh::Segments(_) => Cells::Polylines(&polylines),
+        };
+        self.config.file.arrays.then(|| MeasuredArrays::new(self, cells))
     }
 
     /// The numbers of the sides that meet in each of some places.
-    fn side_table<'a>(&self, places: impl Iterator<Item = &'a Vec<Side>> + Clone) -> SideTable {
+    pub(super) fn side_table<'a>(&self, places: impl Iterator<Item = &'a Vec<Side>> + Clone) -> SideTable {
         let names = self.config.file.names;
         let components = places.clone().map(Vec::len).max().unwrap_or(1);
         let row = |sides: &Vec<Side>| {
@@ -254,13 +275,13 @@ impl Polycrystal {
 }
 
 /// As many sides for each place as meet in the one with the most.
-struct SideTable {
+pub(super) struct SideTable {
     components: usize,
     numbers: Vec<i32>,
 }
 
 impl SideTable {
-    fn tuples(&self) -> Tuples<'_> {
+    pub(super) fn tuples(&self) -> Tuples<'_> {
         Tuples { components: self.components, values: &self.numbers }
     }
 }
@@ -279,7 +300,7 @@ fn folder(path: &Path) -> PathBuf {
 }
 
 /// A text within an XML attribute.
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
@@ -295,14 +316,13 @@ fn normals(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
     normals.into_iter().map(DVec3::normalize_or_zero).collect()
 }
 
-/// Takes doubles out of what follows `first`, which is sorted.
-fn dedup_from(ids: &mut Vec<u32>, first: usize) {
-    let mut tail = ids.split_off(first);
-    tail.dedup();
-    ids.append(&mut tail);
+/// What is measured of each piece.
+fn measured_pieces(arrays: &NumberArrays) -> impl Iterator<Item = (&'static str, PieceValue<'_>)> {
+    let single = arrays.single.iter().map(|(name, values)| (*name, PieceValue::Float64s(values)));
+    single.chain(arrays.pairs.iter().map(|(name, pairs)| (*name, PieceValue::Float64Pairs(pairs))))
 }
 
 /// A number of points or grains as an id.
-fn point_id(count: usize) -> u32 {
+pub(super) fn point_id(count: usize) -> u32 {
     u32::try_from(count).expect("no more points than corners of triangles, which have 32-bit ids")
 }

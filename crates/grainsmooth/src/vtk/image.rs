@@ -33,31 +33,14 @@ pub struct ImageData<'a> {
 pub fn write_vti(data: &ImageData<'_>, out: &mut dyn Write) -> io::Result<()> {
     let [nx, ny, nz] = data.size;
     let (origin, spacing) = (numbers(data.origin), numbers(data.spacing));
-    let byte_order = match ByteOrder::native() {
-        ByteOrder::LittleEndian => "LittleEndian",
-        ByteOrder::BigEndian => "BigEndian",
-    };
     let mut appended = AppendedNumbers::default();
-    writeln!(
-        out,
-        "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"{byte_order}\" header_type=\"UInt64\">"
-    )?;
+    write_head("ImageData", out)?;
     writeln!(
         out,
         "<ImageData WholeExtent=\"0 {nx} 0 {ny} 0 {nz}\" Origin=\"{origin}\" Spacing=\"{spacing}\" Direction=\"1 0 0 0 1 0 0 0 1\">"
     )?;
     writeln!(out, "<FieldData>")?;
-    for FieldEntry { name, value } in &data.field {
-        let (element, kind, bytes) = match value {
-            FieldValue::Text(text) => ("Array", "String", format!("{text}\0").into_bytes()),
-            FieldValue::Integer(number) => ("DataArray", "UInt64", number.to_ne_bytes().to_vec()),
-        };
-        let offset = appended.append(Numbers::bytes(bytes));
-        writeln!(
-            out,
-            "<{element} type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"appended\" offset=\"{offset}\"/>"
-        )?;
-    }
+    write_field(&data.field, &mut appended, out)?;
     writeln!(out, "</FieldData>\n<Piece Extent=\"0 {nx} 0 {ny} 0 {nz}\">\n<PointData/>\n<CellData>")?;
     for Array { name, values } in &data.cell_arrays {
         assert_eq!(values.len(), nx * ny * nz, "cell array {name}");
@@ -71,6 +54,38 @@ pub fn write_vti(data: &ImageData<'_>, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "</CellData>\n</Piece>\n</ImageData>")?;
     appended.write(out)?;
     writeln!(out, "</VTKFile>")
+}
+
+/// Begins a file.
+pub(super) fn write_head(kind: &str, out: &mut dyn Write) -> io::Result<()> {
+    let byte_order = match ByteOrder::native() {
+        ByteOrder::LittleEndian => "LittleEndian",
+        ByteOrder::BigEndian => "BigEndian",
+    };
+    writeln!(
+        out,
+        "<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"{byte_order}\" header_type=\"UInt64\">"
+    )
+}
+
+/// Lists what is said about the file as a whole.
+pub(super) fn write_field(
+    field: &[FieldEntry],
+    appended: &mut AppendedNumbers<'_>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    for FieldEntry { name, value } in field {
+        let (element, kind, bytes) = match value {
+            FieldValue::Text(text) => ("Array", "String", format!("{text}\0").into_bytes()),
+            FieldValue::Integer(number) => ("DataArray", "UInt64", number.to_ne_bytes().to_vec()),
+        };
+        let offset = appended.append(Numbers::bytes(bytes));
+        writeln!(
+            out,
+            "<{element} type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"appended\" offset=\"{offset}\"/>"
+        )?;
+    }
+    Ok(())
 }
 
 fn numbers(vector: DVec3) -> String {

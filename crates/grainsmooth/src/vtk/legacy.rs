@@ -1,73 +1,59 @@
-//! The legacy format .vtk: big-endian PolyData through `vtkio`.
+//! The legacy format .vtk: big-endian PolyData.
+//!
+//! `vtkio` writes it too, but holds all numbers once more in its own arrays and the whole file in memory.
 
 use std::io::{self, Write};
 
-use vtkio::Vtk;
-use vtkio::model::{
-    Attribute, Attributes, ByteOrder, DataSet, FieldArray, IOBuffer, PolyDataPiece, Version, VertexNumbers,
-};
+use vtkio::xml::ScalarType;
 
-use super::{Array, Cells, FieldEntry, FieldValue, PolyData, Values};
+use super::raw::Numbers;
+use super::{Array, Cells, FieldEntry, FieldValue, PolyData};
 
 /// The last version whose cells are 32-bit; every reader knows it.
-const VERSION: (u32, u32) = (4, 2);
-
-/// The line after which VTK expects the field data, which `vtkio` does not write.
-const DATA_SET_LINE: &[u8] = b"DATASET POLYDATA\n";
+const VERSION: &str = "4.2";
 
 /// Writes the file.
 pub(super) fn write(data: &PolyData<'_>, out: &mut dyn Write) -> io::Result<()> {
-    let mut bytes = Vec::new();
-    to_vtkio(data)?.write_legacy(&mut bytes).map_err(io::Error::other)?;
-    let field_start = bytes
-        .windows(DATA_SET_LINE.len())
-        .position(|window| window == DATA_SET_LINE)
-        .map(|start| start + DATA_SET_LINE.len())
-        .ok_or_else(|| io::Error::other("the legacy writer did not begin a PolyData set"))?;
-    let (head, rest) = bytes.split_at(field_start);
-    out.write_all(head)?;
-    write_field(&data.field, out)?;
-    out.write_all(rest)
-}
-
-fn to_vtkio(data: &PolyData<'_>) -> io::Result<Vtk> {
     // Each cell is stored as its number of points and their ids.
-    checked_count(data.points.len().max(data.cells.len() + data.cells.corner_count()))?;
-    let (mut verts, mut lines, mut polys) = (None, None, None);
-    match data.cells {
-        Cells::Triangles(triangles) => polys = Some(counted_cells(triangles.iter().map(|cell| &cell[..]))?),
-        Cells::Polygons(polygons) => polys = Some(counted_cells(polygons.iter().map(|cell| &cell[..]))?),
-        Cells::Polylines(polylines) => lines = Some(counted_cells(polylines.iter().map(|cell| &cell[..]))?),
-        Cells::Vertices(count) => {
-            let ids: Vec<u32> = (0..checked_count(count)?).collect();
-            verts = Some(counted_cells(ids.iter().map(std::slice::from_ref))?);
+    let numbers_of_cells = data.cells.len() + data.cells.corner_count();
+    checked_count(data.points.len().max(numbers_of_cells))?;
+    let title = env!("CARGO_PKG_NAME");
+    write!(out, "# vtk DataFile Version {VERSION}\n{title}\nBINARY\n\nDATASET POLYDATA\n")?;
+    write_field(&data.field, out)?;
+    writeln!(out, "POINTS {} double", data.points.len())?;
+    Numbers::slice(data.points).write_big_endian(size_of::<f64>(), out)?;
+    let (keyword, cells) = match data.cells {
+        Cells::Triangles(triangles) => {
+            let cell = |index: usize| {
+                let [a, b, c] = triangles[index];
+                [3, a, b, c]
+            };
+            ("POLYGONS", Numbers::each(triangles.len(), cell))
         }
-    }
-    let coordinates: &[f64] = bytemuck::cast_slice(data.points);
-    Ok(Vtk {
-        version: Version::new_legacy(VERSION.0, VERSION.1),
-        title: env!("CARGO_PKG_NAME").to_owned(),
-        byte_order: ByteOrder::BigEndian,
-        file_path: None,
-        data: DataSet::inline(PolyDataPiece {
-            points: coordinates.to_vec().into(),
-            verts,
-            lines,
-            polys,
-            data: Attributes { point: attributes(&data.point_arrays), cell: attributes(&data.cell_arrays) },
-            ..Default::default()
-        }),
-    })
+        Cells::Polygons(cells) => ("POLYGONS", counted(cells)?),
+        Cells::Polylines(cells) => ("LINES", counted(cells)?),
+        Cells::Vertices(count) => {
+            // No more than the positive half of 32 bits, as checked.
+            #[expect(clippy::cast_possible_truncation, reason = "checked above")]
+            let cell = |index: usize| [1, index as u32];
+            ("VERTICES", Numbers::each(count, cell))
+        }
+    };
+    write!(out, "\n\n{keyword} {} {numbers_of_cells}\n", data.cells.len())?;
+    cells.write_big_endian(size_of::<u32>(), out)?;
+    write!(out, "\n\n")?;
+    write_arrays("POINT_DATA", data.points.len(), &data.point_arrays, out)?;
+    write_arrays("CELL_DATA", data.cells.len(), &data.cell_arrays, out)
 }
 
-fn counted_cells<'a>(cells: impl ExactSizeIterator<Item = &'a [u32]>) -> io::Result<VertexNumbers> {
-    let num_cells = checked_count(cells.len())?;
-    let mut vertices = Vec::with_capacity(4 * cells.len());
+/// Cells with any number of points: that number, then their ids.
+fn counted(cells: &[Vec<u32>]) -> io::Result<Numbers<'static>> {
+    let mut numbers = Vec::new();
     for cell in cells {
-        vertices.push(checked_count(cell.len())?);
-        vertices.extend_from_slice(cell);
+        numbers.push(checked_count(cell.len())?);
+        numbers.extend_from_slice(cell);
     }
-    Ok(VertexNumbers::Legacy { num_cells, vertices })
+    Ok(Numbers::bytes(bytemuck::cast_slice(&numbers).to_vec()))
 }
 
 /// A count as the format stores it: in the positive half of a signed 32-bit integer.
@@ -80,28 +66,22 @@ fn checked_count(count: usize) -> io::Result<u32> {
 }
 
 /// The arrays as one field: of arrays written as scalars VTK reads only the first.
-fn attributes(arrays: &[Array<'_>]) -> Vec<Attribute> {
+fn write_arrays(keyword: &str, count: usize, arrays: &[Array<'_>], out: &mut dyn Write) -> io::Result<()> {
     if arrays.is_empty() {
-        return Vec::new();
+        return Ok(());
     }
-    let arrays = arrays.iter().map(|Array { name, values }| FieldArray {
-        name: (*name).to_owned(),
-        elem: u32::try_from(values.component_count()).expect("few components"),
-        data: match values {
-            Values::Int8(values) => IOBuffer::I8(values.to_vec()),
-            Values::Int32(values) => IOBuffer::I32(values.to_vec()),
-            Values::Int32Pairs(pairs) => IOBuffer::I32(pairs.as_flattened().to_vec()),
-            Values::Float64(values) => IOBuffer::F64(values.to_vec()),
-            Values::Float64Pairs(pairs) => IOBuffer::F64(pairs.as_flattened().to_vec()),
-            Values::Vectors(vectors) => IOBuffer::F64(bytemuck::cast_slice(vectors).to_vec()),
-            Values::Int8Of(each) => IOBuffer::I8((0..each.count).map(each.value).collect()),
-            Values::Int32Of(each) => IOBuffer::I32((0..each.count).map(each.value).collect()),
-            Values::Int32PairsOf(each) => IOBuffer::I32((0..each.count).flat_map(each.value).collect()),
-            Values::Int32Tuples(tuples) => IOBuffer::I32(tuples.values.to_vec()),
-            Values::Float64Of(each) => IOBuffer::F64((0..each.count).map(each.value).collect()),
-        },
-    });
-    vec![Attribute::field("FieldData").with_field_data(arrays)]
+    write!(out, "{keyword} {count}\n\nFIELD FieldData {}\n", arrays.len())?;
+    for Array { name, values } in arrays {
+        let (kind, bytes) = match values.scalar_type() {
+            ScalarType::Int8 => ("char", size_of::<i8>()),
+            ScalarType::Float64 => ("double", size_of::<f64>()),
+            _ => ("int", size_of::<i32>()),
+        };
+        writeln!(out, "{name} {} {count} {kind}", values.component_count())?;
+        Numbers::of(*values).write_big_endian(bytes, out)?;
+        writeln!(out)?;
+    }
+    writeln!(out)
 }
 
 fn write_field(entries: &[FieldEntry], out: &mut dyn Write) -> io::Result<()> {

@@ -18,6 +18,12 @@ const BLOCK_NUMBERS: usize = 1 << 20;
 /// Numbers that one task computes.
 const TASK_NUMBERS: usize = 1 << 15;
 
+/// Pieces that are made at the same time; bounds the memory that they take.
+const PIECES_AT_ONCE: usize = 64;
+
+/// Makes the bytes of a piece.
+type MakePiece<'a> = Box<dyn Fn(usize) -> Vec<u8> + Sync + 'a>;
+
 /// Fills in the bytes of values from a position on.
 type Fill<'a> = Box<dyn Fn(usize, &mut [u8]) + Sync + 'a>;
 
@@ -33,6 +39,15 @@ pub(crate) enum Numbers<'a> {
         width: usize,
         /// Fills in the bytes of values from a position on.
         fill: Fill<'a>,
+    },
+    /// Bytes made piece by piece when they are written.
+    Pieces {
+        /// Number of bytes in all.
+        byte_count: u64,
+        /// Number of pieces.
+        count: usize,
+        /// Makes those of a piece.
+        make: MakePiece<'a>,
     },
 }
 
@@ -79,20 +94,57 @@ impl<'a> Numbers<'a> {
         match self {
             Self::Bytes(bytes) => bytes.len() as u64,
             Self::Computed { count, width, .. } => (count * width) as u64,
+            Self::Pieces { byte_count, .. } => *byte_count,
         }
     }
 
     fn write(&self, out: &mut dyn Write) -> io::Result<()> {
-        let (count, width, fill) = match self {
-            Self::Bytes(bytes) => return out.write_all(bytes),
-            Self::Computed { count, width, fill } => (*count, *width, fill),
-        };
-        let mut block = vec![0; BLOCK_NUMBERS.min(count) * width];
-        for first in (0..count).step_by(BLOCK_NUMBERS) {
-            let bytes = &mut block[..BLOCK_NUMBERS.min(count - first) * width];
-            let tasks = bytes.par_chunks_mut(TASK_NUMBERS * width).enumerate();
-            tasks.for_each(|(task, bytes)| fill(first + task * TASK_NUMBERS, bytes));
-            out.write_all(bytes)?;
+        match self {
+            Self::Bytes(bytes) => out.write_all(bytes),
+            _ => self.for_each_block(|block| out.write_all(block)),
+        }
+    }
+
+    /// Writes them big-endian, each of so many bytes.
+    pub(crate) fn write_big_endian(&self, bytes_of_each: usize, out: &mut dyn Write) -> io::Result<()> {
+        self.for_each_block(|block| {
+            if cfg!(target_endian = "little") {
+                block
+                    .par_chunks_exact_mut(bytes_of_each)
+                    .with_min_len(TASK_NUMBERS)
+                    .for_each(<[u8]>::reverse);
+            }
+            out.write_all(block)
+        })
+    }
+
+    /// Hands out all bytes, in blocks of whole values that may be changed.
+    fn for_each_block(&self, mut use_block: impl FnMut(&mut [u8]) -> io::Result<()>) -> io::Result<()> {
+        match self {
+            Self::Bytes(bytes) => {
+                let mut block = Vec::new();
+                for bytes in bytes.chunks(BLOCK_NUMBERS * size_of::<f64>()) {
+                    block.clear();
+                    block.extend_from_slice(bytes);
+                    use_block(&mut block)?;
+                }
+            }
+            Self::Computed { count, width, fill } => {
+                let mut block = vec![0; BLOCK_NUMBERS.min(*count) * width];
+                for first in (0..*count).step_by(BLOCK_NUMBERS) {
+                    let bytes = &mut block[..BLOCK_NUMBERS.min(count - first) * width];
+                    let tasks = bytes.par_chunks_mut(TASK_NUMBERS * width).enumerate();
+                    tasks.for_each(|(task, bytes)| fill(first + task * TASK_NUMBERS, bytes));
+                    use_block(bytes)?;
+                }
+            }
+            Self::Pieces { count, make, .. } => {
+                for first in (0..*count).step_by(PIECES_AT_ONCE) {
+                    let pieces = first..(first + PIECES_AT_ONCE).min(*count);
+                    let made: Vec<Vec<u8>> = pieces.into_par_iter().map(make).collect();
+                    made.into_iter().try_for_each(|mut piece| use_block(&mut piece))?;
+                }
+            }
         }
         Ok(())
     }
@@ -140,7 +192,14 @@ mod tests {
     fn computed_numbers_are_those_in_memory() {
         for count in [0, 1, TASK_NUMBERS, TASK_NUMBERS + 1, BLOCK_NUMBERS, BLOCK_NUMBERS + 5] {
             let values: Vec<i32> = (0..).take(count).map(|value| value * 7 - 3).collect();
-            assert!(Numbers::each(count, |index| values[index]).to_vec() == Numbers::slice(&values).to_vec());
+            let computed = Numbers::each(count, |index| values[index]);
+            assert!(computed.to_vec() == Numbers::slice(&values).to_vec());
+            let big: Vec<u8> = values.iter().flat_map(|value| value.to_be_bytes()).collect();
+            for numbers in [computed, Numbers::slice(&values)] {
+                let mut written = Vec::new();
+                numbers.write_big_endian(4, &mut written).unwrap();
+                assert!(written == big);
+            }
             let mut numbers = AppendedNumbers::default();
             assert_eq!(numbers.append(Numbers::slice(&values)), 0);
             assert_eq!(numbers.append(Numbers::bytes(vec![])), 8 + 4 * count as u64);

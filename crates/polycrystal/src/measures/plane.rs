@@ -16,7 +16,7 @@ pub struct PlaneMeasures {
     pub boundaries: Vec<PlaneBoundaryMeasures>,
     /// Every triple point: where at least three sides meet, of which the exterior may be one.
     pub triple_points: Vec<TriplePointMeasures>,
-    /// The angles of grains at triple points without the exterior.
+    /// The angles where three grains meet, and not the exterior.
     pub dihedral_angles: Option<AngleStatistics>,
 }
 
@@ -118,7 +118,7 @@ pub(super) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeas
         wedges.sort_by_key(|wedge| wedge.side);
         let is_inside = wedges.iter().all(|wedge| wedge.side != Side::Exterior);
         for wedge in &wedges {
-            if is_inside {
+            if is_inside && wedges.len() == 3 {
                 angles.add(1.0, wedge.angle.to_degrees());
             }
             if let Side::Grain(grain) = wedge.side {

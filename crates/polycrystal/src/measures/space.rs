@@ -20,7 +20,7 @@ pub struct SpaceMeasures {
     pub triple_lines: Vec<TripleLineMeasures>,
     /// Every quadruple point: where at least three triple lines end.
     pub quadruple_points: Vec<QuadruplePointMeasures>,
-    /// The dihedral angles of grains at triple lines without the exterior, weighted by length.
+    /// The dihedral angles where three grains meet, and not the exterior, weighted by length.
     pub dihedral_angles: Option<AngleStatistics>,
 }
 
@@ -306,7 +306,7 @@ fn measure_line(
             let degrees = wedge.angle.to_degrees();
             *sum += own * degrees;
             range = [range[0].min(degrees), range[1].max(degrees)];
-            if is_inside {
+            if is_inside && wedges.len() == 3 {
                 angles.add(own, degrees);
             }
             let Side::Grain(grain) = wedge.side else { continue };

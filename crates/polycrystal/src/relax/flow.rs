@@ -7,11 +7,12 @@ use super::conjugate_gradients::dot;
 use super::face_corners::FaceCorners;
 use super::patch::PatchTerms;
 use super::patches::Patches;
-use super::system::System;
+use super::system::{Step, System};
+use super::tangential::tangential_moves;
 use crate::folds::{element_normals, folded_edges, folded_pairs};
 use crate::seams::Seams;
 use crate::volume::sum_over_grains;
-use crate::{Boundary, GrainId, Level, Mesh, Network, NetworkError};
+use crate::{GrainId, Level, Mesh, Network, NetworkError, Volumes};
 
 /// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
 const ATTEMPTS: usize = 24;
@@ -67,34 +68,33 @@ pub(super) struct Flow<'a> {
     neighbors: Vec<[u32; 2]>,
     corners: FaceCorners,
     clusters: Clusters,
+    volumes: Volumes,
 }
 
 impl<'a> Flow<'a> {
-    pub(super) fn new(network: &'a Network, level: usize) -> Self {
+    pub(super) fn new(network: &'a Network, level: usize, volumes: Volumes) -> Self {
         let surface = (network.levels().len() - 1).min(level + 1);
         let clusters = Clusters::new(&network.levels()[level]);
-        let tension = |boundary: &Boundary| if boundary.wall.is_none() { 1.0 } else { 0.0 };
-        let tensions: Vec<f64> = network.boundaries().iter().map(tension).collect();
-        let patches = Patches::new(network, level, surface, &tensions);
+        let patches = Patches::new(network, level, surface);
         let corners = FaceCorners::new(network, level);
         let neighbors = Seams::of_level(&network.levels()[surface]).inner;
-        Self { network, patches, level, surface, neighbors, corners, clusters }
+        Self { network, patches, level, surface, neighbors, corners, clusters, volumes }
     }
 
     /// Takes the steps of a stage.
     ///
-    /// `progress` is told the number of steps done.
+    /// `progress` is told the number of steps done and where the points are.
     pub(super) fn run(
         &mut self,
         start: &[DVec3],
         stage: &Stage,
-        progress: &impl Fn(usize),
+        progress: &mut impl FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
         let mut points = start.to_vec();
         let mut last_energy = f64::INFINITY;
         for step in 1..=stage.steps {
             let energy = self.step(&mut points, stage.step_time)?;
-            progress(step);
+            progress(step, &points);
             if (last_energy - energy).abs() < stage.residual * energy {
                 break;
             }
@@ -103,7 +103,7 @@ impl<'a> Flow<'a> {
         // Where the finest level folds though no step did, all has moved too far from where it did not.
         let mut count = 0;
         for attempt in 0..ATTEMPTS {
-            if stage.is_last {
+            if stage.is_last && self.volumes == Volumes::Kept {
                 self.restore_volumes(&mut points)?;
             }
             let folds = self.finest_folds(&points);
@@ -133,6 +133,9 @@ impl<'a> Flow<'a> {
         let missing = self.missing(&volumes);
         self.clusters.join_short_edges(self.control_mesh(), points, self.rigid_length());
         let mut moves = self.system(points, &terms, &self.clusters, time).displacement(&missing);
+        let within = tangential_moves(self.network, self.level, points);
+        moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
+        self.unite(&mut moves, 0);
         let mut count = 0;
         for attempt in 0..ATTEMPTS {
             let moved = displaced(points, &moves);
@@ -218,9 +221,9 @@ impl<'a> Flow<'a> {
     }
 
     fn system(&self, points: &[DVec3], terms: &[PatchTerms], clusters: &Clusters, time: f64) -> System {
-        let size = self.feature_size();
-        let walls = &self.network.levels()[self.level].walls;
-        System::new(self.network, &self.patches, terms, points, clusters.number(), (time, size), walls)
+        let step = Step { time, feature_size: self.feature_size(), volumes: self.volumes };
+        let level = &self.network.levels()[self.level];
+        System::new(self.network, &self.patches, terms, points, clusters.number(), step, level)
     }
 
     /// The feature size as control edges of this level have it.
@@ -233,8 +236,12 @@ impl<'a> Flow<'a> {
         self.network.levels().len() - 1
     }
 
+    /// Where volumes are free the flow itself is asked for: nothing is held but what a step would fold.
     fn rigid_length(&self) -> f64 {
-        RIGID_LENGTH * self.feature_size()
+        match self.volumes {
+            Volumes::Kept => RIGID_LENGTH * self.feature_size(),
+            Volumes::Free => 0.0,
+        }
     }
 
     /// What each grain's volume lacks.

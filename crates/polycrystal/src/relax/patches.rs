@@ -27,7 +27,7 @@ pub(super) struct Patches {
 
 impl Patches {
     /// Patches whose control points are those of one level, and whose surface is that of the same level or the next.
-    pub(super) fn new(network: &Network, control: usize, surface: usize, tensions: &[f64]) -> Self {
+    pub(super) fn new(network: &Network, control: usize, surface: usize) -> Self {
         let [control_level, surface_level] = [control, surface].map(|level| &network.levels()[level]);
         let count = network.boundaries().len();
         let control_elements = by_boundary(count, &control_level.boundary_of);
@@ -39,7 +39,7 @@ impl Patches {
                     (network.stencils(control), &surface_level.mesh, surface_elements[boundary].as_slice())
                 });
                 let share = if network.boundaries()[boundary].twin.is_some() { 0.5 } else { 1.0 };
-                let tension = (tensions[boundary], share);
+                let tension = (network.tensions()[boundary], share);
                 new_patch(&control_level.mesh, &control_elements[boundary], surface, tension)
             })
             .collect();
@@ -67,7 +67,7 @@ impl Patches {
     }
 
     /// The places of a control point, patch after patch.
-    fn places_of_point(&self, point: usize) -> &[usize] {
+    pub(super) fn places_of_point(&self, point: usize) -> &[usize] {
         &self.places[self.place_starts[point]..self.place_starts[point + 1]]
     }
 

@@ -9,7 +9,7 @@ use super::patches::Patches;
 use super::rows::Rows;
 use super::springs::add_springs;
 use super::volume_constraint::{Compliance, VolumeConstraint};
-use crate::{Freedom, Network, WallSet};
+use crate::{Freedom, Level, Mesh, Network, Volumes};
 
 /// Share of its first residual at which a step is solved: a step is one of several, and the next one starts from where it ends.
 const TOLERANCE: f64 = 1e-3;
@@ -36,8 +36,16 @@ pub(super) struct System {
     /// `-dt g`.
     forces: Vec<DVec3>,
     mobility: Vec<Mobility>,
-    constraint: VolumeConstraint,
-    compliance: Compliance,
+    /// Nothing where volumes are free.
+    constraint: Option<(VolumeConstraint, Compliance)>,
+}
+
+/// What a step is like.
+pub(super) struct Step {
+    pub(super) time: f64,
+    /// The feature size as control edges have it.
+    pub(super) feature_size: f64,
+    pub(super) volumes: Volumes,
 }
 
 impl System {
@@ -48,8 +56,8 @@ impl System {
         terms: &[PatchTerms],
         points: &[DVec3],
         clusters: Numbering,
-        (time, feature_size): (f64, f64),
-        walls: &[WallSet],
+        Step { time, feature_size, volumes }: Step,
+        level: &Level,
     ) -> Self {
         let springs: Vec<Vec<f64>> = patches
             .patches
@@ -64,7 +72,18 @@ impl System {
             .collect();
         let count = clusters.cluster_count();
         let of_places: Vec<f64> = terms.iter().flat_map(|terms| terms.mass.iter().copied()).collect();
-        let mass = |c| patches.places_of_cluster(&clusters, c).map(|place| of_places[place]).sum();
+        let masses_of_point = |point: &u32| {
+            let share = match volumes {
+                Volumes::Kept => 1.0,
+                Volumes::Free => resisting_share(level, *point as usize),
+            };
+            patches
+                .places_of_point(*point as usize)
+                .iter()
+                .map(|place| share * of_places[*place])
+                .collect::<Vec<_>>()
+        };
+        let mass = |c| clusters.members(c).iter().flat_map(masses_of_point).sum();
         let mut diagonal: Vec<f64> = (0..count).into_par_iter().map(mass).collect();
         let of_places: Vec<DVec3> = terms.iter().flat_map(|terms| terms.gradient.iter().copied()).collect();
         let force =
@@ -87,13 +106,16 @@ impl System {
             let inverse = if *diagonal > 0.0 { 1.0 / diagonal } else { 0.0 };
             Mobility {
                 inverse,
-                freedom: clusters.freedom(cluster, |point| network.freedom(walls[point as usize])),
+                freedom: clusters.freedom(cluster, |point| network.freedom(level.walls[point as usize])),
             }
         };
         let mobility: Vec<Mobility> = diagonal.iter().enumerate().map(mobility).collect();
-        let constraint = VolumeConstraint::new(network, patches, terms, &clusters);
-        let compliance = constraint.compliance(&mobility);
-        Self { clusters, diagonal, springs, forces, mobility, constraint, compliance }
+        let constraint = (volumes == Volumes::Kept).then(|| {
+            let constraint = VolumeConstraint::new(network, patches, terms, &clusters);
+            let compliance = constraint.compliance(&mobility);
+            (constraint, compliance)
+        });
+        Self { clusters, diagonal, springs, forces, mobility, constraint }
     }
 
     /// The displacement of every control point that changes the grains' volumes by `changes`, to first order, and is
@@ -102,7 +124,7 @@ impl System {
     /// Solved by projected conjugate gradients. Their residual is freed of what pressures balance again and again, so that
     /// these need not be exact (Gould, Hribar and Nocedal 2001, section 5).
     pub(super) fn displacement(&self, changes: &[f64]) -> Vec<DVec3> {
-        let mut displacement = self.push(&self.compliance.pressures(changes, TIGHT));
+        let mut displacement = self.push(changes);
         let mut residual = self.forces.clone();
         add(&mut residual, -1.0, &self.apply(&displacement));
         let mut direction = self.project(&mut residual);
@@ -122,16 +144,19 @@ impl System {
             direction = projected;
             size = next;
         }
-        let change = self.constraint.volume_change(&displacement);
-        let left: Vec<f64> = changes.iter().zip(&change).map(|(wanted, change)| wanted - change).collect();
-        add(&mut displacement, 1.0, &self.push(&self.compliance.pressures(&left, TIGHT)));
+        if let Some((constraint, _)) = &self.constraint {
+            let change = constraint.volume_change(&displacement);
+            let left: Vec<f64> =
+                changes.iter().zip(&change).map(|(wanted, change)| wanted - change).collect();
+            add(&mut displacement, 1.0, &self.push(&left));
+        }
         self.of_points(&displacement)
     }
 
     /// The least motion by area of the control points that changes the grains' volumes by `changes`, to first order,
     /// for a system of time 0.
     pub(super) fn volume_correction(&self, changes: &[f64]) -> Vec<DVec3> {
-        self.of_points(&self.push(&self.compliance.pressures(changes, TIGHT)))
+        self.of_points(&self.push(changes))
     }
 
     fn of_points(&self, of_clusters: &[DVec3]) -> Vec<DVec3> {
@@ -143,17 +168,23 @@ impl System {
     fn project(&self, residual: &mut [DVec3]) -> Vec<DVec3> {
         let moved: Vec<DVec3> =
             residual.iter().zip(&self.mobility).map(|(r, mobility)| mobility.of(*r)).collect();
-        let pressures = self.compliance.pressures(&self.constraint.volume_change(&moved), LOOSE);
+        let Some((constraint, compliance)) = &self.constraint else { return moved };
+        let pressures = compliance.pressures(&constraint.volume_change(&moved), LOOSE);
         let project = |(cluster, residual): (usize, &mut DVec3)| {
-            *residual -= self.constraint.force(&pressures, cluster);
+            *residual -= constraint.force(&pressures, cluster);
             self.mobility[cluster].of(*residual)
         };
         residual.par_iter_mut().with_min_len(CHUNK).enumerate().map(project).collect()
     }
 
-    /// The displacement under pressures of the grains if there were only the diagonal of the matrix.
-    fn push(&self, pressures: &[f64]) -> Vec<DVec3> {
-        let force = |cluster: usize| self.mobility[cluster].of(self.constraint.force(pressures, cluster));
+    /// The displacement under the pressures that change volumes by `changes`, if there were only the diagonal of the matrix;
+    /// none where volumes are free.
+    fn push(&self, changes: &[f64]) -> Vec<DVec3> {
+        let Some((constraint, compliance)) = &self.constraint else {
+            return vec![DVec3::ZERO; self.mobility.len()];
+        };
+        let pressures = compliance.pressures(changes, TIGHT);
+        let force = |cluster: usize| self.mobility[cluster].of(constraint.force(&pressures, cluster));
         (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect()
     }
 
@@ -194,4 +225,18 @@ fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
     let chunks = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK));
     let sums: Vec<f64> = chunks.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()).collect();
     sums.iter().sum()
+}
+
+/// The share of a point's mass that resists its motion. Boundaries resist to be moved along their normals only: where the normals
+/// n of several point all ways, the mean of `n n^T` is a half of the identity (across a triple line) or a third (in a
+/// quadruple point). Physical junctions have no drag of their own.
+///
+/// Curvature flow of kept volumes leads to equilibrium with any masses.
+fn resisting_share(level: &Level, point: usize) -> f64 {
+    let on_wall = i8::from(!level.walls[point].is_empty());
+    match (level.node_types[point].side_count() - on_wall, &level.mesh) {
+        (..=2, _) => 1.0,
+        (4.., Mesh::Triangles(_)) => 1.0 / 3.0,
+        _ => 0.5,
+    }
 }

@@ -1,0 +1,210 @@
+//! The blocks of 2D grains: boundaries and triple points as lines and points, grains as triangulated interiors.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::io::{self, Write};
+
+use earcut::Earcut;
+use glam::{DVec2, DVec3};
+use polycrystal::{GrainId, Side};
+
+use super::blocks::{SideTable, point_id};
+use crate::Polycrystal;
+use crate::measured_arrays::{MeasuredArrays, NumberArrays};
+use crate::network_file::boundary_polylines;
+use crate::vtk::{Array, Cells, Each, PolyData, Values, VtkFormat, write_vtk};
+
+/// What is measured of a grain in the plane.
+struct PlaneMeasure {
+    area: f64,
+    perimeter: f64,
+    /// Number of other grains that it touches.
+    neighbors: i32,
+}
+
+impl PlaneMeasure {
+    /// Perimeter of the circle of the same area, as a share of the grain's perimeter.
+    fn circularity(&self) -> f64 {
+        2.0 * (PI * self.area).sqrt() / self.perimeter
+    }
+}
+
+impl Polycrystal {
+    /// Each boundary as a polyline with points and normals of its own, which point from its first side to its second.
+    pub(super) fn write_plane_boundaries(
+        &self,
+        measured: Option<&MeasuredArrays<'_>>,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
+        let names = self.config.file.names;
+        let boundaries = self.network.boundaries();
+        let (polylines, boundary_of) = boundary_polylines(self.network.finest(), boundaries, names);
+        let ids: Vec<u32> = polylines.concat();
+        let points: Vec<DVec3> = ids.iter().map(|&id| self.points[id as usize]).collect();
+        let mut next = 0u32..;
+        let cells: Vec<Vec<u32>> =
+            polylines.iter().map(|line| next.by_ref().take(line.len()).collect()).collect();
+        let normals: Vec<DVec3> = cells.iter().flat_map(|line| normals(line, &points)).collect();
+        let count = cells.len();
+        let labels = |line: usize| names.labels(&boundaries[boundary_of[line].index()]);
+        let boundary_id = |line: usize| boundary_of[line].0.cast_signed();
+        let id = |point: usize| ids[point].cast_signed();
+        let of_lines = measured.map_or_else(NumberArrays::default, |all| all.of_cells(&boundary_of));
+        let of_points = measured.map_or_else(NumberArrays::default, |all| all.curvatures_at(&ids));
+        let mut data = PolyData {
+            points: &points,
+            cells: Cells::Polylines(&cells),
+            point_arrays: vec![
+                Array { name: "Normals", values: Values::Vectors(&normals) },
+                Array { name: "PointId", values: Values::Int32Of(Each { count: points.len(), value: &id }) },
+            ],
+            cell_arrays: vec![
+                Array { name: names.sides(), values: Values::Int32PairsOf(Each { count, value: &labels }) },
+                Array { name: "BoundaryId", values: Values::Int32Of(Each { count, value: &boundary_id }) },
+            ],
+            field: self.field(),
+        };
+        data.cell_arrays.extend(of_lines.arrays());
+        data.point_arrays.extend(of_points.arrays());
+        write_vtk(&data, VtkFormat::Vtp, out)
+    }
+
+    /// The interior of each grain as triangles with points of their own.
+    pub(super) fn write_plane_grains(&self, out: &mut dyn Write) -> io::Result<()> {
+        let names = self.config.file.names;
+        let (mut points, mut triangles, mut grain_of, mut measures) = (vec![], vec![], vec![], vec![]);
+        let mut earcut = Earcut::new();
+        for outline in self.outlines() {
+            let corners: Vec<DVec3> = outline.points.iter().map(|&id| self.points[id as usize]).collect();
+            let first = point_id(points.len());
+            let mut of_grain: Vec<u32> = Vec::new();
+            earcut.earcut(corners.iter().map(|corner| [corner.x, corner.y]), &[], &mut of_grain);
+            let wound = of_grain.chunks_exact(3).map(|triangle| {
+                let [a, b, c] = [triangle[0], triangle[1], triangle[2]];
+                let [p, q, r] = [a, b, c].map(|corner| corners[corner as usize]);
+                let is_clockwise = (q - p).cross(r - p).z < 0.0;
+                (if is_clockwise { [a, c, b] } else { [a, b, c] }).map(|corner| first + corner)
+            });
+            triangles.extend(wound);
+            grain_of.resize(triangles.len(), measures.len());
+            measures.push(measure(&corners, outline.neighbors));
+            points.extend(corners);
+        }
+        let count = triangles.len();
+        let integers = |value| Values::Int32Of(Each { count, value });
+        let doubles = |value| Values::Float64Of(Each { count, value });
+        let measure = |triangle: usize| -> &PlaneMeasure { &measures[grain_of[triangle]] };
+        let number = |triangle: usize| names.number(GrainId(point_id(grain_of[triangle])));
+        let area = |triangle: usize| measure(triangle).area;
+        let perimeter = |triangle: usize| measure(triangle).perimeter;
+        let neighbors = |triangle: usize| measure(triangle).neighbors;
+        let circularity = |triangle: usize| measure(triangle).circularity();
+        let data = PolyData {
+            points: &points,
+            cells: Cells::Triangles(&triangles),
+            point_arrays: Vec::new(),
+            cell_arrays: vec![
+                Array { name: names.grain(), values: integers(&number) },
+                Array { name: "Volume", values: doubles(&area) },
+                Array { name: "Area", values: doubles(&perimeter) },
+                Array { name: "Neighbors", values: integers(&neighbors) },
+                Array { name: "Sphericity", values: doubles(&circularity) },
+            ],
+            field: self.field(),
+        };
+        write_vtk(&data, VtkFormat::Vtp, out)
+    }
+
+    /// The points where at least so many sides meet: 3 for triple points, 4 for quadruple points.
+    pub(super) fn write_plane_junctions(&self, fewest: usize, out: &mut dyn Write) -> io::Result<()> {
+        let mut at: Vec<(u32, Side)> = Vec::new();
+        for (line, boundary) in self.polylines() {
+            let ends = [line[0], line[line.len() - 1]];
+            at.extend(
+                self.network.boundaries()[boundary]
+                    .sides
+                    .into_iter()
+                    .flat_map(|side| ends.map(|end| (end, side))),
+            );
+        }
+        at.sort_unstable();
+        at.dedup();
+        let junctions = at.chunk_by(|a, b| a.0 == b.0).filter(|sides| sides.len() >= fewest);
+        let (points, sides): (Vec<DVec3>, Vec<Vec<Side>>) = junctions
+            .map(|at| (self.points[at[0].0 as usize], at.iter().map(|(_, side)| *side).collect()))
+            .unzip();
+        let sides: SideTable = self.side_table(sides.iter());
+        let data = PolyData {
+            points: &points,
+            cells: Cells::Vertices(points.len()),
+            point_arrays: Vec::new(),
+            cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
+            field: self.field(),
+        };
+        write_vtk(&data, VtkFormat::Vtp, out)
+    }
+
+    /// The boundaries' points, in order with the first side on the left, and their numbers.
+    fn polylines(&self) -> Vec<(Vec<u32>, usize)> {
+        let boundaries = self.network.boundaries();
+        let (lines, ids) = boundary_polylines(self.network.finest(), boundaries, crate::Names::Grainsmooth);
+        lines.into_iter().zip(ids.into_iter().map(|id| id.index())).collect()
+    }
+
+    /// The closed outline of every grain, by number.
+    fn outlines(&self) -> Vec<Outline> {
+        let mut next = vec![BTreeMap::new(); self.network.grain_count()];
+        let mut neighbors = vec![Vec::new(); self.network.grain_count()];
+        for (mut line, boundary) in self.polylines() {
+            let [first, second] = self.network.boundaries()[boundary].sides;
+            for [inner, beyond] in [[first, second], [second, first]] {
+                if let Side::Grain(grain) = inner {
+                    next[grain.index()].extend(line.windows(2).map(|ends| (ends[0], ends[1])));
+                    neighbors[grain.index()].extend(matches!(beyond, Side::Grain(_)).then_some(beyond));
+                }
+                line.reverse();
+            }
+        }
+        let outlines = next.into_iter().zip(neighbors);
+        outlines
+            .map(|(mut next, mut neighbors)| {
+                neighbors.sort_unstable();
+                neighbors.dedup();
+                let mut points = Vec::with_capacity(next.len());
+                let mut point = next.keys().next().copied();
+                while let Some(start) = point
+                    && let Some(end) = next.remove(&start)
+                {
+                    points.push(start);
+                    point = Some(end);
+                }
+                Outline { points, neighbors: neighbors.len() }
+            })
+            .collect()
+    }
+}
+
+/// The points around a grain, counter-clockwise, and the number of other grains beyond.
+struct Outline {
+    points: Vec<u32>,
+    neighbors: usize,
+}
+
+fn measure(corners: &[DVec3], neighbors: usize) -> PlaneMeasure {
+    let edges = || corners.iter().zip(corners.iter().cycle().skip(1));
+    let origin = corners[0];
+    PlaneMeasure {
+        area: edges().map(|(a, b)| (a - origin).cross(b - origin).z).sum::<f64>() / 2.0,
+        perimeter: edges().map(|(a, b)| a.distance(*b)).sum(),
+        neighbors: i32::try_from(neighbors).expect("fewer grains than 2^31"),
+    }
+}
+
+/// Unit normals at the points of a line, to the right of it: the means of those of its segments, by length.
+fn normals<'a>(line: &'a [u32], points: &'a [DVec3]) -> impl Iterator<Item = DVec3> + 'a {
+    let at = |k: usize| points[line[k] as usize].truncate();
+    (0..line.len()).map(move |k| {
+        let along: DVec2 = at((k + 1).min(line.len() - 1)) - at(k.saturating_sub(1));
+        (-along.perp()).normalize_or_zero().extend(0.0)
+    })
+}

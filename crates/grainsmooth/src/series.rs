@@ -1,0 +1,107 @@
+//! A relaxation as a time series for ParaView.
+
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use polycrystal::{RelaxationStep, Relaxed};
+
+use crate::formats::escaped;
+use crate::vtk::VtkFormat;
+use crate::{Error, Output, OutputFormat, Polycrystal};
+
+/// The steps of a relaxation, every so many of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    every: NonZeroU32,
+    frames: Vec<Frame>,
+}
+
+/// The moved points after a step.
+#[derive(Debug, Clone, PartialEq)]
+struct Frame {
+    time: f64,
+    level: usize,
+    points: Vec<DVec3>,
+}
+
+/// Where a series goes, found writable.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SeriesOutput {
+    collection: Output<()>,
+}
+
+impl SeriesOutput {
+    /// Checks that a series can be written at `path`, which is to end in `.pvd`, with its steps beside.
+    ///
+    /// # Errors
+    /// As of [`Output::check_as`].
+    pub fn check(path: &Path) -> Result<Self, Error> {
+        let output = Self { collection: Output::check_as(path, ())? };
+        output.step(0)?;
+        Ok(output)
+    }
+
+    /// The path as it was given.
+    pub fn path(&self) -> &Path {
+        self.collection.path()
+    }
+
+    /// The file of a step: `a_0003.vtp` beside `a.pvd`.
+    fn step(&self, number: usize) -> Result<Output, Error> {
+        Output::check_as(step_path(self.path(), number), OutputFormat::Vtk(VtkFormat::Vtp))
+    }
+}
+
+fn step_path(path: &Path, number: usize) -> PathBuf {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!("{name}_{number:04}.vtp"))
+}
+
+impl Series {
+    /// A series of the start, of every so many steps, and of the end.
+    pub fn new(every: NonZeroU32) -> Self {
+        Self { every, frames: Vec::new() }
+    }
+
+    /// Takes a step up, if it is one of these.
+    pub fn add(&mut self, step: &RelaxationStep<'_>) {
+        // What folded is taken back and tried again.
+        self.frames.retain(|frame| frame.time < step.time);
+        if step.done.is_multiple_of(self.every.get() as usize) {
+            let RelaxationStep { time, level, points, .. } = *step;
+            self.frames.push(Frame { time, level, points: points.to_vec() });
+        }
+    }
+
+    /// Writes each step as a surface file, and then the collection, which ParaView opens. The times in it are in the unit of
+    /// the relaxation time: the mean grain size squared, at unit mobility and tension. The last step is the polycrystal itself.
+    ///
+    /// # Errors
+    /// [`Error::WriteOutput`]; the collection is not there then.
+    pub fn write(&self, polycrystal: &mut Polycrystal, output: &SeriesOutput) -> Result<(), Error> {
+        let Relaxed { level, time, .. } = polycrystal.relaxed;
+        let finest = polycrystal.network.levels().len() - 1;
+        let is_before = |frame: &&Frame| frame.level <= level && frame.time < time;
+        let mut times = Vec::new();
+        for frame in self.frames.iter().filter(is_before) {
+            let points = polycrystal.network.subdivide_between(frame.level, finest, &frame.points);
+            let finished = std::mem::replace(&mut polycrystal.points, points);
+            let written = output.step(times.len()).and_then(|step| polycrystal.write(&step));
+            polycrystal.points = finished;
+            written?;
+            times.push(frame.time);
+        }
+        polycrystal.write(&output.step(times.len())?)?;
+        times.push(time);
+        output.collection.write(|out| {
+            writeln!(out, "<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>")?;
+            for (number, time) in times.iter().enumerate() {
+                let path = step_path(output.path(), number);
+                let file = escaped(&path.file_name().unwrap_or_default().to_string_lossy());
+                writeln!(out, "<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{file}\"/>")?;
+            }
+            writeln!(out, "</Collection>\n</VTKFile>")
+        })
+    }
+}

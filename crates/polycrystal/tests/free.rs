@@ -1,0 +1,109 @@
+//! Relaxation without constraints on volumes: grain growth by its laws.
+
+#[allow(dead_code, reason = "every test file uses its own share")]
+mod common;
+
+use std::f64::consts::FRAC_PI_3;
+
+use common::random_seeds;
+use glam::{BVec3, DVec3};
+use polycrystal::{
+    FaceMesh, Junctions, Network, NetworkError, PlaneMeasures, Relaxation, Relaxed, Volumes, measure_network,
+    relax_watched,
+};
+use voronoi::{Domain, Tessellation};
+
+/// Grains in the periodic square whose boundaries have many control points each, and these.
+fn fine_network(count: usize, random_seed: u64) -> (Network, Vec<DVec3>) {
+    let domain = Domain::unit_square().with_periods(BVec3::TRUE);
+    let tessellation =
+        Tessellation::new(&domain, &random_seeds(&domain, count, random_seed)).expect("valid seeds");
+    // Even grains: none has a side so short that it vanishes within the test.
+    let tessellation = (0..20).fold(tessellation, |cells, _| {
+        Tessellation::new(&domain, &cells.centroids()).expect("centroids lie in their cells")
+    });
+    let edge_length = 0.0125 / (count as f64).sqrt();
+    Network::with_face_mesh(&tessellation, FaceMesh::Refined { edge_length }, Junctions::Crease, 0)
+        .expect("a small network")
+}
+
+fn flow(network: &Network, points: &[DVec3], time: f64) -> Result<Relaxed, NetworkError> {
+    relax_watched(network, points, &Relaxation::Time(time), Volumes::Free, |_| ())
+}
+
+fn measures(network: &Network, points: &[DVec3]) -> PlaneMeasures {
+    measure_network(network, points).in_plane().expect("lines")
+}
+
+/// Von Neumann 1952, Mullins 1956: a grain of n sides grows by (pi / 3) (n - 6), wherever its boundaries are.
+#[test]
+fn grains_in_the_plane_grow_by_the_law_of_von_neumann_and_mullins() {
+    let (network, flat) = fine_network(30, 4);
+    // Angles come to equilibrium long before areas change much. Shorter and shorter steps, for triple points are to move by
+    // less than an edge in each.
+    let times = [0.1].into_iter().chain([1e-3; 8]).chain([1e-4; 3]).chain([2e-5; 3]);
+    let start =
+        times.fold(flat, |points, time| flow(&network, &points, time).expect("no side vanishes").points);
+    let time = 2e-5;
+    let end = flow(&network, &start, time).expect("no side vanishes").points;
+    let whole_time = time * network.mean_grain_size().powi(2);
+    let [before, after] = [&start, &end].map(|points| measures(&network, points));
+    assert!(before.dihedral_angles.expect("triple points").standard_deviation < 0.5);
+    let mut sides = Vec::new();
+    for (before, after) in before.grains.iter().zip(&after.grains) {
+        let rate = (after.area - before.area) / whole_time;
+        let law = FRAC_PI_3 * (before.side_count as f64 - 6.0);
+        // Two per cent, of grains with six sides two per cent of what one side makes.
+        let tolerance = 0.02 * law.abs().max(FRAC_PI_3);
+        assert!((rate - law).abs() < tolerance, "{} sides: {rate}, not {law}", before.side_count);
+        assert!((before.growth_rate.expect("no walls") - law).abs() < 1e-12);
+        // What the boundaries' own curvature says lacks half an edge at each end.
+        assert!((before.curvature_rate - law).abs() < 4.0 * tolerance, "{} not {law}", before.curvature_rate);
+        sides.push(before.side_count);
+    }
+    sides.sort_unstable();
+    sides.dedup();
+    assert!(sides.len() >= 3, "grains of {sides:?} sides");
+}
+
+#[test]
+fn a_honeycomb_stays_as_it_is() {
+    let height = 3f64.sqrt();
+    let domain = Domain::rectangle(DVec3::ZERO, DVec3::new(2.0, 2.0 * height, 1.0)).expect("positive sides");
+    let domain = domain.with_periods(BVec3::TRUE);
+    let seeds: Vec<DVec3> = (0..8)
+        .map(|k| {
+            DVec3::new(
+                f64::from(k % 2) + 0.5 * f64::from(k / 2 % 2) + 0.2,
+                f64::from(k / 2) * height / 2.0 + 0.1,
+                0.0,
+            )
+        })
+        .collect();
+    let tessellation = Tessellation::new(&domain, &seeds).expect("valid seeds");
+    let (network, flat) = Network::new(&tessellation, Junctions::Crease, 2).expect("a small network");
+    let relaxed = flow(&network, &flat, 0.1).expect("nothing moves").finest_points(&network);
+    let straight = network.subdivide(&flat);
+    assert!(relaxed.iter().zip(&straight).all(|(a, b)| a.distance(*b) < 1e-9));
+}
+
+#[test]
+fn kept_volumes_are_the_default_and_free_ones_change() {
+    let (network, flat) = common::random_network(&Domain::unit_cube(), 12, 7, 1);
+    let relaxation = Relaxation::Time(0.02);
+    let errors = [Volumes::Kept, Volumes::Free].map(|volumes| {
+        let mut times = Vec::new();
+        let relaxed = relax_watched(&network, &flat, &relaxation, volumes, |step| {
+            assert_eq!(step.points.len(), network.levels()[step.level].vertex_count());
+            times.push(step.time);
+        })
+        .expect("relaxes");
+        assert!(
+            times[0] == 0.0 && times.is_sorted() && (times[times.len() - 1] - relaxed.time).abs() < 1e-12
+        );
+        let found = network.grain_volumes(network.finest(), &relaxed.finest_points(&network));
+        let errors = found.iter().zip(network.cell_volumes()).map(|(grain, cell)| (grain / cell - 1.0).abs());
+        errors.fold(0.0, f64::max)
+    });
+    assert!(errors[0] < 1e-10 && errors[1] > 1e-3, "{errors:?}");
+}

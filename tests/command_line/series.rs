@@ -1,0 +1,67 @@
+//! `--series` and `--free`.
+
+use std::fs;
+
+use crate::surface_file::SurfaceFile;
+use crate::workplace::{FAILED, USAGE, Workplace};
+
+/// The times and files of a collection.
+fn collection(workplace: &Workplace, name: &str) -> Vec<(f64, String)> {
+    let text = String::from_utf8(workplace.bytes(name)).unwrap();
+    assert!(text.starts_with("<VTKFile type=\"Collection\"") && text.ends_with("</VTKFile>\n"));
+    let entries = text.lines().filter(|line| line.starts_with("<DataSet"));
+    let value = |line: &str, name: &str| {
+        let rest = line.split_once(&format!("{name}=\"")).unwrap().1;
+        rest.split_once('"').unwrap().0.to_owned()
+    };
+    entries.map(|line| (value(line, "timestep").parse().unwrap(), value(line, "file"))).collect()
+}
+
+#[test]
+fn series_starts_flat_and_ends_with_the_result() {
+    let workplace = Workplace::new();
+    let said = workplace.run("--seeds 6 -n 2 --relax 0.2 --series move.pvd --every 4");
+    assert!(said.ends_with("written     grains.vtp, move.pvd\n"), "{said}");
+    let entries = collection(&workplace, "move.pvd");
+    let (times, files): (Vec<f64>, Vec<String>) = entries.into_iter().unzip();
+    assert!(times[0] == 0.0 && times.is_sorted_by(|a, b| a < b), "{times:?}");
+    assert_eq!(files[..2], ["move_0000.vtp", "move_0001.vtp"]);
+    let steps: Vec<SurfaceFile> = files.iter().map(|file| SurfaceFile::read(&workplace.path(file))).collect();
+    assert!(steps.iter().all(|step| step.cells == steps[0].cells), "connectivity stays");
+    assert!(steps.windows(2).all(|pair| pair[0].points != pair[1].points));
+    let result = SurfaceFile::read(&workplace.path("grains.vtp"));
+    assert_eq!(steps[steps.len() - 1].points, result.points);
+    workplace.run("--seeds 6 -n 2 --relax 0 --regularize 0.1 -o flat.vtp --series flat.pvd");
+    let entries = collection(&workplace, "flat.pvd");
+    assert_eq!(entries, [(0.0, "flat_0000.vtp".to_owned())], "nothing moves");
+}
+
+#[test]
+fn series_that_cannot_be_written_is_found_beforehand() {
+    let workplace = Workplace::new();
+    let message = "invalid value 'a.vtp' for '--series <F>': unknown extension; name the file *.pvd";
+    workplace.refuses("--seeds 100000 --series a.vtp", USAGE, message);
+    let message = "invalid value '0' for '--every <K>': give a whole number from 1";
+    workplace.refuses("--seeds 100000 --series a.pvd --every 0", USAGE, message);
+    let message = "no/a.pvd: no directory no; create it or choose another path";
+    workplace.refuses("--seeds 100000 --series no/a.pvd", FAILED, message);
+    fs::create_dir(workplace.path("a_0000.vtp")).unwrap();
+    let message = "a_0000.vtp: is not a regular file; choose another path";
+    workplace.refuses("--seeds 100000 --series a.pvd", FAILED, message);
+}
+
+#[test]
+fn free_grains_change_their_sizes_and_fill_the_box() {
+    let workplace = Workplace::new();
+    workplace.run("--dim 2 --seeds 20 -n 2 --relax 0.01 --free --stats free.json");
+    workplace.run("--dim 2 --seeds 20 -n 2 --relax 0.01 --stats kept.json");
+    let areas = |name: &str| {
+        let all: serde_json::Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+        assert_eq!(all["command_line"].as_str().unwrap().contains(" --free"), name == "free.json");
+        let grains = all["grains"].as_array().unwrap().clone();
+        grains.iter().map(|grain| grain["area"].as_f64().unwrap()).collect::<Vec<f64>>()
+    };
+    let [free, kept] = ["free.json", "kept.json"].map(areas);
+    assert!((free.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+    assert!(free.iter().zip(&kept).any(|(free, kept)| (free / kept - 1.0).abs() > 1e-3));
+}

@@ -1,0 +1,51 @@
+//! The guide, done as it says: its commands, then its Python where pyvista is installed.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::io::Write;
+use std::path::Path;
+use std::process::Command;
+
+/// The text of the guide's blocks, each with its language.
+fn blocks(guide: &str) -> Vec<(&str, &str)> {
+    let fenced = guide.split("```").skip(1).step_by(2);
+    fenced.map(|block| block.split_once('\n').unwrap()).collect()
+}
+
+fn run_command(line: &str, folder: &Path) {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    assert_eq!(words[0], "grainsmooth", "{line}");
+    let mut program = assert_cmd::cargo::cargo_bin_cmd!("grainsmooth");
+    program.args(&words[1..]).current_dir(folder).assert().success();
+}
+
+#[test]
+fn guide_does_what_it_says() {
+    let guide = include_str!("../docs/guide.md");
+    let blocks = blocks(guide);
+    let folder = tempfile::tempdir().unwrap();
+    let (mut commands, mut python) = (0, String::new());
+    for (language, text) in blocks {
+        match language {
+            "sh" => {
+                text.lines().for_each(|line| run_command(line, folder.path()));
+                commands += 1;
+            }
+            "python" => python += text,
+            other => panic!("a block of {other:?} is not run"),
+        }
+    }
+    assert!(commands >= 5 && python.contains("pyvista.read"));
+
+    let has_pyvista = Command::new("python3").args(["-c", "import pyvista"]).output();
+    if !has_pyvista.is_ok_and(|output| output.status.success()) {
+        // Not through `eprintln`, which the test harness keeps to itself.
+        std::io::stderr().write_all(b"SKIPPED the guide's Python: pyvista is not installed\n").unwrap();
+        return;
+    }
+    let mut interpreter = Command::new("python3");
+    interpreter.args(["-c", &python]).current_dir(folder.path());
+    let output = interpreter.env("PYVISTA_OFF_SCREEN", "true").env_remove("DISPLAY").output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let picture = std::fs::read(folder.path().join("grain.png")).unwrap();
+    assert!(picture.starts_with(b"\x89PNG") && picture.len() > 5000, "a picture of the grain");
+}
