@@ -162,7 +162,7 @@ impl fmt::Display for CheckReport {
 }
 
 /// Options that leave random seeds the Poisson process that they are, whatever or with what follows them.
-const PLAIN_OPTIONS: [&str; 18] = [
+const PLAIN_OPTIONS: [&str; 20] = [
     "--arrays",
     "--seeds",
     "--seeding random",
@@ -174,6 +174,8 @@ const PLAIN_OPTIONS: [&str; 18] = [
     "--faces",
     "--edge-length",
     "--relax",
+    "--wall-tension",
+    "--free",
     "--regularize",
     "-n",
     "--levels",

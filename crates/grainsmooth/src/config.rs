@@ -160,9 +160,14 @@ impl Config {
     /// The largest: edges as long as half a grain are no small features.
     pub const LARGEST_REGULARIZE: f64 = 0.5;
 
+    /// Control points on the boundaries of regularised cells: in a fan, whose triangles at short lines are thin, those stay whole.
+    pub(crate) fn regular_face_mesh(&self) -> FaceMesh {
+        if self.face_mesh == FaceMesh::Fan { FaceMesh::SparseFan } else { self.face_mesh }
+    }
+
     /// The lattice that the seeds form, if they do.
     ///
-    /// For a domain from a file only its sides tell, see [`Self::lattice_seeds`].
+    /// For a domain from a file only its sides tell.
     pub fn lattice_fit(&self) -> Option<LatticeFit> {
         match self.seeds {
             SeedSource::Lattice { .. } if self.shape.is_from_file() => None,

@@ -40,7 +40,7 @@ impl Estimate {
         let tessellation = &cells.tessellation;
         let size = match config.regularize {
             0.0 => config.face_mesh.control_mesh_size(tessellation),
-            length => config.face_mesh.control_mesh_size(&tessellation.regularized(length).0),
+            length => config.regular_face_mesh().control_mesh_size(&tessellation.regularized(length).0),
         };
         let control_mesh = LevelSize { points: size.points, edges: size.edges, triangles: size.triangles };
         let mesh = control_mesh.after(config.levels);

@@ -166,8 +166,8 @@ fn command_line(bytes: &[u8]) -> Option<String> {
 
 /// The volume (in the plane: area) of the box that a command line names.
 fn domain_volume(command_line: &str) -> Option<f64> {
-    // A sphere or cylinder in the box is smaller.
-    if command_line.split(' ').any(|word| word == "--domain") {
+    // A sphere or another convex body in the box is smaller.
+    if command_line.split(' ').any(|word| ["--domain", "--half-spaces"].contains(&word)) {
         return None;
     }
     let mut words = command_line.split(' ').skip_while(|word| *word != "--box");

@@ -3,9 +3,7 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use polycrystal::{
-    AngleStatistics, Boundary, Certificate, FaceMesh, MeshSize, Network, NetworkError, RelaxationStep,
-};
+use polycrystal::{AngleStatistics, Boundary, Certificate, MeshSize, Network, NetworkError, RelaxationStep};
 use polycrystal::{Relaxed, Volumes, dihedral_angles, relax_watched, validate};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
@@ -243,8 +241,7 @@ fn network(
     }
     let volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
     let (regular, collapsed) = tessellation.regularized(config.regularize);
-    let (network, flat) =
-        network_of(&regular, if face_mesh == FaceMesh::Fan { FaceMesh::SparseFan } else { face_mesh })?;
+    let (network, flat) = network_of(&regular, config.regular_face_mesh())?;
     Ok((network.with_cell_volumes(volumes), flat, collapsed))
 }
 

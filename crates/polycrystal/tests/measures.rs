@@ -238,7 +238,7 @@ fn lines_and_points_are_those_of_the_cells() {
 #[test]
 fn angles_are_those_of_the_statistics() {
     // Cells as they are: where short edges have collapsed, four boundaries may meet in a line, which one of the two leaves out.
-    let (network, flat) = common::random_network(&Domain::unit_cube(), 60, 8, 1);
+    let (network, flat) = random_network(&Domain::unit_cube(), 60, 8, 1);
     let points = network.subdivide(&flat);
     let own = in_space(&network, &points).dihedral_angles.expect("triple lines");
     let known = dihedral_angles(&network, network.finest(), &points).expect("triple lines");
@@ -348,6 +348,8 @@ proptest! {
             Mesh::Triangles(_) => {
                 let SpaceMeasures { grains, boundaries, triple_lines, quadruple_points, .. } =
                     in_space(&network, &points);
+                // Images of one seed stand in a lattice: few seeds leave lines between four of them, where the rates do not sum to 0.
+                prop_assume!(triple_lines.iter().all(|line| line.boundaries.len() == 3));
                 prop_assert_eq!(
                     quadruple_points.len() + boundaries.len(), triple_lines.len() + grains.len(),
                     "V - E + F - C = 0"
@@ -361,6 +363,7 @@ proptest! {
             }
             Mesh::Segments(_) => {
                 let PlaneMeasures { grains, boundaries, triple_points, .. } = in_plane(&network, &points);
+                prop_assume!(triple_points.iter().all(|point| point.boundaries.len() == 3));
                 prop_assert_eq!(triple_points.len() + grains.len(), boundaries.len(), "V - E + F = 0");
                 for grain in &grains {
                     let rate = FRAC_PI_3 * (grain.side_count as f64 - 6.0);
