@@ -259,3 +259,11 @@ fn assert_area_is_filled(file: &SurfaceFile) {
     assert!(areas.iter().all(|area| *area > 0.0), "{areas:?}");
     assert!((areas.iter().sum::<f64>() - 1.0).abs() < 1e-12);
 }
+
+/// Regularisation once left faces folded that it had let fold because they would close, and did not.
+#[test]
+fn thin_faces_that_did_not_close_are_not_folded() {
+    let workplace = Workplace::new();
+    let said = workplace.run("--seeds 2000 -n 0 -o many.vtp");
+    assert!(said.contains("validation  good"), "{said}");
+}

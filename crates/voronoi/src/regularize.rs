@@ -17,6 +17,9 @@ const SWEEPS: usize = 10;
 /// Cosine of the largest angle between a face and one of the triangles that join its edges to its centre (60 degrees).
 const LARGEST_BEND: f64 = 0.5;
 
+/// Cosine of the largest angle between neighbouring triangles of a face in the end (75 degrees): relaxation must not reach 90.
+const LARGEST_FOLD: f64 = 0.26;
+
 /// Share of the length of a short edge below which an edge is tiny.
 const TINY: f64 = 0.01;
 
@@ -43,17 +46,18 @@ impl Tessellation {
         if !self.periodic_faces.is_empty() {
             return (self.clone(), Collapsed::default());
         }
-        let mut complex = Complex::new(self, length);
-        for _ in 0..SWEEPS {
-            let before = complex.collapsed;
-            for ends in complex.short_edges() {
-                complex.collapse(ends);
+        let mut is_strict = vec![false; self.face_count()];
+        loop {
+            let mut complex = Complex::new(self, length, is_strict);
+            complex.collapse_short_edges();
+            // Faces that were let fold because they would close soon, and then did not, may not do so again.
+            let folded = complex.folded_faces();
+            if folded.is_empty() {
+                return complex.finish(self);
             }
-            if complex.collapsed == before {
-                break;
-            }
+            is_strict = complex.is_strict;
+            folded.into_iter().for_each(|face| is_strict[face] = true);
         }
-        complex.finish(self)
     }
 }
 
@@ -72,11 +76,13 @@ struct Complex<'a> {
     face_counts: Vec<usize>,
     /// Length below which an edge of each cell is short.
     short: Vec<f64>,
+    /// Whether each face has to stay unfolded however thin it gets.
+    is_strict: Vec<bool>,
     collapsed: Collapsed,
 }
 
 impl<'a> Complex<'a> {
-    fn new(original: &'a Tessellation, length: f64) -> Self {
+    fn new(original: &'a Tessellation, length: f64, is_strict: Vec<bool>) -> Self {
         let vertices = original.vertices().to_vec();
         let mut walls = vec![Vec::new(); vertices.len()];
         let mut faces_at = vec![Vec::new(); vertices.len()];
@@ -109,8 +115,31 @@ impl<'a> Complex<'a> {
             face_counts: measures.iter().map(|cell| cell.face_count).collect(),
             short: measures.iter().map(|cell| length * mean_size.min(root(cell.volume))).collect(),
             vertices,
+            is_strict,
             collapsed: Collapsed::default(),
         }
+    }
+
+    fn collapse_short_edges(&mut self) {
+        for _ in 0..SWEEPS {
+            let before = self.collapsed;
+            for ends in self.short_edges() {
+                self.collapse(ends);
+            }
+            if self.collapsed == before {
+                break;
+            }
+        }
+    }
+
+    /// Changed faces whose triangles around the centre are folded, and that were not strict.
+    fn folded_faces(&self) -> Vec<usize> {
+        let is_folded = |face: &usize| {
+            let ring: Vec<DVec3> =
+                self.faces[*face].iter().map(|corner| self.vertices[*corner as usize]).collect();
+            !self.is_strict[*face] && ring.len() > 3 && is_folded(&ring)
+        };
+        (0..self.faces.len()).filter(is_folded).collect()
     }
 
     fn dimension(&self) -> Dimension {
@@ -273,7 +302,7 @@ impl<'a> Complex<'a> {
             let ring: Vec<DVec3> = self.faces[face as usize].iter().map(at).collect();
             let short = self.sides(face).into_iter().filter_map(cell_of);
             let short = short.map(|cell| self.short[cell.index()]).fold(f64::INFINITY, f64::min);
-            is_star_shaped(&ring, short)
+            is_star_shaped(&ring, if self.is_strict[face as usize] { 0.0 } else { short })
         })
     }
 
@@ -345,19 +374,35 @@ fn edges_of(corners: &[u32]) -> impl Iterator<Item = [u32; 2]> {
     corners.iter().zip(after).take(count).map(|(a, b)| [*a.min(b), *a.max(b)])
 }
 
+/// The edges of a ring, its centre, and twice its area as a vector.
+fn fan(ring: &[DVec3]) -> (Vec<[DVec3; 2]>, DVec3, DVec3) {
+    let edges = ring.iter().zip(ring.iter().cycle().skip(1)).filter(|(a, b)| a != b);
+    let edges: Vec<[DVec3; 2]> = edges.map(|(a, b)| [*a, *b]).collect();
+    let perimeter: f64 = edges.iter().map(|[a, b]| a.distance(*b)).sum();
+    let center: DVec3 = edges.iter().map(|[a, b]| (*a + *b) * (0.5 * a.distance(*b) / perimeter)).sum();
+    let normal = edges.iter().map(|[a, b]| (*a - center).cross(*b - center)).sum();
+    (edges, center, normal)
+}
+
 /// Whether no triangle from the ring's centre to an edge turns its back to the others. Rings thinner than `short` may, and
 /// tiny edges: they are about to go themselves.
 fn is_star_shaped(ring: &[DVec3], short: f64) -> bool {
-    let edges = || ring.iter().zip(ring.iter().cycle().skip(1)).filter(|(a, b)| a != b);
-    let perimeter: f64 = edges().map(|(a, b)| a.distance(*b)).sum();
-    let center: DVec3 = edges().map(|(a, b)| (*a + *b) * (0.5 * a.distance(*b) / perimeter)).sum();
-    let normal: DVec3 = edges().map(|(a, b)| (*a - center).cross(*b - center)).sum();
+    let (edges, center, normal) = fan(ring);
+    let perimeter: f64 = edges.iter().map(|[a, b]| a.distance(*b)).sum();
     if 0.5 * normal.length() < 0.5 * short * perimeter {
         return true;
     }
-    let matters = |(a, b): &(&DVec3, &DVec3)| a.distance(**b) > TINY * short;
-    edges().filter(matters).all(|(a, b)| {
+    let matters = |[a, b]: &&[DVec3; 2]| a.distance(*b) > TINY * short;
+    edges.iter().filter(matters).all(|[a, b]| {
         let triangle = (*a - center).cross(*b - center);
         triangle.dot(normal) > LARGEST_BEND * triangle.length() * normal.length()
     })
+}
+
+/// Whether two neighbouring triangles from the ring's centre to its edges are bent by more than [`LARGEST_FOLD`] tells.
+fn is_folded(ring: &[DVec3]) -> bool {
+    let (edges, center, _) = fan(ring);
+    let normals: Vec<DVec3> = edges.iter().map(|[a, b]| (*a - center).cross(*b - center)).collect();
+    let mut pairs = normals.iter().zip(normals.iter().cycle().skip(1));
+    pairs.any(|(a, b)| a.dot(*b) < LARGEST_FOLD * a.length() * b.length())
 }
