@@ -374,35 +374,43 @@ fn edges_of(corners: &[u32]) -> impl Iterator<Item = [u32; 2]> {
     corners.iter().zip(after).take(count).map(|(a, b)| [*a.min(b), *a.max(b)])
 }
 
-/// The edges of a ring, its centre, and twice its area as a vector.
-fn fan(ring: &[DVec3]) -> (Vec<[DVec3; 2]>, DVec3, DVec3) {
-    let edges = ring.iter().zip(ring.iter().cycle().skip(1)).filter(|(a, b)| a != b);
-    let edges: Vec<[DVec3; 2]> = edges.map(|(a, b)| [*a, *b]).collect();
-    let perimeter: f64 = edges.iter().map(|[a, b]| a.distance(*b)).sum();
-    let center: DVec3 = edges.iter().map(|[a, b]| (*a + *b) * (0.5 * a.distance(*b) / perimeter)).sum();
-    let normal = edges.iter().map(|[a, b]| (*a - center).cross(*b - center)).sum();
-    (edges, center, normal)
+/// The triangles that join the edges of a ring to its centre.
+struct Fan {
+    /// Length of each edge, and twice the area of its triangle as a vector.
+    triangles: Vec<(f64, DVec3)>,
+    perimeter: f64,
+    /// Twice the area of all as a vector.
+    normal: DVec3,
+}
+
+impl Fan {
+    fn new(ring: &[DVec3]) -> Self {
+        let edges = || ring.iter().zip(ring.iter().cycle().skip(1)).filter(|(a, b)| a != b);
+        let perimeter: f64 = edges().map(|(a, b)| a.distance(*b)).sum();
+        let center: DVec3 = edges().map(|(a, b)| (*a + *b) * (0.5 * a.distance(*b) / perimeter)).sum();
+        let triangle = |(a, b): (&DVec3, &DVec3)| (a.distance(*b), (*a - center).cross(*b - center));
+        let triangles: Vec<(f64, DVec3)> = edges().map(triangle).collect();
+        let normal = triangles.iter().map(|(_, triangle)| *triangle).sum();
+        Self { triangles, perimeter, normal }
+    }
 }
 
 /// Whether no triangle from the ring's centre to an edge turns its back to the others. Rings thinner than `short` may, and
 /// tiny edges: they are about to go themselves.
 fn is_star_shaped(ring: &[DVec3], short: f64) -> bool {
-    let (edges, center, normal) = fan(ring);
-    let perimeter: f64 = edges.iter().map(|[a, b]| a.distance(*b)).sum();
+    let Fan { triangles, perimeter, normal } = Fan::new(ring);
     if 0.5 * normal.length() < 0.5 * short * perimeter {
         return true;
     }
-    let matters = |[a, b]: &&[DVec3; 2]| a.distance(*b) > TINY * short;
-    edges.iter().filter(matters).all(|[a, b]| {
-        let triangle = (*a - center).cross(*b - center);
-        triangle.dot(normal) > LARGEST_BEND * triangle.length() * normal.length()
-    })
+    triangles
+        .iter()
+        .filter(|(length, _)| *length > TINY * short)
+        .all(|(_, triangle)| triangle.dot(normal) > LARGEST_BEND * triangle.length() * normal.length())
 }
 
 /// Whether two neighbouring triangles from the ring's centre to its edges are bent by more than [`LARGEST_FOLD`] tells.
 fn is_folded(ring: &[DVec3]) -> bool {
-    let (edges, center, _) = fan(ring);
-    let normals: Vec<DVec3> = edges.iter().map(|[a, b]| (*a - center).cross(*b - center)).collect();
-    let mut pairs = normals.iter().zip(normals.iter().cycle().skip(1));
-    pairs.any(|(a, b)| a.dot(*b) < LARGEST_FOLD * a.length() * b.length())
+    let Fan { triangles, .. } = Fan::new(ring);
+    let mut pairs = triangles.iter().zip(triangles.iter().cycle().skip(1));
+    pairs.any(|((_, a), (_, b))| a.dot(*b) < LARGEST_FOLD * a.length() * b.length())
 }
