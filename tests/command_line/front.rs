@@ -20,6 +20,7 @@ fn text(workplace: &Workplace, arguments: &str) -> String {
 fn dry_run_foretells_the_run_and_writes_nothing() {
     let workplace = Workplace::new();
     for arguments in [
+        "--seeds 30 -n 2 --regularize 0 -o a.vtp",
         "--seeds 30 -n 2 -o a.vtp",
         "--seeds 30 -n 2 -o a.vtu",
         "--seeds 30 -n 2 -o a.vtk",
@@ -42,12 +43,13 @@ fn dry_run_foretells_the_run_and_writes_nothing() {
             line.split_whitespace().find_map(|word| word.parse().ok()).unwrap()
         };
         let elements = if arguments.contains("--dim 2") { "segments" } else { "triangles" };
-        let exact = [number("grains"), number("points"), number(elements)];
-        assert_eq!(
-            exact.map(Value::from),
-            ["grains", "points", "elements"].map(|key| run[key].clone()),
-            "{said}"
-        );
+        assert_eq!(run["grains"], number("grains"), "{said}");
+        // In space, relaxation decides what regularisation takes out.
+        let is_exact = arguments.contains("--dim 2") || arguments.contains("--regularize 0");
+        for (key, line) in [("points", "points"), ("elements", elements)] {
+            let error = (number(line) as f64 / run[key].as_f64().unwrap() - 1.0).abs();
+            assert!(error <= if is_exact { 0.0 } else { 0.15 }, "{arguments}: {foretold}, but {said}");
+        }
         let bytes = workplace.bytes(name).len() as f64;
         assert!((number("file") as f64 / bytes - 1.0).abs() < 0.25, "{arguments}: {foretold}, but {bytes}");
         assert!(number("memory") > 1_000_000);

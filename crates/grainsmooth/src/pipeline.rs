@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use polycrystal::{AngleStatistics, Boundary, Certificate, MeshSize, Network, NetworkError, RelaxationStep};
-use polycrystal::{Relaxed, Volumes, dihedral_angles, relax_watched, validate};
+use polycrystal::{Relaxed, Volumes, dihedral_angles, regular_cells, relax_watched, validate};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
 use crate::memory::{LevelSize, available_memory, check_cells, check_levels};
@@ -240,7 +240,7 @@ fn network(
         return Ok((network, flat, Collapsed::default()));
     }
     let volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
-    let (regular, collapsed) = tessellation.regularized(config.regularize);
+    let (regular, collapsed) = regular_cells(tessellation, config.regularize);
     let (network, flat) = network_of(&regular, config.regular_face_mesh())?;
     Ok((network.with_cell_volumes(volumes), flat, collapsed))
 }

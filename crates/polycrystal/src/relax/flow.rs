@@ -23,6 +23,9 @@ const WHOLE_ATTEMPTS: usize = 12;
 /// Length, in units of the feature size, below which a control edge no longer changes.
 const RIGID_LENGTH: f64 = 0.04;
 
+/// Most edges of the control mesh, as long as the mean, to a feature. Fans have three.
+const FEATURE_EDGES: f64 = 6.0;
+
 /// Cosine of the largest angle between neighbouring elements after a step (75 degrees), so that later subdivision
 /// has room before the 90 degrees of a fold.
 const LARGEST_BEND: f64 = 0.26;
@@ -131,7 +134,7 @@ impl<'a> Flow<'a> {
         let volumes: Vec<f64> = terms.iter().map(|terms| terms.volume).collect();
         let volumes = sum_over_grains(self.network.boundaries(), &volumes, self.network.grain_count());
         let missing = self.missing(&volumes);
-        self.clusters.join_short_edges(self.control_mesh(), points, self.rigid_length());
+        self.clusters.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
         let mut moves = self.system(points, &terms, &self.clusters, time).displacement(&missing);
         let within = tangential_moves(self.network, self.level, points);
         moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
@@ -169,7 +172,7 @@ impl<'a> Flow<'a> {
     fn restore_volumes(&self, points: &mut [DVec3]) -> Result<(), NetworkError> {
         let free = Clusters::new(&self.network.levels()[self.level]);
         let mut short = free.clone();
-        short.join_short_edges(self.control_mesh(), points, self.rigid_length());
+        short.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
         let start = points.to_vec();
         self.restore_with(&self.clusters, points)
             .or_else(|_| {
@@ -221,15 +224,16 @@ impl<'a> Flow<'a> {
     }
 
     fn system(&self, points: &[DVec3], terms: &[PatchTerms], clusters: &Clusters, time: f64) -> System {
-        let step = Step { time, feature_size: self.feature_size(), volumes: self.volumes };
+        let step = Step { time, feature_size: self.feature_size(points), volumes: self.volumes };
         let level = &self.network.levels()[self.level];
         System::new(self.network, &self.patches, terms, points, clusters.number(), step, level)
     }
 
-    /// The feature size as control edges of this level have it.
-    fn feature_size(&self) -> f64 {
-        self.network.feature_size()
-            * 0.5f64.powi(i32::try_from(self.level).expect("a level is a small number"))
+    /// The feature size as control edges of this level have it. Where they are fine, what is short among them is not what is
+    /// small in the network.
+    fn feature_size(&self, points: &[DVec3]) -> f64 {
+        let usual = 0.5f64.powi(i32::try_from(self.level).expect("a level is a small number"));
+        (usual * self.network.feature_size()).min(FEATURE_EDGES * mean_edge(self.control_mesh(), points))
     }
 
     fn finest(&self) -> usize {
@@ -237,9 +241,9 @@ impl<'a> Flow<'a> {
     }
 
     /// Where volumes are free the flow itself is asked for: nothing is held but what a step would fold.
-    fn rigid_length(&self) -> f64 {
+    fn rigid_length(&self, points: &[DVec3]) -> f64 {
         match self.volumes {
-            Volumes::Kept => RIGID_LENGTH * self.feature_size(),
+            Volumes::Kept => RIGID_LENGTH * self.feature_size(points),
             Volumes::Free => 0.0,
         }
     }
@@ -306,6 +310,20 @@ impl<'a> Flow<'a> {
                 vertices.iter().map(|vertex| self.network.stencils(self.level).row(*vertex as usize).0);
             let depends_on: Vec<u32> = rows.flatten().copied().collect();
             self.clusters.join_all(&depends_on);
+        }
+    }
+}
+
+fn mean_edge(mesh: &Mesh, points: &[DVec3]) -> f64 {
+    let length = |[a, b]: [u32; 2]| points[a as usize].distance(points[b as usize]);
+    match mesh {
+        Mesh::Triangles(mesh) => {
+            let edges = 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits");
+            edges.map(|edge| length(mesh.edge(edge))).sum::<f64>() / mesh.edge_count() as f64
+        }
+        Mesh::Segments(mesh) => {
+            let segments = mesh.segments();
+            segments.iter().map(|ends| length(*ends)).sum::<f64>() / segments.len() as f64
         }
     }
 }
