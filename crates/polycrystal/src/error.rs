@@ -28,6 +28,23 @@ pub enum NetworkError {
         /// The sides of the boundary.
         sides: [Side; 2],
     },
+    /// A labelled surface in a periodic domain.
+    #[error("a network of given triangles cannot be periodic; give a domain without periods")]
+    PeriodicSurface,
+    /// An element of a labelled surface lies at the exterior, but on no wall.
+    #[error(
+        "element {element} lies at the exterior, but on no wall of the domain; its corners must be on a wall exactly"
+    )]
+    NotOnWall {
+        /// The element.
+        element: u32,
+    },
+    /// The grains of a labelled surface are not numbered one after the other.
+    #[error("no triangle or segment has grain {} on a side; number grains from 0 without gaps", grain.0)]
+    MissingGrain {
+        /// The number that is left out.
+        grain: GrainId,
+    },
     /// The edge length of the control mesh is no length.
     #[error("the edge length is {0}; it must be a positive, finite number")]
     BadEdgeLength(f64),

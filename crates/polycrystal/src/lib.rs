@@ -34,6 +34,7 @@ mod fans;
 mod fault;
 mod folds;
 mod intersections;
+mod labelled_mesh;
 mod level;
 mod measures;
 mod network;
