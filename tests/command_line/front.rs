@@ -48,11 +48,11 @@ fn dry_run_foretells_the_run_and_writes_nothing() {
         let is_exact = arguments.contains("--dim 2") || arguments.contains("--regularize 0");
         for (key, line) in [("points", "points"), ("elements", elements)] {
             let error = (number(line) as f64 / run[key].as_f64().unwrap() - 1.0).abs();
-            assert!(error <= if is_exact { 0.0 } else { 0.15 }, "{arguments}: {foretold}, but {said}");
+            assert!(error <= if is_exact { 0.0 } else { 0.3 }, "{arguments}: {foretold}, but {said}");
         }
         let bytes = workplace.bytes(name).len() as f64;
         assert!(
-            (number("file") as f64 / bytes - 1.0).abs() < if is_exact { 0.25 } else { 0.4 },
+            (number("file") as f64 / bytes - 1.0).abs() < if is_exact { 0.25 } else { 0.5 },
             "{arguments}: {foretold}, but {bytes}"
         );
         assert!(number("memory") > 1_000_000);

@@ -70,6 +70,16 @@ impl Shape {
     }
 }
 
+/// Where grains of a periodic domain end in what is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PeriodicCut {
+    /// They are whole, and stick out of the box.
+    #[default]
+    Wrap,
+    /// At the walls of the box, which then holds some in several pieces.
+    Box,
+}
+
 /// Everything that decides what a run computes. The same config gives the same bytes on every machine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Config {
@@ -87,6 +97,8 @@ pub struct Config {
     pub shape: Shape,
     /// Axes along which the box repeats; in 2D the last is ignored.
     pub periodic: BVec3,
+    /// Where grains of a periodic domain end in what is written.
+    pub periodic_cut: PeriodicCut,
     /// Control points on boundaries.
     pub face_mesh: FaceMesh,
     /// How far boundaries relax; time 0 leaves them flat.
@@ -136,6 +148,7 @@ impl Default for Config {
             box_size: DVec3::ONE,
             shape: Shape::Box,
             periodic: BVec3::FALSE,
+            periodic_cut: PeriodicCut::Wrap,
             face_mesh: FaceMesh::Fan,
             relaxation: Relaxation::default(),
             wall_tension: 0.0,

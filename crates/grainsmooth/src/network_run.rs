@@ -138,6 +138,7 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
             series.add(&step);
         }
     })?;
+    polycrystal = polycrystal.cut_if_asked()?;
     line.show(Stage::Writing, 0, 1);
     let start = Instant::now();
     polycrystal.write(output)?;

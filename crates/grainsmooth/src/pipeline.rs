@@ -4,12 +4,14 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use polycrystal::{AngleStatistics, Boundary, Certificate, MeshSize, Network, NetworkError, RelaxationStep};
-use polycrystal::{Relaxed, Volumes, dihedral_angles, regular_cells, relax_watched, validate};
+use polycrystal::{Relaxed, Volumes, WeightedAngle, angles_between_boundaries, dihedral_angles};
+use polycrystal::{regular_cells, relax_watched, validate};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
 use crate::memory::{LevelSize, available_memory, check_cells, check_levels};
 use crate::{
-    Config, Error, FileSeed, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds, read_seed_file,
+    Config, Error, FileSeed, PeriodicCut, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds,
+    read_seed_file,
 };
 
 /// A part of a run, in the order in which they follow each other.
@@ -69,11 +71,11 @@ pub struct Polycrystal {
     pub cells: Tessellated,
     /// Connectivity of all levels.
     pub network: Network,
-    /// Control points of the flat network, before relaxation.
-    pub flat: Vec<DVec3>,
+    /// Angles between boundaries of the flat network, before relaxation.
+    pub flat_angles: Vec<WeightedAngle>,
     /// Points of the finest level.
     pub points: Vec<DVec3>,
-    /// What relaxation gave, before the last subdivisions: points to move by hand.
+    /// What relaxation gave, before the last subdivisions: points to move by hand, of whole grains.
     pub relaxed: Relaxed,
     /// What regularisation took out.
     pub collapsed: Collapsed,
@@ -83,6 +85,27 @@ pub struct Polycrystal {
     pub validation: Certificate,
     /// Time that each stage took.
     pub times: Vec<(Stage, Duration)>,
+}
+
+impl Polycrystal {
+    /// The grains of a periodic box cut at its walls, as [`PeriodicCut::Box`](crate::PeriodicCut::Box) asks; others as they are.
+    ///
+    /// # Errors
+    /// As of [`Network::cut_at_box`].
+    pub fn cut_if_asked(mut self) -> Result<Self, Error> {
+        if self.config.periodic_cut == PeriodicCut::Wrap || !self.network.domain().is_periodic() {
+            return Ok(self);
+        }
+        let volumes = self.network.cell_volumes().to_vec();
+        let start = Instant::now();
+        let (network, points) = self.network.cut_at_box(&self.points)?;
+        (self.network, self.points) = (network.with_cell_volumes(volumes), points);
+        self.add_time(Stage::Subdivision, start.elapsed());
+        let start = Instant::now();
+        self.validation = validate(&self.network, &self.points).map_err(NetworkError::Invalid)?;
+        self.add_time(Stage::Validation, start.elapsed());
+        Ok(self)
+    }
 }
 
 /// The cells of a config's seeds.
@@ -208,13 +231,14 @@ pub fn smooth_watched(
         let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
         Ok::<_, Error>((validation, dihedral_angles(&network, network.control_mesh(), &flat)))
     })?;
+    let flat_angles = angles_between_boundaries(&network, network.control_mesh(), &flat);
     let times = clock.times;
     let config = config.clone();
     Ok(Polycrystal {
         config,
         cells,
         network,
-        flat,
+        flat_angles,
         points,
         relaxed,
         collapsed,

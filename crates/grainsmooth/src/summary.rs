@@ -81,7 +81,10 @@ impl fmt::Display for Summary<'_> {
 impl Polycrystal {
     /// Adds the time that a stage took after the computation, such as writing.
     pub fn add_time(&mut self, stage: Stage, time: Duration) {
-        self.times.push((stage, time));
+        match self.times.iter_mut().find(|(known, _)| *known == stage) {
+            Some((_, taken)) => *taken += time,
+            None => self.times.push((stage, time)),
+        }
     }
 }
 

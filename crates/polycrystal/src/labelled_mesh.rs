@@ -58,7 +58,7 @@ impl ControlMesh {
             .iter_mut()
             .zip(&walls)
             .for_each(|(point, walls)| *point = wall_sets.put_on_walls(*walls, *point));
-        let node_types: Vec<NodeType> = sides_of.iter_mut().map(|sides| type_of(sides)).collect();
+        let node_types: Vec<NodeType> = sides_of.iter_mut().map(type_of).collect();
         let place_types: Vec<NodeType> = seams
             .places()
             .map(|at| type_of(&mut at.iter().flat_map(|at| elements.sides_of(at)).collect()))

@@ -22,6 +22,7 @@
 
 mod angles;
 mod boundary;
+mod box_cut;
 mod box_tree;
 mod certificate;
 mod closing;
