@@ -215,22 +215,18 @@ pub fn smooth_watched(
     let mut clock = Clock { progress, times: cells.times.clone() };
     let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
     check_levels(LevelSize { points, edges, triangles }, config.levels, available_memory())?;
-    let (mut network, flat, collapsed) = clock.time(Stage::Network, || network(config, tessellation))?;
-    let relaxed = clock.time(Stage::Relaxation, || {
-        relax_watched(&network, &flat, &config.relaxation, config.volumes, |step| {
-            progress(Stage::Relaxation, step.done, step.count);
-            watch(step);
-        })
-    })?;
-    let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
-    if config.volumes == Volumes::Free {
-        let volumes = network.grain_volumes(network.finest(), &points);
-        network = network.with_cell_volumes(volumes);
-    }
-    let (validation, angles_before) = clock.time(Stage::Validation, || {
-        let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
-        Ok::<_, Error>((validation, dihedral_angles(&network, network.control_mesh(), &flat)))
-    })?;
+    let mut tries = Regularization::tries(config).iter();
+    let (smoothed, flat) = loop {
+        let regularization = *tries.next().expect("there is one, and the last is the result");
+        let smoothed = smooth_regularized(config, tessellation, regularization, &mut clock, &mut watch);
+        let is_tangled =
+            smoothed.as_ref().is_err_and(|error| matches!(error, Error::Network(cause) if is_tangle(cause)));
+        if !is_tangled || tries.len() == 0 {
+            break smoothed?;
+        }
+    };
+    let Smoothed { network, points, relaxed, collapsed, validation } = smoothed;
+    let angles_before = dihedral_angles(&network, network.control_mesh(), &flat);
     let flat_angles = angles_between_boundaries(&network, network.control_mesh(), &flat);
     let times = clock.times;
     let config = config.clone();
@@ -248,23 +244,89 @@ pub fn smooth_watched(
     })
 }
 
+/// What is taken out of the cells before relaxation.
+#[derive(Debug, Clone, Copy)]
+enum Regularization {
+    /// What is short, and what relaxation would make so: the best triangles.
+    Foreseeing,
+    /// What is short.
+    Plain,
+    /// Nothing.
+    None,
+}
+
+impl Regularization {
+    /// What to try, one after the other: where much is taken out, in rare places relaxation makes boundaries fold or cross.
+    fn tries(config: &Config) -> &'static [Self] {
+        if config.regularize == 0.0 { &[Self::None] } else { &[Self::Foreseeing, Self::Plain, Self::None] }
+    }
+}
+
+/// Whether a network could not be relaxed as it is, but might be with less taken out.
+fn is_tangle(error: &NetworkError) -> bool {
+    matches!(
+        error,
+        NetworkError::Invalid(_) | NetworkError::Folded { .. } | NetworkError::VolumeNotRestored { .. }
+    )
+}
+
+/// A valid network.
+struct Smoothed {
+    network: Network,
+    points: Vec<DVec3>,
+    relaxed: Relaxed,
+    collapsed: Collapsed,
+    validation: Certificate,
+}
+
+/// The network of cells regularised in one way, and its flat control points.
+fn smooth_regularized(
+    config: &Config,
+    tessellation: &Tessellation,
+    regularization: Regularization,
+    clock: &mut Clock<'_>,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Result<(Smoothed, Vec<DVec3>), Error> {
+    let (mut network, flat, collapsed) =
+        clock.time(Stage::Network, || network(config, tessellation, regularization))?;
+    let progress = clock.progress;
+    let relaxed = clock.time(Stage::Relaxation, || {
+        relax_watched(&network, &flat, &config.relaxation, config.volumes, |step| {
+            progress(Stage::Relaxation, step.done, step.count);
+            watch(step);
+        })
+    })?;
+    let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
+    if config.volumes == Volumes::Free {
+        let volumes = network.grain_volumes(network.finest(), &points);
+        network = network.with_cell_volumes(volumes);
+    }
+    let validation =
+        clock.time(Stage::Validation, || validate(&network, &points).map_err(NetworkError::Invalid))?;
+    Ok((Smoothed { network, points, relaxed, collapsed, validation }, flat))
+}
+
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.
 fn network(
     config: &Config,
     tessellation: &Tessellation,
+    regularization: Regularization,
 ) -> Result<(Network, Vec<DVec3>, Collapsed), NetworkError> {
-    let Config { face_mesh, junctions, levels, wall_tension, .. } = *config;
+    let Config { face_mesh, junctions, levels, wall_tension, regularize, .. } = *config;
     let tension = |boundary: &Boundary| if boundary.wall.is_some() { wall_tension } else { 1.0 };
     let network_of = |cells, face_mesh| {
         let (network, flat) = Network::with_face_mesh(cells, face_mesh, junctions, levels as usize)?;
         Ok::<_, NetworkError>((network.with_tensions(tension)?, flat))
     };
-    if config.regularize == 0.0 {
-        let (network, flat) = network_of(tessellation, face_mesh)?;
-        return Ok((network, flat, Collapsed::default()));
-    }
+    let (regular, collapsed) = match regularization {
+        Regularization::Foreseeing => regular_cells(tessellation, regularize),
+        Regularization::Plain => tessellation.regularized(regularize),
+        Regularization::None => {
+            let (network, flat) = network_of(tessellation, face_mesh)?;
+            return Ok((network, flat, Collapsed::default()));
+        }
+    };
     let volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
-    let (regular, collapsed) = regular_cells(tessellation, config.regularize);
     let (network, flat) = network_of(&regular, config.regular_face_mesh())?;
     Ok((network.with_cell_volumes(volumes), flat, collapsed))
 }
@@ -280,7 +342,11 @@ impl Clock<'_> {
         (self.progress)(stage, 0, 1);
         let start = Instant::now();
         let result = work();
-        self.times.push((stage, start.elapsed()));
+        let taken = start.elapsed();
+        match self.times.iter_mut().find(|(known, _)| *known == stage) {
+            Some((_, time)) => *time += taken,
+            None => self.times.push((stage, taken)),
+        }
         result
     }
 }

@@ -20,6 +20,7 @@ mod springs;
 mod system;
 mod tangential;
 mod volume_constraint;
+mod wedges;
 
 use glam::DVec3;
 

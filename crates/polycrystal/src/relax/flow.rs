@@ -9,10 +9,11 @@ use super::patch::PatchTerms;
 use super::patches::Patches;
 use super::system::{Step, System};
 use super::tangential::tangential_moves;
-use crate::folds::{element_normals, folded_edges, folded_pairs};
+use super::wedges::Wedges;
+use crate::folds::{element_normals, folded_pairs};
 use crate::seams::Seams;
 use crate::volume::sum_over_grains;
-use crate::{GrainId, Level, Mesh, Network, NetworkError, Volumes};
+use crate::{GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
 
 /// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
 const ATTEMPTS: usize = 24;
@@ -70,6 +71,8 @@ pub(super) struct Flow<'a> {
     /// Neighbouring elements of each boundary on that level.
     neighbors: Vec<[u32; 2]>,
     corners: FaceCorners,
+    /// The edges of grains on that level.
+    wedges: Wedges,
     clusters: Clusters,
     volumes: Volumes,
 }
@@ -80,8 +83,8 @@ impl<'a> Flow<'a> {
         let clusters = Clusters::new(&network.levels()[level]);
         let patches = Patches::new(network, level, surface);
         let corners = FaceCorners::new(network, level);
-        let neighbors = Seams::of_level(&network.levels()[surface]).inner;
-        Self { network, patches, level, surface, neighbors, corners, clusters, volumes }
+        let Wedged { wedges, neighbors } = Wedged::new(network, surface);
+        Self { network, patches, level, surface, neighbors, corners, wedges, clusters, volumes }
     }
 
     /// Takes the steps of a stage.
@@ -104,12 +107,13 @@ impl<'a> Flow<'a> {
             last_energy = energy;
         }
         // Where the finest level folds though no step did, all has moved too far from where it did not.
+        let finest = Wedged::new(self.network, self.finest());
         let mut count = 0;
         for attempt in 0..ATTEMPTS {
             if stage.is_last && self.volumes == Volumes::Kept {
                 self.restore_volumes(&mut points)?;
             }
-            let folds = self.finest_folds(&points);
+            let folds = self.finest_folds(&points, &finest);
             count = folds.len();
             if count == 0 {
                 return Ok(points);
@@ -130,7 +134,8 @@ impl<'a> Flow<'a> {
     fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<f64, NetworkError> {
         let terms = self.patches.terms(points);
         let energy = terms.iter().map(|terms| terms.energy).sum();
-        let before = element_normals(self.surface(), &self.refined(points));
+        let refined = self.refined(points);
+        let before = (element_normals(self.surface(), &refined), refined);
         let volumes: Vec<f64> = terms.iter().map(|terms| terms.volume).collect();
         let volumes = sum_over_grains(self.network.boundaries(), &volumes, self.network.grain_count());
         let missing = self.missing(&volumes);
@@ -273,14 +278,20 @@ impl<'a> Flow<'a> {
         self.network.subdivide_between(self.level, self.surface, points)
     }
 
-    fn finest_folds(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
+    /// Pairs of elements of the finest level that are folded, or have passed each other.
+    fn finest_folds(&self, points: &[DVec3], finest: &Wedged) -> Vec<[u32; 2]> {
         let points = self.network.subdivide_between(self.level, self.finest(), points);
-        folded_edges(self.network.finest(), &points, 0.0)
+        let normals = element_normals(self.network.finest(), &points);
+        let mut folds = folded_pairs(&finest.neighbors, &normals, 0.0);
+        folds.extend(finest.wedges.turned(&points));
+        folds
     }
 
-    /// Elements that a step has turned too far, or bent too far and more than they were.
-    fn broken_elements(&self, before: &[DVec3], moved: &[DVec3]) -> Vec<u32> {
+    /// Elements that a step has turned too far, or bent too far and more than they were, or closed upon others; given the
+    /// normals and points before.
+    fn broken_elements(&self, (before, start): &(Vec<DVec3>, Vec<DVec3>), moved: &[DVec3]) -> Vec<u32> {
         let refined = self.refined(moved);
+        let closing = self.wedges.closing(start, &refined);
         let after = element_normals(self.surface(), &refined);
         let cosine = |normals: &[DVec3], [a, b]: [u32; 2]| {
             normals[a as usize].normalize_or_zero().dot(normals[b as usize].normalize_or_zero())
@@ -291,7 +302,7 @@ impl<'a> Flow<'a> {
         let turned = (0u32..).zip(before.iter().zip(&after)).filter(|(_, (before, after))| {
             before.dot(**after) < LARGEST_TURN * before.length() * after.length()
         });
-        turned.map(|(element, _)| element).chain(bent.flatten()).collect()
+        turned.map(|(element, _)| element).chain(bent.flatten()).chain(closing).collect()
     }
 
     /// Makes rigid all control points that the given elements of a level depend on.
@@ -325,6 +336,22 @@ fn mean_edge(mesh: &Mesh, points: &[DVec3]) -> f64 {
             let segments = mesh.segments();
             segments.iter().map(|ends| length(*ends)).sum::<f64>() / segments.len() as f64
         }
+    }
+}
+
+/// How the elements of a level meet.
+struct Wedged {
+    wedges: Wedges,
+    /// Pairs of neighbours in one boundary.
+    neighbors: Vec<[u32; 2]>,
+}
+
+impl Wedged {
+    fn new(network: &Network, level: usize) -> Self {
+        let level = &network.levels()[level];
+        let seams = Seams::of_level(level);
+        let wedges = Wedges::new(&Surface::of_level(level, &[], &network.sides()), &seams);
+        Self { wedges, neighbors: seams.inner }
     }
 }
 
