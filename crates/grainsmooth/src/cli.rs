@@ -122,7 +122,7 @@ impl Arguments {
             relaxation: smoothing.relax,
             wall_tension: smoothing.wall_tension,
             volumes: smoothing.volumes(),
-            regularize: smoothing.regularize(),
+            regularize: smoothing.regularize,
             levels: smoothing.levels,
             junctions: smoothing.junctions(),
             drop_empty: seeds.drop_empty,

@@ -107,7 +107,8 @@ pub struct Config {
     pub wall_tension: f64,
     /// Whether relaxation keeps the grains' volumes.
     pub volumes: Volumes,
-    /// Length, in units of the mean grain size, below which edges of cells collapse before relaxation; 0 keeps all.
+    /// Length, in units of the mean grain size, below which edges of cells collapse before relaxation; 0 keeps all. Without
+    /// relaxation it has no effect: boundaries stay flat, for which no vertex may move.
     pub regularize: f64,
     /// Number of subdivisions.
     pub levels: u32,
@@ -172,6 +173,11 @@ impl Config {
 
     /// The largest: edges as long as half a grain are no small features.
     pub const LARGEST_REGULARIZE: f64 = 0.5;
+
+    /// The length to regularise by: none without relaxation.
+    pub(crate) fn effective_regularize(&self) -> f64 {
+        if self.relaxation == Relaxation::Time(0.0) { 0.0 } else { self.regularize }
+    }
 
     /// Control points on the boundaries of regularised cells: in a fan, whose triangles at short lines are thin, those stay whole.
     pub(crate) fn regular_face_mesh(&self) -> FaceMesh {

@@ -39,7 +39,7 @@ impl Estimate {
     /// The size of what becomes of some cells.
     pub fn new(config: &Config, cells: &Tessellated, format: Option<OutputFormat>) -> Self {
         let tessellation = &cells.tessellation;
-        let size = match config.regularize {
+        let size = match config.effective_regularize() {
             0.0 => config.face_mesh.control_mesh_size(tessellation),
             length => config.regular_face_mesh().control_mesh_size(&tessellation.regularized(length).0),
         };

@@ -258,7 +258,10 @@ enum Regularization {
 impl Regularization {
     /// What to try, one after the other: where much is taken out, in rare places relaxation makes boundaries fold or cross.
     fn tries(config: &Config) -> &'static [Self] {
-        if config.regularize == 0.0 { &[Self::None] } else { &[Self::Foreseeing, Self::Plain, Self::None] }
+        match config.effective_regularize() {
+            0.0 => &[Self::None],
+            _ => &[Self::Foreseeing, Self::Plain, Self::None],
+        }
     }
 }
 

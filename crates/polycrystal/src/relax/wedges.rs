@@ -7,8 +7,11 @@ use glam::DVec3;
 use crate::seams::{Seams, Use};
 use crate::{Elements, Side, Surface};
 
-/// Cosine of the smallest angle that a step may leave a grain at a triple line (5 degrees).
-const SHARPEST: f64 = 0.996;
+/// Cosine of the smallest angle that a step may leave a grain at a triple line (2 degrees).
+const SHARPEST: f64 = 0.9994;
+
+/// Cosine of the angle from which on one beyond 180 degrees is one that has closed (315 degrees, or -45).
+const LEAST_TURNED: f64 = 0.7;
 
 /// Change of that cosine that counts as none.
 const SLIGHT: f64 = 1e-9;
@@ -71,9 +74,9 @@ impl Wedges {
     }
 }
 
-/// Whether an angle, given by cosine and sine, is above 270 degrees, which is to say below 0.
+/// Whether an angle, given by cosine and sine, is so far above 180 degrees that it is rather one below 0.
 fn is_turned([cosine, sine]: [f64; 2]) -> bool {
-    cosine > 0.0 && sine < 0.0
+    cosine > LEAST_TURNED && sine < 0.0
 }
 
 impl Wedge {
