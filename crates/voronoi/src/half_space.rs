@@ -27,6 +27,7 @@ pub(crate) struct HalfSpace {
 
 impl HalfSpace {
     /// The side on which `seed` lies of a generator's plane.
+    #[inline]
     pub(crate) fn new(seed: u32, generator: Generator, input: ExactInput) -> Self {
         match generator.plane() {
             Plane::Side(side) => {
@@ -69,6 +70,7 @@ impl HalfSpace {
     }
 
     /// Sum of the normal's absolute coordinates.
+    #[inline]
     pub(crate) fn sum(&self) -> f64 {
         self.normal.abs().element_sum()
     }
@@ -84,6 +86,7 @@ pub(crate) struct Intersection {
 
 impl Intersection {
     /// In floating point, if that can tell that the planes are in positive orientation.
+    #[inline]
     pub(crate) fn rounded([a, b, c]: [&HalfSpace; 3]) -> Option<Self> {
         let bc = b.normal.cross(c.normal);
         let ca = c.normal.cross(a.normal);
