@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 
 use crate::generator::Generator;
 use crate::grid::Run;
-use crate::half_space::HalfSpace;
+use crate::half_space::{self, HalfSpace};
 use crate::wide::{self, LANES, PlaneColumns, Ray};
 
 /// Half the distance between 1 and the next number in single precision.
@@ -15,13 +15,6 @@ const SINGLE_ROUNDOFF: f64 = f32::EPSILON as f64 / 2.0;
 
 /// Roundings that a dot product of a rounded normal with a rounded point, less an offset, can accumulate, with a margin of two.
 const EVALUATION_ERROR: f64 = 16.0 * SINGLE_ROUNDOFF;
-
-/// What roundings in double precision are worth in those of single precision.
-const DOUBLE_IN_SINGLE: f64 = f64::EPSILON / f32::EPSILON as f64;
-
-/// Distance of a wall or an image of the seed, in the units used, beyond which it does not raise the bounds: vertices for which
-/// its rounding matters are so far away that the sites around them do.
-const FAR: f64 = 4.0;
 
 /// Sine of the angle between a plane and an edge below which the plane is not suggested as the edge's end: there rounding
 /// decides where they meet. Planes through the edge are such.
@@ -43,6 +36,8 @@ pub(crate) struct Candidates {
     largest_sum: f64,
     /// Bound on the sizes of the offsets' terms.
     largest_offset_size: f64,
+    /// Bound on what is wrong, before it is rounded, with an offset, or with a normal along a vertex.
+    largest_error: f64,
 }
 
 /// A point, and how far inside of a plane it may seem to be if it is beyond.
@@ -56,7 +51,7 @@ impl Candidates {
     /// Takes all planes out. The next are for a search that goes to about some distance.
     pub(crate) fn restart(&mut self, distance: f64) {
         self.count = 0;
-        (self.largest_sum, self.largest_offset_size) = (0.0, 0.0);
+        (self.largest_sum, self.largest_offset_size, self.largest_error) = (0.0, 0.0, 0.0);
         // The power of two at or above the reciprocal; where there is none, single precision will not tell much.
         let biased_exponent = distance.to_bits() >> 52 & 0x7ff;
         self.scale = f64::from_bits(2046u64.saturating_sub(biased_exponent).clamp(1, 2045) << 52);
@@ -70,40 +65,31 @@ impl Candidates {
         &self.generators[..self.count]
     }
 
-    /// Adds a plane whose normal has length 1.
-    pub(crate) fn push_wall(&mut self, plane: &HalfSpace) {
+    /// Adds a plane within the distance that is searched.
+    pub(crate) fn push(&mut self, plane: &HalfSpace) {
         self.make_room(1);
-        let offset = plane.offset * self.scale;
-        self.set(self.count, plane.generator, plane.normal, offset);
+        // Far planes and near ones shall have coordinates of one size.
+        let per_length = self.scale / plane.length;
+        let offset = plane.offset * per_length;
+        self.set(self.count, plane.generator, plane.normal / plane.length, offset);
         self.count += 1;
-        self.largest_sum = self.largest_sum.max(plane.sum());
-        let offset_size = offset.abs().min(FAR) + DOUBLE_IN_SINGLE * plane.offset_size * self.scale;
-        self.largest_offset_size = self.largest_offset_size.max(offset_size);
+        self.largest_sum = self.largest_sum.max(plane.sum() / plane.length);
+        self.largest_offset_size = self.largest_offset_size.max(offset.abs());
+        let error = half_space::EVALUATION_ERROR * plane.offset_size * per_length;
+        self.largest_error = self.largest_error.max(error);
     }
 
-    /// Adds the bisector of the seed with its own image.
-    pub(crate) fn push_image(&mut self, plane: &HalfSpace) {
-        self.make_room(1);
-        self.set(
-            self.count,
-            plane.generator,
-            plane.normal * self.scale,
-            plane.offset * self.scale * self.scale,
-        );
-        self.count += 1;
-        self.raise_bounds(plane.length.min(FAR / self.scale), [0.0; 2]);
-    }
-
-    /// Raises the bounds to those of bisectors with sites up to a distance away. What a weight adds to the offset has a size, and
-    /// is a difference of terms.
-    pub(crate) fn raise_bounds(&mut self, distance: f64, [weight_size, weight_terms]: [f64; 2]) {
-        let distance = distance * self.scale;
+    /// Raises the bounds to those of bisectors with sites up to a distance away, of which coordinates are wrong by at most some
+    /// error; what weights add to an offset has a size and an error, too.
+    pub(crate) fn raise_bounds(&mut self, distance: f64, error: f64, weight: f64, weight_error: f64) {
         let squared_scale = self.scale * self.scale;
         // The 1-norm of a vector is at most the root of 3 times its length; images may be a last place farther away.
-        self.largest_sum = self.largest_sum.max(2.0 * distance);
-        let offset_size =
-            0.75 * distance * distance + squared_scale * (weight_size + DOUBLE_IN_SINGLE * weight_terms);
+        self.largest_sum = self.largest_sum.max(2.0 * distance * self.scale);
+        let offset_size = (0.75 * distance * distance + weight) * squared_scale;
         self.largest_offset_size = self.largest_offset_size.max(offset_size);
+        // What is wrong with a normal counts along itself and along a vertex, which is at most half as long: 1.5 times the root of 3.
+        let error = (3.0 * error * distance + weight_error) * squared_scale;
+        self.largest_error = self.largest_error.max(error);
     }
 
     /// Adds the bisectors of `seed` at `center` with the sites of a run further than the root of `from` and at most that
@@ -116,29 +102,6 @@ impl Candidates {
         let [x, y, z, offsets] = [&mut self.x, &mut self.y, &mut self.z, &mut self.offsets];
         let columns = [&mut x[first..], &mut y[first..], &mut z[first..], &mut offsets[first..]];
         self.count += wide::compact(run, seed, center, squares, self.scale, generators, columns);
-    }
-
-    /// Lets a function take planes from number `first` on out, or replace their normals.
-    pub(crate) fn revise(&mut self, first: usize, mut revised: impl FnMut(Generator) -> Revision) {
-        let mut kept = first;
-        for number in first..self.count {
-            let generator = self.generators[number];
-            match revised(generator) {
-                Revision::Drop => continue,
-                Revision::Keep => {
-                    self.generators[kept] = generator;
-                    (self.x[kept], self.y[kept], self.z[kept]) =
-                        (self.x[number], self.y[number], self.z[number]);
-                    self.offsets[kept] = self.offsets[number];
-                }
-                Revision::Replace(normal) => {
-                    let normal = normal * self.scale;
-                    self.set(kept, generator, normal, 0.5 * normal.length_squared());
-                }
-            }
-            kept += 1;
-        }
-        self.count = kept;
     }
 
     /// Moves planes from number `first` on outward.
@@ -184,12 +147,13 @@ impl Candidates {
     }
 
     /// A ray from a point on, such that planes through it are not met.
+    #[inline]
     pub(crate) fn ray(&self, start: DVec3, direction: DVec3) -> Ray {
-        Ray {
-            start: (start * self.scale).as_vec3(),
-            direction: direction.normalize_or_zero().as_vec3(),
-            threshold: single(GRAZING * self.largest_sum),
-        }
+        // The product of two normals: single precision knows its size if it knows theirs.
+        let direction = direction * (self.scale * self.scale);
+        let threshold = GRAZING * self.largest_sum * direction.abs().element_sum();
+        let start = (start * self.scale).as_vec3();
+        Ray { start, direction: direction.as_vec3(), threshold: single(threshold) }
     }
 
     /// Where a ray meets the first of the planes, and its number.
@@ -205,10 +169,12 @@ impl Candidates {
     }
 
     /// Looks at a point, each coordinate of which is known up to an error.
+    #[inline]
     pub(crate) fn probe(&self, point: DVec3, error: f64) -> Probe {
         let point = point * self.scale;
         let per_sum = error * self.scale + EVALUATION_ERROR * point.abs().max_element();
-        let slack = self.largest_sum * per_sum + EVALUATION_ERROR * self.largest_offset_size;
+        let slack =
+            self.largest_sum * per_sum + EVALUATION_ERROR * self.largest_offset_size + self.largest_error;
         Probe { point: point.as_vec3(), slack: single(slack) }
     }
 
@@ -228,14 +194,6 @@ impl Candidates {
     pub(crate) fn count_maybe_beyond(&self, Probe { point, slack }: Probe) -> u32 {
         wide::count_beyond(self.columns(), point, slack)
     }
-}
-
-/// What becomes of a plane.
-pub(crate) enum Revision {
-    Keep,
-    /// The bisector with a site at this vector from the seed.
-    Replace(DVec3),
-    Drop,
 }
 
 /// Rounded to single precision.

@@ -180,26 +180,26 @@ impl<'a> EndSearch<'a> {
         if radius <= self.radius { Ok(()) } else { self.gather(self.search.reach(self.seed, radius)) }
     }
 
-    /// Makes all sites up to a distance candidates, and before them the outermost planes.
+    /// Makes all sites up to a distance candidates, and walls whose mirror images of the seed are as near.
     fn gather(&mut self, reach: f64) -> Result<(), ImagesMissing> {
         if reach <= self.reach {
             return Ok(());
         }
-        let (seed, input) = (self.seed, self.input);
+        let (seed, input, range) = (self.seed, self.input, [self.reach, reach]);
         let candidates = &mut self.candidates;
         if self.reach < 0.0 {
             candidates.restart(reach);
-            let plane = (input.domain.dimension() == Dimension::Two).then_some(Generator::side(PLANE));
-            for generator in input.outermost_planes(seed).chain(plane) {
-                let plane = HalfSpace::new(seed, generator, input);
-                match generator.as_site() {
-                    Some(_) => candidates.push_image(&plane),
-                    None => candidates.push_wall(&plane),
-                }
+        }
+        self.search.gather(candidates, seed, range)?;
+        let plane = (input.domain.dimension() == Dimension::Two).then_some(PLANE);
+        for wall in Wall::ALL[..2 * input.domain.axes()].iter().copied().chain(plane) {
+            let doubled = 2.0 * input.outermost_distance(seed, wall);
+            // Across periodic axes the seed's own images are sites like others.
+            if doubled > range[0] && doubled <= range[1] && !input.domain.periodic().test(wall.axis()) {
+                candidates.push(&HalfSpace::new(seed, Generator::side(wall), input));
             }
         }
-        self.search.gather(candidates, seed, [self.reach, reach])?;
-        input.for_each_facet_within(seed, [self.reach, reach], |plane, _| candidates.push_wall(&plane));
+        input.for_each_facet_within(seed, range, |plane, _| candidates.push(&plane));
         candidates.fill_lanes();
         self.reach = reach;
         self.radius = self.search.radius(seed, reach);

@@ -27,7 +27,7 @@ pub(crate) struct HalfSpace {
 
 impl HalfSpace {
     /// The side on which `seed` lies of a generator's plane.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn new(seed: u32, generator: Generator, input: ExactInput) -> Self {
         match generator.plane() {
             Plane::Side(side) => {
@@ -53,9 +53,13 @@ impl HalfSpace {
 
     /// What lies behind a wall of a polyhedron.
     pub(crate) fn of_wall(seed: DVec3, wall: Wall, domain: &Domain) -> Self {
-        let generator = Generator::facet(wall);
-        let normal = domain.unit_normals()[wall.index()];
-        let (offset, offset_size) = match domain.wall_planes()[wall.index()] {
+        let (plane, normal) = (&domain.wall_planes()[wall.index()], domain.unit_normals()[wall.index()]);
+        Self::of_plane(seed, Generator::facet(wall), plane, normal)
+    }
+
+    /// The same for a wall with a plane, of which the normal has length 1.
+    pub(crate) fn of_plane(seed: DVec3, generator: Generator, plane: &WallPlane, normal: DVec3) -> Self {
+        let (offset, offset_size) = match *plane {
             WallPlane::HalfSpace { normal: exact, offset } => {
                 let terms = exact * seed;
                 let scale = exact.dot(normal);

@@ -120,7 +120,7 @@ impl<'a> ExactInput<'a> {
         mut visit: impl FnMut(HalfSpace, f64),
     ) {
         let own = self.seeds[seed as usize];
-        for wall in (0u32..).take(self.domain.wall_planes().len()).map(Wall) {
+        for wall in self.domain.walls_within(own, 0.5 * to) {
             let plane = HalfSpace::of_wall(own, wall, self.domain);
             // Rounding must not make it farther than it is.
             let doubled = (2.0 * (plane.offset - EVALUATION_ERROR * plane.offset_size)).max(0.0);

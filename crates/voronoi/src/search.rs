@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::candidates::{Candidates, Revision};
+use crate::candidates::Candidates;
 use crate::generator::{Generator, Plane};
 use crate::grid::SeedGrid;
+use crate::half_space::EVALUATION_ERROR;
 use crate::images::{Image, ImageTable};
 use crate::predicate::ExactInput;
 use crate::torus::FaceEnd;
@@ -198,8 +199,7 @@ impl<'a> Search<'a> {
         self.layers.iter().find(knows_all).ok_or(ImagesMissing)
     }
 
-    /// Adds the bisectors of a seed with all sites further than `from` and at most `to` away but those that its cell begins
-    /// with.
+    /// Adds the bisectors of a seed with all sites further than `from` and at most `to` away.
     pub(crate) fn gather(
         &self,
         candidates: &mut Candidates,
@@ -211,32 +211,19 @@ impl<'a> Search<'a> {
         let first = candidates.len();
         let squares = [if from < 0.0 { -1.0 } else { from * from }, to * to];
         layer.grid.for_each_run(own, to, |run| candidates.push_within(seed, own, &run, squares));
-        let input = self.input();
-        if self.domain.is_periodic() {
-            let seed_count =
-                Generator::site(u32::try_from(self.seeds.len()).expect("site ids were checked to fit"));
-            candidates.revise(first, |generator| {
-                if generator < seed_count {
-                    Revision::Keep
-                } else if input.bounds_from_start(seed, generator.0) {
-                    Revision::Drop
-                } else {
-                    Revision::Replace(input.difference(seed, generator.0))
-                }
-            });
-        }
-        let mut weight_bounds = [0.0f64; 2];
+        let (mut shift, mut largest_weight) = (0.0f64, 0.0f64);
         if self.weights.is_some() {
+            let input = self.input();
             let own_weight = input.weight(seed);
             candidates.shift_offsets(first, |generator| {
                 let weight = input.weight(generator.0);
-                let shift = 0.5 * (own_weight - weight);
-                weight_bounds = [weight_bounds[0].max(shift.abs()), weight_bounds[1].max(weight.abs())];
-                shift
+                let own_shift = 0.5 * (own_weight - weight);
+                (shift, largest_weight) = (shift.max(own_shift.abs()), largest_weight.max(weight.abs()));
+                own_shift
             });
-            weight_bounds[1] += own_weight.abs();
+            largest_weight = largest_weight.max(own_weight.abs());
         }
-        candidates.raise_bounds(to, weight_bounds);
+        candidates.raise_bounds(to, self.position_error(), shift, EVALUATION_ERROR * largest_weight);
         Ok(())
     }
 

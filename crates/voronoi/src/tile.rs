@@ -48,55 +48,15 @@ pub(crate) fn cut_tiles(search: &mut Search) -> Vec<Tile> {
     let mut tiles: Vec<Option<Tile>> = search.tiles().iter().map(|_| None).collect();
     loop {
         let missing = tiles.par_iter_mut().zip(search.tiles()).filter(|(tile, _)| tile.is_none());
-        missing.for_each(|(tile, seeds)| *tile = cut_tile(search, seeds.clone()).ok());
+        missing.for_each_init(
+            || Builder::new(search),
+            |builder, (tile, seeds)| *tile = builder.cut(seeds.clone()).ok(),
+        );
         if tiles.iter().all(Option::is_some) {
             return tiles.into_iter().flatten().collect();
         }
         search.widen();
     }
-}
-
-/// Completes the cells of consecutive seeds.
-fn cut_tile(search: &Search, seeds: Range<u32>) -> Result<Tile, ImagesMissing> {
-    // Random cells have 6.77 vertices, 7.77 faces and 40.6 corners each, in the plane 2, 3 and 6; walls and what
-    // lies on the sides of the tile add to that.
-    let [vertices, faces, corners] = match search.input().domain.dimension() {
-        Dimension::Two => [3, 4, 8].map(|count| count * seeds.len()),
-        Dimension::Three => [9, 9, 46].map(|count| count * seeds.len()),
-    };
-    let mut corner_starts = Vec::with_capacity(faces);
-    corner_starts.push(0);
-    let tile = Tile {
-        seeds: seeds.clone(),
-        positions: Vec::new(),
-        shared: Vec::new(),
-        faces: Vec::with_capacity(faces),
-        corner_starts,
-        corners: Vec::with_capacity(corners),
-        coincident: Vec::new(),
-    };
-    let mut builder = Builder {
-        search,
-        seeds: seeds.clone(),
-        is_flat: search.input().domain.dimension() == Dimension::Two,
-        vertices: Vec::with_capacity(vertices),
-        edges: CellEdges::new(),
-        has_vertex: vec![false; seeds.len()],
-        first_waiting: vec![NONE; seeds.len()],
-        waiting: Vec::with_capacity(vertices),
-        current: Vec::new(),
-        tile,
-    };
-    let mut end_search = EndSearch::new(search);
-    for seed in seeds {
-        builder.complete(&mut end_search, seed)?;
-    }
-    let Builder { mut tile, mut vertices, .. } = builder;
-    for number in (0u32..).take(vertices.len()) {
-        tile.push_faces_at(search, &mut vertices, number, ALL_FACES);
-    }
-    tile.take_vertices(search, &vertices);
-    Ok(tile)
 }
 
 /// An edge of a vertex, as one number: four times the vertex's, and the edge's.
@@ -105,8 +65,10 @@ type EdgeOf = u32;
 /// Of a new vertex, the edge that runs along the first three of its generators.
 const LAST_EDGE: EdgeOf = 3;
 
+/// Reused from tile to tile so that the buffers are allocated once.
 struct Builder<'a> {
     search: &'a Search<'a>,
+    end_search: EndSearch<'a>,
     seeds: Range<u32>,
     is_flat: bool,
     vertices: Vec<TileVertex>,
@@ -127,16 +89,60 @@ struct WaitingEdge {
     next: u32,
 }
 
-impl Builder<'_> {
-    fn complete(&mut self, end_search: &mut EndSearch, seed: u32) -> Result<(), ImagesMissing> {
-        end_search.start(seed);
+impl<'a> Builder<'a> {
+    fn new(search: &'a Search<'a>) -> Self {
+        Self {
+            search,
+            end_search: EndSearch::new(search),
+            seeds: 0..0,
+            is_flat: search.input().domain.dimension() == Dimension::Two,
+            vertices: Vec::new(),
+            edges: CellEdges::new(),
+            has_vertex: Vec::new(),
+            first_waiting: Vec::new(),
+            waiting: Vec::new(),
+            current: Vec::new(),
+            tile: Tile::with_room(0..0, [0; 2]),
+        }
+    }
+
+    /// Completes the cells of consecutive seeds.
+    fn cut(&mut self, seeds: Range<u32>) -> Result<Tile, ImagesMissing> {
+        let count = seeds.len();
+        self.seeds = seeds.clone();
+        self.vertices.clear();
+        self.has_vertex.clear();
+        self.has_vertex.resize(count, false);
+        self.first_waiting.clear();
+        self.first_waiting.resize(count, NONE);
+        self.waiting.clear();
+        self.current.clear();
+        // Random cells have 6.77 vertices, 7.77 faces and 40.6 corners each, in the plane 2, 3 and 6; walls and what lies on the
+        // sides of the tile add to that.
+        let per_cell = if self.is_flat { [3, 4, 8] } else { [9, 9, 46] };
+        let [vertices, faces, corners] = per_cell.map(|per_cell| per_cell * count);
+        self.vertices.reserve(vertices);
+        self.waiting.reserve(vertices);
+        self.tile = Tile::with_room(seeds.clone(), [faces, corners]);
+        for seed in seeds {
+            self.complete(seed)?;
+        }
+        for number in (0u32..).take(self.vertices.len()) {
+            self.tile.push_faces_at(self.search, &mut self.vertices, number, ALL_FACES);
+        }
+        self.tile.take_vertices(self.search, &self.vertices);
+        Ok(std::mem::replace(&mut self.tile, Tile::with_room(0..0, [0; 2])))
+    }
+
+    fn complete(&mut self, seed: u32) -> Result<(), ImagesMissing> {
+        self.end_search.start(seed);
         self.edges.clear();
         let known = self.vertices.len();
         let own = Generator::site(seed);
         let place = self.place(seed);
         if !self.has_vertex[place] {
             let Some(planes) = self.first_vertex(seed)? else { return Ok(()) };
-            let vertex = end_search.vertex_of(planes)?;
+            let vertex = self.end_search.vertex_of(planes)?;
             let number = self.push(seed, &vertex);
             self.join(own, 4 * number + LAST_EDGE);
         }
@@ -149,15 +155,15 @@ impl Builder<'_> {
         let open = ends.filter(|(vertex, edge)| vertex.ends[*edge as usize] == NONE);
         let radius = open.map(|(vertex, _)| self.relative_to(seed, vertex).length()).reduce(f64::max);
         if let Some(radius) = radius {
-            end_search.expect(radius)?;
+            self.end_search.expect(radius)?;
         }
         while let Some(edge_of) = self.current.pop() {
             let (vertex, edge) = (&self.vertices[(edge_of / 4) as usize], (edge_of % 4) as usize);
             if vertex.ends[edge] == NONE {
                 let slot = vertex.slot(own);
                 let start = self.relative_to(seed, vertex);
-                let found =
-                    end_search.other_end(vertex.edge_planes(slot, edge), vertex.planes(slot), start)?;
+                let (along, used) = (vertex.edge_planes(slot, edge), vertex.planes(slot));
+                let found = self.end_search.other_end(along, used, start)?;
                 let number = self.push(seed, &found);
                 // What the two vertices share comes first in the new one.
                 self.link(own, 4 * number + LAST_EDGE, edge_of);
@@ -261,6 +267,21 @@ impl Builder<'_> {
 }
 
 impl Tile {
+    /// Without faces, but with room for some, and for their corners.
+    fn with_room(seeds: Range<u32>, [faces, corners]: [usize; 2]) -> Self {
+        let mut corner_starts = Vec::with_capacity(faces + 1);
+        corner_starts.push(0);
+        Self {
+            seeds,
+            positions: Vec::new(),
+            shared: Vec::new(),
+            faces: Vec::with_capacity(faces),
+            corner_starts,
+            corners: Vec::with_capacity(corners),
+            coincident: Vec::new(),
+        }
+    }
+
     /// Adds those of some faces of a vertex that lie between a seed of the tile and a wall or a site that comes after it in the
     /// user's numbering. All their vertices are known.
     fn push_faces_at(&mut self, search: &Search, vertices: &mut [TileVertex], number: u32, faces: u8) {

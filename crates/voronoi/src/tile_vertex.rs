@@ -38,6 +38,12 @@ const SUCCESSOR: [[usize; 4]; 4] = {
     successor
 };
 
+#[inline]
+fn successor(slot: usize, other: usize) -> usize {
+    // Spares a check wherever the result is an index.
+    SUCCESSOR[slot][other] & 3
+}
+
 /// The slots of the two generators of each face.
 pub(crate) const FACE_SLOTS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
@@ -56,7 +62,8 @@ impl TileVertex {
     pub(crate) fn slot(&self, generator: Generator) -> usize {
         let [_, b, c, d] = self.generators.map(|own| own == generator);
         debug_assert!(b || c || d || self.generators[0] == generator);
-        usize::from(b) + 2 * usize::from(c) + 3 * usize::from(d)
+        // At most 3, as the compiler sees.
+        usize::from(b | d) | usize::from(c | d) << 1
     }
 
     /// The planes of the vertex as the cell in a slot sees them, in positive orientation.
@@ -69,8 +76,8 @@ impl TileVertex {
     /// positive orientation, as the cell in `slot` sees it.
     #[inline]
     pub(crate) fn edge_planes(&self, slot: usize, edge: usize) -> [Generator; 2] {
-        let from = SUCCESSOR[slot][edge];
-        let to = SUCCESSOR[slot][from];
+        let from = successor(slot, edge);
+        let to = successor(slot, from);
         [self.generators[to], self.generators[from]]
     }
 
@@ -78,8 +85,8 @@ impl TileVertex {
     /// cell's face with the generator in slot `other`; and the slot of what lies beyond the edge in the face's plane.
     #[inline]
     pub(crate) fn next_edge(cell: usize, other: usize) -> (usize, usize) {
-        let edge = SUCCESSOR[cell][other];
-        (edge, SUCCESSOR[cell][edge])
+        let edge = successor(cell, other);
+        (edge, successor(cell, edge))
     }
 
     #[inline]
