@@ -22,8 +22,11 @@ fn pool(threads: usize) -> ThreadPool {
     ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start")
 }
 
+/// Triangles and points.
+type Hull = (Vec<[u32; 3]>, Vec<DVec3>);
+
 /// The base mesh in both orders.
-fn hulls() -> [(&'static str, (Vec<[u32; 3]>, Vec<DVec3>)); 2] {
+fn hulls() -> [(&'static str, Hull); 2] {
     [("random order", sphere_hull(POINTS)), ("along a curve", sphere_hull_along_curve(POINTS))]
 }
 
