@@ -33,6 +33,7 @@
 //! ```
 
 mod candidates;
+mod cell_complex;
 mod cell_edges;
 mod convex_cell;
 mod convex_surface;
@@ -65,6 +66,7 @@ mod wall;
 mod weld;
 mod wide;
 
+pub use cell_complex::{CellComplex, ComplexEdge, Corner, Snapshot, Star};
 pub use domain::{Dimension, Domain};
 pub use error::VoronoiError;
 pub use measure::CellMeasure;
