@@ -8,8 +8,9 @@ mod sphere;
 use std::time::Duration;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use glam::DVec3;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use sphere::{Order, Random, sphere_hull};
+use sphere::{Random, sphere_hull, sphere_hull_along_curve};
 use subzero::{Features, HalfEdgeMesh, LoopHierarchy, LoopWeights, TriangleMesh};
 
 const POINTS: u32 = 10_002;
@@ -21,14 +22,21 @@ fn pool(threads: usize) -> ThreadPool {
     ThreadPoolBuilder::new().num_threads(threads).build().expect("threads start")
 }
 
+/// Triangles and points.
+type Hull = (Vec<[u32; 3]>, Vec<DVec3>);
+
+/// The base mesh in both orders.
+fn hulls() -> [(&'static str, Hull); 2] {
+    [("random order", sphere_hull(POINTS)), ("along a curve", sphere_hull_along_curve(POINTS))]
+}
+
 fn base_mesh(points: usize, triangles: &[[u32; 3]]) -> TriangleMesh {
     TriangleMesh::new(points, triangles.to_vec(), &Features::default()).expect("the mesh is good")
 }
 
 fn from_scratch(c: &mut Criterion) {
     let mut group = c.benchmark_group("Loop to level 4 from scratch");
-    for (name, order) in [("random order", Order::Random), ("along a curve", Order::Curve)] {
-        let (triangles, points) = sphere_hull(POINTS, order);
+    for (name, (triangles, points)) in hulls() {
         group.throughput(Throughput::Elements(triangles.len() as u64 * 256));
         for threads in [1, 2] {
             let pool = pool(threads);
@@ -43,8 +51,7 @@ fn from_scratch(c: &mut Criterion) {
 
 fn new_points(c: &mut Criterion) {
     let mut group = c.benchmark_group("new points at level 4");
-    for (name, order) in [("random order", Order::Random), ("along a curve", Order::Curve)] {
-        let (triangles, points) = sphere_hull(POINTS, order);
+    for (name, (triangles, points)) in hulls() {
         let hierarchy = LoopHierarchy::new(base_mesh(points.len(), &triangles), LEVELS, LoopWeights::Loop);
         let mut levels = hierarchy.buffers();
         group.throughput(Throughput::Elements(hierarchy.finest().vertex_count() as u64));
@@ -59,7 +66,7 @@ fn new_points(c: &mut Criterion) {
 
 fn tables(c: &mut Criterion) {
     let mut group = c.benchmark_group("new points at level 4 through tables");
-    let (triangles, mut points) = sphere_hull(POINTS, Order::Curve);
+    let (triangles, mut points) = sphere_hull_along_curve(POINTS);
     let mut mesh = base_mesh(points.len(), &triangles);
     for _ in 1..LEVELS {
         let refined = mesh.loop_refine();
@@ -78,7 +85,7 @@ fn tables(c: &mut Criterion) {
 }
 
 fn edits(c: &mut Criterion) {
-    let (triangles, points) = sphere_hull(POINTS, Order::Curve);
+    let (triangles, points) = sphere_hull_along_curve(POINTS);
     let (mesh, _) = base_mesh(points.len(), &triangles).loop_subdivide(&points, 2, LoopWeights::Loop);
     let mesh = HalfEdgeMesh::from_triangle_mesh(&mesh).expect("the mesh is manifold");
     // One half-edge in so many, in order, and of each in turn one of its triangle's three.

@@ -1,6 +1,7 @@
 //! Doo-Sabin subdivision (1978): every corner of a face gives a vertex; faces come from faces, inner edges and inner vertices.
 
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -36,6 +37,10 @@ struct NewFaces {
     edge_ranks: Vec<u32>,
     /// Per vertex: whether it lies off the boundary and gives a face.
     around_vertex: Vec<bool>,
+    /// The vertices that give a face.
+    vertices: Vec<u32>,
+    /// How many corners the faces around these have.
+    valences: Vec<u32>,
 }
 
 /// A count as a number to compute with; no face has so many corners that this would round.
@@ -86,68 +91,77 @@ impl PolygonMesh {
     }
 
     fn doo_sabin_connectivity(&self) -> Result<Self, MeshError> {
-        let half_edges = id(self.corners.len());
         let new = self.doo_sabin_faces()?;
+        let half_edges = id(self.corners.len());
+        let first_around = half_edges + 4 * id(new.edges.len());
+        let side = |h: u32| self.directed_edges[h as usize] % 2;
+        let rank = |h: u32| new.edge_ranks[(self.directed_edges[h as usize] / 2) as usize];
+        let is_around = |h: u32| new.around_vertex[self.start(h) as usize];
         // Across the start of half-edge h runs an edge from the vertex of the half-edge clockwise before h to that of h:
         // along the face around the start, against the face across the edge of h.
-        let across = |h: u32| {
-            let directed = self.directed_edges[h as usize];
-            half_edges + 2 * new.edge_ranks[(directed / 2) as usize] + directed % 2
-        };
-        // Inside faces, edge h runs from vertex h to the next.
+        let across = |h: u32| half_edges + 2 * rank(h) + side(h);
+        // Where, in the face across the edge of h, the edge inside the face of h runs; the edge across the start of h follows.
+        let in_quad = |h: u32| half_edges + 4 * rank(h) + 2 * side(h);
+
+        let around: Vec<u32> =
+            new.vertices.par_iter().flat_map_iter(|&v| self.ring(self.outgoing[v as usize])).collect();
+        let places: Vec<AtomicU32> = self.corners.par_iter().map(|_| AtomicU32::new(NONE)).collect();
+        // Each half-edge leaves one vertex, so that no two tasks write to one place.
+        (0..id(around.len())).into_par_iter().for_each(|place| {
+            places[around[place as usize] as usize].store(first_around + place, Ordering::Relaxed);
+        });
+
+        let inner = || new.edges.par_iter().flat_map_iter(|&edge| self.edges[edge as usize]);
+        let quads = inner().flat_map_iter(|h| [self.next(h), h]);
+        let quad_edges = inner().flat_map_iter(|h| [2 * h + 1, 2 * across(h) + u32::from(is_around(h))]);
+        let around_edges = around.par_iter().map(|&h| 2 * across(self.twin(self.prev(h))));
+        let inside_edges = (0..half_edges)
+            .into_par_iter()
+            .map(|h| [h, if self.twin(h) == NONE { NONE } else { in_quad(h) }]);
+        let across_edges = inner().map(|h| {
+            if is_around(h) {
+                let clockwise = self.next(self.twin(h));
+                [places[clockwise as usize].load(Ordering::Relaxed), in_quad(h) + 1]
+            } else {
+                [in_quad(h) + 1, NONE]
+            }
+        });
+
         let mut face_starts = self.face_starts.clone();
-        let mut corners: Vec<u32> = (0..half_edges).collect();
-        let mut directed_edges: Vec<u32> = corners.iter().map(|h| 2 * h).collect();
-        let mut edges: Vec<[u32; 2]> = corners.iter().map(|&h| [h, NONE]).collect();
-        edges.resize(edges.len() + 2 * new.edges.len(), [NONE; 2]);
-        for (v, _) in new.around_vertex.iter().enumerate().filter(|&(_, &around)| around) {
-            for h in self.ring(self.outgoing[v]) {
-                let edge = across(self.twin(self.prev(h)));
-                // Faces around vertices come after those across edges.
-                let half_edge = id(corners.len() + 4 * new.edges.len());
-                edges[edge as usize][0] = half_edge;
-                corners.push(h);
-                directed_edges.push(2 * edge);
-            }
-            face_starts.push(id(corners.len() + 4 * new.edges.len()));
-        }
-        let mut quads = Vec::with_capacity(4 * new.edges.len());
-        let mut quad_edges = Vec::with_capacity(4 * new.edges.len());
-        for (rank, &edge) in new.edges.iter().enumerate() {
-            for (side, h) in self.edges[edge as usize].into_iter().enumerate() {
-                let half_edge = half_edges + id(4 * rank + 2 * side);
-                quads.extend([self.next(h), h]);
-                edges[h as usize][1] = half_edge;
-                let around = new.around_vertex[self.start(h) as usize];
-                quad_edges.extend([2 * h + 1, 2 * across(h) + u32::from(around)]);
-                edges[across(h) as usize][usize::from(around)] = half_edge + 1;
-            }
-        }
-        let face_count = self.face_count();
-        face_starts
-            .splice(face_count..=face_count, (0..=id(new.edges.len())).map(|rank| half_edges + 4 * rank));
-        corners.splice(self.corners.len()..self.corners.len(), quads);
-        directed_edges.splice(self.corners.len()..self.corners.len(), quad_edges);
-        Ok(Self::with_open_boundary(face_starts, corners, directed_edges, edges, half_edges))
+        face_starts.extend((1..=id(new.edges.len())).map(|rank| half_edges + 4 * rank));
+        face_starts.extend(new.valences.iter().scan(first_around, |end, valence| {
+            *end += valence;
+            Some(*end)
+        }));
+        Ok(Self::with_open_boundary(
+            face_starts,
+            (0..half_edges).into_par_iter().chain(quads).chain(around.par_iter().copied()).collect(),
+            (0..half_edges).into_par_iter().map(|h| 2 * h).chain(quad_edges).chain(around_edges).collect(),
+            inside_edges.chain(across_edges).collect(),
+            half_edges,
+        ))
     }
 
     fn doo_sabin_faces(&self) -> Result<NewFaces, MeshError> {
         let mut around_vertex: Vec<bool> = self.outgoing.iter().map(|&h| h != NONE).collect();
-        let mut new = NewFaces { edges: Vec::new(), edge_ranks: Vec::new(), around_vertex: Vec::new() };
+        let mut edges = Vec::new();
+        let mut edge_ranks = Vec::with_capacity(self.edge_count());
         for edge in 0..id(self.edge_count()) {
-            new.edge_ranks.push(id(new.edges.len()));
+            edge_ranks.push(id(edges.len()));
             if self.is_boundary(edge) {
                 self.edge(edge).into_iter().for_each(|end| around_vertex[end as usize] = false);
             } else {
-                new.edges.push(edge);
+                edges.push(edge);
             }
         }
-        let has_two_edges = |&v: &usize| around_vertex[v] && self.ring(self.outgoing[v]).count() == 2;
-        if let Some(vertex) = (0..self.vertex_count()).find(has_two_edges) {
-            return Err(MeshError::ValenceTwo { vertex: id(vertex) });
+        let vertices: Vec<u32> =
+            (0..id(self.vertex_count())).filter(|&v| around_vertex[v as usize]).collect();
+        let valences: Vec<u32> =
+            vertices.par_iter().map(|&v| id(self.ring(self.outgoing[v as usize]).count())).collect();
+        match valences.iter().position(|&valence| valence == 2) {
+            Some(place) => Err(MeshError::ValenceTwo { vertex: vertices[place] }),
+            None => Ok(NewFaces { edges, edge_ranks, around_vertex, vertices, valences }),
         }
-        new.around_vertex = around_vertex;
-        Ok(new)
     }
 }
 

@@ -1,5 +1,7 @@
 //! Connectivity of a polygon mesh.
 
+use rayon::prelude::*;
+
 use crate::edge_table::EdgeTable;
 use crate::features::INFINITE_SHARPNESS;
 use crate::ids::{NONE, id};
@@ -98,14 +100,14 @@ impl PolygonMesh {
     ) -> Self {
         let mut edge_sharpness = vec![0.0; edges.len()];
         sharpen_boundary(&mut edge_sharpness, &edges);
-        let mut faces_of = Vec::with_capacity(corners.len());
-        for (f, end) in face_starts[1..].iter().enumerate() {
-            faces_of.resize(*end as usize, id(f));
-        }
+        let faces_of = (0..id(face_starts.len() - 1)).into_par_iter().flat_map_iter(|face| {
+            let starts = [face, face + 1].map(|face| face_starts[face as usize]);
+            std::iter::repeat_n(face, (starts[1] - starts[0]) as usize)
+        });
         let mut mesh = Self {
+            faces_of: faces_of.collect(),
             face_starts,
             corners,
-            faces_of,
             directed_edges,
             sharp_edges: Vec::new(),
             edges,

@@ -49,10 +49,11 @@ fn rule_after(spokes: &[Spoke], corner: f32) -> VertexRule {
     if decay(corner) > 0.0 { VertexRule::Corner } else { rule_of_sharp_edges(still_sharp(spokes).count()) }
 }
 
-/// The mean of the sharpnesses that run out in this step, at most 1: the share of the rule that held until now.
+/// The mean of the sharpnesses that run out in this step, at most 1: the share of the rule that held until now. In single
+/// precision and the vertex's own first, as in OpenSubdiv, so that numbers agree to the last digits.
 fn share_before_run_out(spokes: &[Spoke], corner: f32) -> f64 {
     let ending = |&sharpness: &f32| sharpness > 0.0 && !is_infinite(sharpness) && decay(sharpness) == 0.0;
-    let sharpnesses = spokes.iter().map(|spoke| spoke.sharpness).chain([corner]).filter(ending);
-    let (sum, count) = sharpnesses.fold((0.0, 0.0), |(sum, count), s| (sum + f64::from(s), count + 1.0));
-    if count > 0.0 { f64::min(sum / count, 1.0) } else { 1.0 }
+    let sharpnesses = [corner].into_iter().chain(spokes.iter().map(|spoke| spoke.sharpness)).filter(ending);
+    let (sum, count) = sharpnesses.fold((0.0, 0.0), |(sum, count), s| (sum + s, count + 1.0));
+    if count > 0.0 { f64::from(f32::min(sum / count, 1.0)) } else { 1.0 }
 }

@@ -6,12 +6,11 @@ mod sphere;
 
 use std::io::Write;
 
-use sphere::{Order, sphere_hull};
+use sphere::{sphere_hull, sphere_hull_along_curve};
 
 fn main() -> std::io::Result<()> {
-    let order =
-        if std::env::args().nth(1).as_deref() == Some("random") { Order::Random } else { Order::Curve };
-    let (triangles, points) = sphere_hull(10_002, order);
+    let random = std::env::args().nth(1).as_deref() == Some("random");
+    let (triangles, points) = if random { sphere_hull(10_002) } else { sphere_hull_along_curve(10_002) };
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     writeln!(out, "OFF\n{} {} 0", points.len(), triangles.len())?;
     points.iter().try_for_each(|p| writeln!(out, "{:?} {:?} {:?}", p.x, p.y, p.z))?;

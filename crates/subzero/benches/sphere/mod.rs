@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
+use subzero::CurveOrder;
 
 /// Random numbers by splitmix64, so that the mesh is the same on every machine.
 pub struct Random(pub u64);
@@ -23,19 +24,10 @@ impl Random {
     }
 }
 
-/// How vertices and triangles are numbered: it decides what is near each other in memory.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Order {
-    /// Vertices as they were drawn, triangles as the triangulation lists them.
-    Random,
-    /// Along a space-filling curve, as a mesh that was made with care.
-    Curve,
-}
-
 /// The hull of `count` random points on the unit sphere, outward and with `2 count - 4` triangles.
 ///
-/// Seen from one point, the others' hull is the Delaunay triangulation of their stereographic projection.
-pub fn sphere_hull(count: u32, order: Order) -> (Vec<[u32; 3]>, Vec<DVec3>) {
+/// Vertices as they were drawn, triangles as the triangulation lists them. Seen from one point, the others' hull is the Delaunay triangulation of their stereographic projection.
+pub fn sphere_hull(count: u32) -> (Vec<[u32; 3]>, Vec<DVec3>) {
     let mut random = Random(1);
     let mut points: Vec<DVec3> = (1..count)
         .map(|_| {
@@ -44,9 +36,6 @@ pub fn sphere_hull(count: u32, order: Order) -> (Vec<[u32; 3]>, Vec<DVec3>) {
             DVec3::new(radius * angle.cos(), radius * angle.sin(), z)
         })
         .collect();
-    if order == Order::Curve {
-        points.sort_by_key(|point| place_on_curve(*point));
-    }
     let flat = points.iter().map(|p| Point2::new(p.x / (1.0 - p.z), p.y / (1.0 - p.z))).collect();
     let delaunay: DelaunayTriangulation<Point2<f64>> =
         DelaunayTriangulation::bulk_load_stable(flat).expect("the points are finite");
@@ -65,18 +54,12 @@ pub fn sphere_hull(count: u32, order: Order) -> (Vec<[u32; 3]>, Vec<DVec3>) {
         let [a, b] = edge.vertices().map(|v| index(v.index()));
         [b, a, pole]
     }));
-    if order == Order::Curve {
-        triangles.sort_by_key(|corners| {
-            let [a, b, c] = corners.map(|v| points[v as usize]);
-            place_on_curve((a + b + c) / 3.0)
-        });
-    }
     (triangles, points)
 }
 
-/// The place of a point of the cube from -1 to 1 on Morton's curve.
-fn place_on_curve(point: DVec3) -> u64 {
-    let cell = ((point + 1.0) * 512.0).as_u64vec3();
-    let spread = |x: u64| (0..10).map(|bit| (x >> bit & 1) << (3 * bit)).sum::<u64>();
-    spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2
+/// The same hull, numbered along a space-filling curve.
+pub fn sphere_hull_along_curve(count: u32) -> (Vec<[u32; 3]>, Vec<DVec3>) {
+    let (triangles, points) = sphere_hull(count);
+    let order = CurveOrder::new(&points, &triangles);
+    (order.renumbered(&triangles), order.points(&points))
 }
