@@ -33,6 +33,8 @@
 //! ```
 
 mod candidates;
+mod cell_complex;
+mod cell_edges;
 mod convex_cell;
 mod convex_surface;
 mod curved_domain;
@@ -45,7 +47,6 @@ mod grid;
 mod half_space;
 mod images;
 mod measure;
-mod open_edges;
 mod periodic_weld;
 mod planar_cells;
 mod planar_measures;
@@ -65,6 +66,7 @@ mod wall;
 mod weld;
 mod wide;
 
+pub use cell_complex::{CellComplex, ComplexEdge, Corner, Snapshot, Star};
 pub use domain::{Dimension, Domain};
 pub use error::VoronoiError;
 pub use measure::CellMeasure;

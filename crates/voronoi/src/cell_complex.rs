@@ -1,0 +1,280 @@
+//! A cell complex whose topology changes.
+
+mod reconnect;
+mod snapshot;
+mod star;
+
+use glam::DVec3;
+
+use crate::weld::list_faces_of_cells;
+use crate::{CellId, Domain, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId, Wall};
+
+pub use snapshot::Snapshot;
+pub use star::Star;
+
+/// A vertex of a [`CellComplex`], moved by whole periods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Corner {
+    /// Number of the vertex.
+    pub vertex: u32,
+    /// How far from its own place it is.
+    pub shift: Shift,
+}
+
+/// An edge of a [`CellComplex`]: from a vertex in its own place to another vertex, or a moved one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ComplexEdge {
+    /// Where it starts.
+    pub start: u32,
+    /// Where it ends.
+    pub end: Corner,
+}
+
+impl ComplexEdge {
+    /// The edge between two corners that are joined by one.
+    pub fn between([from, to]: [Corner; 2]) -> Self {
+        let seen = |a: Corner, b: Corner| Self {
+            start: a.vertex,
+            end: Corner { vertex: b.vertex, shift: b.shift - a.shift },
+        };
+        seen(from, to).min(seen(to, from))
+    }
+}
+
+/// The cells of a [`Tessellation`] in space in a form that can be changed: each vertex, edge and face once, also in a
+/// periodic domain.
+///
+/// Cells that come together or part change the complex in two ways, each the other's reverse ([`Self::edge_to_triangle`] and
+/// [`Self::triangle_to_edge`]). Numbers of vertices and faces that are gone are not given to others.
+#[derive(Debug, Clone)]
+pub struct CellComplex {
+    domain: Domain,
+    seeds: Vec<DVec3>,
+    /// Where vertices are.
+    pub vertices: Vec<DVec3>,
+    faces: Vec<Face>,
+    /// The faces at each vertex; none where it is gone.
+    faces_at: Vec<Vec<u32>>,
+    /// The faces of each cell; one between a cell and its own image comes twice.
+    faces_of: Vec<Vec<u32>>,
+}
+
+/// A polygon between two sides, as its first side, a cell, sees it.
+#[derive(Debug, Clone)]
+struct Face {
+    sides: [Side; 2],
+    /// Counter-clockwise as seen from the second side; none where the face is gone.
+    corners: Vec<Corner>,
+}
+
+impl From<&Tessellation> for CellComplex {
+    fn from(tessellation: &Tessellation) -> Self {
+        let secondary_vertices = tessellation.periodic_vertices();
+        let vertex_count = tessellation.vertices().len() - secondary_vertices.len();
+        let corner = |vertex: &VertexId| match vertex.index().checked_sub(vertex_count) {
+            None => Corner { vertex: vertex.0, shift: Shift::NONE },
+            Some(place) => {
+                let pair = secondary_vertices[place];
+                Corner { vertex: pair.primary.0, shift: pair.shift }
+            }
+        };
+        let face_count = tessellation.face_count() - tessellation.periodic_faces().len();
+        let faces = tessellation.faces().take(face_count).map(|face| Face {
+            sides: tessellation.face_sides(face),
+            corners: tessellation.face_corners(face).iter().map(corner).collect(),
+        });
+        let mut complex = Self {
+            domain: tessellation.domain().clone(),
+            seeds: tessellation.seeds().to_vec(),
+            vertices: tessellation.vertices()[..vertex_count].to_vec(),
+            faces: Vec::new(),
+            faces_at: vec![Vec::new(); vertex_count],
+            faces_of: vec![Vec::new(); tessellation.cell_count()],
+        };
+        faces.for_each(|face| {
+            complex.add_face(face);
+        });
+        complex
+    }
+}
+
+impl CellComplex {
+    /// The complex with whole cells, and the vertex that each of its vertices is.
+    ///
+    /// Vertices and faces keep their order; those that are gone are left out.
+    pub fn tessellation(&self) -> (Tessellation, Vec<Corner>) {
+        let live = || self.faces.iter().filter(|face| !face.corners.is_empty());
+        let mirrored = || live().filter(|face| matches!(face.sides[1], Side::Image(..))).map(Face::mirrored);
+        let mut places: Vec<Corner> = live().flat_map(|face| face.corners.iter().copied()).collect();
+        places.extend(mirrored().flat_map(|face| face.corners));
+        places.sort_unstable();
+        places.dedup();
+        // Of each vertex, its own place stands for all others, or the first where no cell has that.
+        let mut vertices: Vec<Corner> = Vec::new();
+        let mut secondaries = Vec::new();
+        for same in places.chunk_by(|a, b| a.vertex == b.vertex) {
+            let primary = same.iter().find(|corner| corner.shift == Shift::NONE).unwrap_or(&same[0]);
+            let number = VertexId(id(vertices.len()));
+            vertices.push(*primary);
+            let others = same.iter().filter(|corner| *corner != primary);
+            secondaries.extend(others.map(|corner| (*corner, number, corner.shift - primary.shift)));
+        }
+        let mut numbers: Vec<(Corner, VertexId)> =
+            (0u32..).zip(&vertices).map(|(n, v)| (*v, VertexId(n))).collect();
+        let mut tessellation = Tessellation::without_faces(&self.domain, &self.seeds, Vec::new());
+        for (corner, primary, shift) in secondaries {
+            let secondary = VertexId(id(vertices.len()));
+            tessellation.periodic_vertices.push(PeriodicPair { secondary, primary, shift });
+            numbers.push((corner, secondary));
+            vertices.push(corner);
+        }
+        numbers.sort_unstable();
+        tessellation.vertices = vertices.iter().map(|corner| self.position(*corner)).collect();
+        let number = |corner: &Corner| {
+            let place = numbers.binary_search_by_key(corner, |(corner, _)| *corner);
+            numbers[place.expect("all corners were listed")].1
+        };
+        let mut primaries = Vec::new();
+        for face in live() {
+            let pushed = tessellation.push_face(face.sides, face.corners.iter().map(number));
+            if let Side::Image(_, shift) = face.sides[1] {
+                primaries.push((pushed, Shift::NONE - shift));
+            }
+        }
+        for (face, (primary, shift)) in mirrored().zip(primaries) {
+            let secondary = tessellation.push_face(face.sides, face.corners.iter().map(number));
+            tessellation.periodic_faces.push(PeriodicPair { secondary, primary, shift });
+        }
+        list_faces_of_cells(&mut tessellation);
+        (tessellation, vertices)
+    }
+
+    /// Where a corner is.
+    pub fn position(&self, corner: Corner) -> DVec3 {
+        self.vertices[corner.vertex as usize] + corner.shift.vector(&self.domain)
+    }
+
+    /// All edges, sorted.
+    pub fn edges(&self) -> Vec<ComplexEdge> {
+        let mut edges: Vec<ComplexEdge> = self.faces.iter().flat_map(Face::edges).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
+    /// Whether an edge is still there.
+    pub fn has_edge(&self, edge: ComplexEdge) -> bool {
+        let faces = &self.faces_at[edge.start as usize];
+        let mut edges = faces.iter().flat_map(|face| self.faces[*face as usize].edges());
+        edges.any(|other| other == edge)
+    }
+
+    /// Whether an edge is one of a face's.
+    pub fn is_edge_of(&self, edge: ComplexEdge, face: FaceId) -> bool {
+        self.faces[face.index()].edges().any(|other| other == edge)
+    }
+
+    /// The domain that the cells fill.
+    pub fn domain(&self) -> &Domain {
+        &self.domain
+    }
+
+    /// The faces with three corners.
+    pub fn triangles(&self) -> Vec<FaceId> {
+        let faces = (0u32..).zip(&self.faces);
+        faces.filter(|(_, face)| face.corners.len() == 3).map(|(number, _)| FaceId(number)).collect()
+    }
+
+    /// The corners of a face, as its first side sees them; none where it is gone.
+    pub fn corners(&self, face: FaceId) -> &[Corner] {
+        &self.faces[face.index()].corners
+    }
+
+    /// The two sides of a face: a cell, and what its corners are counter-clockwise seen from.
+    pub fn sides(&self, face: FaceId) -> [Side; 2] {
+        self.faces[face.index()].sides
+    }
+
+    /// All faces at some vertices, sorted.
+    pub fn faces_at(&self, vertices: &[u32]) -> Vec<FaceId> {
+        let faces = vertices.iter().flat_map(|vertex| &self.faces_at[*vertex as usize]);
+        let mut faces: Vec<FaceId> = faces.copied().map(FaceId).collect();
+        faces.sort_unstable();
+        faces.dedup();
+        faces
+    }
+
+    /// The walls that a vertex lies on, sorted.
+    pub fn walls_at(&self, vertex: u32) -> Vec<Wall> {
+        let faces = self.faces_at[vertex as usize].iter();
+        let walls = faces.filter_map(|face| match self.faces[*face as usize].sides[1] {
+            Side::Wall(wall) => Some(wall),
+            Side::Cell(_) | Side::Image(..) => None,
+        });
+        let mut walls: Vec<Wall> = walls.collect();
+        walls.sort_unstable();
+        walls.dedup();
+        walls
+    }
+
+    /// All faces that are there, in order.
+    pub fn live_faces(&self) -> Vec<FaceId> {
+        let faces = (0u32..).zip(&self.faces);
+        faces.filter(|(_, face)| !face.corners.is_empty()).map(|(number, _)| FaceId(number)).collect()
+    }
+
+    fn add_face(&mut self, face: Face) {
+        let number = id(self.faces.len());
+        face.corners.iter().for_each(|corner| self.faces_at[corner.vertex as usize].push(number));
+        face.sides.into_iter().filter_map(cell_of).for_each(|cell| self.faces_of[cell.index()].push(number));
+        self.faces.push(face);
+    }
+
+    fn remove_face(&mut self, number: u32) {
+        let face = &mut self.faces[number as usize];
+        for corner in std::mem::take(&mut face.corners) {
+            self.faces_at[corner.vertex as usize].retain(|other| *other != number);
+        }
+        for cell in face.sides.into_iter().filter_map(cell_of) {
+            self.faces_of[cell.index()].retain(|other| *other != number);
+        }
+    }
+
+    fn add_vertex(&mut self, position: DVec3) -> Corner {
+        self.vertices.push(position);
+        self.faces_at.push(Vec::new());
+        Corner { vertex: id(self.vertices.len() - 1), shift: Shift::NONE }
+    }
+}
+
+impl Face {
+    /// The same face as its second side sees it, an image.
+    fn mirrored(&self) -> Self {
+        let [Side::Cell(first), Side::Image(second, shift)] = self.sides else {
+            unreachable!("only faces with images come twice")
+        };
+        let moved = |corner: &Corner| Corner { shift: corner.shift - shift, ..*corner };
+        Self {
+            sides: [Side::Cell(second), Side::Image(first, Shift::NONE - shift)],
+            corners: self.corners.iter().rev().map(moved).collect(),
+        }
+    }
+
+    fn edges(&self) -> impl Iterator<Item = ComplexEdge> {
+        self.corners
+            .iter()
+            .zip(self.corners.iter().cycle().skip(1))
+            .map(|(from, to)| ComplexEdge::between([*from, *to]))
+    }
+}
+
+fn cell_of(side: Side) -> Option<CellId> {
+    match side {
+        Side::Cell(cell) | Side::Image(cell, _) => Some(cell),
+        Side::Wall(_) => None,
+    }
+}
+
+fn id(index: usize) -> u32 {
+    u32::try_from(index).expect("ids fit 32 bits")
+}

@@ -1,0 +1,197 @@
+//! What lies around an edge or a triangle where all is in general position.
+
+use super::{CellComplex, ComplexEdge, Corner, cell_of};
+use crate::{FaceId, Shift, Side};
+
+/// What lies around an edge, or a triangle that may take its place.
+///
+/// Three sides meet at the edge, a fourth at either end of it: five cells or walls, seen from one place, where a cell is an
+/// [`Side::Image`] even if it is not moved. The triangle is the face between the two end sides. Line k, of three on either side,
+/// is where an end side meets the two around other than k.
+#[derive(Debug, Clone)]
+pub struct Star {
+    /// The sides around the edge; each shares an edge with the triangle.
+    pub around: [Side; 3],
+    /// The sides at the start and the end of the edge.
+    pub ends: [Side; 2],
+    /// At each end, the other ends of the lines 0, 1 and 2.
+    pub outer: [[Corner; 3]; 2],
+    /// The faces between two sides around: face k is not at side k. None between walls.
+    pub(super) between: [Option<FaceAt>; 3],
+    /// At each end, the faces between its side and those around. None between walls.
+    pub(super) beyond: [[Option<FaceAt>; 3]; 2],
+}
+
+/// A face seen from where a star is seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct FaceAt {
+    pub(super) face: u32,
+    /// Shift from the place of the face's first side.
+    pub(super) offset: Shift,
+}
+
+/// What lies around a vertex where four sides meet: the sides, faces by pairs and edges by triples of them.
+struct VertexStar {
+    sides: Vec<Side>,
+    faces: Vec<(FaceAt, [Side; 2])>,
+    /// Other ends of edges.
+    edges: Vec<(Corner, Vec<Side>)>,
+}
+
+impl VertexStar {
+    /// The side that is not among some.
+    fn beyond(&self, others: &[Side]) -> Option<Side> {
+        let mut rest = self.sides.iter().filter(|side| !others.contains(side));
+        let side = *rest.next()?;
+        rest.next().is_none().then_some(side)
+    }
+
+    fn face(&self, first: Side, second: Side) -> Option<FaceAt> {
+        let is_between = |sides: &[Side; 2]| sides.contains(&first) && sides.contains(&second);
+        self.faces.iter().find(|(_, sides)| is_between(sides)).map(|(face, _)| *face)
+    }
+
+    fn edge(&self, sides: [Side; 3]) -> Option<Corner> {
+        let found = self.edges.iter().find(|(_, at)| sides.iter().all(|side| at.contains(side)));
+        found.map(|(end, _)| *end)
+    }
+
+    fn sides_of_edge(&self, end: Corner) -> Option<[Side; 3]> {
+        let (_, sides) = self.edges.iter().find(|(other, _)| *other == end)?;
+        sides.as_slice().try_into().ok()
+    }
+}
+
+impl CellComplex {
+    /// What lies around an edge; nothing where other than three sides meet at it, or other than four at its ends.
+    pub fn star_of_edge(&self, edge: ComplexEdge) -> Option<Star> {
+        let places = [Corner { vertex: edge.start, shift: Shift::NONE }, edge.end];
+        let [start, end] = [self.vertex_star(places[0])?, self.vertex_star(places[1])?];
+        let around = start.sides_of_edge(places[1])?;
+        if end.edge(around)? != places[0] {
+            return None;
+        }
+        let ends = [start.beyond(&around)?, end.beyond(&around)?];
+        let stars = [&start, &end];
+        let outer = [0, 1].map(|end| {
+            let others = |k: usize| [ends[end], around[(k + 1) % 3], around[(k + 2) % 3]];
+            [0, 1, 2].map(|k| stars[end].edge(others(k)))
+        });
+        let star = Star {
+            around,
+            ends,
+            outer: [all(outer[0])?, all(outer[1])?],
+            between: [0, 1, 2].map(|k| start.face(around[(k + 1) % 3], around[(k + 2) % 3])),
+            beyond: [0, 1].map(|end| [0, 1, 2].map(|k| stars[end].face(ends[end], around[k]))),
+        };
+        (ends[0] != ends[1]).then_some(star)
+    }
+
+    /// What lies around a face with three corners, and its corners: corner k is not at side k of those around. Nothing where
+    /// other than four sides meet at one of them.
+    pub fn star_of_triangle(&self, face: FaceId) -> Option<(Star, [Corner; 3])> {
+        let corners: [Corner; 3] = self.corners(face).try_into().ok()?;
+        let stars =
+            [self.vertex_star(corners[0])?, self.vertex_star(corners[1])?, self.vertex_star(corners[2])?];
+        let ends = self.sides_at(FaceAt { face: face.0, offset: Shift::NONE });
+        let across = [0, 1, 2].map(|k| {
+            let sides = stars[(k + 1) % 3].sides_of_edge(corners[(k + 2) % 3])?;
+            sides.into_iter().find(|side| !ends.contains(side))
+        });
+        let around = all(across)?;
+        let others = |k: usize| [around[(k + 1) % 3], around[(k + 2) % 3]];
+        let outer = [0, 1].map(|end: usize| {
+            [0, 1, 2].map(|k: usize| {
+                let [a, b] = others(k);
+                stars[k].edge([ends[end], a, b])
+            })
+        });
+        let is_distinct = around[0] != around[1] && around[1] != around[2] && around[2] != around[0];
+        let star = Star {
+            around,
+            ends,
+            outer: [all(outer[0])?, all(outer[1])?],
+            between: [0, 1, 2].map(|k| {
+                let [a, b] = others(k);
+                stars[k].face(a, b)
+            }),
+            beyond: ends.map(|end| [0, 1, 2].map(|k| stars[(k + 1) % 3].face(end, around[k]))),
+        };
+        is_distinct.then_some((star, corners))
+    }
+
+    /// The sides of a face where a star sees it.
+    pub(super) fn sides_at(&self, at: FaceAt) -> [Side; 2] {
+        self.faces[at.face as usize].sides.map(|side| match side {
+            Side::Cell(cell) => Side::Image(cell, at.offset),
+            Side::Image(cell, shift) => Side::Image(cell, shift + at.offset),
+            Side::Wall(_) => side,
+        })
+    }
+
+    /// The corners of a face where a star sees it.
+    pub(super) fn corners_at(&self, at: FaceAt) -> impl Iterator<Item = Corner> {
+        let corners = self.faces[at.face as usize].corners.iter();
+        corners.map(move |corner| Corner { shift: corner.shift + at.offset, ..*corner })
+    }
+
+    fn vertex_star(&self, place: Corner) -> Option<VertexStar> {
+        let mut star = VertexStar { sides: Vec::new(), faces: Vec::new(), edges: Vec::new() };
+        for &face in &self.faces_at[place.vertex as usize] {
+            let corners = &self.faces[face as usize].corners;
+            let mut uses = (0..corners.len()).filter(|k| corners[*k].vertex == place.vertex);
+            let k = uses.next()?;
+            if uses.next().is_some() {
+                return None;
+            }
+            let at = FaceAt { face, offset: place.shift - corners[k].shift };
+            let sides = self.sides_at(at);
+            star.sides.extend(sides);
+            star.faces.push((at, sides));
+            for k in [k + 1, k + corners.len() - 1] {
+                let other = corners[k % corners.len()];
+                let other = Corner { shift: other.shift + at.offset, ..other };
+                let known = star.edges.iter().position(|(end, _)| *end == other).unwrap_or_else(|| {
+                    star.edges.push((other, Vec::new()));
+                    star.edges.len() - 1
+                });
+                star.edges[known].1.extend(sides);
+            }
+        }
+        star.sides.sort_unstable();
+        star.sides.dedup();
+        for (_, sides) in &mut star.edges {
+            sides.sort_unstable();
+            sides.dedup();
+        }
+        let wall_count = star.sides.iter().filter(|side| cell_of(**side).is_none()).count();
+        // No face lies between two walls.
+        let face_count = 6 - wall_count * wall_count.saturating_sub(1) / 2;
+        let is_general = star.sides.len() == 4
+            && star.faces.len() == face_count
+            && star.edges.len() == 4
+            && star.edges.iter().all(|(_, sides)| sides.len() == 3);
+        is_general.then_some(star)
+    }
+
+    /// Whether a face lies between two sides; never between walls.
+    pub(super) fn meet(&self, first: Side, second: Side) -> bool {
+        let ([Side::Image(cell, shift), other] | [other, Side::Image(cell, shift)]) = [first, second] else {
+            return false;
+        };
+        let sides = [Side::Image(cell, shift), other];
+        self.faces_of[cell.index()].iter().any(|&face| {
+            let own = self.sides_at(FaceAt { face, offset: Shift::NONE });
+            let places = own.into_iter().filter_map(|side| match side {
+                Side::Image(known, at) if known == cell => Some(shift - at),
+                _ => None,
+            });
+            let mut seen = places.map(|offset| self.sides_at(FaceAt { face, offset }));
+            seen.any(|seen| sides.iter().all(|side| seen.contains(side)))
+        })
+    }
+}
+
+fn all<T: Copy>(three: [Option<T>; 3]) -> Option<[T; 3]> {
+    Some([three[0]?, three[1]?, three[2]?])
+}
