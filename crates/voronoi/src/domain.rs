@@ -3,6 +3,7 @@ use std::sync::Arc;
 
 use glam::{BVec3, DVec3};
 
+use crate::generator::Generator;
 use crate::half_space::{EVALUATION_ERROR, HalfSpace};
 use crate::polyhedron::{Extent, Polyhedron};
 use crate::predicate::{is_outside, unit_normal};
@@ -122,8 +123,17 @@ impl Domain {
         walls: Vec<WallPlane>,
         name: Option<String>,
     ) -> Self {
-        let normals = walls.iter().map(unit_normal).collect();
-        let polyhedron = Polyhedron { walls, normals, measure: f64::NAN, name };
+        let normals: Vec<DVec3> = walls.iter().map(unit_normal).collect();
+        let from_origin =
+            |(plane, normal): (_, &_)| HalfSpace::of_plane(DVec3::ZERO, Generator::NONE, plane, *normal);
+        let (mut distances, mut largest) = (Vec::with_capacity(walls.len()), 0.0f64);
+        for HalfSpace { offset, offset_size, .. } in walls.iter().zip(&normals).map(from_origin) {
+            distances.push(offset);
+            largest = largest.max(offset_size);
+        }
+        let corner = lower.abs().max(upper.abs()).element_sum();
+        let distance_error = 2.0 * EVALUATION_ERROR * (largest + corner);
+        let polyhedron = Polyhedron { walls, normals, distances, distance_error, measure: f64::NAN, name };
         Self { polyhedron: Some(Arc::new(polyhedron)), ..Self::boxed(lower, upper, dimension) }
     }
 
@@ -248,6 +258,22 @@ impl Domain {
     pub fn wall_coordinate(&self, wall: Wall) -> f64 {
         assert!(self.is_box(), "walls of a polyhedron are not perpendicular to axes");
         if wall.is_upper() { self.upper[wall.axis()] } else { self.lower[wall.axis()] }
+    }
+
+    /// The walls of a polyhedron that may be up to a distance from a point in it, and some more.
+    pub(crate) fn walls_within(&self, point: DVec3, distance: f64) -> impl Iterator<Item = Wall> {
+        let (normals, distances, error) = match self.polyhedron.as_deref() {
+            Some(Polyhedron { normals, distances, distance_error, .. }) => {
+                (&normals[..], &distances[..], *distance_error)
+            }
+            None => (&[][..], &[][..], 0.0),
+        };
+        let walls = (0u32..).map(Wall).zip(normals.iter().zip(distances));
+        let near = walls.filter(move |(_, (normal, out))| {
+            let is_far = *out - normal.dot(point) > distance + error;
+            !is_far
+        });
+        near.map(|(wall, _)| wall)
     }
 
     /// Where cells begin before anything cuts them: coordinate of a side of the box, of one thrice as large around a polyhedron.

@@ -8,9 +8,8 @@ use glam::DVec3;
 use crate::candidates::Candidates;
 use crate::generator::Generator;
 use crate::half_space::{EVALUATION_ERROR, HalfSpace, Intersection};
-use crate::predicate::Decision;
+use crate::predicate::{Decision, ExactInput};
 use crate::search::{ImagesMissing, Search};
-use crate::wide::Ray;
 use crate::{Dimension, Wall};
 
 /// In two dimensions the plane z = 0 is a third plane through every corner, so that polygons are faces of polyhedra.
@@ -19,10 +18,6 @@ pub(crate) const PLANE: Wall = Wall::ALL[5];
 /// Relative error bound above which the coordinates of a vertex are computed exactly. The bound overestimates by an order
 /// of magnitude, so coordinates are good to about 1e-13 of the cell's size.
 const LOOSE: f64 = 2e-12;
-
-/// Sine of the angle between a plane and an edge below which the plane is not suggested as the edge's end: there rounding
-/// decides where they meet. Planes through the edge are such.
-const GRAZING: f64 = 1e-10;
 
 /// How much farther than from known vertices the search looks at first: most of the vertices that it finds are within that, and
 /// another round would cost more than the additional sites.
@@ -43,22 +38,25 @@ pub(crate) struct NewVertex {
 /// The search around one seed. Reused from seed to seed so that the buffers are allocated once.
 pub(crate) struct EndSearch<'a> {
     search: &'a Search<'a>,
+    input: ExactInput<'a>,
     seed: u32,
     candidates: Candidates,
     /// All seeds up to this distance are candidates.
     reach: f64,
+    /// Up to this distance they show whether a vertex is one of the cell.
+    radius: f64,
 }
 
 impl<'a> EndSearch<'a> {
     pub(crate) fn new(search: &'a Search<'a>) -> Self {
-        Self { search, seed: 0, candidates: Candidates::default(), reach: -1.0 }
+        let (input, candidates) = (search.input(), Candidates::default());
+        Self { search, input, seed: 0, candidates, reach: -1.0, radius: -1.0 }
     }
 
     /// Turns to another seed.
     pub(crate) fn start(&mut self, seed: u32) {
         self.seed = seed;
-        self.candidates.clear();
-        self.reach = -1.0;
+        (self.reach, self.radius) = (-1.0, -1.0);
     }
 
     /// Prepares for the ends of edges from vertices up to a distance.
@@ -75,15 +73,13 @@ impl<'a> EndSearch<'a> {
         used: [Generator; 3],
         start: DVec3,
     ) -> Result<NewVertex, ImagesMissing> {
-        self.gather(self.search.reach(self.seed, start.length()))?;
+        self.gather_around(start.length())?;
         let edge = self.half_spaces(edge);
         let direction = edge[0].normal.cross(edge[1].normal);
-        let threshold = GRAZING * direction.length() * self.candidates.largest_sum;
-        let ray = Ray { start, direction, threshold };
-
-        let mut end: Option<(Generator, Intersection, f64)> = None;
+        let mut end: Option<(Generator, Intersection, f32)> = None;
         loop {
-            let nearest = end.map_or(f64::INFINITY, |(.., crossing)| crossing);
+            let ray = self.candidates.ray(start, direction);
+            let nearest = end.map_or(f32::INFINITY, |(.., crossing)| crossing);
             let (mut crossing, mut number) = self.candidates.first_crossing(&ray);
             while crossing < nearest {
                 let generator = self.candidates.generators()[number];
@@ -96,6 +92,9 @@ impl<'a> EndSearch<'a> {
                 (crossing, number) = self.candidates.next_crossing(&ray, (crossing, number));
             }
             let (generator, at, _) = *end.get_or_insert_with(|| self.any_end(&edge));
+            if distance(&at) <= self.radius {
+                return Ok(self.confirm(&edge, generator, at));
+            }
             let wanted = self.search.reach(self.seed, distance(&at));
             if wanted <= self.reach {
                 return Ok(self.confirm(&edge, generator, at));
@@ -108,19 +107,19 @@ impl<'a> EndSearch<'a> {
     pub(crate) fn vertex_of(&mut self, [a, b, c]: [Generator; 3]) -> Result<NewVertex, ImagesMissing> {
         let edge = self.half_spaces([a, b]);
         let at = self.intersect(&edge, c).expect("the planes of a vertex are in positive orientation");
-        self.gather(self.search.reach(self.seed, distance(&at)))?;
+        self.gather_around(distance(&at))?;
         Ok(self.confirm(&edge, c, at))
     }
 
-    fn half_spaces(&self, planes: [Generator; 2]) -> [HalfSpace; 2] {
-        planes.map(|generator| HalfSpace::new(self.seed, generator, self.search.input()))
+    #[inline]
+    fn half_spaces(&self, [a, b]: [Generator; 2]) -> [HalfSpace; 2] {
+        [HalfSpace::new(self.seed, a, self.input), HalfSpace::new(self.seed, b, self.input)]
     }
 
     /// One of the outermost planes that cuts an edge somewhere, for when rounding hides all.
-    fn any_end(&self, edge: &[HalfSpace; 2]) -> (Generator, Intersection, f64) {
-        let cut = |plane| self.intersect(edge, plane).map(|at| (plane, at, f64::INFINITY));
-        self.search
-            .input()
+    fn any_end(&self, edge: &[HalfSpace; 2]) -> (Generator, Intersection, f32) {
+        let cut = |plane| self.intersect(edge, plane).map(|at| (plane, at, f32::INFINITY));
+        self.input
             .outermost_planes(self.seed)
             .find_map(cut)
             .expect("a cell's outermost planes end every edge")
@@ -128,24 +127,21 @@ impl<'a> EndSearch<'a> {
 
     /// The first end of an edge, given a plane that ends it there or later: whatever cuts that end off comes first.
     fn confirm(&self, edge: &[HalfSpace; 2], mut generator: Generator, mut at: Intersection) -> NewVertex {
-        let input = self.search.input();
+        let input = self.input;
         let mut has_tie = false;
         'confirm: loop {
             let planes = [edge[0].generator, edge[1].generator, generator];
-            let per_sum = at.evaluation_error();
-            let slack = self.candidates.largest_sum * per_sum
-                + EVALUATION_ERROR * self.candidates.largest_offset_size;
+            let probe = self.candidates.probe(at.position, at.error);
             // The vertex's own planes are always among those that it may lie beyond.
-            if self.candidates.count_beyond(at.position, slack) > 3 {
+            if self.candidates.count_maybe_beyond(probe) > 3 {
                 has_tie = false;
-                for number in 0..self.candidates.len() {
-                    let excess = self.candidates.excess(number, at.position);
-                    let other = self.candidates.generators()[number];
-                    if excess < -slack || planes.contains(&other) {
+                for other in self.candidates.maybe_beyond(probe) {
+                    if planes.contains(&other) {
                         continue;
                     }
                     let plane = HalfSpace::new(self.seed, other, input);
-                    let error = plane.sum() * per_sum + EVALUATION_ERROR * plane.offset_size;
+                    let excess = plane.normal.dot(at.position) - plane.offset;
+                    let error = plane.sum() * at.evaluation_error() + EVALUATION_ERROR * plane.offset_size;
                     let decision = if excess.abs() > error {
                         Decision { beyond: excess > 0.0, tie: false }
                     } else {
@@ -167,7 +163,7 @@ impl<'a> EndSearch<'a> {
 
     /// Where a plane cuts an edge; none where it runs along it or faces the other way.
     fn intersect(&self, edge: &[HalfSpace; 2], generator: Generator) -> Option<Intersection> {
-        let input = self.search.input();
+        let input = self.input;
         let third = HalfSpace::new(self.seed, generator, input);
         let planes = [&edge[0], &edge[1], &third];
         if let Some(at) = Intersection::rounded(planes).filter(|at| at.is_good_to(LOOSE)) {
@@ -178,23 +174,35 @@ impl<'a> EndSearch<'a> {
             .then(|| Intersection::exact(self.seed, planes, input))
     }
 
-    /// Makes all sites up to a distance candidates, and before them the outermost planes.
+    /// Makes all sites candidates that can touch or cut the part of the cell within `radius`.
+    #[inline]
+    fn gather_around(&mut self, radius: f64) -> Result<(), ImagesMissing> {
+        if radius <= self.radius { Ok(()) } else { self.gather(self.search.reach(self.seed, radius)) }
+    }
+
+    /// Makes all sites up to a distance candidates, and walls whose mirror images of the seed are as near.
     fn gather(&mut self, reach: f64) -> Result<(), ImagesMissing> {
         if reach <= self.reach {
             return Ok(());
         }
-        let (seed, input) = (self.seed, self.search.input());
-        if self.candidates.len() == 0 {
-            let plane = (input.domain.dimension() == Dimension::Two).then_some(Generator::side(PLANE));
-            for generator in input.outermost_planes(seed).chain(plane) {
-                self.candidates.push(&HalfSpace::new(seed, generator, input));
+        let (seed, input, range) = (self.seed, self.input, [self.reach, reach]);
+        let candidates = &mut self.candidates;
+        if self.reach < 0.0 {
+            candidates.restart(reach);
+        }
+        self.search.gather(candidates, seed, range)?;
+        let plane = (input.domain.dimension() == Dimension::Two).then_some(PLANE);
+        for wall in Wall::ALL[..2 * input.domain.axes()].iter().copied().chain(plane) {
+            let doubled = 2.0 * input.outermost_distance(seed, wall);
+            // Across periodic axes the seed's own images are sites like others.
+            if doubled > range[0] && doubled <= range[1] && !input.domain.periodic().test(wall.axis()) {
+                candidates.push(&HalfSpace::new(seed, Generator::side(wall), input));
             }
         }
-        self.search.gather(&mut self.candidates, seed, [self.reach, reach])?;
-        let candidates = &mut self.candidates;
-        input.for_each_facet_within(seed, [self.reach, reach], |plane, _| candidates.push(&plane));
+        input.for_each_facet_within(seed, range, |plane, _| candidates.push(&plane));
         candidates.fill_lanes();
         self.reach = reach;
+        self.radius = self.search.radius(seed, reach);
         Ok(())
     }
 }

@@ -7,6 +7,7 @@ use crate::domain::MOST_WALLS;
 /// repeats along its axis, where it stands for the plane half a period away from the cell's own seed, or is a polyhedron,
 /// around which the box has room to spare; no finished cell has such a plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(transparent)]
 pub(crate) struct Generator(pub(crate) u32);
 
 /// A generator, told apart.
@@ -45,10 +46,12 @@ impl Generator {
         Self(FIRST_FACET + wall.0)
     }
 
+    #[inline]
     pub(crate) fn as_site(self) -> Option<u32> {
         (self.0 < FIRST_FACET).then_some(self.0)
     }
 
+    #[inline]
     pub(crate) fn plane(self) -> Plane {
         match self.0 {
             site if site < FIRST_FACET => Plane::Site(site),

@@ -5,15 +5,18 @@ use std::ops::Range;
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
-/// Seeds a block holds on average: fewer make more empty blocks to visit, more make more seeds to sort out.
-const SEEDS_PER_BLOCK: f64 = 3.0;
+/// Seeds a block holds on average: fewer make more rows of blocks to visit, more make more seeds to sort out.
+const SEEDS_PER_BLOCK: f64 = 8.0;
 
-/// Blocks in a tile, at most: what lies on the sides of a tile is worked out on both sides, and a tile is the unit of work
-/// that threads share out.
-const BLOCKS_PER_TILE: f64 = 2744.0;
+/// Fewest and most blocks in a tile, nearly: what lies on the sides of a tile is worked out on both sides, and a tile is the unit
+/// of work that threads share out.
+const BLOCKS_PER_TILE: [f64; 2] = [1000.0, 8000.0];
 
-/// Blocks that a thread sorts at once: as many as in a tile.
-const BLOCKS_SORTED_AT_ONCE: usize = 2744;
+/// Tiles, where that leaves them neither too small nor too large.
+const TILES: f64 = 8.0;
+
+/// Blocks that a thread sorts at once.
+const BLOCKS_SORTED_AT_ONCE: usize = 1024;
 
 /// Covers the rounding of a position in units of blocks, at most 1024.
 const BLOCK_MARGIN: f64 = 1e-9;
@@ -58,8 +61,10 @@ impl SeedGrid {
             if width > 0.0 { width } else { 1.0 }
         }));
         let axes = counts.to_array().into_iter().filter(|count| *count > 1).count().max(1);
+        let blocks: f64 = counts.to_array().into_iter().map(f64::from).product();
+        let blocks_per_tile = (blocks / TILES).clamp(BLOCKS_PER_TILE[0], BLOCKS_PER_TILE[1]);
         #[expect(clippy::cast_possible_truncation, reason = "a small number")]
-        let tile_edge = BLOCKS_PER_TILE.powf(1.0 / axes as f64).round() as i32;
+        let tile_edge = blocks_per_tile.powf(1.0 / axes as f64).round() as i32;
         let tile_counts = (counts + (tile_edge - 1)) / tile_edge;
         let tile = (counts + (tile_counts - 1)) / tile_counts;
         let tile_blocks = tile.element_product();
@@ -262,7 +267,7 @@ mod tests {
         let seed = |i: u32| {
             DVec3::new(fraction(i, 0.618_034) * 5.0, fraction(i, 0.754_878), fraction(i, 0.569_84) * 0.1)
         };
-        (0..5000).map(seed).collect()
+        (0..20_000).map(seed).collect()
     }
 
     #[test]
@@ -288,7 +293,7 @@ mod tests {
         let mut seeds = seeds();
         let grid = SeedGrid::new(seeds.clone());
         assert!(grid.tiles().len() > 1);
-        assert!(grid.tiles().iter().cloned().flatten().eq(0..5000));
+        assert!(grid.tiles().iter().cloned().flatten().eq(0..20_000));
         seeds.reverse();
         assert_eq!(SeedGrid::new(seeds.clone()).columns, grid.columns);
     }

@@ -27,6 +27,7 @@ pub(crate) struct HalfSpace {
 
 impl HalfSpace {
     /// The side on which `seed` lies of a generator's plane.
+    #[inline(always)]
     pub(crate) fn new(seed: u32, generator: Generator, input: ExactInput) -> Self {
         match generator.plane() {
             Plane::Side(side) => {
@@ -52,9 +53,13 @@ impl HalfSpace {
 
     /// What lies behind a wall of a polyhedron.
     pub(crate) fn of_wall(seed: DVec3, wall: Wall, domain: &Domain) -> Self {
-        let generator = Generator::facet(wall);
-        let normal = domain.unit_normals()[wall.index()];
-        let (offset, offset_size) = match domain.wall_planes()[wall.index()] {
+        let (plane, normal) = (&domain.wall_planes()[wall.index()], domain.unit_normals()[wall.index()]);
+        Self::of_plane(seed, Generator::facet(wall), plane, normal)
+    }
+
+    /// The same for a wall with a plane, of which the normal has length 1.
+    pub(crate) fn of_plane(seed: DVec3, generator: Generator, plane: &WallPlane, normal: DVec3) -> Self {
+        let (offset, offset_size) = match *plane {
             WallPlane::HalfSpace { normal: exact, offset } => {
                 let terms = exact * seed;
                 let scale = exact.dot(normal);
@@ -69,6 +74,7 @@ impl HalfSpace {
     }
 
     /// Sum of the normal's absolute coordinates.
+    #[inline]
     pub(crate) fn sum(&self) -> f64 {
         self.normal.abs().element_sum()
     }
@@ -84,6 +90,7 @@ pub(crate) struct Intersection {
 
 impl Intersection {
     /// In floating point, if that can tell that the planes are in positive orientation.
+    #[inline]
     pub(crate) fn rounded([a, b, c]: [&HalfSpace; 3]) -> Option<Self> {
         let bc = b.normal.cross(c.normal);
         let ca = c.normal.cross(a.normal);

@@ -34,6 +34,7 @@
 
 mod candidates;
 mod cell_complex;
+mod cell_edges;
 mod convex_cell;
 mod convex_surface;
 mod curved_domain;
@@ -46,7 +47,6 @@ mod grid;
 mod half_space;
 mod images;
 mod measure;
-mod open_edges;
 mod periodic_weld;
 mod planar_cells;
 mod planar_measures;

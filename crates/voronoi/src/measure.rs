@@ -70,16 +70,23 @@ fn face_measure(tessellation: &Tessellation, face: FaceId) -> FaceMeasure {
     let ring = tessellation.face_corners(face);
     let first = tessellation.vertices[ring[0].index()];
     // Relative to a corner, for a face far from the origin would lose digits.
-    let at = |corner: &VertexId| tessellation.vertices[corner.index()] - first;
-    let triangles = || ring[1..].windows(2).map(|ends| [at(&ends[0]), at(&ends[1])]);
-    let normal: DVec3 = triangles().map(|[b, c]| b.cross(c)).sum();
-    let (mut weights, mut moment) = (0.0, DVec3::ZERO);
-    for [b, c] in triangles() {
-        let weight = b.cross(c).dot(normal);
-        weights += weight;
-        moment += weight * (b + c);
+    let at = |corner: VertexId| tessellation.vertices[corner.index()] - first;
+    // Each triangle counts by its area along the normal of all, which is known at the end only: the moments are summed for
+    // each coordinate of the triangles' own normals.
+    let (mut normal, mut moments) = (DVec3::ZERO, [DVec3::ZERO; 3]);
+    let mut b = at(ring[1]);
+    for corner in &ring[2..] {
+        let c = at(*corner);
+        let (triangle, ends) = (b.cross(c), b + c);
+        normal += triangle;
+        moments[0] += ends * triangle.x;
+        moments[1] += ends * triangle.y;
+        moments[2] += ends * triangle.z;
+        b = c;
     }
-    let centroid = if weights > 0.0 { first + moment / (3.0 * weights) } else { first };
+    let weight = normal.length_squared();
+    let moment = moments[0] * normal.x + moments[1] * normal.y + moments[2] * normal.z;
+    let centroid = if weight > 0.0 { first + moment / (3.0 * weight) } else { first };
     FaceMeasure { normal, centroid }
 }
 

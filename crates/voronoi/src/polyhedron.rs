@@ -20,6 +20,10 @@ pub(crate) struct Polyhedron {
     pub(crate) walls: Vec<WallPlane>,
     /// Their outward normals, of length 1 up to rounding.
     pub(crate) normals: Vec<DVec3>,
+    /// How far out along their normals the walls are.
+    pub(crate) distances: Vec<f64>,
+    /// Bound on the rounding of these distances, and of those between a wall and a point of the polyhedron made of them.
+    pub(crate) distance_error: f64,
     /// Volume; in the plane, area.
     pub(crate) measure: f64,
     /// What to call it in messages, if not after its walls.

@@ -101,6 +101,7 @@ impl<'a> ExactInput<'a> {
     }
 
     /// Distance of a seed from a wall, across a periodic axis half a period.
+    #[inline]
     pub(crate) fn outermost_distance(self, seed: u32, wall: Wall) -> f64 {
         let axis = wall.axis();
         if self.domain.periodic().test(axis) {
@@ -119,7 +120,7 @@ impl<'a> ExactInput<'a> {
         mut visit: impl FnMut(HalfSpace, f64),
     ) {
         let own = self.seeds[seed as usize];
-        for wall in (0u32..).take(self.domain.wall_planes().len()).map(Wall) {
+        for wall in self.domain.walls_within(own, 0.5 * to) {
             let plane = HalfSpace::of_wall(own, wall, self.domain);
             // Rounding must not make it farther than it is.
             let doubled = (2.0 * (plane.offset - EVALUATION_ERROR * plane.offset_size)).max(0.0);
@@ -136,16 +137,22 @@ impl<'a> ExactInput<'a> {
     }
 
     /// Power weight of a site.
+    #[inline]
     pub(crate) fn weight(self, site: u32) -> f64 {
         self.weights.map_or(0.0, |weights| weights[self.image(site).seed as usize])
     }
 
     /// The vector from a seed to a site, each coordinate rounded once or twice.
+    #[inline]
     pub(crate) fn difference(self, seed: u32, site: u32) -> DVec3 {
-        let own = self.seeds[seed as usize];
-        if let Some(other) = self.seeds.get(site as usize) {
-            return other - own;
+        match self.seeds.get(site as usize) {
+            Some(other) => other - self.seeds[seed as usize],
+            None => self.difference_to_image(seed, site),
         }
+    }
+
+    fn difference_to_image(self, seed: u32, site: u32) -> DVec3 {
+        let own = self.seeds[seed as usize];
         let image = self.image(site);
         let other = self.seeds[image.seed as usize];
         DVec3::from_array([0, 1, 2].map(|axis| {

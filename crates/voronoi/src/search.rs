@@ -7,6 +7,7 @@ use glam::DVec3;
 use crate::candidates::Candidates;
 use crate::generator::{Generator, Plane};
 use crate::grid::SeedGrid;
+use crate::half_space::EVALUATION_ERROR;
 use crate::images::{Image, ImageTable};
 use crate::predicate::ExactInput;
 use crate::torus::FaceEnd;
@@ -121,6 +122,15 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Whether what lies beyond a seed's plane comes before what lies beyond another generator's, in the user's numbering.
+    #[inline]
+    pub(crate) fn is_before(&self, seed: Generator, other: Generator) -> bool {
+        match self.ids.get(other.0 as usize) {
+            Some(id) => self.ids[seed.0 as usize] < *id,
+            None => self.end(seed) < self.end(other),
+        }
+    }
+
     /// The seeds and all images that were looked at.
     pub(crate) fn input(&self) -> ExactInput<'_> {
         self.input_with(&self.layers[self.layers.len() - 1].images)
@@ -152,13 +162,28 @@ impl<'a> Search<'a> {
     /// The distance from a seed within which all sites lie that can touch or cut the part of its cell within `radius`.
     pub(crate) fn reach(&self, seed: u32, radius: f64) -> f64 {
         // The bisector with a site at distance d lies (d^2 - excess) / (2 d) away.
-        let excess = self.largest_weight - self.input().weight(seed);
-        let reach = (radius + (radius * radius + excess).sqrt()) * RADIUS_MARGIN;
+        let reach = radius + (radius * radius + self.excess_weight(seed)).sqrt();
+        reach * RADIUS_MARGIN + self.position_error()
+    }
+
+    /// A radius such that [`Self::reach`] is at most `reach`; negative if there is none.
+    pub(crate) fn radius(&self, seed: u32, reach: f64) -> f64 {
+        let distance = (reach - self.position_error()) / RADIUS_MARGIN;
+        (distance * distance - self.excess_weight(seed)) / (2.0 * distance * RADIUS_MARGIN)
+    }
+
+    /// By how much the largest weight exceeds that of a seed.
+    fn excess_weight(&self, seed: u32) -> f64 {
+        if self.weights.is_none() { 0.0 } else { self.largest_weight - self.input().weight(seed) }
+    }
+
+    /// Bound on the rounding of sites' positions: those of images are rounded.
+    fn position_error(&self) -> f64 {
         if self.domain.is_periodic() {
-            // The positions of images are rounded.
-            return reach + 1e-15 * self.domain.lower().abs().max(self.domain.upper().abs()).max_element();
+            1e-15 * self.domain.lower().abs().max(self.domain.upper().abs()).max_element()
+        } else {
+            0.0
         }
-        reach
     }
 
     /// Next reach of a search that has come to `reach` and needs to go to `wanted`.
@@ -174,8 +199,7 @@ impl<'a> Search<'a> {
         self.layers.iter().find(knows_all).ok_or(ImagesMissing)
     }
 
-    /// Adds the bisectors of a seed with all sites further than `from` and at most `to` away but those that its cell begins
-    /// with.
+    /// Adds the bisectors of a seed with all sites further than `from` and at most `to` away.
     pub(crate) fn gather(
         &self,
         candidates: &mut Candidates,
@@ -187,31 +211,19 @@ impl<'a> Search<'a> {
         let first = candidates.len();
         let squares = [if from < 0.0 { -1.0 } else { from * from }, to * to];
         layer.grid.for_each_run(own, to, |run| candidates.push_within(seed, own, &run, squares));
-        let input = self.input();
-        if self.domain.is_periodic() {
-            let seed_count =
-                Generator::site(u32::try_from(self.seeds.len()).expect("site ids were checked to fit"));
-            candidates.revise(first, |generator, normal, offset| {
-                if generator < seed_count {
-                    return Some((normal, offset));
-                }
-                let is_new = !input.bounds_from_start(seed, generator.0);
-                let normal = input.difference(seed, generator.0);
-                is_new.then(|| (normal, 0.5 * normal.length_squared()))
-            });
-        }
-        let mut largest_weight = 0.0f64;
+        let (mut shift, mut largest_weight) = (0.0f64, 0.0f64);
         if self.weights.is_some() {
+            let input = self.input();
             let own_weight = input.weight(seed);
-            candidates.revise(first, |generator, normal, _| {
+            candidates.shift_offsets(first, |generator| {
                 let weight = input.weight(generator.0);
-                largest_weight = largest_weight.max(weight.abs());
-                Some((normal, 0.5 * (normal.length_squared() + (own_weight - weight))))
+                let own_shift = 0.5 * (own_weight - weight);
+                (shift, largest_weight) = (shift.max(own_shift.abs()), largest_weight.max(weight.abs()));
+                own_shift
             });
-            largest_weight += own_weight.abs();
+            largest_weight = largest_weight.max(own_weight.abs());
         }
-        // The 1-norm of a vector is at most the root of 3 times its length; images may be a last place farther away.
-        candidates.raise_bounds(2.0 * to, 0.5 * (1.5 * to * to + largest_weight));
+        candidates.raise_bounds(to, self.position_error(), shift, EVALUATION_ERROR * largest_weight);
         Ok(())
     }
 

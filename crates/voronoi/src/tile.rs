@@ -9,13 +9,13 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::Dimension;
+use crate::cell_edges::CellEdges;
 use crate::convex_cell::ConvexCell;
 use crate::end_search::{EndSearch, NewVertex, PLANE};
 use crate::generator::{Generator, VertexKey};
-use crate::open_edges::{EdgeKey, OpenEdges};
 use crate::polygon::ConvexPolygon;
 use crate::search::{ImagesMissing, Search};
-use crate::tile_vertex::{EDGE_SLOTS, FACE_SLOTS, NONE, TileVertex};
+use crate::tile_vertex::{ALL_FACES, FACE_SLOTS, FACES_OF_FIRST, NONE, TileVertex};
 
 /// Distance of two vertices, relative to their distance from the seed, beyond which they cannot coincide: far above
 /// the 1e-12 to which coordinates are known, so that only true candidates go to exact arithmetic.
@@ -48,7 +48,10 @@ pub(crate) fn cut_tiles(search: &mut Search) -> Vec<Tile> {
     let mut tiles: Vec<Option<Tile>> = search.tiles().iter().map(|_| None).collect();
     loop {
         let missing = tiles.par_iter_mut().zip(search.tiles()).filter(|(tile, _)| tile.is_none());
-        missing.for_each(|(tile, seeds)| *tile = cut_tile(search, seeds.clone()).ok());
+        missing.for_each_init(
+            || Builder::new(search),
+            |builder, (tile, seeds)| *tile = builder.cut(seeds.clone()).ok(),
+        );
         if tiles.iter().all(Option::is_some) {
             return tiles.into_iter().flatten().collect();
         }
@@ -56,55 +59,21 @@ pub(crate) fn cut_tiles(search: &mut Search) -> Vec<Tile> {
     }
 }
 
-/// Completes the cells of consecutive seeds.
-fn cut_tile(search: &Search, seeds: Range<u32>) -> Result<Tile, ImagesMissing> {
-    // Random cells have 6.77 vertices, 7.77 faces and 40.6 corners each, in the plane 2, 3 and 6; walls and what
-    // lies on the sides of the tile add to that.
-    let [vertices, faces, corners] = match search.input().domain.dimension() {
-        Dimension::Two => [3, 4, 8].map(|count| count * seeds.len()),
-        Dimension::Three => [9, 9, 46].map(|count| count * seeds.len()),
-    };
-    let mut builder = Builder {
-        search,
-        seeds: seeds.clone(),
-        is_flat: search.input().domain.dimension() == Dimension::Two,
-        vertices: Vec::with_capacity(vertices),
-        open: OpenEdges::new(),
-        has_vertex: vec![false; seeds.len()],
-        first_waiting: vec![NONE; seeds.len()],
-        waiting: Vec::new(),
-        current: Vec::new(),
-        coincident: Vec::new(),
-    };
-    let mut end_search = EndSearch::new(search);
-    for seed in seeds.clone() {
-        builder.complete(&mut end_search, seed)?;
-    }
-    let mut corner_starts = Vec::with_capacity(faces);
-    corner_starts.push(0);
-    let mut tile = Tile {
-        seeds,
-        positions: Vec::new(),
-        shared: Vec::new(),
-        faces: Vec::with_capacity(faces),
-        corner_starts,
-        corners: Vec::with_capacity(corners),
-        coincident: std::mem::take(&mut builder.coincident),
-    };
-    tile.push_faces(search, &mut builder.vertices);
-    tile.take_vertices(search, &builder.vertices);
-    Ok(tile)
-}
-
 /// An edge of a vertex, as one number: four times the vertex's, and the edge's.
 type EdgeOf = u32;
 
+/// Of a new vertex, the edge that runs along the first three of its generators.
+const LAST_EDGE: EdgeOf = 3;
+
+/// Reused from tile to tile so that the buffers are allocated once.
 struct Builder<'a> {
     search: &'a Search<'a>,
+    end_search: EndSearch<'a>,
     seeds: Range<u32>,
     is_flat: bool,
     vertices: Vec<TileVertex>,
-    open: OpenEdges,
+    /// The edges of the cell under way.
+    edges: CellEdges,
     /// Whether some vertex of the cell is known, seed by seed.
     has_vertex: Vec<bool>,
     /// Edges that wait for the first of their seeds to follow them, as lists.
@@ -112,7 +81,7 @@ struct Builder<'a> {
     waiting: Vec<WaitingEdge>,
     /// Edges of the cell under way that may lack their other end.
     current: Vec<EdgeOf>,
-    coincident: Vec<[u32; 2]>,
+    tile: Tile,
 }
 
 struct WaitingEdge {
@@ -120,38 +89,89 @@ struct WaitingEdge {
     next: u32,
 }
 
-impl Builder<'_> {
-    fn complete(&mut self, end_search: &mut EndSearch, seed: u32) -> Result<(), ImagesMissing> {
-        end_search.start(seed);
+impl<'a> Builder<'a> {
+    fn new(search: &'a Search<'a>) -> Self {
+        Self {
+            search,
+            end_search: EndSearch::new(search),
+            seeds: 0..0,
+            is_flat: search.input().domain.dimension() == Dimension::Two,
+            vertices: Vec::new(),
+            edges: CellEdges::new(),
+            has_vertex: Vec::new(),
+            first_waiting: Vec::new(),
+            waiting: Vec::new(),
+            current: Vec::new(),
+            tile: Tile::with_room(0..0, [0; 2]),
+        }
+    }
+
+    /// Completes the cells of consecutive seeds.
+    fn cut(&mut self, seeds: Range<u32>) -> Result<Tile, ImagesMissing> {
+        let count = seeds.len();
+        self.seeds = seeds.clone();
+        self.vertices.clear();
+        self.has_vertex.clear();
+        self.has_vertex.resize(count, false);
+        self.first_waiting.clear();
+        self.first_waiting.resize(count, NONE);
+        self.waiting.clear();
+        self.current.clear();
+        // Random cells have 6.77 vertices, 7.77 faces and 40.6 corners each, in the plane 2, 3 and 6; walls and what lies on the
+        // sides of the tile add to that.
+        let per_cell = if self.is_flat { [3, 4, 8] } else { [9, 9, 46] };
+        let [vertices, faces, corners] = per_cell.map(|per_cell| per_cell * count);
+        self.vertices.reserve(vertices);
+        self.waiting.reserve(vertices);
+        self.tile = Tile::with_room(seeds.clone(), [faces, corners]);
+        for seed in seeds {
+            self.complete(seed)?;
+        }
+        for number in (0u32..).take(self.vertices.len()) {
+            self.tile.push_faces_at(self.search, &mut self.vertices, number, ALL_FACES);
+        }
+        self.tile.take_vertices(self.search, &self.vertices);
+        Ok(std::mem::replace(&mut self.tile, Tile::with_room(0..0, [0; 2])))
+    }
+
+    fn complete(&mut self, seed: u32) -> Result<(), ImagesMissing> {
+        self.end_search.start(seed);
+        self.edges.clear();
+        let known = self.vertices.len();
         let own = Generator::site(seed);
         let place = self.place(seed);
         if !self.has_vertex[place] {
             let Some(planes) = self.first_vertex(seed)? else { return Ok(()) };
-            let vertex = end_search.vertex_of(planes)?;
-            self.push(seed, &vertex);
+            let vertex = self.end_search.vertex_of(planes)?;
+            let number = self.push(seed, &vertex);
+            self.join(own, 4 * number + LAST_EDGE);
         }
         let mut next = self.first_waiting[place];
-        let mut radius = 0.0f64;
         while let Some(waiting) = self.waiting.get(next as usize) {
             next = waiting.next;
-            let vertex = &self.vertices[(waiting.edge / 4) as usize];
-            if vertex.ends[(waiting.edge % 4) as usize] == NONE {
-                radius = radius.max(self.relative_to(seed, vertex).length());
-                self.current.push(waiting.edge);
-            }
+            self.join(own, waiting.edge);
         }
-        if !self.current.is_empty() {
-            end_search.expect(radius)?;
+        let ends = self.current.iter().map(|edge_of| (&self.vertices[(edge_of / 4) as usize], edge_of % 4));
+        let open = ends.filter(|(vertex, edge)| vertex.ends[*edge as usize] == NONE);
+        let radius = open.map(|(vertex, _)| self.relative_to(seed, vertex).length()).reduce(f64::max);
+        if let Some(radius) = radius {
+            self.end_search.expect(radius)?;
         }
         while let Some(edge_of) = self.current.pop() {
             let (vertex, edge) = (&self.vertices[(edge_of / 4) as usize], (edge_of % 4) as usize);
             if vertex.ends[edge] == NONE {
                 let slot = vertex.slot(own);
                 let start = self.relative_to(seed, vertex);
-                let found =
-                    end_search.other_end(vertex.edge_planes(slot, edge), vertex.planes(slot), start)?;
-                self.push(seed, &found);
+                let (along, used) = (vertex.edge_planes(slot, edge), vertex.planes(slot));
+                let found = self.end_search.other_end(along, used, start)?;
+                let number = self.push(seed, &found);
+                // What the two vertices share comes first in the new one.
+                self.link(own, 4 * number + LAST_EDGE, edge_of);
             }
+        }
+        // Nearly all faces are found here, while their vertices are in the cache.
+        for number in (0u32..).take(self.vertices.len()).skip(known) {
+            self.tile.push_faces_at(self.search, &mut self.vertices, number, FACES_OF_FIRST);
         }
         Ok(())
     }
@@ -175,52 +195,61 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds a vertex of the cell under way, and joins it to those at the other ends of its edges that are known.
-    fn push(&mut self, seed: u32, found: &NewVertex) {
+    /// Adds a vertex of the cell under way, and joins it to those at the other ends of its edges that are known, but for the last.
+    fn push(&mut self, seed: u32, found: &NewVertex) -> u32 {
         let number = u32::try_from(self.vertices.len())
             .ok()
             .filter(|number| *number < NONE / 4)
             .expect("a tile has fewer than 2^30 vertices");
+        let own = Generator::site(seed);
         let [a, b, c] = found.planes;
-        let generators = [Generator::site(seed), a, b, c];
         self.vertices.push(TileVertex {
-            generators,
+            generators: [own, a, b, c],
             position: found.position,
             ends: [NONE; 4],
             has_tie: found.has_tie,
             done_faces: 0,
         });
-        for generator in generators.into_iter().filter(|generator| self.seeds.contains(&generator.0)) {
+        self.join(own, 4 * number + 1);
+        self.join(own, 4 * number + 2);
+        self.has_vertex[(seed - self.seeds.start) as usize] = true;
+        // Edges of earlier seeds have both ends, so the edge of the others waits for its first seed in the tile.
+        let mut first = Generator::NONE;
+        for generator in [a, b, c].into_iter().filter(|generator| self.seeds.contains(&generator.0)) {
             let place = self.place(generator.0);
             self.has_vertex[place] = true;
+            first = first.min(generator);
         }
-        for (edge, slots) in (0u32..).zip(EDGE_SLOTS) {
-            let key = slots.map(|slot| generators[slot]);
-            if self.is_flat && !key.contains(&Generator::side(PLANE)) {
-                continue;
-            }
-            let key = in_order(key);
-            // Edges of earlier seeds have both ends, so one that lacks an end waits for its first seed in the tile.
-            let Some(first) = key.into_iter().find(|generator| self.seeds.contains(&generator.0)) else {
-                continue;
-            };
-            let edge_of = 4 * number + edge;
-            if let Some(other) = self.open.add(key, edge_of) {
-                self.vertices[number as usize].ends[edge as usize] = other / 4;
-                self.vertices[(other / 4) as usize].ends[(other % 4) as usize] = number;
-                if found.has_tie && self.coincide(first, number, other) {
-                    self.coincident.push([number, other / 4]);
-                }
-            } else if first.0 == seed {
-                self.current.push(edge_of);
-            } else {
-                let place = self.place(first.0);
-                let next = std::mem::replace(
-                    &mut self.first_waiting[place],
-                    u32::try_from(self.waiting.len()).expect("a tile has fewer than 2^32 edges"),
-                );
-                self.waiting.push(WaitingEdge { edge: edge_of, next });
-            }
+        if first != Generator::NONE && (!self.is_flat || [a, b, c].contains(&Generator::side(PLANE))) {
+            let place = self.place(first.0);
+            let next = std::mem::replace(
+                &mut self.first_waiting[place],
+                u32::try_from(self.waiting.len()).expect("a tile has fewer than 2^32 edges"),
+            );
+            self.waiting.push(WaitingEdge { edge: 4 * number, next });
+        }
+        number
+    }
+
+    /// Joins a vertex to the one at the other end of an edge of the cell under way, once both are known.
+    fn join(&mut self, own: Generator, edge_of: EdgeOf) {
+        let (vertex, edge) = (&self.vertices[(edge_of / 4) as usize], (edge_of % 4) as usize);
+        let planes = vertex.edge_planes(vertex.slot(own), edge);
+        if self.is_flat && !planes.contains(&Generator::side(PLANE)) {
+            return;
+        }
+        match self.edges.add(planes, edge_of) {
+            Some(other) => self.link(own, edge_of, other),
+            None => self.current.push(edge_of),
+        }
+    }
+
+    /// Makes two vertices the ends of an edge of a cell.
+    fn link(&mut self, own: Generator, one: EdgeOf, other: EdgeOf) {
+        self.vertices[(one / 4) as usize].ends[(one % 4) as usize] = other / 4;
+        self.vertices[(other / 4) as usize].ends[(other % 4) as usize] = one / 4;
+        if self.vertices[(one / 4) as usize].has_tie && self.coincide(own, one / 4, other) {
+            self.tile.coincident.push([one / 4, other / 4]);
         }
     }
 
@@ -238,32 +267,48 @@ impl Builder<'_> {
 }
 
 impl Tile {
-    /// Adds the faces between a seed of the tile and a wall or a site that comes after it in the user's numbering.
-    fn push_faces(&mut self, search: &Search, vertices: &mut [TileVertex]) {
+    /// Without faces, but with room for some, and for their corners.
+    fn with_room(seeds: Range<u32>, [faces, corners]: [usize; 2]) -> Self {
+        let mut corner_starts = Vec::with_capacity(faces + 1);
+        corner_starts.push(0);
+        Self {
+            seeds,
+            positions: Vec::new(),
+            shared: Vec::new(),
+            faces: Vec::with_capacity(faces),
+            corner_starts,
+            corners: Vec::with_capacity(corners),
+            coincident: Vec::new(),
+        }
+    }
+
+    /// Adds those of some faces of a vertex that lie between a seed of the tile and a wall or a site that comes after it in the
+    /// user's numbering. All their vertices are known.
+    fn push_faces_at(&mut self, search: &Search, vertices: &mut [TileVertex], number: u32, faces: u8) {
         let is_flat = search.input().domain.dimension() == Dimension::Two;
-        for number in (0u32..).take(vertices.len()) {
-            let mut faces = vertices[number as usize].open_faces();
-            while faces != 0 {
-                let [i, j] = FACE_SLOTS[faces.trailing_zeros() as usize];
-                faces &= faces - 1;
-                let vertex = &vertices[number as usize];
-                let sides = [vertex.generators[i], vertex.generators[j]];
-                let Some([own, beyond]) = self.in_order(search, sides) else { continue };
-                let is_plane = beyond == Generator::side(PLANE);
-                match (is_flat, is_plane) {
-                    (false, _) => self.push_ring(vertices, number, own, beyond),
-                    (true, true) => self.push_polygon(search, vertices, number, own),
-                    (true, false) => {}
-                }
+        let mut faces = faces & !vertices[number as usize].done_faces;
+        while faces != 0 {
+            let [i, j] = FACE_SLOTS[faces.trailing_zeros() as usize];
+            faces &= faces - 1;
+            let vertex = &mut vertices[number as usize];
+            vertex.mark_done(i, j);
+            let Some([own, beyond]) = self.in_order(search, [vertex.generators[i], vertex.generators[j]])
+            else {
+                continue;
+            };
+            let is_plane = beyond == Generator::side(PLANE);
+            match (is_flat, is_plane) {
+                (false, _) => self.push_ring(vertices, number, own, beyond),
+                (true, true) => self.push_polygon(search, vertices, number, own),
+                (true, false) => {}
             }
         }
     }
 
     /// The two sides of a face in the order in which this tile has it; none if it is another tile's, or between walls.
     fn in_order(&self, search: &Search, [a, b]: [Generator; 2]) -> Option<[Generator; 2]> {
-        let is_first = |own: Generator, beyond: Generator| {
-            self.seeds.contains(&own.0) && search.end(own) < search.end(beyond)
-        };
+        let is_first =
+            |own: Generator, beyond: Generator| self.seeds.contains(&own.0) && search.is_before(own, beyond);
         if is_first(a, b) { Some([a, b]) } else { is_first(b, a).then_some([b, a]) }
     }
 
@@ -339,12 +384,6 @@ impl Tile {
         self.corner_starts
             .push(u32::try_from(self.corners.len()).expect("a tile has fewer than 2^32 corners"));
     }
-}
-
-/// The same generators sorted, without branches that would be mispredicted.
-fn in_order([a, b, c]: EdgeKey) -> EdgeKey {
-    let (low, high) = (a.min(b), a.max(b));
-    [low.min(c), low.max(high.min(c)), high.max(c)]
 }
 
 /// Visits the corners of a face of a cell of the tile in counter-clockwise order as seen from outside: each corner, what

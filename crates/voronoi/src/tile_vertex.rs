@@ -5,7 +5,8 @@ use crate::generator::Generator;
 /// A vertex while the cells of its tile are completed: four generators and the vertex at the other end of each of the four
 /// edges that leave it. Edge k runs along the planes of all generators but the one in slot k.
 ///
-/// Vertices and edges are the tetrahedra and triangles of the dual (Delaunay) complex.
+/// Vertices and edges are the tetrahedra and triangles of the dual (Delaunay) complex. A vertex fills one line of the cache.
+#[repr(align(64))]
 pub(crate) struct TileVertex {
     /// A seed of the tile, and the planes of its cell in positive orientation.
     pub(crate) generators: [Generator; 4],
@@ -37,11 +38,20 @@ const SUCCESSOR: [[usize; 4]; 4] = {
     successor
 };
 
-/// The slots of the three generators of each edge.
-pub(crate) const EDGE_SLOTS: [[usize; 3]; 4] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
+#[inline]
+fn successor(slot: usize, other: usize) -> usize {
+    // Spares a check wherever the result is an index.
+    SUCCESSOR[slot][other] & 3
+}
 
 /// The slots of the two generators of each face.
 pub(crate) const FACE_SLOTS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+
+/// The bits of all faces, in the order of [`FACE_SLOTS`].
+pub(crate) const ALL_FACES: u8 = 0b11_1111;
+
+/// The bits of the faces of the generator in the first slot.
+pub(crate) const FACES_OF_FIRST: u8 = 0b111;
 
 /// The bit of the face of each two slots.
 const FACE_BIT: [[u8; 4]; 4] = [[0, 1, 2, 4], [1, 0, 8, 16], [2, 8, 0, 32], [4, 16, 32, 0]];
@@ -52,19 +62,22 @@ impl TileVertex {
     pub(crate) fn slot(&self, generator: Generator) -> usize {
         let [_, b, c, d] = self.generators.map(|own| own == generator);
         debug_assert!(b || c || d || self.generators[0] == generator);
-        usize::from(b) + 2 * usize::from(c) + 3 * usize::from(d)
+        // At most 3, as the compiler sees.
+        usize::from(b | d) | usize::from(c | d) << 1
     }
 
     /// The planes of the vertex as the cell in a slot sees them, in positive orientation.
+    #[inline]
     pub(crate) fn planes(&self, slot: usize) -> [Generator; 3] {
         SEEN_FROM[slot].map(|other| self.generators[other])
     }
 
     /// The two planes along which an edge runs, in the order in which they come before the next vertex's own plane in
     /// positive orientation, as the cell in `slot` sees it.
+    #[inline]
     pub(crate) fn edge_planes(&self, slot: usize, edge: usize) -> [Generator; 2] {
-        let from = SUCCESSOR[slot][edge];
-        let to = SUCCESSOR[slot][from];
+        let from = successor(slot, edge);
+        let to = successor(slot, from);
         [self.generators[to], self.generators[from]]
     }
 
@@ -72,14 +85,8 @@ impl TileVertex {
     /// cell's face with the generator in slot `other`; and the slot of what lies beyond the edge in the face's plane.
     #[inline]
     pub(crate) fn next_edge(cell: usize, other: usize) -> (usize, usize) {
-        let edge = SUCCESSOR[cell][other];
-        (edge, SUCCESSOR[cell][edge])
-    }
-
-    /// The bits of the faces that are not done, in the order of [`FACE_SLOTS`].
-    #[inline]
-    pub(crate) fn open_faces(&self) -> u8 {
-        !self.done_faces & 0b11_1111
+        let edge = successor(cell, other);
+        (edge, successor(cell, edge))
     }
 
     #[inline]

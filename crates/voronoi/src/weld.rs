@@ -6,6 +6,7 @@
 
 use std::collections::HashMap;
 
+use foldhash::fast::FixedState;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -32,7 +33,7 @@ struct Owned {
     ranks: Vec<u32>,
     count: u32,
     /// The ranks of those that are known elsewhere as well.
-    shared: HashMap<VertexKey, u32>,
+    shared: HashMap<VertexKey, u32, FixedState>,
 }
 
 impl Owned {

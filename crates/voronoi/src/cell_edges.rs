@@ -1,18 +1,15 @@
 use crate::generator::Generator;
 
-/// Edges of which one end is known, by the three planes that they run along: a hash table of linear probing.
-pub(crate) struct OpenEdges {
+/// The edges of one cell, by the two planes that they run along: a hash table of linear probing.
+pub(crate) struct CellEdges {
     slots: Vec<Slot>,
     /// Slots that are not free.
     used: usize,
 }
 
-/// The three generators of an edge, sorted.
-pub(crate) type EdgeKey = [Generator; 3];
-
 #[derive(Clone, Copy)]
 struct Slot {
-    key: EdgeKey,
+    key: [Generator; 2],
     /// What the user knows the edge's first end by.
     end: u32,
 }
@@ -22,16 +19,27 @@ const FREE: u32 = u32::MAX;
 /// End of an edge of which both ends are known.
 const CLOSED: u32 = u32::MAX - 1;
 
-const FREE_SLOT: Slot = Slot { key: [Generator(0); 3], end: FREE };
+const FREE_SLOT: Slot = Slot { key: [Generator(0); 2], end: FREE };
 
-impl OpenEdges {
+/// Slots of an ordinary cell, which has 20 edges.
+const SLOTS: usize = 128;
+
+impl CellEdges {
     pub(crate) fn new() -> Self {
-        Self { slots: vec![FREE_SLOT; 1024], used: 0 }
+        Self { slots: vec![FREE_SLOT; SLOTS], used: 0 }
+    }
+
+    /// Turns to another cell.
+    pub(crate) fn clear(&mut self) {
+        self.used = 0;
+        self.slots.truncate(SLOTS);
+        self.slots.fill(FREE_SLOT);
     }
 
     /// Gives an edge an end: returns the first one if this is the second.
     #[inline]
-    pub(crate) fn add(&mut self, key: EdgeKey, end: u32) -> Option<u32> {
+    pub(crate) fn add(&mut self, [a, b]: [Generator; 2], end: u32) -> Option<u32> {
+        let key = [a.min(b), a.max(b)];
         let mask = self.slots.len() - 1;
         let mut place = hash(key) & mask;
         loop {
@@ -48,19 +56,15 @@ impl OpenEdges {
         }
         self.used += 1;
         if 2 * self.used > self.slots.len() {
-            self.forget_closed();
+            self.grow();
         }
         None
     }
 
-    /// Leaves only edges with one end in the table, and makes it large enough to be filled by at most a quarter.
-    fn forget_closed(&mut self) {
-        let open: Vec<Slot> = self.slots.iter().filter(|slot| slot.end < CLOSED).copied().collect();
-        self.used = open.len();
-        self.slots.fill(FREE_SLOT);
-        let len = (4 * open.len()).next_power_of_two().max(self.slots.len());
-        self.slots.resize(len, FREE_SLOT);
-        for slot in open {
+    fn grow(&mut self) {
+        let len = 4 * self.slots.len();
+        let slots = std::mem::replace(&mut self.slots, vec![FREE_SLOT; len]);
+        for slot in slots.into_iter().filter(|slot| slot.end != FREE) {
             let mut place = hash(slot.key) & (len - 1);
             while self.slots[place].end != FREE {
                 place = (place + 1) & (len - 1);
@@ -70,11 +74,11 @@ impl OpenEdges {
     }
 }
 
-/// Multiplication by odd constants without a pattern (the fractions of square roots of 2, 3 and 5), of which high bits depend on all bits of the key.
+/// Multiplication by odd constants without a pattern (the fractions of square roots of 2 and 3), of which high bits depend on all
+/// bits of the key.
 #[inline]
-fn hash([a, b, c]: EdgeKey) -> usize {
+fn hash([a, b]: [Generator; 2]) -> usize {
     let mixed = u64::from(a.0).wrapping_mul(0x6a09_e667_f3bc_c909)
-        ^ u64::from(b.0).wrapping_mul(0xbb67_ae85_84ca_a73b)
-        ^ u64::from(c.0).wrapping_mul(0x3c6e_f372_fe94_f82b);
+        ^ u64::from(b.0).wrapping_mul(0xbb67_ae85_84ca_a73b);
     (mixed >> 32) as usize
 }
