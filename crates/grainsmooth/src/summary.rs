@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use polycrystal::{AngleStatistics, Boundary};
+use polycrystal::{AngleStatistics, Balance, Boundary, Reconnections};
 use voronoi::{Collapsed, Dimension};
 
 use crate::{Polycrystal, Stage};
@@ -53,6 +53,17 @@ impl fmt::Display for Summary<'_> {
         writeln!(out, "mesh        {points} points, {elements} {element}s at level {levels}")?;
         if let (Some(before), Some(after)) = (polycrystal.angles_before, polycrystal.validation.angles) {
             writeln!(out, "angles      {} before relaxation, {} after", Angle(before), Angle(after))?;
+        }
+        if let Some((Reconnections { opened, closed, swapped }, balance)) = &polycrystal.equilibrium {
+            let Balance { flagged_lines, largest_deviation } = balance;
+            writeln!(
+                out,
+                "topology    {opened} triple lines became boundaries, {closed} boundaries triple lines, {swapped} boundaries changed sides"
+            )?;
+            writeln!(
+                out,
+                "equilibrium triple lines within {largest_deviation:.2} degrees, but for those at {flagged_lines} short ones"
+            )?;
         }
         if polycrystal.relaxed.fell_back {
             let level = polycrystal.relaxed.level;

@@ -21,7 +21,7 @@ const ATTEMPTS: usize = 24;
 const WHOLE_ATTEMPTS: usize = 12;
 
 /// Length, in units of the feature size, below which a control edge no longer changes.
-const RIGID_LENGTH: f64 = 0.04;
+pub(super) const RIGID_LENGTH: f64 = 0.04;
 
 /// Cosine of the largest angle between neighbouring elements after a step (75 degrees), so that later subdivision
 /// has room before the 90 degrees of a fold.
@@ -69,6 +69,8 @@ pub(super) struct Flow<'a> {
     corners: FaceCorners,
     clusters: Clusters,
     volumes: Volumes,
+    /// [`RIGID_LENGTH`] or another one.
+    rigid_length: f64,
 }
 
 impl<'a> Flow<'a> {
@@ -78,7 +80,23 @@ impl<'a> Flow<'a> {
         let patches = Patches::new(network, level, surface);
         let corners = FaceCorners::new(network, level);
         let neighbors = Seams::of_level(&network.levels()[surface]).inner;
-        Self { network, patches, level, surface, neighbors, corners, clusters, volumes }
+        Self {
+            network,
+            patches,
+            level,
+            surface,
+            neighbors,
+            corners,
+            clusters,
+            volumes,
+            rigid_length: RIGID_LENGTH,
+        }
+    }
+
+    /// The flow with another length, in units of the feature size, below which control edges do not change.
+    pub(super) fn with_rigid_length(mut self, rigid_length: f64) -> Self {
+        self.rigid_length = rigid_length;
+        self
     }
 
     /// Takes the steps of a stage.
@@ -124,7 +142,7 @@ impl<'a> Flow<'a> {
     ///
     /// What the step folds is made rigid and moves by its mean displacement instead. That is local: to solve the step anew for
     /// all grains would take as many attempts as the worst place of all.
-    fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<f64, NetworkError> {
+    pub(super) fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<f64, NetworkError> {
         let terms = self.patches.terms(points);
         let energy = terms.iter().map(|terms| terms.energy).sum();
         let before = element_normals(self.surface(), &self.refined(points));
@@ -239,7 +257,7 @@ impl<'a> Flow<'a> {
     /// Where volumes are free the flow itself is asked for: nothing is held but what a step would fold.
     fn rigid_length(&self) -> f64 {
         match self.volumes {
-            Volumes::Kept => RIGID_LENGTH * self.feature_size(),
+            Volumes::Kept => self.rigid_length * self.feature_size(),
             Volumes::Free => 0.0,
         }
     }
