@@ -96,7 +96,9 @@ impl Polycrystal {
         let cells = cells.unwrap_or(Cells::Triangles(&triangles));
         let count = boundary_of_cell.len();
         let boundary = |cell: usize| &self.network.boundaries()[boundary_of_cell[cell].index()];
-        let labels = |cell: usize| names.labels(boundary(cell));
+        let labels: Vec<[i32; 2]> =
+            self.network.boundaries().iter().map(|boundary| names.labels(boundary)).collect();
+        let labels = |cell: usize| labels[boundary_of_cell[cell].index()];
         // Boundaries and points are far fewer than 2^31: edges have two directions with 32-bit ids.
         let boundary_id = |cell: usize| boundary_of_cell[cell].0.cast_signed();
         let node_type = |point: usize| level.node_types[point].code();

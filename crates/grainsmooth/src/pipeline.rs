@@ -3,9 +3,15 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use polycrystal::{AngleStatistics, Boundary, Certificate, MeshSize, Network, NetworkError, RelaxationStep};
-use polycrystal::{Relaxed, Volumes, WeightedAngle, angles_between_boundaries, dihedral_angles};
-use polycrystal::{regular_cells, relax_watched, validate};
+use polycrystal::{
+    AngleStatistics, Balance, Boundary, Certificate, Equilibrium, FaceMesh, MeshSize, Network, NetworkError,
+};
+use polycrystal::{
+    NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, Volumes, WeightedAngle,
+};
+use polycrystal::{
+    angles_between_boundaries, dihedral_angles, equilibrate, regular_cells, relax_watched, validate,
+};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
 use crate::memory::{LevelSize, available_memory, check_cells, check_levels};
@@ -71,15 +77,17 @@ pub struct Polycrystal {
     pub cells: Tessellated,
     /// Connectivity of all levels.
     pub network: Network,
-    /// Angles between boundaries of the flat network, before relaxation.
-    pub flat_angles: Vec<WeightedAngle>,
     /// Points of the finest level.
     pub points: Vec<DVec3>,
     /// What relaxation gave, before the last subdivisions: points to move by hand, of whole grains.
     pub relaxed: Relaxed,
     /// What regularisation took out.
     pub collapsed: Collapsed,
-    /// Angles between boundaries of the flat network, if boundaries meet inside the domain.
+    /// How relaxation to equilibrium changed the topology and how near it came; nothing where it kept the topology.
+    pub equilibrium: Option<(Reconnections, Balance)>,
+    /// Angles between boundaries of the flat network, before relaxation.
+    pub flat_angles: Vec<WeightedAngle>,
+    /// Their statistics, if boundaries meet inside the domain.
     pub angles_before: Option<AngleStatistics>,
     /// What validation found: the angles of the finished network, volumes and how true they are.
     pub validation: Certificate,
@@ -216,7 +224,7 @@ pub fn smooth_watched(
     let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
     check_levels(LevelSize { points, edges, triangles }, config.levels, available_memory())?;
     let mut tries = Regularization::tries(config).iter();
-    let (smoothed, flat) = loop {
+    let smoothed = loop {
         let regularization = *tries.next().expect("there is one, and the last is the result");
         let smoothed = smooth_regularized(config, tessellation, regularization, &mut clock, &mut watch);
         let is_tangled =
@@ -225,19 +233,19 @@ pub fn smooth_watched(
             break smoothed?;
         }
     };
-    let Smoothed { network, points, relaxed, collapsed, validation } = smoothed;
-    let angles_before = dihedral_angles(&network, network.control_mesh(), &flat);
-    let flat_angles = angles_between_boundaries(&network, network.control_mesh(), &flat);
+    let Smoothed { network, points, relaxed, collapsed, equilibrium, flat_angles, angles_before, validation } =
+        smoothed;
     let times = clock.times;
     let config = config.clone();
     Ok(Polycrystal {
         config,
         cells,
         network,
-        flat_angles,
         points,
         relaxed,
         collapsed,
+        equilibrium,
+        flat_angles,
         angles_before,
         validation,
         times,
@@ -273,31 +281,44 @@ fn is_tangle(error: &NetworkError) -> bool {
     )
 }
 
-/// A valid network.
+/// A valid network and how it came about, as [`Polycrystal`] has it.
 struct Smoothed {
     network: Network,
     points: Vec<DVec3>,
     relaxed: Relaxed,
     collapsed: Collapsed,
+    equilibrium: Option<(Reconnections, Balance)>,
+    flat_angles: Vec<WeightedAngle>,
+    angles_before: Option<AngleStatistics>,
     validation: Certificate,
 }
 
-/// The network of cells regularised in one way, and its flat control points.
+/// The network of cells regularised in one way.
 fn smooth_regularized(
     config: &Config,
     tessellation: &Tessellation,
     regularization: Regularization,
     clock: &mut Clock<'_>,
     watch: &mut impl FnMut(RelaxationStep<'_>),
-) -> Result<(Smoothed, Vec<DVec3>), Error> {
-    let (mut network, flat, collapsed) =
+) -> Result<Smoothed, Error> {
+    let (mut network, flat, mut collapsed) =
         clock.time(Stage::Network, || network(config, tessellation, regularization))?;
+    let angles_before = dihedral_angles(&network, network.control_mesh(), &flat);
+    let flat_angles = angles_between_boundaries(&network, network.control_mesh(), &flat);
+    let mut equilibrium = None;
     let progress = clock.progress;
     let relaxed = clock.time(Stage::Relaxation, || {
-        relax_watched(&network, &flat, &config.relaxation, config.volumes, |step| {
+        let mut watch = |step: RelaxationStep<'_>| {
             progress(Stage::Relaxation, step.done, step.count);
             watch(step);
-        })
+        };
+        if let Some((balanced, relaxed, report)) = balanced(config, tessellation, &mut watch) {
+            network = balanced;
+            equilibrium = Some(report);
+            collapsed = Collapsed::default();
+            return Ok(relaxed);
+        }
+        relax_watched(&network, &flat, &config.relaxation, config.volumes, watch)
     })?;
     let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
     if config.volumes == Volumes::Free {
@@ -306,7 +327,33 @@ fn smooth_regularized(
     }
     let validation =
         clock.time(Stage::Validation, || validate(&network, &points).map_err(NetworkError::Invalid))?;
-    Ok((Smoothed { network, points, relaxed, collapsed, validation }, flat))
+    Ok(Smoothed { network, points, relaxed, collapsed, equilibrium, flat_angles, angles_before, validation })
+}
+
+/// The network in equilibrium with all changes of topology that this takes, and what these were.
+///
+/// Nothing where topology is to stay as it is, or where no valid network comes out: then equilibrium is that of the topology
+/// that regularisation leaves.
+fn balanced(
+    config: &Config,
+    tessellation: &Tessellation,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Option<(Network, Relaxed, (Reconnections, Balance))> {
+    let Config { face_mesh, junctions, levels, wall_tension, .. } = *config;
+    let may_change = config.relaxation == Relaxation::Equilibrium
+        && config.regularize > 0.0
+        && config.volumes == Volumes::Kept
+        && config.dimension == Dimension::Three
+        && face_mesh == FaceMesh::Fan;
+    if !may_change {
+        return None;
+    }
+    let tension = |boundary: &Boundary| if boundary.wall.is_some() { wall_tension } else { 1.0 };
+    let recipe = NetworkRecipe { junctions, levels: levels as usize, tension: &tension };
+    let Equilibrium { network, relaxed, reconnections, balance } =
+        equilibrate(tessellation, &recipe, watch).ok()?;
+    let is_valid = validate(&network, &relaxed.finest_points(&network)).is_ok();
+    is_valid.then_some((network, relaxed, (reconnections, balance)))
 }
 
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.

@@ -70,7 +70,10 @@ pub use node_type::NodeType;
 pub use orientation::outward_sides;
 pub use periodic::PeriodicCopies;
 pub use regular_cells::regular_cells;
-pub use relax::{Relaxation, RelaxationStep, Relaxed, Volumes, relax, relax_watched};
+pub use relax::{
+    Balance, Equilibrium, NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, Volumes,
+    equilibrate, relax, relax_watched,
+};
 pub use surface::{Elements, Surface};
 pub use validate::validate;
 pub use wall_set::{Freedom, WallSet, WallSets};

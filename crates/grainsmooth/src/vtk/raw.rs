@@ -12,11 +12,11 @@ mod inline;
 pub(crate) use inline::{attribute, find};
 pub use inline::{field_bytes, field_text, inlined};
 
-/// Numbers that are computed before they are written; bounds the memory that they take.
-const BLOCK_NUMBERS: usize = 1 << 20;
+/// Numbers that are computed before they are written; so few that they are still in the cache then.
+const BLOCK_NUMBERS: usize = 1 << 17;
 
 /// Numbers that one task computes.
-const TASK_NUMBERS: usize = 1 << 15;
+const TASK_NUMBERS: usize = 1 << 13;
 
 /// Pieces that are made at the same time; bounds the memory that they take.
 const PIECES_AT_ONCE: usize = 64;

@@ -22,7 +22,7 @@ const ATTEMPTS: usize = 24;
 const WHOLE_ATTEMPTS: usize = 12;
 
 /// Length, in units of the feature size, below which a control edge no longer changes.
-const RIGID_LENGTH: f64 = 0.04;
+pub(super) const RIGID_LENGTH: f64 = 0.04;
 
 /// Most edges of the control mesh, as long as the mean, to a feature. Fans have three.
 const FEATURE_EDGES: f64 = 6.0;
@@ -75,6 +75,8 @@ pub(super) struct Flow<'a> {
     wedges: Wedges,
     clusters: Clusters,
     volumes: Volumes,
+    /// [`RIGID_LENGTH`] or another one.
+    rigid_length: f64,
 }
 
 impl<'a> Flow<'a> {
@@ -84,7 +86,24 @@ impl<'a> Flow<'a> {
         let patches = Patches::new(network, level, surface);
         let corners = FaceCorners::new(network, level);
         let Wedged { wedges, neighbors } = Wedged::new(network, surface);
-        Self { network, patches, level, surface, neighbors, corners, wedges, clusters, volumes }
+        Self {
+            network,
+            patches,
+            level,
+            surface,
+            neighbors,
+            corners,
+            wedges,
+            clusters,
+            volumes,
+            rigid_length: RIGID_LENGTH,
+        }
+    }
+
+    /// The flow with another length, in units of the feature size, below which control edges do not change.
+    pub(super) fn with_rigid_length(mut self, rigid_length: f64) -> Self {
+        self.rigid_length = rigid_length;
+        self
     }
 
     /// Takes the steps of a stage.
@@ -131,7 +150,7 @@ impl<'a> Flow<'a> {
     ///
     /// What the step folds is made rigid and moves by its mean displacement instead. That is local: to solve the step anew for
     /// all grains would take as many attempts as the worst place of all.
-    fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<f64, NetworkError> {
+    pub(super) fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<f64, NetworkError> {
         let terms = self.patches.terms(points);
         let energy = terms.iter().map(|terms| terms.energy).sum();
         let refined = self.refined(points);
@@ -248,7 +267,7 @@ impl<'a> Flow<'a> {
     /// Where volumes are free the flow itself is asked for: nothing is held but what a step would fold.
     fn rigid_length(&self, points: &[DVec3]) -> f64 {
         match self.volumes {
-            Volumes::Kept => RIGID_LENGTH * self.feature_size(points),
+            Volumes::Kept => self.rigid_length * self.feature_size(points),
             Volumes::Free => 0.0,
         }
     }
