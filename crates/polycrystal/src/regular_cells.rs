@@ -6,10 +6,10 @@ use crate::{FaceMesh, Junctions, Network, Relaxation, relax};
 
 /// Factor by which lines that relaxation will have shortened may be longer than others to collapse: what is short by then goes on
 /// shrinking, and holds the lines around up.
-const FUTURE: f64 = 5.0 / 3.0;
+const FUTURE: f64 = 2.0;
 
-/// The cells without edges that are short, or will be: [`Tessellation::regularized`] with `length`, and once more, with 5/3 of
-/// it, for the places at which a relaxation of the flat cells puts the vertices.
+/// The cells without edges that are short, or will be: [`Tessellation::regularized`] with `length`, and once more, with twice
+/// that, for the places at which a relaxation of the flat cells puts the vertices.
 ///
 /// Nothing that is left is far from its cells' own places: only what collapses is told by relaxation. In the plane the
 /// second step, which costs a tenth of a relaxation, is left out: lines there make no thin triangles.
