@@ -176,6 +176,16 @@ impl Config {
         }
     }
 
+    /// What to say of the lattice that the seeds form, if so many of them lie in the domain.
+    pub fn lattice_report(&self, seed_count: usize) -> Option<String> {
+        let fit = self.lattice_fit()?;
+        let all = fit.seed_count();
+        Some(match all.saturating_sub(seed_count) {
+            0 => fit.to_string(),
+            outside => format!("{fit}; {outside} of {all} seeds lie outside the domain and are left out"),
+        })
+    }
+
     /// The seeds of a lattice that lie in the domain.
     pub(crate) fn lattice_seeds(&self, lattice: Lattice, cells: u32, domain: &Domain) -> Vec<DVec3> {
         let (fit, corner) = match self.lattice_fit() {
