@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use polycrystal::{AngleStatistics, Balance, Boundary, Reconnections};
+use polycrystal::{AngleStatistics, Balance, Boundary, Reconnections, Relaxation};
 use voronoi::{Collapsed, Dimension};
 
 use crate::{Polycrystal, Stage};
@@ -63,6 +63,11 @@ impl fmt::Display for Summary<'_> {
             writeln!(
                 out,
                 "equilibrium triple lines within {largest_deviation:.2} degrees, but for those at {flagged_lines} short ones"
+            )?;
+        } else if polycrystal.config.relaxation == Relaxation::Equilibrium {
+            writeln!(
+                out,
+                "topology    kept: angles are off 120 degrees where grains would switch neighbours"
             )?;
         }
         if polycrystal.relaxed.fell_back {
