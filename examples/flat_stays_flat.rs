@@ -12,7 +12,7 @@ fn main() -> Result<(), grainsmooth::Error> {
         let seeds = SeedSource::Random { count: 50 };
         // Collapsed edges would leave faces that are not plane before anything is relaxed.
         let relaxation = Relaxation::Time(time);
-        let config = Config { seeds, relaxation, regularize: 0.0, ..Config::default() };
+        let config = Config { seeds, relaxation, ..Config::default() };
         let polycrystal = make_polycrystal(&config, &|_, _, _| ())?;
         let bulge = largest_bulge(&polycrystal);
         println!("--relax {time}: boundaries bulge by up to {bulge:.1e} of the box");

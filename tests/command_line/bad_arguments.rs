@@ -50,6 +50,16 @@ fn random_seed() {
 }
 
 #[test]
+fn tension_of_walls() {
+    refuses_values(
+        "--wall-tension",
+        "--wall-tension <G>",
+        &["-0.1", "nan", "inf", "steep"],
+        "a tension is 0 or a positive, finite number",
+    );
+}
+
+#[test]
 fn length_to_regularise_by() {
     refuses_values(
         "--regularize",

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use crate::surface_file::SurfaceFile;
 use crate::workplace::{USAGE, Workplace};
 
 #[test]
@@ -147,4 +148,17 @@ fn truncated_and_corrupt_files_are_refused_or_read() {
             assert!(matches!(code, Some(0 | 1 | USAGE)), "{name} {round}: {code:?}");
         }
     }
+}
+
+/// A file that was relaxed carries the length to regularise by; without relaxation that moves nothing.
+#[test]
+fn relax_0_keeps_all_flat_whatever_else_is_set() {
+    let workplace = Workplace::new();
+    workplace.run("--seeds 20 -n 1 -o smooth.vtp");
+    let said = workplace.run("--config smooth.vtp --relax 0 -o flat.vtp");
+    assert!(!said.contains("collapsed"), "{said}");
+    let said = workplace.run("--seeds 20 -n 1 --relax 0 --regularize 0.2 -o as_flat.vtp");
+    assert!(!said.contains("collapsed"), "{said}");
+    let [flat, as_flat] = ["flat.vtp", "as_flat.vtp"].map(|name| SurfaceFile::read(&workplace.path(name)));
+    assert_eq!(flat.points, as_flat.points);
 }

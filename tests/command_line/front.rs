@@ -16,10 +16,38 @@ fn text(workplace: &Workplace, arguments: &str) -> String {
     String::from_utf8(printed(workplace, arguments)).unwrap()
 }
 
+/// Random grains come together and part on the way to equilibrium; both summaries tell, and the topology is sound.
+#[test]
+fn summaries_tell_of_changes_of_topology() {
+    let workplace = Workplace::new();
+    let said = workplace.run("--seeds 24 -n 2 --relax equilibrium -o a.vtp --json-summary run.json");
+    let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+    let number = |key: &str| run["equilibrium"][key].as_f64().unwrap();
+    let events = ["lines_to_boundaries", "boundaries_to_lines", "boundaries_swapped"].map(number);
+    assert!(events.iter().sum::<f64>() > 0.0, "{said}");
+    let [opened, closed, swapped] = events;
+    let line = format!(
+        "topology    {opened} triple lines became boundaries, {closed} boundaries triple lines, {swapped} boundaries changed sides"
+    );
+    assert!(said.lines().any(|said| said == line), "{line}\nis not in\n{said}");
+    let flagged = format!("but for those at {} short ones", number("flagged_lines"));
+    assert!(said.lines().any(|said| said.starts_with("equilibrium ") && said.ends_with(&flagged)), "{said}");
+    let spread = |key: &str| run[key]["standard_deviation"].as_f64().unwrap();
+    assert!(spread("angles_after") < 0.25 * spread("angles_before"), "{said}");
+    printed(&workplace, "check a.vtp");
+    let said = workplace.run("--seeds 24 -n 1 --relax equilibrium --regularize 0 -o b.vtp");
+    assert!(said.contains("\ntopology    kept: "), "{said}");
+    // Nothing of the kind with a time.
+    workplace.run("--seeds 5 -n 0 -o b.vtp --json-summary run.json");
+    let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+    assert!(run["equilibrium"].is_null());
+}
+
 #[test]
 fn dry_run_foretells_the_run_and_writes_nothing() {
     let workplace = Workplace::new();
     for arguments in [
+        "--seeds 30 -n 2 --regularize 0 -o a.vtp",
         "--seeds 30 -n 2 -o a.vtp",
         "--seeds 30 -n 2 -o a.vtu",
         "--seeds 30 -n 2 -o a.vtk",
@@ -42,14 +70,18 @@ fn dry_run_foretells_the_run_and_writes_nothing() {
             line.split_whitespace().find_map(|word| word.parse().ok()).unwrap()
         };
         let elements = if arguments.contains("--dim 2") { "segments" } else { "triangles" };
-        let exact = [number("grains"), number("points"), number(elements)];
-        assert_eq!(
-            exact.map(Value::from),
-            ["grains", "points", "elements"].map(|key| run[key].clone()),
-            "{said}"
-        );
+        assert_eq!(run["grains"], number("grains"), "{said}");
+        // In space, relaxation decides what regularisation takes out.
+        let is_exact = arguments.contains("--dim 2") || arguments.contains("--regularize 0");
+        for (key, line) in [("points", "points"), ("elements", elements)] {
+            let error = (number(line) as f64 / run[key].as_f64().unwrap() - 1.0).abs();
+            assert!(error <= if is_exact { 0.0 } else { 0.3 }, "{arguments}: {foretold}, but {said}");
+        }
         let bytes = workplace.bytes(name).len() as f64;
-        assert!((number("file") as f64 / bytes - 1.0).abs() < 0.25, "{arguments}: {foretold}, but {bytes}");
+        assert!(
+            (number("file") as f64 / bytes - 1.0).abs() < if is_exact { 0.25 } else { 0.5 },
+            "{arguments}: {foretold}, but {bytes}"
+        );
         assert!(number("memory") > 1_000_000);
         std::fs::remove_file(workplace.path(name)).unwrap();
     }

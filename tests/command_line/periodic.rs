@@ -100,3 +100,57 @@ fn every_format_and_the_plane() {
     };
     assert!(bytes(1) == bytes(2), "the file does not depend on the number of threads");
 }
+
+/// Cut at the box, grains end at its walls; the checks that every network passes are those of a box without periods.
+#[test]
+fn grains_are_cut_at_the_box() {
+    let workplace = Workplace::new();
+    for (arguments, axes) in [
+        ("--seeds 20 --periodic x,y,z -n 1", 3),
+        ("--seeds 20 --periodic y --box 1 2 1 -n 1", 3),
+        ("--dim 2 --seeds 20 --periodic x,y -n 2", 2),
+    ] {
+        let said = workplace.run(&format!("{arguments} --periodic-cut box -o cut.vtp"));
+        assert!(said.contains("validation  good") && !said.contains("a period apart"), "{said}");
+        if axes == 3 {
+            let surface = SurfaceFile::read(&workplace.path("cut.vtp"));
+            assert!(surface.face_labels.iter().flatten().all(|label| (-1..20).contains(label)));
+            let upper = if arguments.contains("--box") { DVec3::new(1.0, 2.0, 1.0) } else { DVec3::ONE };
+            let is_inside = |point: &DVec3| point.cmpge(DVec3::ZERO).all() && point.cmple(upper).all();
+            assert!(surface.points.iter().all(is_inside));
+        }
+        workplace.command("check cut.vtp").assert().success();
+        workplace.run("--config cut.vtp -o again.vtp");
+        assert!(workplace.bytes("cut.vtp") == workplace.bytes("again.vtp"), "{arguments}");
+        workplace.run(&format!("{arguments} --periodic-cut wrap -o whole.vtp"));
+        workplace.run(&format!("{arguments} -o as_ever.vtp"));
+        assert!(workplace.bytes("whole.vtp") == workplace.bytes("as_ever.vtp"), "{arguments}");
+    }
+    workplace
+        .run("--seeds 20 --periodic x,y,z -n 0 --periodic-cut box --report r.html --stats s.json -o cut.fe");
+}
+
+#[test]
+fn cuts_are_refused_where_they_make_no_sense() {
+    let workplace = Workplace::new();
+    workplace.refuses(
+        "--periodic x --periodic-cut half",
+        USAGE,
+        "invalid value 'half' for '--periodic-cut <RULE>'",
+    );
+    workplace.refuses(
+        "--periodic-cut box",
+        USAGE,
+        "--periodic-cut box needs periodic grains; give --periodic x,y,z or leave it out",
+    );
+    workplace.refuses(
+        "--periodic x --periodic-cut box --series a.pvd",
+        USAGE,
+        "--series shows whole grains; leave --periodic-cut box out",
+    );
+    workplace.refuses(
+        "--seeds 1 --periodic x,y,z --periodic-cut box -n 0",
+        FAILED,
+        "grain 0 is its own neighbour, so the box cannot cut it; keep grains whole, or give more seeds",
+    );
+}

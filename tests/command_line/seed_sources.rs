@@ -83,6 +83,15 @@ fn a_stretched_lattice_says_so_and_what_fits() {
 }
 
 #[test]
+fn seeds_of_a_lattice_outside_the_domain_are_counted() {
+    let workplace = Workplace::new();
+    // Of 64 seeds all but the 32 in the corners, and at the edges beside them, are within 0.5 of the middle.
+    let said = workplace.run("--lattice sc 4 --domain sphere --no-mesh");
+    assert!(said.contains("cells       32 in "), "{said}");
+    assert!(said.contains("; 32 of 64 seeds lie outside the domain and are left out\n"), "{said}");
+}
+
+#[test]
 fn lattices_that_do_not_fit_are_refused() {
     let workplace = Workplace::new();
     for (arguments, message) in [

@@ -3,7 +3,7 @@
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
-use grainsmooth::{Config, read_file_domain};
+use grainsmooth::{Config, PeriodicCut, read_file_domain};
 
 use crate::check_run::CheckArguments;
 use crate::mesh_cli::MeshArguments;
@@ -105,6 +105,10 @@ impl Arguments {
         let Self { seeds, domain: arguments, smoothing, files, .. } = self;
         let of_file = seeds.seeds_file.as_deref().map(read_file_domain).transpose()?.flatten();
         let domain = arguments.with_defaults_of(of_file);
+        let periodic_cut = arguments.periodic_cut(domain.periodic);
+        if periodic_cut == PeriodicCut::Box && files.has_series() {
+            usage("--series shows whole grains; leave --periodic-cut box out");
+        }
         Ok(Config {
             seeds: seeds.source(domain.dimension),
             random_seed: seeds.rng_seed,
@@ -114,10 +118,11 @@ impl Arguments {
             shape: arguments.shape(&domain),
             face_mesh: smoothing.face_mesh(),
             periodic: domain.periodic,
+            periodic_cut,
             relaxation: smoothing.relax,
             wall_tension: smoothing.wall_tension,
             volumes: smoothing.volumes(),
-            regularize: smoothing.regularize(),
+            regularize: smoothing.regularize,
             levels: smoothing.levels,
             junctions: smoothing.junctions(),
             drop_empty: seeds.drop_empty,

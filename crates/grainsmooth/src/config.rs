@@ -70,6 +70,16 @@ impl Shape {
     }
 }
 
+/// Where grains of a periodic domain end in what is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PeriodicCut {
+    /// They are whole, and stick out of the box.
+    #[default]
+    Wrap,
+    /// At the walls of the box, which then holds some in several pieces.
+    Box,
+}
+
 /// Everything that decides what a run computes. The same config gives the same bytes on every machine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Config {
@@ -87,6 +97,8 @@ pub struct Config {
     pub shape: Shape,
     /// Axes along which the box repeats; in 2D the last is ignored.
     pub periodic: BVec3,
+    /// Where grains of a periodic domain end in what is written.
+    pub periodic_cut: PeriodicCut,
     /// Control points on boundaries.
     pub face_mesh: FaceMesh,
     /// How far boundaries relax; time 0 leaves them flat.
@@ -95,7 +107,8 @@ pub struct Config {
     pub wall_tension: f64,
     /// Whether relaxation keeps the grains' volumes.
     pub volumes: Volumes,
-    /// Length, in units of the mean grain size, below which edges of cells collapse before relaxation; 0 keeps all.
+    /// Length, in units of the mean grain size, below which edges of cells collapse before relaxation; 0 keeps all. Without
+    /// relaxation it has no effect: boundaries stay flat, for which no vertex may move.
     pub regularize: f64,
     /// Number of subdivisions.
     pub levels: u32,
@@ -136,6 +149,7 @@ impl Default for Config {
             box_size: DVec3::ONE,
             shape: Shape::Box,
             periodic: BVec3::FALSE,
+            periodic_cut: PeriodicCut::Wrap,
             face_mesh: FaceMesh::Fan,
             relaxation: Relaxation::default(),
             wall_tension: 0.0,
@@ -160,6 +174,11 @@ impl Config {
     /// The largest: edges as long as half a grain are no small features.
     pub const LARGEST_REGULARIZE: f64 = 0.5;
 
+    /// The length to regularise by: none without relaxation.
+    pub(crate) fn effective_regularize(&self) -> f64 {
+        if self.relaxation == Relaxation::Time(0.0) { 0.0 } else { self.regularize }
+    }
+
     /// Control points on the boundaries of regularised cells: in a fan, whose triangles at short lines are thin, those stay whole.
     pub(crate) fn regular_face_mesh(&self) -> FaceMesh {
         if self.face_mesh == FaceMesh::Fan { FaceMesh::SparseFan } else { self.face_mesh }
@@ -174,6 +193,16 @@ impl Config {
             SeedSource::Lattice { lattice, cells } => Some(LatticeFit::new(lattice, cells, self.box_size)),
             _ => None,
         }
+    }
+
+    /// What to say of the lattice that the seeds form, if so many of them lie in the domain.
+    pub fn lattice_report(&self, seed_count: usize) -> Option<String> {
+        let fit = self.lattice_fit()?;
+        let all = fit.seed_count();
+        Some(match all.saturating_sub(seed_count) {
+            0 => fit.to_string(),
+            outside => format!("{fit}; {outside} of {all} seeds lie outside the domain and are left out"),
+        })
     }
 
     /// The seeds of a lattice that lie in the domain.

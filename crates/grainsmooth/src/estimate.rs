@@ -15,7 +15,8 @@ const VTK_HEAD: u128 = 4000;
 const TEXT_POINT: u128 = 62;
 const TEXT_CORNERS: u128 = 24;
 
-/// The size of a run's result: counts are exact but for boundaries that `edge-length` refines, bytes are about right.
+/// The size of a run's result: counts are exact but for boundaries that `edge-length` refines, and in space where cells are
+/// regularised, as what collapses is decided by relaxation. These, and bytes, are about right.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
     /// Number of grains.
@@ -38,7 +39,7 @@ impl Estimate {
     /// The size of what becomes of some cells.
     pub fn new(config: &Config, cells: &Tessellated, format: Option<OutputFormat>) -> Self {
         let tessellation = &cells.tessellation;
-        let size = match config.regularize {
+        let size = match config.effective_regularize() {
             0.0 => config.face_mesh.control_mesh_size(tessellation),
             length => config.regular_face_mesh().control_mesh_size(&tessellation.regularized(length).0),
         };

@@ -49,7 +49,7 @@ pub mod vtk;
 
 pub use cell_table::{CellTable, TableFormat};
 pub use check_report::{CheckReport, ReportedFault, Spread, Statistic};
-pub use config::{Config, FileOptions, SeedSource, Shape};
+pub use config::{Config, FileOptions, PeriodicCut, SeedSource, Shape};
 pub use error::Error;
 pub use estimate::Estimate;
 pub use formats::{LabelGrid, Names, StlEncoding};

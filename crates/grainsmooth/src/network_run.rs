@@ -125,7 +125,8 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     }
     let Some(output) = &files.output else {
         let tessellation = &tessellated.tessellation;
-        let lattice = config.lattice_fit().map_or(String::new(), |fit| format!("\nlattice     {fit}"));
+        let lattice = config.lattice_report(tessellation.cell_count());
+        let lattice = lattice.map_or(String::new(), |lattice| format!("\nlattice     {lattice}"));
         return Ok(format!(
             "cells       {} in {}{lattice}",
             tessellation.cell_count(),
@@ -138,6 +139,7 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
             series.add(&step);
         }
     })?;
+    polycrystal = polycrystal.cut_if_asked()?;
     line.show(Stage::Writing, 0, 1);
     let start = Instant::now();
     polycrystal.write(output)?;

@@ -10,7 +10,7 @@ use voronoi::Dimension;
 
 use crate::unfinished::Unfinished;
 use crate::vtk::VtkFormat;
-use crate::{Config, Error, Shape};
+use crate::{Config, Error, PeriodicCut, Shape};
 
 /// A file format that results are written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -153,7 +153,10 @@ impl Output {
             Some(dimension) if dimension != config.dimension => {
                 Err(Error::FormatDimension { path: path(), dimension })
             }
-            _ if self.format == OutputFormat::Fe && config.periodic.any() => {
+            _ if self.format == OutputFormat::Fe
+                && config.periodic.any()
+                && config.periodic_cut == PeriodicCut::Wrap =>
+            {
                 Err(Error::FormatPeriodic { path: path() })
             }
             _ if self.format.has_voxels() && config.shape != Shape::Box => {

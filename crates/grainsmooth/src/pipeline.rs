@@ -3,13 +3,21 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use polycrystal::{AngleStatistics, Boundary, Certificate, MeshSize, Network, NetworkError, RelaxationStep};
-use polycrystal::{Relaxed, Volumes, dihedral_angles, relax_watched, validate};
+use polycrystal::{
+    AngleStatistics, Balance, Boundary, Certificate, Equilibrium, FaceMesh, MeshSize, Network, NetworkError,
+};
+use polycrystal::{
+    NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, Volumes, WeightedAngle,
+};
+use polycrystal::{
+    angles_between_boundaries, dihedral_angles, equilibrate, regular_cells, relax_watched, validate,
+};
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
 use crate::memory::{LevelSize, available_memory, check_cells, check_levels};
 use crate::{
-    Config, Error, FileSeed, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds, read_seed_file,
+    Config, Error, FileSeed, PeriodicCut, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds,
+    read_seed_file,
 };
 
 /// A part of a run, in the order in which they follow each other.
@@ -69,20 +77,43 @@ pub struct Polycrystal {
     pub cells: Tessellated,
     /// Connectivity of all levels.
     pub network: Network,
-    /// Control points of the flat network, before relaxation.
-    pub flat: Vec<DVec3>,
     /// Points of the finest level.
     pub points: Vec<DVec3>,
-    /// What relaxation gave, before the last subdivisions: points to move by hand.
+    /// What relaxation gave, before the last subdivisions: points to move by hand, of whole grains.
     pub relaxed: Relaxed,
     /// What regularisation took out.
     pub collapsed: Collapsed,
-    /// Angles between boundaries of the flat network, if boundaries meet inside the domain.
+    /// How relaxation to equilibrium changed the topology and how near it came; nothing where it kept the topology.
+    pub equilibrium: Option<(Reconnections, Balance)>,
+    /// Angles between boundaries of the flat network, before relaxation.
+    pub flat_angles: Vec<WeightedAngle>,
+    /// Their statistics, if boundaries meet inside the domain.
     pub angles_before: Option<AngleStatistics>,
     /// What validation found: the angles of the finished network, volumes and how true they are.
     pub validation: Certificate,
     /// Time that each stage took.
     pub times: Vec<(Stage, Duration)>,
+}
+
+impl Polycrystal {
+    /// The grains of a periodic box cut at its walls, as [`PeriodicCut::Box`](crate::PeriodicCut::Box) asks; others as they are.
+    ///
+    /// # Errors
+    /// As of [`Network::cut_at_box`].
+    pub fn cut_if_asked(mut self) -> Result<Self, Error> {
+        if self.config.periodic_cut == PeriodicCut::Wrap || !self.network.domain().is_periodic() {
+            return Ok(self);
+        }
+        let volumes = self.network.cell_volumes().to_vec();
+        let start = Instant::now();
+        let (network, points) = self.network.cut_at_box(&self.points)?;
+        (self.network, self.points) = (network.with_cell_volumes(volumes), points);
+        self.add_time(Stage::Subdivision, start.elapsed());
+        let start = Instant::now();
+        self.validation = validate(&self.network, &self.points).map_err(NetworkError::Invalid)?;
+        self.add_time(Stage::Validation, start.elapsed());
+        Ok(self)
+    }
 }
 
 /// The cells of a config's seeds.
@@ -192,55 +223,160 @@ pub fn smooth_watched(
     let mut clock = Clock { progress, times: cells.times.clone() };
     let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
     check_levels(LevelSize { points, edges, triangles }, config.levels, available_memory())?;
-    let (mut network, flat, collapsed) = clock.time(Stage::Network, || network(config, tessellation))?;
-    let relaxed = clock.time(Stage::Relaxation, || {
-        relax_watched(&network, &flat, &config.relaxation, config.volumes, |step| {
-            progress(Stage::Relaxation, step.done, step.count);
-            watch(step);
-        })
-    })?;
-    let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
-    if config.volumes == Volumes::Free {
-        let volumes = network.grain_volumes(network.finest(), &points);
-        network = network.with_cell_volumes(volumes);
-    }
-    let (validation, angles_before) = clock.time(Stage::Validation, || {
-        let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
-        Ok::<_, Error>((validation, dihedral_angles(&network, network.control_mesh(), &flat)))
-    })?;
+    let mut tries = Regularization::tries(config).iter();
+    let smoothed = loop {
+        let regularization = *tries.next().expect("there is one, and the last is the result");
+        let smoothed = smooth_regularized(config, tessellation, regularization, &mut clock, &mut watch);
+        let is_tangled =
+            smoothed.as_ref().is_err_and(|error| matches!(error, Error::Network(cause) if is_tangle(cause)));
+        if !is_tangled || tries.len() == 0 {
+            break smoothed?;
+        }
+    };
+    let Smoothed { network, points, relaxed, collapsed, equilibrium, flat_angles, angles_before, validation } =
+        smoothed;
     let times = clock.times;
     let config = config.clone();
     Ok(Polycrystal {
         config,
         cells,
         network,
-        flat,
         points,
         relaxed,
         collapsed,
+        equilibrium,
+        flat_angles,
         angles_before,
         validation,
         times,
     })
 }
 
+/// What is taken out of the cells before relaxation.
+#[derive(Debug, Clone, Copy)]
+enum Regularization {
+    /// What is short, and what relaxation would make so: the best triangles.
+    Foreseeing,
+    /// What is short.
+    Plain,
+    /// Nothing.
+    None,
+}
+
+impl Regularization {
+    /// What to try, one after the other: where much is taken out, in rare places relaxation makes boundaries fold or cross.
+    fn tries(config: &Config) -> &'static [Self] {
+        match config.effective_regularize() {
+            0.0 => &[Self::None],
+            _ => &[Self::Foreseeing, Self::Plain, Self::None],
+        }
+    }
+}
+
+/// Whether a network could not be relaxed as it is, but might be with less taken out.
+fn is_tangle(error: &NetworkError) -> bool {
+    matches!(
+        error,
+        NetworkError::Invalid(_) | NetworkError::Folded { .. } | NetworkError::VolumeNotRestored { .. }
+    )
+}
+
+/// A valid network and how it came about, as [`Polycrystal`] has it.
+struct Smoothed {
+    network: Network,
+    points: Vec<DVec3>,
+    relaxed: Relaxed,
+    collapsed: Collapsed,
+    equilibrium: Option<(Reconnections, Balance)>,
+    flat_angles: Vec<WeightedAngle>,
+    angles_before: Option<AngleStatistics>,
+    validation: Certificate,
+}
+
+/// The network of cells regularised in one way.
+fn smooth_regularized(
+    config: &Config,
+    tessellation: &Tessellation,
+    regularization: Regularization,
+    clock: &mut Clock<'_>,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Result<Smoothed, Error> {
+    let (mut network, flat, mut collapsed) =
+        clock.time(Stage::Network, || network(config, tessellation, regularization))?;
+    let angles_before = dihedral_angles(&network, network.control_mesh(), &flat);
+    let flat_angles = angles_between_boundaries(&network, network.control_mesh(), &flat);
+    let mut equilibrium = None;
+    let progress = clock.progress;
+    let relaxed = clock.time(Stage::Relaxation, || {
+        let mut watch = |step: RelaxationStep<'_>| {
+            progress(Stage::Relaxation, step.done, step.count);
+            watch(step);
+        };
+        if let Some((balanced, relaxed, report)) = balanced(config, tessellation, &mut watch) {
+            network = balanced;
+            equilibrium = Some(report);
+            collapsed = Collapsed::default();
+            return Ok(relaxed);
+        }
+        relax_watched(&network, &flat, &config.relaxation, config.volumes, watch)
+    })?;
+    let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
+    if config.volumes == Volumes::Free {
+        let volumes = network.grain_volumes(network.finest(), &points);
+        network = network.with_cell_volumes(volumes);
+    }
+    let validation =
+        clock.time(Stage::Validation, || validate(&network, &points).map_err(NetworkError::Invalid))?;
+    Ok(Smoothed { network, points, relaxed, collapsed, equilibrium, flat_angles, angles_before, validation })
+}
+
+/// The network in equilibrium with all changes of topology that this takes, and what these were.
+///
+/// Nothing where topology is to stay as it is, or where no valid network comes out: then equilibrium is that of the topology
+/// that regularisation leaves.
+fn balanced(
+    config: &Config,
+    tessellation: &Tessellation,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Option<(Network, Relaxed, (Reconnections, Balance))> {
+    let Config { face_mesh, junctions, levels, wall_tension, .. } = *config;
+    let may_change = config.relaxation == Relaxation::Equilibrium
+        && config.regularize > 0.0
+        && config.volumes == Volumes::Kept
+        && config.dimension == Dimension::Three
+        && face_mesh == FaceMesh::Fan;
+    if !may_change {
+        return None;
+    }
+    let tension = |boundary: &Boundary| if boundary.wall.is_some() { wall_tension } else { 1.0 };
+    let recipe = NetworkRecipe { junctions, levels: levels as usize, tension: &tension };
+    let Equilibrium { network, relaxed, reconnections, balance } =
+        equilibrate(tessellation, &recipe, watch).ok()?;
+    let is_valid = validate(&network, &relaxed.finest_points(&network)).is_ok();
+    is_valid.then_some((network, relaxed, (reconnections, balance)))
+}
+
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.
 fn network(
     config: &Config,
     tessellation: &Tessellation,
+    regularization: Regularization,
 ) -> Result<(Network, Vec<DVec3>, Collapsed), NetworkError> {
-    let Config { face_mesh, junctions, levels, wall_tension, .. } = *config;
+    let Config { face_mesh, junctions, levels, wall_tension, regularize, .. } = *config;
     let tension = |boundary: &Boundary| if boundary.wall.is_some() { wall_tension } else { 1.0 };
     let network_of = |cells, face_mesh| {
         let (network, flat) = Network::with_face_mesh(cells, face_mesh, junctions, levels as usize)?;
         Ok::<_, NetworkError>((network.with_tensions(tension)?, flat))
     };
-    if config.regularize == 0.0 {
-        let (network, flat) = network_of(tessellation, face_mesh)?;
-        return Ok((network, flat, Collapsed::default()));
-    }
+    let (regular, collapsed) = match regularization {
+        Regularization::Foreseeing => regular_cells(tessellation, regularize),
+        Regularization::Plain => tessellation.regularized(regularize),
+        Regularization::None => {
+            let (network, flat) = network_of(tessellation, face_mesh)?;
+            return Ok((network, flat, Collapsed::default()));
+        }
+    };
     let volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
-    let (regular, collapsed) = tessellation.regularized(config.regularize);
     let (network, flat) = network_of(&regular, config.regular_face_mesh())?;
     Ok((network.with_cell_volumes(volumes), flat, collapsed))
 }
@@ -256,7 +392,11 @@ impl Clock<'_> {
         (self.progress)(stage, 0, 1);
         let start = Instant::now();
         let result = work();
-        self.times.push((stage, start.elapsed()));
+        let taken = start.elapsed();
+        match self.times.iter_mut().find(|(known, _)| *known == stage) {
+            Some((_, time)) => *time += taken,
+            None => self.times.push((stage, taken)),
+        }
         result
     }
 }

@@ -138,7 +138,7 @@ impl Polycrystal {
                 Dimension::Three => "the length of triple lines",
             },
             bins: chart::Bins { start: 0.0, width: ANGLE_BIN },
-            before: weighted(angles_between_boundaries(network, network.control_mesh(), &self.flat)),
+            before: weighted(self.flat_angles.clone()),
             after: weighted(angles_between_boundaries(network, network.finest(), &self.points)),
             exact: exact.collect(),
         }

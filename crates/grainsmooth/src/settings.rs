@@ -10,7 +10,7 @@ use toml::Value;
 use voronoi::Dimension;
 
 use crate::vtk::find;
-use crate::{Config, FileOptions, SeedSource, Shape, StlEncoding};
+use crate::{Config, FileOptions, PeriodicCut, SeedSource, Shape, StlEncoding};
 
 /// The first words of the text in a file.
 const BEGIN: &str = "# grainsmooth configuration";
@@ -76,6 +76,9 @@ impl Config {
         let axes = ["x", "y", "z"].into_iter().zip(<[bool; 3]>::from(self.periodic));
         let axes: Vec<&str> = axes.filter(|(_, is_periodic)| *is_periodic).map(|(axis, _)| axis).collect();
         add("periodic", if axes.is_empty() { "none".into() } else { axes.join(",").into() });
+        if self.periodic_cut == PeriodicCut::Box {
+            add("periodic-cut", "box".into());
+        }
         match self.face_mesh {
             FaceMesh::Fan | FaceMesh::SparseFan => add("faces", "fan".into()),
             FaceMesh::Plain => add("faces", "plain".into()),

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use polycrystal::{AngleStatistics, Boundary};
+use polycrystal::{AngleStatistics, Balance, Boundary, Reconnections, Relaxation};
 use voronoi::{Collapsed, Dimension};
 
 use crate::{Polycrystal, Stage};
@@ -20,8 +20,8 @@ impl fmt::Display for Summary<'_> {
         let (points, elements) = (finest.vertex_count(), finest.element_count());
         let levels = polycrystal.config.levels;
         writeln!(out, "grains      {} in {}", network.grain_count(), network.domain())?;
-        if let Some(fit) = polycrystal.config.lattice_fit() {
-            writeln!(out, "lattice     {fit}")?;
+        if let Some(lattice) = polycrystal.config.lattice_report(network.grain_count()) {
+            writeln!(out, "lattice     {lattice}")?;
         }
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
         let through_walls = count(|boundary| boundary.twin.is_some()) / 2;
@@ -54,6 +54,22 @@ impl fmt::Display for Summary<'_> {
         if let (Some(before), Some(after)) = (polycrystal.angles_before, polycrystal.validation.angles) {
             writeln!(out, "angles      {} before relaxation, {} after", Angle(before), Angle(after))?;
         }
+        if let Some((Reconnections { opened, closed, swapped }, balance)) = &polycrystal.equilibrium {
+            let Balance { flagged_lines, largest_deviation } = balance;
+            writeln!(
+                out,
+                "topology    {opened} triple lines became boundaries, {closed} boundaries triple lines, {swapped} boundaries changed sides"
+            )?;
+            writeln!(
+                out,
+                "equilibrium triple lines within {largest_deviation:.2} degrees, but for those at {flagged_lines} short ones"
+            )?;
+        } else if polycrystal.config.relaxation == Relaxation::Equilibrium {
+            writeln!(
+                out,
+                "topology    kept: angles are off 120 degrees where grains would switch neighbours"
+            )?;
+        }
         if polycrystal.relaxed.fell_back {
             let level = polycrystal.relaxed.level;
             writeln!(
@@ -81,7 +97,10 @@ impl fmt::Display for Summary<'_> {
 impl Polycrystal {
     /// Adds the time that a stage took after the computation, such as writing.
     pub fn add_time(&mut self, stage: Stage, time: Duration) {
-        self.times.push((stage, time));
+        match self.times.iter_mut().find(|(known, _)| *known == stage) {
+            Some((_, taken)) => *taken += time,
+            None => self.times.push((stage, time)),
+        }
     }
 }
 

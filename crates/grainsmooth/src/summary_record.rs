@@ -22,6 +22,7 @@ pub struct SummaryRecord {
     quadruple_points: usize,
     collapsed_edges: usize,
     collapsed_boundaries: usize,
+    equilibrium: Option<Equilibrium>,
     points: usize,
     /// Triangles, in the plane segments.
     elements: usize,
@@ -40,6 +41,18 @@ struct Boundaries {
     on_walls: usize,
     /// Of those between grains, how many stand in the file twice, a period apart.
     twice: usize,
+}
+
+/// What relaxation to equilibrium did, where it may change the topology.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct Equilibrium {
+    lines_to_boundaries: usize,
+    boundaries_to_lines: usize,
+    boundaries_swapped: usize,
+    /// Short triple lines that stayed.
+    flagged_lines: usize,
+    /// Of an angle along a triple line away from those, from 120 degrees.
+    largest_deviation: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -76,6 +89,13 @@ impl SummaryRecord {
             quadruple_points: junctions.quadruple_points,
             collapsed_edges: polycrystal.collapsed.edges,
             collapsed_boundaries: polycrystal.collapsed.faces,
+            equilibrium: polycrystal.equilibrium.map(|(reconnections, balance)| Equilibrium {
+                lines_to_boundaries: reconnections.opened,
+                boundaries_to_lines: reconnections.closed,
+                boundaries_swapped: reconnections.swapped,
+                flagged_lines: balance.flagged_lines,
+                largest_deviation: balance.largest_deviation,
+            }),
             points: finest.vertex_count(),
             elements: finest.element_count(),
             level: config.levels,

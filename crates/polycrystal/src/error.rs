@@ -28,6 +28,45 @@ pub enum NetworkError {
         /// The sides of the boundary.
         sides: [Side; 2],
     },
+    /// A labelled surface in a periodic domain.
+    #[error("a network of given triangles cannot be periodic; give a domain without periods")]
+    PeriodicSurface,
+    /// An element of a labelled surface lies at the exterior, but on no wall.
+    #[error(
+        "element {element} lies at the exterior, but on no wall of the domain; its corners must be on a wall exactly"
+    )]
+    NotOnWall {
+        /// The element.
+        element: u32,
+    },
+    /// The grains of a labelled surface are not numbered one after the other.
+    #[error("no triangle or segment has grain {} on a side; number grains from 0 without gaps", grain.0)]
+    MissingGrain {
+        /// The number that is left out.
+        grain: GrainId,
+    },
+    /// A point lies on a plane of the box at which a periodic network is to be cut.
+    #[error(
+        "the point {point} of the network lies on a wall of the box, which so cannot cut it; keep grains whole, or move the seeds"
+    )]
+    PointOnCut {
+        /// Where.
+        point: glam::DVec3,
+    },
+    /// A grain of a periodic network that is to be cut meets a copy of itself.
+    #[error("grain {} is its own neighbour, so the box cannot cut it; keep grains whole, or give more seeds", grain.0)]
+    MeetsItself {
+        /// The grain.
+        grain: GrainId,
+    },
+    /// The lines in which boundaries meet a plane of the box cross, or close nothing.
+    #[error(
+        "boundaries cannot be told apart on the walls across {axis}; keep grains whole, or move the seeds a little"
+    )]
+    CutCrosses {
+        /// The axis across the plane.
+        axis: &'static str,
+    },
     /// The edge length of the control mesh is no length.
     #[error("the edge length is {0}; it must be a positive, finite number")]
     BadEdgeLength(f64),

@@ -4,12 +4,17 @@ use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::{Dimension, Edges, FaceId, PeriodicPair, Shift, Tessellation, VertexId, triangulate_polygon};
 
+use crate::fan::Fan;
+
 /// Fewest segments of a triple line: one middle, so that every line can curve.
 const FEWEST_SEGMENTS: u32 = 2;
 
 /// Length, in units of the mean size of cells, below which a sparse fan leaves a triple line whole: halves would make needles of
 /// the triangles from there to the centres of its boundaries. Levels of subdivision divide and curve it all the same.
 const SHORT_LINE: f64 = 0.25;
+
+/// One in so many sparse fans of random cells gets one more centre.
+const FANS_PER_CENTER: u32 = 2;
 
 /// Triangles of a refined boundary, in units of equilateral triangles of the edge length; about 2 is usual.
 const REFINED_TRIANGLES: f64 = 3.0;
@@ -20,8 +25,8 @@ pub enum FaceMesh {
     /// The middles of its triple lines, and a fan of triangles from its centre: VirMat's control points.
     #[default]
     Fan,
-    /// The same, but in space lines shorter than a quarter of the mean size of cells have no middle, which makes better triangles:
-    /// for cells that are regularised.
+    /// The same with better triangles, for cells that are regularised: in space, lines shorter than a quarter of the mean size of
+    /// cells have no middle, and a boundary in which a fan has angles below 20 degrees gets up to two more centres.
     SparseFan,
     /// The middles of its triple lines alone; no point inside (constrained Delaunay triangulation).
     Plain,
@@ -48,7 +53,7 @@ pub struct MeshSize {
 }
 
 impl FaceMesh {
-    /// The size of a tessellation's control mesh; estimated for boundaries that are refined.
+    /// The size of a tessellation's control mesh; estimated for boundaries that are refined, and for more centres than one.
     pub fn control_mesh_size(self, tessellation: &Tessellation) -> MeshSize {
         let vertices = tessellation.vertices();
         let short = self.short_line(tessellation);
@@ -74,7 +79,11 @@ impl FaceMesh {
             let of_face = corner_edges.by_ref().take(corners.len());
             let outline: u128 = of_face.map(|edge| count(lines.ends[*edge as usize])).sum();
             let (more_points, more_triangles) = match self {
-                Self::Fan | Self::SparseFan => (1, outline),
+                Self::Fan => (1, outline),
+                Self::SparseFan => {
+                    let centers = 1 + u128::from(face.0 % FANS_PER_CENTER == 0);
+                    (centers, outline + 2 * (centers - 1))
+                }
                 Self::Plain => (0, outline - 2),
                 Self::Refined { edge_length } => {
                     let equilateral = 3f64.sqrt() / 4.0 * edge_length * edge_length;
@@ -277,11 +286,6 @@ fn copy_faces(tessellation: &Tessellation, faces: &mut [FaceTriangles]) {
     }
 }
 
-/// A fan of triangles round the point after so many of the outline.
-fn fan(count: u32) -> Vec<[u32; 3]> {
-    (0..count).map(|k| [k, (k + 1) % count, count]).collect()
-}
-
 fn fill(outline: &[u32], points: &[DVec3], face_mesh: FaceMesh) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let positions: Vec<DVec3> = outline.iter().map(|point| points[*point as usize]).collect();
     let mesh = match face_mesh {
@@ -297,12 +301,13 @@ fn fill(outline: &[u32], points: &[DVec3], face_mesh: FaceMesh) -> (Vec<DVec3>, 
     match mesh {
         Some(mesh) => (mesh.inner_points, mesh.triangles),
         // Also what rounding leaves no triangulation of: the centre of a sliver still sees all of its outline.
-        None => (vec![outline_center(&positions)], fan(id(outline.len()))),
+        None if face_mesh == FaceMesh::SparseFan => Fan::new(&positions).with_more_centers().into_mesh(),
+        None => Fan::new(&positions).into_mesh(),
     }
 }
 
 /// The centroid of an outline: inside the face, and well defined for the thinnest of slivers.
-fn outline_center(outline: &[DVec3]) -> DVec3 {
+pub(crate) fn outline_center(outline: &[DVec3]) -> DVec3 {
     let origin = outline[0];
     let (mut weighted, mut perimeter) = (DVec3::ZERO, 0.0);
     for (from, to) in outline.iter().zip(outline.iter().cycle().skip(1)) {

@@ -22,6 +22,7 @@
 
 mod angles;
 mod boundary;
+mod box_cut;
 mod box_tree;
 mod certificate;
 mod closing;
@@ -29,10 +30,12 @@ mod contact;
 mod control_mesh;
 mod error;
 mod face_mesh;
+mod fan;
 mod fans;
 mod fault;
 mod folds;
 mod intersections;
+mod labelled_mesh;
 mod level;
 mod measures;
 mod network;
@@ -40,6 +43,7 @@ mod node_type;
 mod orientation;
 mod periodic;
 mod projection;
+mod regular_cells;
 mod relax;
 mod seams;
 mod surface;
@@ -65,7 +69,11 @@ pub use network::{Junctions, Network};
 pub use node_type::NodeType;
 pub use orientation::outward_sides;
 pub use periodic::PeriodicCopies;
-pub use relax::{Relaxation, RelaxationStep, Relaxed, Volumes, relax, relax_watched};
+pub use regular_cells::regular_cells;
+pub use relax::{
+    Balance, Equilibrium, NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, Volumes,
+    equilibrate, relax, relax_watched,
+};
 pub use surface::{Elements, Surface};
 pub use validate::validate;
 pub use wall_set::{Freedom, WallSet, WallSets};

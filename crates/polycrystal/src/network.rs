@@ -6,7 +6,7 @@ use voronoi::{Domain, Tessellation};
 use crate::control_mesh::{ControlMesh, JunctionCounts};
 use crate::folds::element_normals;
 use crate::volume::{boundary_volumes, sum_over_grains};
-use crate::{Boundary, FaceMesh, Freedom, Level, NetworkError, Surface, WallSet, WallSets};
+use crate::{Boundary, FaceMesh, Freedom, Level, MeshSize, NetworkError, Surface, WallSet, WallSets};
 
 /// How triple lines and the domain's edges are smoothed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -65,10 +65,51 @@ impl Network {
         {
             return Err(NetworkError::BadEdgeLength(edge_length));
         }
-        check_size(tessellation, face_mesh, level_count)?;
-        let ControlMesh { level, mut points, boundaries, wall_sets, junctions: counts } =
-            ControlMesh::new(tessellation, face_mesh, junctions)?;
-        level.copies.place(tessellation.domain(), &mut points);
+        let size = face_mesh.control_mesh_size(tessellation);
+        check_size(tessellation.domain(), &size, level_count)?;
+        let control_mesh = ControlMesh::new(tessellation, face_mesh, junctions)?;
+        let cell_volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
+        Self::assemble(tessellation.domain(), control_mesh, cell_volumes, level_count)
+    }
+
+    /// The network of any triangles (in the plane: segments) between grains that fill a domain without periods, refined
+    /// `level_count` times, and its control points: those of the surface.
+    ///
+    /// Elements of one boundary that do not hang together, or lie on several walls, become several boundaries; of the two
+    /// sides the smaller comes first. Lines of the network are the edges where not just two elements of one boundary meet.
+    ///
+    /// # Errors
+    /// [`NetworkError::Invalid`] with all that [`certify`](crate::certify) finds wrong: grains must be closed, fill the domain,
+    /// and cross nowhere. [`NetworkError::NotOnWall`], [`NetworkError::MissingGrain`], [`NetworkError::PeriodicSurface`],
+    /// [`NetworkError::TooLarge`].
+    ///
+    /// # Panics
+    /// When elements refer to points or boundaries that there are not.
+    pub fn of_surface(
+        domain: &Domain,
+        surface: &Surface<'_>,
+        junctions: Junctions,
+        level_count: usize,
+    ) -> Result<(Self, Vec<DVec3>), NetworkError> {
+        let count = surface.elements.len() as u128;
+        let size = MeshSize { points: surface.points.len() as u128, edges: count, triangles: count };
+        check_size(domain, &size, level_count)?;
+        let control_mesh = ControlMesh::of_surface(domain, surface, junctions)?;
+        let (mut network, points) = Self::assemble(domain, control_mesh, Vec::new(), level_count)?;
+        network.cell_volumes = vec![0.0; surface.grains().len()];
+        network.cell_volumes = network.grain_volumes(network.control_mesh(), &points);
+        Ok((network, points))
+    }
+
+    /// The network of a control mesh, and its points.
+    fn assemble(
+        domain: &Domain,
+        control_mesh: ControlMesh,
+        cell_volumes: Vec<f64>,
+        level_count: usize,
+    ) -> Result<(Self, Vec<DVec3>), NetworkError> {
+        let ControlMesh { level, mut points, boundaries, wall_sets, junctions } = control_mesh;
+        level.copies.place(domain, &mut points);
         let mut normals = element_normals(&level, &points).into_iter().zip(&level.boundary_of);
         if let Some((_, boundary)) = normals.find(|(normal, _)| normal.length() == 0.0 || normal.is_nan()) {
             return Err(NetworkError::BoundaryTooSmall { sides: boundaries[boundary.index()].sides });
@@ -80,13 +121,12 @@ impl Network {
             levels.push(finer);
             stencils.push(table);
         }
-        let cell_volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
         let tension = |boundary: &Boundary| if boundary.wall.is_none() { 1.0 } else { 0.0 };
         let network = Self {
             tensions: boundaries.iter().map(tension).collect(),
-            domain: tessellation.domain().clone(),
+            domain: domain.clone(),
             boundaries,
-            junctions: counts,
+            junctions,
             cell_volumes,
             wall_sets,
             levels,
@@ -246,13 +286,8 @@ impl Network {
 }
 
 /// Subdivision multiplies elements by four (in the plane: two); the largest ids are those of half-edges, three a triangle.
-fn check_size(
-    tessellation: &Tessellation,
-    face_mesh: FaceMesh,
-    level_count: usize,
-) -> Result<(), NetworkError> {
-    let size = face_mesh.control_mesh_size(tessellation);
-    let (factor, parts, of_control_mesh) = match tessellation.domain().dimension() {
+fn check_size(domain: &Domain, size: &MeshSize, level_count: usize) -> Result<(), NetworkError> {
+    let (factor, parts, of_control_mesh) = match domain.dimension() {
         voronoi::Dimension::Two => (2u128, "segments", size.edges),
         voronoi::Dimension::Three => (4u128, "half-edges", 3 * size.triangles),
     };

@@ -10,21 +10,29 @@
 
 mod clusters;
 mod conjugate_gradients;
+mod equilibrium;
 mod face_corners;
 mod flow;
+mod local_area;
 mod multigrid;
 mod patch;
 mod patches;
+mod reconnection;
 mod rows;
+mod shape;
 mod springs;
 mod system;
 mod tangential;
 mod volume_constraint;
+mod wedges;
 
 use glam::DVec3;
 
 use crate::{Network, NetworkError};
-use flow::{Flow, Stage};
+use flow::{Flow, RIGID_LENGTH, Stage};
+
+pub use equilibrium::{Balance, Equilibrium, NetworkRecipe, equilibrate};
+pub use reconnection::Reconnections;
 
 /// The finest level whose points move by themselves for a time. One level of the control mesh has a single point inside a
 /// face, which bounds how well angles at its edges can fit; the next has ten.
@@ -52,8 +60,8 @@ pub enum Relaxation {
     Time(f64),
     /// Until a step of time 0.3 lessens the area by no more than [`Relaxation::RESIDUAL`] of it.
     ///
-    /// No boundary vanishes on the way and no neighbours switch, so this is the least area of this topology: where grains
-    /// would rather switch neighbours, angles stay off 120 degrees.
+    /// [`relax`] lets no boundary vanish on the way and no neighbours switch, so this is the least area of this topology: where
+    /// grains would rather switch neighbours, angles stay off 120 degrees. [`equilibrate`] lets them.
     Equilibrium,
 }
 
@@ -147,6 +155,19 @@ pub fn relax_watched(
     volumes: Volumes,
     mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<Relaxed, NetworkError> {
+    relax_levels(network, control_points, relaxation, volumes, RIGID_LENGTH, &mut watch)
+}
+
+/// As [`relax_watched`]; control edges below `rigid_length`, in units of the feature size, do not change their lengths.
+fn relax_levels(
+    network: &Network,
+    control_points: &[DVec3],
+    relaxation: &Relaxation,
+    volumes: Volumes,
+    rigid_length: f64,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Result<Relaxed, NetworkError> {
+    let flow = |level: usize| Flow::new(network, level, volumes).with_rigid_length(rigid_length);
     let (time, finest) = match *relaxation {
         Relaxation::Time(time) if time.is_finite() && time >= 0.0 => (time, FINEST_MOVED),
         Relaxation::Time(time) => return Err(NetworkError::BadRelaxationTime(time)),
@@ -157,7 +178,7 @@ pub fn relax_watched(
     if time == 0.0 || !has_tension {
         // Cells that were regularised have lost the volumes that their grains are to have.
         if volumes == Volumes::Kept {
-            Flow::new(network, 0, volumes).restore_lost_volumes(&mut points)?;
+            flow(0).restore_lost_volumes(&mut points)?;
         }
         return Ok(Relaxed { level: 0, points, steps: 0, time: 0.0, fell_back: false });
     }
@@ -184,7 +205,7 @@ pub fn relax_watched(
             passed = time;
             watch(RelaxationStep { done: done_before + done, count: steps, time, level, points });
         };
-        let run = Flow::new(network, level, volumes).run(&start, &stage, &mut show);
+        let run = flow(level).run(&start, &stage, &mut show);
         done_before += count;
         match run {
             Ok(moved) => points = moved,
@@ -192,7 +213,7 @@ pub fn relax_watched(
             Err(_) => {
                 // Finer points fold where coarser ones do not: these will have to do.
                 let end = Stage { step_time: 0.0, steps: 0, residual: 0.0, is_last: true };
-                points = Flow::new(network, level - 1, volumes).run(&points, &end, &mut |_, _| ())?;
+                points = flow(level - 1).run(&points, &end, &mut |_, _| ())?;
                 let (level, steps) = (level - 1, done_before - count);
                 return Ok(Relaxed { level, points, steps, time: before, fell_back: true });
             }

@@ -1,7 +1,8 @@
 use glam::DVec3;
-use voronoi::{Tessellation, Wall};
+use voronoi::{Domain, Tessellation, Wall};
 
 use crate::Boundary;
+use crate::face_mesh::id;
 
 /// Sine of the angle between two walls, or a wall and a line, below which they count as parallel: they hold a point in the
 /// same way.
@@ -40,10 +41,8 @@ impl WallSets {
         edges: impl Iterator<Item = [usize; 2]>,
     ) -> (Self, Vec<WallSet>) {
         let mut of_vertices: Vec<Vec<Wall>> = vec![Vec::new(); tessellation.vertices().len()];
-        let mut sets = vec![Vec::new()];
         for (face, boundary) in tessellation.faces().zip(boundaries) {
             let Some(wall) = boundary.wall else { continue };
-            sets.push(vec![wall]);
             for corner in tessellation.face_corners(face) {
                 let walls = &mut of_vertices[corner.index()];
                 if let Err(place) = walls.binary_search(&wall) {
@@ -51,12 +50,24 @@ impl WallSets {
                 }
             }
         }
-        let of_edges = edges.map(|[a, b]| common(&of_vertices[a], &of_vertices[b]));
+        let ends = edges.map(|ends| ends.map(id));
+        Self::of_walls(tessellation.domain(), &of_vertices, boundaries, ends)
+    }
+
+    /// The sets of points on the walls of a domain, and those between points that an edge joins.
+    pub(crate) fn of_walls(
+        domain: &Domain,
+        of_vertices: &[Vec<Wall>],
+        boundaries: &[Boundary],
+        edges: impl Iterator<Item = [u32; 2]>,
+    ) -> (Self, Vec<WallSet>) {
+        let mut sets = vec![Vec::new()];
+        sets.extend(boundaries.iter().filter_map(|boundary| Some(vec![boundary.wall?])));
+        let of_edges = edges.map(|[a, b]| common(&of_vertices[a as usize], &of_vertices[b as usize]));
         sets.extend(of_edges.filter(|walls| walls.len() > 1));
         sets.extend(of_vertices.iter().filter(|walls| walls.len() > 1).cloned());
         sets.sort_unstable();
         sets.dedup();
-        let domain = tessellation.domain();
         let freedom = |walls: &Vec<Wall>| {
             let held = walls.iter().map(|wall| Freedom::InPlane(domain.outward_normal(*wall)));
             held.fold(Freedom::Everywhere, Freedom::and)

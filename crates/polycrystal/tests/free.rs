@@ -3,7 +3,7 @@
 #[allow(dead_code, reason = "every test file uses its own share")]
 mod common;
 
-use std::f64::consts::FRAC_PI_3;
+use std::f64::consts::{FRAC_PI_3, PI};
 
 use common::random_seeds;
 use glam::{BVec3, DVec3};
@@ -36,34 +36,68 @@ fn measures(network: &Network, points: &[DVec3]) -> PlaneMeasures {
 }
 
 /// Von Neumann 1952, Mullins 1956: a grain of n sides grows by (pi / 3) (n - 6), wherever its boundaries are.
+///
+/// Junctions whose segments are not equally long once had a wrong share in it: 3.4 per cent of the rate with seed 5.
 #[test]
 fn grains_in_the_plane_grow_by_the_law_of_von_neumann_and_mullins() {
-    let (network, flat) = fine_network(30, 4);
-    // Angles come to equilibrium long before areas change much. Shorter and shorter steps, for triple points are to move by
-    // less than an edge in each.
-    let times = [0.1].into_iter().chain([1e-3; 8]).chain([1e-4; 3]).chain([2e-5; 3]);
-    let start =
-        times.fold(flat, |points, time| flow(&network, &points, time).expect("no side vanishes").points);
-    let time = 2e-5;
-    let end = flow(&network, &start, time).expect("no side vanishes").points;
-    let whole_time = time * network.mean_grain_size().powi(2);
-    let [before, after] = [&start, &end].map(|points| measures(&network, points));
-    assert!(before.dihedral_angles.expect("triple points").standard_deviation < 0.5);
     let mut sides = Vec::new();
-    for (before, after) in before.grains.iter().zip(&after.grains) {
-        let rate = (after.area - before.area) / whole_time;
-        let law = FRAC_PI_3 * (before.side_count as f64 - 6.0);
-        // Two per cent, of grains with six sides two per cent of what one side makes.
-        let tolerance = 0.02 * law.abs().max(FRAC_PI_3);
-        assert!((rate - law).abs() < tolerance, "{} sides: {rate}, not {law}", before.side_count);
-        assert!((before.growth_rate.expect("no walls") - law).abs() < 1e-12);
-        // What the boundaries' own curvature says lacks half an edge at each end.
-        assert!((before.curvature_rate - law).abs() < 4.0 * tolerance, "{} not {law}", before.curvature_rate);
-        sides.push(before.side_count);
+    for random_seed in [2, 4, 5] {
+        let (network, flat) = fine_network(30, random_seed);
+        // Angles come to equilibrium long before areas change much. Shorter and shorter steps, for triple points are to
+        // move by less than an edge in each.
+        let times = [0.1].into_iter().chain([1e-3; 8]).chain([1e-4; 3]).chain([2e-5; 3]);
+        let start =
+            times.fold(flat, |points, time| flow(&network, &points, time).expect("no side vanishes").points);
+        let time = 2e-5;
+        let end = flow(&network, &start, time).expect("no side vanishes").points;
+        let whole_time = time * network.mean_grain_size().powi(2);
+        let [before, after] = [&start, &end].map(|points| measures(&network, points));
+        assert!(before.dihedral_angles.expect("triple points").standard_deviation < 0.5);
+        for (before, after) in before.grains.iter().zip(&after.grains) {
+            let rate = (after.area - before.area) / whole_time;
+            let law = FRAC_PI_3 * (before.side_count as f64 - 6.0);
+            // Half a per cent, of grains with six sides half a per cent of what one side makes.
+            let tolerance = 0.005 * law.abs().max(FRAC_PI_3);
+            assert!((rate - law).abs() < tolerance, "{} sides: {rate}, not {law}", before.side_count);
+            assert!((before.growth_rate.expect("no walls") - law).abs() < 1e-12);
+            // What the boundaries' own curvature says lacks half an edge at each end.
+            assert!((before.curvature_rate - law).abs() < 0.08 * law.abs().max(FRAC_PI_3));
+            sides.push(before.side_count);
+        }
     }
     sides.sort_unstable();
     sides.dedup();
     assert!(sides.len() >= 3, "grains of {sides:?} sides");
+}
+
+/// MacPherson and Srolovitz 2007: the growth of a grain by its mean width and the length of its triple lines.
+#[test]
+fn grains_in_space_grow_by_the_law_of_macpherson_and_srolovitz() {
+    let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
+    let seeds = random_seeds(&domain, 12, 3);
+    let tessellation = Tessellation::new(&domain, &seeds).expect("valid seeds");
+    let tessellation = (0..20).fold(tessellation, |cells, _| {
+        Tessellation::new(&domain, &cells.centroids()).expect("centroids lie in their cells")
+    });
+    let edge_length = 0.15 / 12f64.cbrt();
+    let (network, flat) =
+        Network::with_face_mesh(&tessellation, FaceMesh::Refined { edge_length }, Junctions::Crease, 0)
+            .expect("a small network");
+    let times = [0.05].into_iter().chain([1e-3; 4]).chain([1e-4; 2]);
+    let start =
+        times.fold(flat, |points, time| flow(&network, &points, time).expect("no face vanishes").points);
+    let time = 1e-4;
+    let end = flow(&network, &start, time).expect("no face vanishes").points;
+    let whole_time = time * network.mean_grain_size().powi(2);
+    let in_space = |points: &[DVec3]| measure_network(&network, points).in_space().expect("surfaces");
+    let [before, after] = [&start, &end].map(|points| in_space(points));
+    for (before, after) in before.grains.iter().zip(&after.grains) {
+        let rate = (after.volume - before.volume) / whole_time;
+        let law = before.growth_rate.expect("no walls");
+        // The law is a small difference of two large terms, of which this is one.
+        let term = 4.0 * PI * before.mean_width;
+        assert!((rate - law).abs() < 0.005 * term, "{rate}, not {law}");
+    }
 }
 
 #[test]

@@ -3,10 +3,12 @@
 #[allow(dead_code, reason = "every test file uses its own share")]
 mod common;
 
+use std::f64::consts::FRAC_PI_2;
+
 use common::{network, random_network, random_seeds, regular_network, relaxed};
 use glam::DVec3;
 use polycrystal::{
-    Boundary, GrainId, Junctions, Mesh, Network, NetworkError, Relaxation, Side, dihedral_angles,
+    Boundary, FaceMesh, GrainId, Junctions, Mesh, Network, NetworkError, Relaxation, Side, dihedral_angles,
     folded_edges, relax, validate,
 };
 use proptest::prelude::*;
@@ -33,10 +35,10 @@ fn random_grains_keep_their_volumes_and_come_closer_to_equilibrium() {
     }
 }
 
-/// A hundredth of the triangles once had angles below 6 degrees.
+/// A hundredth of the triangles once had angles below 9 degrees: at lines that shrank, and far from centres.
 #[test]
 fn few_triangles_are_needles() {
-    for random_seed in [1, 2] {
+    for random_seed in [1, 16] {
         let (network, flat) = regular_network(&Domain::unit_cube(), 200, random_seed, 2);
         let points = relaxed(&network, &flat);
         let Mesh::Triangles(mesh) = &network.finest().mesh else { unreachable!("three dimensions") };
@@ -50,7 +52,7 @@ fn few_triangles_are_needles() {
         let mut angles: Vec<f64> = mesh.triangles().iter().map(smallest_angle).collect();
         angles.sort_by(f64::total_cmp);
         let hundredth = angles[angles.len() / 100];
-        assert!(hundredth > 8.5, "{hundredth} degrees");
+        assert!(hundredth > 12.0, "{hundredth} degrees");
     }
 }
 
@@ -146,35 +148,102 @@ fn kelvins_foam_has_its_area() {
     assert!(spread(&network, &smooth) < 2.0, "{}", spread(&network, &smooth));
 }
 
-/// Young's law: a boundary of tension 1 meets a wall at the angle whose cosine is the difference of the walls' tensions.
+/// Young's law: a boundary of tension 1 meets a wall at the angle whose cosine is the difference of the walls' tensions. Between
+/// walls at equal angles, it is an arc of a circle.
+///
+/// Subdivision lets curves end straight, on a length of half a segment of the level that moves: so angles at the wall converge
+/// with the first order.
 #[test]
 fn tensions_of_walls_set_the_angle_there() {
     let seeds = [DVec3::new(0.25, 0.5, 0.0), DVec3::new(0.75, 0.5, 0.0)];
-    for difference in [0.0, 0.3, 0.6] {
-        let (network, flat) = network(&Domain::unit_square(), &seeds, 4);
-        let of_first = |boundary: &Boundary| boundary.sides[0] == Side::Grain(GrainId(0));
-        let tension = |boundary: &Boundary| match boundary.wall {
-            None => 1.0,
-            Some(_) if of_first(boundary) => difference,
-            Some(_) => 0.0,
-        };
-        let network = network.with_tensions(tension).expect("good tensions");
-        let relaxed = relax(&network, &flat, &Relaxation::Equilibrium, |_, _| ()).expect("relaxes");
-        let points = relaxed.finest_points(&network);
-        let Mesh::Segments(mesh) = &network.finest().mesh else { unreachable!("the plane") };
-        let between = mesh.segments().iter().zip(&network.finest().boundary_of);
-        let between = between.filter(|(_, boundary)| network.boundaries()[boundary.index()].is_interior());
-        let mut angles = Vec::new();
-        for [a, b] in between.map(|(ends, _)| ends.map(|end| points[end as usize])) {
-            let [wall, inside] = if [0.0, 1.0].contains(&a.y) { [a, b] } else { [b, a] };
-            if [0.0, 1.0].contains(&wall.y) {
-                angles.push((inside - wall).normalize().x.acos().to_degrees());
+    let tessellation = Tessellation::new(&Domain::unit_square(), &seeds).expect("valid seeds");
+    for difference in [0.0f64, 0.3, 0.6] {
+        let wanted = difference.acos();
+        let [coarse, fine] = [0.1, 0.025].map(|edge_length| {
+            let (network, flat) = Network::with_face_mesh(
+                &tessellation,
+                FaceMesh::Refined { edge_length },
+                Junctions::Crease,
+                2,
+            )
+            .expect("a small network");
+            let of_first = |boundary: &Boundary| boundary.sides[0] == Side::Grain(GrainId(0));
+            let tension = |boundary: &Boundary| match boundary.wall {
+                None => 1.0,
+                Some(_) if of_first(boundary) => difference,
+                Some(_) => 0.0,
+            };
+            let network = network.with_tensions(tension).expect("good tensions");
+            let relaxed = relax(&network, &flat, &Relaxation::Equilibrium, |_, _| ()).expect("relaxes");
+            let points = relaxed.finest_points(&network);
+            let Mesh::Segments(mesh) = &network.finest().mesh else { unreachable!("the plane") };
+            let between = mesh.segments().iter().zip(&network.finest().boundary_of);
+            let between =
+                between.filter(|(_, boundary)| network.boundaries()[boundary.index()].is_interior());
+            let (mut angles, mut ends, mut middle) = (Vec::new(), Vec::new(), DVec3::INFINITY);
+            for [a, b] in between.map(|(ends, _)| ends.map(|end| points[end as usize])) {
+                let [wall, inside] = if [0.0, 1.0].contains(&a.y) { [a, b] } else { [b, a] };
+                if [0.0, 1.0].contains(&wall.y) {
+                    // Dear walls of the first grain get shorter, so the boundary leans away from it.
+                    angles.push((inside - wall).normalize().x.acos());
+                    ends.push(wall.x);
+                }
+                let from_middle = |point: &DVec3| (point.y - 0.5).abs();
+                middle = if from_middle(&a) < from_middle(&middle) { a } else { middle };
             }
+            assert_eq!(angles.len(), 2);
+            // The height of an arc over a chord of 1 that it meets at the angle a is tan(a / 2) / 2.
+            let height = 0.5 * ((FRAC_PI_2 - wanted) / 2.0).tan();
+            assert!(ends.iter().all(|end| (middle.x - end - height).abs() < 1e-3), "{ends:?}, {middle}");
+            angles.iter().map(|angle| (angle - wanted).abs().to_degrees()).fold(0.0, f64::max)
+        });
+        assert!(coarse < 1.5 && fine < 0.4, "{coarse} and {fine} degrees from {}", wanted.to_degrees());
+        assert!(difference == 0.0 || (3.0..5.0).contains(&(coarse / fine)), "{coarse} and {fine}");
+    }
+}
+
+/// Eight hexagons in a periodic rectangle, whose seeds are jittered by so much of their distance.
+fn honeycomb(jitter: f64) -> Tessellation {
+    let height = 3f64.sqrt();
+    let domain = Domain::rectangle(DVec3::ZERO, DVec3::new(2.0, 2.0 * height, 1.0)).expect("positive sides");
+    let domain = domain.with_periods(glam::BVec3::TRUE);
+    let noise = random_seeds(&Domain::unit_square(), 8, 5);
+    let seeds: Vec<DVec3> = (0..8)
+        .zip(noise)
+        .map(|(k, noise)| {
+            let place = DVec3::new(
+                f64::from(k % 2) + 0.5 * f64::from(k / 2 % 2) + 0.2,
+                f64::from(k / 2) * height / 2.0 + 0.1,
+                0.0,
+            );
+            place + (noise - DVec3::new(0.5, 0.5, 0.0)) * jitter
+        })
+        .collect();
+    Tessellation::new(&domain, &seeds).expect("valid seeds")
+}
+
+/// Hales 2001: of all divisions of the plane into equal areas A the honeycomb has the shortest lines, 12^(1/4) sqrt(A) a cell.
+#[test]
+fn a_honeycomb_stays_one_and_a_jittered_one_becomes_one() {
+    for (jitter, relaxation) in
+        [(0.0, Relaxation::default()), (0.0, Relaxation::Equilibrium), (0.2, Relaxation::Time(5.0))]
+    {
+        let (network, flat) =
+            Network::new(&honeycomb(jitter), Junctions::Crease, 2).expect("a small network");
+        let area = 3f64.sqrt() / 2.0;
+        let network = network.with_cell_volumes(vec![area; 8]);
+        let relaxed = relax(&network, &flat, &relaxation, |_, _| ()).expect("relaxes");
+        let points = relaxed.finest_points(&network);
+        if jitter == 0.0 {
+            let straight = network.subdivide(&flat);
+            assert!(points.iter().zip(&straight).all(|(a, b)| a.distance(*b) < 1e-9));
         }
-        // Dear walls of the first grain get shorter, so the boundary leans away from it.
-        let wanted = difference.acos().to_degrees();
-        assert_eq!(angles.len(), 2);
-        assert!(angles.iter().all(|angle| (angle - wanted).abs() < 4.0), "{angles:?}, {wanted} wanted");
+        let measures = polycrystal::measure_network(&network, &points).in_plane().expect("lines");
+        let length: f64 = measures.boundaries.iter().map(|boundary| boundary.length).sum();
+        let excess = length / (8.0 * 12f64.powf(0.25) * area.sqrt()) - 1.0;
+        let angles = dihedral_angles(&network, network.finest(), &points).expect("triple points");
+        assert!(excess.abs() < if jitter == 0.0 { 1e-12 } else { 5e-6 }, "{excess}");
+        assert!(angles.standard_deviation < if jitter == 0.0 { 1e-4 } else { 0.15 }, "{angles:?}");
     }
 }
 

@@ -179,10 +179,10 @@ impl CellComplex {
         &self.domain
     }
 
-    /// The faces with three corners.
-    pub fn triangles(&self) -> Vec<FaceId> {
+    /// The faces with so many corners.
+    pub fn faces_with_corners(&self, count: usize) -> Vec<FaceId> {
         let faces = (0u32..).zip(&self.faces);
-        faces.filter(|(_, face)| face.corners.len() == 3).map(|(number, _)| FaceId(number)).collect()
+        faces.filter(|(_, face)| face.corners.len() == count).map(|(number, _)| FaceId(number)).collect()
     }
 
     /// The corners of a face, as its first side sees them; none where it is gone.
@@ -204,6 +204,13 @@ impl CellComplex {
         faces
     }
 
+    /// The faces that meet at an edge, sorted.
+    pub fn faces_of_edge(&self, edge: ComplexEdge) -> Vec<FaceId> {
+        let mut faces = self.faces_at(&[edge.start]);
+        faces.retain(|face| self.is_edge_of(edge, *face));
+        faces
+    }
+
     /// The walls that a vertex lies on, sorted.
     pub fn walls_at(&self, vertex: u32) -> Vec<Wall> {
         let faces = self.faces_at[vertex as usize].iter();
@@ -218,7 +225,7 @@ impl CellComplex {
     }
 
     /// All faces that are there, in order.
-    pub fn live_faces(&self) -> Vec<FaceId> {
+    pub fn faces(&self) -> Vec<FaceId> {
         let faces = (0u32..).zip(&self.faces);
         faces.filter(|(_, face)| !face.corners.is_empty()).map(|(number, _)| FaceId(number)).collect()
     }

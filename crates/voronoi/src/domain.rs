@@ -110,8 +110,9 @@ impl Domain {
         if !(measure > 0.0 && measure.is_finite()) {
             return Err(flat);
         }
-        domain.polyhedron =
-            domain.polyhedron.map(|all| Arc::new(Polyhedron { measure, ..Arc::unwrap_or_clone(all) }));
+        domain.polyhedron = domain
+            .polyhedron
+            .map(|all| Arc::new(Polyhedron { measure, center, ..Arc::unwrap_or_clone(all) }));
         Ok(domain)
     }
 
@@ -133,7 +134,15 @@ impl Domain {
         }
         let corner = lower.abs().max(upper.abs()).element_sum();
         let distance_error = 2.0 * EVALUATION_ERROR * (largest + corner);
-        let polyhedron = Polyhedron { walls, normals, distances, distance_error, measure: f64::NAN, name };
+        let polyhedron = Polyhedron {
+            walls,
+            normals,
+            distances,
+            distance_error,
+            measure: f64::NAN,
+            center: DVec3::NAN,
+            name,
+        };
         Self { polyhedron: Some(Arc::new(polyhedron)), ..Self::boxed(lower, upper, dimension) }
     }
 
@@ -179,6 +188,12 @@ impl Domain {
     /// Side lengths of the (bounding) box; z is 0 in the plane.
     pub fn size(&self) -> DVec3 {
         self.upper - self.lower
+    }
+
+    /// A point inside: the middle of a box, the mean of a polyhedron's vertices.
+    pub fn center(&self) -> DVec3 {
+        let of_box = || self.lower + 0.5 * self.size();
+        self.polyhedron.as_ref().map_or_else(of_box, |polyhedron| polyhedron.center)
     }
 
     /// Two or three dimensions.
@@ -315,9 +330,14 @@ impl fmt::Display for Domain {
                 None => write!(formatter, "{} half-spaces in ", polyhedron.walls.len())?,
             }
         }
+        // The box around a polyhedron is made of corners, which are rounded; its digits tell nothing.
+        let shown = |coordinate: f64| {
+            let six_digits = || format!("{coordinate:.5e}").parse().unwrap_or(coordinate);
+            if self.is_box() { coordinate } else { six_digits() }
+        };
         for axis in 0..self.axes() {
             let separator = if axis == 0 { "" } else { " x " };
-            write!(formatter, "{separator}[{}, {}]", self.lower[axis], self.upper[axis])?;
+            write!(formatter, "{separator}[{}, {}]", shown(self.lower[axis]), shown(self.upper[axis]))?;
         }
         Ok(())
     }

@@ -57,6 +57,7 @@ mod polygon_triangulation;
 mod polyhedron;
 mod predicate;
 mod regularize;
+mod ring;
 mod search;
 mod tessellation;
 mod tile;

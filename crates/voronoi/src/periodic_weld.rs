@@ -137,7 +137,12 @@ fn push_faces(
 }
 
 /// The tessellation with whole cells: of a face between a cell and a moved one, a copy at each.
-fn unwrapped(domain: &Domain, seeds: &[DVec3], faces: &TorusFaces, positions: &[DVec3]) -> Tessellation {
+pub(crate) fn unwrapped(
+    domain: &Domain,
+    seeds: &[DVec3],
+    faces: &TorusFaces,
+    positions: &[DVec3],
+) -> Tessellation {
     let places = VertexPlaces::new(faces, positions.len());
     let vertices = Vec::with_capacity(places.count());
     let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);

@@ -26,6 +26,8 @@ pub(crate) struct Polyhedron {
     pub(crate) distance_error: f64,
     /// Volume; in the plane, area.
     pub(crate) measure: f64,
+    /// A point inside.
+    pub(crate) center: DVec3,
     /// What to call it in messages, if not after its walls.
     pub(crate) name: Option<String>,
 }

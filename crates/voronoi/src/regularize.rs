@@ -4,24 +4,22 @@
 //! higher order: one where the cells of both meet. A triangle that loses an edge closes like a book, and so a small face
 //! shrinks to an edge or a vertex. Every cell stays a closed ball as long as the ends have nothing in common but what
 //! lies around their edge (the link condition of Dey, Edelsbrunner, Guha and Nekhayev 1999, for cells instead of simplices).
+//!
+//! The complex of a periodic domain is that of the torus. What is said of edges and cells then holds for those of all space,
+//! and an edge collapses together with its copies, if nothing around it is a copy of something else there.
 
 use glam::DVec3;
 
-use crate::tessellation::{FaceId, Side, Tessellation, VertexId};
-use crate::weld::list_faces_of_cells;
+use crate::images::Image;
+use crate::periodic_weld::unwrapped;
+use crate::ring::{is_folded, is_star_shaped};
+use crate::tessellation::{FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};
+use crate::torus::{FaceEnd, TorusFaces};
+use crate::weld::{MovedVertex, list_faces_of_cells};
 use crate::{CellId, Dimension, Wall};
 
 /// Sweeps over all edges; each makes room for collapses that the one before had to refuse.
 const SWEEPS: usize = 10;
-
-/// Cosine of the largest angle between a face and one of the triangles that join its edges to its centre (60 degrees).
-const LARGEST_BEND: f64 = 0.5;
-
-/// Cosine of the largest angle between neighbouring triangles of a face in the end (75 degrees): relaxation must not reach 90.
-const LARGEST_FOLD: f64 = 0.26;
-
-/// Share of the length of a short edge below which an edge is tiny.
-const TINY: f64 = 0.01;
 
 /// What a regularisation took out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -39,21 +37,27 @@ impl Tessellation {
     /// The ends of such an edge become one vertex in its middle, or where a wall holds one of them. Faces that are left with
     /// two edges vanish. Edges stay where a cell would no longer be a closed ball, or a face would fold. Cells are no longer
     /// quite convex, nor faces quite plane.
-    ///
-    /// A periodic complex comes back as it is.
     #[must_use]
     pub fn regularized(&self, length: f64) -> (Self, Collapsed) {
-        if !self.periodic_faces.is_empty() {
-            return (self.clone(), Collapsed::default());
-        }
+        self.regularized_for(length, &self.vertices)
+    }
+
+    /// As [`Self::regularized`], where vertices will move: an edge is short if it will be, with its ends at the `future` places
+    /// of the vertices.
+    ///
+    /// # Panics
+    /// When there is not one place for each vertex.
+    #[must_use]
+    pub fn regularized_for(&self, length: f64, future: &[DVec3]) -> (Self, Collapsed) {
+        assert_eq!(future.len(), self.vertices.len(), "one place for each vertex");
         let mut is_strict = vec![false; self.face_count()];
         loop {
-            let mut complex = Complex::new(self, length, is_strict);
+            let mut complex = Complex::new(self, length, future, is_strict);
             complex.collapse_short_edges();
             // Faces that were let fold because they would close soon, and then did not, may not do so again.
             let folded = complex.folded_faces();
             if folded.is_empty() {
-                return complex.finish(self);
+                return complex.finish();
             }
             is_strict = complex.is_strict;
             folded.into_iter().for_each(|face| is_strict[face] = true);
@@ -61,17 +65,58 @@ impl Tessellation {
     }
 }
 
-/// A cell complex whose vertices merge.
+/// A face moved by whole periods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct MovedFace {
+    face: u32,
+    shift: Shift,
+}
+
+/// A cell moved by whole periods, or nothing for the exterior.
+type MovedCell = Option<(CellId, Shift)>;
+
+/// An edge: from a vertex in its own place to another one, or a moved one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Edge {
+    start: u32,
+    end: MovedVertex,
+}
+
+impl Edge {
+    /// The edge between two places; the same for all its copies.
+    fn between(a: MovedVertex, b: MovedVertex) -> Self {
+        let seen = |from: MovedVertex, to: MovedVertex| Self {
+            start: from.vertex,
+            end: MovedVertex { vertex: to.vertex, shift: to.shift - from.shift },
+        };
+        seen(a, b).min(seen(b, a))
+    }
+
+    /// The other end, seen from either end in its own place.
+    fn across(self, from_end: bool) -> [MovedVertex; 2] {
+        let unmoved = |vertex| MovedVertex { vertex, shift: Shift::NONE };
+        if from_end {
+            let back = MovedVertex { vertex: self.start, shift: Shift::NONE - self.end.shift };
+            [unmoved(self.end.vertex), back]
+        } else {
+            [unmoved(self.start), self.end]
+        }
+    }
+}
+
+/// A cell complex whose vertices merge. That of a periodic domain has each vertex, edge and face once.
 struct Complex<'a> {
     original: &'a Tessellation,
     vertices: Vec<DVec3>,
+    /// Where vertices will be.
+    future: Vec<DVec3>,
     /// Original vertices that each stands for.
     weights: Vec<f64>,
     walls: Vec<Vec<Wall>>,
     /// The corners of each face; empty for those that have closed.
-    faces: Vec<Vec<u32>>,
-    /// The faces at each vertex; empty for those that have merged into another.
-    faces_at: Vec<Vec<u32>>,
+    faces: Vec<Vec<MovedVertex>>,
+    /// The faces at each vertex, moved to where it has its own place; empty for those that have merged into another.
+    faces_at: Vec<Vec<MovedFace>>,
     /// Number of faces that each cell has.
     face_counts: Vec<usize>,
     /// Length below which an edge of each cell is short.
@@ -82,20 +127,32 @@ struct Complex<'a> {
 }
 
 impl<'a> Complex<'a> {
-    fn new(original: &'a Tessellation, length: f64, is_strict: Vec<bool>) -> Self {
-        let vertices = original.vertices().to_vec();
-        let mut walls = vec![Vec::new(); vertices.len()];
-        let mut faces_at = vec![Vec::new(); vertices.len()];
-        for face in original.faces() {
-            for corner in original.face_corners(face) {
-                faces_at[corner.index()].push(face.0);
+    fn new(original: &'a Tessellation, length: f64, future: &[DVec3], is_strict: Vec<bool>) -> Self {
+        // Copies have the last numbers.
+        let count = original.vertices().len() - original.periodic_vertices().len();
+        let corner = |vertex: &VertexId| match vertex.index().checked_sub(count) {
+            None => MovedVertex { vertex: vertex.0, shift: Shift::NONE },
+            Some(copy) => {
+                let PeriodicPair { primary, shift, .. } = original.periodic_vertices()[copy];
+                MovedVertex { vertex: primary.0, shift }
+            }
+        };
+        let face_count = original.face_count() - original.periodic_faces().len();
+        let mut walls = vec![Vec::new(); count];
+        let mut faces_at = vec![Vec::new(); count];
+        let mut faces = Vec::with_capacity(face_count);
+        for face in original.faces().take(face_count) {
+            let corners: Vec<MovedVertex> = original.face_corners(face).iter().map(corner).collect();
+            for MovedVertex { vertex, shift } in &corners {
+                faces_at[*vertex as usize].push(MovedFace { face: face.0, shift: Shift::NONE - *shift });
                 match original.face_sides(face)[1] {
-                    Side::Wall(wall) if !walls[corner.index()].contains(&wall) => {
-                        walls[corner.index()].push(wall);
+                    Side::Wall(wall) if !walls[*vertex as usize].contains(&wall) => {
+                        walls[*vertex as usize].push(wall);
                     }
                     _ => {}
                 }
             }
+            faces.push(corners);
         }
         let root = |volume: f64| match original.domain().dimension() {
             Dimension::Two => volume.sqrt(),
@@ -105,16 +162,14 @@ impl<'a> Complex<'a> {
         let mean_size = root(original.domain().measure() / measures.len() as f64);
         Self {
             original,
-            weights: vec![1.0; vertices.len()],
+            vertices: original.vertices()[..count].to_vec(),
+            future: future[..count].to_vec(),
+            weights: vec![1.0; count],
             walls,
-            faces: original
-                .faces()
-                .map(|face| original.face_corners(face).iter().map(|v| v.0).collect())
-                .collect(),
+            faces,
             faces_at,
             face_counts: measures.iter().map(|cell| cell.face_count).collect(),
             short: measures.iter().map(|cell| length * mean_size.min(root(cell.volume))).collect(),
-            vertices,
             is_strict,
             collapsed: Collapsed::default(),
         }
@@ -123,8 +178,8 @@ impl<'a> Complex<'a> {
     fn collapse_short_edges(&mut self) {
         for _ in 0..SWEEPS {
             let before = self.collapsed;
-            for ends in self.short_edges() {
-                self.collapse(ends);
+            for edge in self.short_edges() {
+                self.collapse(edge);
             }
             if self.collapsed == before {
                 break;
@@ -135,8 +190,7 @@ impl<'a> Complex<'a> {
     /// Changed faces whose triangles around the centre are folded, and that were not strict.
     fn folded_faces(&self) -> Vec<usize> {
         let is_folded = |face: &usize| {
-            let ring: Vec<DVec3> =
-                self.faces[*face].iter().map(|corner| self.vertices[*corner as usize]).collect();
+            let ring: Vec<DVec3> = self.faces[*face].iter().map(|corner| self.position(*corner)).collect();
             !self.is_strict[*face] && ring.len() > 3 && is_folded(&ring)
         };
         (0..self.faces.len()).filter(is_folded).collect()
@@ -146,54 +200,79 @@ impl<'a> Complex<'a> {
         self.original.domain().dimension()
     }
 
-    fn sides(&self, face: u32) -> [Side; 2] {
-        self.original.face_sides(FaceId(face))
+    fn position(&self, MovedVertex { vertex, shift }: MovedVertex) -> DVec3 {
+        self.vertices[vertex as usize] + shift.vector(self.original.domain())
     }
 
-    fn length(&self, [a, b]: [u32; 2]) -> f64 {
-        self.vertices[a as usize].distance(self.vertices[b as usize])
+    fn future_position(&self, MovedVertex { vertex, shift }: MovedVertex) -> DVec3 {
+        self.future[vertex as usize] + shift.vector(self.original.domain())
+    }
+
+    /// What lies on both sides of a face.
+    fn cells(&self, MovedFace { face, shift }: MovedFace) -> [MovedCell; 2] {
+        self.original.face_sides(FaceId(face)).map(|side| match side {
+            Side::Cell(cell) => Some((cell, shift)),
+            Side::Image(cell, image) => Some((cell, image + shift)),
+            Side::Wall(_) => None,
+        })
+    }
+
+    fn corners(&self, MovedFace { face, shift: by }: MovedFace) -> impl Iterator<Item = MovedVertex> + Clone {
+        let corners = self.faces[face as usize].iter();
+        corners.map(move |&MovedVertex { vertex, shift }| MovedVertex { vertex, shift: shift + by })
+    }
+
+    fn length(&self, edge: Edge) -> f64 {
+        self.future[edge.start as usize].distance(self.future_position(edge.end))
     }
 
     /// The edges that are shorter than any cell at their ends allows, shortest first.
-    fn short_edges(&self) -> Vec<[u32; 2]> {
-        let mut edges: Vec<[u32; 2]> = self.faces.iter().flat_map(|face| edges_of(face)).collect();
+    fn short_edges(&self) -> Vec<Edge> {
+        let mut edges: Vec<Edge> =
+            self.faces.iter().flat_map(|face| edges_of(face.iter().copied())).collect();
         edges.sort_unstable();
         edges.dedup();
-        let mut edges: Vec<(f64, [u32; 2])> =
-            edges.into_iter().map(|ends| (self.length(ends), ends)).collect();
+        let mut edges: Vec<(f64, Edge)> = edges.into_iter().map(|edge| (self.length(edge), edge)).collect();
         let count = u32::try_from(self.vertices.len()).expect("vertex ids fit 32 bits");
         let is_bend: Vec<bool> = (0..count).map(|vertex| self.is_bend(vertex)).collect();
-        edges.retain(|(length, ends)| {
-            *length < self.allowed(*ends) || ends.iter().any(|end| is_bend[*end as usize])
+        edges.retain(|(length, edge)| {
+            let ends = [edge.start, edge.end.vertex];
+            *length < self.allowed(*edge) || ends.iter().any(|end| is_bend[*end as usize])
         });
         edges.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        edges.into_iter().map(|(_, ends)| ends).collect()
+        edges.into_iter().map(|(_, edge)| edge).collect()
     }
 
     /// Whether a vertex is left with two edges: a mere bend in a line, where two long, thin faces have closed that crossed.
     fn is_bend(&self, vertex: u32) -> bool {
-        self.dimension() == Dimension::Three && self.neighbors(vertex).len() == 2
+        self.dimension() == Dimension::Three
+            && self.neighbors(MovedVertex { vertex, shift: Shift::NONE }).len() == 2
     }
 
-    fn allowed(&self, ends: [u32; 2]) -> f64 {
-        let faces = ends.iter().flat_map(|end| &self.faces_at[*end as usize]);
-        let cells = faces.flat_map(|face| self.sides(*face)).filter_map(cell_of);
-        cells.map(|cell| self.short[cell.index()]).fold(f64::INFINITY, f64::min)
+    fn allowed(&self, edge: Edge) -> f64 {
+        let faces = edge.across(false).into_iter().flat_map(|end| self.faces_at(end));
+        let cells = faces.flat_map(|face| self.cells(face)).flatten();
+        cells.map(|(cell, _)| self.short[cell.index()]).fold(f64::INFINITY, f64::min)
     }
 
-    /// The cells at a vertex, and `None` for the exterior.
-    fn cells_at(&self, vertex: u32) -> Vec<Option<CellId>> {
+    /// The faces at a vertex.
+    fn faces_at(&self, MovedVertex { vertex, shift: by }: MovedVertex) -> impl Iterator<Item = MovedFace> {
         let faces = self.faces_at[vertex as usize].iter();
-        let mut cells: Vec<_> = faces.flat_map(|face| self.sides(*face).map(cell_of)).collect();
+        faces.map(move |&MovedFace { face, shift }| MovedFace { face, shift: shift + by })
+    }
+
+    /// The cells at a vertex, and the exterior.
+    fn cells_at(&self, vertex: MovedVertex) -> Vec<MovedCell> {
+        let mut cells: Vec<_> = self.faces_at(vertex).flat_map(|face| self.cells(face)).collect();
         cells.sort_unstable();
         cells.dedup();
         cells
     }
 
-    fn neighbors(&self, vertex: u32) -> Vec<u32> {
-        let faces = self.faces_at[vertex as usize].iter();
-        let mut neighbors: Vec<u32> = faces
-            .flat_map(|face| edges_of(&self.faces[*face as usize]))
+    fn neighbors(&self, vertex: MovedVertex) -> Vec<MovedVertex> {
+        let mut neighbors: Vec<MovedVertex> = self
+            .faces_at(vertex)
+            .flat_map(|face| pairs_of(self.corners(face)))
             .filter(|ends| ends.contains(&vertex))
             .map(|[a, b]| if a == vertex { b } else { a })
             .collect();
@@ -203,50 +282,54 @@ impl<'a> Complex<'a> {
     }
 
     /// Merges the ends of an edge, if it is still there and nothing forbids it.
-    fn collapse(&mut self, ends: [u32; 2]) {
-        let [u, w] = ends;
-        if self.faces_at[u as usize].is_empty() || self.faces_at[w as usize].is_empty() {
+    fn collapse(&mut self, edge: Edge) {
+        let ends = [edge.start, edge.end.vertex];
+        if ends.iter().any(|end| self.faces_at[*end as usize].is_empty()) {
             return;
         }
         let bend = ends.iter().position(|end| self.is_bend(*end));
-        if bend.is_none() && self.length(ends) >= self.allowed(ends) {
+        if bend.is_none() && self.length(edge) >= self.allowed(edge) {
             return;
         }
         // The end that walls hold stays in place, and so does what is more than a bend.
+        let [first_walls, second_walls] = ends.map(|end| self.walls[end as usize].len());
         let first_goes = match bend {
             Some(bend) => bend == 0,
-            None => self.walls[w as usize].len() > self.walls[u as usize].len(),
+            None => second_walls > first_walls,
         };
-        let [kept, gone] = if first_goes { [w, u] } else { [u, w] };
+        let [kept, gone] = edge.across(first_goes);
         let Some(closing) = self.closing_faces(kept, gone) else { return };
         if !self.walls_allow(kept, gone) {
             return;
         }
-        let place = if bend.is_none() && self.walls[u as usize].len() == self.walls[w as usize].len() {
-            let [a, b] = [kept, gone].map(|end| self.weights[end as usize]);
-            (self.vertices[kept as usize] * a + self.vertices[gone as usize] * b) / (a + b)
-        } else {
-            self.vertices[kept as usize]
+        let is_mean = bend.is_none() && first_walls == second_walls;
+        let merged = |[at_kept, at_gone]: [DVec3; 2]| {
+            let [a, b] = [kept, gone].map(|end| self.weights[end.vertex as usize]);
+            if is_mean { (at_kept * a + at_gone * b) / (a + b) } else { at_kept }
         };
+        let place = merged([kept, gone].map(|end| self.position(end)));
+        let future = merged([kept, gone].map(|end| self.future_position(end)));
         if !self.stays_unfolded(kept, gone, place) {
             return;
         }
+        self.future[kept.vertex as usize] = future;
         self.merge(kept, gone, place, &closing);
     }
 
     /// The faces that a collapse closes; nothing where a cell would not stay a ball.
-    fn closing_faces(&self, kept: u32, gone: u32) -> Option<Vec<u32>> {
-        let at_gone = &self.faces_at[gone as usize];
-        let common: Vec<u32> =
-            self.faces_at[kept as usize].iter().copied().filter(|face| at_gone.contains(face)).collect();
-        let is_edge = |face: &u32| {
-            edges_of(&self.faces[*face as usize]).any(|ends| ends.contains(&kept) && ends.contains(&gone))
+    fn closing_faces(&self, kept: MovedVertex, gone: MovedVertex) -> Option<Vec<MovedFace>> {
+        if !self.is_apart_from_copies(kept, gone) {
+            return None;
+        }
+        let at_gone: Vec<MovedFace> = self.faces_at(gone).collect();
+        let common: Vec<MovedFace> = self.faces_at(kept).filter(|face| at_gone.contains(face)).collect();
+        let is_edge = |face: &MovedFace| {
+            pairs_of(self.corners(*face)).any(|ends| ends.contains(&kept) && ends.contains(&gone))
         };
         if common.is_empty() || !common.iter().all(is_edge) {
             return None;
         }
-        let around_edge: Vec<Option<CellId>> =
-            common.iter().flat_map(|face| self.sides(*face).map(cell_of)).collect();
+        let around_edge: Vec<MovedCell> = common.iter().flat_map(|face| self.cells(*face)).collect();
         let cells_at_gone = self.cells_at(gone);
         let shared = self.cells_at(kept).into_iter().filter(|cell| cells_at_gone.contains(cell));
         if !shared.into_iter().all(|cell| around_edge.contains(&cell)) {
@@ -256,8 +339,8 @@ impl<'a> Complex<'a> {
             Dimension::Two => (3, 3),
             Dimension::Three => (4, 4),
         };
-        let closing: Vec<u32> =
-            common.into_iter().filter(|face| self.faces[*face as usize].len() < least_corners).collect();
+        let is_closing = |face: &MovedFace| self.faces[face.face as usize].len() < least_corners;
+        let closing: Vec<MovedFace> = common.into_iter().filter(is_closing).collect();
         if self.dimension() == Dimension::Three {
             let at_gone = self.neighbors(gone);
             let common = self.neighbors(kept).into_iter().filter(|vertex| at_gone.contains(vertex)).count();
@@ -265,70 +348,91 @@ impl<'a> Complex<'a> {
                 return None;
             }
         }
-        let losing = |cell: CellId| {
-            closing.iter().filter(|face| self.sides(**face).contains(&Side::Cell(cell))).count()
+        let losing =
+            |cell: &MovedCell| closing.iter().filter(|face| self.cells(**face).contains(cell)).count();
+        let keeps_enough = |cell: MovedCell| {
+            cell.is_none_or(|(id, _)| self.face_counts[id.index()] >= least_faces + losing(&cell))
         };
-        let keeps_enough = |cell: CellId| self.face_counts[cell.index()] >= least_faces + losing(cell);
-        let cells = closing.iter().flat_map(|face| self.sides(*face)).filter_map(cell_of);
-        cells.into_iter().all(keeps_enough).then_some(closing)
+        closing.iter().flat_map(|face| self.cells(*face)).all(keeps_enough).then_some(closing)
+    }
+
+    /// Whether all that is around two vertices is there once, so that what happens there happens nowhere else to the same faces
+    /// and cells. Only where a period is a few cells long is it not.
+    fn is_apart_from_copies(&self, kept: MovedVertex, gone: MovedVertex) -> bool {
+        if self.original.periodic_faces().is_empty() {
+            return true;
+        }
+        let mut faces: Vec<MovedFace> = self.faces_at(kept).chain(self.faces_at(gone)).collect();
+        let mut cells: Vec<(CellId, Shift)> =
+            faces.iter().flat_map(|face| self.cells(*face)).flatten().collect();
+        faces.sort_unstable();
+        faces.dedup();
+        cells.sort_unstable();
+        cells.dedup();
+        kept.vertex != gone.vertex
+            && faces.windows(2).all(|pair| pair[0].face != pair[1].face)
+            && cells.windows(2).all(|pair| pair[0].0 != pair[1].0)
     }
 
     /// Whether the merged vertex can lie on all walls of both, and no edge from the inside comes to lie in a wall.
-    fn walls_allow(&self, kept: u32, gone: u32) -> bool {
-        let [walls, gone_walls] = [kept, gone].map(|end| &self.walls[end as usize]);
+    fn walls_allow(&self, kept: MovedVertex, gone: MovedVertex) -> bool {
+        let [walls, gone_walls] = [kept, gone].map(|end| &self.walls[end.vertex as usize]);
         if !gone_walls.iter().all(|wall| walls.contains(wall)) {
             return false;
         }
         let at_kept = self.neighbors(kept);
         self.neighbors(gone).iter().filter(|other| **other != kept && !at_kept.contains(other)).all(|other| {
-            let others = &self.walls[*other as usize];
+            let others = &self.walls[other.vertex as usize];
             walls.iter().filter(|wall| !gone_walls.contains(wall)).all(|wall| !others.contains(wall))
         })
     }
 
     /// Whether the faces around stay star-shaped when the two vertices meet at `place`.
-    fn stays_unfolded(&self, kept: u32, gone: u32, place: DVec3) -> bool {
+    fn stays_unfolded(&self, kept: MovedVertex, gone: MovedVertex, place: DVec3) -> bool {
         if self.dimension() == Dimension::Two {
             return true;
         }
-        let [at_kept, at_gone] = [kept, gone].map(|end| &self.faces_at[end as usize]);
-        let mut faces: Vec<u32> = at_kept.iter().chain(at_gone).copied().collect();
+        let mut faces: Vec<MovedFace> = self.faces_at(kept).chain(self.faces_at(gone)).collect();
         faces.sort_unstable();
         faces.dedup();
         faces.into_iter().all(|face| {
-            let at = |vertex: &u32| {
-                if [kept, gone].contains(vertex) { place } else { self.vertices[*vertex as usize] }
+            let at = |corner: MovedVertex| {
+                if [kept, gone].contains(&corner) { place } else { self.position(corner) }
             };
-            let ring: Vec<DVec3> = self.faces[face as usize].iter().map(at).collect();
-            let short = self.sides(face).into_iter().filter_map(cell_of);
-            let short = short.map(|cell| self.short[cell.index()]).fold(f64::INFINITY, f64::min);
-            is_star_shaped(&ring, if self.is_strict[face as usize] { 0.0 } else { short })
+            let ring: Vec<DVec3> = self.corners(face).map(at).collect();
+            let short = self.cells(face).into_iter().flatten();
+            let short = short.map(|(cell, _)| self.short[cell.index()]).fold(f64::INFINITY, f64::min);
+            is_star_shaped(&ring, if self.is_strict[face.face as usize] { 0.0 } else { short })
         })
     }
 
-    fn merge(&mut self, kept: u32, gone: u32, mut place: DVec3, closing: &[u32]) {
+    fn merge(&mut self, kept: MovedVertex, gone: MovedVertex, mut place: DVec3, closing: &[MovedFace]) {
         // A mean of equal coordinates may miss them by a last place.
-        for wall in &self.walls[kept as usize] {
+        for wall in &self.walls[kept.vertex as usize] {
             if let Some((axis, coordinate)) = self.original.domain().across_axis(*wall) {
                 place[axis] = coordinate;
             }
         }
-        self.vertices[kept as usize] = place;
-        self.weights[kept as usize] += self.weights[gone as usize];
-        for face in std::mem::take(&mut self.faces_at[gone as usize]) {
+        self.vertices[kept.vertex as usize] = place;
+        self.weights[kept.vertex as usize] += self.weights[gone.vertex as usize];
+        for MovedFace { face, shift } in std::mem::take(&mut self.faces_at[gone.vertex as usize]) {
+            // In the face's own place, the two are here.
+            let at = shift + gone.shift;
+            let [kept, gone] =
+                [kept, gone].map(|end| MovedVertex { vertex: end.vertex, shift: end.shift - at });
             let corners = &mut self.faces[face as usize];
             if corners.contains(&kept) {
                 corners.retain(|corner| *corner != gone);
             } else {
                 corners.iter_mut().filter(|corner| **corner == gone).for_each(|corner| *corner = kept);
-                self.faces_at[kept as usize].push(face);
+                self.faces_at[kept.vertex as usize].push(MovedFace { face, shift: at });
             }
         }
-        for face in closing {
-            for corner in std::mem::take(&mut self.faces[*face as usize]) {
-                self.faces_at[corner as usize].retain(|other| other != face);
+        for closed in closing {
+            for corner in std::mem::take(&mut self.faces[closed.face as usize]) {
+                self.faces_at[corner.vertex as usize].retain(|other| other.face != closed.face);
             }
-            for cell in self.sides(*face).into_iter().filter_map(cell_of) {
+            for (cell, _) in self.cells(*closed).into_iter().flatten() {
                 self.face_counts[cell.index()] -= 1;
             }
         }
@@ -337,80 +441,48 @@ impl<'a> Complex<'a> {
     }
 
     /// The complex as a tessellation, with vertices and faces numbered anew in their old order.
-    fn finish(self, original: &Tessellation) -> (Tessellation, Collapsed) {
-        let mut tessellation = original.clone();
+    fn finish(self) -> (Tessellation, Collapsed) {
+        let original = self.original;
+        let faces = original.faces().zip(&self.faces).filter(|(_, corners)| !corners.is_empty());
+        if !original.periodic_faces().is_empty() {
+            let mut torus = TorusFaces::new(self.dimension());
+            for (face, corners) in faces {
+                torus.push(original.face_sides(face).map(face_end), corners.iter().copied());
+            }
+            let whole = unwrapped(original.domain(), original.seeds(), &torus, &self.vertices);
+            return (whole, self.collapsed);
+        }
+        let mut tessellation = Tessellation::without_faces(original.domain(), original.seeds(), Vec::new());
         let mut numbers = vec![VertexId(0); self.vertices.len()];
-        tessellation.vertices.clear();
         let is_kept = |vertex: &usize| !self.faces_at[*vertex].is_empty();
         for (number, vertex) in (0u32..).zip((0..self.vertices.len()).filter(is_kept)) {
             numbers[vertex] = VertexId(number);
             tessellation.vertices.push(self.vertices[vertex]);
         }
-        tessellation.face_starts = vec![0];
-        tessellation.face_corners.clear();
-        tessellation.face_sides.clear();
-        for face in original.faces().filter(|face| !self.faces[face.index()].is_empty()) {
-            let corners = self.faces[face.index()].iter();
-            tessellation.face_corners.extend(corners.map(|corner| numbers[*corner as usize]));
-            tessellation.face_starts.push(tessellation.face_corners.len());
-            tessellation.face_sides.push(original.face_sides(face));
+        for (face, corners) in faces {
+            let corners = corners.iter().map(|corner| numbers[corner.vertex as usize]);
+            tessellation.push_face(original.face_sides(face), corners);
         }
         list_faces_of_cells(&mut tessellation);
         (tessellation, self.collapsed)
     }
 }
 
-fn cell_of(side: Side) -> Option<CellId> {
+fn face_end(side: Side) -> FaceEnd {
     match side {
-        Side::Cell(cell) => Some(cell),
-        Side::Image(..) | Side::Wall(_) => None,
+        Side::Cell(CellId(seed)) => FaceEnd::Cell(Image { seed, shift: Shift::NONE }),
+        Side::Image(CellId(seed), shift) => FaceEnd::Cell(Image { seed, shift }),
+        Side::Wall(wall) => FaceEnd::Wall(wall),
     }
 }
 
-/// The edges of a face: one in the plane, where a face has two corners.
-fn edges_of(corners: &[u32]) -> impl Iterator<Item = [u32; 2]> {
-    let count = if corners.len() == 2 { 1 } else { corners.len() };
-    let after = corners.iter().cycle().skip(1);
-    corners.iter().zip(after).take(count).map(|(a, b)| [*a.min(b), *a.max(b)])
+/// The ends of the edges of a face: of one in the plane, where a face has two corners.
+fn pairs_of(corners: impl Iterator<Item = MovedVertex> + Clone) -> impl Iterator<Item = [MovedVertex; 2]> {
+    let count = corners.clone().count();
+    let after = corners.clone().cycle().skip(1);
+    corners.zip(after).take(if count == 2 { 1 } else { count }).map(|(a, b)| [a, b])
 }
 
-/// The triangles that join the edges of a ring to its centre.
-struct Fan {
-    /// Length of each edge, and twice the area of its triangle as a vector.
-    triangles: Vec<(f64, DVec3)>,
-    perimeter: f64,
-    /// Twice the area of all as a vector.
-    normal: DVec3,
-}
-
-impl Fan {
-    fn new(ring: &[DVec3]) -> Self {
-        let edges = || ring.iter().zip(ring.iter().cycle().skip(1)).filter(|(a, b)| a != b);
-        let perimeter: f64 = edges().map(|(a, b)| a.distance(*b)).sum();
-        let center: DVec3 = edges().map(|(a, b)| (*a + *b) * (0.5 * a.distance(*b) / perimeter)).sum();
-        let triangle = |(a, b): (&DVec3, &DVec3)| (a.distance(*b), (*a - center).cross(*b - center));
-        let triangles: Vec<(f64, DVec3)> = edges().map(triangle).collect();
-        let normal = triangles.iter().map(|(_, triangle)| *triangle).sum();
-        Self { triangles, perimeter, normal }
-    }
-}
-
-/// Whether no triangle from the ring's centre to an edge turns its back to the others. Rings thinner than `short` may, and
-/// tiny edges: they are about to go themselves.
-fn is_star_shaped(ring: &[DVec3], short: f64) -> bool {
-    let Fan { triangles, perimeter, normal } = Fan::new(ring);
-    if 0.5 * normal.length() < 0.5 * short * perimeter {
-        return true;
-    }
-    triangles
-        .iter()
-        .filter(|(length, _)| *length > TINY * short)
-        .all(|(_, triangle)| triangle.dot(normal) > LARGEST_BEND * triangle.length() * normal.length())
-}
-
-/// Whether two neighbouring triangles from the ring's centre to its edges are bent by more than [`LARGEST_FOLD`] tells.
-fn is_folded(ring: &[DVec3]) -> bool {
-    let Fan { triangles, .. } = Fan::new(ring);
-    let mut pairs = triangles.iter().zip(triangles.iter().cycle().skip(1));
-    pairs.any(|((_, a), (_, b))| a.dot(*b) < LARGEST_FOLD * a.length() * b.length())
+fn edges_of(corners: impl Iterator<Item = MovedVertex> + Clone) -> impl Iterator<Item = Edge> {
+    pairs_of(corners).map(|[a, b]| Edge::between(a, b))
 }

@@ -423,6 +423,17 @@ fn point() -> impl Strategy<Value = DVec3> {
     (coordinate(), coordinate(), coordinate()).prop_map(DVec3::from)
 }
 
+#[test]
+fn the_box_around_a_polyhedron_is_told_in_few_digits() {
+    let domain = Domain::ball(DVec3::ZERO, 1.0 / 3.0, 0.05).expect("a ball").to_string();
+    let (name, sides) = domain.split_once(" in ").expect("its box");
+    assert!(name.starts_with("a ball of radius 0.3333333333333333 with "), "{name}");
+    for side in sides.split(" x ") {
+        let ends = side.trim_matches(['[', ']']).split(", ");
+        assert!(ends.clone().count() == 2 && ends.clone().all(|end| end.len() <= 9), "{side}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 

@@ -4,15 +4,16 @@ mod common;
 
 use std::collections::HashSet;
 
-use common::{assert_complex, complex_counts, random_seeds, tessellate};
-use glam::DVec3;
+use common::{assert_closed, assert_complex, complex_counts, random_seeds, tessellate};
+use glam::{BVec3, DVec3};
 use proptest::prelude::*;
-use voronoi::{CellId, Domain, Side, Tessellation, VertexId};
+use voronoi::{CellId, Collapsed, Domain, Side, Tessellation, VertexId};
 
 /// A complex all of whose cells are balls: their surfaces are spheres, and around each of their vertices the faces form
 /// one ring.
 fn assert_balls(tessellation: &Tessellation) {
-    assert_complex(tessellation);
+    // The two copies of a face that is not plane are measured from different corners, so volumes need not sum up exactly.
+    assert_closed(tessellation);
     for cell in (0u32..).take(tessellation.cell_count()).map(CellId) {
         let faces: Vec<&[VertexId]> =
             tessellation.cell_faces(cell).iter().map(|face| tessellation.face_corners(*face)).collect();
@@ -102,6 +103,52 @@ fn most_short_edges_go_and_what_has_gone_is_counted() {
 fn length_zero_changes_nothing() {
     let cells = tessellate(&random_seeds(50, 3));
     assert_eq!(cells.regularized(0.0).0, cells);
+    let cells = periodic(&random_seeds(50, 3), BVec3::TRUE);
+    assert_eq!(cells.regularized(0.0).0, cells);
+}
+
+fn periodic(seeds: &[DVec3], axes: BVec3) -> Tessellation {
+    Tessellation::new(&Domain::unit_cube().with_periods(axes), seeds).expect("seeds")
+}
+
+/// On the torus as many edges go as in a box without its walls.
+#[test]
+fn most_short_edges_of_periodic_cells_go() {
+    let cells = periodic(&random_seeds(200, 3), BVec3::TRUE);
+    let (regular, collapsed) = cells.regularized(0.1);
+    assert_balls(&regular);
+    let [before, after] = [&cells, &regular].map(complex_counts);
+    assert_eq!(before.vertices - after.vertices, collapsed.edges);
+    assert_eq!(before.faces - after.faces, collapsed.faces);
+    assert!((150..350).contains(&collapsed.edges), "{collapsed:?}");
+    assert!(shortest_edge(&regular) > 100.0 * shortest_edge(&cells));
+}
+
+/// The same seeds, moved by a third of the period, make the same complex, but for choices between bends, which go by number.
+#[test]
+fn where_the_periodic_box_begins_does_not_matter() {
+    let seeds = random_seeds(100, 8);
+    let moved: Vec<DVec3> = seeds.iter().map(|seed| (*seed + DVec3::new(0.3, 0.6, 0.9)).fract()).collect();
+    let [here, there] = [seeds, moved].map(|seeds| periodic(&seeds, BVec3::TRUE).regularized(0.15));
+    assert!(here.1.edges.abs_diff(there.1.edges) <= 2, "{:?} and {:?}", here.1, there.1);
+    let shape = |cells: &Tessellation, cell: CellId| {
+        let faces = cells.cell_faces(cell).iter();
+        let mut corners: Vec<usize> = faces.map(|face| cells.face_corners(*face).len()).collect();
+        corners.sort_unstable();
+        corners
+    };
+    let is_same = |cell: &CellId| shape(&here.0, *cell) == shape(&there.0, *cell);
+    assert!((0..100).map(CellId).filter(is_same).count() >= 90);
+}
+
+/// What is short is told by the future places alone.
+#[test]
+fn edges_collapse_where_they_will_be_short() {
+    let cells = tessellate(&random_seeds(60, 2));
+    let scaled = |factor: f64| cells.vertices().iter().map(|v| *v * factor).collect::<Vec<_>>();
+    assert_eq!(cells.regularized_for(0.1, &scaled(1e3)).1, Collapsed::default());
+    let (half, as_half) = (cells.regularized(0.2), cells.regularized_for(0.1, &scaled(0.5)));
+    assert_eq!(half.0.vertices().len(), as_half.0.vertices().len());
 }
 
 proptest! {
@@ -126,6 +173,29 @@ proptest! {
                 }
             }
         }
+    }
+
+    #[test]
+    fn periodic_cells_stay_balls(
+        random_seed in 0u64..1_000_000,
+        count in 1usize..60,
+        length in 0.0..0.6f64,
+        axes in any::<[bool; 3]>(),
+    ) {
+        let (regular, _) = periodic(&random_seeds(count, random_seed), BVec3::from(axes)).regularized(length);
+        assert_balls(&regular);
+    }
+
+    #[test]
+    fn periodic_cells_in_the_plane_stay_closed(
+        random_seed in 0u64..1_000_000,
+        count in 1usize..60,
+        length in 0.0..0.6f64,
+    ) {
+        let seeds: Vec<DVec3> = random_seeds(count, random_seed).iter().map(|seed| seed.with_z(0.0)).collect();
+        let domain = Domain::unit_square().with_periods(BVec3::TRUE);
+        let cells = Tessellation::new(&domain, &seeds).expect("seeds");
+        assert_closed(&cells.regularized(length).0);
     }
 
     #[test]

@@ -143,6 +143,11 @@ impl FileArguments {
         outputs.next().transpose()
     }
 
+    /// Whether a series is asked for.
+    pub fn has_series(&self) -> bool {
+        self.series.is_some()
+    }
+
     /// Where a series goes, if one is asked for, found writable.
     pub fn series(&self) -> Result<Option<SeriesOutput>, grainsmooth::Error> {
         self.series.as_deref().map(SeriesOutput::check).transpose()

@@ -41,12 +41,11 @@ pub struct SmoothingArguments {
     #[arg(long)]
     free: bool,
 
-    /// Length, in units of the mean grain size, below which edges between grains collapse; 0 keeps all
-    /// [default: 0.15, but 0 with --relax 0]
+    /// Length, in units of the mean grain size, below which edges between grains collapse; 0 keeps all, and so does --relax 0
     ///
     /// Example: --regularize 0.05
-    #[arg(long, value_name = "L", value_parser = parse_regularize, allow_negative_numbers = true)]
-    regularize: Option<f64>,
+    #[arg(long, value_name = "L", default_value_t = Config::REGULARIZE, value_parser = parse_regularize, allow_negative_numbers = true)]
+    pub regularize: f64,
 
     /// Number of subdivisions; each makes four triangles of one (two segments in 2D)
     ///
@@ -96,13 +95,6 @@ impl SmoothingArguments {
     /// Whether relaxation keeps volumes.
     pub fn volumes(&self) -> Volumes {
         if self.free { Volumes::Free } else { Volumes::Kept }
-    }
-
-    /// Length below which edges collapse.
-    pub fn regularize(&self) -> f64 {
-        // What is not relaxed shall stay flat, for which no vertex may move.
-        let is_flat = self.relax == Relaxation::Time(0.0);
-        self.regularize.unwrap_or(if is_flat { 0.0 } else { Config::REGULARIZE })
     }
 }
 

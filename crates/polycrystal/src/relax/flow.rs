@@ -9,10 +9,11 @@ use super::patch::PatchTerms;
 use super::patches::Patches;
 use super::system::{Step, System};
 use super::tangential::tangential_moves;
-use crate::folds::{element_normals, folded_edges, folded_pairs};
+use super::wedges::Wedges;
+use crate::folds::{element_normals, folded_pairs};
 use crate::seams::Seams;
 use crate::volume::sum_over_grains;
-use crate::{GrainId, Level, Mesh, Network, NetworkError, Volumes};
+use crate::{GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
 
 /// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
 const ATTEMPTS: usize = 24;
@@ -21,7 +22,10 @@ const ATTEMPTS: usize = 24;
 const WHOLE_ATTEMPTS: usize = 12;
 
 /// Length, in units of the feature size, below which a control edge no longer changes.
-const RIGID_LENGTH: f64 = 0.04;
+pub(super) const RIGID_LENGTH: f64 = 0.04;
+
+/// Most edges of the control mesh, as long as the mean, to a feature. Fans have three.
+const FEATURE_EDGES: f64 = 6.0;
 
 /// Cosine of the largest angle between neighbouring elements after a step (75 degrees), so that later subdivision
 /// has room before the 90 degrees of a fold.
@@ -67,8 +71,12 @@ pub(super) struct Flow<'a> {
     /// Neighbouring elements of each boundary on that level.
     neighbors: Vec<[u32; 2]>,
     corners: FaceCorners,
+    /// The edges of grains on that level.
+    wedges: Wedges,
     clusters: Clusters,
     volumes: Volumes,
+    /// [`RIGID_LENGTH`] or another one.
+    rigid_length: f64,
 }
 
 impl<'a> Flow<'a> {
@@ -77,8 +85,25 @@ impl<'a> Flow<'a> {
         let clusters = Clusters::new(&network.levels()[level]);
         let patches = Patches::new(network, level, surface);
         let corners = FaceCorners::new(network, level);
-        let neighbors = Seams::of_level(&network.levels()[surface]).inner;
-        Self { network, patches, level, surface, neighbors, corners, clusters, volumes }
+        let Wedged { wedges, neighbors } = Wedged::new(network, surface);
+        Self {
+            network,
+            patches,
+            level,
+            surface,
+            neighbors,
+            corners,
+            wedges,
+            clusters,
+            volumes,
+            rigid_length: RIGID_LENGTH,
+        }
+    }
+
+    /// The flow with another length, in units of the feature size, below which control edges do not change.
+    pub(super) fn with_rigid_length(mut self, rigid_length: f64) -> Self {
+        self.rigid_length = rigid_length;
+        self
     }
 
     /// Takes the steps of a stage.
@@ -101,12 +126,13 @@ impl<'a> Flow<'a> {
             last_energy = energy;
         }
         // Where the finest level folds though no step did, all has moved too far from where it did not.
+        let finest = Wedged::new(self.network, self.finest());
         let mut count = 0;
         for attempt in 0..ATTEMPTS {
             if stage.is_last && self.volumes == Volumes::Kept {
                 self.restore_volumes(&mut points)?;
             }
-            let folds = self.finest_folds(&points);
+            let folds = self.finest_folds(&points, &finest);
             count = folds.len();
             if count == 0 {
                 return Ok(points);
@@ -124,14 +150,15 @@ impl<'a> Flow<'a> {
     ///
     /// What the step folds is made rigid and moves by its mean displacement instead. That is local: to solve the step anew for
     /// all grains would take as many attempts as the worst place of all.
-    fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<f64, NetworkError> {
+    pub(super) fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<f64, NetworkError> {
         let terms = self.patches.terms(points);
         let energy = terms.iter().map(|terms| terms.energy).sum();
-        let before = element_normals(self.surface(), &self.refined(points));
+        let refined = self.refined(points);
+        let before = (element_normals(self.surface(), &refined), refined);
         let volumes: Vec<f64> = terms.iter().map(|terms| terms.volume).collect();
         let volumes = sum_over_grains(self.network.boundaries(), &volumes, self.network.grain_count());
         let missing = self.missing(&volumes);
-        self.clusters.join_short_edges(self.control_mesh(), points, self.rigid_length());
+        self.clusters.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
         let mut moves = self.system(points, &terms, &self.clusters, time).displacement(&missing);
         let within = tangential_moves(self.network, self.level, points);
         moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
@@ -169,7 +196,7 @@ impl<'a> Flow<'a> {
     fn restore_volumes(&self, points: &mut [DVec3]) -> Result<(), NetworkError> {
         let free = Clusters::new(&self.network.levels()[self.level]);
         let mut short = free.clone();
-        short.join_short_edges(self.control_mesh(), points, self.rigid_length());
+        short.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
         let start = points.to_vec();
         self.restore_with(&self.clusters, points)
             .or_else(|_| {
@@ -221,15 +248,16 @@ impl<'a> Flow<'a> {
     }
 
     fn system(&self, points: &[DVec3], terms: &[PatchTerms], clusters: &Clusters, time: f64) -> System {
-        let step = Step { time, feature_size: self.feature_size(), volumes: self.volumes };
+        let step = Step { time, feature_size: self.feature_size(points), volumes: self.volumes };
         let level = &self.network.levels()[self.level];
         System::new(self.network, &self.patches, terms, points, clusters.number(), step, level)
     }
 
-    /// The feature size as control edges of this level have it.
-    fn feature_size(&self) -> f64 {
-        self.network.feature_size()
-            * 0.5f64.powi(i32::try_from(self.level).expect("a level is a small number"))
+    /// The feature size as control edges of this level have it. Where they are fine, what is short among them is not what is
+    /// small in the network.
+    fn feature_size(&self, points: &[DVec3]) -> f64 {
+        let usual = 0.5f64.powi(i32::try_from(self.level).expect("a level is a small number"));
+        (usual * self.network.feature_size()).min(FEATURE_EDGES * mean_edge(self.control_mesh(), points))
     }
 
     fn finest(&self) -> usize {
@@ -237,9 +265,9 @@ impl<'a> Flow<'a> {
     }
 
     /// Where volumes are free the flow itself is asked for: nothing is held but what a step would fold.
-    fn rigid_length(&self) -> f64 {
+    fn rigid_length(&self, points: &[DVec3]) -> f64 {
         match self.volumes {
-            Volumes::Kept => RIGID_LENGTH * self.feature_size(),
+            Volumes::Kept => self.rigid_length * self.feature_size(points),
             Volumes::Free => 0.0,
         }
     }
@@ -269,14 +297,20 @@ impl<'a> Flow<'a> {
         self.network.subdivide_between(self.level, self.surface, points)
     }
 
-    fn finest_folds(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
+    /// Pairs of elements of the finest level that are folded, or have passed each other.
+    fn finest_folds(&self, points: &[DVec3], finest: &Wedged) -> Vec<[u32; 2]> {
         let points = self.network.subdivide_between(self.level, self.finest(), points);
-        folded_edges(self.network.finest(), &points, 0.0)
+        let normals = element_normals(self.network.finest(), &points);
+        let mut folds = folded_pairs(&finest.neighbors, &normals, 0.0);
+        folds.extend(finest.wedges.turned(&points));
+        folds
     }
 
-    /// Elements that a step has turned too far, or bent too far and more than they were.
-    fn broken_elements(&self, before: &[DVec3], moved: &[DVec3]) -> Vec<u32> {
+    /// Elements that a step has turned too far, or bent too far and more than they were, or closed upon others; given the
+    /// normals and points before.
+    fn broken_elements(&self, (before, start): &(Vec<DVec3>, Vec<DVec3>), moved: &[DVec3]) -> Vec<u32> {
         let refined = self.refined(moved);
+        let closing = self.wedges.closing(start, &refined);
         let after = element_normals(self.surface(), &refined);
         let cosine = |normals: &[DVec3], [a, b]: [u32; 2]| {
             normals[a as usize].normalize_or_zero().dot(normals[b as usize].normalize_or_zero())
@@ -287,7 +321,7 @@ impl<'a> Flow<'a> {
         let turned = (0u32..).zip(before.iter().zip(&after)).filter(|(_, (before, after))| {
             before.dot(**after) < LARGEST_TURN * before.length() * after.length()
         });
-        turned.map(|(element, _)| element).chain(bent.flatten()).collect()
+        turned.map(|(element, _)| element).chain(bent.flatten()).chain(closing).collect()
     }
 
     /// Makes rigid all control points that the given elements of a level depend on.
@@ -307,6 +341,36 @@ impl<'a> Flow<'a> {
             let depends_on: Vec<u32> = rows.flatten().copied().collect();
             self.clusters.join_all(&depends_on);
         }
+    }
+}
+
+fn mean_edge(mesh: &Mesh, points: &[DVec3]) -> f64 {
+    let length = |[a, b]: [u32; 2]| points[a as usize].distance(points[b as usize]);
+    match mesh {
+        Mesh::Triangles(mesh) => {
+            let edges = 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits");
+            edges.map(|edge| length(mesh.edge(edge))).sum::<f64>() / mesh.edge_count() as f64
+        }
+        Mesh::Segments(mesh) => {
+            let segments = mesh.segments();
+            segments.iter().map(|ends| length(*ends)).sum::<f64>() / segments.len() as f64
+        }
+    }
+}
+
+/// How the elements of a level meet.
+struct Wedged {
+    wedges: Wedges,
+    /// Pairs of neighbours in one boundary.
+    neighbors: Vec<[u32; 2]>,
+}
+
+impl Wedged {
+    fn new(network: &Network, level: usize) -> Self {
+        let level = &network.levels()[level];
+        let seams = Seams::of_level(level);
+        let wedges = Wedges::new(&Surface::of_level(level, &[], &network.sides()), &seams);
+        Self { wedges, neighbors: seams.inner }
     }
 }
 

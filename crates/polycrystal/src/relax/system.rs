@@ -1,6 +1,6 @@
 //! The linear system of one step: least energy under the constraint of the grains' volumes.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::clusters::Numbering;
@@ -9,7 +9,7 @@ use super::patches::Patches;
 use super::rows::Rows;
 use super::springs::add_springs;
 use super::volume_constraint::{Compliance, VolumeConstraint};
-use crate::{Freedom, Level, Mesh, Network, Volumes};
+use crate::{Freedom, Level, Network, Volumes};
 
 /// Share of its first residual at which a step is solved: a step is one of several, and the next one starts from where it ends.
 const TOLERANCE: f64 = 1e-3;
@@ -23,6 +23,9 @@ const LOOSE: f64 = 0.1;
 /// Error of the pressures that give the volumes.
 const TIGHT: f64 = 1e-6;
 
+/// Share of a junction's mass that resists in all directions: without, nothing would hold points along a triple line.
+const ALONG_LINES: f64 = 0.01;
+
 /// Unknowns that one task works on; fixed, so that no sum depends on the number of threads.
 const CHUNK: usize = 4096;
 
@@ -31,6 +34,8 @@ pub(super) struct System {
     clusters: Numbering,
     /// The diagonal of `M + dt (K + S)`.
     diagonal: Vec<f64>,
+    /// What the mass of some clusters is less than isotropic: only where volumes are free.
+    sliding: Vec<(usize, DMat3)>,
     /// What is beside the diagonal, with the sign turned; columns may come more than once.
     springs: Rows<f64>,
     /// `-dt g`.
@@ -72,18 +77,11 @@ impl System {
             .collect();
         let count = clusters.cluster_count();
         let of_places: Vec<f64> = terms.iter().flat_map(|terms| terms.mass.iter().copied()).collect();
-        let masses_of_point = |point: &u32| {
-            let share = match volumes {
-                Volumes::Kept => 1.0,
-                Volumes::Free => resisting_share(level, *point as usize),
-            };
-            patches
-                .places_of_point(*point as usize)
-                .iter()
-                .map(|place| share * of_places[*place])
-                .collect::<Vec<_>>()
+        let mass = |c| patches.places_of_cluster(&clusters, c).map(|place| of_places[place]).sum();
+        let sliding = match volumes {
+            Volumes::Kept => Vec::new(),
+            Volumes::Free => sliding_masses(patches, terms, &clusters, &of_places, level),
         };
-        let mass = |c| clusters.members(c).iter().flat_map(masses_of_point).sum();
         let mut diagonal: Vec<f64> = (0..count).into_par_iter().map(mass).collect();
         let of_places: Vec<DVec3> = terms.iter().flat_map(|terms| terms.gradient.iter().copied()).collect();
         let force =
@@ -115,7 +113,7 @@ impl System {
             let compliance = constraint.compliance(&mobility);
             (constraint, compliance)
         });
-        Self { clusters, diagonal, springs, forces, mobility, constraint }
+        Self { clusters, diagonal, sliding, springs, forces, mobility, constraint }
     }
 
     /// The displacement of every control point that changes the grains' volumes by `changes`, to first order, and is
@@ -195,7 +193,12 @@ impl System {
             let own = displacement[cluster] * self.diagonal[cluster];
             springs.fold(own, |sum, (other, spring)| sum - displacement[*other as usize] * *spring)
         };
-        (0..displacement.len()).into_par_iter().with_min_len(CHUNK).map(row).collect()
+        let mut image: Vec<DVec3> =
+            (0..displacement.len()).into_par_iter().with_min_len(CHUNK).map(row).collect();
+        for (cluster, mass) in &self.sliding {
+            image[*cluster] -= *mass * displacement[*cluster];
+        }
+        image
     }
 }
 
@@ -227,16 +230,38 @@ fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
     sums.iter().sum()
 }
 
-/// The share of a point's mass that resists its motion. Boundaries resist to be moved along their normals only: where the normals
-/// n of several point all ways, the mean of `n n^T` is a half of the identity (across a triple line) or a third (in a
-/// quadruple point). Physical junctions have no drag of their own.
+/// The part of the mass of junctions that does not resist their motion.
+///
+/// Boundaries resist to be moved along their normals only, and junctions have no drag of their own: a boundary of mass m and
+/// normal n has the mass matrix `m n n^T`. So polygons in the plane shrink and grow by the law of von Neumann and Mullins
+/// exactly, to first order in their angles, whatever the lengths of the segments that meet: with force `sum of a n`, a the
+/// angle by which a segment of length h is off equilibrium, the velocity v has `h/2 n v = a + c` with the same c for all
+/// three, and the area that two of them sweep is the difference of their a.
 ///
 /// Curvature flow of kept volumes leads to equilibrium with any masses.
-fn resisting_share(level: &Level, point: usize) -> f64 {
-    let on_wall = i8::from(!level.walls[point].is_empty());
-    match (level.node_types[point].side_count() - on_wall, &level.mesh) {
-        (..=2, _) => 1.0,
-        (4.., Mesh::Triangles(_)) => 1.0 / 3.0,
-        _ => 0.5,
-    }
+fn sliding_masses(
+    patches: &Patches,
+    terms: &[PatchTerms],
+    clusters: &Numbering,
+    masses: &[f64],
+    level: &Level,
+) -> Vec<(usize, DMat3)> {
+    let normals: Vec<DVec3> =
+        terms.iter().flat_map(|terms| terms.sweep.iter().map(|sweep| sweep.normalize_or_zero())).collect();
+    let is_junction = |point: &u32| {
+        let point = *point as usize;
+        level.node_types[point].side_count() - i8::from(!level.walls[point].is_empty()) >= 3
+    };
+    let of_cluster = |cluster: usize| {
+        clusters.members(cluster).iter().any(is_junction).then(|| {
+            let places = patches.places_of_cluster(clusters, cluster);
+            let sliding = places.map(|place| {
+                let normal = normals[place];
+                (DMat3::IDENTITY - DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z))
+                    * masses[place]
+            });
+            (cluster, sliding.sum::<DMat3>() * (1.0 - ALONG_LINES))
+        })
+    };
+    (0..clusters.cluster_count()).into_par_iter().filter_map(of_cluster).collect()
 }

@@ -1,7 +1,7 @@
 //! Random grains, flat and relaxed.
 
 use glam::DVec3;
-use polycrystal::{FaceMesh, Junctions, Network, Relaxation, relax};
+use polycrystal::{FaceMesh, Junctions, Network, Relaxation, regular_cells, relax};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use voronoi::{Domain, Tessellation};
@@ -39,7 +39,7 @@ pub fn regular_network(
     let tessellation =
         Tessellation::new(domain, &random_seeds(domain, count, random_seed)).expect("valid seeds");
     let volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
-    let (regular, _) = tessellation.regularized(0.15);
+    let (regular, _) = regular_cells(&tessellation, 0.15);
     let (network, flat) = Network::with_face_mesh(&regular, FaceMesh::SparseFan, Junctions::Crease, levels)
         .expect("a small network");
     (network.with_cell_volumes(volumes), flat)

@@ -1,0 +1,202 @@
+//! Elements cut at the planes between copies of the box.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+use voronoi::{Dimension, Domain, Shift};
+
+use super::{Corner, Piece, periodic_axes};
+use crate::face_mesh::id;
+use crate::{Elements, GrainId, Network, NetworkError, Side};
+
+/// Pieces of elements, and the points of the torus in the box.
+pub(super) struct Pieces {
+    pub(super) domain: Domain,
+    pub(super) pieces: Vec<Piece>,
+    /// Places with lower <= x < upper along periodic axes.
+    pub(super) places: Vec<DVec3>,
+    /// The axes on whose lower plane each point lies because a cut made it.
+    pub(super) planes: Vec<[bool; 3]>,
+}
+
+/// Where an edge meets a plane: the axis, the edge from one of its points, and the plane as seen from there.
+type Cut = (usize, Corner, Corner, i8);
+
+impl Pieces {
+    /// Whole elements, of boundaries that come twice those of one.
+    pub(super) fn of_network(network: &Network, points: &[DVec3]) -> Result<Self, NetworkError> {
+        let level = network.finest();
+        assert_eq!(points.len(), level.vertex_count(), "there must be one point per vertex");
+        let domain = network.domain().clone();
+        let mut originals: Vec<Corner> =
+            (0..id(points.len())).map(|point| Corner { point, shift: Shift::NONE }).collect();
+        for pair in &level.copies.vertices {
+            originals[pair.secondary as usize] = Corner { point: pair.primary, shift: pair.shift };
+        }
+        let mut pieces = Self {
+            places: points.to_vec(),
+            planes: vec![[false; 3]; points.len()],
+            pieces: Vec::new(),
+            domain,
+        };
+        let mut moved = vec![Shift::NONE; points.len()];
+        for point in (0..points.len()).filter(|point| originals[*point].point == id(*point)) {
+            let (place, shift) = home(&pieces.domain, points[point]);
+            for axis in periodic_axes(&pieces.domain) {
+                if place[axis] == pieces.domain.lower()[axis] {
+                    return Err(NetworkError::PointOnCut { point: points[point] });
+                }
+            }
+            (pieces.places[point], moved[point]) = (place, shift);
+        }
+        let surface = network.sides();
+        let elements = Elements::from(&level.mesh);
+        for (element, boundary) in (0u32..).zip(&level.boundary_of) {
+            let mut sides = surface[boundary.index()];
+            if let Some(twin) = network.boundaries()[boundary.index()].twin {
+                if twin.boundary < *boundary {
+                    continue;
+                }
+                sides[1] = surface[twin.boundary.index()][0];
+            }
+            if let [Side::Grain(first), Side::Grain(second)] = sides
+                && first == second
+            {
+                return Err(NetworkError::MeetsItself { grain: GrainId(first.0) });
+            }
+            let corner = |point: &u32| {
+                let Corner { point, shift } = originals[*point as usize];
+                Corner { point, shift: shift + moved[point as usize] }
+            };
+            let corners = elements.corners(element).iter().map(corner).collect();
+            pieces.pieces.push(Piece { corners, sides });
+        }
+        Ok(pieces)
+    }
+
+    /// Cuts all pieces at the planes across an axis.
+    pub(super) fn cut(&mut self, axis: usize) -> Result<(), NetworkError> {
+        let mut cuts: HashMap<Cut, Corner> = HashMap::new();
+        for mut piece in std::mem::take(&mut self.pieces) {
+            let cells = piece.corners.iter().map(|corner| corner.shift.0[axis]);
+            let (first, last) = (cells.clone().min().expect("corners"), cells.max().expect("corners"));
+            for plane in first + 1..=last {
+                let [below, above] = self.halves(&piece, axis, plane, &mut cuts)?;
+                self.pieces.push(below);
+                piece = above;
+            }
+            self.pieces.push(piece);
+        }
+        Ok(())
+    }
+
+    /// The parts of a piece on both sides of a plane.
+    fn halves(
+        &mut self,
+        piece: &Piece,
+        axis: usize,
+        plane: i8,
+        cuts: &mut HashMap<Cut, Corner>,
+    ) -> Result<[Piece; 2], NetworkError> {
+        let count = piece.corners.len();
+        let is_segment = self.domain.dimension() == Dimension::Two;
+        let mut halves = [Vec::with_capacity(count + 1), Vec::with_capacity(count + 1)];
+        for k in 0..count {
+            let [from, to] = [k, (k + 1) % count].map(|k| piece.corners[k]);
+            let [from_above, to_above] = [from, to].map(|corner| corner.shift.0[axis] >= plane);
+            halves[usize::from(from_above)].push(from);
+            if from_above != to_above && !(is_segment && k + 1 == count) {
+                let cut = self.cut_edge([from, to], axis, plane, cuts)?;
+                halves.iter_mut().for_each(|half| half.push(cut));
+            }
+        }
+        Ok(halves.map(|corners| Piece { corners, sides: piece.sides }))
+    }
+
+    /// Where an edge meets a plane: the same point whichever piece asks, from whichever end, wherever its copy is.
+    fn cut_edge(
+        &mut self,
+        ends: [Corner; 2],
+        axis: usize,
+        plane: i8,
+        cuts: &mut HashMap<Cut, Corner>,
+    ) -> Result<Corner, NetworkError> {
+        let seen = |from: Corner, to: Corner| {
+            let back = Shift::NONE - from.shift;
+            (axis, from.moved(back), to.moved(back), plane - from.shift.0[axis])
+        };
+        let [one, other] = [seen(ends[0], ends[1]), seen(ends[1], ends[0])];
+        let (cut, base) = if one <= other { (one, ends[0].shift) } else { (other, ends[1].shift) };
+        if let Some(corner) = cuts.get(&cut) {
+            return Ok(corner.moved(base));
+        }
+        let (_, from, to, plane) = cut;
+        let [from_planes, to_planes] = [from, to].map(|end| self.planes[end.point as usize]);
+        let mut across = Shift::NONE;
+        across.0[axis] = plane;
+        let lower = self.domain.lower();
+        let height = lower[axis] + across.vector(&self.domain)[axis];
+        let start = self.places[from.point as usize];
+        let end = self.places[to.point as usize] + to.shift.vector(&self.domain);
+        let share = (height - start[axis]) / (end[axis] - start[axis]);
+        let (mut place, mut shift) = home(&self.domain, start.lerp(end, share));
+        place[axis] = lower[axis];
+        shift.0[axis] = plane;
+        let mut planes = [false; 3];
+        planes[axis] = true;
+        for other in periodic_axes(&self.domain).filter(|other| *other != axis) {
+            // What joins two points of a plane lies in it.
+            if from_planes[other] && to_planes[other] && to.shift.0[other] == 0 {
+                (place[other], shift.0[other], planes[other]) = (lower[other], 0, true);
+            } else if place[other] == lower[other] {
+                return Err(NetworkError::PointOnCut { point: place });
+            }
+        }
+        let corner = self.add(place, planes).moved(shift);
+        cuts.insert(cut, corner);
+        Ok(corner.moved(base))
+    }
+
+    /// A new point of the torus.
+    pub(super) fn add(&mut self, place: DVec3, planes: [bool; 3]) -> Corner {
+        self.places.push(place);
+        self.planes.push(planes);
+        Corner { point: id(self.places.len() - 1), shift: Shift::NONE }
+    }
+
+    /// Moves every piece into the box, of whose upper walls corners are moved by a period.
+    pub(super) fn move_into_box(&mut self) {
+        for piece in &mut self.pieces {
+            let cell = [0, 1, 2].map(|axis| {
+                let shifts = piece.corners.iter().map(|corner| corner.shift.0[axis]);
+                shifts.min().expect("a piece has corners")
+            });
+            let back = Shift::NONE - Shift(cell);
+            piece.corners.iter_mut().for_each(|corner| *corner = corner.moved(back));
+        }
+    }
+
+    /// Whether a corner lies on the lower wall across an axis.
+    pub(super) fn is_on_lower(&self, corner: Corner, axis: usize) -> bool {
+        self.planes[corner.point as usize][axis] && corner.shift.0[axis] == 0
+    }
+}
+
+/// A place moved into the box along periodic axes, and the periods from there.
+fn home(domain: &Domain, mut place: DVec3) -> (DVec3, Shift) {
+    let mut shift = Shift::NONE;
+    for axis in periodic_axes(domain) {
+        let (lower, upper, period) = (domain.lower()[axis], domain.upper()[axis], domain.size()[axis]);
+        while place[axis] < lower {
+            place[axis] += period;
+            shift.0[axis] -= 1;
+        }
+        while place[axis] >= upper {
+            place[axis] -= period;
+            shift.0[axis] += 1;
+        }
+        // What rounding puts a little below stays.
+        place[axis] = place[axis].max(lower);
+    }
+    (place, shift)
+}

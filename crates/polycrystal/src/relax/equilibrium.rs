@@ -1,0 +1,162 @@
+//! Relaxation to equilibrium, with the changes of topology that it takes.
+
+use glam::DVec3;
+use voronoi::{CellComplex, Tessellation};
+
+use super::flow::{Flow, RIGID_LENGTH};
+use super::reconnection::{Reconnections, Reconnector, lengths};
+use super::shape::ControlPoints;
+use super::{Relaxation, RelaxationStep, Relaxed, relax_levels};
+use crate::{Boundary, FaceMesh, Junctions, Network, NetworkError, SpaceMeasures, Volumes, measure_network};
+
+/// Length, in units of the feature size, below which triple lines may go; in equilibrium few are that short.
+const SHORT: f64 = 0.12;
+
+/// Time of a step while the topology changes, in units of the mean grain size squared. A line of the length above would live about
+/// as long.
+const STEP_TIME: f64 = 0.04;
+
+/// Steps between two looks at the topology.
+const STEPS: usize = 2;
+
+/// Most looks.
+const LOOKS: usize = 150;
+
+/// Looks in a row without an event that make an end ...
+const QUIET_LOOKS: usize = 5;
+
+/// ... when the area also changes by less than this share of it from one to the next.
+const QUIET_CHANGE: f64 = 2e-5;
+
+/// How a network is made of cells.
+#[derive(Clone, Copy)]
+pub struct NetworkRecipe<'a> {
+    /// How triple lines are smoothed.
+    pub junctions: Junctions,
+    /// Number of subdivisions.
+    pub levels: usize,
+    /// The tension of each boundary.
+    pub tension: &'a dyn Fn(&Boundary) -> f64,
+}
+
+/// What relaxation to equilibrium gives.
+#[derive(Debug, Clone)]
+pub struct Equilibrium {
+    /// The network with its topology in the end.
+    pub network: Network,
+    /// Where its points are.
+    pub relaxed: Relaxed,
+    /// What changed the topology.
+    pub reconnections: Reconnections,
+    /// How near to equilibrium it is.
+    pub balance: Balance,
+}
+
+/// How near to equilibrium a network is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Balance {
+    /// Triple lines, shorter than 0.12 of the mean grain size, that no event takes away: places that are out of balance.
+    pub flagged_lines: usize,
+    /// The largest difference to 120 degrees of an angle between boundaries, as a mean over its triple line, in degrees; flagged
+    /// lines, and those that end where one is, left out.
+    pub largest_deviation: f64,
+}
+
+/// Relaxes the grains of a tessellation in space to equilibrium: until a step of time 0.3 lessens the area by no more than
+/// [`Relaxation::RESIDUAL`] of it. Every grain keeps the volume of its cell.
+///
+/// Triple lines that shrink to nothing become boundaries, and boundaries triple lines, where that lessens the area; each
+/// grain stays a closed ball. Control points are in fans. `watch` is shown the steps after the last change of topology.
+///
+/// # Errors
+/// As of [`relax`](crate::relax).
+///
+/// # Panics
+/// For a tessellation of the plane.
+pub fn equilibrate(
+    tessellation: &Tessellation,
+    recipe: &NetworkRecipe<'_>,
+    mut watch: impl FnMut(RelaxationStep<'_>),
+) -> Result<Equilibrium, NetworkError> {
+    assert_eq!(tessellation.domain().dimension(), voronoi::Dimension::Three, "cells must be in space");
+    let mut complex = CellComplex::from(tessellation);
+    let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
+    let (control_points, points, reconnections) = settle(&mut complex, recipe, &volumes)?;
+    let (network, _) =
+        Network::with_face_mesh(&control_points.cells, FaceMesh::Fan, recipe.junctions, recipe.levels)?;
+    let network = network.with_cell_volumes(volumes).with_tensions(recipe.tension)?;
+    // More levels may show folds that one does not.
+    let shape = control_points.shape(&complex, &points);
+    let points = control_points.points(&complex, &network, &shape);
+    let mut relax =
+        |rigid| relax_levels(&network, &points, &Relaxation::Equilibrium, Volumes::Kept, rigid, &mut watch);
+    // What folds where all may deform need not where the shortest edges keep their lengths.
+    let relaxed = relax(0.0).or_else(|_| relax(RIGID_LENGTH))?;
+    let balance = balance(&network, &relaxed);
+    Ok(Equilibrium { network, relaxed, reconnections, balance })
+}
+
+/// Lets the control points flow and the topology change until both are at rest.
+fn settle(
+    complex: &mut CellComplex,
+    recipe: &NetworkRecipe<'_>,
+    volumes: &[f64],
+) -> Result<(ControlPoints, Vec<DVec3>, Reconnections), NetworkError> {
+    // All of a wall has the same area unless it folds, so that tension does nothing but unfold it.
+    let tension =
+        |boundary: &Boundary| (recipe.tension)(boundary) + if boundary.wall.is_some() { 1.0 } else { 0.0 };
+    let network_of = |control_points: &ControlPoints| {
+        let (network, flat) =
+            Network::with_face_mesh(&control_points.cells, FaceMesh::Fan, recipe.junctions, 1)?;
+        Ok::<_, NetworkError>((network.with_cell_volumes(volumes.to_vec()).with_tensions(tension)?, flat))
+    };
+    let mut control_points = ControlPoints::new(complex);
+    let (mut network, mut points) = network_of(&control_points)?;
+    let mut reconnector = Reconnector::new(recipe.tension, SHORT * network.feature_size());
+    let step_time = STEP_TIME * network.mean_grain_size().powi(2);
+    let mut all = Reconnections::default();
+    let (mut quiet, mut last_energy) = (0, f64::INFINITY);
+    for _ in 0..LOOKS {
+        let before = lengths(complex);
+        let mut flow = Flow::new(&network, 0, Volumes::Kept).with_rigid_length(0.0);
+        let mut energy = 0.0;
+        for _ in 0..STEPS {
+            energy = flow.step(&mut points, step_time)?;
+        }
+        control_points.place_vertices(complex, &points);
+        let shape = control_points.shape(complex, &points);
+        let events = reconnector.pass(complex, &shape, &before);
+        all.add(events);
+        if events.count() > 0 {
+            control_points = ControlPoints::new(complex);
+            network = network_of(&control_points)?.0;
+            quiet = 0;
+        } else {
+            quiet += 1;
+            if quiet > QUIET_LOOKS && (last_energy - energy).abs() < QUIET_CHANGE * energy {
+                break;
+            }
+        }
+        last_energy = energy;
+        points = control_points.points(complex, &network, &shape);
+    }
+    Ok((control_points, points, all))
+}
+
+/// How near to equilibrium a network in space is.
+fn balance(network: &Network, relaxed: &Relaxed) -> Balance {
+    let short = SHORT * network.feature_size();
+    let measures = measure_network(network, &relaxed.finest_points(network)).in_space();
+    let SpaceMeasures { triple_lines, .. } = measures.expect("a network in space");
+    let ends = |points: &[u32]| [points[0], points[points.len() - 1]];
+    let flagged = || triple_lines.iter().filter(|line| !line.is_closed && line.length < short);
+    let mut flagged_ends: Vec<u32> = flagged().flat_map(|line| ends(&line.points)).collect();
+    flagged_ends.sort_unstable();
+    let is_apart = |point: &u32| flagged_ends.binary_search(point).is_err();
+    let others = triple_lines.iter().filter(|line| {
+        let is_inside = line.sides.len() == 3 && !line.sides.contains(&crate::Side::Exterior);
+        is_inside && ends(&line.points).iter().all(is_apart)
+    });
+    let deviations = others.flat_map(|line| &line.mean_angles).map(|angle| (angle - 120.0).abs());
+    Balance { flagged_lines: flagged().count(), largest_deviation: deviations.fold(0.0, f64::max) }
+}

@@ -1,0 +1,288 @@
+//! Which grains come together and which part.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+use voronoi::{CellComplex, ComplexEdge, Corner, FaceId, Shift, Side};
+
+use super::local_area::LocalArea;
+use super::shape::Shape;
+use crate::Boundary;
+
+/// Share of the length of what goes by which what comes starts off its middle.
+const OPENING: f64 = 0.3;
+
+/// Turns among walls that are not at right angles; each takes a point nearer to all of them.
+const WALL_TURNS: usize = 50;
+
+/// Length, in units of a short line, below which lines that shrink go even if that does not lessen the area at once.
+const TOO_SHORT: f64 = 0.5;
+
+/// Length, in the same unit, below which lines that stay are put where they have the least area: too short for a step of the flow.
+const TINY: f64 = 0.3;
+
+/// Length, in the same unit, that an event must leave to all lines.
+const LEAST: f64 = 0.1;
+
+/// How often lines between the same grains may go without lessening the area: what comes back is to stay.
+const MOST_TRIES: u8 = 3;
+
+/// How often grains came together and parted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Reconnections {
+    /// Triple lines that became boundaries with three sides: two grains came to meet.
+    pub opened: usize,
+    /// Boundaries with three sides that became triple lines: two grains parted.
+    pub closed: usize,
+    /// Boundaries with four sides that gave way to one between the grains at two opposite sides.
+    pub swapped: usize,
+}
+
+impl Reconnections {
+    /// All events.
+    pub fn count(self) -> usize {
+        self.opened + self.closed + self.swapped
+    }
+
+    pub(super) fn add(&mut self, other: Self) {
+        self.opened += other.opened;
+        self.closed += other.closed;
+        self.swapped += other.swapped;
+    }
+}
+
+/// A change of topology.
+#[derive(Debug, Clone, Copy)]
+enum Event {
+    Open(ComplexEdge),
+    Close(FaceId),
+    /// The face has four sides, one of which is the edge.
+    Swap(ComplexEdge, FaceId),
+}
+
+/// What an event has to be good for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Demand {
+    LessArea,
+    /// That it does not fold anything.
+    NoFold,
+}
+
+/// Looks for events.
+pub(super) struct Reconnector<'a> {
+    tension: &'a dyn Fn(&Boundary) -> f64,
+    /// Length below which lines are short.
+    short: f64,
+    /// Of lines, by all sides that touch them, how often they went without lessening the area.
+    tries: HashMap<Vec<Side>, u8>,
+}
+
+impl<'a> Reconnector<'a> {
+    pub(super) fn new(tension: &'a dyn Fn(&Boundary) -> f64, short: f64) -> Self {
+        Self { tension, short, tries: HashMap::new() }
+    }
+
+    /// Lets all events happen that are due where lines are short; `before` has the lengths of lines a while ago.
+    pub(super) fn pass(
+        &mut self,
+        complex: &mut CellComplex,
+        shape: &Shape,
+        before: &HashMap<ComplexEdge, f64>,
+    ) -> Reconnections {
+        let mut done = Reconnections::default();
+        for face in complex.faces_with_corners(3) {
+            if complex.corners(face).len() == 3
+                && perimeter(complex, face) < 3.0 * self.short
+                && self.happens(Event::Close(face), complex, shape, Demand::LessArea)
+            {
+                done.closed += 1;
+            }
+        }
+        for edge in self.short_lines(complex) {
+            if complex.has_edge(edge) {
+                done.add(self.pass_line(edge, complex, shape, before));
+            }
+        }
+        done
+    }
+
+    /// The short lines, shortest first.
+    fn short_lines(&self, complex: &CellComplex) -> Vec<ComplexEdge> {
+        let lengths = complex.edges().into_iter().map(|edge| (length(complex, edge), edge));
+        let mut short: Vec<(f64, ComplexEdge)> = lengths.filter(|(length, _)| *length < self.short).collect();
+        short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        short.into_iter().map(|(_, edge)| edge).collect()
+    }
+
+    fn pass_line(
+        &mut self,
+        edge: ComplexEdge,
+        complex: &mut CellComplex,
+        shape: &Shape,
+        before: &HashMap<ComplexEdge, f64>,
+    ) -> Reconnections {
+        let around = complex.faces_of_edge(edge);
+        let with_corners = |count: usize| -> Vec<FaceId> {
+            around.iter().copied().filter(|face| complex.corners(*face).len() == count).collect()
+        };
+        let [opened, closed, swapped] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+            .map(|[opened, closed, swapped]| Reconnections { opened, closed, swapped });
+        let mut events = vec![(Event::Open(edge), opened)];
+        events.extend(with_corners(3).into_iter().map(|face| (Event::Close(face), closed)));
+        let count = events.len();
+        events.extend(with_corners(4).into_iter().map(|face| (Event::Swap(edge, face), swapped)));
+        for (event, done) in &events {
+            if self.happens(*event, complex, shape, Demand::LessArea) {
+                return *done;
+            }
+        }
+        let now = length(complex, edge);
+        let is_shrinking = before.get(&edge).is_some_and(|before| now < *before);
+        if now < TOO_SHORT * self.short && is_shrinking {
+            let sides = sides_at(complex, edge);
+            let tries = self.tries.get(&sides).copied().unwrap_or(0);
+            for (event, done) in events[..count].iter().filter(|_| tries < MOST_TRIES) {
+                if self.happens(*event, complex, shape, Demand::NoFold) {
+                    self.tries.insert(sides, tries + 1);
+                    return *done;
+                }
+            }
+        }
+        if now < TINY * self.short {
+            self.settle(edge, complex, shape);
+        }
+        Reconnections::default()
+    }
+
+    /// Lets an event happen if it keeps its promise.
+    fn happens(&self, event: Event, complex: &mut CellComplex, shape: &Shape, demand: Demand) -> bool {
+        let old = event.vertices(complex);
+        let snapshot = complex.snapshot(&old);
+        let first_new = complex.vertices.len();
+        let mut as_it_is = LocalArea::new(complex, &old, shape, self.tension);
+        let folds = as_it_is.fold_count();
+        if event.happen(complex) {
+            let added =
+                (first_new..complex.vertices.len()).map(|new| u32::try_from(new).expect("ids fit 32 bits"));
+            let all = old.into_iter().chain(added);
+            let new: Vec<u32> = all.filter(|vertex| !complex.faces_at(&[*vertex]).is_empty()).collect();
+            let mut changed = LocalArea::new(complex, &new, shape, self.tension);
+            let is_good = match demand {
+                Demand::LessArea => changed.minimize() < as_it_is.minimize(),
+                Demand::NoFold => true,
+            };
+            if is_good && changed.shortest_edge() > LEAST * self.short && changed.fold_count() <= folds {
+                changed.place(complex);
+                return true;
+            }
+        }
+        complex.restore(snapshot);
+        false
+    }
+
+    /// Puts the ends of a line where it has the least area, unless it gets even shorter.
+    fn settle(&self, edge: ComplexEdge, complex: &mut CellComplex, shape: &Shape) {
+        let mut area = LocalArea::new(complex, &[edge.start, edge.end.vertex], shape, self.tension);
+        let (shortest, folds) = (area.shortest_edge(), area.fold_count());
+        area.minimize();
+        if area.shortest_edge() > shortest && area.fold_count() <= folds {
+            area.place(complex);
+        }
+    }
+}
+
+impl Event {
+    /// The vertices that it takes away or moves.
+    fn vertices(self, complex: &CellComplex) -> Vec<u32> {
+        match self {
+            Self::Open(edge) => vec![edge.start, edge.end.vertex],
+            Self::Close(face) | Self::Swap(_, face) => {
+                complex.corners(face).iter().map(|corner| corner.vertex).collect()
+            }
+        }
+    }
+
+    /// Whether it is possible and has happened; where not, something may have changed all the same.
+    fn happen(self, complex: &mut CellComplex) -> bool {
+        match self {
+            Self::Open(edge) => open(complex, edge),
+            Self::Close(face) => close(complex, face),
+            Self::Swap(edge, face) => open(complex, edge) && close(complex, face),
+        }
+    }
+}
+
+fn open(complex: &mut CellComplex, edge: ComplexEdge) -> bool {
+    let Some(star) = complex.reconnectable_edge(edge) else { return false };
+    let start = Corner { vertex: edge.start, shift: Shift::NONE };
+    let ends = [start, edge.end].map(|end| complex.position(end));
+    let middle = ends[0].midpoint(ends[1]);
+    let length = OPENING * ends[0].distance(ends[1]);
+    let [first, second] = star.ends;
+    let places = [0, 1, 2].map(|k| {
+        let along: DVec3 = star.outer.iter().map(|outer| direction(complex, middle, outer[k])).sum();
+        let sides = [first, second, star.around[(k + 1) % 3], star.around[(k + 2) % 3]];
+        on_walls(complex, &sides, middle + along.normalize_or_zero() * length)
+    });
+    complex.edge_to_triangle(edge, places).is_some()
+}
+
+fn close(complex: &mut CellComplex, face: FaceId) -> bool {
+    let Some((star, corners)) = complex.reconnectable_triangle(face) else { return false };
+    let corners = corners.map(|corner| complex.position(corner));
+    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let length = OPENING * corners[0].distance(middle);
+    let [a, b, c] = star.around;
+    let places = [0, 1].map(|end: usize| {
+        let along: DVec3 = star.outer[end].iter().map(|outer| direction(complex, middle, *outer)).sum();
+        on_walls(complex, &[a, b, c, star.ends[end]], middle + along.normalize_or_zero() * length)
+    });
+    complex.triangle_to_edge(face, places).is_some()
+}
+
+fn direction(complex: &CellComplex, from: DVec3, to: Corner) -> DVec3 {
+    (complex.position(to) - from).normalize_or_zero()
+}
+
+/// The point of the walls among some sides that is near another one.
+fn on_walls(complex: &CellComplex, sides: &[Side], mut point: DVec3) -> DVec3 {
+    let walls = sides.iter().filter_map(|side| match side {
+        Side::Wall(wall) => Some(complex.domain().wall_equation(*wall)),
+        Side::Cell(_) | Side::Image(..) => None,
+    });
+    let walls: Vec<(DVec3, f64)> = walls.collect();
+    for _ in 0..WALL_TURNS {
+        for (normal, distance) in &walls {
+            point += *normal * (distance - normal.dot(point));
+        }
+    }
+    point
+}
+
+/// All sides that touch a line, a cell and its images as one.
+fn sides_at(complex: &CellComplex, edge: ComplexEdge) -> Vec<Side> {
+    let faces = complex.faces_at(&[edge.start, edge.end.vertex]);
+    let sides = faces.into_iter().flat_map(|face| complex.sides(face)).map(|side| match side {
+        Side::Image(cell, _) => Side::Cell(cell),
+        Side::Cell(_) | Side::Wall(_) => side,
+    });
+    let mut sides: Vec<Side> = sides.collect();
+    sides.sort_unstable();
+    sides.dedup();
+    sides
+}
+
+/// The lengths of all lines.
+pub(super) fn lengths(complex: &CellComplex) -> HashMap<ComplexEdge, f64> {
+    complex.edges().into_iter().map(|edge| (edge, length(complex, edge))).collect()
+}
+
+fn length(complex: &CellComplex, edge: ComplexEdge) -> f64 {
+    complex.vertices[edge.start as usize].distance(complex.position(edge.end))
+}
+
+fn perimeter(complex: &CellComplex, face: FaceId) -> f64 {
+    let corners = complex.corners(face);
+    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+    edges.map(|(a, b)| complex.position(*a).distance(complex.position(*b))).sum()
+}

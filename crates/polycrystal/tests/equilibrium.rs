@@ -1,0 +1,67 @@
+//! Relaxation to equilibrium with changes of topology.
+
+#[allow(dead_code, reason = "every test file uses its own share")]
+mod common;
+
+use common::random_seeds;
+use glam::{BVec3, DVec3};
+use polycrystal::{
+    Boundary, Equilibrium, Junctions, NetworkRecipe, Reconnections, dihedral_angles, equilibrate, validate,
+};
+use voronoi::{Domain, Tessellation};
+
+fn balanced(domain: &Domain, seeds: &[DVec3], levels: usize) -> (Equilibrium, Vec<DVec3>) {
+    let tessellation = Tessellation::new(domain, seeds).expect("valid seeds");
+    let tension = |boundary: &Boundary| if boundary.wall.is_some() { 0.0 } else { 1.0 };
+    let recipe = NetworkRecipe { junctions: Junctions::Crease, levels, tension: &tension };
+    let balanced = equilibrate(&tessellation, &recipe, |_| ()).expect("relaxes");
+    let points = balanced.relaxed.finest_points(&balanced.network);
+    (balanced, points)
+}
+
+fn check_random_grains(domain: &Domain, count: usize, random_seed: u64, largest_spread: f64) {
+    let (Equilibrium { network, reconnections, balance, .. }, points) =
+        balanced(domain, &random_seeds(domain, count, random_seed), 2);
+    let validation = validate(&network, &points).expect("closed grains, no folds, no crossings");
+    assert!(validation.largest_volume_error < 1e-10, "{validation:?}");
+    assert!(reconnections.count() > 0);
+    let angles = dihedral_angles(&network, network.finest(), &points).expect("triple lines");
+    assert!((angles.mean - 120.0).abs() < 0.2, "{angles:?}");
+    assert!(angles.standard_deviation < largest_spread, "{angles:?}, {balance:?}");
+}
+
+#[test]
+fn random_periodic_grains_come_to_equilibrium() {
+    check_random_grains(&Domain::unit_cube().with_periods(BVec3::TRUE), 24, 1, 2.0);
+}
+
+#[test]
+fn random_grains_between_walls_come_to_equilibrium() {
+    check_random_grains(&Domain::unit_cube(), 24, 1, 2.5);
+}
+
+/// Kelvin's foam is in equilibrium as it is, but for curvature.
+#[test]
+fn kelvin_cells_keep_their_neighbours() {
+    let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
+    let mut seeds = Vec::new();
+    for i in 0..8 {
+        let corner = DVec3::new(f64::from(i % 2), f64::from(i / 2 % 2), f64::from(i / 4));
+        seeds.extend([(corner + 0.25) / 2.0, (corner + 0.75) / 2.0]);
+    }
+    let (Equilibrium { reconnections, balance, .. }, _) = balanced(&domain, &seeds, 2);
+    assert_eq!(reconnections, Reconnections::default());
+    assert_eq!(balance.flagged_lines, 0);
+    assert!(balance.largest_deviation < 2.5, "{balance:?}");
+}
+
+#[test]
+fn the_same_grains_come_to_the_same_equilibrium_with_any_number_of_threads() {
+    let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
+    let seeds = random_seeds(&domain, 12, 5);
+    let with_threads = |count: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().expect("threads");
+        pool.install(|| balanced(&domain, &seeds, 1).1)
+    };
+    assert_eq!(with_threads(1), with_threads(2));
+}
