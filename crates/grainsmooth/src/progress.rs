@@ -8,7 +8,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Stages of a single step say nothing of what is left.
 const UNCOUNTED: &str = "{prefix} {msg:12} {elapsed}";
-const COUNTED: &str = "{prefix} {msg:12} {bar:40} {pos}/{len}  {elapsed}, about {eta} left in this stage";
+/// Fits a terminal of 80 columns, where a longer line would break and flicker.
+const COUNTED: &str = "{prefix} {msg:12} {bar:20} {pos}/{len}  {elapsed}, about {eta} left in stage";
 
 /// A progress bar on standard error where that is a terminal, else nothing.
 pub struct ProgressLine(ProgressBar);
@@ -21,7 +22,10 @@ impl ProgressLine {
         } else {
             ProgressDrawTarget::stderr()
         };
-        let bar = ProgressBar::with_draw_target(Some(1), target);
+        let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::hidden());
+        // Nothing is drawn before there is a stage to name.
+        bar.set_style(style(UNCOUNTED));
+        bar.set_draw_target(target);
         bar.enable_steady_tick(Duration::from_millis(100));
         Self(bar)
     }
@@ -33,7 +37,7 @@ impl ProgressLine {
             self.0.reset();
         }
         let template = if count > 1 { COUNTED } else { UNCOUNTED };
-        self.0.set_style(ProgressStyle::with_template(template).expect("the template is fixed"));
+        self.0.set_style(style(template));
         self.0.set_prefix(format!("[{number}/{}]", Stage::ALL.len()));
         self.0.set_message(stage.name());
         self.0.set_length(count as u64);
@@ -44,4 +48,8 @@ impl ProgressLine {
     pub fn clear(&self) {
         self.0.finish_and_clear();
     }
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).expect("the template is fixed")
 }
