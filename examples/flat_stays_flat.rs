@@ -10,7 +10,6 @@ use polycrystal::{BoundaryId, Mesh, Relaxation};
 fn main() -> Result<(), grainsmooth::Error> {
     for time in [0.0, 0.3] {
         let seeds = SeedSource::Random { count: 50 };
-        // Collapsed edges would leave faces that are not plane before anything is relaxed.
         let relaxation = Relaxation::Time(time);
         let config = Config { seeds, relaxation, ..Config::default() };
         let polycrystal = make_polycrystal(&config, &|_, _, _| ())?;
