@@ -7,14 +7,16 @@ use crate::Error;
 /// Bytes that a run holds at its peak for each point, edge and triangle of its last level: the mesh with its
 /// arrays, the stencils that made the points, the level before, and the arrays being written.
 ///
-/// Fitted to peak resident memory, and 1 to 10 % above it: 200 grains took 717 MB at level 4 and 2724 MB at level 5, 2000
-/// grains 1992 MB at level 3, 20 000 grains 2343 MB at level 1; in 2D, 20 000 grains 1862 MB at level 6.
+/// Fitted to peak resident memory, and up to 5 % above it: 200 grains took 201 MB at level 3 and 770 MB at level 4, 500
+/// grains 517 MB at level 3, 1000 grains 363 MB at level 2; in 2D, 20 000 grains 1862 MB at level 6.
 const BYTES_PER_POINT: u128 = 220;
 const BYTES_PER_EDGE: u128 = 50;
-const BYTES_PER_TRIANGLE: u128 = 24;
+const BYTES_PER_TRIANGLE: u128 = 62;
 
-/// The same for each edge of the control mesh: the cells, and relaxation's matrices. Matters where levels are few.
+/// The same for each edge of the control mesh: the cells, and relaxation's matrices, which cover the points of level 1 too
+/// where there is one. 2000 grains took 115 MB at level 0 and 373 MB at level 1.
 const BYTES_PER_CONTROL_EDGE: u128 = 600;
+const BYTES_PER_CONTROL_EDGE_REFINED: u128 = 1600;
 
 /// Bytes that cells without a network take for each seed: a million random ones took 1.46 GB.
 const BYTES_PER_CELL: u128 = 1600;
@@ -53,11 +55,13 @@ impl LevelSize {
     /// Bytes that a run takes at its peak from this control mesh through `levels` subdivisions to the file, as an estimate.
     pub fn bytes_after(self, levels: u32) -> u128 {
         let size = self.after(levels);
+        let bytes_per_control_edge =
+            if levels == 0 { BYTES_PER_CONTROL_EDGE } else { BYTES_PER_CONTROL_EDGE_REFINED };
         [
             (size.points, BYTES_PER_POINT),
             (size.edges, BYTES_PER_EDGE),
             (size.triangles, BYTES_PER_TRIANGLE),
-            (self.edges, BYTES_PER_CONTROL_EDGE),
+            (self.edges, bytes_per_control_edge),
         ]
         .into_iter()
         .fold(0, |sum, (count, bytes)| sum.saturating_add(count.saturating_mul(bytes)))
@@ -211,7 +215,7 @@ mod tests {
         let message = |levels, available| check_levels(mesh, levels, available).unwrap_err().to_string();
         assert_eq!(
             message(9, 8_000_000_000),
-            "9 levels would take 766.9 GB of memory and 8.0 GB are available; 5 levels would fit"
+            "9 levels would take 906.4 GB of memory and 8.0 GB are available; 5 levels would fit"
         );
         assert_eq!(
             message(200, 8_000_000_000),
@@ -219,7 +223,7 @@ mod tests {
         );
         assert_eq!(
             message(3, 1_000_000),
-            "3 levels would take 196.9 MB of memory and 1.0 MB are available; not even 0 levels would fit, take fewer seeds"
+            "3 levels would take 250.9 MB of memory and 1.0 MB are available; not even 0 levels would fit, take fewer seeds"
         );
         assert_eq!(
             message(9, u64::MAX),
