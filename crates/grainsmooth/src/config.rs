@@ -3,7 +3,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use glam::{BVec3, DVec3};
-use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
+use polycrystal::{Boundary, FaceMesh, Junctions, Relaxation, Volumes};
 use voronoi::{Dimension, Domain};
 
 use crate::domain_file::{half_space_domain, surface_domain};
@@ -177,6 +177,11 @@ impl Config {
     /// The length to regularise by: none without relaxation.
     pub(crate) fn effective_regularize(&self) -> f64 {
         if self.relaxation == Relaxation::Time(0.0) { 0.0 } else { self.regularize }
+    }
+
+    /// The tension of a boundary: 1 between grains, and what is asked for on walls.
+    pub(crate) fn tension(&self, boundary: &Boundary) -> f64 {
+        if boundary.wall.is_some() { self.wall_tension } else { 1.0 }
     }
 
     /// Control points on the boundaries of regularised cells: in a fan, whose triangles at short lines are thin, those stay whole.

@@ -312,7 +312,10 @@ fn smooth_regularized(
             progress(Stage::Relaxation, step.done, step.count);
             watch(step);
         };
-        if let Some((balanced, relaxed, report)) = balanced(config, tessellation, &mut watch) {
+        // Cells that may change their neighbours are not regularised: one try tells all.
+        if let Regularization::Foreseeing = regularization
+            && let Some((balanced, relaxed, report)) = balanced(config, tessellation, &mut watch)
+        {
             network = balanced;
             equilibrium = Some(report);
             collapsed = Collapsed::default();
@@ -339,16 +342,15 @@ fn balanced(
     tessellation: &Tessellation,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Option<(Network, Relaxed, (Reconnections, Balance))> {
-    let Config { face_mesh, junctions, levels, wall_tension, .. } = *config;
+    let Config { face_mesh, junctions, levels, .. } = *config;
     let may_change = config.relaxation == Relaxation::Equilibrium
-        && config.regularize > 0.0
         && config.volumes == Volumes::Kept
         && config.dimension == Dimension::Three
         && face_mesh == FaceMesh::Fan;
     if !may_change {
         return None;
     }
-    let tension = |boundary: &Boundary| if boundary.wall.is_some() { wall_tension } else { 1.0 };
+    let tension = |boundary: &Boundary| config.tension(boundary);
     let recipe = NetworkRecipe { junctions, levels: levels as usize, tension: &tension };
     let Equilibrium { network, relaxed, reconnections, balance } =
         equilibrate(tessellation, &recipe, watch).ok()?;
@@ -362,11 +364,10 @@ fn network(
     tessellation: &Tessellation,
     regularization: Regularization,
 ) -> Result<(Network, Vec<DVec3>, Collapsed), NetworkError> {
-    let Config { face_mesh, junctions, levels, wall_tension, regularize, .. } = *config;
-    let tension = |boundary: &Boundary| if boundary.wall.is_some() { wall_tension } else { 1.0 };
+    let Config { face_mesh, junctions, levels, regularize, .. } = *config;
     let network_of = |cells, face_mesh| {
         let (network, flat) = Network::with_face_mesh(cells, face_mesh, junctions, levels as usize)?;
-        Ok::<_, NetworkError>((network.with_tensions(tension)?, flat))
+        Ok::<_, NetworkError>((network.with_tensions(|boundary| config.tension(boundary))?, flat))
     };
     let (regular, collapsed) = match regularization {
         Regularization::Foreseeing => regular_cells(tessellation, regularize),

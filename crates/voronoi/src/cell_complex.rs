@@ -7,39 +7,12 @@ mod star;
 use glam::DVec3;
 
 use crate::weld::list_faces_of_cells;
-use crate::{CellId, Domain, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId, Wall};
+use crate::{
+    CellId, ComplexEdge, Corner, Domain, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId, Wall,
+};
 
 pub use snapshot::Snapshot;
 pub use star::Star;
-
-/// A vertex of a [`CellComplex`], moved by whole periods.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Corner {
-    /// Number of the vertex.
-    pub vertex: u32,
-    /// How far from its own place it is.
-    pub shift: Shift,
-}
-
-/// An edge of a [`CellComplex`]: from a vertex in its own place to another vertex, or a moved one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ComplexEdge {
-    /// Where it starts.
-    pub start: u32,
-    /// Where it ends.
-    pub end: Corner,
-}
-
-impl ComplexEdge {
-    /// The edge between two corners that are joined by one.
-    pub fn between([from, to]: [Corner; 2]) -> Self {
-        let seen = |a: Corner, b: Corner| Self {
-            start: a.vertex,
-            end: Corner { vertex: b.vertex, shift: b.shift - a.shift },
-        };
-        seen(from, to).min(seen(to, from))
-    }
-}
 
 /// The cells of a [`Tessellation`] in space in a form that can be changed: each vertex, edge and face once, also in a
 /// periodic domain.
@@ -69,19 +42,15 @@ struct Face {
 
 impl From<&Tessellation> for CellComplex {
     fn from(tessellation: &Tessellation) -> Self {
-        let secondary_vertices = tessellation.periodic_vertices();
-        let vertex_count = tessellation.vertices().len() - secondary_vertices.len();
-        let corner = |vertex: &VertexId| match vertex.index().checked_sub(vertex_count) {
-            None => Corner { vertex: vertex.0, shift: Shift::NONE },
-            Some(place) => {
-                let pair = secondary_vertices[place];
-                Corner { vertex: pair.primary.0, shift: pair.shift }
-            }
-        };
+        let vertex_count = tessellation.vertices().len() - tessellation.periodic_vertices().len();
         let face_count = tessellation.face_count() - tessellation.periodic_faces().len();
         let faces = tessellation.faces().take(face_count).map(|face| Face {
             sides: tessellation.face_sides(face),
-            corners: tessellation.face_corners(face).iter().map(corner).collect(),
+            corners: tessellation
+                .face_corners(face)
+                .iter()
+                .map(|vertex| tessellation.primary_corner(*vertex))
+                .collect(),
         });
         let mut complex = Self {
             domain: tessellation.domain().clone(),

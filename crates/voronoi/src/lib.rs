@@ -37,6 +37,7 @@ mod cell_complex;
 mod cell_edges;
 mod convex_cell;
 mod convex_surface;
+mod corner;
 mod curved_domain;
 mod domain;
 mod end_search;
@@ -67,7 +68,8 @@ mod wall;
 mod weld;
 mod wide;
 
-pub use cell_complex::{CellComplex, ComplexEdge, Corner, Snapshot, Star};
+pub use cell_complex::{CellComplex, Snapshot, Star};
+pub use corner::{ComplexEdge, Corner};
 pub use domain::{Dimension, Domain};
 pub use error::VoronoiError;
 pub use measure::CellMeasure;

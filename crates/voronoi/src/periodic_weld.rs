@@ -9,6 +9,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::Domain;
+use crate::corner::Corner;
 use crate::generator::{Generator, Plane, VertexKey};
 use crate::images::Image;
 use crate::predicate::ExactInput;
@@ -16,7 +17,7 @@ use crate::search::Search;
 use crate::tessellation::{CellId, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};
 use crate::tile::Tile;
 use crate::torus::{FaceEnd, TorusFaces};
-use crate::weld::{MovedVertex, list_faces_of_cells, number_vertices, positions, put_vertices_on_walls};
+use crate::weld::{list_faces_of_cells, number_vertices, positions, put_vertices_on_walls};
 
 pub(crate) fn weld_periodic(search: &Search, seeds: &[DVec3], tiles: &[Tile]) -> Tessellation {
     let dimension = search.input().domain.dimension();
@@ -80,16 +81,16 @@ pub(crate) fn canonical(input: ExactInput, key: &VertexKey) -> (VertexKey, Shift
 /// Vertices of the torus joined where exact ties made them one point: a forest in which each knows its parent and how it
 /// is moved relative to it.
 struct UnitedVertices {
-    parents: Vec<MovedVertex>,
+    parents: Vec<Corner>,
 }
 
 impl UnitedVertices {
     fn new(count: usize) -> Self {
-        let parents = (0u32..).take(count).map(|vertex| MovedVertex { vertex, shift: Shift::NONE });
+        let parents = (0u32..).take(count).map(|vertex| Corner { vertex, shift: Shift::NONE });
         Self { parents: parents.collect() }
     }
 
-    fn root(&mut self, of: MovedVertex) -> MovedVertex {
+    fn root(&mut self, of: Corner) -> Corner {
         let mut at = of;
         loop {
             let parent = self.parents[at.vertex as usize];
@@ -97,40 +98,34 @@ impl UnitedVertices {
                 return at;
             }
             let grandparent = self.parents[parent.vertex as usize];
-            let skipped = MovedVertex { shift: parent.shift + grandparent.shift, ..grandparent };
+            let skipped = Corner { shift: parent.shift + grandparent.shift, ..grandparent };
             self.parents[at.vertex as usize] = skipped;
-            at = MovedVertex { shift: at.shift + skipped.shift, ..skipped };
+            at = Corner { shift: at.shift + skipped.shift, ..skipped };
         }
     }
 
-    fn unite(&mut self, v: MovedVertex, w: MovedVertex) {
+    fn unite(&mut self, v: Corner, w: Corner) {
         let (v, w) = (self.root(v), self.root(w));
         // The smaller number stays, so the result does not depend on the order of the pairs.
         let (kept, joined) = if v.vertex < w.vertex { (v, w) } else { (w, v) };
         if kept.vertex != joined.vertex {
-            self.parents[joined.vertex as usize] = MovedVertex { shift: kept.shift - joined.shift, ..kept };
+            self.parents[joined.vertex as usize] = Corner { shift: kept.shift - joined.shift, ..kept };
         }
     }
 
-    fn roots(mut self) -> Vec<MovedVertex> {
+    fn roots(mut self) -> Vec<Corner> {
         let vertices = (0u32..).take(self.parents.len());
-        vertices.map(|vertex| self.root(MovedVertex { vertex, shift: Shift::NONE })).collect()
+        vertices.map(|vertex| self.root(Corner { vertex, shift: Shift::NONE })).collect()
     }
 }
 
 /// Adds the faces of a tile, in the user's numbers of cells.
-fn push_faces(
-    faces: &mut TorusFaces,
-    search: &Search,
-    tile: &Tile,
-    numbers: &[MovedVertex],
-    roots: &[MovedVertex],
-) {
+fn push_faces(faces: &mut TorusFaces, search: &Search, tile: &Tile, numbers: &[Corner], roots: &[Corner]) {
     for (ends, corners) in tile.faces() {
         let corners = corners.iter().map(|corner| {
-            let MovedVertex { vertex, shift } = numbers[*corner as usize];
+            let Corner { vertex, shift } = numbers[*corner as usize];
             let root = roots[vertex as usize];
-            MovedVertex { shift: shift + root.shift, ..root }
+            Corner { shift: shift + root.shift, ..root }
         });
         faces.push(ends.map(|generator| search.end(generator)), corners);
     }
@@ -169,7 +164,7 @@ pub(crate) fn unwrapped(
         let back = Shift::NONE - second.shift;
         let sides = [side(FaceEnd::Cell(second), back), side(FaceEnd::Cell(first), back)];
         let corners = corners.iter().rev();
-        let corners = corners.map(|corner| places.id(MovedVertex { shift: corner.shift + back, ..*corner }));
+        let corners = corners.map(|corner| places.id(Corner { shift: corner.shift + back, ..*corner }));
         let secondary = tessellation.push_face(sides, corners);
         tessellation.periodic_faces.push(PeriodicPair { secondary, primary, shift: back });
     }
@@ -192,7 +187,7 @@ pub(crate) fn side(end: FaceEnd, shift: Shift) -> Side {
 /// Numbers of all places at which the whole cells have vertices: first an original of each vertex of the torus, where it
 /// is not moved if there is a cell there, then the copies.
 struct VertexPlaces {
-    originals: Vec<MovedVertex>,
+    originals: Vec<Corner>,
     /// Of each vertex of the torus, its original.
     original_of: Vec<VertexId>,
     /// All places but those of unmoved originals, sorted, with their ids.
@@ -201,7 +196,7 @@ struct VertexPlaces {
 
 #[derive(Clone, Copy)]
 struct NumberedVertex {
-    moved: MovedVertex,
+    moved: Corner,
     id: VertexId,
 }
 
@@ -209,7 +204,7 @@ impl VertexPlaces {
     fn new(faces: &TorusFaces, vertex_count: usize) -> Self {
         let mut is_used = vec![false; vertex_count];
         let mut moved = Vec::new();
-        let mut note = |corner: MovedVertex| match corner.shift {
+        let mut note = |corner: Corner| match corner.shift {
             Shift::NONE => is_used[corner.vertex as usize] = true,
             _ => moved.push(corner),
         };
@@ -218,9 +213,7 @@ impl VertexPlaces {
             if let FaceEnd::Cell(Image { shift, .. }) = ends[1]
                 && shift != Shift::NONE
             {
-                corners
-                    .iter()
-                    .for_each(|corner| note(MovedVertex { shift: corner.shift - shift, ..*corner }));
+                corners.iter().for_each(|corner| note(Corner { shift: corner.shift - shift, ..*corner }));
             }
         }
         moved.sort_unstable();
@@ -229,7 +222,7 @@ impl VertexPlaces {
             Self { originals: Vec::new(), original_of: Vec::with_capacity(vertex_count), moved: Vec::new() };
         let id = |count: usize| VertexId(u32::try_from(count).expect("vertex ids fit 32 bits"));
         for (vertex, is_used) in (0u32..).zip(&is_used) {
-            let unmoved = MovedVertex { vertex, shift: Shift::NONE };
+            let unmoved = Corner { vertex, shift: Shift::NONE };
             let first = moved.partition_point(|at| at.vertex < vertex);
             let original = if *is_used {
                 Some(unmoved)
@@ -262,7 +255,7 @@ impl VertexPlaces {
         with_original.filter(|(at, original)| at.id != *original)
     }
 
-    fn id(&self, at: MovedVertex) -> VertexId {
+    fn id(&self, at: Corner) -> VertexId {
         if at.shift == Shift::NONE {
             return self.original_of[at.vertex as usize];
         }

@@ -10,12 +10,13 @@
 
 use glam::DVec3;
 
+use crate::corner::{ComplexEdge, Corner};
 use crate::images::Image;
 use crate::periodic_weld::unwrapped;
 use crate::ring::{is_folded, is_star_shaped};
-use crate::tessellation::{FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};
+use crate::tessellation::{FaceId, Shift, Side, Tessellation, VertexId};
 use crate::torus::{FaceEnd, TorusFaces};
-use crate::weld::{MovedVertex, list_faces_of_cells};
+use crate::weld::list_faces_of_cells;
 use crate::{CellId, Dimension, Wall};
 
 /// Sweeps over all edges; each makes room for collapses that the one before had to refuse.
@@ -75,35 +76,6 @@ struct MovedFace {
 /// A cell moved by whole periods, or nothing for the exterior.
 type MovedCell = Option<(CellId, Shift)>;
 
-/// An edge: from a vertex in its own place to another one, or a moved one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Edge {
-    start: u32,
-    end: MovedVertex,
-}
-
-impl Edge {
-    /// The edge between two places; the same for all its copies.
-    fn between(a: MovedVertex, b: MovedVertex) -> Self {
-        let seen = |from: MovedVertex, to: MovedVertex| Self {
-            start: from.vertex,
-            end: MovedVertex { vertex: to.vertex, shift: to.shift - from.shift },
-        };
-        seen(a, b).min(seen(b, a))
-    }
-
-    /// The other end, seen from either end in its own place.
-    fn across(self, from_end: bool) -> [MovedVertex; 2] {
-        let unmoved = |vertex| MovedVertex { vertex, shift: Shift::NONE };
-        if from_end {
-            let back = MovedVertex { vertex: self.start, shift: Shift::NONE - self.end.shift };
-            [unmoved(self.end.vertex), back]
-        } else {
-            [unmoved(self.start), self.end]
-        }
-    }
-}
-
 /// A cell complex whose vertices merge. That of a periodic domain has each vertex, edge and face once.
 struct Complex<'a> {
     original: &'a Tessellation,
@@ -114,7 +86,7 @@ struct Complex<'a> {
     weights: Vec<f64>,
     walls: Vec<Vec<Wall>>,
     /// The corners of each face; empty for those that have closed.
-    faces: Vec<Vec<MovedVertex>>,
+    faces: Vec<Vec<Corner>>,
     /// The faces at each vertex, moved to where it has its own place; empty for those that have merged into another.
     faces_at: Vec<Vec<MovedFace>>,
     /// Number of faces that each cell has.
@@ -128,22 +100,15 @@ struct Complex<'a> {
 
 impl<'a> Complex<'a> {
     fn new(original: &'a Tessellation, length: f64, future: &[DVec3], is_strict: Vec<bool>) -> Self {
-        // Copies have the last numbers.
         let count = original.vertices().len() - original.periodic_vertices().len();
-        let corner = |vertex: &VertexId| match vertex.index().checked_sub(count) {
-            None => MovedVertex { vertex: vertex.0, shift: Shift::NONE },
-            Some(copy) => {
-                let PeriodicPair { primary, shift, .. } = original.periodic_vertices()[copy];
-                MovedVertex { vertex: primary.0, shift }
-            }
-        };
         let face_count = original.face_count() - original.periodic_faces().len();
         let mut walls = vec![Vec::new(); count];
         let mut faces_at = vec![Vec::new(); count];
         let mut faces = Vec::with_capacity(face_count);
         for face in original.faces().take(face_count) {
-            let corners: Vec<MovedVertex> = original.face_corners(face).iter().map(corner).collect();
-            for MovedVertex { vertex, shift } in &corners {
+            let corners: Vec<Corner> =
+                original.face_corners(face).iter().map(|vertex| original.primary_corner(*vertex)).collect();
+            for Corner { vertex, shift } in &corners {
                 faces_at[*vertex as usize].push(MovedFace { face: face.0, shift: Shift::NONE - *shift });
                 match original.face_sides(face)[1] {
                     Side::Wall(wall) if !walls[*vertex as usize].contains(&wall) => {
@@ -200,11 +165,11 @@ impl<'a> Complex<'a> {
         self.original.domain().dimension()
     }
 
-    fn position(&self, MovedVertex { vertex, shift }: MovedVertex) -> DVec3 {
+    fn position(&self, Corner { vertex, shift }: Corner) -> DVec3 {
         self.vertices[vertex as usize] + shift.vector(self.original.domain())
     }
 
-    fn future_position(&self, MovedVertex { vertex, shift }: MovedVertex) -> DVec3 {
+    fn future_position(&self, Corner { vertex, shift }: Corner) -> DVec3 {
         self.future[vertex as usize] + shift.vector(self.original.domain())
     }
 
@@ -217,22 +182,23 @@ impl<'a> Complex<'a> {
         })
     }
 
-    fn corners(&self, MovedFace { face, shift: by }: MovedFace) -> impl Iterator<Item = MovedVertex> + Clone {
+    fn corners(&self, MovedFace { face, shift: by }: MovedFace) -> impl Iterator<Item = Corner> + Clone {
         let corners = self.faces[face as usize].iter();
-        corners.map(move |&MovedVertex { vertex, shift }| MovedVertex { vertex, shift: shift + by })
+        corners.map(move |&Corner { vertex, shift }| Corner { vertex, shift: shift + by })
     }
 
-    fn length(&self, edge: Edge) -> f64 {
+    fn length(&self, edge: ComplexEdge) -> f64 {
         self.future[edge.start as usize].distance(self.future_position(edge.end))
     }
 
     /// The edges that are shorter than any cell at their ends allows, shortest first.
-    fn short_edges(&self) -> Vec<Edge> {
-        let mut edges: Vec<Edge> =
+    fn short_edges(&self) -> Vec<ComplexEdge> {
+        let mut edges: Vec<ComplexEdge> =
             self.faces.iter().flat_map(|face| edges_of(face.iter().copied())).collect();
         edges.sort_unstable();
         edges.dedup();
-        let mut edges: Vec<(f64, Edge)> = edges.into_iter().map(|edge| (self.length(edge), edge)).collect();
+        let mut edges: Vec<(f64, ComplexEdge)> =
+            edges.into_iter().map(|edge| (self.length(edge), edge)).collect();
         let count = u32::try_from(self.vertices.len()).expect("vertex ids fit 32 bits");
         let is_bend: Vec<bool> = (0..count).map(|vertex| self.is_bend(vertex)).collect();
         edges.retain(|(length, edge)| {
@@ -246,31 +212,31 @@ impl<'a> Complex<'a> {
     /// Whether a vertex is left with two edges: a mere bend in a line, where two long, thin faces have closed that crossed.
     fn is_bend(&self, vertex: u32) -> bool {
         self.dimension() == Dimension::Three
-            && self.neighbors(MovedVertex { vertex, shift: Shift::NONE }).len() == 2
+            && self.neighbors(Corner { vertex, shift: Shift::NONE }).len() == 2
     }
 
-    fn allowed(&self, edge: Edge) -> f64 {
+    fn allowed(&self, edge: ComplexEdge) -> f64 {
         let faces = edge.across(false).into_iter().flat_map(|end| self.faces_at(end));
         let cells = faces.flat_map(|face| self.cells(face)).flatten();
         cells.map(|(cell, _)| self.short[cell.index()]).fold(f64::INFINITY, f64::min)
     }
 
     /// The faces at a vertex.
-    fn faces_at(&self, MovedVertex { vertex, shift: by }: MovedVertex) -> impl Iterator<Item = MovedFace> {
+    fn faces_at(&self, Corner { vertex, shift: by }: Corner) -> impl Iterator<Item = MovedFace> {
         let faces = self.faces_at[vertex as usize].iter();
         faces.map(move |&MovedFace { face, shift }| MovedFace { face, shift: shift + by })
     }
 
     /// The cells at a vertex, and the exterior.
-    fn cells_at(&self, vertex: MovedVertex) -> Vec<MovedCell> {
+    fn cells_at(&self, vertex: Corner) -> Vec<MovedCell> {
         let mut cells: Vec<_> = self.faces_at(vertex).flat_map(|face| self.cells(face)).collect();
         cells.sort_unstable();
         cells.dedup();
         cells
     }
 
-    fn neighbors(&self, vertex: MovedVertex) -> Vec<MovedVertex> {
-        let mut neighbors: Vec<MovedVertex> = self
+    fn neighbors(&self, vertex: Corner) -> Vec<Corner> {
+        let mut neighbors: Vec<Corner> = self
             .faces_at(vertex)
             .flat_map(|face| pairs_of(self.corners(face)))
             .filter(|ends| ends.contains(&vertex))
@@ -282,7 +248,7 @@ impl<'a> Complex<'a> {
     }
 
     /// Merges the ends of an edge, if it is still there and nothing forbids it.
-    fn collapse(&mut self, edge: Edge) {
+    fn collapse(&mut self, edge: ComplexEdge) {
         let ends = [edge.start, edge.end.vertex];
         if ends.iter().any(|end| self.faces_at[*end as usize].is_empty()) {
             return;
@@ -317,7 +283,7 @@ impl<'a> Complex<'a> {
     }
 
     /// The faces that a collapse closes; nothing where a cell would not stay a ball.
-    fn closing_faces(&self, kept: MovedVertex, gone: MovedVertex) -> Option<Vec<MovedFace>> {
+    fn closing_faces(&self, kept: Corner, gone: Corner) -> Option<Vec<MovedFace>> {
         if !self.is_apart_from_copies(kept, gone) {
             return None;
         }
@@ -358,7 +324,7 @@ impl<'a> Complex<'a> {
 
     /// Whether all that is around two vertices is there once, so that what happens there happens nowhere else to the same faces
     /// and cells. Only where a period is a few cells long is it not.
-    fn is_apart_from_copies(&self, kept: MovedVertex, gone: MovedVertex) -> bool {
+    fn is_apart_from_copies(&self, kept: Corner, gone: Corner) -> bool {
         if self.original.periodic_faces().is_empty() {
             return true;
         }
@@ -375,7 +341,7 @@ impl<'a> Complex<'a> {
     }
 
     /// Whether the merged vertex can lie on all walls of both, and no edge from the inside comes to lie in a wall.
-    fn walls_allow(&self, kept: MovedVertex, gone: MovedVertex) -> bool {
+    fn walls_allow(&self, kept: Corner, gone: Corner) -> bool {
         let [walls, gone_walls] = [kept, gone].map(|end| &self.walls[end.vertex as usize]);
         if !gone_walls.iter().all(|wall| walls.contains(wall)) {
             return false;
@@ -388,7 +354,7 @@ impl<'a> Complex<'a> {
     }
 
     /// Whether the faces around stay star-shaped when the two vertices meet at `place`.
-    fn stays_unfolded(&self, kept: MovedVertex, gone: MovedVertex, place: DVec3) -> bool {
+    fn stays_unfolded(&self, kept: Corner, gone: Corner, place: DVec3) -> bool {
         if self.dimension() == Dimension::Two {
             return true;
         }
@@ -396,7 +362,7 @@ impl<'a> Complex<'a> {
         faces.sort_unstable();
         faces.dedup();
         faces.into_iter().all(|face| {
-            let at = |corner: MovedVertex| {
+            let at = |corner: Corner| {
                 if [kept, gone].contains(&corner) { place } else { self.position(corner) }
             };
             let ring: Vec<DVec3> = self.corners(face).map(at).collect();
@@ -406,7 +372,7 @@ impl<'a> Complex<'a> {
         })
     }
 
-    fn merge(&mut self, kept: MovedVertex, gone: MovedVertex, mut place: DVec3, closing: &[MovedFace]) {
+    fn merge(&mut self, kept: Corner, gone: Corner, mut place: DVec3, closing: &[MovedFace]) {
         // A mean of equal coordinates may miss them by a last place.
         for wall in &self.walls[kept.vertex as usize] {
             if let Some((axis, coordinate)) = self.original.domain().across_axis(*wall) {
@@ -418,8 +384,7 @@ impl<'a> Complex<'a> {
         for MovedFace { face, shift } in std::mem::take(&mut self.faces_at[gone.vertex as usize]) {
             // In the face's own place, the two are here.
             let at = shift + gone.shift;
-            let [kept, gone] =
-                [kept, gone].map(|end| MovedVertex { vertex: end.vertex, shift: end.shift - at });
+            let [kept, gone] = [kept, gone].map(|end| Corner { vertex: end.vertex, shift: end.shift - at });
             let corners = &mut self.faces[face as usize];
             if corners.contains(&kept) {
                 corners.retain(|corner| *corner != gone);
@@ -477,12 +442,12 @@ fn face_end(side: Side) -> FaceEnd {
 }
 
 /// The ends of the edges of a face: of one in the plane, where a face has two corners.
-fn pairs_of(corners: impl Iterator<Item = MovedVertex> + Clone) -> impl Iterator<Item = [MovedVertex; 2]> {
+fn pairs_of(corners: impl Iterator<Item = Corner> + Clone) -> impl Iterator<Item = [Corner; 2]> {
     let count = corners.clone().count();
     let after = corners.clone().cycle().skip(1);
     corners.zip(after).take(if count == 2 { 1 } else { count }).map(|(a, b)| [a, b])
 }
 
-fn edges_of(corners: impl Iterator<Item = MovedVertex> + Clone) -> impl Iterator<Item = Edge> {
-    pairs_of(corners).map(|[a, b]| Edge::between(a, b))
+fn edges_of(corners: impl Iterator<Item = Corner> + Clone) -> impl Iterator<Item = ComplexEdge> {
+    pairs_of(corners).map(|[a, b]| ComplexEdge::between([a, b]))
 }

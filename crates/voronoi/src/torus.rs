@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
+use crate::corner::Corner;
 use crate::images::Image;
 use crate::tessellation::Shift;
-use crate::weld::MovedVertex;
 use crate::{Dimension, Wall};
 
 /// What lies on one side of a face.
@@ -40,7 +40,7 @@ pub(crate) struct TorusFaces {
     fewest_corners: usize,
     ends: Vec<[FaceEnd; 2]>,
     starts: Vec<usize>,
-    corners: Vec<MovedVertex>,
+    corners: Vec<Corner>,
 }
 
 impl TorusFaces {
@@ -64,7 +64,7 @@ impl TorusFaces {
     }
 
     /// Adds a face, unless it has shrunk to a line or a point.
-    pub(crate) fn push(&mut self, ends: [FaceEnd; 2], corners: impl Iterator<Item = MovedVertex>) {
+    pub(crate) fn push(&mut self, ends: [FaceEnd; 2], corners: impl Iterator<Item = Corner>) {
         let first = self.corners.len();
         for corner in corners {
             if self.corners.len() == first || self.corners[self.corners.len() - 1] != corner {
@@ -82,7 +82,7 @@ impl TorusFaces {
         self.starts.push(self.corners.len());
     }
 
-    pub(crate) fn iter(&self) -> impl Iterator<Item = ([FaceEnd; 2], &[MovedVertex])> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = ([FaceEnd; 2], &[Corner])> {
         let corners = self.starts.windows(2).map(|range| &self.corners[range[0]..range[1]]);
         self.ends.iter().copied().zip(corners)
     }
@@ -135,7 +135,7 @@ impl TorusFaces {
         for (face, (ends, corners)) in self.iter().enumerate() {
             if !is_dropped[face] {
                 let (ends, back, is_turned) = in_order(ends);
-                let moved = |corner: &MovedVertex| MovedVertex { shift: corner.shift + back, ..*corner };
+                let moved = |corner: &Corner| Corner { shift: corner.shift + back, ..*corner };
                 if is_turned {
                     rest.push(ends, corners.iter().rev().map(moved));
                 } else {

@@ -11,6 +11,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::Dimension;
+use crate::corner::Corner;
 use crate::flat_cells::remove_flat_cells;
 use crate::generator::{Generator, VertexKey};
 use crate::periodic_weld::{canonical, side};
@@ -19,13 +20,6 @@ use crate::search::Search;
 use crate::tessellation::{FaceId, Shift, Side, Tessellation, VertexId};
 use crate::tile::Tile;
 use crate::tile_vertex::NONE;
-
-/// A vertex moved by whole periods.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct MovedVertex {
-    pub(crate) vertex: u32,
-    pub(crate) shift: Shift,
-}
 
 /// The vertices that a tile owns.
 struct Owned {
@@ -56,7 +50,7 @@ impl Owned {
 }
 
 /// The number of every vertex of every tile in the whole, with the shift to where it is from there.
-pub(crate) fn number_vertices(input: ExactInput, tiles: &[Tile]) -> Vec<Vec<MovedVertex>> {
+pub(crate) fn number_vertices(input: ExactInput, tiles: &[Tile]) -> Vec<Vec<Corner>> {
     let owned: Vec<Owned> = tiles.par_iter().map(|tile| Owned::new(input, tile)).collect();
     let mut starts = vec![0u32];
     for tile in &owned {
@@ -64,14 +58,14 @@ pub(crate) fn number_vertices(input: ExactInput, tiles: &[Tile]) -> Vec<Vec<Move
     }
     let numbers = tiles.par_iter().zip(&owned).zip(&starts).map(|((tile, own), start)| {
         // Those of vertices that others own come out wrong here, and right below.
-        let number = |rank: &u32| MovedVertex { vertex: start.wrapping_add(*rank), shift: Shift::NONE };
-        let mut numbers: Vec<MovedVertex> = own.ranks.iter().map(number).collect();
+        let number = |rank: &u32| Corner { vertex: start.wrapping_add(*rank), shift: Shift::NONE };
+        let mut numbers: Vec<Corner> = own.ranks.iter().map(number).collect();
         for shared in tile.shared.iter().filter(|shared| own.ranks[shared.vertex as usize] == NONE) {
             let (key, shift) = canonical(input, &shared.key);
             let owner = tiles.partition_point(|tile| tile.seeds.start <= key[0].0) - 1;
             let rank = owned[owner].shared.get(&key);
             let rank = rank.expect("exact decisions give every tile the same vertices");
-            numbers[shared.vertex as usize] = MovedVertex { vertex: starts[owner] + rank, shift };
+            numbers[shared.vertex as usize] = Corner { vertex: starts[owner] + rank, shift };
         }
         numbers
     });
@@ -79,7 +73,7 @@ pub(crate) fn number_vertices(input: ExactInput, tiles: &[Tile]) -> Vec<Vec<Move
 }
 
 /// The positions of all vertices by number.
-pub(crate) fn positions(tiles: &[Tile], numbers: &[Vec<MovedVertex>]) -> Vec<DVec3> {
+pub(crate) fn positions(tiles: &[Tile], numbers: &[Vec<Corner>]) -> Vec<DVec3> {
     let mut positions = Vec::new();
     for (tile, numbers) in tiles.iter().zip(numbers) {
         for (position, number) in tile.positions.iter().zip(numbers) {
