@@ -179,6 +179,16 @@ impl Config {
         if self.relaxation == Relaxation::Time(0.0) { 0.0 } else { self.regularize }
     }
 
+    /// Whether grains may switch neighbours: on the way to equilibrium, in space, at kept volumes, from fans, unless nothing of the cells
+    /// is to be changed.
+    pub(crate) fn lets_topology_change(&self) -> bool {
+        self.relaxation == Relaxation::Equilibrium
+            && self.volumes == Volumes::Kept
+            && self.dimension == Dimension::Three
+            && self.face_mesh == FaceMesh::Fan
+            && self.effective_regularize() > 0.0
+    }
+
     /// The tension of a boundary: 1 between grains, and what is asked for on walls.
     pub(crate) fn tension(&self, boundary: &Boundary) -> f64 {
         if boundary.wall.is_some() { self.wall_tension } else { 1.0 }

@@ -4,11 +4,9 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use polycrystal::{
-    AngleStatistics, Balance, Boundary, Certificate, Equilibrium, FaceMesh, MeshSize, Network, NetworkError,
+    AngleStatistics, Balance, Boundary, Certificate, Equilibrium, MeshSize, Network, NetworkError,
 };
-use polycrystal::{
-    NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, Volumes, WeightedAngle,
-};
+use polycrystal::{NetworkRecipe, Reconnections, RelaxationStep, Relaxed, Volumes, WeightedAngle};
 use polycrystal::{
     angles_between_boundaries, dihedral_angles, equilibrate, regular_cells, relax_watched, validate,
 };
@@ -342,20 +340,15 @@ fn balanced(
     tessellation: &Tessellation,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Option<(Network, Relaxed, (Reconnections, Balance))> {
-    let Config { face_mesh, junctions, levels, .. } = *config;
-    let may_change = config.relaxation == Relaxation::Equilibrium
-        && config.volumes == Volumes::Kept
-        && config.dimension == Dimension::Three
-        && face_mesh == FaceMesh::Fan;
-    if !may_change {
+    if !config.lets_topology_change() {
         return None;
     }
+    let Config { junctions, levels, .. } = *config;
     let tension = |boundary: &Boundary| config.tension(boundary);
     let recipe = NetworkRecipe { junctions, levels: levels as usize, tension: &tension };
     let Equilibrium { network, relaxed, reconnections, balance } =
         equilibrate(tessellation, &recipe, watch).ok()?;
-    let is_valid = validate(&network, &relaxed.finest_points(&network)).is_ok();
-    is_valid.then_some((network, relaxed, (reconnections, balance)))
+    Some((network, relaxed, (reconnections, balance)))
 }
 
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.

@@ -64,6 +64,11 @@ impl fmt::Display for Summary<'_> {
                 out,
                 "equilibrium triple lines within {largest_deviation:.2} degrees, but for those at {flagged_lines} short ones"
             )?;
+        } else if polycrystal.config.lets_topology_change() {
+            writeln!(
+                out,
+                "topology    kept: letting grains switch neighbours led to no valid network; angles are off 120 degrees where they would"
+            )?;
         } else if polycrystal.config.relaxation == Relaxation::Equilibrium {
             writeln!(
                 out,

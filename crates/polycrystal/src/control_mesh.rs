@@ -36,18 +36,34 @@ impl ControlMesh {
         face_mesh: FaceMesh,
         junctions: Junctions,
     ) -> Result<Self, NetworkError> {
-        let mut boundaries: Vec<Boundary> =
-            tessellation.faces().map(|face| boundary(tessellation.face_sides(face))).collect();
-        for PeriodicPair { secondary, primary, shift } in tessellation.periodic_faces() {
-            let twin = |face: &FaceId, shift| Some(Twin { boundary: BoundaryId(face.0), shift });
-            boundaries[primary.index()].twin = twin(secondary, *shift);
-            boundaries[secondary.index()].twin = twin(primary, Shift::NONE - *shift);
-        }
+        let boundaries = boundaries(tessellation);
         match tessellation.domain().dimension() {
-            Dimension::Three => surfaces(tessellation, boundaries, face_mesh, junctions),
+            Dimension::Three => surfaces(tessellation, boundaries, face_mesh, junctions, None),
             Dimension::Two => lines(tessellation, boundaries, face_mesh),
         }
     }
+
+    /// That of cells in space whose lines are curved: each goes through one point, its middle. Boundaries are filled by fans with as
+    /// many centres as their outline takes.
+    pub(crate) fn of_curved_lines(
+        tessellation: &Tessellation,
+        middles: &[DVec3],
+        junctions: Junctions,
+    ) -> Result<ControlMesh, NetworkError> {
+        let boundaries = boundaries(tessellation);
+        surfaces(tessellation, boundaries, FaceMesh::SparseFan, junctions, Some(middles))
+    }
+}
+
+fn boundaries(tessellation: &Tessellation) -> Vec<Boundary> {
+    let mut boundaries: Vec<Boundary> =
+        tessellation.faces().map(|face| boundary(tessellation.face_sides(face))).collect();
+    for PeriodicPair { secondary, primary, shift } in tessellation.periodic_faces() {
+        let twin = |face: &FaceId, shift| Some(Twin { boundary: BoundaryId(face.0), shift });
+        boundaries[primary.index()].twin = twin(secondary, *shift);
+        boundaries[secondary.index()].twin = twin(primary, Shift::NONE - *shift);
+    }
+    boundaries
 }
 
 fn boundary(sides: [voronoi::Side; 2]) -> Boundary {
@@ -67,11 +83,16 @@ fn surfaces(
     boundaries: Vec<Boundary>,
     face_mesh: FaceMesh,
     junctions: Junctions,
+    middles: Option<&[DVec3]>,
 ) -> Result<ControlMesh, NetworkError> {
     let edges = tessellation.edges();
     let vertex_count = tessellation.vertices().len();
     let copied_lines = tessellation.periodic_edges(&edges);
-    let lines = LinePoints::new(tessellation, &edges.ends, &copied_lines, face_mesh);
+    let line_mesh = if middles.is_some() { FaceMesh::Fan } else { face_mesh };
+    let mut lines = LinePoints::new(tessellation, &edges.ends, &copied_lines, line_mesh);
+    if let Some(middles) = middles {
+        lines.positions.copy_from_slice(middles);
+    }
     let mut points = tessellation.vertices().to_vec();
     points.extend(&lines.positions);
     let corner_count = match junctions {

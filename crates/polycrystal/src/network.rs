@@ -72,6 +72,20 @@ impl Network {
         Self::assemble(tessellation.domain(), control_mesh, cell_volumes, level_count)
     }
 
+    /// The network of cells in space, each of whose lines goes through one point, its middle.
+    pub(crate) fn of_curved_lines(
+        tessellation: &Tessellation,
+        middles: &[DVec3],
+        junctions: Junctions,
+        level_count: usize,
+    ) -> Result<(Self, Vec<DVec3>), NetworkError> {
+        let size = FaceMesh::SparseFan.control_mesh_size(tessellation);
+        check_size(tessellation.domain(), &size, level_count)?;
+        let control_mesh = ControlMesh::of_curved_lines(tessellation, middles, junctions)?;
+        let cell_volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
+        Self::assemble(tessellation.domain(), control_mesh, cell_volumes, level_count)
+    }
+
     /// The network of any triangles (in the plane: segments) between grains that fill a domain without periods, refined
     /// `level_count` times, and its control points: those of the surface.
     ///

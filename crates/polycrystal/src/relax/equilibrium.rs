@@ -3,11 +3,14 @@
 use glam::DVec3;
 use voronoi::{CellComplex, Tessellation};
 
-use super::flow::{Flow, RIGID_LENGTH};
+use super::flow::{Flow, RIGID_LENGTH, Remedy};
 use super::reconnection::{Reconnections, Reconnector, lengths};
 use super::shape::ControlPoints;
 use super::{Relaxation, RelaxationStep, Relaxed, relax_levels};
-use crate::{Boundary, FaceMesh, Junctions, Network, NetworkError, SpaceMeasures, Volumes, measure_network};
+use crate::{
+    Boundary, FaceMesh, Junctions, Network, NetworkError, SpaceMeasures, Volumes, dihedral_angles,
+    measure_network, validate,
+};
 
 /// Length, in units of the feature size, below which triple lines may go; in equilibrium few are that short.
 const SHORT: f64 = 0.12;
@@ -62,14 +65,13 @@ pub struct Balance {
     pub largest_deviation: f64,
 }
 
-/// Relaxes the grains of a tessellation in space to equilibrium: until a step of time 0.3 lessens the area by no more than
-/// [`Relaxation::RESIDUAL`] of it. Every grain keeps the volume of its cell.
+/// Relaxes the grains of a tessellation in space to [`Relaxation::Equilibrium`]. Every grain keeps the volume of its cell.
 ///
 /// Triple lines that shrink to nothing become boundaries, and boundaries triple lines, where that lessens the area; each
-/// grain stays a closed ball. Control points are in fans. `watch` is shown the steps after the last change of topology.
+/// grain stays a closed ball. The network is valid. Control points are in fans. `watch` is shown the steps after the last change of topology.
 ///
 /// # Errors
-/// As of [`relax`](crate::relax).
+/// As of [`relax`](crate::relax), and [`NetworkError::Invalid`], where no way leads to a valid network.
 ///
 /// # Panics
 /// For a tessellation of the plane.
@@ -79,20 +81,44 @@ pub fn equilibrate(
     mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<Equilibrium, NetworkError> {
     assert_eq!(tessellation.domain().dimension(), voronoi::Dimension::Three, "cells must be in space");
+    let mut attempt = |remedy| balanced(tessellation, recipe, remedy, &mut watch);
+    // Each gets through places where the other does not.
+    match attempt(Remedy::Join) {
+        Ok(first) if first.relaxed.fell_back => {
+            Ok(attempt(Remedy::Brake).ok().filter(|second| spread(second) < spread(&first)).unwrap_or(first))
+        }
+        Err(_) => attempt(Remedy::Brake),
+        good => good,
+    }
+}
+
+/// The standard deviation of the angles at triple lines.
+fn spread(Equilibrium { network, relaxed, .. }: &Equilibrium) -> f64 {
+    let angles = dihedral_angles(network, network.finest(), &relaxed.finest_points(network));
+    angles.map_or(0.0, |angles| angles.standard_deviation)
+}
+
+/// As [`equilibrate`], with one remedy for what folds while the topology changes.
+fn balanced(
+    tessellation: &Tessellation,
+    recipe: &NetworkRecipe<'_>,
+    remedy: Remedy,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Result<Equilibrium, NetworkError> {
     let mut complex = CellComplex::from(tessellation);
     let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
-    let (control_points, points, reconnections) = settle(&mut complex, recipe, &volumes)?;
-    let (network, _) =
-        Network::with_face_mesh(&control_points.cells, FaceMesh::Fan, recipe.junctions, recipe.levels)?;
+    let (control_points, points, reconnections) = settle(&mut complex, recipe, &volumes, remedy)?;
+    let middles = control_points.middles(&points);
+    let (network, points) =
+        Network::of_curved_lines(&control_points.cells, middles, recipe.junctions, recipe.levels)?;
     let network = network.with_cell_volumes(volumes).with_tensions(recipe.tension)?;
-    // More levels may show folds that one does not.
-    let shape = control_points.shape(&complex, &points);
-    let points = control_points.points(&complex, &network, &shape);
     let mut relax =
-        |rigid| relax_levels(&network, &points, &Relaxation::Equilibrium, Volumes::Kept, rigid, &mut watch);
+        |rigid| relax_levels(&network, &points, &Relaxation::Equilibrium, Volumes::Kept, rigid, watch);
     // What folds where all may deform need not where the shortest edges keep their lengths.
     let relaxed = relax(0.0).or_else(|_| relax(RIGID_LENGTH))?;
-    let balance = balance(&network, &relaxed);
+    let points = relaxed.finest_points(&network);
+    validate(&network, &points).map_err(NetworkError::Invalid)?;
+    let balance = balance(&network, &points);
     Ok(Equilibrium { network, relaxed, reconnections, balance })
 }
 
@@ -101,6 +127,7 @@ fn settle(
     complex: &mut CellComplex,
     recipe: &NetworkRecipe<'_>,
     volumes: &[f64],
+    remedy: Remedy,
 ) -> Result<(ControlPoints, Vec<DVec3>, Reconnections), NetworkError> {
     // All of a wall has the same area unless it folds, so that tension does nothing but unfold it.
     let tension =
@@ -118,7 +145,7 @@ fn settle(
     let (mut quiet, mut last_energy) = (0, f64::INFINITY);
     for _ in 0..LOOKS {
         let before = lengths(complex);
-        let mut flow = Flow::new(&network, 0, Volumes::Kept).with_rigid_length(0.0);
+        let mut flow = Flow::new(&network, 0, Volumes::Kept).with_rigid_length(0.0).until_rest(remedy);
         let mut energy = 0.0;
         for _ in 0..STEPS {
             energy = flow.step(&mut points, step_time)?;
@@ -144,9 +171,9 @@ fn settle(
 }
 
 /// How near to equilibrium a network in space is.
-fn balance(network: &Network, relaxed: &Relaxed) -> Balance {
+fn balance(network: &Network, points: &[DVec3]) -> Balance {
     let short = SHORT * network.feature_size();
-    let measures = measure_network(network, &relaxed.finest_points(network)).in_space();
+    let measures = measure_network(network, points).in_space();
     let SpaceMeasures { triple_lines, .. } = measures.expect("a network in space");
     let ends = |points: &[u32]| [points[0], points[points.len() - 1]];
     let flagged = || triple_lines.iter().filter(|line| !line.is_closed && line.length < short);

@@ -1,19 +1,21 @@
 //! Curvature flow of the points of one level.
 
+mod mending;
+
 use glam::DVec3;
 
 use super::clusters::Clusters;
 use super::conjugate_gradients::dot;
 use super::face_corners::FaceCorners;
-use super::patch::PatchTerms;
+use super::patch::{LARGEST_COTANGENT_TO_REST, PatchTerms};
 use super::patches::Patches;
 use super::system::{Step, System};
-use super::tangential::tangential_moves;
+use super::tangential::{Aim, tangential_moves};
 use super::wedges::Wedges;
 use crate::folds::{element_normals, folded_pairs};
 use crate::seams::Seams;
 use crate::volume::sum_over_grains;
-use crate::{GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
+use crate::{GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes, dihedral_angles};
 
 /// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
 const ATTEMPTS: usize = 24;
@@ -50,6 +52,34 @@ const LARGEST_GAIN: f64 = 2.0;
 /// Most Newton steps on the volumes; each gains about a digit, for its gradient is that of a coarser level.
 const VOLUME_STEPS: usize = 40;
 
+/// Attempts at a step toward rest in which points that fold move as one.
+const JOINED_ATTEMPTS: usize = 6;
+
+/// Attempts before which points that fold all the same go half as far; after that they stay.
+const BRAKED_ATTEMPTS: usize = 14;
+
+/// Steps toward rest without angles closer to 120 degrees that make an end.
+const PATIENCE: usize = 5;
+
+/// What becomes of points that a step would fold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Remedy {
+    /// They move as one, from then on: right for a flow of a given time, in which they could not live.
+    Join,
+    /// They go less far, in this step alone: right for a flow until all is at rest, which comes back to them.
+    Brake,
+}
+
+impl Remedy {
+    /// Where points inside boundaries go.
+    fn aim(self) -> Aim {
+        match self {
+            Self::Join => Aim::Neighbors,
+            Self::Brake => Aim::Center,
+        }
+    }
+}
+
 /// A number of steps on one level.
 pub(super) struct Stage {
     pub(super) step_time: f64,
@@ -75,6 +105,7 @@ pub(super) struct Flow<'a> {
     wedges: Wedges,
     clusters: Clusters,
     volumes: Volumes,
+    remedy: Remedy,
     /// [`RIGID_LENGTH`] or another one.
     rigid_length: f64,
 }
@@ -96,6 +127,7 @@ impl<'a> Flow<'a> {
             wedges,
             clusters,
             volumes,
+            remedy: Remedy::Join,
             rigid_length: RIGID_LENGTH,
         }
     }
@@ -103,6 +135,13 @@ impl<'a> Flow<'a> {
     /// The flow with another length, in units of the feature size, below which control edges do not change.
     pub(super) fn with_rigid_length(mut self, rigid_length: f64) -> Self {
         self.rigid_length = rigid_length;
+        self
+    }
+
+    /// The flow as one until all is at rest.
+    pub(super) fn until_rest(mut self, remedy: Remedy) -> Self {
+        self.remedy = remedy;
+        self.patches.largest_cotangent = LARGEST_COTANGENT_TO_REST;
         self
     }
 
@@ -116,17 +155,34 @@ impl<'a> Flow<'a> {
         progress: &mut impl FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
         let mut points = start.to_vec();
+        let finest = Wedged::new(self.network, self.finest());
+        if self.remedy == Remedy::Brake {
+            self.iron_folds(&mut points, &finest);
+        }
         let mut last_energy = f64::INFINITY;
+        let mut best = (f64::INFINITY, 0, Vec::new());
         for step in 1..=stage.steps {
             let energy = self.step(&mut points, stage.step_time)?;
             progress(step, &points);
+            if self.remedy == Remedy::Brake
+                && stage.is_last
+                && let Some(spread) = self.spread(&points)
+            {
+                if spread < best.0 {
+                    best = (spread, step, points.clone());
+                } else if step - best.1 >= PATIENCE {
+                    break;
+                }
+            }
             if (last_energy - energy).abs() < stage.residual * energy {
                 break;
             }
             last_energy = energy;
         }
+        if !best.2.is_empty() {
+            points = best.2;
+        }
         // Where the finest level folds though no step did, all has moved too far from where it did not.
-        let finest = Wedged::new(self.network, self.finest());
         let mut count = 0;
         for attempt in 0..ATTEMPTS {
             if stage.is_last && self.volumes == Volumes::Kept {
@@ -134,13 +190,22 @@ impl<'a> Flow<'a> {
             }
             let folds = self.finest_folds(&points, &finest);
             count = folds.len();
-            if count == 0 {
+            // What is still to be moved on finer levels may fold there for now.
+            if count == 0 || (self.remedy == Remedy::Brake && !stage.is_last) {
                 return Ok(points);
             }
-            self.make_rigid(self.finest(), folds.into_iter().flatten());
+            let folded = folds.into_iter().flatten().map(|element| self.dependencies(self.finest(), element));
+            if self.remedy == Remedy::Brake {
+                let folded: Vec<Vec<u32>> = folded.collect();
+                self.iron(&mut points, &folded.concat());
+                continue;
+            }
+            for dependencies in folded.collect::<Vec<_>>() {
+                self.clusters.join_all(&dependencies);
+            }
             let mut moves: Vec<DVec3> =
                 points.iter().zip(start).map(|(point, start)| *point - *start).collect();
-            self.unite(&mut moves, attempt);
+            self.unite(&self.clusters, &mut moves, attempt);
             points = displaced(start, &moves);
         }
         Err(NetworkError::Folded { count })
@@ -148,8 +213,8 @@ impl<'a> Flow<'a> {
 
     /// One step of curvature flow; gives the energy before it.
     ///
-    /// What the step folds is made rigid and moves by its mean displacement instead. That is local: to solve the step anew for
-    /// all grains would take as many attempts as the worst place of all.
+    /// What the step folds moves by its mean displacement instead, and in a flow to rest, where that is no help, less far. That is
+    /// local: to solve the step anew for all grains would take as many attempts as the worst place of all.
     pub(super) fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<f64, NetworkError> {
         let terms = self.patches.terms(points);
         let energy = terms.iter().map(|terms| terms.energy).sum();
@@ -158,11 +223,15 @@ impl<'a> Flow<'a> {
         let volumes: Vec<f64> = terms.iter().map(|terms| terms.volume).collect();
         let volumes = sum_over_grains(self.network.boundaries(), &volumes, self.network.grain_count());
         let missing = self.missing(&volumes);
-        self.clusters.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
-        let mut moves = self.system(points, &terms, &self.clusters, time).displacement(&missing);
-        let within = tangential_moves(self.network, self.level, points);
+        let mut clusters = self.clusters.clone();
+        clusters.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
+        let mut moves = self.system(points, &terms, &clusters, time).displacement(&missing);
+        let within = tangential_moves(self.network, self.level, points, self.remedy.aim());
         moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
-        self.unite(&mut moves, 0);
+        if self.remedy == Remedy::Brake {
+            self.hold_short_edges(&mut clusters, points, &moves);
+        }
+        self.unite(&clusters, &mut moves, 0);
         let mut count = 0;
         for attempt in 0..ATTEMPTS {
             let moved = displaced(points, &moves);
@@ -171,19 +240,39 @@ impl<'a> Flow<'a> {
             count = broken.len() + folding.len();
             if count == 0 {
                 *points = moved;
-                return Ok(energy);
+                break;
             }
-            self.make_rigid(self.surface, broken.into_iter());
-            folding.iter().for_each(|corner| self.clusters.join_all(corner));
-            self.unite(&mut moves, attempt);
+            let broken = broken.into_iter().map(|element| self.dependencies(self.surface, element));
+            let places: Vec<Vec<u32>> = broken.chain(folding.iter().map(|corner| corner.to_vec())).collect();
+            if self.remedy == Remedy::Join || attempt < JOINED_ATTEMPTS {
+                places.iter().for_each(|points| clusters.join_all(points));
+                self.unite(&clusters, &mut moves, attempt);
+            } else {
+                let factor = if attempt < BRAKED_ATTEMPTS { 0.5 } else { 0.0 };
+                clusters.number().scale(&mut moves, &places.concat(), factor);
+            }
         }
-        Err(NetworkError::Folded { count })
+        match self.remedy {
+            Remedy::Join if count > 0 => Err(NetworkError::Folded { count }),
+            Remedy::Join => {
+                self.clusters = clusters;
+                Ok(energy)
+            }
+            Remedy::Brake => Ok(energy),
+        }
+    }
+
+    /// The standard deviation of the angles at triple lines; nothing where there are none, and in the plane.
+    fn spread(&self, points: &[DVec3]) -> Option<f64> {
+        let Mesh::Triangles(_) = self.control_mesh() else { return None };
+        let angles = dihedral_angles(self.network, self.surface(), &self.refined(points));
+        angles.map(|angles| angles.standard_deviation)
     }
 
     /// Makes the points of each cluster move as one.
-    fn unite(&self, moves: &mut [DVec3], attempt: usize) {
+    fn unite(&self, clusters: &Clusters, moves: &mut [DVec3], attempt: usize) {
         let walls = &self.network.levels()[self.level].walls;
-        self.clusters.number().unite(moves, |point| self.network.freedom(walls[point as usize]));
+        clusters.number().unite(moves, |point| self.network.freedom(walls[point as usize]));
         if attempt >= WHOLE_ATTEMPTS {
             moves.iter_mut().for_each(|by| *by *= 0.5);
         }
@@ -324,23 +413,18 @@ impl<'a> Flow<'a> {
         turned.map(|(element, _)| element).chain(bent.flatten()).chain(closing).collect()
     }
 
-    /// Makes rigid all control points that the given elements of a level depend on.
-    fn make_rigid(&mut self, level: usize, elements: impl Iterator<Item = u32>) {
-        for element in elements {
-            let element = ancestor(&self.network.levels()[self.surface..=level], element) as usize;
-            let vertices: &[u32] = match &self.surface().mesh {
-                Mesh::Triangles(mesh) => &mesh.triangles()[element],
-                Mesh::Segments(mesh) => &mesh.segments()[element],
-            };
-            if self.level == self.surface {
-                self.clusters.join_all(vertices);
-                continue;
-            }
-            let rows =
-                vertices.iter().map(|vertex| self.network.stencils(self.level).row(*vertex as usize).0);
-            let depends_on: Vec<u32> = rows.flatten().copied().collect();
-            self.clusters.join_all(&depends_on);
+    /// All control points that an element of a level depends on; those of the surface's element that it descends from.
+    fn dependencies(&self, level: usize, element: u32) -> Vec<u32> {
+        let element = ancestor(&self.network.levels()[self.surface..=level], element) as usize;
+        let vertices: &[u32] = match &self.surface().mesh {
+            Mesh::Triangles(mesh) => &mesh.triangles()[element],
+            Mesh::Segments(mesh) => &mesh.segments()[element],
+        };
+        if self.level == self.surface {
+            return vertices.to_vec();
         }
+        let rows = vertices.iter().map(|vertex| self.network.stencils(self.level).row(*vertex as usize).0);
+        rows.flatten().copied().collect()
     }
 }
 

@@ -108,12 +108,15 @@ impl LocalArea {
         area
     }
 
-    /// The length of the shortest edge of these boundaries.
+    /// The length of the shortest edge that ends at one of the vertices: others stay as they are.
     pub(super) fn shortest_edge(&self) -> f64 {
-        let rings = self.faces.iter().map(|face| face.ring(&self.points));
-        let shortest = rings.map(|ring| {
-            let lengths = ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| a.distance(*b));
-            lengths.fold(f64::INFINITY, f64::min)
+        let is_moving = |corner: &Place| matches!(corner, Place::Moving(..));
+        let shortest = self.faces.iter().map(|face| {
+            let ring = face.ring(&self.points);
+            let count = ring.len();
+            let edges = (0..count).map(|k| [k, (k + 1) % count]);
+            let moving = edges.filter(|ends| ends.iter().any(|end| is_moving(&face.corners[*end])));
+            moving.map(|[a, b]| ring[a].distance(ring[b])).fold(f64::INFINITY, f64::min)
         });
         shortest.fold(f64::INFINITY, f64::min)
     }
@@ -201,4 +204,35 @@ fn boundary(sides: [Side; 2]) -> Boundary {
         Side::Cell(_) | Side::Image(..) => None,
     };
     Boundary { sides: sides.map(side), wall, twin: None }
+}
+
+#[cfg(test)]
+mod tests {
+    use voronoi::{Domain, Tessellation};
+
+    use super::*;
+
+    /// Lines that are too short elsewhere are no reason against an event here.
+    #[test]
+    fn only_edges_of_vertices_that_move_count_as_short() {
+        let seeds = [
+            (0.2, 0.3, 0.1),
+            (0.7, 0.2, 0.4),
+            (0.4, 0.8, 0.3),
+            (0.9, 0.9, 0.8),
+            (0.1, 0.6, 0.9),
+            (0.5, 0.5, 0.6),
+        ]
+        .map(|(x, y, z)| DVec3::new(x, y, z));
+        let cells = Tessellation::new(&Domain::unit_cube(), &seeds).expect("valid seeds");
+        let complex = CellComplex::from(&cells);
+        let edges = complex.edges();
+        for vertex in 0..u32::try_from(complex.vertices.len()).expect("few vertices") {
+            let area = LocalArea::new(&complex, &[vertex], &Shape::default(), &|_| 1.0);
+            let own = edges.iter().filter(|edge| edge.start == vertex || edge.end.vertex == vertex);
+            let lengths =
+                own.map(|edge| complex.vertices[edge.start as usize].distance(complex.position(edge.end)));
+            assert_eq!(area.shortest_edge(), lengths.fold(f64::INFINITY, f64::min));
+        }
+    }
 }

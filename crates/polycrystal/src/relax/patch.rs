@@ -14,8 +14,12 @@ use crate::volume::{segment_area, triangle_volume};
 /// The smallest cotangent that a triangle's angle counts with: obtuse triangles would otherwise push points apart.
 const SMALLEST_COTANGENT: f64 = 0.05;
 
-/// The largest: that of an angle of 11 degrees. Needles would otherwise glue their ends together.
-const LARGEST_COTANGENT: f64 = 5.0;
+/// The largest for a flow of a given time: that of an angle of 11 degrees. Needles would otherwise glue their ends together.
+pub(super) const LARGEST_COTANGENT: f64 = 5.0;
+
+/// The largest for a flow to rest: that of an angle of 1 degree. Where the matrix is less stiff than the area itself is, points
+/// swing to and fro from step to step, farther each time.
+pub(super) const LARGEST_COTANGENT_TO_REST: f64 = 50.0;
 
 /// A boundary's control mesh, and its surface in terms of the control points.
 #[derive(Debug)]
@@ -93,9 +97,9 @@ pub(super) struct PatchTerms {
 
 impl Patch {
     /// The terms at the given control points; the cone of the volume starts at `origin`.
-    pub(super) fn terms(&self, points: &[DVec3], origin: DVec3) -> PatchTerms {
+    pub(super) fn terms(&self, points: &[DVec3], origin: DVec3, largest_cotangent: f64) -> PatchTerms {
         let local: Vec<DVec3> = self.control_points.iter().map(|p| points[*p as usize] - origin).collect();
-        let (mass, stiffness) = self.mass_and_stiffness(&local);
+        let (mass, stiffness) = self.mass_and_stiffness(&local, largest_cotangent);
         let count = local.len();
         let tension = self.share * self.tension;
         let Some(refinement) = &self.refinement else {
@@ -112,7 +116,7 @@ impl Patch {
     }
 
     /// Lumped masses, and the cotangent Laplacian times the tension as a spring constant for each edge.
-    fn mass_and_stiffness(&self, local: &[DVec3]) -> (Vec<f64>, Vec<f64>) {
+    fn mass_and_stiffness(&self, local: &[DVec3], largest_cotangent: f64) -> (Vec<f64>, Vec<f64>) {
         let mut mass = vec![0.0; local.len()];
         let mut stiffness = vec![0.0; self.edges.len()];
         if self.tension == 0.0 {
@@ -128,7 +132,7 @@ impl Patch {
                         let [apex, from, to] = [0, 1, 2].map(|step| at(corners[(k + step) % 3]));
                         // A triangle without area has no cotangent: the upper limit stands in.
                         let cotangent = (from - apex).dot(to - apex) / doubled_area.max(f64::MIN_POSITIVE);
-                        let cotangent = cotangent.clamp(SMALLEST_COTANGENT, LARGEST_COTANGENT);
+                        let cotangent = cotangent.clamp(SMALLEST_COTANGENT, largest_cotangent);
                         stiffness[across[k] as usize] += 0.5 * self.share * self.tension * cotangent;
                         mass[corners[k] as usize] += self.share * doubled_area / 6.0;
                     }

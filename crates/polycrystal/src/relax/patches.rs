@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use subzero::StencilTable;
 
 use super::clusters::Numbering;
-use super::patch::{Elements, Patch, PatchTerms, Refinement};
+use super::patch::{Elements, LARGEST_COTANGENT, Patch, PatchTerms, Refinement};
 use crate::{BoundaryId, Mesh, Network};
 
 /// The patches of all boundaries.
@@ -23,6 +23,8 @@ pub(super) struct Patches {
     patch_of_place: Vec<u32>,
     /// Cones for volumes start here.
     origin: DVec3,
+    /// The largest cotangent that an angle counts with.
+    pub(super) largest_cotangent: f64,
 }
 
 impl Patches {
@@ -63,7 +65,8 @@ impl Patches {
             .flat_map(|(number, patch)| std::iter::repeat_n(number, patch.control_points.len()))
             .collect();
         let origin = network.domain().lower().midpoint(network.domain().upper());
-        Self { patches, place_starts, places, patch_of_place, origin }
+        let largest_cotangent = LARGEST_COTANGENT;
+        Self { patches, place_starts, places, patch_of_place, origin, largest_cotangent }
     }
 
     /// The places of a control point, patch after patch.
@@ -87,7 +90,10 @@ impl Patches {
     }
 
     pub(super) fn terms(&self, points: &[DVec3]) -> Vec<PatchTerms> {
-        self.patches.par_iter().map(|patch| patch.terms(points, self.origin)).collect()
+        self.patches
+            .par_iter()
+            .map(|patch| patch.terms(points, self.origin, self.largest_cotangent))
+            .collect()
     }
 }
 

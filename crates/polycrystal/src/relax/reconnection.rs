@@ -12,6 +12,9 @@ use crate::Boundary;
 /// Share of the length of what goes by which what comes starts off its middle.
 const OPENING: f64 = 0.3;
 
+/// Length, in units of a short line, that what goes counts with at least: it may have shrunk to nothing.
+const LEAST_GOING: f64 = 0.5;
+
 /// Turns among walls that are not at right angles; each takes a point nearer to all of them.
 const WALL_TURNS: usize = 50;
 
@@ -161,7 +164,7 @@ impl<'a> Reconnector<'a> {
         let first_new = complex.vertices.len();
         let mut as_it_is = LocalArea::new(complex, &old, shape, self.tension);
         let folds = as_it_is.fold_count();
-        if event.happen(complex) {
+        if event.happen(complex, LEAST_GOING * self.short) {
             let added =
                 (first_new..complex.vertices.len()).map(|new| u32::try_from(new).expect("ids fit 32 bits"));
             let all = old.into_iter().chain(added);
@@ -203,21 +206,23 @@ impl Event {
     }
 
     /// Whether it is possible and has happened; where not, something may have changed all the same.
-    fn happen(self, complex: &mut CellComplex) -> bool {
+    ///
+    /// What goes counts as no shorter than `least`.
+    fn happen(self, complex: &mut CellComplex, least: f64) -> bool {
         match self {
-            Self::Open(edge) => open(complex, edge),
-            Self::Close(face) => close(complex, face),
-            Self::Swap(edge, face) => open(complex, edge) && close(complex, face),
+            Self::Open(edge) => open(complex, edge, least),
+            Self::Close(face) => close(complex, face, least),
+            Self::Swap(edge, face) => open(complex, edge, least) && close(complex, face, least),
         }
     }
 }
 
-fn open(complex: &mut CellComplex, edge: ComplexEdge) -> bool {
+fn open(complex: &mut CellComplex, edge: ComplexEdge, least: f64) -> bool {
     let Some(star) = complex.reconnectable_edge(edge) else { return false };
     let start = Corner { vertex: edge.start, shift: Shift::NONE };
     let ends = [start, edge.end].map(|end| complex.position(end));
     let middle = ends[0].midpoint(ends[1]);
-    let length = OPENING * ends[0].distance(ends[1]);
+    let length = OPENING * ends[0].distance(ends[1]).max(least);
     let [first, second] = star.ends;
     let places = [0, 1, 2].map(|k| {
         let along: DVec3 = star.outer.iter().map(|outer| direction(complex, middle, outer[k])).sum();
@@ -227,11 +232,11 @@ fn open(complex: &mut CellComplex, edge: ComplexEdge) -> bool {
     complex.edge_to_triangle(edge, places).is_some()
 }
 
-fn close(complex: &mut CellComplex, face: FaceId) -> bool {
+fn close(complex: &mut CellComplex, face: FaceId, least: f64) -> bool {
     let Some((star, corners)) = complex.reconnectable_triangle(face) else { return false };
     let corners = corners.map(|corner| complex.position(corner));
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-    let length = OPENING * corners[0].distance(middle);
+    let length = OPENING * corners[0].distance(middle).max(least);
     let [a, b, c] = star.around;
     let places = [0, 1].map(|end: usize| {
         let along: DVec3 = star.outer[end].iter().map(|outer| direction(complex, middle, *outer)).sum();

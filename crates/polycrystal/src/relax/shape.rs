@@ -55,6 +55,11 @@ impl ControlPoints {
         Self { cells, corners, lines, faces, lines_of_face }
     }
 
+    /// The middles of all lines among the control points.
+    pub(super) fn middles<'a>(&self, points: &'a [DVec3]) -> &'a [DVec3] {
+        &points[self.corners.len()..][..self.lines.len()]
+    }
+
     /// Puts the vertices of the complex where the control points are.
     pub(super) fn place_vertices(&self, complex: &mut CellComplex, points: &[DVec3]) {
         for (point, corner) in points.iter().zip(&self.corners) {

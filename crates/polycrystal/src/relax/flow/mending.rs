@@ -1,0 +1,69 @@
+//! What a flow to rest does about short edges and folds, which it has the time to come back to.
+
+use glam::DVec3;
+use subzero::VertexRule;
+
+use super::{ATTEMPTS, Clusters, Flow, Wedged};
+use crate::Mesh;
+
+/// Length, in units of the feature size, below which a flow toward rest lets no edge shrink.
+const HELD_LENGTH: f64 = 0.02;
+
+impl Flow<'_> {
+    /// Makes the ends of edges that a step would leave too short, and shorter than they are, move as one.
+    pub(super) fn hold_short_edges(&self, clusters: &mut Clusters, points: &[DVec3], moves: &[DVec3]) {
+        let Mesh::Triangles(mesh) = self.control_mesh() else { return };
+        let least = HELD_LENGTH * self.feature_size(points);
+        for edge in 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits") {
+            let [a, b] = mesh.edge(edge).map(|end| end as usize);
+            let before = points[a].distance(points[b]);
+            let after = (points[a] + moves[a]).distance(points[b] + moves[b]);
+            if after < least && after < before {
+                clusters.join_all(&mesh.edge(edge));
+            }
+        }
+    }
+
+    /// Takes folds out of the finest level, as far as that goes.
+    pub(super) fn iron_folds(&self, points: &mut [DVec3], finest: &Wedged) {
+        for _ in 0..ATTEMPTS {
+            let folds = self.finest_folds(points, finest);
+            if folds.is_empty() {
+                break;
+            }
+            let folded = folds.into_iter().flatten().map(|element| self.dependencies(self.finest(), element));
+            self.iron(points, &folded.collect::<Vec<_>>().concat());
+        }
+    }
+
+    /// Puts some points where their neighbours have their mean: those inside boundaries, and those on lines between the two on
+    /// the same line.
+    pub(super) fn iron(&self, points: &mut [DVec3], some: &[u32]) {
+        let Mesh::Triangles(mesh) = self.control_mesh() else { return };
+        let mut is_folded = vec![false; points.len()];
+        some.iter().for_each(|point| is_folded[*point as usize] = true);
+        let mut sums = vec![(DVec3::ZERO, 0.0); points.len()];
+        for edge in 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits") {
+            let ends = mesh.edge(edge);
+            for [point, other] in [ends, [ends[1], ends[0]]] {
+                let counts = match mesh.vertex_rule(point) {
+                    VertexRule::Smooth => true,
+                    VertexRule::Crease => mesh.is_crease(edge),
+                    _ => false,
+                };
+                if is_folded[point as usize] && counts {
+                    let (sum, count) = &mut sums[point as usize];
+                    *sum += points[other as usize];
+                    *count += 1.0;
+                }
+            }
+        }
+        let mut moves: Vec<DVec3> = points
+            .iter()
+            .zip(&sums)
+            .map(|(point, (sum, count))| if *count > 0.0 { *sum / *count - *point } else { DVec3::ZERO })
+            .collect();
+        self.unite(&self.clusters, &mut moves, 0);
+        points.iter_mut().zip(&moves).for_each(|(point, by)| *point += *by);
+    }
+}
