@@ -8,6 +8,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::Dimension;
 use crate::cell_edges::CellEdges;
 use crate::convex_cell::ConvexCell;
 use crate::end_search::{EndSearch, NewVertex, PLANE};
@@ -16,7 +17,6 @@ use crate::measure::{CellSum, Polygon};
 use crate::polygon::ConvexPolygon;
 use crate::search::{ImagesMissing, Search};
 use crate::tile_vertex::{ALL_FACES, FACE_SLOTS, FACES_OF_FIRST, NONE, TileVertex};
-use crate::Dimension;
 
 /// Distance of two vertices, relative to their distance from the seed, beyond which they cannot coincide: far above
 /// the 1e-12 to which coordinates are known, so that only true candidates go to exact arithmetic.

@@ -10,6 +10,7 @@ use foldhash::fast::FixedState;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::Dimension;
 use crate::corner::Corner;
 use crate::flat_cells::remove_flat_cells;
 use crate::generator::{Generator, VertexKey};
@@ -20,7 +21,6 @@ use crate::search::Search;
 use crate::tessellation::{FaceId, Shift, Side, Tessellation, VertexId};
 use crate::tile::Tile;
 use crate::tile_vertex::NONE;
-use crate::Dimension;
 
 /// The vertices that a tile owns.
 struct Owned {
