@@ -60,7 +60,9 @@ fn read(path: &Path) -> Result<String, String> {
         return String::from_utf8(bytes).map_err(|_| "is not UTF-8 text; save it as UTF-8".to_owned());
     }
     embedded_config(path).map_err(unreadable)?.ok_or_else(|| {
-        "holds no configuration; give a .toml file, or a .vtp or other file that grainsmooth wrote".to_owned()
+        let is_stl = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("stl"));
+        let reason = if is_stl { ", for which STL has little room" } else { "" };
+        format!("holds no configuration{reason}; give a .toml file, or a .vtp or other file that grainsmooth wrote")
     })
 }
 
