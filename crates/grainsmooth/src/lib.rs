@@ -66,8 +66,8 @@ pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputDirectory, OutputFormat};
 pub use picture::{Coloring, Picture, Png};
 pub use pipeline::{
-    Polycrystal, Progress, Stage, Tessellated, check_expected_size, make_polycrystal, smooth, smooth_watched,
-    tessellate,
+    Polycrystal, Progress, Regularization, Stage, Tessellated, check_expected_size, make_polycrystal, smooth,
+    smooth_watched, tessellate,
 };
 pub use poisson_disc::poisson_disc_seeds;
 pub use report::Html;
