@@ -197,7 +197,8 @@ fn creases_and_corners_of_the_command_line_are_those_of_a_file() {
     let creases: Vec<_> = creases.iter().map(|(a, b, sharpness)| format!("{a}-{b}:{sharpness}")).collect();
     let corners: Vec<_> = corners.iter().map(|(v, sharpness)| format!("{v}:{sharpness}")).collect();
     let [creases, corners] = [creases, corners].map(|features| features.join(","));
-    workplace.run(&format!("mesh loop bare.json -n {levels} -o out.json --crease {creases} --corners {corners}"));
+    workplace
+        .run(&format!("mesh loop bare.json -n {levels} -o out.json --crease {creases} --corners {corners}"));
     let ours = json(&workplace.bytes("out.json"));
     let maps = check_levels("loop_crease_semi", &expected, &ours);
     check_limits("loop_crease_semi", &expected, &ours, &maps);
