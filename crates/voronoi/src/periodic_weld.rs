@@ -8,7 +8,6 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::Domain;
 use crate::corner::Corner;
 use crate::generator::{Generator, Plane, VertexKey};
 use crate::images::Image;
@@ -17,7 +16,8 @@ use crate::search::Search;
 use crate::tessellation::{CellId, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};
 use crate::tile::Tile;
 use crate::torus::{FaceEnd, TorusFaces};
-use crate::weld::{list_faces_of_cells, number_vertices, positions, put_vertices_on_walls};
+use crate::weld::{cell_measures, list_faces_of_cells, number_vertices, positions, put_vertices_on_walls};
+use crate::{Dimension, Domain};
 
 pub(crate) fn weld_periodic(search: &Search, seeds: &[DVec3], tiles: &[Tile]) -> Tessellation {
     let dimension = search.input().domain.dimension();
@@ -40,8 +40,13 @@ pub(crate) fn weld_periodic(search: &Search, seeds: &[DVec3], tiles: &[Tile]) ->
         })
         .collect();
     let mut faces = TorusFaces::concatenated(dimension, faces);
-    faces.remove_flat_cells(seeds.len());
-    unwrapped(search.input().domain, seeds, &faces, &positions)
+    let has_flat_cells = faces.remove_flat_cells(seeds.len());
+    let mut tessellation = unwrapped(search.input().domain, seeds, &faces, &positions);
+    let are_coincident = tiles.iter().any(|tile| !tile.coincident.is_empty());
+    if !are_coincident && !has_flat_cells && dimension == Dimension::Three {
+        tessellation.measures = cell_measures(search, seeds, tiles);
+    }
+    tessellation
 }
 
 /// The generators of a vertex, all moved by whole periods to where the cell of the smallest number among them owns it, and

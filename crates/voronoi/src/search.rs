@@ -111,6 +111,11 @@ impl<'a> Search<'a> {
         &self.tiles
     }
 
+    /// The seeds' places in the user's input.
+    pub(crate) fn ids(&self) -> &[u32] {
+        &self.ids
+    }
+
     /// What lies beyond a generator's plane, in the user's numbering of cells.
     pub(crate) fn end(&self, generator: Generator) -> FaceEnd {
         match generator.plane() {

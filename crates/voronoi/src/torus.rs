@@ -87,8 +87,9 @@ impl TorusFaces {
         self.ends.iter().copied().zip(corners)
     }
 
-    /// Takes cells out that have two faces only, so that the cells beyond share one: see `flat_cells`.
-    pub(crate) fn remove_flat_cells(&mut self, cell_count: usize) {
+    /// Takes cells out that have two faces only, so that the cells beyond share one: see `flat_cells`. True if there
+    /// were any.
+    pub(crate) fn remove_flat_cells(&mut self, cell_count: usize) -> bool {
         let mut face_counts = vec![0u32; cell_count];
         for end in self.ends.iter().flatten() {
             if let FaceEnd::Cell(image) = end {
@@ -124,7 +125,7 @@ impl TorusFaces {
             }
         }
         if faces_of.is_empty() {
-            return;
+            return false;
         }
         let mut rest = Self {
             fewest_corners: self.fewest_corners,
@@ -144,6 +145,7 @@ impl TorusFaces {
             }
         }
         *self = rest;
+        true
     }
 }
 
