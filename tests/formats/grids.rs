@@ -181,7 +181,13 @@ fn vti_and_npy_hold_the_labels() {
         let text = str::from_utf8(&file[10..10 + header]).unwrap();
         assert_eq!(text.trim_end(), "{'descr': '<i4', 'fortran_order': True, 'shape': (20, 15, 10), }");
         let numbers = file[10 + header..].as_chunks().0.iter().map(|bytes| i32::from_le_bytes(*bytes));
-        assert!(numbers.eq(labels));
+        let count = labels.len();
+        assert!(numbers.take(count).eq(labels));
+        // Behind what NumPy reads.
+        assert_eq!(
+            file[10 + header + 4 * count..],
+            *format!("\n{}", polycrystal.config.to_toml()).as_bytes()
+        );
     }
 }
 

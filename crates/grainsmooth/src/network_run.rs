@@ -120,7 +120,7 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     }
     let tessellated = tessellate(config, &progress)?;
     if !files.tables.is_empty() {
-        let table = CellTable::new(&tessellated);
+        let table = CellTable::new(config, &tessellated);
         files.tables.iter().try_for_each(|output| table.write(output))?;
     }
     let Some(output) = &files.output else {

@@ -78,7 +78,20 @@ impl Polycrystal {
             }
             Mesh::Segments(lines) => plane::draw(self, lines, &shifts, &colors, picture, &mut pixmap),
         }
-        pixmap.encode_png().map_err(io::Error::other)
+        self.encoded(pixmap).map_err(io::Error::other)
+    }
+
+    /// A picture without transparency as PNG, with the settings of the run.
+    fn encoded(&self, pixmap: Pixmap) -> Result<Vec<u8>, png::EncodingError> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, pixmap.width(), pixmap.height());
+        encoder.set_color(png::ColorType::Rgba);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder
+            .add_text_chunk("Software".to_owned(), format!("grainsmooth {}", env!("CARGO_PKG_VERSION")))?;
+        encoder.add_itxt_chunk("Config".to_owned(), self.config.to_toml())?;
+        encoder.write_header()?.write_image_data(&pixmap.take_demultiplied())?;
+        Ok(bytes)
     }
 
     /// How far each grain is moved.

@@ -18,6 +18,16 @@ pub enum Dimension {
     Three,
 }
 
+impl Dimension {
+    /// Corners that a face has at least.
+    pub(crate) fn fewest_corners(self) -> usize {
+        match self {
+            Self::Two => 2,
+            Self::Three => 3,
+        }
+    }
+}
+
 /// Most walls of a polyhedron: with twice as many vertices, places in one cell fit 16 bits.
 pub(crate) const MOST_WALLS: u16 = 1 << 15;
 

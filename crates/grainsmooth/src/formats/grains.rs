@@ -75,7 +75,7 @@ impl Polycrystal {
         out: &mut dyn Write,
     ) -> io::Result<()> {
         match format {
-            OutputFormat::Stl => stl::write(surface, &format!("grain{}", grain.0), self.config.file.stl, out),
+            OutputFormat::Stl => stl::write(surface, &format!("grain{}", grain.0), &self.config, out),
             OutputFormat::Ply => ply::write(surface, &self.config, out),
             OutputFormat::Obj => obj::write(surface, &self.config, out),
             OutputFormat::Vtk(format) => {
