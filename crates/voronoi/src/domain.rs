@@ -35,6 +35,14 @@ impl Dimension {
             Self::Three => (6.0 * volume / PI).cbrt(),
         }
     }
+
+    /// Corners that a face has at least.
+    pub(crate) fn fewest_corners(self) -> usize {
+        match self {
+            Self::Two => 2,
+            Self::Three => 3,
+        }
+    }
 }
 
 /// Most walls of a polyhedron: with twice as many vertices, places in one cell fit 16 bits.

@@ -84,41 +84,56 @@ pub(crate) struct FaceMeasure {
     corner_count: u32,
 }
 
-/// A plane polygon, corner by corner.
+/// A plane polygon, corner by corner. Its triangles from the first corner on count by their area along the normal.
 pub(crate) struct Polygon {
     first: DVec3,
-    // Relative to the first corner, for a face far from the origin would lose digits.
+    /// Relative to the first corner, for a face far from the origin would lose digits.
     last: DVec3,
+    /// Its largest coordinate is 1.
     normal: DVec3,
-    /// Each triangle counts by its area along the normal of all, which is known at the end only: these are the moments for each
-    /// coordinate of the triangles' own normals.
-    moments: [DVec3; 3],
+    /// Twice the area, times the length of the normal.
+    weight: f64,
+    moment: DVec3,
 }
 
 impl Polygon {
+    /// From the first corner on. The normal may have any length.
     #[inline]
-    pub(crate) fn from(first: DVec3) -> Self {
-        Self { first, last: DVec3::ZERO, normal: DVec3::ZERO, moments: [DVec3::ZERO; 3] }
+    pub(crate) fn from(first: DVec3, normal: DVec3) -> Self {
+        // The square of the length of a normal between seeds that nearly coincide can be too small for a number.
+        let size = normal.abs().max_element();
+        let normal = if size > 0.0 { normal / size } else { DVec3::ZERO };
+        Self { first, last: DVec3::ZERO, normal, weight: 0.0, moment: DVec3::ZERO }
     }
 
     #[inline]
     pub(crate) fn go_to(&mut self, corner: DVec3) {
         let next = corner - self.first;
-        let (triangle, ends) = (self.last.cross(next), self.last + next);
-        self.normal += triangle;
-        self.moments[0] += ends * triangle.x;
-        self.moments[1] += ends * triangle.y;
-        self.moments[2] += ends * triangle.z;
+        let triangle = self.last.cross(next).dot(self.normal);
+        self.weight += triangle;
+        self.moment += (self.last + next) * triangle;
         self.last = next;
     }
 
     #[inline]
     pub(crate) fn measure(&self, corner_count: u32) -> FaceMeasure {
-        let (normal, [x, y, z]) = (self.normal, self.moments);
-        let weight = normal.length_squared();
-        let moment = x * normal.x + y * normal.y + z * normal.z;
-        let centroid = if weight > 0.0 { self.first + moment / (3.0 * weight) } else { self.first };
-        FaceMeasure { normal, doubled_area: weight.sqrt(), centroid, corner_count }
+        if self.weight == 0.0 {
+            return FaceMeasure {
+                normal: DVec3::ZERO,
+                doubled_area: 0.0,
+                centroid: self.first,
+                corner_count,
+            };
+        }
+        let squared_length = self.normal.length_squared();
+        let normal = self.normal * (self.weight / squared_length);
+        let doubled_area = self.weight.abs() / squared_length.sqrt();
+        FaceMeasure {
+            normal,
+            doubled_area,
+            centroid: self.first + self.moment / (3.0 * self.weight),
+            corner_count,
+        }
     }
 }
 
@@ -161,7 +176,9 @@ pub(crate) fn cell_measures(tessellation: &Tessellation) -> Vec<CellMeasure> {
 fn face_measure(tessellation: &Tessellation, face: FaceId) -> FaceMeasure {
     let corners = tessellation.face_corners(face);
     let at = |corner: &VertexId| tessellation.vertices[corner.index()];
-    let mut polygon = Polygon::from(at(&corners[0]));
+    let first = at(&corners[0]);
+    let triangles = corners[1..].windows(2).map(|ends| (at(&ends[0]) - first).cross(at(&ends[1]) - first));
+    let mut polygon = Polygon::from(first, triangles.sum());
     corners[1..].iter().for_each(|corner| polygon.go_to(at(corner)));
     polygon.measure(u32::try_from(corners.len()).expect("corners were counted in 32 bits"))
 }

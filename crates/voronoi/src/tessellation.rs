@@ -172,7 +172,7 @@ impl Tessellation {
         let mut search = Search::new(domain, seeds, weights)?;
         let tiles = cut_tiles(&mut search);
         Ok(if domain.is_periodic() {
-            weld_periodic(&search, seeds, &tiles)
+            weld_periodic(&search, seeds, tiles)
         } else {
             weld(&search, seeds, tiles)
         })

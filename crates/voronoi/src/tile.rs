@@ -13,6 +13,7 @@ use crate::cell_edges::CellEdges;
 use crate::convex_cell::ConvexCell;
 use crate::end_search::{EndSearch, NewVertex, PLANE};
 use crate::generator::{Generator, VertexKey};
+use crate::half_space::HalfSpace;
 use crate::measure::{CellSum, Polygon};
 use crate::polygon::ConvexPolygon;
 use crate::search::{ImagesMissing, Search};
@@ -332,7 +333,11 @@ impl Tile {
         let seed = input.seeds[own.0 as usize];
         let place =
             |vertex: &TileVertex| vertex.position + (input.seeds[vertex.generators[0].0 as usize] - seed);
-        let mut polygon = Polygon::from(place(&vertices[first as usize]));
+        let normal = match beyond.as_site() {
+            Some(site) => input.difference(own.0, site),
+            None => HalfSpace::new(own.0, beyond, input).normal,
+        };
+        let mut polygon = Polygon::from(place(&vertices[first as usize]), normal);
         for_each_corner(vertices, first, own, beyond, |number, vertex, _, _| {
             self.corners.push(number);
             polygon.go_to(place(vertex));
@@ -341,12 +346,12 @@ impl Tile {
         let face = polygon.measure(corner_count);
         self.sums[(own.0 - self.seeds.start) as usize].add_face(&face, DVec3::ZERO, 1.0);
         if let Some(site) = beyond.as_site() {
-            let (seed, to_seed) = (input.image(site).seed, input.difference(own.0, site));
+            let seed = input.image(site).seed;
             match self.sums.get_mut(seed.wrapping_sub(self.seeds.start) as usize) {
-                Some(sum) => sum.add_face(&face, to_seed, -1.0),
+                Some(sum) => sum.add_face(&face, normal, -1.0),
                 None => {
                     let mut sum = CellSum::default();
-                    sum.add_face(&face, to_seed, -1.0);
+                    sum.add_face(&face, normal, -1.0);
                     self.sums_beyond.push((seed, sum));
                 }
             }
@@ -384,14 +389,8 @@ impl Tile {
         (self.faces.len(), self.corners.len())
     }
 
-    /// The faces with their corners.
-    pub(crate) fn faces(&self) -> impl Iterator<Item = (&[Generator; 2], &[u32])> {
-        let corners = self.corner_starts.windows(2).map(|range| range[0] as usize..range[1] as usize);
-        self.faces.iter().zip(corners.map(|range| &self.corners[range]))
-    }
-
     /// Leaves out corners that have the same number as the one before them, and then faces with fewer than some corners.
-    pub(crate) fn drop_repeated_corners(&mut self, number: impl Fn(u32) -> u32, fewest: usize) {
+    pub(crate) fn drop_repeated_corners<N: PartialEq>(&mut self, number: impl Fn(u32) -> N, fewest: usize) {
         let (faces, starts, corners) = (
             std::mem::take(&mut self.faces),
             std::mem::take(&mut self.corner_starts),

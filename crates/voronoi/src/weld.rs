@@ -101,10 +101,7 @@ pub(crate) fn weld(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Te
         vertices = representatives.iter().map(|v| vertices[*v as usize]).collect();
     }
     if are_coincident {
-        let fewest_corners = match domain.dimension() {
-            Dimension::Two => 2,
-            Dimension::Three => 3,
-        };
+        let fewest_corners = domain.dimension().fewest_corners();
         tiles.par_iter_mut().zip(&numbers).for_each(|(tile, numbers)| {
             tile.drop_repeated_corners(|corner| numbers[corner as usize], fewest_corners);
         });
