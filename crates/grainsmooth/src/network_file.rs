@@ -96,7 +96,7 @@ impl Polycrystal {
     fn write_vti(&self, out: &mut dyn Write) -> io::Result<()> {
         let LabelGrid { size, origin, spacing, labels } = self.label_grid()?;
         let names = self.config.file.names;
-        let number = |voxel: usize| names.number(labels[voxel]);
+        let number = |voxel: usize| names.voxel_number(labels[voxel]);
         let values = Values::Int32Of(Each { count: labels.len(), value: &number });
         let cell_arrays = vec![Array { name: names.voxel(), values }];
         write_vti(&ImageData { size, origin, spacing, cell_arrays, field: self.field() }, out)
