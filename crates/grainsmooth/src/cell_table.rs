@@ -172,7 +172,7 @@ impl Row {
 fn row_in_space(id: u32, seed: DVec3, weight: f64, measure: &CellMeasure, neighbors: Vec<i64>) -> Row {
     let volume = measure.volume;
     // Diameter and surface of the ball with the cell's volume.
-    let equivalent_diameter = (6.0 * volume / PI).cbrt();
+    let equivalent_diameter = Dimension::Three.ball_diameter(volume);
     Row::Space {
         id,
         seed: seed.to_array(),
@@ -192,7 +192,7 @@ fn row_in_space(id: u32, seed: DVec3, weight: f64, measure: &CellMeasure, neighb
 fn row_in_plane(id: u32, seed: DVec3, weight: f64, measure: &CellMeasure, neighbors: Vec<i64>) -> Row {
     let area = measure.volume;
     // Diameter and perimeter of the circle with the cell's area.
-    let equivalent_diameter = 2.0 * (area / PI).sqrt();
+    let equivalent_diameter = Dimension::Two.ball_diameter(area);
     Row::Plane {
         id,
         seed: seed.truncate().to_array(),

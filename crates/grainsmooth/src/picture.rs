@@ -12,7 +12,6 @@ use std::num::NonZeroU16;
 use glam::DVec3;
 use polycrystal::Mesh;
 use tiny_skia::Pixmap;
-use voronoi::Dimension;
 
 use crate::{Error, Output, Polycrystal};
 
@@ -115,11 +114,7 @@ impl Polycrystal {
 
     /// Diameter of the ball (in the plane: the disc) of each grain's volume.
     pub(crate) fn equivalent_diameters(&self) -> Vec<f64> {
-        use std::f64::consts::PI;
-        let diameter = |volume: &f64| match self.config.dimension {
-            Dimension::Two => (4.0 * volume / PI).sqrt(),
-            Dimension::Three => (6.0 * volume / PI).cbrt(),
-        };
-        self.network.cell_volumes().iter().map(diameter).collect()
+        let volumes = self.network.cell_volumes().iter();
+        volumes.map(|volume| self.config.dimension.ball_diameter(*volume)).collect()
     }
 }

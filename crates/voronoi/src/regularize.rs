@@ -120,10 +120,7 @@ impl<'a> Complex<'a> {
             }
             faces.push(corners);
         }
-        let root = |volume: f64| match original.domain().dimension() {
-            Dimension::Two => volume.sqrt(),
-            Dimension::Three => volume.cbrt(),
-        };
+        let root = |volume| original.domain().dimension().cube_edge(volume);
         let measures = original.cell_measures();
         let mean_size = root(original.domain().measure() / measures.len() as f64);
         Self {

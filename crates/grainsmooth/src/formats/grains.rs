@@ -5,6 +5,7 @@ use std::io::{self, Write};
 
 use polycrystal::{GrainId, Side};
 use rayon::prelude::*;
+use voronoi::Dimension;
 
 use super::surface::Surface;
 use super::{Names, obj, ply, stl};
@@ -39,7 +40,7 @@ impl GrainMeasure {
         beyond.sort_unstable();
         beyond.dedup();
         let neighbors = i32::try_from(beyond.len()).expect("fewer grains than 2^31");
-        let sphericity = (36.0 * PI * volume * volume).cbrt() / area;
+        let sphericity = PI * Dimension::Three.ball_diameter(volume).powi(2) / area;
         Self { volume, area, neighbors, sphericity }
     }
 }
