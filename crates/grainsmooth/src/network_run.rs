@@ -125,7 +125,7 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     }
     let Some(output) = &files.output else {
         let tessellation = &tessellated.tessellation;
-        let lattice = config.lattice_report(tessellation.cell_count());
+        let lattice = config.lattice_report(tessellation.domain(), tessellation.cell_count());
         let lattice = lattice.map_or(String::new(), |lattice| format!("\nlattice     {lattice}"));
         return Ok(format!(
             "cells       {} in {}{lattice}",

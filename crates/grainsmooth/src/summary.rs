@@ -20,7 +20,7 @@ impl fmt::Display for Summary<'_> {
         let (points, elements) = (finest.vertex_count(), finest.element_count());
         let levels = polycrystal.config.levels;
         writeln!(out, "grains      {} in {}", network.grain_count(), network.domain())?;
-        if let Some(lattice) = polycrystal.config.lattice_report(network.grain_count()) {
+        if let Some(lattice) = polycrystal.config.lattice_report(network.domain(), network.grain_count()) {
             writeln!(out, "lattice     {lattice}")?;
         }
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
