@@ -74,7 +74,7 @@ fn polycrystals_in_a_ball_are_written_and_run_again() {
     let evolver = String::from_utf8(workplace.bytes("ball.fe")).unwrap();
     assert_eq!(evolver.matches("\nformula: (").count() + evolver.matches("\nformula: x").count(), 492);
     let tess = grainsmooth::read_tess(&String::from_utf8(workplace.bytes("ball.tess")).unwrap()).unwrap();
-    assert_eq!((tess.polyhedra.len(), tess.domain.walls.len()), (20, 0));
+    assert_eq!((tess.polyhedra.len(), &tess.domain.kind[..]), (20, "poly"));
 }
 
 #[test]
