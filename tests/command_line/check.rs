@@ -4,6 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
+use crate::surface_file::SurfaceFile;
 use crate::workplace::{FAILED, Workplace};
 
 /// A small network as a legacy file in text: a unit cube of two grains, walls at x = 0, 1/2, 1.
@@ -292,4 +293,34 @@ fn files_that_are_no_networks_are_refused() {
     workplace.put("cut.vtk", &Cubes::new().file("FaceLabels").into_bytes()[..400]);
     workplace.command("check cut.vtk").assert().code(FAILED).stdout("");
     workplace.command("check").assert().code(2).stdout("");
+}
+
+/// However little a point moves: grains on both sides of its boundary are no longer as large as the file says.
+#[test]
+fn points_moved_a_little_are_found() {
+    let workplace = Workplace::new();
+    for (name, arguments) in [
+        ("a.vtp", ""),
+        ("b.vtu", "--periodic x,y,z"),
+        ("c.vtk", "--names dream3d"),
+        ("d.vtp", "--dim 2"),
+        ("e.vtk", "--periodic x,y,z --periodic-cut box"),
+    ] {
+        workplace.run(&format!("--seeds 12 -n 1 -o {name} {arguments}"));
+        assert_eq!(report(&workplace, name, 0)["faults"], serde_json::json!([]), "{name}");
+        workplace.run(&format!("--seeds 12 -n 1 -o same.vtp {arguments}"));
+        let points = SurfaceFile::read(&workplace.path("same.vtp")).points;
+        // Inside the box, so not on a wall, where it could move along.
+        let inside = points.iter().rev().find(|p| (0..2).all(|axis| (0.3..0.7).contains(&p[axis])));
+        let old = inside.unwrap().x;
+        let is_big = name.ends_with("vtk");
+        let bytes = |x: f64| if is_big { x.to_be_bytes() } else { x.to_ne_bytes() };
+        let mut file = workplace.bytes(name);
+        let at = file.windows(8).position(|window| window == bytes(old)).unwrap();
+        file[at..at + 8].copy_from_slice(&bytes(old + 1e-3));
+        workplace.put(name, file);
+        let report = report(&workplace, name, FAILED);
+        let faults = report["faults"].as_array().unwrap();
+        assert!(faults.iter().any(|fault| fault["kind"] == "wrong volume"), "{name}: {faults:?}");
+    }
 }

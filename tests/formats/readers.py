@@ -38,6 +38,7 @@ for name in ("a.vtp", "a.vtu", "a.vtk"):
     assert mesh["BoundaryId"].max() + 1 == expected["boundaries"], name
     assert set(np.unique(mesh["NodeTypes"])) <= {2, 3, 4, 12, 13, 14}, name
     assert set(mesh.field_data.keys()) >= {"Version", "CommandLine", "RandomSeed"}, name
+    assert np.allclose(mesh.field_data["Volumes"], volumes, rtol=1e-9), name
 
 for name in ("measured.vtp", "measured.vtu", "measured.vtk"):
     mesh = pyvista.read(folder / name)

@@ -151,7 +151,11 @@ impl Polycrystal {
             cell_arrays.extend(of_cells.arrays());
             point_arrays.extend(of_points.arrays());
         }
-        let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field: self.field() };
+        // Small changes of the points are seen in these only.
+        let volumes = FieldValue::Numbers(self.network.grain_volumes(level, &self.points));
+        let mut field = self.field();
+        field.push(FieldEntry { name: "Volumes", value: volumes });
+        let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field };
         write_vtk(&data, format, out)
     }
 
