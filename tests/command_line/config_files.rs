@@ -22,6 +22,9 @@ fn files_run_their_run_again() {
         ("a.vti", flat),
         ("a.ang", flat),
         ("a.vtp", flat),
+        ("a.npy", flat),
+        ("a.tess", solid),
+        ("a.tess", flat),
     ] {
         let workplace = Workplace::new();
         workplace.run(&format!("{arguments} -o {name}"));
@@ -32,10 +35,55 @@ fn files_run_their_run_again() {
     }
 }
 
+/// STL has room in the name of its solid only, for what differs from the default settings.
+#[test]
+fn stl_runs_its_run_again_where_it_has_room_for_it() {
+    let workplace = Workplace::new();
+    fs::create_dir(workplace.path("again")).unwrap();
+    for arguments in ["--seeds 5 -n 1 --rng-seed 7", "--ascii --seeds 5 -n 0 --box 2 1 0.5 --lloyd 1"] {
+        workplace.run(&format!("{arguments} -o a.stl"));
+        workplace.run("--config a.stl -o again/a.stl");
+        assert!(workplace.bytes("again/a.stl") == workplace.bytes("a.stl"), "{arguments}");
+    }
+    // A text has more of it.
+    let long = "--seeds 5 -n 0 --box 2.123456789 1.123456789 0.5 --relax 0.123456789 --periodic x";
+    workplace.run(&format!("{long} --ascii -o a.stl"));
+    workplace.run("--config a.stl -o again/a.stl");
+    assert!(workplace.bytes("again/a.stl") == workplace.bytes("a.stl"));
+    workplace.run(&format!("{long} -o a.stl"));
+    workplace.refuses(
+        "--config a.stl",
+        USAGE,
+        "a.stl: holds no configuration, for which STL has little room; give a .toml file, or a .vtp or other file that grainsmooth wrote",
+    );
+}
+
+#[test]
+fn what_stands_beside_runs_its_run_again() {
+    let workplace = Workplace::new();
+    fs::create_dir(workplace.path("again")).unwrap();
+    let beside = "--picture a.png --report a.html --stats a.json --json-summary b.json --cells-json c.json --series a.pvd";
+    workplace.run(&format!("--seeds 4 -n 0 --rng-seed 3 --relax 0.1 -o a.msh {beside}"));
+    for name in ["a.png", "a.html", "a.json", "b.json", "c.json", "a.pvd", "a.geo"] {
+        workplace.run(&format!("--config {name} -o again/a.msh"));
+        assert!(workplace.bytes("again/a.msh") == workplace.bytes("a.msh"), "{name}");
+    }
+    // A name with all that HTML and TOML have signs for.
+    workplace.put("a<'&\">.csv", "0.3,0.5,0.5\n0.7,0.5,0.5\n");
+    let folder = workplace.path("");
+    let run = |arguments: &[&str]| {
+        let mut program = assert_cmd::cargo::cargo_bin_cmd!("grainsmooth");
+        program.current_dir(&folder).args(["-n", "0", "--quiet"]).args(arguments).assert().success();
+    };
+    run(&["--seeds-file", "a<'&\">.csv", "--report", "b.html", "-o", "b.vtp"]);
+    run(&["--config", "b.html", "-o", "again/b.vtp"]);
+    assert!(workplace.bytes("again/b.vtp") == workplace.bytes("b.vtp"));
+}
+
 #[test]
 fn grains_of_a_directory_run_their_run_again() {
     let workplace = Workplace::new();
-    for format in ["vtp", "ply", "obj"] {
+    for format in ["vtp", "ply", "obj", "stl"] {
         workplace.run(&format!("--seeds 4 -n 0 --grains-dir {format} --grains-format {format}"));
         let before = workplace.bytes("grains.vtp");
         workplace.run(&format!("--config {format}/grain_3.{format}"));

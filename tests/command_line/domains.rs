@@ -74,12 +74,28 @@ fn polycrystals_in_a_ball_are_written_and_run_again() {
     let evolver = String::from_utf8(workplace.bytes("ball.fe")).unwrap();
     assert_eq!(evolver.matches("\nformula: (").count() + evolver.matches("\nformula: x").count(), 492);
     let tess = grainsmooth::read_tess(&String::from_utf8(workplace.bytes("ball.tess")).unwrap()).unwrap();
-    assert_eq!((tess.polyhedra.len(), tess.domain.walls.len()), (20, 0));
-    workplace.refuses(
-        "--domain sphere --seeds 20 --voxels 9 9 9 -o ball.vti",
-        FAILED,
-        "ball.vti: voxels fill a box, and the domain is none; choose another format, such as .vtp",
-    );
+    assert_eq!((tess.polyhedra.len(), &tess.domain.kind[..]), (20, "poly"));
+}
+
+#[test]
+fn voxels_outside_of_a_ball_have_a_number_of_their_own() {
+    let workplace = Workplace::new();
+    for (names, outside) in [("grainsmooth", -1), ("neper", 0), ("dream3d", 0)] {
+        workplace.run(&format!(
+            "--domain sphere --seeds 20 -n 1 --voxels 20 20 20 --names {names} -q -o ball.npy"
+        ));
+        let file = workplace.bytes("ball.npy");
+        let header = 10 + usize::from(u16::from_le_bytes([file[8], file[9]]));
+        let labels: Vec<i32> =
+            file[header..].as_chunks().0[..8000].iter().map(|b| i32::from_le_bytes(*b)).collect();
+        let share = labels.iter().filter(|label| **label == outside).count() as f64 / 8000.0;
+        assert!((share - (1.0 - PI / 6.0)).abs() < 0.02, "{share}");
+        assert_eq!((labels[0], labels.iter().max()), (outside, Some(&(outside + 20))));
+    }
+    workplace.run("--domain disc --dim 2 --seeds 9 --voxels 30 30 -q -o disc.ang");
+    let map = String::from_utf8(workplace.bytes("disc.ang")).unwrap();
+    let corner = map.lines().find(|line| !line.starts_with('#')).unwrap();
+    assert_eq!(corner, "12.56637 12.56637 12.56637 0.0 0.0 -1.0 -1.000 0 -1 180.000");
 }
 
 #[test]

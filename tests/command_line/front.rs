@@ -73,6 +73,7 @@ fn dry_run_foretells_the_run_and_writes_nothing() {
         assert_eq!(run["grains"], number("grains"), "{said}");
         // In space, relaxation decides what regularisation takes out.
         let is_exact = arguments.contains("--dim 2") || arguments.contains("--regularize 0");
+        assert_eq!(foretold.contains("points      about "), !is_exact, "{foretold}");
         for (key, line) in [("points", "points"), ("elements", elements)] {
             let error = (number(line) as f64 / run[key].as_f64().unwrap() - 1.0).abs();
             assert!(error <= if is_exact { 0.0 } else { 0.3 }, "{arguments}: {foretold}, but {said}");

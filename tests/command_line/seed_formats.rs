@@ -8,7 +8,12 @@ fn tess_file_gives_seeds_box_and_periods() {
     for arguments in ["--seeds 9 --box 2 1.5 1 --periodic x,z", "--seeds 7 --dim 2 --box 3 1", "--seeds 5"] {
         workplace.run(&format!("{arguments} -n 0 --relax 0 -o one.tess"));
         workplace.run("--seeds-file one.tess -n 0 --relax 0 -o two.tess");
-        assert!(workplace.bytes("one.tess") == workplace.bytes("two.tess"), "{arguments}");
+        // Behind the cells stand the settings, which differ in where the seeds are from.
+        let cells = |name| {
+            let file = String::from_utf8(workplace.bytes(name)).unwrap();
+            file.split_once("***end\n").unwrap().0.to_owned()
+        };
+        assert!(cells("one.tess") == cells("two.tess"), "{arguments}");
         // What ran with a .tess file runs again from its own settings.
         workplace.run("--seeds-file one.tess -n 0 --periodic none -o walls.vtp");
         workplace.run("--config walls.vtp -o again.vtp");
@@ -41,7 +46,11 @@ fn tables_of_cells_give_the_same_cells_again() {
     {
         workplace.run(&format!("{arguments} --no-mesh --cells-json one.json"));
         workplace.run(&format!("--seeds-file one.json {plane} --no-mesh --cells-json two.json"));
-        assert!(workplace.bytes("one.json") == workplace.bytes("two.json"), "{arguments}");
+        let cells = |name| {
+            let file: serde_json::Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+            file["cells"].as_array().unwrap().clone()
+        };
+        assert_eq!(cells("one.json"), cells("two.json"), "{arguments}");
     }
 }
 

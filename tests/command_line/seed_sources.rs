@@ -89,6 +89,12 @@ fn seeds_of_a_lattice_outside_the_domain_are_counted() {
     let said = workplace.run("--lattice sc 4 --domain sphere --no-mesh");
     assert!(said.contains("cells       32 in "), "{said}");
     assert!(said.contains("; 32 of 64 seeds lie outside the domain and are left out\n"), "{said}");
+    // Half of a square of 16.
+    workplace.put("triangle.csv", "-1,0,0\n0,-1,0\n1,1,1\n");
+    let said = workplace.run("--lattice square 4 --half-spaces triangle.csv --dim 2 --no-mesh");
+    assert!(said.contains("cells       10 in "), "{said}");
+    let left_out = "lattice     square, 4 x 4 cells; 6 of 16 seeds lie outside the domain and are left out\n";
+    assert!(said.contains(left_out), "{said}");
 }
 
 #[test]

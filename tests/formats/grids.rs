@@ -3,8 +3,8 @@ use std::num::NonZeroU32;
 
 use glam::DVec3;
 use grainsmooth::vtk::{field_text, inlined};
-use grainsmooth::{LabelGrid, Names, Polycrystal};
-use polycrystal::{Mesh, Side};
+use grainsmooth::{LabelGrid, Names, Polycrystal, Shape};
+use polycrystal::{GrainId, Mesh, Side};
 use voronoi::Dimension;
 use vtkio::model::{Attribute, DataSet, Piece, Vtk};
 
@@ -28,6 +28,11 @@ fn centers(grid: &LabelGrid) -> Vec<DVec3> {
     centers
 }
 
+fn grain(label: &Side) -> GrainId {
+    let Side::Grain(grain) = label else { panic!("a voxel of the box in no grain") };
+    *grain
+}
+
 /// Flat grains are Voronoi cells: the label is the nearest seed.
 #[test]
 fn voxels_of_flat_grains_belong_to_the_nearest_seed() {
@@ -40,8 +45,44 @@ fn voxels_of_flat_grains_belong_to_the_nearest_seed() {
             let center = if dimension == Dimension::Two { center.with_z(0.0) } else { center };
             let distances = seeds.iter().map(|seed| seed.distance_squared(center));
             let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap().0;
-            assert_eq!(label.index(), nearest, "{center}");
+            assert_eq!(grain(label).index(), nearest, "{center}");
         }
+    }
+}
+
+/// In a ball or a disc, voxels with a centre beyond its surface belong to no grain.
+#[test]
+fn voxels_outside_of_the_domain_belong_to_no_grain() {
+    let chord_error = 0.01;
+    for (dimension, shape) in
+        [(Dimension::Three, Shape::Sphere { chord_error }), (Dimension::Two, Shape::Disc { chord_error })]
+    {
+        let config = grainsmooth::Config {
+            seeds: grainsmooth::SeedSource::Random { count: 20 },
+            dimension,
+            shape,
+            relaxation: polycrystal::Relaxation::Time(0.0),
+            levels: 1,
+            ..grainsmooth::Config::default()
+        };
+        let round = grainsmooth::make_polycrystal(&config, &|_, _, _| ()).unwrap();
+        let seeds = round.cells.tessellation.seeds();
+        let grid = LabelGrid::new(&round, size([25, 21, 17]));
+        let mut outside = 0;
+        for (center, label) in centers(&grid).into_iter().zip(&grid.labels) {
+            let center = if dimension == Dimension::Two { center.with_z(0.0) } else { center };
+            let distances = seeds.iter().map(|seed| seed.distance_squared(center));
+            let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap().0;
+            if round.network.domain().contains(center) {
+                assert_eq!(grain(label).index(), nearest, "{center}");
+            } else {
+                assert_eq!(*label, Side::Exterior, "{center}");
+                outside += 1;
+            }
+        }
+        // About 1 - pi / 6 or 1 - pi / 4.
+        let share = f64::from(outside) / grid.labels.len() as f64;
+        assert!((0.2..0.55).contains(&share), "{share}");
     }
 }
 
@@ -72,8 +113,8 @@ fn winding(polycrystal: &Polycrystal, grain: usize, point: DVec3) -> f64 {
 fn voxels_of_curved_grains_lie_inside_them() {
     let grid = LabelGrid::new(&SPACE, size([9, 8, 7]));
     for (center, label) in centers(&grid).into_iter().zip(&grid.labels) {
-        let inside = winding(&SPACE, label.index(), center);
-        assert!((inside - 1.0).abs() < 1e-6, "{center} in grain {} winds {inside}", label.0);
+        let inside = winding(&SPACE, grain(label).index(), center);
+        assert!((inside - 1.0).abs() < 1e-6, "{center} in {label:?} winds {inside}");
     }
 }
 
@@ -84,7 +125,7 @@ fn labels_fill_the_volumes_of_curved_grains() {
         let domain = polycrystal.network.domain();
         let voxel = domain.measure() / grid.labels.len() as f64;
         let mut counts = [0; GRAINS];
-        grid.labels.iter().for_each(|label| counts[label.index()] += 1);
+        grid.labels.iter().for_each(|label| counts[grain(label).index()] += 1);
         for (count, volume) in counts.into_iter().zip(polycrystal.network.cell_volumes()) {
             // Voxels at the surface are in by chance: about the square root of their number, which is below 1000.
             assert!((f64::from(count) * voxel - volume).abs() < 60.0 * voxel, "{count} voxels for {volume}");
@@ -120,7 +161,7 @@ fn centres_on_boundaries_belong_to_exactly_one_grain() {
             for (center, label) in centers(&grid).into_iter().zip(&grid.labels) {
                 // A centre in the middle counts as moved towards larger coordinates.
                 let upper = center.to_array().map(|x| u32::from(x >= 0.5));
-                assert_eq!(label.0, upper[0] + 2 * upper[1] + 4 * upper[2], "{center}");
+                assert_eq!(grain(label).0, upper[0] + 2 * upper[1] + 4 * upper[2], "{center}");
             }
         }
     }
@@ -135,9 +176,9 @@ fn voxels_of_periodic_grains_lie_inside_an_image() {
         for shift in
             (0..27).map(|k| DVec3::new(f64::from(k % 3), f64::from(k / 3 % 3), f64::from(k / 9)) - 1.0)
         {
-            inside += winding(&TORUS, label.index(), center - shift * BOX);
+            inside += winding(&TORUS, grain(label).index(), center - shift * BOX);
         }
-        assert!((inside - 1.0).abs() < 1e-6, "{center} in grain {} winds {inside}", label.0);
+        assert!((inside - 1.0).abs() < 1e-6, "{center} in {label:?} winds {inside}");
     }
 }
 
@@ -160,7 +201,8 @@ fn vti_and_npy_hold_the_labels() {
     ] {
         let mut polycrystal = SPACE.clone();
         polycrystal.config.file.names = names;
-        let labels: Vec<i32> = expected.labels.iter().map(|label| label.0.cast_signed() + first).collect();
+        let labels: Vec<i32> =
+            expected.labels.iter().map(|label| grain(label).0.cast_signed() + first).collect();
 
         let (_folder, path) = write(&polycrystal, "labels.vti");
         let file = fs::read(path).unwrap();
@@ -181,7 +223,13 @@ fn vti_and_npy_hold_the_labels() {
         let text = str::from_utf8(&file[10..10 + header]).unwrap();
         assert_eq!(text.trim_end(), "{'descr': '<i4', 'fortran_order': True, 'shape': (20, 15, 10), }");
         let numbers = file[10 + header..].as_chunks().0.iter().map(|bytes| i32::from_le_bytes(*bytes));
-        assert!(numbers.eq(labels));
+        let count = labels.len();
+        assert!(numbers.take(count).eq(labels));
+        // Behind what NumPy reads.
+        assert_eq!(
+            file[10 + header + 4 * count..],
+            *format!("\n{}", polycrystal.config.to_toml()).as_bytes()
+        );
     }
 }
 
@@ -205,7 +253,7 @@ fn ang_gives_each_grain_one_orientation() {
         assert!(
             (pixel[3] - 0.1 * column as f64).abs() < 1e-12 && (pixel[4] - 0.1 * row as f64).abs() < 1e-12
         );
-        let label = grid.labels[(14 - row) * 20 + column].index();
+        let label = grain(&grid.labels[(14 - row) * 20 + column]).index();
         let of_grain = angles[label].get_or_insert([pixel[0], pixel[1], pixel[2]]);
         assert_eq!(*of_grain, [pixel[0], pixel[1], pixel[2]]);
     }

@@ -2,6 +2,7 @@
 //! Evolver, and Python with VTK, meshio and trimesh.
 #![allow(clippy::unwrap_used, clippy::cast_possible_truncation, reason = "a test may panic")]
 
+mod corrupt;
 mod grids;
 mod surfaces;
 mod tess;

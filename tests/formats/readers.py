@@ -38,6 +38,14 @@ for name in ("a.vtp", "a.vtu", "a.vtk"):
     assert mesh["BoundaryId"].max() + 1 == expected["boundaries"], name
     assert set(np.unique(mesh["NodeTypes"])) <= {2, 3, 4, 12, 13, 14}, name
     assert set(mesh.field_data.keys()) >= {"Version", "CommandLine", "RandomSeed"}, name
+    assert np.allclose(mesh.field_data["Volumes"], volumes, rtol=1e-9), name
+
+for name in ("measured.vtp", "measured.vtu", "measured.vtk"):
+    mesh = pyvista.read(folder / name)
+    triangles = mesh.regular_faces if name != "measured.vtu" else mesh.cells_dict[5]
+    a, b, c = (points[triangles[:, corner]] for corner in range(3))
+    normals = np.cross(b - a, c - a)
+    assert np.allclose(mesh.cell_data["Normals"], normals / np.linalg.norm(normals, axis=1)[:, None]), name
 
 mesh = meshio.read(folder / "a.vtu")
 assert np.array_equal(mesh.points, points)
@@ -68,9 +76,12 @@ for grain, volume in enumerate(volumes):
 
 # meshio fails on any PLY whose faces have numbers of their own.
 assert pyvista.read(folder / "a.ply").n_cells == expected["triangles"]
-for name in ("a.stl", "a.obj"):
+for name in ("a.stl", "text.stl", "a.obj"):
     mesh = meshio.read(folder / name)
     assert sum(len(block.data) for block in mesh.cells) == expected["triangles"], name
+    assert pyvista.read(folder / name).n_cells == expected["triangles"], name
+    mesh = trimesh.load(folder / name, force="mesh", process=False)
+    assert len(mesh.faces) == expected["triangles"], name
 mesh = trimesh.load(folder / "a.ply", process=False)
 assert np.array_equal(mesh.vertices, points) and len(mesh.faces) == expected["triangles"]
 for grain, volume in enumerate(volumes):
@@ -85,6 +96,7 @@ assert np.array_equal(np.unique(np.concatenate(tags)), np.arange(expected["bound
 
 image = pyvista.read(folder / "a.vti")
 labels = np.load(folder / "a.npy")
+assert np.array_equal(np.load(folder / "a.npy", mmap_mode="r"), labels)
 assert image.dimensions == tuple(count + 1 for count in labels.shape) == (21, 16, 11)
 assert np.array_equal(image["material"], labels.ravel(order="F"))
 assert np.array_equal(np.unique(labels), np.arange(len(volumes)))
@@ -154,3 +166,10 @@ for tool, (sides, grain_id, first, exterior, place) in names.items():
             if label != exterior:
                 found[label - first] += sign * swept
     assert np.allclose(found, areas, rtol=1e-9), tool
+
+# Pillow comes with pyvista.
+from PIL import Image
+
+with Image.open(folder / "a.png") as picture:
+    assert picture.size == (1200, 900) and picture.text["Config"] == expected["settings"]
+    assert len(picture.convert("RGB").getcolors(1 << 20)) > len(volumes)

@@ -1,7 +1,8 @@
+use std::f64::consts::PI;
 use std::fs;
 
 use glam::DVec3;
-use grainsmooth::{Tess, read_tess};
+use grainsmooth::{Config, SeedSource, Shape, Tess, make_polycrystal, read_tess};
 use proptest::prelude::*;
 use voronoi::{CellId, Dimension, Wall};
 
@@ -121,6 +122,66 @@ fn domain_names_what_lies_on_it() {
     }
     // Every corner of the box is exactly one vertex.
     assert_eq!(domain.split("*edge").next().unwrap().matches("\n      1 ").count(), 8);
+}
+
+/// A domain that is no box is a polyhedron, each wall of it with all that lies on it.
+#[test]
+fn polyhedra_and_polygons_come_back_with_their_walls() {
+    let chord_error = 0.01;
+    for (dimension, shape, expected) in [
+        (Dimension::Three, Shape::Sphere { chord_error }, PI),
+        (Dimension::Three, Shape::Cylinder { chord_error }, 1.5 * PI),
+        (Dimension::Two, Shape::Disc { chord_error }, PI),
+    ] {
+        let config = Config {
+            seeds: SeedSource::Random { count: 30 },
+            dimension,
+            shape,
+            levels: 0,
+            ..Config::default()
+        };
+        let round = make_polycrystal(&config, &|_, _, _| ()).unwrap();
+        let (_folder, path) = write(&round, "cells.tess");
+        let text = fs::read_to_string(path).unwrap();
+        let tess = read_tess(&text).unwrap();
+        let mut made = Tess::new(&round.cells);
+        // Corners are rounded.
+        assert!(tess.domain.lower.distance(made.domain.lower) < 1e-14);
+        assert!(tess.domain.upper.distance(made.domain.upper) < 1e-14);
+        (made.domain.lower, made.domain.upper) = (tess.domain.lower, tess.domain.upper);
+        assert!(tess == made);
+
+        // All walls together are the surface of the body.
+        let place = |vertex: u32| tess.vertices[vertex as usize];
+        let area = |part: u32| match dimension {
+            Dimension::Two => {
+                let [start, end] = tess.edges[part as usize];
+                place(start).distance(place(end))
+            }
+            Dimension::Three => {
+                let corners = &tess.faces[part as usize].vertices;
+                let from_first = |corner: &u32| place(*corner) - place(corners[0]);
+                let triangles = corners[1..].windows(2);
+                triangles.map(|pair| from_first(&pair[0]).cross(from_first(&pair[1])).length() / 2.0).sum()
+            }
+        };
+        let surface: f64 = tess.domain.walls.iter().flatten().map(|part| area(*part)).sum();
+        assert!((surface / expected - 1.0).abs() < 0.03, "{surface} for {expected}");
+
+        let section = text.split("**domain").nth(1).unwrap();
+        let count = |part: &str| -> usize {
+            let after = section.split(&format!("*{part}\n")).nth(1).unwrap();
+            after.split_whitespace().next().unwrap().parse().unwrap()
+        };
+        let parts = tess.domain.walls.iter().filter(|parts| !parts.is_empty()).count();
+        match dimension {
+            Dimension::Two => assert_eq!((count("vertex"), count("edge")), (parts, parts)),
+            Dimension::Three => {
+                assert_eq!(count("face"), parts);
+                assert_eq!(count("vertex") + count("face"), count("edge") + 2);
+            }
+        }
+    }
 }
 
 /// A cube of one cell as Neper 3.4 would write it, with orientations, a scale and no types of the domain's edges.

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use grainsmooth::{OutputDirectory, OutputFormat};
+use grainsmooth::{OutputDirectory, OutputFormat, StlEncoding};
 
 use crate::workplace::{GRAINS, PLANE, SPACE, write};
 
@@ -74,6 +74,24 @@ fn gmsh_fills_every_grain_with_tetrahedra() {
     }
 }
 
+/// The settings in a solid's name are no more than it takes.
+#[test]
+fn gmsh_reads_stl() {
+    for encoding in [StlEncoding::Ascii, StlEncoding::Binary] {
+        let mut polycrystal = SPACE.clone();
+        polycrystal.config.file.stl = encoding;
+        let (folder, path) = write(&polycrystal, "network.stl");
+        let mesh = folder.path().join("network.msh");
+        let mut gmsh = Command::new("gmsh");
+        gmsh.arg(&path).args(["-save", "-format", "msh22", "-o"]).arg(&mesh);
+        let Some(output) = run("gmsh_reads_stl", &mut gmsh) else { return };
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let file = fs::read_to_string(&mesh).unwrap();
+        let count = file.split_once("$Elements\n").unwrap().1.lines().next().unwrap().parse();
+        assert_eq!(count, Ok(SPACE.network.finest().element_count()));
+    }
+}
+
 #[test]
 fn surface_evolver_finds_every_volume_and_the_area() {
     let (_folder, path) = write(&SPACE, "grains.fe");
@@ -125,6 +143,14 @@ fn vtk_meshio_and_trimesh_read_every_format() {
     for name in ["b.vtp", "b.vtu", "b.vti", "b.vtm"] {
         PLANE.write(&grainsmooth::Output::check(directory.path().join(name)).unwrap()).unwrap();
     }
+    let mut measured = SPACE.clone();
+    measured.config.file =
+        grainsmooth::FileOptions { arrays: true, stl: StlEncoding::Ascii, ..measured.config.file };
+    for name in ["measured.vtp", "measured.vtu", "measured.vtk", "text.stl"] {
+        measured.write(&grainsmooth::Output::check(directory.path().join(name)).unwrap()).unwrap();
+    }
+    let picture = grainsmooth::Output::check_as(directory.path().join("a.png"), grainsmooth::Png).unwrap();
+    SPACE.write_picture(&grainsmooth::Picture::default(), &picture).unwrap();
     for names in grainsmooth::Names::ALL {
         for (polycrystal, dimension) in [(&*SPACE, "3d"), (&*PLANE, "2d")] {
             let mut renamed = polycrystal.clone();
@@ -146,6 +172,7 @@ fn vtk_meshio_and_trimesh_read_every_format() {
         "triple_lines": counts.triple_lines,
         "quadruple_points": counts.quadruple_points,
         "volumes": SPACE.network.cell_volumes(),
+        "settings": SPACE.config.to_toml(),
         "triple_points_2d": PLANE.network.junction_counts().triple_lines,
         "areas_2d": PLANE.network.cell_volumes(),
     });

@@ -123,6 +123,7 @@ fn mistakes_of_usage() {
         ("flip cube.obj -o out.obj", "the following required arguments were not provided:"),
         ("smooth cube.obj -o out.obj", "unrecognized subcommand 'smooth'"),
         ("flip cube.obj -o out.obj --edge 4", "invalid value '4' for ... such as 4-9"),
+        ("loop cube.obj -o out.obj --corners 3:x", "invalid value '3:x' for ... or 3:1.5"),
         ("loop cube.obj -o out.obj --crease 1-2:-3", "invalid value '1-2:-3' for ... or 4-9:2.5"),
         (
             "loop cube.obj -o out.obj -n 100",

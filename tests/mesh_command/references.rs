@@ -183,20 +183,22 @@ fn doo_sabin_and_its_limits() {
 }
 
 #[test]
-fn creases_of_the_command_line_are_those_of_a_file() {
+fn creases_and_corners_of_the_command_line_are_those_of_a_file() {
     let expected = json(&std::fs::read(reference_path("loop_crease_semi")).unwrap());
     let creases: Vec<(u32, u32, f32)> = serde_json::from_value(expected["creases"].clone()).unwrap();
     let levels = expected["levels"].as_array().unwrap().len();
     let workplace = Workplace::new();
-    // The file without its creases, and soft corners only.
+    let corners: Vec<(u32, f32)> = serde_json::from_value(expected["corners"].clone()).unwrap();
     let mut bare = expected.clone();
-    for key in ["creases", "levels", "limits"] {
+    for key in ["creases", "corners", "levels", "limits"] {
         bare.as_object_mut().unwrap().remove(key);
     }
     workplace.put("bare.json", bare.to_string());
-    let options: Vec<String> =
-        creases.iter().map(|(a, b, sharpness)| format!("{a}-{b}:{sharpness}")).collect();
-    workplace.run(&format!("mesh loop bare.json -n {levels} -o out.json --crease {}", options.join(",")));
+    let creases: Vec<_> = creases.iter().map(|(a, b, sharpness)| format!("{a}-{b}:{sharpness}")).collect();
+    let corners: Vec<_> = corners.iter().map(|(v, sharpness)| format!("{v}:{sharpness}")).collect();
+    let [creases, corners] = [creases, corners].map(|features| features.join(","));
+    workplace
+        .run(&format!("mesh loop bare.json -n {levels} -o out.json --crease {creases} --corners {corners}"));
     let ours = json(&workplace.bytes("out.json"));
     let maps = check_levels("loop_crease_semi", &expected, &ours);
     check_limits("loop_crease_semi", &expected, &ours, &maps);

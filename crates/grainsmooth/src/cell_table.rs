@@ -1,5 +1,6 @@
 //! A table of the cells: one row for each grain.
 
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::io::{self, Write};
 use std::path::Path;
@@ -8,12 +9,12 @@ use glam::DVec3;
 use serde::Serialize;
 use voronoi::{CellId, CellMeasure, Dimension, Side};
 
-use crate::{Error, Output, Tessellated};
+use crate::{Config, Error, Output, Tessellated};
 
 /// A format of tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TableFormat {
-    /// An object with the list `cells`.
+    /// An object with the `settings` of the run and the list `cells`.
     Json,
     /// A header line, then one line a cell; lists have blanks between their numbers.
     Csv,
@@ -32,6 +33,7 @@ impl TableFormat {
 /// One row for each cell of a tessellation: the flat cells, before any relaxation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CellTable {
+    settings: BTreeMap<&'static str, toml::Value>,
     cells: Vec<Row>,
 }
 
@@ -71,7 +73,7 @@ enum Row {
 impl CellTable {
     /// Measures all cells. Walls among the `neighbors` are -1 (x0), -2 (x1), -3, -4 (y) and -5, -6 (z), those of a
     /// polyhedron -1 - number.
-    pub fn new(cells: &Tessellated) -> Self {
+    pub fn new(config: &Config, cells: &Tessellated) -> Self {
         let tessellation = &cells.tessellation;
         let rows = (0u32..).zip(tessellation.cell_measures()).map(|(id, measure)| {
             let number = |side: Side| match side {
@@ -88,7 +90,7 @@ impl CellTable {
                 Dimension::Two => row_in_plane(id, seed, weight, &measure, neighbors),
             }
         });
-        Self { cells: rows.collect() }
+        Self { settings: config.settings().into_iter().collect(), cells: rows.collect() }
     }
 
     /// Writes the table.
@@ -170,7 +172,7 @@ impl Row {
 fn row_in_space(id: u32, seed: DVec3, weight: f64, measure: &CellMeasure, neighbors: Vec<i64>) -> Row {
     let volume = measure.volume;
     // Diameter and surface of the ball with the cell's volume.
-    let equivalent_diameter = (6.0 * volume / PI).cbrt();
+    let equivalent_diameter = Dimension::Three.ball_diameter(volume);
     Row::Space {
         id,
         seed: seed.to_array(),
@@ -190,7 +192,7 @@ fn row_in_space(id: u32, seed: DVec3, weight: f64, measure: &CellMeasure, neighb
 fn row_in_plane(id: u32, seed: DVec3, weight: f64, measure: &CellMeasure, neighbors: Vec<i64>) -> Row {
     let area = measure.volume;
     // Diameter and perimeter of the circle with the cell's area.
-    let equivalent_diameter = 2.0 * (area / PI).sqrt();
+    let equivalent_diameter = Dimension::Two.ball_diameter(area);
     Row::Plane {
         id,
         seed: seed.truncate().to_array(),

@@ -1,12 +1,17 @@
 //! What `grainsmooth check` says about a network from a file.
 
+mod statistics;
+
 use std::fmt;
 use std::path::Path;
 
-use polycrystal::{Certificate, Elements, Fault, Side, Surface, certify};
+use polycrystal::{Elements, Fault, Side, certify};
 use serde::Serialize;
 
 use crate::LabelledFile;
+use statistics::statistics;
+
+pub use statistics::Statistic;
 
 /// Faults of one kind that the text names; JSON has all.
 const NAMED: usize = 5;
@@ -49,17 +54,6 @@ pub struct Spread {
     pub mean: f64,
     /// Standard deviation.
     pub standard_deviation: f64,
-}
-
-/// A number that has an exact value for Poisson-Voronoi grains.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Statistic {
-    /// What it is.
-    pub name: &'static str,
-    /// Its value in the file.
-    pub value: f64,
-    /// The exact value for flat grains without walls.
-    pub exact: f64,
 }
 
 /// A fault with its place.
@@ -143,8 +137,11 @@ impl fmt::Display for CheckReport {
         if let Some(angles) = self.dihedral {
             write!(out, "\n  angles      {:.2} +- {:.2} degrees", angles.mean, angles.standard_deviation)?;
         }
-        for Statistic { name, value, exact } in &self.statistics {
-            write!(out, "\n  statistics  {name} {value:.4}; flat random grains without walls have {exact}")?;
+        for Statistic { name, value, exact, standard_error } in &self.statistics {
+            write!(
+                out,
+                "\n  statistics  {name} {value:.4}; so many flat random grains without walls have {exact} +- {standard_error:.4}"
+            )?;
         }
         for faults in self.faults.chunk_by(|a, b| a.kind == b.kind) {
             for fault in faults.iter().take(NAMED) {
@@ -159,71 +156,4 @@ impl fmt::Display for CheckReport {
         }
         Ok(())
     }
-}
-
-/// Options that leave random seeds the Poisson process that they are, whatever or with what follows them.
-const PLAIN_OPTIONS: [&str; 20] = [
-    "--arrays",
-    "--seeds",
-    "--seeding random",
-    "--lloyd 0",
-    "--periodic none",
-    "--rng-seed",
-    "--dim",
-    "--box",
-    "--faces",
-    "--edge-length",
-    "--relax",
-    "--wall-tension",
-    "--free",
-    "--regularize",
-    "-n",
-    "--levels",
-    "--junctions",
-    "--names",
-    "--voxels",
-    "--ascii",
-];
-
-/// Numbers with exact values, where the file says that its seeds are uniform and random: Meijering 1953 for means in space,
-/// and in the plane, r being the number of grains per volume (area).
-fn statistics(file: &LabelledFile, surface: &Surface<'_>, certificate: &Certificate) -> Vec<Statistic> {
-    let Some(command_line) = &file.command_line else { return Vec::new() };
-    let mut options = command_line.split(" -").skip(1);
-    let is_plain = |option: &str| {
-        let option = format!("-{option}");
-        let name = option.split(' ').next();
-        PLAIN_OPTIONS.iter().any(|plain| option == *plain || name == Some(*plain))
-    };
-    // One grain has nothing but walls.
-    if !certificate.is_good()
-        || certificate.grain_volumes.len() < 2
-        || !command_line.contains("--seeds ")
-        || !options.all(is_plain)
-    {
-        return Vec::new();
-    }
-    let is_inner = |element: &u32| !surface.sides_of(*element).contains(&Side::Exterior);
-    let elements = (0u32..).take(surface.elements.len()).filter(is_inner);
-    let at = |point: &u32| surface.points[*point as usize];
-    let size = elements.map(|element| match surface.elements.corners(element) {
-        [a, b, c] => (at(b) - at(a)).cross(at(c) - at(a)).length() / 2.0,
-        [a, b] => at(a).distance(at(b)),
-        _ => 0.0,
-    });
-    let size: f64 = size.sum();
-    let volume: f64 = certificate.grain_volumes.iter().map(|(_, volume)| volume).sum();
-    let density = certificate.grain_volumes.len() as f64 / volume;
-    vec![match surface.elements {
-        Elements::Triangles(_) => Statistic {
-            name: "boundary area per volume, over r^(1/3),",
-            value: size / volume / density.cbrt(),
-            exact: 2.91044,
-        },
-        Elements::Segments(_) => Statistic {
-            name: "boundary length per area, over r^(1/2),",
-            value: size / volume / density.sqrt(),
-            exact: 2.0,
-        },
-    }]
 }

@@ -210,13 +210,20 @@ impl Config {
         }
     }
 
-    /// What to say of the lattice that the seeds form, if so many of them lie in the domain.
-    pub fn lattice_report(&self, seed_count: usize) -> Option<String> {
-        let fit = self.lattice_fit()?;
-        let all = fit.seed_count();
+    /// What to say of the lattice that the seeds form, if they do and so many of them lie in the domain.
+    pub fn lattice_report(&self, domain: &Domain, seed_count: usize) -> Option<String> {
+        let SeedSource::Lattice { lattice, cells } = self.seeds else { return None };
+        let (all, said) = match self.lattice_fit() {
+            Some(fit) => (fit.seed_count(), fit.to_string()),
+            // No --box would make it perfect.
+            None => {
+                let fit = LatticeFit::new(lattice, cells, domain.size());
+                (fit.seed_count(), fit.name())
+            }
+        };
         Some(match all.saturating_sub(seed_count) {
-            0 => fit.to_string(),
-            outside => format!("{fit}; {outside} of {all} seeds lie outside the domain and are left out"),
+            0 => said,
+            outside => format!("{said}; {outside} of {all} seeds lie outside the domain and are left out"),
         })
     }
 

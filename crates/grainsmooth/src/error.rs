@@ -154,12 +154,6 @@ pub enum Error {
         /// Why.
         cause: io::Error,
     },
-    /// The output's format fills a box, and the domain is none.
-    #[error("{}: voxels fill a box, and the domain is none; choose another format, such as .vtp", path.display())]
-    FormatNeedsBox {
-        /// The path as given.
-        path: PathBuf,
-    },
     /// A seed of a file has no cell.
     #[error("{} {place}: {cause}", path.display())]
     SeedInFile {

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use polycrystal::FaceMesh;
 use voronoi::Dimension;
 
 use crate::memory::{LevelSize, available_memory, check_levels, in_words};
@@ -23,6 +24,8 @@ pub struct Estimate {
     pub grains: usize,
     /// Points, edges and triangles of the finest level.
     pub mesh: LevelSize,
+    /// Whether these counts are exact.
+    pub is_exact: bool,
     /// Two or three dimensions.
     pub dimension: Dimension,
     /// Bytes of the file; nothing where none is written.
@@ -49,6 +52,8 @@ impl Estimate {
         Self {
             grains,
             mesh,
+            is_exact: !matches!(config.face_mesh, FaceMesh::Refined { .. })
+                && (config.effective_regularize() == 0.0 || config.dimension == Dimension::Two),
             dimension: config.dimension,
             file: format.map(|format| file_bytes(format, &mesh, grains, config)),
             memory: control_mesh.bytes_after(config.levels),
@@ -70,10 +75,11 @@ impl Estimate {
 impl fmt::Display for Estimate {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(out, "grains      {}", self.grains)?;
-        writeln!(out, "points      {}", self.mesh.points)?;
+        let about = if self.is_exact { "" } else { "about " };
+        writeln!(out, "points      {about}{}", self.mesh.points)?;
         match self.dimension {
-            Dimension::Two => writeln!(out, "segments    {}", self.mesh.edges)?,
-            Dimension::Three => writeln!(out, "triangles   {}", self.mesh.triangles)?,
+            Dimension::Two => writeln!(out, "segments    {about}{}", self.mesh.edges)?,
+            Dimension::Three => writeln!(out, "triangles   {about}{}", self.mesh.triangles)?,
         }
         if let Some(bytes) = self.file {
             writeln!(out, "file        about {bytes} bytes ({})", in_words(bytes))?;

@@ -25,7 +25,7 @@ pub use tess::{
 
 pub(crate) use blocks::escaped;
 pub(crate) use gmsh::write_script as write_gmsh_script;
-pub(crate) use surface::{Part, Surface, label};
+pub(crate) use surface::{Part, Surface, label, unit_normal};
 pub(crate) use {ang::write as write_ang, evolver::write as write_evolver, gmsh::write as write_gmsh};
 pub(crate) use {npy::write as write_npy, obj::write as write_obj, ply::write as write_ply};
 pub(crate) use {stl::write as write_stl, tess::write as write_tess};

@@ -9,7 +9,7 @@ use polycrystal::{BoundaryId, Claims, Elements, GrainId, NodeType, Side, Surface
 use crate::Error;
 use crate::mesh_file::MeshFileProblem;
 use crate::mesh_file::vtk::labelled::{LabelledCells, read_legacy, read_xml};
-use crate::vtk::{field_text, find};
+use crate::vtk::{field_bytes, field_text, find};
 
 /// A labelled surface (in the plane: lines) from a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +26,8 @@ pub struct LabelledFile {
     pub node_types: Option<Vec<Option<NodeType>>>,
     /// The cell array that the labels are from.
     pub label_array: &'static str,
+    /// The volumes of all grains (in the plane: areas) as the file states them, if this program wrote it.
+    pub volumes: Option<Vec<(GrainId, f64)>>,
     /// What the command line in the file says, if this program wrote it.
     pub command_line: Option<String>,
 }
@@ -67,6 +69,11 @@ impl LabelledFile {
             file.node_types = None;
         }
         file.sides = outward_sides(&file.surface());
+        let grains = file.surface().grains();
+        let volumes = file.command_line.as_ref().and_then(|_| stated_volumes(&bytes));
+        file.volumes = volumes
+            .filter(|volumes| volumes.len() == grains.len())
+            .map(|volumes| grains.into_iter().zip(volumes).collect());
         Ok(file)
     }
 
@@ -120,6 +127,7 @@ impl LabelledFile {
             sides,
             node_types,
             label_array,
+            volumes: None,
             command_line: None,
         })
     }
@@ -137,7 +145,7 @@ impl LabelledFile {
     pub fn claims(&self) -> Claims<'_> {
         Claims {
             node_types: self.node_types.as_deref(),
-            grain_volumes: None,
+            grain_volumes: self.volumes.as_deref(),
             domain_volume: self.command_line.as_deref().and_then(domain_volume),
         }
     }
@@ -162,6 +170,20 @@ fn command_line(bytes: &[u8]) -> Option<String> {
         String::from_utf8(text.to_vec()).ok()
     });
     text.filter(|text| text.starts_with("grainsmooth "))
+}
+
+/// The volumes that this program writes into the field data of its files, in the order of the grains.
+fn stated_volumes(bytes: &[u8]) -> Option<Vec<f64>> {
+    if let Some(values) = field_bytes(bytes, "Volumes") {
+        return Some(values.as_chunks().0.iter().map(|number| f64::from_ne_bytes(*number)).collect());
+    }
+    // Legacy: the numbers follow a line with their count.
+    const NAME: &[u8] = b"\nVolumes 1 ";
+    let rest = &bytes[find(bytes, NAME)? + NAME.len()..];
+    let (line, rest) = rest.split_at(find(rest, b" double\n")?);
+    let count: usize = str::from_utf8(line).ok()?.parse().ok()?;
+    let values = rest.get(b" double\n".len()..)?.as_chunks().0.get(..count)?;
+    Some(values.iter().map(|number| f64::from_be_bytes(*number)).collect())
 }
 
 /// The volume (in the plane: area) of the box that a command line names.

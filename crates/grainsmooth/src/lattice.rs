@@ -188,19 +188,30 @@ impl LatticeFit {
     }
 }
 
-impl fmt::Display for LatticeFit {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl LatticeFit {
+    fn joined(&self, values: &[String; 3], separator: &str) -> String {
         let axes = match self.lattice.dimension() {
             Dimension::Two => 2,
             Dimension::Three => 3,
         };
-        let joined = |values: &[String], separator: &str| values[..axes].join(separator);
+        values[..axes].join(separator)
+    }
+
+    /// The lattice's name and the number of its cells, such as `hcp, 3 x 2 x 2 cells`.
+    pub(crate) fn name(&self) -> String {
         let cells = self.cells.to_array().map(|count| count.to_string());
-        write!(out, "{}, {} cells", self.lattice.name(), joined(&cells, " x "))?;
+        format!("{}, {} cells", self.lattice.name(), self.joined(&cells, " x "))
+    }
+}
+
+impl fmt::Display for LatticeFit {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{}", self.name())?;
         let Some(perfect) = self.perfect_box() else { return Ok(()) };
         let stretch = self.stretch().to_array().map(|factor| format!("{factor:.4}"));
         let sides = perfect.to_array().map(|side| side.to_string());
-        write!(out, ", stretched {}; perfect with --box {}", joined(&stretch, " : "), joined(&sides, " "))
+        let (stretch, sides) = (self.joined(&stretch, " : "), self.joined(&sides, " "));
+        write!(out, ", stretched {stretch}; perfect with --box {sides}")
     }
 }
 

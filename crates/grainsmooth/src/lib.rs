@@ -18,6 +18,7 @@ mod cell_table;
 mod check_report;
 mod config;
 mod domain_file;
+mod embedded_config;
 mod error;
 mod estimate;
 mod formats;
@@ -50,6 +51,7 @@ pub mod vtk;
 pub use cell_table::{CellTable, TableFormat};
 pub use check_report::{CheckReport, ReportedFault, Spread, Statistic};
 pub use config::{Config, FileOptions, PeriodicCut, SeedSource, Shape};
+pub use embedded_config::embedded_config;
 pub use error::Error;
 pub use estimate::Estimate;
 pub use formats::{LabelGrid, Names, StlEncoding};
@@ -64,15 +66,14 @@ pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputDirectory, OutputFormat};
 pub use picture::{Coloring, Picture, Png};
 pub use pipeline::{
-    Polycrystal, Progress, Stage, Tessellated, check_expected_size, make_polycrystal, smooth, smooth_watched,
-    tessellate,
+    Polycrystal, Progress, Regularization, Stage, Tessellated, check_expected_size, make_polycrystal, smooth,
+    smooth_watched, tessellate,
 };
 pub use poisson_disc::poisson_disc_seeds;
 pub use report::Html;
 pub use seed_file::{FileDomain, FileSeed, SeedPlace, SeedProblem, read_file_domain, read_seed_file};
 pub use seeding::random_seeds;
 pub use series::{Series, SeriesOutput};
-pub use settings::embedded_config;
 pub use statistics::{NetworkStatistics, StatisticsOutput};
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};
 pub use summary::Summary;

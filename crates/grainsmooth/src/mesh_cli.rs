@@ -73,9 +73,9 @@ pub struct FileArguments {
 
 #[derive(Debug, Args)]
 pub struct FeatureArguments {
-    /// Points that stay where they are
-    #[arg(long, value_name = "V,...", value_delimiter = ',')]
-    pub corners: Vec<u32>,
+    /// Points that stay where they are; with a sharpness they smooth out after so many levels
+    #[arg(long, value_name = "V[:SHARPNESS],...", value_delimiter = ',', value_parser = parse_corner)]
+    pub corners: Vec<(u32, f32)>,
 
     /// Sharp edges; with a sharpness they smooth out after so many levels
     #[arg(long = "crease", value_name = "A-B[:SHARPNESS],...", value_delimiter = ',', value_parser = parse_crease)]
@@ -269,11 +269,24 @@ fn parse_edge(text: &str) -> Result<[u32; 2], String> {
     ends.ok_or_else(|| "an edge is two points, such as 4-9".to_owned())
 }
 
-fn parse_crease(text: &str) -> Result<Crease, String> {
-    let (ends, sharpness) = match text.split_once(':') {
+/// What stands before the colon, and the sharpness behind it: infinite where there is none.
+fn split_sharpness(text: &str) -> (&str, Option<f32>) {
+    match text.split_once(':') {
         None => (text, Some(INFINITE_SHARPNESS)),
-        Some((ends, sharpness)) => (ends, sharpness.parse().ok().filter(|s: &f32| *s >= 0.0)),
-    };
+        Some((feature, sharpness)) => (feature, sharpness.parse().ok().filter(|s: &f32| *s >= 0.0)),
+    }
+}
+
+fn parse_corner(text: &str) -> Result<(u32, f32), String> {
+    let (vertex, sharpness) = split_sharpness(text);
+    match (vertex.trim().parse(), sharpness) {
+        (Ok(vertex), Some(sharpness)) => Ok((vertex, sharpness)),
+        _ => Err("a corner is a point and perhaps a sharpness from 0, such as 3 or 3:1.5".to_owned()),
+    }
+}
+
+fn parse_crease(text: &str) -> Result<Crease, String> {
+    let (ends, sharpness) = split_sharpness(text);
     match (parse_edge(ends), sharpness) {
         (Ok(ends), Some(sharpness)) => Ok(Crease { ends, sharpness }),
         _ => Err("a crease is an edge and perhaps a sharpness from 0, such as 4-9 or 4-9:2.5".to_owned()),

@@ -175,7 +175,7 @@ impl Job<'_> {
     fn read_with(&self, features: &FeatureArguments) -> Result<MeshFile, Error> {
         let mut mesh = self.read()?;
         mesh.creases.extend(&features.creases);
-        mesh.corners.extend(features.corners.iter().map(|&vertex| (vertex, subzero::INFINITE_SHARPNESS)));
+        mesh.corners.extend(&features.corners);
         if let Some(boundary) = features.boundary {
             mesh.boundary = boundary.into();
         }

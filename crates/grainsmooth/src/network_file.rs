@@ -3,9 +3,13 @@
 use std::borrow::Cow;
 use std::io::{self, Write};
 
+use glam::DVec3;
 use polycrystal::{Boundary, BoundaryId, Level, Mesh, Side};
+use rayon::prelude::*;
 
-use crate::formats::{Surface, write_ang, write_evolver, write_gmsh, write_npy, write_obj, write_ply};
+use crate::formats::{
+    Surface, unit_normal, write_ang, write_evolver, write_gmsh, write_npy, write_obj, write_ply,
+};
 use crate::formats::{write_gmsh_script, write_stl, write_tess};
 use crate::measured_arrays::MeasuredArrays;
 use crate::vtk::{Array, Cells, Each, FieldEntry, FieldValue, ImageData, PolyData, Values, VtkFormat};
@@ -32,7 +36,7 @@ impl Polycrystal {
         output.write(|out| match output.format() {
             OutputFormat::Vtk(format) => self.write_vtk(format, out),
             OutputFormat::Vtm => Err(io::Error::other("several files are not written as one")),
-            OutputFormat::Stl => write_stl(&self.surface()?, "network", self.config.file.stl, out),
+            OutputFormat::Stl => write_stl(&self.surface()?, "network", &self.config, out),
             OutputFormat::Ply => write_ply(&self.surface()?, &self.config, out),
             OutputFormat::Obj => write_obj(&self.surface()?, &self.config, out),
             OutputFormat::Msh => write_gmsh(&self.surface()?, &self.config, out),
@@ -47,9 +51,15 @@ impl Polycrystal {
                     out,
                 )
             }
-            OutputFormat::Tess => write_tess(&Tess::new(&self.cells), out),
+            OutputFormat::Tess => {
+                write_tess(&Tess::new(&self.cells), out)?;
+                self.write_settings_behind(out)
+            }
             OutputFormat::Vti => self.write_vti(out),
-            OutputFormat::Npy => write_npy(&self.label_grid()?, self.config.file.names, out),
+            OutputFormat::Npy => {
+                write_npy(&self.label_grid()?, self.config.file.names, out)?;
+                self.write_settings_behind(out)
+            }
             OutputFormat::Ang => write_ang(&self.label_grid()?, &self.config, out),
         })?;
         match output.format() {
@@ -58,11 +68,19 @@ impl Polycrystal {
         }
     }
 
+    /// Behind what formats without comments hold: who reads them stops before.
+    fn write_settings_behind(&self, out: &mut dyn Write) -> io::Result<()> {
+        write!(out, "\n{}", self.config.to_toml())
+    }
+
     /// The script that makes volumes of the grains, beside the mesh file.
     fn write_gmsh_script(&self, output: &Output) -> Result<(), Error> {
         let script = Output::check_as(output.path().with_extension("geo"), OutputFormat::Msh)?;
         let mesh = output.path().file_name().unwrap_or_default().to_string_lossy();
-        script.write(|out| write_gmsh_script(&self.surface()?, self.network.grain_count(), &mesh, out))
+        script.write(|out| {
+            let grain_count = self.network.grain_count();
+            write_gmsh_script(&self.surface()?, grain_count, &mesh, &self.config, out)
+        })
     }
 
     pub(crate) fn surface(&self) -> io::Result<Surface<'_>> {
@@ -78,7 +96,7 @@ impl Polycrystal {
     fn write_vti(&self, out: &mut dyn Write) -> io::Result<()> {
         let LabelGrid { size, origin, spacing, labels } = self.label_grid()?;
         let names = self.config.file.names;
-        let number = |voxel: usize| names.number(labels[voxel]);
+        let number = |voxel: usize| names.voxel_number(labels[voxel]);
         let values = Values::Int32Of(Each { count: labels.len(), value: &number });
         let cell_arrays = vec![Array { name: names.voxel(), values }];
         write_vti(&ImageData { size, origin, spacing, cell_arrays, field: self.field() }, out)
@@ -122,14 +140,22 @@ impl Polycrystal {
             point_arrays.push(Array { name: "PeriodicOriginal", values: Values::Int32(&originals) });
         }
         let measured = self.config.file.arrays.then(|| MeasuredArrays::new(self, cells));
-        let (of_cells, of_points);
+        let (of_cells, of_points, normals);
         if let Some(measured) = &measured {
+            normals = unit_normals(&self.points, &triangles);
+            if !normals.is_empty() {
+                cell_arrays.push(Array { name: "Normals", values: Values::Vectors(&normals) });
+            }
             of_cells = measured.of_cells(boundary_of_cell);
             of_points = measured.of_points();
             cell_arrays.extend(of_cells.arrays());
             point_arrays.extend(of_points.arrays());
         }
-        let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field: self.field() };
+        // Small changes of the points are seen in these only.
+        let volumes = FieldValue::Numbers(self.network.grain_volumes(level, &self.points));
+        let mut field = self.field();
+        field.push(FieldEntry { name: "Volumes", value: volumes });
+        let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field };
         write_vtk(&data, format, out)
     }
 
@@ -174,6 +200,12 @@ pub(crate) fn triangles<'a>(level: &'a Level, boundaries: &[Boundary], names: Na
             },
         );
     wound.collect()
+}
+
+/// The unit normal of each triangle. Points cannot have them: where boundaries meet, each has another one.
+fn unit_normals(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
+    let corners = |triangle: &[u32; 3]| triangle.map(|corner| points[corner as usize]);
+    triangles.par_iter().map(|triangle| unit_normal(corners(triangle))).collect()
 }
 
 /// One polyline for each boundary, with its first side in a scheme of names on the left, and the boundaries in the same order.

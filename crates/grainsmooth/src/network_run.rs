@@ -120,12 +120,12 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     }
     let tessellated = tessellate(config, &progress)?;
     if !files.tables.is_empty() {
-        let table = CellTable::new(&tessellated);
+        let table = CellTable::new(config, &tessellated);
         files.tables.iter().try_for_each(|output| table.write(output))?;
     }
     let Some(output) = &files.output else {
         let tessellation = &tessellated.tessellation;
-        let lattice = config.lattice_report(tessellation.cell_count());
+        let lattice = config.lattice_report(tessellation.domain(), tessellation.cell_count());
         let lattice = lattice.map_or(String::new(), |lattice| format!("\nlattice     {lattice}"));
         return Ok(format!(
             "cells       {} in {}{lattice}",

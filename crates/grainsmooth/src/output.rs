@@ -10,7 +10,7 @@ use voronoi::Dimension;
 
 use crate::unfinished::Unfinished;
 use crate::vtk::VtkFormat;
-use crate::{Config, Error, PeriodicCut, Shape};
+use crate::{Config, Error, PeriodicCut};
 
 /// A file format that results are written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -158,9 +158,6 @@ impl Output {
                 && config.periodic_cut == PeriodicCut::Wrap =>
             {
                 Err(Error::FormatPeriodic { path: path() })
-            }
-            _ if self.format.has_voxels() && config.shape != Shape::Box => {
-                Err(Error::FormatNeedsBox { path: path() })
             }
             _ if self.format.has_voxels() && config.file.voxels.is_none() => {
                 Err(Error::NoVoxels { path: path() })

@@ -12,7 +12,6 @@ use std::num::NonZeroU16;
 use glam::DVec3;
 use polycrystal::Mesh;
 use tiny_skia::Pixmap;
-use voronoi::Dimension;
 
 use crate::{Error, Output, Polycrystal};
 
@@ -78,7 +77,20 @@ impl Polycrystal {
             }
             Mesh::Segments(lines) => plane::draw(self, lines, &shifts, &colors, picture, &mut pixmap),
         }
-        pixmap.encode_png().map_err(io::Error::other)
+        self.encoded(pixmap).map_err(io::Error::other)
+    }
+
+    /// A picture without transparency as PNG, with the settings of the run.
+    fn encoded(&self, pixmap: Pixmap) -> Result<Vec<u8>, png::EncodingError> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, pixmap.width(), pixmap.height());
+        encoder.set_color(png::ColorType::Rgba);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder
+            .add_text_chunk("Software".to_owned(), format!("grainsmooth {}", env!("CARGO_PKG_VERSION")))?;
+        encoder.add_itxt_chunk("Config".to_owned(), self.config.to_toml())?;
+        encoder.write_header()?.write_image_data(&pixmap.take_demultiplied())?;
+        Ok(bytes)
     }
 
     /// How far each grain is moved.
@@ -102,11 +114,7 @@ impl Polycrystal {
 
     /// Diameter of the ball (in the plane: the disc) of each grain's volume.
     pub(crate) fn equivalent_diameters(&self) -> Vec<f64> {
-        use std::f64::consts::PI;
-        let diameter = |volume: &f64| match self.config.dimension {
-            Dimension::Two => (4.0 * volume / PI).sqrt(),
-            Dimension::Three => (6.0 * volume / PI).cbrt(),
-        };
-        self.network.cell_volumes().iter().map(diameter).collect()
+        let volumes = self.network.cell_volumes().iter();
+        volumes.map(|volume| self.config.dimension.ball_diameter(*volume)).collect()
     }
 }

@@ -79,6 +79,8 @@ pub struct Polycrystal {
     pub points: Vec<DVec3>,
     /// What relaxation gave, before the last subdivisions: points to move by hand, of whole grains.
     pub relaxed: Relaxed,
+    /// How far the cells were regularised.
+    pub regularization: Regularization,
     /// What regularisation took out.
     pub collapsed: Collapsed,
     /// How relaxation to equilibrium changed the topology and how near it came; nothing where it kept the topology.
@@ -222,13 +224,13 @@ pub fn smooth_watched(
     let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
     check_levels(LevelSize { points, edges, triangles }, config.levels, available_memory())?;
     let mut tries = Regularization::tries(config).iter();
-    let smoothed = loop {
+    let (regularization, smoothed) = loop {
         let regularization = *tries.next().expect("there is one, and the last is the result");
         let smoothed = smooth_regularized(config, tessellation, regularization, &mut clock, &mut watch);
         let is_tangled =
             smoothed.as_ref().is_err_and(|error| matches!(error, Error::Network(cause) if is_tangle(cause)));
         if !is_tangled || tries.len() == 0 {
-            break smoothed?;
+            break (regularization, smoothed?);
         }
     };
     let Smoothed { network, points, relaxed, collapsed, equilibrium, flat_angles, angles_before, validation } =
@@ -241,6 +243,7 @@ pub fn smooth_watched(
         network,
         points,
         relaxed,
+        regularization,
         collapsed,
         equilibrium,
         flat_angles,
@@ -250,9 +253,9 @@ pub fn smooth_watched(
     })
 }
 
-/// What is taken out of the cells before relaxation.
-#[derive(Debug, Clone, Copy)]
-enum Regularization {
+/// What is taken out of the cells before relaxation. Cells that may change their neighbours are relaxed as they are instead.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Regularization {
     /// What is short, and what relaxation would make so: the best triangles.
     Foreseeing,
     /// What is short.
@@ -262,6 +265,20 @@ enum Regularization {
 }
 
 impl Regularization {
+    /// A name for programs.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Foreseeing => "full",
+            Self::Plain => "short_edges",
+            Self::None => "none",
+        }
+    }
+
+    /// Whether less was taken out than is usual where regularisation is asked for.
+    pub(crate) fn fell_back(self, config: &Config) -> bool {
+        Self::tries(config)[0] != self
+    }
+
     /// What to try, one after the other: where much is taken out, in rare places relaxation makes boundaries fold or cross.
     fn tries(config: &Config) -> &'static [Self] {
         match config.effective_regularize() {

@@ -1,7 +1,7 @@
 //! Random seeds that keep a distance from each other.
 
 use glam::DVec3;
-use voronoi::{Dimension, Domain};
+use voronoi::Domain;
 
 use crate::seeding::random_points;
 
@@ -26,10 +26,7 @@ pub fn poisson_disc_seeds(count: usize, domain: &Domain, random_seed: u64) -> Ve
 }
 
 fn throw_darts(count: usize, domain: &Domain, random_seed: u64, clearance: f64) -> Vec<DVec3> {
-    let spacing = match domain.dimension() {
-        Dimension::Two => (domain.measure() / count as f64).sqrt(),
-        Dimension::Three => (domain.measure() / count as f64).cbrt(),
-    };
+    let spacing = domain.dimension().cube_edge(domain.measure() / count as f64);
     let mut distance = clearance * spacing;
     let mut bins = Bins::new(domain, distance, count);
     let mut darts = random_points(domain, random_seed);

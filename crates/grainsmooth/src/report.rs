@@ -57,6 +57,7 @@ impl Polycrystal {
                 ("title", &title),
                 ("style", include_str!("../assets/report.css")),
                 ("command", &escaped(&self.config.command_line())),
+                ("settings", &escaped(&self.config.to_toml())),
                 ("view", &view),
                 ("charts", &charts),
                 ("rows", &self.rows()),

@@ -53,7 +53,8 @@ impl SeriesOutput {
     }
 }
 
-fn step_path(path: &Path, number: usize) -> PathBuf {
+/// Where the series at `path` has this step.
+pub(crate) fn step_path(path: &Path, number: usize) -> PathBuf {
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     path.with_file_name(format!("{name}_{number:04}.vtp"))
 }

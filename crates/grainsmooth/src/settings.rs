@@ -1,28 +1,14 @@
 //! A config spelled out: as the options of a command line, and as the TOML text that every file carries.
 
-use std::fs::File;
-use std::io::{self, Read, Write};
-use std::path::Path;
+use std::io::{self, Write};
 
 use glam::DVec3;
 use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
 use toml::Value;
 use voronoi::Dimension;
 
-use crate::vtk::find;
+use crate::embedded_config::{BEGIN, END, PREFIXES};
 use crate::{Config, FileOptions, PeriodicCut, SeedSource, Shape, StlEncoding};
-
-/// The first words of the text in a file.
-const BEGIN: &str = "# grainsmooth configuration";
-
-/// The last line of the text in a file.
-const END: &str = "# end of configuration";
-
-/// What stands before each line of the text where a format has its own sign for comments.
-const PREFIXES: [&str; 3] = ["comment ", "# ", "// "];
-
-/// Every format has the text near its beginning: so many bytes are searched.
-const SEARCHED_BYTES: u64 = 1 << 20;
 
 impl Config {
     /// Every setting by the long name of its option, the default ones too.
@@ -125,13 +111,25 @@ impl Config {
         line
     }
 
-    /// All settings as TOML, which [`embedded_config`] finds in any file.
+    /// All settings as TOML, which [`embedded_config`](crate::embedded_config()) finds in any file.
     pub fn to_toml(&self) -> String {
         let lines = self.settings().into_iter().map(|(name, value)| format!("{name} = {value}\n"));
         format!(
             "{BEGIN}: `grainsmooth --config` with this file runs it again\n{}{END}\n",
             lines.collect::<String>()
         )
+    }
+
+    /// The settings that are not the default ones, as a TOML table in one line.
+    pub(crate) fn differences(&self) -> String {
+        let defaults = match self.seeds {
+            // The file may give box and periods of its own, which become defaults where they are not named.
+            SeedSource::File(_) => Vec::new(),
+            _ => Self::default().settings(),
+        };
+        let settings = self.settings().into_iter().filter(|setting| !defaults.contains(setting));
+        let settings: Vec<String> = settings.map(|(name, value)| format!("{name}={value}")).collect();
+        format!("{{{}}}", settings.join(","))
     }
 
     /// Writes [`to_toml`](Self::to_toml) with a format's sign for comments before each line.
@@ -158,30 +156,6 @@ impl FileOptions {
     }
 }
 
-/// The settings that a file carries, as TOML; nothing where it has none.
-///
-/// # Errors
-/// Whatever the file system reports.
-pub fn embedded_config(path: &Path) -> io::Result<Option<String>> {
-    // A file of blocks has it in its blocks.
-    let first_block = path.with_extension("").join("boundaries.vtp");
-    let is_vtm = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vtm"));
-    let mut bytes = Vec::new();
-    File::open(if is_vtm { &first_block } else { path })?.take(SEARCHED_BYTES).read_to_end(&mut bytes)?;
-    Ok(extracted(&bytes))
-}
-
-fn extracted(bytes: &[u8]) -> Option<String> {
-    let begin = find(bytes, BEGIN.as_bytes())?;
-    let end = begin + find(&bytes[begin..], END.as_bytes())?;
-    let prefix = PREFIXES.iter().find(|prefix| bytes[..begin].ends_with(prefix.as_bytes()));
-    let text = std::str::from_utf8(&bytes[begin..end]).ok()?;
-    // The first line is a comment of TOML.
-    let lines = text.lines().skip(1);
-    let lines = lines.map(|line| prefix.and_then(|prefix| line.strip_prefix(prefix)).unwrap_or(line));
-    Some(lines.map(|line| format!("{line}\n")).collect())
-}
-
 /// A number of any size: TOML's own end at 2^63, from where on it is a text.
 fn number(number: u64) -> Value {
     i64::try_from(number).map_or_else(|_| number.to_string().into(), Value::Integer)
@@ -193,28 +167,5 @@ fn word(value: &Value) -> String {
         Value::String(text) => text.clone(),
         Value::Float(number) => number.to_string(),
         value => value.to_string(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn settings_are_found_behind_any_sign() {
-        let config = Config { random_seed: u64::MAX, ..Config::default() };
-        let table: toml::Table = config.to_toml().parse().unwrap();
-        assert_eq!(table["rng-seed"].as_str(), Some("18446744073709551615"));
-        assert_eq!(table["box"].as_array().map(Vec::len), Some(3));
-        for sign in PREFIXES {
-            let mut bytes = b"ply\n".to_vec();
-            config.write_comments(sign, &mut bytes).unwrap();
-            bytes.extend([0xff, 0, 1]);
-            assert_eq!(extracted(&bytes).unwrap().parse(), Ok(table.clone()), "{sign}");
-            assert_eq!(extracted(&bytes[..bytes.len() - 60]), None, "cut off");
-        }
-        let raw = [&[7, 0, 0, 0, 0, 0, 0, 0xff], config.to_toml().as_bytes(), &[0, 0xfe]].concat();
-        assert_eq!(extracted(&raw).unwrap().parse(), Ok(table));
-        assert_eq!(extracted(b"seeds = 200"), None);
     }
 }

@@ -58,6 +58,7 @@ pub struct NetworkStatistics {
     version: &'static str,
     command_line: String,
     random_seed: u64,
+    settings: BTreeMap<&'static str, toml::Value>,
     /// Mean and spread of what the tables hold.
     distributions: BTreeMap<&'static str, Distribution>,
     grains: Table,
@@ -86,6 +87,7 @@ impl Polycrystal {
             version: env!("CARGO_PKG_VERSION"),
             command_line: self.config.command_line(),
             random_seed: self.config.random_seed,
+            settings: self.config.settings().into_iter().collect(),
             distributions,
             grains,
             others,

@@ -6,7 +6,7 @@ use std::time::Duration;
 use polycrystal::{AngleStatistics, Balance, Boundary, Reconnections, Relaxation};
 use voronoi::{Collapsed, Dimension};
 
-use crate::{Polycrystal, Stage};
+use crate::{Polycrystal, Regularization, Stage};
 
 /// A polycrystal in a few lines of text: counts, angles, volumes, validation, times.
 pub struct Summary<'a>(pub &'a Polycrystal);
@@ -20,7 +20,7 @@ impl fmt::Display for Summary<'_> {
         let (points, elements) = (finest.vertex_count(), finest.element_count());
         let levels = polycrystal.config.levels;
         writeln!(out, "grains      {} in {}", network.grain_count(), network.domain())?;
-        if let Some(lattice) = polycrystal.config.lattice_report(network.grain_count()) {
+        if let Some(lattice) = polycrystal.config.lattice_report(network.domain(), network.grain_count()) {
             writeln!(out, "lattice     {lattice}")?;
         }
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
@@ -36,6 +36,16 @@ impl fmt::Display for Summary<'_> {
         if collapsed.edges > 0 {
             let Collapsed { edges, faces } = collapsed;
             writeln!(out, "collapsed   {edges} short edges of cells, with them {faces} small boundaries")?;
+        }
+        if polycrystal.regularization.fell_back(&polycrystal.config) {
+            let kept = match polycrystal.regularization {
+                Regularization::None => "not at all",
+                _ => "less than usual, short edges only",
+            };
+            writeln!(
+                out,
+                "regularized {kept}: with more taken out, boundaries folded or crossed when relaxed"
+            )?;
         }
         let (junctions, element, measure, size) = match network.domain().dimension() {
             Dimension::Two => {
@@ -122,5 +132,38 @@ struct Seconds(Duration);
 impl fmt::Display for Seconds {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{:.3} s", self.0.as_secs_f64())
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use super::*;
+    use crate::{Config, SeedSource, SummaryRecord, make_polycrystal};
+
+    #[test]
+    fn weaker_regularization_is_told() {
+        let config = Config { seeds: SeedSource::Random { count: 4 }, levels: 0, ..Config::default() };
+        let mut polycrystal = make_polycrystal(&config, &|_, _, _| ()).unwrap();
+        for (regularization, name, line) in [
+            (Regularization::Foreseeing, "full", None),
+            (
+                Regularization::Plain,
+                "short_edges",
+                Some("less than usual, short edges only: with more taken out, "),
+            ),
+            (Regularization::None, "none", Some("not at all: with more taken out, ")),
+        ] {
+            polycrystal.regularization = regularization;
+            let said = Summary(&polycrystal).to_string();
+            let told = said.lines().find_map(|line| line.strip_prefix("regularized "));
+            assert_eq!(told.is_some(), line.is_some(), "{said}");
+            assert!(told.unwrap_or_default().starts_with(line.unwrap_or_default()), "{said}");
+            let record = serde_json::to_value(SummaryRecord::new(&polycrystal, Vec::new())).unwrap();
+            assert_eq!(record["regularization"], name);
+            assert_eq!(record["regularization_fell_back"], line.is_some());
+        }
+        polycrystal.config.regularize = 0.0;
+        assert!(!Summary(&polycrystal).to_string().contains("regularized"), "as asked for");
     }
 }

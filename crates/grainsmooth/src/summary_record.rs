@@ -7,7 +7,7 @@ use polycrystal::{AngleStatistics, Boundary};
 use serde::Serialize;
 use voronoi::Dimension;
 
-use crate::Polycrystal;
+use crate::{Polycrystal, Regularization};
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -20,6 +20,8 @@ pub struct SummaryRecord {
     boundaries: Boundaries,
     triple_lines: usize,
     quadruple_points: usize,
+    regularization: &'static str,
+    regularization_fell_back: bool,
     collapsed_edges: usize,
     collapsed_boundaries: usize,
     equilibrium: Option<Equilibrium>,
@@ -87,6 +89,12 @@ impl SummaryRecord {
             },
             triple_lines: junctions.triple_lines,
             quadruple_points: junctions.quadruple_points,
+            // Cells that change their neighbours are not regularised.
+            regularization: match polycrystal.equilibrium {
+                Some(_) => Regularization::None.name(),
+                None => polycrystal.regularization.name(),
+            },
+            regularization_fell_back: polycrystal.regularization.fell_back(config),
             collapsed_edges: polycrystal.collapsed.edges,
             collapsed_boundaries: polycrystal.collapsed.faces,
             equilibrium: polycrystal.equilibrium.map(|(reconnections, balance)| Equilibrium {

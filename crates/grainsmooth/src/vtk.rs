@@ -205,7 +205,7 @@ impl<'a> Values<'a> {
 }
 
 /// A named remark about the file as a whole, kept in VTK's field data.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct FieldEntry {
     /// Name under which VTK lists the entry; without blanks, which the legacy format cannot hold.
     pub name: &'static str,
@@ -217,12 +217,14 @@ pub struct FieldEntry {
 ///
 /// A text is a string array in .vtp and .vtk. In .vtu it is an array of UInt8 holding the UTF-8 bytes: the
 /// tools other than VTK that read .vtu refuse the whole file when they meet a string array.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum FieldValue {
     /// Text without NUL characters.
     Text(String),
     /// A number such as the random seed, kept as UInt64.
     Integer(u64),
+    /// Any number of numbers, such as volumes, kept as Float64.
+    Numbers(Vec<f64>),
 }
 
 /// Writes `data` in `format`.

@@ -1,6 +1,7 @@
 use glam::DVec3;
 
-use crate::seams::{Seams, Use};
+use crate::measures::Complex;
+use crate::seams::Use;
 use crate::{Elements, Level, Network, Side, Surface};
 
 /// Mean and spread of the angles between boundaries, in degrees.
@@ -13,18 +14,18 @@ pub struct AngleStatistics {
 }
 
 /// The angles between the three boundaries at triple lines inside the domain, weighted by length; in the plane, at triple
-/// points. Nothing when there is no such place.
+/// points. Nothing when there is no such place. In a periodic network every place counts once.
 ///
 /// Random Voronoi grains have 120 +- 23.8 degrees, equilibrium has 120 +- 0.
 pub fn dihedral_angles(network: &Network, level: &Level, points: &[DVec3]) -> Option<AngleStatistics> {
     let sides = network.sides();
-    angle_statistics(&Surface::of_level(level, points, &sides), &Seams::of_level(level))
+    statistics(Complex::of_level(network, level, &Surface::of_level(level, points, &sides)).angles())
 }
 
 /// An angle between two boundaries at a triple line, in the plane at a triple point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeightedAngle {
-    /// The angle, from 0 to 180 degrees.
+    /// The angle that the grain between them fills, from 0 to 360 degrees.
     pub degrees: f64,
     /// The length of the line over which it holds; in the plane 1.
     pub weight: f64,
@@ -33,27 +34,75 @@ pub struct WeightedAngle {
 /// All angles that [`dihedral_angles`] takes the statistics of: three at each edge of a triple line.
 pub fn angles_between_boundaries(network: &Network, level: &Level, points: &[DVec3]) -> Vec<WeightedAngle> {
     let sides = network.sides();
-    angles(&Surface::of_level(level, points, &sides), &Seams::of_level(level)).collect()
+    Complex::of_level(network, level, &Surface::of_level(level, points, &sides)).angles().collect()
 }
 
-fn angles(surface: &Surface<'_>, seams: &Seams) -> impl Iterator<Item = WeightedAngle> {
-    let is_interior = |at: &Use| !surface.sides_of(at.element).contains(&Side::Exterior);
-    let triple = seams.places().filter(move |at| at.len() == 3 && at.iter().all(is_interior));
-    triple.flat_map(|at| {
+/// The angles of the grains that meet at those of these places where three do, and not the exterior. Boundaries have these sides.
+pub(crate) fn angles<'a>(
+    surface: &Surface<'a>,
+    sides: &[[Side; 2]],
+    places: impl Iterator<Item = &'a [Use]>,
+) -> impl Iterator<Item = WeightedAngle> {
+    let is_interior =
+        |at: &Use| !sides[surface.boundary_of[at.element as usize].index()].contains(&Side::Exterior);
+    let triple = places.filter(move |at| at.len() == 3 && at.iter().all(is_interior));
+    triple.flat_map(move |at| {
         let weight = place_length(surface, at);
-        let legs = [0, 1, 2].map(|k| leg(surface, &at[k]));
-        [[0, 1], [1, 2], [2, 0]].map(|[a, b]| {
-            let degrees = legs[a].dot(legs[b]).clamp(-1.0, 1.0).acos().to_degrees();
-            WeightedAngle { degrees, weight }
-        })
+        wedges(surface, sides, at)
+            .into_iter()
+            .map(move |wedge| WeightedAngle { degrees: wedge.angle.to_degrees(), weight })
     })
 }
 
-/// The same of any surface.
-pub(crate) fn angle_statistics(surface: &Surface<'_>, seams: &Seams) -> Option<AngleStatistics> {
+/// A sector around a place where boundaries meet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Wedge {
+    /// What fills it.
+    pub(crate) side: Side,
+    /// Between the boundaries that bound it, in radians.
+    pub(crate) angle: f64,
+}
+
+/// The sectors into which boundaries, which have these sides, divide what surrounds a place, in order around it.
+pub(crate) fn wedges(surface: &Surface<'_>, sides: &[[Side; 2]], at: &[Use]) -> Vec<Wedge> {
+    let ends = |at: &Use| at.ends(surface.elements).map(|end| surface.points[end as usize]);
+    let axis = match surface.elements {
+        Elements::Triangles(_) => {
+            let [start, end] = ends(&at[0]);
+            (end - start).normalize_or_zero()
+        }
+        Elements::Segments(_) => DVec3::Z,
+    };
+    let zero = leg(surface, &at[0]);
+    let quarter = axis.cross(zero);
+    let mut spokes: Vec<(f64, Side)> = at
+        .iter()
+        .map(|at| {
+            let [first, second] = sides[surface.boundary_of[at.element as usize].index()];
+            // A triangle that runs along the axis has its second side counter-clockwise of it.
+            let is_along = match surface.elements {
+                Elements::Triangles(_) => {
+                    let [start, end] = ends(at);
+                    (end - start).dot(axis) > 0.0
+                }
+                // A segment that starts here has its first side on the left.
+                Elements::Segments(_) => at.corner == 1,
+            };
+            let leg = leg(surface, at);
+            (leg.dot(quarter).atan2(leg.dot(zero)), if is_along { second } else { first })
+        })
+        .collect();
+    spokes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let next = spokes[1..].iter().map(|(angle, _)| *angle);
+    let ends = next.chain([spokes[0].0 + std::f64::consts::TAU]);
+    spokes.iter().zip(ends).map(|(&(start, side), end)| Wedge { side, angle: end - start }).collect()
+}
+
+/// Mean and spread of angles; nothing where all weights are 0.
+pub(crate) fn statistics(angles: impl Iterator<Item = WeightedAngle>) -> Option<AngleStatistics> {
     // Sums of weight, weight * angle and weight * angle^2.
     let mut sums = [0.0; 3];
-    for WeightedAngle { degrees, weight } in angles(surface, seams) {
+    for WeightedAngle { degrees, weight } in angles {
         for (sum, power) in sums.iter_mut().zip([1.0, degrees, degrees * degrees]) {
             *sum += weight * power;
         }

@@ -16,7 +16,7 @@ use glam::DVec3;
 use voronoi::{Dimension, Domain, Shift};
 
 use crate::face_mesh::id;
-use crate::{BoundaryId, Elements, Junctions, Network, NetworkError, Side, Surface};
+use crate::{BoundaryId, Elements, GrainId, Junctions, Network, NetworkError, Side, Surface};
 use caps::caps;
 use pieces::Pieces;
 
@@ -44,24 +44,24 @@ impl Network {
     /// The network in the box alone, and its points, for the points of the finest level of a periodic network: grains end at the
     /// walls, some in several pieces. In its own box it has walls where the periodic one had copies, and a single level.
     ///
-    /// Points on opposite walls are the same, bit for bit, but for the coordinate across.
+    /// Points on opposite walls are the same, bit for bit, but for the coordinate across. A boundary that lies in a plane of the box
+    /// becomes two walls, and one at which a grain meets its own image is left out: in the box there is the same on both sides.
     ///
     /// # Errors
-    /// [`NetworkError::PointOnCut`] where a point lies on a plane of the box, as lattices have it;
-    /// [`NetworkError::MeetsItself`] where a grain is its own neighbour; [`NetworkError::CutCrosses`];
-    /// [`NetworkError::Invalid`] where the pieces are no valid network.
+    /// [`NetworkError::CutCrosses`]; [`NetworkError::MeetsItself`] where that leaves folds; [`NetworkError::Invalid`] where the pieces are no valid network.
     ///
     /// # Panics
     /// When there is not one point per vertex of the finest level.
     pub fn cut_at_box(&self, points: &[DVec3]) -> Result<(Self, Vec<DVec3>), NetworkError> {
         let domain = self.domain();
-        let mut pieces = Pieces::of_network(self, points)?;
+        let mut pieces = Pieces::of_network(self, points);
         for axis in periodic_axes(domain) {
-            pieces.cut(axis)?;
+            pieces.cut(axis);
         }
         pieces.move_into_box();
-        let caps = caps(&mut pieces)?;
-        let Pieces { pieces, places, .. } = pieces;
+        let only_grain = (self.grain_count() == 1).then_some(Side::Grain(GrainId(0)));
+        let caps = caps(&mut pieces, only_grain)?;
+        let Pieces { pieces, places, meets_itself, .. } = pieces;
         let mut numbers: BTreeMap<Corner, u32> = BTreeMap::new();
         let mut box_points = Vec::new();
         let mut sides: Vec<[Side; 2]> = pieces.iter().chain(&caps).map(|piece| piece.sides).collect();
@@ -91,7 +91,10 @@ impl Network {
         };
         let surface = Surface { points: &box_points, elements, boundary_of: &boundary_of, sides: &sides };
         let walled = domain.clone().with_periods(glam::BVec3::FALSE);
-        Self::of_surface(&walled, &surface, Junctions::Crease, 0)
+        match (Self::of_surface(&walled, &surface, Junctions::Crease, 0), meets_itself) {
+            (Err(NetworkError::Invalid(_)), Some(grain)) => Err(NetworkError::MeetsItself { grain }),
+            (result, _) => result,
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::angles::angle_statistics;
+use crate::angles::{angles, statistics};
 use crate::closing::faults_of_closing;
 use crate::fans::pinched_points;
 use crate::fault::Fault;
@@ -119,7 +119,7 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>)
     }
     certificate.grain_volumes = grain_volumes(surface);
     certificate.check_volumes(claims, is_closed);
-    certificate.angles = angle_statistics(surface, seams);
+    certificate.angles = statistics(angles(surface, surface.sides, seams.places()));
     certificate
 }
 

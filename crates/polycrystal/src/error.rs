@@ -45,16 +45,10 @@ pub enum NetworkError {
         /// The number that is left out.
         grain: GrainId,
     },
-    /// A point lies on a plane of the box at which a periodic network is to be cut.
+    /// A grain of a periodic network meets its own image, and what is left in the box without that boundary is no valid network.
     #[error(
-        "the point {point} of the network lies on a wall of the box, which so cannot cut it; keep grains whole, or move the seeds"
+        "grain {} is its own neighbour, and folds where the box cuts it; keep grains whole, or give more seeds", grain.0
     )]
-    PointOnCut {
-        /// Where.
-        point: glam::DVec3,
-    },
-    /// A grain of a periodic network that is to be cut meets a copy of itself.
-    #[error("grain {} is its own neighbour, so the box cannot cut it; keep grains whole, or give more seeds", grain.0)]
     MeetsItself {
         /// The grain.
         grain: GrainId,

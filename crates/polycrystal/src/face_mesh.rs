@@ -105,9 +105,9 @@ impl FaceMesh {
     /// The length below which lines stay whole.
     fn short_line(self, tessellation: &Tessellation) -> f64 {
         match (self, tessellation.domain().dimension()) {
-            (Self::SparseFan, Dimension::Three) => {
+            (Self::SparseFan, dimension @ Dimension::Three) => {
                 let mean_volume = tessellation.domain().measure() / tessellation.cell_count() as f64;
-                SHORT_LINE * mean_volume.cbrt()
+                SHORT_LINE * dimension.cube_edge(mean_volume)
             }
             _ => 0.0,
         }

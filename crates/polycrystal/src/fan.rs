@@ -33,29 +33,39 @@ pub(crate) struct Fan {
     points: Vec<DVec3>,
     /// The neighbours round each centre, counter-clockwise.
     rings: Vec<Vec<u32>>,
+    /// The sum of the triangles' normals, each as long as twice the area: the same whatever is inside the outline.
+    normal: DVec3,
 }
 
 impl Fan {
     /// A fan round the outline's own centre.
     pub(crate) fn new(outline: &[DVec3]) -> Self {
+        let center = outline_center(outline);
+        let next = outline.iter().cycle().skip(1);
+        let normal = outline.iter().zip(next).map(|(a, b)| (*a - center).cross(*b - center)).sum();
         let mut points = outline.to_vec();
-        points.push(outline_center(outline));
-        Self { outline: outline.len(), points, rings: vec![(0..id(outline.len())).collect()] }
+        points.push(center);
+        Self { outline: outline.len(), points, rings: vec![(0..id(outline.len())).collect()], normal }
     }
 
     /// The fan with more centres, as long as they make its smallest angle wider.
     pub(crate) fn with_more_centers(mut self) -> Self {
-        let (mut worst, mut cosine) = self.thinnest();
-        while cosine > GOOD_ANGLE.to_radians().cos() && self.rings.len() < MOST_CENTERS {
+        let mut thinnest = self.thinnest(f64::INFINITY);
+        while let Some((worst, cosine)) = thinnest
+            && cosine > GOOD_ANGLE.to_radians().cos()
+            && self.rings.len() < MOST_CENTERS
+        {
+            thinnest = None;
+            let mut bound = (GAIN * cosine.acos()).cos();
             let centers = worst.into_iter().filter_map(|point| (point as usize).checked_sub(self.outline));
-            let splits = centers.flat_map(|center| self.splits(center)).map(|fan| (fan.thinnest(), fan));
-            let best = splits.min_by(|a, b| a.0.1.total_cmp(&b.0.1));
-            match best {
-                Some(((thinnest, after), fan)) if after.acos() > GAIN * cosine.acos() => {
-                    (self, worst, cosine) = (fan, thinnest, after);
+            let mut best = None;
+            for fan in centers.flat_map(|center| self.splits(center)) {
+                if let Some(found) = fan.thinnest(bound) {
+                    (thinnest, bound) = (Some(found), found.1);
+                    best = Some(fan);
                 }
-                _ => break,
             }
+            self = best.unwrap_or(self);
         }
         self
     }
@@ -75,22 +85,29 @@ impl Fan {
         })
     }
 
-    /// The triangle with the smallest angle, and that angle's cosine. One that turns away from the boundary has none.
-    fn thinnest(&self) -> ([u32; 3], f64) {
-        let corners = |triangle: [u32; 3]| triangle.map(|point| self.points[point as usize]);
-        let normal = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
-        let whole: DVec3 = self.triangles().map(|triangle| normal(corners(triangle))).sum();
+    /// The triangle with the smallest angle, and that angle's cosine; nothing if the cosine reaches the bound. A triangle that
+    /// turns away from the boundary has no angle.
+    fn thinnest(&self, bound: f64) -> Option<([u32; 3], f64)> {
         let cosine = |triangle: [u32; 3]| {
-            let [a, b, c] = corners(triangle);
-            let normal = normal([a, b, c]);
-            if normal.dot(whole) < LARGEST_BEND * normal.length() * whole.length() {
+            let [a, b, c] = triangle.map(|point| self.points[point as usize]);
+            let normal = (b - a).cross(c - a);
+            if normal.dot(self.normal) < LARGEST_BEND * normal.length() * self.normal.length() {
                 return 1.0;
             }
             let [ab, bc, ca] = [b - a, c - b, a - c].map(DVec3::normalize_or_zero);
             (-ab.dot(ca)).max(-bc.dot(ab)).max(-ca.dot(bc)).min(1.0)
         };
-        let all = self.triangles().map(|triangle| (triangle, cosine(triangle)));
-        all.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a fan has triangles")
+        let mut thinnest: Option<([u32; 3], f64)> = None;
+        for triangle in self.triangles() {
+            let cosine = cosine(triangle);
+            if cosine >= bound {
+                return None;
+            }
+            if thinnest.is_none_or(|(_, largest)| cosine >= largest) {
+                thinnest = Some((triangle, cosine));
+            }
+        }
+        thinnest
     }
 
     /// The fans in which a new centre takes a part of a centre's ring over.
@@ -146,7 +163,7 @@ mod tests {
     use super::*;
 
     fn smallest_angle(fan: &Fan) -> f64 {
-        fan.thinnest().1.acos().to_degrees()
+        fan.thinnest(f64::INFINITY).expect("a fan has triangles").1.acos().to_degrees()
     }
 
     #[test]

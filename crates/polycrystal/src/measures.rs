@@ -12,8 +12,8 @@ pub use curvatures::{PointCurvature, point_curvatures};
 pub use plane::{PlaneBoundaryMeasures, PlaneGrainMeasures, PlaneMeasures, TriplePointMeasures};
 pub use space::{BoundaryMeasures, GrainMeasures, QuadruplePointMeasures, SpaceMeasures, TripleLineMeasures};
 
-use crate::{AngleStatistics, Elements, Network, Side, Surface};
-use complex::Complex;
+use crate::{Elements, Network, Side, Surface};
+pub(crate) use complex::Complex;
 
 /// What a network is like. Lengths are in the unit of its points, angles in degrees.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,27 +102,5 @@ fn of_complex(complex: &Complex<'_>) -> Measures {
     match complex.surface.elements {
         Elements::Triangles(triangles) => Measures::Space(space::measure(complex, triangles)),
         Elements::Segments(segments) => Measures::Plane(plane::measure(complex, segments)),
-    }
-}
-
-/// Mean and spread of angles with weights; nothing where all weights are 0.
-#[derive(Debug, Default)]
-struct AngleSums {
-    weight: f64,
-    first: f64,
-    second: f64,
-}
-
-impl AngleSums {
-    fn add(&mut self, weight: f64, angle: f64) {
-        self.weight += weight;
-        self.first += weight * angle;
-        self.second += weight * angle * angle;
-    }
-
-    fn statistics(&self) -> Option<AngleStatistics> {
-        let mean = self.first / self.weight;
-        let variance = (self.second / self.weight - mean * mean).max(0.0);
-        (self.weight > 0.0).then(|| AngleStatistics { mean, standard_deviation: variance.sqrt() })
     }
 }

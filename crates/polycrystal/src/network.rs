@@ -281,11 +281,7 @@ impl Network {
 
     /// The edge of a cube (in the plane: of a square) with the mean grain volume: the unit of lengths in relaxation.
     pub fn mean_grain_size(&self) -> f64 {
-        let mean = self.domain.measure() / self.grain_count() as f64;
-        match self.domain.dimension() {
-            voronoi::Dimension::Two => mean.sqrt(),
-            voronoi::Dimension::Three => mean.cbrt(),
-        }
+        self.domain.dimension().cube_edge(self.domain.measure() / self.grain_count() as f64)
     }
 
     /// The mean grain size, or the box's shortest side where that is shorter: the size of what can be seen to be small.

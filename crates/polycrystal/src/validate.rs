@@ -2,7 +2,7 @@ use glam::DVec3;
 
 use crate::certificate::inspect;
 use crate::seams::Seams;
-use crate::{Certificate, Claims, Faults, GrainId, Network, Surface};
+use crate::{Certificate, Claims, Faults, GrainId, Network, Surface, dihedral_angles};
 
 /// Checks the finest level of a network with the given points: everything that [`certify`](crate::certify) finds in any
 /// surface, grains that have the volumes of their cells, and the types of points.
@@ -25,7 +25,11 @@ pub fn validate(network: &Network, points: &[DVec3]) -> Result<Certificate, Faul
         grain_volumes: Some(&volumes),
         domain_volume: Some(network.domain().measure()),
     };
-    let certificate = inspect(&surface, &Seams::of_level(level), &claims);
+    let mut certificate = inspect(&surface, &Seams::of_level(level), &claims);
+    // The surface does not know what it is like through the walls.
+    if certificate.is_good() && network.domain().is_periodic() {
+        certificate.angles = dihedral_angles(network, level, points);
+    }
     if certificate.is_good() { Ok(certificate) } else { Err(certificate.faults) }
 }
 

@@ -57,16 +57,72 @@ fn cut_grains_are_closed_and_match_on_opposite_walls() {
     }
 }
 
+/// Boundaries, lines and points of lattices lie in the walls.
 #[test]
-fn what_the_box_cannot_cut_is_named() {
-    let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
-    let (network, points) = relaxed(&domain, &[DVec3::new(0.31, 0.42, 0.23), DVec3::new(0.6, 0.7, 0.8)]);
-    let error = network.cut_at_box(&points).expect_err("two grains");
-    assert!(matches!(error, NetworkError::MeetsItself { .. }), "{error}");
-    let lattice: Vec<DVec3> = (0..27)
-        .map(|k| (DVec3::new(f64::from(k % 3), f64::from(k / 3 % 3), f64::from(k / 9)) + 0.5) / 3.0)
-        .collect();
-    let (network, points) = relaxed(&domain, &lattice);
-    let error = network.cut_at_box(&points).expect_err("boundaries in the walls");
-    assert!(matches!(error, NetworkError::PointOnCut { .. }), "{error}");
+fn lattices_are_cut_where_they_lie_in_the_walls() {
+    let lattice = |count: u32, motif: &[[f64; 3]]| -> Vec<DVec3> {
+        let size = f64::from(count);
+        let cells =
+            (0..count.pow(3)).map(|k| [k % count, k / count % count, k / count / count].map(f64::from));
+        cells
+            .flat_map(|cell| motif.iter().map(move |at| (DVec3::from(cell) + DVec3::from(*at)) / size))
+            .collect()
+    };
+    let half = 0.5;
+    for (name, seeds) in [
+        ("sc", lattice(3, &[[half; 3]])),
+        ("sc, walls through seeds", lattice(3, &[[0.0; 3]])),
+        ("bcc", lattice(2, &[[0.25; 3], [0.75; 3]])),
+        ("bcc, walls through square faces", lattice(2, &[[0.0; 3], [half; 3]])),
+        ("fcc", lattice(2, &[[0.0; 3], [half, half, 0.0], [half, 0.0, half], [0.0, half, half]])),
+        ("fcc, moved", lattice(2, &[[0.25; 3], [0.75, 0.75, 0.25], [0.75, 0.25, 0.75], [0.25, 0.75, 0.75]])),
+    ] {
+        for periodic in [BVec3::TRUE, BVec3::new(true, false, false), BVec3::new(true, true, false)] {
+            let domain = Domain::unit_cube().with_periods(periodic);
+            cut_is_valid(&domain, &seeds, name);
+        }
+    }
+    let flat = |seeds: Vec<DVec3>| -> Vec<DVec3> {
+        seeds.into_iter().filter(|seed| seed.z < 0.3).map(|seed| seed.with_z(0.0)).collect()
+    };
+    for (name, seeds) in [
+        ("square", flat(lattice(3, &[[half, half, 0.0]]))),
+        ("square, walls through seeds", flat(lattice(3, &[[0.0; 3]]))),
+        ("brick", flat(lattice(2, &[[0.25, 0.25, 0.0], [0.75, 0.75, 0.0]]))),
+    ] {
+        for periodic in [BVec3::TRUE, BVec3::new(true, false, false), BVec3::new(false, true, false)] {
+            cut_is_valid(&Domain::unit_square().with_periods(periodic), &seeds, name);
+        }
+    }
+}
+
+fn cut_is_valid(domain: &Domain, seeds: &[DVec3], name: &str) {
+    let (network, points) = relaxed(domain, seeds);
+    let (cut, cut_points) =
+        network.cut_at_box(&points).unwrap_or_else(|error| panic!("{name}, {domain}: {error}"));
+    let cut = cut.with_cell_volumes(network.cell_volumes().to_vec());
+    let validation = validate(&cut, &cut_points).unwrap_or_else(|error| panic!("{name}, {domain}: {error}"));
+    assert!(validation.largest_volume_error < 1e-9, "{name}, {domain}: {validation:?}");
+}
+
+/// Where a grain is its own neighbour nothing stands between the two in the box.
+#[test]
+fn few_grains_are_cut_or_refused() {
+    let mut cut = 0;
+    for domain in [Domain::unit_cube(), Domain::unit_square()] {
+        let domain = domain.with_periods(BVec3::TRUE);
+        for count in 1..5 {
+            let (network, points) = relaxed(&domain, &random_seeds(&domain, count, 5));
+            match network.cut_at_box(&points) {
+                Ok((in_box, box_points)) => {
+                    let in_box = in_box.with_cell_volumes(network.cell_volumes().to_vec());
+                    let validation = validate(&in_box, &box_points).expect("valid");
+                    assert!(validation.largest_volume_error < 1e-9, "{count} in {domain}: {validation:?}");
+                    cut += 1;
+                }
+                Err(error) => assert!(matches!(error, NetworkError::MeetsItself { .. }), "{error}"),
+            }
+        }
+    }
+    assert!(cut > 4, "{cut} of 8");
 }

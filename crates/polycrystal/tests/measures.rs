@@ -5,7 +5,7 @@ mod common;
 
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
 
-use common::{network, random_network, relaxed};
+use common::{network, random_network, random_seeds, relaxed};
 use glam::{BVec3, DMat2, DMat3, DVec2, DVec3};
 use polycrystal::{
     BoundaryId, Elements, GrainId, Mesh, Network, PlaneMeasures, PointCurvature, Side, SpaceMeasures,
@@ -237,13 +237,31 @@ fn lines_and_points_are_those_of_the_cells() {
 
 #[test]
 fn angles_are_those_of_the_statistics() {
-    // Cells as they are: where short edges have collapsed, four boundaries may meet in a line, which one of the two leaves out.
     let (network, flat) = random_network(&Domain::unit_cube(), 60, 8, 1);
     let points = network.subdivide(&flat);
     let own = in_space(&network, &points).dihedral_angles.expect("triple lines");
     let known = dihedral_angles(&network, network.finest(), &points).expect("triple lines");
     close(own.mean, 120.0, 1e-12);
     close(own.standard_deviation, known.standard_deviation, 1e-9);
+}
+
+/// Where the box stands on the torus makes no difference: lines through its walls count as all others do, and once.
+#[test]
+fn angles_of_a_periodic_network_are_those_of_all_its_lines() {
+    for domain in [Domain::unit_cube(), Domain::unit_square()] {
+        let domain = domain.with_periods(BVec3::TRUE);
+        let seeds = random_seeds(&domain, 30, 8);
+        let angles = [0.0, 0.4].map(|shift| {
+            let moved: Vec<DVec3> = seeds
+                .iter()
+                .map(|seed| DVec3::new((seed.x + shift).fract(), (seed.y + shift).fract(), seed.z))
+                .collect();
+            let (network, flat) = network(&domain, &moved, 0);
+            dihedral_angles(&network, network.finest(), &flat).expect("triple lines")
+        });
+        close(angles[0].mean, 120.0, 1e-10);
+        close(angles[0].standard_deviation, angles[1].standard_deviation, 1e-10);
+    }
 }
 
 #[test]

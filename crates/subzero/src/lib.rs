@@ -44,6 +44,7 @@ mod loop_scheme;
 mod mesh_checks;
 mod point;
 mod polygon_mesh;
+mod prefetch;
 mod sharpness;
 mod split_and_flip;
 mod stencil;

@@ -1,3 +1,4 @@
+use std::f64::consts::PI;
 use std::fmt;
 use std::sync::Arc;
 
@@ -16,6 +17,32 @@ pub enum Dimension {
     Two,
     /// Polyhedra in space.
     Three,
+}
+
+impl Dimension {
+    /// The edge of the cube of a volume, in the plane of the square of an area.
+    pub fn cube_edge(self, volume: f64) -> f64 {
+        match self {
+            Self::Two => volume.sqrt(),
+            Self::Three => volume.cbrt(),
+        }
+    }
+
+    /// The diameter of the ball of a volume, in the plane of the disc of an area.
+    pub fn ball_diameter(self, volume: f64) -> f64 {
+        match self {
+            Self::Two => 2.0 * (volume / PI).sqrt(),
+            Self::Three => (6.0 * volume / PI).cbrt(),
+        }
+    }
+
+    /// Corners that a face has at least.
+    pub(crate) fn fewest_corners(self) -> usize {
+        match self {
+            Self::Two => 2,
+            Self::Three => 3,
+        }
+    }
 }
 
 /// Most walls of a polyhedron: with twice as many vertices, places in one cell fit 16 bits.

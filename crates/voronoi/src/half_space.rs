@@ -39,12 +39,13 @@ impl HalfSpace {
             Plane::Site(site) => {
                 let normal = input.difference(seed, site);
                 let squared_length = normal.length_squared();
-                let (own_weight, weight) = (input.weight(seed), input.weight(site));
+                // Only the difference counts, rounded once: weights may be equal and much larger than all distances.
+                let excess = input.weight(seed) - input.weight(site);
                 Self {
                     generator,
                     normal,
-                    offset: 0.5 * (squared_length + (own_weight - weight)),
-                    offset_size: 0.5 * (squared_length + own_weight.abs() + weight.abs()),
+                    offset: 0.5 * (squared_length + excess),
+                    offset_size: 0.5 * (squared_length + excess.abs()),
                     length: squared_length.sqrt(),
                 }
             }

@@ -22,95 +22,163 @@ pub struct CellMeasure {
     pub centroid: DVec3,
 }
 
+/// What the faces of a cell add up to: the cell consists of cones from its seed to its faces.
+#[derive(Debug, Default, Clone, Copy)]
+pub(crate) struct CellSum {
+    /// Six times the volume.
+    cones: f64,
+    /// That times the centroid, relative to the seed.
+    moment: DVec3,
+    doubled_area: f64,
+    face_count: u32,
+    corner_count: u32,
+}
+
+impl CellSum {
+    /// Adds a face whose normal points outward times `direction`; `seed` and the face are relative to the same place.
+    #[inline]
+    pub(crate) fn add_face(&mut self, face: &FaceMeasure, seed: DVec3, direction: f64) {
+        let to_face = face.centroid - seed;
+        let cone = direction * to_face.dot(face.normal);
+        // A cone's centroid lies at three quarters of the way from its tip to that of its base.
+        self.add(&Self {
+            cones: cone,
+            moment: to_face * (0.75 * cone),
+            doubled_area: face.doubled_area,
+            face_count: 1,
+            corner_count: face.corner_count,
+        });
+    }
+
+    #[inline]
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.cones += other.cones;
+        self.moment += other.moment;
+        self.doubled_area += other.doubled_area;
+        self.face_count += other.face_count;
+        self.corner_count += other.corner_count;
+    }
+
+    pub(crate) fn measure(&self, seed: DVec3) -> CellMeasure {
+        let face_count = self.face_count as usize;
+        // Each edge has a corner in either of its faces, and Euler's formula holds but for an empty cell.
+        let edge_count = self.corner_count as usize / 2;
+        CellMeasure {
+            volume: self.cones / 6.0,
+            area: self.doubled_area / 2.0,
+            face_count,
+            vertex_count: (edge_count + 2).saturating_sub(face_count.max(2)),
+            edge_count,
+            centroid: if self.cones > 0.0 { seed + self.moment / self.cones } else { seed },
+        }
+    }
+}
+
+/// What both cells of a face need of it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FaceMeasure {
+    /// Normal toward the second side, as long as twice the area.
+    normal: DVec3,
+    doubled_area: f64,
+    centroid: DVec3,
+    corner_count: u32,
+}
+
+/// A plane polygon, corner by corner. Its triangles from the first corner on count by their area along the normal.
+pub(crate) struct Polygon {
+    first: DVec3,
+    /// Relative to the first corner, for a face far from the origin would lose digits.
+    last: DVec3,
+    /// Its largest coordinate is 1.
+    normal: DVec3,
+    /// Twice the area, times the length of the normal.
+    weight: f64,
+    moment: DVec3,
+}
+
+impl Polygon {
+    /// From the first corner on. The normal may have any length.
+    #[inline]
+    pub(crate) fn from(first: DVec3, normal: DVec3) -> Self {
+        // The square of the length of a normal between seeds that nearly coincide can be too small for a number.
+        let size = normal.abs().max_element();
+        let normal = if size > 0.0 { normal / size } else { DVec3::ZERO };
+        Self { first, last: DVec3::ZERO, normal, weight: 0.0, moment: DVec3::ZERO }
+    }
+
+    #[inline]
+    pub(crate) fn go_to(&mut self, corner: DVec3) {
+        let next = corner - self.first;
+        let triangle = self.last.cross(next).dot(self.normal);
+        self.weight += triangle;
+        self.moment += (self.last + next) * triangle;
+        self.last = next;
+    }
+
+    #[inline]
+    pub(crate) fn measure(&self, corner_count: u32) -> FaceMeasure {
+        if self.weight == 0.0 {
+            return FaceMeasure {
+                normal: DVec3::ZERO,
+                doubled_area: 0.0,
+                centroid: self.first,
+                corner_count,
+            };
+        }
+        let squared_length = self.normal.length_squared();
+        let normal = self.normal * (self.weight / squared_length);
+        let doubled_area = self.weight.abs() / squared_length.sqrt();
+        FaceMeasure {
+            normal,
+            doubled_area,
+            centroid: self.first + self.moment / (3.0 * self.weight),
+            corner_count,
+        }
+    }
+}
+
+/// Measures that were summed while the cells were cut. They follow from the rest of a tessellation, and do not tell one that has
+/// them from one that has not.
+#[derive(Debug, Default, Clone)]
+pub(crate) struct KeptMeasures(pub(crate) Option<Vec<CellMeasure>>);
+
+impl PartialEq for KeptMeasures {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
 pub(crate) fn cell_measures(tessellation: &Tessellation) -> Vec<CellMeasure> {
     if tessellation.domain.dimension() == Dimension::Two {
         return planar_measures(tessellation);
     }
-    let order = in_space(tessellation);
-    let faces = 0..tessellation.face_count();
-    let face_id = |face: usize| FaceId(u32::try_from(face).expect("face ids fit 32 bits"));
-    let face_measures: Vec<FaceMeasure> =
-        faces.into_par_iter().map(|face| face_measure(tessellation, face_id(face))).collect();
-    let sorted: Vec<CellMeasure> =
-        order.par_iter().map(|cell| measure(tessellation, &face_measures, *cell)).collect();
-    let mut measures = sorted.clone();
-    for (cell, measure) in order.iter().zip(sorted) {
-        measures[cell.index()] = measure;
+    if let KeptMeasures(Some(measures)) = &tessellation.measures {
+        return measures.clone();
     }
-    measures
-}
-
-/// The cells in the order of the faces, which is that of space: what neighbours read is in the cache.
-fn in_space(tessellation: &Tessellation) -> Vec<CellId> {
-    let mut is_listed = vec![false; tessellation.cell_count()];
-    let mut order = Vec::with_capacity(tessellation.cell_count());
-    let mut list = |cell: CellId| {
-        if !std::mem::replace(&mut is_listed[cell.index()], true) {
-            order.push(cell);
+    let face_measures: Vec<FaceMeasure> = (0..tessellation.face_count())
+        .into_par_iter()
+        .map(|face| face_measure(tessellation, FaceId(u32::try_from(face).expect("face ids fit 32 bits"))))
+        .collect();
+    let cells = (0..tessellation.cell_count()).into_par_iter();
+    let measure = |cell: usize| {
+        let cell = CellId(u32::try_from(cell).expect("cell ids fit 32 bits"));
+        let seed = tessellation.seeds[cell.index()];
+        let mut sum = CellSum::default();
+        for &face in tessellation.cell_faces(cell) {
+            let is_first = tessellation.face_sides(face)[0] == Side::Cell(cell);
+            sum.add_face(&face_measures[face.index()], seed, if is_first { 1.0 } else { -1.0 });
         }
+        sum.measure(seed)
     };
-    for [first, _] in &tessellation.face_sides {
-        if let Side::Cell(cell) = first {
-            list(*cell);
-        }
-    }
-    (0u32..).take(tessellation.cell_count()).map(CellId).for_each(list);
-    order
-}
-
-/// What both cells of a face need of it.
-#[derive(Clone, Copy)]
-struct FaceMeasure {
-    /// Normal toward the second side, as long as twice the area.
-    normal: DVec3,
-    centroid: DVec3,
+    cells.map(measure).collect()
 }
 
 fn face_measure(tessellation: &Tessellation, face: FaceId) -> FaceMeasure {
-    let ring = tessellation.face_corners(face);
-    let first = tessellation.vertices[ring[0].index()];
-    // Relative to a corner, for a face far from the origin would lose digits.
-    let at = |corner: VertexId| tessellation.vertices[corner.index()] - first;
-    // Each triangle counts by its area along the normal of all, which is known at the end only: the moments are summed for
-    // each coordinate of the triangles' own normals.
-    let (mut normal, mut moments) = (DVec3::ZERO, [DVec3::ZERO; 3]);
-    let mut b = at(ring[1]);
-    for corner in &ring[2..] {
-        let c = at(*corner);
-        let (triangle, ends) = (b.cross(c), b + c);
-        normal += triangle;
-        moments[0] += ends * triangle.x;
-        moments[1] += ends * triangle.y;
-        moments[2] += ends * triangle.z;
-        b = c;
-    }
-    let weight = normal.length_squared();
-    let moment = moments[0] * normal.x + moments[1] * normal.y + moments[2] * normal.z;
-    let centroid = if weight > 0.0 { first + moment / (3.0 * weight) } else { first };
-    FaceMeasure { normal, centroid }
-}
-
-fn measure(tessellation: &Tessellation, face_measures: &[FaceMeasure], cell: CellId) -> CellMeasure {
-    let seed = tessellation.seeds[cell.index()];
-    // The cell consists of cones from its seed to its faces, here with six times their volumes.
-    let (mut cones, mut doubled_area, mut moment) = (0.0, 0.0, DVec3::ZERO);
-    let mut corner_count = 0;
-    for &face in tessellation.cell_faces(cell) {
-        corner_count += tessellation.face_corners(face).len();
-        let FaceMeasure { normal, centroid } = face_measures[face.index()];
-        let to_face = centroid - seed;
-        let is_first = tessellation.face_sides(face)[0] == Side::Cell(cell);
-        let cone = if is_first { to_face.dot(normal) } else { -to_face.dot(normal) };
-        cones += cone;
-        // A cone's centroid lies at three quarters of the way from its tip to that of its base.
-        moment += to_face * (0.75 * cone);
-        doubled_area += normal.length();
-    }
-    let (volume, area) = (cones / 6.0, doubled_area / 2.0);
-    let face_count = tessellation.cell_faces(cell).len();
-    // Each edge has a corner in either of its faces, and Euler's formula holds but for an empty cell.
-    let edge_count = corner_count / 2;
-    let vertex_count = (edge_count + 2).saturating_sub(face_count.max(2));
-    let centroid = if cones > 0.0 { seed + moment / cones } else { seed };
-    CellMeasure { volume, area, face_count, vertex_count, edge_count, centroid }
+    let corners = tessellation.face_corners(face);
+    let at = |corner: &VertexId| tessellation.vertices[corner.index()];
+    let first = at(&corners[0]);
+    let triangles = corners[1..].windows(2).map(|ends| (at(&ends[0]) - first).cross(at(&ends[1]) - first));
+    let mut polygon = Polygon::from(first, triangles.sum());
+    corners[1..].iter().for_each(|corner| polygon.go_to(at(corner)));
+    polygon.measure(u32::try_from(corners.len()).expect("corners were counted in 32 bits"))
 }

@@ -5,10 +5,11 @@
 //! back. What comes out first is the complex of the torus, every face once. Then each face that joins a cell to a moved one
 //! gets its copy at the other cell, so that all cells are whole, and copies are told by their originals and a shift.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::Domain;
 use crate::corner::Corner;
 use crate::generator::{Generator, Plane, VertexKey};
 use crate::images::Image;
@@ -17,31 +18,42 @@ use crate::search::Search;
 use crate::tessellation::{CellId, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};
 use crate::tile::Tile;
 use crate::torus::{FaceEnd, TorusFaces};
-use crate::weld::{list_faces_of_cells, number_vertices, positions, put_vertices_on_walls};
+use crate::weld::{cell_measures, list_faces_of_cells, number_vertices, positions, put_vertices_on_walls};
+use crate::{Dimension, Domain};
 
-pub(crate) fn weld_periodic(search: &Search, seeds: &[DVec3], tiles: &[Tile]) -> Tessellation {
+pub(crate) fn weld_periodic(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Tessellation {
     let dimension = search.input().domain.dimension();
-    let numbers = number_vertices(search.input(), tiles);
-    let positions = positions(tiles, &numbers);
-    let mut vertices = UnitedVertices::new(positions.len());
-    for (tile, numbers) in tiles.iter().zip(&numbers) {
+    let mut numbers = number_vertices(search.input(), &tiles);
+    let positions = positions(&tiles, &numbers);
+    let are_coincident = tiles.iter().any(|tile| !tile.coincident.is_empty());
+    if are_coincident {
+        let roots = unite_coincident(positions.len(), &tiles, &numbers);
+        tiles.par_iter_mut().zip(&mut numbers).for_each(|(tile, numbers)| {
+            for corner in &mut *numbers {
+                let root = roots[corner.vertex as usize];
+                *corner = Corner { shift: corner.shift + root.shift, ..root };
+            }
+            tile.drop_repeated_corners(|corner| numbers[corner as usize], dimension.fewest_corners());
+        });
+    }
+    let mut faces = TorusFaces::of_tiles(search, &tiles, &numbers);
+    let has_flat_cells = faces.remove_flat_cells(seeds.len());
+    let mut tessellation = unwrapped(search.input().domain, seeds, &faces, &positions);
+    if !are_coincident && !has_flat_cells && dimension == Dimension::Three {
+        tessellation.measures = cell_measures(search, seeds, &tiles);
+    }
+    tessellation
+}
+
+/// Unites vertices that are one point: of each, the one that stands for it.
+fn unite_coincident(count: usize, tiles: &[Tile], numbers: &[Vec<Corner>]) -> Vec<Corner> {
+    let mut vertices = UnitedVertices::new(count);
+    for (tile, numbers) in tiles.iter().zip(numbers) {
         for [v, w] in &tile.coincident {
             vertices.unite(numbers[*v as usize], numbers[*w as usize]);
         }
     }
-    let roots = vertices.roots();
-    let faces: Vec<TorusFaces> = tiles
-        .par_iter()
-        .zip(&numbers)
-        .map(|(tile, numbers)| {
-            let mut faces = TorusFaces::new(dimension);
-            push_faces(&mut faces, search, tile, numbers, &roots);
-            faces
-        })
-        .collect();
-    let mut faces = TorusFaces::concatenated(dimension, faces);
-    faces.remove_flat_cells(seeds.len());
-    unwrapped(search.input().domain, seeds, &faces, &positions)
+    vertices.roots()
 }
 
 /// The generators of a vertex, all moved by whole periods to where the cell of the smallest number among them owns it, and
@@ -119,18 +131,6 @@ impl UnitedVertices {
     }
 }
 
-/// Adds the faces of a tile, in the user's numbers of cells.
-fn push_faces(faces: &mut TorusFaces, search: &Search, tile: &Tile, numbers: &[Corner], roots: &[Corner]) {
-    for (ends, corners) in tile.faces() {
-        let corners = corners.iter().map(|corner| {
-            let Corner { vertex, shift } = numbers[*corner as usize];
-            let root = roots[vertex as usize];
-            Corner { shift: shift + root.shift, ..root }
-        });
-        faces.push(ends.map(|generator| search.end(generator)), corners);
-    }
-}
-
 /// The tessellation with whole cells: of a face between a cell and a moved one, a copy at each.
 pub(crate) fn unwrapped(
     domain: &Domain,
@@ -151,22 +151,38 @@ pub(crate) fn unwrapped(
         tessellation.vertices.push(position);
         tessellation.periodic_vertices.push(PeriodicPair { secondary: copy.id, primary: original, shift });
     }
-    for (ends, corners) in faces.iter() {
-        let corners = corners.iter().map(|corner| places.id(*corner));
-        tessellation.push_face(ends.map(|end| side(end, Shift::NONE)), corners);
-    }
-    let primaries: Vec<FaceId> = tessellation.faces().collect();
-    for (primary, (ends, corners)) in primaries.into_iter().zip(faces.iter()) {
-        let [FaceEnd::Cell(first), FaceEnd::Cell(second)] = ends else { continue };
-        if second.shift == Shift::NONE {
-            continue;
-        }
-        let back = Shift::NONE - second.shift;
-        let sides = [side(FaceEnd::Cell(second), back), side(FaceEnd::Cell(first), back)];
-        let corners = corners.iter().rev();
-        let corners = corners.map(|corner| places.id(Corner { shift: corner.shift + back, ..*corner }));
-        let secondary = tessellation.push_face(sides, corners);
-        tessellation.periodic_faces.push(PeriodicPair { secondary, primary, shift: back });
+    // Faces that join a cell to a moved one, by the shift back.
+    let copied: Vec<(u32, Shift)> = (0u32..)
+        .zip(faces.ends())
+        .filter_map(|(face, ends)| match ends[1] {
+            FaceEnd::Cell(Image { shift, .. }) if shift != Shift::NONE => Some((face, Shift::NONE - shift)),
+            _ => None,
+        })
+        .collect();
+    let corners_of =
+        |face: u32| &faces.corners()[faces.starts()[face as usize]..faces.starts()[face as usize + 1]];
+    let copied_corners: Vec<VertexId> = copied
+        .par_iter()
+        .flat_map_iter(|(face, back)| {
+            let moved = move |corner: &Corner| Corner { shift: corner.shift + *back, ..*corner };
+            corners_of(*face).iter().rev().map(moved).map(|corner| places.id(corner))
+        })
+        .collect();
+    let face_count = faces.ends().len() + copied.len();
+    tessellation.face_sides.reserve_exact(face_count);
+    tessellation.face_starts.reserve_exact(face_count);
+    tessellation.face_corners.reserve_exact(faces.corners().len() + copied_corners.len());
+    let sides = |ends: [FaceEnd; 2], shift: Shift| ends.map(|end| side(end, shift));
+    tessellation.face_sides.par_extend(faces.ends().par_iter().map(|ends| sides(*ends, Shift::NONE)));
+    tessellation.face_starts.par_extend(&faces.starts()[1..]);
+    tessellation.face_corners.par_extend(faces.corners().par_iter().map(|corner| places.id(*corner)));
+    let mut copied_corners = &copied_corners[..];
+    for (face, back) in copied {
+        let [first, second] = faces.ends()[face as usize];
+        let (corners, rest) = copied_corners.split_at(corners_of(face).len());
+        copied_corners = rest;
+        let secondary = tessellation.push_face(sides([second, first], back), corners.iter().copied());
+        tessellation.periodic_faces.push(PeriodicPair { secondary, primary: FaceId(face), shift: back });
     }
     put_vertices_on_walls(&mut tessellation);
     list_faces_of_cells(&mut tessellation);
@@ -202,31 +218,39 @@ struct NumberedVertex {
 
 impl VertexPlaces {
     fn new(faces: &TorusFaces, vertex_count: usize) -> Self {
-        let mut is_used = vec![false; vertex_count];
-        let mut moved = Vec::new();
-        let mut note = |corner: Corner| match corner.shift {
-            Shift::NONE => is_used[corner.vertex as usize] = true,
-            _ => moved.push(corner),
-        };
-        for (ends, corners) in faces.iter() {
-            corners.iter().for_each(|corner| note(*corner));
-            if let FaceEnd::Cell(Image { shift, .. }) = ends[1]
-                && shift != Shift::NONE
-            {
-                corners.iter().for_each(|corner| note(Corner { shift: corner.shift - shift, ..*corner }));
+        let is_used: Vec<AtomicBool> = (0..vertex_count).map(|_| AtomicBool::new(false)).collect();
+        // Of a corner, what there is to note: where it is not moved, that it is used.
+        let note = |corner: Corner| match corner.shift {
+            Shift::NONE => {
+                is_used[corner.vertex as usize].store(true, Ordering::Relaxed);
+                None
             }
-        }
-        moved.sort_unstable();
+            _ => Some(corner),
+        };
+        let moved = faces.par_iter().flat_map_iter(|(ends, corners)| {
+            let back = match ends[1] {
+                FaceEnd::Cell(Image { shift, .. }) if shift != Shift::NONE => Some(Shift::NONE - shift),
+                _ => None,
+            };
+            let copies = back.into_iter().flat_map(move |back| {
+                corners.iter().map(move |corner| Corner { shift: corner.shift + back, ..*corner })
+            });
+            corners.iter().copied().chain(copies).filter_map(note)
+        });
+        let mut moved: Vec<Corner> = moved.collect();
+        moved.par_sort_unstable();
         moved.dedup();
-        let mut places =
-            Self { originals: Vec::new(), original_of: Vec::with_capacity(vertex_count), moved: Vec::new() };
+        let mut places = Self {
+            originals: Vec::with_capacity(vertex_count),
+            original_of: Vec::with_capacity(vertex_count),
+            moved: Vec::new(),
+        };
         let id = |count: usize| VertexId(u32::try_from(count).expect("vertex ids fit 32 bits"));
-        for (vertex, is_used) in (0u32..).zip(&is_used) {
-            let unmoved = Corner { vertex, shift: Shift::NONE };
-            let first = moved.partition_point(|at| at.vertex < vertex);
-            let original = if *is_used {
-                Some(unmoved)
+        for (vertex, is_used) in (0u32..).zip(is_used) {
+            let original = if is_used.into_inner() {
+                Some(Corner { vertex, shift: Shift::NONE })
             } else {
+                let first = moved.partition_point(|at| at.vertex < vertex);
                 moved.get(first).copied().filter(|at| at.vertex == vertex)
             };
             places.original_of.push(id(places.originals.len()));

@@ -9,6 +9,7 @@
 //! and an edge collapses together with its copies, if nothing around it is a copy of something else there.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::corner::{ComplexEdge, Corner};
 use crate::images::Image;
@@ -119,10 +120,7 @@ impl<'a> Complex<'a> {
             }
             faces.push(corners);
         }
-        let root = |volume: f64| match original.domain().dimension() {
-            Dimension::Two => volume.sqrt(),
-            Dimension::Three => volume.cbrt(),
-        };
+        let root = |volume| original.domain().dimension().cube_edge(volume);
         let measures = original.cell_measures();
         let mean_size = root(original.domain().measure() / measures.len() as f64);
         Self {
@@ -193,26 +191,38 @@ impl<'a> Complex<'a> {
 
     /// The edges that are shorter than any cell at their ends allows, shortest first.
     fn short_edges(&self) -> Vec<ComplexEdge> {
-        let mut edges: Vec<ComplexEdge> =
-            self.faces.iter().flat_map(|face| edges_of(face.iter().copied())).collect();
-        edges.sort_unstable();
-        edges.dedup();
-        let mut edges: Vec<(f64, ComplexEdge)> =
-            edges.into_iter().map(|edge| (self.length(edge), edge)).collect();
         let count = u32::try_from(self.vertices.len()).expect("vertex ids fit 32 bits");
-        let is_bend: Vec<bool> = (0..count).map(|vertex| self.is_bend(vertex)).collect();
-        edges.retain(|(length, edge)| {
-            let ends = [edge.start, edge.end.vertex];
-            *length < self.allowed(*edge) || ends.iter().any(|end| is_bend[*end as usize])
-        });
-        edges.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let is_bend: Vec<bool> = (0..count).into_par_iter().map(|vertex| self.is_bend(vertex)).collect();
+        let largest = self.short.iter().copied().fold(0.0, f64::max);
+        let edges = self.faces.par_iter().flat_map_iter(|face| edges_of(face.iter().copied()));
+        let mut edges: Vec<(f64, ComplexEdge)> = edges
+            .map(|edge| (self.length(edge), edge))
+            .filter(|(length, edge)| {
+                // No cell allows more than the largest does; most edges need no other look.
+                (*length < largest && *length < self.allowed(*edge))
+                    || [edge.start, edge.end.vertex].iter().any(|end| is_bend[*end as usize])
+            })
+            .collect();
+        edges.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        edges.dedup();
         edges.into_iter().map(|(_, edge)| edge).collect()
     }
 
     /// Whether a vertex is left with two edges: a mere bend in a line, where two long, thin faces have closed that crossed.
     fn is_bend(&self, vertex: u32) -> bool {
-        self.dimension() == Dimension::Three
-            && self.neighbors(Corner { vertex, shift: Shift::NONE }).len() == 2
+        if self.dimension() == Dimension::Two || self.faces_at[vertex as usize].is_empty() {
+            return false;
+        }
+        // Nearly all vertices show a third neighbour in their second face.
+        let vertex = Corner { vertex, shift: Shift::NONE };
+        let mut known = [None; 2];
+        self.edges_at(vertex).all(|neighbor| {
+            let place = known.iter_mut().find(|known| known.is_none_or(|known| known == neighbor));
+            place.is_some_and(|place| {
+                *place = Some(neighbor);
+                true
+            })
+        })
     }
 
     fn allowed(&self, edge: ComplexEdge) -> f64 {
@@ -235,13 +245,16 @@ impl<'a> Complex<'a> {
         cells
     }
 
-    fn neighbors(&self, vertex: Corner) -> Vec<Corner> {
-        let mut neighbors: Vec<Corner> = self
-            .faces_at(vertex)
+    /// The other ends of the edges at a vertex, those of face after face.
+    fn edges_at(&self, vertex: Corner) -> impl Iterator<Item = Corner> {
+        self.faces_at(vertex)
             .flat_map(|face| pairs_of(self.corners(face)))
-            .filter(|ends| ends.contains(&vertex))
-            .map(|[a, b]| if a == vertex { b } else { a })
-            .collect();
+            .filter(move |ends| ends.contains(&vertex))
+            .map(move |[a, b]| if a == vertex { b } else { a })
+    }
+
+    fn neighbors(&self, vertex: Corner) -> Vec<Corner> {
+        let mut neighbors: Vec<Corner> = self.edges_at(vertex).collect();
         neighbors.sort_unstable();
         neighbors.dedup();
         neighbors

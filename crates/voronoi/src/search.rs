@@ -111,6 +111,11 @@ impl<'a> Search<'a> {
         &self.tiles
     }
 
+    /// The seeds' places in the user's input.
+    pub(crate) fn ids(&self) -> &[u32] {
+        &self.ids
+    }
+
     /// What lies beyond a generator's plane, in the user's numbering of cells.
     pub(crate) fn end(&self, generator: Generator) -> FaceEnd {
         match generator.plane() {
@@ -211,19 +216,17 @@ impl<'a> Search<'a> {
         let first = candidates.len();
         let squares = [if from < 0.0 { -1.0 } else { from * from }, to * to];
         layer.grid.for_each_run(own, to, |run| candidates.push_within(seed, own, &run, squares));
-        let (mut shift, mut largest_weight) = (0.0f64, 0.0f64);
+        let mut shift = 0.0f64;
         if self.weights.is_some() {
             let input = self.input();
             let own_weight = input.weight(seed);
             candidates.shift_offsets(first, |generator| {
-                let weight = input.weight(generator.0);
-                let own_shift = 0.5 * (own_weight - weight);
-                (shift, largest_weight) = (shift.max(own_shift.abs()), largest_weight.max(weight.abs()));
+                let own_shift = 0.5 * (own_weight - input.weight(generator.0));
+                shift = shift.max(own_shift.abs());
                 own_shift
             });
-            largest_weight = largest_weight.max(own_weight.abs());
         }
-        candidates.raise_bounds(to, self.position_error(), shift, EVALUATION_ERROR * largest_weight);
+        candidates.raise_bounds(to, self.position_error(), shift, EVALUATION_ERROR * shift);
         Ok(())
     }
 

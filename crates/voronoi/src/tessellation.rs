@@ -3,7 +3,7 @@ use std::ops::{Add, Sub};
 use glam::DVec3;
 
 use crate::generator::Generator;
-use crate::measure::{CellMeasure, cell_measures};
+use crate::measure::{CellMeasure, KeptMeasures, cell_measures};
 use crate::periodic_weld::weld_periodic;
 use crate::search::Search;
 use crate::tile::cut_tiles;
@@ -111,6 +111,7 @@ pub struct Tessellation {
     pub(crate) cell_faces: Vec<FaceId>,
     pub(crate) periodic_vertices: Vec<PeriodicPair<VertexId>>,
     pub(crate) periodic_faces: Vec<PeriodicPair<FaceId>>,
+    pub(crate) measures: KeptMeasures,
 }
 
 impl Tessellation {
@@ -127,6 +128,7 @@ impl Tessellation {
             cell_faces: Vec::new(),
             periodic_vertices: Vec::new(),
             periodic_faces: Vec::new(),
+            measures: KeptMeasures::default(),
         }
     }
 
@@ -170,7 +172,7 @@ impl Tessellation {
         let mut search = Search::new(domain, seeds, weights)?;
         let tiles = cut_tiles(&mut search);
         Ok(if domain.is_periodic() {
-            weld_periodic(&search, seeds, &tiles)
+            weld_periodic(&search, seeds, tiles)
         } else {
             weld(&search, seeds, tiles)
         })

@@ -13,6 +13,8 @@ use crate::cell_edges::CellEdges;
 use crate::convex_cell::ConvexCell;
 use crate::end_search::{EndSearch, NewVertex, PLANE};
 use crate::generator::{Generator, VertexKey};
+use crate::half_space::HalfSpace;
+use crate::measure::{CellSum, Polygon};
 use crate::polygon::ConvexPolygon;
 use crate::search::{ImagesMissing, Search};
 use crate::tile_vertex::{ALL_FACES, FACE_SLOTS, FACES_OF_FIRST, NONE, TileVertex};
@@ -35,6 +37,10 @@ pub(crate) struct Tile {
     pub(crate) corners: Vec<u32>,
     /// Pairs of vertices that are one point.
     pub(crate) coincident: Vec<[u32; 2]>,
+    /// In space, of the tile's cells: what the faces add up to.
+    pub(crate) sums: Vec<CellSum>,
+    /// What faces add to cells of other tiles.
+    pub(crate) sums_beyond: Vec<(u32, CellSum)>,
 }
 
 /// A vertex with generators outside its tile.
@@ -272,6 +278,8 @@ impl Tile {
         let mut corner_starts = Vec::with_capacity(faces + 1);
         corner_starts.push(0);
         Self {
+            sums: vec![CellSum::default(); seeds.len()],
+            sums_beyond: Vec::new(),
             seeds,
             positions: Vec::new(),
             shared: Vec::new(),
@@ -298,7 +306,7 @@ impl Tile {
             };
             let is_plane = beyond == Generator::side(PLANE);
             match (is_flat, is_plane) {
-                (false, _) => self.push_ring(vertices, number, own, beyond),
+                (false, _) => self.push_ring(search, vertices, number, own, beyond),
                 (true, true) => self.push_polygon(search, vertices, number, own),
                 (true, false) => {}
             }
@@ -313,15 +321,47 @@ impl Tile {
     }
 
     /// Adds a face of a cell in space.
-    fn push_ring(&mut self, vertices: &mut [TileVertex], first: u32, own: Generator, beyond: Generator) {
-        for_each_corner(vertices, first, own, beyond, |number, _, _| self.corners.push(number));
-        self.finish_face([own, beyond]);
+    fn push_ring(
+        &mut self,
+        search: &Search,
+        vertices: &mut [TileVertex],
+        first: u32,
+        own: Generator,
+        beyond: Generator,
+    ) {
+        let input = search.input();
+        let seed = input.seeds[own.0 as usize];
+        let place =
+            |vertex: &TileVertex| vertex.position + (input.seeds[vertex.generators[0].0 as usize] - seed);
+        let normal = match beyond.as_site() {
+            Some(site) => input.difference(own.0, site),
+            None => HalfSpace::new(own.0, beyond, input).normal,
+        };
+        let mut polygon = Polygon::from(place(&vertices[first as usize]), normal);
+        for_each_corner(vertices, first, own, beyond, |number, vertex, _, _| {
+            self.corners.push(number);
+            polygon.go_to(place(vertex));
+        });
+        let corner_count = self.finish_face([own, beyond]);
+        let face = polygon.measure(corner_count);
+        self.sums[(own.0 - self.seeds.start) as usize].add_face(&face, DVec3::ZERO, 1.0);
+        if let Some(site) = beyond.as_site() {
+            let seed = input.image(site).seed;
+            match self.sums.get_mut(seed.wrapping_sub(self.seeds.start) as usize) {
+                Some(sum) => sum.add_face(&face, normal, -1.0),
+                None => {
+                    let mut sum = CellSum::default();
+                    sum.add_face(&face, normal, -1.0);
+                    self.sums_beyond.push((seed, sum));
+                }
+            }
+        }
     }
 
     /// Adds the edges of a cell in the plane.
     fn push_polygon(&mut self, search: &Search, vertices: &mut [TileVertex], first: u32, own: Generator) {
         let own_end = search.end(own);
-        for_each_corner(vertices, first, own, Generator::side(PLANE), |from, beyond, to| {
+        for_each_corner(vertices, first, own, Generator::side(PLANE), |from, _, beyond, to| {
             if search.end(beyond) > own_end {
                 self.corners.extend([from, to]);
                 self.finish_face([own, beyond]);
@@ -349,14 +389,8 @@ impl Tile {
         (self.faces.len(), self.corners.len())
     }
 
-    /// The faces with their corners.
-    pub(crate) fn faces(&self) -> impl Iterator<Item = (&[Generator; 2], &[u32])> {
-        let corners = self.corner_starts.windows(2).map(|range| range[0] as usize..range[1] as usize);
-        self.faces.iter().zip(corners.map(|range| &self.corners[range]))
-    }
-
     /// Leaves out corners that have the same number as the one before them, and then faces with fewer than some corners.
-    pub(crate) fn drop_repeated_corners(&mut self, number: impl Fn(u32) -> u32, fewest: usize) {
+    pub(crate) fn drop_repeated_corners<N: PartialEq>(&mut self, number: impl Fn(u32) -> N, fewest: usize) {
         let (faces, starts, corners) = (
             std::mem::take(&mut self.faces),
             std::mem::take(&mut self.corner_starts),
@@ -378,11 +412,13 @@ impl Tile {
         }
     }
 
-    /// Makes the corners since the last face a face.
-    fn finish_face(&mut self, sides: [Generator; 2]) {
+    /// Makes the corners since the last face a face, and returns their number.
+    fn finish_face(&mut self, sides: [Generator; 2]) -> u32 {
+        let start = self.corner_starts[self.corner_starts.len() - 1];
+        let end = u32::try_from(self.corners.len()).expect("a tile has fewer than 2^32 corners");
         self.faces.push(sides);
-        self.corner_starts
-            .push(u32::try_from(self.corners.len()).expect("a tile has fewer than 2^32 corners"));
+        self.corner_starts.push(end);
+        end - start
     }
 }
 
@@ -393,7 +429,7 @@ fn for_each_corner(
     first: u32,
     own: Generator,
     other: Generator,
-    mut visit: impl FnMut(u32, Generator, u32),
+    mut visit: impl FnMut(u32, &TileVertex, Generator, u32),
 ) {
     let mut at = first;
     loop {
@@ -402,7 +438,7 @@ fn for_each_corner(
         vertex.mark_done(cell, plane);
         let (edge, beyond) = TileVertex::next_edge(cell, plane);
         let next = vertex.ends[edge];
-        visit(at, vertex.generators[beyond], next);
+        visit(at, vertex, vertex.generators[beyond], next);
         if next == first {
             return;
         }

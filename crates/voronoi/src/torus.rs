@@ -2,9 +2,14 @@
 
 use std::collections::HashMap;
 
+use rayon::prelude::*;
+
 use crate::corner::Corner;
+use crate::generator::Generator;
 use crate::images::Image;
+use crate::search::Search;
 use crate::tessellation::Shift;
+use crate::tile::Tile;
 use crate::{Dimension, Wall};
 
 /// What lies on one side of a face.
@@ -45,20 +50,29 @@ pub(crate) struct TorusFaces {
 
 impl TorusFaces {
     pub(crate) fn new(dimension: Dimension) -> Self {
-        let fewest_corners = match dimension {
-            Dimension::Two => 2,
-            Dimension::Three => 3,
-        };
-        Self { fewest_corners, ends: Vec::new(), starts: vec![0], corners: Vec::new() }
+        Self {
+            fewest_corners: dimension.fewest_corners(),
+            ends: Vec::new(),
+            starts: vec![0],
+            corners: Vec::new(),
+        }
     }
 
-    pub(crate) fn concatenated(dimension: Dimension, parts: Vec<Self>) -> Self {
-        let mut all = Self::new(dimension);
-        for part in parts {
+    /// The faces of all tiles, in the user's numbers of cells, with corners by number.
+    pub(crate) fn of_tiles(search: &Search, tiles: &[Tile], numbers: &[Vec<Corner>]) -> Self {
+        let (face_count, corner_count) =
+            tiles.iter().map(Tile::counts).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+        let mut all = Self::new(search.input().domain.dimension());
+        all.ends.reserve_exact(face_count);
+        all.starts.reserve_exact(face_count);
+        all.corners.reserve_exact(corner_count);
+        for (tile, numbers) in tiles.iter().zip(numbers) {
             let before = all.corners.len();
-            all.ends.extend(part.ends);
-            all.starts.extend(part.starts[1..].iter().map(|start| before + start));
-            all.corners.extend(part.corners);
+            let starts = tile.corner_starts[1..].par_iter();
+            all.starts.par_extend(starts.map(|start| before + *start as usize));
+            all.corners.par_extend(tile.corners.par_iter().map(|corner| numbers[*corner as usize]));
+            let ends = |sides: &[Generator; 2]| sides.map(|side| search.end(side));
+            all.ends.par_extend(tile.faces.par_iter().map(ends));
         }
         all
     }
@@ -82,13 +96,34 @@ impl TorusFaces {
         self.starts.push(self.corners.len());
     }
 
-    pub(crate) fn iter(&self) -> impl Iterator<Item = ([FaceEnd; 2], &[Corner])> {
+    pub(crate) fn par_iter(&self) -> impl IndexedParallelIterator<Item = ([FaceEnd; 2], &[Corner])> {
+        let corners = self.starts.par_windows(2).map(|range| &self.corners[range[0]..range[1]]);
+        self.ends.par_iter().copied().zip(corners)
+    }
+
+    fn iter(&self) -> impl Iterator<Item = ([FaceEnd; 2], &[Corner])> {
         let corners = self.starts.windows(2).map(|range| &self.corners[range[0]..range[1]]);
         self.ends.iter().copied().zip(corners)
     }
 
-    /// Takes cells out that have two faces only, so that the cells beyond share one: see `flat_cells`.
-    pub(crate) fn remove_flat_cells(&mut self, cell_count: usize) {
+    /// The two sides of each face.
+    pub(crate) fn ends(&self) -> &[[FaceEnd; 2]] {
+        &self.ends
+    }
+
+    /// Those of face f are `corners()[starts()[f]..starts()[f + 1]]`.
+    pub(crate) fn starts(&self) -> &[usize] {
+        &self.starts
+    }
+
+    /// The corners of one face after the other.
+    pub(crate) fn corners(&self) -> &[Corner] {
+        &self.corners
+    }
+
+    /// Takes cells out that have two faces only, so that the cells beyond share one: see `flat_cells`. True if there
+    /// were any.
+    pub(crate) fn remove_flat_cells(&mut self, cell_count: usize) -> bool {
         let mut face_counts = vec![0u32; cell_count];
         for end in self.ends.iter().flatten() {
             if let FaceEnd::Cell(image) = end {
@@ -124,7 +159,7 @@ impl TorusFaces {
             }
         }
         if faces_of.is_empty() {
-            return;
+            return false;
         }
         let mut rest = Self {
             fewest_corners: self.fewest_corners,
@@ -144,6 +179,7 @@ impl TorusFaces {
             }
         }
         *self = rest;
+        true
     }
 }
 

@@ -11,6 +11,11 @@ impl Wall {
     /// The walls of a box in space; the first four are those of a rectangle.
     pub const ALL: [Wall; 6] = [Wall(0), Wall(1), Wall(2), Wall(3), Wall(4), Wall(5)];
 
+    /// The wall with a number from 0.
+    pub fn numbered(number: u32) -> Self {
+        Self(number)
+    }
+
     /// Of a wall of a box, the axis that it is perpendicular to: 0, 1 or 2.
     pub fn axis(self) -> usize {
         debug_assert!(self.0 < 6, "a wall of a box");

@@ -14,6 +14,7 @@ use crate::Dimension;
 use crate::corner::Corner;
 use crate::flat_cells::remove_flat_cells;
 use crate::generator::{Generator, VertexKey};
+use crate::measure::{CellSum, KeptMeasures};
 use crate::periodic_weld::{canonical, side};
 use crate::predicate::ExactInput;
 use crate::search::Search;
@@ -74,7 +75,7 @@ pub(crate) fn number_vertices(input: ExactInput, tiles: &[Tile]) -> Vec<Vec<Corn
 
 /// The positions of all vertices by number.
 pub(crate) fn positions(tiles: &[Tile], numbers: &[Vec<Corner>]) -> Vec<DVec3> {
-    let mut positions = Vec::new();
+    let mut positions = Vec::with_capacity(tiles.iter().map(|tile| tile.positions.len()).sum());
     for (tile, numbers) in tiles.iter().zip(numbers) {
         for (position, number) in tile.positions.iter().zip(numbers) {
             // Each tile's own vertices come in order.
@@ -100,20 +101,21 @@ pub(crate) fn weld(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Te
         vertices = representatives.iter().map(|v| vertices[*v as usize]).collect();
     }
     if are_coincident {
-        let fewest_corners = match domain.dimension() {
-            Dimension::Two => 2,
-            Dimension::Three => 3,
-        };
+        let fewest_corners = domain.dimension().fewest_corners();
         tiles.par_iter_mut().zip(&numbers).for_each(|(tile, numbers)| {
             tile.drop_repeated_corners(|corner| numbers[corner as usize], fewest_corners);
         });
     }
     let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);
+    if !are_coincident && domain.dimension() == Dimension::Three {
+        tessellation.measures = cell_measures(search, seeds, &tiles);
+    }
     let (face_count, corner_count) =
         tiles.iter().map(Tile::counts).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
-    tessellation.face_sides.reserve_exact(face_count);
-    tessellation.face_starts.reserve_exact(face_count);
-    tessellation.face_corners.reserve_exact(corner_count);
+    tessellation.face_sides = Vec::with_capacity(face_count);
+    tessellation.face_starts = Vec::with_capacity(face_count + 1);
+    tessellation.face_starts.push(0);
+    tessellation.face_corners = Vec::with_capacity(corner_count);
     for (tile, numbers) in tiles.drain(..).zip(&numbers) {
         let before = tessellation.face_corners.len();
         let corner = |corner: &u32| VertexId(numbers[*corner as usize]);
@@ -126,9 +128,25 @@ pub(crate) fn weld(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Te
     put_vertices_on_walls(&mut tessellation);
     list_faces_of_cells(&mut tessellation);
     if remove_flat_cells(&mut tessellation) {
+        tessellation.measures = KeptMeasures::default();
         list_faces_of_cells(&mut tessellation);
     }
     tessellation
+}
+
+/// The measures of all cells, as the tiles summed them, in the order of the input.
+pub(crate) fn cell_measures(search: &Search, seeds: &[DVec3], tiles: &[Tile]) -> KeptMeasures {
+    let mut sums: Vec<CellSum> = Vec::with_capacity(seeds.len());
+    tiles.iter().for_each(|tile| sums.extend(&tile.sums));
+    for (seed, sum) in tiles.iter().flat_map(|tile| &tile.sums_beyond) {
+        sums[*seed as usize].add(sum);
+    }
+    let mut places = vec![0; seeds.len()];
+    for (place, id) in (0u32..).zip(search.ids()) {
+        places[*id as usize] = place;
+    }
+    let measure = |(place, seed): (&u32, &DVec3)| sums[*place as usize].measure(*seed);
+    KeptMeasures(Some(places.par_iter().zip(seeds).map(measure).collect()))
 }
 
 /// Unites vertices that are one point. Returns the new number of every old one, and an old one for every new.

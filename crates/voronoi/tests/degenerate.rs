@@ -6,7 +6,7 @@ use common::{
     BODY_CENTRED, FACE_CENTRED, SIMPLE_CUBIC, assert_complex, jittered, lattice, random_seeds, square,
     tessellate,
 };
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 use voronoi::{Domain, Side, Tessellation, VoronoiError};
 
 /// Face and vertex counts of the cell that holds the centre of the cube's inner part.
@@ -178,6 +178,18 @@ fn weights_on_lattices() {
 }
 
 /// Bisectors at z = 0.5 with both neighbours leave the middle seeds a square each, and then the two squares nothing.
+/// Weights count by their differences: equal ones leave the cells alone, however small these are.
+#[test]
+fn equal_weights_far_above_all_distances() {
+    let cluster: Vec<DVec3> = random_seeds(200, 4).iter().map(|seed| 0.3 + *seed * 1e-10).collect();
+    for domain in [Domain::unit_cube(), Domain::unit_cube().with_periods(BVec3::new(true, false, false))] {
+        let plain = Tessellation::new(&domain, &cluster).expect("seeds are good");
+        let power = Tessellation::power(&domain, &cluster, &[0.01; 200]).expect("seeds are good");
+        assert_complex(&power);
+        assert_eq!(power, plain);
+    }
+}
+
 #[test]
 fn cells_that_are_flat_are_empty() {
     let seeds: Vec<DVec3> = [0.25, 0.375, 0.625, 0.75].map(|z| DVec3::new(0.5, 0.5, z)).to_vec();

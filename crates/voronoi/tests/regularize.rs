@@ -7,7 +7,7 @@ use std::collections::HashSet;
 use common::{assert_closed, assert_complex, complex_counts, random_seeds, tessellate};
 use glam::{BVec3, DVec3};
 use proptest::prelude::*;
-use voronoi::{CellId, Collapsed, Domain, Side, Tessellation, VertexId};
+use voronoi::{CellId, CellMeasure, Collapsed, Domain, Side, Tessellation, VertexId};
 
 /// A complex all of whose cells are balls: their surfaces are spheres, and around each of their vertices the faces form
 /// one ring.
@@ -105,6 +105,26 @@ fn length_zero_changes_nothing() {
     assert_eq!(cells.regularized(0.0).0, cells);
     let cells = periodic(&random_seeds(50, 3), BVec3::TRUE);
     assert_eq!(cells.regularized(0.0).0, cells);
+}
+
+/// What is summed while cells are cut, and what the finished complex gives.
+#[test]
+fn measures_follow_from_the_complex() {
+    let seeds = random_seeds(500, 4);
+    let mixed = BVec3::new(true, false, true);
+    let weights: Vec<f64> = (0..500).map(|k| 1e-3 * f64::from(k % 7)).collect();
+    let power = Tessellation::power(&Domain::unit_cube(), &seeds, &weights).expect("seeds are good");
+    for cells in [tessellate(&seeds), periodic(&seeds, BVec3::TRUE), periodic(&seeds[..20], mixed), power] {
+        let rebuilt = cells.regularized(0.0).0.cell_measures();
+        for (k, (kept, rebuilt)) in cells.cell_measures().iter().zip(rebuilt).enumerate() {
+            let counts = |cell: &CellMeasure| [cell.face_count, cell.vertex_count, cell.edge_count];
+            assert_eq!(counts(kept), counts(&rebuilt), "cell {k}");
+            let size = rebuilt.volume.max(1e-6).cbrt();
+            assert!((kept.volume - rebuilt.volume).abs() <= 1e-13 * size.powi(3), "cell {k}");
+            assert!((kept.area - rebuilt.area).abs() <= 1e-13 * size.powi(2), "cell {k}");
+            assert!(kept.centroid.distance(rebuilt.centroid) <= 1e-12 * size, "cell {k}");
+        }
+    }
 }
 
 fn periodic(seeds: &[DVec3], axes: BVec3) -> Tessellation {

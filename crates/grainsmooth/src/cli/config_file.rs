@@ -60,7 +60,9 @@ fn read(path: &Path) -> Result<String, String> {
         return String::from_utf8(bytes).map_err(|_| "is not UTF-8 text; save it as UTF-8".to_owned());
     }
     embedded_config(path).map_err(unreadable)?.ok_or_else(|| {
-        "holds no configuration; give a .toml file, or a .vtp or other file that grainsmooth wrote".to_owned()
+        let is_stl = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("stl"));
+        let reason = if is_stl { ", for which STL has little room" } else { "" };
+        format!("holds no configuration{reason}; give a .toml file, or a .vtp or other file that grainsmooth wrote")
     })
 }
 
@@ -139,5 +141,49 @@ fn word(key: &str, value: &DeValue<'_>) -> Result<OsString, String> {
         DeValue::Float(number) => Ok(number.as_str().into()),
         DeValue::Integer(number) if number.radix() == 10 => Ok(number.as_str().into()),
         _ => Err(format!("'{key}' is a decimal number, a text, or a list of them")),
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use clap::CommandFactory;
+    use proptest::prelude::*;
+    use proptest::sample::Index;
+
+    use super::*;
+    use crate::cli::Arguments;
+
+    const GOOD: &str = "# a plate\nseeds = 7\nbox = [3, 1, 0.5]\nperiodic = \"x,y\"\nrelax = 1e-1\nlevels = 1\n\
+                        drop-empty = false\nquiet = true\ncells-csv = 'plate.csv'\nlattice = ['bcc', 2]\n";
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(128))]
+
+        #[test]
+        fn corrupt_settings_are_refused_in_one_line_or_read(
+            changes in prop::collection::vec((any::<Index>(), "[ -~\n]"), 0..4),
+            cut in any::<Index>(),
+        ) {
+            let mut text = GOOD.to_owned();
+            for (place, character) in changes {
+                let at = place.index(text.len());
+                text.replace_range(at..=at, &character);
+            }
+            text.truncate(text.len() - cut.index(text.len()));
+            let mut command = Arguments::command();
+            command.build();
+            if let Err(message) = parse(&text, &command) {
+                prop_assert!(!message.contains('\n'), "{message}");
+                prop_assert!(message.starts_with("line ") || message.starts_with("is no TOML"), "{message}");
+            }
+        }
+    }
+
+    #[test]
+    fn good_settings_are_read() {
+        let mut command = Arguments::command();
+        command.build();
+        assert_eq!(parse(GOOD, &command).unwrap().len(), 9);
     }
 }

@@ -5,6 +5,7 @@
 use std::f64::consts::TAU;
 use std::io::{self, Write};
 
+use polycrystal::Side;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -14,10 +15,13 @@ use crate::Config;
 /// The generator's stream for orientations, apart from that of the seeds' positions.
 const STREAM: u64 = 1;
 
+/// In place of each Euler angle where there is none.
+const ANGLE_OF_NONE: f64 = 2.0 * TAU;
+
 /// Writes the map: one line a pixel, x fastest; angles in radians, coordinates in the user's unit of length.
 ///
 /// The columns are the three Euler angles after Bunge, x, y, image quality 1, confidence 1, phase 1, detector signal 1 and
-/// fit 0; y points down, as everywhere in such maps.
+/// fit 0; y points down, as everywhere in such maps. Pixels outside of all grains have no solution: confidence -1.
 pub(crate) fn write(grid: &LabelGrid, config: &Config, out: &mut dyn Write) -> io::Result<()> {
     let [columns, rows, _] = grid.size;
     let (x_step, y_step) = (grid.spacing.x, grid.spacing.y);
@@ -36,9 +40,17 @@ pub(crate) fn write(grid: &LabelGrid, config: &Config, out: &mut dyn Write) -> i
     for row in 0..rows {
         for column in 0..columns {
             // The first row of a map is the topmost.
-            let grain = grid.labels[(rows - 1 - row) * columns + column];
-            let [phi1, big_phi, phi2] = angles[grain.index()];
+            let side = grid.labels[(rows - 1 - row) * columns + column];
             let (x, y) = (column as f64 * x_step, row as f64 * y_step);
+            let Side::Grain(grain) = side else {
+                // As TSL writes pixels without a solution.
+                writeln!(
+                    out,
+                    "{ANGLE_OF_NONE:.5} {ANGLE_OF_NONE:.5} {ANGLE_OF_NONE:.5} {x:?} {y:?} -1.0 -1.000 0 -1 180.000"
+                )?;
+                continue;
+            };
+            let [phi1, big_phi, phi2] = angles[grain.index()];
             writeln!(out, "{phi1:.5} {big_phi:.5} {phi2:.5} {x:?} {y:?} 1.0 1.000 1 1 0.000")?;
         }
     }
@@ -50,6 +62,10 @@ fn euler_angles(grid: &LabelGrid, random_seed: u64) -> Vec<[f64; 3]> {
     let mut generator = ChaCha8Rng::seed_from_u64(random_seed);
     generator.set_stream(STREAM);
     let mut fraction = || (generator.next_u64() >> 11) as f64 * 2f64.powi(-53);
-    let count = grid.labels.iter().max().map_or(0, |grain| grain.index() + 1);
+    let grains = grid.labels.iter().filter_map(|side| match side {
+        Side::Grain(grain) => Some(grain.index() + 1),
+        Side::Exterior => None,
+    });
+    let count = grains.max().unwrap_or(0);
     (0..count).map(|_| [TAU * fraction(), (2.0 * fraction() - 1.0).acos(), TAU * fraction()]).collect()
 }

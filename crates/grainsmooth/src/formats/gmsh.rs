@@ -24,9 +24,12 @@ pub(crate) fn write_script(
     surface: &Surface<'_>,
     grain_count: usize,
     mesh: &str,
+    config: &Config,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    writeln!(out, "// grainsmooth {}\nMerge \"{mesh}\";", env!("CARGO_PKG_VERSION"))?;
+    writeln!(out, "// grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
+    config.write_comments("// ", out)?;
+    writeln!(out, "Merge \"{mesh}\";")?;
     for part in &surface.parts {
         let ([from, to], tag) = (part.sides.map(side_name), tag(part.boundary));
         let number = part.boundary.0;

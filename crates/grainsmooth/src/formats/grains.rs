@@ -5,6 +5,7 @@ use std::io::{self, Write};
 
 use polycrystal::{GrainId, Side};
 use rayon::prelude::*;
+use voronoi::Dimension;
 
 use super::surface::Surface;
 use super::{Names, obj, ply, stl};
@@ -39,7 +40,7 @@ impl GrainMeasure {
         beyond.sort_unstable();
         beyond.dedup();
         let neighbors = i32::try_from(beyond.len()).expect("fewer grains than 2^31");
-        let sphericity = (36.0 * PI * volume * volume).cbrt() / area;
+        let sphericity = PI * Dimension::Three.ball_diameter(volume).powi(2) / area;
         Self { volume, area, neighbors, sphericity }
     }
 }
@@ -75,7 +76,7 @@ impl Polycrystal {
         out: &mut dyn Write,
     ) -> io::Result<()> {
         match format {
-            OutputFormat::Stl => stl::write(surface, &format!("grain{}", grain.0), self.config.file.stl, out),
+            OutputFormat::Stl => stl::write(surface, &format!("grain{}", grain.0), &self.config, out),
             OutputFormat::Ply => ply::write(surface, &self.config, out),
             OutputFormat::Obj => obj::write(surface, &self.config, out),
             OutputFormat::Vtk(format) => {

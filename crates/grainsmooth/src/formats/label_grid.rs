@@ -25,8 +25,8 @@ pub struct LabelGrid {
     pub origin: DVec3,
     /// Side lengths of a voxel; along z that along x in 2D.
     pub spacing: DVec3,
-    /// The grain of each voxel's centre, x fastest, then y, then z.
-    pub labels: Vec<GrainId>,
+    /// What the centre of each voxel is in, x fastest, then y, then z.
+    pub labels: Vec<Side>,
 }
 
 /// A row passes from one side of a boundary to the other just before the centre of a voxel.
@@ -55,8 +55,9 @@ impl LabelGrid {
         }
         let centers = Centers { domain: domain.clone(), size };
         let crossings = crossings_by_slice(polycrystal, &centers);
-        let slices: Vec<Vec<GrainId>> =
-            crossings.into_par_iter().map(|crossings| fill_slice(size, crossings)).collect();
+        let fills_box = domain.is_box();
+        let slices: Vec<Vec<Side>> =
+            crossings.into_par_iter().map(|crossings| fill_slice(size, fills_box, crossings)).collect();
         Self { size, origin: domain.lower(), spacing, labels: slices.concat() }
     }
 }
@@ -229,8 +230,8 @@ fn is_left(from: Coord<f64>, to: Coord<f64>, row: Coord<f64>) -> bool {
 }
 
 /// The labels of a slice. Between two centres a row may cross several boundaries, in an order that does not matter: it is
-/// in the grain that it has entered once more than it has left.
-fn fill_slice(size: [usize; 3], mut crossings: Vec<Crossing>) -> Vec<GrainId> {
+/// in the grain that it has entered once more than it has left, or in none where the domain does not fill its box.
+fn fill_slice(size: [usize; 3], fills_box: bool, mut crossings: Vec<Crossing>) -> Vec<Side> {
     crossings.sort_unstable();
     let mut crossings = crossings.into_iter().peekable();
     let mut labels = Vec::with_capacity(size[0] * size[1]);
@@ -245,9 +246,10 @@ fn fill_slice(size: [usize; 3], mut crossings: Vec<Crossing>) -> Vec<GrainId> {
                 add(&mut counts, entered, 1);
             }
             counts.retain(|(_, count)| *count != 0);
-            let grain = counts.iter().max_by_key(|(_, count)| *count).map(|(grain, _)| *grain);
+            let grain = counts.iter().max_by_key(|(_, count)| *count).map(|(grain, _)| Side::Grain(*grain));
             // Between images that round differently there may be a gap.
-            labels.push(grain.or(labels.last().copied()).unwrap_or(GrainId(0)));
+            let nothing = if fills_box { labels.last().copied() } else { Some(Side::Exterior) };
+            labels.push(grain.or(nothing).unwrap_or(Side::Grain(GrainId(0))));
         }
         // What lies beyond the last centre.
         while crossings.next_if(|crossing| crossing.row <= row).is_some() {}

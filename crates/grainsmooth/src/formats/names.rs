@@ -72,6 +72,15 @@ impl Names {
         }
     }
 
+    /// The number of a voxel: 0 outside of all grains, or -1 where that is a grain.
+    pub(crate) fn voxel_number(self, side: Side) -> i32 {
+        match side {
+            Side::Grain(grain) => self.number(grain),
+            Side::Exterior if self == Self::Grainsmooth => -1,
+            Side::Exterior => 0,
+        }
+    }
+
     /// Whether a boundary's sides stand, and its triangles wind, the other way than elsewhere.
     pub(crate) fn reverses(self, boundary: &Boundary) -> bool {
         self == Self::Dream3d && !boundary.is_interior()

@@ -23,5 +23,5 @@ pub(crate) fn write(grid: &LabelGrid, names: Names, out: &mut dyn Write) -> io::
     out.write_all(magic)?;
     out.write_all(&u16::try_from(header.len()).map_err(io::Error::other)?.to_le_bytes())?;
     out.write_all(header.as_bytes())?;
-    grid.labels.iter().try_for_each(|grain| out.write_all(&names.number(*grain).to_le_bytes()))
+    grid.labels.iter().try_for_each(|side| out.write_all(&names.voxel_number(*side).to_le_bytes()))
 }

@@ -2,9 +2,8 @@
 
 use std::io::{self, Write};
 
-use glam::DVec3;
-
-use super::surface::Surface;
+use super::surface::{Surface, unit_normal};
+use crate::Config;
 
 /// How an STL file spells its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,6 +14,9 @@ pub enum StlEncoding {
     Ascii,
 }
 
+/// The first line of a text is cut by some readers (Gmsh) after 255 bytes; the rest would not be understood.
+const TITLE_BYTES: usize = 240;
+
 /// What the header of a binary file begins with must not be `solid`, which would make it text to many readers.
 const HEADER_BYTES: usize = 80;
 
@@ -22,29 +24,36 @@ const HEADER_BYTES: usize = 80;
 pub(crate) fn write(
     surface: &Surface<'_>,
     name: &str,
-    encoding: StlEncoding,
+    config: &Config,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     if let Some(point) = surface.points.iter().find(|point| !point.as_vec3().is_finite()) {
         return Err(io::Error::other(format!("{point} is too far out for STL's single precision")));
     }
-    match encoding {
-        StlEncoding::Binary => write_binary(surface, name, out),
-        StlEncoding::Ascii => write_ascii(surface, name, out),
+    match config.file.stl {
+        StlEncoding::Binary => write_binary(surface, &title(name, config, HEADER_BYTES), out),
+        StlEncoding::Ascii => write_ascii(surface, name, &title(name, config, TITLE_BYTES), out),
     }
 }
 
-fn write_binary(surface: &Surface<'_>, name: &str, out: &mut dyn Write) -> io::Result<()> {
+/// The name of a solid, and in what its settings differ from the default ones if there is room: nowhere else is any.
+fn title(name: &str, config: &Config, room: usize) -> String {
+    let title = format!("{name}, grainsmooth {}", env!("CARGO_PKG_VERSION"));
+    let with_settings = format!("{title} {}", config.differences());
+    if with_settings.len() <= room && !with_settings.contains('\n') { with_settings } else { title }
+}
+
+fn write_binary(surface: &Surface<'_>, title: &str, out: &mut dyn Write) -> io::Result<()> {
     let count = u32::try_from(surface.triangle_count())
         .map_err(|_| io::Error::other("more triangles than STL can count; write .vtp instead"))?;
-    let mut header = format!("grainsmooth {name}").into_bytes();
+    let mut header = title.as_bytes().to_vec();
     header.resize(HEADER_BYTES, b' ');
     out.write_all(&header)?;
     out.write_all(&count.to_le_bytes())?;
     let mut record = [0; 50];
     for triangle in surface.triangles() {
         let corners = surface.corners(triangle);
-        let vectors = [normal(corners), corners[0], corners[1], corners[2]];
+        let vectors = [unit_normal(corners), corners[0], corners[1], corners[2]];
         let numbers = vectors.iter().flat_map(|vector| vector.as_vec3().to_array());
         for (place, number) in record.as_chunks_mut::<4>().0.iter_mut().zip(numbers) {
             *place = number.to_le_bytes();
@@ -54,11 +63,11 @@ fn write_binary(surface: &Surface<'_>, name: &str, out: &mut dyn Write) -> io::R
     Ok(())
 }
 
-fn write_ascii(surface: &Surface<'_>, name: &str, out: &mut dyn Write) -> io::Result<()> {
-    writeln!(out, "solid {name}")?;
+fn write_ascii(surface: &Surface<'_>, name: &str, title: &str, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "solid {title}")?;
     for triangle in surface.triangles() {
         let corners = surface.corners(triangle);
-        let [x, y, z] = normal(corners).as_vec3().to_array();
+        let [x, y, z] = unit_normal(corners).as_vec3().to_array();
         writeln!(out, "facet normal {x:e} {y:e} {z:e}\nouter loop")?;
         for [x, y, z] in corners.map(|corner| corner.as_vec3().to_array()) {
             writeln!(out, "vertex {x:e} {y:e} {z:e}")?;
@@ -66,9 +75,4 @@ fn write_ascii(surface: &Surface<'_>, name: &str, out: &mut dyn Write) -> io::Re
         writeln!(out, "endloop\nendfacet")?;
     }
     writeln!(out, "endsolid {name}")
-}
-
-fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    // Of edges of length one: the product of tiny ones would vanish.
-    (b - a).normalize_or_zero().cross((c - a).normalize_or_zero()).normalize_or_zero()
 }

@@ -68,13 +68,14 @@ pub struct Oriented {
 /// What the cells fill.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TessDomain {
-    /// Neper's name for it; `cube` is any box, `square` any rectangle.
+    /// Neper's name for it; `cube` is any box, `square` any rectangle, `poly` any convex polyhedron or polygon.
     pub kind: String,
     /// The corner of its bounding box with the smallest coordinates.
     pub lower: DVec3,
     /// The corner of its bounding box with the largest coordinates.
     pub upper: DVec3,
-    /// For each wall of a box, in the order of [`Wall::ALL`], the faces on it; in 2D, the edges. Empty for other domains.
+    /// For each wall the faces on it; in 2D, the edges. Those of a box are in the order of [`Wall::ALL`]; empty for a domain of
+    /// yet another kind.
     pub walls: Vec<Vec<u32>>,
 }
 
@@ -111,18 +112,20 @@ impl Tess {
     pub fn new(cells: &Tessellated) -> Self {
         let tessellation = &cells.tessellation;
         let domain = tessellation.domain();
-        let wall_count = match domain.dimension() {
-            _ if !domain.is_box() => 0,
-            Dimension::Two => 4,
-            Dimension::Three => 6,
+        let (kind, wall_count) = match domain.dimension() {
+            _ if !domain.is_box() => (POLYHEDRON, domain.walls().count()),
+            Dimension::Two => ("square", 4),
+            Dimension::Three => ("cube", 6),
         };
         let mut walls = vec![Vec::new(); wall_count];
         for face in tessellation.faces() {
-            if let Side::Wall(wall) = tessellation.face_sides(face)[1]
-                && let Some(faces) = walls.get_mut(wall.index())
-            {
-                faces.push(face.0);
+            if let Side::Wall(wall) = tessellation.face_sides(face)[1] {
+                walls[wall.index()].push(face.0);
             }
+        }
+        if !domain.is_box() {
+            // A file ends with the last wall that bounds something.
+            while walls.pop_if(|faces| faces.is_empty()).is_some() {}
         }
         let seeds = tessellation.seeds().iter().zip(&cells.weights);
         let mut tess = Self {
@@ -132,7 +135,7 @@ impl Tess {
             edges: Vec::new(),
             faces: Vec::new(),
             polyhedra: Vec::new(),
-            domain: TessDomain { kind: String::new(), lower: domain.lower(), upper: domain.upper(), walls },
+            domain: TessDomain { kind: kind.to_owned(), lower: domain.lower(), upper: domain.upper(), walls },
             periodicity: None,
         };
         match tess.dimension {
@@ -148,7 +151,6 @@ impl Tess {
     fn fill_space(&mut self, cells: &Tessellated) {
         let tessellation = &cells.tessellation;
         let edges = tessellation.edges();
-        self.domain.kind = "cube".to_owned();
         self.edges = edges.ends.iter().map(|ends| ends.map(|vertex| vertex.0)).collect();
         let mut next_edge = edges.of_corner.iter();
         for face in tessellation.faces() {
@@ -174,7 +176,6 @@ impl Tess {
 
     fn fill_plane(&mut self, cells: &Tessellated) {
         let tessellation = &cells.tessellation;
-        self.domain.kind = "square".to_owned();
         let ends = |face| {
             let corners = tessellation.face_corners(face);
             [corners[0].0, corners[1].0]
@@ -258,10 +259,17 @@ impl TessPeriodicity {
     }
 }
 
+/// Neper's name for a convex polyhedron or polygon.
+const POLYHEDRON: &str = "poly";
+
 impl TessDomain {
-    /// Neper's name of a wall: `x0` to `z1`.
-    fn label(wall: Wall) -> String {
-        format!("{}{}", ['x', 'y', 'z'][wall.axis()], u8::from(wall.is_upper()))
+    /// Neper's name of a wall: `x0` to `z1` of a box, else `f1`, `f2`, and so on.
+    fn label(&self, wall: Wall) -> String {
+        if self.kind == POLYHEDRON {
+            format!("f{}", wall.index() + 1)
+        } else {
+            format!("{}{}", ['x', 'y', 'z'][wall.axis()], u8::from(wall.is_upper()))
+        }
     }
 }
 

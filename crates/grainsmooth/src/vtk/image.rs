@@ -75,14 +75,17 @@ pub(super) fn write_field(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     for FieldEntry { name, value } in field {
-        let (element, kind, bytes) = match value {
-            FieldValue::Text(text) => ("Array", "String", format!("{text}\0").into_bytes()),
-            FieldValue::Integer(number) => ("DataArray", "UInt64", number.to_ne_bytes().to_vec()),
+        let (element, kind, count, bytes) = match value {
+            FieldValue::Text(text) => ("Array", "String", 1, format!("{text}\0").into_bytes()),
+            FieldValue::Integer(number) => ("DataArray", "UInt64", 1, number.to_ne_bytes().to_vec()),
+            FieldValue::Numbers(numbers) => {
+                ("DataArray", "Float64", numbers.len(), bytemuck::cast_slice(numbers).to_vec())
+            }
         };
         let offset = appended.append(Numbers::bytes(bytes));
         writeln!(
             out,
-            "<{element} type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"appended\" offset=\"{offset}\"/>"
+            "<{element} type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"{count}\" format=\"appended\" offset=\"{offset}\"/>"
         )?;
     }
     Ok(())

@@ -1,97 +1,164 @@
 //! What closes grains where the box's planes cut them.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
+use glam::DVec3;
 use spade::handles::{FixedVertexHandle, InnerTag};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use voronoi::{Dimension, Shift};
 
-use super::pieces::Pieces;
+use super::pieces::{End, Pieces};
 use super::{Corner, Piece, periodic_axes, place_in_box};
 use crate::{NetworkError, Side};
 
 type Delaunay = ConstrainedDelaunayTriangulation<Point2<f64>>;
 type Face = spade::handles::FixedFaceHandle<InnerTag>;
 
-/// Caps on all walls across periodic axes: of a grain toward the exterior.
-pub(super) fn caps(pieces: &mut Pieces) -> Result<Vec<Piece>, NetworkError> {
+/// Caps on all walls across periodic axes: of a grain toward the exterior. What lies within such a wall becomes caps of both
+/// sides, one on each of the opposite walls.
+pub(super) fn caps(pieces: &mut Pieces, only_grain: Option<Side>) -> Result<Vec<Piece>, NetworkError> {
     let axes: Vec<usize> = periodic_axes(&pieces.domain).collect();
     let is_plane = pieces.domain.dimension() == Dimension::Two;
-    let dimensions = if is_plane { 2 } else { 3 };
     // The corners of a box that is periodic along all its axes are one point.
-    let origin = (axes.len() == dimensions).then(|| {
-        let lower = pieces.domain.lower();
-        pieces.add(lower, [0, 1, 2].map(|axis| axis < dimensions))
-    });
+    let origin = (axes.len() == if is_plane { 2 } else { 3 }).then(|| pieces.origin());
     let mut caps = Vec::new();
     for axis in axes {
         if is_plane {
-            caps_of_line(pieces, axis, origin, &mut caps);
+            caps_of_line(pieces, axis, (origin, only_grain), &mut caps)?;
         } else {
-            caps_of_plane(pieces, axis, &mut caps)?;
+            caps_of_plane(pieces, axis, only_grain, &mut caps)?;
         }
     }
+    let all = std::mem::take(&mut pieces.pieces);
+    let is_inside = |piece: &Piece| !periodic_axes(&pieces.domain).any(|axis| pieces.is_within(piece, axis));
+    pieces.pieces = all.into_iter().filter(is_inside).collect();
     Ok(caps)
 }
 
-/// Adds the same cap on the lower and on the upper wall; its corners wind round the axis.
-fn push_caps(caps: &mut Vec<Piece>, axis: usize, corners: Vec<Corner>, grain: Side) {
+/// Adds a cap of a grain, whose corners on the lower wall wind round the axis, on one of the opposite walls.
+fn push_cap(caps: &mut Vec<Piece>, axis: usize, corners: &[Corner], grain: Side, end: End) {
     let mut up = Shift::NONE;
-    up.0[axis] = 1;
-    let sides = [grain, Side::Exterior];
-    caps.push(Piece { corners: corners.iter().map(|corner| corner.moved(up)).collect(), sides });
-    caps.push(Piece { corners: corners.into_iter().rev().collect(), sides });
+    up.0[axis] = end as i8;
+    let mut corners: Vec<Corner> = corners.iter().map(|corner| corner.moved(up)).collect();
+    if end == End::Lower {
+        corners.reverse();
+    }
+    caps.push(Piece { corners, sides: [grain, Side::Exterior] });
+}
+
+fn crosses(axis: usize) -> NetworkError {
+    NetworkError::CutCrosses { axis: ["x", "y", "z"][axis] }
 }
 
 /// In the plane: what of a wall lies between points at which boundaries meet it.
-fn caps_of_line(pieces: &Pieces, axis: usize, origin: Option<Corner>, caps: &mut Vec<Piece>) {
+fn caps_of_line(
+    pieces: &Pieces,
+    axis: usize,
+    (origin, only_grain): (Option<Corner>, Option<Side>),
+    caps: &mut Vec<Piece>,
+) -> Result<(), NetworkError> {
     let along = 1 - axis;
-    // Of each point, the sides before and after it.
-    let mut points: BTreeMap<Corner, [Side; 2]> = BTreeMap::new();
-    for Piece { corners, sides } in &pieces.pieces {
-        for (corner, is_end) in corners.iter().zip([false, true]) {
-            if pieces.is_on_lower(*corner, axis) {
-                // The first side is on the left: of what leaves x = 0 that is after, of what leaves y = 0 before.
-                let [left, right] = *sides;
-                points.insert(*corner, if is_end == (axis == 0) { [left, right] } else { [right, left] });
+    let place =
+        |corner: Corner| place_in_box(&pieces.domain, pieces.places[corner.point as usize], corner.shift);
+    let mut far = Shift::NONE;
+    far.0[along] = 1;
+    let mut line: Vec<Corner> = origin.into_iter().flat_map(|origin| [origin, origin.moved(far)]).collect();
+    for corner in pieces.pieces.iter().flat_map(|piece| &piece.corners) {
+        let end = [End::Lower, End::Upper].into_iter().find(|end| pieces.is_on(*corner, axis, *end));
+        line.extend(end.map(|end| pieces.lowered(*corner, axis, end)));
+    }
+    line.sort_by(|a, b| place(*a)[along].total_cmp(&place(*b)[along]).then(a.cmp(b)));
+    line.dedup();
+    for end in [End::Lower, End::Upper] {
+        // The sides after and before each point, each with the slope along the wall of the boundary that bounds it.
+        let mut beside: HashMap<(Corner, bool), (f64, Side)> = HashMap::new();
+        for piece in &pieces.pieces {
+            let ends = [piece.corners[0], piece.corners[1]];
+            let is_within = pieces.is_within(piece, axis);
+            for (at, other, [left, right]) in
+                [(ends[0], ends[1], piece.sides), (ends[1], ends[0], [piece.sides[1], piece.sides[0]])]
+            {
+                let away = (place(other) - place(at)).normalize_or_zero();
+                if is_within {
+                    // Along x the left is above, along y it is below.
+                    let is_left = (axis == 1) == ((away[along] > 0.0) == (end == End::Lower));
+                    let side = if is_left { left } else { right };
+                    beside.insert((at, away[along] > 0.0), (f64::INFINITY, side));
+                } else if pieces.is_on(at, axis, end) {
+                    let base = pieces.lowered(at, axis, end);
+                    // Leaving x = 0 the left is after, leaving y = 0 before; leaving the upper wall the other way round.
+                    let is_left_after = (axis == 0) == (end == End::Lower);
+                    for (is_after, slope) in [(true, away[along]), (false, -away[along])] {
+                        let side = if is_after == is_left_after { left } else { right };
+                        let best = beside.entry((base, is_after)).or_insert((slope, side));
+                        if slope > best.0 {
+                            *best = (slope, side);
+                        }
+                    }
+                }
+            }
+        }
+        let known = |corner: Corner, is_after| beside.get(&(corner, is_after)).map(|(_, side)| *side);
+        let between = |pair: &[Corner]| known(pair[0], true).or_else(|| known(pair[1], false));
+        let mut sides: Vec<Option<Side>> = line.windows(2).map(between).collect();
+        // Where no boundary meets the wall the same grain goes on.
+        let first = sides.iter().copied().flatten().next_back().or(only_grain);
+        let mut last = first;
+        for side in &mut sides {
+            last = side.or(last);
+            *side = last;
+        }
+        for (pair, side) in line.windows(2).zip(sides) {
+            let side = side.ok_or_else(|| crosses(axis))?;
+            // Of the upper wall the grain is on the left going up y, and down x.
+            let corners = if axis == 0 { [pair[0], pair[1]] } else { [pair[1], pair[0]] };
+            if side != Side::Exterior {
+                push_cap(caps, axis, &corners, side, end);
             }
         }
     }
-    let height = |corner: &Corner| {
-        place_in_box(&pieces.domain, pieces.places[corner.point as usize], corner.shift)[along]
-    };
-    let mut sorted: Vec<(Corner, [Side; 2])> = points.into_iter().collect();
-    sorted.sort_by(|a, b| height(&a.0).total_cmp(&height(&b.0)));
-    if let (Some(origin), [(_, [before, _]), .., (_, [_, after])]) = (origin, &sorted[..]) {
-        let (before, after) = (*before, *after);
-        let mut far = Shift::NONE;
-        far.0[along] = 1;
-        sorted.insert(0, (origin, [Side::Exterior, before]));
-        sorted.push((origin.moved(far), [after, Side::Exterior]));
-    }
-    for pair in sorted.windows(2) {
-        let [(from, [_, side]), (to, _)] = [pair[0], pair[1]];
-        // Of the upper wall the grain is on the left going up y, and down x.
-        let ends = if axis == 0 { vec![from, to] } else { vec![to, from] };
-        if side != Side::Exterior {
-            push_caps(caps, axis, ends, side);
-        }
-    }
+    Ok(())
 }
 
-/// In space: the triangles of a wall, constrained by the lines in which boundaries meet it.
-fn caps_of_plane(pieces: &Pieces, axis: usize, caps: &mut Vec<Piece>) -> Result<(), NetworkError> {
+/// In space: the triangles of a wall, constrained by the lines in which boundaries meet it from above and from below.
+fn caps_of_plane(
+    pieces: &Pieces,
+    axis: usize,
+    only_grain: Option<Side>,
+    caps: &mut Vec<Piece>,
+) -> Result<(), NetworkError> {
     let [b, c] = [(axis + 1) % 3, (axis + 2) % 3];
-    // What lies on the left of each edge, seen from above the lower wall.
-    let mut left_of: HashMap<[Corner; 2], Side> = HashMap::new();
+    let place = |corner: Corner| {
+        let place = place_in_box(&pieces.domain, pieces.places[corner.point as usize], corner.shift);
+        Point2::new(place[b], place[c])
+    };
+    // What lies on the left of each edge, seen from above: at the lower wall and at the upper one.
+    let mut left_of = [Lefts::default(), Lefts::default()];
     let mut edges = Vec::new();
-    for Piece { corners, sides } in &pieces.pieces {
-        for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
-            if pieces.is_on_lower(*from, axis) && pieces.is_on_lower(*to, axis) {
-                left_of.insert([*from, *to], sides[0]);
-                left_of.insert([*to, *from], sides[1]);
-                edges.push([*from, *to]);
+    for piece @ Piece { corners, sides: [first, second] } in &pieces.pieces {
+        let along = corners.iter().zip(corners.iter().cycle().skip(1)).map(|(from, to)| [*from, *to]);
+        if pieces.is_within(piece, axis) {
+            let crossed = along.clone().map(|ends| ends.map(place)).map(|[p, q]| p.x * q.y - q.x * p.y);
+            let is_upward = crossed.sum::<f64>() > 0.0;
+            for [from, to] in along {
+                let (ends, above, below) =
+                    if is_upward { ([from, to], second, first) } else { ([to, from], first, second) };
+                left_of[End::Lower as usize].add(ends, f64::INFINITY, *above);
+                left_of[End::Upper as usize].add(ends, f64::INFINITY, *below);
+                edges.push(ends);
             }
+            continue;
+        }
+        for ends in along {
+            let on = |end| ends.iter().all(|corner| pieces.is_on(*corner, axis, end));
+            let Some(end) = [End::Lower, End::Upper].into_iter().find(|end| on(*end)) else { continue };
+            let leaning = leaning(pieces, piece, ends, axis);
+            let [from, to] = ends.map(|corner| pieces.lowered(corner, axis, end));
+            // A piece above has its first side on the left of its edge, one below on the right.
+            let [left, right] = if end == End::Lower { [*first, *second] } else { [*second, *first] };
+            left_of[end as usize].add([from, to], leaning, left);
+            left_of[end as usize].add([to, from], -leaning, right);
+            edges.push([from, to]);
         }
     }
     for [across, along] in [[b, c], [c, b]] {
@@ -102,33 +169,63 @@ fn caps_of_plane(pieces: &Pieces, axis: usize, caps: &mut Vec<Piece>) -> Result<
     let mut corners: Vec<Corner> = edges.iter().flatten().copied().collect();
     corners.sort_unstable();
     corners.dedup();
-    let crosses = || NetworkError::CutCrosses { axis: ["x", "y", "z"][axis] };
     let mut delaunay = Delaunay::new();
     for (number, corner) in corners.iter().enumerate() {
-        let place = place_in_box(&pieces.domain, pieces.places[corner.point as usize], corner.shift);
-        let vertex = delaunay.insert(Point2::new(place[b], place[c])).map_err(|_| crosses())?;
+        let vertex = delaunay.insert(place(*corner)).map_err(|_| crosses(axis))?;
         // An earlier point at the same place comes back as itself.
         if vertex.index() != number {
-            return Err(crosses());
+            return Err(crosses(axis));
         }
     }
     for ends in &edges {
         let [from, to] = ends
             .map(|end| FixedVertexHandle::from_index(corners.binary_search(&end).expect("ends were listed")));
         if !delaunay.can_add_constraint(from, to) {
-            return Err(crosses());
+            return Err(crosses(axis));
         }
         delaunay.add_constraint(from, to);
     }
-    let side_at = |ends: [FixedVertexHandle; 2]| left_of.get(&ends.map(|end| corners[end.index()])).copied();
-    let sides = fill(&delaunay, side_at);
-    for face in delaunay.inner_faces() {
-        let grain = *sides.get(&face.fix()).ok_or_else(crosses)?;
-        if grain != Side::Exterior {
-            push_caps(caps, axis, face.vertices().map(|vertex| corners[vertex.index()]).to_vec(), grain);
+    for (end, left_of) in [End::Lower, End::Upper].into_iter().zip(&left_of) {
+        let side_at = |ends: [FixedVertexHandle; 2]| left_of.side(ends.map(|end| corners[end.index()]));
+        let sides = fill(&delaunay, side_at);
+        for face in delaunay.inner_faces() {
+            let grain = sides.get(&face.fix()).copied().or(only_grain).ok_or_else(|| crosses(axis))?;
+            if grain != Side::Exterior {
+                push_cap(caps, axis, &face.vertices().map(|vertex| corners[vertex.index()]), grain, end);
+            }
         }
     }
     Ok(())
+}
+
+/// What lies on the left of edges in a wall: where several pieces end there, the side of the one that leans there most.
+#[derive(Default)]
+struct Lefts(HashMap<[Corner; 2], (f64, Side)>);
+
+impl Lefts {
+    fn add(&mut self, ends: [Corner; 2], leaning: f64, side: Side) {
+        let best = self.0.entry(ends).or_insert((leaning, side));
+        if leaning > best.0 {
+            *best = (leaning, side);
+        }
+    }
+
+    fn side(&self, ends: [Corner; 2]) -> Option<Side> {
+        self.0.get(&ends).map(|(_, side)| *side)
+    }
+}
+
+/// How far a piece leans to the left of its edge in a wall across an axis, seen from above: from -1 to 1.
+fn leaning(pieces: &Pieces, piece: &Piece, ends: [Corner; 2], axis: usize) -> f64 {
+    let place =
+        |corner: Corner| place_in_box(&pieces.domain, pieces.places[corner.point as usize], corner.shift);
+    let [start, end] = ends.map(place);
+    let along = (end - start).normalize_or_zero();
+    let left = DVec3::AXES[axis].cross(along);
+    // The farthest corner tells best how a thin piece leans.
+    let legs = piece.corners.iter().map(|corner| (place(*corner) - start).reject_from_normalized(along));
+    let leg = legs.max_by(|a, b| a.length_squared().total_cmp(&b.length_squared())).unwrap_or_default();
+    leg.normalize_or_zero().dot(left)
 }
 
 /// The edges of the lower wall across the first of two axes that lie on walls across the second, below and above.

@@ -7,7 +7,7 @@ use voronoi::{Dimension, Domain, Shift};
 
 use super::{Corner, Piece, periodic_axes};
 use crate::face_mesh::id;
-use crate::{Elements, GrainId, Network, NetworkError, Side};
+use crate::{Elements, GrainId, Network, Side};
 
 /// Pieces of elements, and the points of the torus in the box.
 pub(super) struct Pieces {
@@ -15,8 +15,20 @@ pub(super) struct Pieces {
     pub(super) pieces: Vec<Piece>,
     /// Places with lower <= x < upper along periodic axes.
     pub(super) places: Vec<DVec3>,
-    /// The axes on whose lower plane each point lies because a cut made it.
+    /// A grain that meets its own image, if there is one.
+    pub(super) meets_itself: Option<GrainId>,
+    /// The axes on whose lower plane each point lies.
     pub(super) planes: Vec<[bool; 3]>,
+}
+
+/// What is nearer to a plane than this share of the box's side lies in it: relaxation leaves lattices so far off by rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// Which of two opposite walls: by how many periods it is moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum End {
+    Lower = 0,
+    Upper = 1,
 }
 
 /// Where an edge meets a plane: the axis, the edge from one of its points, and the plane as seen from there.
@@ -24,7 +36,7 @@ type Cut = (usize, Corner, Corner, i8);
 
 impl Pieces {
     /// Whole elements, of boundaries that come twice those of one.
-    pub(super) fn of_network(network: &Network, points: &[DVec3]) -> Result<Self, NetworkError> {
+    pub(super) fn of_network(network: &Network, points: &[DVec3]) -> Self {
         let level = network.finest();
         assert_eq!(points.len(), level.vertex_count(), "there must be one point per vertex");
         let domain = network.domain().clone();
@@ -37,17 +49,16 @@ impl Pieces {
             places: points.to_vec(),
             planes: vec![[false; 3]; points.len()],
             pieces: Vec::new(),
+            meets_itself: None,
             domain,
         };
         let mut moved = vec![Shift::NONE; points.len()];
         for point in (0..points.len()).filter(|point| originals[*point].point == id(*point)) {
             let (place, shift) = home(&pieces.domain, points[point]);
-            for axis in periodic_axes(&pieces.domain) {
-                if place[axis] == pieces.domain.lower()[axis] {
-                    return Err(NetworkError::PointOnCut { point: points[point] });
-                }
-            }
             (pieces.places[point], moved[point]) = (place, shift);
+            for axis in periodic_axes(&pieces.domain) {
+                pieces.planes[point][axis] = place[axis] == pieces.domain.lower()[axis];
+            }
         }
         let surface = network.sides();
         let elements = Elements::from(&level.mesh);
@@ -59,10 +70,12 @@ impl Pieces {
                 }
                 sides[1] = surface[twin.boundary.index()][0];
             }
+            // Where a grain meets its own image there is nothing between the two.
             if let [Side::Grain(first), Side::Grain(second)] = sides
                 && first == second
             {
-                return Err(NetworkError::MeetsItself { grain: GrainId(first.0) });
+                pieces.meets_itself = Some(first);
+                continue;
             }
             let corner = |point: &u32| {
                 let Corner { point, shift } = originals[*point as usize];
@@ -71,46 +84,64 @@ impl Pieces {
             let corners = elements.corners(element).iter().map(corner).collect();
             pieces.pieces.push(Piece { corners, sides });
         }
-        Ok(pieces)
+        pieces
     }
 
     /// Cuts all pieces at the planes across an axis.
-    pub(super) fn cut(&mut self, axis: usize) -> Result<(), NetworkError> {
+    pub(super) fn cut(&mut self, axis: usize) {
         let mut cuts: HashMap<Cut, Corner> = HashMap::new();
         for mut piece in std::mem::take(&mut self.pieces) {
             let cells = piece.corners.iter().map(|corner| corner.shift.0[axis]);
             let (first, last) = (cells.clone().min().expect("corners"), cells.max().expect("corners"));
             for plane in first + 1..=last {
-                let [below, above] = self.halves(&piece, axis, plane, &mut cuts)?;
+                let (below, above) = self.halves(&piece, axis, plane, &mut cuts);
                 self.pieces.push(below);
                 piece = above;
             }
-            self.pieces.push(piece);
+            // What only touches a plane from below ends there.
+            if !piece.corners.is_empty() {
+                self.pieces.push(piece);
+            }
         }
-        Ok(())
     }
 
-    /// The parts of a piece on both sides of a plane.
+    /// The parts of a piece on both sides of a plane; that above has no corners where the piece reaches the plane only.
     fn halves(
         &mut self,
         piece: &Piece,
         axis: usize,
         plane: i8,
         cuts: &mut HashMap<Cut, Corner>,
-    ) -> Result<[Piece; 2], NetworkError> {
+    ) -> (Piece, Piece) {
         let count = piece.corners.len();
         let is_segment = self.domain.dimension() == Dimension::Two;
+        // 0 in the plane.
+        let side = |corner: Corner| match corner.shift.0[axis] - plane {
+            0 if self.planes[corner.point as usize][axis] => 0,
+            0.. => 1,
+            _ => -1,
+        };
+        let sides_of_corners: Vec<i8> = piece.corners.iter().map(|corner| side(*corner)).collect();
         let mut halves = [Vec::with_capacity(count + 1), Vec::with_capacity(count + 1)];
         for k in 0..count {
-            let [from, to] = [k, (k + 1) % count].map(|k| piece.corners[k]);
-            let [from_above, to_above] = [from, to].map(|corner| corner.shift.0[axis] >= plane);
-            halves[usize::from(from_above)].push(from);
-            if from_above != to_above && !(is_segment && k + 1 == count) {
-                let cut = self.cut_edge([from, to], axis, plane, cuts)?;
+            let next = (k + 1) % count;
+            let [from, to] = [k, next].map(|k| sides_of_corners[k]);
+            if from <= 0 {
+                halves[0].push(piece.corners[k]);
+            }
+            if from >= 0 {
+                halves[1].push(piece.corners[k]);
+            }
+            if from * to < 0 && !(is_segment && k + 1 == count) {
+                let cut = self.cut_edge([piece.corners[k], piece.corners[next]], axis, plane, cuts);
                 halves.iter_mut().for_each(|half| half.push(cut));
             }
         }
-        Ok(halves.map(|corners| Piece { corners, sides: piece.sides }))
+        if !sides_of_corners.contains(&1) {
+            halves[1].clear();
+        }
+        let [below, above] = halves.map(|corners| Piece { corners, sides: piece.sides });
+        (below, above)
     }
 
     /// Where an edge meets a plane: the same point whichever piece asks, from whichever end, wherever its copy is.
@@ -120,7 +151,7 @@ impl Pieces {
         axis: usize,
         plane: i8,
         cuts: &mut HashMap<Cut, Corner>,
-    ) -> Result<Corner, NetworkError> {
+    ) -> Corner {
         let seen = |from: Corner, to: Corner| {
             let back = Shift::NONE - from.shift;
             (axis, from.moved(back), to.moved(back), plane - from.shift.0[axis])
@@ -128,7 +159,7 @@ impl Pieces {
         let [one, other] = [seen(ends[0], ends[1]), seen(ends[1], ends[0])];
         let (cut, base) = if one <= other { (one, ends[0].shift) } else { (other, ends[1].shift) };
         if let Some(corner) = cuts.get(&cut) {
-            return Ok(corner.moved(base));
+            return corner.moved(base);
         }
         let (_, from, to, plane) = cut;
         let [from_planes, to_planes] = [from, to].map(|end| self.planes[end.point as usize]);
@@ -147,14 +178,13 @@ impl Pieces {
         for other in periodic_axes(&self.domain).filter(|other| *other != axis) {
             // What joins two points of a plane lies in it.
             if from_planes[other] && to_planes[other] && to.shift.0[other] == 0 {
-                (place[other], shift.0[other], planes[other]) = (lower[other], 0, true);
-            } else if place[other] == lower[other] {
-                return Err(NetworkError::PointOnCut { point: place });
+                (place[other], shift.0[other]) = (lower[other], 0);
             }
+            planes[other] = place[other] == lower[other];
         }
         let corner = self.add(place, planes).moved(shift);
         cuts.insert(cut, corner);
-        Ok(corner.moved(base))
+        corner.moved(base)
     }
 
     /// A new point of the torus.
@@ -176,9 +206,31 @@ impl Pieces {
         }
     }
 
-    /// Whether a corner lies on the lower wall across an axis.
-    pub(super) fn is_on_lower(&self, corner: Corner, axis: usize) -> bool {
-        self.planes[corner.point as usize][axis] && corner.shift.0[axis] == 0
+    /// Whether a corner lies on a wall of the box across an axis.
+    pub(super) fn is_on(&self, corner: Corner, axis: usize, end: End) -> bool {
+        self.planes[corner.point as usize][axis] && corner.shift.0[axis] == end as i8
+    }
+
+    /// The corner on the lower wall opposite of one on a wall.
+    pub(super) fn lowered(&self, corner: Corner, axis: usize, end: End) -> Corner {
+        let mut down = Shift::NONE;
+        down.0[axis] = -(end as i8);
+        corner.moved(down)
+    }
+
+    /// Whether a piece lies in the lower wall across an axis.
+    pub(super) fn is_within(&self, piece: &Piece, axis: usize) -> bool {
+        piece.corners.iter().all(|corner| self.is_on(*corner, axis, End::Lower))
+    }
+
+    /// The point in the corner of a box that is periodic along all axes.
+    pub(super) fn origin(&mut self) -> Corner {
+        let dimensions = if self.domain.dimension() == Dimension::Two { 2 } else { 3 };
+        let planes = [0, 1, 2].map(|axis| axis < dimensions);
+        match self.planes.iter().position(|known| *known == planes) {
+            Some(point) => Corner { point: id(point), shift: Shift::NONE },
+            None => self.add(self.domain.lower(), planes),
+        }
     }
 }
 
@@ -195,8 +247,12 @@ fn home(domain: &Domain, mut place: DVec3) -> (DVec3, Shift) {
             place[axis] -= period;
             shift.0[axis] += 1;
         }
-        // What rounding puts a little below stays.
-        place[axis] = place[axis].max(lower);
+        if upper - place[axis] <= ROUNDING * period {
+            place[axis] = lower;
+            shift.0[axis] += 1;
+        } else if place[axis] - lower <= ROUNDING * period {
+            place[axis] = lower;
+        }
     }
     (place, shift)
 }

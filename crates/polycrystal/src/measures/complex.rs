@@ -1,15 +1,14 @@
 use std::borrow::Cow;
 
-use glam::DVec3;
 use voronoi::Shift;
 
-use crate::angles::leg;
+use crate::angles::{Wedge, WeightedAngle, angles, wedges};
 use crate::seams::{Seams, Use};
 use crate::{BoundaryId, Elements, Level, Network, Side, Surface};
 
 /// A surface with every place once: in a periodic network without what is a copy of something else, and with the grains
 /// beyond the period as sides.
-pub(super) struct Complex<'a> {
+pub(crate) struct Complex<'a> {
     pub(super) surface: Surface<'a>,
     /// The two sides of each boundary.
     pub(super) sides: Cow<'a, [[Side; 2]]>,
@@ -33,7 +32,7 @@ impl<'a> Complex<'a> {
     }
 
     /// A level of a network, whose surface this is.
-    pub(super) fn of_level(network: &Network, level: &Level, surface: &Surface<'a>) -> Self {
+    pub(crate) fn of_level(network: &Network, level: &Level, surface: &Surface<'a>) -> Self {
         let Seams { mut inner, mut uses } = Seams::of_level(level);
         let boundaries = network.boundaries();
         let originals: Vec<BoundaryId> = (0u32..)
@@ -94,47 +93,13 @@ impl<'a> Complex<'a> {
 
     /// The sectors into which boundaries divide what surrounds a place, in order around it.
     pub(super) fn wedges(&self, at: &[Use]) -> Vec<Wedge> {
-        let ends = |at: &Use| at.ends(self.surface.elements).map(|end| self.surface.points[end as usize]);
-        let axis = match self.surface.elements {
-            Elements::Triangles(_) => {
-                let [start, end] = ends(&at[0]);
-                (end - start).normalize_or_zero()
-            }
-            Elements::Segments(_) => DVec3::Z,
-        };
-        let zero = leg(&self.surface, &at[0]);
-        let quarter = axis.cross(zero);
-        let mut spokes: Vec<(f64, Side)> = at
-            .iter()
-            .map(|at| {
-                let [first, second] = self.sides[self.boundary(at).index()];
-                // A triangle that runs along the axis has its second side counter-clockwise of it.
-                let is_along = match self.surface.elements {
-                    Elements::Triangles(_) => {
-                        let [start, end] = ends(at);
-                        (end - start).dot(axis) > 0.0
-                    }
-                    // A segment that starts here has its first side on the left.
-                    Elements::Segments(_) => at.corner == 1,
-                };
-                let leg = leg(&self.surface, at);
-                (leg.dot(quarter).atan2(leg.dot(zero)), if is_along { second } else { first })
-            })
-            .collect();
-        spokes.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let next = spokes[1..].iter().map(|(angle, _)| *angle);
-        let ends = next.chain([spokes[0].0 + std::f64::consts::TAU]);
-        spokes.iter().zip(ends).map(|(&(start, side), end)| Wedge { side, angle: end - start }).collect()
+        wedges(&self.surface, &self.sides, at)
     }
-}
 
-/// A sector around a place where boundaries meet.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Wedge {
-    /// What fills it.
-    pub(super) side: Side,
-    /// Between the boundaries that bound it, in radians.
-    pub(super) angle: f64,
+    /// The angles between boundaries where three grains meet.
+    pub(crate) fn angles(&self) -> impl Iterator<Item = WeightedAngle> {
+        angles(&self.surface, &self.sides, self.places())
+    }
 }
 
 /// Numbers places anew, copies like their originals.

@@ -2,9 +2,10 @@ use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
 
 use glam::{DMat2, DVec2, DVec3};
+use voronoi::Dimension;
 
-use super::AngleSums;
 use super::complex::Complex;
+use crate::angles::statistics;
 use crate::{AngleStatistics, BoundaryId, GrainId, Side};
 
 /// What a network in the plane is like.
@@ -111,16 +112,11 @@ pub(super) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeas
             grains.entry(grain).or_default().add(own, complex.sides[boundary][1 - end], sign, turning);
         }
     }
-    let mut angles = AngleSums::default();
     let mut triple_points = Vec::new();
     for place in complex.places().filter(|at| at.len() >= 3) {
         let mut wedges = complex.wedges(place);
         wedges.sort_by_key(|wedge| wedge.side);
-        let is_inside = wedges.iter().all(|wedge| wedge.side != Side::Exterior);
         for wedge in &wedges {
-            if is_inside && wedges.len() == 3 {
-                angles.add(1.0, wedge.angle.to_degrees());
-            }
             if let Side::Grain(grain) = wedge.side {
                 grains.entry(grain).or_default().corner_count += 1;
             }
@@ -143,7 +139,7 @@ pub(super) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeas
         boundaries: boundaries.collect(),
         grains: grains.into_iter().map(|(grain, sums)| sums.measures(grain, origin)).collect(),
         triple_points,
-        dihedral_angles: angles.statistics(),
+        dihedral_angles: statistics(complex.angles()),
     }
 }
 
@@ -222,7 +218,7 @@ impl GrainSums {
         let Sums { length, area, first_moment, second_moment, .. } = self.sums;
         let centroid = first_moment / area;
         let square = DMat2::from_cols(centroid * centroid.x, centroid * centroid.y);
-        let equivalent_diameter = (4.0 * area / PI).sqrt();
+        let equivalent_diameter = Dimension::Two.ball_diameter(area);
         let is_at_exterior = self.beyond.contains(&Side::Exterior);
         let mut neighbors: Vec<GrainId> = self.beyond.iter().filter_map(|side| side.grain()).collect();
         neighbors.sort_unstable();

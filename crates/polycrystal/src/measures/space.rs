@@ -2,11 +2,11 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use glam::{DMat3, DVec3};
+use voronoi::Dimension;
 
-use super::AngleSums;
 use super::complex::Complex;
 use super::lines::{Line, Lines};
-use crate::angles::place_length;
+use crate::angles::{place_length, statistics};
 use crate::{AngleStatistics, BoundaryId, GrainId, Side, Surface};
 
 /// What a network in space is like.
@@ -161,9 +161,8 @@ pub(super) fn measure(complex: &Complex<'_>, triangles: &[[u32; 3]]) -> SpaceMea
     let mut rims = vec![Rim::default(); surface.sides.len()];
     let mut triple_lines = Vec::new();
     let mut tangents: Vec<(u32, DVec3)> = Vec::new();
-    let mut angles = AngleSums::default();
     for line in &lines.lines {
-        let measures = measure_line(complex, line, &mut grains, &mut angles);
+        let measures = measure_line(complex, line, &mut grains);
         for boundary in &line.boundaries {
             rims[boundary.index()].edge_count += 1;
             rims[boundary.index()].perimeter += measures.length;
@@ -194,7 +193,7 @@ pub(super) fn measure(complex: &Complex<'_>, triangles: &[[u32; 3]]) -> SpaceMea
         grains: grains.into_iter().map(|(grain, sums)| sums.measures(grain, origin)).collect(),
         triple_lines,
         quadruple_points: quadruple_points(complex, triangles, tangents),
-        dihedral_angles: angles.statistics(),
+        dihedral_angles: statistics(complex.angles()),
     }
 }
 
@@ -286,7 +285,6 @@ fn measure_line(
     complex: &Complex<'_>,
     line: &Line<'_>,
     grains: &mut BTreeMap<GrainId, GrainSums>,
-    angles: &mut AngleSums,
 ) -> TripleLineMeasures {
     let mut length = 0.0;
     let mut sides: Vec<Side> = Vec::new();
@@ -306,9 +304,6 @@ fn measure_line(
             let degrees = wedge.angle.to_degrees();
             *sum += own * degrees;
             range = [range[0].min(degrees), range[1].max(degrees)];
-            if is_inside && wedges.len() == 3 {
-                angles.add(own, degrees);
-            }
             let Side::Grain(grain) = wedge.side else { continue };
             let grain = grains.entry(grain).or_default();
             grain.edges += own * (PI - wedge.angle);
@@ -454,7 +449,7 @@ impl GrainSums {
         let square = DMat3::from_cols(centroid * centroid.x, centroid * centroid.y, centroid * centroid.z);
         let central = second_moment - square * volume;
         let trace = central.x_axis.x + central.y_axis.y + central.z_axis.z;
-        let equivalent_diameter = (6.0 * volume / PI).cbrt();
+        let equivalent_diameter = Dimension::Three.ball_diameter(volume);
         let mean_width = self.edges / (4.0 * PI);
         let is_at_exterior = self.beyond.contains(&Side::Exterior);
         let mut neighbors: Vec<GrainId> = self.beyond.iter().filter_map(|side| side.grain()).collect();

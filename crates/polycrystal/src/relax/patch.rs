@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 
+use super::rows::Rows;
 use crate::volume::{segment_area, triangle_volume};
 
 /// The smallest cotangent that a triangle's angle counts with: obtuse triangles would otherwise push points apart.
@@ -32,6 +33,8 @@ pub(super) struct Patch {
     pub(super) edges: Vec<[u32; 2]>,
     /// Of each element of the control mesh, the edge across from each corner. In the plane, a segment is its own edge.
     pub(super) edges_across: Vec<[u32; 3]>,
+    /// Of each control point the other ends of its edges, and the edges' numbers.
+    pub(super) links: Rows<u32>,
     /// The surface, where it is finer than the control mesh.
     pub(super) refinement: Option<Refinement>,
     /// Energy per area.

@@ -8,6 +8,7 @@ use subzero::StencilTable;
 
 use super::clusters::Numbering;
 use super::patch::{Elements, LARGEST_COTANGENT, Patch, PatchTerms, Refinement};
+use super::rows::Rows;
 use crate::{BoundaryId, Mesh, Network};
 
 /// The patches of all boundaries.
@@ -21,6 +22,8 @@ pub(super) struct Patches {
     places: Vec<usize>,
     /// The patch of each place.
     patch_of_place: Vec<u32>,
+    /// The first place of each patch.
+    first_places: Vec<usize>,
     /// Cones for volumes start here.
     origin: DVec3,
     /// The largest cotangent that an angle counts with.
@@ -60,13 +63,17 @@ impl Patches {
             places[next[*point as usize]] = place;
             next[*point as usize] += 1;
         }
+        let first_places = patches
+            .iter()
+            .scan(0, |next, patch| Some(std::mem::replace(next, *next + patch.control_points.len())))
+            .collect();
         let patch_of_place = (0u32..)
             .zip(&patches)
             .flat_map(|(number, patch)| std::iter::repeat_n(number, patch.control_points.len()))
             .collect();
         let origin = network.domain().lower().midpoint(network.domain().upper());
         let largest_cotangent = LARGEST_COTANGENT;
-        Self { patches, place_starts, places, patch_of_place, origin, largest_cotangent }
+        Self { patches, place_starts, places, patch_of_place, first_places, origin, largest_cotangent }
     }
 
     /// The places of a control point, patch after patch.
@@ -84,9 +91,10 @@ impl Patches {
         members.flat_map(|point| self.places_of_point(*point as usize).iter().copied())
     }
 
-    /// The patch that a place belongs to.
-    pub(super) fn patch_of_place(&self, place: usize) -> usize {
-        self.patch_of_place[place] as usize
+    /// The patch that a place belongs to, and which of its control points it is.
+    pub(super) fn point_of_place(&self, place: usize) -> (usize, usize) {
+        let patch = self.patch_of_place[place] as usize;
+        (patch, place - self.first_places[patch])
     }
 
     pub(super) fn terms(&self, points: &[DVec3]) -> Vec<PatchTerms> {
@@ -146,7 +154,18 @@ fn new_patch(
         }
         Refinement { starts, ids, weights, elements }
     });
-    Patch { control_points, elements, edges, edges_across, refinement, tension, share }
+    let links = links(control_points.len(), &edges);
+    Patch { control_points, elements, edges, edges_across, links, refinement, tension, share }
+}
+
+/// Of each point the other ends of its edges, and their numbers.
+fn links(point_count: usize, edges: &[[u32; 2]]) -> Rows<u32> {
+    let mut links = vec![Vec::new(); point_count];
+    for (number, [a, b]) in (0u32..).zip(edges) {
+        links[*a as usize].push((*b, number));
+        links[*b as usize].push((*a, number));
+    }
+    Rows::new(links)
 }
 
 /// The edges of some elements, each once, and of each triangle those across from its corners.

@@ -1,6 +1,12 @@
 //! Sparse matrices.
 
+use rayon::prelude::*;
+
+/// Rows that one task makes: enough to be worth a task, and few enough for all threads to have some.
+const ROWS_PER_TASK: usize = 1024;
+
 /// Rows of pairs of a column and a value.
+#[derive(Debug)]
 pub(super) struct Rows<T> {
     starts: Vec<usize>,
     entries: Vec<(u32, T)>,
@@ -15,25 +21,56 @@ impl<T: Copy> Rows<T> {
         Self { starts, entries: rows.concat() }
     }
 
-    /// Of rows, columns and values in any order; within a row they stay in it.
-    pub(super) fn of_entries(count: usize, entries: impl Iterator<Item = (u32, u32, T)> + Clone) -> Self
+    /// Rows that are made in parallel: `fill` appends the entries of a row to those of others before it.
+    pub(super) fn made_by(count: usize, fill: impl Fn(usize, &mut Vec<(u32, T)>) + Sync) -> Self
+    where
+        T: Send,
+    {
+        let task = |task: usize| {
+            let mut entries = Vec::new();
+            let rows = task * ROWS_PER_TASK..count.min((task + 1) * ROWS_PER_TASK);
+            let ends: Vec<usize> = rows
+                .map(|row| {
+                    fill(row, &mut entries);
+                    entries.len()
+                })
+                .collect();
+            (ends, entries)
+        };
+        let tasks: Vec<_> = (0..count.div_ceil(ROWS_PER_TASK)).into_par_iter().map(task).collect();
+        let mut rows = Self { starts: vec![0], entries: Vec::new() };
+        rows.entries.reserve_exact(tasks.iter().map(|(_, entries)| entries.len()).sum());
+        for (ends, entries) in tasks {
+            let before = rows.entries.len();
+            rows.starts.extend(ends.iter().map(|end| before + end));
+            rows.entries.extend(entries);
+        }
+        rows
+    }
+
+    /// The matrix with rows and columns exchanged.
+    pub(super) fn transposed(&self, column_count: usize) -> Self
     where
         T: Default,
     {
-        let mut starts = vec![0; count + 1];
-        for (row, ..) in entries.clone() {
-            starts[row as usize + 1] += 1;
+        let mut starts = vec![0; column_count + 1];
+        for (column, _) in &self.entries {
+            starts[*column as usize + 1] += 1;
         }
-        for row in 0..count {
-            starts[row + 1] += starts[row];
+        for column in 0..column_count {
+            starts[column + 1] += starts[column];
         }
         let mut next = starts.clone();
-        let mut sorted = vec![(0, T::default()); starts[count]];
-        for (row, column, value) in entries {
-            sorted[next[row as usize]] = (column, value);
-            next[row as usize] += 1;
+        let mut entries = vec![(0, T::default()); self.entries.len()];
+        for row in 0..self.len() {
+            let id = u32::try_from(row).expect("a matrix has no more rows than ids");
+            for (column, value) in self.row(row) {
+                let place = &mut next[*column as usize];
+                entries[*place] = (id, *value);
+                *place += 1;
+            }
         }
-        Self { starts, entries: sorted }
+        Self { starts, entries }
     }
 
     pub(super) fn row(&self, row: usize) -> &[(u32, T)] {

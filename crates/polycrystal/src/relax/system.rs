@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::clusters::Numbering;
-use super::patch::PatchTerms;
+use super::patch::{Patch, PatchTerms};
 use super::patches::Patches;
 use super::rows::Rows;
 use super::springs::add_springs;
@@ -76,30 +76,34 @@ impl System {
             })
             .collect();
         let count = clusters.cluster_count();
-        let of_places: Vec<f64> = terms.iter().flat_map(|terms| terms.mass.iter().copied()).collect();
-        let mass = |c| patches.places_of_cluster(&clusters, c).map(|place| of_places[place]).sum();
+        let points_of = |cluster| {
+            patches.places_of_cluster(&clusters, cluster).map(|place| patches.point_of_place(place))
+        };
+        let row = |cluster: usize, entries: &mut Vec<(u32, f64)>| {
+            for (patch, point) in points_of(cluster) {
+                let Patch { control_points, links, .. } = &patches.patches[patch];
+                for (end, edge) in links.row(point) {
+                    let other = clusters.numbers()[control_points[*end as usize] as usize];
+                    if other as usize != cluster {
+                        entries.push((other, springs[patch][*edge as usize]));
+                    }
+                }
+            }
+        };
+        let springs = Rows::made_by(count, row);
+        let diagonal = |cluster: usize| {
+            let mass: f64 = points_of(cluster).map(|(patch, point)| terms[patch].mass[point]).sum();
+            springs.row(cluster).iter().fold(mass, |sum, (_, spring)| sum + spring)
+        };
+        let diagonal: Vec<f64> = (0..count).into_par_iter().with_min_len(CHUNK).map(diagonal).collect();
+        let force = |cluster: usize| {
+            points_of(cluster).map(|(patch, point)| terms[patch].gradient[point]).sum::<DVec3>() * -time
+        };
+        let forces: Vec<DVec3> = (0..count).into_par_iter().with_min_len(CHUNK).map(force).collect();
         let sliding = match volumes {
             Volumes::Kept => Vec::new(),
-            Volumes::Free => sliding_masses(patches, terms, &clusters, &of_places, level),
+            Volumes::Free => sliding_masses(patches, terms, &clusters, level),
         };
-        let mut diagonal: Vec<f64> = (0..count).into_par_iter().map(mass).collect();
-        let of_places: Vec<DVec3> = terms.iter().flat_map(|terms| terms.gradient.iter().copied()).collect();
-        let force =
-            |c| patches.places_of_cluster(&clusters, c).map(|place| of_places[place]).sum::<DVec3>() * -time;
-        let forces: Vec<DVec3> = (0..count).into_par_iter().map(force).collect();
-        let between_clusters = springs.iter().zip(&patches.patches).flat_map(|(springs, patch)| {
-            let ends = patch
-                .edges
-                .iter()
-                .map(|ends| ends.map(|end| clusters.numbers()[patch.control_points[end as usize] as usize]));
-            ends.zip(springs).filter(|([a, b], _)| a != b)
-        });
-        for ([a, b], spring) in between_clusters.clone() {
-            diagonal[a as usize] += spring;
-            diagonal[b as usize] += spring;
-        }
-        let both_ways = between_clusters.flat_map(|([a, b], spring)| [(a, b, *spring), (b, a, *spring)]);
-        let springs = Rows::of_entries(count, both_ways);
         let mobility = |(cluster, diagonal): (usize, &f64)| {
             let inverse = if *diagonal > 0.0 { 1.0 / diagonal } else { 0.0 };
             Mobility {
@@ -107,7 +111,8 @@ impl System {
                 freedom: clusters.freedom(cluster, |point| network.freedom(level.walls[point as usize])),
             }
         };
-        let mobility: Vec<Mobility> = diagonal.iter().enumerate().map(mobility).collect();
+        let mobility: Vec<Mobility> =
+            diagonal.par_iter().with_min_len(CHUNK).enumerate().map(mobility).collect();
         let constraint = (volumes == Volumes::Kept).then(|| {
             let constraint = VolumeConstraint::new(network, patches, terms, &clusters);
             let compliance = constraint.compliance(&mobility);
@@ -243,11 +248,8 @@ fn sliding_masses(
     patches: &Patches,
     terms: &[PatchTerms],
     clusters: &Numbering,
-    masses: &[f64],
     level: &Level,
 ) -> Vec<(usize, DMat3)> {
-    let normals: Vec<DVec3> =
-        terms.iter().flat_map(|terms| terms.sweep.iter().map(|sweep| sweep.normalize_or_zero())).collect();
     let is_junction = |point: &u32| {
         let point = *point as usize;
         level.node_types[point].side_count() - i8::from(!level.walls[point].is_empty()) >= 3
@@ -256,9 +258,10 @@ fn sliding_masses(
         clusters.members(cluster).iter().any(is_junction).then(|| {
             let places = patches.places_of_cluster(clusters, cluster);
             let sliding = places.map(|place| {
-                let normal = normals[place];
+                let (patch, point) = patches.point_of_place(place);
+                let normal = terms[patch].sweep[point].normalize_or_zero();
                 (DMat3::IDENTITY - DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z))
-                    * masses[place]
+                    * terms[patch].mass[point]
             });
             (cluster, sliding.sum::<DMat3>() * (1.0 - ALONG_LINES))
         })

@@ -31,30 +31,24 @@ impl VolumeConstraint {
         terms: &[PatchTerms],
         clusters: &Numbering,
     ) -> Self {
-        let gradients: Vec<DVec3> = terms.iter().flat_map(|terms| terms.sweep.iter().copied()).collect();
-        let row = |cluster: usize| {
-            let mut row: Vec<(u32, DVec3)> = Vec::new();
+        let row = |cluster: usize, entries: &mut Vec<(u32, DVec3)>| {
+            let start = entries.len();
             for place in patches.places_of_cluster(clusters, cluster) {
-                let boundary = &network.boundaries()[patches.patch_of_place(place)];
+                let (patch, point) = patches.point_of_place(place);
+                let boundary = &network.boundaries()[patch];
                 // Walls do not move, so what lies on them changes no volume.
                 for (grain, sign) in boundary.signed_grains().filter(|_| boundary.wall.is_none()) {
-                    let gradient = gradients[place] * sign;
-                    match row.iter_mut().find(|(known, _)| *known == grain.0) {
+                    let gradient = terms[patch].sweep[point] * sign;
+                    match entries[start..].iter_mut().find(|(known, _)| *known == grain.0) {
                         Some((_, sum)) => *sum += gradient,
-                        None => row.push((grain.0, gradient)),
+                        None => entries.push((grain.0, gradient)),
                     }
                 }
             }
-            row
         };
-        let rows: Vec<_> = (0..clusters.cluster_count()).into_par_iter().map(row).collect();
-        let mut columns: Vec<Vec<(u32, DVec3)>> = vec![Vec::new(); network.grain_count()];
-        for (cluster, row) in (0u32..).zip(&rows) {
-            for (grain, gradient) in row {
-                columns[*grain as usize].push((cluster, *gradient));
-            }
-        }
-        Self { by_cluster: Rows::new(rows), by_grain: Rows::new(columns) }
+        let by_cluster = Rows::made_by(clusters.cluster_count(), row);
+        let by_grain = by_cluster.transposed(network.grain_count());
+        Self { by_cluster, by_grain }
     }
 
     /// The change of each grain's volume under a displacement: `J d`.
@@ -74,22 +68,20 @@ impl VolumeConstraint {
 
     /// `J D J^T` for the mobility D of the clusters.
     pub(super) fn compliance(&self, mobility: &[Mobility]) -> Compliance {
-        let row = |grain: usize| {
-            let mut row: Vec<(u32, f64)> = Vec::new();
+        let row = |grain: usize, entries: &mut Vec<(u32, f64)>| {
+            let start = entries.len();
             for (cluster, gradient) in self.by_grain.row(grain) {
                 let moved = mobility[*cluster as usize].of(*gradient);
                 for (other, gradient) in self.by_cluster.row(*cluster as usize) {
                     let change = moved.dot(*gradient);
-                    match row.iter_mut().find(|(known, _)| known == other) {
+                    match entries[start..].iter_mut().find(|(known, _)| known == other) {
                         Some((_, sum)) => *sum += change,
-                        None => row.push((*other, change)),
+                        None => entries.push((*other, change)),
                     }
                 }
             }
-            row
         };
-        let rows: Vec<_> = (0..self.by_grain.len()).into_par_iter().map(row).collect();
-        Compliance { grids: Multigrid::new(Rows::new(rows)) }
+        Compliance { grids: Multigrid::new(Rows::made_by(self.by_grain.len(), row)) }
     }
 }
 

@@ -3,6 +3,7 @@
 //! Two boundaries of a grain that close like a book would cross behind its back, which no fold within either of them tells.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::seams::{Seams, Use};
 use crate::{Elements, Side, Surface};
@@ -67,12 +68,12 @@ impl Wedges {
                 (new[0] > SHARPEST && new[0] > old[0] + SLIGHT) || (is_turned(new) && !is_turned(old))
             }
         };
-        self.wedges.iter().filter(closes).flat_map(|wedge| wedge.elements).collect()
+        self.wedges.par_iter().filter(closes).flat_map_iter(|wedge| wedge.elements).collect()
     }
 
     /// The elements at edges where grains are turned inside out.
     pub(super) fn turned(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
-        let turned = self.wedges.iter().filter(|wedge| is_turned(wedge.opening(points)));
+        let turned = self.wedges.par_iter().filter(|wedge| is_turned(wedge.opening(points)));
         turned.map(|wedge| wedge.elements).collect()
     }
 }

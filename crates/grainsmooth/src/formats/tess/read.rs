@@ -3,7 +3,7 @@
 use glam::DVec3;
 use voronoi::{Dimension, Wall};
 
-use super::{Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessSeed};
+use super::{Oriented, POLYHEDRON, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessSeed};
 
 /// What is wrong with a .tess file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -309,6 +309,11 @@ impl Reader<'_> {
                 domain.walls = vec![Vec::new(); 4];
                 self.domain_edges(Some(&mut domain), tess.edges.len())?;
             }
+            (POLYHEDRON, Dimension::Three) => {
+                self.domain_edges(None, 0)?;
+                self.domain_faces(&mut domain, tess.faces.len())?;
+            }
+            (POLYHEDRON, Dimension::Two) => self.domain_edges(Some(&mut domain), tess.edges.len())?,
             _ => self.words.skip_section(),
         }
         Ok(domain)
@@ -383,12 +388,22 @@ impl Reader<'_> {
 /// The label of a wall and what lies on it.
 fn wall(words: &mut Words<'_>, domain: &mut TessDomain, what: &str, count: usize) -> Result<(), TessProblem> {
     let label = words.next("a label")?;
-    let mut walls = Wall::ALL.into_iter().take(domain.walls.len());
-    let Some(wall) = walls.find(|wall| TessDomain::label(*wall) == label) else {
+    let wall = if domain.kind == POLYHEDRON {
+        // No more walls than parts that lie on them.
+        let number = label.strip_prefix('f').and_then(|number| number.parse::<usize>().ok());
+        number.filter(|number| (1..=count).contains(number)).map(|number| number - 1)
+    } else {
+        let mut walls = Wall::ALL.into_iter().take(domain.walls.len());
+        walls.find(|wall| domain.label(*wall) == label).map(Wall::index)
+    };
+    let Some(wall) = wall else {
         return Err(words.problem(format!("{label:?} is not a wall of a {}", domain.kind)));
     };
+    if wall >= domain.walls.len() {
+        domain.walls.resize(wall + 1, Vec::new());
+    }
     let length = words.count("a number of parts")?;
-    domain.walls[wall.index()] = words.list(length, |words, _| words.index(what, count))?;
+    domain.walls[wall] = words.list(length, |words, _| words.index(what, count))?;
     Ok(())
 }
 

@@ -1,11 +1,12 @@
 //! Writes a .tess file; every number gives the same double back.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use glam::DVec3;
 use voronoi::{Dimension, Wall};
 
-use super::{Oriented, Tess, TessCopy, TessDomain, TessPeriodicity};
+use super::{Oriented, POLYHEDRON, Tess, TessCopy, TessDomain, TessPeriodicity};
 
 /// Writes the file.
 pub(crate) fn write(tess: &Tess, out: &mut dyn Write) -> io::Result<()> {
@@ -80,74 +81,129 @@ fn write_periodicity(periodicity: &TessPeriodicity, tess: &Tess, out: &mut dyn W
     }
 }
 
-/// The box: its corners, edges and faces, each with the vertices, edges and faces of the tessellation that lie on it.
+/// The domain: its corners, edges and faces, each with the vertices, edges and faces of the tessellation that lie on it.
 fn write_domain(tess: &Tess, out: &mut dyn Write) -> io::Result<()> {
     let domain = &tess.domain;
+    let is_polyhedron = domain.kind == POLYHEDRON;
     let frame = Frame::new(tess);
     writeln!(out, " **domain\n  *general\n   {}\n  *vertex\n   {}", domain.kind, frame.corners.len())?;
     for (id, corner) in (1..).zip(&frame.corners) {
-        let position: [f64; 3] = std::array::from_fn(|axis| {
-            if corner.contains(&Wall::ALL[2 * axis + 1]) { domain.upper[axis] } else { domain.lower[axis] }
-        });
-        let vertices = (0u32..).zip(&frame.walls_of_vertices);
-        let at: Vec<u32> = vertices.filter(|(_, walls)| has_all(walls, corner)).map(|(id, _)| id).collect();
-        writeln!(out, "   {id} {} {}\n      {}", coordinates(position.into()), name(corner), list(&at))?;
+        let at = frame.vertices_at.get(corner).map_or(&[][..], |vertices| vertices);
+        let position = match at {
+            [vertex, ..] if is_polyhedron => tess.vertices[*vertex as usize],
+            // Across periodic axes cells have no vertices on walls.
+            _ => DVec3::from_array(std::array::from_fn(|axis| {
+                let is_upper = corner.contains(&Wall::ALL[2 * axis + 1]);
+                if is_upper { domain.upper[axis] } else { domain.lower[axis] }
+            })),
+        };
+        writeln!(out, "   {id} {} {}\n      {}", coordinates(position), name(domain, corner), list(at))?;
     }
     writeln!(out, "  *edge\n   {}", frame.edges.len())?;
     for (id, edge) in (1..).zip(&frame.edges) {
-        let corners = frame.corners_on(edge);
-        let along: Vec<u32> = match edge[..] {
-            [wall] => domain.walls[wall.index()].clone(),
-            _ => {
-                let on_both = |ends: &[u32; 2]| {
-                    ends.iter().all(|end| has_all(&frame.walls_of_vertices[*end as usize], edge))
-                };
-                (0u32..).zip(&tess.edges).filter(|(_, ends)| on_both(ends)).map(|(id, _)| id).collect()
-            }
+        let along = match edge[..] {
+            [wall] => &domain.walls[wall.index()][..],
+            _ => frame.edges_along.get(edge).map_or(&[][..], |edges| edges),
         };
-        let corners: Vec<String> = corners.iter().map(|corner| (corner + 1).to_string()).collect();
+        let corners: Vec<String> =
+            frame.corners_on(edge).iter().map(|corner| (corner + 1).to_string()).collect();
         writeln!(
             out,
-            "   {id} 2 {}\n     line\n     0\n     {}\n     {}",
+            "   {id} {} {}\n     line\n     0\n     {}\n     {}",
+            corners.len(),
             corners.join(" "),
-            name(edge),
-            list(&along)
+            name(domain, edge),
+            list(along)
         )?;
     }
     if tess.dimension == Dimension::Two {
         return Ok(());
     }
-    writeln!(out, "  *face\n   {}", domain.walls.len())?;
-    for (wall, faces) in Wall::ALL.iter().zip(&domain.walls) {
-        let (corners, edges) = frame.around(*wall);
+    let walls = || walls(domain).filter(|(_, faces)| !is_polyhedron || !faces.is_empty());
+    writeln!(out, "  *face\n   {}", walls().count())?;
+    for (id, (wall, faces)) in (1..).zip(walls()) {
+        let (corners, edges) = frame.around(wall);
         let numbers = |ids: &[usize]| ids.iter().map(|id| (id + 1).to_string()).collect::<Vec<_>>().join(" ");
         writeln!(
             out,
-            "   {} 4 {}\n     4 {}\n     plane",
-            wall.number() + 1,
+            "   {id} {} {}\n     {} {}\n     plane",
+            corners.len(),
             numbers(&corners),
+            edges.len(),
             numbers(&edges)
         )?;
         // Neper's planes of the domain point inward.
-        let inward = -wall.outward_normal();
-        let place = if wall.is_upper() { domain.upper } else { domain.lower };
-        writeln!(out, "     4 {:?} {}", inward.dot(place), coordinates(inward))?;
-        writeln!(out, "     {}\n     {}", name(&[*wall]), list(faces))?;
+        let [d, a, b, c] = if is_polyhedron {
+            tess.faces[faces[0] as usize].plane.map(|number| -number)
+        } else {
+            let inward = -wall.outward_normal();
+            let place = if wall.is_upper() { domain.upper } else { domain.lower };
+            [inward.dot(place), inward.x, inward.y, inward.z]
+        };
+        writeln!(out, "     4 {d:?} {a:?} {b:?} {c:?}")?;
+        writeln!(out, "     {}\n     {}", name(domain, &[wall]), list(faces))?;
     }
     Ok(())
 }
 
-/// The corners and edges of the box by the walls that meet there, and the walls of each vertex.
+/// The walls with what lies on each.
+fn walls(domain: &TessDomain) -> impl Iterator<Item = (Wall, &Vec<u32>)> {
+    (0u32..).map(Wall::numbered).zip(&domain.walls)
+}
+
+/// The corners and edges of the domain by the walls that meet there, and what lies on them.
 struct Frame {
     corners: Vec<Vec<Wall>>,
     edges: Vec<Vec<Wall>>,
-    walls_of_vertices: Vec<Vec<Wall>>,
+    vertices_at: BTreeMap<Vec<Wall>, Vec<u32>>,
+    edges_along: BTreeMap<Vec<Wall>, Vec<u32>>,
 }
 
 impl Frame {
     fn new(tess: &Tess) -> Self {
+        let mut walls_of_vertices = vec![Vec::new(); tess.vertices.len()];
+        for (wall, parts) in walls(&tess.domain) {
+            for part in parts.iter().map(|&part| part as usize) {
+                let vertices = match tess.dimension {
+                    Dimension::Two => &tess.edges[part][..],
+                    Dimension::Three => &tess.faces[part].vertices,
+                };
+                for &vertex in vertices {
+                    let walls: &mut Vec<Wall> = &mut walls_of_vertices[vertex as usize];
+                    if !walls.contains(&wall) {
+                        walls.push(wall);
+                    }
+                }
+            }
+        }
+        let walls_at_corner = if tess.dimension == Dimension::Two { 2 } else { 3 };
+        let mut vertices_at = BTreeMap::<_, Vec<u32>>::new();
+        for (vertex, walls) in (0u32..).zip(&walls_of_vertices) {
+            if walls.len() >= walls_at_corner {
+                vertices_at.entry(walls.clone()).or_default().push(vertex);
+            }
+        }
+        let mut edges_along = BTreeMap::<_, Vec<u32>>::new();
+        for (edge, [start, end]) in (0u32..).zip(&tess.edges) {
+            let [start, end] = [start, end].map(|end| &walls_of_vertices[*end as usize]);
+            let common: Vec<Wall> = start.iter().copied().filter(|wall| end.contains(wall)).collect();
+            if common.len() == 2 {
+                edges_along.entry(common).or_default().push(edge);
+            }
+        }
         let [x0, x1, y0, y1, z0, z1] = Wall::ALL;
         let (corners, edges) = match tess.dimension {
+            Dimension::Two if tess.domain.kind == POLYHEDRON => (
+                vertices_at.keys().cloned().collect(),
+                walls(&tess.domain)
+                    .filter(|(_, parts)| !parts.is_empty())
+                    .map(|(wall, _)| vec![wall])
+                    .collect(),
+            ),
+            Dimension::Three if tess.domain.kind == POLYHEDRON => {
+                (vertices_at.keys().cloned().collect(), edges_along.keys().cloned().collect())
+            }
+            // In Neper's order.
             Dimension::Two => (
                 vec![vec![x0, y0], vec![x1, y0], vec![x1, y1], vec![x0, y1]],
                 vec![vec![x0], vec![x1], vec![y0], vec![y1]],
@@ -161,22 +217,7 @@ impl Frame {
                 (corners.collect(), upright.into_iter().chain(flat).collect())
             }
         };
-        let mut walls_of_vertices = vec![Vec::new(); tess.vertices.len()];
-        for (wall, parts) in Wall::ALL.iter().zip(&tess.domain.walls) {
-            for part in parts.iter().map(|&part| part as usize) {
-                let vertices = match tess.dimension {
-                    Dimension::Two => &tess.edges[part][..],
-                    Dimension::Three => &tess.faces[part].vertices,
-                };
-                for &vertex in vertices {
-                    let walls: &mut Vec<Wall> = &mut walls_of_vertices[vertex as usize];
-                    if !walls.contains(wall) {
-                        walls.push(*wall);
-                    }
-                }
-            }
-        }
-        Self { corners, edges, walls_of_vertices }
+        Self { corners, edges, vertices_at, edges_along }
     }
 
     /// The corners on an edge or a wall.
@@ -187,19 +228,19 @@ impl Frame {
     /// The corners and edges around a wall, each edge from its corner to the next.
     fn around(&self, wall: Wall) -> (Vec<usize>, Vec<usize>) {
         let of_wall = self.corners_on(&[wall]);
-        let between = |a: usize, b: usize| {
-            let is_between =
-                |edge: &Vec<Wall>| has_all(&self.corners[a], edge) && has_all(&self.corners[b], edge);
-            self.edges.iter().position(is_between)
-        };
+        let sides: Vec<usize> =
+            (0..self.edges.len()).filter(|&edge| self.edges[edge].contains(&wall)).collect();
+        let is_at = |edge: usize, corner: usize| has_all(&self.corners[corner], &self.edges[edge]);
         let (mut corners, mut edges) = (vec![of_wall[0]], Vec::new());
         while edges.len() < of_wall.len() {
             let last = corners[corners.len() - 1];
-            let is_next = |corner: &&usize| {
-                between(last, **corner).is_some_and(|edge| !edges.contains(&edge)) && **corner != last
-            };
-            let Some(&next) = of_wall.iter().find(is_next) else { break };
-            edges.extend(between(last, next));
+            let step =
+                sides.iter().filter(|edge| !edges.contains(*edge) && is_at(**edge, last)).find_map(|edge| {
+                    let other = of_wall.iter().find(|corner| **corner != last && is_at(*edge, **corner));
+                    other.map(|corner| (*edge, *corner))
+                });
+            let Some((edge, next)) = step else { break };
+            edges.push(edge);
             corners.push(next);
         }
         corners.pop();
@@ -212,8 +253,8 @@ fn has_all(walls: &[Wall], wanted: &[Wall]) -> bool {
 }
 
 /// The name of what lies on all these walls, such as `x0y1`.
-fn name(walls: &[Wall]) -> String {
-    walls.iter().map(|wall| TessDomain::label(*wall)).collect()
+fn name(domain: &TessDomain, walls: &[Wall]) -> String {
+    walls.iter().map(|wall| domain.label(*wall)).collect()
 }
 
 fn list(ids: &[u32]) -> String {

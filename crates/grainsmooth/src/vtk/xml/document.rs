@@ -250,6 +250,12 @@ fn field(entry: &FieldEntry, format: XmlFormat, numbers: &mut AppendedNumbers<'_
             let offset = numbers.append(Numbers::bytes(number.to_ne_bytes().to_vec()));
             Element::DataArray(Header::new(entry.name, ScalarType::UInt64, 1, offset).with_tuples(1))
         }
+        (FieldValue::Numbers(values), _) => {
+            let offset = numbers.append(Numbers::bytes(bytemuck::cast_slice(values).to_vec()));
+            Element::DataArray(
+                Header::new(entry.name, ScalarType::Float64, 1, offset).with_tuples(values.len()),
+            )
+        }
         (FieldValue::Text(text), XmlFormat::UnstructuredGrid) => {
             let offset = numbers.append(Numbers::bytes(text.clone().into_bytes()));
             Element::DataArray(Header::new(entry.name, ScalarType::UInt8, 1, offset).with_tuples(text.len()))
