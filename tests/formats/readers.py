@@ -12,6 +12,12 @@ except ImportError as error:
     print(error)
     sys.exit(77)
 
+try:
+    import orix.io
+except ImportError as error:
+    orix = None
+    print(f"{error}: b.ang is not read")
+
 folder = pathlib.Path(sys.argv[1])
 expected = json.loads((folder / "expected.json").read_text())
 points = np.array(expected["points"])
@@ -101,6 +107,15 @@ assert image.dimensions == tuple(count + 1 for count in labels.shape) == (21, 16
 assert np.array_equal(image["material"], labels.ravel(order="F"))
 assert np.array_equal(np.unique(labels), np.arange(len(volumes)))
 assert pyvista.read(folder / "b.vti").dimensions == (21, 16, 2)
+labels = pyvista.read(folder / "b.vti")["material"]
+if orix is not None:
+    scan = orix.io.load(folder / "b.ang")
+    assert scan.shape == (15, 20), scan.shape
+    turns = np.unique(scan.rotations.data.round(6), axis=0, return_inverse=True)[1].ravel()
+    # One orientation for each grain, and none for two.
+    # Scans go down, grids up.
+    pairs = np.unique(np.stack([labels.reshape(15, 20)[::-1].ravel(), turns]), axis=1)
+    assert pairs.shape[1] == len(np.unique(labels)) == turns.max() + 1, pairs
 plane = pyvista.read(folder / "b.vtp")
 assert plane.n_lines == plane["BoundaryId"].max() + 1
 

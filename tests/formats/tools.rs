@@ -140,7 +140,7 @@ fn vtk_meshio_and_trimesh_read_every_format() {
         let output = grainsmooth::Output::check(directory.path().join(name)).unwrap();
         SPACE.write(&output).unwrap();
     }
-    for name in ["b.vtp", "b.vtu", "b.vti", "b.vtm"] {
+    for name in ["b.vtp", "b.vtu", "b.vti", "b.vtm", "b.ang"] {
         PLANE.write(&grainsmooth::Output::check(directory.path().join(name)).unwrap()).unwrap();
     }
     let mut measured = SPACE.clone();
@@ -187,4 +187,9 @@ fn vtk_meshio_and_trimesh_read_every_format() {
         return;
     }
     assert!(output.status.success(), "{said}");
+    // What it says when all is well is what it left out.
+    let left_out = text(&output.stdout);
+    if !left_out.is_empty() {
+        skip("vtk_meshio_and_trimesh_read_every_format, in part", left_out.trim_end());
+    }
 }
