@@ -151,8 +151,8 @@ impl Polycrystal {
             cell_arrays.extend(of_cells.arrays());
             point_arrays.extend(of_points.arrays());
         }
-        // Small changes of the points are seen in these only.
-        let volumes = FieldValue::Numbers(self.network.grain_volumes(level, &self.points));
+        // Small changes of the points are seen in these only, which validation has found the grains to have.
+        let volumes = FieldValue::Numbers(self.network.cell_volumes().to_vec());
         let mut field = self.field();
         field.push(FieldEntry { name: "Volumes", value: volumes });
         let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field };
