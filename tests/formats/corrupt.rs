@@ -2,14 +2,14 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::{LazyLock, Once};
+use std::sync::LazyLock;
 
-use grainsmooth::mesh_file::READER_THREAD;
 use grainsmooth::{Config, FileElements, LabelledFile, Output, Picture, Png, Shape, embedded_config};
 use proptest::prelude::*;
 use proptest::sample::Index;
 use tempfile::TempDir;
 
+use crate::quiet_reader::keep_reader_quiet;
 use crate::workplace::{PLANE, SPACE};
 
 /// What the files are that carry the settings of their run.
@@ -52,19 +52,6 @@ static LABELLED: LazyLock<Vec<(&str, Vec<u8>)>> = LazyLock::new(|| {
     }
     files
 });
-
-/// Panics of the thread in which `vtkio` reads become errors; their words would only fill the tests' output.
-fn keep_reader_quiet() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        let hook = std::panic::take_hook();
-        std::panic::set_hook(Box::new(move |info| {
-            if std::thread::current().name() != Some(READER_THREAD) {
-                hook(info);
-            }
-        }));
-    });
-}
 
 /// What happens to a file: some bytes change, of which most where it says what it holds, and its end is lost.
 #[derive(Debug, Clone)]

@@ -4,6 +4,7 @@
 
 mod corrupt;
 mod grids;
+mod quiet_reader;
 mod surfaces;
 mod tess;
 mod tools;

@@ -2,13 +2,14 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::{LazyLock, Once};
+use std::sync::LazyLock;
 
-use grainsmooth::mesh_file::{MeshFile, READER_THREAD, read_mesh};
+use grainsmooth::mesh_file::{MeshFile, read_mesh};
 use grainsmooth::read_bezier;
 use proptest::prelude::*;
 use tempfile::TempDir;
 
+use crate::quiet_reader::keep_reader_quiet;
 use crate::shapes::TETRAHEDRON_OFF;
 use crate::workplace::Workplace;
 
@@ -47,19 +48,6 @@ fn read(directory: &Path, extension: &str, bytes: &[u8]) -> Option<MeshFile> {
             None
         }
     }
-}
-
-/// Panics of the thread in which `vtkio` reads become errors; their words would only fill the tests' output.
-fn keep_reader_quiet() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        let hook = std::panic::take_hook();
-        std::panic::set_hook(Box::new(move |info| {
-            if std::thread::current().name() != Some(READER_THREAD) {
-                hook(info);
-            }
-        }));
-    });
 }
 
 #[test]

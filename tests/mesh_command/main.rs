@@ -5,6 +5,8 @@ mod bad_meshes;
 mod corrupt_files;
 mod edits;
 mod formats;
+#[path = "../formats/quiet_reader.rs"]
+mod quiet_reader;
 mod references;
 mod shapes;
 #[allow(dead_code, reason = "shared with the tests of the command line")]

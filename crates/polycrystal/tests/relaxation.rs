@@ -5,7 +5,7 @@ mod common;
 
 use std::f64::consts::FRAC_PI_2;
 
-use common::{network, random_network, random_seeds, regular_network, relaxed};
+use common::{network, network_of_regular, random_network, random_seeds, regular_network, relaxed};
 use glam::DVec3;
 use polycrystal::{
     Boundary, FaceMesh, GrainId, Junctions, Mesh, Network, NetworkError, Relaxation, Side, dihedral_angles,
@@ -366,16 +366,12 @@ fn relaxes_to_a_valid_network(
 ) -> bool {
     let tessellation =
         Tessellation::new(domain, &random_seeds(domain, count, random_seed)).expect("valid seeds");
-    let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
     let cells: [&dyn Fn() -> Tessellation; 3] =
         [&|| regular_cells(&tessellation, 0.15).0, &|| tessellation.regularized(0.15).0, &|| {
             tessellation.clone()
         }];
     cells.iter().any(|cells| {
-        let (network, flat) =
-            Network::with_face_mesh(&cells(), FaceMesh::SparseFan, Junctions::Crease, levels)
-                .expect("a small network");
-        let network = network.with_cell_volumes(volumes.clone());
+        let (network, flat) = network_of_regular(&cells(), &tessellation, levels);
         let relaxed = relax(&network, &flat, &Relaxation::Time(time), |_, _| ());
         relaxed.is_ok_and(|relaxed| validate(&network, &relaxed.finest_points(&network)).is_ok())
     })

@@ -38,9 +38,17 @@ pub fn regular_network(
 ) -> (Network, Vec<DVec3>) {
     let tessellation =
         Tessellation::new(domain, &random_seeds(domain, count, random_seed)).expect("valid seeds");
-    let volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
-    let (regular, _) = regular_cells(&tessellation, 0.15);
-    let (network, flat) = Network::with_face_mesh(&regular, FaceMesh::SparseFan, Junctions::Crease, levels)
+    network_of_regular(&regular_cells(&tessellation, 0.15).0, &tessellation, levels)
+}
+
+/// The network of regularised cells, whose grains are to have the volumes of the cells as they were.
+pub fn network_of_regular(
+    regular: &Tessellation,
+    original: &Tessellation,
+    levels: usize,
+) -> (Network, Vec<DVec3>) {
+    let volumes = original.cell_measures().iter().map(|cell| cell.volume).collect();
+    let (network, flat) = Network::with_face_mesh(regular, FaceMesh::SparseFan, Junctions::Crease, levels)
         .expect("a small network");
     (network.with_cell_volumes(volumes), flat)
 }
