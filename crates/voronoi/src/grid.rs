@@ -15,6 +15,10 @@ const BLOCKS_PER_TILE: [f64; 2] = [1000.0, 8000.0];
 /// Tiles, where that leaves them neither too small nor too large.
 const TILES: f64 = 8.0;
 
+/// Blocks of a tile that follow one another along y, and along z, before those farther along x, y and z: neighbours that are taken
+/// soon after one another find their vertices in the cache.
+const BLOCKS_PER_BRICK: i32 = 3;
+
 /// Blocks that a thread sorts at once.
 const BLOCKS_SORTED_AT_ONCE: usize = 1024;
 
@@ -29,7 +33,7 @@ pub(crate) struct Run<'a> {
     pub(crate) z: &'a [f64],
 }
 
-/// The seeds in order of tiles, in these of blocks, in these of coordinates: an order that permuting the seeds does not change.
+/// The seeds in order of tiles, in these of bricks, of blocks, and of coordinates: an order that permuting the seeds does not change.
 pub(crate) struct SeedGrid {
     lower: DVec3,
     block: DVec3,
@@ -67,14 +71,20 @@ impl SeedGrid {
         let tile_edge = blocks_per_tile.powf(1.0 / axes as f64).round() as i32;
         let tile_counts = (counts + (tile_edge - 1)) / tile_edge;
         let tile = (counts + (tile_counts - 1)) / tile_counts;
-        let tile_blocks = tile.element_product();
-        // Blocks between one block and the next along each axis: within a tile, and from tile to tile.
-        let steps = [1, tile.x, tile.x * tile.y];
-        let tile_steps = [1, tile_counts.x, tile_counts.x * tile_counts.y];
+        let brick = IVec3::new(tile.x, tile.y.min(BLOCKS_PER_BRICK), tile.z.min(BLOCKS_PER_BRICK));
+        let brick_counts = (tile + (brick - 1)) / brick;
+        let brick_blocks = brick.element_product();
+        let tile_blocks = brick_blocks * brick_counts.element_product();
+        // From one to the next along each axis: blocks in a brick, bricks in a tile, tiles.
+        let steps = |counts: IVec3| [1, counts.x, counts.x * counts.y];
+        let (block_steps, brick_steps, tile_steps) = (steps(brick), steps(brick_counts), steps(tile_counts));
         let offsets = [0, 1, 2].map(|axis| {
-            let offset = |b: i32| {
-                (b % tile[axis] * steps[axis] + b / tile[axis] * tile_steps[axis] * tile_blocks)
-                    .cast_unsigned()
+            let offset = |block: i32| {
+                let in_tile = block % tile[axis];
+                let in_brick = in_tile % brick[axis] * block_steps[axis];
+                let before_brick = in_tile / brick[axis] * brick_steps[axis] * brick_blocks;
+                let before_tile = block / tile[axis] * tile_steps[axis] * tile_blocks;
+                (in_brick + before_brick + before_tile).cast_unsigned()
             };
             (0..counts[axis]).map(offset).collect()
         });
