@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::cast_possible_truncation, reason = "a test may panic")]
 
 mod corrupt;
+mod evolver;
 mod grids;
 mod quiet_reader;
 mod surfaces;

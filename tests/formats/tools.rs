@@ -10,7 +10,7 @@ use grainsmooth::{OutputDirectory, OutputFormat, StlEncoding};
 use crate::workplace::{GRAINS, PLANE, SPACE, write};
 
 /// Runs a program; nothing, said loudly, where it is not installed.
-fn run(test: &str, command: &mut Command) -> Option<Output> {
+pub fn run(test: &str, command: &mut Command) -> Option<Output> {
     match command.output() {
         Ok(output) => Some(output),
         Err(error) => {
@@ -25,7 +25,7 @@ fn skip(test: &str, why: &str) {
     std::io::stderr().write_all(format!("SKIPPED {test}: {why}\n").as_bytes()).unwrap();
 }
 
-fn text(bytes: &[u8]) -> String {
+pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
@@ -90,44 +90,6 @@ fn gmsh_reads_stl() {
         let count = file.split_once("$Elements\n").unwrap().1.lines().next().unwrap().parse();
         assert_eq!(count, Ok(SPACE.network.finest().element_count()));
     }
-}
-
-#[test]
-fn surface_evolver_finds_every_volume_and_the_area() {
-    let (_folder, path) = write(&SPACE, "grains.fe");
-    let mut script = "printf \"area %20.15g\\n\", total_energy\n".to_owned();
-    script += "foreach body bb do printf \"body %g %20.15g %20.15g\\n\", id, volume, target\nq\nq\n";
-    let directory = tempfile::tempdir().unwrap();
-    let commands = directory.path().join("commands");
-    fs::write(&commands, script).unwrap();
-    let mut evolver = Command::new("evolver");
-    evolver.arg(&path).stdin(fs::File::open(commands).unwrap());
-    let Some(output) = run("surface_evolver_finds_every_volume_and_the_area", &mut evolver) else { return };
-    let said = text(&output.stdout);
-    let numbers = |word: &str| -> Vec<Vec<f64>> {
-        // Other lines repeat the commands.
-        let lines = said.lines().filter_map(|line| line.strip_prefix(&format!("{word} ")));
-        lines.map(|rest| rest.split_whitespace().map(|number| number.parse().unwrap()).collect()).collect()
-    };
-    let bodies = numbers("body");
-    assert_eq!(bodies.len(), GRAINS, "{said}{}", text(&output.stderr));
-    for (body, expected) in bodies.iter().zip(SPACE.network.cell_volumes()) {
-        assert!((body[1] / expected - 1.0).abs() < 1e-9, "{body:?}");
-        assert!((body[2] / expected - 1.0).abs() < 1e-12, "{body:?}");
-    }
-    // Only boundaries between grains have tension.
-    let level = SPACE.network.finest();
-    let polycrystal::Mesh::Triangles(mesh) = &level.mesh else { panic!("not in space") };
-    let inside = mesh.triangles().iter().zip(&level.boundary_of);
-    let inside = inside.filter(|(_, boundary)| SPACE.network.boundaries()[boundary.index()].is_interior());
-    let area: f64 = inside
-        .map(|(triangle, _)| {
-            let [a, b, c] = triangle.map(|corner| SPACE.points[corner as usize]);
-            (b - a).cross(c - a).length() / 2.0
-        })
-        .sum();
-    let said_area = numbers("area")[0][0];
-    assert!((said_area / area - 1.0).abs() < 1e-9, "{said_area} {area}");
 }
 
 /// `readers.py` says which of the files that it is given disagree with what is expected, and exits with 77 where a library is

@@ -32,12 +32,6 @@ pub enum Error {
         /// The dimension that the format holds.
         dimension: Dimension,
     },
-    /// The output's format is not written of a periodic domain.
-    #[error("{}: this format is not written of periodic grains; choose another, such as .vtp", path.display())]
-    FormatPeriodic {
-        /// The path as given.
-        path: PathBuf,
-    },
     /// The output's format holds voxels, and nothing says how many.
     #[error("{}: this format holds voxels; give their number with --voxels NX NY NZ (NX NY in 2D)", path.display())]
     NoVoxels {

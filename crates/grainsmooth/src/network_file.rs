@@ -40,17 +40,7 @@ impl Polycrystal {
             OutputFormat::Ply => write_ply(&self.surface()?, &self.config, out),
             OutputFormat::Obj => write_obj(&self.surface()?, &self.config, out),
             OutputFormat::Msh => write_gmsh(&self.surface()?, &self.config, out),
-            OutputFormat::Fe => {
-                let walls = &self.network.finest().walls;
-                write_evolver(
-                    &self.surface()?,
-                    (self.network.domain(), self.network.wall_sets()),
-                    walls,
-                    self.network.cell_volumes(),
-                    &self.config,
-                    out,
-                )
-            }
+            OutputFormat::Fe => write_evolver(self, out),
             OutputFormat::Tess => {
                 write_tess(&Tess::new(&self.cells), out)?;
                 self.write_settings_behind(out)

@@ -10,7 +10,7 @@ use voronoi::Dimension;
 
 use crate::unfinished::Unfinished;
 use crate::vtk::VtkFormat;
-use crate::{Config, Error, PeriodicCut};
+use crate::{Config, Error};
 
 /// A file format that results are written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -146,18 +146,12 @@ impl Output {
     /// Checks that the format can hold what a config makes.
     ///
     /// # Errors
-    /// [`Error::FormatDimension`]; [`Error::FormatPeriodic`]; [`Error::NoVoxels`] for a format of voxels when their number is not given.
+    /// [`Error::FormatDimension`]; [`Error::NoVoxels`] for a format of voxels when their number is not given.
     pub fn check_fits(&self, config: &Config) -> Result<(), Error> {
         let path = || self.path.clone();
         match self.format.only_dimension() {
             Some(dimension) if dimension != config.dimension => {
                 Err(Error::FormatDimension { path: path(), dimension })
-            }
-            _ if self.format == OutputFormat::Fe
-                && config.periodic.any()
-                && config.periodic_cut == PeriodicCut::Wrap =>
-            {
-                Err(Error::FormatPeriodic { path: path() })
             }
             _ if self.format.has_voxels() && config.file.voxels.is_none() => {
                 Err(Error::NoVoxels { path: path() })

@@ -1,88 +1,172 @@
-//! Surface Evolver's datafile: every grain a body of fixed volume, walls as constraints, and tension between grains only.
+//! Surface Evolver's datafile: every grain a body of fixed volume, walls as constraints, and tension as the network has it.
 //!
-//! <https://kenbrakke.com/evolver/html/datafile.htm>. It counts from 1, so grain 0 is body 1.
+//! <https://kenbrakke.com/evolver/html/datafile.htm>. It counts from 1, so grain 0 is body 1. A periodic network is one of
+//! Evolver's torus model: each point, edge and triangle once, and with each edge the number of periods that it crosses. An axis
+//! with walls then has the box as its period too, which nothing crosses.
 
 use std::io::{self, Write};
 
 use glam::DVec3;
-use polycrystal::{WallSet, WallSets};
+use polycrystal::{Network, Side};
 use voronoi::{Domain, Wall};
 
-use super::surface::{Surface, side_name};
-use crate::Config;
+use super::surface::{Part, side_name};
+use crate::Polycrystal;
 
 /// Writes the file; each point stays on its walls, and each body keeps its volume.
-pub(crate) fn write(
-    surface: &Surface<'_>,
-    (domain, sets): (&Domain, &WallSets),
-    walls: &[WallSet],
-    volumes: &[f64],
-    config: &Config,
-    out: &mut dyn Write,
-) -> io::Result<()> {
+pub(crate) fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
+    let (surface, network) = (polycrystal.surface()?, &polycrystal.network);
+    let (domain, sets, walls) = (network.domain(), network.wall_sets(), &network.finest().walls);
     writeln!(out, "// grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
-    config.write_comments("// ", out)?;
+    polycrystal.config.write_comments("// ", out)?;
     writeln!(out)?;
+    if domain.is_periodic() {
+        // Filled, so that Evolver knows that one of the volumes follows from the others.
+        let DVec3 { x, y, z } = domain.size();
+        writeln!(out, "torus_filled\nperiods\n{x:?} 0 0\n0 {y:?} 0\n0 0 {z:?}\n")?;
+    }
     for wall in domain.walls() {
         writeln!(out, "constraint {}\nformula: {}\n", wall.number() + 1, formula(domain, wall))?;
     }
+
+    let places = places(network, &surface.points);
     writeln!(out, "vertices")?;
-    for (id, (DVec3 { x, y, z }, walls)) in (1u64..).zip(surface.points.iter().zip(walls)) {
-        writeln!(out, "{id} {x:?} {y:?} {z:?}{}", constraints(sets.walls(*walls)))?;
+    let mut ids = vec![0; places.len()];
+    let originals = (0..places.len()).filter(|&point| places[point].original as usize == point);
+    for (id, point) in (1u64..).zip(originals) {
+        ids[point] = id;
+        let DVec3 { x, y, z } = places[point].position;
+        writeln!(out, "{id} {x:?} {y:?} {z:?}{}", constraints(sets.walls(walls[point])))?;
     }
 
-    let edges = edges(surface);
+    let parts: Vec<(&Part, [Side; 2])> =
+        surface.parts.iter().filter_map(|part| once(part, network)).collect();
+    let mut edges: Vec<Edge> = parts
+        .iter()
+        .flat_map(|(part, _)| surface.triangles_of(part))
+        .flat_map(|corners| edges_around(corners, &places).map(|(edge, _)| edge))
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
     writeln!(out, "\nedges")?;
-    for (id, [a, b]) in (1u64..).zip(&edges) {
-        let common = sets.walls(sets.intersection(walls[*a as usize], walls[*b as usize]));
-        writeln!(out, "{id} {} {}{}", u64::from(*a) + 1, u64::from(*b) + 1, constraints(common))?;
+    for (id, edge) in (1u64..).zip(&edges) {
+        let [a, b] = edge.ends.map(|end| end as usize);
+        write!(out, "{id} {} {}", ids[a], ids[b])?;
+        if domain.is_periodic() {
+            out.write_all(wraps(edge.periods)?.as_bytes())?;
+        }
+        writeln!(out, "{}", constraints(sets.walls(sets.intersection(walls[a], walls[b]))))?;
     }
 
     writeln!(out, "\nfaces")?;
     let mut next = 1u64..;
-    let mut ids = Vec::with_capacity(surface.parts.len());
-    for part in &surface.parts {
+    let mut bodies = vec![Vec::new(); network.grain_count()];
+    for (part, sides) in &parts {
         let first = next.start;
-        let [from, to] = part.sides.map(side_name);
+        let [from, to] = sides.map(side_name);
         writeln!(out, "// boundary {}: {from} to {to}", part.boundary.0)?;
+        let tension = network.tensions()[part.boundary.index()];
         for (corners, face) in surface.triangles_of(part).zip(&mut next) {
             write!(out, "{face}")?;
-            let [a, b, c] = corners;
-            for [from, to] in [[a, b], [b, c], [c, a]] {
-                let sign = if from < to { "" } else { "-" };
-                let edge = edges.binary_search(&[from.min(to), from.max(to)]).unwrap_or_default() + 1;
+            for (edge, is_reversed) in edges_around(corners, &places) {
+                let sign = if is_reversed { "-" } else { "" };
+                let edge = edges.binary_search(&edge).expect("the edges of all triangles are listed") + 1;
                 write!(out, " {sign}{edge}")?;
             }
-            let common = corners.map(|corner| walls[corner as usize]);
-            let common = sets.walls(sets.intersection(sets.intersection(common[0], common[1]), common[2]));
-            // Walls carry no energy.
-            let density = if common.is_empty() { "" } else { " density 0" };
-            writeln!(out, "{}{density}", constraints(common))?;
+            let [a, b, c] = corners.map(|corner| walls[corner as usize]);
+            write!(out, "{}", constraints(sets.walls(sets.intersection(sets.intersection(a, b), c))))?;
+            writeln!(out, "{}", density(tension))?;
         }
-        ids.push(first..next.start);
+        for (side, sign) in sides.iter().zip(["", "-"]) {
+            if let Side::Grain(grain) = side {
+                bodies[grain.index()].push((sign, first..next.start));
+            }
+        }
     }
 
     writeln!(out, "\nbodies")?;
-    for (body, (parts, volume)) in (1..).zip(surface.parts_of_grains(volumes.len()).iter().zip(volumes)) {
+    for (body, (faces, volume)) in (1..).zip(bodies.into_iter().zip(network.cell_volumes())) {
         write!(out, "{body}")?;
-        for (part, is_inward) in parts {
-            let sign = if *is_inward { "-" } else { "" };
-            for face in ids[*part].clone() {
-                write!(out, " {sign}{face}")?;
-            }
+        for (sign, face) in faces.into_iter().flat_map(|(sign, range)| range.map(move |face| (sign, face))) {
+            write!(out, " {sign}{face}")?;
         }
         writeln!(out, " volume {volume:?}")?;
     }
     writeln!(out, "\nread")
 }
 
-/// All edges, smaller point first, sorted.
-fn edges(surface: &Surface<'_>) -> Vec<[u32; 2]> {
-    let of_triangle = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]);
-    let mut edges: Vec<[u32; 2]> = surface.triangles().flat_map(of_triangle).collect();
-    edges.sort_unstable();
-    edges.dedup();
-    edges
+/// Where a point is on the torus.
+#[derive(Clone, Copy)]
+struct Place {
+    /// The point that this one is a copy of, or itself.
+    original: u32,
+    /// The original moved into the box along the periodic axes.
+    position: DVec3,
+    /// How many periods the point is from there.
+    periods: [i32; 3],
+}
+
+fn places(network: &Network, points: &[DVec3]) -> Vec<Place> {
+    let domain = network.domain();
+    let place = |(original, point): (u32, &DVec3)| {
+        let periods = ((point - domain.lower()) / domain.size()).floor();
+        let periods = DVec3::select(domain.periodic(), periods, DVec3::ZERO);
+        Place { original, position: point - periods * domain.size(), periods: periods.as_ivec3().to_array() }
+    };
+    let mut places: Vec<Place> = (0..).zip(points).map(place).collect();
+    for pair in &network.finest().copies.vertices {
+        let original = places[pair.primary as usize];
+        let periods = [0, 1, 2].map(|axis| original.periods[axis] + i32::from(pair.shift.0[axis]));
+        places[pair.secondary as usize] = Place { periods, ..original };
+    }
+    places
+}
+
+/// An edge on the torus, or in a domain with walls only.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Edge {
+    /// Original points, the smaller number first.
+    ends: [u32; 2],
+    /// How many periods it crosses from the first to the second.
+    periods: [i32; 3],
+}
+
+/// The edges around a triangle, and whether it runs along them from the second end to the first.
+fn edges_around([a, b, c]: [u32; 3], places: &[Place]) -> [(Edge, bool); 3] {
+    [[a, b], [b, c], [c, a]].map(|ends| {
+        let edge = |ends: [u32; 2]| {
+            let [from, to] = ends.map(|end| places[end as usize]);
+            let periods = [0, 1, 2].map(|axis| to.periods[axis] - from.periods[axis]);
+            Edge { ends: [from.original, to.original], periods }
+        };
+        let (along, against) = (edge(ends), edge([ends[1], ends[0]]));
+        if against < along { (against, true) } else { (along, false) }
+    })
+}
+
+/// A boundary and what it lies between; nothing for the copy of another one.
+fn once<'a>(part: &'a Part, network: &Network) -> Option<(&'a Part, [Side; 2])> {
+    let [first, second] = part.sides;
+    match network.boundaries()[part.boundary.index()].twin {
+        None => Some((part, [first, second])),
+        Some(twin) if part.boundary < twin.boundary => {
+            Some((part, [first, network.boundaries()[twin.boundary.index()].sides[0]]))
+        }
+        Some(_) => None,
+    }
+}
+
+/// An edge's crossings of the walls of the box, axis by axis.
+fn wraps(periods: [i32; 3]) -> io::Result<String> {
+    let sign = |(axis, count): (&str, i32)| match count {
+        0 => Ok(" *"),
+        1 => Ok(" +"),
+        -1 => Ok(" -"),
+        _ => Err(io::Error::other(format!(
+            "an edge is longer than the period along {axis}, which Surface Evolver cannot read; take more levels"
+        ))),
+    };
+    ["x", "y", "z"].into_iter().zip(periods).map(sign).collect()
 }
 
 fn formula(domain: &Domain, wall: Wall) -> String {
@@ -100,4 +184,9 @@ fn constraints(walls: &[Wall]) -> String {
     // Three walls hold a point; more, as in the apex of a pyramid, would hold it twice.
     let numbers = walls.iter().take(3).map(|wall| format!(" {}", wall.number() + 1));
     format!(" constraints{}", numbers.collect::<String>())
+}
+
+/// Energy for each area, which is 1 where nothing is said.
+fn density(tension: f64) -> String {
+    if tension == 1.0 { String::new() } else { format!(" density {tension:?}") }
 }
