@@ -123,8 +123,29 @@ fn count_beyond_anywhere(columns: PlaneColumns, point: Vec3, slack: f32) -> u32 
     beyond
 }
 
+/// How bisectors are scaled.
+#[derive(Debug, Default, Clone, Copy)]
+pub(crate) struct Units {
+    /// Units of offsets in a length of 1.
+    pub(crate) scale: f64,
+    /// A bisector's offset in these, for a normal and a square of the distance between its sites of 1.
+    pub(crate) half_square: f64,
+    /// The first site of which the position is rounded, and the largest factor of the normal of such a one's bisector. What needs a
+    /// larger one is too near to be known, and may be anywhere.
+    pub(crate) first_rounded: u32,
+    pub(crate) largest_unit: f64,
+}
+
+/// A power of two: the factor that gives a vector, of which the squared length is given, a length near 1 (between the roots of
+/// a half and of 2).
+#[inline(always)]
+pub(crate) fn unit(squared: f64) -> f64 {
+    // The exponent's bias is 1023: halving an exponent and changing its sign takes three times as much.
+    f64::from_bits(((3 * 1023 - (squared.to_bits() >> 52)) >> 1) << 52)
+}
+
 /// The bisectors of `seed` at `center` with the sites of a run, of which the squares of their distances are more than `from` and at
-/// most `to`, in units of which there are `scale` in a length of 1. They are written to the columns' beginnings, and counted.
+/// most `to`. They are written to the columns' beginnings, and counted.
 ///
 /// # Panics
 /// If columns are not longer than the run by at least [`LANES`].
@@ -134,16 +155,16 @@ pub(crate) fn compact(
     seed: u32,
     center: DVec3,
     squares: [f64; 2],
-    scale: f64,
+    units: Units,
     generators: &mut [Generator],
     columns: [&mut [f32]; 4],
 ) -> usize {
     #[cfg(target_arch = "x86_64")]
     if has_avx512() {
         // SAFETY: the processor has AVX-512.
-        return unsafe { avx512::compact(run, seed, center, squares, scale, generators, columns) };
+        return unsafe { avx512::compact(run, seed, center, squares, units, generators, columns) };
     }
-    compact_anywhere(run, seed, center, squares, scale, generators, columns)
+    compact_anywhere(run, seed, center, squares, units, generators, columns)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "to be rounded")]
@@ -152,7 +173,7 @@ fn compact_anywhere(
     seed: u32,
     center: DVec3,
     [from, to]: [f64; 2],
-    scale: f64,
+    units: Units,
     generators: &mut [Generator],
     columns: [&mut [f32]; 4],
 ) -> usize {
@@ -160,15 +181,17 @@ fn compact_anywhere(
     let (run_x, run_y, run_z) = (&run.x[..count], &run.y[..count], &run.z[..count]);
     let [x, y, z, offsets] = columns.map(|column| &mut column[..count]);
     let generators = &mut generators[..count];
-    let half_square = 0.5 * (scale * scale);
     let mut kept = 0;
     for k in 0..count {
         let normal = DVec3::new(run_x[k], run_y[k], run_z[k]) - center;
         let squared = normal.length_squared();
         // Written in any case, and kept or overwritten by the next: branches would be mispredicted.
+        let unit = unit(squared);
         generators[kept] = Generator(run.sites[k]);
-        (x[kept], y[kept], z[kept]) = (normal * scale).as_vec3().into();
-        offsets[kept] = (squared * half_square) as f32;
+        (x[kept], y[kept], z[kept]) = (normal * unit).as_vec3().into();
+        let offset = squared * units.half_square * unit;
+        let is_too_near = (unit > units.largest_unit) & (run.sites[k] >= units.first_rounded);
+        offsets[kept] = if is_too_near { f32::NEG_INFINITY } else { offset as f32 };
         kept += usize::from((squared > from) & (squared <= to) & (run.sites[k] != seed));
     }
     kept
@@ -182,6 +205,7 @@ mod avx512 {
 
     use crate::generator::Generator;
     use crate::grid::Run;
+    use crate::wide::Units;
 
     /// Doubles in a register.
     const WIDTH: usize = 8;
@@ -192,15 +216,18 @@ mod avx512 {
         seed: u32,
         center: DVec3,
         [from, to]: [f64; 2],
-        scale: f64,
+        units: Units,
         generators: &mut [Generator],
         [x, y, z, offsets]: [&mut [f32]; 4],
     ) -> usize {
         let count = run.sites.len();
         let [center_x, center_y, center_z] = center.to_array().map(|coordinate| _mm512_set1_pd(coordinate));
         let [from, to] = [from, to].map(|square| _mm512_set1_pd(square));
-        let half_square = _mm512_set1_pd(0.5 * (scale * scale));
-        let scale = _mm512_set1_pd(scale);
+        let half_square = _mm512_set1_pd(units.half_square);
+        let largest_unit = _mm512_set1_pd(units.largest_unit);
+        let first_rounded = _mm256_set1_epi32(units.first_rounded.cast_signed());
+        let nowhere = _mm512_set1_pd(f64::NEG_INFINITY);
+        let biases = _mm512_set1_epi64(3 * 1023);
         let seed = _mm256_set1_epi32(seed.cast_signed());
         let mut kept = 0;
         for first in (0..count).step_by(WIDTH) {
@@ -223,6 +250,13 @@ mod avx512 {
                 _mm512_add_pd(_mm512_mul_pd(x_1, x_1), _mm512_mul_pd(y_1, y_1)),
                 _mm512_mul_pd(z_1, z_1),
             );
+            let exponent = _mm512_srli_epi64::<52>(_mm512_castpd_si512(squared));
+            let halved = _mm512_srli_epi64::<1>(_mm512_sub_epi64(biases, exponent));
+            let unit = _mm512_castsi512_pd(_mm512_slli_epi64::<52>(halved));
+            let offset = _mm512_mul_pd(_mm512_mul_pd(squared, half_square), unit);
+            let is_too_near = _mm512_cmp_pd_mask::<_CMP_GT_OQ>(unit, largest_unit)
+                & _mm256_cmpge_epu32_mask(sites, first_rounded);
+            let offset = _mm512_mask_mov_pd(offset, is_too_near, nowhere);
             let keep = _mm512_mask_cmp_pd_mask::<_CMP_GT_OQ>(mask, squared, from)
                 & _mm512_cmp_pd_mask::<_CMP_LE_OQ>(squared, to)
                 & _mm256_cmpneq_epi32_mask(sites, seed);
@@ -236,10 +270,10 @@ mod avx512 {
                         _mm256_maskz_compress_ps(keep, lanes),
                     );
                 };
-                store(x, single(_mm512_mul_pd(x_1, scale)));
-                store(y, single(_mm512_mul_pd(y_1, scale)));
-                store(z, single(_mm512_mul_pd(z_1, scale)));
-                store(offsets, single(_mm512_mul_pd(squared, half_square)));
+                store(x, single(_mm512_mul_pd(x_1, unit)));
+                store(y, single(_mm512_mul_pd(y_1, unit)));
+                store(z, single(_mm512_mul_pd(z_1, unit)));
+                store(offsets, single(offset));
                 _mm256_storeu_si256(
                     generators[room.clone()].as_mut_ptr().cast(),
                     _mm256_maskz_compress_epi32(keep, sites),
@@ -269,12 +303,15 @@ mod tests {
         let [mut found, mut plain] =
             [(); 2].map(|()| (vec![Generator(0); 101 + LANES], [const { [0.0f32; 101 + LANES] }; 4]));
         let (generators, columns) = (&mut found.0, found.1.each_mut().map(|column| &mut column[..]));
-        let count = compact(&run, 17, center, squares, 2.0, generators, columns);
+        // From site 30 on those nearer than about a quarter are too near.
+        let units = Units { scale: 2.0, half_square: 1.0, first_rounded: 30, largest_unit: 2.0 };
+        let count = compact(&run, 17, center, squares, units, generators, columns);
         let (generators, columns) = (&mut plain.0, plain.1.each_mut().map(|column| &mut column[..]));
-        assert_eq!(count, compact_anywhere(&run, 17, center, squares, 2.0, generators, columns));
+        assert_eq!(count, compact_anywhere(&run, 17, center, squares, units, generators, columns));
         let (generators, columns) = (&found.0[..count], found.1.each_ref().map(|column| &column[..count]));
         assert_eq!(generators, &plain.0[..count]);
         assert_eq!(columns, plain.1.each_ref().map(|column| &column[..count]));
+        assert!(columns[3].contains(&f32::NEG_INFINITY));
         let near = |k: usize| {
             let squared = (DVec3::new(x[k], y[k], z[k]) - center).length_squared();
             k != 17 && squared > squares[0] && squared <= squares[1]
