@@ -4,12 +4,14 @@
 //! Offsets and points are in units near the first distance that is searched, so that single precision neither overflows nor
 //! underflows, and normals have a length near 1, so that it tells as much of near planes as of far ones.
 
+use std::ops::Range;
+
 use glam::{DVec3, Vec3};
 
 use crate::generator::Generator;
-use crate::grid::Run;
+use crate::grid::SeedGrid;
 use crate::half_space::HalfSpace;
-use crate::wide::{self, LANES, PlaneColumns, Ray, Units};
+use crate::wide::{self, Around, LANES, PlaneColumns, Ray, Units};
 
 /// Half the distance between 1 and the next number in single precision.
 const SINGLE_ROUNDOFF: f64 = f32::EPSILON as f64 / 2.0;
@@ -39,6 +41,8 @@ pub(crate) struct Candidates {
     z: Vec<f32>,
     offsets: Vec<f32>,
     units: Units,
+    /// Those of the grid that are looked through, for reuse.
+    runs: Vec<Range<u32>>,
 }
 
 /// A point, and how far inside of a plane it may seem to be if it is beyond.
@@ -78,16 +82,32 @@ impl Candidates {
         self.count += 1;
     }
 
-    /// Adds the bisectors of `seed` at `center` with the sites of a run further than the root of `from` and at most that
-    /// of `to` away, as if no site had a weight.
+    /// Adds the bisectors of `seed` at `center` with the sites of a grid up to a distance away, but for those less far than the
+    /// root of the first of two squares; the second is that of the distance. No site has a weight yet.
     #[inline]
-    pub(crate) fn push_within(&mut self, seed: u32, center: DVec3, run: &Run, squares: [f64; 2]) {
-        self.make_room(run.sites.len() + LANES);
+    pub(crate) fn push_within(
+        &mut self,
+        seed: u32,
+        center: DVec3,
+        grid: &SeedGrid,
+        distance: f64,
+        squares: [f64; 2],
+    ) {
+        let mut runs = std::mem::take(&mut self.runs);
+        runs.clear();
+        let mut most = LANES;
+        grid.for_each_run(center, distance, |run| {
+            most += run.len();
+            runs.push(run);
+        });
+        self.make_room(most);
         let first = self.count;
         let generators = &mut self.generators[first..];
         let [x, y, z, offsets] = [&mut self.x, &mut self.y, &mut self.z, &mut self.offsets];
-        let columns = [&mut x[first..], &mut y[first..], &mut z[first..], &mut offsets[first..]];
-        self.count += wide::compact(run, seed, center, squares, self.units, generators, columns);
+        let planes = [&mut x[first..], &mut y[first..], &mut z[first..], &mut offsets[first..]];
+        let around = Around { seed, center, squares, units: self.units };
+        self.count += wide::compact(grid.columns(), &runs, &around, generators, planes);
+        self.runs = runs;
     }
 
     /// Moves bisectors from number `first` on outward, each by what is given with the square of its site's distance.

@@ -25,8 +25,9 @@ const BLOCKS_SORTED_AT_ONCE: usize = 1024;
 /// Covers the rounding of a position in units of blocks, at most 1024.
 const BLOCK_MARGIN: f64 = 1e-9;
 
-/// Seeds that follow one another in the grid's order: their numbers in the input and their coordinates.
-pub(crate) struct Run<'a> {
+/// Seeds in the grid's order: their numbers in the input and their coordinates.
+#[derive(Clone, Copy)]
+pub(crate) struct Columns<'a> {
     pub(crate) sites: &'a [u32],
     pub(crate) x: &'a [f64],
     pub(crate) y: &'a [f64],
@@ -188,20 +189,21 @@ impl SeedGrid {
         mut visit: impl FnMut(u32, DVec3, f64),
     ) {
         let (from, to_squared) = (if from < 0.0 { -1.0 } else { from * from }, to * to);
+        let Columns { sites, x, y, z } = self.columns();
         self.for_each_run(center, to, |run| {
-            for (k, site) in run.sites.iter().enumerate() {
-                let to_seed = DVec3::new(run.x[k], run.y[k], run.z[k]) - center;
+            for k in run.start as usize..run.end as usize {
+                let to_seed = DVec3::new(x[k], y[k], z[k]) - center;
                 let squared = to_seed.length_squared();
                 if squared > from && squared <= to_squared {
-                    visit(*site, to_seed, squared);
+                    visit(sites[k], to_seed, squared);
                 }
             }
         });
     }
 
-    /// Visits runs of seeds, among which are all those at most `to` from a place.
+    /// Visits runs of seeds that follow one another in the grid's order, among which are all those at most `to` from a place.
     #[inline]
-    pub(crate) fn for_each_run(&self, center: DVec3, to: f64, mut visit: impl FnMut(Run)) {
+    pub(crate) fn for_each_run(&self, center: DVec3, to: f64, mut visit: impl FnMut(Range<u32>)) {
         let to_squared = to * to;
         let place = (center - self.lower) * self.density;
         let steps = to * self.density + BLOCK_MARGIN;
@@ -231,17 +233,16 @@ impl SeedGrid {
                     let last = end.min(self.tile_ends[x] as usize);
                     let start = self.starts[(row + self.offsets[0][x]) as usize];
                     let stop = self.starts[(row + self.offsets[0][last]) as usize + 1];
-                    visit(self.run(start as usize..stop as usize));
+                    visit(start..stop);
                     x = last + 1;
                 }
             }
         }
     }
 
-    fn run(&self, places: Range<usize>) -> Run<'_> {
+    pub(crate) fn columns(&self) -> Columns<'_> {
         let [x, y, z] = &self.columns;
-        let sites = &self.order[places.clone()];
-        Run { sites, x: &x[places.clone()], y: &y[places.clone()], z: &z[places] }
+        Columns { sites: &self.order, x, y, z }
     }
 }
 

@@ -219,7 +219,7 @@ impl<'a> Search<'a> {
         let own = self.seeds[seed as usize];
         let first = candidates.len();
         let squares = [if from < 0.0 { -1.0 } else { from * from }, to * to];
-        layer.grid.for_each_run(own, to, |run| candidates.push_within(seed, own, &run, squares));
+        candidates.push_within(seed, own, &layer.grid, to, squares);
         if self.weights.is_some() {
             let input = self.input();
             let own_weight = input.weight(seed);

@@ -18,7 +18,7 @@ use crate::measure::{CellSum, KeptMeasures};
 use crate::periodic_weld::{canonical, side};
 use crate::predicate::ExactInput;
 use crate::search::Search;
-use crate::tessellation::{FaceId, Shift, Side, Tessellation, VertexId};
+use crate::tessellation::{CellId, FaceId, Shift, Side, Tessellation, VertexId};
 use crate::tile::{Tile, for_each_tiles};
 use crate::tile_vertex::NONE;
 
@@ -144,7 +144,12 @@ fn push_tile(tessellation: &mut Tessellation, search: &Search, tile: &Tile, numb
     let Tessellation { vertices, face_sides, face_starts, face_corners, .. } = tessellation;
     let before = face_corners.len();
     let corner = |corner: &u32| VertexId(numbers[*corner as usize].vertex);
-    let sides = |sides: &[Generator; 2]| sides.map(|side_of| side(search.end(side_of), Shift::NONE));
+    let sides = |sides: &[Generator; 2]| {
+        sides.map(|generator| match search.ids().get(generator.0 as usize) {
+            Some(id) => Side::Cell(CellId(*id)),
+            None => side(search.end(generator), Shift::NONE),
+        })
+    };
     rayon::join(
         || push_positions(vertices, tile, numbers),
         || {
