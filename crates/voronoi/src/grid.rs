@@ -151,7 +151,8 @@ impl SeedGrid {
                 part[from..to].sort_unstable_by(before);
             }
         });
-        self.columns = [0, 1, 2].map(|axis| self.order.iter().map(|id| seeds[*id as usize][axis]).collect());
+        self.columns =
+            [0, 1, 2].map(|axis| self.order.par_iter().map(|id| seeds[*id as usize][axis]).collect());
         self.starts = starts;
     }
 

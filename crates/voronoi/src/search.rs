@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::candidates::Candidates;
 use crate::generator::{Generator, Plane};
@@ -75,7 +76,7 @@ impl<'a> Search<'a> {
         let canonical = |seed: &DVec3| {
             DVec3::select(domain.periodic() & seed.cmpeq(domain.upper()), domain.lower(), *seed)
         };
-        let grid = SeedGrid::new(seeds.iter().map(canonical).collect());
+        let grid = SeedGrid::new(seeds.par_iter().map(canonical).collect());
         if let Some((first, second)) = grid.duplicates() {
             let [first, second] = [first, second].map(|id| id as usize);
             return Err(VoronoiError::DuplicateSeeds { first, second, position: seeds[first] });
@@ -89,7 +90,7 @@ impl<'a> Search<'a> {
         };
         let mut search = Self {
             domain,
-            seeds: ids.iter().map(|id| seeds[*id as usize]).collect(),
+            seeds: ids.par_iter().map(|id| seeds[*id as usize]).collect(),
             weights,
             largest_weight,
             ids,

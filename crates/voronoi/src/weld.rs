@@ -261,14 +261,16 @@ fn root(parents: &mut [u32], mut v: u32) -> u32 {
 /// Rounding may leave a vertex of a wall's face a last place beside the wall: it gets the wall's own coordinate, unless the
 /// wall is oblique.
 pub(crate) fn put_vertices_on_walls(tessellation: &mut Tessellation) {
-    for face in 0..tessellation.face_sides.len() {
-        if let Side::Wall(wall) = tessellation.face_sides[face][1]
-            && let Some((axis, coordinate)) = tessellation.domain.across_axis(wall)
-        {
-            let corners = tessellation.face_starts[face]..tessellation.face_starts[face + 1];
-            for corner in &tessellation.face_corners[corners] {
-                tessellation.vertices[corner.index()][axis] = coordinate;
-            }
+    let domain = &tessellation.domain;
+    let on_wall = |(face, sides): (usize, &[Side; 2])| match sides[1] {
+        Side::Wall(wall) => domain.across_axis(wall).map(|(axis, coordinate)| (face, axis, coordinate)),
+        Side::Cell(_) | Side::Image(..) => None,
+    };
+    let faces: Vec<_> = tessellation.face_sides.par_iter().enumerate().filter_map(on_wall).collect();
+    for (face, axis, coordinate) in faces {
+        let corners = tessellation.face_starts[face]..tessellation.face_starts[face + 1];
+        for corner in &tessellation.face_corners[corners] {
+            tessellation.vertices[corner.index()][axis] = coordinate;
         }
     }
 }
