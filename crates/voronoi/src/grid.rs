@@ -60,18 +60,25 @@ impl SeedGrid {
         let upper = seeds.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
         let size = upper - lower;
         let counts = block_counts(size, seeds.len() as f64 / SEEDS_PER_BLOCK);
-        // An axis without extent gets one block of any positive width.
-        let block = DVec3::from_array([0, 1, 2].map(|axis| {
-            let width = size[axis] / f64::from(counts[axis]);
-            if width > 0.0 { width } else { 1.0 }
-        }));
         let axes = counts.to_array().into_iter().filter(|count| *count > 1).count().max(1);
         let blocks: f64 = counts.to_array().into_iter().map(f64::from).product();
         let blocks_per_tile = (blocks / TILES).clamp(BLOCKS_PER_TILE[0], BLOCKS_PER_TILE[1]);
         #[expect(clippy::cast_possible_truncation, reason = "a small number")]
         let tile_edge = blocks_per_tile.powf(1.0 / axes as f64).round() as i32;
-        let tile_counts = (counts + (tile_edge - 1)) / tile_edge;
+        let mut tile_counts = (counts + (tile_edge - 1)) / tile_edge;
+        let tiles = tile_counts.element_product();
+        // Threads take tiles in turn, and mostly there is an even number of them.
+        if tiles > 1 && tiles % 2 == 1 {
+            tile_counts[counts.max_position()] += 1;
+        }
+        // Tiles of one size take nearly the same time.
         let tile = (counts + (tile_counts - 1)) / tile_counts;
+        let counts = tile * tile_counts;
+        // An axis without extent gets one block of any positive width.
+        let block = DVec3::from_array([0, 1, 2].map(|axis| {
+            let width = size[axis] / f64::from(counts[axis]);
+            if width > 0.0 { width } else { 1.0 }
+        }));
         let brick = IVec3::new(tile.x, tile.y.min(BLOCKS_PER_BRICK), tile.z.min(BLOCKS_PER_BRICK));
         let brick_counts = (tile + (brick - 1)) / brick;
         let brick_blocks = brick.element_product();

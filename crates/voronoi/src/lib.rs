@@ -32,6 +32,7 @@
 //! # Ok::<(), voronoi::VoronoiError>(())
 //! ```
 
+mod accurate_sum;
 mod candidates;
 mod cell_complex;
 mod cell_edges;

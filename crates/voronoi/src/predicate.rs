@@ -26,6 +26,7 @@ use glam::DVec3;
 use num_bigint::BigInt;
 use num_traits::{Signed, ToPrimitive, Zero};
 
+use crate::accurate_sum::{accurate_sum, sum_and_rest};
 use crate::generator::{Generator, Plane};
 use crate::half_space::{EVALUATION_ERROR, HalfSpace};
 use crate::images::{Image, ImageTable};
@@ -384,30 +385,6 @@ pub(crate) fn break_tie<N: Ord + Default, D>(
     of_walls.sort_unstable();
     let mut signs = of_sites.iter().map(|(_, sign)| sign).chain(of_walls.iter().map(|(_, sign)| sign));
     signs.find(|sign| sign.is_ne()).is_some_and(|sign| sign.is_gt())
-}
-
-/// A rounded sum, and what rounding left out (Knuth 1969).
-fn sum_and_rest(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let of_b = sum - a;
-    (sum, (a - (sum - of_b)) + (b - of_b))
-}
-
-/// A sum good to one or two last places whatever cancels: the partial sums are kept with all their digits
-/// (Shewchuk 1997).
-fn accurate_sum(terms: [f64; 4]) -> f64 {
-    // Numbers whose digits do not overlap, from small to large.
-    let mut parts = [0.0; 4];
-    for (count, term) in terms.into_iter().enumerate() {
-        let mut carry = term;
-        for part in &mut parts[..count] {
-            let (sum, rest) = sum_and_rest(carry, *part);
-            *part = rest;
-            carry = sum;
-        }
-        parts[count] = carry;
-    }
-    parts.iter().sum()
 }
 
 fn cross(a: &[BigInt; 3], b: &[BigInt; 3]) -> [BigInt; 3] {

@@ -71,7 +71,7 @@ pub(crate) fn cut_tiles(search: &mut Search) -> Vec<Tile> {
 
 /// Cuts all cells between walls, as many tiles in parallel as there are threads, and shows these in order. Tiles that follow take
 /// over their memory: new pages cost about as much as what is written on them.
-pub(crate) fn for_each_tiles(search: &Search, mut visit: impl FnMut(&mut [Tile])) {
+pub(crate) fn for_each_tiles(search: &Search, mut visit: impl FnMut(&[Tile])) {
     let count = rayon::current_num_threads().min(search.tiles().len());
     let mut builders: Vec<Builder> = (0..count).map(|_| Builder::new(search)).collect();
     let mut tiles: Vec<Tile> = Vec::with_capacity(count);
@@ -80,7 +80,7 @@ pub(crate) fn for_each_tiles(search: &Search, mut visit: impl FnMut(&mut [Tile])
             builder.cut(seeds.clone()).expect("between walls there are no images");
         });
         tiles.extend(builders[..seeds.len()].iter_mut().map(|builder| std::mem::take(&mut builder.tile)));
-        visit(&mut tiles);
+        visit(&tiles);
         builders.iter_mut().zip(tiles.drain(..)).for_each(|(builder, tile)| builder.tile = tile);
     }
 }
