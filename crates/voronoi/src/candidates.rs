@@ -1,14 +1,17 @@
 //! The planes that may bound a cell, in arrays that loops without branches run over.
 //!
 //! They only suggest: coordinates are in single precision, and what these cannot tell is asked again from the generators.
-//! All lengths are in units near the first distance that is searched, so that single precision neither overflows nor underflows.
+//! Offsets and points are in units near the first distance that is searched, so that single precision neither overflows nor
+//! underflows, and normals have a length near 1, so that it tells as much of near planes as of far ones.
+
+use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
 use crate::generator::Generator;
-use crate::grid::Run;
-use crate::half_space::{self, HalfSpace};
-use crate::wide::{self, LANES, PlaneColumns, Ray};
+use crate::grid::SeedGrid;
+use crate::half_space::HalfSpace;
+use crate::wide::{self, Around, LANES, PlaneColumns, Ray, Units};
 
 /// Half the distance between 1 and the next number in single precision.
 const SINGLE_ROUNDOFF: f64 = f32::EPSILON as f64 / 2.0;
@@ -20,7 +23,14 @@ const EVALUATION_ERROR: f64 = 16.0 * SINGLE_ROUNDOFF;
 /// decides where they meet. Planes through the edge are such.
 const GRAZING: f64 = 32.0 * SINGLE_ROUNDOFF;
 
-/// Planes `normal . y <= offset`, y relative to the cell's seed, and bounds on what their rounding errors are relative to.
+/// Bound on the 1-norms of the normals, which are at most as long as the root of 2.
+const LARGEST_SUM: f64 = 2.5;
+
+/// Share of the rounding errors of single precision that those of a site's position may have: it is a quarter of one more rounding.
+const POSITION_ERROR: f64 = SINGLE_ROUNDOFF / 4.0;
+
+/// Planes `normal . y <= offset`, y relative to the cell's seed. Offsets are less by as much as rounding may have made them, or a
+/// point beyond, seem too large.
 #[derive(Debug, Default)]
 pub(crate) struct Candidates {
     count: usize,
@@ -30,14 +40,9 @@ pub(crate) struct Candidates {
     y: Vec<f32>,
     z: Vec<f32>,
     offsets: Vec<f32>,
-    /// Units in a length of 1, a power of two.
-    scale: f64,
-    /// Bound on the 1-norms of the normals.
-    largest_sum: f64,
-    /// Bound on the sizes of the offsets' terms.
-    largest_offset_size: f64,
-    /// Bound on what is wrong, before it is rounded, with an offset, or with a normal along a vertex.
-    largest_error: f64,
+    units: Units,
+    /// Those of the grid that are looked through, for reuse.
+    runs: Vec<Range<u32>>,
 }
 
 /// A point, and how far inside of a plane it may seem to be if it is beyond.
@@ -48,13 +53,16 @@ pub(crate) struct Probe {
 }
 
 impl Candidates {
-    /// Takes all planes out. The next are for a search that goes to about some distance.
-    pub(crate) fn restart(&mut self, distance: f64) {
+    /// Takes all planes out. The next are for a search that goes to about some distance, among sites of which, from one on, each
+    /// coordinate is wrong by at most some error.
+    pub(crate) fn restart(&mut self, distance: f64, first_rounded: u32, position_error: f64) {
         self.count = 0;
-        (self.largest_sum, self.largest_offset_size, self.largest_error) = (0.0, 0.0, 0.0);
         // The power of two at or above the reciprocal; where there is none, single precision will not tell much.
         let biased_exponent = distance.to_bits() >> 52 & 0x7ff;
-        self.scale = f64::from_bits(2046u64.saturating_sub(biased_exponent).clamp(1, 2045) << 52);
+        let scale = f64::from_bits(2046u64.saturating_sub(biased_exponent).clamp(1, 2045) << 52);
+        let half_square = 0.5 * scale * (1.0 - EVALUATION_ERROR);
+        self.units =
+            Units { scale, half_square, first_rounded, largest_unit: POSITION_ERROR / position_error };
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -68,49 +76,47 @@ impl Candidates {
     /// Adds a plane within the distance that is searched.
     pub(crate) fn push(&mut self, plane: &HalfSpace) {
         self.make_room(1);
-        // Far planes and near ones shall have coordinates of one size.
-        let per_length = self.scale / plane.length;
-        let offset = plane.offset * per_length;
+        let per_length = self.units.scale / plane.length;
+        let offset = (plane.offset - EVALUATION_ERROR * plane.offset_size) * per_length;
         self.set(self.count, plane.generator, plane.normal / plane.length, offset);
         self.count += 1;
-        self.largest_sum = self.largest_sum.max(plane.sum() / plane.length);
-        self.largest_offset_size = self.largest_offset_size.max(offset.abs());
-        let error = half_space::EVALUATION_ERROR * plane.offset_size * per_length;
-        self.largest_error = self.largest_error.max(error);
     }
 
-    /// Raises the bounds to those of bisectors with sites up to a distance away, of which coordinates are wrong by at most some
-    /// error; what weights add to an offset has a size and an error, too.
-    pub(crate) fn raise_bounds(&mut self, distance: f64, error: f64, weight: f64, weight_error: f64) {
-        let squared_scale = self.scale * self.scale;
-        // The 1-norm of a vector is at most the root of 3 times its length; images may be a last place farther away.
-        self.largest_sum = self.largest_sum.max(2.0 * distance * self.scale);
-        let offset_size = (0.75 * distance * distance + weight) * squared_scale;
-        self.largest_offset_size = self.largest_offset_size.max(offset_size);
-        // What is wrong with a normal counts along itself and along a vertex, which is at most half as long: 1.5 times the root of 3.
-        let error = (3.0 * error * distance + weight_error) * squared_scale;
-        self.largest_error = self.largest_error.max(error);
-    }
-
-    /// Adds the bisectors of `seed` at `center` with the sites of a run further than the root of `from` and at most that
-    /// of `to` away, as if no site had a weight.
+    /// Adds the bisectors of `seed` at `center` with the sites of a grid up to a distance away, but for those less far than the
+    /// root of the first of two squares; the second is that of the distance. No site has a weight yet.
     #[inline]
-    pub(crate) fn push_within(&mut self, seed: u32, center: DVec3, run: &Run, squares: [f64; 2]) {
-        self.make_room(run.sites.len() + LANES);
+    pub(crate) fn push_within(
+        &mut self,
+        seed: u32,
+        center: DVec3,
+        grid: &SeedGrid,
+        distance: f64,
+        squares: [f64; 2],
+    ) {
+        let mut runs = std::mem::take(&mut self.runs);
+        runs.clear();
+        let mut most = LANES;
+        grid.for_each_run(center, distance, |run| {
+            most += run.len();
+            runs.push(run);
+        });
+        self.make_room(most);
         let first = self.count;
         let generators = &mut self.generators[first..];
         let [x, y, z, offsets] = [&mut self.x, &mut self.y, &mut self.z, &mut self.offsets];
-        let columns = [&mut x[first..], &mut y[first..], &mut z[first..], &mut offsets[first..]];
-        self.count += wide::compact(run, seed, center, squares, self.scale, generators, columns);
+        let planes = [&mut x[first..], &mut y[first..], &mut z[first..], &mut offsets[first..]];
+        let around = Around { seed, center, squares, units: self.units };
+        self.count += wide::compact(grid.columns(), &runs, &around, generators, planes);
+        self.runs = runs;
     }
 
-    /// Moves planes from number `first` on outward.
-    pub(crate) fn shift_offsets(&mut self, first: usize, mut shift: impl FnMut(Generator) -> f64) {
-        let squared_scale = self.scale * self.scale;
-        for (generator, offset) in
-            self.generators[first..self.count].iter().zip(&mut self.offsets[first..self.count])
-        {
-            *offset += single(squared_scale * shift(*generator));
+    /// Moves bisectors from number `first` on outward, each by what is given with the square of its site's distance.
+    pub(crate) fn shift_offsets(&mut self, first: usize, shift: impl Fn(Generator) -> (f64, f64)) {
+        let planes = self.generators[first..self.count].iter().zip(&mut self.offsets[first..self.count]);
+        for (generator, offset) in planes {
+            let (shift, squared) = shift(*generator);
+            let shift = shift * wide::unit(squared) * self.units.scale;
+            *offset += single(shift - EVALUATION_ERROR * shift.abs());
         }
     }
 
@@ -149,10 +155,11 @@ impl Candidates {
     /// A ray from a point on, such that planes through it are not met.
     #[inline]
     pub(crate) fn ray(&self, start: DVec3, direction: DVec3) -> Ray {
-        // The product of two normals: single precision knows its size if it knows theirs.
-        let direction = direction * (self.scale * self.scale);
-        let threshold = GRAZING * self.largest_sum * direction.abs().element_sum();
-        let start = (start * self.scale).as_vec3();
+        // The product of two normals: single precision knows its size if it knows that of lengths.
+        let scale = self.units.scale;
+        let direction = direction * (scale * scale);
+        let threshold = GRAZING * LARGEST_SUM * direction.abs().element_sum();
+        let start = (start * scale).as_vec3();
         Ray { start, direction: direction.as_vec3(), threshold: single(threshold) }
     }
 
@@ -171,10 +178,8 @@ impl Candidates {
     /// Looks at a point, each coordinate of which is known up to an error.
     #[inline]
     pub(crate) fn probe(&self, point: DVec3, error: f64) -> Probe {
-        let point = point * self.scale;
-        let per_sum = error * self.scale + EVALUATION_ERROR * point.abs().max_element();
-        let slack =
-            self.largest_sum * per_sum + EVALUATION_ERROR * self.largest_offset_size + self.largest_error;
+        let point = point * self.units.scale;
+        let slack = LARGEST_SUM * (error * self.units.scale + EVALUATION_ERROR * point.abs().max_element());
         Probe { point: point.as_vec3(), slack: single(slack) }
     }
 

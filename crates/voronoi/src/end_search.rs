@@ -188,7 +188,7 @@ impl<'a> EndSearch<'a> {
         let (seed, input, range) = (self.seed, self.input, [self.reach, reach]);
         let candidates = &mut self.candidates;
         if self.reach < 0.0 {
-            candidates.restart(reach);
+            candidates.restart(reach, self.search.first_image(), self.search.position_error());
         }
         self.search.gather(candidates, seed, range)?;
         let plane = (input.domain.dimension() == Dimension::Two).then_some(PLANE);

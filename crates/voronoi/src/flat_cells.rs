@@ -16,6 +16,9 @@ pub(crate) fn remove_flat_cells(tessellation: &mut Tessellation) -> bool {
     let cells = (0u32..).take(tessellation.cell_count()).map(CellId);
     let is_flat = |cell: &CellId| (1..fewest_faces).contains(&tessellation.cell_faces(*cell).len());
     let flat: Vec<CellId> = cells.filter(is_flat).collect();
+    if flat.is_empty() {
+        return false;
+    }
     // Where a face went: a stack of flat cells joins faces one after the other.
     let mut joined_to: Vec<FaceId> = tessellation.faces().collect();
     for cell in &flat {
@@ -36,10 +39,8 @@ pub(crate) fn remove_flat_cells(tessellation: &mut Tessellation) -> bool {
         }
         joined_to[dropped.index()] = kept;
     }
-    if !flat.is_empty() {
-        keep_faces(tessellation, |face| joined_to[face.index()] == face);
-    }
-    !flat.is_empty()
+    keep_faces(tessellation, |face| joined_to[face.index()] == face);
+    true
 }
 
 fn end(joined_to: &[FaceId], mut face: FaceId) -> FaceId {

@@ -15,21 +15,26 @@ const BLOCKS_PER_TILE: [f64; 2] = [1000.0, 8000.0];
 /// Tiles, where that leaves them neither too small nor too large.
 const TILES: f64 = 8.0;
 
+/// Blocks of a tile that follow one another along y, and along z, before those farther along x, y and z: neighbours that are taken
+/// soon after one another find their vertices in the cache.
+const BLOCKS_PER_BRICK: i32 = 3;
+
 /// Blocks that a thread sorts at once.
 const BLOCKS_SORTED_AT_ONCE: usize = 1024;
 
 /// Covers the rounding of a position in units of blocks, at most 1024.
 const BLOCK_MARGIN: f64 = 1e-9;
 
-/// Seeds that follow one another in the grid's order: their numbers in the input and their coordinates.
-pub(crate) struct Run<'a> {
+/// Seeds in the grid's order: their numbers in the input and their coordinates.
+#[derive(Clone, Copy)]
+pub(crate) struct Columns<'a> {
     pub(crate) sites: &'a [u32],
     pub(crate) x: &'a [f64],
     pub(crate) y: &'a [f64],
     pub(crate) z: &'a [f64],
 }
 
-/// The seeds in order of tiles, in these of blocks, in these of coordinates: an order that permuting the seeds does not change.
+/// The seeds in order of tiles, in these of bricks, of blocks, and of coordinates: an order that permuting the seeds does not change.
 pub(crate) struct SeedGrid {
     lower: DVec3,
     block: DVec3,
@@ -67,14 +72,20 @@ impl SeedGrid {
         let tile_edge = blocks_per_tile.powf(1.0 / axes as f64).round() as i32;
         let tile_counts = (counts + (tile_edge - 1)) / tile_edge;
         let tile = (counts + (tile_counts - 1)) / tile_counts;
-        let tile_blocks = tile.element_product();
-        // Blocks between one block and the next along each axis: within a tile, and from tile to tile.
-        let steps = [1, tile.x, tile.x * tile.y];
-        let tile_steps = [1, tile_counts.x, tile_counts.x * tile_counts.y];
+        let brick = IVec3::new(tile.x, tile.y.min(BLOCKS_PER_BRICK), tile.z.min(BLOCKS_PER_BRICK));
+        let brick_counts = (tile + (brick - 1)) / brick;
+        let brick_blocks = brick.element_product();
+        let tile_blocks = brick_blocks * brick_counts.element_product();
+        // From one to the next along each axis: blocks in a brick, bricks in a tile, tiles.
+        let steps = |counts: IVec3| [1, counts.x, counts.x * counts.y];
+        let (block_steps, brick_steps, tile_steps) = (steps(brick), steps(brick_counts), steps(tile_counts));
         let offsets = [0, 1, 2].map(|axis| {
-            let offset = |b: i32| {
-                (b % tile[axis] * steps[axis] + b / tile[axis] * tile_steps[axis] * tile_blocks)
-                    .cast_unsigned()
+            let offset = |block: i32| {
+                let in_tile = block % tile[axis];
+                let in_brick = in_tile % brick[axis] * block_steps[axis];
+                let before_brick = in_tile / brick[axis] * brick_steps[axis] * brick_blocks;
+                let before_tile = block / tile[axis] * tile_steps[axis] * tile_blocks;
+                (in_brick + before_brick + before_tile).cast_unsigned()
             };
             (0..counts[axis]).map(offset).collect()
         });
@@ -140,7 +151,8 @@ impl SeedGrid {
                 part[from..to].sort_unstable_by(before);
             }
         });
-        self.columns = [0, 1, 2].map(|axis| self.order.iter().map(|id| seeds[*id as usize][axis]).collect());
+        self.columns =
+            [0, 1, 2].map(|axis| self.order.par_iter().map(|id| seeds[*id as usize][axis]).collect());
         self.starts = starts;
     }
 
@@ -178,20 +190,21 @@ impl SeedGrid {
         mut visit: impl FnMut(u32, DVec3, f64),
     ) {
         let (from, to_squared) = (if from < 0.0 { -1.0 } else { from * from }, to * to);
+        let Columns { sites, x, y, z } = self.columns();
         self.for_each_run(center, to, |run| {
-            for (k, site) in run.sites.iter().enumerate() {
-                let to_seed = DVec3::new(run.x[k], run.y[k], run.z[k]) - center;
+            for k in run.start as usize..run.end as usize {
+                let to_seed = DVec3::new(x[k], y[k], z[k]) - center;
                 let squared = to_seed.length_squared();
                 if squared > from && squared <= to_squared {
-                    visit(*site, to_seed, squared);
+                    visit(sites[k], to_seed, squared);
                 }
             }
         });
     }
 
-    /// Visits runs of seeds, among which are all those at most `to` from a place.
+    /// Visits runs of seeds that follow one another in the grid's order, among which are all those at most `to` from a place.
     #[inline]
-    pub(crate) fn for_each_run(&self, center: DVec3, to: f64, mut visit: impl FnMut(Run)) {
+    pub(crate) fn for_each_run(&self, center: DVec3, to: f64, mut visit: impl FnMut(Range<u32>)) {
         let to_squared = to * to;
         let place = (center - self.lower) * self.density;
         let steps = to * self.density + BLOCK_MARGIN;
@@ -221,17 +234,16 @@ impl SeedGrid {
                     let last = end.min(self.tile_ends[x] as usize);
                     let start = self.starts[(row + self.offsets[0][x]) as usize];
                     let stop = self.starts[(row + self.offsets[0][last]) as usize + 1];
-                    visit(self.run(start as usize..stop as usize));
+                    visit(start..stop);
                     x = last + 1;
                 }
             }
         }
     }
 
-    fn run(&self, places: Range<usize>) -> Run<'_> {
+    pub(crate) fn columns(&self) -> Columns<'_> {
         let [x, y, z] = &self.columns;
-        let sites = &self.order[places.clone()];
-        Run { sites, x: &x[places.clone()], y: &y[places.clone()], z: &z[places] }
+        Columns { sites: &self.order, x, y, z }
     }
 }
 

@@ -48,6 +48,7 @@ mod grid;
 mod half_space;
 mod images;
 mod measure;
+mod narrow;
 mod periodic_weld;
 mod planar_cells;
 mod planar_measures;

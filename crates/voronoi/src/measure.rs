@@ -153,7 +153,7 @@ pub(crate) fn cell_measures(tessellation: &Tessellation) -> Vec<CellMeasure> {
         return planar_measures(tessellation);
     }
     if let KeptMeasures(Some(measures)) = &tessellation.measures {
-        return measures.clone();
+        return measures.par_iter().copied().collect();
     }
     let face_measures: Vec<FaceMeasure> = (0..tessellation.face_count())
         .into_par_iter()

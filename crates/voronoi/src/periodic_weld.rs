@@ -18,13 +18,14 @@ use crate::search::Search;
 use crate::tessellation::{CellId, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};
 use crate::tile::Tile;
 use crate::torus::{FaceEnd, TorusFaces};
-use crate::weld::{cell_measures, list_faces_of_cells, number_vertices, positions, put_vertices_on_walls};
+use crate::weld::{CellSums, VertexNumbers, list_faces_of_cells, push_positions, put_vertices_on_walls};
 use crate::{Dimension, Domain};
 
 pub(crate) fn weld_periodic(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Tessellation {
     let dimension = search.input().domain.dimension();
-    let mut numbers = number_vertices(search.input(), &tiles);
-    let positions = positions(&tiles, &numbers);
+    let mut numbers = VertexNumbers::new(search.input()).of_tiles(&tiles);
+    let mut positions = Vec::with_capacity(tiles.iter().map(|tile| tile.positions.len()).sum());
+    tiles.iter().zip(&numbers).for_each(|(tile, numbers)| push_positions(&mut positions, tile, numbers));
     let are_coincident = tiles.iter().any(|tile| !tile.coincident.is_empty());
     if are_coincident {
         let roots = unite_coincident(positions.len(), &tiles, &numbers);
@@ -40,7 +41,9 @@ pub(crate) fn weld_periodic(search: &Search, seeds: &[DVec3], mut tiles: Vec<Til
     let has_flat_cells = faces.remove_flat_cells(seeds.len());
     let mut tessellation = unwrapped(search.input().domain, seeds, &faces, &positions);
     if !are_coincident && !has_flat_cells && dimension == Dimension::Three {
-        tessellation.measures = cell_measures(search, seeds, &tiles);
+        let mut sums = CellSums::new(seeds.len());
+        tiles.iter().for_each(|tile| sums.push_tile(tile));
+        tessellation.measures = sums.measures(search, seeds);
     }
     tessellation
 }

@@ -20,15 +20,17 @@
 //!
 //! A periodic image of a seed is exact, too: the seed moved by whole multiples of the exact difference of two opposite walls.
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
-use num_bigint::{BigInt, Sign};
+use num_bigint::BigInt;
 use num_traits::{Signed, ToPrimitive, Zero};
 
 use crate::generator::{Generator, Plane};
 use crate::half_space::{EVALUATION_ERROR, HalfSpace};
 use crate::images::{Image, ImageTable};
 use crate::tessellation::Shift;
-use crate::{Domain, Wall, WallPlane};
+use crate::{Domain, Wall, WallPlane, narrow};
 
 /// On which side of a plane a vertex lies once ties are broken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,10 +51,11 @@ pub(crate) struct ExactInput<'a> {
     pub(crate) images: &'a ImageTable,
 }
 
-struct ExactPlane {
-    normal: [BigInt; 3],
-    doubled_offset: BigInt,
-    generator: Generator,
+/// A plane in integers: coordinates in units of two to some exponent.
+pub(crate) struct ExactPlane<N, D> {
+    pub(crate) normal: [N; 3],
+    pub(crate) doubled_offset: D,
+    pub(crate) generator: Generator,
 }
 
 impl<'a> ExactInput<'a> {
@@ -175,9 +178,19 @@ impl<'a> ExactInput<'a> {
 
     /// Whether plane `cutter` cuts off the vertex of `planes` (in positive orientation) from the cell of `seed`.
     pub(crate) fn decide(self, seed: u32, planes: [Generator; 3], cutter: Generator) -> Decision {
-        let exponent = self.common_exponent(seed, &[planes[0], planes[1], planes[2], cutter]);
-        let [a, b, c] = planes.map(|generator| self.plane(seed, generator, exponent));
-        let m = self.plane(seed, cutter, exponent);
+        let [a, b, c] = planes;
+        let generators = [a, b, c, cutter];
+        let exponent = self.common_exponent(seed, &generators);
+        match narrow::planes(self, seed, generators, exponent) {
+            Some(planes) => narrow::decide(&planes),
+            None => self.decide_at_length(seed, generators, exponent),
+        }
+    }
+
+    /// The same with integers of any length.
+    pub(crate) fn decide_at_length(self, seed: u32, generators: [Generator; 4], exponent: i32) -> Decision {
+        let planes = generators.map(|generator| self.plane(seed, generator, exponent));
+        let [a, b, c, m] = &planes;
         let bc = cross(&b.normal, &c.normal);
         let ca = cross(&c.normal, &a.normal);
         let ab = cross(&a.normal, &b.normal);
@@ -186,23 +199,26 @@ impl<'a> ExactInput<'a> {
 
         // Coefficients of D_a, D_b, D_c and D_m.
         let coefficients = [dot(&m.normal, &bc), dot(&m.normal, &ca), dot(&m.normal, &ab), -determinant];
-        let planes = [&a, &b, &c, &m];
-        let value: BigInt = coefficients
-            .iter()
-            .zip(planes)
-            .map(|(coefficient, plane)| coefficient * &plane.doubled_offset)
-            .sum();
-        match value.sign() {
-            Sign::Plus => Decision { beyond: true, tie: false },
-            Sign::Minus => Decision { beyond: false, tie: false },
-            Sign::NoSign => Decision { beyond: break_tie(planes, coefficients), tie: true },
+        let products = coefficients.iter().zip(&planes).map(|(factor, plane)| factor * &plane.doubled_offset);
+        let value: BigInt = products.sum();
+        if !value.is_zero() {
+            return Decision { beyond: value.is_positive(), tie: false };
         }
+        let of_sites =
+            coefficients.iter().zip(&planes).filter(|(_, plane)| plane.generator.as_site().is_some());
+        let own: BigInt = of_sites.map(|(coefficient, _)| coefficient).sum();
+        let sign = |number: &BigInt| number.cmp(&BigInt::zero());
+        let beyond = break_tie(&planes, coefficients.each_ref().map(sign), sign(&own));
+        Decision { beyond, tie: true }
     }
 
     /// Whether three planes are in positive orientation: the determinant of their normals is positive.
-    pub(crate) fn is_positive(self, seed: u32, planes: [Generator; 3]) -> bool {
-        let exponent = self.common_exponent(seed, &planes);
-        let [a, b, c] = planes.map(|generator| self.plane(seed, generator, exponent).normal);
+    pub(crate) fn is_positive(self, seed: u32, generators: [Generator; 3]) -> bool {
+        let exponent = self.common_exponent(seed, &generators);
+        if let Some(planes) = narrow::planes(self, seed, generators, exponent) {
+            return narrow::is_positive(&planes);
+        }
+        let [a, b, c] = generators.map(|generator| self.plane(seed, generator, exponent).normal);
         dot(&a, &cross(&b, &c)).is_positive()
     }
 
@@ -224,7 +240,7 @@ impl<'a> ExactInput<'a> {
 
     /// The smallest exponent such that all coordinates involved are integers times two to it, and all weights integers times
     /// two to twice it.
-    fn common_exponent(self, seed: u32, generators: &[Generator]) -> i32 {
+    pub(crate) fn common_exponent(self, seed: u32, generators: &[Generator]) -> i32 {
         let of_number = |number: f64| {
             let (mantissa, exponent) = decompose(number);
             (mantissa != 0).then_some(exponent)
@@ -254,7 +270,7 @@ impl<'a> ExactInput<'a> {
         of_planes.chain(of_site(seed)).min().unwrap_or(0)
     }
 
-    fn plane(self, seed: u32, generator: Generator, exponent: i32) -> ExactPlane {
+    fn plane(self, seed: u32, generator: Generator, exponent: i32) -> ExactPlane<BigInt, BigInt> {
         let own = self.seeds[seed as usize];
         let integer = |number: f64| to_integer(number, exponent);
         let period = |axis: usize| integer(self.domain.upper()[axis]) - integer(self.domain.lower()[axis]);
@@ -346,26 +362,28 @@ fn exponent_of(plane: &WallPlane, point: DVec3) -> i32 {
     exponents.map(|(_, exponent)| exponent).min().unwrap_or(0)
 }
 
-/// The sign of the expression's change under the symbolic weights, or else the symbolic motion of walls.
-fn break_tie(planes: [&ExactPlane; 4], coefficients: [BigInt; 4]) -> bool {
-    let origin = [BigInt::zero(), BigInt::zero(), BigInt::zero()];
+/// The sign of the expression's change under the symbolic weights, or else the symbolic motion of walls, from the signs of the
+/// coefficients of the planes, and of the sum of those of sites.
+pub(crate) fn break_tie<N: Ord + Default, D>(
+    planes: &[ExactPlane<N, D>; 4],
+    signs: [Ordering; 4],
+    own: Ordering,
+) -> bool {
     // The normal of a bisector is the other site's position relative to the seed.
-    let mut of_sites: Vec<(&[BigInt; 3], BigInt)> = Vec::with_capacity(5);
-    let mut of_walls: Vec<(Generator, BigInt)> = Vec::new();
-    let mut own = BigInt::zero();
-    for (plane, coefficient) in planes.into_iter().zip(coefficients) {
+    let origin = [(); 3].map(|()| N::default());
+    let mut of_sites = vec![(&origin, own)];
+    let mut of_walls = Vec::new();
+    for (plane, sign) in planes.iter().zip(signs) {
         if plane.generator.as_site().is_some() {
-            own += &coefficient;
-            of_sites.push((&plane.normal, -coefficient));
+            of_sites.push((&plane.normal, sign.reverse()));
         } else {
-            of_walls.push((plane.generator, coefficient));
+            of_walls.push((plane.generator, sign));
         }
     }
-    of_sites.push((&origin, own));
     of_sites.sort_unstable();
     of_walls.sort_unstable();
-    let terms = of_sites.into_iter().map(|(_, term)| term).chain(of_walls.into_iter().map(|(_, term)| term));
-    terms.into_iter().find(|term| !term.is_zero()).is_some_and(|term| term.is_positive())
+    let mut signs = of_sites.iter().map(|(_, sign)| sign).chain(of_walls.iter().map(|(_, sign)| sign));
+    signs.find(|sign| sign.is_ne()).is_some_and(|sign| sign.is_gt())
 }
 
 /// A rounded sum, and what rounding left out (Knuth 1969).
@@ -405,7 +423,7 @@ fn dot(a: &[BigInt; 3], b: &[BigInt; 3]) -> BigInt {
 }
 
 /// A finite double as mantissa times two to an exponent.
-fn decompose(value: f64) -> (i64, i32) {
+pub(crate) fn decompose(value: f64) -> (i64, i32) {
     let bits = value.to_bits();
     let fraction = (bits & ((1 << 52) - 1)).cast_signed();
     let biased = ((bits >> 52) & 0x7ff) as i32;

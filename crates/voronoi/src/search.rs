@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::candidates::Candidates;
 use crate::generator::{Generator, Plane};
 use crate::grid::SeedGrid;
-use crate::half_space::EVALUATION_ERROR;
 use crate::images::{Image, ImageTable};
 use crate::predicate::ExactInput;
 use crate::torus::FaceEnd;
@@ -76,7 +76,7 @@ impl<'a> Search<'a> {
         let canonical = |seed: &DVec3| {
             DVec3::select(domain.periodic() & seed.cmpeq(domain.upper()), domain.lower(), *seed)
         };
-        let grid = SeedGrid::new(seeds.iter().map(canonical).collect());
+        let grid = SeedGrid::new(seeds.par_iter().map(canonical).collect());
         if let Some((first, second)) = grid.duplicates() {
             let [first, second] = [first, second].map(|id| id as usize);
             return Err(VoronoiError::DuplicateSeeds { first, second, position: seeds[first] });
@@ -90,7 +90,7 @@ impl<'a> Search<'a> {
         };
         let mut search = Self {
             domain,
-            seeds: ids.iter().map(|id| seeds[*id as usize]).collect(),
+            seeds: ids.par_iter().map(|id| seeds[*id as usize]).collect(),
             weights,
             largest_weight,
             ids,
@@ -182,8 +182,13 @@ impl<'a> Search<'a> {
         if self.weights.is_none() { 0.0 } else { self.largest_weight - self.input().weight(seed) }
     }
 
+    /// The number of the first image.
+    pub(crate) fn first_image(&self) -> u32 {
+        u32::try_from(self.seeds.len()).expect("site ids were checked to fit")
+    }
+
     /// Bound on the rounding of sites' positions: those of images are rounded.
-    fn position_error(&self) -> f64 {
+    pub(crate) fn position_error(&self) -> f64 {
         if self.domain.is_periodic() {
             1e-15 * self.domain.lower().abs().max(self.domain.upper().abs()).max_element()
         } else {
@@ -215,18 +220,15 @@ impl<'a> Search<'a> {
         let own = self.seeds[seed as usize];
         let first = candidates.len();
         let squares = [if from < 0.0 { -1.0 } else { from * from }, to * to];
-        layer.grid.for_each_run(own, to, |run| candidates.push_within(seed, own, &run, squares));
-        let mut shift = 0.0f64;
+        candidates.push_within(seed, own, &layer.grid, to, squares);
         if self.weights.is_some() {
             let input = self.input();
             let own_weight = input.weight(seed);
             candidates.shift_offsets(first, |generator| {
-                let own_shift = 0.5 * (own_weight - input.weight(generator.0));
-                shift = shift.max(own_shift.abs());
-                own_shift
+                let shift = 0.5 * (own_weight - input.weight(generator.0));
+                (shift, (input.position(generator.0) - own).length_squared())
             });
         }
-        candidates.raise_bounds(to, self.position_error(), shift, EVALUATION_ERROR * shift);
         Ok(())
     }
 

@@ -170,12 +170,34 @@ impl Tessellation {
             return Ok(tessellation);
         }
         let mut search = Search::new(domain, seeds, weights)?;
-        let tiles = cut_tiles(&mut search);
         Ok(if domain.is_periodic() {
+            let tiles = cut_tiles(&mut search);
             weld_periodic(&search, seeds, tiles)
         } else {
-            weld(&search, seeds, tiles)
+            weld(&search, seeds)
         })
+    }
+
+    /// Reserves memory for cells without faces yet, as if the seeds were random, or a little more.
+    pub(crate) fn make_room(&mut self) {
+        // Random cells have 6.77 vertices, 7.77 faces and 40.6 corners each, in the plane 2, 3 and 6.
+        let per_cell = match self.domain.dimension() {
+            Dimension::Three => [7, 8, 42],
+            Dimension::Two => [3, 4, 8],
+        };
+        let [vertices, faces, corners] = per_cell.map(|per_cell| per_cell * self.seeds.len());
+        self.vertices.reserve(vertices);
+        self.face_sides.reserve(faces);
+        self.face_starts.reserve(faces);
+        self.face_corners.reserve(corners);
+    }
+
+    /// Gives back the memory that vertices and faces do not need.
+    pub(crate) fn shrink_to_fit(&mut self) {
+        self.vertices.shrink_to_fit();
+        self.face_sides.shrink_to_fit();
+        self.face_starts.shrink_to_fit();
+        self.face_corners.shrink_to_fit();
     }
 
     pub(crate) fn push_face(&mut self, sides: [Side; 2], corners: impl Iterator<Item = VertexId>) -> FaceId {

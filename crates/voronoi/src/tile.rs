@@ -24,6 +24,7 @@ use crate::tile_vertex::{ALL_FACES, FACE_SLOTS, FACES_OF_FIRST, NONE, TileVertex
 const POSSIBLY_COINCIDENT: f64 = 1e-9;
 
 /// Cells without what they share with one another twice.
+#[derive(Default)]
 pub(crate) struct Tile {
     pub(crate) seeds: Range<u32>,
     /// Where the vertices are.
@@ -56,12 +57,31 @@ pub(crate) fn cut_tiles(search: &mut Search) -> Vec<Tile> {
         let missing = tiles.par_iter_mut().zip(search.tiles()).filter(|(tile, _)| tile.is_none());
         missing.for_each_init(
             || Builder::new(search),
-            |builder, (tile, seeds)| *tile = builder.cut(seeds.clone()).ok(),
+            |builder, (tile, seeds)| {
+                let cut = builder.cut(seeds.clone());
+                *tile = cut.ok().map(|()| std::mem::take(&mut builder.tile));
+            },
         );
         if tiles.iter().all(Option::is_some) {
             return tiles.into_iter().flatten().collect();
         }
         search.widen();
+    }
+}
+
+/// Cuts all cells between walls, as many tiles in parallel as there are threads, and shows these in order. Tiles that follow take
+/// over their memory: new pages cost about as much as what is written on them.
+pub(crate) fn for_each_tiles(search: &Search, mut visit: impl FnMut(&mut [Tile])) {
+    let count = rayon::current_num_threads().min(search.tiles().len());
+    let mut builders: Vec<Builder> = (0..count).map(|_| Builder::new(search)).collect();
+    let mut tiles: Vec<Tile> = Vec::with_capacity(count);
+    for seeds in search.tiles().chunks(count) {
+        builders.par_iter_mut().zip(seeds).for_each(|(builder, seeds)| {
+            builder.cut(seeds.clone()).expect("between walls there are no images");
+        });
+        tiles.extend(builders[..seeds.len()].iter_mut().map(|builder| std::mem::take(&mut builder.tile)));
+        visit(&mut tiles);
+        builders.iter_mut().zip(tiles.drain(..)).for_each(|(builder, tile)| builder.tile = tile);
     }
 }
 
@@ -87,6 +107,7 @@ struct Builder<'a> {
     waiting: Vec<WaitingEdge>,
     /// Edges of the cell under way that may lack their other end.
     current: Vec<EdgeOf>,
+    /// The one cut last.
     tile: Tile,
 }
 
@@ -108,12 +129,12 @@ impl<'a> Builder<'a> {
             first_waiting: Vec::new(),
             waiting: Vec::new(),
             current: Vec::new(),
-            tile: Tile::with_room(0..0, [0; 2]),
+            tile: Tile::default(),
         }
     }
 
     /// Completes the cells of consecutive seeds.
-    fn cut(&mut self, seeds: Range<u32>) -> Result<Tile, ImagesMissing> {
+    fn cut(&mut self, seeds: Range<u32>) -> Result<(), ImagesMissing> {
         let count = seeds.len();
         self.seeds = seeds.clone();
         self.vertices.clear();
@@ -129,7 +150,7 @@ impl<'a> Builder<'a> {
         let [vertices, faces, corners] = per_cell.map(|per_cell| per_cell * count);
         self.vertices.reserve(vertices);
         self.waiting.reserve(vertices);
-        self.tile = Tile::with_room(seeds.clone(), [faces, corners]);
+        self.tile.restart(seeds.clone(), [faces, corners]);
         for seed in seeds {
             self.complete(seed)?;
         }
@@ -137,7 +158,7 @@ impl<'a> Builder<'a> {
             self.tile.push_faces_at(self.search, &mut self.vertices, number, ALL_FACES);
         }
         self.tile.take_vertices(self.search, &self.vertices);
-        Ok(std::mem::replace(&mut self.tile, Tile::with_room(0..0, [0; 2])))
+        Ok(())
     }
 
     fn complete(&mut self, seed: u32) -> Result<(), ImagesMissing> {
@@ -273,21 +294,21 @@ impl<'a> Builder<'a> {
 }
 
 impl Tile {
-    /// Without faces, but with room for some, and for their corners.
-    fn with_room(seeds: Range<u32>, [faces, corners]: [usize; 2]) -> Self {
-        let mut corner_starts = Vec::with_capacity(faces + 1);
-        corner_starts.push(0);
-        Self {
-            sums: vec![CellSum::default(); seeds.len()],
-            sums_beyond: Vec::new(),
-            seeds,
-            positions: Vec::new(),
-            shared: Vec::new(),
-            faces: Vec::with_capacity(faces),
-            corner_starts,
-            corners: Vec::with_capacity(corners),
-            coincident: Vec::new(),
-        }
+    /// Empties the tile and makes room for some faces, and for their corners.
+    fn restart(&mut self, seeds: Range<u32>, [faces, corners]: [usize; 2]) {
+        self.sums.clear();
+        self.sums.resize(seeds.len(), CellSum::default());
+        self.sums_beyond.clear();
+        self.seeds = seeds;
+        self.shared.clear();
+        self.faces.clear();
+        self.faces.reserve(faces);
+        self.corner_starts.clear();
+        self.corner_starts.reserve(faces + 1);
+        self.corner_starts.push(0);
+        self.corners.clear();
+        self.corners.reserve(corners);
+        self.coincident.clear();
     }
 
     /// Adds those of some faces of a vertex that lie between a seed of the tile and a wall or a site that comes after it in the
@@ -381,7 +402,8 @@ impl Tile {
         }
         let seeds = search.input().seeds;
         let absolute = |vertex: &TileVertex| seeds[vertex.generators[0].0 as usize] + vertex.position;
-        self.positions = vertices.iter().map(absolute).collect();
+        self.positions.clear();
+        self.positions.extend(vertices.iter().map(absolute));
     }
 
     /// Numbers of faces and of their corners.

@@ -18,8 +18,8 @@ use crate::measure::{CellSum, KeptMeasures};
 use crate::periodic_weld::{canonical, side};
 use crate::predicate::ExactInput;
 use crate::search::Search;
-use crate::tessellation::{FaceId, Shift, Side, Tessellation, VertexId};
-use crate::tile::Tile;
+use crate::tessellation::{CellId, FaceId, Shift, Side, Tessellation, VertexId};
+use crate::tile::{Tile, for_each_tiles};
 use crate::tile_vertex::NONE;
 
 /// The vertices that a tile owns.
@@ -50,81 +50,86 @@ impl Owned {
     }
 }
 
-/// The number of every vertex of every tile in the whole, with the shift to where it is from there.
-pub(crate) fn number_vertices(input: ExactInput, tiles: &[Tile]) -> Vec<Vec<Corner>> {
-    let owned: Vec<Owned> = tiles.par_iter().map(|tile| Owned::new(input, tile)).collect();
-    let mut starts = vec![0u32];
-    for tile in &owned {
-        starts.push(starts[starts.len() - 1].checked_add(tile.count).expect("vertex ids fit 32 bits"));
-    }
-    let numbers = tiles.par_iter().zip(&owned).zip(&starts).map(|((tile, own), start)| {
-        // Those of vertices that others own come out wrong here, and right below.
-        let number = |rank: &u32| Corner { vertex: start.wrapping_add(*rank), shift: Shift::NONE };
-        let mut numbers: Vec<Corner> = own.ranks.iter().map(number).collect();
-        for shared in tile.shared.iter().filter(|shared| own.ranks[shared.vertex as usize] == NONE) {
-            let (key, shift) = canonical(input, &shared.key);
-            let owner = tiles.partition_point(|tile| tile.seeds.start <= key[0].0) - 1;
-            let rank = owned[owner].shared.get(&key);
-            let rank = rank.expect("exact decisions give every tile the same vertices");
-            numbers[shared.vertex as usize] = Corner { vertex: starts[owner] + rank, shift };
-        }
-        numbers
-    });
-    numbers.collect()
+/// Numbers in the whole for the vertices of tiles.
+pub(crate) struct VertexNumbers<'a> {
+    input: ExactInput<'a>,
+    /// Of each tile that was numbered, its first seed, the number of its first own vertex, and the ranks of its own vertices that
+    /// are known elsewhere as well.
+    first_seeds: Vec<u32>,
+    starts: Vec<u32>,
+    shared: Vec<HashMap<VertexKey, u32, FixedState>>,
+    count: u32,
 }
 
-/// The positions of all vertices by number.
-pub(crate) fn positions(tiles: &[Tile], numbers: &[Vec<Corner>]) -> Vec<DVec3> {
-    let mut positions = Vec::with_capacity(tiles.iter().map(|tile| tile.positions.len()).sum());
-    for (tile, numbers) in tiles.iter().zip(numbers) {
-        for (position, number) in tile.positions.iter().zip(numbers) {
-            // Each tile's own vertices come in order.
-            if number.shift == Shift::NONE && number.vertex as usize == positions.len() {
-                positions.push(*position);
-            }
-        }
+impl<'a> VertexNumbers<'a> {
+    pub(crate) fn new(input: ExactInput<'a>) -> Self {
+        Self { input, first_seeds: Vec::new(), starts: Vec::new(), shared: Vec::new(), count: 0 }
     }
-    positions
+
+    /// The number of every vertex of further tiles, with the shift to where it is from there. Who owns a vertex must be numbered
+    /// before, or among them: between walls that holds for tiles in order.
+    pub(crate) fn of_tiles(&mut self, tiles: &[Tile]) -> Vec<Vec<Corner>> {
+        let input = self.input;
+        let owned: Vec<Owned> = tiles.par_iter().map(|tile| Owned::new(input, tile)).collect();
+        let first = self.starts.len();
+        let mut ranks = Vec::with_capacity(tiles.len());
+        for (tile, owned) in tiles.iter().zip(owned) {
+            self.first_seeds.push(tile.seeds.start);
+            self.starts.push(self.count);
+            self.count = self.count.checked_add(owned.count).expect("vertex ids fit 32 bits");
+            self.shared.push(owned.shared);
+            ranks.push(owned.ranks);
+        }
+        let numbers =
+            tiles.par_iter().zip(&ranks).zip(&self.starts[first..]).map(|((tile, ranks), start)| {
+                // Those of vertices that others own come out wrong here, and right below.
+                let number = |rank: &u32| Corner { vertex: start.wrapping_add(*rank), shift: Shift::NONE };
+                let mut numbers: Vec<Corner> = ranks.iter().map(number).collect();
+                for shared in tile.shared.iter().filter(|shared| ranks[shared.vertex as usize] == NONE) {
+                    let (key, shift) = canonical(input, &shared.key);
+                    let owner = self.first_seeds.partition_point(|first| *first <= key[0].0) - 1;
+                    let rank = self.shared[owner].get(&key);
+                    let rank = rank.expect("exact decisions give every tile the same vertices");
+                    numbers[shared.vertex as usize] = Corner { vertex: self.starts[owner] + rank, shift };
+                }
+                numbers
+            });
+        numbers.collect()
+    }
 }
 
-/// Makes one complex of all tiles; `seeds` and the result's cells are in the order of the input.
-pub(crate) fn weld(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Tessellation {
+/// Adds the positions of a tile's own vertices to those of the tiles before.
+pub(crate) fn push_positions(positions: &mut Vec<DVec3>, tile: &Tile, numbers: &[Corner]) {
+    for (position, number) in tile.positions.iter().zip(numbers) {
+        // Each tile's own vertices come in order.
+        if number.shift == Shift::NONE && number.vertex as usize == positions.len() {
+            positions.push(*position);
+        }
+    }
+}
+
+/// Cuts all cells and makes one complex of them; `seeds` and the result's cells are in the order of the input.
+pub(crate) fn weld(search: &Search, seeds: &[DVec3]) -> Tessellation {
     let domain = search.input().domain;
-    let moved = number_vertices(search.input(), &tiles);
-    let mut vertices = positions(&tiles, &moved);
-    let mut numbers: Vec<Vec<u32>> =
-        moved.into_par_iter().map(|tile| tile.iter().map(|vertex| vertex.vertex).collect()).collect();
-    let are_coincident = tiles.iter().any(|tile| !tile.coincident.is_empty());
-    if are_coincident {
-        let (ids, representatives) = unite_coincident(vertices.len(), &tiles, &numbers);
-        numbers.iter_mut().flatten().for_each(|number| *number = ids[*number as usize]);
-        vertices = representatives.iter().map(|v| vertices[*v as usize]).collect();
+    let mut tessellation = Tessellation::without_faces(domain, seeds, Vec::new());
+    tessellation.make_room();
+    let mut numbering = VertexNumbers::new(search.input());
+    let mut coincident = Vec::new();
+    let mut sums = CellSums::new(seeds.len());
+    for_each_tiles(search, |tiles| {
+        let numbers = numbering.of_tiles(tiles);
+        for (tile, numbers) in tiles.iter().zip(&numbers) {
+            push_tile(&mut tessellation, search, tile, numbers);
+            coincident.extend(tile.coincident.iter().map(|pair| pair.map(|v| numbers[v as usize].vertex)));
+            sums.push_tile(tile);
+        }
+    });
+    if !coincident.is_empty() {
+        unite_coincident(&mut tessellation, &coincident);
+    } else if domain.dimension() == Dimension::Three {
+        tessellation.measures = sums.measures(search, seeds);
     }
-    if are_coincident {
-        let fewest_corners = domain.dimension().fewest_corners();
-        tiles.par_iter_mut().zip(&numbers).for_each(|(tile, numbers)| {
-            tile.drop_repeated_corners(|corner| numbers[corner as usize], fewest_corners);
-        });
-    }
-    let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);
-    if !are_coincident && domain.dimension() == Dimension::Three {
-        tessellation.measures = cell_measures(search, seeds, &tiles);
-    }
-    let (face_count, corner_count) =
-        tiles.iter().map(Tile::counts).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
-    tessellation.face_sides = Vec::with_capacity(face_count);
-    tessellation.face_starts = Vec::with_capacity(face_count + 1);
-    tessellation.face_starts.push(0);
-    tessellation.face_corners = Vec::with_capacity(corner_count);
-    for (tile, numbers) in tiles.drain(..).zip(&numbers) {
-        let before = tessellation.face_corners.len();
-        let corner = |corner: &u32| VertexId(numbers[*corner as usize]);
-        let sides = |sides: &[Generator; 2]| sides.map(|side_of| side(search.end(side_of), Shift::NONE));
-        let starts = tile.corner_starts[1..].par_iter().map(|start| before + *start as usize);
-        tessellation.face_corners.par_extend(tile.corners.par_iter().map(corner));
-        tessellation.face_starts.par_extend(starts);
-        tessellation.face_sides.par_extend(tile.faces.par_iter().map(sides));
-    }
+    tessellation.shrink_to_fit();
     put_vertices_on_walls(&mut tessellation);
     list_faces_of_cells(&mut tessellation);
     if remove_flat_cells(&mut tessellation) {
@@ -134,31 +139,101 @@ pub(crate) fn weld(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Te
     tessellation
 }
 
-/// The measures of all cells, as the tiles summed them, in the order of the input.
-pub(crate) fn cell_measures(search: &Search, seeds: &[DVec3], tiles: &[Tile]) -> KeptMeasures {
-    let mut sums: Vec<CellSum> = Vec::with_capacity(seeds.len());
-    tiles.iter().for_each(|tile| sums.extend(&tile.sums));
-    for (seed, sum) in tiles.iter().flat_map(|tile| &tile.sums_beyond) {
-        sums[*seed as usize].add(sum);
-    }
-    let mut places = vec![0; seeds.len()];
-    for (place, id) in (0u32..).zip(search.ids()) {
-        places[*id as usize] = place;
-    }
-    let measure = |(place, seed): (&u32, &DVec3)| sums[*place as usize].measure(*seed);
-    KeptMeasures(Some(places.par_iter().zip(seeds).map(measure).collect()))
+/// Adds the vertices that a tile owns, and its faces.
+fn push_tile(tessellation: &mut Tessellation, search: &Search, tile: &Tile, numbers: &[Corner]) {
+    let Tessellation { vertices, face_sides, face_starts, face_corners, .. } = tessellation;
+    let before = face_corners.len();
+    let corner = |corner: &u32| VertexId(numbers[*corner as usize].vertex);
+    let sides = |sides: &[Generator; 2]| {
+        sides.map(|generator| match search.ids().get(generator.0 as usize) {
+            Some(id) => Side::Cell(CellId(*id)),
+            None => side(search.end(generator), Shift::NONE),
+        })
+    };
+    rayon::join(
+        || push_positions(vertices, tile, numbers),
+        || {
+            face_corners.par_extend(tile.corners.par_iter().map(corner));
+            face_starts.par_extend(tile.corner_starts[1..].par_iter().map(|start| before + *start as usize));
+            face_sides.par_extend(tile.faces.par_iter().map(sides));
+        },
+    );
 }
 
-/// Unites vertices that are one point. Returns the new number of every old one, and an old one for every new.
-fn unite_coincident(vertex_count: usize, tiles: &[Tile], numbers: &[Vec<u32>]) -> (Vec<u32>, Vec<u32>) {
+/// What the faces of every cell add up to, gathered from tiles.
+pub(crate) struct CellSums {
+    sums: Vec<CellSum>,
+    /// What tiles add to cells of others.
+    beyond: Vec<(u32, CellSum)>,
+}
+
+impl CellSums {
+    pub(crate) fn new(cell_count: usize) -> Self {
+        Self { sums: Vec::with_capacity(cell_count), beyond: Vec::new() }
+    }
+
+    /// Adds the next tile.
+    pub(crate) fn push_tile(&mut self, tile: &Tile) {
+        self.sums.extend_from_slice(&tile.sums);
+        self.beyond.extend_from_slice(&tile.sums_beyond);
+    }
+
+    /// The measures of all cells in the order of the input.
+    pub(crate) fn measures(mut self, search: &Search, seeds: &[DVec3]) -> KeptMeasures {
+        for (seed, sum) in &self.beyond {
+            self.sums[*seed as usize].add(sum);
+        }
+        let mut places = vec![0; seeds.len()];
+        for (place, id) in (0u32..).zip(search.ids()) {
+            places[*id as usize] = place;
+        }
+        let measure = |(place, seed): (&u32, &DVec3)| self.sums[*place as usize].measure(*seed);
+        KeptMeasures(Some(places.par_iter().zip(seeds).map(measure).collect()))
+    }
+}
+
+/// Makes vertices that are one point one vertex, and leaves out edges and faces that shrink to points or lines by that.
+fn unite_coincident(tessellation: &mut Tessellation, pairs: &[[u32; 2]]) {
+    let (ids, representatives) = united_numbers(tessellation.vertices.len(), pairs);
+    tessellation.vertices = representatives.iter().map(|v| tessellation.vertices[*v as usize]).collect();
+    tessellation.face_corners.par_iter_mut().for_each(|corner| corner.0 = ids[corner.index()]);
+    let fewest_corners = tessellation.domain.dimension().fewest_corners();
+    let Tessellation { face_sides, face_starts, face_corners, .. } = tessellation;
+    // What is kept moves to the front.
+    let (mut face, mut start, mut from) = (0, 0, 0);
+    for old in 0..face_sides.len() {
+        let to = face_starts[old + 1];
+        let mut end = start;
+        for place in from..to {
+            if end == start || face_corners[end - 1] != face_corners[place] {
+                face_corners[end] = face_corners[place];
+                end += 1;
+            }
+        }
+        while end > start + 1 && face_corners[end - 1] == face_corners[start] {
+            end -= 1;
+        }
+        if end - start >= fewest_corners {
+            face_sides[face] = face_sides[old];
+            face += 1;
+            face_starts[face] = end;
+            start = end;
+        }
+        from = to;
+    }
+    face_sides.truncate(face);
+    face_starts.truncate(face + 1);
+    face_corners.truncate(start);
+}
+
+/// Unites vertices that are one point, given pairs of them. Returns the new number of every old one, and an old one for every new.
+fn united_numbers(vertex_count: usize, pairs: &[[u32; 2]]) -> (Vec<u32>, Vec<u32>) {
     let count = u32::try_from(vertex_count).expect("vertex ids fit 32 bits");
     let mut parents: Vec<u32> = (0..count).collect();
-    for (tile, numbers) in tiles.iter().zip(numbers) {
-        for [v, w] in &tile.coincident {
-            let (v, w) = (root(&mut parents, numbers[*v as usize]), root(&mut parents, numbers[*w as usize]));
-            // The smaller number stays, so the result does not depend on the order of the pairs.
-            parents[v.max(w) as usize] = v.min(w);
-        }
+    for pair in pairs {
+        let [v, w] = pair.map(|vertex| root(&mut parents, vertex));
+        // The smaller number stays, so the result does not depend on the order of the pairs.
+        parents[v.max(w) as usize] = v.min(w);
     }
     let mut new = vec![0; vertex_count];
     let mut representatives = Vec::new();
@@ -186,14 +261,16 @@ fn root(parents: &mut [u32], mut v: u32) -> u32 {
 /// Rounding may leave a vertex of a wall's face a last place beside the wall: it gets the wall's own coordinate, unless the
 /// wall is oblique.
 pub(crate) fn put_vertices_on_walls(tessellation: &mut Tessellation) {
-    for face in 0..tessellation.face_sides.len() {
-        if let Side::Wall(wall) = tessellation.face_sides[face][1]
-            && let Some((axis, coordinate)) = tessellation.domain.across_axis(wall)
-        {
-            let corners = tessellation.face_starts[face]..tessellation.face_starts[face + 1];
-            for corner in &tessellation.face_corners[corners] {
-                tessellation.vertices[corner.index()][axis] = coordinate;
-            }
+    let domain = &tessellation.domain;
+    let on_wall = |(face, sides): (usize, &[Side; 2])| match sides[1] {
+        Side::Wall(wall) => domain.across_axis(wall).map(|(axis, coordinate)| (face, axis, coordinate)),
+        Side::Cell(_) | Side::Image(..) => None,
+    };
+    let faces: Vec<_> = tessellation.face_sides.par_iter().enumerate().filter_map(on_wall).collect();
+    for (face, axis, coordinate) in faces {
+        let corners = tessellation.face_starts[face]..tessellation.face_starts[face + 1];
+        for corner in &tessellation.face_corners[corners] {
+            tessellation.vertices[corner.index()][axis] = coordinate;
         }
     }
 }
@@ -212,13 +289,17 @@ pub(crate) fn list_faces_of_cells(tessellation: &mut Tessellation) {
         sides.into_iter().filter_map(place)
     };
     let mut starts = vec![0; cell_count + 1];
-    starts[1..].par_chunks_mut(some_cells).enumerate().for_each(|(chunk, counts)| {
-        for sides in face_sides {
-            for place in cells_of(*sides, chunk * some_cells, counts.len()) {
-                counts[place] += 1;
+    if let KeptMeasures(Some(measures)) = &tessellation.measures {
+        starts[1..].iter_mut().zip(measures).for_each(|(count, cell)| *count = cell.face_count);
+    } else {
+        starts[1..].par_chunks_mut(some_cells).enumerate().for_each(|(chunk, counts)| {
+            for sides in face_sides {
+                for place in cells_of(*sides, chunk * some_cells, counts.len()) {
+                    counts[place] += 1;
+                }
             }
-        }
-    });
+        });
+    }
     for cell in 0..cell_count {
         starts[cell + 1] += starts[cell];
     }

@@ -6,10 +6,12 @@
 //! behind the question whether the processor has it, and loads and stores of whole lanes, each within a slice.
 #![allow(unsafe_code)]
 
+use std::ops::Range;
+
 use glam::{DVec3, Vec3};
 
 use crate::generator::Generator;
-use crate::grid::Run;
+use crate::grid::Columns;
 
 /// Numbers that loops take at a time.
 pub(crate) const LANES: usize = 8;
@@ -123,53 +125,79 @@ fn count_beyond_anywhere(columns: PlaneColumns, point: Vec3, slack: f32) -> u32 
     beyond
 }
 
-/// The bisectors of `seed` at `center` with the sites of a run, of which the squares of their distances are more than `from` and at
-/// most `to`, in units of which there are `scale` in a length of 1. They are written to the columns' beginnings, and counted.
+/// How bisectors are scaled.
+#[derive(Debug, Default, Clone, Copy)]
+pub(crate) struct Units {
+    /// Units of offsets in a length of 1.
+    pub(crate) scale: f64,
+    /// A bisector's offset in these, for a normal and a square of the distance between its sites of 1.
+    pub(crate) half_square: f64,
+    /// The first site of which the position is rounded, and the largest factor of the normal of such a one's bisector. What needs a
+    /// larger one is too near to be known, and may be anywhere.
+    pub(crate) first_rounded: u32,
+    pub(crate) largest_unit: f64,
+}
+
+/// A power of two: the factor that gives a vector, of which the squared length is given, a length near 1 (between the roots of
+/// a half and of 2).
+#[inline(always)]
+pub(crate) fn unit(squared: f64) -> f64 {
+    // The exponent's bias is 1023: halving an exponent and changing its sign takes three times as much.
+    f64::from_bits(((3 * 1023 - (squared.to_bits() >> 52)) >> 1) << 52)
+}
+
+/// Which bisectors are wanted: those of a seed somewhere with sites of which the squares of the distances are more than the first of
+/// two and at most the second.
+pub(crate) struct Around {
+    pub(crate) seed: u32,
+    pub(crate) center: DVec3,
+    pub(crate) squares: [f64; 2],
+    pub(crate) units: Units,
+}
+
+/// Writes those bisectors with sites of some runs that are wanted to the beginnings of columns, and counts them.
 ///
 /// # Panics
-/// If columns are not longer than the run by at least [`LANES`].
+/// If columns are not longer than all runs together by at least [`LANES`].
 #[inline]
 pub(crate) fn compact(
-    run: &Run,
-    seed: u32,
-    center: DVec3,
-    squares: [f64; 2],
-    scale: f64,
+    sites: Columns,
+    runs: &[Range<u32>],
+    around: &Around,
     generators: &mut [Generator],
-    columns: [&mut [f32]; 4],
+    planes: [&mut [f32]; 4],
 ) -> usize {
     #[cfg(target_arch = "x86_64")]
     if has_avx512() {
         // SAFETY: the processor has AVX-512.
-        return unsafe { avx512::compact(run, seed, center, squares, scale, generators, columns) };
+        return unsafe { avx512::compact(sites, runs, around, generators, planes) };
     }
-    compact_anywhere(run, seed, center, squares, scale, generators, columns)
+    compact_anywhere(sites, runs, around, generators, planes)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "to be rounded")]
 fn compact_anywhere(
-    run: &Run,
-    seed: u32,
-    center: DVec3,
-    [from, to]: [f64; 2],
-    scale: f64,
+    sites: Columns,
+    runs: &[Range<u32>],
+    &Around { seed, center, squares: [from, to], units }: &Around,
     generators: &mut [Generator],
-    columns: [&mut [f32]; 4],
+    [x, y, z, offsets]: [&mut [f32]; 4],
 ) -> usize {
-    let count = run.sites.len();
-    let (run_x, run_y, run_z) = (&run.x[..count], &run.y[..count], &run.z[..count]);
-    let [x, y, z, offsets] = columns.map(|column| &mut column[..count]);
-    let generators = &mut generators[..count];
-    let half_square = 0.5 * (scale * scale);
     let mut kept = 0;
-    for k in 0..count {
-        let normal = DVec3::new(run_x[k], run_y[k], run_z[k]) - center;
-        let squared = normal.length_squared();
-        // Written in any case, and kept or overwritten by the next: branches would be mispredicted.
-        generators[kept] = Generator(run.sites[k]);
-        (x[kept], y[kept], z[kept]) = (normal * scale).as_vec3().into();
-        offsets[kept] = (squared * half_square) as f32;
-        kept += usize::from((squared > from) & (squared <= to) & (run.sites[k] != seed));
+    for run in runs.iter().map(|run| run.start as usize..run.end as usize) {
+        let columns = sites.x[run.clone()].iter().zip(&sites.y[run.clone()]).zip(&sites.z[run.clone()]);
+        for (((site_x, site_y), site_z), site) in columns.zip(&sites.sites[run]) {
+            let normal = DVec3::new(*site_x, *site_y, *site_z) - center;
+            let squared = normal.length_squared();
+            // Written in any case, and kept or overwritten by the next: branches would be mispredicted.
+            let unit = unit(squared);
+            generators[kept] = Generator(*site);
+            (x[kept], y[kept], z[kept]) = (normal * unit).as_vec3().into();
+            let offset = squared * units.half_square * unit;
+            let is_too_near = (unit > units.largest_unit) & (*site >= units.first_rounded);
+            offsets[kept] = if is_too_near { f32::NEG_INFINITY } else { offset as f32 };
+            kept += usize::from((squared > from) & (squared <= to) & (*site != seed));
+        }
     }
     kept
 }
@@ -177,75 +205,86 @@ fn compact_anywhere(
 #[cfg(target_arch = "x86_64")]
 mod avx512 {
     use std::arch::x86_64::*;
-
-    use glam::DVec3;
+    use std::ops::Range;
 
     use crate::generator::Generator;
-    use crate::grid::Run;
+    use crate::grid::Columns;
+    use crate::wide::Around;
 
     /// Doubles in a register.
     const WIDTH: usize = 8;
 
     #[target_feature(enable = "avx512f,avx512vl,avx512dq")]
     pub(super) fn compact(
-        run: &Run,
-        seed: u32,
-        center: DVec3,
-        [from, to]: [f64; 2],
-        scale: f64,
+        sites: Columns,
+        runs: &[Range<u32>],
+        around: &Around,
         generators: &mut [Generator],
-        [x, y, z, offsets]: [&mut [f32]; 4],
+        planes: [&mut [f32]; 4],
     ) -> usize {
-        let count = run.sites.len();
-        let [center_x, center_y, center_z] = center.to_array().map(|coordinate| _mm512_set1_pd(coordinate));
-        let [from, to] = [from, to].map(|square| _mm512_set1_pd(square));
-        let half_square = _mm512_set1_pd(0.5 * (scale * scale));
-        let scale = _mm512_set1_pd(scale);
-        let seed = _mm256_set1_epi32(seed.cast_signed());
+        let len = sites.sites.len();
+        assert!([sites.x, sites.y, sites.z].iter().all(|column| column.len() == len));
+        let most: usize = runs.iter().map(|run| run.len()).sum();
+        assert!(generators.len() >= most + WIDTH && planes.iter().all(|column| column.len() >= most + WIDTH));
+        let [x, y, z, offsets] = planes.map(<[f32]>::as_mut_ptr);
+        let generators: *mut Generator = generators.as_mut_ptr();
+
+        let [center_x, center_y, center_z] = around.center.to_array().map(|number| _mm512_set1_pd(number));
+        let [from, to] = around.squares.map(|square| _mm512_set1_pd(square));
+        let half_square = _mm512_set1_pd(around.units.half_square);
+        let largest_unit = _mm512_set1_pd(around.units.largest_unit);
+        let first_rounded = _mm256_set1_epi32(around.units.first_rounded.cast_signed());
+        let nowhere = _mm512_set1_pd(f64::NEG_INFINITY);
+        let biases = _mm512_set1_epi64(3 * 1023);
+        let seed = _mm256_set1_epi32(around.seed.cast_signed());
         let mut kept = 0;
-        for first in (0..count).step_by(WIDTH) {
-            let lanes = (count - first).min(WIDTH);
-            let mask = 0xffu8 >> (WIDTH - lanes);
-            let range = first..first + lanes;
-            // SAFETY: only the lanes of the slices are loaded.
-            let (x_1, y_1, z_1, sites) = unsafe {
-                (
-                    _mm512_maskz_loadu_pd(mask, run.x[range.clone()].as_ptr()),
-                    _mm512_maskz_loadu_pd(mask, run.y[range.clone()].as_ptr()),
-                    _mm512_maskz_loadu_pd(mask, run.z[range.clone()].as_ptr()),
-                    _mm256_maskz_loadu_epi32(mask, run.sites[range].as_ptr().cast()),
-                )
-            };
-            let x_1 = _mm512_sub_pd(x_1, center_x);
-            let y_1 = _mm512_sub_pd(y_1, center_y);
-            let z_1 = _mm512_sub_pd(z_1, center_z);
-            let squared = _mm512_add_pd(
-                _mm512_add_pd(_mm512_mul_pd(x_1, x_1), _mm512_mul_pd(y_1, y_1)),
-                _mm512_mul_pd(z_1, z_1),
-            );
-            let keep = _mm512_mask_cmp_pd_mask::<_CMP_GT_OQ>(mask, squared, from)
-                & _mm512_cmp_pd_mask::<_CMP_LE_OQ>(squared, to)
-                & _mm256_cmpneq_epi32_mask(sites, seed);
-            let room = kept..kept + WIDTH;
-            let single = |wide| _mm512_cvtpd_ps(wide);
-            // SAFETY: the slices have the length of what is stored; a generator is a number of 32 bits.
-            unsafe {
-                let store = |column: &mut [f32], lanes| {
-                    _mm256_storeu_ps(
-                        column[room.clone()].as_mut_ptr(),
-                        _mm256_maskz_compress_ps(keep, lanes),
-                    );
+        for run in runs.iter().map(|run| run.start as usize..run.end as usize) {
+            assert!(run.end <= len);
+            for first in run.clone().step_by(WIDTH) {
+                let lanes = (run.end - first).min(WIDTH);
+                let mask = 0xffu8 >> (WIDTH - lanes);
+                // SAFETY: the lanes that are loaded are places of the run, which all columns have.
+                let (x_1, y_1, z_1, numbers) = unsafe {
+                    (
+                        _mm512_maskz_loadu_pd(mask, sites.x.as_ptr().add(first)),
+                        _mm512_maskz_loadu_pd(mask, sites.y.as_ptr().add(first)),
+                        _mm512_maskz_loadu_pd(mask, sites.z.as_ptr().add(first)),
+                        _mm256_maskz_loadu_epi32(mask, sites.sites.as_ptr().add(first).cast()),
+                    )
                 };
-                store(x, single(_mm512_mul_pd(x_1, scale)));
-                store(y, single(_mm512_mul_pd(y_1, scale)));
-                store(z, single(_mm512_mul_pd(z_1, scale)));
-                store(offsets, single(_mm512_mul_pd(squared, half_square)));
-                _mm256_storeu_si256(
-                    generators[room.clone()].as_mut_ptr().cast(),
-                    _mm256_maskz_compress_epi32(keep, sites),
+                let x_1 = _mm512_sub_pd(x_1, center_x);
+                let y_1 = _mm512_sub_pd(y_1, center_y);
+                let z_1 = _mm512_sub_pd(z_1, center_z);
+                let squared = _mm512_add_pd(
+                    _mm512_add_pd(_mm512_mul_pd(x_1, x_1), _mm512_mul_pd(y_1, y_1)),
+                    _mm512_mul_pd(z_1, z_1),
                 );
+                let exponent = _mm512_srli_epi64::<52>(_mm512_castpd_si512(squared));
+                let halved = _mm512_srli_epi64::<1>(_mm512_sub_epi64(biases, exponent));
+                let unit = _mm512_castsi512_pd(_mm512_slli_epi64::<52>(halved));
+                let offset = _mm512_mul_pd(_mm512_mul_pd(squared, half_square), unit);
+                let is_too_near = _mm512_cmp_pd_mask::<_CMP_GT_OQ>(unit, largest_unit)
+                    & _mm256_cmpge_epu32_mask(numbers, first_rounded);
+                let offset = _mm512_mask_mov_pd(offset, is_too_near, nowhere);
+                let keep = _mm512_mask_cmp_pd_mask::<_CMP_GT_OQ>(mask, squared, from)
+                    & _mm512_cmp_pd_mask::<_CMP_LE_OQ>(squared, to)
+                    & _mm256_cmpneq_epi32_mask(numbers, seed);
+                let single = |wide| _mm512_cvtpd_ps(wide);
+                // SAFETY: fewer planes were kept than there are sites before `first` in the runs, and that and the width is at
+                // most the length of all columns; a generator is a number of 32 bits.
+                unsafe {
+                    let store = |column: *mut f32, lanes| {
+                        _mm256_storeu_ps(column.add(kept), _mm256_maskz_compress_ps(keep, lanes));
+                    };
+                    store(x, single(_mm512_mul_pd(x_1, unit)));
+                    store(y, single(_mm512_mul_pd(y_1, unit)));
+                    store(z, single(_mm512_mul_pd(z_1, unit)));
+                    store(offsets, single(offset));
+                    let numbers = _mm256_maskz_compress_epi32(keep, numbers);
+                    _mm256_storeu_si256(generators.add(kept).cast(), numbers);
+                }
+                kept += keep.count_ones() as usize;
             }
-            kept += keep.count_ones() as usize;
         }
         kept
     }
@@ -264,20 +303,25 @@ mod tests {
     fn what_processors_differ_in_gives_the_same_planes() {
         let (x, y, z) = (column(12_345), column(23_456), column(34_567));
         let sites: Vec<u32> = (0..101).collect();
-        let run = Run { sites: &sites, x: &x, y: &y, z: &z };
+        let sites = Columns { sites: &sites, x: &x, y: &y, z: &z };
+        let runs = [0..7, 9..42, 42..50, 50..101];
         let (center, squares) = (DVec3::new(0.1, 0.2, 0.3), [0.01, 0.9]);
+        // From site 30 on those nearer than about a quarter are too near.
+        let units = Units { scale: 2.0, half_square: 1.0, first_rounded: 30, largest_unit: 2.0 };
+        let around = Around { seed: 17, center, squares, units };
         let [mut found, mut plain] =
             [(); 2].map(|()| (vec![Generator(0); 101 + LANES], [const { [0.0f32; 101 + LANES] }; 4]));
         let (generators, columns) = (&mut found.0, found.1.each_mut().map(|column| &mut column[..]));
-        let count = compact(&run, 17, center, squares, 2.0, generators, columns);
+        let count = compact(sites, &runs, &around, generators, columns);
         let (generators, columns) = (&mut plain.0, plain.1.each_mut().map(|column| &mut column[..]));
-        assert_eq!(count, compact_anywhere(&run, 17, center, squares, 2.0, generators, columns));
+        assert_eq!(count, compact_anywhere(sites, &runs, &around, generators, columns));
         let (generators, columns) = (&found.0[..count], found.1.each_ref().map(|column| &column[..count]));
         assert_eq!(generators, &plain.0[..count]);
         assert_eq!(columns, plain.1.each_ref().map(|column| &column[..count]));
+        assert!(columns[3].contains(&f32::NEG_INFINITY));
         let near = |k: usize| {
             let squared = (DVec3::new(x[k], y[k], z[k]) - center).length_squared();
-            k != 17 && squared > squares[0] && squared <= squares[1]
+            k != 17 && k != 7 && k != 8 && squared > squares[0] && squared <= squares[1]
         };
         let expected: Vec<usize> = (0..101).filter(|k| near(*k)).collect();
         assert!(generators.iter().map(|generator| generator.0 as usize).eq(expected.iter().copied()));

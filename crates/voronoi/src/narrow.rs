@@ -1,0 +1,183 @@
+//! Exact decisions in integers of fixed width, as most need no more: a tenth of the time that integers of any length take.
+
+use std::cmp::Ordering;
+
+use ethnum::I256;
+
+use crate::generator::{Generator, Plane};
+use crate::predicate::{Decision, ExactInput, ExactPlane, break_tie, decompose};
+
+/// Bits of a normal's coordinates. The products of two normals then take 121, those of three 183, and twice an offset takes 124;
+/// the product of the last two would take 309 bits, but is made in halves.
+const NORMAL_BITS: u32 = 60;
+
+/// Bits of weights, which add to twice an offset.
+const WEIGHT_BITS: u32 = 122;
+
+/// Bits of coordinates and periods, of which differences are taken.
+const COORDINATE_BITS: u32 = 120;
+
+type NarrowPlane = ExactPlane<i64, i128>;
+
+/// The planes of generators as a seed sees them, in units of two to an exponent; none where they are too long, or those of a
+/// polyhedron.
+pub(crate) fn planes<const N: usize>(
+    input: ExactInput,
+    seed: u32,
+    generators: [Generator; N],
+    exponent: i32,
+) -> Option<[NarrowPlane; N]> {
+    let planes = generators.map(|generator| plane(input, seed, generator, exponent));
+    planes.iter().all(Option::is_some).then(|| planes.map(|plane| plane.expect("all are")))
+}
+
+fn plane(input: ExactInput, seed: u32, generator: Generator, exponent: i32) -> Option<NarrowPlane> {
+    let own = input.seeds[seed as usize];
+    let integer = |number: f64| integer(number, exponent, COORDINATE_BITS);
+    let period =
+        |axis: usize| Some(integer(input.domain.upper()[axis])? - integer(input.domain.lower()[axis])?);
+    match generator.plane() {
+        Plane::Site(site) => {
+            let image = input.image(site);
+            let other = input.seeds[image.seed as usize];
+            let mut normal = [0; 3];
+            for (axis, coordinate) in normal.iter_mut().enumerate() {
+                let difference = integer(other[axis])? - integer(own[axis])?;
+                let moved = match image.shift.0[axis] {
+                    0 => difference,
+                    shift => difference + period(axis)? * i128::from(shift),
+                };
+                *coordinate = i64::try_from(moved).ok().filter(|n| n.unsigned_abs() < 1 << NORMAL_BITS)?;
+            }
+            let weight = |site: u32| self::integer(input.weight(site), 2 * exponent, WEIGHT_BITS);
+            let squared: i128 = normal.iter().map(|n| i128::from(*n) * i128::from(*n)).sum();
+            let doubled_offset = squared + weight(seed)? - weight(site)?;
+            Some(ExactPlane { normal, doubled_offset, generator })
+        }
+        Plane::Facet(_) => None,
+        Plane::Side(side) => {
+            let axis = side.axis();
+            let direction = if side.is_upper() { 1 } else { -1 };
+            let mut normal = [0; 3];
+            normal[axis] = direction;
+            let doubled_offset = if input.domain.periodic().test(axis) {
+                period(axis)?
+            } else {
+                let distance = integer(input.domain.side_coordinate(side))? - integer(own[axis])?;
+                2 * distance * i128::from(direction)
+            };
+            Some(ExactPlane { normal, doubled_offset, generator })
+        }
+    }
+}
+
+/// As [`ExactInput::decide`], for the three planes of a vertex and the one that may cut it off.
+pub(crate) fn decide(planes: &[NarrowPlane; 4]) -> Decision {
+    let [a, b, c, m] = planes.each_ref().map(|plane| &plane.normal);
+    let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
+    // Of D_a, D_b, D_c and D_m.
+    let coefficients = [dot(m, &bc), dot(m, &ca), dot(m, &ab), -dot(a, &bc)];
+    debug_assert!(coefficients[3] < I256::ZERO, "the planes of a vertex are in positive orientation");
+    // Offsets are 2^64 times one number plus another.
+    let (mut high, mut low) = (I256::ZERO, I256::ZERO);
+    for (coefficient, plane) in coefficients.iter().zip(planes) {
+        high += coefficient * I256::from(plane.doubled_offset >> 64);
+        low += coefficient * I256::from(plane.doubled_offset & i128::from(u64::MAX));
+    }
+    let value = high + (low >> 64u32);
+    let rest = low & I256::from(u64::MAX);
+    match sign(value).then(sign(rest)) {
+        Ordering::Equal => {
+            let of_sites =
+                coefficients.iter().zip(planes).filter(|(_, plane)| plane.generator.as_site().is_some());
+            let own = of_sites.fold(I256::ZERO, |sum, (coefficient, _)| sum + coefficient);
+            Decision { beyond: break_tie(planes, coefficients.map(sign), sign(own)), tie: true }
+        }
+        sign => Decision { beyond: sign.is_gt(), tie: false },
+    }
+}
+
+/// As [`ExactInput::is_positive`].
+pub(crate) fn is_positive(planes: &[NarrowPlane; 3]) -> bool {
+    let [a, b, c] = planes.each_ref().map(|plane| &plane.normal);
+    dot(a, &cross(b, c)) > I256::ZERO
+}
+
+fn sign(number: I256) -> Ordering {
+    number.cmp(&I256::ZERO)
+}
+
+fn cross(a: &[i64; 3], b: &[i64; 3]) -> [i128; 3] {
+    let minor =
+        |i: usize, j: usize| i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i]);
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
+}
+
+fn dot(a: &[i64; 3], b: &[i128; 3]) -> I256 {
+    let product = |axis: usize| I256::from(a[axis]) * I256::from(b[axis]);
+    product(0) + product(1) + product(2)
+}
+
+/// A number in units of two to an exponent, if it has at most some bits.
+fn integer(number: f64, exponent: i32, bits: u32) -> Option<i128> {
+    let (mantissa, own_exponent) = decompose(number);
+    if mantissa == 0 {
+        return Some(0);
+    }
+    let shift = (own_exponent - exponent).unsigned_abs();
+    // A mantissa has 53 bits.
+    (shift <= bits - 53).then(|| i128::from(mantissa) << shift)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{BVec3, DVec3};
+
+    use super::*;
+    use crate::images::ImageTable;
+    use crate::{Domain, Wall};
+
+    /// Decisions among seeds on a coarse grid, of which many are tied, and near it.
+    #[test]
+    fn decisions_are_those_of_integers_of_any_length() {
+        let mut state = 1u64;
+        let mut next = move |count: u32| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            u32::try_from((state >> 33) % u64::from(count)).expect("below 2^31")
+        };
+        let (mut tied, mut decided) = (0, 0);
+        for round in 0..3000 {
+            let domain = Domain::unit_cube().with_periods(BVec3::new(round % 2 == 0, false, false));
+            let mut coordinate = || (f64::from(next(6)) + 0.5) / 6.0 + if next(9) == 0 { 1e-16 } else { 0.0 };
+            let seeds: Vec<DVec3> =
+                (0..5).map(|_| DVec3::new(coordinate(), coordinate(), coordinate())).collect();
+            let weights: Vec<f64> = (0..5).map(|_| f64::from(next(3)) * 0.01).collect();
+            let images = ImageTable::default().widened(&domain, &seeds, DVec3::ONE);
+            let input = ExactInput {
+                domain: &domain,
+                seeds: &seeds,
+                weights: (round % 3 == 0).then_some(&weights[..]),
+                images: &images,
+            };
+            let sites = input.site_count();
+            let mut generator = || match next(5) {
+                0 => Generator::side(Wall::ALL[2 + next(4) as usize]),
+                _ => Generator::site(1 + next(sites - 1)),
+            };
+            let generators = [generator(), generator(), generator(), generator()];
+            let [a, b, c, _] = generators;
+            let exponent = input.common_exponent(0, &generators);
+            let planes = planes(input, 0, generators, exponent).expect("few bits");
+            let [x, y, z, _] = planes.each_ref().map(|plane| plane.normal);
+            if dot(&x, &cross(&y, &z)) <= I256::ZERO {
+                continue;
+            }
+            let decision = decide(&planes);
+            assert_eq!(decision, input.decide_at_length(0, generators, exponent), "{seeds:?} {generators:?}");
+            assert!(input.is_positive(0, [a, b, c]));
+            tied += usize::from(decision.tie);
+            decided += 1;
+        }
+        assert!(tied > 100 && decided - tied > 100, "{tied} of {decided}");
+    }
+}
