@@ -126,7 +126,7 @@ fn seeds_nearer_than_numbers_can_square() {
 #[test]
 fn clusters_and_extreme_boxes() {
     for size in [1e-2, 1e-6] {
-        let cluster: Vec<DVec3> = random_seeds(500, 4).iter().map(|seed| 0.4 + *seed * size).collect();
+        let cluster: Vec<DVec3> = random_seeds(10_000, 4).iter().map(|seed| 0.4 + *seed * size).collect();
         assert_complex(&tessellate(&cluster));
     }
     for size in
