@@ -81,7 +81,7 @@ pub struct Polycrystal {
     pub relaxed: Relaxed,
     /// How far the cells were regularised.
     pub regularization: Regularization,
-    /// What regularisation took out.
+    /// What regularisation took out, or in equilibrium was drawn together.
     pub collapsed: Collapsed,
     /// How relaxation to equilibrium changed the topology and how near it came; nothing where it kept the topology.
     pub equilibrium: Option<(Reconnections, Balance)>,
@@ -329,11 +329,11 @@ fn smooth_regularized(
         };
         // Cells that may change their neighbours are not regularised: one try tells all.
         if let Regularization::Foreseeing = regularization
-            && let Some((balanced, relaxed, report)) = balanced(config, tessellation, &mut watch)
+            && let Some((balanced, relaxed, merged, report)) = balanced(config, tessellation, &mut watch)
         {
             network = balanced;
             equilibrium = Some(report);
-            collapsed = Collapsed::default();
+            collapsed = merged;
             return Ok(relaxed);
         }
         relax_watched(&network, &flat, &config.relaxation, config.volumes, watch)
@@ -356,16 +356,16 @@ fn balanced(
     config: &Config,
     tessellation: &Tessellation,
     watch: &mut impl FnMut(RelaxationStep<'_>),
-) -> Option<(Network, Relaxed, (Reconnections, Balance))> {
+) -> Option<(Network, Relaxed, Collapsed, (Reconnections, Balance))> {
     if !config.lets_topology_change() {
         return None;
     }
     let Config { junctions, levels, .. } = *config;
     let tension = |boundary: &Boundary| config.tension(boundary);
     let recipe = NetworkRecipe { junctions, levels: levels as usize, tension: &tension };
-    let Equilibrium { network, relaxed, reconnections, balance } =
+    let Equilibrium { network, relaxed, reconnections, merged, balance } =
         equilibrate(tessellation, &recipe, watch).ok()?;
-    Some((network, relaxed, (reconnections, balance)))
+    Some((network, relaxed, merged, (reconnections, balance)))
 }
 
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.

@@ -14,6 +14,7 @@ mod equilibrium;
 mod face_corners;
 mod flow;
 mod local_area;
+mod merged_lines;
 mod multigrid;
 mod patch;
 mod patches;

@@ -1,11 +1,13 @@
 //! Relaxation to equilibrium, with the changes of topology that it takes.
 
 use glam::DVec3;
-use voronoi::{CellComplex, Tessellation};
+use voronoi::{CellComplex, Collapsed, Tessellation};
 
 use super::flow::{Flow, RIGID_LENGTH, Remedy};
+use super::local_area::Conditions;
+use super::merged_lines::MergedLines;
 use super::reconnection::{Reconnections, Reconnector, lengths};
-use super::shape::ControlPoints;
+use super::shape::{ControlPoints, Shape};
 use super::{Relaxation, RelaxationStep, Relaxed, relax_levels};
 use crate::{
     Boundary, FaceMesh, Junctions, Network, NetworkError, SpaceMeasures, Volumes, dihedral_angles,
@@ -31,6 +33,9 @@ const QUIET_LOOKS: usize = 5;
 /// ... when the area also changes by less than this share of it from one to the next.
 const QUIET_CHANGE: f64 = 2e-5;
 
+/// Length, in units of the mean grain size, below which lines that are left are drawn together.
+const MERGED: f64 = 0.12;
+
 /// How a network is made of cells.
 #[derive(Clone, Copy)]
 pub struct NetworkRecipe<'a> {
@@ -51,6 +56,8 @@ pub struct Equilibrium {
     pub relaxed: Relaxed,
     /// What changed the topology.
     pub reconnections: Reconnections,
+    /// Short triple lines, and boundaries with them, that were drawn together into points of higher order.
+    pub merged: Collapsed,
     /// How near to equilibrium it is.
     pub balance: Balance,
 }
@@ -107,28 +114,29 @@ fn balanced(
 ) -> Result<Equilibrium, NetworkError> {
     let mut complex = CellComplex::from(tessellation);
     let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
-    let (control_points, points, reconnections) = settle(&mut complex, recipe, &volumes, remedy)?;
-    let middles = control_points.middles(&points);
-    let (network, points) =
-        Network::of_curved_lines(&control_points.cells, middles, recipe.junctions, recipe.levels)?;
-    let network = network.with_cell_volumes(volumes).with_tensions(recipe.tension)?;
-    let mut relax =
-        |rigid| relax_levels(&network, &points, &Relaxation::Equilibrium, Volumes::Kept, rigid, watch);
-    // What folds where all may deform need not where the shortest edges keep their lengths.
-    let relaxed = relax(0.0).or_else(|_| relax(RIGID_LENGTH))?;
-    let points = relaxed.finest_points(&network);
-    validate(&network, &points).map_err(NetworkError::Invalid)?;
-    let balance = balance(&network, &points);
-    Ok(Equilibrium { network, relaxed, reconnections, balance })
+    let (shape, reconnections) = settle(&mut complex, recipe, &volumes, remedy)?;
+    let mut smooth = |merged_length: f64, rigid_length: f64| {
+        let MergedLines { cells, middles, collapsed } = MergedLines::new(&complex, &shape, merged_length);
+        let (network, points) = Network::of_curved_lines(&cells, &middles, recipe.junctions, recipe.levels)?;
+        let network = network.with_cell_volumes(volumes.clone()).with_tensions(recipe.tension)?;
+        let relaxation = Relaxation::Equilibrium;
+        let relaxed = relax_levels(&network, &points, &relaxation, Volumes::Kept, rigid_length, watch)?;
+        let points = relaxed.finest_points(&network);
+        validate(&network, &points).map_err(NetworkError::Invalid)?;
+        let balance = balance(&network, &points);
+        Ok(Equilibrium { network, relaxed, reconnections, merged: collapsed, balance })
+    };
+    // What folds where all may deform need not where the shortest edges keep their lengths, or where all lines are left.
+    smooth(MERGED, 0.0).or_else(|_: NetworkError| smooth(MERGED, RIGID_LENGTH)).or_else(|_| smooth(0.0, 0.0))
 }
 
-/// Lets the control points flow and the topology change until both are at rest.
+/// Lets the control points flow and the topology change until both are at rest; the complex is then as they are.
 fn settle(
     complex: &mut CellComplex,
     recipe: &NetworkRecipe<'_>,
     volumes: &[f64],
     remedy: Remedy,
-) -> Result<(ControlPoints, Vec<DVec3>, Reconnections), NetworkError> {
+) -> Result<(Shape, Reconnections), NetworkError> {
     // All of a wall has the same area unless it folds, so that tension does nothing but unfold it.
     let tension =
         |boundary: &Boundary| (recipe.tension)(boundary) + if boundary.wall.is_some() { 1.0 } else { 0.0 };
@@ -139,9 +147,10 @@ fn settle(
     };
     let mut control_points = ControlPoints::new(complex);
     let (mut network, mut points) = network_of(&control_points)?;
-    let mut reconnector = Reconnector::new(recipe.tension, SHORT * network.feature_size());
+    let mut reconnector = Reconnector::new(SHORT * network.feature_size());
     let step_time = STEP_TIME * network.mean_grain_size().powi(2);
     let mut all = Reconnections::default();
+    let mut shape = Shape::default();
     let (mut quiet, mut last_energy) = (0, f64::INFINITY);
     for _ in 0..LOOKS {
         let before = lengths(complex);
@@ -151,8 +160,10 @@ fn settle(
             energy = flow.step(&mut points, step_time)?;
         }
         control_points.place_vertices(complex, &points);
-        let shape = control_points.shape(complex, &points);
-        let events = reconnector.pass(complex, &shape, &before);
+        shape = control_points.shape(complex, &points);
+        let conditions =
+            Conditions { shape: &shape, tension: recipe.tension, volumes, pressures: flow.pressures() };
+        let events = reconnector.pass(complex, &conditions, &before);
         all.add(events);
         if events.count() > 0 {
             control_points = ControlPoints::new(complex);
@@ -167,7 +178,7 @@ fn settle(
         last_energy = energy;
         points = control_points.points(complex, &network, &shape);
     }
-    Ok((control_points, points, all))
+    Ok((shape, all))
 }
 
 /// How near to equilibrium a network in space is.

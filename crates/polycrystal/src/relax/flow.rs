@@ -108,6 +108,8 @@ pub(super) struct Flow<'a> {
     remedy: Remedy,
     /// [`RIGID_LENGTH`] or another one.
     rigid_length: f64,
+    /// The pressure of each grain in the last step.
+    pressures: Vec<f64>,
 }
 
 impl<'a> Flow<'a> {
@@ -129,6 +131,7 @@ impl<'a> Flow<'a> {
             volumes,
             remedy: Remedy::Join,
             rigid_length: RIGID_LENGTH,
+            pressures: Vec::new(),
         }
     }
 
@@ -160,7 +163,8 @@ impl<'a> Flow<'a> {
             self.iron_folds(&mut points, &finest);
         }
         let mut last_energy = f64::INFINITY;
-        let mut best = (f64::INFINITY, 0, Vec::new());
+        // A step without folds comes before all with some.
+        let mut best = ((true, f64::INFINITY), 0, Vec::new());
         for step in 1..=stage.steps {
             let energy = self.step(&mut points, stage.step_time)?;
             progress(step, &points);
@@ -168,8 +172,9 @@ impl<'a> Flow<'a> {
                 && stage.is_last
                 && let Some(spread) = self.spread(&points)
             {
-                if spread < best.0 {
-                    best = (spread, step, points.clone());
+                let badness = (!self.finest_folds(&points, &finest).is_empty(), spread);
+                if badness < best.0 {
+                    best = (badness, step, points.clone());
                 } else if step - best.1 >= PATIENCE {
                     break;
                 }
@@ -225,7 +230,8 @@ impl<'a> Flow<'a> {
         let missing = self.missing(&volumes);
         let mut clusters = self.clusters.clone();
         clusters.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
-        let mut moves = self.system(points, &terms, &clusters, time).displacement(&missing);
+        let (mut moves, pressures) = self.system(points, &terms, &clusters, time).displacement(&missing);
+        self.pressures = pressures.iter().map(|pressure| pressure / time).collect();
         let within = tangential_moves(self.network, self.level, points, self.remedy.aim());
         moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
         if self.remedy == Remedy::Brake {
@@ -260,6 +266,11 @@ impl<'a> Flow<'a> {
             }
             Remedy::Brake => Ok(energy),
         }
+    }
+
+    /// The pressure of each grain in the last step, up to one that is the same for all.
+    pub(super) fn pressures(&self) -> &[f64] {
+        &self.pressures
     }
 
     /// The standard deviation of the angles at triple lines; nothing where there are none, and in the plane.

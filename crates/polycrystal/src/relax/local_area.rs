@@ -1,12 +1,14 @@
 //! The least area of the boundaries around some vertices, all else fixed.
 //!
 //! It tells which of two topologies a place is to have, without a flow: a boundary is a fan of triangles round the mean of its
-//! corners, so few points are left to move.
+//! corners, so few points are left to move. A cell that changes its volume v by the way has it back from elsewhere, which costs
+//! its pressure times v; without that small cells would collapse.
 
 use glam::DVec3;
-use voronoi::{CellComplex, FaceId, Side};
+use voronoi::{CellComplex, CellId, FaceId, Side};
 
 use super::shape::Shape;
+use crate::volume::triangle_volume;
 use crate::{Boundary, Freedom, GrainId};
 
 /// Steps of descent.
@@ -21,8 +23,24 @@ const FIRST_STEP: f64 = 0.01;
 /// Most that a step is longer than the one before.
 const LARGEST_GROWTH: f64 = 10.0;
 
+/// How much the pressure of a cell of volume V rises where it loses v, in units of `v V^(-4/3)`. That of a ball alone rises by 1.1;
+/// less than that would let small cells run away, and far more would hold up what the cells around give way to.
+const STIFFNESS: f64 = 3.0;
+
 /// A number that is small beside one.
 const SMALL: f64 = 1e-9;
+
+/// What the area around a place depends on, beside the complex.
+#[derive(Clone, Copy)]
+pub(super) struct Conditions<'a> {
+    pub(super) shape: &'a Shape,
+    /// Of each boundary, per area.
+    pub(super) tension: &'a dyn Fn(&Boundary) -> f64,
+    /// The volumes of all cells.
+    pub(super) volumes: &'a [f64],
+    /// Their pressures: the area that each volume costs elsewhere.
+    pub(super) pressures: &'a [f64],
+}
 
 /// Boundaries around vertices that move.
 pub(super) struct LocalArea {
@@ -30,6 +48,20 @@ pub(super) struct LocalArea {
     freedoms: Vec<Freedom>,
     points: Vec<DVec3>,
     faces: Vec<Polygon>,
+    cells: Vec<Cell>,
+}
+
+/// A cell around.
+#[derive(Clone, Copy)]
+struct Cell {
+    id: CellId,
+    /// The volume between its faces here and the origin, as it is to be.
+    volume: f64,
+    /// The volume of all of it.
+    whole: f64,
+    /// A change of volume by v costs `-pressure v + stiffness v^2 / 2`.
+    pressure: f64,
+    stiffness: f64,
 }
 
 struct Polygon {
@@ -37,6 +69,18 @@ struct Polygon {
     /// From the mean of the corners to the centre.
     bulge: DVec3,
     tension: f64,
+    beside: Vec<Beside>,
+}
+
+/// A cell on one side of a face.
+#[derive(Clone, Copy)]
+struct Beside {
+    /// Its place among the cells.
+    cell: usize,
+    /// How far the face is off where the cell has it.
+    offset: DVec3,
+    /// 1 where the cell sees the face's corners in their order, -1 where in reverse.
+    sign: f64,
 }
 
 /// Where a corner is.
@@ -52,10 +96,18 @@ impl LocalArea {
     pub(super) fn new(
         complex: &CellComplex,
         vertices: &[u32],
-        shape: &Shape,
-        tension: &dyn Fn(&Boundary) -> f64,
+        Conditions { shape, tension, volumes, pressures }: &Conditions<'_>,
     ) -> Self {
         let domain = complex.domain();
+        let mut cells: Vec<Cell> = Vec::new();
+        let mut number = |id: CellId| {
+            cells.iter().position(|cell| cell.id == id).unwrap_or_else(|| {
+                let whole = volumes[id.index()];
+                let stiffness = STIFFNESS / whole.powf(4.0 / 3.0);
+                cells.push(Cell { id, volume: 0.0, whole, pressure: pressures[id.index()], stiffness });
+                cells.len() - 1
+            })
+        };
         let freedom = |vertex: &u32| {
             let normals = complex.walls_at(*vertex).into_iter().map(|wall| domain.outward_normal(wall));
             normals.map(Freedom::InPlane).fold(Freedom::Everywhere, Freedom::and)
@@ -71,14 +123,56 @@ impl LocalArea {
             // All of a wall has the same area unless it folds, so that this does nothing but unfold it.
             let of_wall = if boundary.wall.is_some() { 1.0 } else { 0.0 };
             let tension = tension(&boundary) + of_wall;
-            Polygon { corners: corners.collect(), bulge: shape.bulge(face), tension }
+            let sides = complex.sides(face).into_iter().zip([1.0, -1.0]);
+            let beside = sides.filter_map(|(side, sign)| match side {
+                Side::Cell(cell) => Some(Beside { cell: number(cell), offset: DVec3::ZERO, sign }),
+                Side::Image(cell, shift) => {
+                    Some(Beside { cell: number(cell), offset: shift.vector(domain), sign })
+                }
+                Side::Wall(_) => None,
+            });
+            Polygon {
+                beside: beside.collect(),
+                corners: corners.collect(),
+                bulge: shape.bulge(face),
+                tension,
+            }
         };
-        Self {
+        let faces = complex.faces_at(vertices).into_iter().map(polygon).collect();
+        let mut area = Self {
             freedoms: vertices.iter().map(freedom).collect(),
             points: vertices.iter().map(|vertex| complex.vertices[*vertex as usize]).collect(),
-            faces: complex.faces_at(vertices).into_iter().map(polygon).collect(),
+            faces,
             vertices: vertices.to_vec(),
+            cells,
+        };
+        let volumes = area.volumes(&area.points);
+        area.cells.iter_mut().zip(volumes).for_each(|(cell, volume)| cell.volume = volume);
+        area
+    }
+
+    /// The area whose cells are to have the volumes that they have in another one, around the same place.
+    pub(super) fn with_volumes_of(mut self, other: &Self) -> Self {
+        for cell in &mut self.cells {
+            if let Some(same) = other.cells.iter().find(|same| same.id == cell.id) {
+                cell.volume = same.volume;
+            }
         }
+        self
+    }
+
+    /// The volumes between the faces of each cell and the origin.
+    fn volumes(&self, points: &[DVec3]) -> Vec<f64> {
+        let mut volumes = vec![0.0; self.cells.len()];
+        for face in &self.faces {
+            for Beside { cell, offset, sign } in &face.beside {
+                let ring: Vec<DVec3> = face.ring(points).iter().map(|corner| *corner - *offset).collect();
+                let center = face.center(&ring);
+                let ends = ring.iter().zip(ring.iter().cycle().skip(1));
+                volumes[*cell] += ends.map(|(a, b)| sign * triangle_volume([center, *a, *b])).sum::<f64>();
+            }
+        }
+        volumes
     }
 
     /// Moves the vertices down to the least area near by, and gives that.
@@ -106,6 +200,12 @@ impl LocalArea {
             (self.points, area, slope) = (moved, moved_area, moved_slope);
         }
         area
+    }
+
+    /// The largest change of a cell's volume, as a share of it.
+    pub(super) fn largest_volume_change(&self) -> f64 {
+        let cells = self.cells.iter().zip(self.volumes(&self.points));
+        cells.map(|(cell, volume)| (volume - cell.volume).abs() / cell.whole).fold(0.0, f64::max)
     }
 
     /// The length of the shortest edge that ends at one of the vertices: others stay as they are.
@@ -147,9 +247,15 @@ impl LocalArea {
         }
     }
 
-    /// The area weighted by tension, and how it changes with the points.
+    /// The area weighted by tension together with what cells resist, and how it changes with the points.
     fn area(&self, points: &[DVec3]) -> (f64, Vec<DVec3>) {
         let mut area = 0.0;
+        let mut pulls = Vec::with_capacity(self.cells.len());
+        for (cell, volume) in self.cells.iter().zip(self.volumes(points)) {
+            let excess = volume - cell.volume;
+            area += (0.5 * cell.stiffness * excess - cell.pressure) * excess;
+            pulls.push(cell.stiffness * excess - cell.pressure);
+        }
         let mut slope = vec![DVec3::ZERO; points.len()];
         for face in &self.faces {
             let ring = face.ring(points);
@@ -162,10 +268,17 @@ impl LocalArea {
                 let length = normal.length();
                 area += 0.5 * face.tension * length;
                 let unit = normal * (0.5 * face.tension / length.max(f64::MIN_POSITIVE));
-                of_center += unit.cross(b - *a);
-                for (corner, across) in [(k, center - b), (next, *a - center)] {
+                let mut slopes = [(b - *a), center - b, *a - center].map(|across| unit.cross(across));
+                for Beside { cell, offset, sign } in &face.beside {
+                    let [center, a, b] = [center, *a, b].map(|point| point - *offset);
+                    let sweep = [a.cross(b), b.cross(center), center.cross(a)];
+                    let factor = sign * pulls[*cell] / 6.0;
+                    slopes.iter_mut().zip(sweep).for_each(|(slope, sweep)| *slope += sweep * factor);
+                }
+                of_center += slopes[0];
+                for (corner, of_corner) in [(k, slopes[1]), (next, slopes[2])] {
                     if let Place::Moving(moving, _) = face.corners[corner] {
-                        slope[moving] += unit.cross(across);
+                        slope[moving] += of_corner;
                     }
                 }
             }
@@ -226,13 +339,69 @@ mod tests {
         .map(|(x, y, z)| DVec3::new(x, y, z));
         let cells = Tessellation::new(&Domain::unit_cube(), &seeds).expect("valid seeds");
         let complex = CellComplex::from(&cells);
+        let volumes: Vec<f64> = cells.cell_measures().iter().map(|cell| cell.volume).collect();
+        let pressures = vec![0.0; volumes.len()];
+        let shape = Shape::default();
+        let conditions =
+            Conditions { shape: &shape, tension: &|_| 1.0, volumes: &volumes, pressures: &pressures };
         let edges = complex.edges();
         for vertex in 0..u32::try_from(complex.vertices.len()).expect("few vertices") {
-            let area = LocalArea::new(&complex, &[vertex], &Shape::default(), &|_| 1.0);
+            let area = LocalArea::new(&complex, &[vertex], &conditions);
             let own = edges.iter().filter(|edge| edge.start == vertex || edge.end.vertex == vertex);
             let lengths =
                 own.map(|edge| complex.vertices[edge.start as usize].distance(complex.position(edge.end)));
             assert_eq!(area.shortest_edge(), lengths.fold(f64::INFINITY, f64::min));
         }
+    }
+
+    /// Four cells of a periodic cube, most of which are their own neighbours; some vertices are a little off.
+    fn check_moved(check: impl Fn(&LocalArea, &[DVec3])) {
+        let seeds = [(0.2, 0.3, 0.1), (0.7, 0.2, 0.4), (0.4, 0.8, 0.3), (0.9, 0.9, 0.8)]
+            .map(|(x, y, z)| DVec3::new(x, y, z));
+        let domain = Domain::unit_cube().with_periods(glam::BVec3::TRUE);
+        let cells = Tessellation::new(&domain, &seeds).expect("valid seeds");
+        let complex = CellComplex::from(&cells);
+        let volumes: Vec<f64> = cells.cell_measures().iter().map(|cell| cell.volume).collect();
+        let shape = Shape::default();
+        let pressures = [0.5, -1.0, 2.0, 0.7];
+        let conditions =
+            Conditions { shape: &shape, tension: &|_| 1.0, volumes: &volumes, pressures: &pressures };
+        for edge in complex.edges() {
+            let area = LocalArea::new(&complex, &[edge.start, edge.end.vertex], &conditions);
+            let moved: Vec<DVec3> =
+                area.points.iter().map(|point| *point + 0.02 * DVec3::new(point.z, -0.6, point.x)).collect();
+            check(&area, &moved);
+        }
+    }
+
+    #[test]
+    fn what_one_cell_loses_others_gain() {
+        check_moved(|area, moved| {
+            let volumes = area.volumes(moved);
+            let gains = || area.cells.iter().zip(&volumes).map(|(cell, volume)| volume - cell.volume);
+            assert!(gains().sum::<f64>().abs() < 1e-15);
+            assert!(gains().map(f64::abs).fold(0.0, f64::max) > 1e-4);
+        });
+    }
+
+    #[test]
+    fn slopes_are_those_of_the_area() {
+        const STEP: f64 = 1e-6;
+        check_moved(|area, moved| {
+            let (_, slope) = area.area(moved);
+            for (point, axis) in (0..moved.len()).flat_map(|point| DVec3::AXES.map(|axis| (point, axis))) {
+                let at = |step: f64| {
+                    let mut moved = moved.to_vec();
+                    moved[point] += axis * step;
+                    area.area(&moved).0
+                };
+                let difference = (at(STEP) - at(-STEP)) / (2.0 * STEP);
+                assert!(
+                    (slope[point].dot(axis) - difference).abs() < 1e-6,
+                    "{} {difference}",
+                    slope[point].dot(axis)
+                );
+            }
+        });
     }
 }

@@ -5,9 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use voronoi::{CellComplex, ComplexEdge, Corner, FaceId, Shift, Side};
 
-use super::local_area::LocalArea;
-use super::shape::Shape;
-use crate::Boundary;
+use super::local_area::{Conditions, LocalArea};
 
 /// Share of the length of what goes by which what comes starts off its middle.
 const OPENING: f64 = 0.3;
@@ -18,17 +16,17 @@ const LEAST_GOING: f64 = 0.5;
 /// Turns among walls that are not at right angles; each takes a point nearer to all of them.
 const WALL_TURNS: usize = 50;
 
-/// Length, in units of a short line, below which lines that shrink go even if that does not lessen the area at once.
-const TOO_SHORT: f64 = 0.5;
-
-/// Length, in the same unit, below which lines that stay are put where they have the least area: too short for a step of the flow.
+/// Length, in units of a short line, below which lines that stay are put where they have the least area: too short for a step of the flow.
 const TINY: f64 = 0.3;
 
 /// Length, in the same unit, that an event must leave to all lines.
 const LEAST: f64 = 0.1;
 
+/// Share of a cell's volume by which nothing here may change it: what is lost at once, no step of the flow brings back.
+const LARGEST_CHANGE: f64 = 0.2;
+
 /// How often lines between the same grains may go without lessening the area: what comes back is to stay.
-const MOST_TRIES: u8 = 3;
+const MOST_TRIES: u8 = 8;
 
 /// How often grains came together and parted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -72,38 +70,37 @@ enum Demand {
 }
 
 /// Looks for events.
-pub(super) struct Reconnector<'a> {
-    tension: &'a dyn Fn(&Boundary) -> f64,
+pub(super) struct Reconnector {
     /// Length below which lines are short.
     short: f64,
     /// Of lines, by all sides that touch them, how often they went without lessening the area.
     tries: HashMap<Vec<Side>, u8>,
 }
 
-impl<'a> Reconnector<'a> {
-    pub(super) fn new(tension: &'a dyn Fn(&Boundary) -> f64, short: f64) -> Self {
-        Self { tension, short, tries: HashMap::new() }
+impl Reconnector {
+    pub(super) fn new(short: f64) -> Self {
+        Self { short, tries: HashMap::new() }
     }
 
     /// Lets all events happen that are due where lines are short; `before` has the lengths of lines a while ago.
     pub(super) fn pass(
         &mut self,
         complex: &mut CellComplex,
-        shape: &Shape,
+        conditions: &Conditions<'_>,
         before: &HashMap<ComplexEdge, f64>,
     ) -> Reconnections {
         let mut done = Reconnections::default();
         for face in complex.faces_with_corners(3) {
             if complex.corners(face).len() == 3
                 && perimeter(complex, face) < 3.0 * self.short
-                && self.happens(Event::Close(face), complex, shape, Demand::LessArea)
+                && self.happens(Event::Close(face), complex, conditions, Demand::LessArea)
             {
                 done.closed += 1;
             }
         }
         for edge in self.short_lines(complex) {
             if complex.has_edge(edge) {
-                done.add(self.pass_line(edge, complex, shape, before));
+                done.add(self.pass_line(edge, complex, conditions, before));
             }
         }
         done
@@ -121,7 +118,7 @@ impl<'a> Reconnector<'a> {
         &mut self,
         edge: ComplexEdge,
         complex: &mut CellComplex,
-        shape: &Shape,
+        conditions: &Conditions<'_>,
         before: &HashMap<ComplexEdge, f64>,
     ) -> Reconnections {
         let around = complex.faces_of_edge(edge);
@@ -135,46 +132,56 @@ impl<'a> Reconnector<'a> {
         let count = events.len();
         events.extend(with_corners(4).into_iter().map(|face| (Event::Swap(edge, face), swapped)));
         for (event, done) in &events {
-            if self.happens(*event, complex, shape, Demand::LessArea) {
+            if self.happens(*event, complex, conditions, Demand::LessArea) {
                 return *done;
             }
         }
         let now = length(complex, edge);
         let is_shrinking = before.get(&edge).is_some_and(|before| now < *before);
-        if now < TOO_SHORT * self.short && is_shrinking {
+        if now < self.short && is_shrinking {
             let sides = sides_at(complex, edge);
             let tries = self.tries.get(&sides).copied().unwrap_or(0);
             for (event, done) in events[..count].iter().filter(|_| tries < MOST_TRIES) {
-                if self.happens(*event, complex, shape, Demand::NoFold) {
+                if self.happens(*event, complex, conditions, Demand::NoFold) {
                     self.tries.insert(sides, tries + 1);
                     return *done;
                 }
             }
         }
         if now < TINY * self.short {
-            self.settle(edge, complex, shape);
+            self.settle(edge, complex, conditions);
         }
         Reconnections::default()
     }
 
     /// Lets an event happen if it keeps its promise.
-    fn happens(&self, event: Event, complex: &mut CellComplex, shape: &Shape, demand: Demand) -> bool {
+    fn happens(
+        &self,
+        event: Event,
+        complex: &mut CellComplex,
+        conditions: &Conditions<'_>,
+        demand: Demand,
+    ) -> bool {
         let old = event.vertices(complex);
         let snapshot = complex.snapshot(&old);
         let first_new = complex.vertices.len();
-        let mut as_it_is = LocalArea::new(complex, &old, shape, self.tension);
+        let mut as_it_is = LocalArea::new(complex, &old, conditions);
         let folds = as_it_is.fold_count();
         if event.happen(complex, LEAST_GOING * self.short) {
             let added =
                 (first_new..complex.vertices.len()).map(|new| u32::try_from(new).expect("ids fit 32 bits"));
             let all = old.into_iter().chain(added);
             let new: Vec<u32> = all.filter(|vertex| !complex.faces_at(&[*vertex]).is_empty()).collect();
-            let mut changed = LocalArea::new(complex, &new, shape, self.tension);
+            let mut changed = LocalArea::new(complex, &new, conditions).with_volumes_of(&as_it_is);
             let is_good = match demand {
                 Demand::LessArea => changed.minimize() < as_it_is.minimize(),
                 Demand::NoFold => true,
             };
-            if is_good && changed.shortest_edge() > LEAST * self.short && changed.fold_count() <= folds {
+            if is_good
+                && changed.shortest_edge() > LEAST * self.short
+                && changed.largest_volume_change() < LARGEST_CHANGE
+                && changed.fold_count() <= folds
+            {
                 changed.place(complex);
                 return true;
             }
@@ -184,11 +191,12 @@ impl<'a> Reconnector<'a> {
     }
 
     /// Puts the ends of a line where it has the least area, unless it gets even shorter.
-    fn settle(&self, edge: ComplexEdge, complex: &mut CellComplex, shape: &Shape) {
-        let mut area = LocalArea::new(complex, &[edge.start, edge.end.vertex], shape, self.tension);
+    fn settle(&self, edge: ComplexEdge, complex: &mut CellComplex, conditions: &Conditions<'_>) {
+        let mut area = LocalArea::new(complex, &[edge.start, edge.end.vertex], conditions);
         let (shortest, folds) = (area.shortest_edge(), area.fold_count());
         area.minimize();
-        if area.shortest_edge() > shortest && area.fold_count() <= folds {
+        let keeps_volumes = area.largest_volume_change() < LARGEST_CHANGE;
+        if area.shortest_edge() > shortest && keeps_volumes && area.fold_count() <= folds {
             area.place(complex);
         }
     }

@@ -55,9 +55,9 @@ impl ControlPoints {
         Self { cells, corners, lines, faces, lines_of_face }
     }
 
-    /// The middles of all lines among the control points.
-    pub(super) fn middles<'a>(&self, points: &'a [DVec3]) -> &'a [DVec3] {
-        &points[self.corners.len()..][..self.lines.len()]
+    /// How far the lines of the cells bulge, in the order of their edges.
+    pub(super) fn bulges_of_lines(&self, shape: &Shape) -> Vec<DVec3> {
+        self.lines.iter().map(|(line, ..)| shape.lines.get(line).copied().unwrap_or_default()).collect()
     }
 
     /// Puts the vertices of the complex where the control points are.

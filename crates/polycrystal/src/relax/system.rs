@@ -122,15 +122,16 @@ impl System {
     }
 
     /// The displacement of every control point that changes the grains' volumes by `changes`, to first order, and is
-    /// otherwise that of the flow.
+    /// otherwise that of the flow; and the pressures of all grains times the time of the step (none where volumes are free).
     ///
     /// Solved by projected conjugate gradients. Their residual is freed of what pressures balance again and again, so that
     /// these need not be exact (Gould, Hribar and Nocedal 2001, section 5).
-    pub(super) fn displacement(&self, changes: &[f64]) -> Vec<DVec3> {
+    pub(super) fn displacement(&self, changes: &[f64]) -> (Vec<DVec3>, Vec<f64>) {
+        let mut pressures = vec![0.0; changes.len()];
         let mut displacement = self.push(changes);
         let mut residual = self.forces.clone();
         add(&mut residual, -1.0, &self.apply(&displacement));
-        let mut direction = self.project(&mut residual);
+        let mut direction = self.project(&mut residual, &mut pressures);
         let mut size = dot(&residual, &direction);
         let enough = size * TOLERANCE * TOLERANCE;
         for _ in 0..ITERATIONS {
@@ -141,7 +142,7 @@ impl System {
             let step = size / dot(&direction, &image);
             add(&mut displacement, step, &direction);
             add(&mut residual, -step, &image);
-            let mut projected = self.project(&mut residual);
+            let mut projected = self.project(&mut residual, &mut pressures);
             let next = dot(&residual, &projected);
             add(&mut projected, next / size, &direction);
             direction = projected;
@@ -153,7 +154,7 @@ impl System {
                 changes.iter().zip(&change).map(|(wanted, change)| wanted - change).collect();
             add(&mut displacement, 1.0, &self.push(&left));
         }
-        self.of_points(&displacement)
+        (self.of_points(&displacement), pressures)
     }
 
     /// The least motion by area of the control points that changes the grains' volumes by `changes`, to first order,
@@ -166,13 +167,14 @@ impl System {
         self.clusters.numbers().iter().map(|number| of_clusters[*number as usize]).collect()
     }
 
-    /// Takes out of a residual what pressures balance, and gives the displacement under the rest if there were only the
+    /// Takes out of a residual what pressures balance, takes these from `sum`, and gives the displacement under the rest if there were only the
     /// diagonal of the matrix.
-    fn project(&self, residual: &mut [DVec3]) -> Vec<DVec3> {
+    fn project(&self, residual: &mut [DVec3], sum: &mut [f64]) -> Vec<DVec3> {
         let moved: Vec<DVec3> =
             residual.iter().zip(&self.mobility).map(|(r, mobility)| mobility.of(*r)).collect();
         let Some((constraint, compliance)) = &self.constraint else { return moved };
         let pressures = compliance.pressures(&constraint.volume_change(&moved), LOOSE);
+        sum.iter_mut().zip(&pressures).for_each(|(sum, pressure)| *sum -= *pressure);
         let project = |(cluster, residual): (usize, &mut DVec3)| {
             *residual -= constraint.force(&pressures, cluster);
             self.mobility[cluster].of(*residual)
