@@ -55,6 +55,25 @@ fn changes_of_topology_leave_grains_their_volumes() {
 }
 
 #[test]
+fn runs_and_checks_tell_how_thin_triangles_are() {
+    let workplace = Workplace::new();
+    let said = workplace.run("--seeds 20 -n 1 -o a.vtp --json-summary run.json");
+    let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+    let [least, percentile] =
+        ["least", "first_percentile"].map(|key| run["triangle_angles"][key].as_f64().unwrap());
+    assert!(least > 0.0 && least < percentile && percentile < 60.0, "{said}");
+    let line = format!(
+        "triangles   one in a hundred has an angle below {percentile:.1} degrees; the least is {least:.2}"
+    );
+    assert!(said.lines().any(|said| said == line), "{line}\nis not in\n{said}");
+    let checked = text(&workplace, "check a.vtp");
+    assert!(checked.lines().any(|said| said.trim_start() == line), "{line}\nis not in\n{checked}");
+    workplace.run("--dim 2 --seeds 20 -o b.vtp --json-summary run.json");
+    let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+    assert!(run["triangle_angles"].is_null());
+}
+
+#[test]
 fn dry_run_foretells_the_run_and_writes_nothing() {
     let workplace = Workplace::new();
     for arguments in [

@@ -8,7 +8,7 @@ use std::path::Path;
 use polycrystal::{Elements, Fault, Side, certify};
 use serde::Serialize;
 
-use crate::LabelledFile;
+use crate::{LabelledFile, TriangleAngles};
 use statistics::statistics;
 
 pub use statistics::Statistic;
@@ -41,6 +41,8 @@ pub struct CheckReport {
     pub volume_error: Option<f64>,
     /// Angles between boundaries at triple lines inside, in degrees.
     pub dihedral: Option<Spread>,
+    /// The smallest angles of triangles, in degrees.
+    pub triangle_angles: Option<TriangleAngles>,
     /// For random seeds: what the network is like beside exact values of Poisson-Voronoi grains without walls.
     pub statistics: Vec<Statistic>,
     /// All that is wrong.
@@ -109,6 +111,7 @@ impl CheckReport {
             dihedral: certificate
                 .angles
                 .map(|angles| Spread { mean: angles.mean, standard_deviation: angles.standard_deviation }),
+            triangle_angles: certificate.triangles.map(TriangleAngles::from),
             statistics: statistics(file, &surface, &certificate),
             faults: certificate.faults.0.iter().map(report).collect(),
         }
@@ -136,6 +139,9 @@ impl fmt::Display for CheckReport {
         }
         if let Some(angles) = self.dihedral {
             write!(out, "\n  angles      {:.2} +- {:.2} degrees", angles.mean, angles.standard_deviation)?;
+        }
+        if let Some(angles) = self.triangle_angles {
+            write!(out, "\n  triangles   {angles}")?;
         }
         for Statistic { name, value, exact, standard_error } in &self.statistics {
             write!(

@@ -45,6 +45,7 @@ mod subdivide;
 mod summary;
 mod summary_record;
 mod table;
+mod triangle_angles;
 mod unfinished;
 pub mod vtk;
 
@@ -78,4 +79,5 @@ pub use statistics::{NetworkStatistics, StatisticsOutput};
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};
 pub use summary::Summary;
 pub use summary_record::SummaryRecord;
+pub use triangle_angles::TriangleAngles;
 pub use unfinished::discard_unfinished;

@@ -6,7 +6,7 @@ use std::time::Duration;
 use polycrystal::{AngleStatistics, Balance, Boundary, Reconnections, Relaxation};
 use voronoi::{Collapsed, Dimension};
 
-use crate::{Polycrystal, Regularization, Stage};
+use crate::{Polycrystal, Regularization, Stage, TriangleAngles};
 
 /// A polycrystal in a few lines of text: counts, angles, volumes, validation, times.
 pub struct Summary<'a>(pub &'a Polycrystal);
@@ -63,6 +63,9 @@ impl fmt::Display for Summary<'_> {
         writeln!(out, "mesh        {points} points, {elements} {element}s at level {levels}")?;
         if let (Some(before), Some(after)) = (polycrystal.angles_before, polycrystal.validation.angles) {
             writeln!(out, "angles      {} before relaxation, {} after", Angle(before), Angle(after))?;
+        }
+        if let Some(quality) = polycrystal.validation.triangles {
+            writeln!(out, "triangles   {}", TriangleAngles::from(quality))?;
         }
         if let Some((Reconnections { opened, closed, swapped }, balance)) = &polycrystal.equilibrium {
             let Balance { flagged_lines, largest_deviation } = balance;

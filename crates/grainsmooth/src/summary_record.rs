@@ -7,6 +7,7 @@ use polycrystal::{AngleStatistics, Boundary};
 use serde::Serialize;
 use voronoi::Dimension;
 
+use crate::triangle_angles::TriangleAngles;
 use crate::{Polycrystal, Regularization};
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
@@ -32,6 +33,8 @@ pub struct SummaryRecord {
     /// In degrees.
     angles_before: Option<Angles>,
     angles_after: Option<Angles>,
+    /// The same unit; none in the plane.
+    triangle_angles: Option<TriangleAngles>,
     largest_relative_volume_error: f64,
     seconds: BTreeMap<&'static str, f64>,
     written: Vec<PathBuf>,
@@ -109,6 +112,7 @@ impl SummaryRecord {
             level: config.levels,
             angles_before: polycrystal.angles_before.map(angles),
             angles_after: polycrystal.validation.angles.map(angles),
+            triangle_angles: polycrystal.validation.triangles.map(TriangleAngles::from),
             largest_relative_volume_error: polycrystal.validation.largest_volume_error,
             seconds: seconds.collect(),
             written,

@@ -11,8 +11,9 @@ use crate::fault::Fault;
 use crate::folds::folded_pairs;
 use crate::intersections::crossing_elements;
 use crate::seams::Seams;
+use crate::triangle_quality::triangle_quality;
 use crate::volume::boundary_volumes;
-use crate::{AngleStatistics, GrainId, NodeType, Side, Surface};
+use crate::{AngleStatistics, GrainId, NodeType, Side, Surface, TriangleQuality};
 
 /// Cosine of the angle between normals beyond which neighbours in one boundary are folded: 90 degrees, and as much more as
 /// single precision, in which many files keep coordinates, blurs the right angles of a box.
@@ -45,6 +46,8 @@ pub struct Certificate {
     pub total_volume_error: f64,
     /// Angles between boundaries, if boundaries meet inside the domain.
     pub angles: Option<AngleStatistics>,
+    /// How thin triangles are, in space.
+    pub triangles: Option<TriangleQuality>,
 }
 
 /// What is wrong with a surface. Its text names the first fault of each kind.
@@ -87,6 +90,7 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>)
         largest_volume_error: 0.0,
         total_volume_error: 0.0,
         angles: None,
+        triangles: None,
     };
     let ids = |count: usize| 0..u32::try_from(count).expect("ids fit 32 bits");
     let not_finite = ids(surface.points.len()).filter(|point| !surface.points[*point as usize].is_finite());
@@ -120,6 +124,7 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>)
     certificate.grain_volumes = grain_volumes(surface);
     certificate.check_volumes(claims, is_closed);
     certificate.angles = statistics(angles(surface, surface.sides, seams.places()));
+    certificate.triangles = triangle_quality(surface);
     certificate
 }
 

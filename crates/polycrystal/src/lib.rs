@@ -47,6 +47,7 @@ mod regular_cells;
 mod relax;
 mod seams;
 mod surface;
+mod triangle_quality;
 mod validate;
 mod volume;
 mod wall_set;
@@ -75,5 +76,6 @@ pub use relax::{
     equilibrate, relax, relax_watched,
 };
 pub use surface::{Elements, Surface};
+pub use triangle_quality::TriangleQuality;
 pub use validate::validate;
 pub use wall_set::{Freedom, WallSet, WallSets};

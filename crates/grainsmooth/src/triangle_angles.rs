@@ -1,0 +1,31 @@
+//! How thin triangles are, as text and for programs.
+
+use std::fmt;
+
+use polycrystal::TriangleQuality;
+use serde::Serialize;
+
+/// The smallest angles of triangles, in degrees.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TriangleAngles {
+    /// That of the thinnest triangle.
+    pub least: f64,
+    /// That which a hundredth of the triangles is below.
+    pub first_percentile: f64,
+}
+
+impl From<TriangleQuality> for TriangleAngles {
+    fn from(TriangleQuality { least, first_percentile }: TriangleQuality) -> Self {
+        Self { least, first_percentile }
+    }
+}
+
+impl fmt::Display for TriangleAngles {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { least, first_percentile } = self;
+        write!(
+            out,
+            "one in a hundred has an angle below {first_percentile:.1} degrees; the least is {least:.2}"
+        )
+    }
+}
