@@ -37,7 +37,7 @@ fn random_periodic_grains_come_to_equilibrium() {
 
 #[test]
 fn random_grains_between_walls_come_to_equilibrium() {
-    check_random_grains(&Domain::unit_cube(), 24, 1, 1.9);
+    check_random_grains(&Domain::unit_cube(), 24, 1, 2.3);
 }
 
 /// Kelvin's foam is in equilibrium as it is, but for curvature.
