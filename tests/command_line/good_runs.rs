@@ -78,6 +78,7 @@ fn summary_counts_what_the_file_holds() {
         "junctions",
         "mesh",
         "angles",
+        "triangles",
         "volumes",
         "validation",
         "time",
