@@ -268,7 +268,7 @@ impl LocalArea {
                 let length = normal.length();
                 area += 0.5 * face.tension * length;
                 let unit = normal * (0.5 * face.tension / length.max(f64::MIN_POSITIVE));
-                let mut slopes = [(b - *a), center - b, *a - center].map(|across| unit.cross(across));
+                let mut slopes = [b - *a, center - b, *a - center].map(|across| unit.cross(across));
                 for Beside { cell, offset, sign } in &face.beside {
                     let [center, a, b] = [center, *a, b].map(|point| point - *offset);
                     let sweep = [a.cross(b), b.cross(center), center.cross(a)];

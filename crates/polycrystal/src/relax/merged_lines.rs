@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use voronoi::{CellComplex, Collapsed, Side, Tessellation, VertexId};
 
-use super::shape::{ControlPoints, Shape};
+use super::shape::{ControlPoints, Shape, distinct};
 
 /// The cells of a complex without short lines.
 pub(super) struct MergedLines {
@@ -45,22 +45,13 @@ fn lines_of(cells: &Tessellation) -> Vec<(Vec<Side>, DVec3)> {
     let mut around = vec![Vec::new(); edges.ends.len()];
     let mut of_corner = edges.of_corner.iter();
     for face in cells.faces() {
-        let sides = cells.face_sides(face).map(|side| match side {
-            Side::Image(cell, _) => Side::Cell(cell),
-            Side::Cell(_) | Side::Wall(_) => side,
-        });
         for edge in of_corner.by_ref().take(cells.face_corners(face).len()) {
-            around[*edge as usize].extend(sides);
+            around[*edge as usize].extend(cells.face_sides(face));
         }
     }
-    let sorted = |mut sides: Vec<Side>| {
-        sides.sort_unstable();
-        sides.dedup();
-        sides
-    };
     let position = |vertex: VertexId| cells.vertices()[vertex.index()];
     let middles = edges.ends.iter().map(|ends| position(ends[0]).midpoint(position(ends[1])));
-    around.into_iter().map(sorted).zip(middles).collect()
+    around.into_iter().map(distinct).zip(middles).collect()
 }
 
 #[cfg(test)]

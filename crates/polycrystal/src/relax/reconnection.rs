@@ -6,6 +6,7 @@ use glam::DVec3;
 use voronoi::{CellComplex, ComplexEdge, Corner, FaceId, Shift, Side};
 
 use super::local_area::{Conditions, LocalArea};
+use super::shape::distinct;
 
 /// Share of the length of what goes by which what comes starts off its middle.
 const OPENING: f64 = 0.3;
@@ -275,14 +276,7 @@ fn on_walls(complex: &CellComplex, sides: &[Side], mut point: DVec3) -> DVec3 {
 /// All sides that touch a line, a cell and its images as one.
 fn sides_at(complex: &CellComplex, edge: ComplexEdge) -> Vec<Side> {
     let faces = complex.faces_at(&[edge.start, edge.end.vertex]);
-    let sides = faces.into_iter().flat_map(|face| complex.sides(face)).map(|side| match side {
-        Side::Image(cell, _) => Side::Cell(cell),
-        Side::Cell(_) | Side::Wall(_) => side,
-    });
-    let mut sides: Vec<Side> = sides.collect();
-    sides.sort_unstable();
-    sides.dedup();
-    sides
+    distinct(faces.into_iter().flat_map(|face| complex.sides(face)))
 }
 
 /// The lengths of all lines.

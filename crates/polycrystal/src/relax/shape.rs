@@ -131,6 +131,18 @@ impl Shape {
     }
 }
 
+/// Some sides, each once and sorted; a cell and its images are one.
+pub(super) fn distinct(sides: impl IntoIterator<Item = Side>) -> Vec<Side> {
+    let sides = sides.into_iter().map(|side| match side {
+        Side::Image(cell, _) => Side::Cell(cell),
+        Side::Cell(_) | Side::Wall(_) => side,
+    });
+    let mut sides: Vec<Side> = sides.collect();
+    sides.sort_unstable();
+    sides.dedup();
+    sides
+}
+
 fn mean(points: &[DVec3], some: &[usize]) -> DVec3 {
     some.iter().map(|point| points[*point]).sum::<DVec3>() / some.len() as f64
 }
