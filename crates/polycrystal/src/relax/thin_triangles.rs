@@ -20,7 +20,7 @@ const POWER: i32 = 3;
 const NO_AREA: f64 = 1e-3;
 
 /// Most steps down the gradient.
-const STEPS: usize = 60;
+const STEPS: usize = 120;
 
 /// Times that a step is halved before it counts as one that leads nowhere.
 const HALVINGS: usize = 20;
@@ -28,8 +28,8 @@ const HALVINGS: usize = 20;
 /// How far points on lines go where points inside boundaries go a length of one: with lines, angles between boundaries change.
 const EASE_OF_LINES: f64 = 0.2;
 
-/// Cosine of the angle from where a triangle faced at first that it may have in the end (60 degrees).
-const LARGEST_TURN: f64 = 0.5;
+/// Cosine of the angle from where a triangle faced at first that it may have in the end (78 degrees).
+const LARGEST_TURN: f64 = 0.2;
 
 /// Share of the decrease promised by the gradient which a step must bring (Armijo).
 const LEAST_DECREASE: f64 = 1e-4;

@@ -15,7 +15,7 @@ use crate::{BoundaryId, Mesh, TriangleQuality};
 const GOOD: f64 = 1.1;
 
 /// ... and that which others are brought to: the volumes, which are made right after that, take some of it.
-const WIDE: f64 = 1.25;
+const WIDE: f64 = 1.15;
 
 /// What moves to make triangles wider.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
