@@ -75,7 +75,7 @@ impl fmt::Display for Summary<'_> {
             )?;
             writeln!(
                 out,
-                "equilibrium triple lines within {largest_deviation:.2} degrees, but for those at {flagged_lines} short ones"
+                "equilibrium triple lines within {largest_deviation:.2} degrees, but for those at {flagged_lines} flagged (short, or of four boundaries)"
             )?;
         } else if polycrystal.config.lets_topology_change() {
             writeln!(
