@@ -184,7 +184,6 @@ impl Config {
     pub(crate) fn lets_topology_change(&self) -> bool {
         self.relaxation == Relaxation::Equilibrium
             && self.volumes == Volumes::Kept
-            && self.dimension == Dimension::Three
             && self.face_mesh == FaceMesh::Fan
             && self.effective_regularize() > 0.0
     }

@@ -6,6 +6,7 @@ use voronoi::{CellComplex, Collapsed, Tessellation};
 use super::flow::{Flow, RIGID_LENGTH, Remedy};
 use super::local_area::Conditions;
 use super::merged_lines::MergedLines;
+use super::plane;
 use super::reconnection::{Reconnections, Reconnector, lengths};
 use super::shape::{ControlPoints, Shape};
 use super::{Relaxation, RelaxationStep, Relaxed, relax_levels};
@@ -79,15 +80,14 @@ pub struct Balance {
 ///
 /// # Errors
 /// As of [`relax`](crate::relax), and [`NetworkError::Invalid`], where no way leads to a valid network.
-///
-/// # Panics
-/// For a tessellation of the plane.
 pub fn equilibrate(
     tessellation: &Tessellation,
     recipe: &NetworkRecipe<'_>,
     mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<Equilibrium, NetworkError> {
-    assert_eq!(tessellation.domain().dimension(), voronoi::Dimension::Three, "cells must be in space");
+    if tessellation.domain().dimension() == voronoi::Dimension::Two {
+        return plane::equilibrate(tessellation, recipe, &mut watch);
+    }
     let mut attempt = |remedy| balanced(tessellation, recipe, remedy, &mut watch);
     // Each gets through places where the other does not.
     match attempt(Remedy::Join) {
