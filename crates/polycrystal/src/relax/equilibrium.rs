@@ -150,35 +150,40 @@ fn settle(
     let mut reconnector = Reconnector::new(SHORT * network.feature_size());
     let step_time = STEP_TIME * network.mean_grain_size().powi(2);
     let mut all = Reconnections::default();
-    let mut shape = Shape::default();
     let (mut quiet, mut last_energy) = (0, f64::INFINITY);
-    for _ in 0..LOOKS {
-        let before = lengths(complex);
+    let mut looks = 0;
+    loop {
         let mut flow = Flow::new(&network, 0, Volumes::Kept).with_rigid_length(0.0).until_rest(remedy);
-        let mut energy = 0.0;
-        for _ in 0..STEPS {
-            energy = flow.step(&mut points, step_time)?;
-        }
-        control_points.place_vertices(complex, &points);
-        shape = control_points.shape(complex, &points);
-        let conditions =
-            Conditions { shape: &shape, tension: recipe.tension, volumes, pressures: flow.pressures() };
-        let events = reconnector.pass(complex, &conditions, &before);
-        all.add(events);
-        if events.count() > 0 {
-            control_points = ControlPoints::new(complex);
-            network = network_of(&control_points)?.0;
-            quiet = 0;
-        } else {
-            quiet += 1;
-            if quiet > QUIET_LOOKS && (last_energy - energy).abs() < QUIET_CHANGE * energy {
-                break;
+        // As long as the topology stays, so does the flow.
+        let shape = loop {
+            let before = lengths(complex);
+            let mut energy = 0.0;
+            for _ in 0..STEPS {
+                energy = flow.step(&mut points, step_time)?;
             }
-        }
-        last_energy = energy;
+            control_points.place_vertices(complex, &points);
+            let shape = control_points.shape(complex, &points);
+            let conditions =
+                Conditions { shape: &shape, tension: recipe.tension, volumes, pressures: flow.pressures() };
+            let events = reconnector.pass(complex, &conditions, &before);
+            all.add(events);
+            looks += 1;
+            quiet = if events.count() > 0 { 0 } else { quiet + 1 };
+            let is_at_rest = quiet > QUIET_LOOKS && (last_energy - energy).abs() < QUIET_CHANGE * energy;
+            if is_at_rest || looks == LOOKS {
+                return Ok((shape, all));
+            }
+            last_energy = energy;
+            if events.count() > 0 {
+                break shape;
+            }
+            points = control_points.points(complex, &network, &shape);
+            flow.part_joined();
+        };
+        control_points = ControlPoints::new(complex);
+        network = network_of(&control_points)?.0;
         points = control_points.points(complex, &network, &shape);
     }
-    Ok((shape, all))
 }
 
 /// How near to equilibrium a network in space is.

@@ -1,5 +1,6 @@
 //! Curvature flow of the points of one level.
 
+mod best;
 mod mending;
 
 use glam::DVec3;
@@ -16,6 +17,7 @@ use crate::folds::{element_normals, folded_pairs};
 use crate::seams::Seams;
 use crate::volume::sum_over_grains;
 use crate::{GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes, dihedral_angles};
+use best::{Badness, Best};
 
 /// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
 const ATTEMPTS: usize = 24;
@@ -57,9 +59,6 @@ const JOINED_ATTEMPTS: usize = 6;
 
 /// Attempts before which points that fold all the same go half as far; after that they stay.
 const BRAKED_ATTEMPTS: usize = 14;
-
-/// Steps toward rest without angles closer to 120 degrees that make an end.
-const PATIENCE: usize = 5;
 
 /// What becomes of points that a step would fold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -148,6 +147,11 @@ impl<'a> Flow<'a> {
         self
     }
 
+    /// Lets points that move as one since a step would have folded them go their own ways again.
+    pub(super) fn part_joined(&mut self) {
+        self.clusters = Clusters::new(&self.network.levels()[self.level]);
+    }
+
     /// Takes the steps of a stage.
     ///
     /// `progress` is told the number of steps done and where the points are.
@@ -163,8 +167,7 @@ impl<'a> Flow<'a> {
             self.iron_folds(&mut points, &finest);
         }
         let mut last_energy = f64::INFINITY;
-        // A step without folds comes before all with some.
-        let mut best = ((true, f64::INFINITY), 0, Vec::new());
+        let mut best = Best::new();
         for step in 1..=stage.steps {
             let energy = self.step(&mut points, stage.step_time)?;
             progress(step, &points);
@@ -172,10 +175,9 @@ impl<'a> Flow<'a> {
                 && stage.is_last
                 && let Some(spread) = self.spread(&points)
             {
-                let badness = (!self.finest_folds(&points, &finest).is_empty(), spread);
-                if badness < best.0 {
-                    best = (badness, step, points.clone());
-                } else if step - best.1 >= PATIENCE {
+                let has_folds = !self.finest_folds(&points, &finest).is_empty();
+                best.offer(Badness { has_folds, spread }, &points);
+                if best.is_final() {
                     break;
                 }
             }
@@ -184,9 +186,7 @@ impl<'a> Flow<'a> {
             }
             last_energy = energy;
         }
-        if !best.2.is_empty() {
-            points = best.2;
-        }
+        points = best.into_points().unwrap_or(points);
         // Where the finest level folds though no step did, all has moved too far from where it did not.
         let mut count = 0;
         for attempt in 0..ATTEMPTS {
