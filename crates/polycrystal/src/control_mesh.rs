@@ -39,14 +39,17 @@ impl ControlMesh {
         let boundaries = boundaries(tessellation);
         match tessellation.domain().dimension() {
             Dimension::Three => surfaces(tessellation, boundaries, face_mesh, junctions, None),
-            Dimension::Two => {
-                lines(tessellation, boundaries, |lines, copies| LinePoints::new(tessellation, lines, copies, face_mesh))
-            }
+            Dimension::Two => lines(tessellation, boundaries, |lines, copies| {
+                LinePoints::new(tessellation, lines, copies, face_mesh)
+            }),
         }
     }
 
     /// That of cells in the plane whose edges are divided into so many equal parts.
-    pub(crate) fn of_divided_lines(tessellation: &Tessellation, counts: &[u32]) -> Result<ControlMesh, NetworkError> {
+    pub(crate) fn of_divided_lines(
+        tessellation: &Tessellation,
+        counts: &[u32],
+    ) -> Result<ControlMesh, NetworkError> {
         let divided = |ends: &[_], _: &[_]| LinePoints::of_counts(tessellation, ends, counts);
         lines(tessellation, boundaries(tessellation), divided)
     }

@@ -66,17 +66,21 @@ pub struct Equilibrium {
 /// How near to equilibrium a network is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Balance {
-    /// Triple lines, shorter than 0.12 of the mean grain size, that no event takes away: places that are out of balance.
+    /// Triple lines, shorter than 0.12 of the mean grain size, that no event takes away: places that are out of balance. In the
+    /// plane, points where more than three grains meet.
     pub flagged_lines: usize,
     /// The largest difference to 120 degrees of an angle between boundaries, as a mean over its triple line, in degrees; flagged
-    /// lines, and those that end where one is, left out.
+    /// lines, and those that end where one is, left out. In the plane, of an angle between segments at a triple point.
     pub largest_deviation: f64,
 }
 
-/// Relaxes the grains of a tessellation in space to [`Relaxation::Equilibrium`]. Every grain keeps the volume of its cell.
+/// Relaxes the grains of a tessellation to [`Relaxation::Equilibrium`]. Every grain keeps the volume of its cell.
 ///
 /// Triple lines that shrink to nothing become boundaries, and boundaries triple lines, where that lessens the area; each
 /// grain stays a closed ball. The network is valid. Control points are in fans. `watch` is shown the steps after the last change of topology.
+///
+/// In the plane, boundaries become arcs of circles, in segments that turn by a quarter of a degree at most, and
+/// meet at triple points. Steps are Newton's there, and count as time 1 each.
 ///
 /// # Errors
 /// As of [`relax`](crate::relax), and [`NetworkError::Invalid`], where no way leads to a valid network.

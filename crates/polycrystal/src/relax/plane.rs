@@ -25,13 +25,13 @@ const CHORDS: u32 = 32;
 
 /// Largest angle by which a boundary turns from one segment to the next, in degrees. Segments at a triple point are off the
 /// boundaries' own directions by half of that.
-const LARGEST_BEND: f64 = 0.5;
-
-/// Most steps while the topology changes, and most after that.
-const STEPS: usize = 2000;
+const LARGEST_BEND: f64 = 0.25;
 
 /// Fewest segments of a boundary on the control mesh, as elsewhere.
 const FEWEST_SEGMENTS: u32 = 2;
+
+/// Most steps while the topology changes, and most after that. Some fifty are usual.
+const STEPS: usize = 2000;
 
 /// As [`equilibrate`](super::equilibrate), in the plane.
 pub(super) fn equilibrate(
@@ -41,17 +41,21 @@ pub(super) fn equilibrate(
 ) -> Result<Equilibrium, NetworkError> {
     let areas: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
     let complex = CellComplex::from(tessellation);
-    let turnings = vec![0.0; complex.faces().last().map_or(0, |face| face.index() + 1)];
+    let turnings = vec![0.0; complex.faces().len()];
     let mut edges = CurvedEdges { complex, turnings };
-    let reconnections = settle(&mut edges, recipe, &areas)?;
-    let smooth = Smooth::new(&edges, recipe, areas.clone())?;
-    let (points, steps) = smooth.balanced(&mut edges, recipe, &areas, watch)?;
+    let Settled { reconnections, states } = settle(&mut edges, recipe, &areas)?;
+    let smooth = SmoothEdges::new(&edges, recipe, &areas)?;
+    let relaxed = smooth.balanced(&edges, recipe, states, watch)?;
     let network = smooth.network;
-    validate(&network, &points).map_err(NetworkError::Invalid)?;
-    let level = network.levels().len() - 1;
-    let balance = balance(&network, &points);
-    let relaxed = Relaxed { level, points, steps, time: steps as f64, fell_back: false };
+    validate(&network, &relaxed.points).map_err(NetworkError::Invalid)?;
+    let balance = balance(&network, &relaxed.points);
     Ok(Equilibrium { network, relaxed, reconnections, merged: Collapsed::default(), balance })
+}
+
+/// How a topology came about, and the states from there to rest.
+struct Settled {
+    reconnections: Reconnections,
+    states: Vec<Vec<f64>>,
 }
 
 /// Lets edges move and switch until all is at rest.
@@ -59,28 +63,31 @@ fn settle(
     edges: &mut CurvedEdges,
     recipe: &NetworkRecipe<'_>,
     areas: &[f64],
-) -> Result<Reconnections, NetworkError> {
+) -> Result<Settled, NetworkError> {
     let domain = edges.complex.domain();
     let size = domain.dimension().cube_edge(domain.measure() / areas.len() as f64);
-    let sides = domain.size().truncate();
-    let mut switcher = Switcher::new(size.min(sides.min_element()), recipe.tension);
-    let mut all = switcher.pass(edges, &[]);
+    let feature_size = size.min(domain.size().truncate().min_element());
+    let mut switcher = Switcher::new(feature_size, recipe.tension);
+    let mut reconnections = switcher.start(edges);
     let mut foam = edges.foam(areas, recipe, |_| CHORDS);
     let mut descent = Descent::new(&foam, edges.state(&foam));
+    let mut states = vec![descent.state.clone()];
     for _ in 0..STEPS {
-        let step = descent.step(&foam).ok_or(NetworkError::Folded { count: 0 })?;
+        let step = descent.step(&foam)?;
+        if step.is_at_rest {
+            break;
+        }
         edges.place(&foam, &descent.state);
         let events = switcher.pass(edges, &step.vanishing);
         if events.count() > 0 {
-            all.add(events);
+            reconnections.add(events);
             foam = edges.foam(areas, recipe, |_| CHORDS);
-            let state = edges.state(&foam);
-            descent = Descent::new(&foam, state);
-        } else if step.is_at_rest {
-            break;
+            descent = Descent::new(&foam, edges.state(&foam));
+            states.clear();
         }
+        states.push(descent.state.clone());
     }
-    Ok(all)
+    Ok(Settled { reconnections, states })
 }
 
 impl CurvedEdges {
@@ -108,8 +115,8 @@ impl CurvedEdges {
     }
 }
 
-/// The network of curved edges with enough segments for all to be smooth.
-struct Smooth {
+/// The network of curved edges with so many segments that all look smooth.
+struct SmoothEdges {
     network: Network,
     /// Of each vertex of the network's cells, that of the complex.
     corners: Vec<Corner>,
@@ -117,56 +124,52 @@ struct Smooth {
     chords: Vec<u32>,
 }
 
-impl Smooth {
-    fn new(edges: &CurvedEdges, recipe: &NetworkRecipe<'_>, areas: Vec<f64>) -> Result<Self, NetworkError> {
+impl SmoothEdges {
+    fn new(edges: &CurvedEdges, recipe: &NetworkRecipe<'_>, areas: &[f64]) -> Result<Self, NetworkError> {
         let (cells, corners) = edges.complex.tessellation();
-        let finest = 2f64.powi(i32::try_from(recipe.levels).unwrap_or(i32::MAX));
+        let whole = f64::from(recipe.levels.try_into().unwrap_or(u16::MAX)).exp2();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 360 degrees")]
         let segments = |face: FaceId| {
             let turning = edges.turnings[face.index()].to_degrees().abs();
-            ((turning / (LARGEST_BEND * finest)).ceil() as u32).max(FEWEST_SEGMENTS)
+            ((turning / (LARGEST_BEND * whole)).ceil() as u32).max(FEWEST_SEGMENTS)
         };
-        let mut counts: Vec<u32> = edges.complex.faces().into_iter().map(segments).collect();
-        let primary = |face: FaceId| cells.periodic_faces().iter().find(|pair| pair.secondary == face);
-        for copy in cells.faces().skip(counts.len()) {
-            let primary = primary(copy).expect("what is not in the complex is a copy").primary;
-            counts.push(counts[primary.index()]);
-        }
+        let own: Vec<u32> = edges.complex.faces().into_iter().map(segments).collect();
+        let copied = cells.periodic_faces().iter().map(|pair| own[pair.primary.index()]);
+        let counts: Vec<u32> = own.iter().copied().chain(copied).collect();
         let network = Network::of_divided_lines(&cells, &counts, recipe.levels)?;
-        let network = network.with_cell_volumes(areas).with_tensions(recipe.tension)?;
-        counts.truncate(edges.complex.faces().len());
-        let chords = counts.iter().map(|count| count << recipe.levels).collect();
+        let network = network.with_cell_volumes(areas.to_vec()).with_tensions(recipe.tension)?;
+        let chords = own.iter().map(|count| count << recipe.levels).collect();
         Ok(Self { network, corners, chords })
     }
 
-    /// Points of the finest level in equilibrium, and the number of steps there.
+    /// Brings all to rest with its segments as they are in the end, after the states on the way to there.
     fn balanced(
         &self,
-        edges: &mut CurvedEdges,
+        edges: &CurvedEdges,
         recipe: &NetworkRecipe<'_>,
-        areas: &[f64],
+        states: Vec<Vec<f64>>,
         watch: &mut impl FnMut(RelaxationStep<'_>),
-    ) -> Result<(Vec<DVec3>, usize), NetworkError> {
+    ) -> Result<Relaxed, NetworkError> {
         let faces = edges.complex.faces();
-        let chords = |face| self.chords[faces.binary_search(&face).expect("the edge is there")];
-        let foam = edges.foam(areas, recipe, chords);
-        let mut descent = Descent::new(&foam, edges.state(&foam));
+        let chords = |face| self.chords[faces.binary_search(&face).expect("numbers do not change")];
+        let foam = edges.foam(self.network.cell_volumes(), recipe, chords);
         let level = self.network.levels().len() - 1;
-        let mut show = |done: usize, points: &[DVec3]| {
-            watch(RelaxationStep { done, count: STEPS, time: done as f64, level, points });
+        let mut show = |done: usize, state: &[f64]| {
+            let points = self.points(&foam, state);
+            watch(RelaxationStep { done, count: STEPS, time: done as f64, level, points: &points });
         };
-        let mut points = self.points(&foam, &descent.state);
-        show(0, &points);
-        for done in 1..=STEPS {
-            let step = descent.step(&foam).ok_or(NetworkError::Folded { count: 0 })?;
-            points = self.points(&foam, &descent.state);
-            show(done, &points);
-            if step.is_at_rest {
-                edges.place(&foam, &descent.state);
-                return Ok((points, done));
+        states.iter().enumerate().for_each(|(done, state)| show(done, state));
+        let mut steps = states.len() - 1;
+        let mut descent = Descent::new(&foam, edges.state(&foam));
+        for _ in 0..STEPS {
+            if descent.step(&foam)?.is_at_rest {
+                break;
             }
+            steps += 1;
+            show(steps, &descent.state);
         }
-        Ok((points, STEPS))
+        let points = self.points(&foam, &descent.state);
+        Ok(Relaxed { level, points, steps, time: steps as f64, fell_back: false })
     }
 
     fn points(&self, foam: &Foam<'_>, state: &[f64]) -> Vec<DVec3> {

@@ -4,8 +4,11 @@
 //! and Gallivan 2007): the quadratic model of the energy under the pressures is followed by projected conjugate gradients to the
 //! rim of the region at most (Steihaug 1983), and areas are restored after it. The energy falls with each step.
 
-use super::foam::{Foam, Tangent};
+use glam::DVec2;
 use voronoi::FaceId;
+
+use super::foam::{Foam, Tangent};
+use crate::NetworkError;
 
 /// Energy, as a share of all, that the first region lets a step cost if stiffness were all.
 const FIRST_REGION: f64 = 0.03;
@@ -19,6 +22,12 @@ const ITERATIONS: usize = 500;
 
 /// Share of its length that a step leaves to an arc's chord.
 const KEPT_LENGTH: f64 = 0.25;
+
+/// How often all chords are looked at for that, as they share ends.
+const SWEEPS: usize = 4;
+
+/// Share of a chord's direction in which an end is free, below which walls hold it.
+const SMALLEST_SHARE: f64 = 0.1;
 
 /// Most that an arc's turning changes in a step, in radians.
 const LARGEST_TURN: f64 = 0.7;
@@ -39,7 +48,7 @@ const AREA_TOLERANCE: f64 = 1e-13;
 const AREA_LIMIT: f64 = 1e-10;
 
 /// Most corrections of areas.
-const CORRECTIONS: usize = 20;
+const CORRECTIONS: usize = 40;
 
 /// A state on its way down.
 pub(super) struct Descent {
@@ -61,8 +70,11 @@ impl Descent {
         Self { state, radius }
     }
 
-    /// One step. Nothing where areas cannot be restored.
-    pub(super) fn step(&mut self, foam: &Foam<'_>) -> Option<Step> {
+    /// One step.
+    ///
+    /// # Errors
+    /// [`NetworkError::VolumeNotRestored`].
+    pub(super) fn step(&mut self, foam: &Foam<'_>) -> Result<Step, NetworkError> {
         self.restore(foam)?;
         let tangent = foam.tangent(&self.state);
         let energy = foam.energy(&self.state);
@@ -70,13 +82,15 @@ impl Descent {
         let pressures = tangent.project(&mut residual);
         let left = dot(&residual, &tangent.soften(&residual));
         if left <= REST * energy {
-            return Some(Step { is_at_rest: true, vanishing: Vec::new() });
+            return Ok(Step { is_at_rest: true, vanishing: Vec::new() });
         }
         loop {
-            let Model { mut motion, saved, is_at_rim } = self.model(&tangent, &pressures, residual.clone(), energy);
+            let Model { mut motion, saved, is_at_rim } =
+                self.model(&tangent, &pressures, residual.clone(), energy);
             let vanishing = hold_chords(foam, &self.state, &mut motion);
             let moved: Vec<f64> = self.state.iter().zip(&motion).map(|(x, by)| x + by).collect();
             let restored = restored(foam, &tangent, moved);
+            let restored = restored.filter(|state| !turns_over(foam, &self.state, state));
             let gained = restored.as_ref().map(|state| energy - foam.energy(state));
             let share = gained.map_or(-1.0, |gained| gained / saved);
             let is_hidden = saved < HIDDEN * energy && gained.is_some();
@@ -89,32 +103,32 @@ impl Descent {
                 && let Some(state) = restored
             {
                 self.state = state;
-                return Some(Step { is_at_rest: false, vanishing });
+                return Ok(Step { is_at_rest: false, vanishing });
             }
             // What is too short to move at all is at rest, or on its way to nothing.
             if self.radius * self.radius < REST * energy {
-                return Some(Step { is_at_rest: vanishing.is_empty(), vanishing });
+                return Ok(Step { is_at_rest: vanishing.is_empty(), vanishing });
             }
         }
     }
 
     /// Brings areas back that an event, or the start, has changed.
-    fn restore(&mut self, foam: &Foam<'_>) -> Option<()> {
-        for _ in 0..CORRECTIONS {
+    fn restore(&mut self, foam: &Foam<'_>) -> Result<(), NetworkError> {
+        for done in 0.. {
             let missing = foam.missing(&self.state);
-            let error = foam.largest_error(&missing);
-            if error <= AREA_LIMIT {
-                return Some(());
+            let (grain, relative_error) = foam.largest_error(&missing);
+            if relative_error <= AREA_LIMIT {
+                return Ok(());
             }
-            if !error.is_finite() {
-                return None;
+            if done == CORRECTIONS || !relative_error.is_finite() {
+                return Err(NetworkError::VolumeNotRestored { grain, relative_error });
             }
             let tangent = foam.tangent(&self.state);
             let mut motion = tangent.soften(&tangent.force(&tangent.pressures(&missing)));
             hold_chords(foam, &self.state, &mut motion);
-            self.state.iter_mut().zip(&motion).for_each(|(x, by)| *x += by);
+            add(&mut self.state, 1.0, &motion);
         }
-        None
+        Ok(())
     }
 
     /// The motion that saves most energy within the region.
@@ -147,7 +161,10 @@ impl Descent {
                 break;
             }
             let share = next / size;
-            direction.iter_mut().zip(&soft).for_each(|(direction, soft)| *direction = *direction * share - soft);
+            direction
+                .iter_mut()
+                .zip(&soft)
+                .for_each(|(direction, soft)| *direction = *direction * share - soft);
             size = next;
         }
         let saved = -dot(&gradient, &motion) - 0.5 * dot(&motion, &image);
@@ -167,7 +184,7 @@ fn restored(foam: &Foam<'_>, tangent: &Tangent<'_>, mut state: Vec<f64>) -> Opti
     let mut last = f64::INFINITY;
     for _ in 0..CORRECTIONS {
         let missing = foam.missing(&state);
-        let error = foam.largest_error(&missing);
+        let (_, error) = foam.largest_error(&missing);
         if error <= AREA_TOLERANCE || (error <= AREA_LIMIT && error > 0.5 * last) {
             return Some(state);
         }
@@ -183,26 +200,46 @@ fn restored(foam: &Foam<'_>, tangent: &Tangent<'_>, mut state: Vec<f64>) -> Opti
 /// Lets no motion take most of an arc's chord, or turn an arc too far; gives the arcs whose chords would vanish.
 fn hold_chords(foam: &Foam<'_>, state: &[f64], motion: &mut [f64]) -> Vec<FaceId> {
     let mut vanishing = Vec::new();
-    for (number, arc) in foam.arcs.iter().enumerate() {
-        let [start, end] = foam.ends(arc, state);
-        let chord = start.distance(end).max(f64::MIN_POSITIVE);
-        let along = (end - start) / chord;
-        let own = foam.own(number);
-        let stretch = [0, 1].map(|axis| motion[own[2 + axis]] - motion[own[axis]]);
-        let lack = (KEPT_LENGTH - 1.0) * chord - (along.x * stretch[0] + along.y * stretch[1]);
-        if lack > 0.0 {
-            vanishing.push(arc.face);
-            for (axis, along) in along.to_array().into_iter().enumerate() {
-                motion[own[axis]] -= 0.5 * lack * along;
-                motion[own[2 + axis]] += 0.5 * lack * along;
+    for sweep in 0..SWEEPS {
+        for (number, arc) in foam.arcs.iter().enumerate() {
+            let [start, end] = foam.ends(arc, state);
+            let chord = start.distance(end).max(f64::MIN_POSITIVE);
+            let along = (end - start) / chord;
+            let own = foam.own(number);
+            let stretch = DVec2::new(motion[own[2]] - motion[own[0]], motion[own[3]] - motion[own[1]]);
+            let lack = (KEPT_LENGTH - 1.0) * chord - along.dot(stretch);
+            if lack <= 0.0 {
+                continue;
+            }
+            if sweep == 0 {
+                vanishing.push(arc.face);
+            }
+            // Walls may leave it to one end.
+            let free = foam.free_at_ends(arc, along);
+            let share = lack / (free[0] + free[1]).dot(along).max(SMALLEST_SHARE);
+            for (end, sign) in [(0, -share), (1, share)] {
+                motion[own[2 * end]] += sign * free[end].x;
+                motion[own[2 * end + 1]] += sign * free[end].y;
             }
         }
-        let turning = foam.turning(number, state);
-        let turned = turning + motion[own[4]].clamp(-LARGEST_TURN, LARGEST_TURN);
-        motion[own[4]] = turned.clamp(-LARGEST_TURNING, LARGEST_TURNING) - turning;
     }
-    foam.keep_free(motion);
+    for number in 0..foam.arcs.len() {
+        let place = foam.own(number)[4];
+        let turning = state[place];
+        let turned = turning + motion[place].clamp(-LARGEST_TURN, LARGEST_TURN);
+        motion[place] = turned.clamp(-LARGEST_TURNING, LARGEST_TURNING) - turning;
+    }
     vanishing
+}
+
+/// Whether an arc has turned over.
+fn turns_over(foam: &Foam<'_>, before: &[f64], after: &[f64]) -> bool {
+    let mut arcs = foam.arcs.iter();
+    arcs.any(|arc| {
+        let [before, after] =
+            [before, after].map(|state| foam.ends(arc, state)).map(|[start, end]| end - start);
+        before.dot(after) <= 0.0
+    })
 }
 
 /// How far along a direction the rim of the region is.

@@ -9,7 +9,7 @@ use super::bow::Bow;
 use crate::relax::local_area::boundary;
 use crate::relax::rows::Rows;
 use crate::relax::volume_constraint::Compliance;
-use crate::{Boundary, Freedom};
+use crate::{Boundary, Freedom, GrainId};
 
 /// Error of the pressures, as a share.
 const TOLERANCE: f64 = 1e-12;
@@ -22,6 +22,8 @@ pub(super) struct Foam<'a> {
     pub(super) arcs: Vec<Arc>,
     pub(super) areas: &'a [f64],
     freedoms: Vec<Freedom>,
+    /// Of all arcs that have any.
+    mean_tension: f64,
 }
 
 /// An edge as an arc of equal chords.
@@ -29,7 +31,7 @@ pub(super) struct Arc {
     pub(super) face: FaceId,
     /// Vertices, and how far from their own places.
     ends: [(usize, DVec2); 2],
-    /// The cells to the left and to the right, and how far from their own places; none beyond walls.
+    /// The cells to the left and to the right, and where their areas are measured from; none beyond walls.
     beside: [Option<(usize, DVec2)>; 2],
     tension: f64,
     /// 1 where it stays straight: in walls, and where it has no tension.
@@ -67,12 +69,28 @@ impl<'a> Foam<'a> {
             let normals = complex.walls_at(vertex).into_iter().map(|wall| domain.outward_normal(wall));
             normals.map(Freedom::InPlane).fold(Freedom::Everywhere, Freedom::and)
         };
+        // From a corner of its own: small cells would lose digits far from the origin.
+        let mut places = vec![DVec2::ZERO; areas.len()];
+        for face in complex.faces() {
+            let corner = complex.position(complex.corners(face)[0]).truncate();
+            for side in complex.sides(face) {
+                match side {
+                    Side::Cell(cell) => places[cell.index()] = corner,
+                    Side::Image(cell, shift) => {
+                        places[cell.index()] = corner - shift.vector(domain).truncate()
+                    }
+                    Side::Wall(_) => {}
+                }
+            }
+        }
         let arc = |face: FaceId| {
             let boundary = boundary(complex.sides(face));
             let tension = tension(&boundary);
             let beside = complex.sides(face).map(|side| match side {
-                Side::Cell(cell) => Some((cell.index(), DVec2::ZERO)),
-                Side::Image(cell, shift) => Some((cell.index(), shift.vector(domain).truncate())),
+                Side::Cell(cell) => Some((cell.index(), places[cell.index()])),
+                Side::Image(cell, shift) => {
+                    Some((cell.index(), places[cell.index()] + shift.vector(domain).truncate()))
+                }
                 Side::Wall(_) => None,
             });
             let end = |end: usize| {
@@ -83,8 +101,11 @@ impl<'a> Foam<'a> {
             let chords = if is_straight { 1 } else { chords(face) };
             Arc { face, ends: [end(0), end(1)], beside, tension, chords }
         };
+        let arcs: Vec<Arc> = complex.faces().into_iter().map(arc).collect();
+        let tensions = || arcs.iter().map(|arc| arc.tension).filter(|tension| *tension > 0.0);
         Self {
-            arcs: complex.faces().into_iter().map(arc).collect(),
+            mean_tension: tensions().sum::<f64>() / tensions().count().max(1) as f64,
+            arcs,
             areas,
             freedoms: (0u32..).take(complex.vertices.len()).map(freedom).collect(),
         }
@@ -134,9 +155,16 @@ impl<'a> Foam<'a> {
         missing
     }
 
-    /// The largest of these, as a share of the area.
-    pub(super) fn largest_error(&self, missing: &[f64]) -> f64 {
-        missing.iter().zip(self.areas).map(|(lack, area)| (lack / area).abs()).fold(0.0, f64::max)
+    /// The largest of these, as a share of the area, and whose it is.
+    pub(super) fn largest_error(&self, missing: &[f64]) -> (GrainId, f64) {
+        let relative = missing.iter().zip(self.areas).map(|(lack, area)| (lack / area).abs());
+        let errors = (0u32..).map(GrainId).zip(relative);
+        errors.max_by(|a, b| a.1.total_cmp(&b.1)).expect("there are cells")
+    }
+
+    /// What walls leave of a motion of an arc's ends.
+    pub(super) fn free_at_ends(&self, arc: &Arc, motion: DVec2) -> [DVec2; 2] {
+        arc.ends.map(|(vertex, _)| self.freedoms[vertex].project(motion.extend(0.0)).truncate())
     }
 
     /// The part of a motion that walls and straight arcs leave.
@@ -176,8 +204,10 @@ impl<'a> Foam<'a> {
         let mut stiffness = vec![0.0; state.len()];
         for (number, (arc, terms)) in self.arcs.iter().zip(&terms).enumerate() {
             let own = self.own(number);
+            // Edges without tension count, too: short ones are not to turn over with a step.
+            let tension = if arc.tension > 0.0 { arc.tension } else { self.mean_tension };
             for variable in &own[..4] {
-                stiffness[*variable] += arc.tension * terms.bow.length[0] / terms.chord;
+                stiffness[*variable] += tension * terms.bow.length[0] / terms.chord;
             }
             stiffness[own[4]] = arc.tension * terms.chord * terms.bow.length[2];
         }
@@ -209,12 +239,15 @@ impl<'a> Foam<'a> {
         for (vertex, freedom) in self.freedoms.iter().enumerate() {
             let [x, y] = [&gradients[2 * vertex], &gradients[2 * vertex + 1]];
             // Both list the same cells in the same order.
-            let moved = x.iter().zip(y).map(|((cell, x), (_, y))| (*cell, freedom.project(DVec3::new(*x, *y, 0.0))));
+            let moved =
+                x.iter().zip(y).map(|((cell, x), (_, y))| (*cell, freedom.project(DVec3::new(*x, *y, 0.0))));
             let moved: Vec<(usize, DVec3)> = moved.collect();
             let mobility = inverse(stiffness[2 * vertex]);
             moved.iter().for_each(|a| moved.iter().for_each(|b| add(a, b, mobility)));
         }
-        for ((arc, gradients), stiffness) in self.arcs.iter().zip(&gradients[count..]).zip(&stiffness[count..]) {
+        for ((arc, gradients), stiffness) in
+            self.arcs.iter().zip(&gradients[count..]).zip(&stiffness[count..])
+        {
             let moved: Vec<(usize, DVec3)> =
                 gradients.iter().map(|(cell, change)| (*cell, DVec3::X * *change)).collect();
             let mobility = if arc.chords == 1 { 0.0 } else { inverse(*stiffness) };
@@ -300,12 +333,14 @@ impl Tangent<'_> {
             let (stretch, turn) = (end - start, motion[own[4]]);
             let longer = along.dot(stretch);
             let across = stretch - along * longer;
-            let pull = across * (arc.tension * bow.length[0] / chord) + along * (arc.tension * bow.length[1] * turn)
+            let pull = across * (arc.tension * bow.length[0] / chord)
+                + along * (arc.tension * bow.length[1] * turn)
                 - (stretch * (2.0 * bow.area[0]) + along * (2.0 * chord * bow.area[1] * turn)) * excess;
             let wind = (arc.tension * bow.length[1] - excess * 2.0 * chord * bow.area[1]) * longer
                 + (arc.tension * chord * bow.length[2] - excess * chord * chord * bow.area[2]) * turn;
             // The triangle to the arc's ends has half the product of these two.
-            let [at_start, at_end] = [-pull + end.perp() * (0.5 * excess), pull - start.perp() * (0.5 * excess)];
+            let [at_start, at_end] =
+                [-pull + end.perp() * (0.5 * excess), pull - start.perp() * (0.5 * excess)];
             for (variable, value) in own.into_iter().zip([at_start.x, at_start.y, at_end.x, at_end.y, wind]) {
                 image[variable] += value;
             }

@@ -5,6 +5,7 @@
 //! point of four edges or more opens, for there are two that enclose less than 120 degrees.
 
 use std::collections::HashMap;
+use std::f64::consts::PI;
 
 use glam::DVec2;
 use voronoi::{CellComplex, CellId, FaceId, Shift, Side, Spoke};
@@ -17,7 +18,7 @@ use crate::relax::shape::distinct;
 /// Length, in units of the feature size, below which an edge that would vanish may go.
 const SHORT: f64 = 0.3;
 
-/// Length below which one is put to the question in any case.
+/// Length, in the same unit, below which the cells' own edges do as well: they tell nothing of where the tensions pull.
 const TINY: f64 = 0.01;
 
 /// Length of a new edge at most, in the same unit ...
@@ -29,7 +30,10 @@ const OPENING_SHARE: f64 = 0.3;
 /// Energy that a new edge must save, as a share of its tension.
 const LEAST_SAVED: f64 = 1e-6;
 
-/// How often edges between the same cells may come and go: what comes back is to stay.
+/// Difference of what two openings save, as a share, that counts as none.
+const TIED: f64 = 1e-9;
+
+/// How often a point between the same cells may open: what comes back is to stay.
 const MOST_TRIES: u8 = 8;
 
 /// Edges that may change their topology.
@@ -43,7 +47,7 @@ pub(super) struct CurvedEdges {
 pub(super) struct Switcher<'a> {
     size: f64,
     tension: &'a dyn Fn(&Boundary) -> f64,
-    /// Of places, by the cells and walls there, how often edges went.
+    /// Of points, by the cells and walls there, how often they opened.
     tries: HashMap<Vec<Side>, u8>,
 }
 
@@ -65,68 +69,76 @@ impl<'a> Switcher<'a> {
         Self { size, tension, tries: HashMap::new() }
     }
 
+    /// Opens what is too short to start with, as far as it then has a reason, and points with too many edges.
+    pub(super) fn start(&mut self, edges: &mut CurvedEdges) -> Reconnections {
+        let tiny = edges.shorter_than(TINY * self.size, |_| true);
+        self.switch(edges, &tiny, TINY * self.size, true)
+    }
+
     /// Lets all events happen that are due, of these edges that would vanish and of points with too many edges.
     pub(super) fn pass(&mut self, edges: &mut CurvedEdges, vanishing: &[FaceId]) -> Reconnections {
+        let short = edges.shorter_than(SHORT * self.size, |face| vanishing.contains(&face));
+        self.switch(edges, &short, SHORT * self.size, false)
+    }
+
+    fn switch(
+        &mut self,
+        edges: &mut CurvedEdges,
+        due: &[FaceId],
+        length: f64,
+        stretches: bool,
+    ) -> Reconnections {
         let mut done = Reconnections::default();
-        let short = |face: FaceId| {
-            let length = edges.chord(face).length();
-            let is_due = length < TINY * self.size || (length < SHORT * self.size && vanishing.contains(&face));
-            is_due.then_some((length, face))
-        };
-        let mut due: Vec<(f64, FaceId)> = edges.complex.faces().into_iter().filter_map(short).collect();
-        due.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        for (_, face) in due {
+        for face in due {
             // An event beside it may have stretched it.
-            if edges.chord(face).length() < SHORT * self.size {
-                done.add(self.pass_edge(edges, face));
+            if edges.chord(*face).length() < length {
+                done.add(self.switch_edge(edges, *face, stretches));
             }
         }
-        let mut vertex = 0;
-        while (vertex as usize) < edges.complex.vertices.len() {
-            match self.best_opening(edges, vertex) {
-                Some(opening) => {
-                    self.open(edges, vertex, &opening);
-                    done.opened += 1;
-                }
-                None => vertex += 1,
+        loop {
+            // All as they are before the first of them opens: lattices then open alike everywhere.
+            let vertices =
+                0..u32::try_from(edges.complex.vertices.len()).expect("vertices have 32-bit numbers");
+            let openings = vertices.filter_map(|vertex| Some((vertex, self.best_opening(edges, vertex)?)));
+            let openings: Vec<(u32, Opening)> = openings.collect();
+            for (vertex, opening) in &openings {
+                self.open(edges, *vertex, opening);
+            }
+            done.opened += openings.len();
+            if openings.is_empty() {
+                break;
             }
         }
         done
     }
 
-    /// Draws a short edge together, and opens the point again if another edge saves more.
-    fn pass_edge(&mut self, edges: &mut CurvedEdges, face: FaceId) -> Reconnections {
+    /// Draws an edge together, and opens the point along the edge that saves most. If that is the same again, all is as it was; or
+    /// it stays, where edges are to be stretched.
+    fn switch_edge(&mut self, edges: &mut CurvedEdges, face: FaceId, stretches: bool) -> Reconnections {
         let none = Reconnections::default();
         if !edges.may_shrink(face) {
             return none;
         }
-        let ends = edges.complex.corners(face).iter().map(|corner| corner.vertex).collect::<Vec<_>>();
+        let ends: Vec<u32> = edges.complex.corners(face).iter().map(|corner| corner.vertex).collect();
         let sides = edges.complex.sides(face);
-        let is_tiny = edges.chord(face).length() < TINY * self.size;
         let snapshot = edges.complex.snapshot(&ends);
         let vertex = edges.shrink(face);
         let Some(opening) = self.best_opening(edges, vertex) else {
             return Reconnections { closed: 1, ..none };
         };
-        let around = distinct(edges.complex.spokes(vertex).iter().flat_map(|spoke| spoke.sides));
         let new = self.open(edges, vertex, &opening);
         if edges.complex.sides(new) == sides {
-            if !is_tiny {
+            if !stretches {
                 edges.complex.restore(snapshot);
             }
             return none;
         }
-        let tries = self.tries.entry(around).or_default();
-        if *tries == MOST_TRIES {
-            edges.complex.restore(snapshot);
-            return none;
-        }
-        *tries += 1;
         Reconnections { swapped: 1, ..none }
     }
 
-    fn open(&self, edges: &mut CurvedEdges, vertex: u32, opening: &Opening) -> FaceId {
+    fn open(&mut self, edges: &mut CurvedEdges, vertex: u32, opening: &Opening) -> FaceId {
         let spokes = edges.complex.spokes(vertex);
+        *self.tries.entry(sides_around(&spokes)).or_default() += 1;
         let lengths = spokes.iter().map(|spoke| edges.chord(spoke.face).length());
         let length = lengths.fold(OPENING / OPENING_SHARE * self.size, f64::min) * OPENING_SHARE;
         let face = edges.complex.point_to_edge(vertex, &opening.spokes, opening.sides);
@@ -156,12 +168,24 @@ impl<'a> Switcher<'a> {
             1 => at.openings_at_wall(edges.outward(&spokes[0])),
             _ => at.openings_at_corner([0, spokes.len() - 1].map(|end| edges.outward(&spokes[end]))),
         };
-        openings.into_iter().reduce(|best, other| if other.rate < best.rate { other } else { best })
+        let best = openings.into_iter().reduce(Opening::better);
+        best.filter(|_| self.tries.get(&sides_around(&spokes)).is_none_or(|tries| *tries < MOST_TRIES))
     }
 
     fn tension_between(&self, sides: [Side; 2]) -> f64 {
         let [first, second] = sides;
         (self.tension)(&boundary(if matches!(first, Side::Wall(_)) { [second, first] } else { sides }))
+    }
+}
+
+impl Opening {
+    /// The one that saves more; of two that save the same, the one less turned from the x axis, so that lattices open all one way.
+    fn better(self, other: Self) -> Self {
+        let gain = self.rate - other.rate;
+        let is_tied = gain.abs() <= TIED * self.rate.abs();
+        let turned = |opening: &Self| (opening.moves[0] - opening.moves[1]).to_angle().rem_euclid(PI);
+        let is_other = if is_tied { turned(&other) < turned(&self) } else { gain > 0.0 };
+        if is_other { other } else { self }
     }
 }
 
@@ -185,7 +209,13 @@ impl Point<'_> {
                 let [own, others] = self.sums(start, end);
                 let apart = 0.5 * (own - others);
                 let direction = 0.5 * apart.normalize_or_zero();
-                self.opening(start, end, self.outer_sides(start, end), apart.length(), [direction, -direction])
+                self.opening(
+                    start,
+                    end,
+                    self.outer_sides(start, end),
+                    apart.length(),
+                    [direction, -direction],
+                )
             })
             .collect()
     }
@@ -258,7 +288,21 @@ impl Point<'_> {
     }
 }
 
+/// All sides around a point, a cell and its images as one.
+fn sides_around(spokes: &[Spoke]) -> Vec<Side> {
+    distinct(spokes.iter().flat_map(|spoke| spoke.sides))
+}
+
 impl CurvedEdges {
+    /// Some of the edges whose ends are nearer to each other than that, shortest first.
+    fn shorter_than(&self, length: f64, is_one: impl Fn(FaceId) -> bool) -> Vec<FaceId> {
+        let edges = self.complex.faces().into_iter().filter(|face| is_one(*face));
+        let lengths = edges.map(|face| (self.chord(face).length(), face));
+        let mut short: Vec<(f64, FaceId)> = lengths.filter(|(own, _)| *own < length).collect();
+        short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        short.into_iter().map(|(_, face)| face).collect()
+    }
+
     /// From start to end of an edge.
     fn chord(&self, face: FaceId) -> DVec2 {
         match self.complex.corners(face) {
@@ -271,7 +315,11 @@ impl CurvedEdges {
     fn outward(&self, spoke: &Spoke) -> DVec2 {
         let chord = self.chord(spoke.face).normalize_or_zero();
         let half = 0.5 * self.turnings[spoke.face.index()];
-        if spoke.end == 0 { DVec2::from_angle(-half).rotate(chord) } else { -DVec2::from_angle(half).rotate(chord) }
+        if spoke.end == 0 {
+            DVec2::from_angle(-half).rotate(chord)
+        } else {
+            -DVec2::from_angle(half).rotate(chord)
+        }
     }
 
     /// Whether all cells stay discs, with three sides or, at walls, two, when an edge shrinks to a point.
