@@ -30,7 +30,8 @@ fn summaries_tell_of_changes_of_topology() {
         "topology    {opened} triple lines became boundaries, {closed} boundaries triple lines, {swapped} boundaries changed sides"
     );
     assert!(said.lines().any(|said| said == line), "{line}\nis not in\n{said}");
-    let flagged = format!("but for those at {} short ones", number("flagged_lines"));
+    let flagged =
+        format!("but for those at {} flagged (short, or of four boundaries)", number("flagged_lines"));
     assert!(said.lines().any(|said| said.starts_with("equilibrium ") && said.ends_with(&flagged)), "{said}");
     let spread = |key: &str| run[key]["standard_deviation"].as_f64().unwrap();
     assert!(spread("angles_after") < 0.25 * spread("angles_before"), "{said}");

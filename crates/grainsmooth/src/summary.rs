@@ -129,7 +129,7 @@ fn write_equilibrium(
             )?;
             writeln!(
                 out,
-                "equilibrium triple lines within {largest_deviation:.2} degrees, but for those at {flagged_lines} short ones"
+                "equilibrium triple lines within {largest_deviation:.2} degrees, but for those at {flagged_lines} flagged (short, or of four boundaries)"
             )
         }
     }

@@ -18,7 +18,7 @@ use crate::search::Search;
 use crate::tessellation::{CellId, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};
 use crate::tile::Tile;
 use crate::torus::{FaceEnd, TorusFaces};
-use crate::weld::{CellSums, VertexNumbers, list_faces_of_cells, push_positions, put_vertices_on_walls};
+use crate::weld::{CellSums, VertexNumbers, push_positions, put_vertices_on_walls};
 use crate::{Dimension, Domain};
 
 pub(crate) fn weld_periodic(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Tessellation {
@@ -39,11 +39,13 @@ pub(crate) fn weld_periodic(search: &Search, seeds: &[DVec3], mut tiles: Vec<Til
     }
     let mut faces = TorusFaces::of_tiles(search, &tiles, &numbers);
     let has_flat_cells = faces.remove_flat_cells(seeds.len());
+    let places = search.places();
     let mut tessellation = unwrapped(search.input().domain, seeds, &faces, &positions);
+    tessellation.list_faces_of_cells(&places);
     if !are_coincident && !has_flat_cells && dimension == Dimension::Three {
         let mut sums = CellSums::new(seeds.len());
         tiles.iter().for_each(|tile| sums.push_tile(tile));
-        tessellation.measures = sums.measures(search, seeds);
+        tessellation.measures = sums.measures(&places, seeds);
     }
     tessellation
 }
@@ -134,7 +136,7 @@ impl UnitedVertices {
     }
 }
 
-/// The tessellation with whole cells: of a face between a cell and a moved one, a copy at each.
+/// The tessellation with whole cells, their faces not listed yet: of a face between a cell and a moved one, a copy at each.
 pub(crate) fn unwrapped(
     domain: &Domain,
     seeds: &[DVec3],
@@ -188,7 +190,6 @@ pub(crate) fn unwrapped(
         tessellation.periodic_faces.push(PeriodicPair { secondary, primary: FaceId(face), shift: back });
     }
     put_vertices_on_walls(&mut tessellation);
-    list_faces_of_cells(&mut tessellation);
     tessellation
 }
 

@@ -11,8 +11,8 @@ use super::reconnection::{Reconnections, Reconnector, lengths};
 use super::shape::{ControlPoints, Shape};
 use super::{Relaxation, RelaxationStep, Relaxed, relax_levels};
 use crate::{
-    Boundary, FaceMesh, Junctions, Network, NetworkError, SpaceMeasures, Volumes, dihedral_angles,
-    measure_network, validate,
+    Boundary, FaceMesh, Junctions, Network, NetworkError, SpaceMeasures, TripleLineMeasures, Volumes,
+    dihedral_angles, measure_network, validate,
 };
 
 /// Length, in units of the feature size, below which triple lines may go; in equilibrium few are that short.
@@ -66,8 +66,8 @@ pub struct Equilibrium {
 /// How near to equilibrium a network is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Balance {
-    /// Triple lines, shorter than 0.12 of the mean grain size, that no event takes away: places that are out of balance. In the
-    /// plane, points where more than three grains meet.
+    /// Places that are out of balance: triple lines, shorter than 0.12 of the mean grain size, that no event takes away, and
+    /// lines where more than three boundaries meet; in the plane, such points.
     pub flagged_lines: usize,
     /// The largest difference to 120 degrees of an angle between boundaries, as a mean over its triple line, in degrees; flagged
     /// lines, and those that end where one is, left out. In the plane, of an angle between segments at a triple point.
@@ -196,7 +196,8 @@ fn balance(network: &Network, points: &[DVec3]) -> Balance {
     let measures = measure_network(network, points).in_space();
     let SpaceMeasures { triple_lines, .. } = measures.expect("a network in space");
     let ends = |points: &[u32]| [points[0], points[points.len() - 1]];
-    let flagged = || triple_lines.iter().filter(|line| !line.is_closed && line.length < short);
+    let is_short = |line: &TripleLineMeasures| !line.is_closed && line.length < short;
+    let flagged = || triple_lines.iter().filter(|line| is_short(line) || line.boundaries.len() > 3);
     let mut flagged_ends: Vec<u32> = flagged().flat_map(|line| ends(&line.points)).collect();
     flagged_ends.sort_unstable();
     let is_apart = |point: &u32| flagged_ends.binary_search(point).is_err();
