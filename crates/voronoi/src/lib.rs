@@ -36,6 +36,7 @@ mod accurate_sum;
 mod candidates;
 mod cell_complex;
 mod cell_edges;
+mod cell_faces;
 mod convex_cell;
 mod convex_surface;
 mod corner;
