@@ -21,8 +21,9 @@ impl PartialEq for CellFaces {
 }
 
 impl CellFaces {
-    /// Lists the faces of each cell by number, given the sides of all. `places` are those of the cells' lists, and `counts` the numbers of
-    /// their faces if they are known. Each thread takes some of the cells and looks for them through all faces.
+    /// Lists the faces of each cell by number, given the sides of all faces and the place of each cell's list among the lists; place by
+    /// place, `counts` are the lengths of these if they are known. Each thread takes some of the cells and looks for them through all
+    /// faces.
     pub(crate) fn new(face_sides: &[[Side; 2]], places: &[u32], counts: Option<Vec<u32>>) -> Self {
         // The cells of a face among `count` from place `first` on, by place counted from there.
         let cells_of = |sides: [Side; 2], first: usize, count: usize| {
@@ -33,24 +34,23 @@ impl CellFaces {
             sides.into_iter().filter_map(place).filter(move |place| *place < count)
         };
         let some_cells = places.len().div_ceil(rayon::current_num_threads());
-        let mut starts = vec![0u32; places.len() + 1];
-        if let Some(counts) = counts {
-            for (place, count) in places.iter().zip(counts) {
-                starts[*place as usize + 1] = count;
-            }
-        } else {
-            starts[1..].par_chunks_mut(some_cells).enumerate().for_each(|(chunk, counts)| {
+        let counts = counts.unwrap_or_else(|| {
+            let mut counts = vec![0; places.len()];
+            counts.par_chunks_mut(some_cells).enumerate().for_each(|(chunk, counts)| {
                 for sides in face_sides {
                     for place in cells_of(*sides, chunk * some_cells, counts.len()) {
                         counts[place] += 1;
                     }
                 }
             });
-        }
-        for place in 0..places.len() {
-            let end = starts[place].checked_add(starts[place + 1]);
-            starts[place + 1] = end.expect("the sides of all faces fit 32 bits");
-        }
+            counts
+        });
+        let mut starts = vec![0u32];
+        let mut end = 0u32;
+        starts.extend(counts.iter().map(|count| {
+            end = end.checked_add(*count).expect("the sides of all faces fit 32 bits");
+            end
+        }));
         // As numbers, for then zeros are pages that nobody has written yet, and the threads share the work of the first time.
         let mut lists = vec![0u32; starts[places.len()] as usize];
         let mut rest = &mut lists[..];

@@ -207,17 +207,15 @@ impl Tessellation {
         face
     }
 
-    /// Lists the faces of each cell, with places as in [`CellFaces::new`].
-    pub(crate) fn list_faces_of_cells(&mut self, places: &[u32]) {
-        let count = |cell: &CellMeasure| u32::try_from(cell.face_count).expect("face ids fit 32 bits");
-        let counts = self.measures.0.as_ref().map(|measures| measures.iter().map(count).collect());
+    /// Lists the faces of each cell, with places and counts as in [`CellFaces::new`].
+    pub(crate) fn list_faces_of_cells(&mut self, places: &[u32], counts: Option<Vec<u32>>) {
         self.cell_faces = CellFaces::new(&self.face_sides, places, counts);
     }
 
     /// The same with the lists in order of the cells.
     pub(crate) fn list_faces_of_cells_in_order(&mut self) {
         let places: Vec<u32> = (0u32..).take(self.cell_count()).collect();
-        self.list_faces_of_cells(&places);
+        self.list_faces_of_cells(&places, None);
     }
 
     /// The domain that is divided up.

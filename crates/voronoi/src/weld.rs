@@ -124,17 +124,20 @@ pub(crate) fn weld(search: &Search, seeds: &[DVec3]) -> Tessellation {
         }
     });
     let places = search.places();
+    let mut face_counts = None;
     if !coincident.is_empty() {
         unite_coincident(&mut tessellation, &coincident);
     } else if domain.dimension() == Dimension::Three {
-        tessellation.measures = sums.measures(&places, seeds);
+        let sums = sums.whole();
+        tessellation.measures = measures(&sums, &places, seeds);
+        face_counts = Some(sums.iter().map(CellSum::face_count).collect());
     }
     tessellation.shrink_to_fit();
     put_vertices_on_walls(&mut tessellation);
-    tessellation.list_faces_of_cells(&places);
+    tessellation.list_faces_of_cells(&places, face_counts);
     if remove_flat_cells(&mut tessellation) {
         tessellation.measures = KeptMeasures::default();
-        tessellation.list_faces_of_cells(&places);
+        tessellation.list_faces_of_cells(&places, None);
     }
     tessellation
 }
@@ -187,14 +190,19 @@ impl CellSums {
         self.beyond.extend_from_slice(&tile.sums_beyond);
     }
 
-    /// The measures of the cells of all seeds, of which the places in the order of the sums are given.
-    pub(crate) fn measures(mut self, places: &[u32], seeds: &[DVec3]) -> KeptMeasures {
+    /// The sums of all cells.
+    pub(crate) fn whole(mut self) -> Vec<CellSum> {
         for (seed, sum) in &self.beyond {
             self.sums[*seed as usize].add(sum);
         }
-        let measure = |(place, seed): (&u32, &DVec3)| self.sums[*place as usize].measure(*seed);
-        KeptMeasures(Some(places.par_iter().zip(seeds).map(measure).collect()))
+        self.sums
     }
+}
+
+/// The measures of the cells of all seeds, of which the places in the order of the sums are given.
+pub(crate) fn measures(sums: &[CellSum], places: &[u32], seeds: &[DVec3]) -> KeptMeasures {
+    let measure = |(place, seed): (&u32, &DVec3)| sums[*place as usize].measure(*seed);
+    KeptMeasures(Some(places.par_iter().zip(seeds).map(measure).collect()))
 }
 
 /// Makes vertices that are one point one vertex, and leaves out edges and faces that shrink to points or lines by that.
