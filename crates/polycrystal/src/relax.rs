@@ -18,6 +18,7 @@ mod merged_lines;
 mod multigrid;
 mod patch;
 mod patches;
+mod plane;
 mod reconnection;
 mod rows;
 mod shape;

@@ -1,5 +1,6 @@
 //! A cell complex whose topology changes.
 
+mod plane;
 mod reconnect;
 mod snapshot;
 mod star;
@@ -10,6 +11,7 @@ use crate::{
     CellId, ComplexEdge, Corner, Domain, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId, Wall,
 };
 
+pub use plane::Spoke;
 pub use snapshot::Snapshot;
 pub use star::Star;
 

@@ -73,7 +73,7 @@ mod wall;
 mod weld;
 mod wide;
 
-pub use cell_complex::{CellComplex, Snapshot, Star};
+pub use cell_complex::{CellComplex, Snapshot, Spoke, Star};
 pub use corner::{ComplexEdge, Corner};
 pub use domain::{Dimension, Domain};
 pub use error::VoronoiError;

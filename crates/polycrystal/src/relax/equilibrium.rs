@@ -6,6 +6,7 @@ use voronoi::{CellComplex, Collapsed, Tessellation};
 use super::flow::{Flow, RIGID_LENGTH, Remedy};
 use super::local_area::Conditions;
 use super::merged_lines::MergedLines;
+use super::plane;
 use super::reconnection::{Reconnections, Reconnector, lengths};
 use super::shape::{ControlPoints, Shape};
 use super::{Relaxation, RelaxationStep, Relaxed, relax_levels};
@@ -66,29 +67,31 @@ pub struct Equilibrium {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Balance {
     /// Places that are out of balance: triple lines, shorter than 0.12 of the mean grain size, that no event takes away, and
-    /// lines where more than three boundaries meet.
+    /// lines where more than three boundaries meet; in the plane, such points.
     pub flagged_lines: usize,
     /// The largest difference to 120 degrees of an angle between boundaries, as a mean over its triple line, in degrees; flagged
-    /// lines, and those that end where one is, left out.
+    /// lines, and those that end where one is, left out. In the plane, of an angle between segments at a triple point.
     pub largest_deviation: f64,
 }
 
-/// Relaxes the grains of a tessellation in space to [`Relaxation::Equilibrium`]. Every grain keeps the volume of its cell.
+/// Relaxes the grains of a tessellation to [`Relaxation::Equilibrium`]. Every grain keeps the volume of its cell.
 ///
 /// Triple lines that shrink to nothing become boundaries, and boundaries triple lines, where that lessens the area; each
 /// grain stays a closed ball. The network is valid. Control points are in fans. `watch` is shown the steps after the last change of topology.
 ///
+/// In the plane, boundaries become arcs of circles, in segments that turn by a quarter of a degree at most, and
+/// meet at triple points. Steps are Newton's there, and count as time 1 each.
+///
 /// # Errors
 /// As of [`relax`](crate::relax), and [`NetworkError::Invalid`], where no way leads to a valid network.
-///
-/// # Panics
-/// For a tessellation of the plane.
 pub fn equilibrate(
     tessellation: &Tessellation,
     recipe: &NetworkRecipe<'_>,
     mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<Equilibrium, NetworkError> {
-    assert_eq!(tessellation.domain().dimension(), voronoi::Dimension::Three, "cells must be in space");
+    if tessellation.domain().dimension() == voronoi::Dimension::Two {
+        return plane::equilibrate(tessellation, recipe, &mut watch);
+    }
     let mut attempt = |remedy| balanced(tessellation, recipe, remedy, &mut watch);
     // Each gets through places where the other does not.
     match attempt(Remedy::Join) {

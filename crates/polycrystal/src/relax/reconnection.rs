@@ -33,14 +33,16 @@ const LARGEST_CHANGE: f64 = 0.2;
 /// How often lines between the same grains may go without lessening the area: what comes back is to stay.
 const MOST_TRIES: u8 = 8;
 
-/// How often grains came together and parted.
+/// How often grains came together and parted. In the plane, a boundary is an edge, and what was a triple line is a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Reconnections {
-    /// Triple lines that became boundaries with three sides: two grains came to meet.
+    /// Triple lines that became boundaries with three sides: two grains came to meet. In the plane, points of more than three
+    /// edges that opened to one more.
     pub opened: usize,
-    /// Boundaries with three sides that became triple lines: two grains parted.
+    /// Boundaries with three sides that became triple lines: two grains parted. In the plane, edges that shrank to such points.
     pub closed: usize,
-    /// Boundaries with four sides that gave way to one between the grains at two opposite sides.
+    /// Boundaries with four sides that gave way to one between the grains at two opposite sides. In the plane, edges that gave
+    /// way to one between the grains at their ends (T1).
     pub swapped: usize,
 }
 
