@@ -30,7 +30,8 @@ fn summaries_tell_of_changes_of_topology() {
         "topology    {opened} triple lines became boundaries, {closed} boundaries triple lines, {swapped} boundaries changed sides"
     );
     assert!(said.lines().any(|said| said == line), "{line}\nis not in\n{said}");
-    let flagged = format!("but for those at {} short ones", number("flagged_lines"));
+    let flagged =
+        format!("but for those at {} flagged (short, or of four boundaries)", number("flagged_lines"));
     assert!(said.lines().any(|said| said.starts_with("equilibrium ") && said.ends_with(&flagged)), "{said}");
     let spread = |key: &str| run[key]["standard_deviation"].as_f64().unwrap();
     assert!(spread("angles_after") < 0.25 * spread("angles_before"), "{said}");
@@ -41,6 +42,34 @@ fn summaries_tell_of_changes_of_topology() {
     workplace.run("--seeds 5 -n 0 -o b.vtp --json-summary run.json");
     let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
     assert!(run["equilibrium"].is_null());
+}
+
+/// In 2D, too: in equilibrium only the bend of segments is between angles and 120 degrees.
+#[test]
+fn summaries_tell_of_changes_of_topology_in_the_plane() {
+    let workplace = Workplace::new();
+    let plane = "--dim 2 --relax equilibrium -o a.vtp --json-summary run.json";
+    for seeds in ["--seeds 60", "--seeds 60 --periodic x,y", "--seeds 30 --domain disc", "--lattice square 4"]
+    {
+        let said = workplace.run(&format!("{seeds} {plane}"));
+        let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+        let number = |key: &str| run["equilibrium"][key].as_f64().unwrap();
+        let events = ["boundaries_swapped", "lines_to_boundaries", "boundaries_to_lines"].map(number);
+        assert!(events.iter().sum::<f64>() > 0.0, "{said}");
+        let [swapped, opened, closed] = events;
+        let line = format!(
+            "topology    {swapped} boundaries gave way to others, {opened} points opened to boundaries, {closed} boundaries became points"
+        );
+        assert!(said.lines().any(|said| said == line), "{line}\nis not in\n{said}");
+        assert!(number("largest_deviation") < 0.26 && number("flagged_lines") == 0.0, "{said}");
+        if !seeds.starts_with("--lattice") {
+            let after = &run["angles_after"];
+            assert!((after["mean"].as_f64().unwrap() - 120.0).abs() < 1e-9, "{said}");
+            assert!(after["standard_deviation"].as_f64().unwrap() < 0.25, "{said}");
+        }
+        assert!(run["largest_relative_volume_error"].as_f64().unwrap() < 1e-10, "{said}");
+        printed(&workplace, "check a.vtp");
+    }
 }
 
 /// One of these lost its volume where the topology changed, and left angles 136 degrees off.

@@ -179,14 +179,21 @@ impl Config {
         if self.relaxation == Relaxation::Time(0.0) { 0.0 } else { self.regularize }
     }
 
-    /// Whether grains may switch neighbours: on the way to equilibrium, in space, at kept volumes, from fans, unless nothing of the cells
+    /// Whether grains may switch neighbours: on the way to equilibrium, at kept volumes, unless nothing of the cells
     /// is to be changed.
     pub(crate) fn lets_topology_change(&self) -> bool {
         self.relaxation == Relaxation::Equilibrium
             && self.volumes == Volumes::Kept
-            && self.dimension == Dimension::Three
-            && self.face_mesh == FaceMesh::Fan
+            && self.is_meshed_freely()
             && self.effective_regularize() > 0.0
+    }
+
+    /// Whether control points go where relaxation needs them: from fans, or in the plane, where there are none.
+    fn is_meshed_freely(&self) -> bool {
+        match self.dimension {
+            Dimension::Two => !matches!(self.face_mesh, FaceMesh::Refined { .. }),
+            Dimension::Three => self.face_mesh == FaceMesh::Fan,
+        }
     }
 
     /// The tension of a boundary: 1 between grains, and what is asked for on walls.

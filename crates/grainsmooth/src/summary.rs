@@ -67,16 +67,8 @@ impl fmt::Display for Summary<'_> {
         if let Some(quality) = polycrystal.validation.triangles {
             writeln!(out, "triangles   {}", TriangleAngles::from(quality))?;
         }
-        if let Some((Reconnections { opened, closed, swapped }, balance)) = &polycrystal.equilibrium {
-            let Balance { flagged_lines, largest_deviation } = balance;
-            writeln!(
-                out,
-                "topology    {opened} triple lines became boundaries, {closed} boundaries triple lines, {swapped} boundaries changed sides"
-            )?;
-            writeln!(
-                out,
-                "equilibrium triple lines within {largest_deviation:.2} degrees, but for those at {flagged_lines} short ones"
-            )?;
+        if let Some((reconnections, balance)) = &polycrystal.equilibrium {
+            write_equilibrium(out, network.domain().dimension(), *reconnections, *balance)?;
         } else if polycrystal.config.lets_topology_change() {
             writeln!(
                 out,
@@ -109,6 +101,37 @@ impl fmt::Display for Summary<'_> {
         }
         let total: Duration = polycrystal.times.iter().map(|(_, time)| *time).sum();
         write!(out, " in all {}", Seconds(total))
+    }
+}
+
+/// How relaxation to equilibrium changed the topology, and how near it came.
+fn write_equilibrium(
+    out: &mut fmt::Formatter<'_>,
+    dimension: Dimension,
+    Reconnections { opened, closed, swapped }: Reconnections,
+    Balance { flagged_lines, largest_deviation }: Balance,
+) -> fmt::Result {
+    match dimension {
+        Dimension::Two => {
+            writeln!(
+                out,
+                "topology    {swapped} boundaries gave way to others, {opened} points opened to boundaries, {closed} boundaries became points"
+            )?;
+            writeln!(
+                out,
+                "equilibrium triple points within {largest_deviation:.2} degrees; {flagged_lines} points of more than three grains"
+            )
+        }
+        Dimension::Three => {
+            writeln!(
+                out,
+                "topology    {opened} triple lines became boundaries, {closed} boundaries triple lines, {swapped} boundaries changed sides"
+            )?;
+            writeln!(
+                out,
+                "equilibrium triple lines within {largest_deviation:.2} degrees, but for those at {flagged_lines} flagged (short, or of four boundaries)"
+            )
+        }
     }
 }
 

@@ -48,7 +48,7 @@ struct Boundaries {
     twice: usize,
 }
 
-/// What relaxation to equilibrium did, where it may change the topology.
+/// What relaxation to equilibrium did, where it may change the topology. In the plane, lines are points.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 struct Equilibrium {
     lines_to_boundaries: usize,

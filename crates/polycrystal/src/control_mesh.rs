@@ -39,8 +39,19 @@ impl ControlMesh {
         let boundaries = boundaries(tessellation);
         match tessellation.domain().dimension() {
             Dimension::Three => surfaces(tessellation, boundaries, face_mesh, junctions, None),
-            Dimension::Two => lines(tessellation, boundaries, face_mesh),
+            Dimension::Two => lines(tessellation, boundaries, |lines, copies| {
+                LinePoints::new(tessellation, lines, copies, face_mesh)
+            }),
         }
+    }
+
+    /// That of cells in the plane whose edges are divided into so many equal parts.
+    pub(crate) fn of_divided_lines(
+        tessellation: &Tessellation,
+        counts: &[u32],
+    ) -> Result<ControlMesh, NetworkError> {
+        let divided = |ends: &[_], _: &[_]| LinePoints::of_counts(tessellation, ends, counts);
+        lines(tessellation, boundaries(tessellation), divided)
     }
 
     /// That of cells in space whose lines are curved: each goes through one point, its middle. Boundaries are filled by fans with as
@@ -178,7 +189,7 @@ fn surfaces(
 fn lines(
     tessellation: &Tessellation,
     boundaries: Vec<Boundary>,
-    face_mesh: FaceMesh,
+    divide: impl FnOnce(&[[voronoi::VertexId; 2]], &[PeriodicPair<u32>]) -> LinePoints,
 ) -> Result<ControlMesh, NetworkError> {
     let vertex_count = tessellation.vertices().len();
     let ends: Vec<[voronoi::VertexId; 2]> = tessellation
@@ -190,7 +201,7 @@ fn lines(
         .iter()
         .map(|pair| PeriodicPair { secondary: pair.secondary.0, primary: pair.primary.0, shift: pair.shift })
         .collect();
-    let lines = LinePoints::new(tessellation, &ends, &copied_lines, face_mesh);
+    let lines = divide(&ends, &copied_lines);
     let mut points = tessellation.vertices().to_vec();
     points.extend(&lines.positions);
     let (mut segments, mut boundary_of) = (Vec::new(), Vec::new());

@@ -163,10 +163,16 @@ impl LinePoints {
         for pair in copied_lines {
             counts[pair.secondary as usize] = counts[pair.primary as usize];
         }
+        Self::of_counts(tessellation, lines, &counts)
+    }
+
+    /// Divides each line into so many equal parts.
+    pub(crate) fn of_counts(tessellation: &Tessellation, lines: &[[VertexId; 2]], counts: &[u32]) -> Self {
+        let ends_at = |line: usize| lines[line].map(|end| tessellation.vertices()[end.index()]);
         let first = id(tessellation.vertices().len());
         let mut points = Self { starts: vec![first], positions: Vec::with_capacity(lines.len()) };
-        for (line, count) in counts.into_iter().enumerate() {
-            points.positions.extend(divide(ends_at(line), count));
+        for (line, count) in counts.iter().enumerate() {
+            points.positions.extend(divide(ends_at(line), *count));
             points.starts.push(first + id(points.positions.len()));
         }
         points

@@ -86,6 +86,20 @@ impl Network {
         Self::assemble(tessellation.domain(), control_mesh, cell_volumes, level_count)
     }
 
+    /// The network of cells in the plane, each of whose edges, in order, has so many segments on the control mesh.
+    pub(crate) fn of_divided_lines(
+        tessellation: &Tessellation,
+        counts: &[u32],
+        level_count: usize,
+    ) -> Result<Self, NetworkError> {
+        let edges: u128 = counts.iter().map(|count| u128::from(*count)).sum();
+        let points = tessellation.vertices().len() as u128 + edges - counts.len() as u128;
+        check_size(tessellation.domain(), &MeshSize { points, edges, triangles: 0 }, level_count)?;
+        let control_mesh = ControlMesh::of_divided_lines(tessellation, counts)?;
+        let cell_volumes = vec![0.0; tessellation.cell_count()];
+        Ok(Self::assemble(tessellation.domain(), control_mesh, cell_volumes, level_count)?.0)
+    }
+
     /// The network of any triangles (in the plane: segments) between grains that fill a domain without periods, refined
     /// `level_count` times, and its control points: those of the surface.
     ///

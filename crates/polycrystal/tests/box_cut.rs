@@ -10,6 +10,10 @@ use glam::{BVec3, DVec3};
 use polycrystal::{Junctions, Network, NetworkError, Relaxation, relax, validate};
 use voronoi::{Domain, Tessellation};
 
+fn cuboid() -> Domain {
+    Domain::cuboid(DVec3::new(-1.0, 0.3, 2.0), DVec3::new(1.0, 1.7, 3.1)).expect("a box")
+}
+
 fn relaxed(domain: &Domain, seeds: &[DVec3]) -> (Network, Vec<DVec3>) {
     let tessellation = Tessellation::new(domain, seeds).expect("valid seeds");
     let (network, flat) = Network::new(&tessellation, Junctions::Crease, 2).expect("a small network");
@@ -18,42 +22,55 @@ fn relaxed(domain: &Domain, seeds: &[DVec3]) -> (Network, Vec<DVec3>) {
     (network, points)
 }
 
+/// Random grains, relaxed and cut, are closed, in the box, and the same on opposite walls.
+fn check_cut(domain: &Domain, count: usize) {
+    let seeds: Vec<DVec3> = random_seeds(&Domain::unit_cube(), count, 2)
+        .iter()
+        .map(|seed| domain.lower() + *seed * (domain.upper() - domain.lower()))
+        .map(|seed| if domain.dimension() == voronoi::Dimension::Two { seed.with_z(0.0) } else { seed })
+        .collect();
+    let (network, points) = relaxed(&domain, &seeds);
+    let (cut, cut_points) = network.cut_at_box(&points).unwrap_or_else(|error| panic!("{domain}: {error}"));
+    let cut = cut.with_cell_volumes(network.cell_volumes().to_vec());
+    let validation = validate(&cut, &cut_points).expect("valid");
+    assert!(validation.largest_volume_error < 1e-9, "{validation:?}");
+    let axes = if domain.dimension() == voronoi::Dimension::Two { 2 } else { 3 };
+    for axis in (0..axes).filter(|axis| domain.periodic().test(*axis)) {
+        let [lower, upper] = [domain.lower(), domain.upper()].map(|wall| {
+            let on_wall = cut_points.iter().filter(|point| point[axis] == wall[axis]);
+            let others = on_wall.map(|point| [1, 2].map(|other| point[(axis + other) % 3].to_bits()));
+            others.collect::<BTreeSet<_>>()
+        });
+        assert!(lower.len() > 4 && lower == upper, "{} and {} points", lower.len(), upper.len());
+    }
+    let inside = |point: &DVec3| {
+        let [lower, upper] = [domain.lower(), domain.upper()];
+        (0..axes).all(|axis| (lower[axis]..=upper[axis]).contains(&point[axis]))
+    };
+    assert!(cut_points.iter().all(inside));
+}
+
 #[test]
 fn cut_grains_are_closed_and_match_on_opposite_walls() {
-    let cuboid = Domain::cuboid(DVec3::new(-1.0, 0.3, 2.0), DVec3::new(1.0, 1.7, 3.1)).expect("a box");
     for (domain, count) in [
         (Domain::unit_cube().with_periods(BVec3::TRUE), 40),
-        (cuboid.with_periods(BVec3::TRUE), 30),
+        (cuboid().with_periods(BVec3::TRUE), 30),
         (Domain::unit_cube().with_periods(BVec3::new(true, false, true)), 25),
         (Domain::unit_cube().with_periods(BVec3::new(false, false, true)), 25),
         (Domain::unit_square().with_periods(BVec3::TRUE), 40),
         (Domain::unit_square().with_periods(BVec3::new(false, true, false)), 20),
     ] {
-        let seeds: Vec<DVec3> = random_seeds(&Domain::unit_cube(), count, 2)
-            .iter()
-            .map(|seed| domain.lower() + *seed * (domain.upper() - domain.lower()))
-            .map(|seed| if domain.dimension() == voronoi::Dimension::Two { seed.with_z(0.0) } else { seed })
-            .collect();
-        let (network, points) = relaxed(&domain, &seeds);
-        let (cut, cut_points) =
-            network.cut_at_box(&points).unwrap_or_else(|error| panic!("{domain}: {error}"));
-        let cut = cut.with_cell_volumes(network.cell_volumes().to_vec());
-        let validation = validate(&cut, &cut_points).expect("valid");
-        assert!(validation.largest_volume_error < 1e-9, "{validation:?}");
-        let axes = if domain.dimension() == voronoi::Dimension::Two { 2 } else { 3 };
-        for axis in (0..axes).filter(|axis| domain.periodic().test(*axis)) {
-            let [lower, upper] = [domain.lower(), domain.upper()].map(|wall| {
-                let on_wall = cut_points.iter().filter(|point| point[axis] == wall[axis]);
-                let others = on_wall.map(|point| [1, 2].map(|other| point[(axis + other) % 3].to_bits()));
-                others.collect::<BTreeSet<_>>()
-            });
-            assert!(lower.len() > 4 && lower == upper, "{} and {} points", lower.len(), upper.len());
-        }
-        let inside = |point: &DVec3| {
-            let [lower, upper] = [domain.lower(), domain.upper()];
-            (0..axes).all(|axis| (lower[axis]..=upper[axis]).contains(&point[axis]))
-        };
-        assert!(cut_points.iter().all(inside));
+        check_cut(&domain, count);
+    }
+}
+
+/// Only in 0 and 1 is a weighted mean of a wall's coordinate that coordinate.
+#[test]
+fn edges_cut_on_walls_that_are_not_at_0_or_1_stay_there() {
+    for periods in [BVec3::new(true, false, true), BVec3::new(false, true, false)] {
+        check_cut(&cuboid().with_periods(periods), 25);
+        let rectangle = Domain::rectangle(DVec3::new(-0.3, 0.7, 0.0), DVec3::new(0.8, 1.9, 0.0));
+        check_cut(&rectangle.expect("a box").with_periods(BVec3 { z: false, ..periods }), 20);
     }
 }
 

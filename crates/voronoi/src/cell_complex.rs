@@ -1,16 +1,17 @@
 //! A cell complex whose topology changes.
 
+mod plane;
 mod reconnect;
 mod snapshot;
 mod star;
 
 use glam::DVec3;
 
-use crate::weld::list_faces_of_cells;
 use crate::{
     CellId, ComplexEdge, Corner, Domain, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId, Wall,
 };
 
+pub use plane::Spoke;
 pub use snapshot::Snapshot;
 pub use star::Star;
 
@@ -114,7 +115,7 @@ impl CellComplex {
             let secondary = tessellation.push_face(face.sides, face.corners.iter().map(number));
             tessellation.periodic_faces.push(PeriodicPair { secondary, primary, shift });
         }
-        list_faces_of_cells(&mut tessellation);
+        tessellation.list_faces_of_cells_in_order();
         (tessellation, vertices)
     }
 

@@ -2,16 +2,12 @@ use crate::generator::Generator;
 
 /// The edges of one cell, by the two planes that they run along: a hash table of linear probing.
 pub(crate) struct CellEdges {
-    slots: Vec<Slot>,
+    /// Apart from the ends, which alone are looked at in slots that are free.
+    keys: Vec<[Generator; 2]>,
+    /// What the user knows each edge's first end by.
+    ends: Vec<u32>,
     /// Slots that are not free.
     used: usize,
-}
-
-#[derive(Clone, Copy)]
-struct Slot {
-    key: [Generator; 2],
-    /// What the user knows the edge's first end by.
-    end: u32,
 }
 
 /// End of a slot that was never used.
@@ -19,57 +15,60 @@ const FREE: u32 = u32::MAX;
 /// End of an edge of which both ends are known.
 const CLOSED: u32 = u32::MAX - 1;
 
-const FREE_SLOT: Slot = Slot { key: [Generator(0); 2], end: FREE };
-
-/// Slots of an ordinary cell, which has 20 edges.
+/// Slots of an ordinary cell: of its 40 edges, earlier cells know most.
 const SLOTS: usize = 128;
 
 impl CellEdges {
     pub(crate) fn new() -> Self {
-        Self { slots: vec![FREE_SLOT; SLOTS], used: 0 }
+        Self::with_slots(SLOTS)
+    }
+
+    fn with_slots(count: usize) -> Self {
+        Self { keys: vec![[Generator::NONE; 2]; count], ends: vec![FREE; count], used: 0 }
     }
 
     /// Turns to another cell.
     pub(crate) fn clear(&mut self) {
         self.used = 0;
-        self.slots.truncate(SLOTS);
-        self.slots.fill(FREE_SLOT);
+        self.keys.truncate(SLOTS);
+        self.ends.truncate(SLOTS);
+        self.ends.fill(FREE);
     }
 
     /// Gives an edge an end: returns the first one if this is the second.
     #[inline]
     pub(crate) fn add(&mut self, [a, b]: [Generator; 2], end: u32) -> Option<u32> {
         let key = [a.min(b), a.max(b)];
-        let mask = self.slots.len() - 1;
-        let mut place = hash(key) & mask;
-        loop {
-            let slot = &mut self.slots[place];
-            if slot.end == FREE {
-                *slot = Slot { key, end };
-                break;
-            }
-            if slot.key == key {
-                debug_assert!(slot.end != CLOSED, "an edge has two ends");
-                return Some(std::mem::replace(&mut slot.end, CLOSED));
-            }
-            place = (place + 1) & mask;
+        let slot = self.slot(key);
+        if self.ends[slot] != FREE {
+            debug_assert!(self.ends[slot] != CLOSED, "an edge has two ends");
+            return Some(std::mem::replace(&mut self.ends[slot], CLOSED));
         }
+        (self.keys[slot], self.ends[slot]) = (key, end);
         self.used += 1;
-        if 2 * self.used > self.slots.len() {
+        if 2 * self.used > self.ends.len() {
             self.grow();
         }
         None
     }
 
+    /// The slot of an edge, or the free one that it would take.
+    #[inline]
+    fn slot(&self, key: [Generator; 2]) -> usize {
+        let mask = self.ends.len() - 1;
+        let mut slot = hash(key) & mask;
+        while self.ends[slot] != FREE && self.keys[slot] != key {
+            slot = (slot + 1) & mask;
+        }
+        slot
+    }
+
     fn grow(&mut self) {
-        let len = 4 * self.slots.len();
-        let slots = std::mem::replace(&mut self.slots, vec![FREE_SLOT; len]);
-        for slot in slots.into_iter().filter(|slot| slot.end != FREE) {
-            let mut place = hash(slot.key) & (len - 1);
-            while self.slots[place].end != FREE {
-                place = (place + 1) & (len - 1);
-            }
-            self.slots[place] = slot;
+        let grown = Self { used: self.used, ..Self::with_slots(4 * self.ends.len()) };
+        let old = std::mem::replace(self, grown);
+        for (key, end) in old.keys.into_iter().zip(old.ends).filter(|(_, end)| *end != FREE) {
+            let slot = self.slot(key);
+            (self.keys[slot], self.ends[slot]) = (key, end);
         }
     }
 }

@@ -10,7 +10,7 @@ const SEEDS_PER_BLOCK: f64 = 8.0;
 
 /// Fewest and most blocks in a tile, nearly: what lies on the sides of a tile is worked out on both sides, and a tile is the unit
 /// of work that threads share out.
-const BLOCKS_PER_TILE: [f64; 2] = [1000.0, 8000.0];
+const BLOCKS_PER_TILE: [f64; 2] = [500.0, 6000.0];
 
 /// Tiles, where that leaves them neither too small nor too large.
 const TILES: f64 = 8.0;
@@ -63,9 +63,8 @@ impl SeedGrid {
         let axes = counts.to_array().into_iter().filter(|count| *count > 1).count().max(1);
         let blocks: f64 = counts.to_array().into_iter().map(f64::from).product();
         let blocks_per_tile = (blocks / TILES).clamp(BLOCKS_PER_TILE[0], BLOCKS_PER_TILE[1]);
-        #[expect(clippy::cast_possible_truncation, reason = "a small number")]
-        let tile_edge = blocks_per_tile.powf(1.0 / axes as f64).round() as i32;
-        let mut tile_counts = (counts + (tile_edge - 1)) / tile_edge;
+        let tile_edge = blocks_per_tile.powf(1.0 / axes as f64);
+        let mut tile_counts = (counts.as_dvec3() / tile_edge).round().as_ivec3().max(IVec3::ONE);
         let tiles = tile_counts.element_product();
         // Threads take tiles in turn, and mostly there is an even number of them.
         if tiles > 1 && tiles % 2 == 1 {

@@ -33,9 +33,11 @@
 //! ```
 
 mod accurate_sum;
+mod big;
 mod candidates;
 mod cell_complex;
 mod cell_edges;
+mod cell_faces;
 mod convex_cell;
 mod convex_surface;
 mod corner;
@@ -43,6 +45,7 @@ mod curved_domain;
 mod domain;
 mod end_search;
 mod error;
+mod exact_plane;
 mod flat_cells;
 mod generator;
 mod grid;
@@ -70,7 +73,7 @@ mod wall;
 mod weld;
 mod wide;
 
-pub use cell_complex::{CellComplex, Snapshot, Star};
+pub use cell_complex::{CellComplex, Snapshot, Spoke, Star};
 pub use corner::{ComplexEdge, Corner};
 pub use domain::{Dimension, Domain};
 pub use error::VoronoiError;

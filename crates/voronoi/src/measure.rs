@@ -59,6 +59,10 @@ impl CellSum {
         self.corner_count += other.corner_count;
     }
 
+    pub(crate) fn face_count(&self) -> u32 {
+        self.face_count
+    }
+
     pub(crate) fn measure(&self, seed: DVec3) -> CellMeasure {
         let face_count = self.face_count as usize;
         // Each edge has a corner in either of its faces, and Euler's formula holds but for an empty cell.

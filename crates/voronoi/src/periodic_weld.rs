@@ -13,12 +13,13 @@ use rayon::prelude::*;
 use crate::corner::Corner;
 use crate::generator::{Generator, Plane, VertexKey};
 use crate::images::Image;
+use crate::measure::CellSum;
 use crate::predicate::ExactInput;
 use crate::search::Search;
 use crate::tessellation::{CellId, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};
 use crate::tile::Tile;
 use crate::torus::{FaceEnd, TorusFaces};
-use crate::weld::{CellSums, VertexNumbers, list_faces_of_cells, push_positions, put_vertices_on_walls};
+use crate::weld::{CellSums, VertexNumbers, measures, push_positions, put_vertices_on_walls};
 use crate::{Dimension, Domain};
 
 pub(crate) fn weld_periodic(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Tessellation {
@@ -38,13 +39,21 @@ pub(crate) fn weld_periodic(search: &Search, seeds: &[DVec3], mut tiles: Vec<Til
         });
     }
     let mut faces = TorusFaces::of_tiles(search, &tiles, &numbers);
-    let has_flat_cells = faces.remove_flat_cells(seeds.len());
+    if are_coincident {
+        // Both faces of a flat cell have the same corners.
+        faces.remove_flat_cells(seeds.len());
+    }
+    let places = search.places();
     let mut tessellation = unwrapped(search.input().domain, seeds, &faces, &positions);
-    if !are_coincident && !has_flat_cells && dimension == Dimension::Three {
+    let mut face_counts = None;
+    if !are_coincident && dimension == Dimension::Three {
         let mut sums = CellSums::new(seeds.len());
         tiles.iter().for_each(|tile| sums.push_tile(tile));
-        tessellation.measures = sums.measures(search, seeds);
+        let sums = sums.whole();
+        tessellation.measures = measures(&sums, &places, seeds);
+        face_counts = Some(sums.iter().map(CellSum::face_count).collect());
     }
+    tessellation.list_faces_of_cells(&places, face_counts);
     tessellation
 }
 
@@ -134,7 +143,7 @@ impl UnitedVertices {
     }
 }
 
-/// The tessellation with whole cells: of a face between a cell and a moved one, a copy at each.
+/// The tessellation with whole cells, their faces not listed yet: of a face between a cell and a moved one, a copy at each.
 pub(crate) fn unwrapped(
     domain: &Domain,
     seeds: &[DVec3],
@@ -145,9 +154,8 @@ pub(crate) fn unwrapped(
     let vertices = Vec::with_capacity(places.count());
     let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);
     let period = |shift: Shift| shift.vector(domain);
-    tessellation.vertices.extend(
-        places.originals.iter().map(|original| positions[original.vertex as usize] + period(original.shift)),
-    );
+    let moved = |original: &Corner| positions[original.vertex as usize] + period(original.shift);
+    tessellation.vertices.par_extend(places.originals.par_iter().map(moved));
     for (copy, original) in places.copies() {
         let shift = copy.moved.shift - places.originals[original.index()].shift;
         let position = tessellation.vertices[original.index()] + period(shift);
@@ -188,7 +196,6 @@ pub(crate) fn unwrapped(
         tessellation.periodic_faces.push(PeriodicPair { secondary, primary: FaceId(face), shift: back });
     }
     put_vertices_on_walls(&mut tessellation);
-    list_faces_of_cells(&mut tessellation);
     tessellation
 }
 

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::Domain;
+use crate::cell_faces::CellFaces;
 use crate::generator::{Generator, Plane};
 use crate::planar_cells::SquareCells;
 use crate::tessellation::{CellId, FaceId, Side, Tessellation, VertexId};
@@ -24,7 +25,7 @@ pub(crate) fn weld_squares(
     let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);
     (tessellation.face_sides, tessellation.face_corners) = faces;
     tessellation.face_starts = (0..=tessellation.face_sides.len()).map(|face| 2 * face).collect();
-    (tessellation.cell_starts, tessellation.cell_faces) = lists;
+    tessellation.cell_faces = lists;
     put_vertices_on_walls(&mut tessellation);
     tessellation
 }
@@ -71,26 +72,25 @@ fn faces(
     (all_sides, corners)
 }
 
-/// The faces of the cells: where those of each start, and all.
-fn lists(ids: &[u32], squares: &[SquareCells], face_ids: &[Vec<u32>]) -> (Vec<usize>, Vec<FaceId>) {
+fn lists(ids: &[u32], squares: &[SquareCells], face_ids: &[Vec<u32>]) -> CellFaces {
     let mut starts = vec![0; ids.len() + 1];
     for (seed, count) in squares.iter().flat_map(|cells| &cells.edge_counts) {
-        starts[ids[*seed as usize] as usize + 1] = *count as usize;
+        starts[ids[*seed as usize] as usize + 1] = *count;
     }
     for cell in 1..starts.len() {
         starts[cell] += starts[cell - 1];
     }
-    let mut faces = vec![FaceId(0); starts[ids.len()]];
+    let mut faces = vec![FaceId(0); starts[ids.len()] as usize];
     for (cells, face_ids) in squares.iter().zip(face_ids) {
         let mut edges = cells.cell_edges.iter();
         for (seed, count) in &cells.edge_counts {
-            let places = starts[ids[*seed as usize] as usize]..;
+            let places = starts[ids[*seed as usize] as usize] as usize..;
             for (face, edge) in faces[places].iter_mut().zip(edges.by_ref().take(*count as usize)) {
                 *face = FaceId(face_ids[*edge as usize]);
             }
         }
     }
-    (starts, faces)
+    CellFaces { ranges: starts.windows(2).map(|range| range[0]..range[1]).collect(), lists: faces }
 }
 
 /// Numbers what the squares have, of which several may know the same: it has its number from the first of them. What is new in a

@@ -17,7 +17,6 @@ use crate::periodic_weld::unwrapped;
 use crate::ring::{is_folded, is_star_shaped};
 use crate::tessellation::{FaceId, Shift, Side, Tessellation, VertexId};
 use crate::torus::{FaceEnd, TorusFaces};
-use crate::weld::list_faces_of_cells;
 use crate::{CellId, Dimension, Wall};
 
 /// Sweeps over all edges; each makes room for collapses that the one before had to refuse.
@@ -427,7 +426,8 @@ impl<'a> Complex<'a> {
             for (face, corners) in faces {
                 torus.push(original.face_sides(face).map(face_end), corners.iter().copied());
             }
-            let whole = unwrapped(original.domain(), original.seeds(), &torus, &self.vertices);
+            let mut whole = unwrapped(original.domain(), original.seeds(), &torus, &self.vertices);
+            whole.list_faces_of_cells_in_order();
             return (whole, self.collapsed);
         }
         let mut tessellation = Tessellation::without_faces(original.domain(), original.seeds(), Vec::new());
@@ -441,7 +441,7 @@ impl<'a> Complex<'a> {
             let corners = corners.iter().map(|corner| numbers[corner.vertex as usize]);
             tessellation.push_face(original.face_sides(face), corners);
         }
-        list_faces_of_cells(&mut tessellation);
+        tessellation.list_faces_of_cells_in_order();
         (tessellation, self.collapsed)
     }
 }

@@ -116,6 +116,15 @@ impl<'a> Search<'a> {
         &self.ids
     }
 
+    /// Of each seed in the user's order, its place in this one.
+    pub(crate) fn places(&self) -> Vec<u32> {
+        let mut places = vec![0; self.ids.len()];
+        for (place, id) in (0u32..).zip(&self.ids) {
+            places[*id as usize] = place;
+        }
+        places
+    }
+
     /// What lies beyond a generator's plane, in the user's numbering of cells.
     pub(crate) fn end(&self, generator: Generator) -> FaceEnd {
         match generator.plane() {

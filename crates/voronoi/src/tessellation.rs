@@ -2,6 +2,7 @@ use std::ops::{Add, Sub};
 
 use glam::DVec3;
 
+use crate::cell_faces::CellFaces;
 use crate::generator::Generator;
 use crate::measure::{CellMeasure, KeptMeasures, cell_measures};
 use crate::periodic_weld::weld_periodic;
@@ -107,8 +108,7 @@ pub struct Tessellation {
     pub(crate) face_sides: Vec<[Side; 2]>,
     pub(crate) face_starts: Vec<usize>,
     pub(crate) face_corners: Vec<VertexId>,
-    pub(crate) cell_starts: Vec<usize>,
-    pub(crate) cell_faces: Vec<FaceId>,
+    pub(crate) cell_faces: CellFaces,
     pub(crate) periodic_vertices: Vec<PeriodicPair<VertexId>>,
     pub(crate) periodic_faces: Vec<PeriodicPair<FaceId>>,
     pub(crate) measures: KeptMeasures,
@@ -124,8 +124,7 @@ impl Tessellation {
             face_sides: Vec::new(),
             face_starts: vec![0],
             face_corners: Vec::new(),
-            cell_starts: Vec::new(),
-            cell_faces: Vec::new(),
+            cell_faces: CellFaces::default(),
             periodic_vertices: Vec::new(),
             periodic_faces: Vec::new(),
             measures: KeptMeasures::default(),
@@ -208,6 +207,17 @@ impl Tessellation {
         face
     }
 
+    /// Lists the faces of each cell, with places and counts as in [`CellFaces::new`].
+    pub(crate) fn list_faces_of_cells(&mut self, places: &[u32], counts: Option<Vec<u32>>) {
+        self.cell_faces = CellFaces::new(&self.face_sides, places, counts);
+    }
+
+    /// The same with the lists in order of the cells.
+    pub(crate) fn list_faces_of_cells_in_order(&mut self) {
+        let places: Vec<u32> = (0u32..).take(self.cell_count()).collect();
+        self.list_faces_of_cells(&places, None);
+    }
+
     /// The domain that is divided up.
     pub fn domain(&self) -> &Domain {
         &self.domain
@@ -252,7 +262,7 @@ impl Tessellation {
 
     /// The faces of a cell.
     pub fn cell_faces(&self, cell: CellId) -> &[FaceId] {
-        &self.cell_faces[self.cell_starts[cell.index()]..self.cell_starts[cell.index() + 1]]
+        self.cell_faces.of(cell)
     }
 
     /// The cells without volume, which have no faces: seeds that their neighbours outweigh.

@@ -88,6 +88,9 @@ pub(crate) fn for_each_tiles(search: &Search, mut visit: impl FnMut(&[Tile])) {
 /// An edge of a vertex, as one number: four times the vertex's, and the edge's.
 type EdgeOf = u32;
 
+/// Of a new vertex, the edge that runs along all its generators but the seed that found it.
+const OTHERS_EDGE: EdgeOf = 0;
+
 /// Of a new vertex, the edge that runs along the first three of its generators.
 const LAST_EDGE: EdgeOf = 3;
 
@@ -102,18 +105,12 @@ struct Builder<'a> {
     edges: CellEdges,
     /// Whether some vertex of the cell is known, seed by seed.
     has_vertex: Vec<bool>,
-    /// Edges that wait for the first of their seeds to follow them, as lists.
+    /// Of each seed, the list of vertices of which [`OTHERS_EDGE`] waits for it.
     first_waiting: Vec<u32>,
-    waiting: Vec<WaitingEdge>,
     /// Edges of the cell under way that may lack their other end.
     current: Vec<EdgeOf>,
     /// The one cut last.
     tile: Tile,
-}
-
-struct WaitingEdge {
-    edge: EdgeOf,
-    next: u32,
 }
 
 impl<'a> Builder<'a> {
@@ -127,7 +124,6 @@ impl<'a> Builder<'a> {
             edges: CellEdges::new(),
             has_vertex: Vec::new(),
             first_waiting: Vec::new(),
-            waiting: Vec::new(),
             current: Vec::new(),
             tile: Tile::default(),
         }
@@ -142,14 +138,12 @@ impl<'a> Builder<'a> {
         self.has_vertex.resize(count, false);
         self.first_waiting.clear();
         self.first_waiting.resize(count, NONE);
-        self.waiting.clear();
         self.current.clear();
         // Random cells have 6.77 vertices, 7.77 faces and 40.6 corners each, in the plane 2, 3 and 6; walls and what lies on the
         // sides of the tile add to that.
         let per_cell = if self.is_flat { [3, 4, 8] } else { [9, 9, 46] };
         let [vertices, faces, corners] = per_cell.map(|per_cell| per_cell * count);
         self.vertices.reserve(vertices);
-        self.waiting.reserve(vertices);
         self.tile.restart(seeds.clone(), [faces, corners]);
         for seed in seeds {
             self.complete(seed)?;
@@ -174,9 +168,9 @@ impl<'a> Builder<'a> {
             self.join(own, 4 * number + LAST_EDGE);
         }
         let mut next = self.first_waiting[place];
-        while let Some(waiting) = self.waiting.get(next as usize) {
-            next = waiting.next;
-            self.join(own, waiting.edge);
+        while next != NONE {
+            self.join(own, 4 * next + OTHERS_EDGE);
+            next = self.vertices[next as usize].next_waiting;
         }
         let ends = self.current.iter().map(|edge_of| (&self.vertices[(edge_of / 4) as usize], edge_of % 4));
         let open = ends.filter(|(vertex, edge)| vertex.ends[*edge as usize] == NONE);
@@ -230,15 +224,6 @@ impl<'a> Builder<'a> {
             .expect("a tile has fewer than 2^30 vertices");
         let own = Generator::site(seed);
         let [a, b, c] = found.planes;
-        self.vertices.push(TileVertex {
-            generators: [own, a, b, c],
-            position: found.position,
-            ends: [NONE; 4],
-            has_tie: found.has_tie,
-            done_faces: 0,
-        });
-        self.join(own, 4 * number + 1);
-        self.join(own, 4 * number + 2);
         self.has_vertex[(seed - self.seeds.start) as usize] = true;
         // Edges of earlier seeds have both ends, so the edge of the others waits for its first seed in the tile.
         let mut first = Generator::NONE;
@@ -247,14 +232,21 @@ impl<'a> Builder<'a> {
             self.has_vertex[place] = true;
             first = first.min(generator);
         }
+        let mut next_waiting = NONE;
         if first != Generator::NONE && (!self.is_flat || [a, b, c].contains(&Generator::side(PLANE))) {
             let place = self.place(first.0);
-            let next = std::mem::replace(
-                &mut self.first_waiting[place],
-                u32::try_from(self.waiting.len()).expect("a tile has fewer than 2^32 edges"),
-            );
-            self.waiting.push(WaitingEdge { edge: 4 * number, next });
+            next_waiting = std::mem::replace(&mut self.first_waiting[place], number);
         }
+        self.vertices.push(TileVertex {
+            generators: [own, a, b, c],
+            position: found.position,
+            ends: [NONE; 4],
+            next_waiting,
+            has_tie: found.has_tie,
+            done_faces: 0,
+        });
+        self.join(own, 4 * number + 1);
+        self.join(own, 4 * number + 2);
         number
     }
 

@@ -14,6 +14,8 @@ pub(crate) struct TileVertex {
     pub(crate) position: DVec3,
     /// The vertex at the other end of each edge; [`NONE`] until it is found.
     pub(crate) ends: [u32; 4],
+    /// The next vertex of which the edge between the planes in the last three slots waits for the same seed; [`NONE`] after the last.
+    pub(crate) next_waiting: u32,
     /// Whether a fifth plane passes through the vertex, exactly.
     pub(crate) has_tie: bool,
     /// For each two slots a bit: whether the face between the two generators is done.

@@ -121,9 +121,8 @@ impl TorusFaces {
         &self.corners
     }
 
-    /// Takes cells out that have two faces only, so that the cells beyond share one: see `flat_cells`. True if there
-    /// were any.
-    pub(crate) fn remove_flat_cells(&mut self, cell_count: usize) -> bool {
+    /// Takes cells out that have two faces only, so that the cells beyond share one: see `flat_cells`.
+    pub(crate) fn remove_flat_cells(&mut self, cell_count: usize) {
         let mut face_counts = vec![0u32; cell_count];
         for end in self.ends.iter().flatten() {
             if let FaceEnd::Cell(image) = end {
@@ -159,7 +158,7 @@ impl TorusFaces {
             }
         }
         if faces_of.is_empty() {
-            return false;
+            return;
         }
         let mut rest = Self {
             fewest_corners: self.fewest_corners,
@@ -179,7 +178,6 @@ impl TorusFaces {
             }
         }
         *self = rest;
-        true
     }
 }
 

@@ -18,7 +18,7 @@ use crate::measure::{CellSum, KeptMeasures};
 use crate::periodic_weld::{canonical, side};
 use crate::predicate::ExactInput;
 use crate::search::Search;
-use crate::tessellation::{CellId, FaceId, Shift, Side, Tessellation, VertexId};
+use crate::tessellation::{CellId, Shift, Side, Tessellation, VertexId};
 use crate::tile::{Tile, for_each_tiles};
 use crate::tile_vertex::NONE;
 
@@ -119,28 +119,37 @@ pub(crate) fn weld(search: &Search, seeds: &[DVec3]) -> Tessellation {
     for_each_tiles(search, |tiles| {
         let numbers = numbering.of_tiles(tiles);
         for (tile, numbers) in tiles.iter().zip(&numbers) {
-            push_tile(&mut tessellation, search, tile, numbers);
+            push_tile(&mut tessellation, &mut sums, search, tile, numbers);
             coincident.extend(tile.coincident.iter().map(|pair| pair.map(|v| numbers[v as usize].vertex)));
-            sums.push_tile(tile);
         }
     });
+    let places = search.places();
+    let mut face_counts = None;
     if !coincident.is_empty() {
         unite_coincident(&mut tessellation, &coincident);
     } else if domain.dimension() == Dimension::Three {
-        tessellation.measures = sums.measures(search, seeds);
+        let sums = sums.whole();
+        tessellation.measures = measures(&sums, &places, seeds);
+        face_counts = Some(sums.iter().map(CellSum::face_count).collect());
     }
     tessellation.shrink_to_fit();
     put_vertices_on_walls(&mut tessellation);
-    list_faces_of_cells(&mut tessellation);
+    tessellation.list_faces_of_cells(&places, face_counts);
     if remove_flat_cells(&mut tessellation) {
         tessellation.measures = KeptMeasures::default();
-        list_faces_of_cells(&mut tessellation);
+        tessellation.list_faces_of_cells(&places, None);
     }
     tessellation
 }
 
-/// Adds the vertices that a tile owns, and its faces.
-fn push_tile(tessellation: &mut Tessellation, search: &Search, tile: &Tile, numbers: &[Corner]) {
+/// Adds the vertices that a tile owns, its faces and their sums.
+fn push_tile(
+    tessellation: &mut Tessellation,
+    sums: &mut CellSums,
+    search: &Search,
+    tile: &Tile,
+    numbers: &[Corner],
+) {
     let Tessellation { vertices, face_sides, face_starts, face_corners, .. } = tessellation;
     let before = face_corners.len();
     let corner = |corner: &u32| VertexId(numbers[*corner as usize].vertex);
@@ -151,7 +160,10 @@ fn push_tile(tessellation: &mut Tessellation, search: &Search, tile: &Tile, numb
         })
     };
     rayon::join(
-        || push_positions(vertices, tile, numbers),
+        || {
+            push_positions(vertices, tile, numbers);
+            sums.push_tile(tile);
+        },
         || {
             face_corners.par_extend(tile.corners.par_iter().map(corner));
             face_starts.par_extend(tile.corner_starts[1..].par_iter().map(|start| before + *start as usize));
@@ -178,18 +190,19 @@ impl CellSums {
         self.beyond.extend_from_slice(&tile.sums_beyond);
     }
 
-    /// The measures of all cells in the order of the input.
-    pub(crate) fn measures(mut self, search: &Search, seeds: &[DVec3]) -> KeptMeasures {
+    /// The sums of all cells.
+    pub(crate) fn whole(mut self) -> Vec<CellSum> {
         for (seed, sum) in &self.beyond {
             self.sums[*seed as usize].add(sum);
         }
-        let mut places = vec![0; seeds.len()];
-        for (place, id) in (0u32..).zip(search.ids()) {
-            places[*id as usize] = place;
-        }
-        let measure = |(place, seed): (&u32, &DVec3)| self.sums[*place as usize].measure(*seed);
-        KeptMeasures(Some(places.par_iter().zip(seeds).map(measure).collect()))
+        self.sums
     }
+}
+
+/// The measures of the cells of all seeds, of which the places in the order of the sums are given.
+pub(crate) fn measures(sums: &[CellSum], places: &[u32], seeds: &[DVec3]) -> KeptMeasures {
+    let measure = |(place, seed): (&u32, &DVec3)| sums[*place as usize].measure(*seed);
+    KeptMeasures(Some(places.par_iter().zip(seeds).map(measure).collect()))
 }
 
 /// Makes vertices that are one point one vertex, and leaves out edges and faces that shrink to points or lines by that.
@@ -273,54 +286,4 @@ pub(crate) fn put_vertices_on_walls(tessellation: &mut Tessellation) {
             tessellation.vertices[corner.index()][axis] = coordinate;
         }
     }
-}
-
-/// Lists the faces of each cell in order. Each thread takes some of the cells and looks for them through all faces.
-pub(crate) fn list_faces_of_cells(tessellation: &mut Tessellation) {
-    let cell_count = tessellation.seeds.len();
-    let some_cells = cell_count.div_ceil(rayon::current_num_threads());
-    let face_sides = &tessellation.face_sides;
-    // The cells of a face among `count` from `first` on, counted from there.
-    let cells_of = |sides: [Side; 2], first: usize, count: usize| {
-        let place = move |side: Side| match side {
-            Side::Cell(cell) => Some(cell.index().wrapping_sub(first)).filter(|place| *place < count),
-            Side::Image(..) | Side::Wall(_) => None,
-        };
-        sides.into_iter().filter_map(place)
-    };
-    let mut starts = vec![0; cell_count + 1];
-    if let KeptMeasures(Some(measures)) = &tessellation.measures {
-        starts[1..].iter_mut().zip(measures).for_each(|(count, cell)| *count = cell.face_count);
-    } else {
-        starts[1..].par_chunks_mut(some_cells).enumerate().for_each(|(chunk, counts)| {
-            for sides in face_sides {
-                for place in cells_of(*sides, chunk * some_cells, counts.len()) {
-                    counts[place] += 1;
-                }
-            }
-        });
-    }
-    for cell in 0..cell_count {
-        starts[cell + 1] += starts[cell];
-    }
-    let mut cell_faces = vec![FaceId(0); starts[cell_count]];
-    let mut rest = &mut cell_faces[..];
-    let mut parts = Vec::new();
-    for (chunk, cells) in starts[..cell_count].chunks(some_cells).enumerate() {
-        let end = starts[chunk * some_cells + cells.len()];
-        let (part, others) = rest.split_at_mut(end - cells[0]);
-        parts.push((chunk * some_cells, cells, part));
-        rest = others;
-    }
-    parts.into_par_iter().for_each(|(first, starts, part)| {
-        let mut next: Vec<usize> = starts.iter().map(|start| start - starts[0]).collect();
-        for (face, sides) in (0u32..).zip(face_sides) {
-            for place in cells_of(*sides, first, starts.len()) {
-                part[next[place]] = FaceId(face);
-                next[place] += 1;
-            }
-        }
-    });
-    tessellation.cell_starts = starts;
-    tessellation.cell_faces = cell_faces;
 }

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use glam::{BVec3, DVec3};
 use proptest::prelude::*;
-use voronoi::{CellComplex, CellId, ComplexEdge, Domain, Side, Tessellation, VertexId};
+use voronoi::{CellComplex, CellId, ComplexEdge, Domain, FaceId, Side, Spoke, Tessellation, VertexId};
 
 use common::{complex_counts, random_seeds};
 
@@ -199,5 +199,50 @@ proptest! {
             prop_assert_eq!(checked_euler_number(&changed), expected);
         }
         prop_assert!(count > 10);
+    }
+}
+
+/// An edge of the plane that shrinks to a point and opens again is the same edge, and all cells are as they were; also where
+/// they are their own neighbours.
+#[test]
+fn edges_of_the_plane_shrink_and_open_again() {
+    for (periods, count) in
+        [(BVec3::new(true, true, false), 3), (BVec3::new(true, false, false), 6), (BVec3::FALSE, 9)]
+    {
+        let domain = Domain::unit_square().with_periods(periods);
+        let seeds: Vec<DVec3> = random_seeds(count, 4).into_iter().map(|seed| seed.with_z(0.0)).collect();
+        let cells = Tessellation::new(&domain, &seeds).expect("valid seeds");
+        let whole = CellComplex::from(&cells);
+        for edge in whole.faces() {
+            let &[start, end] = whole.corners(edge) else { panic!("an edge has two ends") };
+            let walls = [start, end].map(|end| whole.walls_at(end.vertex).len());
+            if start.vertex == end.vertex || walls[1] > walls[0] || (walls[1] > 0 && walls[0] < 2) {
+                continue;
+            }
+            let at_end: Vec<(FaceId, usize)> =
+                whole.spokes(end.vertex).iter().map(|spoke| (spoke.face, spoke.end)).collect();
+            let mut complex = whole.clone();
+            complex.edge_to_point(edge, 0);
+            let mut around = complex.spokes(start.vertex);
+            let is_at_end = |spoke: &Spoke| at_end.contains(&(spoke.face, spoke.end));
+            while !is_at_end(&around[0]) || is_at_end(&around[around.len() - 1]) {
+                around.rotate_left(1);
+            }
+            around.retain(is_at_end);
+            let sides = [around[0].sides[0], around[around.len() - 1].sides[1]];
+            let opened = complex.point_to_edge(start.vertex, &around, sides);
+            let new = complex.vertices.len() - 1;
+            complex.vertices[new] =
+                whole.position(end) - whole.position(start) + whole.vertices[start.vertex as usize];
+            assert_eq!(complex.sides(opened), whole.sides(edge));
+            let again = complex.tessellation().0;
+            for cell in (0u32..).take(count).map(CellId) {
+                assert_eq!(again.neighbors(cell), cells.neighbors(cell));
+                assert_eq!(complex.edges_of_cell(cell).len(), whole.edges_of_cell(cell).len());
+            }
+            for (after, before) in again.cell_measures().iter().zip(cells.cell_measures()) {
+                assert!((after.volume - before.volume).abs() < 1e-14, "{edge:?}");
+            }
+        }
     }
 }

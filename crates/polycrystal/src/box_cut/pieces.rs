@@ -170,7 +170,8 @@ impl Pieces {
         let start = self.places[from.point as usize];
         let end = self.places[to.point as usize] + to.shift.vector(&self.domain);
         let share = (height - start[axis]) / (end[axis] - start[axis]);
-        let (mut place, mut shift) = home(&self.domain, start.lerp(end, share));
+        // Where both ends have the same coordinate, as on a wall, so has this: a weighted mean of the two would round.
+        let (mut place, mut shift) = home(&self.domain, start + (end - start) * share);
         place[axis] = lower[axis];
         shift.0[axis] = plane;
         let mut planes = [false; 3];

@@ -6,12 +6,13 @@ use voronoi::{CellComplex, Collapsed, Tessellation};
 use super::flow::{Flow, RIGID_LENGTH, Remedy};
 use super::local_area::Conditions;
 use super::merged_lines::MergedLines;
+use super::plane;
 use super::reconnection::{Reconnections, Reconnector, lengths};
 use super::shape::{ControlPoints, Shape};
 use super::{Relaxation, RelaxationStep, Relaxed, relax_levels};
 use crate::{
-    Boundary, FaceMesh, Junctions, Network, NetworkError, SpaceMeasures, Volumes, dihedral_angles,
-    measure_network, validate,
+    Boundary, FaceMesh, Junctions, Network, NetworkError, SpaceMeasures, TripleLineMeasures, Volumes,
+    dihedral_angles, measure_network, validate,
 };
 
 /// Length, in units of the feature size, below which triple lines may go; in equilibrium few are that short.
@@ -65,29 +66,32 @@ pub struct Equilibrium {
 /// How near to equilibrium a network is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Balance {
-    /// Triple lines, shorter than 0.12 of the mean grain size, that no event takes away: places that are out of balance.
+    /// Places that are out of balance: triple lines, shorter than 0.12 of the mean grain size, that no event takes away, and
+    /// lines where more than three boundaries meet; in the plane, such points.
     pub flagged_lines: usize,
     /// The largest difference to 120 degrees of an angle between boundaries, as a mean over its triple line, in degrees; flagged
-    /// lines, and those that end where one is, left out.
+    /// lines, and those that end where one is, left out. In the plane, of an angle between segments at a triple point.
     pub largest_deviation: f64,
 }
 
-/// Relaxes the grains of a tessellation in space to [`Relaxation::Equilibrium`]. Every grain keeps the volume of its cell.
+/// Relaxes the grains of a tessellation to [`Relaxation::Equilibrium`]. Every grain keeps the volume of its cell.
 ///
 /// Triple lines that shrink to nothing become boundaries, and boundaries triple lines, where that lessens the area; each
 /// grain stays a closed ball. The network is valid. Control points are in fans. `watch` is shown the steps after the last change of topology.
 ///
+/// In the plane, boundaries become arcs of circles, in segments that turn by a quarter of a degree at most, and
+/// meet at triple points. Steps are Newton's there, and count as time 1 each.
+///
 /// # Errors
 /// As of [`relax`](crate::relax), and [`NetworkError::Invalid`], where no way leads to a valid network.
-///
-/// # Panics
-/// For a tessellation of the plane.
 pub fn equilibrate(
     tessellation: &Tessellation,
     recipe: &NetworkRecipe<'_>,
     mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<Equilibrium, NetworkError> {
-    assert_eq!(tessellation.domain().dimension(), voronoi::Dimension::Three, "cells must be in space");
+    if tessellation.domain().dimension() == voronoi::Dimension::Two {
+        return plane::equilibrate(tessellation, recipe, &mut watch);
+    }
     let mut attempt = |remedy| balanced(tessellation, recipe, remedy, &mut watch);
     // Each gets through places where the other does not.
     match attempt(Remedy::Join) {
@@ -150,35 +154,40 @@ fn settle(
     let mut reconnector = Reconnector::new(SHORT * network.feature_size());
     let step_time = STEP_TIME * network.mean_grain_size().powi(2);
     let mut all = Reconnections::default();
-    let mut shape = Shape::default();
     let (mut quiet, mut last_energy) = (0, f64::INFINITY);
-    for _ in 0..LOOKS {
-        let before = lengths(complex);
+    let mut looks = 0;
+    loop {
         let mut flow = Flow::new(&network, 0, Volumes::Kept).with_rigid_length(0.0).until_rest(remedy);
-        let mut energy = 0.0;
-        for _ in 0..STEPS {
-            energy = flow.step(&mut points, step_time)?;
-        }
-        control_points.place_vertices(complex, &points);
-        shape = control_points.shape(complex, &points);
-        let conditions =
-            Conditions { shape: &shape, tension: recipe.tension, volumes, pressures: flow.pressures() };
-        let events = reconnector.pass(complex, &conditions, &before);
-        all.add(events);
-        if events.count() > 0 {
-            control_points = ControlPoints::new(complex);
-            network = network_of(&control_points)?.0;
-            quiet = 0;
-        } else {
-            quiet += 1;
-            if quiet > QUIET_LOOKS && (last_energy - energy).abs() < QUIET_CHANGE * energy {
-                break;
+        // As long as the topology stays, so does the flow.
+        let shape = loop {
+            let before = lengths(complex);
+            let mut energy = 0.0;
+            for _ in 0..STEPS {
+                energy = flow.step(&mut points, step_time)?;
             }
-        }
-        last_energy = energy;
+            control_points.place_vertices(complex, &points);
+            let shape = control_points.shape(complex, &points);
+            let conditions =
+                Conditions { shape: &shape, tension: recipe.tension, volumes, pressures: flow.pressures() };
+            let events = reconnector.pass(complex, &conditions, &before);
+            all.add(events);
+            looks += 1;
+            quiet = if events.count() > 0 { 0 } else { quiet + 1 };
+            let is_at_rest = quiet > QUIET_LOOKS && (last_energy - energy).abs() < QUIET_CHANGE * energy;
+            if is_at_rest || looks == LOOKS {
+                return Ok((shape, all));
+            }
+            last_energy = energy;
+            if events.count() > 0 {
+                break shape;
+            }
+            points = control_points.points(complex, &network, &shape);
+            flow.part_joined();
+        };
+        control_points = ControlPoints::new(complex);
+        network = network_of(&control_points)?.0;
         points = control_points.points(complex, &network, &shape);
     }
-    Ok((shape, all))
 }
 
 /// How near to equilibrium a network in space is.
@@ -187,7 +196,8 @@ fn balance(network: &Network, points: &[DVec3]) -> Balance {
     let measures = measure_network(network, points).in_space();
     let SpaceMeasures { triple_lines, .. } = measures.expect("a network in space");
     let ends = |points: &[u32]| [points[0], points[points.len() - 1]];
-    let flagged = || triple_lines.iter().filter(|line| !line.is_closed && line.length < short);
+    let is_short = |line: &TripleLineMeasures| !line.is_closed && line.length < short;
+    let flagged = || triple_lines.iter().filter(|line| is_short(line) || line.boundaries.len() > 3);
     let mut flagged_ends: Vec<u32> = flagged().flat_map(|line| ends(&line.points)).collect();
     flagged_ends.sort_unstable();
     let is_apart = |point: &u32| flagged_ends.binary_search(point).is_err();

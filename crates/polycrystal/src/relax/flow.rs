@@ -1,5 +1,6 @@
 //! Curvature flow of the points of one level.
 
+mod best;
 mod mending;
 mod widening;
 
@@ -18,6 +19,7 @@ use crate::folds::{element_normals, folded_pairs};
 use crate::seams::Seams;
 use crate::volume::sum_over_grains;
 use crate::{GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes, dihedral_angles};
+use best::{Badness, Best};
 
 /// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
 const ATTEMPTS: usize = 24;
@@ -59,9 +61,6 @@ const JOINED_ATTEMPTS: usize = 6;
 
 /// Attempts before which points that fold all the same go half as far; after that they stay.
 const BRAKED_ATTEMPTS: usize = 14;
-
-/// Steps toward rest without angles closer to 120 degrees that make an end.
-const PATIENCE: usize = 5;
 
 /// What becomes of points that a step would fold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -160,6 +159,11 @@ impl<'a> Flow<'a> {
         self
     }
 
+    /// Lets points that move as one since a step would have folded them go their own ways again.
+    pub(super) fn part_joined(&mut self) {
+        self.clusters = Clusters::new(&self.network.levels()[self.level]);
+    }
+
     /// Takes the steps of a stage.
     ///
     /// `progress` is told the number of steps done and where the points are.
@@ -175,18 +179,16 @@ impl<'a> Flow<'a> {
             self.iron_folds(&mut points, &finest);
         }
         let mut last_energy = f64::INFINITY;
-        // A step without folds comes before all with some.
-        let mut best = ((true, f64::INFINITY), 0, Vec::new());
+        let mut best = Best::new();
         for step in 1..=stage.steps {
             let energy = self.step(&mut points, stage.step_time)?;
             progress(step, &points);
             if self.remedy == Remedy::Brake
                 && stage.end != End::Open
-                && let Some(unrest) = self.unrest(&points, &finest)
+                && let Some(badness) = self.badness(&points, &finest)
             {
-                if unrest < best.0 {
-                    best = (unrest, step, points.clone());
-                } else if step - best.1 >= PATIENCE {
+                best.offer(badness, &points);
+                if best.is_final() {
                     break;
                 }
             }
@@ -195,9 +197,7 @@ impl<'a> Flow<'a> {
             }
             last_energy = energy;
         }
-        if !best.2.is_empty() {
-            points = best.2;
-        }
+        points = best.into_points().unwrap_or(points);
         // Where the finest level folds though no step did, all has moved too far from where it did not.
         let mut count = 0;
         for attempt in 0..ATTEMPTS {
@@ -294,14 +294,14 @@ impl<'a> Flow<'a> {
         &self.pressures
     }
 
-    /// How far a surface is from rest: whether the finest level folds, which is worse than all else, and the standard deviation of the
-    /// angles at triple lines. Nothing where there are no such angles, and in the plane.
-    fn unrest(&self, points: &[DVec3], finest: &Wedged) -> Option<(bool, f64)> {
+    /// How far points are from rest; nothing where no boundaries meet, and in the plane.
+    fn badness(&self, points: &[DVec3], finest: &Wedged) -> Option<Badness> {
         let Mesh::Triangles(_) = self.control_mesh() else { return None };
         let surface = self.refined(points);
         let spread = dihedral_angles(self.network, self.surface(), &surface)?.standard_deviation;
         let surface = self.network.subdivide_between(self.surface, self.finest(), &surface);
-        Some((!finest.folds(self.network.finest(), &surface).is_empty(), spread))
+        let has_folds = !finest.folds(self.network.finest(), &surface).is_empty();
+        Some(Badness { has_folds, spread })
     }
 
     /// Makes the points of each cluster move as one.

@@ -307,7 +307,8 @@ impl Polygon {
     }
 }
 
-fn boundary(sides: [Side; 2]) -> Boundary {
+/// The boundary between two sides.
+pub(super) fn boundary(sides: [Side; 2]) -> Boundary {
     let side = |side| match side {
         Side::Cell(cell) | Side::Image(cell, _) => crate::Side::Grain(GrainId(cell.0)),
         Side::Wall(_) => crate::Side::Exterior,

@@ -20,6 +20,10 @@ const WALL_TURNS: usize = 50;
 /// Length, in units of a short line, below which lines that stay are put where they have the least area: too short for a step of the flow.
 const TINY: f64 = 0.3;
 
+/// Height, in the same unit, below which boundaries with three sides may go, however long these are: one with bent sides is a good
+/// deal thinner than its corners have it.
+const THIN: f64 = 2.0;
+
 /// Length, in the same unit, that an event must leave to all lines.
 const LEAST: f64 = 0.1;
 
@@ -29,14 +33,16 @@ const LARGEST_CHANGE: f64 = 0.2;
 /// How often lines between the same grains may go without lessening the area: what comes back is to stay.
 const MOST_TRIES: u8 = 8;
 
-/// How often grains came together and parted.
+/// How often grains came together and parted. In the plane, a boundary is an edge, and what was a triple line is a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Reconnections {
-    /// Triple lines that became boundaries with three sides: two grains came to meet.
+    /// Triple lines that became boundaries with three sides: two grains came to meet. In the plane, points of more than three
+    /// edges that opened to one more.
     pub opened: usize,
-    /// Boundaries with three sides that became triple lines: two grains parted.
+    /// Boundaries with three sides that became triple lines: two grains parted. In the plane, edges that shrank to such points.
     pub closed: usize,
-    /// Boundaries with four sides that gave way to one between the grains at two opposite sides.
+    /// Boundaries with four sides that gave way to one between the grains at two opposite sides. In the plane, edges that gave
+    /// way to one between the grains at their ends (T1).
     pub swapped: usize,
 }
 
@@ -83,7 +89,8 @@ impl Reconnector {
         Self { short, tries: HashMap::new() }
     }
 
-    /// Lets all events happen that are due where lines are short; `before` has the lengths of lines a while ago.
+    /// Lets all events happen that are due where lines are short, or boundaries with three sides thin; `before` has the lengths
+    /// of lines a while ago.
     pub(super) fn pass(
         &mut self,
         complex: &mut CellComplex,
@@ -93,7 +100,7 @@ impl Reconnector {
         let mut done = Reconnections::default();
         for face in complex.faces_with_corners(3) {
             if complex.corners(face).len() == 3
-                && perimeter(complex, face) < 3.0 * self.short
+                && least_height(complex, face) < THIN * self.short
                 && self.happens(Event::Close(face), complex, conditions, Demand::LessArea)
             {
                 done.closed += 1;
@@ -288,8 +295,9 @@ fn length(complex: &CellComplex, edge: ComplexEdge) -> f64 {
     complex.vertices[edge.start as usize].distance(complex.position(edge.end))
 }
 
-fn perimeter(complex: &CellComplex, face: FaceId) -> f64 {
-    let corners = complex.corners(face);
-    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-    edges.map(|(a, b)| complex.position(*a).distance(complex.position(*b))).sum()
+/// The distance from the longest side of a boundary with three sides to the corner opposite.
+fn least_height(complex: &CellComplex, face: FaceId) -> f64 {
+    let [a, b, c] = [0, 1, 2].map(|k| complex.position(complex.corners(face)[k]));
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    (b - a).cross(c - a).length() / longest.max(f64::MIN_POSITIVE)
 }

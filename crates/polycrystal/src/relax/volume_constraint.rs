@@ -81,7 +81,7 @@ impl VolumeConstraint {
                 }
             }
         };
-        Compliance { grids: Multigrid::new(Rows::made_by(self.by_grain.len(), row)) }
+        Compliance::new(Rows::made_by(self.by_grain.len(), row))
     }
 }
 
@@ -91,6 +91,11 @@ pub(super) struct Compliance {
 }
 
 impl Compliance {
+    /// That of a symmetric, positive semidefinite matrix.
+    pub(super) fn new(matrix: Rows<f64>) -> Self {
+        Self { grids: Multigrid::new(matrix) }
+    }
+
     /// The pressures that bring about the given changes of volume, up to an error of this share.
     pub(super) fn pressures(&self, changes: &[f64], tolerance: f64) -> Vec<f64> {
         // The same pressure everywhere moves nothing, as the walls hold: a total other than zero, which rounding leaves,

@@ -139,7 +139,7 @@ impl CellComplex {
     }
 
     /// A face between a cell and another side, whose corners are in the order in which the cell sees them.
-    fn face_between(&self, sides: [Side; 2], mut corners: Vec<Corner>) -> Face {
+    pub(super) fn face_between(&self, sides: [Side; 2], mut corners: Vec<Corner>) -> Face {
         let [Side::Image(mut first, mut from), mut second] = sides else {
             unreachable!("a face has a cell on its first side")
         };
