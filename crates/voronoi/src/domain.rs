@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::{BVec3, DVec3};
 
+use crate::big::{is_outside, unit_normal};
 use crate::generator::Generator;
 use crate::half_space::{EVALUATION_ERROR, HalfSpace};
 use crate::polyhedron::{Extent, Polyhedron};
-use crate::predicate::{is_outside, unit_normal};
 use crate::{Tessellation, VoronoiError, Wall, WallPlane};
 
 /// Number of space dimensions of a tessellation.

@@ -6,9 +6,10 @@
 use glam::DVec3;
 
 use crate::candidates::Candidates;
+use crate::exact_plane::Decision;
 use crate::generator::Generator;
 use crate::half_space::{EVALUATION_ERROR, HalfSpace, Intersection};
-use crate::predicate::{Decision, ExactInput};
+use crate::predicate::ExactInput;
 use crate::search::{ImagesMissing, Search};
 use crate::{Dimension, Wall};
 

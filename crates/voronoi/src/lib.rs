@@ -33,6 +33,7 @@
 //! ```
 
 mod accurate_sum;
+mod big;
 mod candidates;
 mod cell_complex;
 mod cell_edges;
@@ -44,6 +45,7 @@ mod curved_domain;
 mod domain;
 mod end_search;
 mod error;
+mod exact_plane;
 mod flat_cells;
 mod generator;
 mod grid;

@@ -4,18 +4,16 @@ use std::cmp::Ordering;
 
 use ethnum::I256;
 
-use crate::generator::{Generator, Plane};
-use crate::predicate::{Decision, ExactInput, ExactPlane, break_tie, decompose};
+use crate::exact_plane::{Decision, ExactPlane, decision, decompose, normal_and_excess};
+use crate::generator::Generator;
+use crate::predicate::ExactInput;
 
 /// Bits of a normal's coordinates. The products of two normals then take 121, those of three 183, and twice an offset takes 124;
 /// the product of the last two would take 309 bits, but is made in halves.
 const NORMAL_BITS: u32 = 60;
 
-/// Bits of weights, which add to twice an offset.
-const WEIGHT_BITS: u32 = 122;
-
-/// Bits of coordinates and periods, of which differences are taken.
-const COORDINATE_BITS: u32 = 120;
+/// Bits of coordinates, periods and weights, of which differences are taken.
+const NUMBER_BITS: u32 = 120;
 
 type NarrowPlane = ExactPlane<i64, i128>;
 
@@ -32,50 +30,20 @@ pub(crate) fn planes<const N: usize>(
 }
 
 fn plane(input: ExactInput, seed: u32, generator: Generator, exponent: i32) -> Option<NarrowPlane> {
-    let own = input.seeds[seed as usize];
-    let integer = |number: f64| integer(number, exponent, COORDINATE_BITS);
-    let period =
-        |axis: usize| Some(integer(input.domain.upper()[axis])? - integer(input.domain.lower()[axis])?);
-    match generator.plane() {
-        Plane::Site(site) => {
-            let image = input.image(site);
-            let other = input.seeds[image.seed as usize];
-            let mut normal = [0; 3];
-            for (axis, coordinate) in normal.iter_mut().enumerate() {
-                let difference = integer(other[axis])? - integer(own[axis])?;
-                let moved = match image.shift.0[axis] {
-                    0 => difference,
-                    shift => difference + period(axis)? * i128::from(shift),
-                };
-                *coordinate = i64::try_from(moved).ok().filter(|n| n.unsigned_abs() < 1 << NORMAL_BITS)?;
-            }
-            let weight = |site: u32| self::integer(input.weight(site), 2 * exponent, WEIGHT_BITS);
-            let squared: i128 = normal.iter().map(|n| i128::from(*n) * i128::from(*n)).sum();
-            let doubled_offset = squared + weight(seed)? - weight(site)?;
-            Some(ExactPlane { normal, doubled_offset, generator })
-        }
-        Plane::Facet(_) => None,
-        Plane::Side(side) => {
-            let axis = side.axis();
-            let direction = if side.is_upper() { 1 } else { -1 };
-            let mut normal = [0; 3];
-            normal[axis] = direction;
-            let doubled_offset = if input.domain.periodic().test(axis) {
-                period(axis)?
-            } else {
-                let distance = integer(input.domain.side_coordinate(side))? - integer(own[axis])?;
-                2 * distance * i128::from(direction)
-            };
-            Some(ExactPlane { normal, doubled_offset, generator })
-        }
+    let (normal, excess) = normal_and_excess(input, seed, generator, exponent, integer)?;
+    let mut short = [0; 3];
+    for (short, coordinate) in short.iter_mut().zip(normal) {
+        *short = i64::try_from(coordinate).ok().filter(|n| n.unsigned_abs() < 1 << NORMAL_BITS)?;
     }
+    let square = || short.iter().map(|n| i128::from(*n) * i128::from(*n)).sum::<i128>();
+    let doubled_offset = if generator.as_site().is_some() { square() + excess } else { excess };
+    Some(ExactPlane { normal: short, doubled_offset, generator })
 }
 
 /// As [`ExactInput::decide`], for the three planes of a vertex and the one that may cut it off.
 pub(crate) fn decide(planes: &[NarrowPlane; 4]) -> Decision {
     let [a, b, c, m] = planes.each_ref().map(|plane| &plane.normal);
     let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
-    // Of D_a, D_b, D_c and D_m.
     let coefficients = [dot(m, &bc), dot(m, &ca), dot(m, &ab), -dot(a, &bc)];
     debug_assert!(coefficients[3] < I256::ZERO, "the planes of a vertex are in positive orientation");
     // Offsets are 2^64 times one number plus another.
@@ -86,15 +54,7 @@ pub(crate) fn decide(planes: &[NarrowPlane; 4]) -> Decision {
     }
     let value = high + (low >> 64u32);
     let rest = low & I256::from(u64::MAX);
-    match sign(value).then(sign(rest)) {
-        Ordering::Equal => {
-            let of_sites =
-                coefficients.iter().zip(planes).filter(|(_, plane)| plane.generator.as_site().is_some());
-            let own = of_sites.fold(I256::ZERO, |sum, (coefficient, _)| sum + coefficient);
-            Decision { beyond: break_tie(planes, coefficients.map(sign), sign(own)), tie: true }
-        }
-        sign => Decision { beyond: sign.is_gt(), tie: false },
-    }
+    decision(planes, &coefficients, sign(value).then(sign(rest)))
 }
 
 /// As [`ExactInput::is_positive`].
@@ -118,15 +78,15 @@ fn dot(a: &[i64; 3], b: &[i128; 3]) -> I256 {
     product(0) + product(1) + product(2)
 }
 
-/// A number in units of two to an exponent, if it has at most some bits.
-fn integer(number: f64, exponent: i32, bits: u32) -> Option<i128> {
+/// A number in units of two to an exponent, if it has at most [`NUMBER_BITS`].
+fn integer(number: f64, exponent: i32) -> Option<i128> {
     let (mantissa, own_exponent) = decompose(number);
     if mantissa == 0 {
         return Some(0);
     }
     let shift = (own_exponent - exponent).unsigned_abs();
     // A mantissa has 53 bits.
-    (shift <= bits - 53).then(|| i128::from(mantissa) << shift)
+    (shift <= NUMBER_BITS - 53).then(|| i128::from(mantissa) << shift)
 }
 
 #[cfg(test)]
@@ -134,8 +94,9 @@ mod tests {
     use glam::{BVec3, DVec3};
 
     use super::*;
+    use crate::exact_plane::common_exponent;
     use crate::images::ImageTable;
-    use crate::{Domain, Wall};
+    use crate::{Domain, Wall, big};
 
     /// Decisions among seeds on a coarse grid, of which many are tied, and near it.
     #[test]
@@ -166,14 +127,15 @@ mod tests {
             };
             let generators = [generator(), generator(), generator(), generator()];
             let [a, b, c, _] = generators;
-            let exponent = input.common_exponent(0, &generators);
+            let exponent = common_exponent(input, 0, &generators);
             let planes = planes(input, 0, generators, exponent).expect("few bits");
             let [x, y, z, _] = planes.each_ref().map(|plane| plane.normal);
             if dot(&x, &cross(&y, &z)) <= I256::ZERO {
                 continue;
             }
             let decision = decide(&planes);
-            assert_eq!(decision, input.decide_at_length(0, generators, exponent), "{seeds:?} {generators:?}");
+            let big = big::decide(&big::planes(input, 0, generators, exponent));
+            assert_eq!(decision, big, "{seeds:?} {generators:?}");
             assert!(input.is_positive(0, [a, b, c]));
             tied += usize::from(decision.tie);
             decided += 1;

@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 
+use crate::big::unit_normal;
 use crate::convex_cell::ConvexCell;
 use crate::domain::MOST_WALLS;
 use crate::generator::{Generator, Plane};
 use crate::images::ImageTable;
 use crate::polygon::ConvexPolygon;
-use crate::predicate::{ExactInput, unit_normal};
+use crate::predicate::ExactInput;
 use crate::search::Cutting;
 use crate::{Dimension, Domain, VoronoiError, Wall, WallPlane};
 

@@ -1,46 +1,14 @@
-//! Exact decisions, for when floating point cannot tell.
-//!
-//! A cell of seed i is bounded by planes `n . y <= D / 2`, with y relative to the seed: for a bisector with seed j,
-//! `n = s_j - s_i` and `D = |n|^2 + w_i - w_j` with the power weights w; for a wall, `n` is its outward normal and `D` twice the distance to it. Three planes
-//! a, b, c with positive determinant meet in a vertex; a fourth plane m cuts it off when
-//!
-//! `n_m . (D_a n_b x n_c + D_b n_c x n_a + D_c n_a x n_b) - D_m det(n_a, n_b, n_c) > 0`.
-//!
-//! For four seeds this is the in-sphere determinant, so its sign is the same whichever of the cells asks.
-//!
-//! Ties are broken by simulation of simplicity (Edelsbrunner and Mücke 1990) on the power weights: each seed j gets an
-//! infinitesimal weight e_j, and e_j >> e_k where j comes before k in the lexicographic order of positions. D changes by
-//! e_i - e_j, the expression is linear in the D, and the first seed whose coefficient is not zero decides. One always
-//! exists: that of the fourth seed is the determinant. Only the order among the seeds involved counts, which neither their
-//! numbering nor a shift changes, so all periodic copies of a decision come out the same (as in CGAL's periodic
-//! triangulations, Caroli and Teillaud 2009).
-//!
-//! Walls move, too: the D of wall k grows by an infinitesimal d_k far below all e_j, with d_k >> d_l where k < l. It only
-//! matters where four walls of a polyhedron meet in a point, or one touches a corner or an edge that others make.
-//!
-//! A periodic image of a seed is exact, too: the seed moved by whole multiples of the exact difference of two opposite walls.
-
-use std::cmp::Ordering;
+//! What cells are cut by, in floating point, and exact decisions for when that cannot tell.
 
 use glam::DVec3;
-use num_bigint::BigInt;
-use num_traits::{Signed, ToPrimitive, Zero};
 
 use crate::accurate_sum::{accurate_sum, sum_and_rest};
-use crate::generator::{Generator, Plane};
+use crate::exact_plane::{Decision, common_exponent};
+use crate::generator::Generator;
 use crate::half_space::{EVALUATION_ERROR, HalfSpace};
 use crate::images::{Image, ImageTable};
 use crate::tessellation::Shift;
-use crate::{Domain, Wall, WallPlane, narrow};
-
-/// On which side of a plane a vertex lies once ties are broken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Decision {
-    /// The plane cuts the vertex off.
-    pub(crate) beyond: bool,
-    /// The vertex lies exactly on the plane; `beyond` is then the symbolic answer.
-    pub(crate) tie: bool,
-}
+use crate::{Domain, Wall, big, narrow};
 
 /// The input that exact decisions are made from. Sites are the seeds, then the periodic images of seeds.
 #[derive(Clone, Copy)]
@@ -50,13 +18,6 @@ pub(crate) struct ExactInput<'a> {
     /// Power weights, one per seed; all 0 if there are none.
     pub(crate) weights: Option<&'a [f64]>,
     pub(crate) images: &'a ImageTable,
-}
-
-/// A plane in integers: coordinates in units of two to some exponent.
-pub(crate) struct ExactPlane<N, D> {
-    pub(crate) normal: [N; 3],
-    pub(crate) doubled_offset: D,
-    pub(crate) generator: Generator,
 }
 
 impl<'a> ExactInput<'a> {
@@ -181,258 +142,27 @@ impl<'a> ExactInput<'a> {
     pub(crate) fn decide(self, seed: u32, planes: [Generator; 3], cutter: Generator) -> Decision {
         let [a, b, c] = planes;
         let generators = [a, b, c, cutter];
-        let exponent = self.common_exponent(seed, &generators);
+        let exponent = common_exponent(self, seed, &generators);
         match narrow::planes(self, seed, generators, exponent) {
             Some(planes) => narrow::decide(&planes),
-            None => self.decide_at_length(seed, generators, exponent),
+            None => big::decide(&big::planes(self, seed, generators, exponent)),
         }
-    }
-
-    /// The same with integers of any length.
-    pub(crate) fn decide_at_length(self, seed: u32, generators: [Generator; 4], exponent: i32) -> Decision {
-        let planes = generators.map(|generator| self.plane(seed, generator, exponent));
-        let [a, b, c, m] = &planes;
-        let bc = cross(&b.normal, &c.normal);
-        let ca = cross(&c.normal, &a.normal);
-        let ab = cross(&a.normal, &b.normal);
-        let determinant = dot(&a.normal, &bc);
-        debug_assert!(determinant.is_positive());
-
-        // Coefficients of D_a, D_b, D_c and D_m.
-        let coefficients = [dot(&m.normal, &bc), dot(&m.normal, &ca), dot(&m.normal, &ab), -determinant];
-        let products = coefficients.iter().zip(&planes).map(|(factor, plane)| factor * &plane.doubled_offset);
-        let value: BigInt = products.sum();
-        if !value.is_zero() {
-            return Decision { beyond: value.is_positive(), tie: false };
-        }
-        let of_sites =
-            coefficients.iter().zip(&planes).filter(|(_, plane)| plane.generator.as_site().is_some());
-        let own: BigInt = of_sites.map(|(coefficient, _)| coefficient).sum();
-        let sign = |number: &BigInt| number.cmp(&BigInt::zero());
-        let beyond = break_tie(&planes, coefficients.each_ref().map(sign), sign(&own));
-        Decision { beyond, tie: true }
     }
 
     /// Whether three planes are in positive orientation: the determinant of their normals is positive.
-    pub(crate) fn is_positive(self, seed: u32, generators: [Generator; 3]) -> bool {
-        let exponent = self.common_exponent(seed, &generators);
-        if let Some(planes) = narrow::planes(self, seed, generators, exponent) {
-            return narrow::is_positive(&planes);
+    pub(crate) fn is_positive(self, seed: u32, planes: [Generator; 3]) -> bool {
+        let exponent = common_exponent(self, seed, &planes);
+        match narrow::planes(self, seed, planes, exponent) {
+            Some(planes) => narrow::is_positive(&planes),
+            None => big::is_positive(&big::planes(self, seed, planes, exponent)),
         }
-        let [a, b, c] = generators.map(|generator| self.plane(seed, generator, exponent).normal);
-        dot(&a, &cross(&b, &c)).is_positive()
     }
 
     /// The vertex of three planes relative to the seed, each coordinate rounded to nearest but for one or two last places.
     pub(crate) fn vertex(self, seed: u32, planes: [Generator; 3]) -> DVec3 {
-        let exponent = self.common_exponent(seed, &planes);
-        let [a, b, c] = planes.map(|generator| self.plane(seed, generator, exponent));
-        let bc = cross(&b.normal, &c.normal);
-        let ca = cross(&c.normal, &a.normal);
-        let ab = cross(&a.normal, &b.normal);
-        let denominator = dot(&a.normal, &bc) * 2;
-        let coordinate = |axis: usize| {
-            let numerator =
-                &a.doubled_offset * &bc[axis] + &b.doubled_offset * &ca[axis] + &c.doubled_offset * &ab[axis];
-            ratio(numerator, &denominator, exponent)
-        };
-        DVec3::new(coordinate(0), coordinate(1), coordinate(2))
+        let exponent = common_exponent(self, seed, &planes);
+        big::vertex(&big::planes(self, seed, planes, exponent), exponent)
     }
-
-    /// The smallest exponent such that all coordinates involved are integers times two to it, and all weights integers times
-    /// two to twice it.
-    pub(crate) fn common_exponent(self, seed: u32, generators: &[Generator]) -> i32 {
-        let of_number = |number: f64| {
-            let (mantissa, exponent) = decompose(number);
-            (mantissa != 0).then_some(exponent)
-        };
-        let of_point = |point: DVec3| point.to_array().into_iter().filter_map(of_number).min();
-        let of_site = |site: u32| {
-            let image = self.image(site);
-            let of_period = (0..3).filter(|axis| image.shift.0[*axis] != 0).flat_map(|axis| {
-                [self.domain.lower()[axis], self.domain.upper()[axis]].into_iter().filter_map(of_number)
-            });
-            let of_weight = of_number(self.weight(site)).map(|exponent| exponent.div_euclid(2));
-            of_weight.into_iter().chain(of_point(self.seeds[image.seed as usize])).chain(of_period).min()
-        };
-        let of_side = |side: Wall| {
-            let opposite = Wall(side.0 ^ 1);
-            [side, opposite].into_iter().filter_map(|side| of_number(self.domain.side_coordinate(side))).min()
-        };
-        let of_planes = generators.iter().filter_map(|generator| match generator.plane() {
-            Plane::Site(site) => of_site(site),
-            Plane::Side(side) => of_side(side),
-            Plane::Facet(wall) => match &self.domain.wall_planes()[wall.index()] {
-                // Has units of its own.
-                WallPlane::HalfSpace { .. } => None,
-                WallPlane::Through(points) => points.iter().copied().filter_map(of_point).min(),
-            },
-        });
-        of_planes.chain(of_site(seed)).min().unwrap_or(0)
-    }
-
-    fn plane(self, seed: u32, generator: Generator, exponent: i32) -> ExactPlane<BigInt, BigInt> {
-        let own = self.seeds[seed as usize];
-        let integer = |number: f64| to_integer(number, exponent);
-        let period = |axis: usize| integer(self.domain.upper()[axis]) - integer(self.domain.lower()[axis]);
-        match generator.plane() {
-            Plane::Site(site) => {
-                let image = self.image(site);
-                let other = self.seeds[image.seed as usize];
-                let normal = [0, 1, 2].map(|axis| {
-                    let difference = integer(other[axis]) - integer(own[axis]);
-                    match image.shift.0[axis] {
-                        0 => difference,
-                        shift => difference + period(axis) * shift,
-                    }
-                });
-                let weight = |site: u32| to_integer(self.weight(site), 2 * exponent);
-                let doubled_offset = dot(&normal, &normal) + weight(seed) - weight(site);
-                ExactPlane { normal, doubled_offset, generator }
-            }
-            Plane::Facet(wall) => {
-                let (normal, offset) = wall_plane(&self.domain.wall_planes()[wall.index()], own, exponent);
-                ExactPlane { normal, doubled_offset: offset * 2, generator }
-            }
-            Plane::Side(side) => {
-                let axis = side.axis();
-                let direction = if side.is_upper() { 1 } else { -1 };
-                let mut normal = [BigInt::zero(), BigInt::zero(), BigInt::zero()];
-                normal[axis] = BigInt::from(direction);
-                let doubled_offset = if self.domain.periodic().test(axis) {
-                    period(axis)
-                } else {
-                    (integer(self.domain.side_coordinate(side)) - integer(own[axis])) * (2 * direction)
-                };
-                ExactPlane { normal, doubled_offset, generator }
-            }
-        }
-    }
-}
-
-/// The normal of a wall and its distance from a point in units of the normal's length, for coordinates in units of two to an
-/// exponent.
-fn wall_plane(plane: &WallPlane, point: DVec3, exponent: i32) -> ([BigInt; 3], BigInt) {
-    let integers = |point: DVec3| point.to_array().map(|coordinate| to_integer(coordinate, exponent));
-    let point = integers(point);
-    match plane {
-        WallPlane::HalfSpace { normal, offset } => {
-            let of_number = |number: f64| {
-                let (mantissa, exponent) = decompose(number);
-                (mantissa != 0).then_some(exponent)
-            };
-            let of_normal = normal.to_array().into_iter().filter_map(of_number);
-            let unit = of_normal.chain(of_number(*offset).map(|of_offset| of_offset - exponent)).min();
-            let unit = unit.unwrap_or(0);
-            let normal = normal.to_array().map(|coordinate| to_integer(coordinate, unit));
-            let offset = to_integer(*offset, unit + exponent) - dot(&normal, &point);
-            (normal, offset)
-        }
-        WallPlane::Through(corners) => {
-            let [a, b, c] = corners.map(integers);
-            let normal = cross(&minus(&b, &a), &minus(&c, &a));
-            let offset = dot(&normal, &minus(&a, &point));
-            (normal, offset)
-        }
-    }
-}
-
-/// Whether a point lies beyond a wall, exactly.
-pub(crate) fn is_outside(plane: &WallPlane, point: DVec3) -> bool {
-    wall_plane(plane, point, exponent_of(plane, point)).1.is_negative()
-}
-
-/// The outward normal of a wall, of length 1, each coordinate rounded twice; 0 if there is none.
-pub(crate) fn unit_normal(plane: &WallPlane) -> DVec3 {
-    let (normal, _) = wall_plane(plane, DVec3::ZERO, exponent_of(plane, DVec3::ZERO));
-    let largest = normal.iter().map(Signed::abs).max().unwrap_or_default();
-    if largest.is_zero() {
-        return DVec3::ZERO;
-    }
-    DVec3::from_array(normal.map(|coordinate| ratio(coordinate, &largest, 0))).normalize()
-}
-
-/// An exponent such that the coordinates of a point and of a wall's are integers times two to it.
-fn exponent_of(plane: &WallPlane, point: DVec3) -> i32 {
-    let points: &[DVec3] = match plane {
-        WallPlane::HalfSpace { .. } => &[],
-        WallPlane::Through(points) => points,
-    };
-    let coordinates = points.iter().chain([&point]).flat_map(|point| point.to_array());
-    let exponents = coordinates.map(decompose).filter(|(mantissa, _)| *mantissa != 0);
-    exponents.map(|(_, exponent)| exponent).min().unwrap_or(0)
-}
-
-/// The sign of the expression's change under the symbolic weights, or else the symbolic motion of walls, from the signs of the
-/// coefficients of the planes, and of the sum of those of sites.
-pub(crate) fn break_tie<N: Ord + Default, D>(
-    planes: &[ExactPlane<N, D>; 4],
-    signs: [Ordering; 4],
-    own: Ordering,
-) -> bool {
-    // The normal of a bisector is the other site's position relative to the seed.
-    let origin = [(); 3].map(|()| N::default());
-    let mut of_sites = vec![(&origin, own)];
-    let mut of_walls = Vec::new();
-    for (plane, sign) in planes.iter().zip(signs) {
-        if plane.generator.as_site().is_some() {
-            of_sites.push((&plane.normal, sign.reverse()));
-        } else {
-            of_walls.push((plane.generator, sign));
-        }
-    }
-    of_sites.sort_unstable();
-    of_walls.sort_unstable();
-    let mut signs = of_sites.iter().map(|(_, sign)| sign).chain(of_walls.iter().map(|(_, sign)| sign));
-    signs.find(|sign| sign.is_ne()).is_some_and(|sign| sign.is_gt())
-}
-
-fn cross(a: &[BigInt; 3], b: &[BigInt; 3]) -> [BigInt; 3] {
-    [&a[1] * &b[2] - &a[2] * &b[1], &a[2] * &b[0] - &a[0] * &b[2], &a[0] * &b[1] - &a[1] * &b[0]]
-}
-
-fn minus(a: &[BigInt; 3], b: &[BigInt; 3]) -> [BigInt; 3] {
-    [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
-}
-
-fn dot(a: &[BigInt; 3], b: &[BigInt; 3]) -> BigInt {
-    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
-}
-
-/// A finite double as mantissa times two to an exponent.
-pub(crate) fn decompose(value: f64) -> (i64, i32) {
-    let bits = value.to_bits();
-    let fraction = (bits & ((1 << 52) - 1)).cast_signed();
-    let biased = ((bits >> 52) & 0x7ff) as i32;
-    // 1075 is the exponent's bias, 1023, and the 52 bits after the binary point; subnormals have no hidden bit.
-    let (magnitude, exponent) =
-        if biased == 0 { (fraction, -1074) } else { (fraction | (1 << 52), biased - 1075) };
-    (if value < 0.0 { -magnitude } else { magnitude }, exponent)
-}
-
-fn to_integer(value: f64, exponent: i32) -> BigInt {
-    let (mantissa, own_exponent) = decompose(value);
-    if mantissa == 0 {
-        return BigInt::zero();
-    }
-    BigInt::from(mantissa) << (own_exponent - exponent).unsigned_abs()
-}
-
-/// `numerator / denominator * 2^exponent` in double precision.
-fn ratio(numerator: BigInt, denominator: &BigInt, exponent: i32) -> f64 {
-    if numerator.is_zero() {
-        return 0.0;
-    }
-    // 64 bits of quotient, more than a double holds, whatever the sizes of the two.
-    let bits = |value: &BigInt| i64::try_from(value.bits()).unwrap_or(i64::MAX);
-    let shift = bits(denominator) - bits(&numerator) + 64;
-    let shifted = if shift >= 0 { numerator << shift } else { numerator >> shift.unsigned_abs() };
-    let quotient = shifted / denominator;
-    let scale = i64::from(exponent) - shift;
-    // Two factors, for one power of two alone may leave the range of doubles where the product does not.
-    let half = scale / 2;
-    let power = |e: i64| 2f64.powi(i32::try_from(e).unwrap_or(i32::MIN));
-    quotient.to_f64().unwrap_or(f64::NAN) * power(half) * power(scale - half)
 }
 
 #[cfg(test)]
