@@ -19,8 +19,8 @@ const POWER: i32 = 3;
 /// d: the area that counts as none, in units of s. A needle of a tenth of a degree has as much.
 const NO_AREA: f64 = 1e-3;
 
-/// Most steps down the gradient.
-const STEPS: usize = 120;
+/// Most steps down the gradient; most places take some ten, the worst of 20 networks of 200 grains took 244.
+const STEPS: usize = 300;
 
 /// Times that a step is halved before it counts as one that leads nowhere.
 const HALVINGS: usize = 20;
