@@ -90,13 +90,19 @@ fn runs_and_checks_tell_how_thin_triangles_are() {
     let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
     let [least, percentile] =
         ["least", "first_percentile"].map(|key| run["triangle_angles"][key].as_f64().unwrap());
-    assert!(least > 0.0 && least < percentile && percentile < 60.0, "{said}");
+    assert!(least >= 1.5 && least < percentile && percentile < 60.0, "{said}");
+    assert_eq!(run["triangle_angles"]["thin"], 0);
     let line = format!(
         "triangles   one in a hundred has an angle below {percentile:.1} degrees; the least is {least:.2}"
     );
     assert!(said.lines().any(|said| said == line), "{line}\nis not in\n{said}");
     let checked = text(&workplace, "check a.vtp");
     assert!(checked.lines().any(|said| said.trim_start() == line), "{line}\nis not in\n{checked}");
+    // Flat boundaries are as thin as cells have them.
+    let said = workplace.run("--seeds 100 -n 0 --relax 0 -o flat.vtp --json-summary run.json");
+    let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+    let thin = run["triangle_angles"]["thin"].as_u64().unwrap();
+    assert!(thin > 0 && said.contains(&format!(", {thin} are below 1.5")), "{said}");
     workplace.run("--dim 2 --seeds 20 -o b.vtp --json-summary run.json");
     let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
     assert!(run["triangle_angles"].is_null());

@@ -2,7 +2,8 @@
 
 use voronoi::{Collapsed, Dimension, Tessellation};
 
-use crate::{FaceMesh, Junctions, Network, Relaxation, relax};
+use crate::relax::foreseen_points;
+use crate::{FaceMesh, Junctions, Network};
 
 /// Factor by which lines that relaxation will have shortened may be longer than others to collapse: what is short by then goes on
 /// shrinking, and holds the lines around up.
@@ -19,16 +20,12 @@ pub fn regular_cells(cells: &Tessellation, length: f64) -> (Tessellation, Collap
         return (regular, collapsed);
     }
     let volumes = cells.cell_measures().iter().map(|cell| cell.volume).collect();
-    let relaxed = Network::with_face_mesh(&regular, FaceMesh::SparseFan, Junctions::Crease, 0).and_then(
-        |(network, flat)| {
-            relax(&network.with_cell_volumes(volumes), &flat, &Relaxation::default(), |_, _| ())
-        },
-    );
+    let relaxed = Network::with_face_mesh(&regular, FaceMesh::SparseFan, Junctions::Crease, 0)
+        .and_then(|(network, flat)| foreseen_points(&network.with_cell_volumes(volumes), &flat));
     // Where these cells cannot be relaxed, nothing more is known of them; the network itself will tell why.
-    let Ok(relaxed) = relaxed else { return (regular, collapsed) };
+    let Ok(points) = relaxed else { return (regular, collapsed) };
     // Control points begin with the vertices.
-    let (regular, more) =
-        regular.regularized_for(FUTURE * length, &relaxed.points[..regular.vertices().len()]);
+    let (regular, more) = regular.regularized_for(FUTURE * length, &points[..regular.vertices().len()]);
     let collapsed = Collapsed { edges: collapsed.edges + more.edges, faces: collapsed.faces + more.faces };
     (regular, collapsed)
 }

@@ -25,13 +25,14 @@ mod shape;
 mod springs;
 mod system;
 mod tangential;
+mod thin_triangles;
 mod volume_constraint;
 mod wedges;
 
 use glam::DVec3;
 
 use crate::{Mesh, Network, NetworkError};
-use flow::{Flow, RIGID_LENGTH, Remedy, Stage};
+use flow::{End, Flow, RIGID_LENGTH, Remedy, Stage};
 
 pub use equilibrium::{Balance, Equilibrium, NetworkRecipe, equilibrate};
 pub use reconnection::Reconnections;
@@ -48,6 +49,9 @@ const COARSE_STEPS: usize = 10;
 
 /// Steps that the same time is divided into once more on each finer level, where less is left to do.
 const FINE_STEPS: usize = 6;
+
+/// The usual relaxation time, in units of the mean grain size squared.
+const USUAL_TIME: f64 = 0.3;
 
 /// Time of the flow toward equilibrium on each coarser level, in units of the mean grain size squared.
 const LONG_STEP: f64 = 0.3;
@@ -79,7 +83,7 @@ impl Relaxation {
 impl Default for Relaxation {
     /// Time 0.3: the angles of random Voronoi grains spread by 7 degrees instead of 24 (by 12 without subdivision).
     fn default() -> Self {
-        Self::Time(0.3)
+        Self::Time(USUAL_TIME)
     }
 }
 
@@ -204,13 +208,13 @@ fn relax_levels(
     let mut passed = 0.0;
     for level in 0..=last {
         let count = if level == 0 { COARSE_STEPS } else { FINE_STEPS };
-        let is_last = level == last;
+        let end = if level == last { End::Finished } else { End::Open };
         let stage = match relaxation {
-            Relaxation::Equilibrium if is_last => {
+            Relaxation::Equilibrium if level == last => {
                 let step_time = if is_in_space { REST_STEP / LONG_STEP * whole_time } else { whole_time };
-                Stage { step_time, steps: REST_STEPS, residual: Relaxation::RESIDUAL, is_last }
+                Stage { step_time, steps: REST_STEPS, residual: Relaxation::RESIDUAL, end }
             }
-            _ => Stage { step_time: whole_time / count as f64, steps: count, residual: 0.0, is_last },
+            _ => Stage { step_time: whole_time / count as f64, steps: count, residual: 0.0, end },
         };
         let start =
             if level > 0 { network.subdivide_between(level - 1, level, &points) } else { points.clone() };
@@ -227,7 +231,7 @@ fn relax_levels(
             Err(error) if level == 0 => return Err(error),
             Err(_) => {
                 // Finer points fold where coarser ones do not: these will have to do.
-                let end = Stage { step_time: 0.0, steps: 0, residual: 0.0, is_last: true };
+                let end = Stage { step_time: 0.0, steps: 0, residual: 0.0, end: End::Finished };
                 points = flow(level - 1).run(&points, &end, &mut |_, _| ())?;
                 let (level, steps) = (level - 1, done_before - count);
                 return Ok(Relaxed { level, points, steps, time: before, fell_back: true });
@@ -235,4 +239,15 @@ fn relax_levels(
         }
     }
     Ok(Relaxed { level: last, points, steps, time: passed, fell_back: false })
+}
+
+/// Where the points of a control mesh in space go in the usual time, as a forecast: volumes are right, triangles may be thin.
+pub(crate) fn foreseen_points(
+    network: &Network,
+    control_points: &[DVec3],
+) -> Result<Vec<DVec3>, NetworkError> {
+    let whole_time = USUAL_TIME * network.mean_grain_size().powi(2);
+    let step_time = whole_time / COARSE_STEPS as f64;
+    let stage = Stage { step_time, steps: COARSE_STEPS, residual: 0.0, end: End::Volumes };
+    Flow::new(network, 0, Volumes::Kept).run(control_points, &stage, &mut |_, _| ())
 }

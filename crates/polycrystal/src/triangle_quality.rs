@@ -1,3 +1,4 @@
+use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::{Elements, Surface};
@@ -9,29 +10,42 @@ pub struct TriangleQuality {
     pub least: f64,
     /// That which a hundredth of the triangles is below.
     pub first_percentile: f64,
+    /// How many triangles are thin: their smallest angles are below [`TriangleQuality::BOUND`].
+    pub thin: usize,
+}
+
+impl TriangleQuality {
+    /// The smallest angle, in degrees, of a triangle that is not thin. Relaxation in space leaves no thin triangle where one can
+    /// be helped by its corners moving along boundaries and lines. Flat boundaries are what their cells are.
+    pub const BOUND: f64 = 1.5;
 }
 
 /// The quality of a surface's triangles; nothing in the plane, and where there are none.
 pub(crate) fn triangle_quality(surface: &Surface<'_>) -> Option<TriangleQuality> {
     let Elements::Triangles(triangles) = surface.elements else { return None };
-    let of_triangle = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(|corner| surface.points[corner as usize]);
-        let angles =
-            [[b - a, c - a], [c - b, a - b], [a - c, b - c]].map(|[one, other]| one.angle_between(other));
-        angles.into_iter().fold(f64::INFINITY, f64::min).to_degrees()
-    };
+    let of_triangle =
+        |corners: &[u32; 3]| squared_sine(corners.map(|corner| surface.points[corner as usize]));
     let mut smallest: Vec<f64> = triangles.par_iter().map(of_triangle).collect();
     let place = smallest.len() / 100;
     let (below, at, _) =
         (!smallest.is_empty()).then(|| smallest.select_nth_unstable_by(place, f64::total_cmp))?;
     let least = below.iter().copied().fold(*at, f64::min);
-    Some(TriangleQuality { least, first_percentile: *at })
+    let [least, first_percentile] = [least, *at].map(|squared| squared.sqrt().asin().to_degrees());
+    let bound = TriangleQuality::BOUND.to_radians().sin().powi(2);
+    let thin = smallest.iter().filter(|squared| **squared < bound).count();
+    Some(TriangleQuality { least, first_percentile, thin })
+}
+
+/// The square of the sine of a triangle's smallest angle, which is across from its shortest side; 0 where two corners are one.
+pub(crate) fn squared_sine([a, b, c]: [DVec3; 3]) -> f64 {
+    let sides = [b - a, c - b, a - c].map(DVec3::length_squared);
+    let product: f64 = sides.iter().product();
+    let shortest = sides.into_iter().fold(f64::INFINITY, f64::min);
+    if product == 0.0 { 0.0 } else { (b - a).cross(c - a).length_squared() * shortest / product }
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
     use crate::{BoundaryId, Side};
 

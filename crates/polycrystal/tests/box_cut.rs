@@ -29,7 +29,7 @@ fn check_cut(domain: &Domain, count: usize) {
         .map(|seed| domain.lower() + *seed * (domain.upper() - domain.lower()))
         .map(|seed| if domain.dimension() == voronoi::Dimension::Two { seed.with_z(0.0) } else { seed })
         .collect();
-    let (network, points) = relaxed(&domain, &seeds);
+    let (network, points) = relaxed(domain, &seeds);
     let (cut, cut_points) = network.cut_at_box(&points).unwrap_or_else(|error| panic!("{domain}: {error}"));
     let cut = cut.with_cell_volumes(network.cell_volumes().to_vec());
     let validation = validate(&cut, &cut_points).expect("valid");

@@ -22,7 +22,10 @@ const BLOCKS_PER_BRICK: i32 = 3;
 /// Blocks that a thread sorts at once.
 const BLOCKS_SORTED_AT_ONCE: usize = 1024;
 
-/// Covers the rounding of a position in units of blocks, at most 1024.
+/// Blocks along an axis at most, nearly, which keeps extreme boxes within memory.
+const MOST_BLOCKS: i32 = 1024;
+
+/// Covers the rounding of a position in units of blocks, at most about [`MOST_BLOCKS`].
 const BLOCK_MARGIN: f64 = 1e-9;
 
 /// Seeds in the grid's order: their numbers in the input and their coordinates.
@@ -59,17 +62,10 @@ impl SeedGrid {
         let lower = seeds.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let upper = seeds.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
         let size = upper - lower;
-        let counts = block_counts(size, seeds.len() as f64 / SEEDS_PER_BLOCK);
-        let axes = counts.to_array().into_iter().filter(|count| *count > 1).count().max(1);
-        let blocks: f64 = counts.to_array().into_iter().map(f64::from).product();
-        let blocks_per_tile = (blocks / TILES).clamp(BLOCKS_PER_TILE[0], BLOCKS_PER_TILE[1]);
-        let tile_edge = blocks_per_tile.powf(1.0 / axes as f64);
-        let mut tile_counts = (counts.as_dvec3() / tile_edge).round().as_ivec3().max(IVec3::ONE);
-        let tiles = tile_counts.element_product();
-        // Threads take tiles in turn, and mostly there is an even number of them.
-        if tiles > 1 && tiles % 2 == 1 {
-            tile_counts[counts.max_position()] += 1;
-        }
+        // Casting saturates.
+        let counts = cubes_along(size, seeds.len() as f64 / SEEDS_PER_BLOCK).as_ivec3();
+        let counts = counts.clamp(IVec3::ONE, IVec3::splat(MOST_BLOCKS));
+        let tile_counts = tile_counts(counts);
         // Tiles of one size take nearly the same time.
         let tile = (counts + (tile_counts - 1)) / tile_counts;
         let counts = tile * tile_counts;
@@ -78,23 +74,7 @@ impl SeedGrid {
             let width = size[axis] / f64::from(counts[axis]);
             if width > 0.0 { width } else { 1.0 }
         }));
-        let brick = IVec3::new(tile.x, tile.y.min(BLOCKS_PER_BRICK), tile.z.min(BLOCKS_PER_BRICK));
-        let brick_counts = (tile + (brick - 1)) / brick;
-        let brick_blocks = brick.element_product();
-        let tile_blocks = brick_blocks * brick_counts.element_product();
-        // From one to the next along each axis: blocks in a brick, bricks in a tile, tiles.
-        let steps = |counts: IVec3| [1, counts.x, counts.x * counts.y];
-        let (block_steps, brick_steps, tile_steps) = (steps(brick), steps(brick_counts), steps(tile_counts));
-        let offsets = [0, 1, 2].map(|axis| {
-            let offset = |block: i32| {
-                let in_tile = block % tile[axis];
-                let in_brick = in_tile % brick[axis] * block_steps[axis];
-                let before_brick = in_tile / brick[axis] * brick_steps[axis] * brick_blocks;
-                let before_tile = block / tile[axis] * tile_steps[axis] * tile_blocks;
-                (in_brick + before_brick + before_tile).cast_unsigned()
-            };
-            (0..counts[axis]).map(offset).collect()
-        });
+        let (offsets, tile_blocks) = block_offsets(tile, tile_counts);
         let mut grid = Self {
             lower,
             block,
@@ -107,8 +87,8 @@ impl SeedGrid {
             order: Vec::new(),
             columns: [const { Vec::new() }; 3],
         };
-        grid.sort(&seeds, (tile_counts.element_product() * tile_blocks).unsigned_abs() as usize);
-        let tile_starts = grid.starts.iter().copied().step_by(tile_blocks.unsigned_abs() as usize);
+        grid.sort(&seeds, tile_counts.element_product().unsigned_abs() as usize * tile_blocks);
+        let tile_starts = grid.starts.iter().copied().step_by(tile_blocks);
         let tile_starts: Vec<u32> = tile_starts.collect();
         grid.tiles =
             tile_starts.windows(2).map(|pair| pair[0]..pair[1]).filter(|tile| !tile.is_empty()).collect();
@@ -253,27 +233,60 @@ impl SeedGrid {
     }
 }
 
-fn block_counts(size: DVec3, blocks_wanted: f64) -> IVec3 {
-    // Axes much thinner than a cubic block count as flat: the blocks are shared out among the others.
+/// How many cubes, of which some number fills a box, lie along each axis; 1 along axes that are thinner than the cubes.
+fn cubes_along(size: DVec3, wanted: f64) -> DVec3 {
     let mut axes: Vec<usize> = (0..3).filter(|axis| size[*axis] > 0.0).collect();
     let mut edge = 0.0;
     while !axes.is_empty() {
         let measure: f64 = axes.iter().map(|axis| size[*axis]).product();
-        edge = (measure / blocks_wanted.max(1.0)).powf(1.0 / axes.len() as f64);
+        edge = (measure / wanted.max(1.0)).powf(1.0 / axes.len() as f64);
         let before = axes.len();
         axes.retain(|axis| size[*axis] >= edge);
         if axes.len() == before {
             break;
         }
     }
-    let mut counts = IVec3::ONE;
+    let mut counts = DVec3::ONE;
     for axis in axes {
-        // At most 1024 blocks an axis keeps extreme boxes within memory; the cast of a ratio of lengths saturates.
-        #[expect(clippy::cast_possible_truncation, reason = "saturates, then clamped")]
-        let count = (size[axis] / edge).floor() as i32;
-        counts[axis] = count.clamp(1, 1024);
+        counts[axis] = size[axis] / edge;
     }
     counts
+}
+
+/// Numbers of tiles along the axes, given those of blocks.
+fn tile_counts(blocks: IVec3) -> IVec3 {
+    let block_count: f64 = blocks.to_array().into_iter().map(f64::from).product();
+    let blocks_per_tile = (block_count / TILES).clamp(BLOCKS_PER_TILE[0], BLOCKS_PER_TILE[1]);
+    let mut tiles = cubes_along(blocks.as_dvec3(), block_count / blocks_per_tile).round().as_ivec3();
+    let count = tiles.element_product();
+    // Threads take tiles in turn, and mostly there is an even number of them.
+    if count > 1 && count % 2 == 1 {
+        tiles[blocks.max_position()] += 1;
+    }
+    tiles
+}
+
+/// The numbers that blocks get from their places along each axis, and how many a tile has with those that fill its last bricks, from
+/// the numbers of blocks in a tile and of tiles along the axes.
+fn block_offsets(tile: IVec3, tile_counts: IVec3) -> ([Vec<u32>; 3], usize) {
+    let brick = IVec3::new(tile.x, tile.y.min(BLOCKS_PER_BRICK), tile.z.min(BLOCKS_PER_BRICK));
+    let brick_counts = (tile + (brick - 1)) / brick;
+    let brick_blocks = brick.element_product();
+    let tile_blocks = brick_blocks * brick_counts.element_product();
+    // From one to the next along each axis: blocks in a brick, bricks in a tile, tiles.
+    let steps = |counts: IVec3| [1, counts.x, counts.x * counts.y];
+    let (block_steps, brick_steps, tile_steps) = (steps(brick), steps(brick_counts), steps(tile_counts));
+    let offsets = [0, 1, 2].map(|axis| {
+        let offset = |block: i32| {
+            let in_tile = block % tile[axis];
+            let in_brick = in_tile % brick[axis] * block_steps[axis];
+            let before_brick = in_tile / brick[axis] * brick_steps[axis] * brick_blocks;
+            let before_tile = block / tile[axis] * tile_steps[axis] * tile_blocks;
+            (in_brick + before_brick + before_tile).cast_unsigned()
+        };
+        (0..tile[axis] * tile_counts[axis]).map(offset).collect()
+    });
+    (offsets, tile_blocks.unsigned_abs() as usize)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 mod best;
 mod mending;
+mod widening;
 
 use glam::DVec3;
 
@@ -12,6 +13,7 @@ use super::patch::{LARGEST_COTANGENT_TO_REST, PatchTerms};
 use super::patches::Patches;
 use super::system::{Step, System};
 use super::tangential::{Aim, tangential_moves};
+use super::thin_triangles::Room;
 use super::wedges::Wedges;
 use crate::folds::{element_normals, folded_pairs};
 use crate::seams::Seams;
@@ -85,8 +87,18 @@ pub(super) struct Stage {
     pub(super) steps: usize,
     /// The stage ends early when a step lessens the energy by less than this share; never for 0.
     pub(super) residual: f64,
-    /// Whether the volumes of the finest level have to be right in the end.
-    pub(super) is_last: bool,
+    pub(super) end: End,
+}
+
+/// What has to be right at the end of a stage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum End {
+    /// Nothing yet: finer levels follow.
+    Open,
+    /// The volumes of the finest level.
+    Volumes,
+    /// These, and no triangle of the finest level is thin.
+    Finished,
 }
 
 /// A network whose points of one level move.
@@ -172,11 +184,10 @@ impl<'a> Flow<'a> {
             let energy = self.step(&mut points, stage.step_time)?;
             progress(step, &points);
             if self.remedy == Remedy::Brake
-                && stage.is_last
-                && let Some(spread) = self.spread(&points)
+                && stage.end != End::Open
+                && let Some(badness) = self.badness(&points, &finest)
             {
-                let has_folds = !self.finest_folds(&points, &finest).is_empty();
-                best.offer(Badness { has_folds, spread }, &points);
+                best.offer(badness, &points);
                 if best.is_final() {
                     break;
                 }
@@ -190,23 +201,25 @@ impl<'a> Flow<'a> {
         // Where the finest level folds though no step did, all has moved too far from where it did not.
         let mut count = 0;
         for attempt in 0..ATTEMPTS {
-            if stage.is_last && self.volumes == Volumes::Kept {
-                self.restore_volumes(&mut points)?;
-            }
-            let folds = self.finest_folds(&points, &finest);
-            count = folds.len();
+            let surface = match stage.end {
+                End::Open => self.finest_points(&points),
+                End::Volumes | End::Finished => self.restored(&mut points)?,
+            };
+            let places = self.folded_places(&surface, &finest);
+            count = places.len();
             // What is still to be moved on finer levels may fold there for now.
-            if count == 0 || (self.remedy == Remedy::Brake && !stage.is_last) {
+            if count == 0 || (self.remedy == Remedy::Brake && stage.end == End::Open) {
+                if stage.end == End::Finished {
+                    self.widen_all(&mut points, surface, &finest);
+                }
                 return Ok(points);
             }
-            let folded = folds.into_iter().flatten().map(|element| self.dependencies(self.finest(), element));
             if self.remedy == Remedy::Brake {
-                let folded: Vec<Vec<u32>> = folded.collect();
-                self.iron(&mut points, &folded.concat());
+                self.iron(&mut points, &places.concat());
                 continue;
             }
-            for dependencies in folded.collect::<Vec<_>>() {
-                self.clusters.join_all(&dependencies);
+            for place in places {
+                self.clusters.join_all(&place);
             }
             let mut moves: Vec<DVec3> =
                 points.iter().zip(start).map(|(point, start)| *point - *start).collect();
@@ -214,6 +227,14 @@ impl<'a> Flow<'a> {
             points = displaced(start, &moves);
         }
         Err(NetworkError::Folded { count })
+    }
+
+    /// Makes volumes right where that is asked for; gives the points of the finest level.
+    fn restored(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
+        match self.volumes {
+            Volumes::Kept => self.restore_volumes(points),
+            Volumes::Free => Ok(self.finest_points(points)),
+        }
     }
 
     /// One step of curvature flow; gives the energy before it.
@@ -273,11 +294,14 @@ impl<'a> Flow<'a> {
         &self.pressures
     }
 
-    /// The standard deviation of the angles at triple lines; nothing where there are none, and in the plane.
-    fn spread(&self, points: &[DVec3]) -> Option<f64> {
+    /// How far points are from rest; nothing where no boundaries meet, and in the plane.
+    fn badness(&self, points: &[DVec3], finest: &Wedged) -> Option<Badness> {
         let Mesh::Triangles(_) = self.control_mesh() else { return None };
-        let angles = dihedral_angles(self.network, self.surface(), &self.refined(points));
-        angles.map(|angles| angles.standard_deviation)
+        let surface = self.refined(points);
+        let spread = dihedral_angles(self.network, self.surface(), &surface)?.standard_deviation;
+        let surface = self.network.subdivide_between(self.surface, self.finest(), &surface);
+        let has_folds = !finest.folds(self.network.finest(), &surface).is_empty();
+        Some(Badness { has_folds, spread })
     }
 
     /// Makes the points of each cluster move as one.
@@ -293,7 +317,9 @@ impl<'a> Flow<'a> {
     ///
     /// Where much has become rigid, some grain may be unable to change its volume: then only short edges stay rigid, and
     /// at last none.
-    fn restore_volumes(&self, points: &mut [DVec3]) -> Result<(), NetworkError> {
+    ///
+    /// Gives the points of the finest level.
+    fn restore_volumes(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
         let free = Clusters::new(&self.network.levels()[self.level]);
         let mut short = free.clone();
         short.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
@@ -311,19 +337,23 @@ impl<'a> Flow<'a> {
 
     /// As [`Self::restore_volumes`] where a volume differs by more than rounding; else no point moves.
     pub(super) fn restore_lost_volumes(&self, points: &mut [DVec3]) -> Result<(), NetworkError> {
-        let surface = self.network.subdivide_between(self.level, self.finest(), points);
-        let missing = self.missing(&self.network.grain_volumes(self.network.finest(), &surface));
-        if self.largest_error(&missing).1 <= VOLUME_LIMIT { Ok(()) } else { self.restore_volumes(points) }
+        let missing =
+            self.missing(&self.network.grain_volumes(self.network.finest(), &self.finest_points(points)));
+        if self.largest_error(&missing).1 > VOLUME_LIMIT {
+            self.restore_volumes(points)?;
+        }
+        Ok(())
     }
 
-    fn restore_with(&self, clusters: &Clusters, points: &mut [DVec3]) -> Result<(), NetworkError> {
+    fn restore_with(&self, clusters: &Clusters, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
         let terms = self.patches.terms(points);
         let system = self.system(points, &terms, clusters, 0.0);
         let mut last: Option<Vec<f64>> = None;
         // The gradient is that of a coarser level: what is too small or large in it is measured and made up for.
         let mut gain = 1.0;
-        for step in 0.. {
-            let surface = self.network.subdivide_between(self.level, self.finest(), points);
+        let mut step = 0;
+        loop {
+            let surface = self.finest_points(points);
             let missing = self.missing(&self.network.grain_volumes(self.network.finest(), &surface));
             let (grain, relative_error) = self.largest_error(&missing);
             let mut stalled = false;
@@ -333,7 +363,7 @@ impl<'a> Flow<'a> {
                 gain = (gain / (1.0 - left)).clamp(SMALLEST_GAIN, LARGEST_GAIN);
             }
             if relative_error <= VOLUME_TOLERANCE || (stalled && relative_error <= VOLUME_LIMIT) {
-                return Ok(());
+                return Ok(surface);
             }
             // A correction that makes things worse (NaN included) would only be followed by others.
             if step == VOLUME_STEPS || relative_error.is_nan() || relative_error >= 1.0 {
@@ -343,8 +373,8 @@ impl<'a> Flow<'a> {
             let moves = system.volume_correction(&wanted);
             points.iter_mut().zip(&moves).for_each(|(point, by)| *point += *by);
             last = Some(missing);
+            step += 1;
         }
-        Ok(())
     }
 
     fn system(&self, points: &[DVec3], terms: &[PatchTerms], clusters: &Clusters, time: f64) -> System {
@@ -397,13 +427,15 @@ impl<'a> Flow<'a> {
         self.network.subdivide_between(self.level, self.surface, points)
     }
 
-    /// Pairs of elements of the finest level that are folded, or have passed each other.
-    fn finest_folds(&self, points: &[DVec3], finest: &Wedged) -> Vec<[u32; 2]> {
-        let points = self.network.subdivide_between(self.level, self.finest(), points);
-        let normals = element_normals(self.network.finest(), &points);
-        let mut folds = folded_pairs(&finest.neighbors, &normals, 0.0);
-        folds.extend(finest.wedges.turned(&points));
-        folds
+    /// The points of the finest level.
+    fn finest_points(&self, points: &[DVec3]) -> Vec<DVec3> {
+        self.network.subdivide_between(self.level, self.finest(), points)
+    }
+
+    /// The points that each element depends on which is folded on the finest level, or has passed another.
+    fn folded_places(&self, surface: &[DVec3], finest: &Wedged) -> Vec<Vec<u32>> {
+        let folds = finest.folds(self.network.finest(), surface).into_iter().flatten();
+        folds.map(|element| self.dependencies(self.finest(), element)).collect()
     }
 
     /// Elements that a step has turned too far, or bent too far and more than they were, or closed upon others; given the
@@ -466,6 +498,13 @@ impl Wedged {
         let seams = Seams::of_level(level);
         let wedges = Wedges::new(&Surface::of_level(level, &[], &network.sides()), &seams);
         Self { wedges, neighbors: seams.inner }
+    }
+
+    /// Pairs of elements that are folded, or have passed each other.
+    fn folds(&self, level: &Level, points: &[DVec3]) -> Vec<[u32; 2]> {
+        let mut folds = folded_pairs(&self.neighbors, &element_normals(level, points), 0.0);
+        folds.extend(self.wedges.turned(points));
+        folds
     }
 }
 

@@ -94,6 +94,10 @@ impl Grid {
         let product = |row: usize| {
             self.matrix.row(row).iter().map(|(column, value)| value * vector[*column as usize]).sum()
         };
+        // Other threads would be asked for nothing, and that takes longer than a few rows.
+        if self.matrix.len() <= ROWS_PER_TASK {
+            return (0..self.matrix.len()).map(product).collect();
+        }
         (0..self.matrix.len()).into_par_iter().with_min_len(ROWS_PER_TASK).map(product).collect()
     }
 

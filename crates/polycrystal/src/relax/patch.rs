@@ -8,7 +8,9 @@
 //! Both are pulled back to the control points by the transposed weights of subdivision.
 
 use glam::DVec3;
+use subzero::StencilTable;
 
+use super::patches::place_in;
 use super::rows::Rows;
 use crate::volume::{segment_area, triangle_volume};
 
@@ -53,26 +55,44 @@ pub(super) enum Elements {
 /// A surface that is finer than the control mesh.
 #[derive(Debug)]
 pub(super) struct Refinement {
-    /// Surface point f is the mean of the control points `ids[starts[f]..starts[f + 1]]` by the weights of the same range.
-    pub(super) starts: Vec<usize>,
-    pub(super) ids: Vec<u32>,
-    pub(super) weights: Vec<f64>,
+    pub(super) stencils: LocalStencils,
     pub(super) elements: Elements,
 }
 
-impl Refinement {
+/// How finer points of one boundary follow from its coarser ones.
+#[derive(Debug)]
+pub(super) struct LocalStencils {
+    /// Finer point f is the mean of the coarser points `ids[starts[f]..starts[f + 1]]` by the weights of the same range.
+    starts: Vec<usize>,
+    ids: Vec<u32>,
+    weights: Vec<f64>,
+}
+
+impl LocalStencils {
+    /// Those of some finer points; `coarser` are all points that these depend on, sorted.
+    pub(super) fn new(stencils: &StencilTable, coarser: &[u32], finer: &[u32]) -> Self {
+        let mut local = Self { starts: vec![0], ids: Vec::new(), weights: Vec::new() };
+        for point in finer {
+            let (ids, weights) = stencils.row(*point as usize);
+            local.ids.extend(ids.iter().map(|point| place_in(coarser, *point)));
+            local.weights.extend(weights);
+            local.starts.push(local.ids.len());
+        }
+        local
+    }
+
     fn row(&self, point: usize) -> impl Iterator<Item = (usize, f64)> {
         let range = self.starts[point]..self.starts[point + 1];
         self.ids[range.clone()].iter().map(|id| *id as usize).zip(self.weights[range].iter().copied())
     }
 
-    fn apply(&self, points: &[DVec3]) -> Vec<DVec3> {
+    pub(super) fn apply(&self, points: &[DVec3]) -> Vec<DVec3> {
         let point = |f: usize| self.row(f).map(|(c, weight)| points[c] * weight).sum();
         (0..self.starts.len() - 1).map(point).collect()
     }
 
-    /// From forces on the surface's points to forces on the control points.
-    fn pull_back(&self, forces: &[DVec3], count: usize) -> Vec<DVec3> {
+    /// From forces on the finer points to forces on so many coarser ones.
+    pub(super) fn pull_back(&self, forces: &[DVec3], count: usize) -> Vec<DVec3> {
         let mut pulled = vec![DVec3::ZERO; count];
         for (f, force) in forces.iter().enumerate() {
             self.row(f).for_each(|(c, weight)| pulled[c] += *force * weight);
@@ -110,11 +130,11 @@ impl Patch {
                 Variation::new(&self.elements, &local, tension);
             return PatchTerms { energy, gradient, sweep, mass, stiffness, volume };
         };
-        let surface = refinement.apply(&local);
+        let surface = refinement.stencils.apply(&local);
         let Variation { energy, gradient, sweep, volume } =
             Variation::new(&refinement.elements, &surface, tension);
-        let gradient = refinement.pull_back(&gradient, count);
-        let sweep = refinement.pull_back(&sweep, count);
+        let gradient = refinement.stencils.pull_back(&gradient, count);
+        let sweep = refinement.stencils.pull_back(&sweep, count);
         PatchTerms { energy, gradient, sweep, mass, stiffness, volume }
     }
 

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use subzero::StencilTable;
 
 use super::clusters::Numbering;
-use super::patch::{Elements, LARGEST_COTANGENT, Patch, PatchTerms, Refinement};
+use super::patch::{Elements, LARGEST_COTANGENT, LocalStencils, Patch, PatchTerms, Refinement};
 use super::rows::Rows;
 use crate::{BoundaryId, Mesh, Network};
 
@@ -106,7 +106,7 @@ impl Patches {
 }
 
 /// The numbers of each boundary's elements.
-fn by_boundary(boundary_count: usize, boundary_of: &[BoundaryId]) -> Vec<Vec<u32>> {
+pub(super) fn by_boundary(boundary_count: usize, boundary_of: &[BoundaryId]) -> Vec<Vec<u32>> {
     let mut elements = vec![Vec::new(); boundary_count];
     for (element, boundary) in (0u32..).zip(boundary_of) {
         elements[boundary.index()].push(element);
@@ -115,7 +115,7 @@ fn by_boundary(boundary_count: usize, boundary_of: &[BoundaryId]) -> Vec<Vec<u32
 }
 
 /// Some elements of a mesh in terms of their own points, and these points, sorted.
-fn local_elements(mesh: &Mesh, elements: &[u32]) -> (Vec<u32>, Elements) {
+pub(super) fn local_elements(mesh: &Mesh, elements: &[u32]) -> (Vec<u32>, Elements) {
     let mut points: Vec<u32> = match mesh {
         Mesh::Triangles(mesh) => elements.iter().flat_map(|e| mesh.triangles()[*e as usize]).collect(),
         Mesh::Segments(mesh) => elements.iter().flat_map(|e| mesh.segments()[*e as usize]).collect(),
@@ -144,15 +144,7 @@ fn new_patch(
     let (edges, edges_across) = edges(&elements);
     let refinement = surface.map(|(stencils, mesh, elements)| {
         let (points, elements) = local_elements(mesh, elements);
-        let mut starts = vec![0];
-        let (mut ids, mut weights) = (Vec::new(), Vec::new());
-        for point in points {
-            let (row, row_weights) = stencils.row(point as usize);
-            ids.extend(row.iter().map(|point| place_in(&control_points, *point)));
-            weights.extend(row_weights);
-            starts.push(ids.len());
-        }
-        Refinement { starts, ids, weights, elements }
+        Refinement { stencils: LocalStencils::new(stencils, &control_points, &points), elements }
     });
     let links = links(control_points.len(), &edges);
     Patch { control_points, elements, edges, edges_across, links, refinement, tension, share }
@@ -189,7 +181,7 @@ fn edges(elements: &Elements) -> (Vec<[u32; 2]>, Vec<[u32; 3]>) {
 }
 
 /// The place of an id in a sorted list that holds it.
-fn place_in(sorted: &[u32], id: u32) -> u32 {
+pub(super) fn place_in(sorted: &[u32], id: u32) -> u32 {
     let place = sorted.binary_search(&id).expect("a patch's surface depends on its own control points alone");
     u32::try_from(place).expect("a place in a list of ids fits an id")
 }

@@ -62,6 +62,7 @@ mod tests {
     use super::*;
 
     /// The number of steps taken until the end, and which one of them is the best.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "steps are few")]
     fn end(steps: &[(bool, f64)]) -> (usize, usize) {
         let mut best = Best::new();
         let mut taken = 0;

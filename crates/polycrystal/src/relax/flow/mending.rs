@@ -27,12 +27,11 @@ impl Flow<'_> {
     /// Takes folds out of the finest level, as far as that goes.
     pub(super) fn iron_folds(&self, points: &mut [DVec3], finest: &Wedged) {
         for _ in 0..ATTEMPTS {
-            let folds = self.finest_folds(points, finest);
-            if folds.is_empty() {
+            let places = self.folded_places(&self.finest_points(points), finest);
+            if places.is_empty() {
                 break;
             }
-            let folded = folds.into_iter().flatten().map(|element| self.dependencies(self.finest(), element));
-            self.iron(points, &folded.collect::<Vec<_>>().concat());
+            self.iron(points, &places.concat());
         }
     }
 

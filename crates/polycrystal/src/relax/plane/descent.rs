@@ -154,7 +154,7 @@ impl Descent {
                 break;
             }
             add(&mut residual, by, &bent);
-            tangent.project(&mut residual);
+            tangent.project_loosely(&mut residual);
             let soft = tangent.soften(&residual);
             let next = dot(&residual, &soft);
             if next <= enough {

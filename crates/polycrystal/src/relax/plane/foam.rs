@@ -12,7 +12,10 @@ use crate::relax::volume_constraint::Compliance;
 use crate::{Boundary, Freedom, GrainId};
 
 /// Error of the pressures, as a share.
-const TOLERANCE: f64 = 1e-12;
+const TIGHT: f64 = 1e-12;
+
+/// The same within conjugate gradients, which work on what they leave.
+const LOOSE: f64 = 1e-2;
 
 /// Variables of an arc: its start, its end, and its turning.
 const OWN: usize = 5;
@@ -310,12 +313,22 @@ impl Tangent<'_> {
 
     /// The pressures whose motion, in this sense, changes areas so.
     pub(super) fn pressures(&self, changes: &[f64]) -> Vec<f64> {
-        self.compliance.pressures(changes, TOLERANCE)
+        self.compliance.pressures(changes, TIGHT)
     }
 
     /// Takes out of a force what pressures balance, and gives these.
     pub(super) fn project(&self, force: &mut [f64]) -> Vec<f64> {
-        let pressures = self.pressures(&self.change_of_areas(&self.soften(force)));
+        self.project_up_to(force, TIGHT)
+    }
+
+    /// Takes most of what pressures balance out of a force.
+    pub(super) fn project_loosely(&self, force: &mut [f64]) {
+        self.project_up_to(force, LOOSE);
+    }
+
+    fn project_up_to(&self, force: &mut [f64], tolerance: f64) -> Vec<f64> {
+        let changes = self.change_of_areas(&self.soften(force));
+        let pressures = self.compliance.pressures(&changes, tolerance);
         force.iter_mut().zip(self.force(&pressures)).for_each(|(force, balanced)| *force -= balanced);
         pressures
     }
