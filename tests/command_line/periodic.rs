@@ -146,6 +146,17 @@ fn lattices_with_boundaries_in_the_walls_are_cut() {
     workplace.command("check cut.vtp").assert().success();
 }
 
+/// A boundary of a grain and the walls goes all round the box, and one of few grains comes in several parts.
+#[test]
+fn boundaries_in_the_plane_that_a_cut_leaves_in_parts_are_written_in_parts() {
+    let workplace = Workplace::new();
+    workplace.put("seeds.txt", "0.23 0.95 0\n0.66 0.78 0\n0.77 0.83 0\n");
+    for seeds in ["--seeds 1", "--seeds-file seeds.txt --relax equilibrium"] {
+        workplace.run(&format!("--dim 2 {seeds} --periodic y -n 1 --periodic-cut box -o cut.vtp"));
+        workplace.command("check cut.vtp").assert().success();
+    }
+}
+
 #[test]
 fn cuts_are_refused_where_they_make_no_sense() {
     let workplace = Workplace::new();

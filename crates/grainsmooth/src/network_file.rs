@@ -198,7 +198,9 @@ fn unit_normals(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
     triangles.par_iter().map(|triangle| unit_normal(corners(triangle))).collect()
 }
 
-/// One polyline for each boundary, with its first side in a scheme of names on the left, and the boundaries in the same order.
+/// The polylines of each boundary, with its first side in a scheme of names on the left, and the boundaries in the same order.
+///
+/// Each boundary is one, but in a periodic network that was cut at the box.
 pub(crate) fn boundary_polylines(
     level: &Level,
     boundaries: &[Boundary],
@@ -207,8 +209,7 @@ pub(crate) fn boundary_polylines(
     let Mesh::Segments(mesh) = &level.mesh else { return (Vec::new(), Vec::new()) };
     let segments: Vec<(BoundaryId, [u32; 2])> =
         level.boundary_of.iter().copied().zip(mesh.segments().iter().copied()).collect();
-    // Refinement keeps a boundary's segments together and in order.
-    let of_boundaries = segments.chunk_by(|a, b| a.0 == b.0);
+    let connected = segments.chunk_by(|(a, [_, end]), (b, [start, _])| a == b && end == start);
     let polyline = |segments: &[(BoundaryId, [u32; 2])]| {
         let (boundary, [start, _]) = segments[0];
         let mut polyline = vec![start];
@@ -218,7 +219,7 @@ pub(crate) fn boundary_polylines(
         }
         (polyline, boundary)
     };
-    of_boundaries.map(polyline).unzip()
+    connected.map(polyline).unzip()
 }
 
 fn text(name: &'static str, value: String) -> FieldEntry {

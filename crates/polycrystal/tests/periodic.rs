@@ -8,8 +8,8 @@ use std::collections::BTreeSet;
 use common::random_seeds;
 use glam::{BVec3, DVec3};
 use polycrystal::{
-    FaceMesh, Junctions, Level, Mesh, Network, NodeType, Relaxation, Side, dihedral_angles, regular_cells,
-    relax, validate,
+    FaceMesh, Junctions, Level, Mesh, Network, NetworkError, NodeType, Relaxation, Side, dihedral_angles,
+    regular_cells, relax, validate,
 };
 use voronoi::{Domain, PeriodicPair, Shift, Tessellation};
 
@@ -200,4 +200,29 @@ fn periodic_grains_are_regularised() {
             assert_eq!(copy, original + pair.shift.vector(&domain));
         }
     }
+}
+
+#[test]
+fn boundaries_that_are_too_small_are_named_by_both_their_grains() {
+    let seeds: Vec<DVec3> = [
+        [0.0, 0.0, 0.05],
+        [0.0, 0.0, 0.15],
+        [0.0, 0.75, 0.0],
+        [0.25, 0.5, 0.0],
+        [0.25, 0.5, 0.15],
+        [0.25, 0.75, 0.05],
+        [0.5, 0.5, 0.05],
+        [0.5, 0.75, 0.0],
+        [0.75, 0.25, 0.0],
+        [0.75, 0.5, 0.0],
+        [0.75, 0.5, 0.1],
+        [0.75, 0.75, 0.15],
+    ]
+    .map(DVec3::from)
+    .into();
+    let plate = Domain::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.2)).expect("positive sides");
+    let cells = Tessellation::new(&plate.with_periods(BVec3::TRUE), &seeds).expect("valid seeds");
+    let error = Network::new(&cells, Junctions::Crease, 0).expect_err("nearly a lattice");
+    let NetworkError::BoundaryTooSmall { sides } = error else { panic!("{error}") };
+    assert!(!sides.contains(&Side::Exterior), "{error}");
 }
