@@ -27,8 +27,9 @@ const THIN: f64 = 2.0;
 /// Length, in the same unit, that an event must leave to all lines.
 const LEAST: f64 = 0.1;
 
-/// Share of a cell's volume by which nothing here may change it: what is lost at once, no step of the flow brings back.
-const LARGEST_CHANGE: f64 = 0.2;
+/// Share of a cell's volume by which nothing here may change it: what is lost at once, no step of the flow brings back. With 0.2 a small
+/// grain may be unable to leave a wall.
+const LARGEST_CHANGE: f64 = 0.3;
 
 /// How often lines between the same grains may go without lessening the area: what comes back is to stay.
 const MOST_TRIES: u8 = 8;
