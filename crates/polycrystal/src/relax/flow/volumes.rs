@@ -1,0 +1,105 @@
+//! How a flow gives grains the volumes of their cells.
+
+use glam::DVec3;
+
+use super::{Clusters, Flow, dot};
+use crate::{GrainId, NetworkError, Volumes};
+
+/// Difference of a grain's volume from its cell's, as a share of the cell's, that ends the iteration on volumes.
+const VOLUME_TOLERANCE: f64 = 1e-12;
+
+/// Difference that is accepted where rounding keeps the iteration above that: small grains in large boxes.
+const VOLUME_LIMIT: f64 = 1e-10;
+
+/// Bounds on the factor by which a volume correction is larger than its gradient asks for.
+const SMALLEST_GAIN: f64 = 0.3;
+const LARGEST_GAIN: f64 = 2.0;
+
+/// Most Newton steps on the volumes; each gains about a digit, for its gradient is that of a coarser level.
+const VOLUME_STEPS: usize = 40;
+
+impl Flow<'_> {
+    /// Makes volumes right where that is asked for; gives the points of the finest level.
+    pub(super) fn restored(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
+        match self.volumes {
+            Volumes::Kept => self.restore_volumes(points),
+            Volumes::Free => Ok(self.finest_points(points)),
+        }
+    }
+
+    /// Moves points so that the grains of the finest level have the volumes of their cells.
+    ///
+    /// Where much has become rigid, some grain may be unable to change its volume: then only short edges stay rigid, and
+    /// at last none.
+    ///
+    /// Gives the points of the finest level.
+    fn restore_volumes(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
+        let free = Clusters::new(&self.network.levels()[self.level]);
+        let mut short = free.clone();
+        short.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
+        let start = points.to_vec();
+        self.restore_with(&self.clusters, points)
+            .or_else(|_| {
+                points.copy_from_slice(&start);
+                self.restore_with(&short, points)
+            })
+            .or_else(|_| {
+                points.copy_from_slice(&start);
+                self.restore_with(&free, points)
+            })
+    }
+
+    /// As [`Self::restore_volumes`] where a volume differs by more than rounding; else no point moves.
+    pub(in crate::relax) fn restore_lost_volumes(&self, points: &mut [DVec3]) -> Result<(), NetworkError> {
+        let missing =
+            self.missing(&self.network.grain_volumes(self.network.finest(), &self.finest_points(points)));
+        if self.largest_error(&missing).1 > VOLUME_LIMIT {
+            self.restore_volumes(points)?;
+        }
+        Ok(())
+    }
+
+    fn restore_with(&self, clusters: &Clusters, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
+        let terms = self.patches.terms(points);
+        let system = self.system(points, &terms, clusters, 0.0);
+        let mut last: Option<Vec<f64>> = None;
+        // The gradient is that of a coarser level: what is too small or large in it is measured and made up for.
+        let mut gain = 1.0;
+        let mut step = 0;
+        loop {
+            let surface = self.finest_points(points);
+            let missing = self.missing(&self.network.grain_volumes(self.network.finest(), &surface));
+            let (grain, relative_error) = self.largest_error(&missing);
+            let mut stalled = false;
+            if let Some(last) = &last {
+                let left = dot(&missing, last) / dot(last, last);
+                stalled = relative_error > 0.5 * self.largest_error(last).1;
+                gain = (gain / (1.0 - left)).clamp(SMALLEST_GAIN, LARGEST_GAIN);
+            }
+            if relative_error <= VOLUME_TOLERANCE || (stalled && relative_error <= VOLUME_LIMIT) {
+                return Ok(surface);
+            }
+            // A correction that makes things worse (NaN included) would only be followed by others.
+            if step == VOLUME_STEPS || relative_error.is_nan() || relative_error >= 1.0 {
+                return Err(NetworkError::VolumeNotRestored { grain, relative_error });
+            }
+            let wanted: Vec<f64> = missing.iter().map(|lack| gain * lack).collect();
+            let moves = system.volume_correction(&wanted);
+            points.iter_mut().zip(&moves).for_each(|(point, by)| *point += *by);
+            last = Some(missing);
+            step += 1;
+        }
+    }
+
+    /// What each grain's volume lacks.
+    pub(super) fn missing(&self, volumes: &[f64]) -> Vec<f64> {
+        self.network.cell_volumes().iter().zip(volumes).map(|(cell, grain)| cell - grain).collect()
+    }
+
+    fn largest_error(&self, missing: &[f64]) -> (GrainId, f64) {
+        let relative =
+            missing.iter().zip(self.network.cell_volumes()).map(|(lack, cell)| (lack / cell).abs());
+        let errors = (0u32..).map(GrainId).zip(relative);
+        errors.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a network has grains")
+    }
+}
