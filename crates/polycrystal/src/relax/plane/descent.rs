@@ -9,6 +9,8 @@ use voronoi::FaceId;
 
 use super::foam::{Foam, Tangent};
 use crate::NetworkError;
+use crate::relax::conjugate_gradients::dot;
+use crate::volume::largest_relative_error;
 
 /// Energy, as a share of all, that the first region lets a step cost if stiffness were all.
 const FIRST_REGION: f64 = 0.03;
@@ -116,7 +118,7 @@ impl Descent {
     fn restore(&mut self, foam: &Foam<'_>) -> Result<(), NetworkError> {
         for done in 0.. {
             let missing = foam.missing(&self.state);
-            let (grain, relative_error) = foam.largest_error(&missing);
+            let (grain, relative_error) = largest_relative_error(&missing, foam.areas);
             if relative_error <= AREA_LIMIT {
                 return Ok(());
             }
@@ -184,7 +186,7 @@ fn restored(foam: &Foam<'_>, tangent: &Tangent<'_>, mut state: Vec<f64>) -> Opti
     let mut last = f64::INFINITY;
     for _ in 0..CORRECTIONS {
         let missing = foam.missing(&state);
-        let (_, error) = foam.largest_error(&missing);
+        let (_, error) = largest_relative_error(&missing, foam.areas);
         if error <= AREA_TOLERANCE || (error <= AREA_LIMIT && error > 0.5 * last) {
             return Some(state);
         }
@@ -260,8 +262,4 @@ fn length(tangent: &Tangent<'_>, motion: &[f64]) -> f64 {
 /// Adds a multiple of a vector to another one.
 fn add(to: &mut [f64], factor: f64, what: &[f64]) {
     to.iter_mut().zip(what).for_each(|(to, what)| *to += factor * what);
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
