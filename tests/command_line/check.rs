@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use grainsmooth::vtk::{field_numbers, field_text};
 use serde_json::Value;
 
 use crate::surface_file::SurfaceFile;
@@ -293,6 +294,136 @@ fn files_that_are_no_networks_are_refused() {
     workplace.put("cut.vtk", &Cubes::new().file("FaceLabels").into_bytes()[..400]);
     workplace.command("check cut.vtk").assert().code(FAILED).stdout("");
     workplace.command("check").assert().code(2).stdout("");
+}
+
+/// VTK gives the size of the last compressed block as 0 where it is full, as with 4096 cells of two labels: `vtkio` reads too little
+/// then.
+#[test]
+fn arrays_of_vtk_that_fill_their_last_compressed_block_are_read() {
+    let workplace = Workplace::new();
+    let name = "vtk_full_blocks.vtp";
+    fs::copy(format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR")), workplace.path(name)).unwrap();
+    let report = report(&workplace, name, 0);
+    assert_eq!((&report["grains"], &report["elements"]), (&Value::from(1), &Value::from(4096)));
+}
+
+/// The program's own file, three flat grains, after VTK has read and written it in single precision, compressed.
+#[test]
+fn what_files_say_is_read_after_another_program_wrote_them() {
+    let workplace = Workplace::new();
+    let name = "rewritten_by_vtk.vtp";
+    fs::copy(format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR")), workplace.path(name)).unwrap();
+    let good = report(&workplace, name, 0);
+    assert!(good["volume_error"].as_f64().unwrap() < 1e-6);
+    assert_eq!(good["statistics"].as_array().unwrap().len(), 4);
+    let file = workplace.bytes(name);
+    let volumes = field_numbers(&file, "Volumes").unwrap();
+    assert_eq!(volumes.len(), 3);
+    assert!((volumes.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+    assert!(field_text(&file, "CommandLine").unwrap().starts_with("grainsmooth --seeds 3 "));
+}
+
+/// Grain 7 has another number, which no volume in the file has.
+#[test]
+fn grains_without_a_stated_volume_and_volumes_without_a_grain_are_found() {
+    let workplace = Workplace::new();
+    workplace.run("--seeds 12 -n 0 -o a.vtk");
+    let mut file = workplace.bytes("a.vtk");
+    let head = b"FaceLabels 2 ";
+    let start = file.windows(head.len()).position(|window| window == head).unwrap();
+    let start = start + file[start..].iter().position(|byte| *byte == b'\n').unwrap() + 1;
+    let count = report(&workplace, "a.vtk", 0)["elements"].as_u64().unwrap();
+    for label in file[start..].chunks_exact_mut(4).take(2 * usize::try_from(count).unwrap()) {
+        if label == 7i32.to_be_bytes() {
+            label.copy_from_slice(&700i32.to_be_bytes());
+        }
+    }
+    workplace.put("a.vtk", file);
+    let report = report(&workplace, "a.vtk", FAILED);
+    let messages: Vec<&str> =
+        report["faults"].as_array().unwrap().iter().map(|fault| fault["message"].as_str().unwrap()).collect();
+    let expected = [
+        "grain 7 is missing: its volume is stated, but nothing bounds it",
+        "grain 700 is none of those whose volumes are stated",
+    ];
+    assert_eq!(messages, expected);
+}
+
+/// They were passed over: the command line in each file says `--periodic none`, which was taken for a period.
+#[test]
+fn wrong_node_types_in_files_of_this_program_are_found() {
+    let workplace = Workplace::new();
+    for arguments in ["", "--dim 2", "--periodic x,y,z --periodic-cut box"] {
+        workplace.run(&format!("--seeds 12 -n 1 -o a.vtk {arguments}"));
+        assert_eq!(report(&workplace, "a.vtk", 0)["good"], true);
+        let mut file = workplace.bytes("a.vtk");
+        let head = b"NodeTypes 1 ";
+        let start = file.windows(head.len()).position(|window| window == head).unwrap();
+        let first = start + file[start..].iter().position(|byte| *byte == b'\n').unwrap() + 1;
+        file[first] = if file[first] == 2 { 3 } else { 2 };
+        workplace.put("a.vtk", file);
+        let report = report(&workplace, "a.vtk", FAILED);
+        assert_eq!(report["faults"][0]["kind"], "wrong node type", "{arguments}");
+        assert_eq!(report["faults"].as_array().unwrap().len(), 1, "{arguments}");
+    }
+}
+
+/// As VTK 9 and meshio write legacy files: remarks between the arrays of field data, newer names of types, a third label, and
+/// `nan` among numbers.
+#[test]
+fn legacy_files_as_others_write_them_are_read() {
+    let workplace = Workplace::new();
+    let cubes = Cubes::new();
+    let file = cubes.file("FaceLabels");
+    let volumes = "POLYDATA\nFIELD FieldData 3\nSeed 1 1 vtktypeuint64\n1 \nMETADATA\nINFORMATION 0\n\n\
+         CommandLine 1 1 string\ngrainsmooth%20--box%201%201%201\n\nVolumes 1 2 double\n0.5 0.25 \nMETADATA\n\
+         INFORMATION 0\n\n";
+    let remarked = file.replace("POLYDATA\n", volumes);
+    workplace.put("cubes.vtk", &remarked);
+    let found = report(&workplace, "cubes.vtk", FAILED);
+    assert_eq!(found["faults"][0]["message"], "the volume of grain 1 is off by 1e0 of what it should be");
+    assert_eq!(found["faults"].as_array().unwrap().len(), 1);
+    workplace.put("cubes.vtk", remarked.replace("0.5 0.25", "0.5 0.5"));
+    assert_eq!(report(&workplace, "cubes.vtk", 0)["volume_error"], 0.0);
+
+    let count = cubes.triangles.len();
+    let types = format!(
+        "CELL_DATA {count}\nSCALARS Other signed_char \nLOOKUP_TABLE default\n{}",
+        "1\n".repeat(count)
+    );
+    let newer = file.replace(&format!("CELL_DATA {count}\n"), &types);
+    workplace.put("cubes.vtk", newer.replace(" int\n", " vtktypeint32\n"));
+    assert_eq!(report(&workplace, "cubes.vtk", 0)["grains"], 2);
+    let none = types.replace("signed_char", "double").replacen("1\n1\n", "nan\n-inf\n", 1);
+    workplace.put("cubes.vtk", file.replace(&format!("CELL_DATA {count}\n"), &none));
+    assert_eq!(report(&workplace, "cubes.vtk", 0)["grains"], 2);
+
+    let labels = |third: u8| {
+        let (head, pairs) = file.split_once("FaceLabels 2 ").unwrap();
+        let (line, pairs) = pairs.split_once('\n').unwrap();
+        let triples: String = pairs.lines().map(|pair| format!("{pair} {third}\n")).collect();
+        format!("{head}FaceLabels 3 {line}\n{triples}")
+    };
+    workplace.put("cubes.vtk", labels(0));
+    assert_eq!(report(&workplace, "cubes.vtk", 0)["grains"], 2);
+    workplace.put("cubes.vtk", labels(1));
+    workplace.refuses(
+        "check cubes.vtk",
+        FAILED,
+        "cubes.vtk: FaceLabels has 66 numbers where 22 cells need two each; give a complete VTK file",
+    );
+    workplace.put("cubes.vtk", file.replace("0.5 0 1\n", "0.5 nan 1\n"));
+    workplace.refuses(
+        "check cubes.vtk",
+        FAILED,
+        "cubes.vtk: point 5 has the coordinate nan; give a complete VTK file",
+    );
+    workplace.put("cubes.vtk", file.replace(" int\n", " double\n").replace("\n0 1\n", "\n0 1.5\n"));
+    workplace.refuses(
+        "check cubes.vtk",
+        FAILED,
+        "cubes.vtk: FaceLabels are no whole numbers; give a complete VTK file",
+    );
 }
 
 /// However little a point moves: grains on both sides of its boundary are no longer as large as the file says.

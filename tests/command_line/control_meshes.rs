@@ -26,6 +26,16 @@ fn edge_length_bounds_the_control_mesh() {
     }
 }
 
+/// Boundaries of regularised cells may have several lines in common, and would have had the same triangle between them.
+#[test]
+fn plain_boundaries_with_several_common_lines_share_no_edge() {
+    let workplace = Workplace::new();
+    for arguments in ["--rng-seed 1", "--rng-seed 2", "--rng-seed 3 --periodic x,y,z"] {
+        workplace.run(&format!("--seeds 100 -n 1 --faces plain {arguments}"));
+        workplace.command("check grains.vtp").assert().success();
+    }
+}
+
 #[test]
 fn edge_lengths_that_are_none_are_refused() {
     let workplace = Workplace::new();

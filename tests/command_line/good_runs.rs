@@ -170,7 +170,7 @@ fn file_says_how_it_was_made() {
     let file = workplace.bytes("grains.vtp");
     let version = concat!("grainsmooth ", env!("CARGO_PKG_VERSION"));
     assert_eq!(field_text(&file, "Version").as_deref(), Some(version));
-    assert_eq!(field_bytes(&file, "RandomSeed"), Some(&77u64.to_ne_bytes()[..]));
+    assert_eq!(field_bytes(&file, "RandomSeed").as_deref(), Some(&77u64.to_ne_bytes()[..]));
     let command_line = field_text(&file, "CommandLine").unwrap();
     let arguments = command_line.strip_prefix("grainsmooth ").unwrap();
     assert!(arguments.contains("--seeds 4 --seeding random --rng-seed 77"), "{arguments}");

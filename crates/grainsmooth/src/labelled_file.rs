@@ -6,10 +6,9 @@ use std::path::Path;
 use glam::DVec3;
 use polycrystal::{BoundaryId, Claims, Elements, GrainId, NodeType, Side, Surface, outward_sides};
 
-use crate::Error;
 use crate::mesh_file::MeshFileProblem;
-use crate::mesh_file::vtk::labelled::{LabelledCells, read_legacy, read_xml};
-use crate::vtk::{field_bytes, field_text, find};
+use crate::mesh_file::vtk::labelled::{LabelledCells, Remarks, read_legacy, read_xml};
+use crate::{Error, Names};
 
 /// A labelled surface (in the plane: lines) from a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +27,8 @@ pub struct LabelledFile {
     pub label_array: &'static str,
     /// The volumes of all grains (in the plane: areas) as the file states them, if this program wrote it.
     pub volumes: Option<Vec<(GrainId, f64)>>,
+    /// Whether the file has its points in single precision.
+    pub is_single: bool,
     /// What the command line in the file says, if this program wrote it.
     pub command_line: Option<String>,
 }
@@ -63,22 +64,14 @@ impl LabelledFile {
         };
         let bytes = std::fs::read(path).map_err(MeshFileProblem::Unreadable)?;
         let mut file = Self::of_cells(read(&bytes)?)?;
-        file.command_line = command_line(&bytes);
-        // In a periodic network they count grains a period away, which are not at the point.
-        if file.command_line.as_ref().is_some_and(|line| line.contains(" --periodic ")) {
-            file.node_types = None;
-        }
         file.sides = outward_sides(&file.surface());
-        let grains = file.surface().grains();
-        let volumes = file.command_line.as_ref().and_then(|_| stated_volumes(&bytes));
-        file.volumes = volumes
-            .filter(|volumes| volumes.len() == grains.len())
-            .map(|volumes| grains.into_iter().zip(volumes).collect());
         Ok(file)
     }
 
     fn of_cells(cells: LabelledCells) -> Result<Self, MeshFileProblem> {
-        let LabelledCells { mesh, is_plane, labels, label_array, node_types } = cells;
+        let LabelledCells { mesh, is_plane, labels, label_array, node_types, is_single, remarks } = cells;
+        let Remarks { command_line, volumes } = remarks;
+        let command_line = command_line.filter(|line| line.starts_with("grainsmooth "));
         // Without an exterior the volumes of all grains would sum to nothing.
         let zero_is_exterior =
             label_array != "FaceLabels" || !labels.iter().flatten().any(|label| *label < 0);
@@ -117,7 +110,8 @@ impl LabelledFile {
             (FileElements::Triangles(triangles), of_cell)
         };
         // In a periodic network they count grains a period away, which are not at the point.
-        let is_periodic = labels.iter().flatten().any(|label| *label < -1);
+        let is_periodic = labels.iter().flatten().any(|label| *label < -1)
+            || command_line.as_deref().is_some_and(is_periodic);
         let node_types =
             node_types.filter(|_| !is_periodic).map(|codes| codes.into_iter().map(node_type).collect());
         Ok(Self {
@@ -127,8 +121,9 @@ impl LabelledFile {
             sides,
             node_types,
             label_array,
-            volumes: None,
-            command_line: None,
+            volumes: command_line.as_deref().and_then(|line| numbered(volumes?, line)),
+            is_single,
+            command_line,
         })
     }
 
@@ -147,7 +142,14 @@ impl LabelledFile {
             node_types: self.node_types.as_deref(),
             grain_volumes: self.volumes.as_deref(),
             domain_volume: self.command_line.as_deref().and_then(domain_volume),
+            rounding: if self.is_single { self.single_rounding() } else { 0.0 },
         }
+    }
+
+    /// Half a last place of the largest coordinate in single precision.
+    fn single_rounding(&self) -> f64 {
+        let largest = self.points.iter().map(|point| point.abs().max_element()).fold(0.0, f64::max);
+        0.5 * f64::from(f32::EPSILON) * largest
     }
 }
 
@@ -161,29 +163,17 @@ fn node_type(code: i64) -> Option<NodeType> {
     NodeType::of_code(code)
 }
 
-/// The command line that this program writes into the field data of its files.
-fn command_line(bytes: &[u8]) -> Option<String> {
-    let text = field_text(bytes, "CommandLine").or_else(|| {
-        // Legacy: the text follows its length.
-        let rest = &bytes[find(bytes, b"CommandLine")?..];
-        let text = rest[find(rest, b"grainsmooth ")?..].split(|byte| *byte == b'\n').next()?;
-        String::from_utf8(text.to_vec()).ok()
-    });
-    text.filter(|text| text.starts_with("grainsmooth "))
+/// Whether a command line makes grains that stick out of the box.
+fn is_periodic(command_line: &str) -> bool {
+    let has = |option: &str| format!("{command_line} ").contains(option);
+    has(" --periodic ") && !has(" --periodic none ") && !has(" --periodic-cut box ")
 }
 
-/// The volumes that this program writes into the field data of its files, in the order of the grains.
-fn stated_volumes(bytes: &[u8]) -> Option<Vec<f64>> {
-    if let Some(values) = field_bytes(bytes, "Volumes") {
-        return Some(values.as_chunks().0.iter().map(|number| f64::from_ne_bytes(*number)).collect());
-    }
-    // Legacy: the numbers follow a line with their count.
-    const NAME: &[u8] = b"\nVolumes 1 ";
-    let rest = &bytes[find(bytes, NAME)? + NAME.len()..];
-    let (line, rest) = rest.split_at(find(rest, b" double\n")?);
-    let count: usize = str::from_utf8(line).ok()?.parse().ok()?;
-    let values = rest.get(b" double\n".len()..)?.as_chunks().0.get(..count)?;
-    Some(values.iter().map(|number| f64::from_be_bytes(*number)).collect())
+/// Volumes with the numbers of their grains: from 0 by our own names, from 1 by those of other tools.
+fn numbered(volumes: Vec<f64>, command_line: &str) -> Option<Vec<(GrainId, f64)>> {
+    let own = format!(" --names {} ", Names::default().name());
+    let first = u32::from(command_line.contains(" --names ") && !format!("{command_line} ").contains(&own));
+    (volumes.len() < u32::MAX as usize).then(|| (first..).map(GrainId).zip(volumes).collect())
 }
 
 /// The volume (in the plane: area) of the box that a command line names.

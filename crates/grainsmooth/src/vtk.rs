@@ -20,7 +20,7 @@ mod xml;
 pub use image::{ImageData, write_vti};
 pub(crate) use pieces::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
 pub(crate) use raw::{attribute, find};
-pub use raw::{field_bytes, field_text, inlined};
+pub use raw::{field_bytes, field_numbers, field_text, inlined};
 
 /// A format of VTK files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -13,7 +13,7 @@ use crate::intersections::crossing_elements;
 use crate::seams::Seams;
 use crate::triangle_quality::triangle_quality;
 use crate::volume::boundary_volumes;
-use crate::{AngleStatistics, GrainId, NodeType, Side, Surface, TriangleQuality};
+use crate::{AngleStatistics, Elements, GrainId, NodeType, Side, Surface, TriangleQuality};
 
 /// Cosine of the angle between normals beyond which neighbours in one boundary are folded: 90 degrees, and as much more as
 /// single precision, in which many files keep coordinates, blurs the right angles of a box.
@@ -31,6 +31,9 @@ pub struct Claims<'a> {
     pub grain_volumes: Option<&'a [(GrainId, f64)]>,
     /// Volume of the domain (in the plane: area).
     pub domain_volume: Option<f64>,
+    /// How far each coordinate may be from what the volumes were measured on: half a last place of single precision, where
+    /// that is how points were kept since.
+    pub rounding: f64,
 }
 
 /// What was found about a surface.
@@ -122,7 +125,7 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>)
         faults.extend(wrong_node_types(stated, &node_types));
     }
     certificate.grain_volumes = grain_volumes(surface);
-    certificate.check_volumes(claims, is_closed);
+    certificate.check_volumes(surface, claims, is_closed);
     certificate.angles = statistics(angles(surface, surface.sides, seams.places()));
     certificate.triangles = triangle_quality(surface);
     certificate
@@ -134,28 +137,55 @@ impl Certificate {
         self.faults.0.is_empty()
     }
 
-    fn check_volumes(&mut self, claims: &Claims<'_>, is_closed: bool) {
+    fn check_volumes(&mut self, surface: &Surface<'_>, claims: &Claims<'_>, is_closed: bool) {
         let faults = &mut self.faults.0;
         let empty = self.grain_volumes.iter().filter(|(_, volume)| is_closed && *volume <= 0.0);
         faults.extend(empty.map(|&(grain, volume)| Fault::NoVolume { grain, volume }));
+        let areas = if claims.rounding > 0.0 { side_areas(surface) } else { BTreeMap::new() };
+        let shift = claims.rounding * 3f64.sqrt();
+        let mut wrong = Vec::new();
         for (grain, claimed) in claims.grain_volumes.into_iter().flatten() {
-            let found = self.grain_volumes.binary_search_by_key(grain, |(grain, _)| *grain);
-            let volume = found.map_or(0.0, |index| self.grain_volumes[index].1);
-            let relative_error = (volume / claimed - 1.0).abs();
+            let Ok(found) = self.grain_volumes.binary_search_by_key(grain, |(grain, _)| *grain) else {
+                faults.push(Fault::MissingGrain { grain: *grain });
+                continue;
+            };
+            let relative_error = (self.grain_volumes[found].1 / claimed - 1.0).abs();
             self.largest_volume_error = self.largest_volume_error.max(relative_error);
-            if is_closed && relative_error > VOLUME_TOLERANCE {
-                faults.push(Fault::WrongVolume { grain: *grain, relative_error });
+            let area = areas.get(&Side::Grain(*grain)).copied().unwrap_or(0.0);
+            if is_closed && relative_error > VOLUME_TOLERANCE + shift * area / claimed {
+                wrong.push(Fault::WrongVolume { grain: *grain, relative_error });
             }
         }
+        if let Some(claimed) = claims.grain_volumes {
+            let mut known: Vec<GrainId> = claimed.iter().map(|(grain, _)| *grain).collect();
+            known.sort_unstable();
+            let unknown = self.grain_volumes.iter().filter(|(grain, _)| known.binary_search(grain).is_err());
+            faults.extend(unknown.map(|(grain, _)| Fault::UnknownGrain { grain: *grain }));
+        }
+        faults.append(&mut wrong);
         if let Some(whole) = claims.domain_volume {
             let total: f64 = self.grain_volumes.iter().map(|(_, volume)| volume).sum();
             let relative_error = (total / whole - 1.0).abs();
             self.total_volume_error = relative_error;
-            if is_closed && relative_error > VOLUME_TOLERANCE {
+            let outside = areas.get(&Side::Exterior).copied().unwrap_or(0.0);
+            if is_closed && relative_error > VOLUME_TOLERANCE + shift * outside / whole {
                 faults.push(Fault::WrongTotal { relative_error });
             }
         }
     }
+}
+
+/// The area (in the plane: length) of each side's surface.
+fn side_areas(surface: &Surface<'_>) -> BTreeMap<Side, f64> {
+    // Normals of triangles are as long as twice the area.
+    let share = if matches!(surface.elements, Elements::Triangles(_)) { 0.5 } else { 1.0 };
+    let mut areas = BTreeMap::new();
+    for (normal, boundary) in surface.elements.normals(surface.points).iter().zip(surface.boundary_of) {
+        for side in surface.sides[boundary.index()] {
+            *areas.entry(side).or_default() += share * normal.length();
+        }
+    }
+    areas
 }
 
 /// Points with the coordinates of an earlier one, each with the first of these.

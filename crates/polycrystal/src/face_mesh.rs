@@ -28,7 +28,8 @@ pub enum FaceMesh {
     /// The same with better triangles, for cells that are regularised: in space, lines shorter than a quarter of the mean size of
     /// cells have no middle, and a boundary in which a fan has angles below 20 degrees gets up to two more centres.
     SparseFan,
-    /// The middles of its triple lines alone; no point inside (constrained Delaunay triangulation).
+    /// The middles of its triple lines alone; no point inside (constrained Delaunay triangulation), unless an edge would be that
+    /// of another boundary too.
     Plain,
     /// Points on triple lines and inside, so that no edge is longer than `edge_length` and, where the outline allows, no angle
     /// is below 25 degrees.
@@ -277,6 +278,41 @@ pub(crate) fn triangulate_faces(
     };
     let mut faces: Vec<FaceTriangles> = first_corners.par_iter().map(triangulate).collect();
     copy_faces(tessellation, &mut faces);
+    let shared = faces_of_shared_chords(&faces);
+    if !shared.is_empty() {
+        let pairs = tessellation.periodic_faces().iter();
+        let originals = pairs.filter(|pair| shared.binary_search(&pair.secondary.index()).is_ok());
+        let originals: Vec<usize> = originals.map(|pair| pair.primary.index()).collect();
+        for face in shared.into_iter().chain(originals) {
+            let FaceTriangles { outline, inner_points, triangles, .. } = &mut faces[face];
+            (*inner_points, *triangles) = fill(outline, points, FaceMesh::Fan);
+        }
+        copy_faces(tessellation, &mut faces);
+    }
+    faces
+}
+
+/// The faces in which two points of the outline are joined that another face joins too: as faces of regularised cells, which are not
+/// flat, they may have several lines in common.
+fn faces_of_shared_chords(faces: &[FaceTriangles]) -> Vec<usize> {
+    let chords = |(number, face): (usize, &FaceTriangles)| {
+        let count = id(face.outline.len());
+        let is_chord = move |&[from, to]: &[u32; 2]| {
+            from < to && to < count && to - from != 1 && !(from == 0 && to == count - 1)
+        };
+        let edges =
+            face.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, a], [b, c], [c, b], [c, a], [a, c]]);
+        let point = |place: u32| face.outline[place as usize];
+        let ends = |[from, to]: [u32; 2]| [point(from).min(point(to)), point(from).max(point(to))];
+        edges.filter(is_chord).map(|chord| (ends(chord), number)).collect::<Vec<_>>()
+    };
+    let mut chords: Vec<([u32; 2], usize)> = faces.par_iter().enumerate().flat_map_iter(chords).collect();
+    chords.par_sort_unstable();
+    chords.dedup();
+    let shared = chords.chunk_by(|a, b| a.0 == b.0).filter(|at| at.len() > 1);
+    let mut faces: Vec<usize> = shared.flatten().map(|(_, face)| *face).collect();
+    faces.sort_unstable();
+    faces.dedup();
     faces
 }
 

@@ -123,6 +123,18 @@ pub enum Fault {
         /// Its volume.
         volume: f64,
     },
+    /// A grain that should be there has no elements.
+    #[error("grain {} is missing: its volume is stated, but nothing bounds it", grain.0)]
+    MissingGrain {
+        /// The grain.
+        grain: GrainId,
+    },
+    /// There is a grain that should not be there.
+    #[error("grain {} is none of those whose volumes are stated", grain.0)]
+    UnknownGrain {
+        /// The grain.
+        grain: GrainId,
+    },
     /// A grain does not have the volume that it should.
     #[error("the volume of grain {} is off by {relative_error:e} of what it should be", grain.0)]
     WrongVolume {
@@ -174,6 +186,8 @@ impl Fault {
             Self::Crossing { .. } => "crossing",
             Self::WrongNodeType { .. } => "wrong node type",
             Self::NoVolume { .. } => "no volume",
+            Self::MissingGrain { .. } => "missing grain",
+            Self::UnknownGrain { .. } => "unknown grain",
             Self::WrongVolume { .. } => "wrong volume",
             Self::WrongTotal { .. } => "wrong total",
         }
@@ -195,9 +209,11 @@ impl Fault {
             | Self::Crossing { elements } => (Vec::new(), elements.to_vec()),
             Self::Open { place, .. } | Self::Pinched { place, .. } => (place.points(), Vec::new()),
             Self::Winding { place, elements } => (place.points(), elements.clone()),
-            Self::NoVolume { .. } | Self::WrongVolume { .. } | Self::WrongTotal { .. } => {
-                (Vec::new(), Vec::new())
-            }
+            Self::NoVolume { .. }
+            | Self::MissingGrain { .. }
+            | Self::UnknownGrain { .. }
+            | Self::WrongVolume { .. }
+            | Self::WrongTotal { .. } => (Vec::new(), Vec::new()),
         }
     }
 
@@ -208,6 +224,8 @@ impl Fault {
             Self::Pinched { grain, .. }
             | Self::PinchedPoint { grain, .. }
             | Self::NoVolume { grain, .. }
+            | Self::MissingGrain { grain }
+            | Self::UnknownGrain { grain }
             | Self::WrongVolume { grain, .. } => vec![*grain],
             Self::WrongSides { stated, .. } => stated.iter().filter_map(|side| side.grain()).collect(),
             _ => Vec::new(),

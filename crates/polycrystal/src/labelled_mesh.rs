@@ -25,7 +25,7 @@ impl ControlMesh {
         if domain.is_periodic() {
             return Err(NetworkError::PeriodicSurface);
         }
-        let claims = Claims { node_types: None, grain_volumes: None, domain_volume: Some(domain.measure()) };
+        let claims = Claims { domain_volume: Some(domain.measure()), ..Claims::default() };
         let certificate = certify(surface, &claims);
         if !certificate.is_good() {
             return Err(NetworkError::Invalid(certificate.faults));

@@ -44,7 +44,7 @@ impl Parts {
 
     fn certify(&self) -> Certificate {
         let claims =
-            Claims { node_types: Some(&self.node_types), grain_volumes: None, domain_volume: Some(1.0) };
+            Claims { node_types: Some(&self.node_types), domain_volume: Some(1.0), ..Claims::default() };
         certify(&self.surface(), &claims)
     }
 
@@ -115,6 +115,31 @@ fn a_moved_point_is_found() {
             other => panic!("{other}"),
         }
     }
+}
+
+/// Files keep points in single precision, but volumes in double.
+#[test]
+fn rounding_that_is_stated_is_no_fault_but_a_moved_point_is() {
+    let good = Parts::good();
+    let volumes = good.certify().grain_volumes;
+    let rounded = Parts {
+        points: good.points.iter().map(|point| point.as_vec3().as_dvec3()).collect(),
+        ..good.clone()
+    };
+    let faults = |parts: &Parts, rounding: f64| {
+        let claims =
+            Claims { grain_volumes: Some(&volumes), domain_volume: Some(1.0), rounding, ..Claims::default() };
+        certify(&parts.surface(), &claims).faults.0
+    };
+    let rounding = 0.5 * f64::from(f32::EPSILON);
+    assert_eq!(faults(&rounded, rounding), []);
+    let unexpected = faults(&rounded, 0.0);
+    assert!(unexpected.iter().any(|fault| matches!(fault, Fault::WrongVolume { .. })), "{unexpected:?}");
+    let mut moved = rounded;
+    let (_, point) = moved.inner_triangle();
+    moved.points[point as usize] += 1e-3;
+    let found = faults(&moved, rounding);
+    assert!(found.iter().any(|fault| matches!(fault, Fault::WrongVolume { .. })), "{found:?}");
 }
 
 #[test]

@@ -10,6 +10,7 @@ use super::{MeshFile, MeshFileProblem};
 
 mod field;
 pub(crate) mod labelled;
+mod legacy_parts;
 mod xml_parts;
 
 /// The name of the thread in which `vtkio` reads.
@@ -20,7 +21,7 @@ pub const READER_THREAD: &str = "vtkio reader";
 
 /// Reads a legacy file.
 pub(super) fn read_legacy(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
-    let bytes = field::without_field_data(bytes);
+    let (bytes, _) = legacy_parts::readable(bytes)?;
     in_thread(|| mesh_of(Vtk::parse_legacy_be(&bytes[..]).map_err(problem)?.data))
 }
 

@@ -1,4 +1,4 @@
-//! Raw bytes at the end of an XML file: `<AppendedData encoding="raw">`.
+//! Raw bytes at the end of an XML file: `<AppendedData encoding="raw">`, and arrays as other programs encode them.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -7,10 +7,11 @@ use rayon::prelude::*;
 
 use super::Values;
 
+mod coding;
 mod inline;
 
 pub(crate) use inline::{attribute, find};
-pub use inline::{field_bytes, field_text, inlined};
+pub use inline::{field_bytes, field_numbers, field_text, inlined};
 
 /// Numbers that are computed before they are written; so few that they are still in the cache then.
 const BLOCK_NUMBERS: usize = 1 << 17;

@@ -1,21 +1,17 @@
 //! Field data at the head of a legacy file, which VTK and this program write and `vtkio` does not know.
 
 use std::borrow::Cow;
+use std::ops::Range;
+use std::str::FromStr;
 
-/// The file without the field data that follow its `DATASET` line; unchanged where there are none or they make no sense.
-pub(super) fn without_field_data(bytes: &[u8]) -> Cow<'_, [u8]> {
-    match field_data(bytes) {
-        Some((start, end)) => Cow::Owned([&bytes[..start], &bytes[end..]].concat()),
-        None => Cow::Borrowed(bytes),
-    }
-}
+use super::labelled::Remarks;
 
-/// Where the field data begin and end.
-fn field_data(bytes: &[u8]) -> Option<(usize, usize)> {
-    let mut reader = Reader { bytes, at: 0 };
+/// Where the field data stand that follow the `DATASET` line, and what they say; nothing where there are none or they make no sense.
+pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Remarks)> {
+    let mut reader = Reader { bytes, at: 0, is_binary: false };
     reader.line()?;
     reader.line()?;
-    let is_binary = reader.line()?.trim() == "BINARY";
+    reader.is_binary = reader.line()?.trim() == "BINARY";
     while !reader.line()?.trim().starts_with("DATASET") {}
     let start = reader.at;
     let head = reader.line()?;
@@ -24,32 +20,34 @@ fn field_data(bytes: &[u8]) -> Option<(usize, usize)> {
         return None;
     }
     let array_count: usize = words.nth(1)?.parse().ok()?;
+    let mut remarks = Remarks::default();
     for _ in 0..array_count {
-        let mut head = reader.line()?;
-        while head.trim().is_empty() {
-            head = reader.line()?;
-        }
+        let head = reader.array_head()?;
         let words: Vec<&str> = head.split_whitespace().collect();
-        let [_, components, tuples, kind] = words[..] else { return None };
+        let [name, components, tuples, kind] = words[..] else { return None };
         let count = components.parse::<usize>().ok()?.checked_mul(tuples.parse().ok()?)?;
-        for _ in 0..if kind == "string" { count } else { 0 } {
-            if is_binary {
-                let length = reader.string_length()?;
-                reader.skip(length)?;
-            } else {
-                reader.line()?;
+        match kind {
+            "string" => {
+                for _ in 0..count {
+                    remarks.note_text(name, reader.text()?);
+                }
             }
-        }
-        if kind == "string" {
-            continue;
-        }
-        if is_binary {
-            reader.skip(count.checked_mul(width(kind)?)?)?;
-        } else {
-            reader.skip_words(count)?;
+            // A .vtu of this program has its texts as bytes, and what VTK makes of it too.
+            "unsigned_char" => {
+                let bytes = if reader.is_binary {
+                    reader.bytes(count)?.to_vec()
+                } else {
+                    (0..count).map(|_| reader.number()).collect::<Option<_>>()?
+                };
+                remarks.note_text(name, String::from_utf8_lossy(&bytes).into_owned());
+            }
+            "double" => remarks.note_numbers(name, reader.numbers(count)?),
+            _ if reader.is_binary => reader.skip(count.checked_mul(width(kind)?)?)?,
+            _ => (0..count).try_for_each(|_| reader.word().map(|_| ()))?,
         }
     }
-    Some((start, reader.at))
+    reader.skip_metadata()?;
+    Some((start..reader.at, remarks))
 }
 
 fn width(kind: &str) -> Option<usize> {
@@ -65,43 +63,113 @@ fn width(kind: &str) -> Option<usize> {
 struct Reader<'a> {
     bytes: &'a [u8],
     at: usize,
+    is_binary: bool,
 }
 
-impl Reader<'_> {
-    fn line(&mut self) -> Option<String> {
+impl<'a> Reader<'a> {
+    fn line(&mut self) -> Option<Cow<'a, str>> {
         let rest = self.bytes.get(self.at..)?;
         let length = rest.iter().position(|&byte| byte == b'\n')?;
         self.at += length + 1;
-        Some(String::from_utf8_lossy(&rest[..length]).into_owned())
+        Some(String::from_utf8_lossy(&rest[..length]))
+    }
+
+    /// The line at the head of the next array.
+    fn array_head(&mut self) -> Option<Cow<'a, str>> {
+        self.skip_metadata()?;
+        loop {
+            let line = self.line()?;
+            if !line.trim().is_empty() {
+                return Some(line);
+            }
+        }
+    }
+
+    /// Passes over what VTK remarks on the array before: `METADATA`, up to an empty line.
+    fn skip_metadata(&mut self) -> Option<()> {
+        let start = self.at;
+        while let Some(line) = self.line() {
+            match line.trim() {
+                "" => {}
+                "METADATA" => {
+                    while !self.line()?.trim().is_empty() {}
+                    return Some(());
+                }
+                _ => break,
+            }
+        }
+        self.at = start;
+        Some(())
     }
 
     fn skip(&mut self, count: usize) -> Option<()> {
-        self.at = self.at.checked_add(count).filter(|&at| at <= self.bytes.len())?;
-        Some(())
+        self.bytes(count).map(|_| ())
     }
 
-    fn skip_words(&mut self, count: usize) -> Option<()> {
-        for _ in 0..count {
-            let is_blank = |byte: &&u8| byte.is_ascii_whitespace();
-            self.at += self.bytes.get(self.at..)?.iter().take_while(is_blank).count();
-            let length = self.bytes[self.at..].iter().take_while(|byte| !is_blank(byte)).count();
-            (length > 0).then_some(())?;
-            self.at += length;
+    fn bytes(&mut self, count: usize) -> Option<&'a [u8]> {
+        let bytes = self.bytes.get(self.at..self.at.checked_add(count)?)?;
+        self.at += count;
+        Some(bytes)
+    }
+
+    /// What stands up to the next blank.
+    fn word(&mut self) -> Option<&'a [u8]> {
+        let is_blank = |byte: &&u8| byte.is_ascii_whitespace();
+        self.at += self.bytes.get(self.at..)?.iter().take_while(is_blank).count();
+        let length = self.bytes[self.at..].iter().take_while(|byte| !is_blank(byte)).count();
+        self.bytes(length).filter(|word| !word.is_empty())
+    }
+
+    fn numbers(&mut self, count: usize) -> Option<Vec<f64>> {
+        if self.is_binary {
+            let bytes = self.bytes(count.checked_mul(size_of::<f64>())?)?;
+            return Some(bytes.as_chunks().0.iter().map(|number| f64::from_be_bytes(*number)).collect());
         }
-        Some(())
+        (0..count).map(|_| self.number()).collect()
     }
 
-    /// The length of a binary string: its two highest bits say in how many bytes it is stored.
-    fn string_length(&mut self) -> Option<usize> {
+    /// The next number of a text.
+    fn number<T: FromStr>(&mut self) -> Option<T> {
+        str::from_utf8(self.word()?).ok()?.parse().ok()
+    }
+
+    fn text(&mut self) -> Option<String> {
+        if self.is_binary {
+            let length = self.text_length()?;
+            return Some(String::from_utf8_lossy(self.bytes(length)?).into_owned());
+        }
+        self.line().map(|line| percent_decoded(&line))
+    }
+
+    /// The length of a binary text: its two highest bits say in how many bytes it is stored.
+    fn text_length(&mut self) -> Option<usize> {
         let (width, length_bits) = match self.bytes.get(self.at)? >> 6 {
             3 => (1, 6),
             2 => (2, 14),
             1 => (4, 30),
             _ => (8, 62),
         };
-        let stored = self.bytes.get(self.at..self.at + width)?;
-        self.at += width;
-        let number = stored.iter().fold(0_u64, |number, &byte| number << 8 | u64::from(byte));
+        let number = self.bytes(width)?.iter().fold(0_u64, |number, &byte| number << 8 | u64::from(byte));
         usize::try_from(number & (u64::MAX >> (64 - length_bits))).ok()
     }
+}
+
+/// A text as it was before VTK put `%20` for each blank, and so on.
+fn percent_decoded(text: &str) -> String {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((&byte, after)) = rest.split_first() {
+        let code = after.get(..2).filter(|_| byte == b'%').and_then(|code| str::from_utf8(code).ok());
+        match code.and_then(|code| u8::from_str_radix(code, 16).ok()) {
+            Some(decoded) => {
+                bytes.push(decoded);
+                rest = &after[2..];
+            }
+            None => {
+                bytes.push(byte);
+                rest = after;
+            }
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
 }

@@ -3,13 +3,45 @@
 use vtkio::IOBuffer;
 use vtkio::model::{Attribute, CellType, DataSet, Vtk};
 
-use super::{MeshFile, MeshFileProblem, cells, field, in_thread, inline, problem, xml_parts};
+use super::{MeshFile, MeshFileProblem, cells, in_thread, inline, legacy_parts, problem, xml_parts};
+use crate::vtk::{field_numbers, field_text};
 
 /// Cell arrays that hold the two sides, in the order in which they are looked for: DREAM.3D's and this program's, then
 /// pyvista's and VTK's.
 pub(crate) const LABEL_ARRAYS: [&str; 3] = ["FaceLabels", "boundary_labels", "BoundaryLabels"];
 
 const NODE_TYPES: &str = "NodeTypes";
+
+const COMMAND_LINE: &str = "CommandLine";
+
+const VOLUMES: &str = "Volumes";
+
+/// What the field data of a file of this program say, also after another has read and written it.
+#[derive(Debug, Default)]
+pub(crate) struct Remarks {
+    /// The command line that made the file.
+    pub(crate) command_line: Option<String>,
+    /// The volume of each grain, in the order of their numbers.
+    pub(crate) volumes: Option<Vec<f64>>,
+}
+
+impl Remarks {
+    pub(super) fn note_text(&mut self, name: &str, text: String) {
+        if name == COMMAND_LINE {
+            self.command_line = Some(text);
+        }
+    }
+
+    pub(super) fn note_numbers(&mut self, name: &str, numbers: Vec<f64>) {
+        if name == VOLUMES {
+            self.volumes = Some(numbers);
+        }
+    }
+
+    fn of_xml(bytes: &[u8]) -> Self {
+        Self { command_line: field_text(bytes, COMMAND_LINE), volumes: field_numbers(bytes, VOLUMES) }
+    }
+}
 
 /// A network as a VTK file holds it.
 #[derive(Debug, Default)]
@@ -24,19 +56,26 @@ pub(crate) struct LabelledCells {
     pub(crate) label_array: &'static str,
     /// Types of points, if there are any.
     pub(crate) node_types: Option<Vec<i64>>,
+    /// Whether points are in single precision.
+    pub(crate) is_single: bool,
+    pub(crate) remarks: Remarks,
 }
 
 /// Reads a legacy file.
 pub(crate) fn read_legacy(bytes: &[u8]) -> Result<LabelledCells, MeshFileProblem> {
-    let bytes = field::without_field_data(bytes);
-    in_thread(|| of_data(Vtk::parse_legacy_be(&bytes[..]).map_err(problem)?.data))
+    let (bytes, remarks) = legacy_parts::readable(bytes)?;
+    let cells = in_thread(|| of_data(Vtk::parse_legacy_be(&bytes[..]).map_err(problem)?.data))?;
+    Ok(LabelledCells { remarks, ..cells })
 }
 
 /// Reads a .vtp or .vtu file.
 pub(crate) fn read_xml(bytes: &[u8]) -> Result<LabelledCells, MeshFileProblem> {
     let wanted: Vec<&str> = LABEL_ARRAYS.into_iter().chain([NODE_TYPES]).collect();
-    let bytes = xml_parts::network(bytes, &wanted);
-    in_thread(|| of_data(Vtk::parse_xml(&bytes[..]).map_err(problem)?.data))
+    let parts = xml_parts::network(bytes, &wanted);
+    in_thread(|| {
+        let cells = of_data(Vtk::parse_xml(&parts[..]).map_err(problem)?.data)?;
+        Ok(LabelledCells { remarks: Remarks::of_xml(bytes), ..cells })
+    })
 }
 
 fn of_data(data: DataSet) -> Result<LabelledCells, MeshFileProblem> {
@@ -46,6 +85,7 @@ fn of_data(data: DataSet) -> Result<LabelledCells, MeshFileProblem> {
             let [piece] = <[_; 1]>::try_from(pieces).map_err(|_| problem("it is in several pieces"))?;
             let piece = inline(piece)?;
             found.mesh.add_points(&piece.points)?;
+            found.is_single = matches!(piece.points, IOBuffer::F32(_));
             let lines: Vec<Vec<u64>> = piece.lines.iter().flat_map(cells).collect::<Result<_, _>>()?;
             let polygons: Vec<Vec<u64>> = piece.polys.iter().flat_map(cells).collect::<Result<_, _>>()?;
             if piece.strips.iter().flat_map(cells).next().is_some() {
@@ -64,6 +104,7 @@ fn of_data(data: DataSet) -> Result<LabelledCells, MeshFileProblem> {
             let [piece] = <[_; 1]>::try_from(pieces).map_err(|_| problem("it is in several pieces"))?;
             let piece = inline(piece)?;
             found.mesh.add_points(&piece.points)?;
+            found.is_single = matches!(piece.points, IOBuffer::F32(_));
             found.is_plane =
                 piece.cells.types.iter().all(|kind| matches!(kind, CellType::Line | CellType::PolyLine));
             for (index, (kind, cell)) in
@@ -91,6 +132,7 @@ fn of_data(data: DataSet) -> Result<LabelledCells, MeshFileProblem> {
     let labels: Vec<i64> =
         whole_numbers(labels).ok_or_else(|| problem(format!("{name} are no whole numbers")))?;
     let count = found.mesh.faces.len();
+    let labels = without_third(labels, skipped + count);
     if labels.len() != 2 * (skipped + count) {
         let (have, cells) = (labels.len(), skipped + count);
         return Err(problem(format!("{name} has {have} numbers where {cells} cells need two each")));
@@ -110,6 +152,15 @@ fn of_data(data: DataSet) -> Result<LabelledCells, MeshFileProblem> {
     Ok(found)
 }
 
+/// Labels without the zeros that meshio puts after each pair in legacy files.
+fn without_third(labels: Vec<i64>, cell_count: usize) -> Vec<i64> {
+    let triples = labels.as_chunks::<3>().0;
+    if labels.len() == 3 * cell_count && triples.iter().all(|[.., third]| *third == 0) {
+        return triples.iter().flat_map(|&[first, second, _]| [first, second]).collect();
+    }
+    labels
+}
+
 fn array<'a>(attributes: &'a [Attribute], name: &str) -> Option<&'a IOBuffer> {
     attributes.iter().find_map(|attribute| match attribute {
         Attribute::DataArray(array) => (array.name == name).then_some(&array.data),
@@ -120,5 +171,10 @@ fn array<'a>(attributes: &'a [Attribute], name: &str) -> Option<&'a IOBuffer> {
 }
 
 fn whole_numbers(buffer: &IOBuffer) -> Option<Vec<i64>> {
-    buffer.cast_into()
+    let is_whole = match buffer {
+        IOBuffer::F32(numbers) => numbers.iter().all(|number| number.fract() == 0.0),
+        IOBuffer::F64(numbers) => numbers.iter().all(|number| number.fract() == 0.0),
+        _ => true,
+    };
+    is_whole.then(|| buffer.cast_into())?
 }

@@ -1,36 +1,56 @@
-//! Raw appended data put where `vtkio` reads them.
+//! The arrays of an XML file put where `vtkio` reads them, and as it understands them.
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
+use vtkio::IOBuffer;
+use vtkio::xml::ScalarType;
 
-/// The document with raw appended arrays moved into their elements as base64, which `vtkio` knows; any other file as it is.
+use super::coding::{Coding, Encoded};
+
+/// The document with appended arrays moved into their elements as base64, which `vtkio` knows, and with headers of compressed ones
+/// as it understands them; any other file as it is.
 ///
 /// Field data that are no numbers stay without their values; [`field_text`] reads those.
 pub fn inlined(file: &[u8]) -> Vec<u8> {
     let (head, appended) = split(file);
     let text = String::from_utf8_lossy(head);
-    match raw_data(appended).and_then(|data| inline(&text, data)) {
+    match inline(&text, &Appended::of(appended)) {
+        Some(inlined) if appended.is_empty() => inlined.into_bytes(),
         Some(inlined) => (inlined + "</VTKFile>").into_bytes(),
         None => file.to_vec(),
     }
 }
 
-/// A text of the field data of a .vtp, .vtu or .vti file as we write it; nothing where the file has no such entry.
+/// A text of the field data of a .vtp, .vtu or .vti file, whichever program wrote it; nothing where the file has no such entry.
 pub fn field_text(file: &[u8], name: &str) -> Option<String> {
-    let text = String::from_utf8(field_bytes(file, name)?.to_vec()).ok()?;
+    let text = String::from_utf8(field_bytes(file, name)?).ok()?;
     Some(text.trim_end_matches('\0').to_owned())
 }
 
 /// The bytes of an entry of such a file's field data.
-pub fn field_bytes<'a>(file: &'a [u8], name: &str) -> Option<&'a [u8]> {
+pub fn field_bytes(file: &[u8], name: &str) -> Option<Vec<u8>> {
+    field_values(file, name, ScalarType::UInt8)?.into_vec()
+}
+
+/// The 64-bit floating point numbers of an entry of such a file's field data.
+pub fn field_numbers(file: &[u8], name: &str) -> Option<Vec<f64>> {
+    field_values(file, name, ScalarType::Float64)?.into_vec()
+}
+
+fn field_values(file: &[u8], name: &str, kind: ScalarType) -> Option<IOBuffer> {
     let (head, appended) = split(file);
     let head = String::from_utf8_lossy(head);
-    let named = head.find(&format!(" Name=\"{name}\""))?;
-    let start = head[..named].rfind('<')?;
-    let tag = &head[start..start + head[start..].find('>')?];
-    let offset: usize = attribute(tag, "offset")?.parse().ok()?;
-    let (length, rest) = raw_data(appended)?.get(offset..)?.split_first_chunk()?;
-    rest.get(..usize::try_from(u64::from_ne_bytes(*length)).ok()?)
+    let coding = Coding::of(&head)?;
+    let field = &head[head.find("<FieldData")?..];
+    let field = &field[..field.find("</FieldData>")?];
+    let named = field.find(&format!(" Name=\"{name}\""))?;
+    let start = field[..named].rfind('<')?;
+    let end = start + field[start..].find('>')?;
+    let tag = &field[start..end];
+    let content = field[end + 1..].split('<').next()?;
+    match attribute(tag, "format")? {
+        "appended" => coding.values(Appended::of(appended).array(coding, tag)?, kind),
+        "binary" => coding.values(coding.of_text(content.trim().as_bytes())?, kind),
+        _ => coding.values_of_words(content, kind),
+    }
 }
 
 /// What stands before the appended data, and these.
@@ -44,61 +64,64 @@ pub(crate) fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
     value.split('"').next()
 }
 
-/// The bytes behind the underscore, if they are raw.
-fn raw_data(appended: &[u8]) -> Option<&[u8]> {
-    let tag_end = find(appended, b">")?;
-    let tag = String::from_utf8_lossy(&appended[..tag_end]);
-    (attribute(&tag, "encoding") == Some("raw")).then_some(())?;
-    let start = find(&appended[tag_end..], b"_")?;
-    appended.get(tag_end + start + 1..)
+/// The appended data behind the underscore.
+enum Appended<'a> {
+    None,
+    Raw(&'a [u8]),
+    Base64(&'a [u8]),
 }
 
-/// The document with the arrays of `data` within its elements; nothing if they do not fit together.
-fn inline(head: &str, data: &[u8]) -> Option<String> {
-    let file = &head[head.find("<VTKFile")?..];
-    let width = if attribute(file, "header_type") == Some("UInt64") { 8 } else { 4 };
-    let is_big = attribute(file, "byte_order") == Some("BigEndian");
-    let is_compressed = attribute(file.split('>').next()?, "compressor").is_some();
-    let number = |at: usize| -> Option<usize> {
-        let bytes = data.get(at..at.checked_add(width)?)?;
-        let add = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
-        let number = if is_big { bytes.iter().fold(0, add) } else { bytes.iter().rev().fold(0, add) };
-        usize::try_from(number).ok()
-    };
-    let mut inlined = String::new();
+impl<'a> Appended<'a> {
+    fn of(appended: &'a [u8]) -> Self {
+        let Some((tag, rest)) = find(appended, b">").map(|end| appended.split_at(end)) else {
+            return Self::None;
+        };
+        let tag = String::from_utf8_lossy(tag);
+        let data = find(rest, b"_").map(|start| &rest[start + 1..]);
+        match (attribute(&tag, "encoding"), data) {
+            (Some("raw"), Some(data)) => Self::Raw(data),
+            (Some("base64"), Some(data)) => Self::Base64(data),
+            _ => Self::None,
+        }
+    }
+
+    /// The array that a tag names by its offset.
+    fn array(&self, coding: Coding, tag: &str) -> Option<Encoded> {
+        let at: usize = attribute(tag, "offset")?.parse().ok()?;
+        match self {
+            Self::None => None,
+            Self::Raw(data) => coding.of_raw(data.get(at..)?),
+            Self::Base64(data) => coding.of_text(data.get(at..)?),
+        }
+    }
+}
+
+/// The document with its arrays within its elements; nothing if they do not fit together, or nothing needs to change.
+fn inline(head: &str, appended: &Appended<'_>) -> Option<String> {
+    let coding = Coding::of(head)?;
+    if matches!(appended, Appended::None) && !coding.is_compressed() {
+        return None;
+    }
+    let mut inlined = String::with_capacity(head.len());
     let mut rest = head;
     while let Some(start) = rest.find("<DataArray") {
         let end = start + rest[start..].find('>')? + 1;
         let tag = &rest[start..end];
         inlined.push_str(&rest[..start]);
         rest = &rest[end..];
-        let Some(offset) = attribute(tag, "offset").filter(|_| attribute(tag, "format") == Some("appended"))
-        else {
-            inlined.push_str(tag);
-            continue;
+        let array = match attribute(tag, "format") {
+            Some("appended") if attribute(tag, "offset").is_some() => appended.array(coding, tag)?,
+            Some("binary") if coding.is_compressed() && !tag.ends_with("/>") => {
+                coding.of_text(rest.split('<').next()?.trim().as_bytes())?
+            }
+            _ => {
+                inlined.push_str(tag);
+                continue;
+            }
         };
-        let at: usize = offset.parse().ok()?;
-        let (header, length) = if is_compressed {
-            // The number of blocks, their size, that of the last, and how many bytes each takes.
-            let blocks = number(at)?;
-            let header = width.checked_mul(blocks.checked_add(3)?)?;
-            data.get(at..at.checked_add(header)?)?;
-            let sizes = (0..blocks).map(|block| number(at + width * (3 + block)));
-            (header, sizes.sum::<Option<usize>>()?)
-        } else {
-            (width, number(at)?)
-        };
-        let start = at.checked_add(header)?;
-        let (header, array) = (&data[at..start], data.get(start..start.checked_add(length)?)?);
         inlined.push_str(&tag.trim_end_matches('>').trim_end_matches('/').replacen("appended", "binary", 1));
         inlined.push('>');
-        // The header of compressed data is a base64 text of its own.
-        if is_compressed {
-            inlined.push_str(&STANDARD.encode(header));
-            inlined.push_str(&STANDARD.encode(array));
-        } else {
-            inlined.push_str(&STANDARD.encode([header, array].concat()));
-        }
+        inlined.push_str(&array.text);
         inlined.push_str("</DataArray>");
         // An element that was not empty closes itself.
         if !tag.ends_with("/>") {

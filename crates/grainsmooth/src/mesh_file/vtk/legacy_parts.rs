@@ -1,0 +1,89 @@
+//! A legacy file put so that `vtkio` can read it.
+
+use super::MeshFileProblem;
+use super::field::field_data;
+use super::labelled::Remarks;
+use crate::vtk::find;
+
+/// Types of arrays that newer versions of VTK write, and older names of the same that `vtkio` knows.
+const TYPES: [(&str, &str); 9] = [
+    ("signed_char", "char"),
+    ("vtktypeint8", "char"),
+    ("vtktypeuint8", "unsigned_char"),
+    ("vtktypeint16", "short"),
+    ("vtktypeuint16", "unsigned_short"),
+    ("vtktypeint32", "int"),
+    ("vtktypeuint32", "unsigned_int"),
+    ("vtktypeint64", "long"),
+    ("vtktypeuint64", "unsigned_long"),
+];
+
+/// What a text has instead of a number that is none.
+const NO_NUMBERS: [&[u8]; 4] = [b"nan", b"-nan", b"inf", b"-inf"];
+
+/// What stands for it.
+const BEYOND: &[u8] = b"1e300 ";
+
+/// The file without field data at its head and with what `vtkio` understands in place of newer types of arrays and, in the arrays of a
+/// text, of what is no number; and what the field data say.
+///
+/// Refuses a text with coordinates that are no numbers, by their point.
+pub(super) fn readable(bytes: &[u8]) -> Result<(Vec<u8>, Remarks), MeshFileProblem> {
+    let (field, remarks) = field_data(bytes).unwrap_or_default();
+    let bytes = [&bytes[..field.start], &bytes[field.end..]].concat();
+    let arrays = ["\nPOINT_DATA ", "\nCELL_DATA "];
+    let starts = arrays.into_iter().filter_map(|head| find(&bytes, head.as_bytes()));
+    let (geometry, arrays) = bytes.split_at(starts.min().unwrap_or(bytes.len()));
+    let arrays = with_known_types(arrays);
+    let is_text = geometry.split(|byte| *byte == b'\n').nth(2).is_some_and(|line| line.starts_with(b"ASCII"));
+    if !is_text {
+        return Ok(([geometry, &arrays].concat(), remarks));
+    }
+    check_coordinates(geometry)?;
+    Ok(([geometry, &with_numbers_only(&arrays)].concat(), remarks))
+}
+
+/// Looks for coordinates of a text that are no numbers.
+fn check_coordinates(geometry: &[u8]) -> Result<(), MeshFileProblem> {
+    const HEAD: &[u8] = b"\nPOINTS ";
+    let Some(start) = find(geometry, HEAD) else { return Ok(()) };
+    let words = geometry[start + HEAD.len()..].split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+    // The number of points and the type of coordinates come first.
+    match words.skip(2).enumerate().find(|(_, word)| NO_NUMBERS.contains(word)) {
+        Some((place, word)) => {
+            let word = String::from_utf8_lossy(word);
+            Err(super::problem(format!("point {} has the coordinate {word}", place / 3)))
+        }
+        None => Ok(()),
+    }
+}
+
+/// The arrays with older names of types: `NodeTypes 1 987 signed_char` becomes `NodeTypes 1 987 char`.
+fn with_known_types(arrays: &[u8]) -> Vec<u8> {
+    let mut known = Vec::with_capacity(arrays.len());
+    let mut done = 0;
+    for (blank, _) in arrays.iter().enumerate().filter(|(_, byte)| **byte == b' ') {
+        let after = &arrays[blank + 1..];
+        let is_it = |name: &str| {
+            let rest = after.strip_prefix(name.as_bytes());
+            rest.is_some_and(|rest| rest.first().is_some_and(u8::is_ascii_whitespace))
+        };
+        if let Some((newer, older)) = TYPES.iter().find(|(newer, _)| is_it(newer)) {
+            known.extend_from_slice(&arrays[done..=blank]);
+            known.extend_from_slice(older.as_bytes());
+            done = blank + 1 + newer.len();
+        }
+    }
+    known.extend_from_slice(&arrays[done..]);
+    known
+}
+
+/// The text of arrays with a number beyond all labels for what is none.
+fn with_numbers_only(arrays: &[u8]) -> Vec<u8> {
+    let mut numbers = Vec::with_capacity(arrays.len());
+    for word in arrays.split_inclusive(u8::is_ascii_whitespace) {
+        let is_none = NO_NUMBERS.contains(&word.trim_ascii_end());
+        numbers.extend_from_slice(if is_none { BEYOND } else { word });
+    }
+    numbers
+}
