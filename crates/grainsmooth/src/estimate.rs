@@ -5,8 +5,7 @@ use std::fmt;
 use polycrystal::{FaceMesh, MeshSize};
 use voronoi::Dimension;
 
-use crate::memory::{LevelSize, available_memory, check_levels, in_words};
-use crate::pipeline::control_mesh_size;
+use crate::memory::{ControlMesh, LevelSize, available_memory, check_levels, in_words};
 use crate::vtk::VtkFormat;
 use crate::{Config, Error, OutputFormat, StlEncoding, Tessellated};
 
@@ -35,7 +34,7 @@ pub struct Estimate {
     pub memory: u128,
     /// Bytes of memory that there are.
     pub available: u64,
-    control_mesh: LevelSize,
+    control_mesh: ControlMesh,
     levels: u32,
 }
 
@@ -49,9 +48,9 @@ impl Estimate {
                 let (regular, _) = tessellation.regularized(length);
                 let MeshSize { points, edges, triangles } =
                     config.regular_face_mesh().control_mesh_size(&regular);
-                LevelSize { points, edges, triangles }
+                LevelSize { points, edges, triangles }.into()
             }
-            _ => control_mesh_size(config, tessellation),
+            _ => crate::pipeline::control_mesh(config, tessellation),
         };
         let mesh = control_mesh.after(config.levels);
         let grains = tessellation.cell_count();
