@@ -115,6 +115,9 @@ impl Descent {
             let Answer { mut motion, pressures } = tangent.answer(&down, &missing);
             let fall = dot(&pressures, &missing) - dot(&gradient, &motion);
             if fall <= REST * energy && relative_error <= AREA_LIMIT {
+                if let Some((state, _)) = restored(foam, &tangent, self.state.clone(), AREA_TOLERANCE) {
+                    self.state = state;
+                }
                 return Ok(Step { is_at_rest: true, vanishing });
             }
             let saved = fall - 0.5 * dot(&motion, &tangent.curvature(&motion));

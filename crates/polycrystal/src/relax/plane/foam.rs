@@ -3,6 +3,7 @@
 //! A state lists the coordinates of all vertices, two each, and then the turning of every arc.
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 use voronoi::{CellComplex, FaceId};
 
 use super::bow::Bow;
@@ -115,9 +116,10 @@ impl<'a> Foam<'a> {
     /// What the area of each cell lacks.
     pub(super) fn missing(&self, state: &[f64]) -> Vec<f64> {
         let mut missing = self.areas.to_vec();
-        for (number, arc) in self.arcs.iter().enumerate() {
+        let bows = (0..self.arcs.len()).into_par_iter().map(|arc| self.bow(arc, state).area[0]);
+        for (arc, bow) in self.arcs.iter().zip(bows.collect::<Vec<f64>>()) {
             let [start, end] = self.ends(arc, state);
-            let bulge = start.distance_squared(end) * self.bow(number, state).area[0];
+            let bulge = start.distance_squared(end) * bow;
             for (beside, sign) in arc.beside.iter().zip([1.0, -1.0]) {
                 if let Some((cell, offset)) = beside {
                     missing[*cell] -= sign * (0.5 * (start - offset).perp_dot(end - offset) + bulge);
