@@ -5,8 +5,11 @@
 
 mod bow;
 mod descent;
+mod dissection;
+mod factors;
 mod foam;
 mod switching;
+mod tangent;
 
 use glam::{DVec2, DVec3};
 use voronoi::{CellComplex, Collapsed, Corner, FaceId, Tessellation};
@@ -43,9 +46,9 @@ pub(super) fn equilibrate(
     let complex = CellComplex::from(tessellation);
     let turnings = vec![0.0; complex.faces().len()];
     let mut edges = CurvedEdges { complex, turnings };
-    let Settled { reconnections, states } = settle(&mut edges, recipe, &areas)?;
+    let Settled { reconnections, states, descent } = settle(&mut edges, recipe, &areas)?;
     let smooth = SmoothEdges::new(&edges, recipe, &areas)?;
-    let relaxed = smooth.balanced(&edges, recipe, states, watch)?;
+    let relaxed = smooth.balanced(&edges, recipe, states, descent, watch)?;
     let network = smooth.network;
     validate(&network, &relaxed.points).map_err(NetworkError::Invalid)?;
     let balance = balance(&network, &relaxed.points);
@@ -56,6 +59,7 @@ pub(super) fn equilibrate(
 struct Settled {
     reconnections: Reconnections,
     states: Vec<Vec<f64>>,
+    descent: Descent,
 }
 
 /// Lets edges move and switch until all is at rest.
@@ -82,12 +86,12 @@ fn settle(
         if events.count() > 0 {
             reconnections.add(events);
             foam = edges.foam(areas, recipe, |_| CHORDS);
-            descent = Descent::new(&foam, edges.state(&foam));
+            descent.go_on(&foam, edges.state(&foam));
             states.clear();
         }
         states.push(descent.state.clone());
     }
-    Ok(Settled { reconnections, states })
+    Ok(Settled { reconnections, states, descent })
 }
 
 impl CurvedEdges {
@@ -148,6 +152,7 @@ impl SmoothEdges {
         edges: &CurvedEdges,
         recipe: &NetworkRecipe<'_>,
         states: Vec<Vec<f64>>,
+        mut descent: Descent,
         watch: &mut impl FnMut(RelaxationStep<'_>),
     ) -> Result<Relaxed, NetworkError> {
         let faces = edges.complex.faces();
@@ -160,7 +165,6 @@ impl SmoothEdges {
         };
         states.iter().enumerate().for_each(|(done, state)| show(done, state));
         let mut steps = states.len() - 1;
-        let mut descent = Descent::new(&foam, edges.state(&foam));
         for _ in 0..STEPS {
             if descent.step(&foam)?.is_at_rest {
                 break;

@@ -92,7 +92,7 @@ pub(super) struct Compliance {
 
 impl Compliance {
     /// That of a symmetric, positive semidefinite matrix.
-    pub(super) fn new(matrix: Rows<f64>) -> Self {
+    fn new(matrix: Rows<f64>) -> Self {
         Self { grids: Multigrid::new(matrix) }
     }
 

@@ -1,24 +1,31 @@
 //! Steps down to the least energy at kept areas.
 //!
-//! States with the right areas make up a smooth manifold, on which this is Newton's method within a region of trust (Absil, Baker
-//! and Gallivan 2007): the quadratic model of the energy under the pressures is followed by projected conjugate gradients to the
-//! rim of the region at most (Steihaug 1983), and areas are restored after it. The energy falls with each step.
+//! Each is one of Newton's method on energy and areas together, with arcs more rigid than they are (Levenberg 1944, Marquardt
+//! 1963): as rigid as the energy needs to fall about as its quadratic model says, and where an arc would turn over, that one alone.
+//! So what happens at one place takes nothing from a step elsewhere, and the number of steps does not grow with the network.
 
 use glam::DVec2;
 use voronoi::FaceId;
 
-use super::foam::{Foam, Tangent};
+use super::foam::{Arc, Foam};
+use super::tangent::{Answer, Tangent};
 use crate::NetworkError;
+use crate::relax::conjugate_gradients::dot;
 
-/// Energy, as a share of all, that the first region lets a step cost if stiffness were all.
-const FIRST_REGION: f64 = 0.03;
+/// Share of its stiffness by which an arc is more rigid at first.
+const FIRST_RIGIDITY: f64 = 1.0;
 
-/// Share of the first residual at which conjugate gradients end, or the residual's own share of the energy if that is less: the
-/// nearer to rest, the better a step is worth its price.
-const LOOSE: f64 = 0.1;
+/// What the rigidity of arcs is multiplied by after a step that went as the model says ...
+const LOOSENED: f64 = 0.1;
 
-/// Most iterations of conjugate gradients.
-const ITERATIONS: usize = 500;
+/// ... and before another try where one did not.
+const STIFFENED: f64 = 8.0;
+
+/// Least rigidity after that.
+const LEAST_STIFFENED: f64 = 0.3;
+
+/// Rigidity with which nothing moves.
+const LARGEST_RIGIDITY: f64 = 1e8;
 
 /// Share of its length that a step leaves to an arc's chord.
 const KEPT_LENGTH: f64 = 0.25;
@@ -35,8 +42,8 @@ const LARGEST_TURN: f64 = 0.7;
 /// Largest turning of an arc, in radians: no arc closes to a circle.
 const LARGEST_TURNING: f64 = 5.0;
 
-/// Energy of what is left to do, as a share of all, that is rest: angles are right to 1e-8 radians then.
-const REST: f64 = 1e-16;
+/// Energy of what is left to do, as a share of all, that is rest: angles are right to 1e-6 radians then.
+const REST: f64 = 1e-13;
 
 /// Energy that a step should save, as a share of all, below which rounding hides whether it did.
 const HIDDEN: f64 = 1e-12;
@@ -44,8 +51,14 @@ const HIDDEN: f64 = 1e-12;
 /// Error of an area, as a share of it, that counts as none.
 const AREA_TOLERANCE: f64 = 1e-13;
 
-/// Error with which a step is still good; the next one mends it.
+/// Error at rest.
 const AREA_LIMIT: f64 = 1e-10;
+
+/// The same after a step as a share of what that saves of all energy; the next one mends it ...
+const AREA_SHARE: f64 = 1e-2;
+
+/// ... and at most.
+const LOOSE_AREA: f64 = 1e-4;
 
 /// Most corrections of areas.
 const CORRECTIONS: usize = 40;
@@ -53,8 +66,9 @@ const CORRECTIONS: usize = 40;
 /// A state on its way down.
 pub(super) struct Descent {
     pub(super) state: Vec<f64>,
-    /// Radius of the region of trust.
-    radius: f64,
+    pressures: Vec<f64>,
+    /// Of each edge by number, how much more rigid it is than its stiffness, as a share of that.
+    rigidities: Vec<f64>,
 }
 
 /// What a step did.
@@ -66,8 +80,18 @@ pub(super) struct Step {
 
 impl Descent {
     pub(super) fn new(foam: &Foam<'_>, state: Vec<f64>) -> Self {
-        let radius = (FIRST_REGION * foam.energy(&state)).sqrt();
-        Self { state, radius }
+        let mut descent =
+            Self { state: Vec::new(), pressures: vec![0.0; foam.areas.len()], rigidities: Vec::new() };
+        descent.go_on(foam, state);
+        descent
+    }
+
+    /// Goes on from another state, of a foam with other edges or segments.
+    pub(super) fn go_on(&mut self, foam: &Foam<'_>, state: Vec<f64>) {
+        self.state = state;
+        let last = foam.arcs.iter().map(|arc| arc.face.index()).max();
+        let count = last.map_or(0, |last| last + 1).max(self.rigidities.len());
+        self.rigidities.resize(count, FIRST_RIGIDITY);
     }
 
     /// One step.
@@ -75,124 +99,89 @@ impl Descent {
     /// # Errors
     /// [`NetworkError::VolumeNotRestored`].
     pub(super) fn step(&mut self, foam: &Foam<'_>) -> Result<Step, NetworkError> {
-        self.restore(foam)?;
-        let tangent = foam.tangent(&self.state);
         let energy = foam.energy(&self.state);
-        let mut residual = tangent.gradient();
-        let pressures = tangent.project(&mut residual);
-        let left = dot(&residual, &tangent.soften(&residual));
-        if left <= REST * energy {
-            return Ok(Step { is_at_rest: true, vanishing: Vec::new() });
-        }
-        loop {
-            let Model { mut motion, saved, is_at_rim } =
-                self.model(&tangent, &pressures, residual.clone(), energy);
-            let vanishing = hold_chords(foam, &self.state, &mut motion);
-            let moved: Vec<f64> = self.state.iter().zip(&motion).map(|(x, by)| x + by).collect();
-            let restored = restored(foam, &tangent, moved);
-            let restored = restored.filter(|state| !turns_over(foam, &self.state, state));
-            let gained = restored.as_ref().map(|state| energy - foam.energy(state));
-            let share = gained.map_or(-1.0, |gained| gained / saved);
-            let is_hidden = saved < HIDDEN * energy && gained.is_some();
-            if share < 0.25 && !is_hidden {
-                self.radius = 0.25 * self.radius.min(length(&tangent, &motion));
-            } else if share > 0.75 && is_at_rim {
-                self.radius *= 2.0;
+        let missing = foam.missing(&self.state);
+        let (grain, relative_error) = foam.largest_error(&missing);
+        let mut vanishing = Vec::new();
+        while self.rigidities.iter().all(|rigidity| *rigidity < LARGEST_RIGIDITY) {
+            let tangent = Tangent::new(foam, &self.state, &self.pressures, &self.rigidities);
+            if !tangent.is_stable() {
+                self.stiffen_all();
+                continue;
             }
-            if (share > 0.05 || is_hidden)
-                && let Some(state) = restored
-            {
+            let gradient = tangent.gradient();
+            let down: Vec<f64> = gradient.iter().map(|slope| -slope).collect();
+            let Answer { mut motion, pressures } = tangent.answer(&down, &missing);
+            let fall = dot(&pressures, &missing) - dot(&gradient, &motion);
+            if fall <= REST * energy && relative_error <= AREA_LIMIT {
+                return Ok(Step { is_at_rest: true, vanishing });
+            }
+            let saved = fall - 0.5 * dot(&motion, &tangent.curvature(&motion));
+            vanishing = hold_chords(foam, &self.state, &mut motion);
+            let moved = self.state.iter().zip(&motion).map(|(x, by)| x + by).collect();
+            let enough = (AREA_SHARE * saved / energy).clamp(AREA_TOLERANCE, LOOSE_AREA);
+            let Some((state, missing_after)) = restored(foam, &tangent, moved, enough) else {
+                self.stiffen_all();
+                continue;
+            };
+            let turned = turned_over(foam, &self.state, &state);
+            if !turned.is_empty() {
+                self.stiffen(turned.into_iter().map(FaceId::index));
+                continue;
+            }
+            // What areas still lack, or no longer do, is worth its pressure.
+            let paid = dot(&pressures, &missing) - dot(&pressures, &missing_after);
+            let share = (energy - foam.energy(&state) + paid) / saved;
+            let is_hidden = saved < HIDDEN * energy;
+            if share > 0.75 || is_hidden {
+                self.rigidities.iter_mut().for_each(|rigidity| *rigidity *= LOOSENED);
+            } else if share < 0.25 {
+                self.stiffen_all();
+            }
+            if share > 0.05 || is_hidden {
                 self.state = state;
+                self.pressures = pressures;
                 return Ok(Step { is_at_rest: false, vanishing });
             }
-            // What is too short to move at all is at rest, or on its way to nothing.
-            if self.radius * self.radius < REST * energy {
-                return Ok(Step { is_at_rest: vanishing.is_empty(), vanishing });
-            }
         }
+        if relative_error > AREA_LIMIT {
+            return Err(NetworkError::VolumeNotRestored { grain, relative_error });
+        }
+        // What is too short to move at all is at rest, or on its way to nothing.
+        Ok(Step { is_at_rest: vanishing.is_empty(), vanishing })
     }
 
-    /// Brings areas back that an event, or the start, has changed.
-    fn restore(&mut self, foam: &Foam<'_>) -> Result<(), NetworkError> {
-        for done in 0.. {
-            let missing = foam.missing(&self.state);
-            let (grain, relative_error) = foam.largest_error(&missing);
-            if relative_error <= AREA_LIMIT {
-                return Ok(());
-            }
-            if done == CORRECTIONS || !relative_error.is_finite() {
-                return Err(NetworkError::VolumeNotRestored { grain, relative_error });
-            }
-            let tangent = foam.tangent(&self.state);
-            let mut motion = tangent.soften(&tangent.force(&tangent.pressures(&missing)));
-            hold_chords(foam, &self.state, &mut motion);
-            add(&mut self.state, 1.0, &motion);
-        }
-        Ok(())
+    fn stiffen_all(&mut self) {
+        self.stiffen(0..self.rigidities.len());
     }
 
-    /// The motion that saves most energy within the region.
-    fn model(&self, tangent: &Tangent<'_>, pressures: &[f64], mut residual: Vec<f64>, energy: f64) -> Model {
-        let mut motion = vec![0.0; residual.len()];
-        let mut image = motion.clone();
-        let gradient = residual.clone();
-        let mut direction: Vec<f64> = tangent.soften(&residual).iter().map(|x| -x).collect();
-        let mut size = -dot(&residual, &direction);
-        let loose = LOOSE.min((size / energy).sqrt());
-        let enough = size * loose * loose;
-        let mut is_at_rim = false;
-        for _ in 0..ITERATIONS {
-            let bent = tangent.curvature(pressures, &direction);
-            let curvature = dot(&direction, &bent);
-            let whole = size / curvature;
-            let to_rim = distance_to_rim(tangent, &motion, &direction, self.radius);
-            is_at_rim = curvature <= 0.0 || whole >= to_rim;
-            let by = if is_at_rim { to_rim } else { whole };
-            add(&mut motion, by, &direction);
-            add(&mut image, by, &bent);
-            if is_at_rim {
-                break;
-            }
-            add(&mut residual, by, &bent);
-            tangent.project_loosely(&mut residual);
-            let soft = tangent.soften(&residual);
-            let next = dot(&residual, &soft);
-            if next <= enough {
-                break;
-            }
-            let share = next / size;
-            direction
-                .iter_mut()
-                .zip(&soft)
-                .for_each(|(direction, soft)| *direction = *direction * share - soft);
-            size = next;
+    fn stiffen(&mut self, edges: impl Iterator<Item = usize>) {
+        for edge in edges {
+            self.rigidities[edge] = (STIFFENED * self.rigidities[edge]).max(LEAST_STIFFENED);
         }
-        let saved = -dot(&gradient, &motion) - 0.5 * dot(&motion, &image);
-        Model { motion, saved, is_at_rim }
     }
 }
 
-/// A motion and what it would save if the energy were quadratic.
-struct Model {
-    motion: Vec<f64>,
-    saved: f64,
-    is_at_rim: bool,
-}
-
-/// A state with its areas restored along the gradients of another one nearby; nothing where that does not lead there.
-fn restored(foam: &Foam<'_>, tangent: &Tangent<'_>, mut state: Vec<f64>) -> Option<Vec<f64>> {
+/// A state with its areas restored up to an error along the gradients of another one nearby, and what they lack; nothing where that
+/// does not lead there.
+fn restored(
+    foam: &Foam<'_>,
+    tangent: &Tangent<'_>,
+    mut state: Vec<f64>,
+    enough: f64,
+) -> Option<(Vec<f64>, Vec<f64>)> {
     let mut last = f64::INFINITY;
     for _ in 0..CORRECTIONS {
         let missing = foam.missing(&state);
         let (_, error) = foam.largest_error(&missing);
-        if error <= AREA_TOLERANCE || (error <= AREA_LIMIT && error > 0.5 * last) {
-            return Some(state);
+        if error <= enough || (error <= AREA_LIMIT && error > 0.5 * last) {
+            return Some((state, missing));
         }
         if error.is_nan() || error > last {
             return None;
         }
         last = error;
-        add(&mut state, 1.0, &tangent.soften(&tangent.force(&tangent.pressures(&missing))));
+        add(&mut state, &tangent.change_areas(&missing));
     }
     None
 }
@@ -232,36 +221,16 @@ fn hold_chords(foam: &Foam<'_>, state: &[f64], motion: &mut [f64]) -> Vec<FaceId
     vanishing
 }
 
-/// Whether an arc has turned over.
-fn turns_over(foam: &Foam<'_>, before: &[f64], after: &[f64]) -> bool {
-    let mut arcs = foam.arcs.iter();
-    arcs.any(|arc| {
+/// The arcs that have turned over.
+fn turned_over(foam: &Foam<'_>, before: &[f64], after: &[f64]) -> Vec<FaceId> {
+    let has_turned = |arc: &&Arc| {
         let [before, after] =
             [before, after].map(|state| foam.ends(arc, state)).map(|[start, end]| end - start);
         before.dot(after) <= 0.0
-    })
-}
-
-/// How far along a direction the rim of the region is.
-fn distance_to_rim(tangent: &Tangent<'_>, motion: &[f64], direction: &[f64], radius: f64) -> f64 {
-    let product = |a: &[f64], b: &[f64]| -> f64 {
-        a.iter().zip(b).zip(&tangent.stiffness).map(|((a, b), stiffness)| a * b * stiffness).sum()
     };
-    let [a, b] = [product(direction, direction), product(direction, motion)];
-    let c = radius * radius - product(motion, motion);
-    ((b * b + a * c.max(0.0)).sqrt() - b) / a
+    foam.arcs.iter().filter(has_turned).map(|arc| arc.face).collect()
 }
 
-/// The length of a motion, as the region has it.
-fn length(tangent: &Tangent<'_>, motion: &[f64]) -> f64 {
-    motion.iter().zip(&tangent.stiffness).map(|(x, stiffness)| x * x * stiffness).sum::<f64>().sqrt()
-}
-
-/// Adds a multiple of a vector to another one.
-fn add(to: &mut [f64], factor: f64, what: &[f64]) {
-    to.iter_mut().zip(what).for_each(|(to, what)| *to += factor * what);
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+fn add(to: &mut [f64], what: &[f64]) {
+    to.iter_mut().zip(what).for_each(|(to, what)| *to += what);
 }
