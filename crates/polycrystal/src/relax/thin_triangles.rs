@@ -22,9 +22,9 @@ const NO_AREA: f64 = 1e-3;
 /// Most steps down the gradient; most places take some ten, the worst of 20 networks of 200 grains took 244.
 const STEPS: usize = 300;
 
-/// So many steps in a row that lessen the energy by less than this share of it lead nowhere: a line is too short, or a corner too sharp.
+/// So many steps in a row that lessen the energy by less than the share below lead nowhere: a line is too short, or a corner too sharp.
 const PATIENCE: usize = 40;
-const LEAST_GAIN: f64 = 0.005;
+const LEAST_GAIN: f64 = 0.02;
 
 /// Times that a step is halved before it counts as one that leads nowhere.
 const HALVINGS: usize = 20;

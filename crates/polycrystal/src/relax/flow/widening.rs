@@ -32,15 +32,13 @@ const TRIES: [Moving; 3] = [Moving::Inside, Moving::Lines, Moving::Lines];
 impl Flow<'_> {
     /// Makes thin triangles of the finest level wide, as far as nothing folds; `surface` are the points of that level.
     pub(super) fn widen_all(&self, points: &mut Vec<DVec3>, mut surface: Vec<DVec3>, finest: &Wedged) {
-        let mut hopeless = Vec::new();
         for moving in TRIES {
-            let mut movable = self.movable_points(&self.thin_triangles(&surface), moving);
+            let movable = self.movable_points(&self.thin_triangles(&surface), moving);
             if movable.is_empty() {
                 break;
             }
-            movable.retain(|group| !hopeless.contains(group));
             let mut moved = points.clone();
-            hopeless = self.widen(&mut moved, &movable, moving);
+            self.widen(&mut moved, &movable, moving);
             for _ in 0..2 {
                 let mut right = moved.clone();
                 let Ok(restored) = self.restored(&mut right) else { break };
@@ -105,8 +103,8 @@ impl Flow<'_> {
         groups
     }
 
-    /// Moves groups of points so that the triangles around are wide, and tells for which groups that cannot be.
-    fn widen(&self, points: &mut [DVec3], movable: &[Vec<u32>], moving: Moving) -> Vec<Vec<u32>> {
+    /// Moves groups of points so that the triangles around are wide.
+    fn widen(&self, points: &mut [DVec3], movable: &[Vec<u32>], moving: Moving) {
         let level = &self.network.levels()[self.level];
         let elements = by_boundary(self.network.boundaries().len(), &level.boundary_of);
         let together = match moving {
@@ -114,8 +112,7 @@ impl Flow<'_> {
             // Boundaries share lines: one after the other.
             Moving::Lines => 1,
         };
-        let mut hopeless = Vec::new();
-        for movable in movable.chunks(together.max(1)) {
+        for movable in movable.chunks(together) {
             let widened = |movable: &Vec<u32>| {
                 let places = movable.iter().flat_map(|point| self.patches.places_of_point(*point as usize));
                 let mut boundaries: Vec<usize> =
@@ -126,15 +123,12 @@ impl Flow<'_> {
                     boundaries.into_iter().flat_map(|boundary| &elements[boundary]).copied().collect();
                 Room::new(self.network, self.level, around, movable, points)?.widened(sine(WIDE))
             };
-            let moved: Vec<Option<Vec<(u32, DVec3)>>> = movable.par_iter().map(widened).collect();
-            let failed = movable.iter().zip(&moved).filter(|(_, moved)| moved.is_none());
-            hopeless.extend(failed.map(|(group, _)| group.clone()));
-            for (point, place) in moved.into_iter().flatten().flatten() {
+            let moved: Vec<Vec<(u32, DVec3)>> = movable.par_iter().filter_map(widened).collect();
+            for (point, place) in moved.into_iter().flatten() {
                 points[point as usize] = place;
             }
         }
         level.copies.place(self.network.domain(), points);
-        hopeless
     }
 }
 
