@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use polycrystal::FaceMesh;
+use polycrystal::{FaceMesh, MeshSize};
 use voronoi::Dimension;
 
-use crate::memory::{LevelSize, available_memory, check_levels, in_words};
+use crate::memory::{ControlMesh, LevelSize, available_memory, check_levels, in_words};
 use crate::vtk::VtkFormat;
 use crate::{Config, Error, OutputFormat, StlEncoding, Tessellated};
 
@@ -34,7 +34,7 @@ pub struct Estimate {
     pub memory: u128,
     /// Bytes of memory that there are.
     pub available: u64,
-    control_mesh: LevelSize,
+    control_mesh: ControlMesh,
     levels: u32,
 }
 
@@ -42,18 +42,24 @@ impl Estimate {
     /// The size of what becomes of some cells.
     pub fn new(config: &Config, cells: &Tessellated, format: Option<OutputFormat>) -> Self {
         let tessellation = &cells.tessellation;
-        let size = match config.effective_regularize() {
-            0.0 => config.face_mesh.control_mesh_size(tessellation),
-            length => config.regular_face_mesh().control_mesh_size(&tessellation.regularized(length).0),
+        let is_flat = config.dimension == Dimension::Two;
+        let control_mesh = match config.effective_regularize() {
+            length if length > 0.0 && !(is_flat && config.lets_topology_change()) => {
+                let (regular, _) = tessellation.regularized(length);
+                let MeshSize { points, edges, triangles } =
+                    config.regular_face_mesh().control_mesh_size(&regular);
+                LevelSize { points, edges, triangles }.into()
+            }
+            _ => crate::pipeline::control_mesh(config, tessellation),
         };
-        let control_mesh = LevelSize { points: size.points, edges: size.edges, triangles: size.triangles };
         let mesh = control_mesh.after(config.levels);
         let grains = tessellation.cell_count();
         Self {
             grains,
             mesh,
             is_exact: !matches!(config.face_mesh, FaceMesh::Refined { .. })
-                && (config.effective_regularize() == 0.0 || config.dimension == Dimension::Two),
+                && !config.lets_topology_change()
+                && (config.effective_regularize() == 0.0 || is_flat),
             dimension: config.dimension,
             file: format.map(|format| file_bytes(format, &mesh, grains, config)),
             memory: control_mesh.bytes_after(config.levels),

@@ -8,7 +8,8 @@ use crate::Error;
 /// arrays, the stencils that made the points, the level before, and the arrays being written.
 ///
 /// Fitted to peak resident memory, and up to 5 % above it: 200 grains took 201 MB at level 3 and 770 MB at level 4, 500
-/// grains 517 MB at level 3, 1000 grains 363 MB at level 2; in 2D, 20 000 grains 1862 MB at level 6.
+/// grains 517 MB at level 3, 1000 grains 363 MB at level 2; in 2D, 20 000 grains 1862 MB at level 6, and in equilibrium at
+/// level 3 1196 MB, 2000 grains 128 MB.
 const BYTES_PER_POINT: u128 = 220;
 const BYTES_PER_EDGE: u128 = 50;
 const BYTES_PER_TRIANGLE: u128 = 62;
@@ -17,6 +18,9 @@ const BYTES_PER_TRIANGLE: u128 = 62;
 /// where there is one. 2000 grains took 115 MB at level 0 and 373 MB at level 1.
 const BYTES_PER_CONTROL_EDGE: u128 = 600;
 const BYTES_PER_CONTROL_EDGE_REFINED: u128 = 1600;
+
+/// Segments of a boundary in the plane that bends to an arc in equilibrium, on average: 200 to 2000 random grains had 59 to 66.
+const SEGMENTS_OF_ARC: u128 = 60;
 
 /// Bytes that cells without a network take for each seed: a million random ones took 1.46 GB.
 const BYTES_PER_CELL: u128 = 1600;
@@ -52,21 +56,6 @@ impl LevelSize {
         size
     }
 
-    /// Bytes that a run takes at its peak from this control mesh through `levels` subdivisions to the file, as an estimate.
-    pub fn bytes_after(self, levels: u32) -> u128 {
-        let size = self.after(levels);
-        let bytes_per_control_edge =
-            if levels == 0 { BYTES_PER_CONTROL_EDGE } else { BYTES_PER_CONTROL_EDGE_REFINED };
-        [
-            (size.points, BYTES_PER_POINT),
-            (size.edges, BYTES_PER_EDGE),
-            (size.triangles, BYTES_PER_TRIANGLE),
-            (self.edges, bytes_per_control_edge),
-        ]
-        .into_iter()
-        .fold(0, |sum, (count, bytes)| sum.saturating_add(count.saturating_mul(bytes)))
-    }
-
     /// Whether 32-bit ids can name every point, both directions of every edge, and every corner of a
     /// triangle.
     fn fits_ids(&self) -> bool {
@@ -75,12 +64,54 @@ impl LevelSize {
     }
 }
 
+/// What the last level comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ControlMesh {
+    /// Its points, edges and triangles.
+    pub size: LevelSize,
+    /// Boundaries in the plane, of two segments each, that are to bend to arcs: they are divided as often as makes the last level look
+    /// smooth.
+    pub arcs: u128,
+}
+
+impl From<LevelSize> for ControlMesh {
+    fn from(size: LevelSize) -> Self {
+        Self { size, arcs: 0 }
+    }
+}
+
+impl ControlMesh {
+    /// The size after `levels` subdivisions.
+    pub fn after(self, levels: u32) -> LevelSize {
+        let whole = 1_u128.checked_shl(levels).unwrap_or(u128::MAX);
+        let more = self.arcs.saturating_mul(SEGMENTS_OF_ARC.div_ceil(whole).max(2) - 2);
+        let [points, edges] = [self.size.points, self.size.edges].map(|count| count.saturating_add(more));
+        LevelSize { points, edges, ..self.size }.after(levels)
+    }
+
+    /// Bytes that a run takes at its peak through `levels` subdivisions to the file, as an estimate.
+    pub fn bytes_after(self, levels: u32) -> u128 {
+        let size = self.after(levels);
+        let bytes_per_control_edge =
+            if levels == 0 { BYTES_PER_CONTROL_EDGE } else { BYTES_PER_CONTROL_EDGE_REFINED };
+        [
+            (size.points, BYTES_PER_POINT),
+            (size.edges, BYTES_PER_EDGE),
+            (size.triangles, BYTES_PER_TRIANGLE),
+            (self.size.edges, bytes_per_control_edge),
+        ]
+        .into_iter()
+        .fold(0, |sum, (count, bytes)| sum.saturating_add(count.saturating_mul(bytes)))
+    }
+}
+
 /// Checks that the network of a control mesh after `levels` subdivisions can be held in `available` bytes and
 /// named with 32-bit ids.
 ///
 /// # Errors
 /// [`Error::LevelsExceedMemory`] or [`Error::LevelsExceedIds`], with the most levels that would fit.
-pub fn check_levels(control_mesh: LevelSize, levels: u32, available: u64) -> Result<(), Error> {
+pub fn check_levels(control_mesh: impl Into<ControlMesh>, levels: u32, available: u64) -> Result<(), Error> {
+    let control_mesh = control_mesh.into();
     let needed = |levels| control_mesh.bytes_after(levels);
     let fits = |levels| control_mesh.after(levels).fits_ids() && needed(levels) <= u128::from(available);
     if fits(levels) {
@@ -151,7 +182,8 @@ mod tests {
 
     use super::*;
 
-    const TETRAHEDRON: LevelSize = LevelSize { points: 4, edges: 6, triangles: 4 };
+    const TETRAHEDRON: ControlMesh =
+        ControlMesh { size: LevelSize { points: 4, edges: 6, triangles: 4 }, arcs: 0 };
 
     #[test]
     fn sizes_are_those_of_the_refined_mesh() {
@@ -167,6 +199,18 @@ mod tests {
         }
         let line = LevelSize { points: 4, edges: 3, triangles: 0 };
         assert_eq!(line.after(3), LevelSize { points: 25, edges: 24, triangles: 0 });
+    }
+
+    #[test]
+    fn arcs_have_as_many_segments_on_any_level() {
+        let lines = LevelSize { points: 500, edges: 600, triangles: 0 };
+        let arcs = ControlMesh { size: lines, arcs: 300 };
+        assert_eq!(arcs.after(0), LevelSize { points: 500 + 300 * 58, edges: 300 * 60, triangles: 0 });
+        assert_eq!(arcs.after(3).edges, 300 * 64);
+        for level in [5, 20, u32::MAX] {
+            assert_eq!(arcs.after(level), lines.after(level));
+        }
+        assert_eq!(arcs.bytes_after(8), ControlMesh::from(lines).bytes_after(8));
     }
 
     #[test]

@@ -12,7 +12,7 @@ use polycrystal::{
 };
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
-use crate::memory::{LevelSize, available_memory, check_cells, check_levels};
+use crate::memory::{ControlMesh, LevelSize, available_memory, check_cells, check_levels};
 use crate::{
     Config, Error, FileSeed, PeriodicCut, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds,
     read_seed_file,
@@ -189,7 +189,27 @@ pub fn make_polycrystal(config: &Config, progress: Progress) -> Result<Polycryst
 /// [`Error::LevelsExceedMemory`] and [`Error::LevelsExceedIds`].
 pub fn check_expected_size(config: &Config) -> Result<(), Error> {
     let Some(count) = seed_count(config) else { return Ok(()) };
-    check_levels(expected_control_mesh_size(count, config.dimension), config.levels, available_memory())
+    let size = expected_control_mesh_size(count, config.dimension);
+    // Each of two segments.
+    let arcs = if bends_to_arcs(config) { size.edges / 2 } else { 0 };
+    check_levels(ControlMesh { size, arcs }, config.levels, available_memory())
+}
+
+/// Whether boundaries become arcs with as many segments as look smooth.
+fn bends_to_arcs(config: &Config) -> bool {
+    config.dimension == Dimension::Two && config.lets_topology_change()
+}
+
+/// The control mesh of some cells, without what regularisation takes out.
+pub(crate) fn control_mesh(config: &Config, tessellation: &Tessellation) -> ControlMesh {
+    let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
+    let size = LevelSize { points, edges, triangles };
+    if !bends_to_arcs(config) {
+        return size.into();
+    }
+    let sides = tessellation.faces().map(|face| tessellation.face_sides(face));
+    let inside = sides.filter(|[_, second]| !matches!(second, voronoi::Side::Wall(_)));
+    ControlMesh { size, arcs: inside.count() as u128 }
 }
 
 fn seed_count(config: &Config) -> Option<usize> {
@@ -221,8 +241,7 @@ pub fn smooth_watched(
 ) -> Result<Polycrystal, Error> {
     let tessellation = &cells.tessellation;
     let mut clock = Clock { progress, times: cells.times.clone() };
-    let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
-    check_levels(LevelSize { points, edges, triangles }, config.levels, available_memory())?;
+    check_levels(control_mesh(config, tessellation), config.levels, available_memory())?;
     let mut tries = Regularization::tries(config).iter();
     let (regularization, smoothed) = loop {
         let regularization = *tries.next().expect("there is one, and the last is the result");

@@ -61,8 +61,22 @@ impl fmt::Display for Summary<'_> {
         };
         writeln!(out, "junctions   {junctions}")?;
         writeln!(out, "mesh        {points} points, {elements} {element}s at level {levels}")?;
-        if let (Some(before), Some(after)) = (polycrystal.angles_before, polycrystal.validation.angles) {
-            writeln!(out, "angles      {} before relaxation, {} after", Angle(before), Angle(after))?;
+        // In lattices four or more grains meet, until they relax.
+        match (polycrystal.angles_before, polycrystal.validation.angles) {
+            (Some(before), Some(after)) => {
+                writeln!(out, "angles      {} before relaxation, {} after", Angle(before), Angle(after))?;
+            }
+            (None, Some(after)) => writeln!(
+                out,
+                "angles      {} after relaxation; before, nowhere three grains alone met",
+                Angle(after)
+            )?,
+            (Some(before), None) => writeln!(
+                out,
+                "angles      {} before relaxation; after, nowhere three grains alone meet",
+                Angle(before)
+            )?,
+            (None, None) => {}
         }
         if let Some(quality) = polycrystal.validation.triangles {
             writeln!(out, "triangles   {}", TriangleAngles::from(quality))?;

@@ -11,6 +11,7 @@ use super::foam::{Arc, Foam};
 use super::tangent::{Answer, Tangent};
 use crate::NetworkError;
 use crate::relax::conjugate_gradients::dot;
+use crate::volume::largest_relative_error;
 
 /// Share of its stiffness by which an arc is more rigid at first.
 const FIRST_RIGIDITY: f64 = 1.0;
@@ -101,7 +102,7 @@ impl Descent {
     pub(super) fn step(&mut self, foam: &Foam<'_>) -> Result<Step, NetworkError> {
         let energy = foam.energy(&self.state);
         let missing = foam.missing(&self.state);
-        let (grain, relative_error) = foam.largest_error(&missing);
+        let (grain, relative_error) = largest_relative_error(&missing, foam.areas);
         let mut vanishing = Vec::new();
         while self.rigidities.iter().all(|rigidity| *rigidity < LARGEST_RIGIDITY) {
             let tangent = Tangent::new(foam, &self.state, &self.pressures, &self.rigidities);
@@ -114,6 +115,9 @@ impl Descent {
             let Answer { mut motion, pressures } = tangent.answer(&down, &missing);
             let fall = dot(&pressures, &missing) - dot(&gradient, &motion);
             if fall <= REST * energy && relative_error <= AREA_LIMIT {
+                if let Some((state, _)) = restored(foam, &tangent, self.state.clone(), AREA_TOLERANCE) {
+                    self.state = state;
+                }
                 return Ok(Step { is_at_rest: true, vanishing });
             }
             let saved = fall - 0.5 * dot(&motion, &tangent.curvature(&motion));
@@ -173,7 +177,7 @@ fn restored(
     let mut last = f64::INFINITY;
     for _ in 0..CORRECTIONS {
         let missing = foam.missing(&state);
-        let (_, error) = foam.largest_error(&missing);
+        let (_, error) = largest_relative_error(&missing, foam.areas);
         if error <= enough || (error <= AREA_LIMIT && error > 0.5 * last) {
             return Some((state, missing));
         }

@@ -114,11 +114,11 @@ fn eliminate(part: &Part, elements: &[(usize, &Element)]) -> Left {
         half.matrix = Vec::new();
     }
     let (inverse_pivots, columns) = eliminate_dense(&mut matrix, size, pivots);
-    let left = (pivots..size).flat_map(|row| &matrix[row * size + pivots..][..size - pivots]);
-    let matrix = left.copied().collect();
+    let mut left = Vec::with_capacity(border.len() * border.len());
+    (pivots..size).for_each(|row| left.extend_from_slice(&matrix[row * size + pivots..][..border.len()]));
     let halves = halves.into_iter().map(|half| half.front).collect();
     let before = part.own - part.start;
-    Left { front: Front { halves, before, inverse_pivots, columns, border, outer: Vec::new() }, matrix }
+    Left { front: Front { halves, before, inverse_pivots, columns, border, outer: Vec::new() }, matrix: left }
 }
 
 /// Eliminates the first unknowns of a dense matrix, of which the lower triangle counts.

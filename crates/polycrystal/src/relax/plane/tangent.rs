@@ -1,6 +1,7 @@
 //! What a foam is like near a state: slopes and curvatures, and the motions that forces and changes of area ask for.
 
 use glam::{DMat2, DVec2, DVec3};
+use rayon::prelude::*;
 
 use super::bow::Bow;
 use super::factors::{ELEMENT, Element, Factors};
@@ -153,13 +154,15 @@ fn outer(a: DVec2, b: DVec2) -> DMat2 {
 impl<'a> Tangent<'a> {
     /// That of a foam at a state under pressures, if each arc is so much more rigid than it is.
     pub(super) fn new(foam: &'a Foam<'a>, state: &[f64], pressures: &[f64], rigidities: &[f64]) -> Self {
-        let rigidity = |arc: &Arc| rigidities[arc.face.index()];
-        let terms = (0..foam.arcs.len())
-            .map(|arc| ArcTerms::new(foam, arc, state, pressures, rigidity(&foam.arcs[arc])));
-        let terms: Vec<ArcTerms> = terms.collect();
-        let elements =
-            foam.arcs.iter().zip(&terms).map(|(arc, terms)| terms.element(foam, arc, rigidity(arc)));
-        let elements: Vec<Element> = elements.collect();
+        let of_arc = |number: usize| {
+            let arc = &foam.arcs[number];
+            let rigidity = rigidities[arc.face.index()];
+            let terms = ArcTerms::new(foam, number, state, pressures, rigidity);
+            let element = terms.element(foam, arc, rigidity);
+            (terms, element)
+        };
+        let (terms, elements): (Vec<ArcTerms>, Vec<Element>) =
+            (0..foam.arcs.len()).into_par_iter().map(of_arc).unzip();
         Self { foam, terms, factors: Factors::new(&foam.order, &elements) }
     }
 
