@@ -187,7 +187,7 @@ proptest! {
     }
 }
 
-/// Two edges switch at once here, which leaves a small grain a quarter of its area.
+/// Two edges switch at once here, which leaves the area of a small grain off by three quarters.
 #[test]
 fn areas_that_an_event_leaves_far_off_come_back_step_by_step() {
     let cells = cells_of_disc(4, 15_223_321_501_867_968_557).expect("seeds in the disc");
