@@ -232,6 +232,18 @@ fn files_with_the_names_of_other_tools_pass() {
     }
 }
 
+/// Other tools know no periodic boundaries: all have the label of the exterior, and several meet at sharp edges.
+#[test]
+fn periodic_boundaries_with_the_labels_of_one_exterior_are_not_folded() {
+    let workplace = Workplace::new();
+    for (dim, names) in [(3, "neper"), (3, "virmat"), (2, "pyvista")] {
+        workplace.run(&format!(
+            "--seeds 8 --dim {dim} -n 0 --seeding poisson-disc --periodic y --names {names} -o a.vtp --rng-seed 1003"
+        ));
+        assert_eq!(report(&workplace, "a.vtp", 0)["grains"], 8, "{names}");
+    }
+}
+
 /// Where voxels touch along an edge, vtkSurfaceNets3D splits points, leaves the copies where the originals are and keeps one
 /// that nothing uses.
 #[test]

@@ -17,7 +17,7 @@ pub struct LabelledFile {
     pub points: Vec<DVec3>,
     /// Triangles or segments.
     pub elements: FileElements,
-    /// The boundary of each element: one for each pair of labels in the file.
+    /// The boundary of each element: one for each pair of labels in the file, and in those of this program for each number of a boundary.
     pub boundary_of: Vec<BoundaryId>,
     /// The two sides of each boundary, in the order in which normals point from first to second.
     pub sides: Vec<[Side; 2]>,
@@ -69,13 +69,24 @@ impl LabelledFile {
     }
 
     fn of_cells(cells: LabelledCells) -> Result<Self, MeshFileProblem> {
-        let LabelledCells { mesh, is_plane, labels, label_array, node_types, is_single, remarks } = cells;
+        let LabelledCells {
+            mesh,
+            is_plane,
+            labels,
+            label_array,
+            boundary_ids,
+            node_types,
+            is_single,
+            remarks,
+        } = cells;
         let Remarks { command_line, volumes } = remarks;
         let command_line = command_line.filter(|line| line.starts_with("grainsmooth "));
         // Without an exterior the volumes of all grains would sum to nothing.
         let zero_is_exterior =
             label_array != "FaceLabels" || !labels.iter().flatten().any(|label| *label < 0);
-        let mut boundaries: BTreeMap<[i64; 2], BoundaryId> = BTreeMap::new();
+        // With the names of other tools, all that a periodic grain has beyond the box has the same labels.
+        let boundary_ids = boundary_ids.filter(|_| command_line.is_some());
+        let mut boundaries: BTreeMap<([i64; 2], Option<i64>), BoundaryId> = BTreeMap::new();
         let mut sides = Vec::new();
         let mut of_cell = Vec::with_capacity(labels.len());
         for (cell, labels) in labels.iter().enumerate() {
@@ -88,7 +99,8 @@ impl LabelledFile {
             let side = |label| side(label).ok_or(MeshFileProblem::BadLabel { cell, label });
             let pair = [side(labels[0])?, side(labels[1])?];
             let next = BoundaryId(u32::try_from(sides.len()).unwrap_or(u32::MAX));
-            of_cell.push(*boundaries.entry(*labels).or_insert_with(|| {
+            let id = boundary_ids.as_ref().map(|ids| ids[cell]);
+            of_cell.push(*boundaries.entry((*labels, id)).or_insert_with(|| {
                 sides.push(pair);
                 next
             }));

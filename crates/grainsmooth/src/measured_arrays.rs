@@ -211,11 +211,8 @@ impl<'a> MeasuredArrays<'a> {
 
     /// The places of the grains on both sides of a boundary, in the order of the file's labels.
     fn sides(&self, boundary: &Boundary) -> [Option<usize>; 2] {
-        let beyond = match boundary.twin {
-            Some(twin) => self.polycrystal.network.boundaries()[twin.boundary.index()].sides[0],
-            None => boundary.sides[1],
-        };
-        let [first, second] = [boundary.sides[0], beyond].map(|side| side.grain().map(|grain| grain.index()));
+        let sides = boundary.sides_across(self.polycrystal.network.boundaries());
+        let [first, second] = sides.map(|side| side.grain().map(|grain| grain.index()));
         if self.polycrystal.config.file.names.reverses(boundary) { [second, first] } else { [first, second] }
     }
 

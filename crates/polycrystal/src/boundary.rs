@@ -81,6 +81,16 @@ impl Boundary {
         self.sides.into_iter().zip([1.0, -1.0]).filter_map(|(side, sign)| Some((side.grain()?, sign)))
     }
 
+    /// The grains or the exterior on both sides, with the grain beyond a period in the exterior's place; given all boundaries of
+    /// the network.
+    ///
+    /// # Panics
+    /// When the boundary's twin is none of them.
+    pub fn sides_across(&self, boundaries: &[Boundary]) -> [Side; 2] {
+        let [first, second] = self.sides;
+        [first, self.twin.map_or(second, |twin| boundaries[twin.boundary.index()].sides[0])]
+    }
+
     /// Whether grains lie on both sides, without a period between them.
     pub fn is_interior(&self) -> bool {
         self.wall.is_none() && self.twin.is_none()

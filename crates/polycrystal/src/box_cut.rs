@@ -48,7 +48,7 @@ impl Network {
     /// becomes two walls, and one at which a grain meets its own image is left out: in the box there is the same on both sides.
     ///
     /// # Errors
-    /// [`NetworkError::CutCrosses`]; [`NetworkError::MeetsItself`] where that leaves folds; [`NetworkError::Invalid`] where the pieces are no valid network.
+    /// [`NetworkError::CutCrosses`]; [`NetworkError::MeetsItself`] where that leaves folds; [`NetworkError::CutInvalid`] where the pieces are no valid network.
     ///
     /// # Panics
     /// When there is not one point per vertex of the finest level.
@@ -93,6 +93,7 @@ impl Network {
         let walled = domain.clone().with_periods(glam::BVec3::FALSE);
         match (Self::of_surface(&walled, &surface, Junctions::Crease, 0), meets_itself) {
             (Err(NetworkError::Invalid(_)), Some(grain)) => Err(NetworkError::MeetsItself { grain }),
+            (Err(NetworkError::Invalid(faults)), None) => Err(NetworkError::CutInvalid(faults)),
             (result, _) => result,
         }
     }

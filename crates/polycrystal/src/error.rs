@@ -61,6 +61,9 @@ pub enum NetworkError {
         /// The axis across the plane.
         axis: &'static str,
     },
+    /// What is left of a periodic network in its box is no valid network: parts of a grain may touch each other at a wall.
+    #[error("cut at the box, the network is invalid: {0}; keep grains whole, or move the seeds a little")]
+    CutInvalid(Faults),
     /// The edge length of the control mesh is no length.
     #[error("the edge length is {0}; it must be a positive, finite number")]
     BadEdgeLength(f64),
@@ -109,6 +112,6 @@ pub enum NetworkError {
         time: f64,
     },
     /// The finished network does not keep its contract.
-    #[error("the network is invalid: {0}")]
+    #[error("the network is invalid: {0}; relax for a shorter time, or move seeds or points a little")]
     Invalid(Faults),
 }

@@ -140,10 +140,7 @@ impl Network {
         level.copies.place(domain, &mut points);
         let mut normals = element_normals(&level, &points).into_iter().zip(&level.boundary_of);
         if let Some((_, boundary)) = normals.find(|(normal, _)| normal.length() == 0.0 || normal.is_nan()) {
-            let Boundary { mut sides, twin, .. } = boundaries[boundary.index()];
-            if let Some(twin) = twin {
-                sides[1] = boundaries[twin.boundary.index()].sides[0];
-            }
+            let sides = boundaries[boundary.index()].sides_across(&boundaries);
             return Err(NetworkError::BoundaryTooSmall { sides });
         }
         let mut levels = vec![level];

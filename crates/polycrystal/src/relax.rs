@@ -74,7 +74,7 @@ pub enum Relaxation {
     /// For a time under curvature flow with unit mobility, in units of the mean grain size squared; 0 leaves boundaries flat.
     Time(f64),
     /// Until a step of time 0.1 (in the plane: 0.3) lessens the area by no more than [`Relaxation::RESIDUAL`] of it, or angles at triple lines have come
-    /// no closer to 120 degrees, by a hundredth, for three steps. The step at which they were closest is the result.
+    /// no closer to 120 degrees, by three hundredths, for three steps. The step at which they were closest is the result.
     ///
     /// [`relax`] lets no boundary vanish on the way and no neighbours switch, so this is the least area of this topology: where
     /// grains would rather switch neighbours, angles stay off 120 degrees. [`equilibrate`] lets them.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::{Boundary, Elements, Surface};
+use crate::{Boundary, Elements, GrainId, Surface};
 
 /// Six times the volume of the tetrahedron that a triangle spans with the origin.
 pub(crate) fn triangle_volume(corners: [DVec3; 3]) -> f64 {
@@ -30,6 +30,16 @@ pub(crate) fn boundary_volumes(surface: &Surface<'_>, origin: DVec3) -> Vec<f64>
         volumes[boundary.index()] += volume;
     }
     volumes
+}
+
+/// The largest of what some volumes lack, as a share of them, and whose it is.
+///
+/// # Panics
+/// When there are none.
+pub(crate) fn largest_relative_error(missing: &[f64], volumes: &[f64]) -> (GrainId, f64) {
+    let relative = missing.iter().zip(volumes).map(|(lack, volume)| (lack / volume).abs());
+    let errors = (0u32..).map(GrainId).zip(relative);
+    errors.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a network has grains")
 }
 
 /// Sums over the boundaries of each grain, outward counted positive.

@@ -146,11 +146,11 @@ fn edges_around([a, b, c]: [u32; 3], places: &[Place]) -> [(Edge, bool); 3] {
 
 /// A boundary and what it lies between; nothing for the copy of another one.
 fn once<'a>(part: &'a Part, network: &Network) -> Option<(&'a Part, [Side; 2])> {
-    let [first, second] = part.sides;
-    match network.boundaries()[part.boundary.index()].twin {
-        None => Some((part, [first, second])),
+    let boundary = network.boundaries()[part.boundary.index()];
+    match boundary.twin {
+        None => Some((part, part.sides)),
         Some(twin) if part.boundary < twin.boundary => {
-            Some((part, [first, network.boundaries()[twin.boundary.index()].sides[0]]))
+            Some((part, boundary.sides_across(network.boundaries())))
         }
         Some(_) => None,
     }

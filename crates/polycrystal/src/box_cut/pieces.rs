@@ -60,16 +60,13 @@ impl Pieces {
                 pieces.planes[point][axis] = place[axis] == pieces.domain.lower()[axis];
             }
         }
-        let surface = network.sides();
         let elements = Elements::from(&level.mesh);
         for (element, boundary) in (0u32..).zip(&level.boundary_of) {
-            let mut sides = surface[boundary.index()];
-            if let Some(twin) = network.boundaries()[boundary.index()].twin {
-                if twin.boundary < *boundary {
-                    continue;
-                }
-                sides[1] = surface[twin.boundary.index()][0];
+            let beside = network.boundaries()[boundary.index()];
+            if beside.twin.is_some_and(|twin| twin.boundary < *boundary) {
+                continue;
             }
+            let sides = beside.sides_across(network.boundaries());
             // Where a grain meets its own image there is nothing between the two.
             if let [Side::Grain(first), Side::Grain(second)] = sides
                 && first == second

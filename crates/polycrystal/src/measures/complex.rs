@@ -40,12 +40,7 @@ impl<'a> Complex<'a> {
             .zip(boundaries)
             .map(|(id, boundary)| boundary.twin.map_or(id, |twin| twin.boundary.min(id)))
             .collect();
-        let with_twin = |sides: &[Side; 2], boundary: &crate::Boundary| match boundary.twin {
-            Some(twin) => [sides[0], boundaries[twin.boundary.index()].sides[0]],
-            None => *sides,
-        };
-        let sides: Vec<[Side; 2]> =
-            surface.sides.iter().zip(boundaries).map(|(sides, at)| with_twin(sides, at)).collect();
+        let sides: Vec<[Side; 2]> = boundaries.iter().map(|at| at.sides_across(boundaries)).collect();
         let mut points = Vec::new();
         if network.domain().is_periodic() {
             let is_original = |element: u32| {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use voronoi::{CellComplex, Collapsed, Tessellation};
 
-use super::flow::{Flow, RIGID_LENGTH, Remedy};
+use super::flow::{Flow, RIGID_LENGTH, Remedy, Taken};
 use super::local_area::Conditions;
 use super::merged_lines::MergedLines;
 use super::plane;
@@ -18,12 +18,9 @@ use crate::{
 /// Length, in units of the feature size, below which triple lines may go; in equilibrium few are that short.
 const SHORT: f64 = 0.12;
 
-/// Time of a step while the topology changes, in units of the mean grain size squared. A line of the length above would live about
-/// as long.
-const STEP_TIME: f64 = 0.04;
-
-/// Steps between two looks at the topology.
-const STEPS: usize = 2;
+/// Time of a step while the topology changes, in units of the mean grain size squared. Short lines would shrink to nothing in less: what is
+/// left of them is still there, as a step lets none turn over.
+const STEP_TIME: f64 = 0.15;
 
 /// Most looks.
 const LOOKS: usize = 150;
@@ -97,17 +94,14 @@ pub fn equilibrate(
         return plane::equilibrate(tessellation, recipe, &mut watch);
     }
     let mut attempt = |remedy| balanced(tessellation, recipe, remedy, &mut watch);
-    let is_off = |first: &Equilibrium| {
-        first.relaxed.fell_back || (recipe.levels >= FINEST_BALANCED && spread(first) > LARGEST_SPREAD)
-    };
     // Each gets through places where the other does not.
-    match attempt(Remedy::Join) {
-        Ok(first) if is_off(&first) => {
-            Ok(attempt(Remedy::Brake).ok().filter(|second| spread(second) < spread(&first)).unwrap_or(first))
-        }
-        Err(_) => attempt(Remedy::Brake),
-        good => good,
+    let Ok(first) = attempt(Remedy::Join) else { return attempt(Remedy::Brake) };
+    let first_spread = spread(&first);
+    if first.relaxed.fell_back || (recipe.levels >= FINEST_BALANCED && first_spread > LARGEST_SPREAD) {
+        let second = attempt(Remedy::Brake).ok().filter(|second| spread(second) < first_spread);
+        return Ok(second.unwrap_or(first));
     }
+    Ok(first)
 }
 
 /// The standard deviation of the angles at triple lines.
@@ -153,7 +147,7 @@ fn settle(
         |boundary: &Boundary| (recipe.tension)(boundary) + if boundary.wall.is_some() { 1.0 } else { 0.0 };
     let network_of = |control_points: &ControlPoints| {
         let (network, flat) =
-            Network::with_face_mesh(&control_points.cells, FaceMesh::Fan, recipe.junctions, 1)?;
+            Network::with_face_mesh(&control_points.cells, FaceMesh::Fan, recipe.junctions, 0)?;
         Ok::<_, NetworkError>((network.with_cell_volumes(volumes.to_vec()).with_tensions(tension)?, flat))
     };
     let mut control_points = ControlPoints::new(complex);
@@ -168,14 +162,11 @@ fn settle(
         // As long as the topology stays, so does the flow.
         let shape = loop {
             let before = lengths(complex);
-            let mut energy = 0.0;
-            for _ in 0..STEPS {
-                energy = flow.step(&mut points, step_time)?;
-            }
+            let Taken { energy, pressures } = flow.step(&mut points, step_time)?;
             control_points.place_vertices(complex, &points);
             let shape = control_points.shape(complex, &points);
             let conditions =
-                Conditions { shape: &shape, tension: recipe.tension, volumes, pressures: flow.pressures() };
+                Conditions { shape: &shape, tension: recipe.tension, volumes, pressures: &pressures };
             let events = reconnector.pass(complex, &conditions, &before);
             all.add(events);
             looks += 1;

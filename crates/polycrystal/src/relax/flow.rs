@@ -89,6 +89,13 @@ pub(super) enum End {
     Finished,
 }
 
+/// What a step found where it began.
+pub(super) struct Taken {
+    pub(super) energy: f64,
+    /// The pressure of each grain, up to one that is the same for all; 0 where volumes are free.
+    pub(super) pressures: Vec<f64>,
+}
+
 /// A network whose points of one level move.
 pub(super) struct Flow<'a> {
     network: &'a Network,
@@ -107,8 +114,6 @@ pub(super) struct Flow<'a> {
     remedy: Remedy,
     /// [`RIGID_LENGTH`] or another one.
     rigid_length: f64,
-    /// The pressure of each grain in the last step.
-    pressures: Vec<f64>,
 }
 
 impl<'a> Flow<'a> {
@@ -130,7 +135,6 @@ impl<'a> Flow<'a> {
             volumes,
             remedy: Remedy::Join,
             rigid_length: RIGID_LENGTH,
-            pressures: Vec::new(),
         }
     }
 
@@ -169,7 +173,7 @@ impl<'a> Flow<'a> {
         let mut last_energy = f64::INFINITY;
         let mut best = Best::new();
         for step in 1..=stage.steps {
-            let energy = self.step(&mut points, stage.step_time)?;
+            let Taken { energy, .. } = self.step(&mut points, stage.step_time)?;
             progress(step, &points);
             if self.remedy == Remedy::Brake
                 && stage.end != End::Open
@@ -217,11 +221,11 @@ impl<'a> Flow<'a> {
         Err(NetworkError::Folded { count })
     }
 
-    /// One step of curvature flow; gives the energy before it.
+    /// One step of curvature flow.
     ///
     /// What the step folds moves by its mean displacement instead, and in a flow to rest, where that is no help, less far. That is
     /// local: to solve the step anew for all grains would take as many attempts as the worst place of all.
-    pub(super) fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<f64, NetworkError> {
+    pub(super) fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<Taken, NetworkError> {
         let terms = self.patches.terms(points);
         let energy = terms.iter().map(|terms| terms.energy).sum();
         let refined = self.refined(points);
@@ -232,7 +236,6 @@ impl<'a> Flow<'a> {
         let mut clusters = self.clusters.clone();
         clusters.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
         let (mut moves, pressures) = self.system(points, &terms, &clusters, time).displacement(&missing);
-        self.pressures = pressures.iter().map(|pressure| pressure / time).collect();
         let within = tangential_moves(self.network, self.level, points, self.remedy.aim());
         moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
         if self.remedy == Remedy::Brake {
@@ -260,18 +263,11 @@ impl<'a> Flow<'a> {
             }
         }
         match self.remedy {
-            Remedy::Join if count > 0 => Err(NetworkError::Folded { count }),
-            Remedy::Join => {
-                self.clusters = clusters;
-                Ok(energy)
-            }
-            Remedy::Brake => Ok(energy),
+            Remedy::Join if count > 0 => return Err(NetworkError::Folded { count }),
+            Remedy::Join => self.clusters = clusters,
+            Remedy::Brake => {}
         }
-    }
-
-    /// The pressure of each grain in the last step, up to one that is the same for all.
-    pub(super) fn pressures(&self) -> &[f64] {
-        &self.pressures
+        Ok(Taken { energy, pressures: pressures.iter().map(|pressure| pressure / time).collect() })
     }
 
     /// How far points are from rest; nothing where no boundaries meet, and in the plane.

@@ -5,10 +5,9 @@
 //! its pressure times v; without that small cells would collapse.
 
 use glam::DVec3;
-use voronoi::{CellComplex, CellId, FaceId, Side};
+use voronoi::{CellComplex, CellId, Domain, FaceId, Side};
 
 use super::shape::Shape;
-use crate::volume::triangle_volume;
 use crate::{Boundary, Freedom, GrainId};
 
 /// Steps of descent.
@@ -29,6 +28,9 @@ const STIFFNESS: f64 = 3.0;
 
 /// A number that is small beside one.
 const SMALL: f64 = 1e-9;
+
+/// Share of the area by which a step has to lessen it for another one to follow.
+const PROGRESS: f64 = 1e-8;
 
 /// What the area around a place depends on, beside the complex.
 #[derive(Clone, Copy)]
@@ -108,10 +110,6 @@ impl LocalArea {
                 cells.len() - 1
             })
         };
-        let freedom = |vertex: &u32| {
-            let normals = complex.walls_at(*vertex).into_iter().map(|wall| domain.outward_normal(wall));
-            normals.map(Freedom::InPlane).fold(Freedom::Everywhere, Freedom::and)
-        };
         let polygon = |face: FaceId| {
             let corners = complex.corners(face).iter().map(|corner| {
                 match vertices.iter().position(|vertex| *vertex == corner.vertex) {
@@ -124,12 +122,9 @@ impl LocalArea {
             let of_wall = if boundary.wall.is_some() { 1.0 } else { 0.0 };
             let tension = tension(&boundary) + of_wall;
             let sides = complex.sides(face).into_iter().zip([1.0, -1.0]);
-            let beside = sides.filter_map(|(side, sign)| match side {
-                Side::Cell(cell) => Some(Beside { cell: number(cell), offset: DVec3::ZERO, sign }),
-                Side::Image(cell, shift) => {
-                    Some(Beside { cell: number(cell), offset: shift.vector(domain), sign })
-                }
-                Side::Wall(_) => None,
+            let beside = sides.filter_map(|(side, sign)| {
+                let (cell, offset) = cell_and_offset(side, domain)?;
+                Some(Beside { cell: number(cell), offset, sign })
             });
             Polygon {
                 beside: beside.collect(),
@@ -140,13 +135,13 @@ impl LocalArea {
         };
         let faces = complex.faces_at(vertices).into_iter().map(polygon).collect();
         let mut area = Self {
-            freedoms: vertices.iter().map(freedom).collect(),
+            freedoms: vertices.iter().map(|vertex| freedom(complex, *vertex)).collect(),
             points: vertices.iter().map(|vertex| complex.vertices[*vertex as usize]).collect(),
             faces,
             vertices: vertices.to_vec(),
             cells,
         };
-        let volumes = area.volumes(&area.points);
+        let volumes = area.volumes(&area.fans(&area.points));
         area.cells.iter_mut().zip(volumes).for_each(|(cell, volume)| cell.volume = volume);
         area
     }
@@ -161,15 +156,17 @@ impl LocalArea {
         self
     }
 
+    fn fans(&self, points: &[DVec3]) -> Vec<Fan> {
+        self.faces.iter().map(|face| face.fan(points)).collect()
+    }
+
     /// The volumes between the faces of each cell and the origin.
-    fn volumes(&self, points: &[DVec3]) -> Vec<f64> {
+    fn volumes(&self, fans: &[Fan]) -> Vec<f64> {
         let mut volumes = vec![0.0; self.cells.len()];
-        for face in &self.faces {
+        for (face, fan) in self.faces.iter().zip(fans) {
+            let Sweep { volume, normal } = fan.sweep();
             for Beside { cell, offset, sign } in &face.beside {
-                let ring: Vec<DVec3> = face.ring(points).iter().map(|corner| *corner - *offset).collect();
-                let center = face.center(&ring);
-                let ends = ring.iter().zip(ring.iter().cycle().skip(1));
-                volumes[*cell] += ends.map(|(a, b)| sign * triangle_volume([center, *a, *b])).sum::<f64>();
+                volumes[*cell] += sign * (volume - offset.dot(normal)) / 6.0;
             }
         }
         volumes
@@ -197,14 +194,18 @@ impl LocalArea {
             let square: f64 = slope.iter().map(|slope| slope.length_squared()).sum();
             let bent: f64 = slope.iter().zip(&moved_slope).map(|(old, new)| old.dot(*old - *new)).sum();
             step *= if bent > SMALL * square { (square / bent).min(LARGEST_GROWTH) } else { 2.0 };
+            let is_slow = area - moved_area < PROGRESS * area.abs();
             (self.points, area, slope) = (moved, moved_area, moved_slope);
+            if is_slow {
+                break;
+            }
         }
         area
     }
 
     /// The largest change of a cell's volume, as a share of it.
     pub(super) fn largest_volume_change(&self) -> f64 {
-        let cells = self.cells.iter().zip(self.volumes(&self.points));
+        let cells = self.cells.iter().zip(self.volumes(&self.fans(&self.points)));
         cells.map(|(cell, volume)| (volume - cell.volume).abs() / cell.whole).fold(0.0, f64::max)
     }
 
@@ -212,7 +213,7 @@ impl LocalArea {
     pub(super) fn shortest_edge(&self) -> f64 {
         let is_moving = |corner: &Place| matches!(corner, Place::Moving(..));
         let shortest = self.faces.iter().map(|face| {
-            let ring = face.ring(&self.points);
+            let Fan { ring, .. } = face.fan(&self.points);
             let count = ring.len();
             let edges = (0..count).map(|k| [k, (k + 1) % count]);
             let moving = edges.filter(|ends| ends.iter().any(|end| is_moving(&face.corners[*end])));
@@ -225,8 +226,7 @@ impl LocalArea {
     /// degrees, which subdivision folds.
     pub(super) fn fold_count(&self) -> usize {
         let of_face = |face: &Polygon| {
-            let ring = face.ring(&self.points);
-            let center = face.center(&ring);
+            let Fan { ring, center } = face.fan(&self.points);
             let count = ring.len();
             let normals: Vec<DVec3> =
                 (0..count).map(|k| (ring[k] - center).cross(ring[(k + 1) % count] - center)).collect();
@@ -249,42 +249,43 @@ impl LocalArea {
 
     /// The area weighted by tension together with what cells resist, and how it changes with the points.
     fn area(&self, points: &[DVec3]) -> (f64, Vec<DVec3>) {
+        let fans = self.fans(points);
         let mut area = 0.0;
         let mut pulls = Vec::with_capacity(self.cells.len());
-        for (cell, volume) in self.cells.iter().zip(self.volumes(points)) {
+        for (cell, volume) in self.cells.iter().zip(self.volumes(&fans)) {
             let excess = volume - cell.volume;
             area += (0.5 * cell.stiffness * excess - cell.pressure) * excess;
             pulls.push(cell.stiffness * excess - cell.pressure);
         }
         let mut slope = vec![DVec3::ZERO; points.len()];
-        for face in &self.faces {
-            let ring = face.ring(points);
-            let center = face.center(&ring);
+        for (face, fan) in self.faces.iter().zip(&fans) {
+            // All cells beside a face together pull on its cone from the origin, and on its area.
+            let (mut pull, mut pull_of_offset) = (0.0, DVec3::ZERO);
+            for Beside { cell, offset, sign } in &face.beside {
+                pull += sign * pulls[*cell] / 6.0;
+                pull_of_offset += *offset * (sign * pulls[*cell] / 6.0);
+            }
+            let count = fan.ring.len();
+            let center = fan.center;
             let mut of_center = DVec3::ZERO;
-            for (k, a) in ring.iter().enumerate() {
-                let next = (k + 1) % ring.len();
-                let b = ring[next];
-                let normal = (*a - center).cross(b - center);
+            for k in 0..count {
+                let next = (k + 1) % count;
+                let [a, b] = [k, next].map(|corner| fan.ring[corner]);
+                let normal = (a - center).cross(b - center);
                 let length = normal.length();
                 area += 0.5 * face.tension * length;
-                let unit = normal * (0.5 * face.tension / length.max(f64::MIN_POSITIVE));
-                let mut slopes = [b - *a, center - b, *a - center].map(|across| unit.cross(across));
-                for Beside { cell, offset, sign } in &face.beside {
-                    let [center, a, b] = [center, *a, b].map(|point| point - *offset);
-                    let sweep = [a.cross(b), b.cross(center), center.cross(a)];
-                    let factor = sign * pulls[*cell] / 6.0;
-                    slopes.iter_mut().zip(sweep).for_each(|(slope, sweep)| *slope += sweep * factor);
+                let unit = normal * (0.5 * face.tension / length.max(f64::MIN_POSITIVE)) - pull_of_offset;
+                of_center += unit.cross(b - a) + a.cross(b) * pull;
+                if let Place::Moving(moving, _) = face.corners[k] {
+                    slope[moving] += unit.cross(center - b) + b.cross(center) * pull;
                 }
-                of_center += slopes[0];
-                for (corner, of_corner) in [(k, slopes[1]), (next, slopes[2])] {
-                    if let Place::Moving(moving, _) = face.corners[corner] {
-                        slope[moving] += of_corner;
-                    }
+                if let Place::Moving(moving, _) = face.corners[next] {
+                    slope[moving] += unit.cross(a - center) + center.cross(a) * pull;
                 }
             }
             for corner in &face.corners {
                 if let Place::Moving(moving, _) = corner {
-                    slope[*moving] += of_center / ring.len() as f64;
+                    slope[*moving] += of_center / count as f64;
                 }
             }
         }
@@ -294,16 +295,52 @@ impl LocalArea {
 }
 
 impl Polygon {
-    fn ring(&self, points: &[DVec3]) -> Vec<DVec3> {
+    fn fan(&self, points: &[DVec3]) -> Fan {
         let at = |corner: &Place| match *corner {
             Place::Fixed(point) => point,
             Place::Moving(moving, shift) => points[moving] + shift,
         };
-        self.corners.iter().map(at).collect()
+        let ring: Vec<DVec3> = self.corners.iter().map(at).collect();
+        let center = ring.iter().sum::<DVec3>() / ring.len() as f64 + self.bulge;
+        Fan { ring, center }
     }
+}
 
-    fn center(&self, ring: &[DVec3]) -> DVec3 {
-        ring.iter().sum::<DVec3>() / ring.len() as f64 + self.bulge
+/// A polygon where its points are: triangles from its centre to each two corners in a row.
+struct Fan {
+    ring: Vec<DVec3>,
+    center: DVec3,
+}
+
+/// Of a fan six times the volume of the cone from the origin, and its normal, twice as long as its area.
+///
+/// From an origin that is off by o, the cone has `o normal` less.
+struct Sweep {
+    volume: f64,
+    normal: DVec3,
+}
+
+impl Fan {
+    fn sweep(&self) -> Sweep {
+        let ends = self.ring.iter().zip(self.ring.iter().cycle().skip(1));
+        let normal: DVec3 = ends.map(|(a, b)| (*a - self.center).cross(*b - self.center)).sum();
+        // All triangles end at the centre.
+        Sweep { volume: self.center.dot(normal), normal }
+    }
+}
+
+/// What the walls at a vertex leave to it.
+pub(super) fn freedom(complex: &CellComplex, vertex: u32) -> Freedom {
+    let normals = complex.walls_at(vertex).into_iter().map(|wall| complex.domain().outward_normal(wall));
+    normals.map(Freedom::InPlane).fold(Freedom::Everywhere, Freedom::and)
+}
+
+/// The cell on a side, and how far it is from its own place; none beyond walls.
+pub(super) fn cell_and_offset(side: Side, domain: &Domain) -> Option<(CellId, DVec3)> {
+    match side {
+        Side::Cell(cell) => Some((cell, DVec3::ZERO)),
+        Side::Image(cell, shift) => Some((cell, shift.vector(domain))),
+        Side::Wall(_) => None,
     }
 }
 
@@ -322,7 +359,7 @@ pub(super) fn boundary(sides: [Side; 2]) -> Boundary {
 
 #[cfg(test)]
 mod tests {
-    use voronoi::{Domain, Tessellation};
+    use voronoi::Tessellation;
 
     use super::*;
 
@@ -378,7 +415,7 @@ mod tests {
     #[test]
     fn what_one_cell_loses_others_gain() {
         check_moved(|area, moved| {
-            let volumes = area.volumes(moved);
+            let volumes = area.volumes(&area.fans(moved));
             let gains = || area.cells.iter().zip(&volumes).map(|(cell, volume)| volume - cell.volume);
             assert!(gains().sum::<f64>().abs() < 1e-15);
             assert!(gains().map(f64::abs).fold(0.0, f64::max) > 1e-4);

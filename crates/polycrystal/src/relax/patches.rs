@@ -1,7 +1,5 @@
 //! All patches of a network, and the way from their fields to those of the network.
 
-use std::collections::HashMap;
-
 use glam::DVec3;
 use rayon::prelude::*;
 use subzero::StencilTable;
@@ -136,14 +134,14 @@ pub(super) fn local_elements(mesh: &Mesh, elements: &[u32]) -> (Vec<u32>, Elemen
 
 fn new_patch(
     control: &Mesh,
-    elements: &[u32],
+    numbers: &[u32],
     surface: Option<(&StencilTable, &Mesh, &[u32])>,
     (tension, share): (f64, f64),
 ) -> Patch {
-    let (control_points, elements) = local_elements(control, elements);
-    let (edges, edges_across) = edges(&elements);
-    let refinement = surface.map(|(stencils, mesh, elements)| {
-        let (points, elements) = local_elements(mesh, elements);
+    let (control_points, elements) = local_elements(control, numbers);
+    let (edges, edges_across) = local_edges(control, numbers, &control_points);
+    let refinement = surface.map(|(stencils, mesh, numbers)| {
+        let (points, elements) = local_elements(mesh, numbers);
         Refinement { stencils: LocalStencils::new(stencils, &control_points, &points), elements }
     });
     let links = links(control_points.len(), &edges);
@@ -160,22 +158,23 @@ fn links(point_count: usize, edges: &[[u32; 2]]) -> Rows<u32> {
     Rows::new(links)
 }
 
-/// The edges of some elements, each once, and of each triangle those across from its corners.
-fn edges(elements: &Elements) -> (Vec<[u32; 2]>, Vec<[u32; 3]>) {
-    match elements {
-        Elements::Segments(segments) => (segments.clone(), Vec::new()),
-        Elements::Triangles(triangles) => {
-            let mut edges = Vec::new();
-            let mut numbers = HashMap::new();
-            let mut number = |a: u32, b: u32| {
-                *numbers.entry([a.min(b), a.max(b)]).or_insert_with_key(|ends| {
-                    edges.push(*ends);
-                    u32::try_from(edges.len() - 1).expect("a patch has fewer edges than its network")
-                })
+/// The edges of some elements, each once, between the given points, and of each triangle those across from its corners.
+fn local_edges(mesh: &Mesh, elements: &[u32], points: &[u32]) -> (Vec<[u32; 2]>, Vec<[u32; 3]>) {
+    let local = |ends: [u32; 2]| ends.map(|end| place_in(points, end));
+    match mesh {
+        Mesh::Segments(mesh) => {
+            (elements.iter().map(|e| local(mesh.segments()[*e as usize])).collect(), Vec::new())
+        }
+        Mesh::Triangles(mesh) => {
+            let mut edges: Vec<u32> = elements.iter().flat_map(|e| mesh.triangle_edges(*e)).collect();
+            edges.sort_unstable();
+            edges.dedup();
+            let across = |element: &u32| {
+                let [ab, bc, ca] = mesh.triangle_edges(*element).map(|edge| place_in(&edges, edge));
+                [bc, ca, ab]
             };
-            let across = triangles.iter().map(|[a, b, c]| [number(*b, *c), number(*c, *a), number(*a, *b)]);
-            let across = across.collect();
-            (edges, across)
+            let across = elements.iter().map(across).collect();
+            (edges.iter().map(|edge| local(mesh.edge(*edge))).collect(), across)
         }
     }
 }

@@ -32,7 +32,7 @@ const LEAST: f64 = 0.1;
 const LARGEST_CHANGE: f64 = 0.3;
 
 /// How often lines between the same grains may go without lessening the area: what comes back is to stay.
-const MOST_TRIES: u8 = 8;
+const MOST_TRIES: u8 = 3;
 
 /// How often grains came together and parted. In the plane, a boundary is an edge, and what was a triple line is a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -12,6 +12,8 @@ pub(crate) const LABEL_ARRAYS: [&str; 3] = ["FaceLabels", "boundary_labels", "Bo
 
 const NODE_TYPES: &str = "NodeTypes";
 
+const BOUNDARY_IDS: &str = "BoundaryId";
+
 const COMMAND_LINE: &str = "CommandLine";
 
 const VOLUMES: &str = "Volumes";
@@ -54,6 +56,8 @@ pub(crate) struct LabelledCells {
     pub(crate) labels: Vec<[i64; 2]>,
     /// The array that they are from.
     pub(crate) label_array: &'static str,
+    /// The number of each cell's boundary, if there are any.
+    pub(crate) boundary_ids: Option<Vec<i64>>,
     /// Types of points, if there are any.
     pub(crate) node_types: Option<Vec<i64>>,
     /// Whether points are in single precision.
@@ -70,7 +74,7 @@ pub(crate) fn read_legacy(bytes: &[u8]) -> Result<LabelledCells, MeshFileProblem
 
 /// Reads a .vtp or .vtu file.
 pub(crate) fn read_xml(bytes: &[u8]) -> Result<LabelledCells, MeshFileProblem> {
-    let wanted: Vec<&str> = LABEL_ARRAYS.into_iter().chain([NODE_TYPES]).collect();
+    let wanted: Vec<&str> = LABEL_ARRAYS.into_iter().chain([NODE_TYPES, BOUNDARY_IDS]).collect();
     let parts = xml_parts::network(bytes, &wanted);
     in_thread(|| {
         let cells = of_data(Vtk::parse_xml(&parts[..]).map_err(problem)?.data)?;
@@ -139,6 +143,8 @@ fn of_data(data: DataSet) -> Result<LabelledCells, MeshFileProblem> {
     }
     found.labels = labels.as_chunks().0[skipped..].to_vec();
     found.label_array = name;
+    let ids = array(&attributes.cell, BOUNDARY_IDS).and_then(whole_numbers);
+    found.boundary_ids = ids.filter(|ids| ids.len() == skipped + count).map(|ids| ids[skipped..].to_vec());
     if let Some(types) = array(&attributes.point, NODE_TYPES).and_then(whole_numbers) {
         if types.len() != found.mesh.points.len() {
             return Err(problem(format!(

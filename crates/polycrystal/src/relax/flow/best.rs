@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// Share of the angles' spread by which it has to fall to count as progress: a step costs more than what less would gain.
-const PROGRESS: f64 = 0.01;
+const PROGRESS: f64 = 0.03;
 
 /// Steps without progress that make an end. Where a place folds and unfolds, angles get worse for a step or two.
 const PATIENCE: usize = 3;
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn gains_that_add_up_are_progress() {
-        let spreads: Vec<(bool, f64)> = (0..20).map(|k| (false, 2.0 * 0.994f64.powi(k))).collect();
+        let spreads: Vec<(bool, f64)> = (0..20).map(|k| (false, 2.0 * 0.988f64.powi(k))).collect();
         assert_eq!(end(&spreads), (20, 19));
     }
 

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{Clusters, Flow, dot};
+use crate::volume::largest_relative_error;
 use crate::{GrainId, NetworkError, Volumes};
 
 /// Difference of a grain's volume from its cell's, as a share of the cell's, that ends the iteration on volumes.
@@ -97,9 +98,6 @@ impl Flow<'_> {
     }
 
     fn largest_error(&self, missing: &[f64]) -> (GrainId, f64) {
-        let relative =
-            missing.iter().zip(self.network.cell_volumes()).map(|(lack, cell)| (lack / cell).abs());
-        let errors = (0u32..).map(GrainId).zip(relative);
-        errors.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a network has grains")
+        largest_relative_error(missing, self.network.cell_volumes())
     }
 }

@@ -4,12 +4,12 @@
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use voronoi::{CellComplex, FaceId, Side};
+use voronoi::{CellComplex, FaceId};
 
 use super::bow::Bow;
 use super::dissection::Dissection;
-use crate::relax::local_area::boundary;
-use crate::{Boundary, Freedom, GrainId};
+use crate::relax::local_area::{boundary, cell_and_offset, freedom};
+use crate::{Boundary, Freedom};
 
 /// Variables of an arc: its start, its end, and its turning.
 pub(super) const OWN: usize = 5;
@@ -46,33 +46,22 @@ impl<'a> Foam<'a> {
         chords: impl Fn(FaceId) -> u32,
     ) -> Self {
         let domain = complex.domain();
-        let freedom = |vertex: u32| {
-            let normals = complex.walls_at(vertex).into_iter().map(|wall| domain.outward_normal(wall));
-            normals.map(Freedom::InPlane).fold(Freedom::Everywhere, Freedom::and)
-        };
         // From a corner of its own: small cells would lose digits far from the origin.
         let mut places = vec![DVec2::ZERO; areas.len()];
         for face in complex.faces() {
             let corner = complex.position(complex.corners(face)[0]).truncate();
             for side in complex.sides(face) {
-                match side {
-                    Side::Cell(cell) => places[cell.index()] = corner,
-                    Side::Image(cell, shift) => {
-                        places[cell.index()] = corner - shift.vector(domain).truncate()
-                    }
-                    Side::Wall(_) => {}
+                if let Some((cell, offset)) = cell_and_offset(side, domain) {
+                    places[cell.index()] = corner - offset.truncate();
                 }
             }
         }
         let arc = |face: FaceId| {
             let boundary = boundary(complex.sides(face));
             let tension = tension(&boundary);
-            let beside = complex.sides(face).map(|side| match side {
-                Side::Cell(cell) => Some((cell.index(), places[cell.index()])),
-                Side::Image(cell, shift) => {
-                    Some((cell.index(), places[cell.index()] + shift.vector(domain).truncate()))
-                }
-                Side::Wall(_) => None,
+            let beside = complex.sides(face).map(|side| {
+                let (cell, offset) = cell_and_offset(side, domain)?;
+                Some((cell.index(), places[cell.index()] + offset.truncate()))
             });
             let end = |end: usize| {
                 let corner = complex.corners(face)[end];
@@ -91,7 +80,7 @@ impl<'a> Foam<'a> {
             mean_tension: tensions().sum::<f64>() / tensions().count().max(1) as f64,
             arcs,
             areas,
-            freedoms: (0u32..).take(complex.vertices.len()).map(freedom).collect(),
+            freedoms: (0u32..).take(complex.vertices.len()).map(|vertex| freedom(complex, vertex)).collect(),
         }
     }
 
@@ -138,13 +127,6 @@ impl<'a> Foam<'a> {
             }
         }
         missing
-    }
-
-    /// The largest of these, as a share of the area, and whose it is.
-    pub(super) fn largest_error(&self, missing: &[f64]) -> (GrainId, f64) {
-        let relative = missing.iter().zip(self.areas).map(|(lack, area)| (lack / area).abs());
-        let errors = (0u32..).map(GrainId).zip(relative);
-        errors.max_by(|a, b| a.1.total_cmp(&b.1)).expect("there are cells")
     }
 
     /// What walls leave of a motion of an arc's ends.
