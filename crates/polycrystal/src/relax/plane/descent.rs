@@ -104,6 +104,8 @@ impl Descent {
         let missing = foam.missing(&self.state);
         let (grain, relative_error) = largest_relative_error(&missing, foam.areas);
         let mut vanishing = Vec::new();
+        // Share of what areas lack that is made up for: after an event, all may be too much for one step.
+        let mut mended = 1.0;
         while self.rigidities.iter().all(|rigidity| *rigidity < LARGEST_RIGIDITY) {
             let tangent = Tangent::new(foam, &self.state, &self.pressures, &self.rigidities);
             if !tangent.is_stable() {
@@ -111,11 +113,13 @@ impl Descent {
                 continue;
             }
             let gradient = tangent.gradient();
+            let wanted: Vec<f64> = missing.iter().map(|lack| mended * lack).collect();
             let down: Vec<f64> = gradient.iter().map(|slope| -slope).collect();
-            let Answer { mut motion, pressures } = tangent.answer(&down, &missing);
-            let fall = dot(&pressures, &missing) - dot(&gradient, &motion);
+            let Answer { mut motion, pressures } = tangent.answer(&down, &wanted);
+            let fall = dot(&pressures, &wanted) - dot(&gradient, &motion);
             if fall <= REST * energy && relative_error <= AREA_LIMIT {
-                if let Some((state, _)) = restored(foam, &tangent, self.state.clone(), AREA_TOLERANCE) {
+                let left = vec![0.0; missing.len()];
+                if let Some(state) = restored(foam, &tangent, self.state.clone(), &left, AREA_TOLERANCE) {
                     self.state = state;
                 }
                 return Ok(Step { is_at_rest: true, vanishing });
@@ -124,8 +128,10 @@ impl Descent {
             vanishing = hold_chords(foam, &self.state, &mut motion);
             let moved = self.state.iter().zip(&motion).map(|(x, by)| x + by).collect();
             let enough = (AREA_SHARE * saved / energy).clamp(AREA_TOLERANCE, LOOSE_AREA);
-            let Some((state, missing_after)) = restored(foam, &tangent, moved, enough) else {
+            let left: Vec<f64> = missing.iter().zip(&wanted).map(|(lack, wanted)| lack - wanted).collect();
+            let Some(state) = restored(foam, &tangent, moved, &left, enough) else {
                 self.stiffen_all();
+                mended *= 0.5;
                 continue;
             };
             let turned = turned_over(foam, &self.state, &state);
@@ -134,7 +140,7 @@ impl Descent {
                 continue;
             }
             // What areas still lack, or no longer do, is worth its pressure.
-            let paid = dot(&pressures, &missing) - dot(&pressures, &missing_after);
+            let paid = dot(&pressures, &missing) - dot(&pressures, &foam.missing(&state));
             let share = (energy - foam.energy(&state) + paid) / saved;
             let is_hidden = saved < HIDDEN * energy;
             if share > 0.75 || is_hidden {
@@ -166,20 +172,22 @@ impl Descent {
     }
 }
 
-/// A state with its areas restored up to an error along the gradients of another one nearby, and what they lack; nothing where that
-/// does not lead there.
+/// A state with its areas restored, but for what is left for later, up to an error along the gradients of another one nearby; nothing
+/// where that does not lead there.
 fn restored(
     foam: &Foam<'_>,
     tangent: &Tangent<'_>,
     mut state: Vec<f64>,
+    left: &[f64],
     enough: f64,
-) -> Option<(Vec<f64>, Vec<f64>)> {
+) -> Option<Vec<f64>> {
     let mut last = f64::INFINITY;
     for _ in 0..CORRECTIONS {
-        let missing = foam.missing(&state);
+        let missing: Vec<f64> =
+            foam.missing(&state).iter().zip(left).map(|(lack, left)| lack - left).collect();
         let (_, error) = largest_relative_error(&missing, foam.areas);
         if error <= enough || (error <= AREA_LIMIT && error > 0.5 * last) {
-            return Some((state, missing));
+            return Some(state);
         }
         if error.is_nan() || error > last {
             return None;
