@@ -438,6 +438,50 @@ fn legacy_files_as_others_write_them_are_read() {
     );
 }
 
+/// Newer versions of VTK write 32-bit offsets, `OFFSETS int`, where they are enough; `vtkio` knows 64-bit ones only.
+#[test]
+fn legacy_cells_with_narrow_offsets_are_read() {
+    let workplace = Workplace::new();
+    let cubes = Cubes::new();
+    let count = cubes.triangles.len();
+    let corners: Vec<usize> = cubes.triangles.iter().flat_map(|(corners, _)| *corners).collect();
+    let file = cubes.file("FaceLabels");
+    let (head, rest) = file.split_once("POLYGONS").unwrap();
+    let (_, labels) = rest.split_once("CELL_DATA").unwrap();
+    let head = format!("{head}POLYGONS {} {}\nOFFSETS int\n", count + 1, 3 * count);
+    let words = |numbers: &[usize]| numbers.iter().map(|number| format!("{number} ")).collect::<String>();
+    let offsets: Vec<usize> = (0..=count).map(|cell| 3 * cell).collect();
+    let text =
+        [&head, &words(&offsets), "\nCONNECTIVITY int\n", &words(&corners), "\nCELL_DATA", labels].concat();
+    workplace.put("cubes.vtk", text);
+    assert_eq!(report(&workplace, "cubes.vtk", 0)["grains"], 2);
+
+    let big = |numbers: &[usize]| -> Vec<u8> {
+        numbers.iter().flat_map(|number| i32::try_from(*number).unwrap().to_be_bytes()).collect()
+    };
+    let points: Vec<u8> = cubes.points.iter().flatten().flat_map(|x| x.to_be_bytes()).collect();
+    let pairs: Vec<u8> =
+        cubes.triangles.iter().flat_map(|(_, pair)| *pair).flat_map(i32::to_be_bytes).collect();
+    let (before_points, _) = head.split_once("double\n").unwrap();
+    let before_points = before_points.replace("ASCII", "BINARY");
+    let counts = format!("\nPOLYGONS {} {}\nOFFSETS int\n", count + 1, 3 * count);
+    let heads = format!("\nCELL_DATA {count}\nFIELD FieldData 1\nFaceLabels 2 {count} int\n");
+    let parts: [&[u8]; 10] = [
+        before_points.as_bytes(),
+        b"double\n",
+        &points,
+        counts.as_bytes(),
+        &big(&offsets),
+        b"\nCONNECTIVITY int\n",
+        &big(&corners),
+        heads.as_bytes(),
+        &pairs,
+        b"\n",
+    ];
+    workplace.put("cubes.vtk", parts.concat());
+    assert_eq!(report(&workplace, "cubes.vtk", 0)["grains"], 2);
+}
+
 /// However little a point moves: grains on both sides of its boundary are no longer as large as the file says.
 #[test]
 fn points_moved_a_little_are_found() {

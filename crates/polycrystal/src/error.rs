@@ -100,6 +100,17 @@ pub enum NetworkError {
         /// Number of edges whose two triangles are more than 90 degrees apart.
         count: usize,
     },
+    /// A grain that is free to shrink has done so to nothing.
+    #[error(
+        "grain {} shrinks to nothing within the relaxation time {time}, and none can vanish; relax for a shorter time, or keep volumes",
+        grain.0
+    )]
+    GrainVanished {
+        /// The grain.
+        grain: GrainId,
+        /// The whole relaxation time, in units of the mean grain size squared.
+        time: f64,
+    },
     /// The finished network does not keep its contract.
     #[error("the network is invalid: {0}; relax for a shorter time, or move seeds or points a little")]
     Invalid(Faults),

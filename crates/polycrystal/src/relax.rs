@@ -31,7 +31,7 @@ mod wedges;
 
 use glam::DVec3;
 
-use crate::{Mesh, Network, NetworkError};
+use crate::{GrainId, Mesh, Network, NetworkError};
 use flow::{End, Flow, RIGID_LENGTH, Remedy, Stage};
 
 pub use equilibrium::{Balance, Equilibrium, NetworkRecipe, equilibrate};
@@ -50,6 +50,9 @@ const COARSE_STEPS: usize = 10;
 /// Steps that the same time is divided into once more on each finer level, where less is left to do.
 const FINE_STEPS: usize = 6;
 
+/// The same where grains grow: points at triple lines are to keep up with the lines' curvature.
+const GROWTH_STEPS: usize = 60;
+
 /// The usual relaxation time, in units of the mean grain size squared.
 const USUAL_TIME: f64 = 0.3;
 
@@ -61,6 +64,9 @@ const REST_STEP: f64 = 0.1;
 
 /// Most such steps.
 const REST_STEPS: usize = 200;
+
+/// Volume of a grain as a share of the mean below which it has shrunk to nothing.
+const LEAST_GRAIN: f64 = 1e-3;
 
 /// How to relax.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -202,12 +208,17 @@ fn relax_levels(
     }
     let last = (network.levels().len() - 1).min(finest);
     let whole_time = time * network.mean_grain_size().powi(2);
-    let steps = COARSE_STEPS + last * FINE_STEPS;
+    // Grains that grow do so for the time that was asked for, not once more on each level.
+    let (first, first_steps) = match volumes {
+        Volumes::Free => (last, GROWTH_STEPS),
+        Volumes::Kept => (0, COARSE_STEPS),
+    };
+    let steps = first_steps + (last - first) * FINE_STEPS;
     watch(RelaxationStep { done: 0, count: steps, time: 0.0, level: 0, points: control_points });
     let mut done_before = 0;
     let mut passed = 0.0;
-    for level in 0..=last {
-        let count = if level == 0 { COARSE_STEPS } else { FINE_STEPS };
+    for level in first..=last {
+        let count = if level == first { first_steps } else { FINE_STEPS };
         let end = if level == last { End::Finished } else { End::Open };
         let stage = match relaxation {
             Relaxation::Equilibrium if level == last => {
@@ -216,8 +227,12 @@ fn relax_levels(
             }
             _ => Stage { step_time: whole_time / count as f64, steps: count, residual: 0.0, end },
         };
-        let start =
-            if level > 0 { network.subdivide_between(level - 1, level, &points) } else { points.clone() };
+        let start = if level > 0 {
+            let from = if level == first { 0 } else { level - 1 };
+            network.subdivide_between(from, level, &points)
+        } else {
+            points.clone()
+        };
         let before = passed;
         let mut show = |done: usize, points: &[DVec3]| {
             let time = before + done as f64 * time * (stage.step_time / whole_time);
@@ -228,7 +243,7 @@ fn relax_levels(
         done_before += count;
         match run {
             Ok(moved) => points = moved,
-            Err(error) if level == 0 => return Err(error),
+            Err(error) if level == first => return Err(error),
             Err(_) => {
                 // Finer points fold where coarser ones do not: these will have to do.
                 let end = Stage { step_time: 0.0, steps: 0, residual: 0.0, end: End::Finished };
@@ -238,7 +253,25 @@ fn relax_levels(
             }
         }
     }
+    if volumes == Volumes::Free {
+        check_grains_are_left(network, last, &points, time)?;
+    }
     Ok(Relaxed { level: last, points, steps, time: passed, fell_back: false })
+}
+
+/// Checks that no grain has shrunk to nothing: it would have to vanish, and its neighbours to meet, for others to grow on as they do.
+fn check_grains_are_left(
+    network: &Network,
+    level: usize,
+    points: &[DVec3],
+    time: f64,
+) -> Result<(), NetworkError> {
+    let volumes = network.grain_volumes(&network.levels()[level], points);
+    let least = LEAST_GRAIN * volumes.iter().sum::<f64>() / volumes.len() as f64;
+    match (0u32..).zip(&volumes).find(|(_, volume)| **volume < least) {
+        Some((grain, _)) => Err(NetworkError::GrainVanished { grain: GrainId(grain), time }),
+        None => Ok(()),
+    }
 }
 
 /// Where the points of a control mesh in space go in the usual time, as a forecast: volumes are right, triangles may be thin.

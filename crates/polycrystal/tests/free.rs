@@ -70,6 +70,42 @@ fn grains_in_the_plane_grow_by_the_law_of_von_neumann_and_mullins() {
     assert!(sides.len() >= 3, "grains of {sides:?} sides");
 }
 
+/// The time once passed on level 0 and once more on level 1.
+#[test]
+fn grains_grow_for_the_time_that_is_asked_for() {
+    let domain = Domain::unit_square().with_periods(BVec3::TRUE);
+    let tessellation = Tessellation::new(&domain, &random_seeds(&domain, 30, 2)).expect("valid seeds");
+    let tessellation = (0..20).fold(tessellation, |cells, _| {
+        Tessellation::new(&domain, &cells.centroids()).expect("centroids lie in their cells")
+    });
+    let face_mesh = FaceMesh::Refined { edge_length: 0.02 };
+    let (network, flat) =
+        Network::with_face_mesh(&tessellation, face_mesh, Junctions::Crease, 1).expect("a small network");
+    let [before, after] = [0.1, 0.12].map(|time| {
+        let points = flow(&network, &flat, time).expect("no side vanishes").finest_points(&network);
+        measures(&network, &points).grains
+    });
+    let whole_time = 0.02 * network.mean_grain_size().powi(2);
+    let (mut product, mut square) = (0.0, 0.0);
+    for (before, after) in before.iter().zip(&after) {
+        let law = FRAC_PI_3 * (before.side_count as f64 - 6.0);
+        product += (after.area - before.area) / whole_time * law;
+        square += law * law;
+    }
+    assert!((product / square - 1.0).abs() < 0.15, "{} of the law", product / square);
+}
+
+/// Grains cannot vanish: the network was once called invalid for what rounding left of one.
+#[test]
+fn a_grain_that_shrinks_to_nothing_is_named() {
+    let domain = Domain::unit_square().with_periods(BVec3::TRUE);
+    let tessellation = Tessellation::new(&domain, &random_seeds(&domain, 60, 3)).expect("valid seeds");
+    let (network, flat) = Network::new(&tessellation, Junctions::Crease, 1).expect("a small network");
+    // Some have three sides or four.
+    let relaxed = flow(&network, &flat, 1.0).map(|relaxed| relaxed.steps);
+    assert!(matches!(relaxed, Err(NetworkError::GrainVanished { time: 1.0, .. })), "{relaxed:?}");
+}
+
 /// MacPherson and Srolovitz 2007: the growth of a grain by its mean width and the length of its triple lines.
 #[test]
 fn grains_in_space_grow_by_the_law_of_macpherson_and_srolovitz() {

@@ -197,6 +197,21 @@ fn areas_that_an_event_leaves_far_off_come_back_step_by_step() {
 }
 
 /// A topology kept costs length.
+/// Arcs once turned round and round here while areas were restored, each turn costing time.
+#[test]
+fn a_thin_strip_of_a_lattice_comes_to_an_end() {
+    let domain = Domain::rectangle(DVec3::ZERO, DVec3::new(1.0, 0.01, 0.0)).expect("a rectangle");
+    let columns = [0.0, 0.25, 0.5, 0.75]
+        .into_iter()
+        .flat_map(|x| [0.0025, 0.0075, 0.01].map(|y| DVec3::new(x, y, 0.0)));
+    let seeds: Vec<DVec3> = columns.chain([DVec3::new(1.0, 0.0025, 0.0)]).collect();
+    let cells = Tessellation::new(&domain, &seeds).expect("valid seeds");
+    // Grains 25 times as long as wide may not find room to relax, but say so.
+    if let Ok(equilibrium) = equilibrium_of(&cells, &one_tension) {
+        check_equilibrium(&equilibrium).expect("in equilibrium");
+    }
+}
+
 #[test]
 fn switching_neighbours_saves_length() {
     let domain = Domain::unit_square().with_periods(TORUS);

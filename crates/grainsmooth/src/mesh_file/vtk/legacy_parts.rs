@@ -34,6 +34,8 @@ pub(super) fn readable(bytes: &[u8]) -> Result<(Vec<u8>, Remarks), MeshFileProbl
     let arrays = ["\nPOINT_DATA ", "\nCELL_DATA "];
     let starts = arrays.into_iter().filter_map(|head| find(&bytes, head.as_bytes()));
     let (geometry, arrays) = bytes.split_at(starts.min().unwrap_or(bytes.len()));
+    let geometry = with_wide_cells(geometry);
+    let geometry = geometry.as_slice();
     let arrays = with_known_types(arrays);
     let is_text = geometry.split(|byte| *byte == b'\n').nth(2).is_some_and(|line| line.starts_with(b"ASCII"));
     if !is_text {
@@ -41,6 +43,45 @@ pub(super) fn readable(bytes: &[u8]) -> Result<(Vec<u8>, Remarks), MeshFileProbl
     }
     check_coordinates(geometry)?;
     Ok(([geometry, &with_numbers_only(&arrays)].concat(), remarks))
+}
+
+/// The points and cells with 64-bit numbers of points, which alone `vtkio` knows, where VTK wrote 32-bit ones: `OFFSETS int`.
+fn with_wide_cells(geometry: &[u8]) -> Vec<u8> {
+    let mut wide = geometry.to_vec();
+    for (name, place) in [("OFFSETS", 0), ("CONNECTIVITY", 1)] {
+        for kind in ["int", "vtktypeint32"] {
+            let head = format!("\n{name} {kind}\n");
+            let mut done = 0;
+            while let Some(found) = find(&wide[done..], head.as_bytes()) {
+                let start = done + found;
+                done = start + head.len();
+                let Some(count) = count_of_cells(&wide[..start], place) else { break };
+                let end = done.saturating_add(count.saturating_mul(size_of::<i32>()));
+                let is_text =
+                    wide.split(|byte| *byte == b'\n').nth(2).is_some_and(|line| line.starts_with(b"ASCII"));
+                let Some(numbers) = wide.get(done..if is_text { done } else { end }) else { break };
+                let numbers =
+                    numbers.as_chunks().0.iter().map(|number| i64::from(i32::from_be_bytes(*number)));
+                let numbers: Vec<u8> = numbers.flat_map(i64::to_be_bytes).collect();
+                let head = format!("\n{name} vtktypeint64\n");
+                let next = start + head.len() + numbers.len();
+                let end = if is_text { done } else { end };
+                wide.splice(start..end, head.into_bytes().into_iter().chain(numbers));
+                done = next;
+            }
+        }
+    }
+    wide
+}
+
+/// One of the two numbers after the last name of a kind of cells, as in `POLYGONS 1059 3174`: of offsets and of points.
+fn count_of_cells(before: &[u8], place: usize) -> Option<usize> {
+    let names = ["\nPOLYGONS ", "\nLINES ", "\nVERTICES ", "\nTRIANGLE_STRIPS ", "\nCELLS "];
+    let last =
+        |name: &str| Some((before.windows(name.len()).rposition(|at| at == name.as_bytes())?, name.len()));
+    let (start, length) = names.into_iter().filter_map(last).max()?;
+    let line = before[start + length..].split(|byte| *byte == b'\n').next()?;
+    str::from_utf8(line).ok()?.split_whitespace().nth(place)?.parse().ok()
 }
 
 /// Looks for coordinates of a text that are no numbers.

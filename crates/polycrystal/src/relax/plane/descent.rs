@@ -4,6 +4,8 @@
 //! 1963): as rigid as the energy needs to fall about as its quadratic model says, and where an arc would turn over, that one alone.
 //! So what happens at one place takes nothing from a step elsewhere, and the number of steps does not grow with the network.
 
+use std::f64::consts::TAU;
+
 use glam::DVec2;
 use voronoi::FaceId;
 
@@ -183,6 +185,10 @@ fn restored(
 ) -> Option<Vec<f64>> {
     let mut last = f64::INFINITY;
     for _ in 0..CORRECTIONS {
+        // More than a circle is no arc, and would cost time for each of its turns.
+        if (0..foam.arcs.len()).any(|arc| foam.turning(arc, &state).abs() > TAU) {
+            return None;
+        }
         let missing: Vec<f64> =
             foam.missing(&state).iter().zip(left).map(|(lack, left)| lack - left).collect();
         let (_, error) = largest_relative_error(&missing, foam.areas);
