@@ -22,7 +22,7 @@ fn fine_network(count: usize, random_seed: u64) -> (Network, Vec<DVec3>) {
     let tessellation = (0..20).fold(tessellation, |cells, _| {
         Tessellation::new(&domain, &cells.centroids()).expect("centroids lie in their cells")
     });
-    let edge_length = 0.0125 / (count as f64).sqrt();
+    let edge_length = 0.02 / (count as f64).sqrt();
     Network::with_face_mesh(&tessellation, FaceMesh::Refined { edge_length }, Junctions::Crease, 0)
         .expect("a small network")
 }
@@ -41,13 +41,14 @@ fn measures(network: &Network, points: &[DVec3]) -> PlaneMeasures {
 #[test]
 fn grains_in_the_plane_grow_by_the_law_of_von_neumann_and_mullins() {
     let mut sides = Vec::new();
-    for random_seed in [2, 4, 5] {
+    for random_seed in [2, 5] {
         let (network, flat) = fine_network(30, random_seed);
         // Angles come to equilibrium long before areas change much. Shorter and shorter steps, for triple points are to
         // move by less than an edge in each.
-        let times = [0.1].into_iter().chain([1e-3; 8]).chain([1e-4; 3]).chain([2e-5; 3]);
-        let start =
-            times.fold(flat, |points, time| flow(&network, &points, time).expect("no side vanishes").points);
+        let times = [0.1, 1e-3, 1e-4];
+        let start = times
+            .into_iter()
+            .fold(flat, |points, time| flow(&network, &points, time).expect("no side vanishes").points);
         let time = 2e-5;
         let end = flow(&network, &start, time).expect("no side vanishes").points;
         let whole_time = time * network.mean_grain_size().powi(2);
@@ -61,7 +62,7 @@ fn grains_in_the_plane_grow_by_the_law_of_von_neumann_and_mullins() {
             assert!((rate - law).abs() < tolerance, "{} sides: {rate}, not {law}", before.side_count);
             assert!((before.growth_rate.expect("no walls") - law).abs() < 1e-12);
             // What the boundaries' own curvature says lacks half an edge at each end.
-            assert!((before.curvature_rate - law).abs() < 0.08 * law.abs().max(FRAC_PI_3));
+            assert!((before.curvature_rate - law).abs() < 0.13 * law.abs().max(FRAC_PI_3));
             sides.push(before.side_count);
         }
     }
@@ -70,29 +71,27 @@ fn grains_in_the_plane_grow_by_the_law_of_von_neumann_and_mullins() {
     assert!(sides.len() >= 3, "grains of {sides:?} sides");
 }
 
-/// The time once passed on level 0 and once more on level 1.
+/// As the program does it. The time once passed on level 0 and once more on level 1, and stiffness along triple lines held junctions up
+/// by a tenth of their way.
 #[test]
 fn grains_grow_for_the_time_that_is_asked_for() {
     let domain = Domain::unit_square().with_periods(BVec3::TRUE);
-    let tessellation = Tessellation::new(&domain, &random_seeds(&domain, 30, 2)).expect("valid seeds");
+    let tessellation = Tessellation::new(&domain, &random_seeds(&domain, 60, 2)).expect("valid seeds");
     let tessellation = (0..20).fold(tessellation, |cells, _| {
         Tessellation::new(&domain, &cells.centroids()).expect("centroids lie in their cells")
     });
-    let face_mesh = FaceMesh::Refined { edge_length: 0.02 };
-    let (network, flat) =
-        Network::with_face_mesh(&tessellation, face_mesh, Junctions::Crease, 1).expect("a small network");
-    let [before, after] = [0.1, 0.12].map(|time| {
+    let (network, flat) = Network::new(&tessellation, Junctions::Crease, 3).expect("a small network");
+    let [before, after] = [0.1, 0.102].map(|time| {
         let points = flow(&network, &flat, time).expect("no side vanishes").finest_points(&network);
         measures(&network, &points).grains
     });
-    let whole_time = 0.02 * network.mean_grain_size().powi(2);
-    let (mut product, mut square) = (0.0, 0.0);
+    let whole_time = 0.002 * network.mean_grain_size().powi(2);
     for (before, after) in before.iter().zip(&after) {
+        let rate = (after.area - before.area) / whole_time;
         let law = FRAC_PI_3 * (before.side_count as f64 - 6.0);
-        product += (after.area - before.area) / whole_time * law;
-        square += law * law;
+        let tolerance = 0.02 * law.abs().max(FRAC_PI_3);
+        assert!((rate - law).abs() < tolerance, "{} sides: {rate}, not {law}", before.side_count);
     }
-    assert!((product / square - 1.0).abs() < 0.15, "{} of the law", product / square);
 }
 
 /// Grains cannot vanish: the network was once called invalid for what rounding left of one.

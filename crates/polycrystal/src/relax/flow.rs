@@ -235,7 +235,14 @@ impl<'a> Flow<'a> {
         let missing = self.missing(&volumes);
         let mut clusters = self.clusters.clone();
         clusters.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
-        let (mut moves, pressures) = self.system(points, &terms, &clusters, time).displacement(&missing);
+        let system = self.system(points, &terms, &clusters, time);
+        let (mut moves, pressures) = match (self.volumes, self.control_mesh()) {
+            (Volumes::Kept, _) | (_, Mesh::Triangles(_)) => system.displacement(&missing),
+            (Volumes::Free, Mesh::Segments(_)) => {
+                let terms_at = |moves: &[DVec3]| self.patches.terms(&displaced(points, moves));
+                (system.implicit_displacement(&self.patches, terms_at), vec![0.0; missing.len()])
+            }
+        };
         let within = tangential_moves(self.network, self.level, points, self.remedy.aim());
         moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
         if self.remedy == Remedy::Brake {
