@@ -1,9 +1,13 @@
-//! The guide, done as it says: its commands, then its Python where pyvista is installed.
+//! The guide, done as it says: its commands, then its Python.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use std::io::Write;
+#[path = "common/programs.rs"]
+mod programs;
+
 use std::path::Path;
 use std::process::Command;
+
+use programs::{run, skip};
 
 /// The text of the guide's blocks, each with its language.
 fn blocks(guide: &str) -> Vec<(&str, &str)> {
@@ -36,27 +40,20 @@ fn guide_does_what_it_says() {
     }
     assert!(commands >= 5 && python.contains("pyvista.read"));
 
-    let has_pyvista = Command::new("python3").args(["-c", "import pyvista"]).output();
-    if !has_pyvista.is_ok_and(|output| output.status.success()) {
-        // Not through `eprintln`, which the test harness keeps to itself.
-        std::io::stderr().write_all(b"SKIPPED the guide's Python: pyvista is not installed\n").unwrap();
-        return;
-    }
     let interpret = |program: &str| {
         let mut interpreter = Command::new("python3");
         interpreter.args(["-c", program]).current_dir(folder.path());
-        interpreter.env("PYVISTA_OFF_SCREEN", "true").env_remove("DISPLAY").output().unwrap()
+        run("the guide's Python", interpreter.env("PYVISTA_OFF_SCREEN", "true").env_remove("DISPLAY"))
     };
+    let sphere = "import pyvista; pyvista.Sphere().plot(screenshot='sphere.png')";
+    let Some(output) = interpret(sphere) else { return };
     // Without OpenGL, VTK takes the interpreter down.
-    let can_draw =
-        interpret("import pyvista; pyvista.Sphere().plot(screenshot='sphere.png')").status.success();
+    let can_draw = output.status.success();
     if !can_draw {
-        std::io::stderr()
-            .write_all(b"SKIPPED the guide's picture: pyvista cannot draw off screen\n")
-            .unwrap();
+        skip("the guide's picture", "pyvista cannot draw off screen");
         python.insert_str(0, "import pyvista; pyvista.DataSet.plot = lambda *_, **__: None\n");
     }
-    let output = interpret(&python);
+    let Some(output) = interpret(&python) else { return };
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     if !can_draw {
         return;

@@ -330,8 +330,6 @@ fn colours_obey_the_environment() {
 #[cfg(unix)]
 #[test]
 fn interrupted_run_leaves_nothing() {
-    use std::time::{Duration, Instant};
-
     let names = |workplace: &Workplace| {
         let entries = std::fs::read_dir(workplace.path("")).unwrap();
         let mut names: Vec<_> =
@@ -360,11 +358,9 @@ fn interrupted_run_leaves_nothing() {
                 data.is_ok_and(|data| if data.is_dir() { has_files(&entry.path()) } else { data.len() > 0 })
             })
         };
-        let start = Instant::now();
         while !is_writing() {
             assert!(child.try_wait().unwrap().is_none(), "{arguments}: over before it was seen writing");
-            assert!(start.elapsed() < Duration::from_secs(120), "{arguments}");
-            std::thread::sleep(Duration::from_millis(1));
+            std::thread::sleep(std::time::Duration::from_millis(1));
         }
         std::process::Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
         let end = child.wait_with_output().unwrap();

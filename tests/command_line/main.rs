@@ -12,6 +12,8 @@ mod front;
 mod good_runs;
 mod periodic;
 mod pictures;
+#[path = "../common/programs.rs"]
+mod programs;
 mod seed_formats;
 mod seed_sources;
 mod series;

@@ -1,7 +1,6 @@
 //! `--picture` and `--report`.
 
 use std::collections::BTreeMap;
-use std::io::Write;
 use std::path::Path;
 use std::process::Command;
 
@@ -9,6 +8,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use tiny_skia::Pixmap;
 
+use crate::programs::run;
 use crate::workplace::{FAILED, USAGE, Workplace};
 
 type Pixel = [u8; 3];
@@ -198,7 +198,6 @@ fn report_in_the_plane_holds_a_picture() {
 /// The screenshot stays in the folder for the tests' files, for people to look at.
 #[test]
 fn browser_shows_the_grains_of_a_report() {
-    let name = "browser_shows_the_grains_of_a_report";
     let workplace = Workplace::new();
     workplace.run("--seeds 20 -n 2 --report grains.html --quiet");
     let page = workplace.path("grains.html");
@@ -213,17 +212,9 @@ fn browser_shows_the_grains_of_a_report() {
         ]);
         // The page draws once and is done: no time of the clock passes.
         browser.args(["--window-size=1000,1200", "--virtual-time-budget=10000"]).args(arguments).arg(&page);
-        browser.output()
+        run("browser_shows_the_grains_of_a_report", &mut browser)
     };
-    let output = match browse(&["--dump-dom"]) {
-        Ok(output) => output,
-        Err(error) => {
-            // Not through `eprintln`, which the test harness keeps to itself.
-            let skipped = format!("SKIPPED {name}: cannot run chromium: {error}\n");
-            std::io::stderr().write_all(skipped.as_bytes()).unwrap();
-            return;
-        }
-    };
+    let Some(output) = browse(&["--dump-dom"]) else { return };
     let said = String::from_utf8_lossy(&output.stderr);
     // Taking a screenshot without a graphics card is slow, of which the driver tells.
     let complaints =

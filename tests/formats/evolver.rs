@@ -9,7 +9,8 @@ use grainsmooth::{Config, Polycrystal, make_polycrystal};
 use polycrystal::Mesh;
 use voronoi::Dimension;
 
-use crate::tools::{run, text};
+use crate::programs::run;
+use crate::tools::text;
 use crate::workplace::{BOX, SPACE, TORUS, config, write};
 
 /// Periodic along y, between walls along x and z, and relaxed.

@@ -1,10 +1,12 @@
-//! What is written for other tools, read back by what others wrote: crates, and where they are installed gmsh, Surface
-//! Evolver, and Python with VTK, meshio and trimesh.
+//! What is written for other tools, read back by what others wrote: crates, gmsh, Surface Evolver, and Python with VTK,
+//! meshio, trimesh and orix.
 #![allow(clippy::unwrap_used, clippy::cast_possible_truncation, reason = "a test may panic")]
 
 mod corrupt;
 mod evolver;
 mod grids;
+#[path = "../common/programs.rs"]
+mod programs;
 mod quiet_reader;
 mod surfaces;
 mod tess;

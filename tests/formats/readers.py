@@ -1,22 +1,14 @@
-"""Reads with VTK, meshio and trimesh what the test has written, and compares counts, volumes and labels."""
+"""Reads with VTK, meshio, trimesh and orix what the test has written, and compares counts, volumes and labels."""
 import json
 import pathlib
 import sys
 
-try:
-    import meshio
-    import numpy as np
-    import pyvista
-    import trimesh
-except ImportError as error:
-    print(error)
-    sys.exit(77)
-
-try:
-    import orix.io
-except ImportError as error:
-    orix = None
-    print(f"{error}: b.ang is not read")
+import meshio
+import numpy as np
+import orix.io
+import pyvista
+import trimesh
+from PIL import Image
 
 folder = pathlib.Path(sys.argv[1])
 expected = json.loads((folder / "expected.json").read_text())
@@ -108,14 +100,13 @@ assert np.array_equal(image["material"], labels.ravel(order="F"))
 assert np.array_equal(np.unique(labels), np.arange(len(volumes)))
 assert pyvista.read(folder / "b.vti").dimensions == (21, 16, 2)
 labels = pyvista.read(folder / "b.vti")["material"]
-if orix is not None:
-    scan = orix.io.load(folder / "b.ang")
-    assert scan.shape == (15, 20), scan.shape
-    turns = np.unique(scan.rotations.data.round(6), axis=0, return_inverse=True)[1].ravel()
-    # One orientation for each grain, and none for two.
-    # Scans go down, grids up.
-    pairs = np.unique(np.stack([labels.reshape(15, 20)[::-1].ravel(), turns]), axis=1)
-    assert pairs.shape[1] == len(np.unique(labels)) == turns.max() + 1, pairs
+scan = orix.io.load(folder / "b.ang")
+assert scan.shape == (15, 20), scan.shape
+turns = np.unique(scan.rotations.data.round(6), axis=0, return_inverse=True)[1].ravel()
+# One orientation for each grain, and none for two.
+# Scans go down, grids up.
+pairs = np.unique(np.stack([labels.reshape(15, 20)[::-1].ravel(), turns]), axis=1)
+assert pairs.shape[1] == len(np.unique(labels)) == turns.max() + 1, pairs
 plane = pyvista.read(folder / "b.vtp")
 assert plane.n_lines == plane["BoundaryId"].max() + 1
 
@@ -181,9 +172,6 @@ for tool, (sides, grain_id, first, exterior, place) in names.items():
             if label != exterior:
                 found[label - first] += sign * swept
     assert np.allclose(found, areas, rtol=1e-9), tool
-
-# Pillow comes with pyvista.
-from PIL import Image
 
 with Image.open(folder / "a.png") as picture:
     assert picture.size == (1200, 900) and picture.text["Config"] == expected["settings"]

@@ -7,6 +7,7 @@ use glam::DVec3;
 use grainsmooth::mesh_file::{MeshFile, read_mesh};
 use predicates::str::contains;
 
+use crate::programs::run;
 use crate::shapes::{CUBE_OBJ, TETRAHEDRON_OFF, json, points};
 use crate::workplace::Workplace;
 
@@ -190,9 +191,8 @@ fn bezier_curves_and_patches() {
     assert_eq!((patch.points.len(), patch.faces.len(), patch.points[4].z), (9, 8, 0.5));
 }
 
-/// Files as ParaView's own library writes them, where it is there.
+/// Files as ParaView's own library writes them.
 #[test]
-#[ignore = "needs python3 with pyvista; `cargo test --test mesh_command -- --ignored` runs it"]
 fn files_of_vtk_itself() {
     let workplace = Workplace::new();
     let script = "
@@ -217,8 +217,9 @@ for mode in ['Ascii', 'Binary', 'Appended']:
                     writer.SetFileName(f'{mode}_{encode}_{compressor}_{header}.{extension}')
                     writer.Write()
 ";
-    let python = Command::new("python3").args(["-c", script]).current_dir(workplace.path(".")).output();
-    let python = python.expect("python3 starts");
+    let mut python = Command::new("python3");
+    python.args(["-c", script]).current_dir(workplace.path("."));
+    let Some(python) = run("files_of_vtk_itself", &mut python) else { return };
     assert!(python.status.success(), "{}", String::from_utf8_lossy(&python.stderr));
     let mut count = 0;
     for entry in fs::read_dir(workplace.path(".")).unwrap() {

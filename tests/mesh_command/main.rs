@@ -5,6 +5,9 @@ mod bad_meshes;
 mod corrupt_files;
 mod edits;
 mod formats;
+#[allow(dead_code, reason = "shared with other tests")]
+#[path = "../common/programs.rs"]
+mod programs;
 #[path = "../formats/quiet_reader.rs"]
 mod quiet_reader;
 mod references;
