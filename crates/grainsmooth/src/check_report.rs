@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::{LabelledFile, TriangleAngles};
 use statistics::statistics;
 
-pub use statistics::Statistic;
+pub use statistics::{Expectation, Statistic};
 
 /// Faults of one kind that the text names; JSON has all.
 const NAMED: usize = 5;
@@ -43,7 +43,7 @@ pub struct CheckReport {
     pub dihedral: Option<Spread>,
     /// The smallest angles of triangles, in degrees.
     pub triangle_angles: Option<TriangleAngles>,
-    /// For random seeds: what the network is like beside exact values of Poisson-Voronoi grains without walls.
+    /// What a good network is like, beside exact values where it consists of Poisson-Voronoi cells.
     pub statistics: Vec<Statistic>,
     /// All that is wrong.
     pub faults: Vec<ReportedFault>,
@@ -143,11 +143,11 @@ impl fmt::Display for CheckReport {
         if let Some(angles) = self.triangle_angles {
             write!(out, "\n  triangles   {angles}")?;
         }
-        for Statistic { name, value, exact, standard_error } in &self.statistics {
-            write!(
-                out,
-                "\n  statistics  {name} {value:.4}; so many flat random grains without walls have {exact} +- {standard_error:.4}"
-            )?;
+        for Statistic { name, value, poisson_voronoi } in &self.statistics {
+            write!(out, "\n  statistics  {name} {value:.4}")?;
+            if let Some(Expectation { exact, standard_error }) = poisson_voronoi {
+                write!(out, "; so many Poisson-Voronoi cells have {exact} +- {standard_error:.4}")?;
+            }
         }
         for faults in self.faults.chunk_by(|a, b| a.kind == b.kind) {
             for fault in faults.iter().take(NAMED) {

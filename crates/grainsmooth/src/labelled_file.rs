@@ -5,6 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use polycrystal::{BoundaryId, Claims, Elements, GrainId, NodeType, Side, Surface, outward_sides};
+use toml::{Table, Value};
 
 use crate::mesh_file::MeshFileProblem;
 use crate::mesh_file::vtk::labelled::{LabelledCells, Remarks, read_legacy, read_xml};
@@ -29,8 +30,8 @@ pub struct LabelledFile {
     pub volumes: Option<Vec<(GrainId, f64)>>,
     /// Whether the file has its points in single precision.
     pub is_single: bool,
-    /// What the command line in the file says, if this program wrote it.
-    pub command_line: Option<String>,
+    /// The settings by the long names of their options, if this program wrote it.
+    pub settings: Option<Table>,
 }
 
 /// The elements of a [`LabelledFile`].
@@ -79,13 +80,13 @@ impl LabelledFile {
             is_single,
             remarks,
         } = cells;
-        let Remarks { command_line, volumes } = remarks;
-        let command_line = command_line.filter(|line| line.starts_with("grainsmooth "));
+        let Remarks { config, volumes } = remarks;
+        let settings: Option<Table> = config.and_then(|text| text.parse().ok());
         // Without an exterior the volumes of all grains would sum to nothing.
         let zero_is_exterior =
             label_array != "FaceLabels" || !labels.iter().flatten().any(|label| *label < 0);
         // With the names of other tools, all that a periodic grain has beyond the box has the same labels.
-        let boundary_ids = boundary_ids.filter(|_| command_line.is_some());
+        let boundary_ids = boundary_ids.filter(|_| settings.is_some());
         let mut boundaries: BTreeMap<([i64; 2], Option<i64>), BoundaryId> = BTreeMap::new();
         let mut sides = Vec::new();
         let mut of_cell = Vec::with_capacity(labels.len());
@@ -123,7 +124,7 @@ impl LabelledFile {
         };
         // In a periodic network they count grains a period away, which are not at the point.
         let is_periodic = labels.iter().flatten().any(|label| *label < -1)
-            || command_line.as_deref().is_some_and(is_periodic);
+            || settings.as_ref().is_some_and(sticks_out_of_the_box);
         let node_types =
             node_types.filter(|_| !is_periodic).map(|codes| codes.into_iter().map(node_type).collect());
         Ok(Self {
@@ -133,9 +134,9 @@ impl LabelledFile {
             sides,
             node_types,
             label_array,
-            volumes: command_line.as_deref().and_then(|line| numbered(volumes?, line)),
+            volumes: settings.as_ref().and_then(|settings| numbered(volumes?, settings)),
             is_single,
-            command_line,
+            settings,
         })
     }
 
@@ -153,7 +154,7 @@ impl LabelledFile {
         Claims {
             node_types: self.node_types.as_deref(),
             grain_volumes: self.volumes.as_deref(),
-            domain_volume: self.command_line.as_deref().and_then(domain_volume),
+            domain_volume: self.settings.as_ref().and_then(domain_volume),
             rounding: if self.is_single { self.single_rounding() } else { 0.0 },
         }
     }
@@ -175,27 +176,23 @@ fn node_type(code: i64) -> Option<NodeType> {
     NodeType::of_code(code)
 }
 
-/// Whether a command line makes grains that stick out of the box.
-fn is_periodic(command_line: &str) -> bool {
-    let has = |option: &str| format!("{command_line} ").contains(option);
-    has(" --periodic ") && !has(" --periodic none ") && !has(" --periodic-cut box ")
+/// Whether grains of these settings are whole although the box repeats.
+fn sticks_out_of_the_box(settings: &Table) -> bool {
+    let has = |key: &str, value: &str| settings.get(key).and_then(Value::as_str) == Some(value);
+    !has("periodic", "none") && !has("periodic-cut", "box")
 }
 
 /// Volumes with the numbers of their grains: from 0 by our own names, from 1 by those of other tools.
-fn numbered(volumes: Vec<f64>, command_line: &str) -> Option<Vec<(GrainId, f64)>> {
-    let own = format!(" --names {} ", Names::default().name());
-    let first = u32::from(command_line.contains(" --names ") && !format!("{command_line} ").contains(&own));
+fn numbered(volumes: Vec<f64>, settings: &Table) -> Option<Vec<(GrainId, f64)>> {
+    let first = u32::from(settings.get("names")?.as_str()? != Names::default().name());
     (volumes.len() < u32::MAX as usize).then(|| (first..).map(GrainId).zip(volumes).collect())
 }
 
-/// The volume (in the plane: area) of the box that a command line names.
-fn domain_volume(command_line: &str) -> Option<f64> {
+/// The volume (in the plane: area) of the box, where grains fill that.
+fn domain_volume(settings: &Table) -> Option<f64> {
     // A sphere or another convex body in the box is smaller.
-    if command_line.split(' ').any(|word| ["--domain", "--half-spaces"].contains(&word)) {
+    if settings.contains_key("domain") || settings.contains_key("half-spaces") {
         return None;
     }
-    let mut words = command_line.split(' ').skip_while(|word| *word != "--box");
-    words.next()?;
-    let sides: Vec<f64> = words.map_while(|word| word.parse().ok()).collect();
-    (sides.len() == 2 || sides.len() == 3).then(|| sides.iter().product())
+    settings.get("box")?.as_array()?.iter().map(Value::as_float).product()
 }

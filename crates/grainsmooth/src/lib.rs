@@ -50,7 +50,7 @@ mod unfinished;
 pub mod vtk;
 
 pub use cell_table::{CellTable, TableFormat};
-pub use check_report::{CheckReport, ReportedFault, Spread, Statistic};
+pub use check_report::{CheckReport, Expectation, ReportedFault, Spread, Statistic};
 pub use config::{Config, FileOptions, PeriodicCut, SeedSource, Shape};
 pub use embedded_config::embedded_config;
 pub use error::Error;

@@ -1,79 +1,75 @@
-//! A network of random grains beside exact values of Poisson-Voronoi cells.
+//! What a network is like, and where theory says it, what it should be like.
 
 use polycrystal::{Certificate, Elements, Side, Surface};
 use serde::Serialize;
+use toml::{Table, Value};
 
 use crate::LabelledFile;
 
-/// A number that has an exact value for Poisson-Voronoi grains.
+/// A figure of a network.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Statistic {
     /// What it is.
     pub name: &'static str,
     /// Its value in the file.
     pub value: f64,
-    /// The exact value for flat grains without walls.
+    /// What it is of Poisson-Voronoi cells, where the network consists of them.
+    pub poisson_voronoi: Option<Expectation>,
+}
+
+/// The exact value of a figure, and how far a network of finite size is from it by chance.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Expectation {
+    /// In an unbounded network.
     pub exact: f64,
-    /// By how much as many such grains differ from that by chance: one standard deviation.
+    /// One standard deviation among networks of as many grains.
     pub standard_error: f64,
 }
 
-/// Options that leave random seeds the Poisson process that they are, whatever or with what follows them.
-const PLAIN_OPTIONS: [&str; 22] = [
-    "--arrays",
-    "--seeds",
-    "--seeding random",
-    "--lloyd 0",
-    "--periodic none",
-    "--periodic x,y,z",
-    "--periodic x,y",
-    "--rng-seed",
-    "--dim",
-    "--box",
-    "--faces",
-    "--edge-length",
-    "--relax",
-    "--wall-tension",
-    "--free",
-    "--regularize",
-    "-n",
-    "--levels",
-    "--junctions",
-    "--names",
-    "--voxels",
-    "--ascii",
+/// Settings that have nothing to do with what theory says of flat grains, or that flat grains do not heed.
+const FREE_SETTINGS: [&str; 15] = [
+    "arrays",
+    "ascii",
+    "box",
+    "dim",
+    "edge-length",
+    "faces",
+    "free",
+    "junctions",
+    "levels",
+    "names",
+    "regularize",
+    "rng-seed",
+    "seeds",
+    "voxels",
+    "wall-tension",
 ];
 
-/// Numbers with exact values, where the file says that its seeds are uniform and random: Meijering 1953 for means; variances of
-/// volume and area as integrals, Gilbert 1962; spread of angles from their exact density, see the report. Standard errors
-/// of n grains fall with the square root of n; for n = 1 they are what 60 sets of 400 periodic grains (in the plane 150) gave.
+/// Figures of a good network of at least two grains, beside exact values where [`is_poisson_voronoi`]: Meijering 1953 for means;
+/// variances of volume and area as integrals, Gilbert 1962; spread of angles from their exact density, see the report. Standard
+/// errors of n grains fall with the square root of n; for n = 1 they are what 60 sets of 400 periodic grains (in the plane 150) gave.
 pub(super) fn statistics(
     file: &LabelledFile,
     surface: &Surface<'_>,
     certificate: &Certificate,
 ) -> Vec<Statistic> {
-    let Some(command_line) = &file.command_line else { return Vec::new() };
-    let mut options = command_line.split(" -").skip(1);
-    let is_plain = |option: &str| {
-        let option = format!("-{option}");
-        let name = option.split(' ').next();
-        PLAIN_OPTIONS.iter().any(|plain| option == *plain || name == Some(*plain))
-    };
-    let (is_plane, all_axes) = match surface.elements {
-        Elements::Triangles(_) => (false, "--periodic x,y,z"),
-        Elements::Segments(_) => (true, "--periodic x,y"),
-    };
-    let is_periodic = command_line.contains("--periodic ") && !command_line.contains("--periodic none");
     let count = certificate.grain_volumes.len() as f64;
-    // One grain has nothing but walls; and where only some walls are periodic, they cannot be told from the others.
+    let (is_plane, all_axes) = match surface.elements {
+        Elements::Triangles(_) => (false, "x,y,z"),
+        Elements::Segments(_) => (true, "x,y"),
+    };
+    let text = |key| file.settings.as_ref().and_then(|settings| settings.get(key)?.as_str());
+    let is_periodic = text("periodic") == Some(all_axes);
+    // One grain has nothing but walls. Where only some walls are periodic, or grains are cut there, they cannot be told from the
+    // others.
     if !certificate.is_good()
         || certificate.grain_volumes.len() < 2
-        || !command_line.contains("--seeds ")
-        || is_periodic && !command_line.contains(&format!("{all_axes} "))
-        || !options.all(is_plain)
+        || !is_periodic && text("periodic").is_some_and(|axes| axes != "none")
+        || text("periodic-cut") == Some("box")
     {
         return Vec::new();
     }
+    let has_theory = file.settings.as_ref().is_some_and(|settings| is_poisson_voronoi(settings, all_axes));
     let volume: f64 = certificate.grain_volumes.iter().map(|(_, volume)| volume).sum();
     let mean = volume / count;
     let variance = certificate.grain_volumes.iter().map(|(_, volume)| (volume / mean - 1.0).powi(2));
@@ -84,8 +80,7 @@ pub(super) fn statistics(
     let statistic = |name, value, exact, of_one: f64| Statistic {
         name,
         value,
-        exact,
-        standard_error: of_one / count.sqrt(),
+        poisson_voronoi: has_theory.then(|| Expectation { exact, standard_error: of_one / count.sqrt() }),
     };
     let angles = |exact, of_one| {
         angles.map(|value| statistic("standard deviation of angles, in degrees,", value, exact, of_one))
@@ -108,6 +103,18 @@ pub(super) fn statistics(
     };
     statistics.extend(angles);
     statistics
+}
+
+/// Whether settings make the Voronoi cells of a Poisson process, as they are and without walls.
+fn is_poisson_voronoi(settings: &Table, all_axes: &str) -> bool {
+    let fits = |(key, value): (&String, &Value)| match key.as_str() {
+        "seeding" => value.as_str() == Some("random"),
+        "lloyd" => value.as_integer() == Some(0),
+        "periodic" => value.as_str() == Some(all_axes),
+        "relax" => value.as_float() == Some(0.0),
+        key => FREE_SETTINGS.contains(&key),
+    };
+    settings.contains_key("seeds") && settings.iter().all(fits)
 }
 
 /// Area (in the plane: length) of the boundaries between grains; what comes twice in a periodic network counts half each time.

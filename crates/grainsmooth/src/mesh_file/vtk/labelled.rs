@@ -14,23 +14,23 @@ const NODE_TYPES: &str = "NodeTypes";
 
 const BOUNDARY_IDS: &str = "BoundaryId";
 
-const COMMAND_LINE: &str = "CommandLine";
+const CONFIG: &str = "Config";
 
 const VOLUMES: &str = "Volumes";
 
 /// What the field data of a file of this program say, also after another has read and written it.
 #[derive(Debug, Default)]
 pub(crate) struct Remarks {
-    /// The command line that made the file.
-    pub(crate) command_line: Option<String>,
+    /// The settings that made the file, as TOML.
+    pub(crate) config: Option<String>,
     /// The volume of each grain, in the order of their numbers.
     pub(crate) volumes: Option<Vec<f64>>,
 }
 
 impl Remarks {
     pub(super) fn note_text(&mut self, name: &str, text: String) {
-        if name == COMMAND_LINE {
-            self.command_line = Some(text);
+        if name == CONFIG {
+            self.config = Some(text);
         }
     }
 
@@ -41,7 +41,7 @@ impl Remarks {
     }
 
     fn of_xml(bytes: &[u8]) -> Self {
-        Self { command_line: field_text(bytes, COMMAND_LINE), volumes: field_numbers(bytes, VOLUMES) }
+        Self { config: field_text(bytes, CONFIG), volumes: field_numbers(bytes, VOLUMES) }
     }
 }
 
