@@ -8,7 +8,7 @@ use std::error::Error;
 use std::num::NonZeroU32;
 
 use glam::DVec3;
-use grainsmooth::{Config, SeedSource, Series, SeriesOutput, smooth_watched, tessellate};
+use grainsmooth::{Config, SeedSource, Series, SeriesOutput, smooth_watched, tessellate, write_together};
 use polycrystal::measure_network;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::temp_dir().join("grainsmooth_series");
     std::fs::create_dir_all(&folder)?;
     let output = SeriesOutput::check(&folder.join("relaxation.pvd"))?;
-    series.write(&mut polycrystal, &output)?;
+    write_together(|files| series.stage(&mut polycrystal, &output, files))?;
     println!("open {} in ParaView", output.path().display());
     Ok(())
 }

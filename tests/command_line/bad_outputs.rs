@@ -57,6 +57,74 @@ fn file_system_that_takes_no_more() {
     workplace.refuses_command(shell.arg(program), FAILED, message);
 }
 
+/// As above; the report, which comes after all else, is what is too large.
+#[cfg(unix)]
+#[test]
+fn failure_of_the_last_output_leaves_none_of_the_others() {
+    let workplace = Workplace::new();
+    workplace.put("stats.csv", "kept");
+    let program = workplace.command("").get_program().to_owned();
+    let others = "-o grains.vtp -o a.msh -o a.vtm -o a.vti --voxels 4 4 4 --cells-json a.json --cells-csv a.csv \
+                  --stats stats.csv --grains-dir each --series a.pvd --picture a.png --picture-size 32 32";
+    let mut shell = assert_cmd::Command::new("sh");
+    shell.current_dir(workplace.path("")).arg("-c");
+    shell.arg(format!(
+        "trap '' XFSZ; ulimit -f 400; exec \"$0\" --seeds 3 -n 0 --relax 0.01 {others} --report a.html"
+    ));
+    let message = "a.html: writing failed and left nothing: ... ; make room or choose another path";
+    workplace.refuses_command(shell.arg(&program), FAILED, message);
+    // What is said on standard output comes last.
+    let mut shell = assert_cmd::Command::new("sh");
+    shell.current_dir(workplace.path("")).arg("-c");
+    shell.arg(format!("exec \"$0\" --seeds 3 -n 0 --relax 0.01 {others} --json-summary - > /dev/full"));
+    let message = "standard output: writing failed and left nothing: ... ; make room or choose another path";
+    if cfg!(target_os = "linux") {
+        workplace.refuses_command(shell.arg(&program), FAILED, message);
+    }
+    // All that is too much for the report is room enough for the others.
+    workplace.run(&format!("--seeds 3 -n 0 --relax 0.01 {others}"));
+}
+
+#[test]
+fn tables_of_a_run_that_fails_after_its_cells_are_not_left() {
+    let workplace = Workplace::new();
+    workplace.put("seeds.csv", "0.2,0.3,0.4\n0.7,0.6,0.5\n0.4,0.8,0.3\n");
+    workplace.put("cells.csv", "kept");
+    let arguments = "--seeds-file seeds.csv -n 14 --cells-csv cells.csv --cells-json cells.json";
+    workplace.refuses(arguments, FAILED, "14 levels would ... levels would fit");
+}
+
+#[test]
+fn two_outputs_of_one_path() {
+    let workplace = Workplace::new();
+    let message = |name: &str| format!("{name}: two outputs have this path; give each a path of its own");
+    for (arguments, name) in [
+        ("-o a.vtp -o a.vtp", "a.vtp"),
+        ("-o a.vtp -o ./a.vtp", "a.vtp"),
+        ("-o a.ply --cells-csv a.ply", "a.ply"),
+        ("--stats a.csv --cells-csv a.csv", "a.csv"),
+        ("--stats a.csv --cells-csv a.boundaries.csv", "a.boundaries.csv"),
+        ("--cells-json a.json --json-summary a.json", "a.json"),
+        ("-o a.msh --cells-csv a.geo", "a.geo"),
+        ("-o a.vtm --grains-dir a", "a"),
+    ] {
+        workplace.refuses(&format!("{BEFORE_COMPUTING} {arguments}"), USAGE, &message(name));
+    }
+    // Steps of a series are counted when they are there.
+    let steps = "--seeds 2 -n 0 --relax 0.01 --series a.pvd -o a_0001.vtp";
+    workplace.refuses(steps, FAILED, &message("a_0001.vtp"));
+    let message = "two outputs go to standard output; give one of them a path";
+    workplace.refuses(&format!("{BEFORE_COMPUTING} -o - -o -"), USAGE, message);
+}
+
+#[test]
+fn script_of_a_gmsh_mesh_that_cannot_be_written() {
+    let workplace = Workplace::new();
+    fs::create_dir(workplace.path("a.geo")).unwrap();
+    let message = "a.geo: is not a regular file; choose another path";
+    workplace.refuses(&format!("{BEFORE_COMPUTING} -o a.msh"), FAILED, message);
+}
+
 /// A real full disk, of 64 kB, in a name space of our own.
 #[cfg(target_os = "linux")]
 #[test]

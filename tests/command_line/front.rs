@@ -219,7 +219,7 @@ fn standard_output_takes_the_bytes_of_the_file() {
     }
     workplace.refuses(
         "-o - --format vtm",
-        FAILED,
+        USAGE,
         "standard output takes a single file; choose another format, such as vtp, or give a path",
     );
     workplace.refuses(
@@ -240,9 +240,39 @@ fn standard_output_takes_the_bytes_of_the_file() {
 }
 
 #[test]
+fn several_outputs_of_one_run_are_those_of_several_runs() {
+    let workplace = Workplace::new();
+    let arguments = "--seeds 6 -n 1 --voxels 4 4 4";
+    let names = ["b.vtp", "b.geo", "b.msh", "b.vti", "b/grains.vtp", "b.vtm"];
+    for name in ["b.msh", "b.vti", "b.vtm", "b.vtp"] {
+        workplace.run(&format!("{arguments} -o {name}"));
+    }
+    let alone = names.map(|name| workplace.bytes(name));
+    let said = workplace.run(&format!("{arguments} -o b.vtp -o b.msh --output b.vti -o b.vtm"));
+    assert!(said.ends_with("written     b.vtp, b.msh, b.vti, b.vtm\n"), "{said}");
+    assert!(names.map(|name| workplace.bytes(name)) == alone);
+    let printed = printed(&workplace, &format!("{arguments} -o b.ply -o - --format vtp"));
+    assert!(printed == alone[0] && workplace.path("b.ply").exists());
+    workplace.put("run.toml", "seeds = 6\nlevels = 1\noutput = [\"a.vtp\", \"a.ply\"]\n");
+    workplace.run("--config run.toml");
+    for extension in ["vtp", "ply"] {
+        let [a, b] = ["a", "b"].map(|name| workplace.bytes(&format!("{name}.{extension}")));
+        // Only the number of voxels is among the settings of one and not of the other.
+        assert!(a.len() > 10_000 && a.len().abs_diff(b.len()) < 100);
+    }
+    let foretold = |arguments: &str| {
+        let said = text(&workplace, &format!("{arguments} --dry-run"));
+        let line = said.lines().find(|line| line.starts_with("file")).unwrap().to_owned();
+        line.split_whitespace().find_map(|word| word.parse::<u64>().ok()).unwrap()
+    };
+    let both = foretold("--seeds 6 -o a.vtp -o a.stl");
+    assert_eq!(both, foretold("--seeds 6 -o a.vtp") + foretold("--seeds 6 -o a.stl"));
+}
+
+#[test]
 fn reader_that_stops_is_a_quiet_end() {
     let workplace = Workplace::new();
-    for arguments in ["--seeds 20 -n 3 -o - --quiet", "man", "completions bash"] {
+    for arguments in ["--seeds 20 -n 3 -o - --quiet --cells-csv cells.csv", "man", "completions bash"] {
         let program = workplace.command("").get_program().to_owned();
         let mut child = std::process::Command::new(program)
             .args(arguments.split(' '))
@@ -260,6 +290,7 @@ fn reader_that_stops_is_a_quiet_end() {
             "{arguments}"
         );
     }
+    assert!(workplace.path("cells.csv").is_file(), "what else was asked for is there");
 }
 
 #[test]

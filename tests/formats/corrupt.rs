@@ -4,7 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
 
-use grainsmooth::{Config, FileElements, LabelledFile, Output, Picture, Png, Shape, embedded_config};
+use grainsmooth::{
+    Config, FileElements, LabelledFile, Output, Picture, Png, Shape, embedded_config, write_together,
+};
 use proptest::prelude::*;
 use proptest::sample::Index;
 use tempfile::TempDir;
@@ -24,10 +26,8 @@ static GOOD: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
         match *extension {
             "png" => {
                 let output = Output::check_as(&path, Png).unwrap();
-                SPACE.write_picture(
-                    &Picture { size: [64.try_into().unwrap(); 2], ..Picture::default() },
-                    &output,
-                )
+                let picture = Picture { size: [64.try_into().unwrap(); 2], ..Picture::default() };
+                write_together(|files| SPACE.stage_picture(&picture, &output, files))
             }
             "ang" => PLANE.write(&Output::check(&path).unwrap()),
             _ => SPACE.write(&Output::check(&path).unwrap()),

@@ -135,7 +135,7 @@ fn each_grain_has_a_closed_outward_file() {
     {
         let folder = TempDir::new().unwrap();
         let directory = OutputDirectory::check(folder.path().join("grains"), format).unwrap();
-        SPACE.write_grains(&directory).unwrap();
+        grainsmooth::write_together(|files| SPACE.stage_grains(&directory, files)).unwrap();
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary directory is left");
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), GRAINS);
         for (grain, expected) in volumes.iter().enumerate() {

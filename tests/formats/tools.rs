@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use grainsmooth::{OutputDirectory, OutputFormat, StlEncoding};
+use grainsmooth::{OutputDirectory, OutputFormat, StlEncoding, write_together};
 
 use crate::programs::run;
 use crate::workplace::{GRAINS, PLANE, SPACE, write};
@@ -95,7 +95,7 @@ fn vtk_meshio_and_trimesh_read_every_format() {
         measured.write(&grainsmooth::Output::check(directory.path().join(name)).unwrap()).unwrap();
     }
     let picture = grainsmooth::Output::check_as(directory.path().join("a.png"), grainsmooth::Png).unwrap();
-    SPACE.write_picture(&grainsmooth::Picture::default(), &picture).unwrap();
+    write_together(|files| SPACE.stage_picture(&grainsmooth::Picture::default(), &picture, files)).unwrap();
     for names in grainsmooth::Names::ALL {
         for (polycrystal, dimension) in [(&*SPACE, "3d"), (&*PLANE, "2d")] {
             let mut renamed = polycrystal.clone();
@@ -107,7 +107,7 @@ fn vtk_meshio_and_trimesh_read_every_format() {
         }
     }
     let grains = OutputDirectory::check(directory.path().join("each"), OutputFormat::Stl).unwrap();
-    SPACE.write_grains(&grains).unwrap();
+    write_together(|files| SPACE.stage_grains(&grains, files)).unwrap();
     let level = SPACE.network.finest();
     let counts = SPACE.network.junction_counts();
     let expected = serde_json::json!({

@@ -119,6 +119,10 @@ fn mistakes_of_usage() {
             "catmull-clark cube.obj -o out.blend",
             "out.blend: unknown extension; name the file *.vtp, *.vtu, *.vtk, *.obj, *.ply, *.stl or *.json",
         ),
+        (
+            "catmull-clark cube.obj --each-level -o out.json",
+            "--each-level is a file a level, but JSON holds all levels in one; leave it out",
+        ),
         ("catmull-clark cube.obj", "the following required arguments were not provided:"),
         ("flip cube.obj -o out.obj", "the following required arguments were not provided:"),
         ("smooth cube.obj -o out.obj", "unrecognized subcommand 'smooth'"),

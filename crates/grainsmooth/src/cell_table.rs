@@ -9,7 +9,7 @@ use glam::DVec3;
 use serde::Serialize;
 use voronoi::{CellId, CellMeasure, Dimension, Side};
 
-use crate::{Config, Error, Output, Tessellated};
+use crate::{Config, Error, Output, StagedFiles, Tessellated};
 
 /// A format of tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -93,12 +93,12 @@ impl CellTable {
         Self { settings: config.settings().into_iter().collect(), cells: rows.collect() }
     }
 
-    /// Writes the table.
+    /// Completes the table.
     ///
     /// # Errors
-    /// [`Error::WriteOutput`]; nothing is left behind then.
-    pub fn write(&self, output: &Output<TableFormat>) -> Result<(), Error> {
-        output.write(|out| match output.format() {
+    /// [`Error::WriteOutput`]; [`Error::OutputTwice`].
+    pub fn stage(&self, output: &Output<TableFormat>, files: &mut StagedFiles) -> Result<(), Error> {
+        output.stage(files, |out| match output.format() {
             TableFormat::Json => {
                 serde_json::to_writer(&mut *out, self)?;
                 writeln!(out)

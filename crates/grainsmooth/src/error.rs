@@ -38,9 +38,12 @@ pub enum Error {
         /// The path as given.
         path: PathBuf,
     },
-    /// The output's format makes several files, which standard output cannot take.
-    #[error("standard output takes a single file; choose another format, such as vtp, or give a path")]
-    FormatSeveralFiles,
+    /// Two outputs are to have one path.
+    #[error("{}: two outputs have this path; give each a path of its own", path.display())]
+    OutputTwice {
+        /// The path as given.
+        path: PathBuf,
+    },
     /// The directory that the output shall go to does not exist.
     #[error("{}: no directory {}; create it or choose another path", path.display(), directory.display())]
     NoOutputDirectory {

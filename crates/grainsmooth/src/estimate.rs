@@ -28,7 +28,7 @@ pub struct Estimate {
     pub is_exact: bool,
     /// Two or three dimensions.
     pub dimension: Dimension,
-    /// Bytes of the file; nothing where none is written.
+    /// Bytes of the files; nothing where none is written.
     pub file: Option<u128>,
     /// Bytes of memory that the run takes at its peak.
     pub memory: u128,
@@ -39,8 +39,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// The size of what becomes of some cells.
-    pub fn new(config: &Config, cells: &Tessellated, format: Option<OutputFormat>) -> Self {
+    /// The size of what becomes of some cells, in files of these formats.
+    pub fn new(config: &Config, cells: &Tessellated, formats: &[OutputFormat]) -> Self {
         let tessellation = &cells.tessellation;
         let is_flat = config.dimension == Dimension::Two;
         let control_mesh = match config.effective_regularize() {
@@ -61,7 +61,10 @@ impl Estimate {
                 && !config.lets_topology_change()
                 && (config.effective_regularize() == 0.0 || is_flat),
             dimension: config.dimension,
-            file: format.map(|format| file_bytes(format, &mesh, grains, config)),
+            file: formats
+                .iter()
+                .map(|format| file_bytes(*format, &mesh, grains, config))
+                .reduce(u128::saturating_add),
             memory: control_mesh.bytes_after(config.levels),
             available: available_memory(),
             control_mesh,

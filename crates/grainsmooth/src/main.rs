@@ -29,10 +29,9 @@ fn main() -> ExitCode {
 }
 
 fn is_broken_pipe(error: &anyhow::Error) -> bool {
-    let kind = match (error.downcast_ref(), error.downcast_ref()) {
-        (Some(grainsmooth::Error::WriteOutput { cause, .. }), _) => Some(cause.kind()),
-        (_, Some(error)) => serde_json::Error::io_error_kind(error),
-        _ => error.downcast_ref().map(io::Error::kind),
+    let kind = match error.downcast_ref() {
+        Some(error) => serde_json::Error::io_error_kind(error),
+        None => error.downcast_ref().map(io::Error::kind),
     };
     kind == Some(io::ErrorKind::BrokenPipe)
 }

@@ -19,7 +19,7 @@ mod write;
 
 pub use problem::MeshFileProblem;
 pub use vtk::READER_THREAD;
-pub use write::{MeshFormat, MeshToWrite, write_mesh};
+pub use write::{MeshFormat, MeshToWrite, stage_mesh, write_mesh};
 
 /// A mesh as a file holds it: points, faces, and what a JSON file says about creases and corners.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -7,15 +7,17 @@ use std::path::{Path, PathBuf};
 use clap::CommandFactory;
 use clap::error::ErrorKind;
 use glam::DVec3;
-use grainsmooth::mesh_file::{MeshFile, MeshFileProblem, MeshFormat, MeshToWrite, read_mesh, write_mesh};
+use grainsmooth::mesh_file::{
+    MeshFile, MeshFileProblem, MeshFormat, MeshToWrite, read_mesh, stage_mesh, write_mesh,
+};
 use grainsmooth::vtk::Cells;
 use grainsmooth::{
-    Connectivity, EdgeEdit, Error, Level, Output, Scheme, bezier_json, edit_edges, levels_json, limits,
-    mesh_json, read_bezier, subdivide,
+    Connectivity, EdgeEdit, Error, Level, Output, Scheme, StagedFiles, bezier_json, edit_edges, levels_json,
+    limits, mesh_json, read_bezier, subdivide, write_together,
 };
 use subzero::{HalfEdgeMesh, MeshError};
 
-use crate::cli::Arguments;
+use crate::cli::{Arguments, usage};
 use crate::mesh_cli::{FeatureArguments, FileArguments, LimitArguments, MeshCommand, SchemeArguments, Task};
 use crate::say;
 
@@ -61,6 +63,9 @@ impl Job<'_> {
     }
 
     fn subdivide(&self, scheme: Scheme, arguments: &SchemeArguments) -> Result<(), Error> {
+        if arguments.each_level && self.format == MeshFormat::Json {
+            usage("--each-level is a file a level, but JSON holds all levels in one; leave it out");
+        }
         // Outputs that cannot be written are found before the work.
         let last = arguments.levels;
         let outputs = if arguments.each_level {
@@ -82,10 +87,12 @@ impl Job<'_> {
         } else {
             let births = births(scheme, &levels);
             let first = if arguments.each_level { 0 } else { levels.len() - 1 };
-            for (level, output) in levels[first..].iter().zip(&outputs) {
-                let generations = births.as_ref().map(|births| &births[..level.points.len()]);
-                self.write_level(level, &level.points, None, generations, output)?;
-            }
+            write_together(|files| {
+                levels[first..].iter().zip(&outputs).try_for_each(|(level, output)| {
+                    let generations = births.as_ref().map(|births| &births[..level.points.len()]);
+                    self.stage_level(level, &level.points, None, generations, output, files)
+                })
+            })?;
         }
         self.report_written(&outputs);
         Ok(())
@@ -105,7 +112,10 @@ impl Job<'_> {
         } else {
             let births = births(scheme, &levels);
             let normals: Vec<DVec3> = found.normals.iter().map(|normal| normal.unwrap_or_default()).collect();
-            self.write_level(level, &found.positions, Some(&normals), births.as_deref(), &output)?;
+            write_together(|files| {
+                let births = births.as_deref();
+                self.stage_level(level, &found.positions, Some(&normals), births, &output, files)
+            })?;
         }
         self.report_written(&[output]);
         Ok(())
@@ -182,13 +192,14 @@ impl Job<'_> {
         Ok(mesh)
     }
 
-    fn write_level(
+    fn stage_level(
         &self,
         level: &Level,
         points: &[DVec3],
         normals: Option<&[DVec3]>,
         generations: Option<&[i8]>,
         output: &Output<MeshFormat>,
+        files: &mut StagedFiles,
     ) -> Result<(), Error> {
         let polygons;
         let cells = match &level.mesh {
@@ -198,7 +209,7 @@ impl Job<'_> {
                 Cells::Polygons(&polygons)
             }
         };
-        write_mesh(&MeshToWrite { normals, generations, ..self.content(points, cells) }, output)
+        stage_mesh(&MeshToWrite { normals, generations, ..self.content(points, cells) }, output, files)
     }
 
     /// Writes triangles in any format.

@@ -14,7 +14,7 @@ use crate::formats::{write_gmsh_script, write_stl, write_tess};
 use crate::measured_arrays::MeasuredArrays;
 use crate::vtk::{Array, Cells, Each, FieldEntry, FieldValue, ImageData, PolyData, Values, VtkFormat};
 use crate::vtk::{write_vti, write_vtk};
-use crate::{Error, LabelGrid, Names, Output, OutputFormat, Polycrystal, Tess};
+use crate::{Error, LabelGrid, Names, Output, OutputFormat, Polycrystal, StagedFiles, Tess, write_together};
 
 impl Polycrystal {
     /// Writes the network, every boundary and every point once; its voxels; or its flat cells.
@@ -29,11 +29,37 @@ impl Polycrystal {
     /// # Errors
     /// [`Error::WriteOutput`]; nothing is left behind then. As of [`Output::check_fits`].
     pub fn write(&self, output: &Output) -> Result<(), Error> {
+        write_together(|files| self.stage(output, files))
+    }
+
+    /// As [`write`](Self::write), as one of several outputs that appear together.
+    ///
+    /// # Errors
+    /// [`Error::WriteOutput`]; [`Error::OutputTwice`]; as of [`Output::check_fits`].
+    pub fn stage(&self, output: &Output, files: &mut StagedFiles) -> Result<(), Error> {
         output.check_fits(&self.config)?;
         if output.format() == OutputFormat::Vtm {
-            return self.write_blocks(output);
+            return self.stage_blocks(output, files);
         }
-        output.write(|out| match output.format() {
+        output.stage(files, |out| self.write_to(output.format(), out))?;
+        match output.gmsh_script()? {
+            Some(script) => {
+                let mesh = output.path().file_name().unwrap_or_default().to_string_lossy();
+                let grain_count = self.network.grain_count();
+                script.stage(files, |out| {
+                    write_gmsh_script(&self.surface()?, grain_count, &mesh, &self.config, out)
+                })
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Writes a format that is a single file; of a Gmsh mesh what is not its script.
+    ///
+    /// # Errors
+    /// Whatever `out` reports; that the format is several files, or cannot hold this polycrystal.
+    pub fn write_to(&self, format: OutputFormat, out: &mut dyn Write) -> io::Result<()> {
+        match format {
             OutputFormat::Vtk(format) => self.write_vtk(format, out),
             OutputFormat::Vtm => Err(io::Error::other("several files are not written as one")),
             OutputFormat::Stl => write_stl(&self.surface()?, "network", &self.config, out),
@@ -51,26 +77,12 @@ impl Polycrystal {
                 self.write_settings_behind(out)
             }
             OutputFormat::Ang => write_ang(&self.label_grid()?, &self.config, out),
-        })?;
-        match output.format() {
-            OutputFormat::Msh => self.write_gmsh_script(output),
-            _ => Ok(()),
         }
     }
 
     /// Behind what formats without comments hold: who reads them stops before.
     fn write_settings_behind(&self, out: &mut dyn Write) -> io::Result<()> {
         write!(out, "\n{}", self.config.to_toml())
-    }
-
-    /// The script that makes volumes of the grains, beside the mesh file.
-    fn write_gmsh_script(&self, output: &Output) -> Result<(), Error> {
-        let script = Output::check_as(output.path().with_extension("geo"), OutputFormat::Msh)?;
-        let mesh = output.path().file_name().unwrap_or_default().to_string_lossy();
-        script.write(|out| {
-            let grain_count = self.network.grain_count();
-            write_gmsh_script(&self.surface()?, grain_count, &mesh, &self.config, out)
-        })
     }
 
     pub(crate) fn surface(&self) -> io::Result<Surface<'_>> {

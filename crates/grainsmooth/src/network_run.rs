@@ -1,6 +1,7 @@
 //! A run of the pipeline: from the command line to files and summary.
 
-use std::io::Write;
+use std::collections::BTreeSet;
+use std::io::{self, BufWriter, Write};
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -8,9 +9,9 @@ use std::time::Instant;
 
 use anyhow::anyhow;
 use grainsmooth::{
-    CellTable, Config, Error, Estimate, Html, Output, OutputDirectory, Picture, Png, Polycrystal, Series,
-    SeriesOutput, Stage, StatisticsOutput, Summary, SummaryRecord, TableFormat, check_expected_size,
-    smooth_watched, tessellate,
+    CellTable, Config, Error, Estimate, Html, Output, OutputDirectory, OutputFormat, Picture, Png,
+    Polycrystal, Series, SeriesOutput, Stage, StagedFiles, StatisticsOutput, Summary, SummaryRecord,
+    TableFormat, Tessellated, check_expected_size, smooth_watched, tessellate, write_together,
 };
 
 use crate::cli::{Arguments, usage};
@@ -32,7 +33,7 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         let estimate = pool.install(|| estimate(&config, &files, &line));
         line.clear();
         let estimate = estimate?;
-        writeln!(std::io::stdout(), "{estimate}")?;
+        writeln!(io::stdout(), "{estimate}")?;
         estimate.check()?;
         return Ok(ExitCode::SUCCESS);
     }
@@ -49,82 +50,130 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
 /// What is written, all found writable.
 struct Files {
     tables: Vec<Output<TableFormat>>,
-    output: Option<Output>,
+    /// The network and its voxels, by file.
+    outputs: Vec<Output>,
+    printed: Option<Printed>,
     grains: Option<OutputDirectory>,
     picture: Option<(Picture, Output<Png>)>,
     report: Option<Output<Html>>,
     summary: Option<Output<()>>,
     statistics: Option<StatisticsOutput>,
     series: Option<(SeriesOutput, NonZeroU32)>,
+    /// Whether cells are all that is asked for.
+    is_cells_only: bool,
+}
+
+/// What goes to standard output.
+#[derive(Clone, Copy)]
+enum Printed {
+    Network(OutputFormat),
+    Summary,
 }
 
 impl Files {
+    /// Checks that all can be written, each under a path of its own.
     fn check(arguments: &Arguments, config: &Config) -> Result<Self, Error> {
         let (files, run) = (&arguments.files, &arguments.run);
         let json = files.cells_json.iter().map(|path| Output::check_as(path, TableFormat::Json));
         let csv = files.cells_csv.iter().map(|path| Output::check_as(path, TableFormat::Csv));
         let tables = json.chain(csv).collect::<Result<_, _>>()?;
-        let output = if run.no_mesh { None } else { Some(files.output()?) };
-        if let Some(output) = &output {
-            output.check_fits(config)?;
-        }
+        let is_cells_only = run.no_mesh;
+        let outputs = if is_cells_only { Vec::new() } else { files.outputs()? };
+        outputs.iter().try_for_each(|output| output.check_fits(config))?;
         let grains = files.grains_dir.as_ref().map(|path| files.grains_format.check(path)).transpose()?;
         if let Some(grains) = &grains {
             grains.check_fits(config)?;
         }
-        let summary = run.json_summary.as_deref().map(|path| match path.as_os_str() == "-" {
-            true if files.is_standard_output() => {
+        let network = if is_cells_only { None } else { files.standard_output() };
+        let prints_summary = run.json_summary.as_deref().is_some_and(|path| path.as_os_str() == "-");
+        let printed = match (network, prints_summary) {
+            (Some(_), true) => {
                 usage("-o - and --json-summary - both go to standard output; give one of them a path")
             }
-            true => Ok(Output::to_standard_output(())),
-            false => Output::check_as(path, ()),
-        });
+            (Some(format), false) => {
+                format.check_fits(Path::new("standard output"), config)?;
+                Some(Printed::Network(format))
+            }
+            (None, true) => Some(Printed::Summary),
+            (None, false) => None,
+        };
+        let summary = run.json_summary.as_deref().filter(|_| !prints_summary);
+        let summary = summary.map(|path| Output::check_as(path, ())).transpose()?;
         let (picture, report) = (arguments.pictures.picture()?, arguments.pictures.report()?);
         let statistics = files.statistics(config.dimension)?;
         let series = files.series()?.map(|output| (output, files.every));
-        Ok(Self {
+        let all = Self {
             tables,
-            output,
+            outputs,
+            printed,
             grains,
             picture,
             report,
-            summary: summary.transpose()?,
+            summary,
             statistics,
             series,
-        })
+            is_cells_only,
+        };
+        let mut targets = BTreeSet::new();
+        if let Some(path) = all.targets().into_iter().find(|target| !targets.insert(target.clone())) {
+            // As the user calls it, who gave no path from the root.
+            let here = std::env::current_dir().and_then(|here| here.canonicalize()).unwrap_or_default();
+            let path = path.strip_prefix(here).map_or(path.clone(), Path::to_owned);
+            usage(&Error::OutputTwice { path }.to_string());
+        }
+        Ok(all)
     }
 
+    /// All files and directories in full, but for the steps of a series.
+    fn targets(&self) -> Vec<PathBuf> {
+        let outputs = self.outputs.iter().flat_map(Output::targets);
+        let tables = self.tables.iter().chain(self.statistics.iter().flat_map(StatisticsOutput::files));
+        let others = tables.map(Output::target).chain(self.grains.as_ref().map(OutputDirectory::target));
+        let others = others.chain(self.picture.as_ref().map(|(_, output)| output.target()));
+        let others = others.chain(self.report.as_ref().map(Output::target));
+        let others = others.chain(self.summary.as_ref().map(Output::target));
+        let others = others.chain(self.series.as_ref().map(|(output, _)| output.target()));
+        outputs.chain(others.map(Path::to_owned)).collect()
+    }
+
+    /// What the summary lists, as the user called it.
     fn paths(&self) -> Vec<PathBuf> {
         let tables = self.tables.iter().map(Output::path);
+        let outputs = self.outputs.iter().map(Output::path);
+        let printed = self.printed.filter(|printed| matches!(printed, Printed::Network(_)));
+        let printed = printed.map(|_| Path::new("standard output"));
         let grains = self.grains.as_ref().map(OutputDirectory::path);
         let picture = self.picture.as_ref().map(|(_, output)| output.path());
         let report = self.report.as_ref().map(Output::path);
-        let meshes = tables.chain(self.output.as_ref().map(Output::path)).chain(grains);
-        let statistics = self.statistics.iter().flat_map(StatisticsOutput::paths);
-        let series = self.series.iter().map(|(output, _)| output.path().to_owned());
-        meshes.chain(picture).chain(report).map(Path::to_owned).chain(statistics).chain(series).collect()
+        let statistics = self.statistics.iter().flat_map(StatisticsOutput::files).map(Output::path);
+        let series = self.series.iter().map(|(output, _)| output.path());
+        let paths = tables.chain(outputs).chain(printed).chain(grains).chain(picture).chain(report);
+        paths.chain(statistics).chain(series).map(Path::to_owned).collect()
+    }
+
+    /// The formats of the network.
+    fn formats(&self) -> Vec<OutputFormat> {
+        let printed = match self.printed {
+            Some(Printed::Network(format)) => Some(format),
+            _ => None,
+        };
+        self.outputs.iter().map(Output::format).chain(printed).collect()
     }
 }
 
 /// Cuts the cells and tells what would become of them.
 fn estimate(config: &Config, files: &Files, line: &ProgressLine) -> Result<Estimate, Error> {
     let cells = tessellate(config, &|stage, done, count| line.show(stage, done, count))?;
-    Ok(Estimate::new(config, &cells, files.output.as_ref().map(Output::format)))
+    Ok(Estimate::new(config, &cells, &files.formats()))
 }
 
 /// Computes and writes what is asked for, and returns the summary.
 fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String, Error> {
     let progress = |stage, done, count| line.show(stage, done, count);
-    if files.output.is_some() {
-        check_expected_size(config)?;
-    }
-    let tessellated = tessellate(config, &progress)?;
-    if !files.tables.is_empty() {
-        let table = CellTable::new(config, &tessellated);
-        files.tables.iter().try_for_each(|output| table.write(output))?;
-    }
-    let Some(output) = &files.output else {
-        let tessellation = &tessellated.tessellation;
+    if files.is_cells_only {
+        let cells = tessellate(config, &progress)?;
+        write_together(|staged| files.stage_tables(config, &cells, staged))?;
+        let tessellation = &cells.tessellation;
         let lattice = config.lattice_report(tessellation.domain(), tessellation.cell_count());
         let lattice = lattice.map_or(String::new(), |lattice| format!("\nlattice     {lattice}"));
         return Ok(format!(
@@ -132,7 +181,9 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
             tessellation.cell_count(),
             tessellation.domain()
         ));
-    };
+    }
+    check_expected_size(config)?;
+    let tessellated = tessellate(config, &progress)?;
     let mut series = files.series.as_ref().map(|(output, every)| (output, Series::new(*every)));
     let mut polycrystal = smooth_watched(config, tessellated, &progress, |step| {
         if let Some((_, series)) = &mut series {
@@ -142,34 +193,67 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     polycrystal = polycrystal.cut_if_asked()?;
     line.show(Stage::Writing, 0, 1);
     let start = Instant::now();
-    polycrystal.write(output)?;
-    if let Some(grains) = &files.grains {
-        polycrystal.write_grains(grains)?;
-    }
-    if let Some(statistics) = &files.statistics {
-        polycrystal.statistics().write(statistics)?;
-    }
-    if let Some((output, series)) = &series {
-        series.write(&mut polycrystal, output)?;
-    }
-    if let Some((picture, output)) = &files.picture {
-        polycrystal.write_picture(picture, output)?;
-    }
-    polycrystal.add_time(Stage::Writing, start.elapsed());
-    // After the time is taken, for the report tells it.
-    if let Some(output) = &files.report {
-        polycrystal.write_report(output)?;
-    }
-    if let Some(summary) = &files.summary {
-        write_summary(&polycrystal, files.paths(), summary)?;
-    }
+    write_together(|staged| {
+        files.stage_tables(config, &polycrystal.cells, staged)?;
+        files.outputs.iter().try_for_each(|output| polycrystal.stage(output, staged))?;
+        if let Some(grains) = &files.grains {
+            polycrystal.stage_grains(grains, staged)?;
+        }
+        if let Some(statistics) = &files.statistics {
+            polycrystal.statistics().stage(statistics, staged)?;
+        }
+        if let Some((output, series)) = &series {
+            series.stage(&mut polycrystal, output, staged)?;
+        }
+        if let Some((picture, output)) = &files.picture {
+            polycrystal.stage_picture(picture, output, staged)?;
+        }
+        polycrystal.add_time(Stage::Writing, start.elapsed());
+        // After the time is taken, for the report tells it.
+        if let Some(output) = &files.report {
+            polycrystal.stage_report(output, staged)?;
+        }
+        if let Some(output) = &files.summary {
+            output.stage(staged, |out| write_summary(&polycrystal, files, out))?;
+        }
+        // What is said cannot be taken back: all else is complete by then, and needs no more than its name.
+        files.print(&polycrystal)
+    })?;
     Ok(Summary(&polycrystal).to_string())
 }
 
-fn write_summary(polycrystal: &Polycrystal, written: Vec<PathBuf>, output: &Output<()>) -> Result<(), Error> {
-    let record = SummaryRecord::new(polycrystal, written);
-    output.write(|out| {
-        serde_json::to_writer_pretty(&mut *out, &record)?;
-        writeln!(out)
-    })
+impl Files {
+    fn stage_tables(
+        &self,
+        config: &Config,
+        cells: &Tessellated,
+        staged: &mut StagedFiles,
+    ) -> Result<(), Error> {
+        if self.tables.is_empty() {
+            return Ok(());
+        }
+        let table = CellTable::new(config, cells);
+        self.tables.iter().try_for_each(|output| table.stage(output, staged))
+    }
+
+    /// Writes to standard output. A reader that stops early has enough.
+    fn print(&self, polycrystal: &Polycrystal) -> Result<(), Error> {
+        let mut out = BufWriter::new(io::stdout().lock());
+        let printed = match self.printed {
+            None => Ok(()),
+            Some(Printed::Network(format)) => polycrystal.write_to(format, &mut out),
+            Some(Printed::Summary) => write_summary(polycrystal, self, &mut out),
+        };
+        match printed.and_then(|()| out.flush()) {
+            Err(cause) if cause.kind() != io::ErrorKind::BrokenPipe => {
+                Err(Error::WriteOutput { path: "standard output".into(), cause })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+fn write_summary(polycrystal: &Polycrystal, files: &Files, out: &mut dyn Write) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, &SummaryRecord::new(polycrystal, files.paths()))?;
+    writeln!(out)
 }

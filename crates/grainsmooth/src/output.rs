@@ -1,14 +1,13 @@
 //! Where results go: the path checked before the work begins, the file complete before it has its name.
 
-use std::ffi::OsString;
 use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::{NamedTempFile, TempDir};
 use voronoi::Dimension;
 
-use crate::unfinished::Unfinished;
+use crate::staged_files::{StagedFiles, write_together};
+use crate::unfinished::{Unfinished, parent};
 use crate::vtk::VtkFormat;
 use crate::{Config, Error};
 
@@ -91,6 +90,11 @@ impl OutputFormat {
         matches!(self, Self::Vti | Self::Npy | Self::Ang)
     }
 
+    /// Whether the format is a single file, as standard output takes.
+    pub fn is_single_file(self) -> bool {
+        !matches!(self, Self::Vtm | Self::Msh)
+    }
+
     /// The only dimension that the format can hold, if there is such a one.
     fn only_dimension(self) -> Option<Dimension> {
         match self {
@@ -99,26 +103,35 @@ impl OutputFormat {
             Self::Vtk(_) | Self::Vtm | Self::Tess | Self::Vti | Self::Npy => None,
         }
     }
+
+    /// Checks that the format can hold what a config makes, for an output that messages call `path`.
+    ///
+    /// # Errors
+    /// [`Error::FormatDimension`]; [`Error::NoVoxels`] for a format of voxels when their number is not given.
+    pub fn check_fits(self, path: &Path, config: &Config) -> Result<(), Error> {
+        let path = || path.to_owned();
+        match self.only_dimension() {
+            Some(dimension) if dimension != config.dimension => {
+                Err(Error::FormatDimension { path: path(), dimension })
+            }
+            _ if self.has_voxels() && config.file.voxels.is_none() => Err(Error::NoVoxels { path: path() }),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// A path that was found writable, and the format to write there.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Output<Format = OutputFormat> {
     path: PathBuf,
-    target: Target,
+    /// The path from the root on, or what it links to.
+    target: PathBuf,
     format: Format,
 }
 
-/// Where bytes go.
-#[derive(Debug, Clone, PartialEq, Eq)]
-enum Target {
-    /// The path as given, or what it links to.
-    File(PathBuf),
-    StandardOutput,
-}
-
 impl Output {
-    /// Checks that a file of a known format can be written at `path`, without changing what is there.
+    /// Checks that a file of a known format can be written at `path`, without changing what is there; of a Gmsh mesh
+    /// also the script beside it.
     ///
     /// # Errors
     /// [`Error::UnknownExtension`]; [`Error::NoOutputDirectory`]; [`Error::OutputNotAFile`] when something
@@ -126,47 +139,38 @@ impl Output {
     /// file is read-only.
     pub fn check(path: impl Into<PathBuf>) -> Result<Self, Error> {
         let path = path.into();
-        match OutputFormat::of_path(&path) {
-            Some(format) => Self::check_as(path, format),
-            None => Err(Error::UnknownExtension { path }),
-        }
+        let Some(format) = OutputFormat::of_path(&path) else { return Err(Error::UnknownExtension { path }) };
+        let output = Self::check_as(path, format)?;
+        output.gmsh_script()?;
+        Ok(output)
     }
 
-    /// Standard output, for a format that is a single file.
-    ///
-    /// # Errors
-    /// [`Error::FormatSeveralFiles`].
-    pub fn standard_output(format: OutputFormat) -> Result<Self, Error> {
-        match format {
-            OutputFormat::Vtm | OutputFormat::Msh => Err(Error::FormatSeveralFiles),
-            _ => Ok(Self::to_standard_output(format)),
-        }
+    /// The script beside a Gmsh mesh, found writable.
+    pub(crate) fn gmsh_script(&self) -> Result<Option<Output<()>>, Error> {
+        let is_gmsh = self.format == OutputFormat::Msh;
+        is_gmsh.then(|| Output::check_as(self.path.with_extension("geo"), ())).transpose()
+    }
+
+    /// All files and directories that stand for the output, in full: a Gmsh mesh has a script beside it, blocks have a folder.
+    pub fn targets(&self) -> Vec<PathBuf> {
+        let beside = match self.format {
+            OutputFormat::Msh => Some(self.target.with_extension("geo")),
+            OutputFormat::Vtm => Some(self.target.with_extension("")),
+            _ => None,
+        };
+        std::iter::once(self.target.clone()).chain(beside).collect()
     }
 
     /// Checks that the format can hold what a config makes.
     ///
     /// # Errors
-    /// [`Error::FormatDimension`]; [`Error::NoVoxels`] for a format of voxels when their number is not given.
+    /// As of [`OutputFormat::check_fits`].
     pub fn check_fits(&self, config: &Config) -> Result<(), Error> {
-        let path = || self.path.clone();
-        match self.format.only_dimension() {
-            Some(dimension) if dimension != config.dimension => {
-                Err(Error::FormatDimension { path: path(), dimension })
-            }
-            _ if self.format.has_voxels() && config.file.voxels.is_none() => {
-                Err(Error::NoVoxels { path: path() })
-            }
-            _ => Ok(()),
-        }
+        self.format.check_fits(&self.path, config)
     }
 }
 
 impl<Format: Copy> Output<Format> {
-    /// Standard output, whatever the format.
-    pub fn to_standard_output(format: Format) -> Self {
-        Self { path: PathBuf::from("standard output"), target: Target::StandardOutput, format }
-    }
-
     /// Checks that a file can be written at `path`, whatever its extension, without changing what is there.
     ///
     /// # Errors
@@ -181,19 +185,11 @@ impl<Format: Copy> Output<Format> {
             }
             // Renaming over a link would replace the link.
             Ok(_) => fs::canonicalize(&path),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(path.clone()),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => in_full(&path)?,
             Err(error) => Err(error),
         };
-        let target = match target {
-            Ok(target) => target,
-            Err(cause) => return Err(Error::OutputNotWritable { path, cause }),
-        };
-        let directory = parent(&target);
-        if !directory.is_dir() {
-            return Err(Error::NoOutputDirectory { path, directory: directory.to_owned() });
-        }
-        match temporary_file(&target) {
-            Ok(_) => Ok(Self { path, target: Target::File(target), format }),
+        match target.and_then(|target| Unfinished::file(&target).map(|_| target)) {
+            Ok(target) => Ok(Self { path, target, format }),
             Err(cause) => Err(Error::OutputNotWritable { path, cause }),
         }
     }
@@ -208,63 +204,49 @@ impl<Format: Copy> Output<Format> {
         self.format
     }
 
+    /// The path from the root on, or what it links to.
+    pub fn target(&self) -> &Path {
+        &self.target
+    }
+
+    /// Completes the file under a temporary name, as one of several that appear together.
+    ///
+    /// # Errors
+    /// [`Error::WriteOutput`] when `content` or the file system fails; [`Error::OutputTwice`].
+    pub fn stage(
+        &self,
+        files: &mut StagedFiles,
+        content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), Error> {
+        files.file(&self.target, &self.path, content)
+    }
+
     /// Writes the file: `content` into a temporary file in the same directory, which takes the name when
-    /// complete. A present file is replaced then, keeping its permissions. What goes to standard output goes there at once.
+    /// complete. A present file is replaced then, keeping its permissions.
     ///
     /// # Errors
     /// [`Error::WriteOutput`] when `content` or the file system fails. The temporary file is removed then,
     /// and a present file stays as it was.
     pub fn write(&self, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Error> {
-        self.try_to_write(content).map_err(|cause| Error::WriteOutput { path: self.path.clone(), cause })
-    }
-
-    fn try_to_write(&self, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-        let target = match &self.target {
-            Target::File(target) => target,
-            Target::StandardOutput => {
-                let mut writer = BufWriter::new(io::stdout().lock());
-                content(&mut writer)?;
-                return writer.flush();
-            }
-        };
-        let file = temporary_file(target)?;
-        let mut writer = BufWriter::new(file.as_file());
-        content(&mut writer)?;
-        writer.flush()?;
-        drop(writer);
-        if let Ok(present) = fs::metadata(target) {
-            file.as_file().set_permissions(present.permissions())?;
-        }
-        file.persist(target)
+        write_together(|files| self.stage(files, content))
     }
 }
 
-/// A hidden file in the directory of another.
-fn temporary_file(target: &Path) -> io::Result<Unfinished<NamedTempFile>> {
-    let prefix = hidden(target);
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(&prefix).suffix(PARTIAL);
-    // What any new file gets; the system takes the umask away from it.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    Unfinished::new(|| builder.tempfile_in(parent(target)), NamedTempFile::path)
-}
-
-/// A hidden directory in the directory of another.
-pub(crate) fn temporary_directory(target: &Path) -> io::Result<Unfinished<TempDir>> {
-    let mut builder = tempfile::Builder::new();
-    // What any new directory gets; the system takes the umask away from it.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-    let prefix = hidden(target);
-    builder.prefix(&prefix).suffix(PARTIAL);
-    Unfinished::new(|| builder.tempdir_in(parent(target)), TempDir::path)
+/// The path of a new file from the root on.
+fn in_full(path: &Path) -> Result<io::Result<PathBuf>, Error> {
+    let directory = parent(path);
+    if !directory.is_dir() {
+        return Err(Error::NoOutputDirectory { path: path.to_owned(), directory: directory.to_owned() });
+    }
+    Ok(fs::canonicalize(directory).map(|directory| directory.join(path.file_name().unwrap_or_default())))
 }
 
 /// A directory for files that was found fit to be made, and the format of the files.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OutputDirectory {
     path: PathBuf,
+    /// The path from the root on.
+    target: PathBuf,
     format: OutputFormat,
 }
 
@@ -275,24 +257,17 @@ impl OutputDirectory {
     /// [`Error::OutputDirectoryTaken`] when something else is there; [`Error::NoOutputDirectory`];
     /// [`Error::OutputNotWritable`].
     pub fn check(path: impl Into<PathBuf>, format: OutputFormat) -> Result<Self, Error> {
-        let directory = Self { path: path.into(), format };
-        let path = || directory.path.clone();
-        let is_free = match fs::read_dir(&directory.path) {
+        let path = path.into();
+        let is_free = match fs::read_dir(&path) {
             Ok(mut entries) => entries.next().is_none(),
             Err(error) => error.kind() == io::ErrorKind::NotFound,
         };
         if !is_free {
-            return Err(Error::OutputDirectoryTaken { path: path() });
+            return Err(Error::OutputDirectoryTaken { path });
         }
-        if !parent(&directory.path).is_dir() {
-            return Err(Error::NoOutputDirectory {
-                path: path(),
-                directory: parent(&directory.path).to_owned(),
-            });
-        }
-        match temporary_directory(&directory.path) {
-            Ok(_) => Ok(directory),
-            Err(cause) => Err(Error::OutputNotWritable { path: path(), cause }),
+        match in_full(&path)?.and_then(|target| Unfinished::directory(&target).map(|_| target)) {
+            Ok(target) => Ok(Self { path, target, format }),
+            Err(cause) => Err(Error::OutputNotWritable { path, cause }),
         }
     }
 
@@ -318,43 +293,28 @@ impl OutputDirectory {
         self.format
     }
 
-    /// Fills the directory: `content` writes into a temporary one beside it, which takes the name when complete.
+    /// The path from the root on.
+    pub fn target(&self) -> &Path {
+        &self.target
+    }
+
+    /// Completes the directory under a temporary name.
     ///
     /// # Errors
-    /// [`Error::WriteOutput`]; nothing is left behind then.
-    pub fn write(&self, content: impl FnOnce(&Path) -> io::Result<()>) -> Result<(), Error> {
-        let write = || {
-            let temporary = temporary_directory(&self.path)?;
-            content(temporary.path())?;
-            if self.path.is_dir() {
-                fs::remove_dir(&self.path)?;
-            }
-            temporary.persist(&self.path)
-        };
-        write().map_err(|cause| Error::WriteOutput { path: self.path.clone(), cause })
-    }
-}
-
-/// The end of the names of what is not complete.
-const PARTIAL: &str = ".part";
-
-/// The beginning of the name of a temporary neighbour.
-fn hidden(path: &Path) -> OsString {
-    let mut name = OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name
-}
-
-/// The directory that the path is in.
-fn parent(path: &Path) -> &Path {
-    match path.parent() {
-        Some(directory) if directory != Path::new("") => directory,
-        _ => Path::new("."),
+    /// [`Error::WriteOutput`]; [`Error::OutputTwice`].
+    pub(crate) fn stage(
+        &self,
+        files: &mut StagedFiles,
+        fill: impl FnOnce(&Path) -> io::Result<()>,
+    ) -> Result<(), Error> {
+        files.directory(&self.target, &self.path, fill)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::ffi::OsString;
+
     use super::*;
 
     fn names_in(directory: &Path) -> Vec<OsString> {

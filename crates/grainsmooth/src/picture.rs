@@ -13,7 +13,7 @@ use glam::DVec3;
 use polycrystal::Mesh;
 use tiny_skia::Pixmap;
 
-use crate::{Error, Output, Polycrystal};
+use crate::{Error, Output, Polycrystal, StagedFiles};
 
 pub use coloring::Coloring;
 
@@ -57,9 +57,14 @@ impl Polycrystal {
     /// colour, the lines where boundaries meet in black.
     ///
     /// # Errors
-    /// [`Error::WriteOutput`].
-    pub fn write_picture(&self, picture: &Picture, output: &Output<Png>) -> Result<(), Error> {
-        output.write(|out| out.write_all(&self.png(picture)?))
+    /// [`Error::WriteOutput`]; [`Error::OutputTwice`].
+    pub fn stage_picture(
+        &self,
+        picture: &Picture,
+        output: &Output<Png>,
+        files: &mut StagedFiles,
+    ) -> Result<(), Error> {
+        output.stage(files, |out| out.write_all(&self.png(picture)?))
     }
 
     /// The bytes of a PNG file.

@@ -11,7 +11,7 @@ use base64::engine::general_purpose::STANDARD as BASE64;
 use polycrystal::{WeightedAngle, angles_between_boundaries};
 use voronoi::{CellId, Dimension};
 
-use crate::{Error, Output, Picture, Polycrystal, Summary};
+use crate::{Error, Output, Picture, Polycrystal, StagedFiles, Summary};
 use chart::Chart;
 use poisson_voronoi::{SIZE_BIN, angle_density, face_shares, size_shares};
 
@@ -23,14 +23,14 @@ pub struct Html;
 const ANGLE_BIN: f64 = 5.0;
 
 impl Polycrystal {
-    /// Writes a page with a view of the grains, their statistics beside those of random cells, and the run's summary.
+    /// Completes a page with a view of the grains, their statistics beside those of random cells, and the run's summary.
     ///
     /// The view shows the surfaces at the finest level that a browser turns fluently; in the plane it is a picture.
     ///
     /// # Errors
-    /// [`Error::WriteOutput`].
-    pub fn write_report(&self, output: &Output<Html>) -> Result<(), Error> {
-        output.write(|out| out.write_all(self.page()?.as_bytes()))
+    /// [`Error::WriteOutput`]; [`Error::OutputTwice`].
+    pub fn stage_report(&self, output: &Output<Html>, files: &mut StagedFiles) -> Result<(), Error> {
+        output.stage(files, |out| out.write_all(self.page()?.as_bytes()))
     }
 
     fn page(&self) -> io::Result<String> {

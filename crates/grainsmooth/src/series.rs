@@ -8,7 +8,7 @@ use polycrystal::{RelaxationStep, Relaxed};
 
 use crate::formats::escaped;
 use crate::vtk::VtkFormat;
-use crate::{Error, Output, OutputFormat, Polycrystal};
+use crate::{Error, Output, OutputFormat, Polycrystal, StagedFiles};
 
 /// The steps of a relaxation, every so many of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,6 +47,11 @@ impl SeriesOutput {
         self.collection.path()
     }
 
+    /// The collection from the root on, or what it links to.
+    pub fn target(&self) -> &Path {
+        self.collection.target()
+    }
+
     /// The file of a step: `a_0003.vtp` beside `a.pvd`.
     fn step(&self, number: usize) -> Result<Output, Error> {
         Output::check_as(step_path(self.path(), number), OutputFormat::Vtk(VtkFormat::Vtp))
@@ -75,12 +80,17 @@ impl Series {
         }
     }
 
-    /// Writes each step as a surface file, and then the collection, which ParaView opens. The times in it are in the unit of
+    /// Completes each step as a surface file, and the collection, which ParaView opens. The times in it are in the unit of
     /// the relaxation time: the mean grain size squared, at unit mobility and tension. The last step is the polycrystal itself.
     ///
     /// # Errors
-    /// [`Error::WriteOutput`]; the collection is not there then.
-    pub fn write(&self, polycrystal: &mut Polycrystal, output: &SeriesOutput) -> Result<(), Error> {
+    /// [`Error::WriteOutput`]; [`Error::OutputTwice`].
+    pub fn stage(
+        &self,
+        polycrystal: &mut Polycrystal,
+        output: &SeriesOutput,
+        files: &mut StagedFiles,
+    ) -> Result<(), Error> {
         let Relaxed { level, time, .. } = polycrystal.relaxed;
         let finest = polycrystal.network.levels().len() - 1;
         let is_before = |frame: &&Frame| frame.level <= level && frame.time < time;
@@ -88,14 +98,14 @@ impl Series {
         for frame in self.frames.iter().filter(is_before) {
             let points = polycrystal.network.subdivide_between(frame.level, finest, &frame.points);
             let finished = std::mem::replace(&mut polycrystal.points, points);
-            let written = output.step(times.len()).and_then(|step| polycrystal.write(&step));
+            let written = output.step(times.len()).and_then(|step| polycrystal.stage(&step, files));
             polycrystal.points = finished;
             written?;
             times.push(frame.time);
         }
-        polycrystal.write(&output.step(times.len())?)?;
+        polycrystal.stage(&output.step(times.len())?, files)?;
         times.push(time);
-        output.collection.write(|out| {
+        output.collection.stage(files, |out| {
             writeln!(out, "<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>")?;
             for (number, time) in times.iter().enumerate() {
                 let path = step_path(output.path(), number);

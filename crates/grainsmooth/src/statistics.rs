@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use polycrystal::{
     BoundaryMeasures, GrainMeasures, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures, PlaneMeasures,
@@ -12,7 +12,7 @@ use serde::Serialize;
 use voronoi::Dimension;
 
 use crate::table::{Table, Value};
-use crate::{Error, Output, Polycrystal, TableFormat};
+use crate::{Error, Output, Polycrystal, StagedFiles, TableFormat};
 
 /// The tables beside that of the grains, by dimension.
 const OTHERS_IN_SPACE: [&str; 3] = ["boundaries", "triple_lines", "quadruple_points"];
@@ -46,9 +46,8 @@ impl StatisticsOutput {
     }
 
     /// All files.
-    pub fn paths(&self) -> Vec<PathBuf> {
-        let others = self.others.iter().map(|(_, output)| output);
-        std::iter::once(&self.main).chain(others).map(|output| output.path().to_owned()).collect()
+    pub fn files(&self) -> impl Iterator<Item = &Output<TableFormat>> {
+        std::iter::once(&self.main).chain(self.others.iter().map(|(_, output)| output))
     }
 }
 
@@ -96,17 +95,17 @@ impl Polycrystal {
 }
 
 impl NetworkStatistics {
-    /// Writes the tables.
+    /// Completes the tables.
     ///
     /// # Errors
-    /// [`Error::WriteOutput`]; of the file that it names nothing is left behind then.
-    pub fn write(&self, output: &StatisticsOutput) -> Result<(), Error> {
-        output.main.write(|out| match output.main.format() {
+    /// [`Error::WriteOutput`]; [`Error::OutputTwice`].
+    pub fn stage(&self, output: &StatisticsOutput, files: &mut StagedFiles) -> Result<(), Error> {
+        output.main.stage(files, |out| match output.main.format() {
             TableFormat::Json => self.write_json(out),
             TableFormat::Csv => self.grains.write_csv(out),
         })?;
         let tables = output.others.iter().filter_map(|(name, output)| Some((self.others.get(name)?, output)));
-        tables.into_iter().try_for_each(|(table, output)| output.write(|out| table.write_csv(out)))
+        tables.into_iter().try_for_each(|(table, output)| output.stage(files, |out| table.write_csv(out)))
     }
 
     fn write_json(&self, out: &mut dyn Write) -> io::Result<()> {

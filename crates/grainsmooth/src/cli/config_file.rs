@@ -127,12 +127,23 @@ fn words(key: &str, value: &DeValue<'_>, argument: &Arg) -> Result<Vec<OsString>
         (DeValue::Boolean(true), true) => Ok(vec![option]),
         (DeValue::Boolean(false), true) => Ok(Vec::new()),
         (_, true) => Err(format!("'{key}' is true or false")),
+        // An option that may come several times: once for each value.
+        (DeValue::Array(values), _) if is_repeated(argument) => {
+            let options = values.iter().map(|value| Ok([option.clone(), word(key, value.get_ref())?]));
+            Ok(options.collect::<Result<Vec<_>, String>>()?.concat())
+        }
         (DeValue::Array(values), _) => {
             let values = values.iter().map(|value| word(key, value.get_ref()));
             std::iter::once(Ok(option)).chain(values).collect()
         }
         _ => Ok(vec![option, word(key, value)?]),
     }
+}
+
+/// Whether the option takes one value each time that it comes.
+fn is_repeated(argument: &Arg) -> bool {
+    let is_single = argument.get_num_args().is_some_and(|count| count.max_values() == 1);
+    matches!(argument.get_action(), ArgAction::Append) && is_single
 }
 
 fn word(key: &str, value: &DeValue<'_>) -> Result<OsString, String> {

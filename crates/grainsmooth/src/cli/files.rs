@@ -19,11 +19,11 @@ use super::values::{nearest, whole_number};
 #[command(next_help_heading = "Files")]
 pub struct FileArguments {
     /// File to write; its extension names the format: .vtp, .vtu, .vtk, .vtm, .stl, .ply, .obj, .msh (Gmsh), .fe (Surface Evolver),
-    /// .tess (Neper), and voxels .vti (DAMASK), .npy, .ang; - is standard output
+    /// .tess (Neper), and voxels .vti (DAMASK), .npy, .ang; - is standard output; give it again for more files
     ///
-    /// Example: -o grains.vtm
-    #[arg(short, long, value_name = "PATH", default_value = "grains.vtp", value_parser = parse_output)]
-    output: PathBuf,
+    /// Example: -o grains.vtp -o grains.msh
+    #[arg(short, long, value_name = "PATH", num_args = 1, default_value = "grains.vtp", value_parser = parse_output)]
+    output: Vec<PathBuf>,
 
     /// Format of what goes to standard output, named by its extension [default: vtp]
     ///
@@ -153,18 +153,25 @@ impl FileArguments {
         self.series.as_deref().map(SeriesOutput::check).transpose()
     }
 
-    /// Where the network goes, found writable.
-    pub fn output(&self) -> Result<Output, grainsmooth::Error> {
-        match (self.is_standard_output(), self.format) {
-            (true, format) => Output::standard_output(format.unwrap_or(OutputFormat::Vtk(VtkFormat::Vtp))),
-            (false, None) => Output::check(&self.output),
-            (false, Some(_)) => usage("--format is for -o -; the extension of a file names its format"),
-        }
+    /// The files that the network goes to, found writable.
+    pub fn outputs(&self) -> Result<Vec<Output>, grainsmooth::Error> {
+        self.output.iter().filter(|path| !is_standard_output(path)).map(Output::check).collect()
     }
 
-    /// Whether the network goes to standard output.
-    pub fn is_standard_output(&self) -> bool {
-        self.output.as_os_str() == "-"
+    /// The format in which the network goes to standard output, if it does.
+    pub fn standard_output(&self) -> Option<OutputFormat> {
+        let format = self.format.unwrap_or(OutputFormat::Vtk(VtkFormat::Vtp));
+        match self.output.iter().filter(|path| is_standard_output(path)).count() {
+            0 if self.format.is_some() => {
+                usage("--format is for -o -; the extension of a file names its format")
+            }
+            0 => None,
+            1 if format.is_single_file() => Some(format),
+            1 => usage(
+                "standard output takes a single file; choose another format, such as vtp, or give a path",
+            ),
+            _ => usage("two outputs go to standard output; give one of them a path"),
+        }
     }
 
     /// How files are written of grains of a dimension.
@@ -192,6 +199,10 @@ impl FileArguments {
         let at_least_one = |count| NonZeroU32::new(count).unwrap_or(NonZeroU32::MIN);
         FileOptions { names, voxels: voxels.map(|counts| counts.map(at_least_one)), stl, arrays: self.arrays }
     }
+}
+
+fn is_standard_output(path: &Path) -> bool {
+    path.as_os_str() == "-"
 }
 
 fn parse_statistics(text: &str) -> Result<PathBuf, String> {

@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::DVec3;
 use polycrystal::{BoundaryId, GrainId, Mesh, Side};
@@ -13,10 +13,9 @@ use super::lines::Junctions;
 use super::surface::Surface;
 use crate::measured_arrays::{MeasuredArrays, NumberArrays};
 use crate::network_file::{boundary_polylines, triangles};
-use crate::output::temporary_directory;
 use crate::vtk::{Array, Cells, PolyData, Tuples, Values, VtkFormat, write_vtk};
 use crate::vtk::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
-use crate::{Error, Output, Polycrystal};
+use crate::{Error, Output, Polycrystal, StagedFiles};
 
 /// Stands in the arrays `Sides` where fewer sides meet than elsewhere.
 const NO_SIDE: i32 = -2;
@@ -25,18 +24,15 @@ const NO_SIDE: i32 = -2;
 const BLOCKS: [&str; 4] = ["boundaries", "grains", "triple_lines", "quadruple_points"];
 
 impl Polycrystal {
-    /// Writes the blocks into the folder of the file's name, and then the file itself.
-    pub(crate) fn write_blocks(&self, output: &Output) -> Result<(), Error> {
-        let failed = |cause| Error::WriteOutput { path: output.path().to_owned(), cause };
-        let folder = folder(output.path());
+    /// Completes the blocks, for the folder of the file's name, and the file itself.
+    pub(crate) fn stage_blocks(&self, output: &Output, files: &mut StagedFiles) -> Result<(), Error> {
+        let folder = output.target().with_extension("");
         let surface = Surface::network(self);
         let space = surface.as_ref().map(|surface| (surface, Junctions::of(surface)));
         let measured = self.measured_arrays();
         let measured = measured.as_ref();
-        // All blocks or none get their names.
-        let unfinished = temporary_directory(&folder).map_err(failed)?;
-        let write = |block: &str| {
-            let file = File::create(unfinished.path().join(block).with_extension("vtp"))?;
+        let write = |block: &str, directory: &Path| {
+            let file = File::create(directory.join(block).with_extension("vtp"))?;
             let out = &mut BufWriter::new(file);
             match (block, &space) {
                 ("boundaries", Some((surface, _))) => self.write_boundaries(surface, measured, out)?,
@@ -54,10 +50,11 @@ impl Polycrystal {
             }
             out.flush()
         };
-        BLOCKS.into_iter().try_for_each(write).map_err(failed)?;
-        unfinished.persist_files(&folder).map_err(failed)?;
+        files.files_in(&folder, output.path(), |directory| {
+            BLOCKS.into_iter().try_for_each(|block| write(block, directory))
+        })?;
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        output.write(|out| {
+        output.stage(files, |out| {
             writeln!(out, "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\">\n<vtkMultiBlockDataSet>")?;
             for (index, block) in BLOCKS.iter().enumerate() {
                 let file = escaped(&format!("{name}/{block}.vtp"));
@@ -292,11 +289,6 @@ fn sides(sides: impl Iterator<Item = Side>) -> Vec<Side> {
     sides.sort_unstable();
     sides.dedup();
     sides
-}
-
-/// The folder of the blocks: the file's path without its extension.
-fn folder(path: &Path) -> PathBuf {
-    path.with_extension("")
 }
 
 /// A text within an XML attribute.

@@ -11,7 +11,7 @@ use super::surface::Surface;
 use super::{Names, obj, ply, stl};
 use crate::output::OutputDirectory;
 use crate::vtk::{Array, Cells, Each, FieldEntry, PolyData, Values, VtkFormat, write_vtk};
-use crate::{Error, OutputFormat, Polycrystal};
+use crate::{Error, OutputFormat, Polycrystal, StagedFiles};
 
 /// What is measured of a grain's surface, its parts on walls included.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,17 +46,17 @@ impl GrainMeasure {
 }
 
 impl Polycrystal {
-    /// Writes a file for each grain, `grain_0.vtp` and so on: its closed surface, all normals outward.
+    /// Completes a file for each grain, `grain_0.vtp` and so on: its closed surface, all normals outward.
     ///
     /// # Errors
-    /// [`Error::WriteOutput`]; nothing is left behind then. [`Error::FormatDimension`] in 2D.
-    pub fn write_grains(&self, directory: &OutputDirectory) -> Result<(), Error> {
+    /// [`Error::WriteOutput`]; [`Error::OutputTwice`]; [`Error::FormatDimension`] in 2D.
+    pub fn stage_grains(&self, directory: &OutputDirectory, files: &mut StagedFiles) -> Result<(), Error> {
         directory.check_fits(&self.config)?;
         let failed = |cause| Error::WriteOutput { path: directory.path().to_owned(), cause };
         let network = self.surface().map_err(failed)?;
         let parts = network.parts_of_grains(self.network.grain_count());
         let format = directory.format();
-        directory.write(|folder| {
+        directory.stage(files, |folder| {
             let grains = (0u32..).zip(&parts).collect::<Vec<_>>().into_par_iter();
             grains.try_for_each(|(id, parts)| {
                 let surface = network.grain(GrainId(id), parts);

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec3;
 
 use crate::vtk::{Array, Cells, FieldEntry, FieldValue, PolyData, Values, VtkFormat, write_vtk};
-use crate::{Error, Output};
+use crate::{Error, Output, StagedFiles, write_together};
 
 /// A file format that meshes are written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,7 +58,19 @@ pub struct MeshToWrite<'a> {
 /// # Errors
 /// [`Error::WriteOutput`]; nothing is left behind then. Polylines have no place in PLY and STL.
 pub fn write_mesh(mesh: &MeshToWrite<'_>, output: &Output<MeshFormat>) -> Result<(), Error> {
-    output.write(|out| match output.format() {
+    write_together(|files| stage_mesh(mesh, output, files))
+}
+
+/// As [`write_mesh`], as one of several files that appear together.
+///
+/// # Errors
+/// As of [`write_mesh`]; [`Error::OutputTwice`].
+pub fn stage_mesh(
+    mesh: &MeshToWrite<'_>,
+    output: &Output<MeshFormat>,
+    files: &mut StagedFiles,
+) -> Result<(), Error> {
+    output.stage(files, |out| match output.format() {
         MeshFormat::Vtk(format) => write_vtk(&poly_data(mesh), format, out),
         MeshFormat::Obj => write_obj(mesh, out),
         MeshFormat::Ply => write_ply(mesh, out),
