@@ -1,9 +1,13 @@
 //! Seeds of any kind in any box, periodic or not, weighted or not: what is accepted is a cell complex that fills the domain,
-//! with closed cells and copies that match. What is refused must be refused with an error.
+//! with closed cells, vertices that differ and copies that match. What is refused must be refused with an error.
 #![no_main]
+
+#[path = "../../crates/voronoi/tests/common/exact_vertices.rs"]
+mod exact_vertices;
 
 use std::collections::HashMap;
 
+use exact_vertices::assert_vertices_differ;
 use glam::{BVec3, DVec3};
 use libfuzzer_sys::arbitrary::{self, Arbitrary};
 use libfuzzer_sys::fuzz_target;
@@ -65,16 +69,17 @@ fuzz_target!(|input: Input| {
     let Some(domain) = input.domain() else { return };
     let seeds: Vec<DVec3> =
         input.seeds.iter().take(SEEDS).map(|seed| input.position(seed, &domain)).collect();
-    let tessellation = match &input.radii {
-        Some(radii) if !radii.is_empty() => {
-            let unit = domain.measure().powf(1.0 / if input.flat { 2.0 } else { 3.0 }) / 512.0;
-            let weight = |k: usize| (f64::from(radii[k % radii.len()]) * unit).powi(2);
-            Tessellation::power(&domain, &seeds, &(0..seeds.len()).map(weight).collect::<Vec<_>>())
-        }
-        _ => Tessellation::new(&domain, &seeds),
+    let weights: Option<Vec<f64>> = input.radii.as_ref().filter(|radii| !radii.is_empty()).map(|radii| {
+        let unit = domain.measure().powf(1.0 / if input.flat { 2.0 } else { 3.0 }) / 512.0;
+        (0..seeds.len()).map(|k| (f64::from(radii[k % radii.len()]) * unit).powi(2)).collect()
+    });
+    let tessellation = match &weights {
+        Some(weights) => Tessellation::power(&domain, &seeds, weights),
+        None => Tessellation::new(&domain, &seeds),
     };
     if let Ok(tessellation) = tessellation {
         check(&tessellation);
+        assert_vertices_differ(&tessellation, weights.as_deref());
     }
 });
 

@@ -19,8 +19,8 @@ use crate::polygon::ConvexPolygon;
 use crate::search::{ImagesMissing, Search};
 use crate::tile_vertex::{ALL_FACES, FACE_SLOTS, FACES_OF_FIRST, NONE, TileVertex};
 
-/// Distance of two vertices, relative to their distance from the seed, beyond which they cannot coincide: far above
-/// the 1e-12 to which coordinates are known, so that only true candidates go to exact arithmetic.
+/// Distance of two vertices, relative to their distances from the seeds that found them, beyond which they cannot coincide: far
+/// above the 1e-12 to which coordinates are known, so that only true candidates go to exact arithmetic.
 const POSSIBLY_COINCIDENT: f64 = 1e-9;
 
 /// Cells without what they share with one another twice.
@@ -278,9 +278,12 @@ impl<'a> Builder<'a> {
         let v = &self.vertices[number as usize];
         let (w, edge) = (&self.vertices[(other / 4) as usize], (other % 4) as usize);
         let [at_v, at_w] = [v, w].map(|vertex| self.relative_to(cell.0, vertex));
+        // The cell's own seed may be where they are, and its distance from them nothing: that of the seeds that found them is what
+        // rounding is relative to, and, as these lie elsewhere, the cell's own.
+        let size = v.position.length() + w.position.length() + at_v.length();
         v.has_tie
             && w.has_tie
-            && at_v.distance(at_w) <= POSSIBLY_COINCIDENT * at_v.length()
+            && at_v.distance(at_w) <= POSSIBLY_COINCIDENT * size
             && self.search.input().decide(cell.0, v.planes(v.slot(cell)), w.generators[edge]).tie
     }
 }

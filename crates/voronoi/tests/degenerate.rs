@@ -3,8 +3,8 @@
 mod common;
 
 use common::{
-    BODY_CENTRED, FACE_CENTRED, SIMPLE_CUBIC, assert_complex, jittered, lattice, random_seeds, square,
-    tessellate,
+    BODY_CENTRED, FACE_CENTRED, SIMPLE_CUBIC, assert_complex, assert_power_complex, jittered, lattice,
+    random_seeds, square, tessellate,
 };
 use glam::{BVec3, DVec3};
 use voronoi::{Domain, Side, Tessellation, VoronoiError};
@@ -172,7 +172,7 @@ fn weights_on_lattices() {
         let weights: Vec<f64> =
             seeds.iter().map(|seed| if is_odd(seed) { radius * radius } else { 0.0 }).collect();
         let tessellation = Tessellation::power(&Domain::unit_cube(), &seeds, &weights).expect("valid seeds");
-        assert_complex(&tessellation);
+        assert_power_complex(&tessellation, &weights);
         assert_eq!(tessellation.empty_cells().len(), if radius > 0.25 { 32 } else { 0 }, "radius {radius}");
     }
 }
@@ -185,8 +185,31 @@ fn equal_weights_far_above_all_distances() {
     for domain in [Domain::unit_cube(), Domain::unit_cube().with_periods(BVec3::new(true, false, false))] {
         let plain = Tessellation::new(&domain, &cluster).expect("seeds are good");
         let power = Tessellation::power(&domain, &cluster, &[0.01; 200]).expect("seeds are good");
-        assert_complex(&power);
+        assert_power_complex(&power, &[0.01; 200]);
         assert_eq!(power, plain);
+    }
+}
+
+/// Seeds on a grid of 24 bits; the bisectors of the first one with the next eight pass through it. Vertices were once compared
+/// by their distances from that seed, which are nothing there, so that two of them stayed in one place.
+#[test]
+fn a_vertex_at_a_seed_is_one_vertex() {
+    let on_grid = |seed: &DVec3| (*seed * f64::from(1 << 24)).round() / f64::from(1 << 24);
+    for random_seed in 0..400 {
+        let is_flat = random_seed % 2 == 1;
+        let domain = if is_flat { Domain::unit_square() } else { Domain::unit_cube() };
+        let mut seeds: Vec<DVec3> = random_seeds(40, random_seed).iter().map(on_grid).collect();
+        if is_flat {
+            seeds.iter_mut().for_each(|seed| seed.z = 0.0);
+        }
+        let mut weights = vec![0.0; seeds.len()];
+        for (weight, seed) in weights.iter_mut().zip(&seeds).take(9) {
+            *weight = seed.distance_squared(seeds[0]);
+        }
+        let tessellation = Tessellation::power(&domain, &seeds, &weights).expect("valid seeds");
+        assert_power_complex(&tessellation, &weights);
+        let at_seed = tessellation.vertices().iter().filter(|vertex| vertex.distance(seeds[0]) < 1e-9);
+        assert_eq!(at_seed.count(), 1, "random seed {random_seed}");
     }
 }
 
@@ -195,7 +218,7 @@ fn cells_that_are_flat_are_empty() {
     let seeds: Vec<DVec3> = [0.25, 0.375, 0.625, 0.75].map(|z| DVec3::new(0.5, 0.5, z)).to_vec();
     let weights = [0.0, -3.0 / 64.0, -3.0 / 64.0, 0.0];
     let tessellation = Tessellation::power(&Domain::unit_cube(), &seeds, &weights).expect("valid seeds");
-    assert_complex(&tessellation);
+    assert_power_complex(&tessellation, &weights);
     assert_eq!(tessellation.empty_cells(), [voronoi::CellId(1), voronoi::CellId(2)]);
     assert_eq!(tessellation.neighbors(voronoi::CellId(0))[0], Side::Cell(voronoi::CellId(3)));
 }
@@ -206,7 +229,7 @@ fn cells_thinner_than_the_last_place() {
     let seeds = [(0.875, 0.25), (0.9, 0.2), (0.75, 0.5)].map(|(x, y)| DVec3::new(x, y, 0.0));
     let weights = [0.0, 0.015625, 0.015625];
     let tessellation = Tessellation::power(&Domain::unit_square(), &seeds, &weights).expect("valid seeds");
-    assert_complex(&tessellation);
+    assert_power_complex(&tessellation, &weights);
     assert!(tessellation.cell_measures()[0].volume.abs() < 1e-15);
 }
 
@@ -216,7 +239,7 @@ fn one_weight_can_take_all() {
     let mut weights = vec![0.0; 30];
     weights[7] = 4.0;
     let tessellation = Tessellation::power(&Domain::unit_cube(), &seeds, &weights).expect("valid seeds");
-    assert_complex(&tessellation);
+    assert_power_complex(&tessellation, &weights);
     assert_eq!(tessellation.empty_cells().len(), 29);
     weights[3] = f64::NAN;
     let error = Tessellation::power(&Domain::unit_cube(), &seeds, &weights);

@@ -5,8 +5,8 @@
 mod common;
 
 use common::{
-    BODY_CENTRED, FACE_CENTRED, SIMPLE_CUBIC, assert_complex, complex_counts, jittered, lattice,
-    random_seeds, square,
+    BODY_CENTRED, FACE_CENTRED, SIMPLE_CUBIC, assert_complex, assert_power_complex, complex_counts, jittered,
+    lattice, random_seeds, square,
 };
 use glam::{BVec3, DVec3};
 use proptest::prelude::*;
@@ -270,7 +270,7 @@ fn weights_on_lattices_and_flat_cells() {
             seeds.iter().map(|seed| if is_odd(seed) { radius * radius } else { 0.0 }).collect();
         for axes in [XYZ, X] {
             let tessellation = Tessellation::power(&cube(axes), &seeds, &weights).expect("valid seeds");
-            assert_complex(&tessellation);
+            assert_power_complex(&tessellation, &weights);
             assert_eq!(
                 tessellation.empty_cells().len(),
                 if radius > 0.25 { 32 } else { 0 },
@@ -285,7 +285,7 @@ fn weights_on_lattices_and_flat_cells() {
         let weights = [0.0, -3.0 / 64.0, -3.0 / 64.0, 0.0];
         for axes in [XYZ, BVec3::new(false, false, true), X] {
             let tessellation = Tessellation::power(&cube(axes), &seeds, &weights).expect("valid seeds");
-            assert_complex(&tessellation);
+            assert_power_complex(&tessellation, &weights);
             if axes.z {
                 assert_eq!(tessellation.empty_cells(), [CellId(1), CellId(2)], "offset {offset}");
             }
@@ -300,7 +300,7 @@ fn one_weight_can_take_all() {
         weights[7] = 4.0;
         let tessellation =
             Tessellation::power(&cube(axes), &random_seeds(30, 9), &weights).expect("valid seeds");
-        assert_complex(&tessellation);
+        assert_power_complex(&tessellation, &weights);
         assert_eq!(tessellation.empty_cells().len(), 29);
     }
 }
@@ -376,13 +376,13 @@ proptest! {
         is_weighted in any::<bool>(),
     ) {
         let domain = Domain::unit_square().with_periods(axes);
-        let tessellation = if is_weighted {
+        if is_weighted {
             let weights: Vec<f64> = radii[..seeds.len()].iter().map(|radius| radius * radius).collect();
-            Tessellation::power(&domain, &seeds, &weights)
+            let tessellation = Tessellation::power(&domain, &seeds, &weights);
+            assert_power_complex(&tessellation.expect("valid seeds"), &weights);
         } else {
-            Tessellation::new(&domain, &seeds)
-        };
-        assert_complex(&tessellation.expect("valid seeds"));
+            assert_complex(&Tessellation::new(&domain, &seeds).expect("valid seeds"));
+        }
     }
 
     #[test]
@@ -391,7 +391,8 @@ proptest! {
         radii in prop::collection::vec(prop_oneof![Just(0.0), Just(0.125), 0.0..0.3f64], 40),
     ) {
         let weights: Vec<f64> = radii[..seeds.len()].iter().map(|radius| radius * radius).collect();
-        assert_complex(&Tessellation::power(&cube(axes), &seeds, &weights).expect("valid seeds"));
+        let tessellation = Tessellation::power(&cube(axes), &seeds, &weights).expect("valid seeds");
+        assert_power_complex(&tessellation, &weights);
     }
 
     /// Neither the numbers of the seeds nor the place of the seam changes the cells.

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{assert_complex, random_seeds, tessellate};
+use common::{assert_complex, assert_power_complex, random_seeds, tessellate};
 use glam::DVec3;
 use proptest::prelude::*;
 use voronoi::{CellId, Domain, Side, Tessellation};
@@ -71,7 +71,7 @@ proptest! {
         };
         let weights: Vec<f64> = radii[..seeds.len()].iter().map(|radius| radius * radius).collect();
         let tessellation = Tessellation::power(&domain, &seeds, &weights).expect("valid seeds");
-        assert_complex(&tessellation);
+        assert_power_complex(&tessellation, &weights);
         let power = |point: DVec3, seed: usize| point.distance_squared(seeds[seed]) - weights[seed];
         for face in tessellation.faces() {
             for side in tessellation.face_sides(face) {

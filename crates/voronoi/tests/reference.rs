@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{assert_complex, complex_counts};
+use common::{assert_complex, assert_power_complex, complex_counts};
 use glam::{BVec3, DVec3};
 use serde_json::Value;
 use voronoi::{CellId, Domain, FaceId, Side, Tessellation, VertexId};
@@ -39,16 +39,18 @@ fn assert_close(ours: &[f64], reference: &[f64]) {
     }
 }
 
+/// The squares of the radii of a reference, where it has them.
+fn weights(reference: &Value) -> Option<Vec<f64>> {
+    let radii = reference["radii"].as_array()?.iter().filter_map(Value::as_f64);
+    Some(radii.map(|radius| radius * radius).collect())
+}
+
 fn compare(name: &str, domain: Domain, volume_key: &str, area_key: &str, face_key: &str) -> Tessellation {
     let reference = load(name);
     let domain = domain.with_periods(BVec3::splat(reference["periodic"] == true));
-    let tessellation = match reference["radii"].as_array() {
+    let tessellation = match weights(&reference) {
         None => Tessellation::new(&domain, &seeds(&reference)),
-        Some(radii) => {
-            let weights: Vec<f64> =
-                radii.iter().filter_map(Value::as_f64).map(|radius| radius * radius).collect();
-            Tessellation::power(&domain, &seeds(&reference), &weights)
-        }
+        Some(weights) => Tessellation::power(&domain, &seeds(&reference), &weights),
     };
     let tessellation = tessellation.expect("valid seeds");
     let cells = reference["cells"].as_array().expect("cells");
@@ -71,8 +73,12 @@ fn compare(name: &str, domain: Domain, volume_key: &str, area_key: &str, face_ke
 
 fn compare_in_space(name: &str) {
     let tessellation = compare(name, Domain::unit_cube(), "volume", "area", "nfaces");
-    assert_complex(&tessellation);
-    let expected = &load(name)["complex_counts"];
+    let reference = load(name);
+    match weights(&reference) {
+        None => assert_complex(&tessellation),
+        Some(weights) => assert_power_complex(&tessellation, &weights),
+    }
+    let expected = &reference["complex_counts"];
     let counts = complex_counts(&tessellation);
     assert_eq!(Some(counts.vertices as u64), expected["vertices"].as_u64());
     assert_eq!(Some(counts.edges as u64), expected["edges"].as_u64());
@@ -173,8 +179,7 @@ fn power_cells() {
         let empty = reference["cells"].as_array().expect("cells").iter();
         let empty =
             empty.filter(|cell| cell["nfaces"].as_u64() == Some(0)).filter_map(|cell| cell["id"].as_u64());
-        let radii = reference["radii"].as_array().expect("radii").iter().filter_map(Value::as_f64);
-        let weights: Vec<f64> = radii.map(|radius| radius * radius).collect();
+        let weights = weights(&reference).expect("radii");
         let domain = Domain::unit_cube().with_periods(BVec3::splat(reference["periodic"] == true));
         let tessellation = Tessellation::power(&domain, &seeds(&reference), &weights);
         let found = tessellation.expect("valid seeds").empty_cells();

@@ -2,8 +2,11 @@
 
 #![allow(dead_code, reason = "each test file uses its share")]
 
+mod exact_vertices;
+
 use std::collections::HashMap;
 
+use exact_vertices::assert_vertices_differ;
 use glam::DVec3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -16,8 +19,20 @@ pub fn random_seeds(count: usize, random_seed: u64) -> Vec<DVec3> {
     (0..count).map(|_| DVec3::new(fraction(), fraction(), fraction())).collect()
 }
 
-/// Volumes sum to the domain, only cells without faces are empty, and all that [`assert_closed`] asks for.
+/// Volumes sum to the domain, only cells without faces are empty, no two vertices are one point, and all that
+/// [`assert_closed`] asks for.
 pub fn assert_complex(tessellation: &Tessellation) {
+    assert_vertices_differ(tessellation, None);
+    assert_fills_domain(tessellation);
+}
+
+/// The same for power cells.
+pub fn assert_power_complex(tessellation: &Tessellation, weights: &[f64]) {
+    assert_vertices_differ(tessellation, Some(weights));
+    assert_fills_domain(tessellation);
+}
+
+fn assert_fills_domain(tessellation: &Tessellation) {
     let measures = tessellation.cell_measures();
     let volumes: Vec<f64> = measures.iter().map(|cell| cell.volume).collect();
     // The volume of a cell thinner than the last place of its coordinates may round to nothing.
