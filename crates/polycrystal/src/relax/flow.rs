@@ -7,6 +7,7 @@ mod widening;
 
 use glam::DVec3;
 
+use super::check_grains_are_left;
 use super::clusters::Clusters;
 use super::conjugate_gradients::dot;
 use super::face_corners::FaceCorners;
@@ -17,9 +18,10 @@ use super::tangential::{Aim, tangential_moves};
 use super::thin_triangles::Room;
 use super::wedges::Wedges;
 use crate::folds::{element_normals, folded_pairs};
+use crate::measures::rms_residual;
 use crate::seams::Seams;
 use crate::volume::sum_over_grains;
-use crate::{Level, Mesh, Network, NetworkError, Surface, Volumes, dihedral_angles};
+use crate::{Level, Mesh, Network, NetworkError, Surface, Volumes};
 use best::{Badness, Best};
 
 /// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
@@ -74,7 +76,7 @@ pub(super) struct Stage {
     pub(super) step_time: f64,
     pub(super) steps: usize,
     /// The stage ends early when a step lessens the energy by less than this share; never for 0.
-    pub(super) residual: f64,
+    pub(super) least_gain: f64,
     pub(super) end: End,
 }
 
@@ -94,6 +96,8 @@ pub(super) struct Taken {
     pub(super) energy: f64,
     /// The pressure of each grain, up to one that is the same for all; 0 where volumes are free.
     pub(super) pressures: Vec<f64>,
+    /// The volume of each grain.
+    pub(super) volumes: Vec<f64>,
 }
 
 /// A network whose points of one level move.
@@ -117,10 +121,11 @@ pub(super) struct Flow<'a> {
 }
 
 impl<'a> Flow<'a> {
-    pub(super) fn new(network: &'a Network, level: usize, volumes: Volumes) -> Self {
+    /// The flow of the points of one level, by tensions in the given unit: steps are right where this is their mean.
+    pub(super) fn new(network: &'a Network, level: usize, volumes: Volumes, tension_unit: f64) -> Self {
         let surface = (network.levels().len() - 1).min(level + 1);
         let clusters = Clusters::new(&network.levels()[level]);
-        let patches = Patches::new(network, level, surface);
+        let patches = Patches::new(network, level, surface, tension_unit);
         let corners = FaceCorners::new(network, level);
         let Wedged { wedges, neighbors } = Wedged::new(network, surface);
         Self {
@@ -173,7 +178,10 @@ impl<'a> Flow<'a> {
         let mut last_energy = f64::INFINITY;
         let mut best = Best::new();
         for step in 1..=stage.steps {
-            let Taken { energy, .. } = self.step(&mut points, stage.step_time)?;
+            let Taken { energy, volumes, .. } = self.step(&mut points, stage.step_time)?;
+            if self.volumes == Volumes::Free {
+                check_grains_are_left(self.network, &volumes, (step - 1) as f64 * stage.step_time)?;
+            }
             progress(step, &points);
             if self.remedy == Remedy::Brake
                 && stage.end != End::Open
@@ -184,7 +192,7 @@ impl<'a> Flow<'a> {
                     break;
                 }
             }
-            if (last_energy - energy).abs() < stage.residual * energy {
+            if (last_energy - energy).abs() < stage.least_gain * energy {
                 break;
             }
             last_energy = energy;
@@ -274,17 +282,18 @@ impl<'a> Flow<'a> {
             Remedy::Join => self.clusters = clusters,
             Remedy::Brake => {}
         }
-        Ok(Taken { energy, pressures: pressures.iter().map(|pressure| pressure / time).collect() })
+        let pressures = pressures.iter().map(|pressure| pressure / time).collect();
+        Ok(Taken { energy, pressures, volumes })
     }
 
     /// How far points are from rest; nothing where no boundaries meet, and in the plane.
     fn badness(&self, points: &[DVec3], finest: &Wedged) -> Option<Badness> {
         let Mesh::Triangles(_) = self.control_mesh() else { return None };
         let surface = self.refined(points);
-        let spread = dihedral_angles(self.network, self.surface(), &surface)?.standard_deviation;
+        let residual = rms_residual(self.network, self.surface(), &surface)?;
         let surface = self.network.subdivide_between(self.surface, self.finest(), &surface);
         let has_folds = !finest.folds(self.network.finest(), &surface).is_empty();
-        Some(Badness { has_folds, spread })
+        Some(Badness { has_folds, residual })
     }
 
     /// Makes the points of each cluster move as one.

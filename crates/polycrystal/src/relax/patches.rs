@@ -29,8 +29,9 @@ pub(super) struct Patches {
 }
 
 impl Patches {
-    /// Patches whose control points are those of one level, and whose surface is that of the same level or the next.
-    pub(super) fn new(network: &Network, control: usize, surface: usize) -> Self {
+    /// Patches whose control points are those of one level, and whose surface is that of the same level or the next. Their tensions are in
+    /// the given unit.
+    pub(super) fn new(network: &Network, control: usize, surface: usize, tension_unit: f64) -> Self {
         let [control_level, surface_level] = [control, surface].map(|level| &network.levels()[level]);
         let count = network.boundaries().len();
         let control_elements = by_boundary(count, &control_level.boundary_of);
@@ -42,7 +43,7 @@ impl Patches {
                     (network.stencils(control), &surface_level.mesh, surface_elements[boundary].as_slice())
                 });
                 let share = if network.boundaries()[boundary].twin.is_some() { 0.5 } else { 1.0 };
-                let tension = (network.tensions()[boundary], share);
+                let tension = (network.tensions()[boundary] / tension_unit, share);
                 new_patch(&control_level.mesh, &control_elements[boundary], surface, tension)
             })
             .collect();
