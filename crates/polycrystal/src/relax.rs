@@ -53,6 +53,9 @@ const FINE_STEPS: usize = 6;
 /// Steps of grains that grow in the plane: with fewer, rates are off by more than a hundredth.
 const GROWTH_STEPS: usize = 60;
 
+/// Most steps of grains that grow: long before that, one has vanished, or all are at rest.
+const MOST_GROWTH_STEPS: usize = 2000;
+
 /// The usual relaxation time, in units of the mean grain size squared.
 const USUAL_TIME: f64 = 0.3;
 
@@ -213,7 +216,12 @@ fn relax_levels(
     let whole_time = time * network.mean_grain_size().powi(2);
     // Grains that grow do so for the time that was asked for, not once more on each level.
     let (first, first_steps) = match volumes {
-        Volumes::Free => (last, if is_in_space { COARSE_STEPS } else { GROWTH_STEPS }),
+        Volumes::Free => {
+            let fewest = if is_in_space { COARSE_STEPS } else { GROWTH_STEPS };
+            let longest = USUAL_TIME / fewest as f64;
+            let steps = (fewest..MOST_GROWTH_STEPS).find(|steps| time <= longest * *steps as f64);
+            (last, steps.unwrap_or(MOST_GROWTH_STEPS))
+        }
         Volumes::Kept => (0, COARSE_STEPS),
     };
     let steps = first_steps + (last - first) * FINE_STEPS;

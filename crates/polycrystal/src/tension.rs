@@ -11,6 +11,15 @@ pub(crate) fn checked_tension(boundary: &Boundary, tension: f64) -> Result<f64, 
     }
 }
 
+/// Bits of a tension, of 52 behind the point, that are left out in relaxation.
+const LEFT_OUT: u64 = (1 << 20) - 1;
+
+/// A tension in a unit, to ten digits: what rounding makes of one tension in two units is so the same number, and relaxation the same.
+pub(crate) fn in_unit(tension: f64, unit: f64) -> f64 {
+    let bits = (tension / unit).to_bits();
+    f64::from_bits((bits + LEFT_OUT / 2) & !LEFT_OUT)
+}
+
 /// The mean tension of those boundaries between grains that have any; of walls, where no other has; 1 where none has.
 ///
 /// In this unit a flow has the same steps whatever unit tensions are given in.

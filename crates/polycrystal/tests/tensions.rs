@@ -22,8 +22,17 @@ fn unequal(boundary: &Boundary) -> f64 {
 }
 
 fn equilibrium(domain: &Domain, seeds: &[DVec3], tension: &dyn Fn(&Boundary) -> f64) -> Equilibrium {
+    equilibrium_at(2, domain, seeds, tension)
+}
+
+fn equilibrium_at(
+    levels: usize,
+    domain: &Domain,
+    seeds: &[DVec3],
+    tension: &dyn Fn(&Boundary) -> f64,
+) -> Equilibrium {
     let tessellation = Tessellation::new(domain, seeds).expect("valid seeds");
-    let recipe = NetworkRecipe { junctions: Junctions::Crease, levels: 2, tension };
+    let recipe = NetworkRecipe { junctions: Junctions::Crease, levels, tension };
     equilibrate(&tessellation, &recipe, |_| ()).expect("relaxes")
 }
 
@@ -116,22 +125,26 @@ fn unequal_tensions_in_the_plane_come_to_herrings_angles() {
     assert!(residual.rms < 1.5e-3 && residual.largest < 2.5e-3, "{residual:?}");
 }
 
-/// Three grains around one straight line, each between walls that do not pull.
+/// Three grains around one straight line, between walls that do not pull. Boundaries are round there, so angles converge with the length of
+/// segments.
 #[test]
 fn a_triple_line_of_unequal_tensions_comes_to_herrings_angles() {
     let seeds = [(0.25, 0.3), (0.75, 0.25), (0.45, 0.8)].map(|(x, y)| DVec3::new(x, y, 0.5));
-    let domain = Domain::unit_cube();
     let law = |boundary: &Boundary| if boundary.wall.is_some() { 0.0 } else { unequal(boundary) };
-    let Equilibrium { network, relaxed, balance, .. } = equilibrium(&domain, &seeds, &law);
-    let points = relaxed.finest_points(&network);
-    let measures = measure_network(&network, &points).in_space().expect("space");
-    let inside = measures.triple_lines.iter().filter(|line| !line.sides.contains(&Side::Exterior));
-    let lines: Vec<_> = inside.collect();
-    assert_eq!((lines.len(), balance.flagged_lines), (1, 0));
-    let error = largest_error(&lines[0].sides, &lines[0].mean_angles);
-    assert!(error < 1.5, "{error} degrees");
-    let residual = herring_residual(&network, &points).expect("triple lines");
-    assert!(residual.rms < 0.03, "{residual:?}");
+    for (levels, largest_error_there) in [(2, 3.5), (3, 2.0)] {
+        let Equilibrium { network, relaxed, balance, .. } =
+            equilibrium_at(levels, &Domain::unit_cube(), &seeds, &law);
+        let points = relaxed.finest_points(&network);
+        let measures = measure_network(&network, &points).in_space().expect("space");
+        let inside = measures.triple_lines.iter().filter(|line| !line.sides.contains(&Side::Exterior));
+        let lines: Vec<_> = inside.collect();
+        assert_eq!((lines.len(), balance.flagged_lines), (1, 0));
+        // 120 degrees would be 11.7 off.
+        let error = largest_error(&lines[0].sides, &lines[0].mean_angles);
+        assert!(error < largest_error_there, "{levels}: {error} degrees");
+        let residual = herring_residual(&network, &points).expect("triple lines");
+        assert!(residual.rms < 0.03, "{residual:?}");
+    }
 }
 
 #[test]

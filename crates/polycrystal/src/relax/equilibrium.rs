@@ -10,7 +10,7 @@ use super::plane;
 use super::reconnection::{Reconnections, Reconnector, lengths};
 use super::shape::{ControlPoints, Shape};
 use super::{Relaxation, RelaxationStep, Relaxed, relax_levels};
-use crate::tension::{checked_tension, mean_tension};
+use crate::tension::{checked_tension, in_unit, mean_tension};
 use crate::{
     Attempt, Boundary, FaceMesh, Junctions, Network, NetworkError, SpaceMeasures, TripleLineMeasures,
     Volumes, measure_network, validate,
@@ -114,7 +114,7 @@ pub fn equilibrate(
         given.push((boundary, checked_tension(&boundary, (recipe.tension)(&boundary))?));
     }
     let unit = mean_tension(given.iter().map(|(boundary, tension)| (boundary, *tension)));
-    let tension = |boundary: &Boundary| (recipe.tension)(boundary) / unit;
+    let tension = |boundary: &Boundary| in_unit((recipe.tension)(boundary), unit);
     let in_units = NetworkRecipe { tension: &tension, ..*recipe };
     let mut equilibrium = equilibrate_by_mean_tension(tessellation, &in_units, &mut watch)?;
     equilibrium.network = equilibrium.network.with_tensions(recipe.tension)?;

@@ -367,7 +367,8 @@ impl<'a> Flow<'a> {
         let bent =
             bent.into_iter().filter(|pair| cosine(&after, *pair) < cosine(before, *pair) - SLIGHT_BEND);
         let turned = (0u32..).zip(before.iter().zip(&after)).filter(|(_, (before, after))| {
-            before.dot(**after) < LARGEST_TURN * before.length() * after.length()
+            let turn = before.dot(**after) - LARGEST_TURN * before.length() * after.length();
+            turn.is_nan() || turn < 0.0
         });
         turned.map(|(element, _)| element).chain(bent.flatten()).chain(closing).collect()
     }

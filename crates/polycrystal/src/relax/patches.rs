@@ -7,6 +7,7 @@ use subzero::StencilTable;
 use super::clusters::Numbering;
 use super::patch::{Elements, LARGEST_COTANGENT, LocalStencils, Patch, PatchTerms, Refinement};
 use super::rows::Rows;
+use crate::tension::in_unit;
 use crate::{BoundaryId, Mesh, Network};
 
 /// The patches of all boundaries.
@@ -43,7 +44,7 @@ impl Patches {
                     (network.stencils(control), &surface_level.mesh, surface_elements[boundary].as_slice())
                 });
                 let share = if network.boundaries()[boundary].twin.is_some() { 0.5 } else { 1.0 };
-                let tension = (network.tensions()[boundary] / tension_unit, share);
+                let tension = (in_unit(network.tensions()[boundary], tension_unit), share);
                 new_patch(&control_level.mesh, &control_elements[boundary], surface, tension)
             })
             .collect();
