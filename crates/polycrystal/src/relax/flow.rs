@@ -6,6 +6,7 @@ mod volumes;
 mod widening;
 
 use glam::DVec3;
+use voronoi::Dimension;
 
 use super::check_grains_are_left;
 use super::clusters::Clusters;
@@ -21,7 +22,7 @@ use crate::folds::{element_normals, folded_pairs};
 use crate::measures::rms_residual;
 use crate::seams::Seams;
 use crate::volume::sum_over_grains;
-use crate::{Level, Mesh, Network, NetworkError, Surface, Volumes};
+use crate::{GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
 use best::{Badness, Best};
 
 /// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
@@ -178,9 +179,12 @@ impl<'a> Flow<'a> {
         let mut last_energy = f64::INFINITY;
         let mut best = Best::new();
         for step in 1..=stage.steps {
-            let Taken { energy, volumes, .. } = self.step(&mut points, stage.step_time)?;
+            let passed = (step - 1) as f64 * stage.step_time;
+            let taken = self.step(&mut points, stage.step_time);
+            let Taken { energy, volumes, .. } =
+                taken.map_err(|error| self.vanishing(&points, passed, stage.step_time).unwrap_or(error))?;
             if self.volumes == Volumes::Free {
-                check_grains_are_left(self.network, &volumes, (step - 1) as f64 * stage.step_time)?;
+                check_grains_are_left(self.network, &volumes, passed)?;
             }
             progress(step, &points);
             if self.remedy == Remedy::Brake
@@ -227,6 +231,22 @@ impl<'a> Flow<'a> {
             points = displaced(start, &moves);
         }
         Err(NetworkError::Folded { count })
+    }
+
+    /// Where volumes are free, the grain that would vanish within a step, if there is one: a ball of radius r lives for a time of r^2 / 4, a
+    /// disc for r^2 / 2.
+    fn vanishing(&self, points: &[DVec3], passed: f64, step_time: f64) -> Option<NetworkError> {
+        if self.volumes == Volumes::Kept {
+            return None;
+        }
+        let volumes = self.network.grain_volumes(self.surface(), &self.refined(points));
+        let (grain, volume) = (0u32..).zip(volumes).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let dimension = self.network.domain().dimension();
+        let radius = 0.5 * dimension.ball_diameter(volume);
+        let lifetime = radius * radius / if dimension == Dimension::Two { 2.0 } else { 4.0 };
+        let time = (passed + lifetime.max(0.0)) / self.network.mean_grain_size().powi(2);
+        let is_vanishing = volume <= 0.0 || lifetime <= step_time;
+        is_vanishing.then_some(NetworkError::GrainVanished { grain: GrainId(grain), time })
     }
 
     /// One step of curvature flow.
