@@ -181,6 +181,27 @@ fn dry_run_foretells_the_run_and_writes_nothing() {
 }
 
 #[test]
+fn dry_run_counts_voxels() {
+    let workplace = Workplace::new();
+    let foretold = |arguments: &str| {
+        let output = workplace.command(&format!("--seeds 5 -n 0 --dry-run {arguments}")).output().unwrap();
+        let said = String::from_utf8(output.stdout).unwrap();
+        let number = |name: &str| -> u64 {
+            let line = said.lines().find(|line| line.starts_with(name)).unwrap();
+            line.split_whitespace().find_map(|word| word.parse().ok()).unwrap()
+        };
+        [number("file"), number("memory")]
+    };
+    let [file, memory] = foretold("--voxels 3000 3000 3000 -o a.vti");
+    assert!((108_000_000_000..108_001_000_000).contains(&file), "four bytes each: {file}");
+    // As much as for a few of them: they are labelled slab by slab.
+    let [none, small] = [foretold("-o a.vtp"), foretold("--voxels 30 30 30 -o a.vti")];
+    assert!(memory == small[1] && memory > none[1] + 100_000_000 && memory < 200_000_000, "{memory}");
+    let [plane, _] = foretold("--dim 2 --voxels 3000 3000 -o a.npy");
+    assert!((36_000_000..36_010_000).contains(&plane), "{plane}");
+}
+
+#[test]
 fn summary_for_programs_holds_the_numbers_of_the_summary() {
     let workplace = Workplace::new();
     let record: Value =

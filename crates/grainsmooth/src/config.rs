@@ -7,6 +7,7 @@ use polycrystal::{Boundary, FaceMesh, Junctions, Relaxation, Volumes};
 use voronoi::{Dimension, Domain};
 
 use crate::domain_file::{half_space_domain, surface_domain};
+use crate::vtk::VtkEncoding;
 use crate::{Error, Lattice, LatticeFit, Names, StlEncoding};
 
 /// Where seeds come from.
@@ -131,11 +132,19 @@ pub struct FileOptions {
     pub stl: StlEncoding,
     /// Whether VTK files have arrays of what is measured.
     pub arrays: bool,
+    /// How VTK's XML files hold their numbers.
+    pub encoding: VtkEncoding,
 }
 
 impl Default for FileOptions {
     fn default() -> Self {
-        Self { names: Names::default(), voxels: None, stl: StlEncoding::Binary, arrays: false }
+        Self {
+            names: Names::default(),
+            voxels: None,
+            stl: StlEncoding::Binary,
+            arrays: false,
+            encoding: VtkEncoding::Raw,
+        }
     }
 }
 
@@ -204,6 +213,13 @@ impl Config {
     /// Control points on the boundaries of regularised cells: in a fan, whose triangles at short lines are thin, those stay whole.
     pub(crate) fn regular_face_mesh(&self) -> FaceMesh {
         if self.face_mesh == FaceMesh::Fan { FaceMesh::SparseFan } else { self.face_mesh }
+    }
+
+    /// Number of voxels that are asked for.
+    pub(crate) fn voxel_count(&self) -> u128 {
+        let axes = if self.dimension == Dimension::Two { 2 } else { 3 };
+        let counts = self.file.voxels.iter().flat_map(|counts| &counts[..axes]);
+        counts.map(|count| u128::from(count.get())).reduce(|all, count| all * count).unwrap_or(0)
     }
 
     /// The lattice that the seeds form, if they do.

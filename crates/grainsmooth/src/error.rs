@@ -38,6 +38,19 @@ pub enum Error {
         /// The path as given.
         path: PathBuf,
     },
+    /// A file of voxels is larger than what is free where it is to go.
+    #[error(
+        "{}: would take {} and {} are free there; take fewer voxels or choose another path",
+        path.display(), memory::in_words(*needed), memory::in_words(u128::from(*available))
+    )]
+    OutputExceedsDisk {
+        /// The path as given.
+        path: PathBuf,
+        /// Bytes of the file.
+        needed: u128,
+        /// Bytes that there are.
+        available: u64,
+    },
     /// Two outputs are to have one path.
     #[error("{}: two outputs have this path; give each a path of its own", path.display())]
     OutputTwice {

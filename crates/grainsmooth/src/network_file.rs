@@ -12,9 +12,14 @@ use crate::formats::{
 };
 use crate::formats::{write_gmsh_script, write_stl, write_tess};
 use crate::measured_arrays::MeasuredArrays;
-use crate::vtk::{Array, Cells, Each, FieldEntry, FieldValue, ImageData, PolyData, Values, VtkFormat};
+use crate::vtk::{
+    Array, Blocks, Cells, Each, FieldEntry, FieldValue, ImageData, PolyData, Values, VtkFormat,
+};
 use crate::vtk::{write_vti, write_vtk};
-use crate::{Error, LabelGrid, Names, Output, OutputFormat, Polycrystal, StagedFiles, Tess, write_together};
+use crate::{
+    Error, FileOptions, LabelGrid, Names, Output, OutputFormat, Polycrystal, StagedFiles, Tess,
+    write_together,
+};
 
 impl Polycrystal {
     /// Writes the network, every boundary and every point once; its voxels; or its flat cells.
@@ -76,7 +81,9 @@ impl Polycrystal {
                 write_npy(&self.label_grid()?, self.config.file.names, out)?;
                 self.write_settings_behind(out)
             }
-            OutputFormat::Ang => write_ang(&self.label_grid()?, &self.config, out),
+            OutputFormat::Ang => {
+                write_ang(&self.label_grid()?, self.network.grain_count(), &self.config, out)
+            }
         }
     }
 
@@ -89,19 +96,23 @@ impl Polycrystal {
         Surface::network(self).ok_or_else(|| io::Error::other("boundaries in the plane are no surfaces"))
     }
 
-    fn label_grid(&self) -> io::Result<LabelGrid> {
+    fn label_grid(&self) -> io::Result<LabelGrid<'_>> {
         let voxels =
             self.config.file.voxels.ok_or_else(|| io::Error::other("no number of voxels is given"))?;
         Ok(LabelGrid::new(self, voxels))
     }
 
     fn write_vti(&self, out: &mut dyn Write) -> io::Result<()> {
-        let LabelGrid { size, origin, spacing, labels } = self.label_grid()?;
-        let names = self.config.file.names;
-        let number = |voxel: usize| names.voxel_number(labels[voxel]);
-        let values = Values::Int32Of(Each { count: labels.len(), value: &number });
-        let cell_arrays = vec![Array { name: names.voxel(), values }];
-        write_vti(&ImageData { size, origin, spacing, cell_arrays, field: self.field() }, out)
+        let grid = self.label_grid()?;
+        let FileOptions { names, encoding, .. } = self.config.file;
+        let make = |slab: usize| {
+            grid.slab(slab).into_par_iter().map(|label| names.voxel_number(label)).collect::<Vec<i32>>()
+        };
+        let count = usize::try_from(grid.voxel_count()).map_err(io::Error::other)?;
+        let blocks = Blocks { count, blocks: grid.slab_count(), make: &make };
+        let cell_arrays = vec![Array { name: names.voxel(), values: Values::Int32Blocks(blocks) }];
+        let LabelGrid { size, origin, spacing, .. } = grid;
+        write_vti(&ImageData { size, origin, spacing, cell_arrays, field: self.field() }, encoding, out)
     }
 
     fn write_vtk(&self, format: VtkFormat, out: &mut dyn Write) -> io::Result<()> {
@@ -158,7 +169,7 @@ impl Polycrystal {
         let mut field = self.field();
         field.push(FieldEntry { name: "Volumes", value: volumes });
         let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field };
-        write_vtk(&data, format, out)
+        write_vtk(&data, format, self.config.file.encoding, out)
     }
 
     /// The number of the grain that lies beyond a boundary a period or more away; that of the exterior where there is none.

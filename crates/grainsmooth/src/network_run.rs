@@ -35,8 +35,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         let estimate = estimate?;
         writeln!(io::stdout(), "{estimate}")?;
         estimate.check()?;
+        files.check_space(&config)?;
         return Ok(ExitCode::SUCCESS);
     }
+    files.check_space(&config)?;
     let result = pool.install(|| compute(&config, &files, &line));
     line.clear();
     let summary = result?;
@@ -122,6 +124,11 @@ impl Files {
             usage(&Error::OutputTwice { path }.to_string());
         }
         Ok(all)
+    }
+
+    /// Checks that there is room for what is known to be large.
+    fn check_space(&self, config: &Config) -> Result<(), Error> {
+        self.outputs.iter().try_for_each(|output| output.check_space(config))
     }
 
     /// All files and directories in full, but for the steps of a series.

@@ -12,6 +12,7 @@ use polycrystal::{
 };
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
+use crate::formats::LABEL_BYTES;
 use crate::memory::{ControlMesh, LevelSize, available_memory, check_cells, check_levels};
 use crate::{
     Config, Error, FileSeed, PeriodicCut, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds,
@@ -192,7 +193,7 @@ pub fn check_expected_size(config: &Config) -> Result<(), Error> {
     let size = expected_control_mesh_size(count, config.dimension);
     // Each of two segments.
     let arcs = if bends_to_arcs(config) { size.edges / 2 } else { 0 };
-    check_levels(ControlMesh { size, arcs }, config.levels, available_memory())
+    check_levels(ControlMesh { size, arcs, besides: voxel_bytes(config) }, config.levels, available_memory())
 }
 
 /// Whether boundaries become arcs with as many segments as look smooth.
@@ -204,12 +205,18 @@ fn bends_to_arcs(config: &Config) -> bool {
 pub(crate) fn control_mesh(config: &Config, tessellation: &Tessellation) -> ControlMesh {
     let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
     let size = LevelSize { points, edges, triangles };
+    let besides = voxel_bytes(config);
     if !bends_to_arcs(config) {
-        return size.into();
+        return ControlMesh { size, arcs: 0, besides };
     }
     let sides = tessellation.faces().map(|face| tessellation.face_sides(face));
     let inside = sides.filter(|[_, second]| !matches!(second, voronoi::Side::Wall(_)));
-    ControlMesh { size, arcs: inside.count() as u128 }
+    ControlMesh { size, arcs: inside.count() as u128, besides }
+}
+
+/// Bytes that voxels take while they are labelled.
+pub(crate) fn voxel_bytes(config: &Config) -> u128 {
+    if config.file.voxels.is_some() { LABEL_BYTES } else { 0 }
 }
 
 fn seed_count(config: &Config) -> Option<usize> {

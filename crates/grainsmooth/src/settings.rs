@@ -8,6 +8,7 @@ use toml::Value;
 use voronoi::Dimension;
 
 use crate::embedded_config::{BEGIN, END, PREFIXES};
+use crate::vtk::VtkEncoding;
 use crate::{Config, FileOptions, PeriodicCut, SeedSource, Shape, StlEncoding};
 
 impl Config {
@@ -151,6 +152,9 @@ impl FileOptions {
         }
         if self.arrays {
             settings.push(("arrays", true.into()));
+        }
+        if self.encoding != VtkEncoding::Raw {
+            settings.push(("vtk-encoding", self.encoding.name().into()));
         }
         settings
     }

@@ -8,10 +8,10 @@ use rayon::prelude::*;
 use voronoi::Dimension;
 
 use super::surface::Surface;
-use super::{Names, obj, ply, stl};
+use super::{obj, ply, stl};
 use crate::output::OutputDirectory;
 use crate::vtk::{Array, Cells, Each, FieldEntry, PolyData, Values, VtkFormat, write_vtk};
-use crate::{Error, OutputFormat, Polycrystal, StagedFiles};
+use crate::{Error, FileOptions, OutputFormat, Polycrystal, StagedFiles};
 
 /// What is measured of a grain's surface, its parts on walls included.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,7 +80,7 @@ impl Polycrystal {
             OutputFormat::Ply => ply::write(surface, &self.config, out),
             OutputFormat::Obj => obj::write(surface, &self.config, out),
             OutputFormat::Vtk(format) => {
-                write_vtk_grain(surface, self.config.file.names, self.field(), format, out)
+                write_vtk_grain(surface, &self.config.file, self.field(), format, out)
             }
             _ => Err(io::Error::other("this format holds no surfaces")),
         }
@@ -90,11 +90,12 @@ impl Polycrystal {
 /// A grain with the arrays of the `grains` block, and what lies beyond each triangle.
 fn write_vtk_grain(
     surface: &Surface<'_>,
-    names: Names,
+    options: &FileOptions,
     field: Vec<FieldEntry>,
     format: VtkFormat,
     out: &mut dyn Write,
 ) -> io::Result<()> {
+    let names = options.names;
     let triangles: Vec<[u32; 3]> = surface.triangles().collect();
     let of_triangle = surface.parts.iter().flat_map(|part| surface.triangles_of(part).map(move |_| part));
     let parts: Vec<_> = of_triangle.collect();
@@ -122,5 +123,5 @@ fn write_vtk_grain(
         ],
         field,
     };
-    write_vtk(&data, format, out)
+    write_vtk(&data, format, options.encoding, out)
 }

@@ -8,7 +8,7 @@ use earcut::Earcut;
 use glam::{DVec2, DVec3};
 use polycrystal::{GrainId, Side};
 
-use super::blocks::{SideTable, point_id};
+use super::blocks::point_id;
 use crate::Polycrystal;
 use crate::measured_arrays::{MeasuredArrays, NumberArrays};
 use crate::network_file::boundary_polylines;
@@ -66,7 +66,7 @@ impl Polycrystal {
         };
         data.cell_arrays.extend(of_lines.arrays());
         data.point_arrays.extend(of_points.arrays());
-        write_vtk(&data, VtkFormat::Vtp, out)
+        write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
     }
 
     /// The interior of each grain as triangles with points of their own.
@@ -112,7 +112,7 @@ impl Polycrystal {
             ],
             field: self.field(),
         };
-        write_vtk(&data, VtkFormat::Vtp, out)
+        write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
     }
 
     /// The points where at least so many sides meet: 3 for triple points, 4 for quadruple points.
@@ -129,11 +129,14 @@ impl Polycrystal {
         }
         at.sort_unstable();
         at.dedup();
-        let junctions = at.chunk_by(|a, b| a.0 == b.0).filter(|sides| sides.len() >= fewest);
-        let (points, sides): (Vec<DVec3>, Vec<Vec<Side>>) = junctions
-            .map(|at| (self.points[at[0].0 as usize], at.iter().map(|(_, side)| *side).collect()))
-            .unzip();
-        let sides: SideTable = self.side_table(sides.iter());
+        let all: Vec<(u32, Vec<Side>)> = at
+            .chunk_by(|a, b| a.0 == b.0)
+            .map(|at| (at[0].0, at.iter().map(|(_, side)| *side).collect()))
+            .collect();
+        let junctions = || all.iter().filter(|(_, sides)| sides.len() >= fewest);
+        let points: Vec<DVec3> = junctions().map(|(point, _)| self.points[*point as usize]).collect();
+        let components = all.iter().map(|(_, sides)| sides.len()).max().unwrap_or(1);
+        let sides = self.side_table(junctions().map(|(_, sides)| sides), components);
         let data = PolyData {
             points: &points,
             cells: Cells::Vertices(points.len()),
@@ -141,7 +144,7 @@ impl Polycrystal {
             cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
             field: self.field(),
         };
-        write_vtk(&data, VtkFormat::Vtp, out)
+        write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
     }
 
     /// The boundaries' points, in order with the first side on the left, and their numbers.

@@ -54,9 +54,27 @@ impl<'a> Surface<'a> {
         })
     }
 
+    /// The same points and triangles in other parts, each with its boundary, its sides and its triangles by number.
+    pub(crate) fn with_parts(&self, parts: Vec<(BoundaryId, [Side; 2], Vec<u32>)>) -> Surface<'_> {
+        let mut order = Vec::with_capacity(self.order.len());
+        let part = |(boundary, sides, triangles): (BoundaryId, [Side; 2], Vec<u32>)| {
+            let start = order.len();
+            order.extend(triangles);
+            Part { boundary, sides, range: start..order.len() }
+        };
+        let parts = parts.into_iter().map(part).collect();
+        let (points, triangles) = (Cow::Borrowed(&*self.points), Cow::Borrowed(&*self.triangles));
+        Surface { points, triangles, order, parts }
+    }
+
     /// Number of triangles.
     pub(crate) fn triangle_count(&self) -> usize {
         self.triangles.len()
+    }
+
+    /// The triangles of a part, by number.
+    pub(crate) fn numbers_of(&self, part: &Part) -> &[u32] {
+        &self.order[part.range.clone()]
     }
 
     /// The triangles of a part.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use crate::vtk::{Array, Cells, FieldEntry, FieldValue, PolyData, Values, VtkFormat, write_vtk};
+use crate::vtk::{Array, Cells, FieldEntry, FieldValue, PolyData, Values, VtkEncoding, VtkFormat, write_vtk};
 use crate::{Error, Output, StagedFiles, write_together};
 
 /// A file format that meshes are written in.
@@ -71,7 +71,7 @@ pub fn stage_mesh(
     files: &mut StagedFiles,
 ) -> Result<(), Error> {
     output.stage(files, |out| match output.format() {
-        MeshFormat::Vtk(format) => write_vtk(&poly_data(mesh), format, out),
+        MeshFormat::Vtk(format) => write_vtk(&poly_data(mesh), format, VtkEncoding::Raw, out),
         MeshFormat::Obj => write_obj(mesh, out),
         MeshFormat::Ply => write_ply(mesh, out),
         MeshFormat::Stl => write_stl(mesh, out),

@@ -75,7 +75,7 @@ pub(crate) fn read_legacy(bytes: &[u8]) -> Result<LabelledCells, MeshFileProblem
 /// Reads a .vtp or .vtu file.
 pub(crate) fn read_xml(bytes: &[u8]) -> Result<LabelledCells, MeshFileProblem> {
     let wanted: Vec<&str> = LABEL_ARRAYS.into_iter().chain([NODE_TYPES, BOUNDARY_IDS]).collect();
-    let parts = xml_parts::network(bytes, &wanted);
+    let parts = xml_parts::network(bytes, &wanted)?;
     in_thread(|| {
         let cells = of_data(Vtk::parse_xml(&parts[..]).map_err(problem)?.data)?;
         Ok(LabelledCells { remarks: Remarks::of_xml(bytes), ..cells })
