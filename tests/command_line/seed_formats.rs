@@ -37,6 +37,7 @@ fn tess_file_gives_seeds_box_and_periods() {
     assert!(cut.starts_with("error: cut.tess line ") && cut.ends_with("; give a complete file\n"), "{cut}");
 }
 
+/// The reader of seeds refused the program's own CSV tables.
 #[test]
 fn tables_of_cells_give_the_same_cells_again() {
     let workplace = Workplace::new();
@@ -44,13 +45,15 @@ fn tables_of_cells_give_the_same_cells_again() {
     for (arguments, plane) in
         [("--seeds 12", ""), ("--seeds 8 --dim 2", "--dim 2"), ("--seeds-file spheres.csv", "")]
     {
-        workplace.run(&format!("{arguments} --no-mesh --cells-json one.json"));
+        workplace.run(&format!("{arguments} --no-mesh --cells-json one.json --cells-csv one.csv"));
         workplace.run(&format!("--seeds-file one.json {plane} --no-mesh --cells-json two.json"));
         let cells = |name| {
             let file: serde_json::Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
             file["cells"].as_array().unwrap().clone()
         };
         assert_eq!(cells("one.json"), cells("two.json"), "{arguments}");
+        workplace.run(&format!("--seeds-file one.csv {plane} --no-mesh --cells-json three.json"));
+        assert_eq!(cells("one.json"), cells("three.json"), "{arguments}");
     }
 }
 

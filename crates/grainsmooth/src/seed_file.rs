@@ -48,24 +48,44 @@ pub enum SeedProblem {
     /// The line is not text.
     #[error("not UTF-8 text; save the file as UTF-8")]
     NotUtf8,
-    /// The first line names other columns than the coordinates.
-    #[error("columns named {names:?}; name them {} or drop the line", wanted(*.dimension))]
+    /// The first line names columns, but not those of the coordinates.
+    #[error("columns named {names:?}; name those of the seeds {}", wanted(*.dimension))]
     ColumnNames {
         /// The line, cut short.
         names: String,
         /// What the file is read for.
         dimension: Dimension,
     },
-    /// There are too many or too few columns.
-    #[error("{found} columns; write {} on each line", wanted(*.dimension))]
+    /// Two columns are named alike.
+    #[error("two columns named {name}; rename one of them")]
+    NamedTwice {
+        /// The name.
+        name: String,
+    },
+    /// Two columns say how large cells are.
+    #[error("columns {} and {} both say how large grains are; rename one of them", names[0], names[1])]
+    SizedTwice {
+        /// The names.
+        names: [String; 2],
+    },
+    /// There are too many or too few columns without names.
+    #[error("{found} columns; write {} on each line, or name the columns in the first", wanted(*.dimension))]
     ColumnCount {
         /// Number of columns in the line.
         found: usize,
         /// What the file is read for.
         dimension: Dimension,
     },
+    /// A line has more or fewer columns than those before.
+    #[error("{found} columns after lines of {expected}; write as many on each line")]
+    UnequalColumns {
+        /// Number of columns in the line.
+        found: usize,
+        /// Number of columns in the lines before.
+        expected: usize,
+    },
     /// A column holds something else than a number.
-    #[error("{value:?} is not a number; write {} as decimal numbers", wanted(*.dimension))]
+    #[error("{value:?} is not a number; write {} as numbers such as 0.5", wanted(*.dimension))]
     NotANumber {
         /// The column, cut short.
         value: String,
@@ -83,6 +103,12 @@ pub enum SeedProblem {
     NegativeRadius {
         /// The radius.
         radius: f64,
+    },
+    /// A diameter is negative.
+    #[error("diameter is {diameter}; write 0 or more")]
+    NegativeDiameter {
+        /// The diameter.
+        diameter: f64,
     },
     /// A seed of a 2D run has a third coordinate.
     #[error("z is {z} in a 2D run; set it to 0, run in 3D, or name the columns x, y, radius")]
@@ -165,10 +191,11 @@ impl SeedFormat {
 
 /// Reads seeds from a file, whose extension names the format.
 ///
-/// - Any text, `.csv`: one seed a line, `x, y, z`, or `x, y` in 2D. Columns stand between commas or, in lines without a comma,
-///   between blanks or tabs. The first line may name the columns; empty lines and lines that begin with `#` are skipped. A last
-///   column `radius` makes the cells power (Laguerre) cells; after two coordinates it needs its name. In 2D a third
-///   coordinate is taken when it is 0, as programs write it that know three dimensions only.
+/// - Any text, `.csv`: one seed a line, `x, y, z`, or `x, y` in 2D. Columns stand between semicolons, commas, blanks or tabs, and
+///   may be quoted. The first line may name the columns, which then have any order; one of `radius`, `diameter` and `weight`
+///   makes the cells power (Laguerre) cells, and columns of other names are passed over, so a [table of cells](crate::CellTable) is
+///   read. Without names, a fourth column is the radius. Empty lines and lines that begin with `#` are skipped. In 2D
+///   a third coordinate is taken when it is 0, as programs write it that know three dimensions only.
 /// - `.xyz`: the number of seeds, a remark, then lines of an element (not used), x, y, z and perhaps a radius.
 /// - `.json`: a list of `[x, y, z]` or `[x, y, z, radius]`, or a [table of cells](crate::CellTable), whose seeds and weights
 ///   are taken.
