@@ -8,7 +8,7 @@ fn refuses(content: impl AsRef<[u8]>, arguments: &str, message: &str) {
 
 #[test]
 fn no_seeds() {
-    let message = "seeds.csv: holds no seeds; write x, y, z on each line";
+    let message = "seeds.csv: holds no seeds; give a file with one or more";
     refuses("", "", message);
     refuses("\n\n", "", message);
     refuses("# my seeds\n\n# none yet\n", "", message);

@@ -8,10 +8,11 @@ use std::path::Path;
 use glam::{BVec3, DVec3};
 use voronoi::Dimension;
 
-use crate::{Error, Tess, TessProblem, read_tess};
+use crate::Error;
 
 mod json;
 mod lines;
+mod tess;
 
 /// A seed as its file gives it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -199,7 +200,8 @@ impl SeedFormat {
 /// - `.xyz`: the number of seeds, a remark, then lines of an element (not used), x, y, z and perhaps a radius.
 /// - `.json`: a list of `[x, y, z]` or `[x, y, z, radius]`, or a [table of cells](crate::CellTable), whose seeds and weights
 ///   are taken.
-/// - `.tess`: Neper's seeds and weights (radii); what they fill is told by [`read_file_domain`].
+/// - `.tess`: Neper's seeds and weights (radii), where its cells are those of its seeds to 1e-6 of their volume; what they fill is
+///   told by [`read_file_domain`]. Orientations are passed over.
 ///
 /// # Errors
 /// [`Error::SeedFileUnreadable`] when the file cannot be read; [`Error::NoSeedsInFile`] when it holds none;
@@ -210,7 +212,7 @@ pub fn read_seed_file(path: &Path, dimension: Dimension) -> Result<Vec<FileSeed>
         SeedFormat::Csv => lines::csv(&content, dimension),
         SeedFormat::Xyz => lines::xyz(&content, dimension),
         SeedFormat::Json => json::seeds(&content, dimension),
-        SeedFormat::Tess => tess(&content).map(|tess| tess_seeds(&tess)),
+        SeedFormat::Tess => tess::seeds(&content),
     };
     let mut seeds = seeds.map_err(|problem| located(path, problem))?;
     if seeds.is_empty() {
@@ -242,8 +244,7 @@ pub fn read_file_domain(path: &Path) -> Result<Option<FileDomain>, Error> {
     if SeedFormat::of_path(path) != SeedFormat::Tess {
         return Ok(None);
     }
-    let domain = tess(&content(path)?).and_then(|tess| tess_domain(&tess));
-    domain.map(Some).map_err(|problem| located(path, problem))
+    tess::domain(&content(path)?).map(Some).map_err(|problem| located(path, problem))
 }
 
 fn content(path: &Path) -> Result<Vec<u8>, Error> {
@@ -252,44 +253,6 @@ fn content(path: &Path) -> Result<Vec<u8>, Error> {
 
 fn located(path: &Path, (place, problem): (SeedPlace, SeedProblem)) -> Error {
     Error::BadSeed { path: path.to_owned(), place, problem }
-}
-
-fn tess(content: &[u8]) -> Result<Tess, (SeedPlace, SeedProblem)> {
-    let text = std::str::from_utf8(content).map_err(|error| {
-        let line = 1 + content[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
-        (SeedPlace::Line(line), SeedProblem::NotUtf8)
-    })?;
-    read_tess(text).map_err(|TessProblem { line, what }| (SeedPlace::Line(line), SeedProblem::Tess { what }))
-}
-
-fn tess_seeds(tess: &Tess) -> Vec<FileSeed> {
-    let seeds = (1..).zip(&tess.seeds);
-    seeds
-        .map(|(number, seed)| FileSeed {
-            position: seed.position,
-            weight: Some(seed.radius * seed.radius),
-            place: SeedPlace::Entry(number),
-        })
-        .collect()
-}
-
-fn tess_domain(tess: &Tess) -> Result<FileDomain, (SeedPlace, SeedProblem)> {
-    let problem = |what| (SeedPlace::Line(1), SeedProblem::Tess { what });
-    let domain = &tess.domain;
-    let kind = if tess.dimension == Dimension::Two { "square" } else { "cube" };
-    if domain.kind != kind {
-        let is = if domain.kind.is_empty() { "missing".to_owned() } else { format!("a {}", domain.kind) };
-        return Err(problem(format!("the domain is {is}; give a file whose domain is a {kind} (any box)")));
-    }
-    if domain.lower != DVec3::ZERO {
-        let at = domain.lower;
-        return Err(problem(format!("the domain begins at {at}; move it, so that it begins at 0")));
-    }
-    Ok(FileDomain {
-        dimension: tess.dimension,
-        box_size: if tess.dimension == Dimension::Two { domain.upper.with_z(1.0) } else { domain.upper },
-        periodic: tess.periodicity.as_ref().map_or(BVec3::FALSE, |periodicity| periodicity.axes.into()),
-    })
 }
 
 /// The weight of a sphere.

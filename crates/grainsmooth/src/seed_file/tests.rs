@@ -114,10 +114,10 @@ fn each_mistake_is_named_with_its_line() {
             3,
             "seeds.csv line 2: \"0,5\" is not a number; write x, y, z as numbers such as 0.5",
         ),
-        ("x,y,z,name\n1,2,3,\"a\n1,2,3", 3, "seeds.csv: holds no seeds; write x, y, z on each line"),
+        ("x,y,z,name\n1,2,3,\"a\n1,2,3", 3, "seeds.csv: holds no seeds; give a file with one or more"),
         ("1,2,3\nx,y,z", 3, "seeds.csv line 2: \"x\" is not a number; write x, y, z as numbers such as 0.5"),
-        ("", 3, "seeds.csv: holds no seeds; write x, y, z on each line"),
-        ("x,y,z\n# 1,2,3\n\n", 3, "seeds.csv: holds no seeds; write x, y, z on each line"),
+        ("", 3, "seeds.csv: holds no seeds; give a file with one or more"),
+        ("x,y,z\n# 1,2,3\n\n", 3, "seeds.csv: holds no seeds; give a file with one or more"),
         (&format!("1,2,{long}"), 3, &format!("{cut}write x, y, z as numbers such as 0.5")),
     ] {
         let dimension = if dimension == 2 { Dimension::Two } else { Dimension::Three };
@@ -170,7 +170,7 @@ fn xyz_files_begin_with_a_count_and_name_elements() {
             "s.xyz line 3: 2 columns; write an element, x, y, z and perhaps a radius on each line",
         ),
         ("1\n\nFe 1 2 x\n", "s.xyz line 3: \"x\" is not a number; write x, y, z as numbers such as 0.5"),
-        ("0\n\n", "s.xyz: holds no seeds; write x, y, z on each line"),
+        ("0\n\n", "s.xyz: holds no seeds; give a file with one or more"),
     ] {
         assert_eq!(read_as("s.xyz", file, Dimension::Three), Err(message.to_owned()));
     }
