@@ -86,7 +86,7 @@ pub enum Error {
         cause: io::Error,
     },
     /// Writing the output failed on the way; nothing of it is left behind.
-    #[error("{}: writing failed and left nothing: {cause}; make room or choose another path", path.display())]
+    #[error("{}: writing failed and left nothing: {cause}{}", path.display(), remedy(cause))]
     WriteOutput {
         /// The path as given.
         path: PathBuf,
@@ -102,7 +102,7 @@ pub enum Error {
         cause: io::Error,
     },
     /// A seed file holds no seeds.
-    #[error("{}: holds no seeds; write x, y, z on each line", path.display())]
+    #[error("{}: holds no seeds; give a file with one or more", path.display())]
     NoSeedsInFile {
         /// The path as given.
         path: PathBuf,
@@ -145,7 +145,7 @@ pub enum Error {
     },
     /// A line of a file of half-spaces is none.
     #[error(
-        "{} line {line}: write {} as decimal numbers", path.display(),
+        "{} line {line}: write {} as numbers such as 0.5", path.display(),
         if *dimension == Dimension::Two { "nx, ny, d" } else { "nx, ny, nz, d" }
     )]
     BadHalfSpaceLine {
@@ -251,6 +251,11 @@ pub enum Error {
         /// The most levels that would fit, if any.
         largest: Option<u32>,
     },
+}
+
+/// What to do about a file that cannot be written. What a format cannot hold says so itself.
+fn remedy(cause: &io::Error) -> &'static str {
+    if cause.get_ref().is_some() { "" } else { "; make room or choose another path" }
 }
 
 /// Grains as a message names them, the first ten of many.

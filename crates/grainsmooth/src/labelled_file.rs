@@ -99,7 +99,11 @@ impl LabelledFile {
             };
             let side = |label| side(label).ok_or(MeshFileProblem::BadLabel { cell, label });
             let pair = [side(labels[0])?, side(labels[1])?];
-            let next = BoundaryId(u32::try_from(sides.len()).unwrap_or(u32::MAX));
+            let next = u32::try_from(sides.len()).map(BoundaryId);
+            let next = next.map_err(|_| MeshFileProblem::Corrupt {
+                format: "VTK",
+                what: "more boundaries than ids can name".to_owned(),
+            })?;
             let id = boundary_ids.as_ref().map(|ids| ids[cell]);
             of_cell.push(*boundaries.entry((*labels, id)).or_insert_with(|| {
                 sides.push(pair);

@@ -31,8 +31,8 @@ pub struct SeedArguments {
     #[arg(long, value_names = ["LATTICE", "N"], num_args = 2, value_parser = parse_lattice, allow_negative_numbers = true, conflicts_with_all = ["seeds", "rng_seed", "seeding"])]
     lattice: Option<Vec<LatticeValue>>,
 
-    /// Read seeds from a file instead: text with x, y, z on each line (x, y in 2D), where a last column radius weights the
-    /// cells; .xyz; .json, such as --cells-json writes; or Neper's .tess, which tells the box as well
+    /// Read seeds from a file instead: text with x, y, z on each line (x, y in 2D), or with names of columns in the first line,
+    /// where radius, diameter or weight makes power cells; .xyz; .json; or Neper's .tess, which tells the box as well
     ///
     /// Example: --seeds-file seeds.csv
     #[arg(long, value_name = "FILE", conflicts_with_all = ["seeds", "rng_seed", "seeding", "lattice"])]

@@ -181,9 +181,12 @@ fn write_stl(mesh: &MeshToWrite<'_>, out: &mut dyn Write) -> io::Result<()> {
         Ok(())
     })?;
     if let Some(point) = outside {
-        return Err(io::Error::other(format!("{point} is too far out for STL's single precision")));
+        return Err(io::Error::other(format!(
+            "{point} is too far out for STL's single precision; write .vtp instead"
+        )));
     }
-    u32::try_from(triangles.len()).map_err(|_| io::Error::other("more triangles than STL can count"))?;
+    u32::try_from(triangles.len())
+        .map_err(|_| io::Error::other("more triangles than STL can count; write .ply instead"))?;
     stl_io::write_stl(&mut &mut *out, triangles.iter())
 }
 
