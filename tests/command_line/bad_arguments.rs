@@ -80,6 +80,14 @@ fn relaxation_time() {
 }
 
 #[test]
+fn free_grains_without_a_time() {
+    let workplace = Workplace::new();
+    let message = "--free lets grains grow for a time, and has no equilibrium; give one, such as --relax 0.3";
+    workplace.refuses("--seeds 10 --free --relax equilibrium", USAGE, message);
+    workplace.refuses("--seeds 10 --dim 2 --free --relax equilibrium", USAGE, message);
+}
+
+#[test]
 fn dimension() {
     refuses_values("--dim", "--dim <2|3>", &["1", "4", "flat"], "grains have 2 or 3 dimensions");
 }

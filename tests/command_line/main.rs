@@ -3,6 +3,7 @@
 
 mod bad_arguments;
 mod bad_outputs;
+mod bad_relaxation;
 mod bad_seed_files;
 mod check;
 mod config_files;

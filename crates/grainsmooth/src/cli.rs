@@ -4,6 +4,7 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 use grainsmooth::{Config, PeriodicCut, read_file_domain};
+use polycrystal::{Relaxation, Volumes};
 
 use crate::check_run::CheckArguments;
 use crate::mesh_cli::MeshArguments;
@@ -108,6 +109,11 @@ impl Arguments {
         let periodic_cut = arguments.periodic_cut(domain.periodic);
         if periodic_cut == PeriodicCut::Box && files.has_series() {
             usage("--series shows whole grains; leave --periodic-cut box out");
+        }
+        if smoothing.volumes() == Volumes::Free && smoothing.relax == Relaxation::Equilibrium {
+            usage(
+                "--free lets grains grow for a time, and has no equilibrium; give one, such as --relax 0.3",
+            );
         }
         Ok(Config {
             seeds: seeds.source(domain.dimension),

@@ -202,6 +202,14 @@ pub enum Error {
     /// The network cannot be made, relaxed, or is invalid.
     #[error(transparent)]
     Network(#[from] NetworkError),
+    /// Grains cannot grow freely for so long.
+    #[error("{cause}{}", works.map_or(String::new(), |time| format!("; --relax {time} works")))]
+    GrowsTooLong {
+        /// What happens then.
+        cause: NetworkError,
+        /// A time for which they can.
+        works: Option<f64>,
+    },
     /// A mesh file cannot be used.
     #[error("{}: {problem}", path.display())]
     MeshFile {

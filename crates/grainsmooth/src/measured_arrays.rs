@@ -2,7 +2,7 @@
 
 use polycrystal::{
     Boundary, BoundaryId, Elements, Measures, PointCurvature, QuadruplePointMeasures, Side, Surface,
-    TripleLineMeasures, measure_network, point_curvatures, point_dihedral_angles,
+    TripleLineMeasures, point_curvatures, point_dihedral_angles,
 };
 
 use crate::Polycrystal;
@@ -57,7 +57,7 @@ impl<'a> MeasuredArrays<'a> {
         }
         Self {
             polycrystal,
-            measures: measure_network(network, points),
+            measures: polycrystal.measures(),
             curvatures: point_curvatures(&surface),
             angles: point_dihedral_angles(network, points),
             boundaries,
@@ -175,6 +175,7 @@ impl<'a> MeasuredArrays<'a> {
             ("Length", of(|line| line.length)),
             ("SmallestAngle", of(|line| line.smallest_angle)),
             ("LargestAngle", of(|line| line.largest_angle)),
+            ("Residual", of(|line| line.residual.unwrap_or(f64::NAN))),
         ];
         NumberArrays { single, pairs: Vec::new() }
     }

@@ -4,11 +4,16 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use polycrystal::{
-    AngleStatistics, Balance, Boundary, Certificate, Equilibrium, MeshSize, Network, NetworkError,
+    AngleStatistics, Attempt, Balance, Boundary, Certificate, Equilibrium, HerringResidual, MeshSize,
+    Network, NetworkError,
 };
-use polycrystal::{NetworkRecipe, Reconnections, RelaxationStep, Relaxed, Volumes, WeightedAngle};
+use polycrystal::{Measures, RegularCells, Side, measure_network};
 use polycrystal::{
-    angles_between_boundaries, dihedral_angles, equilibrate, regular_cells, relax_watched, validate,
+    NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, Volumes, WeightedAngle,
+};
+use polycrystal::{
+    angles_between_boundaries, dihedral_angles, equilibrate, herring_residual, regular_cells, relax_watched,
+    validate,
 };
 use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
@@ -64,6 +69,10 @@ impl Stage {
     }
 }
 
+/// Factor by which each time that is tried for grains that grow too long is shorter than the last, and how many are tried.
+const SHORTER: f64 = 0.6;
+const SHORTER_TIMES: usize = 12;
+
 /// Told how far a run is: the stage, the steps of it that are done, and their number.
 pub type Progress<'a> = &'a (dyn Fn(Stage, usize, usize) + Sync);
 
@@ -86,6 +95,10 @@ pub struct Polycrystal {
     pub collapsed: Collapsed,
     /// How relaxation to equilibrium changed the topology and how near it came; nothing where it kept the topology.
     pub equilibrium: Option<(Reconnections, Balance)>,
+    /// What was tried before this result, and why it was given up.
+    pub attempts: Vec<Attempt>,
+    /// How far triple lines are from rest, if boundaries meet anywhere; of grains cut at a periodic box, before the cut.
+    pub residual: Option<HerringResidual>,
     /// Angles between boundaries of the flat network, before relaxation.
     pub flat_angles: Vec<WeightedAngle>,
     /// Their statistics, if boundaries meet inside the domain.
@@ -97,6 +110,25 @@ pub struct Polycrystal {
 }
 
 impl Polycrystal {
+    /// What the network is like. Where it is cut at a periodic box, tensions are not known to be at rest beside the cut.
+    pub(crate) fn measures(&self) -> Measures {
+        let mut measures = measure_network(&self.network, &self.points);
+        if self.config.periodic_cut == PeriodicCut::Box && self.config.periodic.any() {
+            let is_cut = |sides: &[Side]| sides.contains(&Side::Exterior);
+            match &mut measures {
+                Measures::Space(space) => {
+                    let cut = space.triple_lines.iter_mut().filter(|line| is_cut(&line.sides));
+                    cut.for_each(|line| line.residual = None);
+                }
+                Measures::Plane(plane) => {
+                    let cut = plane.triple_points.iter_mut().filter(|point| is_cut(&point.sides));
+                    cut.for_each(|point| point.residual = None);
+                }
+            }
+        }
+        measures
+    }
+
     /// The grains of a periodic box cut at its walls, as [`PeriodicCut::Box`](crate::PeriodicCut::Box) asks; others as they are.
     ///
     /// # Errors
@@ -249,18 +281,28 @@ pub fn smooth_watched(
     let tessellation = &cells.tessellation;
     let mut clock = Clock { progress, times: cells.times.clone() };
     check_levels(control_mesh(config, tessellation), config.levels, available_memory())?;
+    let mut attempts = Vec::new();
     let mut tries = Regularization::tries(config).iter();
     let (regularization, smoothed) = loop {
         let regularization = *tries.next().expect("there is one, and the last is the result");
-        let smoothed = smooth_regularized(config, tessellation, regularization, &mut clock, &mut watch);
-        let is_tangled =
-            smoothed.as_ref().is_err_and(|error| matches!(error, Error::Network(cause) if is_tangle(cause)));
-        if !is_tangled || tries.len() == 0 {
-            break (regularization, smoothed?);
+        match smooth_regularized(config, tessellation, regularization, &mut attempts, &mut clock, &mut watch)
+        {
+            Err(error) if error.is_tangle() && tries.len() > 0 => {
+                attempts.push(Attempt::new(regularization.in_words(), &error));
+            }
+            Err(cause) if config.volumes == Volumes::Free && cause.is_of_time() => {
+                return Err(Error::GrowsTooLong {
+                    works: time_that_works(config, tessellation, &cause),
+                    cause,
+                });
+            }
+            smoothed => break (regularization, smoothed?),
         }
     };
     let Smoothed { network, points, relaxed, collapsed, equilibrium, flat_angles, angles_before, validation } =
         smoothed;
+    attempts.extend(relaxed.given_up.clone());
+    let residual = clock.time(Stage::Validation, || herring_residual(&network, &points));
     let times = clock.times;
     let config = config.clone();
     Ok(Polycrystal {
@@ -272,11 +314,44 @@ pub fn smooth_watched(
         regularization,
         collapsed,
         equilibrium,
+        attempts,
+        residual,
         flat_angles,
         angles_before,
         validation,
         times,
     })
+}
+
+/// A time for which grains can grow freely, where for the config's own they cannot: it is tried.
+fn time_that_works(config: &Config, tessellation: &Tessellation, cause: &NetworkError) -> Option<f64> {
+    let Relaxation::Time(asked) = config.relaxation else { return None };
+    let mut time = match cause {
+        NetworkError::GrainVanished { time, .. } if *time > 0.0 => 0.9 * time,
+        _ => SHORTER * asked,
+    };
+    let mut clock = Clock { progress: &|_, _, _| (), times: Vec::new() };
+    for _ in 0..SHORTER_TIMES {
+        time = two_digits_down(time);
+        let shorter = Config { relaxation: Relaxation::Time(time), ..config.clone() };
+        let works = |regularization: &Regularization| {
+            let attempts = &mut Vec::new();
+            smooth_regularized(&shorter, tessellation, *regularization, attempts, &mut clock, &mut |_| ())
+                .is_ok()
+        };
+        if Regularization::tries(config).iter().any(works) {
+            return Some(time);
+        }
+        time *= SHORTER;
+    }
+    None
+}
+
+/// The largest number of two digits that is not above a positive one.
+fn two_digits_down(number: f64) -> f64 {
+    let unit = 10f64.powf(number.log10().floor() - 1.0);
+    let digits = format!("{:.1e}", (number / unit).floor() * unit);
+    digits.parse().unwrap_or(number)
 }
 
 /// What is taken out of the cells before relaxation. Cells that may change their neighbours are relaxed as they are instead.
@@ -300,6 +375,14 @@ impl Regularization {
         }
     }
 
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::Foreseeing => "cells without edges that are or become short",
+            Self::Plain => "cells without short edges",
+            Self::None => "cells as they are",
+        }
+    }
+
     /// Whether less was taken out than is usual where regularisation is asked for.
     pub(crate) fn fell_back(self, config: &Config) -> bool {
         Self::tries(config)[0] != self
@@ -312,14 +395,6 @@ impl Regularization {
             _ => &[Self::Foreseeing, Self::Plain, Self::None],
         }
     }
-}
-
-/// Whether a network could not be relaxed as it is, but might be with less taken out.
-fn is_tangle(error: &NetworkError) -> bool {
-    matches!(
-        error,
-        NetworkError::Invalid(_) | NetworkError::Folded { .. } | NetworkError::VolumeNotRestored { .. }
-    )
 }
 
 /// A valid network and how it came about, as [`Polycrystal`] has it.
@@ -339,11 +414,12 @@ fn smooth_regularized(
     config: &Config,
     tessellation: &Tessellation,
     regularization: Regularization,
+    attempts: &mut Vec<Attempt>,
     clock: &mut Clock<'_>,
     watch: &mut impl FnMut(RelaxationStep<'_>),
-) -> Result<Smoothed, Error> {
+) -> Result<Smoothed, NetworkError> {
     let (mut network, flat, mut collapsed) =
-        clock.time(Stage::Network, || network(config, tessellation, regularization))?;
+        clock.time(Stage::Network, || network(config, tessellation, regularization, attempts))?;
     let angles_before = dihedral_angles(&network, network.control_mesh(), &flat);
     let flat_angles = angles_between_boundaries(&network, network.control_mesh(), &flat);
     let mut equilibrium = None;
@@ -355,12 +431,22 @@ fn smooth_regularized(
         };
         // Cells that may change their neighbours are not regularised: one try tells all.
         if let Regularization::Foreseeing = regularization
-            && let Some((balanced, relaxed, merged, report)) = balanced(config, tessellation, &mut watch)
+            && config.lets_topology_change()
         {
-            network = balanced;
-            equilibrium = Some(report);
-            collapsed = merged;
-            return Ok(relaxed);
+            match balanced(config, tessellation, &mut watch) {
+                Ok(balanced) => {
+                    network = balanced.network;
+                    equilibrium = Some((balanced.reconnections, balanced.balance));
+                    collapsed = balanced.merged;
+                    attempts.extend(balanced.attempts);
+                    return Ok(balanced.relaxed);
+                }
+                // Equilibrium is then that of the topology that regularisation leaves.
+                Err(error) if error.is_tangle() => {
+                    attempts.push(Attempt::new("letting neighbours switch", &error));
+                }
+                Err(error) => return Err(error),
+            }
         }
         relax_watched(&network, &flat, &config.relaxation, config.volumes, watch)
     })?;
@@ -374,24 +460,16 @@ fn smooth_regularized(
     Ok(Smoothed { network, points, relaxed, collapsed, equilibrium, flat_angles, angles_before, validation })
 }
 
-/// The network in equilibrium with all changes of topology that this takes, and what these were.
-///
-/// Nothing where topology is to stay as it is, or where no valid network comes out: then equilibrium is that of the topology
-/// that regularisation leaves.
+/// The network in equilibrium with all changes of topology that this takes.
 fn balanced(
     config: &Config,
     tessellation: &Tessellation,
     watch: &mut impl FnMut(RelaxationStep<'_>),
-) -> Option<(Network, Relaxed, Collapsed, (Reconnections, Balance))> {
-    if !config.lets_topology_change() {
-        return None;
-    }
+) -> Result<Equilibrium, NetworkError> {
     let Config { junctions, levels, .. } = *config;
     let tension = |boundary: &Boundary| config.tension(boundary);
     let recipe = NetworkRecipe { junctions, levels: levels as usize, tension: &tension };
-    let Equilibrium { network, relaxed, reconnections, merged, balance } =
-        equilibrate(tessellation, &recipe, watch).ok()?;
-    Some((network, relaxed, merged, (reconnections, balance)))
+    equilibrate(tessellation, &recipe, watch)
 }
 
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.
@@ -399,6 +477,7 @@ fn network(
     config: &Config,
     tessellation: &Tessellation,
     regularization: Regularization,
+    attempts: &mut Vec<Attempt>,
 ) -> Result<(Network, Vec<DVec3>, Collapsed), NetworkError> {
     let Config { face_mesh, junctions, levels, regularize, .. } = *config;
     let network_of = |cells, face_mesh| {
@@ -406,7 +485,11 @@ fn network(
         Ok::<_, NetworkError>((network.with_tensions(|boundary| config.tension(boundary))?, flat))
     };
     let (regular, collapsed) = match regularization {
-        Regularization::Foreseeing => regular_cells(tessellation, regularize),
+        Regularization::Foreseeing => {
+            let RegularCells { cells, collapsed, given_up } = regular_cells(tessellation, regularize)?;
+            attempts.extend(given_up);
+            (cells, collapsed)
+        }
         Regularization::Plain => tessellation.regularized(regularize),
         Regularization::None => {
             let (network, flat) = network_of(tessellation, face_mesh)?;

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use polycrystal::{
     BoundaryMeasures, GrainMeasures, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures, PlaneMeasures,
-    QuadruplePointMeasures, Side, SpaceMeasures, TripleLineMeasures, TriplePointMeasures, measure_network,
+    QuadruplePointMeasures, Side, SpaceMeasures, TripleLineMeasures, TriplePointMeasures,
 };
 use serde::Serialize;
 use voronoi::Dimension;
@@ -78,7 +78,7 @@ struct Distribution {
 impl Polycrystal {
     /// Measures the smoothed network.
     pub fn statistics(&self) -> NetworkStatistics {
-        let (grains, others, distributions) = match measure_network(&self.network, &self.points) {
+        let (grains, others, distributions) = match self.measures() {
             Measures::Space(measures) => in_space(&measures),
             Measures::Plane(measures) => in_plane(&measures),
         };
@@ -318,14 +318,24 @@ fn triple_line_table(lines: &[TripleLineMeasures]) -> Table {
             Value::Number(line.length),
             Value::Number(line.smallest_angle),
             Value::Number(line.largest_angle),
+            Value::Number(line.residual.unwrap_or(f64::NAN)),
             Value::Flag(line.is_closed),
             sides(&line.sides),
             Value::Numbers(line.mean_angles.clone()),
             ids(line.boundaries.iter().map(|boundary| boundary.0)),
         ]
     };
-    let columns =
-        &["id", "length", "smallest_angle", "largest_angle", "closed", "sides", "mean_angles", "boundaries"];
+    let columns = &[
+        "id",
+        "length",
+        "smallest_angle",
+        "largest_angle",
+        "residual",
+        "closed",
+        "sides",
+        "mean_angles",
+        "boundaries",
+    ];
     Table { columns, rows: lines.iter().enumerate().map(row).collect() }
 }
 
@@ -407,9 +417,10 @@ fn triple_point_table(points: &[TriplePointMeasures]) -> Table {
         let mut row = vec![Value::Integer(i64::from(at.point))];
         row.extend(numbers(at.position.to_array()));
         row.extend([sides(&at.sides), Value::Numbers(at.angles.clone())]);
+        row.push(Value::Number(at.residual.unwrap_or(f64::NAN)));
         row.push(ids(at.boundaries.iter().map(|boundary| boundary.0)));
         row
     };
-    let columns = &["point", "x", "y", "sides", "angles", "boundaries"];
+    let columns = &["point", "x", "y", "sides", "angles", "residual", "boundaries"];
     Table { columns, rows: points.iter().map(row).collect() }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use polycrystal::{AngleStatistics, Balance, Boundary, Reconnections, Relaxation};
+use polycrystal::{AngleStatistics, Balance, Boundary, HerringResidual, Reconnections, Relaxation};
 use voronoi::{Collapsed, Dimension};
 
 use crate::{Polycrystal, Regularization, Stage, TriangleAngles};
@@ -47,16 +47,20 @@ impl fmt::Display for Summary<'_> {
                 "regularized {kept}: with more taken out, boundaries folded or crossed when relaxed"
             )?;
         }
-        let (junctions, element, measure, size) = match network.domain().dimension() {
-            Dimension::Two => {
-                (format!("{} triple points", counts.triple_lines), "segment", "areas", "length")
-            }
+        let (junctions, places, element, measure, size) = match network.domain().dimension() {
+            Dimension::Two => (
+                format!("{} triple points", counts.triple_lines),
+                "triple points",
+                "segment",
+                "areas",
+                "length",
+            ),
             Dimension::Three => {
                 let counts = format!(
                     "{} triple lines, {} quadruple points",
                     counts.triple_lines, counts.quadruple_points
                 );
-                (counts, "triangle", "volumes", "area")
+                (counts, "triple lines", "triangle", "volumes", "area")
             }
         };
         writeln!(out, "junctions   {junctions}")?;
@@ -78,6 +82,12 @@ impl fmt::Display for Summary<'_> {
             )?,
             (None, None) => {}
         }
+        if let Some(HerringResidual { rms, largest }) = polycrystal.residual {
+            writeln!(
+                out,
+                "residual    {rms:.4} rms of the tensions at {places}, largest {largest:.4}; 0 at rest"
+            )?;
+        }
         if let Some(quality) = polycrystal.validation.triangles {
             writeln!(out, "triangles   {}", TriangleAngles::from(quality))?;
         }
@@ -94,13 +104,15 @@ impl fmt::Display for Summary<'_> {
                 "topology    kept: angles are off 120 degrees where grains would switch neighbours"
             )?;
         }
-        if polycrystal.relaxed.fell_back {
-            let level = polycrystal.relaxed.level;
+        if polycrystal.relaxed.given_up.is_some() {
             writeln!(
                 out,
-                "relaxation  of the points of level {level} only: those of level {} folded when moved too",
-                level + 1
+                "relaxation  of the points of level {} and coarser ones only",
+                polycrystal.relaxed.level
             )?;
+        }
+        for attempt in &polycrystal.attempts {
+            writeln!(out, "given up    {attempt}")?;
         }
         let validation = &polycrystal.validation;
         let error = validation.largest_volume_error;
@@ -123,7 +135,7 @@ fn write_equilibrium(
     out: &mut fmt::Formatter<'_>,
     dimension: Dimension,
     Reconnections { opened, closed, swapped }: Reconnections,
-    Balance { flagged_lines, largest_deviation }: Balance,
+    Balance { flagged_lines, largest_residual }: Balance,
 ) -> fmt::Result {
     match dimension {
         Dimension::Two => {
@@ -133,7 +145,7 @@ fn write_equilibrium(
             )?;
             writeln!(
                 out,
-                "equilibrium triple points within {largest_deviation:.2} degrees; {flagged_lines} points of more than three grains"
+                "equilibrium {flagged_lines} points flagged (of more than three grains, or not at rest); largest residual of others {largest_residual:.4}"
             )
         }
         Dimension::Three => {
@@ -143,7 +155,7 @@ fn write_equilibrium(
             )?;
             writeln!(
                 out,
-                "equilibrium triple lines within {largest_deviation:.2} degrees, but for those at {flagged_lines} flagged (short, or of four boundaries)"
+                "equilibrium {flagged_lines} triple lines flagged (short, of four boundaries, or not at rest); largest residual of others {largest_residual:.4}"
             )
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use polycrystal::{AngleStatistics, Boundary};
+use polycrystal::{AngleStatistics, Boundary, HerringResidual};
 use serde::Serialize;
 use voronoi::Dimension;
 
@@ -26,6 +26,9 @@ pub struct SummaryRecord {
     collapsed_edges: usize,
     collapsed_boundaries: usize,
     equilibrium: Option<Equilibrium>,
+    /// What was tried before and why it was given up, in order.
+    attempts: Vec<Attempt>,
+    residual: Option<Residual>,
     points: usize,
     /// Triangles, in the plane segments.
     elements: usize,
@@ -55,9 +58,23 @@ struct Equilibrium {
     boundaries_to_lines: usize,
     boundaries_swapped: usize,
     /// Short triple lines that stayed.
+    /// Lines that are not at rest: short, of more than three boundaries, or with a large residual.
     flagged_lines: usize,
-    /// Of an angle along a triple line away from those, from 120 degrees.
-    largest_deviation: f64,
+    /// Of the lines that are not flagged.
+    largest_residual: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Attempt {
+    tried: String,
+    said: String,
+}
+
+/// Of Herring's condition at triple lines.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct Residual {
+    rms: f64,
+    largest: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -105,8 +122,14 @@ impl SummaryRecord {
                 boundaries_to_lines: reconnections.closed,
                 boundaries_swapped: reconnections.swapped,
                 flagged_lines: balance.flagged_lines,
-                largest_deviation: balance.largest_deviation,
+                largest_residual: balance.largest_residual,
             }),
+            attempts: polycrystal
+                .attempts
+                .iter()
+                .map(|attempt| Attempt { tried: attempt.tried.clone(), said: attempt.said.clone() })
+                .collect(),
+            residual: polycrystal.residual.map(|HerringResidual { rms, largest }| Residual { rms, largest }),
             points: finest.vertex_count(),
             elements: finest.element_count(),
             level: config.levels,

@@ -91,6 +91,18 @@ impl Boundary {
         [first, self.twin.map_or(second, |twin| boundaries[twin.boundary.index()].sides[0])]
     }
 
+    /// The boundary as the law of its tension is asked about it: on both sides the grains that meet there, a period between them or not, the
+    /// smaller first, or a grain and then the exterior at a wall; no twin. Given all boundaries of the network.
+    ///
+    /// # Panics
+    /// When the boundary's twin is none of them.
+    #[must_use]
+    pub fn between_grains(&self, boundaries: &[Boundary]) -> Self {
+        let mut sides = self.sides_across(boundaries);
+        sides.sort_unstable();
+        Self { sides, wall: self.wall, twin: None }
+    }
+
     /// Whether grains lie on both sides, without a period between them.
     pub fn is_interior(&self) -> bool {
         self.wall.is_none() && self.twin.is_none()

@@ -152,7 +152,8 @@ impl Certificate {
             let relative_error = (self.grain_volumes[found].1 / claimed - 1.0).abs();
             self.largest_volume_error = self.largest_volume_error.max(relative_error);
             let area = areas.get(&Side::Grain(*grain)).copied().unwrap_or(0.0);
-            if is_closed && relative_error > VOLUME_TOLERANCE + shift * area / claimed {
+            let is_right = relative_error <= VOLUME_TOLERANCE + shift * area / claimed;
+            if is_closed && !is_right {
                 wrong.push(Fault::WrongVolume { grain: *grain, relative_error });
             }
         }
@@ -168,7 +169,8 @@ impl Certificate {
             let relative_error = (total / whole - 1.0).abs();
             self.total_volume_error = relative_error;
             let outside = areas.get(&Side::Exterior).copied().unwrap_or(0.0);
-            if is_closed && relative_error > VOLUME_TOLERANCE + shift * outside / whole {
+            let is_right = relative_error <= VOLUME_TOLERANCE + shift * outside / whole;
+            if is_closed && !is_right {
                 faults.push(Fault::WrongTotal { relative_error });
             }
         }

@@ -1,4 +1,52 @@
+use std::fmt;
+
 use crate::{Faults, GrainId, Side};
+
+/// A way to a result that was tried before the one that led there, and what it said: geometry that tangles one way need not another.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Attempt {
+    /// What was tried, in a few words.
+    pub tried: String,
+    /// The error that it ended with.
+    pub said: String,
+}
+
+impl Attempt {
+    /// What was tried, and its error.
+    pub fn new(tried: impl Into<String>, error: &NetworkError) -> Self {
+        Self { tried: tried.into(), said: error.to_string() }
+    }
+}
+
+impl fmt::Display for Attempt {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{}: {}", self.tried, self.said)
+    }
+}
+
+impl NetworkError {
+    /// Whether geometry tangled on this way, so that another way may lead to a network: no other error is worth a second attempt.
+    pub fn is_tangle(&self) -> bool {
+        matches!(
+            self,
+            Self::Invalid(_)
+                | Self::Folded { .. }
+                | Self::VolumeNotRestored { .. }
+                | Self::BoundaryTooSmall { .. }
+        )
+    }
+
+    /// Whether a shorter relaxation may be without this error.
+    pub fn is_of_time(&self) -> bool {
+        matches!(
+            self,
+            Self::Invalid(_)
+                | Self::Folded { .. }
+                | Self::VolumeNotRestored { .. }
+                | Self::GrainVanished { .. }
+        )
+    }
+}
 
 /// Why a network could not be made or relaxed.
 #[derive(Debug, thiserror::Error)]
@@ -102,13 +150,13 @@ pub enum NetworkError {
     },
     /// A grain that is free to shrink has done so to nothing.
     #[error(
-        "grain {} shrinks to nothing within the relaxation time {time}, and none can vanish; relax for a shorter time, or keep volumes",
+        "grain {} shrinks to nothing by the relaxation time {time:.3}, and none can vanish; relax for a shorter time, or keep volumes",
         grain.0
     )]
     GrainVanished {
         /// The grain.
         grain: GrainId,
-        /// The whole relaxation time, in units of the mean grain size squared.
+        /// The time by which it is gone, in units of the mean grain size squared.
         time: f64,
     },
     /// The finished network does not keep its contract.

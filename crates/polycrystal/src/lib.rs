@@ -47,6 +47,7 @@ mod regular_cells;
 mod relax;
 mod seams;
 mod surface;
+mod tension;
 mod triangle_quality;
 mod validate;
 mod volume;
@@ -56,21 +57,21 @@ pub use angles::{AngleStatistics, WeightedAngle, angles_between_boundaries, dihe
 pub use boundary::{Boundary, BoundaryId, GrainId, Side, Twin};
 pub use certificate::{Certificate, Claims, Faults, certify};
 pub use control_mesh::JunctionCounts;
-pub use error::NetworkError;
+pub use error::{Attempt, NetworkError};
 pub use face_mesh::{FaceMesh, MeshSize};
 pub use fault::{Fault, Place};
 pub use folds::folded_edges;
 pub use level::{Level, Mesh};
 pub use measures::{
-    BoundaryMeasures, GrainMeasures, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures, PlaneMeasures,
-    PointCurvature, QuadruplePointMeasures, SpaceMeasures, TripleLineMeasures, TriplePointMeasures, measure,
-    measure_network, point_curvatures, point_dihedral_angles,
+    BoundaryMeasures, GrainMeasures, HerringResidual, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures,
+    PlaneMeasures, PointCurvature, QuadruplePointMeasures, SpaceMeasures, TripleLineMeasures,
+    TriplePointMeasures, herring_residual, measure, measure_network, point_curvatures, point_dihedral_angles,
 };
 pub use network::{Junctions, Network};
 pub use node_type::NodeType;
 pub use orientation::outward_sides;
 pub use periodic::PeriodicCopies;
-pub use regular_cells::regular_cells;
+pub use regular_cells::{RegularCells, regular_cells};
 pub use relax::{
     Balance, Equilibrium, NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, Volumes,
     equilibrate, relax, relax_watched,

@@ -2,6 +2,7 @@
 
 mod complex;
 mod curvatures;
+mod herring;
 mod lines;
 mod plane;
 mod space;
@@ -9,11 +10,13 @@ mod space;
 use glam::DVec3;
 
 pub use curvatures::{PointCurvature, point_curvatures};
+pub use herring::{HerringResidual, herring_residual};
 pub use plane::{PlaneBoundaryMeasures, PlaneGrainMeasures, PlaneMeasures, TriplePointMeasures};
 pub use space::{BoundaryMeasures, GrainMeasures, QuadruplePointMeasures, SpaceMeasures, TripleLineMeasures};
 
 use crate::{Elements, Network, Side, Surface};
 pub(crate) use complex::Complex;
+pub(crate) use herring::rms_residual;
 
 /// What a network is like. Lengths are in the unit of its points, angles in degrees.
 #[derive(Debug, Clone, PartialEq)]

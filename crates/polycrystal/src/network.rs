@@ -5,6 +5,7 @@ use voronoi::{Domain, Tessellation};
 
 use crate::control_mesh::{ControlMesh, JunctionCounts};
 use crate::folds::element_normals;
+use crate::tension::{checked_tension, mean_tension};
 use crate::volume::{boundary_volumes, sum_over_grains};
 use crate::{Boundary, FaceMesh, Freedom, Level, MeshSize, NetworkError, Surface, WallSet, WallSets};
 
@@ -179,24 +180,27 @@ impl Network {
     /// The network with other tensions: energies per area (in the plane: per length) of its boundaries, in any unit. Without,
     /// boundaries between grains have 1 and walls 0.
     ///
-    /// Both copies of a boundary of a periodic network must be given the same.
+    /// Each boundary is shown as [`Boundary::between_grains`] has it, in a periodic network like any other.
     ///
     /// # Errors
     /// [`NetworkError::BadTension`] where one is negative or not finite.
     pub fn with_tensions(mut self, tension: impl Fn(&Boundary) -> f64) -> Result<Self, NetworkError> {
-        self.tensions = self.boundaries.iter().map(tension).collect();
-        let mut given = self.boundaries.iter().zip(&self.tensions);
-        match given.find(|(_, tension)| !(tension.is_finite() && **tension >= 0.0)) {
-            Some((boundary, tension)) => {
-                Err(NetworkError::BadTension { sides: boundary.sides, tension: *tension })
-            }
-            None => Ok(self),
+        self.tensions.clear();
+        for boundary in &self.boundaries {
+            let boundary = boundary.between_grains(&self.boundaries);
+            self.tensions.push(checked_tension(&boundary, tension(&boundary))?);
         }
+        Ok(self)
     }
 
     /// The tension of each boundary, by number.
     pub fn tensions(&self) -> &[f64] {
         &self.tensions
+    }
+
+    /// The unit of tensions in relaxation, as of [`mean_tension`].
+    pub(crate) fn mean_tension(&self) -> f64 {
+        mean_tension(self.boundaries.iter().zip(self.tensions.iter().copied()))
     }
 
     /// The domain that the grains fill.

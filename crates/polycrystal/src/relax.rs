@@ -31,7 +31,7 @@ mod wedges;
 
 use glam::DVec3;
 
-use crate::{GrainId, Mesh, Network, NetworkError};
+use crate::{Attempt, GrainId, Mesh, Network, NetworkError};
 use flow::{End, Flow, RIGID_LENGTH, Remedy, Stage};
 
 pub use equilibrium::{Balance, Equilibrium, NetworkRecipe, equilibrate};
@@ -53,6 +53,9 @@ const FINE_STEPS: usize = 6;
 /// Steps of grains that grow in the plane: with fewer, rates are off by more than a hundredth.
 const GROWTH_STEPS: usize = 60;
 
+/// Most steps of grains that grow: long before that, one has vanished, or all are at rest.
+const MOST_GROWTH_STEPS: usize = 2000;
+
 /// The usual relaxation time, in units of the mean grain size squared.
 const USUAL_TIME: f64 = 0.3;
 
@@ -73,17 +76,17 @@ const LEAST_GRAIN: f64 = 1e-3;
 pub enum Relaxation {
     /// For a time under curvature flow with unit mobility, in units of the mean grain size squared; 0 leaves boundaries flat.
     Time(f64),
-    /// Until a step of time 0.1 (in the plane: 0.3) lessens the area by no more than [`Relaxation::RESIDUAL`] of it, or angles at triple lines have come
-    /// no closer to 120 degrees, by three hundredths, for three steps. The step at which they were closest is the result.
+    /// Until a step of time 0.1 (in the plane: 0.3) lessens the area by no more than [`Relaxation::LEAST_GAIN`] of it, or the residual of
+    /// Herring's condition has not fallen, by three hundredths, for three steps. The step at which it was least is the result.
     ///
     /// [`relax`] lets no boundary vanish on the way and no neighbours switch, so this is the least area of this topology: where
-    /// grains would rather switch neighbours, angles stay off 120 degrees. [`equilibrate`] lets them.
+    /// grains would rather switch neighbours, triple lines stay out of balance. [`equilibrate`] lets them.
     Equilibrium,
 }
 
 impl Relaxation {
     /// Change of area with a step, as a share of the area, that counts as equilibrium.
-    pub const RESIDUAL: f64 = 3e-6;
+    pub const LEAST_GAIN: f64 = 3e-6;
 }
 
 impl Default for Relaxation {
@@ -130,8 +133,8 @@ pub struct Relaxed {
     pub steps: usize,
     /// Time passed, as of [`RelaxationStep::time`].
     pub time: f64,
-    /// Whether the points of the level after that one should have moved too, but folded: then these are the last that were good.
-    pub fell_back: bool,
+    /// Why the points of the level after that one did not move too, where they should have: then these are the last that were good.
+    pub given_up: Option<Attempt>,
 }
 
 impl Relaxed {
@@ -171,21 +174,24 @@ pub fn relax_watched(
     volumes: Volumes,
     mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<Relaxed, NetworkError> {
-    relax_levels(network, control_points, relaxation, volumes, RIGID_LENGTH, &mut watch)
+    let tension_unit = network.mean_tension();
+    relax_levels(network, control_points, relaxation, volumes, RIGID_LENGTH, tension_unit, &mut watch)
 }
 
-/// As [`relax_watched`]; control edges below `rigid_length`, in units of the feature size, do not change their lengths.
+/// As [`relax_watched`], with tensions in the given unit; control edges below `rigid_length`, in units of the feature size, do not change
+/// their lengths.
 fn relax_levels(
     network: &Network,
     control_points: &[DVec3],
     relaxation: &Relaxation,
     volumes: Volumes,
     rigid_length: f64,
+    tension_unit: f64,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<Relaxed, NetworkError> {
     let is_in_space = matches!(network.control_mesh().mesh, Mesh::Triangles(_));
     let flow = |level: usize| {
-        let flow = Flow::new(network, level, volumes).with_rigid_length(rigid_length);
+        let flow = Flow::new(network, level, volumes, tension_unit).with_rigid_length(rigid_length);
         match relaxation {
             // In the plane nothing holds a flow up: steps may be long, and what folds moves as one.
             Relaxation::Equilibrium if is_in_space => flow.until_rest(Remedy::Brake),
@@ -204,13 +210,18 @@ fn relax_levels(
         if volumes == Volumes::Kept {
             flow(0).restore_lost_volumes(&mut points)?;
         }
-        return Ok(Relaxed { level: 0, points, steps: 0, time: 0.0, fell_back: false });
+        return Ok(Relaxed { level: 0, points, steps: 0, time: 0.0, given_up: None });
     }
     let last = (network.levels().len() - 1).min(finest);
     let whole_time = time * network.mean_grain_size().powi(2);
     // Grains that grow do so for the time that was asked for, not once more on each level.
     let (first, first_steps) = match volumes {
-        Volumes::Free => (last, if is_in_space { COARSE_STEPS } else { GROWTH_STEPS }),
+        Volumes::Free => {
+            let fewest = if is_in_space { COARSE_STEPS } else { GROWTH_STEPS };
+            let longest = USUAL_TIME / fewest as f64;
+            let steps = (fewest..MOST_GROWTH_STEPS).find(|steps| time <= longest * *steps as f64);
+            (last, steps.unwrap_or(MOST_GROWTH_STEPS))
+        }
         Volumes::Kept => (0, COARSE_STEPS),
     };
     let steps = first_steps + (last - first) * FINE_STEPS;
@@ -223,9 +234,9 @@ fn relax_levels(
         let stage = match relaxation {
             Relaxation::Equilibrium if level == last => {
                 let step_time = if is_in_space { REST_STEP / LONG_STEP * whole_time } else { whole_time };
-                Stage { step_time, steps: REST_STEPS, residual: Relaxation::RESIDUAL, end }
+                Stage { step_time, steps: REST_STEPS, least_gain: Relaxation::LEAST_GAIN, end }
             }
-            _ => Stage { step_time: whole_time / count as f64, steps: count, residual: 0.0, end },
+            _ => Stage { step_time: whole_time / count as f64, steps: count, least_gain: 0.0, end },
         };
         let start = if level > 0 {
             let from = if level == first { 0 } else { level - 1 };
@@ -243,33 +254,34 @@ fn relax_levels(
         done_before += count;
         match run {
             Ok(moved) => points = moved,
-            Err(error) if level == first => return Err(error),
-            Err(_) => {
+            Err(error) if level == first || !error.is_tangle() => return Err(error),
+            Err(error) => {
                 // Finer points fold where coarser ones do not: these will have to do.
-                let end = Stage { step_time: 0.0, steps: 0, residual: 0.0, end: End::Finished };
+                let end = Stage { step_time: 0.0, steps: 0, least_gain: 0.0, end: End::Finished };
                 points = flow(level - 1).run(&points, &end, &mut |_, _| ())?;
                 let (level, steps) = (level - 1, done_before - count);
-                return Ok(Relaxed { level, points, steps, time: before, fell_back: true });
+                let given_up =
+                    Some(Attempt::new(format!("moving the points of level {}", level + 1), &error));
+                return Ok(Relaxed { level, points, steps, time: before, given_up });
             }
         }
     }
     if volumes == Volumes::Free {
-        check_grains_are_left(network, last, &points, time)?;
+        let volumes = network.grain_volumes(&network.levels()[last], &points);
+        check_grains_are_left(network, &volumes, whole_time)?;
     }
-    Ok(Relaxed { level: last, points, steps, time: passed, fell_back: false })
+    Ok(Relaxed { level: last, points, steps, time: passed, given_up: None })
 }
 
-/// Checks that no grain has shrunk to nothing: it would have to vanish, and its neighbours to meet, for others to grow on as they do.
-fn check_grains_are_left(
-    network: &Network,
-    level: usize,
-    points: &[DVec3],
-    time: f64,
-) -> Result<(), NetworkError> {
-    let volumes = network.grain_volumes(&network.levels()[level], points);
-    let least = LEAST_GRAIN * volumes.iter().sum::<f64>() / volumes.len() as f64;
-    match (0u32..).zip(&volumes).find(|(_, volume)| **volume < least) {
-        Some((grain, _)) => Err(NetworkError::GrainVanished { grain: GrainId(grain), time }),
+/// Checks that no grain has shrunk to nothing by a time: it would have to vanish, and its neighbours to meet, for others to grow on as
+/// they do.
+fn check_grains_are_left(network: &Network, volumes: &[f64], time: f64) -> Result<(), NetworkError> {
+    let least = LEAST_GRAIN * network.domain().measure() / volumes.len() as f64;
+    match (0u32..).zip(volumes).find(|(_, volume)| volume.is_nan() || **volume < least) {
+        Some((grain, _)) => {
+            let time = time / network.mean_grain_size().powi(2);
+            Err(NetworkError::GrainVanished { grain: GrainId(grain), time })
+        }
         None => Ok(()),
     }
 }
@@ -281,6 +293,6 @@ pub(crate) fn foreseen_points(
 ) -> Result<Vec<DVec3>, NetworkError> {
     let whole_time = USUAL_TIME * network.mean_grain_size().powi(2);
     let step_time = whole_time / COARSE_STEPS as f64;
-    let stage = Stage { step_time, steps: COARSE_STEPS, residual: 0.0, end: End::Volumes };
-    Flow::new(network, 0, Volumes::Kept).run(control_points, &stage, &mut |_, _| ())
+    let stage = Stage { step_time, steps: COARSE_STEPS, least_gain: 0.0, end: End::Volumes };
+    Flow::new(network, 0, Volumes::Kept, network.mean_tension()).run(control_points, &stage, &mut |_, _| ())
 }

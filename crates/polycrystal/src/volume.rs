@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::{Boundary, Elements, GrainId, Surface};
 
-/// Six times the volume of the tetrahedron that a triangle spans with the origin.
+/// The volume of the tetrahedron that a triangle spans with the origin.
 pub(crate) fn triangle_volume(corners: [DVec3; 3]) -> f64 {
     corners[0].dot(corners[1].cross(corners[2])) / 6.0
 }

@@ -102,7 +102,9 @@ fn a_grain_that_shrinks_to_nothing_is_named() {
     let (network, flat) = Network::new(&tessellation, Junctions::Crease, 1).expect("a small network");
     // Some have three sides or four.
     let relaxed = flow(&network, &flat, 1.0).map(|relaxed| relaxed.steps);
-    assert!(matches!(relaxed, Err(NetworkError::GrainVanished { time: 1.0, .. })), "{relaxed:?}");
+    let Err(NetworkError::GrainVanished { time, .. }) = relaxed else { panic!("{relaxed:?}") };
+    assert!(time < 0.5, "{time}");
+    assert!(flow(&network, &flat, 0.5 * time).is_ok(), "{time}");
 }
 
 /// MacPherson and Srolovitz 2007: the growth of a grain by its mean width and the length of its triple lines.

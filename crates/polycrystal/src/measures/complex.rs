@@ -12,6 +12,8 @@ pub(crate) struct Complex<'a> {
     pub(super) surface: Surface<'a>,
     /// The two sides of each boundary.
     pub(super) sides: Cow<'a, [[Side; 2]]>,
+    /// The tension of each boundary.
+    pub(super) tensions: Cow<'a, [f64]>,
     /// Of each boundary the one that it is a copy of, or itself.
     pub(super) originals: Vec<BoundaryId>,
     /// Of each point the one that it is a copy of; empty where there are no copies.
@@ -23,16 +25,18 @@ pub(crate) struct Complex<'a> {
 }
 
 impl<'a> Complex<'a> {
-    /// Any surface.
+    /// Any surface. Tensions are 1 between grains, and 0 at the exterior.
     pub(super) fn of_surface(surface: &Surface<'a>) -> Self {
         let Seams { inner, uses } = Seams::of_elements(surface.elements, surface.boundary_of);
         let originals = (0u32..).take(surface.sides.len()).map(BoundaryId).collect();
         let sides = Cow::Borrowed(surface.sides);
-        Self { surface: *surface, sides, originals, points: Vec::new(), inner, uses }
+        let tension = |sides: &[Side; 2]| if sides.contains(&Side::Exterior) { 0.0 } else { 1.0 };
+        let tensions = surface.sides.iter().map(tension).collect();
+        Self { surface: *surface, sides, tensions, originals, points: Vec::new(), inner, uses }
     }
 
     /// A level of a network, whose surface this is.
-    pub(crate) fn of_level(network: &Network, level: &Level, surface: &Surface<'a>) -> Self {
+    pub(crate) fn of_level(network: &'a Network, level: &Level, surface: &Surface<'a>) -> Self {
         let Seams { mut inner, mut uses } = Seams::of_level(level);
         let boundaries = network.boundaries();
         let originals: Vec<BoundaryId> = (0u32..)
@@ -56,7 +60,8 @@ impl<'a> Complex<'a> {
             unite_places(&mut uses, surface.elements, &places);
             points = places.into_iter().map(|(original, _)| original).collect();
         }
-        Self { surface: *surface, sides: Cow::Owned(sides), originals, points, inner, uses }
+        let tensions = Cow::Borrowed(network.tensions());
+        Self { surface: *surface, sides: Cow::Owned(sides), tensions, originals, points, inner, uses }
     }
 
     /// The point that a point is a copy of, or itself.

@@ -82,6 +82,9 @@ pub struct TriplePointMeasures {
     pub sides: Vec<Side>,
     /// The angle of each side, in degrees.
     pub angles: Vec<f64>,
+    /// The residual of Herring's condition, as [`HerringResidual`](crate::HerringResidual) has it: 0 at rest. Nothing where no boundary
+    /// has tension, or walls leave the point no way to go.
+    pub residual: Option<f64>,
     /// The boundaries that meet, in order.
     pub boundaries: Vec<BoundaryId>,
 }
@@ -127,6 +130,7 @@ pub(super) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeas
             position: at(point),
             sides: wedges.iter().map(|wedge| wedge.side).collect(),
             angles: wedges.iter().map(|wedge| wedge.angle.to_degrees()).collect(),
+            residual: complex.residual(place),
             boundaries: complex.boundaries(place),
         });
     }

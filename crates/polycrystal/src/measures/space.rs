@@ -105,6 +105,9 @@ pub struct TripleLineMeasures {
     pub smallest_angle: f64,
     /// The largest.
     pub largest_angle: f64,
+    /// The residual of Herring's condition, as [`HerringResidual`](crate::HerringResidual) has it, as a mean over the length: 0 at rest.
+    /// Nothing where no boundary has tension, or walls leave the line no way to go.
+    pub residual: Option<f64>,
     /// The boundaries that meet, in order.
     pub boundaries: Vec<BoundaryId>,
     /// Length.
@@ -323,6 +326,7 @@ fn measure_line(
         sides,
         smallest_angle: range[0],
         largest_angle: range[1],
+        residual: complex.residual_of_line(line),
         boundaries: line.boundaries.clone(),
         length,
         points: line.points.clone(),

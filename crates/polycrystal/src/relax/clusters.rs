@@ -22,8 +22,10 @@ impl Clusters {
         clusters
     }
 
-    fn root(&self, mut point: u32) -> u32 {
+    fn root(&mut self, mut point: u32) -> u32 {
         while self.parents[point as usize] != point {
+            // Halving the path keeps the forest flat.
+            self.parents[point as usize] = self.parents[self.parents[point as usize] as usize];
             point = self.parents[point as usize];
         }
         point
@@ -33,10 +35,6 @@ impl Clusters {
     fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         self.parents[a.max(b) as usize] = a.min(b);
-        // Halving the path keeps the forest flat.
-        for point in [a, b] {
-            self.parents[point as usize] = self.root(point);
-        }
     }
 
     /// Makes some control points move as one.
@@ -65,12 +63,13 @@ impl Clusters {
         let mut numbers = vec![0; self.parents.len()];
         let mut count = 0;
         for point in (0u32..).take(self.parents.len()) {
-            let root = self.root(point);
-            numbers[point as usize] = if root == point {
+            // A parent is smaller, and has its number already.
+            let parent = self.parents[point as usize];
+            numbers[point as usize] = if parent == point {
                 count += 1;
                 count - 1
             } else {
-                numbers[root as usize]
+                numbers[parent as usize]
             };
         }
         let mut members: Vec<u32> = (0u32..).take(numbers.len()).collect();

@@ -27,7 +27,12 @@ pub(super) fn solve(
             break;
         }
         let image = apply(&direction);
-        let step = size / dot(&direction, &image);
+        let stiffness = dot(&direction, &image);
+        // What cannot move has no answer.
+        if stiffness.is_nan() || stiffness <= 0.0 {
+            break;
+        }
+        let step = size / stiffness;
         solution.iter_mut().zip(&direction).for_each(|(x, p)| *x += p * step);
         residual.iter_mut().zip(&image).for_each(|(r, q)| *r -= q * step);
         let preconditioned = precondition(&residual);

@@ -6,7 +6,9 @@ mod volumes;
 mod widening;
 
 use glam::DVec3;
+use voronoi::Dimension;
 
+use super::check_grains_are_left;
 use super::clusters::Clusters;
 use super::conjugate_gradients::dot;
 use super::face_corners::FaceCorners;
@@ -17,9 +19,10 @@ use super::tangential::{Aim, tangential_moves};
 use super::thin_triangles::Room;
 use super::wedges::Wedges;
 use crate::folds::{element_normals, folded_pairs};
+use crate::measures::rms_residual;
 use crate::seams::Seams;
 use crate::volume::sum_over_grains;
-use crate::{Level, Mesh, Network, NetworkError, Surface, Volumes, dihedral_angles};
+use crate::{GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
 use best::{Badness, Best};
 
 /// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
@@ -74,7 +77,7 @@ pub(super) struct Stage {
     pub(super) step_time: f64,
     pub(super) steps: usize,
     /// The stage ends early when a step lessens the energy by less than this share; never for 0.
-    pub(super) residual: f64,
+    pub(super) least_gain: f64,
     pub(super) end: End,
 }
 
@@ -94,6 +97,8 @@ pub(super) struct Taken {
     pub(super) energy: f64,
     /// The pressure of each grain, up to one that is the same for all; 0 where volumes are free.
     pub(super) pressures: Vec<f64>,
+    /// The volume of each grain.
+    pub(super) volumes: Vec<f64>,
 }
 
 /// A network whose points of one level move.
@@ -117,10 +122,11 @@ pub(super) struct Flow<'a> {
 }
 
 impl<'a> Flow<'a> {
-    pub(super) fn new(network: &'a Network, level: usize, volumes: Volumes) -> Self {
+    /// The flow of the points of one level, by tensions in the given unit: steps are right where this is their mean.
+    pub(super) fn new(network: &'a Network, level: usize, volumes: Volumes, tension_unit: f64) -> Self {
         let surface = (network.levels().len() - 1).min(level + 1);
         let clusters = Clusters::new(&network.levels()[level]);
-        let patches = Patches::new(network, level, surface);
+        let patches = Patches::new(network, level, surface, tension_unit);
         let corners = FaceCorners::new(network, level);
         let Wedged { wedges, neighbors } = Wedged::new(network, surface);
         Self {
@@ -173,7 +179,13 @@ impl<'a> Flow<'a> {
         let mut last_energy = f64::INFINITY;
         let mut best = Best::new();
         for step in 1..=stage.steps {
-            let Taken { energy, .. } = self.step(&mut points, stage.step_time)?;
+            let passed = (step - 1) as f64 * stage.step_time;
+            let taken = self.step(&mut points, stage.step_time);
+            let Taken { energy, volumes, .. } =
+                taken.map_err(|error| self.vanishing(&points, passed, stage.step_time).unwrap_or(error))?;
+            if self.volumes == Volumes::Free {
+                check_grains_are_left(self.network, &volumes, passed)?;
+            }
             progress(step, &points);
             if self.remedy == Remedy::Brake
                 && stage.end != End::Open
@@ -184,7 +196,7 @@ impl<'a> Flow<'a> {
                     break;
                 }
             }
-            if (last_energy - energy).abs() < stage.residual * energy {
+            if (last_energy - energy).abs() < stage.least_gain * energy {
                 break;
             }
             last_energy = energy;
@@ -219,6 +231,22 @@ impl<'a> Flow<'a> {
             points = displaced(start, &moves);
         }
         Err(NetworkError::Folded { count })
+    }
+
+    /// Where volumes are free, the grain that would vanish within a step, if there is one: a ball of radius r lives for a time of r^2 / 4, a
+    /// disc for r^2 / 2.
+    fn vanishing(&self, points: &[DVec3], passed: f64, step_time: f64) -> Option<NetworkError> {
+        if self.volumes == Volumes::Kept {
+            return None;
+        }
+        let volumes = self.network.grain_volumes(self.surface(), &self.refined(points));
+        let (grain, volume) = (0u32..).zip(volumes).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let dimension = self.network.domain().dimension();
+        let radius = 0.5 * dimension.ball_diameter(volume);
+        let lifetime = radius * radius / if dimension == Dimension::Two { 2.0 } else { 4.0 };
+        let time = (passed + lifetime.max(0.0)) / self.network.mean_grain_size().powi(2);
+        let is_vanishing = volume <= 0.0 || lifetime <= step_time;
+        is_vanishing.then_some(NetworkError::GrainVanished { grain: GrainId(grain), time })
     }
 
     /// One step of curvature flow.
@@ -274,17 +302,18 @@ impl<'a> Flow<'a> {
             Remedy::Join => self.clusters = clusters,
             Remedy::Brake => {}
         }
-        Ok(Taken { energy, pressures: pressures.iter().map(|pressure| pressure / time).collect() })
+        let pressures = pressures.iter().map(|pressure| pressure / time).collect();
+        Ok(Taken { energy, pressures, volumes })
     }
 
     /// How far points are from rest; nothing where no boundaries meet, and in the plane.
     fn badness(&self, points: &[DVec3], finest: &Wedged) -> Option<Badness> {
         let Mesh::Triangles(_) = self.control_mesh() else { return None };
         let surface = self.refined(points);
-        let spread = dihedral_angles(self.network, self.surface(), &surface)?.standard_deviation;
+        let residual = rms_residual(self.network, self.surface(), &surface)?;
         let surface = self.network.subdivide_between(self.surface, self.finest(), &surface);
         let has_folds = !finest.folds(self.network.finest(), &surface).is_empty();
-        Some(Badness { has_folds, spread })
+        Some(Badness { has_folds, residual })
     }
 
     /// Makes the points of each cluster move as one.
@@ -358,7 +387,8 @@ impl<'a> Flow<'a> {
         let bent =
             bent.into_iter().filter(|pair| cosine(&after, *pair) < cosine(before, *pair) - SLIGHT_BEND);
         let turned = (0u32..).zip(before.iter().zip(&after)).filter(|(_, (before, after))| {
-            before.dot(**after) < LARGEST_TURN * before.length() * after.length()
+            let turn = before.dot(**after) - LARGEST_TURN * before.length() * after.length();
+            turn.is_nan() || turn < 0.0
         });
         turned.map(|(element, _)| element).chain(bent.flatten()).chain(closing).collect()
     }

@@ -7,6 +7,7 @@ use subzero::StencilTable;
 use super::clusters::Numbering;
 use super::patch::{Elements, LARGEST_COTANGENT, LocalStencils, Patch, PatchTerms, Refinement};
 use super::rows::Rows;
+use crate::tension::in_unit;
 use crate::{BoundaryId, Mesh, Network};
 
 /// The patches of all boundaries.
@@ -29,8 +30,9 @@ pub(super) struct Patches {
 }
 
 impl Patches {
-    /// Patches whose control points are those of one level, and whose surface is that of the same level or the next.
-    pub(super) fn new(network: &Network, control: usize, surface: usize) -> Self {
+    /// Patches whose control points are those of one level, and whose surface is that of the same level or the next. Their tensions are in
+    /// the given unit.
+    pub(super) fn new(network: &Network, control: usize, surface: usize, tension_unit: f64) -> Self {
         let [control_level, surface_level] = [control, surface].map(|level| &network.levels()[level]);
         let count = network.boundaries().len();
         let control_elements = by_boundary(count, &control_level.boundary_of);
@@ -42,7 +44,7 @@ impl Patches {
                     (network.stencils(control), &surface_level.mesh, surface_elements[boundary].as_slice())
                 });
                 let share = if network.boundaries()[boundary].twin.is_some() { 0.5 } else { 1.0 };
-                let tension = (network.tensions()[boundary], share);
+                let tension = (in_unit(network.tensions()[boundary], tension_unit), share);
                 new_patch(&control_level.mesh, &control_elements[boundary], surface, tension)
             })
             .collect();

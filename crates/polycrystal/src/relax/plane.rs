@@ -52,7 +52,14 @@ pub(super) fn equilibrate(
     let network = smooth.network;
     validate(&network, &relaxed.points).map_err(NetworkError::Invalid)?;
     let balance = balance(&network, &relaxed.points);
-    Ok(Equilibrium { network, relaxed, reconnections, merged: Collapsed::default(), balance })
+    Ok(Equilibrium {
+        network,
+        relaxed,
+        reconnections,
+        merged: Collapsed::default(),
+        balance,
+        attempts: Vec::new(),
+    })
 }
 
 /// How a topology came about, and the states from there to rest.
@@ -173,7 +180,7 @@ impl SmoothEdges {
             show(steps, &descent.state);
         }
         let points = self.points(&foam, &descent.state);
-        Ok(Relaxed { level, points, steps, time: steps as f64, fell_back: false })
+        Ok(Relaxed { level, points, steps, time: steps as f64, given_up: None })
     }
 
     fn points(&self, foam: &Foam<'_>, state: &[f64]) -> Vec<DVec3> {
@@ -204,10 +211,8 @@ impl SmoothEdges {
 /// How near to equilibrium a network in the plane is.
 fn balance(network: &Network, points: &[DVec3]) -> Balance {
     let measures = measure_network(network, points).in_plane().expect("a network in the plane");
-    let inside = || measures.triple_points.iter().filter(|point| !point.sides.contains(&Side::Exterior));
-    let deviations = inside().filter(|point| point.sides.len() == 3).flat_map(|point| &point.angles);
-    Balance {
-        flagged_lines: inside().filter(|point| point.sides.len() > 3).count(),
-        largest_deviation: deviations.map(|angle| (angle - 120.0).abs()).fold(0.0, f64::max),
-    }
+    Balance::of(measures.triple_points.iter().map(|point| {
+        let is_inside = !point.sides.contains(&Side::Exterior);
+        (is_inside && point.sides.len() > 3, point.residual)
+    }))
 }

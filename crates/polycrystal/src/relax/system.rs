@@ -181,7 +181,11 @@ impl System {
                 break;
             }
             let image = self.apply(&direction);
-            let step = size / dot(&direction, &image);
+            let stiffness = dot(&direction, &image);
+            if stiffness.is_nan() || stiffness <= 0.0 {
+                break;
+            }
+            let step = size / stiffness;
             add(&mut displacement, step, &direction);
             add(&mut residual, -step, &image);
             let mut projected = self.project(&mut residual, &mut pressures);

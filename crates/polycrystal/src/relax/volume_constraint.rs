@@ -16,6 +16,9 @@ use crate::Network;
 /// change its volume there is no solution, and going on would only blow up what rounding leaves.
 const ITERATIONS: usize = 2000;
 
+/// Length of a sum of gradients, as a share of the sum of all lengths at a cluster, that is rounding.
+const CANCELLED: f64 = 1e-13;
+
 /// How the volumes of grains change when clusters move: a sparse matrix J with a vector for each cluster and grain.
 pub(super) struct VolumeConstraint {
     /// Of each cluster, its grains and the gradients of their volumes.
@@ -33,16 +36,24 @@ impl VolumeConstraint {
     ) -> Self {
         let row = |cluster: usize, entries: &mut Vec<(u32, DVec3)>| {
             let start = entries.len();
+            let mut length = 0.0;
             for place in patches.places_of_cluster(clusters, cluster) {
                 let (patch, point) = patches.point_of_place(place);
                 let boundary = &network.boundaries()[patch];
                 // Walls do not move, so what lies on them changes no volume.
                 for (grain, sign) in boundary.signed_grains().filter(|_| boundary.wall.is_none()) {
                     let gradient = terms[patch].sweep[point] * sign;
+                    length += gradient.length();
                     match entries[start..].iter_mut().find(|(known, _)| *known == grain.0) {
                         Some((_, sum)) => *sum += gradient,
                         None => entries.push((grain.0, gradient)),
                     }
+                }
+            }
+            // A grain that moves as a whole keeps its volume: no pressure may push against what rounding leaves.
+            for at in (start..entries.len()).rev() {
+                if entries[at].1.length() <= CANCELLED * length {
+                    entries.remove(at);
                 }
             }
         };

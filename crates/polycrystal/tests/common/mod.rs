@@ -38,7 +38,8 @@ pub fn regular_network(
 ) -> (Network, Vec<DVec3>) {
     let tessellation =
         Tessellation::new(domain, &random_seeds(domain, count, random_seed)).expect("valid seeds");
-    network_of_regular(&regular_cells(&tessellation, 0.15).0, &tessellation, levels)
+    let regular = regular_cells(&tessellation, 0.15).expect("a small network");
+    network_of_regular(&regular.cells, &tessellation, levels)
 }
 
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.

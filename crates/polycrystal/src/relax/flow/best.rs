@@ -2,17 +2,18 @@
 
 use glam::DVec3;
 
-/// Share of the angles' spread by which it has to fall to count as progress: a step costs more than what less would gain.
+/// Share of the residual by which it has to fall to count as progress: a step costs more than what less would gain.
 const PROGRESS: f64 = 0.03;
 
-/// Steps without progress that make an end. Where a place folds and unfolds, angles get worse for a step or two.
+/// Steps without progress that make an end. Where a place folds and unfolds, all gets worse for a step or two.
 const PATIENCE: usize = 3;
 
-/// How far a step is from rest: one without folds comes before all with some, then the spread of angles counts.
+/// How far a step is from rest: one without folds comes before all with some, then the residual of
+/// Herring's condition counts.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub(super) struct Badness {
     pub(super) has_folds: bool,
-    pub(super) spread: f64,
+    pub(super) residual: f64,
 }
 
 /// The best step so far.
@@ -28,7 +29,7 @@ pub(super) struct Best {
 
 impl Best {
     pub(super) fn new() -> Self {
-        let worst = Badness { has_folds: true, spread: f64::INFINITY };
+        let worst = Badness { has_folds: true, residual: f64::INFINITY };
         Self { badness: worst, points: None, milestone: worst, steps_since: 0 }
     }
 
@@ -38,7 +39,7 @@ impl Best {
             self.badness = badness;
             self.points = Some(points.to_vec());
         }
-        let enough = Badness { spread: (1.0 - PROGRESS) * self.milestone.spread, ..self.milestone };
+        let enough = Badness { residual: (1.0 - PROGRESS) * self.milestone.residual, ..self.milestone };
         if badness < enough {
             self.milestone = badness;
             self.steps_since = 0;
@@ -66,8 +67,8 @@ mod tests {
     fn end(steps: &[(bool, f64)]) -> (usize, usize) {
         let mut best = Best::new();
         let mut taken = 0;
-        for (step, (has_folds, spread)) in steps.iter().enumerate() {
-            best.offer(Badness { has_folds: *has_folds, spread: *spread }, &[DVec3::splat(step as f64)]);
+        for (step, (has_folds, residual)) in steps.iter().enumerate() {
+            best.offer(Badness { has_folds: *has_folds, residual: *residual }, &[DVec3::splat(step as f64)]);
             taken = step + 1;
             if best.is_final() {
                 break;
@@ -86,12 +87,12 @@ mod tests {
 
     #[test]
     fn gains_that_add_up_are_progress() {
-        let spreads: Vec<(bool, f64)> = (0..20).map(|k| (false, 2.0 * 0.988f64.powi(k))).collect();
-        assert_eq!(end(&spreads), (20, 19));
+        let residuals: Vec<(bool, f64)> = (0..20).map(|k| (false, 2.0 * 0.988f64.powi(k))).collect();
+        assert_eq!(end(&residuals), (20, 19));
     }
 
     #[test]
-    fn a_step_without_folds_is_better_than_smaller_angles() {
+    fn a_step_without_folds_is_better_than_a_smaller_residual() {
         assert_eq!(end(&[(true, 1.0), (false, 3.0), (true, 0.5), (false, 3.1), (false, 3.2)]), (5, 1));
     }
 }

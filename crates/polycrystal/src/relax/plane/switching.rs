@@ -173,8 +173,7 @@ impl<'a> Switcher<'a> {
     }
 
     fn tension_between(&self, sides: [Side; 2]) -> f64 {
-        let [first, second] = sides;
-        (self.tension)(&boundary(if matches!(first, Side::Wall(_)) { [second, first] } else { sides }))
+        (self.tension)(&boundary(sides))
     }
 }
 
