@@ -4,6 +4,7 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 use grainsmooth::{Config, PeriodicCut, read_file_domain};
+use polycrystal::Relaxation;
 
 use crate::check_run::CheckArguments;
 use crate::mesh_cli::MeshArguments;
@@ -109,7 +110,7 @@ impl Arguments {
         if periodic_cut == PeriodicCut::Box && files.has_series() {
             usage("--series shows whole grains; leave --periodic-cut box out");
         }
-        Ok(Config {
+        let config = Config {
             seeds: seeds.source(domain.dimension),
             random_seed: seeds.rng_seed,
             lloyd_steps: seeds.lloyd,
@@ -119,7 +120,7 @@ impl Arguments {
             face_mesh: smoothing.face_mesh(),
             periodic: domain.periodic,
             periodic_cut,
-            relaxation: smoothing.relax,
+            relaxation: Relaxation::default(),
             wall_tension: smoothing.wall_tension,
             volumes: smoothing.volumes(),
             regularize: smoothing.regularize,
@@ -127,7 +128,9 @@ impl Arguments {
             junctions: smoothing.junctions(),
             drop_empty: seeds.drop_empty,
             file: files.options(domain.dimension),
-        })
+        };
+        let relaxation = smoothing.relax.unwrap_or_else(|| config.usual_relaxation());
+        Ok(Config { relaxation, ..config })
     }
 }
 

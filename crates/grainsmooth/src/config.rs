@@ -174,6 +174,16 @@ impl Config {
     /// The largest: edges as long as half a grain are no small features.
     pub const LARGEST_REGULARIZE: f64 = 0.5;
 
+    /// How far boundaries relax unless something else is asked for: in the plane to equilibrium, which is quick and exact there
+    /// as long as all that stands beside it lets grains switch neighbours; else for the usual time.
+    pub fn usual_relaxation(&self) -> Relaxation {
+        let balanced = Self { relaxation: Relaxation::Equilibrium, ..self.clone() };
+        match self.dimension {
+            Dimension::Two if balanced.lets_topology_change() => Relaxation::Equilibrium,
+            _ => Relaxation::default(),
+        }
+    }
+
     /// The length to regularise by: none without relaxation.
     pub(crate) fn effective_regularize(&self) -> f64 {
         if self.relaxation == Relaxation::Time(0.0) { 0.0 } else { self.regularize }

@@ -16,11 +16,14 @@ use crate::vtk::{Array, Cells, Each, FieldEntry, FieldValue, ImageData, PolyData
 use crate::vtk::{write_vti, write_vtk};
 use crate::{Error, LabelGrid, Names, Output, OutputFormat, Polycrystal, StagedFiles, Tess, write_together};
 
+/// The point array that tells how many grains meet: four at a quadruple point, unless edges collapsed there.
+pub(crate) const NUMBER_OF_GRAINS: &str = "NumberOfGrains";
+
 impl Polycrystal {
     /// Writes the network, every boundary and every point once; its voxels; or its flat cells.
     ///
     /// In the plane each boundary is one polyline. VTK files are written with the arrays `FaceLabels`, `BoundaryId`,
-    /// `NodeTypes` and `Generation`, and say by which version, command line and random seed they were made.
+    /// `NodeTypes`, `Generation` and `NumberOfGrains`, and say by which version, command line and random seed they were made.
     ///
     /// Grains of a periodic domain are whole. A boundary between grains a period apart comes at both; its second label is -2 - b
     /// with the `BoundaryId` b of the other one. The cell array `PeriodicNeighbor` has the grain there (-1 elsewhere), the
@@ -129,6 +132,7 @@ impl Polycrystal {
         let mut point_arrays = vec![
             Array { name: "NodeTypes", values: of_points(&node_type) },
             Array { name: "Generation", values: of_points(&generation) },
+            Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&level.grain_counts) },
         ];
         let mut cell_arrays = vec![
             Array { name: names.sides(), values: Values::Int32PairsOf(Each { count, value: &labels }) },
@@ -169,12 +173,7 @@ impl Polycrystal {
 
     /// Of each point, the one that it is a copy of, or itself.
     pub(crate) fn originals(&self) -> Vec<i32> {
-        let level = self.network.finest();
-        let mut originals: Vec<i32> = (0..).take(level.vertex_count()).collect();
-        for pair in &level.copies.vertices {
-            originals[pair.secondary as usize] = pair.primary.cast_signed();
-        }
-        originals
+        self.network.finest().originals().into_iter().map(u32::cast_signed).collect()
     }
 
     /// What every VTK file says about itself.

@@ -14,7 +14,7 @@ use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
 
 use crate::memory::{ControlMesh, LevelSize, available_memory, check_cells, check_levels};
 use crate::{
-    Config, Error, FileSeed, PeriodicCut, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds,
+    Config, Error, FileSeed, PeriodicCut, SeedPlace, SeedSource, Topology, poisson_disc_seeds, random_seeds,
     read_seed_file,
 };
 
@@ -81,6 +81,8 @@ pub struct Polycrystal {
     pub relaxed: Relaxed,
     /// How far the cells were regularised.
     pub regularization: Regularization,
+    /// How many faces grains have and how many meet, before a periodic box is cut.
+    pub topology: Topology,
     /// What regularisation took out, or in equilibrium was drawn together.
     pub collapsed: Collapsed,
     /// How relaxation to equilibrium changed the topology and how near it came; nothing where it kept the topology.
@@ -255,6 +257,7 @@ pub fn smooth_watched(
     let Smoothed { network, points, relaxed, collapsed, equilibrium, flat_angles, angles_before, validation } =
         smoothed;
     let times = clock.times;
+    let topology = Topology::new(tessellation, &network);
     let config = config.clone();
     Ok(Polycrystal {
         config,
@@ -263,6 +266,7 @@ pub fn smooth_watched(
         points,
         relaxed,
         regularization,
+        topology,
         collapsed,
         equilibrium,
         flat_angles,

@@ -125,7 +125,11 @@ impl Config {
         let defaults = match self.seeds {
             // The file may give box and periods of its own, which become defaults where they are not named.
             SeedSource::File(_) => Vec::new(),
-            _ => Self::default().settings(),
+            _ => {
+                // What the command line takes where nothing is said.
+                let relaxation = self.usual_relaxation();
+                Self { relaxation, ..Self::default() }.settings()
+            }
         };
         let settings = self.settings().into_iter().filter(|setting| !defaults.contains(setting));
         let settings: Vec<String> = settings.map(|(name, value)| format!("{name}={value}")).collect();

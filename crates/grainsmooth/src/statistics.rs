@@ -12,7 +12,7 @@ use serde::Serialize;
 use voronoi::Dimension;
 
 use crate::table::{Table, Value};
-use crate::{Error, Output, Polycrystal, StagedFiles, TableFormat};
+use crate::{Error, Output, Polycrystal, StagedFiles, TableFormat, Topology};
 
 /// The tables beside that of the grains, by dimension.
 const OTHERS_IN_SPACE: [&str; 3] = ["boundaries", "triple_lines", "quadruple_points"];
@@ -60,6 +60,7 @@ pub struct NetworkStatistics {
     settings: BTreeMap<&'static str, toml::Value>,
     /// Mean and spread of what the tables hold.
     distributions: BTreeMap<&'static str, Distribution>,
+    topology: Topology,
     grains: Table,
     #[serde(flatten)]
     others: BTreeMap<&'static str, Table>,
@@ -79,7 +80,7 @@ impl Polycrystal {
     /// Measures the smoothed network.
     pub fn statistics(&self) -> NetworkStatistics {
         let (grains, others, distributions) = match measure_network(&self.network, &self.points) {
-            Measures::Space(measures) => in_space(&measures),
+            Measures::Space(measures) => in_space(&measures, &self.network.finest().grain_counts),
             Measures::Plane(measures) => in_plane(&measures),
         };
         NetworkStatistics {
@@ -88,6 +89,7 @@ impl Polycrystal {
             random_seed: self.config.random_seed,
             settings: self.config.settings().into_iter().collect(),
             distributions,
+            topology: self.topology.clone(),
             grains,
             others,
         }
@@ -116,7 +118,7 @@ impl NetworkStatistics {
 
 type Tables = (Table, BTreeMap<&'static str, Table>, BTreeMap<&'static str, Distribution>);
 
-fn in_space(measures: &SpaceMeasures) -> Tables {
+fn in_space(measures: &SpaceMeasures, grain_counts: &[u8]) -> Tables {
     let SpaceMeasures { grains, boundaries, triple_lines, quadruple_points, .. } = measures;
     let boundaries_inside = boundaries.iter().filter(|boundary| is_inside(&boundary.sides));
     let lines_inside = triple_lines.iter().filter(|line| is_inside(&line.sides));
@@ -143,7 +145,7 @@ fn in_space(measures: &SpaceMeasures) -> Tables {
     let others = [
         ("boundaries", boundary_table(boundaries)),
         ("triple_lines", triple_line_table(triple_lines)),
-        ("quadruple_points", quadruple_point_table(quadruple_points)),
+        ("quadruple_points", quadruple_point_table(quadruple_points, grain_counts)),
     ];
     (grain_table(grains), BTreeMap::from(others), distributions)
 }
@@ -222,6 +224,11 @@ fn side(side: &Side) -> i64 {
 
 fn sides(sides: &[Side]) -> Value {
     Value::Integers(sides.iter().map(side).collect())
+}
+
+/// How many grains are among the sides that meet somewhere.
+fn grain_count(sides: &[Side]) -> Value {
+    count(sides.iter().filter(|side| side.grain().is_some()).count())
 }
 
 fn count(count: usize) -> Value {
@@ -319,27 +326,48 @@ fn triple_line_table(lines: &[TripleLineMeasures]) -> Table {
             Value::Number(line.smallest_angle),
             Value::Number(line.largest_angle),
             Value::Flag(line.is_closed),
+            grain_count(&line.sides),
             sides(&line.sides),
             Value::Numbers(line.mean_angles.clone()),
             ids(line.boundaries.iter().map(|boundary| boundary.0)),
         ]
     };
-    let columns =
-        &["id", "length", "smallest_angle", "largest_angle", "closed", "sides", "mean_angles", "boundaries"];
+    let columns = &[
+        "id",
+        "length",
+        "smallest_angle",
+        "largest_angle",
+        "closed",
+        "grains",
+        "sides",
+        "mean_angles",
+        "boundaries",
+    ];
     Table { columns, rows: lines.iter().enumerate().map(row).collect() }
 }
 
-fn quadruple_point_table(points: &[QuadruplePointMeasures]) -> Table {
+/// `grain_counts` are those of all points.
+fn quadruple_point_table(points: &[QuadruplePointMeasures], grain_counts: &[u8]) -> Table {
     let row = |at: &QuadruplePointMeasures| {
         let mut row = vec![Value::Integer(i64::from(at.point))];
         row.extend(numbers(at.position.to_array()));
-        row.push(count(at.line_count));
+        row.extend([count(at.line_count), count(grain_counts[at.point as usize].into())]);
         row.extend(numbers([at.mean_angle, at.smallest_angle, at.largest_angle]));
         row.push(sides(&at.sides));
         row
     };
-    let columns =
-        &["point", "x", "y", "z", "lines", "mean_angle", "smallest_angle", "largest_angle", "sides"];
+    let columns = &[
+        "point",
+        "x",
+        "y",
+        "z",
+        "lines",
+        "grains",
+        "mean_angle",
+        "smallest_angle",
+        "largest_angle",
+        "sides",
+    ];
     Table { columns, rows: points.iter().map(row).collect() }
 }
 
@@ -406,10 +434,11 @@ fn triple_point_table(points: &[TriplePointMeasures]) -> Table {
     let row = |at: &TriplePointMeasures| {
         let mut row = vec![Value::Integer(i64::from(at.point))];
         row.extend(numbers(at.position.to_array()));
+        row.push(grain_count(&at.sides));
         row.extend([sides(&at.sides), Value::Numbers(at.angles.clone())]);
         row.push(ids(at.boundaries.iter().map(|boundary| boundary.0)));
         row
     };
-    let columns = &["point", "x", "y", "sides", "angles", "boundaries"];
+    let columns = &["point", "x", "y", "grains", "sides", "angles", "boundaries"];
     Table { columns, rows: points.iter().map(row).collect() }
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use polycrystal::{AngleStatistics, Balance, Boundary, Reconnections, Relaxation};
 use voronoi::{Collapsed, Dimension};
 
-use crate::{Polycrystal, Regularization, Stage, TriangleAngles};
+use crate::{EquivalentDiameters, Polycrystal, Regularization, Stage, TriangleAngles};
 
 /// A polycrystal in a few lines of text: counts, angles, volumes, validation, times.
 pub struct Summary<'a>(pub &'a Polycrystal);
@@ -16,10 +16,10 @@ impl fmt::Display for Summary<'_> {
         let Summary(polycrystal) = self;
         let network = &polycrystal.network;
         let finest = network.finest();
-        let counts = network.junction_counts();
         let (points, elements) = (finest.vertex_count(), finest.element_count());
         let levels = polycrystal.config.levels;
         writeln!(out, "grains      {} in {}", network.grain_count(), network.domain())?;
+        writeln!(out, "diameters   {}", polycrystal.diameter_statistics())?;
         if let Some(lattice) = polycrystal.config.lattice_report(network.domain(), network.grain_count()) {
             writeln!(out, "lattice     {lattice}")?;
         }
@@ -47,19 +47,11 @@ impl fmt::Display for Summary<'_> {
                 "regularized {kept}: with more taken out, boundaries folded or crossed when relaxed"
             )?;
         }
-        let (junctions, element, measure, size) = match network.domain().dimension() {
-            Dimension::Two => {
-                (format!("{} triple points", counts.triple_lines), "segment", "areas", "length")
-            }
-            Dimension::Three => {
-                let counts = format!(
-                    "{} triple lines, {} quadruple points",
-                    counts.triple_lines, counts.quadruple_points
-                );
-                (counts, "triangle", "volumes", "area")
-            }
+        let (element, measure, size) = match network.domain().dimension() {
+            Dimension::Two => ("segment", "areas", "length"),
+            Dimension::Three => ("triangle", "volumes", "area"),
         };
-        writeln!(out, "junctions   {junctions}")?;
+        writeln!(out, "junctions   {}", polycrystal.topology)?;
         writeln!(out, "mesh        {points} points, {elements} {element}s at level {levels}")?;
         // In lattices four or more grains meet, until they relax.
         match (polycrystal.angles_before, polycrystal.validation.angles) {
@@ -150,6 +142,11 @@ fn write_equilibrium(
 }
 
 impl Polycrystal {
+    /// How large the grains are. Their volumes are those of their cells unless grains grow.
+    pub fn diameter_statistics(&self) -> EquivalentDiameters {
+        EquivalentDiameters::new(self.config.dimension, &self.equivalent_diameters())
+    }
+
     /// Adds the time that a stage took after the computation, such as writing.
     pub fn add_time(&mut self, stage: Stage, time: Duration) {
         match self.times.iter_mut().find(|(known, _)| *known == stage) {

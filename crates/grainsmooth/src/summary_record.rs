@@ -8,7 +8,7 @@ use serde::Serialize;
 use voronoi::Dimension;
 
 use crate::triangle_angles::TriangleAngles;
-use crate::{Polycrystal, Regularization};
+use crate::{EquivalentDiameters, Polycrystal, Regularization, Topology};
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -19,8 +19,10 @@ pub struct SummaryRecord {
     dimension: u8,
     grains: usize,
     boundaries: Boundaries,
+    equivalent_diameter: EquivalentDiameters,
     triple_lines: usize,
     quadruple_points: usize,
+    topology: Topology,
     regularization: &'static str,
     regularization_fell_back: bool,
     collapsed_edges: usize,
@@ -90,8 +92,10 @@ impl SummaryRecord {
                 on_walls: count(|boundary| boundary.wall.is_some()),
                 twice,
             },
+            equivalent_diameter: polycrystal.diameter_statistics(),
             triple_lines: junctions.triple_lines,
             quadruple_points: junctions.quadruple_points,
+            topology: polycrystal.topology.clone(),
             // Cells that change their neighbours are not regularised.
             regularization: match polycrystal.equilibrium {
                 Some(_) => Regularization::None.name(),

@@ -114,6 +114,8 @@ pub struct Array<'a> {
 pub enum Values<'a> {
     /// One 8-bit integer each.
     Int8(&'a [i8]),
+    /// One unsigned 8-bit integer each.
+    UInt8(&'a [u8]),
     /// One 32-bit integer each.
     Int32(&'a [i32]),
     /// Two 32-bit integers each.
@@ -165,6 +167,7 @@ impl<'a> Values<'a> {
     pub fn len(&self) -> usize {
         match self {
             Self::Int8(values) => values.len(),
+            Self::UInt8(values) => values.len(),
             Self::Int32(values) => values.len(),
             Self::Int32Pairs(pairs) => pairs.len(),
             Self::Float64(values) => values.len(),
@@ -185,7 +188,8 @@ impl<'a> Values<'a> {
 
     fn component_count(&self) -> usize {
         match self {
-            Self::Int8(_) | Self::Int8Of(_) | Self::Int32(_) | Self::Int32Of(_) => 1,
+            Self::Int8(_) | Self::Int8Of(_) | Self::UInt8(_) => 1,
+            Self::Int32(_) | Self::Int32Of(_) => 1,
             Self::Float64(_) | Self::Float64Of(_) => 1,
             Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Float64Pairs(_) => 2,
             Self::Vectors(_) => 3,
@@ -196,6 +200,7 @@ impl<'a> Values<'a> {
     fn scalar_type(&self) -> ScalarType {
         match self {
             Self::Int8(_) | Self::Int8Of(_) => ScalarType::Int8,
+            Self::UInt8(_) => ScalarType::UInt8,
             Self::Int32(_) | Self::Int32Of(_) => ScalarType::Int32,
             Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Int32Tuples(_) => ScalarType::Int32,
             Self::Float64(_) | Self::Float64Of(_) => ScalarType::Float64,

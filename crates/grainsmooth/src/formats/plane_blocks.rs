@@ -11,7 +11,7 @@ use polycrystal::{GrainId, Side};
 use super::blocks::{SideTable, point_id};
 use crate::Polycrystal;
 use crate::measured_arrays::{MeasuredArrays, NumberArrays};
-use crate::network_file::boundary_polylines;
+use crate::network_file::{NUMBER_OF_GRAINS, boundary_polylines};
 use crate::vtk::{Array, Cells, Each, PolyData, Values, VtkFormat, write_vtk};
 
 /// What is measured of a grain in the plane.
@@ -51,12 +51,14 @@ impl Polycrystal {
         let id = |point: usize| ids[point].cast_signed();
         let of_lines = measured.map_or_else(NumberArrays::default, |all| all.of_cells(&boundary_of));
         let of_points = measured.map_or_else(NumberArrays::default, |all| all.curvatures_at(&ids));
+        let grain_counts = self.grain_counts(&ids);
         let mut data = PolyData {
             points: &points,
             cells: Cells::Polylines(&cells),
             point_arrays: vec![
                 Array { name: "Normals", values: Values::Vectors(&normals) },
                 Array { name: "PointId", values: Values::Int32Of(Each { count: points.len(), value: &id }) },
+                Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&grain_counts) },
             ],
             cell_arrays: vec![
                 Array { name: names.sides(), values: Values::Int32PairsOf(Each { count, value: &labels }) },
@@ -130,14 +132,15 @@ impl Polycrystal {
         at.sort_unstable();
         at.dedup();
         let junctions = at.chunk_by(|a, b| a.0 == b.0).filter(|sides| sides.len() >= fewest);
-        let (points, sides): (Vec<DVec3>, Vec<Vec<Side>>) = junctions
-            .map(|at| (self.points[at[0].0 as usize], at.iter().map(|(_, side)| *side).collect()))
-            .unzip();
+        let (ids, sides): (Vec<u32>, Vec<Vec<Side>>) =
+            junctions.map(|at| (at[0].0, at.iter().map(|(_, side)| *side).collect())).unzip();
+        let points: Vec<DVec3> = ids.iter().map(|id| self.points[*id as usize]).collect();
         let sides: SideTable = self.side_table(sides.iter());
+        let grain_counts = self.grain_counts(&ids);
         let data = PolyData {
             points: &points,
             cells: Cells::Vertices(points.len()),
-            point_arrays: Vec::new(),
+            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&grain_counts) }],
             cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
             field: self.field(),
         };

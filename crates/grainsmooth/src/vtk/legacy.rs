@@ -74,6 +74,7 @@ fn write_arrays(keyword: &str, count: usize, arrays: &[Array<'_>], out: &mut dyn
     for Array { name, values } in arrays {
         let (kind, bytes) = match values.scalar_type() {
             ScalarType::Int8 => ("char", size_of::<i8>()),
+            ScalarType::UInt8 => ("unsigned_char", size_of::<u8>()),
             ScalarType::Float64 => ("double", size_of::<f64>()),
             _ => ("int", size_of::<i32>()),
         };
