@@ -127,6 +127,7 @@ impl Arguments {
             levels: smoothing.levels,
             junctions: smoothing.junctions(),
             drop_empty: seeds.drop_empty,
+            min_diameter: seeds.min_diameter,
             file: files.options(domain.dimension),
         };
         let relaxation = smoothing.relax.unwrap_or_else(|| config.usual_relaxation());

@@ -116,6 +116,9 @@ pub struct Config {
     pub junctions: Junctions,
     /// Whether to go on without seeds that have no cell, as their neighbours outweigh them; else that is an error.
     pub drop_empty: bool,
+    /// Cells below this share of the mean equivalent diameter lose their seeds, the smallest first, until none is left and their
+    /// neighbours have grown into their places; 0 keeps all. Below 1.
+    pub min_diameter: f64,
     /// How files are written, apart from their formats.
     pub file: FileOptions,
 }
@@ -158,6 +161,7 @@ impl Default for Config {
             levels: 3,
             junctions: Junctions::Crease,
             drop_empty: false,
+            min_diameter: 0.0,
             file: FileOptions::default(),
         }
     }

@@ -22,6 +22,7 @@ mod embedded_config;
 mod equivalent_diameters;
 mod error;
 mod estimate;
+mod failed_grain;
 mod formats;
 mod labelled_file;
 mod lattice;
@@ -59,6 +60,7 @@ pub use embedded_config::embedded_config;
 pub use equivalent_diameters::EquivalentDiameters;
 pub use error::Error;
 pub use estimate::Estimate;
+pub use failed_grain::FailedGrain;
 pub use formats::{LabelGrid, Names, StlEncoding};
 pub use formats::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
@@ -82,7 +84,7 @@ pub use series::{Series, SeriesOutput};
 pub use staged_files::{StagedFiles, write_together};
 pub use statistics::{NetworkStatistics, StatisticsOutput};
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};
-pub use summary::Summary;
+pub use summary::{CellsSummary, Summary};
 pub use summary_record::SummaryRecord;
 pub use topology::Topology;
 pub use triangle_angles::TriangleAngles;

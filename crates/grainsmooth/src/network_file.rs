@@ -19,6 +19,9 @@ use crate::{Error, LabelGrid, Names, Output, OutputFormat, Polycrystal, StagedFi
 /// The point array that tells how many grains meet: four at a quadruple point, unless edges collapsed there.
 pub(crate) const NUMBER_OF_GRAINS: &str = "NumberOfGrains";
 
+/// The array of the numbers of grains' seeds.
+pub(crate) const SEED_ID: &str = "SeedId";
+
 impl Polycrystal {
     /// Writes the network, every boundary and every point once; its voxels; or its flat cells.
     ///
@@ -48,10 +51,7 @@ impl Polycrystal {
         match output.gmsh_script()? {
             Some(script) => {
                 let mesh = output.path().file_name().unwrap_or_default().to_string_lossy();
-                let grain_count = self.network.grain_count();
-                script.stage(files, |out| {
-                    write_gmsh_script(&self.surface()?, grain_count, &mesh, &self.config, out)
-                })
+                script.stage(files, |out| write_gmsh_script(&self.surface()?, self, &mesh, out))
             }
             None => Ok(()),
         }
@@ -66,12 +66,12 @@ impl Polycrystal {
             OutputFormat::Vtk(format) => self.write_vtk(format, out),
             OutputFormat::Vtm => Err(io::Error::other("several files are not written as one")),
             OutputFormat::Stl => write_stl(&self.surface()?, "network", &self.config, out),
-            OutputFormat::Ply => write_ply(&self.surface()?, &self.config, out),
-            OutputFormat::Obj => write_obj(&self.surface()?, &self.config, out),
-            OutputFormat::Msh => write_gmsh(&self.surface()?, &self.config, out),
+            OutputFormat::Ply => write_ply(&self.surface()?, &self.config, self.cells.renumbered(), out),
+            OutputFormat::Obj => write_obj(&self.surface()?, &self.config, self.cells.renumbered(), out),
+            OutputFormat::Msh => write_gmsh(&self.surface()?, self, out),
             OutputFormat::Fe => write_evolver(self, out),
             OutputFormat::Tess => {
-                write_tess(&Tess::new(&self.cells), out)?;
+                write_tess(&Tess::new(&self.cells), self.cells.renumbered(), out)?;
                 self.write_settings_behind(out)
             }
             OutputFormat::Vti => self.write_vti(out),
@@ -104,7 +104,9 @@ impl Polycrystal {
         let number = |voxel: usize| names.voxel_number(labels[voxel]);
         let values = Values::Int32Of(Each { count: labels.len(), value: &number });
         let cell_arrays = vec![Array { name: names.voxel(), values }];
-        write_vti(&ImageData { size, origin, spacing, cell_arrays, field: self.field() }, out)
+        let mut field = self.field();
+        field.push(self.seed_ids());
+        write_vti(&ImageData { size, origin, spacing, cell_arrays, field }, out)
     }
 
     fn write_vtk(&self, format: VtkFormat, out: &mut dyn Write) -> io::Result<()> {
@@ -161,6 +163,7 @@ impl Polycrystal {
         let volumes = FieldValue::Numbers(self.network.cell_volumes().to_vec());
         let mut field = self.field();
         field.push(FieldEntry { name: "Volumes", value: volumes });
+        field.push(self.seed_ids());
         let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field };
         write_vtk(&data, format, out)
     }
@@ -174,6 +177,12 @@ impl Polycrystal {
     /// Of each point, the one that it is a copy of, or itself.
     pub(crate) fn originals(&self) -> Vec<i32> {
         self.network.finest().originals().into_iter().map(u32::cast_signed).collect()
+    }
+
+    /// The number of each grain's seed.
+    fn seed_ids(&self) -> FieldEntry {
+        let ids = self.cells.seed_ids.iter().map(|id| id.cast_signed()).collect();
+        FieldEntry { name: SEED_ID, value: FieldValue::Ids(ids) }
     }
 
     /// What every VTK file says about itself.

@@ -10,12 +10,12 @@ use polycrystal::{NetworkRecipe, Reconnections, RelaxationStep, Relaxed, Volumes
 use polycrystal::{
     angles_between_boundaries, dihedral_angles, equilibrate, regular_cells, relax_watched, validate,
 };
-use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
+use voronoi::{CellId, Collapsed, Dimension, Side, Tessellation, VoronoiError};
 
 use crate::memory::{ControlMesh, LevelSize, available_memory, check_cells, check_levels};
 use crate::{
-    Config, Error, FileSeed, PeriodicCut, SeedPlace, SeedSource, Topology, poisson_disc_seeds, random_seeds,
-    read_seed_file,
+    Config, EquivalentDiameters, Error, FileSeed, PeriodicCut, SeedPlace, SeedSource, Topology,
+    poisson_disc_seeds, random_seeds, read_seed_file,
 };
 
 /// A part of a run, in the order in which they follow each other.
@@ -48,6 +48,11 @@ impl Stage {
         Self::Validation,
         Self::Writing,
     ];
+
+    /// The stage's place among all, from 1.
+    pub fn number(self) -> usize {
+        1 + Self::ALL.iter().take_while(|other| **other != self).count()
+    }
 
     /// The stage in one word.
     pub fn name(self) -> &'static str {
@@ -108,7 +113,8 @@ impl Polycrystal {
         }
         let volumes = self.network.cell_volumes().to_vec();
         let start = Instant::now();
-        let (network, points) = self.network.cut_at_box(&self.points)?;
+        let cut = self.network.cut_at_box(&self.points).map_err(Error::from);
+        let (network, points) = cut.map_err(|error| error.with_grain(&self.cells))?;
         (self.network, self.points) = (network.with_cell_volumes(volumes), points);
         self.add_time(Stage::Subdivision, start.elapsed());
         let start = Instant::now();
@@ -125,8 +131,24 @@ pub struct Tessellated {
     pub tessellation: Tessellation,
     /// Power weight of each seed: 0 where there are no radii.
     pub weights: Vec<f64>,
+    /// The number of each cell's seed, in the order in which all were given, from 0: what `SeedId` holds. It is the cell's own
+    /// unless seeds were dropped or merged.
+    pub seed_ids: Vec<u32>,
+    /// The numbers of seeds that are left out because their neighbours outweigh them.
+    pub dropped_seeds: Vec<u32>,
+    /// The numbers of seeds that are left out because their cells were below [`Config::min_diameter`].
+    pub merged_seeds: Vec<u32>,
     /// Time that each stage took.
     pub times: Vec<(Stage, Duration)>,
+}
+
+impl Tessellated {
+    /// The numbers of the cells' seeds, for formats that tell them only where they are not those of the cells, as seeds were left
+    /// out; else nothing.
+    pub(crate) fn renumbered(&self) -> &[u32] {
+        let is_renumbered = !self.dropped_seeds.is_empty() || !self.merged_seeds.is_empty();
+        if is_renumbered { &self.seed_ids } else { &[] }
+    }
 }
 
 /// Computes the cells alone.
@@ -136,27 +158,85 @@ pub struct Tessellated {
 pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Error> {
     let mut clock = Clock { progress, times: Vec::new() };
     let domain = config.domain()?;
-    let mut seeds = clock.time(Stage::Seeds, || seeds(config, &domain))?;
+    let mut seeds = NumberedSeeds::new(clock.time(Stage::Seeds, || seeds(config, &domain))?);
+    let (mut dropped_seeds, mut merged_seeds) = (Vec::new(), Vec::new());
     let (tessellation, weights) = clock.time(Stage::Cells, || {
-        let mut all = cells_of(config, &domain, &seeds)?;
+        let mut all = cells_of(config, &domain, &seeds.seeds)?;
         for step in 1..=config.lloyd_steps {
             let centroids = all.0.centroids();
-            seeds.iter_mut().zip(centroids).for_each(|(seed, centroid)| seed.position = centroid);
-            all = cells_of(config, &domain, &seeds)?;
+            seeds.seeds.iter_mut().zip(centroids).for_each(|(seed, centroid)| seed.position = centroid);
+            all = cells_of(config, &domain, &seeds.seeds)?;
             progress(Stage::Cells, step as usize, config.lloyd_steps as usize);
         }
         let empty = all.0.empty_cells();
-        if empty.is_empty() {
-            return Ok(all);
+        if !empty.is_empty() {
+            if !config.drop_empty {
+                return Err(Error::EmptyGrains { grains: empty.iter().map(|cell| cell.0).collect() });
+            }
+            dropped_seeds = seeds.without(&empty);
+            all = cells_of(config, &domain, &seeds.seeds)?;
         }
-        if !config.drop_empty {
-            return Err(Error::EmptyGrains { grains: empty.iter().map(|cell| cell.0).collect() });
+        loop {
+            let small = small_cells(&all.0, config.min_diameter);
+            if small.is_empty() {
+                break;
+            }
+            merged_seeds.extend(seeds.without(&small));
+            all = cells_of(config, &domain, &seeds.seeds)?;
         }
-        let is_kept = |seed: &usize| !empty.iter().any(|cell| cell.index() == *seed);
-        let kept: Vec<FileSeed> = (0..seeds.len()).filter(is_kept).map(|seed| seeds[seed]).collect();
-        cells_of(config, &domain, &kept)
+        merged_seeds.sort_unstable();
+        Ok::<_, Error>(all)
     })?;
-    Ok(Tessellated { tessellation, weights, times: clock.times })
+    let times = clock.times;
+    Ok(Tessellated { tessellation, weights, seed_ids: seeds.ids, dropped_seeds, merged_seeds, times })
+}
+
+/// Seeds with the numbers that they had among all.
+struct NumberedSeeds {
+    seeds: Vec<FileSeed>,
+    ids: Vec<u32>,
+}
+
+impl NumberedSeeds {
+    fn new(seeds: Vec<FileSeed>) -> Self {
+        Self { ids: (0u32..).take(seeds.len()).collect(), seeds }
+    }
+
+    /// Takes the seeds of some cells out, and returns their numbers.
+    fn without(&mut self, cells: &[CellId]) -> Vec<u32> {
+        let mut is_kept = vec![true; self.seeds.len()];
+        cells.iter().for_each(|cell| is_kept[cell.index()] = false);
+        let numbers = cells.iter().map(|cell| self.ids[cell.index()]).collect();
+        let mut kept = is_kept.iter();
+        self.seeds.retain(|_| *kept.next().unwrap_or(&true));
+        let mut kept = is_kept.iter();
+        self.ids.retain(|_| *kept.next().unwrap_or(&true));
+        numbers
+    }
+}
+
+/// The cells to take out next: those below a share of the mean equivalent diameter, of neighbours the smallest.
+///
+/// When these are gone the others are as they were, or have grown. So in the end the same cells are left as if the smallest of all
+/// had gone each time.
+fn small_cells(cells: &Tessellation, share: f64) -> Vec<CellId> {
+    if share == 0.0 {
+        return Vec::new();
+    }
+    let dimension = cells.domain().dimension();
+    let diameters: Vec<f64> =
+        cells.cell_measures().iter().map(|cell| dimension.ball_diameter(cell.volume)).collect();
+    let limit = share * EquivalentDiameters::new(dimension, &diameters).mean;
+    let is_smaller =
+        |a: CellId, b: CellId| diameters[a.index()].total_cmp(&diameters[b.index()]).then(a.cmp(&b)).is_lt();
+    let is_smallest = |cell: &CellId| {
+        diameters[cell.index()] < limit
+            && cells.neighbors(*cell).into_iter().all(|side| match side {
+                Side::Cell(other) | Side::Image(other, _) => !is_smaller(other, *cell),
+                Side::Wall(_) => true,
+            })
+    };
+    (0u32..).map(CellId).take(diameters.len()).filter(is_smallest).collect()
 }
 
 /// The cells of some seeds, and the seeds' weights.
@@ -251,7 +331,7 @@ pub fn smooth_watched(
         let is_tangled =
             smoothed.as_ref().is_err_and(|error| matches!(error, Error::Network(cause) if is_tangle(cause)));
         if !is_tangled || tries.len() == 0 {
-            break (regularization, smoothed?);
+            break (regularization, smoothed.map_err(|error| error.with_grain(&cells))?);
         }
     };
     let Smoothed { network, points, relaxed, collapsed, equilibrium, flat_angles, angles_before, validation } =

@@ -80,8 +80,10 @@ impl Polycrystal {
     /// Measures the smoothed network.
     pub fn statistics(&self) -> NetworkStatistics {
         let (grains, others, distributions) = match measure_network(&self.network, &self.points) {
-            Measures::Space(measures) => in_space(&measures, &self.network.finest().grain_counts),
-            Measures::Plane(measures) => in_plane(&measures),
+            Measures::Space(measures) => {
+                in_space(&measures, &self.cells.seed_ids, &self.network.finest().grain_counts)
+            }
+            Measures::Plane(measures) => in_plane(&measures, &self.cells.seed_ids),
         };
         NetworkStatistics {
             version: env!("CARGO_PKG_VERSION"),
@@ -118,7 +120,7 @@ impl NetworkStatistics {
 
 type Tables = (Table, BTreeMap<&'static str, Table>, BTreeMap<&'static str, Distribution>);
 
-fn in_space(measures: &SpaceMeasures, grain_counts: &[u8]) -> Tables {
+fn in_space(measures: &SpaceMeasures, seed_ids: &[u32], grain_counts: &[u8]) -> Tables {
     let SpaceMeasures { grains, boundaries, triple_lines, quadruple_points, .. } = measures;
     let boundaries_inside = boundaries.iter().filter(|boundary| is_inside(&boundary.sides));
     let lines_inside = triple_lines.iter().filter(|line| is_inside(&line.sides));
@@ -147,10 +149,10 @@ fn in_space(measures: &SpaceMeasures, grain_counts: &[u8]) -> Tables {
         ("triple_lines", triple_line_table(triple_lines)),
         ("quadruple_points", quadruple_point_table(quadruple_points, grain_counts)),
     ];
-    (grain_table(grains), BTreeMap::from(others), distributions)
+    (grain_table(grains, seed_ids), BTreeMap::from(others), distributions)
 }
 
-fn in_plane(measures: &PlaneMeasures) -> Tables {
+fn in_plane(measures: &PlaneMeasures, seed_ids: &[u32]) -> Tables {
     let PlaneMeasures { grains, boundaries, triple_points, .. } = measures;
     let inside = boundaries.iter().filter(|boundary| is_inside(&boundary.sides));
     let mut distributions = distributions([
@@ -172,7 +174,7 @@ fn in_plane(measures: &PlaneMeasures) -> Tables {
         ("boundaries", plane_boundary_table(boundaries)),
         ("triple_points", triple_point_table(triple_points)),
     ];
-    (plane_grain_table(grains), BTreeMap::from(others), distributions)
+    (plane_grain_table(grains, seed_ids), BTreeMap::from(others), distributions)
 }
 
 fn is_inside(sides: &[Side]) -> bool {
@@ -235,6 +237,10 @@ fn count(count: usize) -> Value {
     Value::Integer(i64::try_from(count).unwrap_or(i64::MAX))
 }
 
+fn id(id: u32) -> Value {
+    Value::Integer(id.into())
+}
+
 fn ids(ids: impl IntoIterator<Item = u32>) -> Value {
     Value::Integers(ids.into_iter().map(i64::from).collect())
 }
@@ -243,10 +249,10 @@ fn numbers(values: impl IntoIterator<Item = f64>) -> impl Iterator<Item = Value>
     values.into_iter().map(Value::Number)
 }
 
-fn grain_table(grains: &[GrainMeasures]) -> Table {
+fn grain_table(grains: &[GrainMeasures], seed_ids: &[u32]) -> Table {
     let row = |grain: &GrainMeasures| {
         let [x, y, z] = [grain.inertia.x_axis, grain.inertia.y_axis, grain.inertia.z_axis];
-        let mut row = vec![Value::Integer(i64::from(grain.grain.0))];
+        let mut row = vec![id(grain.grain.0)];
         row.extend(numbers([grain.volume, grain.area]));
         row.extend(numbers(grain.centroid.to_array()));
         row.extend(numbers([grain.equivalent_diameter, grain.sphericity]));
@@ -257,6 +263,7 @@ fn grain_table(grains: &[GrainMeasures]) -> Table {
         row.extend(numbers([x.x, y.y, z.z, x.y, x.z, y.z]));
         row.push(Value::Flag(grain.is_at_exterior));
         row.push(ids(grain.neighbors.iter().map(|neighbor| neighbor.0)));
+        row.push(id(seed_ids[grain.grain.index()]));
         row
     };
     let columns = &[
@@ -285,6 +292,7 @@ fn grain_table(grains: &[GrainMeasures]) -> Table {
         "inertia_yz",
         "at_exterior",
         "neighbors",
+        "SeedId",
     ];
     Table { columns, rows: grains.iter().map(row).collect() }
 }
@@ -371,10 +379,10 @@ fn quadruple_point_table(points: &[QuadruplePointMeasures], grain_counts: &[u8])
     Table { columns, rows: points.iter().map(row).collect() }
 }
 
-fn plane_grain_table(grains: &[PlaneGrainMeasures]) -> Table {
+fn plane_grain_table(grains: &[PlaneGrainMeasures], seed_ids: &[u32]) -> Table {
     let row = |grain: &PlaneGrainMeasures| {
         let [x, y] = [grain.second_moment.x_axis, grain.second_moment.y_axis];
-        let mut row = vec![Value::Integer(i64::from(grain.grain.0))];
+        let mut row = vec![id(grain.grain.0)];
         row.extend(numbers([grain.area, grain.perimeter]));
         row.extend(numbers(grain.centroid.to_array()));
         row.extend(numbers([grain.equivalent_diameter, grain.circularity, grain.turning]));
@@ -383,6 +391,7 @@ fn plane_grain_table(grains: &[PlaneGrainMeasures]) -> Table {
         row.extend(numbers([x.x, y.y, x.y]));
         row.push(Value::Flag(grain.is_at_exterior));
         row.push(ids(grain.neighbors.iter().map(|neighbor| neighbor.0)));
+        row.push(id(seed_ids[grain.grain.index()]));
         row
     };
     let columns = &[
@@ -402,6 +411,7 @@ fn plane_grain_table(grains: &[PlaneGrainMeasures]) -> Table {
         "moment_xy",
         "at_exterior",
         "neighbors",
+        "SeedId",
     ];
     Table { columns, rows: grains.iter().map(row).collect() }
 }

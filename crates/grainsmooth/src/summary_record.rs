@@ -18,6 +18,9 @@ pub struct SummaryRecord {
     settings: BTreeMap<&'static str, toml::Value>,
     dimension: u8,
     grains: usize,
+    /// Seeds without a cell, and those whose cells were merged into what surrounds them.
+    dropped_seeds: Vec<u32>,
+    merged_seeds: Vec<u32>,
     boundaries: Boundaries,
     equivalent_diameter: EquivalentDiameters,
     triple_lines: usize,
@@ -87,6 +90,8 @@ impl SummaryRecord {
             settings: config.settings().into_iter().collect(),
             dimension: if config.dimension == Dimension::Two { 2 } else { 3 },
             grains: network.grain_count(),
+            dropped_seeds: polycrystal.cells.dropped_seeds.clone(),
+            merged_seeds: polycrystal.cells.merged_seeds.clone(),
             boundaries: Boundaries {
                 between_grains: count(Boundary::is_interior) + twice,
                 on_walls: count(|boundary| boundary.wall.is_some()),

@@ -230,6 +230,8 @@ pub enum FieldValue {
     Integer(u64),
     /// Any number of numbers, such as volumes, kept as Float64.
     Numbers(Vec<f64>),
+    /// Any number of ids, kept as Int32.
+    Ids(Vec<i32>),
 }
 
 /// Writes `data` in `format`.

@@ -159,7 +159,7 @@ fn images_of_a_grain_count_as_grains() {
     let level = network.finest();
     let points = network.subdivide(&flat);
     for (point, grains) in points.iter().zip(&level.grain_counts) {
-        let on_planes = point.to_array().iter().filter(|at| at.fract() == 0.0).count();
+        let on_planes = point.to_array().iter().filter(|at| (**at - at.round()).abs() < 1e-12).count();
         assert_eq!(*grains, [1, 2, 4, 8][on_planes], "{point}");
     }
     let counts = network.junction_counts();

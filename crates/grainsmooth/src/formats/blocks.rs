@@ -12,7 +12,7 @@ use super::grains::GrainMeasure;
 use super::lines::Junctions;
 use super::surface::Surface;
 use crate::measured_arrays::{MeasuredArrays, NumberArrays};
-use crate::network_file::{NUMBER_OF_GRAINS, boundary_polylines, triangles};
+use crate::network_file::{NUMBER_OF_GRAINS, SEED_ID, boundary_polylines, triangles};
 use crate::vtk::{Array, Cells, PolyData, Tuples, Values, VtkFormat, write_vtk};
 use crate::vtk::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
 use crate::{Error, Output, Polycrystal, StagedFiles};
@@ -157,6 +157,7 @@ impl Polycrystal {
         let area = |number: usize| measures[number].area;
         let neighbors = |number: usize| measures[number].neighbors;
         let sphericity = |number: usize| measures[number].sphericity;
+        let seed = |number: usize| self.cells.seed_ids[number].cast_signed();
         let numbers: Vec<usize> = (0..parts.len()).collect();
         let of_grains = measured.map_or_else(NumberArrays::default, |all| all.of_grains(&numbers));
         let mut data = PieceData {
@@ -166,6 +167,7 @@ impl Polycrystal {
             point_arrays: Vec::new(),
             cell_arrays: vec![
                 (names.grain(), PieceValue::Int32(&name)),
+                (SEED_ID, PieceValue::Int32(&seed)),
                 ("Volume", PieceValue::Float64(&volume)),
                 ("Area", PieceValue::Float64(&area)),
                 ("Neighbors", PieceValue::Int32(&neighbors)),

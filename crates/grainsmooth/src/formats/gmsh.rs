@@ -11,8 +11,8 @@ use glam::DVec3;
 use polycrystal::BoundaryId;
 
 use super::lines::Junctions;
-use super::surface::{Surface, side_name};
-use crate::Config;
+use super::surface::{Surface, side_name, write_seed_comments};
+use crate::Polycrystal;
 
 /// Gmsh's codes for elements.
 const LINE: u32 = 1;
@@ -22,20 +22,20 @@ const POINT: u32 = 15;
 /// Writes the script, which reads the mesh file of the given name beside it.
 pub(crate) fn write_script(
     surface: &Surface<'_>,
-    grain_count: usize,
+    polycrystal: &Polycrystal,
     mesh: &str,
-    config: &Config,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     writeln!(out, "// grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
-    config.write_comments("// ", out)?;
+    polycrystal.config.write_comments("// ", out)?;
+    write_seed_comments(polycrystal.cells.renumbered(), "// ", out)?;
     writeln!(out, "Merge \"{mesh}\";")?;
     for part in &surface.parts {
         let ([from, to], tag) = (part.sides.map(side_name), tag(part.boundary));
         let number = part.boundary.0;
         writeln!(out, "Physical Surface(\"boundary{number} {from} {to}\", {tag}) = {{{tag}}};")?;
     }
-    for (grain, parts) in surface.parts_of_grains(grain_count).iter().enumerate() {
+    for (grain, parts) in surface.parts_of_grains(polycrystal.network.grain_count()).iter().enumerate() {
         let tag = grain + 1;
         let surfaces = parts.iter().map(|(part, is_inward)| {
             let sign = if *is_inward { "-" } else { "" };
@@ -49,9 +49,11 @@ pub(crate) fn write_script(
 }
 
 /// Writes the mesh file. Names stand in the script: meshio wants them for every cell, or for none.
-pub(crate) fn write(surface: &Surface<'_>, config: &Config, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(surface: &Surface<'_>, polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let junctions = Junctions::of(surface);
-    writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n{}$EndComments", config.to_toml())?;
+    write!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n{}", polycrystal.config.to_toml())?;
+    write_seed_comments(polycrystal.cells.renumbered(), "", out)?;
+    writeln!(out, "$EndComments")?;
     write_entities(surface, &junctions, out)?;
     write_nodes(surface, &junctions, out)?;
     write_elements(surface, &junctions, out)

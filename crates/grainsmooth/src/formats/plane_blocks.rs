@@ -11,7 +11,7 @@ use polycrystal::{GrainId, Side};
 use super::blocks::{SideTable, point_id};
 use crate::Polycrystal;
 use crate::measured_arrays::{MeasuredArrays, NumberArrays};
-use crate::network_file::{NUMBER_OF_GRAINS, boundary_polylines};
+use crate::network_file::{NUMBER_OF_GRAINS, SEED_ID, boundary_polylines};
 use crate::vtk::{Array, Cells, Each, PolyData, Values, VtkFormat, write_vtk};
 
 /// What is measured of a grain in the plane.
@@ -97,6 +97,7 @@ impl Polycrystal {
         let doubles = |value| Values::Float64Of(Each { count, value });
         let measure = |triangle: usize| -> &PlaneMeasure { &measures[grain_of[triangle]] };
         let number = |triangle: usize| names.number(GrainId(point_id(grain_of[triangle])));
+        let seed = |triangle: usize| self.cells.seed_ids[grain_of[triangle]].cast_signed();
         let area = |triangle: usize| measure(triangle).area;
         let perimeter = |triangle: usize| measure(triangle).perimeter;
         let neighbors = |triangle: usize| measure(triangle).neighbors;
@@ -107,6 +108,7 @@ impl Polycrystal {
             point_arrays: Vec::new(),
             cell_arrays: vec![
                 Array { name: names.grain(), values: integers(&number) },
+                Array { name: SEED_ID, values: integers(&seed) },
                 Array { name: "Volume", values: doubles(&area) },
                 Array { name: "Area", values: doubles(&perimeter) },
                 Array { name: "Neighbors", values: integers(&neighbors) },

@@ -101,6 +101,10 @@ fn write_field(entries: &[FieldEntry], out: &mut dyn Write) -> io::Result<()> {
                 writeln!(out, "{name} 1 {} double", numbers.len())?;
                 numbers.iter().try_for_each(|number| out.write_all(&number.to_be_bytes()))?;
             }
+            FieldValue::Ids(ids) => {
+                writeln!(out, "{name} 1 {} int", ids.len())?;
+                ids.iter().try_for_each(|id| out.write_all(&id.to_be_bytes()))?;
+            }
             FieldValue::Text(text) => {
                 writeln!(out, "{name} 1 1 string")?;
                 // The two highest bits say how long the length is: 01 for four bytes in all.
