@@ -290,7 +290,7 @@ pub(crate) fn control_mesh(config: &Config, tessellation: &Tessellation) -> Cont
         return size.into();
     }
     let sides = tessellation.faces().map(|face| tessellation.face_sides(face));
-    let inside = sides.filter(|[_, second]| !matches!(second, voronoi::Side::Wall(_)));
+    let inside = sides.filter(|[_, second]| !matches!(second, Side::Wall(_)));
     ControlMesh { size, arcs: inside.count() as u128 }
 }
 
