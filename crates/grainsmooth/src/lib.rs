@@ -48,6 +48,7 @@ mod subdivide;
 mod summary;
 mod summary_record;
 mod table;
+mod tessellated;
 mod topology;
 mod triangle_angles;
 mod unfinished;
@@ -73,8 +74,8 @@ pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputDirectory, OutputFormat};
 pub use picture::{Coloring, Picture, Png};
 pub use pipeline::{
-    Polycrystal, Progress, Regularization, Stage, Tessellated, check_expected_size, make_polycrystal, smooth,
-    smooth_watched, tessellate,
+    Polycrystal, Progress, Regularization, Stage, check_expected_size, make_polycrystal, smooth,
+    smooth_watched,
 };
 pub use poisson_disc::poisson_disc_seeds;
 pub use report::Html;
@@ -86,6 +87,7 @@ pub use statistics::{NetworkStatistics, StatisticsOutput};
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};
 pub use summary::{CellsSummary, Summary};
 pub use summary_record::SummaryRecord;
+pub use tessellated::{Tessellated, tessellate};
 pub use topology::Topology;
 pub use triangle_angles::TriangleAngles;
 pub use unfinished::discard_unfinished;
