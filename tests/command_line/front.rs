@@ -156,7 +156,7 @@ fn dry_run_foretells_the_run_and_writes_nothing() {
         "--seeds 30 -n 2 -o a.obj",
         "--seeds 30 -n 2 -o a.msh",
         "--seeds 30 -n 2 -o a.fe",
-        "--seeds 90 --dim 2 -n 4 -o a.vtp",
+        "--seeds 90 --dim 2 --relax 0.3 -n 4 -o a.vtp",
         "--seeds 30 --periodic x,y,z --faces plain -n 2 -o a.vtp",
         "--seeds 300 -n 0 -o a.tess",
     ] {

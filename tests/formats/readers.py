@@ -37,6 +37,8 @@ for name in ("a.vtp", "a.vtu", "a.vtk", "base64.vtp", "base64.vtu", "zlib.vtp", 
     assert set(np.unique(mesh["NodeTypes"])) <= {2, 3, 4, 12, 13, 14}, name
     assert set(mesh.field_data.keys()) >= {"Version", "CommandLine", "RandomSeed"}, name
     assert np.allclose(mesh.field_data["Volumes"], volumes, rtol=1e-9), name
+    assert mesh["NumberOfGrains"].dtype == np.uint8 and mesh["NumberOfGrains"].max() >= 4, name
+    assert np.array_equal(mesh.field_data["SeedId"], np.arange(len(volumes))), name
 
 for name in ("measured.vtp", "measured.vtu", "measured.vtk"):
     mesh = pyvista.read(folder / name)

@@ -117,6 +117,9 @@ pub struct Config {
     pub junctions: Junctions,
     /// Whether to go on without seeds that have no cell, as their neighbours outweigh them; else that is an error.
     pub drop_empty: bool,
+    /// Cells below this share of the mean equivalent diameter lose their seeds, the smallest first, until none is left and their
+    /// neighbours have grown into their places; 0 keeps all. Below 1.
+    pub min_diameter: f64,
     /// How files are written, apart from their formats.
     pub file: FileOptions,
 }
@@ -167,6 +170,7 @@ impl Default for Config {
             levels: 3,
             junctions: Junctions::Crease,
             drop_empty: false,
+            min_diameter: 0.0,
             file: FileOptions::default(),
         }
     }
@@ -182,6 +186,16 @@ impl Config {
 
     /// The largest: edges as long as half a grain are no small features.
     pub const LARGEST_REGULARIZE: f64 = 0.5;
+
+    /// How far boundaries relax unless something else is asked for: in the plane to equilibrium, which is quick and exact there
+    /// as long as all that stands beside it lets grains switch neighbours; else for the usual time.
+    pub fn usual_relaxation(&self) -> Relaxation {
+        let balanced = Self { relaxation: Relaxation::Equilibrium, ..self.clone() };
+        match self.dimension {
+            Dimension::Two if balanced.lets_topology_change() => Relaxation::Equilibrium,
+            _ => Relaxation::default(),
+        }
+    }
 
     /// The length to regularise by: none without relaxation.
     pub(crate) fn effective_regularize(&self) -> f64 {

@@ -7,7 +7,7 @@ use voronoi::{Dimension, VoronoiError};
 
 use crate::memory::{self, LevelSize};
 use crate::mesh_file::MeshFileProblem;
-use crate::{OutputFormat, SeedPlace, SeedProblem};
+use crate::{FailedGrain, OutputFormat, SeedPlace, SeedProblem};
 
 /// What can go wrong between the user's input and the files written. Each message is one line that names the
 /// value, the place and the remedy.
@@ -209,6 +209,14 @@ pub enum Error {
         cause: NetworkError,
         /// A time for which they can.
         works: Option<f64>,
+    },
+    /// The same, with the grain that it failed at.
+    #[error("{cause}; {grain}")]
+    Grain {
+        /// What failed.
+        cause: NetworkError,
+        /// The grain.
+        grain: FailedGrain,
     },
     /// A mesh file cannot be used.
     #[error("{}: {problem}", path.display())]

@@ -104,15 +104,15 @@ impl fmt::Display for Estimate {
 fn file_bytes(format: OutputFormat, mesh: &LevelSize, grains: usize, config: &Config) -> u128 {
     let LevelSize { points, edges, triangles } = *mesh;
     let is_flat = config.dimension == Dimension::Two;
-    // Coordinates and two arrays; corners, end and three numbers. In the plane lines share their arrays.
-    let (of_point, of_triangle) = if config.periodic.any() { (30, 32) } else { (26, 28) };
+    // Coordinates and three arrays; corners, end and three numbers. In the plane lines share their arrays.
+    let (of_point, of_triangle) = if config.periodic.any() { (31, 32) } else { (27, 28) };
     let network = VTK_HEAD + of_point * points + if is_flat { 4 * edges } else { of_triangle * triangles };
     let voxels = config.voxel_count();
     let bytes = match format {
         OutputFormat::Vtk(VtkFormat::Vtp | VtkFormat::Vtk) => network,
         OutputFormat::Vtk(VtkFormat::Vtu) => network + triangles,
         // Boundaries have normals, and every triangle comes at two grains, with five arrays.
-        OutputFormat::Vtm => network + 26 * points + 2 * (24 * points + 48 * triangles),
+        OutputFormat::Vtm => network + 27 * points + 2 * (24 * points + 48 * triangles),
         OutputFormat::Stl if config.file.stl == StlEncoding::Ascii => 270 * triangles,
         OutputFormat::Stl => 84 + 50 * triangles,
         OutputFormat::Ply => 24 * points + 25 * triangles,

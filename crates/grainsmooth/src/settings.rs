@@ -28,6 +28,9 @@ impl Config {
         if self.drop_empty {
             add("drop-empty", true.into());
         }
+        if self.min_diameter > 0.0 {
+            add("min-diameter", self.min_diameter.into());
+        }
         add("lloyd", i64::from(self.lloyd_steps).into());
         let DVec3 { x, y, z } = self.box_size;
         let sides = match self.dimension {
@@ -126,7 +129,11 @@ impl Config {
         let defaults = match self.seeds {
             // The file may give box and periods of its own, which become defaults where they are not named.
             SeedSource::File(_) => Vec::new(),
-            _ => Self::default().settings(),
+            _ => {
+                // What the command line takes where nothing is said.
+                let relaxation = self.usual_relaxation();
+                Self { relaxation, ..Self::default() }.settings()
+            }
         };
         let settings = self.settings().into_iter().filter(|setting| !defaults.contains(setting));
         let settings: Vec<String> = settings.map(|(name, value)| format!("{name}={value}")).collect();

@@ -140,6 +140,8 @@ pub struct Array<'a> {
 pub enum Values<'a> {
     /// One 8-bit integer each.
     Int8(&'a [i8]),
+    /// One unsigned 8-bit integer each.
+    UInt8(&'a [u8]),
     /// One 32-bit integer each.
     Int32(&'a [i32]),
     /// Two 32-bit integers each.
@@ -210,6 +212,7 @@ impl<'a> Values<'a> {
     pub fn len(&self) -> usize {
         match self {
             Self::Int8(values) => values.len(),
+            Self::UInt8(values) => values.len(),
             Self::Int32(values) => values.len(),
             Self::Int32Pairs(pairs) => pairs.len(),
             Self::Float64(values) => values.len(),
@@ -231,7 +234,8 @@ impl<'a> Values<'a> {
 
     fn component_count(&self) -> usize {
         match self {
-            Self::Int8(_) | Self::Int8Of(_) | Self::Int32(_) | Self::Int32Of(_) | Self::Int32Blocks(_) => 1,
+            Self::Int8(_) | Self::Int8Of(_) | Self::UInt8(_) => 1,
+            Self::Int32(_) | Self::Int32Of(_) | Self::Int32Blocks(_) => 1,
             Self::Float64(_) | Self::Float64Of(_) => 1,
             Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Float64Pairs(_) => 2,
             Self::Vectors(_) => 3,
@@ -242,6 +246,7 @@ impl<'a> Values<'a> {
     fn scalar_type(&self) -> ScalarType {
         match self {
             Self::Int8(_) | Self::Int8Of(_) => ScalarType::Int8,
+            Self::UInt8(_) => ScalarType::UInt8,
             Self::Int32(_) | Self::Int32Of(_) | Self::Int32Blocks(_) => ScalarType::Int32,
             Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Int32Tuples(_) => ScalarType::Int32,
             Self::Float64(_) | Self::Float64Of(_) => ScalarType::Float64,
@@ -271,6 +276,8 @@ pub enum FieldValue {
     Integer(u64),
     /// Any number of numbers, such as volumes, kept as Float64.
     Numbers(Vec<f64>),
+    /// Any number of ids, kept as Int32.
+    Ids(Vec<i32>),
 }
 
 /// Writes `data` in `format`; XML files hold their numbers in `encoding`.

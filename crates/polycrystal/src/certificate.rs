@@ -10,6 +10,7 @@ use crate::fans::pinched_points;
 use crate::fault::Fault;
 use crate::folds::folded_pairs;
 use crate::intersections::crossing_elements;
+use crate::node_type::Meeting;
 use crate::seams::Seams;
 use crate::triangle_quality::triangle_quality;
 use crate::volume::boundary_volumes;
@@ -27,6 +28,10 @@ const VOLUME_TOLERANCE: f64 = 1e-9;
 pub struct Claims<'a> {
     /// Type of each point; nothing where a file leaves it open.
     pub node_types: Option<&'a [Option<NodeType>]>,
+    /// Number of grains at each point, see [`Level::grain_counts`](crate::Level::grain_counts).
+    pub grain_counts: Option<&'a [u8]>,
+    /// In a periodic network, the point that each point is a copy of, or itself: grains at all copies meet there.
+    pub originals: Option<&'a [u32]>,
     /// Volume of each grain (in the plane: area).
     pub grain_volumes: Option<&'a [(GrainId, f64)]>,
     /// Volume of the domain (in the plane: area).
@@ -106,8 +111,8 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>)
     let flat = ids(normals.len()).filter(|element| normals[*element as usize] == DVec3::ZERO);
     faults.extend(flat.map(|element| Fault::NoArea { element }));
     faults.extend(duplicate_points(surface.points).map(|points| Fault::DuplicatePoints { points }));
-    let node_types = node_types(surface);
-    let orphans = ids(node_types.len()).filter(|point| node_types[*point as usize].is_none());
+    let meetings = meetings(surface);
+    let orphans = ids(meetings.len()).filter(|point| meetings[*point as usize].is_none());
     faults.extend(orphans.map(|point| Fault::Orphan { point }));
     let mut closing = faults_of_closing(surface, seams);
     let is_closed = closing.is_empty();
@@ -122,7 +127,10 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>)
     let crossing = crossing_elements(surface, seams).into_iter();
     faults.extend(crossing.map(|elements| Fault::Crossing { elements }));
     if let Some(stated) = claims.node_types {
-        faults.extend(wrong_node_types(stated, &node_types));
+        faults.extend(wrong_node_types(stated, &meetings));
+    }
+    if let Some(stated) = claims.grain_counts {
+        faults.extend(wrong_grain_counts(stated, &grain_counts(&meetings, claims.originals)));
     }
     certificate.grain_volumes = grain_volumes(surface);
     certificate.check_volumes(surface, claims, is_closed);
@@ -216,8 +224,8 @@ fn duplicate_points(points: &[DVec3]) -> impl Iterator<Item = [u32; 2]> {
     pairs.into_iter()
 }
 
-/// The type of each point by the sides around it; nothing where there is no element.
-fn node_types(surface: &Surface<'_>) -> Vec<Option<NodeType>> {
+/// What meets at each point by the sides around it; nothing where there is no element.
+fn meetings(surface: &Surface<'_>) -> Vec<Option<Meeting>> {
     const NONE: u32 = u32::MAX;
     const SEVERAL: u32 = u32::MAX - 1;
     let mut boundaries = vec![NONE; surface.points.len()];
@@ -240,25 +248,48 @@ fn node_types(surface: &Surface<'_>) -> Vec<Option<NodeType>> {
     let of_one = |boundary: u32| {
         let mut sides = surface.sides.get(boundary as usize).copied()?;
         sides.sort_unstable();
-        Some(NodeType::of_sides(&sides))
+        Some(Meeting::of_sides(&sides))
     };
-    let mut types: Vec<Option<NodeType>> = boundaries.into_iter().map(of_one).collect();
+    let mut meetings: Vec<Option<Meeting>> = boundaries.into_iter().map(of_one).collect();
     for at in around.chunk_by(|a, b| a.0 == b.0) {
         let sides: Vec<Side> = at.iter().map(|(_, side)| *side).collect();
-        types[at[0].0 as usize] = Some(NodeType::of_sides(&sides));
+        meetings[at[0].0 as usize] = Some(Meeting::of_sides(&sides));
     }
-    types
+    meetings
 }
 
-fn wrong_node_types(
-    stated: &[Option<NodeType>],
-    derived: &[Option<NodeType>],
-) -> impl Iterator<Item = Fault> {
+/// The number of grains at each point; where there are copies of it, at all of these together, as each grain there is another image.
+fn grain_counts(meetings: &[Option<Meeting>], originals: Option<&[u32]>) -> Vec<u8> {
+    let of_point = |at: &Option<Meeting>| at.map_or(0, |at| at.grains);
+    let mut counts: Vec<u8> = meetings.iter().map(of_point).collect();
+    let Some(originals) = originals else { return counts };
+    assert_eq!(originals.len(), meetings.len(), "one original for each point");
+    let copies = || (0u32..).zip(originals).filter(|(point, original)| point != *original);
+    for (point, original) in copies() {
+        let own = counts[point as usize];
+        let of_original = &mut counts[*original as usize];
+        *of_original = of_original.saturating_add(own);
+    }
+    for (point, original) in copies() {
+        counts[point as usize] = counts[*original as usize];
+    }
+    counts
+}
+
+fn wrong_grain_counts(stated: &[u8], derived: &[u8]) -> impl Iterator<Item = Fault> {
+    assert_eq!(stated.len(), derived.len(), "one number of grains for each point");
+    let points = (0u32..).zip(stated.iter().zip(derived));
+    points.filter(|(_, (stated, derived))| stated != derived && **derived > 0).map(
+        |(point, (stated, derived))| Fault::WrongGrainCount { point, stated: *stated, derived: *derived },
+    )
+}
+
+fn wrong_node_types(stated: &[Option<NodeType>], derived: &[Option<Meeting>]) -> impl Iterator<Item = Fault> {
     assert_eq!(stated.len(), derived.len(), "one node type for each point");
     let points = (0u32..).zip(stated.iter().zip(derived));
     points.filter_map(|(point, types)| match types {
-        (Some(stated), Some(derived)) if stated != derived => {
-            Some(Fault::WrongNodeType { point, stated: *stated, derived: *derived })
+        (Some(stated), Some(derived)) if *stated != derived.node_type => {
+            Some(Fault::WrongNodeType { point, stated: *stated, derived: derived.node_type })
         }
         _ => None,
     })

@@ -163,3 +163,31 @@ pub enum NetworkError {
     #[error("the network is invalid: {0}; relax for a shorter time, or move seeds or points a little")]
     Invalid(Faults),
 }
+
+impl NetworkError {
+    /// The grains that the error is about: none where it does not know which; nothing where it is about no grain at all.
+    pub fn grains(&self) -> Option<Vec<GrainId>> {
+        match self {
+            Self::BoundaryTooSmall { sides } => Some(sides.iter().filter_map(|side| side.grain()).collect()),
+            Self::MeetsItself { grain }
+            | Self::VolumeNotRestored { grain, .. }
+            | Self::GrainVanished { grain, .. } => Some(vec![*grain]),
+            Self::CutInvalid(faults) | Self::Invalid(faults) => Some(
+                faults
+                    .0
+                    .iter()
+                    .find_map(|fault| Some(fault.grains()).filter(|all| !all.is_empty()))
+                    .unwrap_or_default(),
+            ),
+            Self::Folded { .. } | Self::CutCrosses { .. } => Some(Vec::new()),
+            Self::TooLarge { .. }
+            | Self::Mesh(_)
+            | Self::PeriodicSurface
+            | Self::NotOnWall { .. }
+            | Self::MissingGrain { .. }
+            | Self::BadEdgeLength(_)
+            | Self::BadRelaxationTime(_)
+            | Self::BadTension { .. } => None,
+        }
+    }
+}

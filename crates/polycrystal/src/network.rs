@@ -220,8 +220,8 @@ impl Network {
     }
 
     /// Numbers of triple lines and quadruple points.
-    pub fn junction_counts(&self) -> JunctionCounts {
-        self.junctions
+    pub fn junction_counts(&self) -> &JunctionCounts {
+        &self.junctions
     }
 
     /// Number of grains.

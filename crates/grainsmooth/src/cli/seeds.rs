@@ -44,6 +44,15 @@ pub struct SeedArguments {
     #[arg(long, requires = "seeds_file")]
     pub drop_empty: bool,
 
+    /// Merge cells below F mean equivalent diameters into what surrounds them; 0 keeps all
+    ///
+    /// The smallest cell below loses its seed and the cells are made again, so that its neighbours grow into its place, until none is
+    /// below. The grains have the volumes of these cells. SeedId leads from their numbers back to the seeds.
+    ///
+    /// Example: --min-diameter 0.2
+    #[arg(long, value_name = "F", default_value_t = 0.0, value_parser = parse_share, allow_negative_numbers = true)]
+    pub min_diameter: f64,
+
     /// Even out the grains: move every seed to the centroid of its cell, N times
     ///
     /// Example: --lloyd 10
@@ -93,6 +102,11 @@ impl SeedArguments {
             (Some(_), _) => usage("--lattice takes a lattice and the number of its cells, such as bcc 4"),
         }
     }
+}
+
+fn parse_share(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share: &f64| (0.0..1.0).contains(share));
+    share.ok_or_else(|| "give a share of the mean diameter, from 0 (off) to below 1".to_owned())
 }
 
 fn parse_lattice(text: &str) -> Result<LatticeValue, String> {

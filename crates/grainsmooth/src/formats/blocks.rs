@@ -12,7 +12,7 @@ use super::grains::GrainMeasure;
 use super::lines::{JunctionLine, Junctions};
 use super::surface::Surface;
 use crate::measured_arrays::{MeasuredArrays, NumberArrays};
-use crate::network_file::{boundary_polylines, triangles};
+use crate::network_file::{NUMBER_OF_GRAINS, SEED_ID, boundary_polylines, triangles};
 use crate::vtk::{Array, Cells, PolyData, Tuples, Values, VtkFormat, write_vtk};
 use crate::vtk::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
 use crate::{Error, Output, Polycrystal, StagedFiles};
@@ -98,6 +98,7 @@ impl Polycrystal {
             .collect();
         // Points are fewer than 2^31: each has an edge of two directions with a 32-bit id.
         let point_ids = |piece: usize| ids(piece).into_iter().map(u32::cast_signed).collect();
+        let grain_counts = |piece: usize| self.grain_counts(&ids(piece));
         let normals = |piece: usize| {
             let ids = ids(piece);
             normals(&points_of(&ids), &triangles_of(piece, &ids))
@@ -117,6 +118,7 @@ impl Polycrystal {
             point_arrays: vec![
                 ("Normals", PieceVectors::Vectors(&normals)),
                 ("PointId", PieceVectors::Int32(&point_ids)),
+                (NUMBER_OF_GRAINS, PieceVectors::UInt8(&grain_counts)),
             ],
             cell_arrays: vec![
                 (names.sides(), PieceValue::Int32Pair(&labels)),
@@ -155,6 +157,7 @@ impl Polycrystal {
         let area = |number: usize| measures[number].area;
         let neighbors = |number: usize| measures[number].neighbors;
         let sphericity = |number: usize| measures[number].sphericity;
+        let seed = |number: usize| self.cells.seed_ids[number].cast_signed();
         let numbers: Vec<usize> = (0..parts.len()).collect();
         let of_grains = measured.map_or_else(NumberArrays::default, |all| all.of_grains(&numbers));
         let mut data = PieceData {
@@ -164,6 +167,7 @@ impl Polycrystal {
             point_arrays: Vec::new(),
             cell_arrays: vec![
                 (names.grain(), PieceValue::Int32(&name)),
+                (SEED_ID, PieceValue::Int32(&seed)),
                 ("Volume", PieceValue::Float64(&volume)),
                 ("Area", PieceValue::Float64(&area)),
                 ("Neighbors", PieceValue::Int32(&neighbors)),
@@ -195,10 +199,11 @@ impl Polycrystal {
         let sides = self.side_table(lines.iter().map(|(_, sides)| sides), self.most_sides(junctions));
         let polylines = lines.iter().map(|(line, _)| &line.points[..]);
         let of_lines = measured.map_or_else(NumberArrays::default, |all| all.of_lines(polylines));
+        let grain_counts = self.grain_counts(&ids);
         let mut data = PolyData {
             points: &points,
             cells: Cells::Polylines(&cells),
-            point_arrays: Vec::new(),
+            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&grain_counts) }],
             cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
             field: self.field(),
         };
@@ -219,10 +224,11 @@ impl Polycrystal {
         let ids: Vec<u32> = points.iter().map(|(point, _)| *point).collect();
         let points: Vec<DVec3> = ids.iter().map(|point| surface.points[*point as usize]).collect();
         let of_points = measured.map_or_else(NumberArrays::default, |all| all.of_quadruple_points(&ids));
+        let grain_counts = self.grain_counts(&ids);
         let mut data = PolyData {
             points: &points,
             cells: Cells::Vertices(points.len()),
-            point_arrays: Vec::new(),
+            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&grain_counts) }],
             cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
             field: self.field(),
         };
@@ -267,6 +273,12 @@ impl Polycrystal {
         let of_lines = junctions.lines.iter().map(|line| self.sides_around(line).len());
         let of_points = self.quadruple_points(junctions).into_iter().map(|(_, sides)| sides.len());
         of_lines.chain(of_points).max().unwrap_or(1)
+    }
+
+    /// How many grains meet at some of the points.
+    pub(super) fn grain_counts(&self, points: &[u32]) -> Vec<u8> {
+        let counts = &self.network.finest().grain_counts;
+        points.iter().map(|point| counts[*point as usize]).collect()
     }
 
     /// The numbers of the sides that meet in each of some places. All blocks of a file have as many components, of which

@@ -15,8 +15,8 @@ use polycrystal::BoundaryId;
 
 use super::connected::{ConnectedParts, pieces_of_grain};
 use super::lines::Junctions;
-use super::surface::{Surface, side_name};
-use crate::Config;
+use super::surface::{Surface, side_name, write_seed_comments};
+use crate::Polycrystal;
 
 /// Gmsh's codes for elements.
 const LINE: u32 = 1;
@@ -26,14 +26,15 @@ const POINT: u32 = 15;
 /// Writes the script, which reads the mesh file of the given name beside it.
 pub(crate) fn write_script(
     surface: &Surface<'_>,
-    grain_count: usize,
+    polycrystal: &Polycrystal,
     mesh: &str,
-    config: &Config,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     writeln!(out, "// grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
-    config.write_comments("// ", out)?;
+    polycrystal.config.write_comments("// ", out)?;
+    write_seed_comments(polycrystal.cells.renumbered(), "// ", out)?;
     writeln!(out, "Merge \"{mesh}\";")?;
+    let grain_count = polycrystal.network.grain_count();
     let ConnectedParts { surface: connected, boundaries } = ConnectedParts::of(surface);
     let mut surfaces_of = vec![Vec::new(); surface.parts.len()];
     for (piece, boundary) in connected.parts.iter().zip(&boundaries) {
@@ -66,10 +67,12 @@ pub(crate) fn write_script(
 }
 
 /// Writes the mesh file. Names stand in the script: meshio wants them for every cell, or for none.
-pub(crate) fn write(surface: &Surface<'_>, config: &Config, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(surface: &Surface<'_>, polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let surface = &ConnectedParts::of(surface).surface;
     let junctions = Junctions::of(surface);
-    writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n{}$EndComments", config.to_toml())?;
+    write!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n{}", polycrystal.config.to_toml())?;
+    write_seed_comments(polycrystal.cells.renumbered(), "", out)?;
+    writeln!(out, "$EndComments")?;
     write_entities(surface, &junctions, out)?;
     write_nodes(surface, &junctions, out)?;
     write_elements(surface, &junctions, out)

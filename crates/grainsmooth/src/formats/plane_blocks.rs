@@ -11,7 +11,7 @@ use polycrystal::{GrainId, Side};
 use super::blocks::point_id;
 use crate::Polycrystal;
 use crate::measured_arrays::{MeasuredArrays, NumberArrays};
-use crate::network_file::boundary_polylines;
+use crate::network_file::{NUMBER_OF_GRAINS, SEED_ID, boundary_polylines};
 use crate::vtk::{Array, Cells, Each, PolyData, Values, VtkFormat, write_vtk};
 
 /// What is measured of a grain in the plane.
@@ -51,12 +51,14 @@ impl Polycrystal {
         let id = |point: usize| ids[point].cast_signed();
         let of_lines = measured.map_or_else(NumberArrays::default, |all| all.of_cells(&boundary_of));
         let of_points = measured.map_or_else(NumberArrays::default, |all| all.curvatures_at(&ids));
+        let grain_counts = self.grain_counts(&ids);
         let mut data = PolyData {
             points: &points,
             cells: Cells::Polylines(&cells),
             point_arrays: vec![
                 Array { name: "Normals", values: Values::Vectors(&normals) },
                 Array { name: "PointId", values: Values::Int32Of(Each { count: points.len(), value: &id }) },
+                Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&grain_counts) },
             ],
             cell_arrays: vec![
                 Array { name: names.sides(), values: Values::Int32PairsOf(Each { count, value: &labels }) },
@@ -95,6 +97,7 @@ impl Polycrystal {
         let doubles = |value| Values::Float64Of(Each { count, value });
         let measure = |triangle: usize| -> &PlaneMeasure { &measures[grain_of[triangle]] };
         let number = |triangle: usize| names.number(GrainId(point_id(grain_of[triangle])));
+        let seed = |triangle: usize| self.cells.seed_ids[grain_of[triangle]].cast_signed();
         let area = |triangle: usize| measure(triangle).area;
         let perimeter = |triangle: usize| measure(triangle).perimeter;
         let neighbors = |triangle: usize| measure(triangle).neighbors;
@@ -105,6 +108,7 @@ impl Polycrystal {
             point_arrays: Vec::new(),
             cell_arrays: vec![
                 Array { name: names.grain(), values: integers(&number) },
+                Array { name: SEED_ID, values: integers(&seed) },
                 Array { name: "Volume", values: doubles(&area) },
                 Array { name: "Area", values: doubles(&perimeter) },
                 Array { name: "Neighbors", values: integers(&neighbors) },
@@ -134,13 +138,15 @@ impl Polycrystal {
             .map(|at| (at[0].0, at.iter().map(|(_, side)| *side).collect()))
             .collect();
         let junctions = || all.iter().filter(|(_, sides)| sides.len() >= fewest);
-        let points: Vec<DVec3> = junctions().map(|(point, _)| self.points[*point as usize]).collect();
+        let ids: Vec<u32> = junctions().map(|(point, _)| *point).collect();
+        let points: Vec<DVec3> = ids.iter().map(|id| self.points[*id as usize]).collect();
         let components = all.iter().map(|(_, sides)| sides.len()).max().unwrap_or(1);
         let sides = self.side_table(junctions().map(|(_, sides)| sides), components);
+        let grain_counts = self.grain_counts(&ids);
         let data = PolyData {
             points: &points,
             cells: Cells::Vertices(points.len()),
-            point_arrays: Vec::new(),
+            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&grain_counts) }],
             cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
             field: self.field(),
         };

@@ -83,6 +83,7 @@ pub(super) fn write_field(
             FieldValue::Numbers(numbers) => {
                 ("DataArray", "Float64", numbers.len(), bytemuck::cast_slice(numbers).to_vec())
             }
+            FieldValue::Ids(ids) => ("DataArray", "Int32", ids.len(), bytemuck::cast_slice(ids).to_vec()),
         };
         let offset = numbers_of_file.append(Numbers::bytes(bytes));
         writeln!(

@@ -37,6 +37,7 @@ pub(crate) struct PieceData<'a> {
 
 /// Values at the points of a piece.
 pub(crate) enum PieceVectors<'a> {
+    UInt8(&'a (dyn Fn(usize) -> Vec<u8> + Sync)),
     Int32(&'a (dyn Fn(usize) -> Vec<i32> + Sync)),
     Float64(&'a (dyn Fn(usize) -> Vec<f64> + Sync)),
     Vectors(&'a (dyn Fn(usize) -> Vec<DVec3> + Sync)),
@@ -86,6 +87,9 @@ pub(crate) fn write_pieces(
     let mut list = Listing { numbers, head };
     for (name, values) in &data.point_arrays {
         match values {
+            PieceVectors::UInt8(make) => {
+                list.array(name, "UInt8", 1, pieces(points, count, make))?;
+            }
             PieceVectors::Int32(make) => {
                 list.array(name, "Int32", 1, pieces(4 * points, count, |piece| bytes(&make(piece))))?;
             }

@@ -78,6 +78,7 @@ impl<'a> Numbers<'a> {
     pub(crate) fn of(values: Values<'a>) -> Self {
         match values {
             Values::Int8(values) => Self::slice(values),
+            Values::UInt8(values) => Self::slice(values),
             Values::Int32(values) => Self::slice(values),
             Values::Int32Pairs(pairs) => Self::slice(pairs),
             Values::Float64(values) => Self::slice(values),

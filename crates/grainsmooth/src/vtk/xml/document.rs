@@ -259,6 +259,10 @@ fn field(entry: &FieldEntry, format: XmlFormat, numbers: &mut NumbersOfFile<'_>)
                 Header::new(entry.name, ScalarType::Float64, 1, offset).with_tuples(values.len()),
             )
         }
+        (FieldValue::Ids(ids), _) => {
+            let offset = numbers.append(Numbers::bytes(bytemuck::cast_slice(ids).to_vec()));
+            Element::DataArray(Header::new(entry.name, ScalarType::Int32, 1, offset).with_tuples(ids.len()))
+        }
         (FieldValue::Text(text), XmlFormat::UnstructuredGrid) => {
             let offset = numbers.append(Numbers::bytes(text.clone().into_bytes()));
             Element::DataArray(Header::new(entry.name, ScalarType::UInt8, 1, offset).with_tuples(text.len()))
