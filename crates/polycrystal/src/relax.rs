@@ -132,6 +132,8 @@ pub struct Relaxed {
     pub time: f64,
     /// Whether the points of the level after that one should have moved too, but folded: then these are the last that were good.
     pub fell_back: bool,
+    /// Whether no point moved: boundaries are as flat as the cells, and finer points lie midway between coarser ones.
+    pub is_flat: bool,
 }
 
 impl Relaxed {
@@ -140,6 +142,9 @@ impl Relaxed {
     /// # Panics
     /// When the network is not the one that was relaxed.
     pub fn finest_points(&self, network: &Network) -> Vec<DVec3> {
+        if self.is_flat {
+            return network.divide(&self.points);
+        }
         network.subdivide_between(self.level, network.levels().len() - 1, &self.points)
     }
 }
@@ -204,7 +209,8 @@ fn relax_levels(
         if volumes == Volumes::Kept {
             flow(0).restore_lost_volumes(&mut points)?;
         }
-        return Ok(Relaxed { level: 0, points, steps: 0, time: 0.0, fell_back: false });
+        let is_flat = points == control_points;
+        return Ok(Relaxed { level: 0, points, steps: 0, time: 0.0, fell_back: false, is_flat });
     }
     let last = (network.levels().len() - 1).min(finest);
     let whole_time = time * network.mean_grain_size().powi(2);
@@ -249,14 +255,14 @@ fn relax_levels(
                 let end = Stage { step_time: 0.0, steps: 0, residual: 0.0, end: End::Finished };
                 points = flow(level - 1).run(&points, &end, &mut |_, _| ())?;
                 let (level, steps) = (level - 1, done_before - count);
-                return Ok(Relaxed { level, points, steps, time: before, fell_back: true });
+                return Ok(Relaxed { level, points, steps, time: before, fell_back: true, is_flat: false });
             }
         }
     }
     if volumes == Volumes::Free {
         check_grains_are_left(network, last, &points, time)?;
     }
-    Ok(Relaxed { level: last, points, steps, time: passed, fell_back: false })
+    Ok(Relaxed { level: last, points, steps, time: passed, fell_back: false, is_flat: false })
 }
 
 /// Checks that no grain has shrunk to nothing: it would have to vanish, and its neighbours to meet, for others to grow on as they do.

@@ -24,7 +24,7 @@ pub fn validate(network: &Network, points: &[DVec3]) -> Result<Certificate, Faul
         node_types: (!network.domain().is_periodic()).then_some(&node_types),
         grain_volumes: Some(&volumes),
         domain_volume: Some(network.domain().measure()),
-        rounding: 0.0,
+        rounding: surface.last_place(),
     };
     let mut certificate = inspect(&surface, &Seams::of_level(level), &claims);
     // The surface does not know what it is like through the walls.
