@@ -95,7 +95,7 @@ mod tests {
             NetworkError::BoundaryTooSmall { sides },
             NetworkError::MeetsItself { grain },
             NetworkError::CutCrosses { axis: "x" },
-            NetworkError::VolumeNotRestored { grain, relative_error: f64::NAN },
+            NetworkError::VolumeNotRestored { grain, diameter: 0.1, relative_error: 1.0 },
             NetworkError::Folded { count: 2 },
         ] {
             assert_eq!(refusal(&error.to_string()), None, "{error}");

@@ -170,7 +170,7 @@ impl LabelledFile {
             originals: self.originals.as_deref(),
             grain_volumes: self.volumes.as_deref(),
             domain_volume: self.settings.as_ref().and_then(domain_volume),
-            rounding: if self.is_single { self.single_rounding() } else { 0.0 },
+            rounding: if self.is_single { self.single_rounding() } else { self.surface().last_place() },
         }
     }
 

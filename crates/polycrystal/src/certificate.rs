@@ -13,7 +13,7 @@ use crate::intersections::crossing_elements;
 use crate::node_type::Meeting;
 use crate::seams::Seams;
 use crate::triangle_quality::triangle_quality;
-use crate::volume::boundary_volumes;
+use crate::volume::{ConeSum, boundary_cones, swept_by_rounding};
 use crate::{AngleStatistics, Elements, GrainId, NodeType, Side, Surface, TriangleQuality};
 
 /// Cosine of the angle between normals beyond which neighbours in one boundary are folded: 90 degrees, and as much more as
@@ -36,8 +36,8 @@ pub struct Claims<'a> {
     pub grain_volumes: Option<&'a [(GrainId, f64)]>,
     /// Volume of the domain (in the plane: area).
     pub domain_volume: Option<f64>,
-    /// How far each coordinate may be from what the volumes were measured on: half a last place of single precision, where
-    /// that is how points were kept since.
+    /// How far each coordinate may be from what the volumes were measured on: [`Surface::last_place`], or half a last place of
+    /// single precision, where that is how points were kept since.
     pub rounding: f64,
 }
 
@@ -150,7 +150,6 @@ impl Certificate {
         let empty = self.grain_volumes.iter().filter(|(_, volume)| is_closed && *volume <= 0.0);
         faults.extend(empty.map(|&(grain, volume)| Fault::NoVolume { grain, volume }));
         let areas = if claims.rounding > 0.0 { side_areas(surface) } else { BTreeMap::new() };
-        let shift = claims.rounding * 3f64.sqrt();
         let mut wrong = Vec::new();
         for (grain, claimed) in claims.grain_volumes.into_iter().flatten() {
             let Ok(found) = self.grain_volumes.binary_search_by_key(grain, |(grain, _)| *grain) else {
@@ -160,9 +159,11 @@ impl Certificate {
             let relative_error = (self.grain_volumes[found].1 / claimed - 1.0).abs();
             self.largest_volume_error = self.largest_volume_error.max(relative_error);
             let area = areas.get(&Side::Grain(*grain)).copied().unwrap_or(0.0);
-            let is_right = relative_error <= VOLUME_TOLERANCE + shift * area / claimed;
+            let tolerance = VOLUME_TOLERANCE + swept_by_rounding(claims.rounding, area) / claimed;
+            let is_right = relative_error <= tolerance;
             if is_closed && !is_right {
-                wrong.push(Fault::WrongVolume { grain: *grain, relative_error });
+                let diameter = surface.elements.dimension().ball_diameter(*claimed);
+                wrong.push(Fault::WrongVolume { grain: *grain, diameter, relative_error });
             }
         }
         if let Some(claimed) = claims.grain_volumes {
@@ -177,7 +178,8 @@ impl Certificate {
             let relative_error = (total / whole - 1.0).abs();
             self.total_volume_error = relative_error;
             let outside = areas.get(&Side::Exterior).copied().unwrap_or(0.0);
-            let is_right = relative_error <= VOLUME_TOLERANCE + shift * outside / whole;
+            let tolerance = VOLUME_TOLERANCE + swept_by_rounding(claims.rounding, outside) / whole;
+            let is_right = relative_error <= tolerance;
             if is_closed && !is_right {
                 faults.push(Fault::WrongTotal { relative_error });
             }
@@ -296,19 +298,13 @@ fn wrong_node_types(stated: &[Option<NodeType>], derived: &[Option<Meeting>]) ->
 }
 
 fn grain_volumes(surface: &Surface<'_>) -> Vec<(GrainId, f64)> {
-    // Far from the origin of coordinates volumes would lose digits.
-    let [lower, upper] =
-        surface.points.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[lower, upper], point| {
-            [lower.min(*point), upper.max(*point)]
-        });
-    let of_boundaries = boundary_volumes(surface, lower.midpoint(upper));
-    let mut volumes: BTreeMap<GrainId, f64> = BTreeMap::new();
-    for (sides, volume) in surface.sides.iter().zip(of_boundaries) {
-        for (side, volume) in sides.iter().zip([volume, -volume]) {
+    let mut volumes: BTreeMap<GrainId, ConeSum> = BTreeMap::new();
+    for (sides, cone) in surface.sides.iter().zip(boundary_cones(surface)) {
+        for (side, sign) in sides.iter().zip([1.0, -1.0]) {
             if let Side::Grain(grain) = side {
-                *volumes.entry(*grain).or_default() += volume;
+                volumes.entry(*grain).or_default().add(&cone, sign);
             }
         }
     }
-    volumes.into_iter().collect()
+    volumes.into_iter().map(|(grain, sum)| (grain, sum.volume)).collect()
 }

@@ -1,5 +1,7 @@
 use std::fmt;
 
+use voronoi::Dimension;
+
 use crate::{Faults, GrainId, Side};
 
 /// A way to a result that was tried before the one that led there, and what it said: geometry that tangles one way need not another.
@@ -131,12 +133,15 @@ pub enum NetworkError {
     },
     /// The grains' volumes could not be restored.
     #[error(
-        "grain {} misses its volume by {relative_error:e} of it after relaxation; relax for a shorter time",
+        "grain {} (equivalent diameter {diameter:.3e}) misses its volume by {relative_error:.1e} of it after relaxation; relax for \
+         a shorter time, or for none",
         grain.0
     )]
     VolumeNotRestored {
         /// The grain that is farthest from its volume.
         grain: GrainId,
+        /// The equivalent diameter that it should have.
+        diameter: f64,
         /// Difference to the volume of its cell, as a share of that.
         relative_error: f64,
     },
@@ -189,5 +194,16 @@ impl NetworkError {
             | Self::BadRelaxationTime(_)
             | Self::BadTension { .. } => None,
         }
+    }
+
+    /// A grain of the plane or of space misses its volume by a share of it; by all of it where it has none that is a number.
+    pub(crate) fn volume_not_restored(
+        dimension: Dimension,
+        grain: GrainId,
+        volume: f64,
+        relative_error: f64,
+    ) -> Self {
+        let relative_error = if relative_error.is_nan() { 1.0 } else { relative_error };
+        Self::VolumeNotRestored { grain, diameter: dimension.ball_diameter(volume), relative_error }
     }
 }

@@ -146,10 +146,14 @@ pub enum Fault {
         grain: GrainId,
     },
     /// A grain does not have the volume that it should.
-    #[error("the volume of grain {} is off by {relative_error:e} of what it should be", grain.0)]
+    #[error(
+        "the volume of grain {} (equivalent diameter {diameter:.3e}) is off by {relative_error:.1e} of what it should be", grain.0
+    )]
     WrongVolume {
         /// The grain.
         grain: GrainId,
+        /// The equivalent diameter that it should have.
+        diameter: f64,
         /// The difference as a share of the volume that it should have.
         relative_error: f64,
     },

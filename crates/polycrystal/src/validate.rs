@@ -27,7 +27,7 @@ pub fn validate(network: &Network, points: &[DVec3]) -> Result<Certificate, Faul
         originals: originals.as_deref(),
         grain_volumes: Some(&volumes),
         domain_volume: Some(network.domain().measure()),
-        rounding: 0.0,
+        rounding: surface.last_place(),
     };
     let mut certificate = inspect(&surface, &Seams::of_level(level), &claims);
     // The surface does not know what it is like through the walls.
