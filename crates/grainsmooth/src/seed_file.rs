@@ -57,6 +57,9 @@ pub enum SeedProblem {
         /// What the file is read for.
         dimension: Dimension,
     },
+    /// A quoted column goes on in the next line, as where its second quote is missing.
+    #[error("a quote that the line does not close; close or remove it")]
+    OpenQuote,
     /// Two columns are named alike.
     #[error("two columns named {name}; rename one of them")]
     NamedTwice {

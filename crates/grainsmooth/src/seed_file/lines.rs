@@ -125,6 +125,9 @@ pub(super) fn csv(content: &[u8], dimension: Dimension) -> Located<Vec<FileSeed>
     while reader.read_record(&mut record).expect("text in memory, with any number of columns") {
         let line = record.position().map_or(0, csv::Position::line);
         let place = places[usize::try_from(line).unwrap_or(1).saturating_sub(1)];
+        if reader.position().line() > line + 1 {
+            return Err((place, SeedProblem::OpenQuote));
+        }
         let texts: Vec<&str> = match (delimiter, record.len()) {
             (b' ', _) => record.iter().filter(|text| !text.is_empty()).collect(),
             (_, 1) => record[0].split_whitespace().collect(),

@@ -59,7 +59,7 @@ fn names_choose_columns_in_any_order() {
     for (content, expected) in [
         ("z,y,x\n3,2,1\n", seed(2, 1.0, 2.0, 3.0)),
         ("\"Z\";\"name\";\"y\";\"X\"\n\"3\";\"a; \"\"b\"\"\";2;1\n", seed(2, 1.0, 2.0, 3.0)),
-        ("# R\n\"\" \"x\" \"y\" \"z\"\n\"1\" 1 2\t3\n", seed(3, 1.0, 2.0, 3.0)),
+        ("# R\n\"n\"  \"x\" \"y\" \"z\"\n\"a b\" 1 2\t3\n", seed(3, 1.0, 2.0, 3.0)),
         ("id\tx\ty\tz\tradius\n7\t1\t2\t3\t0.5\n", weighted(2, 0.25)),
         ("Diameter,x,y,z\n1,1,2,3\n", weighted(2, 0.25)),
         ("x, y, z, weight, volume\n1, 2, 3, -0.25, nan\n", weighted(2, -0.25)),
@@ -114,7 +114,11 @@ fn each_mistake_is_named_with_its_line() {
             3,
             "seeds.csv line 2: \"0,5\" is not a number; write x, y, z as numbers such as 0.5",
         ),
-        ("x,y,z,name\n1,2,3,\"a\n1,2,3", 3, "seeds.csv: holds no seeds; give a file with one or more"),
+        (
+            "x,y,z,name\n1,2,3,\"a\n1,2,3",
+            3,
+            "seeds.csv line 2: a quote that the line does not close; close or remove it",
+        ),
         ("1,2,3\nx,y,z", 3, "seeds.csv line 2: \"x\" is not a number; write x, y, z as numbers such as 0.5"),
         ("", 3, "seeds.csv: holds no seeds; give a file with one or more"),
         ("x,y,z\n# 1,2,3\n\n", 3, "seeds.csv: holds no seeds; give a file with one or more"),
