@@ -2,7 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use glam::DVec3;
-use grainsmooth::vtk::{Array, Cells, Each, FieldEntry, FieldValue, PolyData, Tuples, Values, VtkFormat};
+use grainsmooth::vtk::{
+    Array, Cells, Each, FieldEntry, FieldValue, PolyData, Tuples, Values, VtkEncoding, VtkFormat,
+};
 use grainsmooth::vtk::{field_text, inlined, write_vtk};
 use vtkio::model::{Attribute, Attributes, CellType, DataSet, IOBuffer, Piece, VertexNumbers, Vtk};
 
@@ -38,7 +40,7 @@ fn surface(cells: Cells<'_>) -> PolyData<'_> {
 
 fn bytes(data: &PolyData<'_>, format: VtkFormat) -> Vec<u8> {
     let mut bytes = Vec::new();
-    write_vtk(data, format, &mut bytes).unwrap();
+    write_vtk(data, format, VtkEncoding::Raw, &mut bytes).unwrap();
     bytes
 }
 
@@ -144,6 +146,50 @@ fn triangles_come_back() {
         let file = bytes(&surface(Cells::Triangles(&TRIANGLES)), format);
         let expected = TRIANGLES.map(|triangle| (CellType::Triangle, triangle.map(u64::from).to_vec()));
         assert_eq!(check(read(file, format)), expected, "{format:?}");
+    }
+}
+
+/// Without a change to the bytes, which raw files need.
+#[test]
+fn vtkio_reads_encoded_files_as_they_are() {
+    let expected = TRIANGLES.map(|triangle| (CellType::Triangle, triangle.map(u64::from).to_vec()));
+    for encoding in [VtkEncoding::Base64, VtkEncoding::Zlib] {
+        for format in [VtkFormat::Vtp, VtkFormat::Vtu] {
+            let data = surface(Cells::Triangles(&TRIANGLES));
+            let mut file = Vec::new();
+            write_vtk(&data, format, encoding, &mut file).unwrap();
+            assert!(file.is_ascii(), "{encoding:?}");
+            assert_eq!(field_text(&file, "CommandLine").as_deref(), Some(COMMAND), "{encoding:?} {format:?}");
+            assert_eq!(check(Vtk::parse_xml(&file[..]).unwrap()), expected, "{encoding:?} {format:?}");
+        }
+    }
+}
+
+/// Arrays of one block, of just one and of several that are compressed apart: 2^18 bytes each.
+#[test]
+fn long_arrays_come_back_compressed() {
+    for count in [1 << 14, 1 << 15, (1 << 16) + 3] {
+        let values: Vec<f64> = (0..count).map(|i| f64::from(i).sqrt()).collect();
+        let points: Vec<DVec3> = values.iter().map(|value| DVec3::splat(*value)).collect();
+        let array = Array { name: "Roots", values: Values::Float64(&values) };
+        let data = PolyData {
+            points: &points,
+            cells: Cells::Triangles(&TRIANGLES),
+            point_arrays: vec![array],
+            cell_arrays: vec![],
+            field: vec![],
+        };
+        for (encoding, format) in [(VtkEncoding::Base64, VtkFormat::Vtp), (VtkEncoding::Zlib, VtkFormat::Vtu)]
+        {
+            let mut file = Vec::new();
+            write_vtk(&data, format, encoding, &mut file).unwrap();
+            let attributes = match Vtk::parse_xml(&file[..]).unwrap().data {
+                DataSet::PolyData { pieces, .. } => inline(pieces).data,
+                DataSet::UnstructuredGrid { pieces, .. } => inline(pieces).data,
+                _ => panic!("neither PolyData nor UnstructuredGrid"),
+            };
+            assert_eq!(named(attributes.point), [("Roots".to_owned(), 1, IOBuffer::F64(values.clone()))]);
+        }
     }
 }
 

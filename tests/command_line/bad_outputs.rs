@@ -176,6 +176,19 @@ fn format_that_cannot_hold_the_grains() {
     );
 }
 
+/// The number of bytes is known before anything is computed.
+#[test]
+fn voxels_that_the_disk_has_no_room_for() {
+    let workplace = Workplace::new();
+    for name in ["a.vti", "a.npy"] {
+        let message = format!(
+            "{name}: would take 1.1 PB and ... are free there; take fewer voxels or choose another path"
+        );
+        let arguments = format!("{BEFORE_COMPUTING} --voxels 65536 65536 65536 -o {name}");
+        workplace.refuses(&arguments, FAILED, &message);
+    }
+}
+
 #[test]
 fn directory_of_grains_that_is_taken() {
     let workplace = Workplace::new();

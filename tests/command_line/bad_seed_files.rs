@@ -8,7 +8,7 @@ fn refuses(content: impl AsRef<[u8]>, arguments: &str, message: &str) {
 
 #[test]
 fn no_seeds() {
-    let message = "seeds.csv: holds no seeds; write x, y, z on each line";
+    let message = "seeds.csv: holds no seeds; give a file with one or more";
     refuses("", "", message);
     refuses("\n\n", "", message);
     refuses("# my seeds\n\n# none yet\n", "", message);
@@ -27,25 +27,37 @@ fn coordinates_that_are_no_finite_numbers() {
     refuses(
         "0.1 0.2 0.3\n0.5 half 0.5\n",
         "",
-        "seeds.csv line 2: \"half\" is not a number; write x, y, z as decimal numbers",
+        "seeds.csv line 2: \"half\" is not a number; write x, y, z as numbers such as 0.5",
     );
 }
 
 #[test]
 fn columns_that_do_not_fit_the_dimension() {
-    refuses("# plane\n0.1,0.2\n", "", "seeds.csv line 2: 2 columns; write x, y, z on each line");
-    refuses("0.1,0.2,0.3,0.4,0.5\n", "", "seeds.csv line 1: 5 columns; write x, y, z on each line");
+    refuses(
+        "# plane\n0.1,0.2\n",
+        "",
+        "seeds.csv line 2: 2 columns; write x, y, z on each line, or name the columns in the first",
+    );
+    refuses(
+        "0.1,0.2,0.3,0.4,0.5\n",
+        "",
+        "seeds.csv line 1: 5 columns; write x, y, z on each line, or name the columns in the first",
+    );
     refuses("0.1,0.2,0.3,-0.4\n", "", "seeds.csv line 1: radius is -0.4; write 0 or more");
-    refuses("0.1\n", "--dim 2", "seeds.csv line 1: 1 columns; write x, y on each line");
+    refuses(
+        "0.1\n",
+        "--dim 2",
+        "seeds.csv line 1: 1 columns; write x, y on each line, or name the columns in the first",
+    );
     refuses(
         "0.1,0.2,0.3\n",
         "--dim 2",
         "seeds.csv line 1: z is 0.3 in a 2D run; set it to 0, run in 3D, or name the columns x, y, radius",
     );
     refuses(
-        "y,x,z\n0,0,0\n",
+        "y,x,height\n0,0,0\n",
         "",
-        "seeds.csv line 1: columns named \"y, x, z\"; name them x, y, z or drop the line",
+        "seeds.csv line 1: columns named \"y, x, height\"; name those of the seeds x, y, z",
     );
 }
 

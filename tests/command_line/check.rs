@@ -424,6 +424,33 @@ fn wrong_node_types_in_files_of_this_program_are_found() {
     }
 }
 
+/// In periodic files too, where the grains at all copies of a point count.
+#[test]
+fn wrong_numbers_of_grains_are_found() {
+    let workplace = Workplace::new();
+    for arguments in
+        ["", "--dim 2", "--periodic x,y,z", "--dim 2 --periodic x", "--periodic x,y --periodic-cut box"]
+    {
+        workplace.run(&format!("--seeds 12 -n 1 -o a.vtk {arguments}"));
+        assert_eq!(report(&workplace, "a.vtk", 0)["good"], true);
+        let mut file = workplace.bytes("a.vtk");
+        let head = b"NumberOfGrains 1 ";
+        let start = file.windows(head.len()).position(|window| window == head).unwrap();
+        let first = start + file[start..].iter().position(|byte| *byte == b'\n').unwrap() + 1;
+        let right = file[first];
+        file[first] = right + 1;
+        workplace.put("a.vtk", &file);
+        let report = report(&workplace, "a.vtk", FAILED);
+        let message = format!("point 0 has {} as its number of grains, and {right} meet there", right + 1);
+        assert_eq!(report["faults"][0]["message"], message, "{arguments}");
+        assert_eq!(report["faults"].as_array().unwrap().len(), 1, "{arguments}");
+        file[first] = 0;
+        workplace.put("a.vtk", file);
+        let message = "a.vtk: NumberOfGrains of point 0 is 0 and not from 1 to 255; give a complete VTK file";
+        workplace.refuses("check a.vtk", FAILED, message);
+    }
+}
+
 /// As VTK 9 and meshio write legacy files: remarks between the arrays of field data, newer names of types, a third label, and
 /// `nan` among numbers.
 #[test]
@@ -437,7 +464,8 @@ fn legacy_files_as_others_write_them_are_read() {
     let remarked = file.replace("POLYDATA\n", volumes);
     workplace.put("cubes.vtk", &remarked);
     let found = report(&workplace, "cubes.vtk", FAILED);
-    assert_eq!(found["faults"][0]["message"], "the volume of grain 1 is off by 1e0 of what it should be");
+    let message = "the volume of grain 1 (equivalent diameter 7.816e-1) is off by 1.0e0 of what it should be";
+    assert_eq!(found["faults"][0]["message"], message);
     assert_eq!(found["faults"].as_array().unwrap().len(), 1);
     workplace.put("cubes.vtk", remarked.replace("0.5 0.25", "0.5 0.5"));
     assert_eq!(report(&workplace, "cubes.vtk", 0)["volume_error"], 0.0);

@@ -24,6 +24,10 @@ fn files_run_their_run_again() {
         ("a.vtp", flat),
         ("a.npy", flat),
         ("a.tess", solid),
+        ("a.vtu", &format!("{solid} --vtk-encoding base64")),
+        ("a.vtp", &format!("{flat} --vtk-encoding zlib")),
+        ("a.vti", &format!("{flat} --vtk-encoding zlib")),
+        ("a.vtm", &format!("{solid} --vtk-encoding base64")),
         ("a.tess", flat),
     ] {
         let workplace = Workplace::new();

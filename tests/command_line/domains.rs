@@ -156,7 +156,7 @@ fn files_that_hold_no_domain() {
             &dented,
             "dented.obj: vertex ... lies outside face ... : the surface is not convex, which a domain must be",
         ),
-        ("words.csv", "1,0,0,1\n1,2,x,1\n", "words.csv line 2: write nx, ny, nz, d as decimal numbers"),
+        ("words.csv", "1,0,0,1\n1,2,x,1\n", "words.csv line 2: write nx, ny, nz, d as numbers such as 0.5"),
         (
             "flat.csv",
             "1,0,0,1\n\n0,0,0,1\n",

@@ -156,7 +156,7 @@ fn dry_run_foretells_the_run_and_writes_nothing() {
         "--seeds 30 -n 2 -o a.obj",
         "--seeds 30 -n 2 -o a.msh",
         "--seeds 30 -n 2 -o a.fe",
-        "--seeds 90 --dim 2 -n 4 -o a.vtp",
+        "--seeds 90 --dim 2 --relax 0.3 -n 4 -o a.vtp",
         "--seeds 30 --periodic x,y,z --faces plain -n 2 -o a.vtp",
         "--seeds 300 -n 0 -o a.tess",
     ] {
@@ -190,6 +190,27 @@ fn dry_run_foretells_the_run_and_writes_nothing() {
         workplace.command("--seeds 100 -n 12 --dry-run").assert().code(FAILED).get_output().clone();
     assert!(String::from_utf8(too_much.stdout).unwrap().contains("\nmemory      about "));
     assert!(String::from_utf8(too_much.stderr).unwrap().contains(" levels would fit"));
+}
+
+#[test]
+fn dry_run_counts_voxels() {
+    let workplace = Workplace::new();
+    let foretold = |arguments: &str| {
+        let output = workplace.command(&format!("--seeds 5 -n 0 --dry-run {arguments}")).output().unwrap();
+        let said = String::from_utf8(output.stdout).unwrap();
+        let number = |name: &str| -> u64 {
+            let line = said.lines().find(|line| line.starts_with(name)).unwrap();
+            line.split_whitespace().find_map(|word| word.parse().ok()).unwrap()
+        };
+        [number("file"), number("memory")]
+    };
+    let [file, memory] = foretold("--voxels 3000 3000 3000 -o a.vti");
+    assert!((108_000_000_000..108_001_000_000).contains(&file), "four bytes each: {file}");
+    // As much as for a few of them: they are labelled slab by slab.
+    let [none, small] = [foretold("-o a.vtp"), foretold("--voxels 30 30 30 -o a.vti")];
+    assert!(memory == small[1] && memory > none[1] + 100_000_000 && memory < 200_000_000, "{memory}");
+    let [plane, _] = foretold("--dim 2 --voxels 3000 3000 -o a.npy");
+    assert!((36_000_000..36_010_000).contains(&plane), "{plane}");
 }
 
 #[test]

@@ -37,6 +37,7 @@ fn tess_file_gives_seeds_box_and_periods() {
     assert!(cut.starts_with("error: cut.tess line ") && cut.ends_with("; give a complete file\n"), "{cut}");
 }
 
+/// The reader of seeds refused the program's own CSV tables.
 #[test]
 fn tables_of_cells_give_the_same_cells_again() {
     let workplace = Workplace::new();
@@ -44,13 +45,15 @@ fn tables_of_cells_give_the_same_cells_again() {
     for (arguments, plane) in
         [("--seeds 12", ""), ("--seeds 8 --dim 2", "--dim 2"), ("--seeds-file spheres.csv", "")]
     {
-        workplace.run(&format!("{arguments} --no-mesh --cells-json one.json"));
+        workplace.run(&format!("{arguments} --no-mesh --cells-json one.json --cells-csv one.csv"));
         workplace.run(&format!("--seeds-file one.json {plane} --no-mesh --cells-json two.json"));
         let cells = |name| {
             let file: serde_json::Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
             file["cells"].as_array().unwrap().clone()
         };
         assert_eq!(cells("one.json"), cells("two.json"), "{arguments}");
+        workplace.run(&format!("--seeds-file one.csv {plane} --no-mesh --cells-json three.json"));
+        assert_eq!(cells("one.json"), cells("three.json"), "{arguments}");
     }
 }
 
@@ -74,5 +77,76 @@ fn xyz_and_csv_of_the_same_spheres_are_the_same_grains() {
         "--seeds-file b.json",
         FAILED,
         "b.json entry 2: seed 1 at (2, 0.5, 0.5) lies outside the domain [0, 1] x [0, 1] x [0, 1]; move it inside or enlarge the domain",
+    );
+}
+
+/// The lines of a .tess file's seeds, and what stands before and behind them.
+fn parts_at_seeds(tess: &str) -> [&str; 3] {
+    let (before, rest) = tess.split_once("  *seed\n").unwrap();
+    let (seeds, _) = rest.split_once(" **vertex").unwrap();
+    [before, seeds, &rest[seeds.len()..]]
+}
+
+/// Cells that Neper had regularised or cut were made anew from their seeds, which gave other grains.
+#[test]
+fn tess_files_whose_cells_are_not_those_of_their_seeds_are_refused() {
+    let workplace = Workplace::new();
+    for (arguments, measure) in
+        [("--seeds 5", "volume"), ("--seeds 5 --dim 2", "area"), ("--seeds 5 --periodic x,y,z", "volume")]
+    {
+        workplace.run(&format!("{arguments} -n 0 --relax 0 -o one.tess"));
+        let tess = String::from_utf8(workplace.bytes("one.tess")).unwrap();
+        let [before, seeds, behind] = parts_at_seeds(&tess);
+        let mut swapped: Vec<&str> =
+            seeds.lines().map(|line| line.trim_start().split_once(' ').unwrap().1).collect();
+        swapped.swap(1, 2);
+        let list: String = (1..).zip(&swapped).map(|(id, seed)| format!("   {id} {seed}\n")).collect();
+        workplace.put("other.tess", format!("{before}  *seed\n{list}{behind}"));
+        let message = format!(
+            "other.tess entry 2: its cell has the {measure} ... ; give a file of one scale whose cells are those of its seeds, not regularized or cut"
+        );
+        workplace.refuses("--seeds-file other.tess", FAILED, &message);
+        let outside = list.replacen(swapped[0], "-0.125 0.5 0.0 0.0", 1);
+        workplace.put("other.tess", format!("{before}  *seed\n{outside}{behind}"));
+        workplace.refuses(
+            "--seeds-file other.tess",
+            FAILED,
+            "other.tess entry 1: its seed [-0.125, 0.5, 0] lies outside the domain; give a file with all seeds inside",
+        );
+        workplace.put("other.tess", format!("{before}{behind}"));
+        workplace.refuses(
+            "--seeds-file other.tess",
+            FAILED,
+            "other.tess line 1: the cells have no seeds; give a file with *seed, as Neper writes them",
+        );
+    }
+}
+
+/// Neper calls the square of its plane tessellations a cube, which was refused.
+#[test]
+fn the_square_of_a_plane_tess_file_may_be_called_a_cube() {
+    let workplace = Workplace::new();
+    workplace.run("--seeds 5 --dim 2 --relax 0 -n 0 -o one.tess --cells-csv one.csv");
+    let tess = String::from_utf8(workplace.bytes("one.tess")).unwrap();
+    workplace.put("other.tess", tess.replace("   square\n", "   cube\n"));
+    workplace.run("--seeds-file other.tess --no-mesh --cells-csv other.csv");
+    assert!(workplace.bytes("one.csv") == workplace.bytes("other.csv"));
+}
+
+/// The radius of a weight below zero is not a number: such files could not be read.
+#[test]
+fn negative_weights_become_radii_of_the_same_cells() {
+    let workplace = Workplace::new();
+    workplace.put("seeds.csv", "x,y,z,weight\n0.2,0.5,0.5,-0.1\n0.7,0.5,0.4,-0.2\n0.5,0.1,0.9,0.05\n");
+    workplace.run("--seeds-file seeds.csv --relax 0 -n 0 -o one.tess --cells-json one.json");
+    workplace.run("--seeds-file one.tess --no-mesh --cells-json two.json");
+    let volumes = |name| -> Vec<f64> {
+        let file: serde_json::Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+        file["cells"].as_array().unwrap().iter().map(|cell| cell["volume"].as_f64().unwrap()).collect()
+    };
+    let (one, two) = (volumes("one.json"), volumes("two.json"));
+    assert!(
+        one.len() == 3 && one.iter().zip(&two).all(|(one, two)| (one / two - 1.0).abs() < 1e-12),
+        "{one:?} {two:?}"
     );
 }

@@ -1,6 +1,7 @@
 //! `--stats` and `--arrays`: what is measured, read back.
 
-use std::f64::consts::FRAC_PI_3;
+use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_PI_3, PI};
 use std::fs;
 
 use grainsmooth::vtk::inlined;
@@ -68,6 +69,81 @@ fn statistics_of_a_periodic_network_sum_up() {
         let angles: f64 = line["mean_angles"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).sum();
         assert!((angles - 360.0).abs() < 1e-9);
     }
+}
+
+/// Nothing once told that half of the quadruple points join five grains or more: short edges collapse by default.
+#[test]
+fn higher_order_junctions_are_told_apart() {
+    let workplace = Workplace::new();
+    let periodic = "--seeds 60 --periodic x,y,z -n 0 --stats a.json --json-summary run.json -o a.vtp";
+    let said = workplace.run(periodic);
+    let [all, run] = ["a.json", "run.json"].map(|name| json(&workplace, name));
+    let topology = &run["topology"];
+    assert_eq!(all["topology"], *topology);
+    let number = |key: &str| topology[key].as_f64().unwrap();
+    assert!((number("faces") - all["distributions"]["faces"]["mean"].as_f64().unwrap()).abs() < 1e-12);
+    assert!(number("faces") < number("faces_before") - 1.0, "{said}");
+    let mut by_grains: BTreeMap<String, u64> = BTreeMap::new();
+    let counts = numbers(&workplace, "a.vtp", "NumberOfGrains");
+    for row in rows(&all, "quadruple_points") {
+        let point = usize::try_from(row["point"].as_u64().unwrap()).unwrap();
+        assert_eq!(row["grains"].as_f64(), Some(counts[point]));
+        *by_grains.entry(row["grains"].to_string()).or_default() += 1;
+    }
+    assert_eq!(topology["points_by_grains"], serde_json::to_value(&by_grains).unwrap());
+    assert!(by_grains.keys().any(|grains| grains != "4"), "{by_grains:?}");
+    let mut by_boundaries: BTreeMap<String, u64> = BTreeMap::new();
+    for row in rows(&all, "triple_lines") {
+        assert_eq!(row["grains"], row["sides"].as_array().unwrap().len());
+        *by_boundaries.entry(row["boundaries"].as_array().unwrap().len().to_string()).or_default() += 1;
+    }
+    assert_eq!(topology["lines_by_boundaries"], serde_json::to_value(&by_boundaries).unwrap());
+    let counted = |counts: &BTreeMap<String, u64>, what: &str| {
+        let counts: Vec<String> =
+            counts.iter().map(|(number, count)| format!("{count} of {number}")).collect();
+        format!("({})", counts.join(", ").replacen(", ", &format!(" {what}, "), 1))
+    };
+    let line = said.lines().find(|line| line.starts_with("junctions ")).unwrap();
+    assert!(line.contains(&counted(&by_grains, "grains")), "{line}");
+    assert!(line.contains(&counted(&by_boundaries, "boundaries")), "{line}");
+    let faces =
+        format!("; {:.2} faces a grain, {:.2} before relaxation", number("faces"), number("faces_before"));
+    assert!(line.ends_with(&faces), "{line}");
+
+    workplace.run(&format!("{periodic} --regularize 0"));
+    let topology = &json(&workplace, "run.json")["topology"];
+    assert_eq!(topology["faces"], topology["faces_before"]);
+    assert_eq!(topology["points_by_grains"].as_object().unwrap().keys().collect::<Vec<_>>(), ["4"]);
+    assert!(numbers(&workplace, "a.vtp", "NumberOfGrains").iter().all(|grains| (2.0..=4.0).contains(grains)));
+    // In the plane only three grains meet, by default.
+    workplace.run("--dim 2 --seeds 60 --json-summary run.json");
+    let run = json(&workplace, "run.json");
+    assert_eq!(run["settings"]["relax"], "equilibrium");
+    assert_eq!(run["topology"]["points_by_grains"].as_object().unwrap().keys().collect::<Vec<_>>(), ["3"]);
+    for (arguments, relax) in
+        [("--free", 0.3), ("--edge-length 0.05", 0.3), ("--regularize 0", 0.3), ("--relax 0.1", 0.1)]
+    {
+        workplace.run(&format!("--dim 2 --seeds 9 -n 0 --json-summary run.json {arguments}"));
+        assert_eq!(json(&workplace, "run.json")["settings"]["relax"], relax, "{arguments}");
+    }
+}
+
+/// (6V/pi)^(1/3) of a cube of 1/8 is 0.6204; the sides of the box are 2 micrometres long, say.
+#[test]
+fn diameters_are_told_in_the_unit_of_the_box() {
+    let workplace = Workplace::new();
+    let said = workplace.run("--lattice sc 2 --box 2 2 2 -n 0 --json-summary run.json");
+    let line = "diameters   1.241 +- 0.0 in the unit of --box, equivalent: (6V/pi)^(1/3)";
+    assert!(said.lines().any(|said| said == line), "{said}");
+    let diameter = &json(&workplace, "run.json")["equivalent_diameter"];
+    assert!((diameter["mean"].as_f64().unwrap() - (6.0 / PI).cbrt()).abs() < 1e-12);
+    let said = workplace.run("--dim 2 --seeds 20 --no-mesh --cells-json c.json");
+    let cells = json(&workplace, "c.json");
+    let mean = sum(&cells, "cells", "equivalent_diameter") / 20.0;
+    let line = said.lines().find(|line| line.starts_with("diameters ")).unwrap();
+    assert!(line.ends_with("in the unit of --box, equivalent: 2 sqrt(A/pi)"), "{line}");
+    let told: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
+    assert!((told / mean - 1.0).abs() < 5e-4, "{line}");
 }
 
 #[test]

@@ -1,5 +1,7 @@
+use grainsmooth::vtk::field_bytes;
 use serde_json::Value;
 
+use crate::surface_file::integers;
 use crate::workplace::{FAILED, USAGE, Workplace};
 
 /// Seed 1 is outweighed by the large spheres around it.
@@ -21,6 +23,104 @@ fn grains_without_volume_are_named_or_dropped() {
     );
     let said = workplace.run("--seeds-file seeds.csv --drop-empty -n 1");
     assert!(said.contains("grains      3 in [0, 1] x [0, 1] x [0, 1]"), "{said}");
+}
+
+/// Grains were once numbered anew without a word.
+#[test]
+fn numbers_of_seeds_are_kept_where_seeds_are_dropped() {
+    let workplace = Workplace::new();
+    workplace.put("seeds.csv", OUTWEIGHED);
+    let dropping = "--seeds-file seeds.csv --drop-empty -n 0";
+    let said = workplace.run(&format!(
+        "{dropping} --cells-csv c.csv --cells-json c.json --stats s.json --json-summary run.json --grains-dir grains"
+    ));
+    assert!(said.lines().any(|line| line == "dropped     1 seed (SeedId 1) that others outweigh"), "{said}");
+    let json = |name: &str| -> Value { serde_json::from_slice(&workplace.bytes(name)).unwrap() };
+    assert_eq!(json("run.json")["dropped_seeds"], serde_json::json!([1]));
+    for rows in [&json("c.json")["cells"], &json("s.json")["grains"]] {
+        let ids: Vec<&Value> = rows.as_array().unwrap().iter().map(|row| &row["SeedId"]).collect();
+        assert_eq!(ids, [0, 2, 3]);
+    }
+    let csv = String::from_utf8(workplace.bytes("c.csv")).unwrap();
+    let ids: Vec<&str> = csv.lines().map(|line| line.rsplit(',').next().unwrap()).collect();
+    assert_eq!(ids, ["SeedId", "0", "2", "3"]);
+
+    let ids: Vec<u8> = [0i32, 2, 3].iter().flat_map(|id| id.to_ne_bytes()).collect();
+    for name in ["a.vtp", "a.vtu", "a.vti"] {
+        workplace.run(&format!("{dropping} --voxels 4 4 4 -o {name}"));
+        assert_eq!(field_bytes(&workplace.bytes(name), "SeedId"), Some(ids.clone()), "{name}");
+    }
+    workplace.run(&format!("{dropping} -o a.vtk"));
+    let legacy: Vec<u8> = [0i32, 2, 3].iter().flat_map(|id| id.to_be_bytes()).collect();
+    let expected = [b"SeedId 1 3 int\n", &legacy[..]].concat();
+    assert!(workplace.bytes("a.vtk").windows(expected.len()).any(|bytes| bytes == expected));
+    workplace.run(&format!("{dropping} -o a.vtm"));
+    let [grains, seeds] = ["GrainId", "SeedId"].map(|name| integers(&workplace.path("a/grains.vtp"), name));
+    assert!(
+        grains.iter().zip(&seeds).all(|(grain, seed)| [0, 2, 3][usize::try_from(*grain).unwrap()] == *seed)
+    );
+    assert_eq!(seeds.iter().max(), Some(&3));
+    let of_last = integers(&workplace.path("grains/grain_2.vtp"), "SeedId");
+    assert!(!of_last.is_empty() && of_last.iter().all(|id| *id == 3));
+
+    for (name, comment) in [
+        ("a.ply", "comment SeedId 0 2 3\n"),
+        ("a.obj", "# SeedId 0 2 3\n"),
+        ("a.msh", "\nSeedId 0 2 3\n"),
+        ("a.geo", "// SeedId 0 2 3\n"),
+        ("a.fe", "// SeedId 0 2 3\n"),
+        ("a.tess", "  *id\n   1 3 4\n"),
+    ] {
+        if name != "a.geo" {
+            workplace.run(&format!("{dropping} -o {name}"));
+            workplace.run(&format!("--config {name} -o again.vtp"));
+        }
+        let has = |bytes: &[u8]| bytes.windows(comment.len()).any(|bytes| bytes == comment.as_bytes());
+        assert!(has(&workplace.bytes(name)), "{name}");
+    }
+    workplace.run("--seeds-file a.tess -n 0 -o again.vtp");
+    // Only where numbers differ.
+    workplace.run("--seeds 3 -n 0 -o a.obj");
+    assert!(!String::from_utf8(workplace.bytes("a.obj")).unwrap().contains("SeedId"));
+}
+
+/// A tiny seed beside a large one in each of two corners: the one in the middle of its cluster of three goes first.
+#[test]
+fn tiny_cells_are_merged_into_what_surrounds_them() {
+    let workplace = Workplace::new();
+    let close = ["0.500 0.5", "0.503 0.5", "0.506 0.5", "0.503 0.503"];
+    let far = ["0.1 0.1", "0.9 0.1", "0.1 0.9", "0.9 0.9", "0.5 0.1", "0.5 0.9"];
+    workplace.put("seeds.txt", [close.join("\n"), far.join("\n")].join("\n"));
+    let cells = "--dim 2 --seeds-file seeds.txt --no-mesh";
+    workplace.run(&format!("{cells} --cells-json all.json"));
+    let said = workplace.run(&format!("{cells} --min-diameter 0.7 --cells-json kept.json"));
+    let merged = said.lines().find(|line| line.starts_with("merged ")).expect(&said);
+    assert!(
+        merged.contains("(SeedId 1") && merged.ends_with(" with cells below 0.7 mean diameters"),
+        "{said}"
+    );
+    let kept = table(&workplace, "kept.json");
+    let diameters: Vec<f64> = kept.iter().map(|cell| cell["equivalent_diameter"].as_f64().unwrap()).collect();
+    let mean = diameters.iter().sum::<f64>() / diameters.len() as f64;
+    assert!(diameters.iter().all(|diameter| *diameter >= 0.7 * mean), "{diameters:?}");
+    assert!((kept.iter().map(|cell| cell["area"].as_f64().unwrap()).sum::<f64>() - 1.0).abs() < 1e-12);
+    // What is left is the diagram of the seeds that are left, and their numbers lead back to them.
+    let all = table(&workplace, "all.json");
+    for cell in &kept {
+        let seed = cell["SeedId"].as_u64().unwrap();
+        assert_eq!(cell["seed"], all[usize::try_from(seed).unwrap()]["seed"]);
+        assert_ne!(seed, 1);
+    }
+    assert_eq!(said, workplace.run(&format!("{cells} --min-diameter 0.7 --cells-json kept.json")));
+    for share in ["1", "-0.1", "NaN", "tiny"] {
+        workplace.refuses(
+            &format!("--min-diameter {share}"),
+            USAGE,
+            &format!(
+                "invalid value '{share}' for '--min-diameter <F>': give a share of the mean diameter, from 0 (off) to below 1"
+            ),
+        );
+    }
 }
 
 #[test]

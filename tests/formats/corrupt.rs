@@ -103,6 +103,22 @@ fn good_files_are_good() {
     }
 }
 
+/// The error names what of the file is lost, not how files are encoded.
+#[test]
+fn truncated_files_are_told_what_is_damaged() {
+    let directory = TempDir::new().unwrap();
+    for (extension, bytes) in LABELLED.iter().filter(|(extension, _)| *extension != "vtk") {
+        let appended = bytes.windows(13).position(|window| window == b"<AppendedData").unwrap();
+        for length in [appended, appended + 600, appended + (bytes.len() - appended) / 2] {
+            let path = put(directory.path(), extension, &bytes[..length]);
+            let error = LabelledFile::read(&path).unwrap_err().to_string();
+            let is_named =
+                error.contains("the numbers of its array ") && error.contains("damaged or cut off");
+            assert!(is_named, "{length} bytes: {error}");
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 

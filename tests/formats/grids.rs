@@ -14,7 +14,7 @@ fn size(counts: [u32; 3]) -> [NonZeroU32; 3] {
     counts.map(|count| NonZeroU32::new(count).unwrap())
 }
 
-fn centers(grid: &LabelGrid) -> Vec<DVec3> {
+fn centers(grid: &LabelGrid<'_>) -> Vec<DVec3> {
     let [nx, ny, nz] = grid.size;
     let mut centers = Vec::new();
     for z in 0..nz {
@@ -40,8 +40,8 @@ fn voxels_of_flat_grains_belong_to_the_nearest_seed() {
         let flat = make(dimension, 0.0);
         let seeds = flat.cells.tessellation.seeds();
         let grid = LabelGrid::new(&flat, size([23, 17, 11]));
-        assert_eq!(grid.labels.len(), 23 * 17 * if dimension == Dimension::Two { 1 } else { 11 });
-        for (center, label) in centers(&grid).into_iter().zip(&grid.labels) {
+        assert_eq!(grid.labels().len(), 23 * 17 * if dimension == Dimension::Two { 1 } else { 11 });
+        for (center, label) in centers(&grid).into_iter().zip(&grid.labels()) {
             let center = if dimension == Dimension::Two { center.with_z(0.0) } else { center };
             let distances = seeds.iter().map(|seed| seed.distance_squared(center));
             let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap().0;
@@ -69,7 +69,7 @@ fn voxels_outside_of_the_domain_belong_to_no_grain() {
         let seeds = round.cells.tessellation.seeds();
         let grid = LabelGrid::new(&round, size([25, 21, 17]));
         let mut outside = 0;
-        for (center, label) in centers(&grid).into_iter().zip(&grid.labels) {
+        for (center, label) in centers(&grid).into_iter().zip(&grid.labels()) {
             let center = if dimension == Dimension::Two { center.with_z(0.0) } else { center };
             let distances = seeds.iter().map(|seed| seed.distance_squared(center));
             let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap().0;
@@ -81,7 +81,7 @@ fn voxels_outside_of_the_domain_belong_to_no_grain() {
             }
         }
         // About 1 - pi / 6 or 1 - pi / 4.
-        let share = f64::from(outside) / grid.labels.len() as f64;
+        let share = f64::from(outside) / grid.labels().len() as f64;
         assert!((0.2..0.55).contains(&share), "{share}");
     }
 }
@@ -112,7 +112,7 @@ fn winding(polycrystal: &Polycrystal, grain: usize, point: DVec3) -> f64 {
 #[test]
 fn voxels_of_curved_grains_lie_inside_them() {
     let grid = LabelGrid::new(&SPACE, size([9, 8, 7]));
-    for (center, label) in centers(&grid).into_iter().zip(&grid.labels) {
+    for (center, label) in centers(&grid).into_iter().zip(&grid.labels()) {
         let inside = winding(&SPACE, grain(label).index(), center);
         assert!((inside - 1.0).abs() < 1e-6, "{center} in {label:?} winds {inside}");
     }
@@ -123,9 +123,9 @@ fn labels_fill_the_volumes_of_curved_grains() {
     for (polycrystal, counts) in [(&*SPACE, [64, 48, 32]), (&*PLANE, [400, 300, 1])] {
         let grid = LabelGrid::new(polycrystal, size(counts));
         let domain = polycrystal.network.domain();
-        let voxel = domain.measure() / grid.labels.len() as f64;
+        let voxel = domain.measure() / grid.labels().len() as f64;
         let mut counts = [0; GRAINS];
-        grid.labels.iter().for_each(|label| counts[grain(label).index()] += 1);
+        grid.labels().iter().for_each(|label| counts[grain(label).index()] += 1);
         for (count, volume) in counts.into_iter().zip(polycrystal.network.cell_volumes()) {
             // Voxels at the surface are in by chance: about the square root of their number, which is below 1000.
             assert!((f64::from(count) * voxel - volume).abs() < 60.0 * voxel, "{count} voxels for {volume}");
@@ -158,7 +158,7 @@ fn centres_on_boundaries_belong_to_exactly_one_grain() {
         let lattice = grainsmooth::make_polycrystal(&config, &|_, _, _| ()).unwrap();
         for count in [1, 3, 5] {
             let grid = LabelGrid::new(&lattice, size([count; 3]));
-            for (center, label) in centers(&grid).into_iter().zip(&grid.labels) {
+            for (center, label) in centers(&grid).into_iter().zip(&grid.labels()) {
                 // A centre in the middle counts as moved towards larger coordinates.
                 let upper = center.to_array().map(|x| u32::from(x >= 0.5));
                 assert_eq!(grain(label).0, upper[0] + 2 * upper[1] + 4 * upper[2], "{center}");
@@ -171,7 +171,7 @@ fn centres_on_boundaries_belong_to_exactly_one_grain() {
 #[test]
 fn voxels_of_periodic_grains_lie_inside_an_image() {
     let grid = LabelGrid::new(&TORUS, size([7, 6, 5]));
-    for (center, label) in centers(&grid).into_iter().zip(&grid.labels) {
+    for (center, label) in centers(&grid).into_iter().zip(&grid.labels()) {
         let mut inside = 0.0;
         for shift in
             (0..27).map(|k| DVec3::new(f64::from(k % 3), f64::from(k / 3 % 3), f64::from(k / 9)) - 1.0)
@@ -186,7 +186,7 @@ fn voxels_of_periodic_grains_lie_inside_an_image() {
 fn number_of_threads_does_not_change_the_labels() {
     let with_threads = |count| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
-        pool.install(|| LabelGrid::new(&SPACE, size([31, 23, 17])))
+        pool.install(|| LabelGrid::new(&SPACE, size([31, 23, 17])).labels())
     };
     assert_eq!(with_threads(1), with_threads(3));
 }
@@ -202,7 +202,7 @@ fn vti_and_npy_hold_the_labels() {
         let mut polycrystal = SPACE.clone();
         polycrystal.config.file.names = names;
         let labels: Vec<i32> =
-            expected.labels.iter().map(|label| grain(label).0.cast_signed() + first).collect();
+            expected.labels().iter().map(|label| grain(label).0.cast_signed() + first).collect();
 
         let (_folder, path) = write(&polycrystal, "labels.vti");
         let file = fs::read(path).unwrap();
@@ -246,14 +246,14 @@ fn ang_gives_each_grain_one_orientation() {
         .map(|line| line.split(' ').map(|number| number.parse().unwrap()).collect())
         .collect();
     assert_eq!(pixels.len(), 20 * 15);
-    let grid = LabelGrid::new(&PLANE, PLANE.config.file.voxels.unwrap());
+    let labels = LabelGrid::new(&PLANE, PLANE.config.file.voxels.unwrap()).labels();
     let mut angles = vec![None; GRAINS];
     for (index, pixel) in pixels.iter().enumerate() {
         let (row, column) = (index / 20, index % 20);
         assert!(
             (pixel[3] - 0.1 * column as f64).abs() < 1e-12 && (pixel[4] - 0.1 * row as f64).abs() < 1e-12
         );
-        let label = grain(&grid.labels[(14 - row) * 20 + column]).index();
+        let label = grain(&labels[(14 - row) * 20 + column]).index();
         let of_grain = angles[label].get_or_insert([pixel[0], pixel[1], pixel[2]]);
         assert_eq!(*of_grain, [pixel[0], pixel[1], pixel[2]]);
     }

@@ -27,16 +27,18 @@ def signed_volumes(mesh_points, triangles, labels, exterior):
     return result
 
 
-for name in ("a.vtp", "a.vtu", "a.vtk"):
+for name in ("a.vtp", "a.vtu", "a.vtk", "base64.vtp", "base64.vtu", "zlib.vtp", "zlib.vtu"):
     mesh = pyvista.read(folder / name)
     assert np.array_equal(mesh.points, points), name
-    triangles = mesh.regular_faces if name != "a.vtu" else mesh.cells_dict[5]
+    triangles = mesh.cells_dict[5] if name.endswith("vtu") else mesh.regular_faces
     assert len(triangles) == expected["triangles"], name
     assert np.allclose(signed_volumes(points, triangles, mesh["FaceLabels"], -1), volumes, rtol=1e-9), name
     assert mesh["BoundaryId"].max() + 1 == expected["boundaries"], name
     assert set(np.unique(mesh["NodeTypes"])) <= {2, 3, 4, 12, 13, 14}, name
     assert set(mesh.field_data.keys()) >= {"Version", "CommandLine", "RandomSeed"}, name
     assert np.allclose(mesh.field_data["Volumes"], volumes, rtol=1e-9), name
+    assert mesh["NumberOfGrains"].dtype == np.uint8 and mesh["NumberOfGrains"].max() >= 4, name
+    assert np.array_equal(mesh.field_data["SeedId"], np.arange(len(volumes))), name
 
 for name in ("measured.vtp", "measured.vtu", "measured.vtk"):
     mesh = pyvista.read(folder / name)
@@ -45,11 +47,24 @@ for name in ("measured.vtp", "measured.vtu", "measured.vtk"):
     normals = np.cross(b - a, c - a)
     assert np.allclose(mesh.cell_data["Normals"], normals / np.linalg.norm(normals, axis=1)[:, None]), name
 
-mesh = meshio.read(folder / "a.vtu")
-assert np.array_equal(mesh.points, points)
-assert np.allclose(
-    signed_volumes(points, mesh.cells[0].data, mesh.cell_data["FaceLabels"][0], -1), volumes, rtol=1e-9
-)
+for name in ("a.vtu", "base64.vtu", "zlib.vtu"):
+    mesh = meshio.read(folder / name)
+    assert np.array_equal(mesh.points, points), name
+    assert np.allclose(
+        signed_volumes(points, mesh.cells[0].data, mesh.cell_data["FaceLabels"][0], -1), volumes, rtol=1e-9
+    ), name
+for name in ("base64.vtm", "zlib.vtm"):
+    blocks, raw = pyvista.read(folder / name), pyvista.read(folder / "a.vtm")
+    for block in raw.keys():
+        assert np.array_equal(blocks[block].points, raw[block].points), (name, block)
+        assert set(blocks[block].cell_data.keys()) == set(raw[block].cell_data.keys()), (name, block)
+        for array in raw[block].cell_data.keys():
+            assert np.array_equal(blocks[block].cell_data[array], raw[block].cell_data[array]), (name, array)
+    # ParaView warns of arrays whose number of components is not the same in all blocks.
+    widths = {np.atleast_2d(blocks[block]["Sides"]).shape[1] for block in ("triple_lines", "quadruple_points")}
+    assert len(widths) == 1, widths
+for name in ("base64.vti", "zlib.vti"):
+    assert np.array_equal(pyvista.read(folder / name)["material"], pyvista.read(folder / "a.vti")["material"]), name
 
 blocks = pyvista.read(folder / "a.vtm")
 assert blocks.keys() == ["boundaries", "grains", "triple_lines", "quadruple_points"], blocks.keys()

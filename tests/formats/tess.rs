@@ -91,6 +91,19 @@ fn polyhedra_are_closed_and_outward() {
     }
 }
 
+#[test]
+fn volumes_of_a_file_are_those_of_its_cells() {
+    for polycrystal in [&*SPACE, &*PLANE, &*TORUS] {
+        let (_folder, path) = write(polycrystal, "cells.tess");
+        let tess = read_tess(&fs::read_to_string(path).unwrap()).unwrap();
+        let measures = polycrystal.cells.tessellation.cell_measures();
+        assert_eq!(tess.cell_volumes().len(), GRAINS);
+        for (volume, measure) in tess.cell_volumes().into_iter().zip(measures) {
+            assert!((volume / measure.volume - 1.0).abs() < 1e-12);
+        }
+    }
+}
+
 /// What Neper says of its domain: each part of the box with all that lies on it.
 #[test]
 fn domain_names_what_lies_on_it() {
@@ -204,7 +217,11 @@ fn file_in_neper_s_own_layout() {
 fn mistakes_are_named_with_their_line() {
     for (from, to, message) in [
         ("***tess", "***tesr", "line 1: \"***tesr\" where ***tess must stand"),
-        ("   3.4", "   9.9", "line 3: version \"9.9\" is none of 3.3, 3.4, 3.5"),
+        (
+            "   3.4",
+            "   9.9",
+            "line 3: version \"9.9\" is none of 3.3, 3.4, 3.5; write the file again with another Neper",
+        ),
         ("3 standard", "4 standard", "line 5: \"4\" is not a dimension; write 2 or 3"),
         ("0.25 0.5", "nan 0.5", "line 11: \"nan\" is not an x coordinate"),
         ("  1 1 2 0\n", "  1 1 9 0\n", "line 28: vertex 9 does not exist, there are 8"),

@@ -4,17 +4,20 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use grainsmooth::{OutputDirectory, OutputFormat, StlEncoding, write_together};
+use grainsmooth::vtk::VtkEncoding;
+use grainsmooth::{
+    Config, OutputDirectory, OutputFormat, PeriodicCut, Polycrystal, SeedSource, StlEncoding, write_together,
+};
 
 use crate::programs::run;
-use crate::workplace::{GRAINS, PLANE, SPACE, write};
+use crate::workplace::{PLANE, SPACE, write};
 
 pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// Volumes of the tetrahedra of each volume in a Gmsh file of version 2.2.
-fn tetrahedra(path: &Path) -> Vec<f64> {
+/// Volumes of the tetrahedra of each physical volume in a Gmsh file of version 2.2.
+fn tetrahedra(path: &Path, grain_count: usize) -> Vec<f64> {
     let file = fs::read_to_string(path).unwrap();
     let section = |name: &str| {
         let after = file.split_once(&format!("${name}\n")).unwrap().1;
@@ -32,30 +35,57 @@ fn tetrahedra(path: &Path) -> Vec<f64> {
             (words[0].clone(), glam::DVec3::from_slice(&coordinates))
         })
         .collect();
-    let mut volumes = vec![0.0; GRAINS];
+    let mut volumes = vec![0.0; grain_count];
     for element in section("Elements").iter().filter(|words| words[1] == "4") {
         let [a, b, c, d] = [5, 6, 7, 8].map(|place| nodes[&element[place]]);
         let volume = (b - a).cross(c - a).dot(d - a) / 6.0;
         assert!(volume > 0.0, "tetrahedron {} has volume {volume}", element[0]);
-        let grain: usize = element[4].parse().unwrap();
+        // The physical volume.
+        let grain: usize = element[3].parse().unwrap();
         volumes[grain - 1] += volume;
     }
     volumes
 }
 
-#[test]
-fn gmsh_fills_every_grain_with_tetrahedra() {
-    let (folder, path) = write(&SPACE, "grains.msh");
+/// Checks that Gmsh fills each grain, all its pieces together, to its volume.
+fn check_filled(test: &str, polycrystal: &Polycrystal) {
+    let (folder, path) = write(polycrystal, "grains.msh");
     let filled = folder.path().join("filled.msh");
     let mut gmsh = Command::new("gmsh");
     gmsh.arg("-3").arg(path.with_extension("geo")).args(["-format", "msh22", "-nt", "1", "-o"]).arg(&filled);
-    let Some(output) = run("gmsh_fills_every_grain_with_tetrahedra", &mut gmsh) else { return };
+    let Some(output) = run(test, &mut gmsh) else { return };
     let said = text(&output.stdout) + &text(&output.stderr);
     assert!(output.status.success() && !said.contains("Error"), "{said}");
-    for (volume, expected) in tetrahedra(&filled).into_iter().zip(SPACE.network.cell_volumes()) {
+    let volumes = polycrystal.network.cell_volumes();
+    for (grain, (volume, expected)) in tetrahedra(&filled, volumes.len()).into_iter().zip(volumes).enumerate()
+    {
         // The format in which gmsh writes here has 16 digits.
-        assert!((volume / expected - 1.0).abs() < 1e-9, "{volume} {expected}");
+        assert!((volume / expected - 1.0).abs() < 1e-9, "grain {grain}: {volume} {expected}");
     }
+}
+
+#[test]
+fn gmsh_fills_every_grain_with_tetrahedra() {
+    check_filled("gmsh_fills_every_grain_with_tetrahedra", &SPACE);
+}
+
+/// Where the box cuts grains apart, each piece is a volume.
+#[test]
+fn gmsh_fills_all_pieces_of_grains_that_the_box_cuts() {
+    let config = Config {
+        seeds: SeedSource::Random { count: 30 },
+        periodic: glam::BVec3::TRUE,
+        periodic_cut: PeriodicCut::Box,
+        levels: 1,
+        ..Config::default()
+    };
+    let whole = grainsmooth::make_polycrystal(&config, &|_, _, _| ()).unwrap();
+    let cut = whole.cut_if_asked().unwrap();
+    let (_folder, path) = write(&cut, "grains.msh");
+    let script = fs::read_to_string(path.with_extension("geo")).unwrap();
+    assert!(script.matches("\nVolume(").count() > 60, "grains at walls are in several pieces");
+    assert_eq!(script.matches("\nPhysical Volume(").count(), 30);
+    check_filled("gmsh_fills_all_pieces_of_grains_that_the_box_cuts", &cut);
 }
 
 /// The settings in a solid's name are no more than it takes.
@@ -93,6 +123,14 @@ fn vtk_meshio_and_trimesh_read_every_format() {
         grainsmooth::FileOptions { arrays: true, stl: StlEncoding::Ascii, ..measured.config.file };
     for name in ["measured.vtp", "measured.vtu", "measured.vtk", "text.stl"] {
         measured.write(&grainsmooth::Output::check(directory.path().join(name)).unwrap()).unwrap();
+    }
+    for encoding in [VtkEncoding::Base64, VtkEncoding::Zlib] {
+        let mut encoded = SPACE.clone();
+        encoded.config.file.encoding = encoding;
+        for extension in ["vtp", "vtu", "vti", "vtm"] {
+            let path = directory.path().join(format!("{}.{extension}", encoding.name()));
+            encoded.write(&grainsmooth::Output::check(path).unwrap()).unwrap();
+        }
     }
     let picture = grainsmooth::Output::check_as(directory.path().join("a.png"), grainsmooth::Png).unwrap();
     write_together(|files| SPACE.stage_picture(&grainsmooth::Picture::default(), &picture, files)).unwrap();

@@ -54,6 +54,8 @@ enum Row {
         neighbors: Vec<i64>,
         equivalent_diameter: f64,
         sphericity: f64,
+        #[serde(rename = "SeedId")]
+        seed_id: u32,
     },
     Plane {
         id: u32,
@@ -67,6 +69,8 @@ enum Row {
         neighbors: Vec<i64>,
         equivalent_diameter: f64,
         circularity: f64,
+        #[serde(rename = "SeedId")]
+        seed_id: u32,
     },
 }
 
@@ -84,10 +88,11 @@ impl CellTable {
                 tessellation.neighbors(CellId(id)).into_iter().map(number).collect();
             neighbors.sort_unstable();
             let seed = tessellation.seeds()[id as usize];
+            let ids = [id, cells.seed_ids[id as usize]];
             let weight = cells.weights[id as usize];
             match tessellation.domain().dimension() {
-                Dimension::Three => row_in_space(id, seed, weight, &measure, neighbors),
-                Dimension::Two => row_in_plane(id, seed, weight, &measure, neighbors),
+                Dimension::Three => row_in_space(ids, seed, weight, &measure, neighbors),
+                Dimension::Two => row_in_plane(ids, seed, weight, &measure, neighbors),
             }
         });
         Self { settings: config.settings().into_iter().collect(), cells: rows.collect() }
@@ -111,11 +116,11 @@ impl CellTable {
         match self.cells.first() {
             Some(Row::Plane { .. }) => writeln!(
                 out,
-                "id,x,y,weight,area,centroid_x,centroid_y,perimeter,nedges,nverts,equivalent_diameter,circularity,neighbors"
+                "id,x,y,weight,area,centroid_x,centroid_y,perimeter,nedges,nverts,equivalent_diameter,circularity,neighbors,SeedId"
             )?,
             _ => writeln!(
                 out,
-                "id,x,y,z,weight,volume,centroid_x,centroid_y,centroid_z,area,nfaces,nverts,nedges,equivalent_diameter,sphericity,neighbors"
+                "id,x,y,z,weight,volume,centroid_x,centroid_y,centroid_z,area,nfaces,nverts,nedges,equivalent_diameter,sphericity,neighbors,SeedId"
             )?,
         }
         for row in &self.cells {
@@ -127,9 +132,10 @@ impl CellTable {
 
 impl Row {
     fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        let neighbors = match self {
+        let (neighbors, seed_id) = match self {
             Self::Space {
                 id,
+                seed_id,
                 seed: [x, y, z],
                 weight,
                 volume,
@@ -144,10 +150,11 @@ impl Row {
             } => {
                 write!(out, "{id},{x:?},{y:?},{z:?},{weight:?},{volume:?},{cx:?},{cy:?},{cz:?},{area:?},")?;
                 write!(out, "{nfaces},{nverts},{nedges},{equivalent_diameter:?},{sphericity:?},")?;
-                neighbors
+                (neighbors, seed_id)
             }
             Self::Plane {
                 id,
+                seed_id,
                 seed: [x, y],
                 weight,
                 area,
@@ -161,20 +168,27 @@ impl Row {
             } => {
                 write!(out, "{id},{x:?},{y:?},{weight:?},{area:?},{cx:?},{cy:?},{perimeter:?},")?;
                 write!(out, "{nedges},{nverts},{equivalent_diameter:?},{circularity:?},")?;
-                neighbors
+                (neighbors, seed_id)
             }
         };
         let neighbors: Vec<String> = neighbors.iter().map(i64::to_string).collect();
-        writeln!(out, "{}", neighbors.join(" "))
+        writeln!(out, "{},{seed_id}", neighbors.join(" "))
     }
 }
 
-fn row_in_space(id: u32, seed: DVec3, weight: f64, measure: &CellMeasure, neighbors: Vec<i64>) -> Row {
+fn row_in_space(
+    [id, seed_id]: [u32; 2],
+    seed: DVec3,
+    weight: f64,
+    measure: &CellMeasure,
+    neighbors: Vec<i64>,
+) -> Row {
     let volume = measure.volume;
     // Diameter and surface of the ball with the cell's volume.
     let equivalent_diameter = Dimension::Three.ball_diameter(volume);
     Row::Space {
         id,
+        seed_id,
         seed: seed.to_array(),
         weight,
         volume,
@@ -189,12 +203,19 @@ fn row_in_space(id: u32, seed: DVec3, weight: f64, measure: &CellMeasure, neighb
     }
 }
 
-fn row_in_plane(id: u32, seed: DVec3, weight: f64, measure: &CellMeasure, neighbors: Vec<i64>) -> Row {
+fn row_in_plane(
+    [id, seed_id]: [u32; 2],
+    seed: DVec3,
+    weight: f64,
+    measure: &CellMeasure,
+    neighbors: Vec<i64>,
+) -> Row {
     let area = measure.volume;
     // Diameter and perimeter of the circle with the cell's area.
     let equivalent_diameter = Dimension::Two.ball_diameter(area);
     Row::Plane {
         id,
+        seed_id,
         seed: seed.truncate().to_array(),
         weight,
         area,

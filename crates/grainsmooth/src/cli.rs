@@ -110,12 +110,12 @@ impl Arguments {
         if periodic_cut == PeriodicCut::Box && files.has_series() {
             usage("--series shows whole grains; leave --periodic-cut box out");
         }
-        if smoothing.volumes() == Volumes::Free && smoothing.relax == Relaxation::Equilibrium {
+        if smoothing.volumes() == Volumes::Free && smoothing.relax == Some(Relaxation::Equilibrium) {
             usage(
                 "--free lets grains grow for a time, and has no equilibrium; give one, such as --relax 0.3",
             );
         }
-        Ok(Config {
+        let config = Config {
             seeds: seeds.source(domain.dimension),
             random_seed: seeds.rng_seed,
             lloyd_steps: seeds.lloyd,
@@ -125,15 +125,18 @@ impl Arguments {
             face_mesh: smoothing.face_mesh(),
             periodic: domain.periodic,
             periodic_cut,
-            relaxation: smoothing.relax,
+            relaxation: Relaxation::default(),
             wall_tension: smoothing.wall_tension,
             volumes: smoothing.volumes(),
             regularize: smoothing.regularize,
             levels: smoothing.levels,
             junctions: smoothing.junctions(),
             drop_empty: seeds.drop_empty,
+            min_diameter: seeds.min_diameter,
             file: files.options(domain.dimension),
-        })
+        };
+        let relaxation = smoothing.relax.unwrap_or_else(|| config.usual_relaxation());
+        Ok(Config { relaxation, ..config })
     }
 }
 

@@ -7,6 +7,7 @@ use polycrystal::{Boundary, FaceMesh, Junctions, Relaxation, Volumes};
 use voronoi::{Dimension, Domain};
 
 use crate::domain_file::{half_space_domain, surface_domain};
+use crate::vtk::VtkEncoding;
 use crate::{Error, Lattice, LatticeFit, Names, StlEncoding};
 
 /// Where seeds come from.
@@ -116,6 +117,9 @@ pub struct Config {
     pub junctions: Junctions,
     /// Whether to go on without seeds that have no cell, as their neighbours outweigh them; else that is an error.
     pub drop_empty: bool,
+    /// Cells below this share of the mean equivalent diameter lose their seeds, the smallest first, until none is left and their
+    /// neighbours have grown into their places; 0 keeps all. Below 1.
+    pub min_diameter: f64,
     /// How files are written, apart from their formats.
     pub file: FileOptions,
 }
@@ -131,11 +135,19 @@ pub struct FileOptions {
     pub stl: StlEncoding,
     /// Whether VTK files have arrays of what is measured.
     pub arrays: bool,
+    /// How VTK's XML files hold their numbers.
+    pub encoding: VtkEncoding,
 }
 
 impl Default for FileOptions {
     fn default() -> Self {
-        Self { names: Names::default(), voxels: None, stl: StlEncoding::Binary, arrays: false }
+        Self {
+            names: Names::default(),
+            voxels: None,
+            stl: StlEncoding::Binary,
+            arrays: false,
+            encoding: VtkEncoding::Raw,
+        }
     }
 }
 
@@ -158,6 +170,7 @@ impl Default for Config {
             levels: 3,
             junctions: Junctions::Crease,
             drop_empty: false,
+            min_diameter: 0.0,
             file: FileOptions::default(),
         }
     }
@@ -173,6 +186,16 @@ impl Config {
 
     /// The largest: edges as long as half a grain are no small features.
     pub const LARGEST_REGULARIZE: f64 = 0.5;
+
+    /// How far boundaries relax unless something else is asked for: in the plane to equilibrium, which is quick and exact there
+    /// as long as all that stands beside it lets grains switch neighbours; else for the usual time.
+    pub fn usual_relaxation(&self) -> Relaxation {
+        let balanced = Self { relaxation: Relaxation::Equilibrium, ..self.clone() };
+        match self.dimension {
+            Dimension::Two if balanced.lets_topology_change() => Relaxation::Equilibrium,
+            _ => Relaxation::default(),
+        }
+    }
 
     /// The length to regularise by: none without relaxation.
     pub(crate) fn effective_regularize(&self) -> f64 {
@@ -204,6 +227,13 @@ impl Config {
     /// Control points on the boundaries of regularised cells: in a fan, whose triangles at short lines are thin, those stay whole.
     pub(crate) fn regular_face_mesh(&self) -> FaceMesh {
         if self.face_mesh == FaceMesh::Fan { FaceMesh::SparseFan } else { self.face_mesh }
+    }
+
+    /// Number of voxels that are asked for.
+    pub(crate) fn voxel_count(&self) -> u128 {
+        let axes = if self.dimension == Dimension::Two { 2 } else { 3 };
+        let counts = self.file.voxels.iter().flat_map(|counts| &counts[..axes]);
+        counts.map(|count| u128::from(count.get())).reduce(|all, count| all * count).unwrap_or(0)
     }
 
     /// The lattice that the seeds form, if they do.

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use crate::series::step_path;
-use crate::vtk::find;
+use crate::vtk::{field_text, find};
 
 /// The first words of the text in a file.
 pub(crate) const BEGIN: &str = "# grainsmooth configuration";
@@ -37,6 +37,12 @@ pub fn embedded_config(path: &Path) -> io::Result<Option<String>> {
         Some("json") => Ok(of_json(File::open(path)?)),
         Some("stl") => Ok(of_stl(&ends(path)?)),
         Some("html") => Ok(extracted(&ends(path)?).map(|text| unescaped(&text))),
+        Some("vtp" | "vtu" | "vti") => {
+            let bytes = ends(path)?;
+            // Where numbers are encoded, texts are too.
+            let encoded = || extracted(field_text(&bytes, "Config")?.as_bytes());
+            Ok(extracted(&bytes).or_else(encoded))
+        }
         _ => Ok(extracted(&ends(path)?)),
     }
 }

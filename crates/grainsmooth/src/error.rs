@@ -7,7 +7,7 @@ use voronoi::{Dimension, VoronoiError};
 
 use crate::memory::{self, LevelSize};
 use crate::mesh_file::MeshFileProblem;
-use crate::{OutputFormat, SeedPlace, SeedProblem};
+use crate::{FailedGrain, OutputFormat, SeedPlace, SeedProblem};
 
 /// What can go wrong between the user's input and the files written. Each message is one line that names the
 /// value, the place and the remedy.
@@ -37,6 +37,19 @@ pub enum Error {
     NoVoxels {
         /// The path as given.
         path: PathBuf,
+    },
+    /// A file of voxels is larger than what is free where it is to go.
+    #[error(
+        "{}: would take {} and {} are free there; take fewer voxels or choose another path",
+        path.display(), memory::in_words(*needed), memory::in_words(u128::from(*available))
+    )]
+    OutputExceedsDisk {
+        /// The path as given.
+        path: PathBuf,
+        /// Bytes of the file.
+        needed: u128,
+        /// Bytes that there are.
+        available: u64,
     },
     /// Two outputs are to have one path.
     #[error("{}: two outputs have this path; give each a path of its own", path.display())]
@@ -73,7 +86,7 @@ pub enum Error {
         cause: io::Error,
     },
     /// Writing the output failed on the way; nothing of it is left behind.
-    #[error("{}: writing failed and left nothing: {cause}; make room or choose another path", path.display())]
+    #[error("{}: writing failed and left nothing: {cause}{}", path.display(), remedy(cause))]
     WriteOutput {
         /// The path as given.
         path: PathBuf,
@@ -89,7 +102,7 @@ pub enum Error {
         cause: io::Error,
     },
     /// A seed file holds no seeds.
-    #[error("{}: holds no seeds; write x, y, z on each line", path.display())]
+    #[error("{}: holds no seeds; give a file with one or more", path.display())]
     NoSeedsInFile {
         /// The path as given.
         path: PathBuf,
@@ -132,7 +145,7 @@ pub enum Error {
     },
     /// A line of a file of half-spaces is none.
     #[error(
-        "{} line {line}: write {} as decimal numbers", path.display(),
+        "{} line {line}: write {} as numbers such as 0.5", path.display(),
         if *dimension == Dimension::Two { "nx, ny, d" } else { "nx, ny, nz, d" }
     )]
     BadHalfSpaceLine {
@@ -197,6 +210,14 @@ pub enum Error {
         /// A time for which they can.
         works: Option<f64>,
     },
+    /// The same, with the grain that it failed at.
+    #[error("{cause}; {grain}")]
+    Grain {
+        /// What failed.
+        cause: NetworkError,
+        /// The grain.
+        grain: FailedGrain,
+    },
     /// A mesh file cannot be used.
     #[error("{}: {problem}", path.display())]
     MeshFile {
@@ -246,6 +267,11 @@ pub enum Error {
         /// The most levels that would fit, if any.
         largest: Option<u32>,
     },
+}
+
+/// What to do about a file that cannot be written. What a format cannot hold says so itself.
+fn remedy(cause: &io::Error) -> &'static str {
+    if cause.get_ref().is_some() { "" } else { "; make room or choose another path" }
 }
 
 /// Grains as a message names them, the first ten of many.

@@ -2,6 +2,7 @@
 
 mod ang;
 mod blocks;
+mod connected;
 mod evolver;
 mod gmsh;
 mod grains;
@@ -16,6 +17,7 @@ mod stl;
 mod surface;
 mod tess;
 
+pub(crate) use label_grid::LABEL_BYTES;
 pub use label_grid::LabelGrid;
 pub use names::Names;
 pub use stl::StlEncoding;

@@ -24,6 +24,10 @@ pub struct LabelledFile {
     pub sides: Vec<[Side; 2]>,
     /// Types of points; nothing where the file has none, or a code that means nothing.
     pub node_types: Option<Vec<Option<NodeType>>>,
+    /// How many grains meet at each point, if the file says so.
+    pub grain_counts: Option<Vec<u8>>,
+    /// In a periodic network, the point that each point is a copy of, or itself.
+    pub originals: Option<Vec<u32>>,
     /// The cell array that the labels are from.
     pub label_array: &'static str,
     /// The volumes of all grains (in the plane: areas) as the file states them, if this program wrote it.
@@ -77,6 +81,8 @@ impl LabelledFile {
             label_array,
             boundary_ids,
             node_types,
+            grain_counts,
+            originals,
             is_single,
             remarks,
         } = cells;
@@ -99,7 +105,11 @@ impl LabelledFile {
             };
             let side = |label| side(label).ok_or(MeshFileProblem::BadLabel { cell, label });
             let pair = [side(labels[0])?, side(labels[1])?];
-            let next = BoundaryId(u32::try_from(sides.len()).unwrap_or(u32::MAX));
+            let next = u32::try_from(sides.len()).map(BoundaryId);
+            let next = next.map_err(|_| MeshFileProblem::Corrupt {
+                format: "VTK",
+                what: "more boundaries than ids can name".to_owned(),
+            })?;
             let id = boundary_ids.as_ref().map(|ids| ids[cell]);
             of_cell.push(*boundaries.entry((*labels, id)).or_insert_with(|| {
                 sides.push(pair);
@@ -133,6 +143,9 @@ impl LabelledFile {
             boundary_of,
             sides,
             node_types,
+            // Without their copies points of a periodic network lack grains.
+            grain_counts: grain_counts.filter(|_| !is_periodic || originals.is_some()),
+            originals: originals.filter(|_| is_periodic),
             label_array,
             volumes: settings.as_ref().and_then(|settings| numbered(volumes?, settings)),
             is_single,
@@ -153,9 +166,11 @@ impl LabelledFile {
     pub fn claims(&self) -> Claims<'_> {
         Claims {
             node_types: self.node_types.as_deref(),
+            grain_counts: self.grain_counts.as_deref(),
+            originals: self.originals.as_deref(),
             grain_volumes: self.volumes.as_deref(),
             domain_volume: self.settings.as_ref().and_then(domain_volume),
-            rounding: if self.is_single { self.single_rounding() } else { 0.0 },
+            rounding: if self.is_single { self.single_rounding() } else { self.surface().last_place() },
         }
     }
 

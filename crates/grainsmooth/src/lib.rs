@@ -19,8 +19,10 @@ mod check_report;
 mod config;
 mod domain_file;
 mod embedded_config;
+mod equivalent_diameters;
 mod error;
 mod estimate;
+mod failed_grain;
 mod formats;
 mod labelled_file;
 mod lattice;
@@ -46,6 +48,8 @@ mod subdivide;
 mod summary;
 mod summary_record;
 mod table;
+mod tessellated;
+mod topology;
 mod triangle_angles;
 mod unfinished;
 pub mod vtk;
@@ -54,8 +58,10 @@ pub use cell_table::{CellTable, TableFormat};
 pub use check_report::{CheckReport, Expectation, ReportedFault, Spread, Statistic};
 pub use config::{Config, FileOptions, PeriodicCut, SeedSource, Shape};
 pub use embedded_config::embedded_config;
+pub use equivalent_diameters::EquivalentDiameters;
 pub use error::Error;
 pub use estimate::Estimate;
+pub use failed_grain::FailedGrain;
 pub use formats::{LabelGrid, Names, StlEncoding};
 pub use formats::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
@@ -68,8 +74,8 @@ pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputDirectory, OutputFormat};
 pub use picture::{Coloring, Picture, Png};
 pub use pipeline::{
-    Polycrystal, Progress, Regularization, Stage, Tessellated, check_expected_size, make_polycrystal, smooth,
-    smooth_watched, tessellate,
+    Polycrystal, Progress, Regularization, Stage, check_expected_size, make_polycrystal, smooth,
+    smooth_watched,
 };
 pub use poisson_disc::poisson_disc_seeds;
 pub use report::Html;
@@ -79,7 +85,9 @@ pub use series::{Series, SeriesOutput};
 pub use staged_files::{StagedFiles, write_together};
 pub use statistics::{NetworkStatistics, StatisticsOutput};
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};
-pub use summary::Summary;
+pub use summary::{CellsSummary, Summary};
 pub use summary_record::SummaryRecord;
+pub use tessellated::{Tessellated, tessellate};
+pub use topology::Topology;
 pub use triangle_angles::TriangleAngles;
 pub use unfinished::discard_unfinished;

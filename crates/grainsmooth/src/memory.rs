@@ -1,6 +1,7 @@
 //! How large a network becomes, known before it is computed.
 
 use std::fs;
+use std::path::Path;
 
 use crate::Error;
 
@@ -72,11 +73,13 @@ pub struct ControlMesh {
     /// Boundaries in the plane, of two segments each, that are to bend to arcs: they are divided as often as makes the last level look
     /// smooth.
     pub arcs: u128,
+    /// Bytes that are taken besides the network, for voxels that are labelled.
+    pub besides: u128,
 }
 
 impl From<LevelSize> for ControlMesh {
     fn from(size: LevelSize) -> Self {
-        Self { size, arcs: 0 }
+        Self { size, arcs: 0, besides: 0 }
     }
 }
 
@@ -101,7 +104,7 @@ impl ControlMesh {
             (self.size.edges, bytes_per_control_edge),
         ]
         .into_iter()
-        .fold(0, |sum, (count, bytes)| sum.saturating_add(count.saturating_mul(bytes)))
+        .fold(self.besides, |sum, (count, bytes)| sum.saturating_add(count.saturating_mul(bytes)))
     }
 }
 
@@ -147,6 +150,14 @@ pub fn available_memory() -> u64 {
         .unwrap_or(AVAILABLE_WHERE_UNKNOWN)
 }
 
+/// Bytes that new files can take in a directory; nothing where the system does not tell.
+pub(crate) fn free_space(directory: &Path) -> Option<u64> {
+    #[cfg(unix)]
+    return rustix::fs::statvfs(directory).ok().map(|disk| disk.f_bavail.saturating_mul(disk.f_frsize));
+    #[cfg(not(unix))]
+    return None;
+}
+
 fn available_in(meminfo: &str) -> Option<u64> {
     let line = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
     let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
@@ -183,7 +194,7 @@ mod tests {
     use super::*;
 
     const TETRAHEDRON: ControlMesh =
-        ControlMesh { size: LevelSize { points: 4, edges: 6, triangles: 4 }, arcs: 0 };
+        ControlMesh { size: LevelSize { points: 4, edges: 6, triangles: 4 }, arcs: 0, besides: 0 };
 
     #[test]
     fn sizes_are_those_of_the_refined_mesh() {
@@ -204,7 +215,7 @@ mod tests {
     #[test]
     fn arcs_have_as_many_segments_on_any_level() {
         let lines = LevelSize { points: 500, edges: 600, triangles: 0 };
-        let arcs = ControlMesh { size: lines, arcs: 300 };
+        let arcs = ControlMesh { size: lines, arcs: 300, besides: 0 };
         assert_eq!(arcs.after(0), LevelSize { points: 500 + 300 * 58, edges: 300 * 60, triangles: 0 });
         assert_eq!(arcs.after(3).edges, 300 * 64);
         for level in [5, 20, u32::MAX] {

@@ -12,15 +12,26 @@ use crate::formats::{
 };
 use crate::formats::{write_gmsh_script, write_stl, write_tess};
 use crate::measured_arrays::MeasuredArrays;
-use crate::vtk::{Array, Cells, Each, FieldEntry, FieldValue, ImageData, PolyData, Values, VtkFormat};
+use crate::vtk::{
+    Array, Blocks, Cells, Each, FieldEntry, FieldValue, ImageData, PolyData, Values, VtkFormat,
+};
 use crate::vtk::{write_vti, write_vtk};
-use crate::{Error, LabelGrid, Names, Output, OutputFormat, Polycrystal, StagedFiles, Tess, write_together};
+use crate::{
+    Error, FileOptions, LabelGrid, Names, Output, OutputFormat, Polycrystal, StagedFiles, Tess,
+    write_together,
+};
+
+/// The point array that tells how many grains meet: four at a quadruple point, unless edges collapsed there.
+pub(crate) const NUMBER_OF_GRAINS: &str = "NumberOfGrains";
+
+/// The array of the numbers of grains' seeds.
+pub(crate) const SEED_ID: &str = "SeedId";
 
 impl Polycrystal {
     /// Writes the network, every boundary and every point once; its voxels; or its flat cells.
     ///
     /// In the plane each boundary is one polyline. VTK files are written with the arrays `FaceLabels`, `BoundaryId`,
-    /// `NodeTypes` and `Generation`, and say by which version, command line and random seed they were made.
+    /// `NodeTypes`, `Generation` and `NumberOfGrains`, and say by which version, command line and random seed they were made.
     ///
     /// Grains of a periodic domain are whole. A boundary between grains a period apart comes at both; its second label is -2 - b
     /// with the `BoundaryId` b of the other one. The cell array `PeriodicNeighbor` has the grain there (-1 elsewhere), the
@@ -45,10 +56,7 @@ impl Polycrystal {
         match output.gmsh_script()? {
             Some(script) => {
                 let mesh = output.path().file_name().unwrap_or_default().to_string_lossy();
-                let grain_count = self.network.grain_count();
-                script.stage(files, |out| {
-                    write_gmsh_script(&self.surface()?, grain_count, &mesh, &self.config, out)
-                })
+                script.stage(files, |out| write_gmsh_script(&self.surface()?, self, &mesh, out))
             }
             None => Ok(()),
         }
@@ -63,12 +71,12 @@ impl Polycrystal {
             OutputFormat::Vtk(format) => self.write_vtk(format, out),
             OutputFormat::Vtm => Err(io::Error::other("several files are not written as one")),
             OutputFormat::Stl => write_stl(&self.surface()?, "network", &self.config, out),
-            OutputFormat::Ply => write_ply(&self.surface()?, &self.config, out),
-            OutputFormat::Obj => write_obj(&self.surface()?, &self.config, out),
-            OutputFormat::Msh => write_gmsh(&self.surface()?, &self.config, out),
+            OutputFormat::Ply => write_ply(&self.surface()?, &self.config, self.cells.renumbered(), out),
+            OutputFormat::Obj => write_obj(&self.surface()?, &self.config, self.cells.renumbered(), out),
+            OutputFormat::Msh => write_gmsh(&self.surface()?, self, out),
             OutputFormat::Fe => write_evolver(self, out),
             OutputFormat::Tess => {
-                write_tess(&Tess::new(&self.cells), out)?;
+                write_tess(&Tess::new(&self.cells), self.cells.renumbered(), out)?;
                 self.write_settings_behind(out)
             }
             OutputFormat::Vti => self.write_vti(out),
@@ -76,7 +84,9 @@ impl Polycrystal {
                 write_npy(&self.label_grid()?, self.config.file.names, out)?;
                 self.write_settings_behind(out)
             }
-            OutputFormat::Ang => write_ang(&self.label_grid()?, &self.config, out),
+            OutputFormat::Ang => {
+                write_ang(&self.label_grid()?, self.network.grain_count(), &self.config, out)
+            }
         }
     }
 
@@ -89,19 +99,25 @@ impl Polycrystal {
         Surface::network(self).ok_or_else(|| io::Error::other("boundaries in the plane are no surfaces"))
     }
 
-    fn label_grid(&self) -> io::Result<LabelGrid> {
+    fn label_grid(&self) -> io::Result<LabelGrid<'_>> {
         let voxels =
             self.config.file.voxels.ok_or_else(|| io::Error::other("no number of voxels is given"))?;
         Ok(LabelGrid::new(self, voxels))
     }
 
     fn write_vti(&self, out: &mut dyn Write) -> io::Result<()> {
-        let LabelGrid { size, origin, spacing, labels } = self.label_grid()?;
-        let names = self.config.file.names;
-        let number = |voxel: usize| names.voxel_number(labels[voxel]);
-        let values = Values::Int32Of(Each { count: labels.len(), value: &number });
-        let cell_arrays = vec![Array { name: names.voxel(), values }];
-        write_vti(&ImageData { size, origin, spacing, cell_arrays, field: self.field() }, out)
+        let grid = self.label_grid()?;
+        let FileOptions { names, encoding, .. } = self.config.file;
+        let make = |slab: usize| {
+            grid.slab(slab).into_par_iter().map(|label| names.voxel_number(label)).collect::<Vec<i32>>()
+        };
+        let count = usize::try_from(grid.voxel_count()).map_err(io::Error::other)?;
+        let blocks = Blocks { count, blocks: grid.slab_count(), make: &make };
+        let cell_arrays = vec![Array { name: names.voxel(), values: Values::Int32Blocks(blocks) }];
+        let LabelGrid { size, origin, spacing, .. } = grid;
+        let mut field = self.field();
+        field.push(self.seed_ids());
+        write_vti(&ImageData { size, origin, spacing, cell_arrays, field }, encoding, out)
     }
 
     fn write_vtk(&self, format: VtkFormat, out: &mut dyn Write) -> io::Result<()> {
@@ -129,6 +145,7 @@ impl Polycrystal {
         let mut point_arrays = vec![
             Array { name: "NodeTypes", values: of_points(&node_type) },
             Array { name: "Generation", values: of_points(&generation) },
+            Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&level.grain_counts) },
         ];
         let mut cell_arrays = vec![
             Array { name: names.sides(), values: Values::Int32PairsOf(Each { count, value: &labels }) },
@@ -157,8 +174,9 @@ impl Polycrystal {
         let volumes = FieldValue::Numbers(self.network.cell_volumes().to_vec());
         let mut field = self.field();
         field.push(FieldEntry { name: "Volumes", value: volumes });
+        field.push(self.seed_ids());
         let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field };
-        write_vtk(&data, format, out)
+        write_vtk(&data, format, self.config.file.encoding, out)
     }
 
     /// The number of the grain that lies beyond a boundary a period or more away; that of the exterior where there is none.
@@ -169,12 +187,13 @@ impl Polycrystal {
 
     /// Of each point, the one that it is a copy of, or itself.
     pub(crate) fn originals(&self) -> Vec<i32> {
-        let level = self.network.finest();
-        let mut originals: Vec<i32> = (0..).take(level.vertex_count()).collect();
-        for pair in &level.copies.vertices {
-            originals[pair.secondary as usize] = pair.primary.cast_signed();
-        }
-        originals
+        self.network.finest().originals().into_iter().map(u32::cast_signed).collect()
+    }
+
+    /// The number of each grain's seed.
+    fn seed_ids(&self) -> FieldEntry {
+        let ids = self.cells.seed_ids.iter().map(|id| id.cast_signed()).collect();
+        FieldEntry { name: SEED_ID, value: FieldValue::Ids(ids) }
     }
 
     /// What every VTK file says about itself.

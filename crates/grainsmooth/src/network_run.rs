@@ -9,8 +9,8 @@ use std::time::Instant;
 
 use anyhow::anyhow;
 use grainsmooth::{
-    CellTable, Config, Error, Estimate, Html, Output, OutputDirectory, OutputFormat, Picture, Png,
-    Polycrystal, Series, SeriesOutput, Stage, StagedFiles, StatisticsOutput, Summary, SummaryRecord,
+    CellTable, CellsSummary, Config, Error, Estimate, Html, Output, OutputDirectory, OutputFormat, Picture,
+    Png, Polycrystal, Series, SeriesOutput, Stage, StagedFiles, StatisticsOutput, Summary, SummaryRecord,
     TableFormat, Tessellated, check_expected_size, smooth_watched, tessellate, write_together,
 };
 
@@ -35,8 +35,10 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         let estimate = estimate?;
         writeln!(io::stdout(), "{estimate}")?;
         estimate.check()?;
+        files.check_space(&config)?;
         return Ok(ExitCode::SUCCESS);
     }
+    files.check_space(&config)?;
     let result = pool.install(|| compute(&config, &files, &line));
     line.clear();
     let summary = result?;
@@ -124,6 +126,11 @@ impl Files {
         Ok(all)
     }
 
+    /// Checks that there is room for what is known to be large.
+    fn check_space(&self, config: &Config) -> Result<(), Error> {
+        self.outputs.iter().try_for_each(|output| output.check_space(config))
+    }
+
     /// All files and directories in full, but for the steps of a series.
     fn targets(&self) -> Vec<PathBuf> {
         let outputs = self.outputs.iter().flat_map(Output::targets);
@@ -173,14 +180,7 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     if files.is_cells_only {
         let cells = tessellate(config, &progress)?;
         write_together(|staged| files.stage_tables(config, &cells, staged))?;
-        let tessellation = &cells.tessellation;
-        let lattice = config.lattice_report(tessellation.domain(), tessellation.cell_count());
-        let lattice = lattice.map_or(String::new(), |lattice| format!("\nlattice     {lattice}"));
-        return Ok(format!(
-            "cells       {} in {}{lattice}",
-            tessellation.cell_count(),
-            tessellation.domain()
-        ));
+        return Ok(CellsSummary(config, &cells).to_string().trim_end().to_owned());
     }
     check_expected_size(config)?;
     let tessellated = tessellate(config, &progress)?;

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 
 use voronoi::Dimension;
 
+use crate::memory::free_space;
 use crate::staged_files::{StagedFiles, write_together};
 use crate::unfinished::{Unfinished, parent};
-use crate::vtk::VtkFormat;
+use crate::vtk::{VtkEncoding, VtkFormat};
 use crate::{Config, Error};
 
 /// A file format that results are written in.
@@ -167,6 +168,25 @@ impl Output {
     /// As of [`OutputFormat::check_fits`].
     pub fn check_fits(&self, config: &Config) -> Result<(), Error> {
         self.format.check_fits(&self.path, config)
+    }
+
+    /// Checks that voxels, whose number of bytes is known beforehand, have room where the file is to go.
+    ///
+    /// # Errors
+    /// [`Error::OutputExceedsDisk`].
+    pub fn check_space(&self, config: &Config) -> Result<(), Error> {
+        let is_of_fixed_size = match self.format {
+            OutputFormat::Npy => true,
+            OutputFormat::Vti => config.file.encoding != VtkEncoding::Zlib,
+            _ => false,
+        };
+        let needed = if is_of_fixed_size { config.voxel_count() * size_of::<i32>() as u128 } else { 0 };
+        match free_space(parent(&self.target)) {
+            Some(available) if needed > u128::from(available) => {
+                Err(Error::OutputExceedsDisk { path: self.path.clone(), needed, available })
+            }
+            _ => Ok(()),
+        }
     }
 }
 

@@ -70,8 +70,8 @@ impl Polycrystal {
     /// The bytes of a PNG file.
     pub(crate) fn png(&self, picture: &Picture) -> io::Result<Vec<u8>> {
         let [width, height] = picture.size.map(|side| u32::from(side.get()));
-        let mut pixmap =
-            Pixmap::new(width, height).ok_or_else(|| io::Error::other("the picture is too large"))?;
+        let mut pixmap = Pixmap::new(width, height)
+            .ok_or_else(|| io::Error::other("the picture is too large; give a smaller --picture-size"))?;
         pixmap.fill(tiny_skia::Color::WHITE);
         let shifts = self.shifts(picture.explode);
         let colors = picture.coloring.colors(self);

@@ -15,13 +15,11 @@ use polycrystal::{
     angles_between_boundaries, dihedral_angles, equilibrate, herring_residual, regular_cells, relax_watched,
     validate,
 };
-use voronoi::{Collapsed, Dimension, Tessellation, VoronoiError};
+use voronoi::{Collapsed, Dimension, Tessellation};
 
-use crate::memory::{ControlMesh, LevelSize, available_memory, check_cells, check_levels};
-use crate::{
-    Config, Error, FileSeed, PeriodicCut, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds,
-    read_seed_file,
-};
+use crate::formats::LABEL_BYTES;
+use crate::memory::{ControlMesh, LevelSize, available_memory, check_levels};
+use crate::{Config, Error, PeriodicCut, SeedSource, Tessellated, Topology, tessellate};
 
 /// A part of a run, in the order in which they follow each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,6 +51,11 @@ impl Stage {
         Self::Validation,
         Self::Writing,
     ];
+
+    /// The stage's place among all, from 1.
+    pub fn number(self) -> usize {
+        1 + Self::ALL.iter().take_while(|other| **other != self).count()
+    }
 
     /// The stage in one word.
     pub fn name(self) -> &'static str {
@@ -90,6 +93,8 @@ pub struct Polycrystal {
     pub relaxed: Relaxed,
     /// How far the cells were regularised.
     pub regularization: Regularization,
+    /// How many faces grains have and how many meet, before a periodic box is cut.
+    pub topology: Topology,
     /// What regularisation took out, or in equilibrium was drawn together.
     pub collapsed: Collapsed,
     /// How relaxation to equilibrium changed the topology and how near it came; nothing where it kept the topology.
@@ -138,7 +143,8 @@ impl Polycrystal {
         }
         let volumes = self.network.cell_volumes().to_vec();
         let start = Instant::now();
-        let (network, points) = self.network.cut_at_box(&self.points)?;
+        let cut = self.network.cut_at_box(&self.points).map_err(Error::from);
+        let (network, points) = cut.map_err(|error| error.with_grain(&self.cells))?;
         (self.network, self.points) = (network.with_cell_volumes(volumes), points);
         self.add_time(Stage::Subdivision, start.elapsed());
         let start = Instant::now();
@@ -146,63 +152,6 @@ impl Polycrystal {
         self.add_time(Stage::Validation, start.elapsed());
         Ok(self)
     }
-}
-
-/// The cells of a config's seeds.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Tessellated {
-    /// All cells; none is empty.
-    pub tessellation: Tessellation,
-    /// Power weight of each seed: 0 where there are no radii.
-    pub weights: Vec<f64>,
-    /// Time that each stage took.
-    pub times: Vec<(Stage, Duration)>,
-}
-
-/// Computes the cells alone.
-///
-/// # Errors
-/// Whatever is wrong with the seeds; [`Error::EmptyGrains`] unless the config drops them.
-pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Error> {
-    let mut clock = Clock { progress, times: Vec::new() };
-    let domain = config.domain()?;
-    let mut seeds = clock.time(Stage::Seeds, || seeds(config, &domain))?;
-    let (tessellation, weights) = clock.time(Stage::Cells, || {
-        let mut all = cells_of(config, &domain, &seeds)?;
-        for step in 1..=config.lloyd_steps {
-            let centroids = all.0.centroids();
-            seeds.iter_mut().zip(centroids).for_each(|(seed, centroid)| seed.position = centroid);
-            all = cells_of(config, &domain, &seeds)?;
-            progress(Stage::Cells, step as usize, config.lloyd_steps as usize);
-        }
-        let empty = all.0.empty_cells();
-        if empty.is_empty() {
-            return Ok(all);
-        }
-        if !config.drop_empty {
-            return Err(Error::EmptyGrains { grains: empty.iter().map(|cell| cell.0).collect() });
-        }
-        let is_kept = |seed: &usize| !empty.iter().any(|cell| cell.index() == *seed);
-        let kept: Vec<FileSeed> = (0..seeds.len()).filter(is_kept).map(|seed| seeds[seed]).collect();
-        cells_of(config, &domain, &kept)
-    })?;
-    Ok(Tessellated { tessellation, weights, times: clock.times })
-}
-
-/// The cells of some seeds, and the seeds' weights.
-fn cells_of(
-    config: &Config,
-    domain: &voronoi::Domain,
-    seeds: &[FileSeed],
-) -> Result<(Tessellation, Vec<f64>), Error> {
-    let positions: Vec<DVec3> = seeds.iter().map(|seed| seed.position).collect();
-    let weights: Vec<f64> = seeds.iter().map(|seed| seed.weight.unwrap_or(0.0)).collect();
-    let tessellation = if seeds.iter().any(|seed| seed.weight.is_some()) {
-        Tessellation::power(domain, &positions, &weights)
-    } else {
-        Tessellation::new(domain, &positions)
-    };
-    Ok((tessellation.map_err(|error| located(error, config, seeds))?, weights))
 }
 
 /// Computes a polycrystal: its cells, then all that [`smooth`] does.
@@ -224,7 +173,7 @@ pub fn check_expected_size(config: &Config) -> Result<(), Error> {
     let size = expected_control_mesh_size(count, config.dimension);
     // Each of two segments.
     let arcs = if bends_to_arcs(config) { size.edges / 2 } else { 0 };
-    check_levels(ControlMesh { size, arcs }, config.levels, available_memory())
+    check_levels(ControlMesh { size, arcs, besides: voxel_bytes(config) }, config.levels, available_memory())
 }
 
 /// Whether boundaries become arcs with as many segments as look smooth.
@@ -236,15 +185,21 @@ fn bends_to_arcs(config: &Config) -> bool {
 pub(crate) fn control_mesh(config: &Config, tessellation: &Tessellation) -> ControlMesh {
     let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
     let size = LevelSize { points, edges, triangles };
+    let besides = voxel_bytes(config);
     if !bends_to_arcs(config) {
-        return size.into();
+        return ControlMesh { size, arcs: 0, besides };
     }
     let sides = tessellation.faces().map(|face| tessellation.face_sides(face));
     let inside = sides.filter(|[_, second]| !matches!(second, voronoi::Side::Wall(_)));
-    ControlMesh { size, arcs: inside.count() as u128 }
+    ControlMesh { size, arcs: inside.count() as u128, besides }
 }
 
-fn seed_count(config: &Config) -> Option<usize> {
+/// Bytes that voxels take while they are labelled.
+pub(crate) fn voxel_bytes(config: &Config) -> u128 {
+    if config.file.voxels.is_some() { LABEL_BYTES } else { 0 }
+}
+
+pub(crate) fn seed_count(config: &Config) -> Option<usize> {
     match &config.seeds {
         SeedSource::File(_) => None,
         SeedSource::Random { count } | SeedSource::PoissonDisc { count } => Some(*count),
@@ -289,7 +244,8 @@ pub fn smooth_watched(
                     cause,
                 });
             }
-            smoothed => break (regularization, smoothed?),
+            Err(error) => return Err(Error::from(error).with_grain(&cells)),
+            Ok(smoothed) => break (regularization, smoothed),
         }
     };
     let Smoothed { network, points, relaxed, collapsed, equilibrium, flat_angles, angles_before, validation } =
@@ -297,6 +253,7 @@ pub fn smooth_watched(
     attempts.extend(relaxed.given_up.clone());
     let residual = clock.time(Stage::Validation, || herring_residual(&network, &points));
     let times = clock.times;
+    let topology = Topology::new(tessellation, &network);
     let config = config.clone();
     Ok(Polycrystal {
         config,
@@ -305,6 +262,7 @@ pub fn smooth_watched(
         points,
         relaxed,
         regularization,
+        topology,
         collapsed,
         equilibrium,
         attempts,
@@ -495,13 +453,13 @@ fn network(
 }
 
 /// Runs stages one after the other and remembers how long each took.
-struct Clock<'a> {
-    progress: Progress<'a>,
-    times: Vec<(Stage, Duration)>,
+pub(crate) struct Clock<'a> {
+    pub(crate) progress: Progress<'a>,
+    pub(crate) times: Vec<(Stage, Duration)>,
 }
 
 impl Clock<'_> {
-    fn time<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
+    pub(crate) fn time<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
         (self.progress)(stage, 0, 1);
         let start = Instant::now();
         let result = work();
@@ -512,36 +470,6 @@ impl Clock<'_> {
         }
         result
     }
-}
-
-fn seeds(config: &Config, domain: &voronoi::Domain) -> Result<Vec<FileSeed>, Error> {
-    if let Some(count) = seed_count(config) {
-        check_cells(count, available_memory())?;
-    }
-    let positions = match &config.seeds {
-        SeedSource::File(path) => return read_seed_file(path, config.dimension),
-        SeedSource::Random { count } => random_seeds(*count, domain, config.random_seed),
-        SeedSource::PoissonDisc { count } => poisson_disc_seeds(*count, domain, config.random_seed),
-        SeedSource::Lattice { lattice, cells } => config.lattice_seeds(*lattice, *cells, domain),
-    };
-    let numbered = (1..).map(SeedPlace::Entry).zip(positions);
-    Ok(numbered.map(|(place, position)| FileSeed { position, weight: None, place }).collect())
-}
-
-/// The error with the line of the seed file that it comes from.
-fn located(error: VoronoiError, config: &Config, seeds: &[FileSeed]) -> Error {
-    let SeedSource::File(path) = &config.seeds else { return error.into() };
-    let seed = match &error {
-        VoronoiError::NotFinite { seed, .. }
-        | VoronoiError::OutsideDomain { seed, .. }
-        | VoronoiError::BadWeight { seed, .. } => *seed,
-        VoronoiError::DuplicateSeeds { first, second, position } => {
-            let places = [seeds[*first].place, seeds[*second].place];
-            return Error::DuplicateSeedsInFile { path: path.clone(), places, position: *position };
-        }
-        _ => return error.into(),
-    };
-    Error::SeedInFile { path: path.clone(), place: seeds[seed].place, cause: error }
 }
 
 /// The size for so many random seeds, from the means of Poisson-Voronoi cells (walls not counted): in space 15.54 faces,

@@ -8,10 +8,11 @@ use std::path::Path;
 use glam::{BVec3, DVec3};
 use voronoi::Dimension;
 
-use crate::{Error, Tess, TessProblem, read_tess};
+use crate::Error;
 
 mod json;
 mod lines;
+mod tess;
 
 /// A seed as its file gives it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,24 +49,47 @@ pub enum SeedProblem {
     /// The line is not text.
     #[error("not UTF-8 text; save the file as UTF-8")]
     NotUtf8,
-    /// The first line names other columns than the coordinates.
-    #[error("columns named {names:?}; name them {} or drop the line", wanted(*.dimension))]
+    /// The first line names columns, but not those of the coordinates.
+    #[error("columns named {names:?}; name those of the seeds {}", wanted(*.dimension))]
     ColumnNames {
         /// The line, cut short.
         names: String,
         /// What the file is read for.
         dimension: Dimension,
     },
-    /// There are too many or too few columns.
-    #[error("{found} columns; write {} on each line", wanted(*.dimension))]
+    /// A quoted column goes on in the next line, as where its second quote is missing.
+    #[error("a quote that the line does not close; close or remove it")]
+    OpenQuote,
+    /// Two columns are named alike.
+    #[error("two columns named {name}; rename one of them")]
+    NamedTwice {
+        /// The name.
+        name: String,
+    },
+    /// Two columns say how large cells are.
+    #[error("columns {} and {} both say how large grains are; rename one of them", names[0], names[1])]
+    SizedTwice {
+        /// The names.
+        names: [String; 2],
+    },
+    /// There are too many or too few columns without names.
+    #[error("{found} columns; write {} on each line, or name the columns in the first", wanted(*.dimension))]
     ColumnCount {
         /// Number of columns in the line.
         found: usize,
         /// What the file is read for.
         dimension: Dimension,
     },
+    /// A line has more or fewer columns than those before.
+    #[error("{found} columns after lines of {expected}; write as many on each line")]
+    UnequalColumns {
+        /// Number of columns in the line.
+        found: usize,
+        /// Number of columns in the lines before.
+        expected: usize,
+    },
     /// A column holds something else than a number.
-    #[error("{value:?} is not a number; write {} as decimal numbers", wanted(*.dimension))]
+    #[error("{value:?} is not a number; write {} as numbers such as 0.5", wanted(*.dimension))]
     NotANumber {
         /// The column, cut short.
         value: String,
@@ -83,6 +107,12 @@ pub enum SeedProblem {
     NegativeRadius {
         /// The radius.
         radius: f64,
+    },
+    /// A diameter is negative.
+    #[error("diameter is {diameter}; write 0 or more")]
+    NegativeDiameter {
+        /// The diameter.
+        diameter: f64,
     },
     /// A seed of a 2D run has a third coordinate.
     #[error("z is {z} in a 2D run; set it to 0, run in 3D, or name the columns x, y, radius")]
@@ -165,14 +195,16 @@ impl SeedFormat {
 
 /// Reads seeds from a file, whose extension names the format.
 ///
-/// - Any text, `.csv`: one seed a line, `x, y, z`, or `x, y` in 2D. Columns stand between commas or, in lines without a comma,
-///   between blanks or tabs. The first line may name the columns; empty lines and lines that begin with `#` are skipped. A last
-///   column `radius` makes the cells power (Laguerre) cells; after two coordinates it needs its name. In 2D a third
-///   coordinate is taken when it is 0, as programs write it that know three dimensions only.
+/// - Any text, `.csv`: one seed a line, `x, y, z`, or `x, y` in 2D. Columns stand between semicolons, commas, blanks or tabs, and
+///   may be quoted. The first line may name the columns, which then have any order; one of `radius`, `diameter` and `weight`
+///   makes the cells power (Laguerre) cells, and columns of other names are passed over, so a [table of cells](crate::CellTable) is
+///   read. Without names, a fourth column is the radius. Empty lines and lines that begin with `#` are skipped. In 2D
+///   a third coordinate is taken when it is 0, as programs write it that know three dimensions only.
 /// - `.xyz`: the number of seeds, a remark, then lines of an element (not used), x, y, z and perhaps a radius.
 /// - `.json`: a list of `[x, y, z]` or `[x, y, z, radius]`, or a [table of cells](crate::CellTable), whose seeds and weights
 ///   are taken.
-/// - `.tess`: Neper's seeds and weights (radii); what they fill is told by [`read_file_domain`].
+/// - `.tess`: Neper's seeds and weights (radii), where its cells are those of its seeds to 1e-6 of their volume; what they fill is
+///   told by [`read_file_domain`]. Orientations are passed over.
 ///
 /// # Errors
 /// [`Error::SeedFileUnreadable`] when the file cannot be read; [`Error::NoSeedsInFile`] when it holds none;
@@ -183,7 +215,7 @@ pub fn read_seed_file(path: &Path, dimension: Dimension) -> Result<Vec<FileSeed>
         SeedFormat::Csv => lines::csv(&content, dimension),
         SeedFormat::Xyz => lines::xyz(&content, dimension),
         SeedFormat::Json => json::seeds(&content, dimension),
-        SeedFormat::Tess => tess(&content).map(|tess| tess_seeds(&tess)),
+        SeedFormat::Tess => tess::seeds(&content),
     };
     let mut seeds = seeds.map_err(|problem| located(path, problem))?;
     if seeds.is_empty() {
@@ -215,8 +247,7 @@ pub fn read_file_domain(path: &Path) -> Result<Option<FileDomain>, Error> {
     if SeedFormat::of_path(path) != SeedFormat::Tess {
         return Ok(None);
     }
-    let domain = tess(&content(path)?).and_then(|tess| tess_domain(&tess));
-    domain.map(Some).map_err(|problem| located(path, problem))
+    tess::domain(&content(path)?).map(Some).map_err(|problem| located(path, problem))
 }
 
 fn content(path: &Path) -> Result<Vec<u8>, Error> {
@@ -225,44 +256,6 @@ fn content(path: &Path) -> Result<Vec<u8>, Error> {
 
 fn located(path: &Path, (place, problem): (SeedPlace, SeedProblem)) -> Error {
     Error::BadSeed { path: path.to_owned(), place, problem }
-}
-
-fn tess(content: &[u8]) -> Result<Tess, (SeedPlace, SeedProblem)> {
-    let text = std::str::from_utf8(content).map_err(|error| {
-        let line = 1 + content[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
-        (SeedPlace::Line(line), SeedProblem::NotUtf8)
-    })?;
-    read_tess(text).map_err(|TessProblem { line, what }| (SeedPlace::Line(line), SeedProblem::Tess { what }))
-}
-
-fn tess_seeds(tess: &Tess) -> Vec<FileSeed> {
-    let seeds = (1..).zip(&tess.seeds);
-    seeds
-        .map(|(number, seed)| FileSeed {
-            position: seed.position,
-            weight: Some(seed.radius * seed.radius),
-            place: SeedPlace::Entry(number),
-        })
-        .collect()
-}
-
-fn tess_domain(tess: &Tess) -> Result<FileDomain, (SeedPlace, SeedProblem)> {
-    let problem = |what| (SeedPlace::Line(1), SeedProblem::Tess { what });
-    let domain = &tess.domain;
-    let kind = if tess.dimension == Dimension::Two { "square" } else { "cube" };
-    if domain.kind != kind {
-        let is = if domain.kind.is_empty() { "missing".to_owned() } else { format!("a {}", domain.kind) };
-        return Err(problem(format!("the domain is {is}; give a file whose domain is a {kind} (any box)")));
-    }
-    if domain.lower != DVec3::ZERO {
-        let at = domain.lower;
-        return Err(problem(format!("the domain begins at {at}; move it, so that it begins at 0")));
-    }
-    Ok(FileDomain {
-        dimension: tess.dimension,
-        box_size: if tess.dimension == Dimension::Two { domain.upper.with_z(1.0) } else { domain.upper },
-        periodic: tess.periodicity.as_ref().map_or(BVec3::FALSE, |periodicity| periodicity.axes.into()),
-    })
 }
 
 /// The weight of a sphere.

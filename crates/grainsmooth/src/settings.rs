@@ -8,6 +8,7 @@ use toml::Value;
 use voronoi::Dimension;
 
 use crate::embedded_config::{BEGIN, END, PREFIXES};
+use crate::vtk::VtkEncoding;
 use crate::{Config, FileOptions, PeriodicCut, SeedSource, Shape, StlEncoding};
 
 impl Config {
@@ -26,6 +27,9 @@ impl Config {
         let mut add = |name, value: Value| settings.push((name, value));
         if self.drop_empty {
             add("drop-empty", true.into());
+        }
+        if self.min_diameter > 0.0 {
+            add("min-diameter", self.min_diameter.into());
         }
         add("lloyd", i64::from(self.lloyd_steps).into());
         let DVec3 { x, y, z } = self.box_size;
@@ -125,7 +129,11 @@ impl Config {
         let defaults = match self.seeds {
             // The file may give box and periods of its own, which become defaults where they are not named.
             SeedSource::File(_) => Vec::new(),
-            _ => Self::default().settings(),
+            _ => {
+                // What the command line takes where nothing is said.
+                let relaxation = self.usual_relaxation();
+                Self { relaxation, ..Self::default() }.settings()
+            }
         };
         let settings = self.settings().into_iter().filter(|setting| !defaults.contains(setting));
         let settings: Vec<String> = settings.map(|(name, value)| format!("{name}={value}")).collect();
@@ -151,6 +159,9 @@ impl FileOptions {
         }
         if self.arrays {
             settings.push(("arrays", true.into()));
+        }
+        if self.encoding != VtkEncoding::Raw {
+            settings.push(("vtk-encoding", self.encoding.name().into()));
         }
         settings
     }

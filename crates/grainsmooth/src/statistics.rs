@@ -12,7 +12,7 @@ use serde::Serialize;
 use voronoi::Dimension;
 
 use crate::table::{Table, Value};
-use crate::{Error, Output, Polycrystal, StagedFiles, TableFormat};
+use crate::{Error, Output, Polycrystal, StagedFiles, TableFormat, Topology};
 
 /// The tables beside that of the grains, by dimension.
 const OTHERS_IN_SPACE: [&str; 3] = ["boundaries", "triple_lines", "quadruple_points"];
@@ -60,6 +60,7 @@ pub struct NetworkStatistics {
     settings: BTreeMap<&'static str, toml::Value>,
     /// Mean and spread of what the tables hold.
     distributions: BTreeMap<&'static str, Distribution>,
+    topology: Topology,
     grains: Table,
     #[serde(flatten)]
     others: BTreeMap<&'static str, Table>,
@@ -79,8 +80,10 @@ impl Polycrystal {
     /// Measures the smoothed network.
     pub fn statistics(&self) -> NetworkStatistics {
         let (grains, others, distributions) = match self.measures() {
-            Measures::Space(measures) => in_space(&measures),
-            Measures::Plane(measures) => in_plane(&measures),
+            Measures::Space(measures) => {
+                in_space(&measures, &self.cells.seed_ids, &self.network.finest().grain_counts)
+            }
+            Measures::Plane(measures) => in_plane(&measures, &self.cells.seed_ids),
         };
         NetworkStatistics {
             version: env!("CARGO_PKG_VERSION"),
@@ -88,6 +91,7 @@ impl Polycrystal {
             random_seed: self.config.random_seed,
             settings: self.config.settings().into_iter().collect(),
             distributions,
+            topology: self.topology.clone(),
             grains,
             others,
         }
@@ -116,7 +120,7 @@ impl NetworkStatistics {
 
 type Tables = (Table, BTreeMap<&'static str, Table>, BTreeMap<&'static str, Distribution>);
 
-fn in_space(measures: &SpaceMeasures) -> Tables {
+fn in_space(measures: &SpaceMeasures, seed_ids: &[u32], grain_counts: &[u8]) -> Tables {
     let SpaceMeasures { grains, boundaries, triple_lines, quadruple_points, .. } = measures;
     let boundaries_inside = boundaries.iter().filter(|boundary| is_inside(&boundary.sides));
     let lines_inside = triple_lines.iter().filter(|line| is_inside(&line.sides));
@@ -143,12 +147,12 @@ fn in_space(measures: &SpaceMeasures) -> Tables {
     let others = [
         ("boundaries", boundary_table(boundaries)),
         ("triple_lines", triple_line_table(triple_lines)),
-        ("quadruple_points", quadruple_point_table(quadruple_points)),
+        ("quadruple_points", quadruple_point_table(quadruple_points, grain_counts)),
     ];
-    (grain_table(grains), BTreeMap::from(others), distributions)
+    (grain_table(grains, seed_ids), BTreeMap::from(others), distributions)
 }
 
-fn in_plane(measures: &PlaneMeasures) -> Tables {
+fn in_plane(measures: &PlaneMeasures, seed_ids: &[u32]) -> Tables {
     let PlaneMeasures { grains, boundaries, triple_points, .. } = measures;
     let inside = boundaries.iter().filter(|boundary| is_inside(&boundary.sides));
     let mut distributions = distributions([
@@ -170,7 +174,7 @@ fn in_plane(measures: &PlaneMeasures) -> Tables {
         ("boundaries", plane_boundary_table(boundaries)),
         ("triple_points", triple_point_table(triple_points)),
     ];
-    (plane_grain_table(grains), BTreeMap::from(others), distributions)
+    (plane_grain_table(grains, seed_ids), BTreeMap::from(others), distributions)
 }
 
 fn is_inside(sides: &[Side]) -> bool {
@@ -224,8 +228,17 @@ fn sides(sides: &[Side]) -> Value {
     Value::Integers(sides.iter().map(side).collect())
 }
 
+/// How many grains are among the sides that meet somewhere.
+fn grain_count(sides: &[Side]) -> Value {
+    count(sides.iter().filter(|side| side.grain().is_some()).count())
+}
+
 fn count(count: usize) -> Value {
     Value::Integer(i64::try_from(count).unwrap_or(i64::MAX))
+}
+
+fn id(id: u32) -> Value {
+    Value::Integer(id.into())
 }
 
 fn ids(ids: impl IntoIterator<Item = u32>) -> Value {
@@ -236,10 +249,10 @@ fn numbers(values: impl IntoIterator<Item = f64>) -> impl Iterator<Item = Value>
     values.into_iter().map(Value::Number)
 }
 
-fn grain_table(grains: &[GrainMeasures]) -> Table {
+fn grain_table(grains: &[GrainMeasures], seed_ids: &[u32]) -> Table {
     let row = |grain: &GrainMeasures| {
         let [x, y, z] = [grain.inertia.x_axis, grain.inertia.y_axis, grain.inertia.z_axis];
-        let mut row = vec![Value::Integer(i64::from(grain.grain.0))];
+        let mut row = vec![id(grain.grain.0)];
         row.extend(numbers([grain.volume, grain.area]));
         row.extend(numbers(grain.centroid.to_array()));
         row.extend(numbers([grain.equivalent_diameter, grain.sphericity]));
@@ -250,6 +263,7 @@ fn grain_table(grains: &[GrainMeasures]) -> Table {
         row.extend(numbers([x.x, y.y, z.z, x.y, x.z, y.z]));
         row.push(Value::Flag(grain.is_at_exterior));
         row.push(ids(grain.neighbors.iter().map(|neighbor| neighbor.0)));
+        row.push(id(seed_ids[grain.grain.index()]));
         row
     };
     let columns = &[
@@ -278,6 +292,7 @@ fn grain_table(grains: &[GrainMeasures]) -> Table {
         "inertia_yz",
         "at_exterior",
         "neighbors",
+        "SeedId",
     ];
     Table { columns, rows: grains.iter().map(row).collect() }
 }
@@ -320,6 +335,7 @@ fn triple_line_table(lines: &[TripleLineMeasures]) -> Table {
             Value::Number(line.largest_angle),
             Value::Number(line.residual.unwrap_or(f64::NAN)),
             Value::Flag(line.is_closed),
+            grain_count(&line.sides),
             sides(&line.sides),
             Value::Numbers(line.mean_angles.clone()),
             ids(line.boundaries.iter().map(|boundary| boundary.0)),
@@ -332,6 +348,7 @@ fn triple_line_table(lines: &[TripleLineMeasures]) -> Table {
         "largest_angle",
         "residual",
         "closed",
+        "grains",
         "sides",
         "mean_angles",
         "boundaries",
@@ -339,24 +356,35 @@ fn triple_line_table(lines: &[TripleLineMeasures]) -> Table {
     Table { columns, rows: lines.iter().enumerate().map(row).collect() }
 }
 
-fn quadruple_point_table(points: &[QuadruplePointMeasures]) -> Table {
+/// `grain_counts` are those of all points.
+fn quadruple_point_table(points: &[QuadruplePointMeasures], grain_counts: &[u8]) -> Table {
     let row = |at: &QuadruplePointMeasures| {
         let mut row = vec![Value::Integer(i64::from(at.point))];
         row.extend(numbers(at.position.to_array()));
-        row.push(count(at.line_count));
+        row.extend([count(at.line_count), count(grain_counts[at.point as usize].into())]);
         row.extend(numbers([at.mean_angle, at.smallest_angle, at.largest_angle]));
         row.push(sides(&at.sides));
         row
     };
-    let columns =
-        &["point", "x", "y", "z", "lines", "mean_angle", "smallest_angle", "largest_angle", "sides"];
+    let columns = &[
+        "point",
+        "x",
+        "y",
+        "z",
+        "lines",
+        "grains",
+        "mean_angle",
+        "smallest_angle",
+        "largest_angle",
+        "sides",
+    ];
     Table { columns, rows: points.iter().map(row).collect() }
 }
 
-fn plane_grain_table(grains: &[PlaneGrainMeasures]) -> Table {
+fn plane_grain_table(grains: &[PlaneGrainMeasures], seed_ids: &[u32]) -> Table {
     let row = |grain: &PlaneGrainMeasures| {
         let [x, y] = [grain.second_moment.x_axis, grain.second_moment.y_axis];
-        let mut row = vec![Value::Integer(i64::from(grain.grain.0))];
+        let mut row = vec![id(grain.grain.0)];
         row.extend(numbers([grain.area, grain.perimeter]));
         row.extend(numbers(grain.centroid.to_array()));
         row.extend(numbers([grain.equivalent_diameter, grain.circularity, grain.turning]));
@@ -365,6 +393,7 @@ fn plane_grain_table(grains: &[PlaneGrainMeasures]) -> Table {
         row.extend(numbers([x.x, y.y, x.y]));
         row.push(Value::Flag(grain.is_at_exterior));
         row.push(ids(grain.neighbors.iter().map(|neighbor| neighbor.0)));
+        row.push(id(seed_ids[grain.grain.index()]));
         row
     };
     let columns = &[
@@ -384,6 +413,7 @@ fn plane_grain_table(grains: &[PlaneGrainMeasures]) -> Table {
         "moment_xy",
         "at_exterior",
         "neighbors",
+        "SeedId",
     ];
     Table { columns, rows: grains.iter().map(row).collect() }
 }
@@ -416,11 +446,12 @@ fn triple_point_table(points: &[TriplePointMeasures]) -> Table {
     let row = |at: &TriplePointMeasures| {
         let mut row = vec![Value::Integer(i64::from(at.point))];
         row.extend(numbers(at.position.to_array()));
+        row.push(grain_count(&at.sides));
         row.extend([sides(&at.sides), Value::Numbers(at.angles.clone())]);
         row.push(Value::Number(at.residual.unwrap_or(f64::NAN)));
         row.push(ids(at.boundaries.iter().map(|boundary| boundary.0)));
         row
     };
-    let columns = &["point", "x", "y", "sides", "angles", "residual", "boundaries"];
+    let columns = &["point", "x", "y", "grains", "sides", "angles", "residual", "boundaries"];
     Table { columns, rows: points.iter().map(row).collect() }
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use polycrystal::{AngleStatistics, Balance, Boundary, HerringResidual, Reconnections, Relaxation};
 use voronoi::{Collapsed, Dimension};
 
-use crate::{Polycrystal, Regularization, Stage, TriangleAngles};
+use crate::{Config, EquivalentDiameters, Polycrystal, Regularization, Stage, Tessellated, TriangleAngles};
 
 /// A polycrystal in a few lines of text: counts, angles, volumes, validation, times.
 pub struct Summary<'a>(pub &'a Polycrystal);
@@ -16,13 +16,11 @@ impl fmt::Display for Summary<'_> {
         let Summary(polycrystal) = self;
         let network = &polycrystal.network;
         let finest = network.finest();
-        let counts = network.junction_counts();
         let (points, elements) = (finest.vertex_count(), finest.element_count());
         let levels = polycrystal.config.levels;
         writeln!(out, "grains      {} in {}", network.grain_count(), network.domain())?;
-        if let Some(lattice) = polycrystal.config.lattice_report(network.domain(), network.grain_count()) {
-            writeln!(out, "lattice     {lattice}")?;
-        }
+        writeln!(out, "diameters   {}", polycrystal.diameter_statistics())?;
+        write_seeds(out, &polycrystal.config, &polycrystal.cells)?;
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
         let through_walls = count(|boundary| boundary.twin.is_some()) / 2;
         let between_grains = count(Boundary::is_interior) + through_walls;
@@ -47,23 +45,11 @@ impl fmt::Display for Summary<'_> {
                 "regularized {kept}: with more taken out, boundaries folded or crossed when relaxed"
             )?;
         }
-        let (junctions, places, element, measure, size) = match network.domain().dimension() {
-            Dimension::Two => (
-                format!("{} triple points", counts.triple_lines),
-                "triple points",
-                "segment",
-                "areas",
-                "length",
-            ),
-            Dimension::Three => {
-                let counts = format!(
-                    "{} triple lines, {} quadruple points",
-                    counts.triple_lines, counts.quadruple_points
-                );
-                (counts, "triple lines", "triangle", "volumes", "area")
-            }
+        let (places, element, measure, size) = match network.domain().dimension() {
+            Dimension::Two => ("triple points", "segment", "areas", "length"),
+            Dimension::Three => ("triple lines", "triangle", "volumes", "area"),
         };
-        writeln!(out, "junctions   {junctions}")?;
+        writeln!(out, "junctions   {}", polycrystal.topology)?;
         writeln!(out, "mesh        {points} points, {elements} {element}s at level {levels}")?;
         // In lattices four or more grains meet, until they relax.
         match (polycrystal.angles_before, polycrystal.validation.angles) {
@@ -130,6 +116,56 @@ impl fmt::Display for Summary<'_> {
     }
 }
 
+/// A tessellation alone in a few lines of text.
+pub struct CellsSummary<'a>(pub &'a Config, pub &'a Tessellated);
+
+impl fmt::Display for CellsSummary<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(config, cells) = self;
+        let tessellation = &cells.tessellation;
+        writeln!(out, "cells       {} in {}", tessellation.cell_count(), tessellation.domain())?;
+        let measures = tessellation.cell_measures();
+        let diameters: Vec<f64> =
+            measures.iter().map(|cell| config.dimension.ball_diameter(cell.volume)).collect();
+        writeln!(out, "diameters   {}", EquivalentDiameters::new(config.dimension, &diameters))?;
+        write_seeds(out, config, cells)
+    }
+}
+
+/// What became of the seeds: a lattice, and those that are left out.
+fn write_seeds(out: &mut fmt::Formatter<'_>, config: &Config, cells: &Tessellated) -> fmt::Result {
+    let tessellation = &cells.tessellation;
+    let seeds = tessellation.cell_count() + cells.dropped_seeds.len() + cells.merged_seeds.len();
+    if let Some(lattice) = config.lattice_report(tessellation.domain(), seeds) {
+        writeln!(out, "lattice     {lattice}")?;
+    }
+    if !cells.dropped_seeds.is_empty() {
+        writeln!(out, "dropped     {} that others outweigh", Seeds(&cells.dropped_seeds))?;
+    }
+    if !cells.merged_seeds.is_empty() {
+        let share = config.min_diameter;
+        writeln!(out, "merged      {} with cells below {share} mean diameters", Seeds(&cells.merged_seeds))?;
+    }
+    Ok(())
+}
+
+/// Seeds by number, the first ten of many.
+struct Seeds<'a>(&'a [u32]);
+
+impl fmt::Display for Seeds<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const NAMED: usize = 10;
+        let Self(seeds) = self;
+        let names: Vec<String> = seeds.iter().take(NAMED).map(u32::to_string).collect();
+        let noun = if seeds.len() == 1 { "seed" } else { "seeds" };
+        write!(out, "{} {noun} (SeedId {}", seeds.len(), names.join(", "))?;
+        match seeds.len().saturating_sub(NAMED) {
+            0 => write!(out, ")"),
+            more => write!(out, " and {more} more)"),
+        }
+    }
+}
+
 /// How relaxation to equilibrium changed the topology, and how near it came.
 fn write_equilibrium(
     out: &mut fmt::Formatter<'_>,
@@ -162,6 +198,11 @@ fn write_equilibrium(
 }
 
 impl Polycrystal {
+    /// How large the grains are. Their volumes are those of their cells unless grains grow.
+    pub fn diameter_statistics(&self) -> EquivalentDiameters {
+        EquivalentDiameters::new(self.config.dimension, &self.equivalent_diameters())
+    }
+
     /// Adds the time that a stage took after the computation, such as writing.
     pub fn add_time(&mut self, stage: Stage, time: Duration) {
         match self.times.iter_mut().find(|(known, _)| *known == stage) {
@@ -191,7 +232,7 @@ impl fmt::Display for Seconds {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::*;
-    use crate::{Config, SeedSource, SummaryRecord, make_polycrystal};
+    use crate::{SeedSource, SummaryRecord, make_polycrystal};
 
     #[test]
     fn weaker_regularization_is_told() {

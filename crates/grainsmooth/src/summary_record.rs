@@ -8,7 +8,7 @@ use serde::Serialize;
 use voronoi::Dimension;
 
 use crate::triangle_angles::TriangleAngles;
-use crate::{Polycrystal, Regularization};
+use crate::{EquivalentDiameters, Polycrystal, Regularization, Topology};
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -18,9 +18,14 @@ pub struct SummaryRecord {
     settings: BTreeMap<&'static str, toml::Value>,
     dimension: u8,
     grains: usize,
+    /// Seeds without a cell, and those whose cells were merged into what surrounds them.
+    dropped_seeds: Vec<u32>,
+    merged_seeds: Vec<u32>,
     boundaries: Boundaries,
+    equivalent_diameter: EquivalentDiameters,
     triple_lines: usize,
     quadruple_points: usize,
+    topology: Topology,
     regularization: &'static str,
     regularization_fell_back: bool,
     collapsed_edges: usize,
@@ -102,13 +107,17 @@ impl SummaryRecord {
             settings: config.settings().into_iter().collect(),
             dimension: if config.dimension == Dimension::Two { 2 } else { 3 },
             grains: network.grain_count(),
+            dropped_seeds: polycrystal.cells.dropped_seeds.clone(),
+            merged_seeds: polycrystal.cells.merged_seeds.clone(),
             boundaries: Boundaries {
                 between_grains: count(Boundary::is_interior) + twice,
                 on_walls: count(|boundary| boundary.wall.is_some()),
                 twice,
             },
+            equivalent_diameter: polycrystal.diameter_statistics(),
             triple_lines: junctions.triple_lines,
             quadruple_points: junctions.quadruple_points,
+            topology: polycrystal.topology.clone(),
             // Cells that change their neighbours are not regularised.
             regularization: match polycrystal.equilibrium {
                 Some(_) => Regularization::None.name(),

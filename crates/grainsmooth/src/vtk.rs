@@ -1,7 +1,7 @@
 //! Surfaces and polylines as VTK files.
 //!
 //! One data set, [`PolyData`], is written as XML PolyData, XML UnstructuredGrid or legacy PolyData.
-//! Coordinates are 64-bit and come back bit for bit. XML files hold their numbers as raw bytes at the end.
+//! Coordinates are 64-bit and come back bit for bit. XML files hold their numbers as raw bytes at the end, or as base64.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -19,7 +19,7 @@ mod xml;
 
 pub use image::{ImageData, write_vti};
 pub(crate) use pieces::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
-pub(crate) use raw::{attribute, find};
+pub(crate) use raw::{attribute, find, try_inlined};
 pub use raw::{field_bytes, field_numbers, field_text, inlined};
 
 /// A format of VTK files.
@@ -43,6 +43,32 @@ impl VtkFormat {
             Self::Vtp => "vtp",
             Self::Vtu => "vtu",
             Self::Vtk => "vtk",
+        }
+    }
+}
+
+/// How XML files hold their numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum VtkEncoding {
+    /// As raw bytes at the end: the fastest. VTK, ParaView, pyvista and meshio read it; `vtkio` does not.
+    #[default]
+    Raw,
+    /// As base64 in their elements, which every reader knows.
+    Base64,
+    /// The same compressed by zlib.
+    Zlib,
+}
+
+impl VtkEncoding {
+    /// Every encoding, the default first.
+    pub const ALL: [Self; 3] = [Self::Raw, Self::Base64, Self::Zlib];
+
+    /// The encoding's name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Raw => "raw",
+            Self::Base64 => "base64",
+            Self::Zlib => "zlib",
         }
     }
 }
@@ -114,6 +140,8 @@ pub struct Array<'a> {
 pub enum Values<'a> {
     /// One 8-bit integer each.
     Int8(&'a [i8]),
+    /// One unsigned 8-bit integer each.
+    UInt8(&'a [u8]),
     /// One 32-bit integer each.
     Int32(&'a [i32]),
     /// Two 32-bit integers each.
@@ -132,6 +160,8 @@ pub enum Values<'a> {
     Int32PairsOf(Each<'a, [i32; 2]>),
     /// Several 32-bit integers each.
     Int32Tuples(Tuples<'a>),
+    /// One 32-bit integer each, made block by block when they are written.
+    Int32Blocks(Blocks<'a>),
     /// One 64-bit floating point number each, computed when it is written.
     Float64Of(Each<'a, f64>),
 }
@@ -143,6 +173,23 @@ pub struct Tuples<'a> {
     pub components: usize,
     /// All components, one tuple after the other.
     pub values: &'a [i32],
+}
+
+/// Numbers that are made in blocks, one block after the other.
+#[derive(Clone, Copy)]
+pub struct Blocks<'a> {
+    /// Number of numbers.
+    pub count: usize,
+    /// Number of blocks.
+    pub blocks: usize,
+    /// The numbers of a block.
+    pub make: &'a (dyn Fn(usize) -> Vec<i32> + Sync),
+}
+
+impl fmt::Debug for Blocks<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{} values in {} blocks", self.count, self.blocks)
+    }
 }
 
 /// Tuples that need no memory, as each follows from its position.
@@ -165,6 +212,7 @@ impl<'a> Values<'a> {
     pub fn len(&self) -> usize {
         match self {
             Self::Int8(values) => values.len(),
+            Self::UInt8(values) => values.len(),
             Self::Int32(values) => values.len(),
             Self::Int32Pairs(pairs) => pairs.len(),
             Self::Float64(values) => values.len(),
@@ -175,6 +223,7 @@ impl<'a> Values<'a> {
             Self::Int32PairsOf(each) => each.count,
             Self::Float64Of(each) => each.count,
             Self::Int32Tuples(tuples) => tuples.values.len() / tuples.components,
+            Self::Int32Blocks(blocks) => blocks.count,
         }
     }
 
@@ -185,7 +234,8 @@ impl<'a> Values<'a> {
 
     fn component_count(&self) -> usize {
         match self {
-            Self::Int8(_) | Self::Int8Of(_) | Self::Int32(_) | Self::Int32Of(_) => 1,
+            Self::Int8(_) | Self::Int8Of(_) | Self::UInt8(_) => 1,
+            Self::Int32(_) | Self::Int32Of(_) | Self::Int32Blocks(_) => 1,
             Self::Float64(_) | Self::Float64Of(_) => 1,
             Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Float64Pairs(_) => 2,
             Self::Vectors(_) => 3,
@@ -196,7 +246,8 @@ impl<'a> Values<'a> {
     fn scalar_type(&self) -> ScalarType {
         match self {
             Self::Int8(_) | Self::Int8Of(_) => ScalarType::Int8,
-            Self::Int32(_) | Self::Int32Of(_) => ScalarType::Int32,
+            Self::UInt8(_) => ScalarType::UInt8,
+            Self::Int32(_) | Self::Int32Of(_) | Self::Int32Blocks(_) => ScalarType::Int32,
             Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Int32Tuples(_) => ScalarType::Int32,
             Self::Float64(_) | Self::Float64Of(_) => ScalarType::Float64,
             Self::Float64Pairs(_) | Self::Vectors(_) => ScalarType::Float64,
@@ -225,9 +276,11 @@ pub enum FieldValue {
     Integer(u64),
     /// Any number of numbers, such as volumes, kept as Float64.
     Numbers(Vec<f64>),
+    /// Any number of ids, kept as Int32.
+    Ids(Vec<i32>),
 }
 
-/// Writes `data` in `format`.
+/// Writes `data` in `format`; XML files hold their numbers in `encoding`.
 ///
 /// # Errors
 /// Whatever `out` reports; and [`io::ErrorKind::InvalidInput`] when the legacy format, whose ids are signed
@@ -235,7 +288,12 @@ pub enum FieldValue {
 ///
 /// # Panics
 /// When an array has another length than the points or cells that it describes.
-pub fn write_vtk(data: &PolyData<'_>, format: VtkFormat, out: &mut dyn Write) -> io::Result<()> {
+pub fn write_vtk(
+    data: &PolyData<'_>,
+    format: VtkFormat,
+    encoding: VtkEncoding,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     for array in &data.point_arrays {
         assert_eq!(array.values.len(), data.points.len(), "point array {}", array.name);
     }
@@ -243,8 +301,8 @@ pub fn write_vtk(data: &PolyData<'_>, format: VtkFormat, out: &mut dyn Write) ->
         assert_eq!(array.values.len(), data.cells.len(), "cell array {}", array.name);
     }
     match format {
-        VtkFormat::Vtp => xml::write(data, XmlFormat::PolyData, out),
-        VtkFormat::Vtu => xml::write(data, XmlFormat::UnstructuredGrid, out),
+        VtkFormat::Vtp => xml::write(data, XmlFormat::PolyData, encoding, out),
+        VtkFormat::Vtu => xml::write(data, XmlFormat::UnstructuredGrid, encoding, out),
         VtkFormat::Vtk => legacy::write(data, out),
     }
 }

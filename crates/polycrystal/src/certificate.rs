@@ -10,9 +10,10 @@ use crate::fans::pinched_points;
 use crate::fault::Fault;
 use crate::folds::folded_pairs;
 use crate::intersections::crossing_elements;
+use crate::node_type::Meeting;
 use crate::seams::Seams;
 use crate::triangle_quality::triangle_quality;
-use crate::volume::boundary_volumes;
+use crate::volume::{ConeSum, boundary_cones, swept_by_rounding};
 use crate::{AngleStatistics, Elements, GrainId, NodeType, Side, Surface, TriangleQuality};
 
 /// Cosine of the angle between normals beyond which neighbours in one boundary are folded: 90 degrees, and as much more as
@@ -27,12 +28,16 @@ const VOLUME_TOLERANCE: f64 = 1e-9;
 pub struct Claims<'a> {
     /// Type of each point; nothing where a file leaves it open.
     pub node_types: Option<&'a [Option<NodeType>]>,
+    /// Number of grains at each point, see [`Level::grain_counts`](crate::Level::grain_counts).
+    pub grain_counts: Option<&'a [u8]>,
+    /// In a periodic network, the point that each point is a copy of, or itself: grains at all copies meet there.
+    pub originals: Option<&'a [u32]>,
     /// Volume of each grain (in the plane: area).
     pub grain_volumes: Option<&'a [(GrainId, f64)]>,
     /// Volume of the domain (in the plane: area).
     pub domain_volume: Option<f64>,
-    /// How far each coordinate may be from what the volumes were measured on: half a last place of single precision, where
-    /// that is how points were kept since.
+    /// How far each coordinate may be from what the volumes were measured on: [`Surface::last_place`], or half a last place of
+    /// single precision, where that is how points were kept since.
     pub rounding: f64,
 }
 
@@ -106,8 +111,8 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>)
     let flat = ids(normals.len()).filter(|element| normals[*element as usize] == DVec3::ZERO);
     faults.extend(flat.map(|element| Fault::NoArea { element }));
     faults.extend(duplicate_points(surface.points).map(|points| Fault::DuplicatePoints { points }));
-    let node_types = node_types(surface);
-    let orphans = ids(node_types.len()).filter(|point| node_types[*point as usize].is_none());
+    let meetings = meetings(surface);
+    let orphans = ids(meetings.len()).filter(|point| meetings[*point as usize].is_none());
     faults.extend(orphans.map(|point| Fault::Orphan { point }));
     let mut closing = faults_of_closing(surface, seams);
     let is_closed = closing.is_empty();
@@ -122,7 +127,10 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>)
     let crossing = crossing_elements(surface, seams).into_iter();
     faults.extend(crossing.map(|elements| Fault::Crossing { elements }));
     if let Some(stated) = claims.node_types {
-        faults.extend(wrong_node_types(stated, &node_types));
+        faults.extend(wrong_node_types(stated, &meetings));
+    }
+    if let Some(stated) = claims.grain_counts {
+        faults.extend(wrong_grain_counts(stated, &grain_counts(&meetings, claims.originals)));
     }
     certificate.grain_volumes = grain_volumes(surface);
     certificate.check_volumes(surface, claims, is_closed);
@@ -142,7 +150,6 @@ impl Certificate {
         let empty = self.grain_volumes.iter().filter(|(_, volume)| is_closed && *volume <= 0.0);
         faults.extend(empty.map(|&(grain, volume)| Fault::NoVolume { grain, volume }));
         let areas = if claims.rounding > 0.0 { side_areas(surface) } else { BTreeMap::new() };
-        let shift = claims.rounding * 3f64.sqrt();
         let mut wrong = Vec::new();
         for (grain, claimed) in claims.grain_volumes.into_iter().flatten() {
             let Ok(found) = self.grain_volumes.binary_search_by_key(grain, |(grain, _)| *grain) else {
@@ -152,9 +159,11 @@ impl Certificate {
             let relative_error = (self.grain_volumes[found].1 / claimed - 1.0).abs();
             self.largest_volume_error = self.largest_volume_error.max(relative_error);
             let area = areas.get(&Side::Grain(*grain)).copied().unwrap_or(0.0);
-            let is_right = relative_error <= VOLUME_TOLERANCE + shift * area / claimed;
+            let tolerance = VOLUME_TOLERANCE + swept_by_rounding(claims.rounding, area) / claimed;
+            let is_right = relative_error <= tolerance;
             if is_closed && !is_right {
-                wrong.push(Fault::WrongVolume { grain: *grain, relative_error });
+                let diameter = surface.elements.dimension().ball_diameter(*claimed);
+                wrong.push(Fault::WrongVolume { grain: *grain, diameter, relative_error });
             }
         }
         if let Some(claimed) = claims.grain_volumes {
@@ -169,7 +178,8 @@ impl Certificate {
             let relative_error = (total / whole - 1.0).abs();
             self.total_volume_error = relative_error;
             let outside = areas.get(&Side::Exterior).copied().unwrap_or(0.0);
-            let is_right = relative_error <= VOLUME_TOLERANCE + shift * outside / whole;
+            let tolerance = VOLUME_TOLERANCE + swept_by_rounding(claims.rounding, outside) / whole;
+            let is_right = relative_error <= tolerance;
             if is_closed && !is_right {
                 faults.push(Fault::WrongTotal { relative_error });
             }
@@ -216,8 +226,8 @@ fn duplicate_points(points: &[DVec3]) -> impl Iterator<Item = [u32; 2]> {
     pairs.into_iter()
 }
 
-/// The type of each point by the sides around it; nothing where there is no element.
-fn node_types(surface: &Surface<'_>) -> Vec<Option<NodeType>> {
+/// What meets at each point by the sides around it; nothing where there is no element.
+fn meetings(surface: &Surface<'_>) -> Vec<Option<Meeting>> {
     const NONE: u32 = u32::MAX;
     const SEVERAL: u32 = u32::MAX - 1;
     let mut boundaries = vec![NONE; surface.points.len()];
@@ -240,44 +250,61 @@ fn node_types(surface: &Surface<'_>) -> Vec<Option<NodeType>> {
     let of_one = |boundary: u32| {
         let mut sides = surface.sides.get(boundary as usize).copied()?;
         sides.sort_unstable();
-        Some(NodeType::of_sides(&sides))
+        Some(Meeting::of_sides(&sides))
     };
-    let mut types: Vec<Option<NodeType>> = boundaries.into_iter().map(of_one).collect();
+    let mut meetings: Vec<Option<Meeting>> = boundaries.into_iter().map(of_one).collect();
     for at in around.chunk_by(|a, b| a.0 == b.0) {
         let sides: Vec<Side> = at.iter().map(|(_, side)| *side).collect();
-        types[at[0].0 as usize] = Some(NodeType::of_sides(&sides));
+        meetings[at[0].0 as usize] = Some(Meeting::of_sides(&sides));
     }
-    types
+    meetings
 }
 
-fn wrong_node_types(
-    stated: &[Option<NodeType>],
-    derived: &[Option<NodeType>],
-) -> impl Iterator<Item = Fault> {
+/// The number of grains at each point; where there are copies of it, at all of these together, as each grain there is another image.
+fn grain_counts(meetings: &[Option<Meeting>], originals: Option<&[u32]>) -> Vec<u8> {
+    let of_point = |at: &Option<Meeting>| at.map_or(0, |at| at.grains);
+    let mut counts: Vec<u8> = meetings.iter().map(of_point).collect();
+    let Some(originals) = originals else { return counts };
+    assert_eq!(originals.len(), meetings.len(), "one original for each point");
+    let copies = || (0u32..).zip(originals).filter(|(point, original)| point != *original);
+    for (point, original) in copies() {
+        let own = counts[point as usize];
+        let of_original = &mut counts[*original as usize];
+        *of_original = of_original.saturating_add(own);
+    }
+    for (point, original) in copies() {
+        counts[point as usize] = counts[*original as usize];
+    }
+    counts
+}
+
+fn wrong_grain_counts(stated: &[u8], derived: &[u8]) -> impl Iterator<Item = Fault> {
+    assert_eq!(stated.len(), derived.len(), "one number of grains for each point");
+    let points = (0u32..).zip(stated.iter().zip(derived));
+    points.filter(|(_, (stated, derived))| stated != derived && **derived > 0).map(
+        |(point, (stated, derived))| Fault::WrongGrainCount { point, stated: *stated, derived: *derived },
+    )
+}
+
+fn wrong_node_types(stated: &[Option<NodeType>], derived: &[Option<Meeting>]) -> impl Iterator<Item = Fault> {
     assert_eq!(stated.len(), derived.len(), "one node type for each point");
     let points = (0u32..).zip(stated.iter().zip(derived));
     points.filter_map(|(point, types)| match types {
-        (Some(stated), Some(derived)) if stated != derived => {
-            Some(Fault::WrongNodeType { point, stated: *stated, derived: *derived })
+        (Some(stated), Some(derived)) if *stated != derived.node_type => {
+            Some(Fault::WrongNodeType { point, stated: *stated, derived: derived.node_type })
         }
         _ => None,
     })
 }
 
 fn grain_volumes(surface: &Surface<'_>) -> Vec<(GrainId, f64)> {
-    // Far from the origin of coordinates volumes would lose digits.
-    let [lower, upper] =
-        surface.points.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[lower, upper], point| {
-            [lower.min(*point), upper.max(*point)]
-        });
-    let of_boundaries = boundary_volumes(surface, lower.midpoint(upper));
-    let mut volumes: BTreeMap<GrainId, f64> = BTreeMap::new();
-    for (sides, volume) in surface.sides.iter().zip(of_boundaries) {
-        for (side, volume) in sides.iter().zip([volume, -volume]) {
+    let mut volumes: BTreeMap<GrainId, ConeSum> = BTreeMap::new();
+    for (sides, cone) in surface.sides.iter().zip(boundary_cones(surface)) {
+        for (side, sign) in sides.iter().zip([1.0, -1.0]) {
             if let Side::Grain(grain) = side {
-                *volumes.entry(*grain).or_default() += volume;
+                volumes.entry(*grain).or_default().add(&cone, sign);
             }
         }
     }
-    volumes.into_iter().collect()
+    volumes.into_iter().map(|(grain, sum)| (grain, sum.volume)).collect()
 }

@@ -1,15 +1,18 @@
 //! The triangulated network whose vertices are the control points: the vertices of the tessellation, points on its triple
 //! lines, and points inside its faces. In the plane: its vertices and points on its edges.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 use subzero::{Crease, CurveMesh, Features, TriangleMesh};
 use voronoi::{Dimension, Edges, FaceId, PeriodicPair, Shift, Tessellation};
 
 use crate::face_mesh::{LinePoints, id, triangulate_faces};
+use crate::node_type::Meeting;
 use crate::periodic::PeriodicCopies;
 use crate::{
-    Boundary, BoundaryId, FaceMesh, GrainId, Junctions, Level, Mesh, NetworkError, NodeType, Side, Twin,
-    WallSet, WallSets,
+    Boundary, BoundaryId, FaceMesh, GrainId, Junctions, Level, Mesh, NetworkError, Side, Twin, WallSet,
+    WallSets,
 };
 
 /// The connectivity of the control mesh, its points, and the boundaries: one for each face of the tessellation.
@@ -21,13 +24,39 @@ pub(crate) struct ControlMesh {
     pub(crate) junctions: JunctionCounts,
 }
 
-/// How many places there are where boundaries meet, on the domain's surface and inside.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// How many places there are where boundaries meet, on the domain's surface and inside. The exterior is one side, and a grain
+/// a period away another one than the grain itself.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct JunctionCounts {
     /// Lines where at least three sides (grains, or the exterior) meet; in the plane, such points.
     pub triple_lines: usize,
     /// Points where at least four sides meet.
     pub quadruple_points: usize,
+    /// The triple lines by the number of sides, which is that of the boundaries that meet there; 255 stands for that many and
+    /// more.
+    pub lines_by_sides: BTreeMap<u8, usize>,
+    /// The same of the quadruple points.
+    pub points_by_sides: BTreeMap<u8, usize>,
+}
+
+impl JunctionCounts {
+    /// The junctions among lines and points where so many sides meet.
+    pub(crate) fn new(lines: impl Iterator<Item = u8>, points: impl Iterator<Item = u8>) -> Self {
+        let lines_by_sides = by_sides(lines.filter(|sides| *sides >= 3));
+        let points_by_sides = by_sides(points.filter(|sides| *sides >= 4));
+        Self {
+            triple_lines: lines_by_sides.values().sum(),
+            quadruple_points: points_by_sides.values().sum(),
+            lines_by_sides,
+            points_by_sides,
+        }
+    }
+}
+
+fn by_sides(places: impl Iterator<Item = u8>) -> BTreeMap<u8, usize> {
+    let mut counts = BTreeMap::new();
+    places.for_each(|sides| *counts.entry(sides).or_default() += 1);
+    counts
 }
 
 impl ControlMesh {
@@ -111,12 +140,12 @@ fn surfaces(
         Junctions::Corner => points.len(),
     };
 
-    let (mut node_types, line_types) = junction_types(tessellation, &edges, &copied_lines);
-    let counts = JunctionCounts {
-        triple_lines: count_originals(&line_types, 3, copied_lines.iter().map(|pair| pair.secondary)),
-        quadruple_points: count_originals(&node_types, 4, copied_vertices(tessellation)),
-    };
-    node_types.extend(lines.lines().map(|line| line_types[line]));
+    let (mut meetings, at_lines) = junctions_of(tessellation, &edges, &copied_lines);
+    let counts = JunctionCounts::new(
+        originals(&at_lines, copied_lines.iter().map(|pair| pair.secondary)),
+        originals(&meetings, copied_vertices(tessellation)),
+    );
+    meetings.extend(lines.lines().map(|line| at_lines[line]));
     let ends = edges.ends.iter().map(|ends| ends.map(voronoi::VertexId::index));
     let (wall_sets, mut walls) = WallSets::new(tessellation, &boundaries, ends);
     let walls_of_line = |line: usize| {
@@ -130,28 +159,28 @@ fn surfaces(
     let mut copies = PeriodicCopies::of_vertices(tessellation);
     copies.vertices.extend(lines.copies(tessellation, &edges.ends, &copied_lines));
     copies.add_faces(tessellation.periodic_faces(), &faces, points.len());
-    let (mut triangles, mut boundary_of, mut triangle_edge_types) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut triangles, mut boundary_of, mut at_triangle_edges) = (Vec::new(), Vec::new(), Vec::new());
     for ((face, boundary), mesh) in (0u32..).zip(&boundaries).zip(faces) {
         let outline_count = id(mesh.outline.len());
         let first_inner = id(points.len());
-        let inside = NodeType::inside(boundary);
+        let inside = Meeting::inside(boundary);
         let number = |place: u32| match place.checked_sub(outline_count) {
             None => mesh.outline[place as usize],
             Some(inner) => first_inner + inner,
         };
         // Neighbours on the outline are joined by nothing but the line that they lie on.
-        let edge_type = |[from, to]: [u32; 2]| {
+        let at_edge = |[from, to]: [u32; 2]| {
             let is_on_line = from < outline_count && to == (from + 1) % outline_count;
-            if is_on_line { line_types[mesh.lines[from as usize] as usize] } else { inside }
+            if is_on_line { at_lines[mesh.lines[from as usize] as usize] } else { inside }
         };
         for &[a, b, c] in &mesh.triangles {
             triangles.push([a, b, c].map(number));
-            triangle_edge_types.push([[a, b], [b, c], [c, a]].map(edge_type));
+            at_triangle_edges.push([[a, b], [b, c], [c, a]].map(at_edge));
             boundary_of.push(BoundaryId(face));
         }
         let inner_count = mesh.inner_points.len();
         points.extend(mesh.inner_points);
-        node_types.resize(node_types.len() + inner_count, inside);
+        meetings.resize(meetings.len() + inner_count, inside);
         walls.resize(walls.len() + inner_count, wall_sets.only(boundary.wall));
     }
     // Dividing lines and faces may miss a wall by a last place.
@@ -167,21 +196,22 @@ fn surfaces(
     let corners: Vec<u32> = (0..id(corner_count)).collect();
     let features = Features { creases: &creases, corners: &corners, ..Features::default() };
     let mesh = TriangleMesh::new(points.len(), triangles, &features)?;
-    let mut edge_node_types = vec![NodeType::INTERIOR; mesh.edge_count()];
-    for (triangle, types) in (0u32..).zip(triangle_edge_types) {
-        for (edge, edge_type) in mesh.triangle_edges(triangle).into_iter().zip(types) {
-            edge_node_types[edge as usize] = edge_type;
+    let mut at_edges = vec![Meeting::new(2, 2, false); mesh.edge_count()];
+    for (triangle, of_triangle) in (0u32..).zip(at_triangle_edges) {
+        for (edge, at_edge) in mesh.triangle_edges(triangle).into_iter().zip(of_triangle) {
+            at_edges[edge as usize] = at_edge;
         }
     }
     let generations = vec![0; points.len()];
     let level = Level {
         mesh: Mesh::Triangles(mesh),
         boundary_of,
-        node_types,
+        node_types: meetings.iter().map(|at| at.node_type).collect(),
+        grain_counts: meetings.iter().map(|at| at.grains).collect(),
         generations,
         walls,
         copies,
-        edge_node_types,
+        at_edges,
     };
     Ok(ControlMesh { level, points, boundaries, wall_sets, junctions: counts })
 }
@@ -206,39 +236,47 @@ fn lines(
     points.extend(&lines.positions);
     let (mut segments, mut boundary_of) = (Vec::new(), Vec::new());
     let mut first_segments = vec![0];
-    let mut meetings = Meetings::new(vertex_count, tessellation.periodic_vertices().iter().map(vertex_pair));
+    let mut vertices = Meetings::new(vertex_count, tessellation.periodic_vertices().iter().map(vertex_pair));
     for (face, ends) in tessellation.faces().zip(&ends) {
         segments.extend(lines.whole_line(face.0, *ends).windows(2).map(|ends| [ends[0], ends[1]]));
         boundary_of.resize(segments.len(), BoundaryId(face.0));
         first_segments.push(id(segments.len()));
         for end in ends {
-            meetings.note(end.index(), tessellation.face_sides(face));
+            vertices.note(end.index(), tessellation.face_sides(face));
         }
     }
     let (wall_sets, mut walls) = WallSets::new(tessellation, &boundaries, std::iter::empty());
     walls.extend(lines.lines().map(|line| wall_sets.only(boundaries[line].wall)));
     points.iter_mut().zip(&walls).for_each(|(point, walls)| *point = wall_sets.put_on_walls(*walls, *point));
     let corners: Vec<u32> = (0..id(vertex_count)).collect();
-    let mut node_types = meetings.types();
-    let at_least = |count| count_originals(&node_types, count, copied_vertices(tessellation));
-    let counts = JunctionCounts { triple_lines: at_least(3), quadruple_points: at_least(4) };
-    node_types.extend(lines.lines().map(|line| NodeType::inside(&boundaries[line])));
+    let mut meetings = vertices.all();
+    let at_points = || originals(&meetings, copied_vertices(tessellation));
+    let counts = JunctionCounts::new(at_points(), at_points());
+    meetings.extend(lines.lines().map(|line| Meeting::inside(&boundaries[line])));
     let mesh = Mesh::Segments(CurveMesh::new(points.len(), segments, &corners)?);
     let generations = vec![0; points.len()];
     let mut copies = PeriodicCopies::of_vertices(tessellation);
     copies.vertices.extend(lines.copies(tessellation, &ends, &copied_lines));
     copies.add_lines(&copied_lines, &first_segments);
-    let level =
-        Level { mesh, boundary_of, node_types, generations, walls, copies, edge_node_types: Vec::new() };
+    let level = Level {
+        mesh,
+        boundary_of,
+        node_types: meetings.iter().map(|at| at.node_type).collect(),
+        grain_counts: meetings.iter().map(|at| at.grains).collect(),
+        generations,
+        walls,
+        copies,
+        at_edges: Vec::new(),
+    };
     Ok(ControlMesh { level, points, boundaries, wall_sets, junctions: counts })
 }
 
-/// The types of the tessellation's vertices and of the points inside its edges.
-fn junction_types(
+/// What meets at the tessellation's vertices, and along its edges.
+fn junctions_of(
     tessellation: &Tessellation,
     edges: &Edges,
     copied_lines: &[PeriodicPair<u32>],
-) -> (Vec<NodeType>, Vec<NodeType>) {
+) -> (Vec<Meeting>, Vec<Meeting>) {
     let vertices = tessellation.periodic_vertices().iter().map(vertex_pair);
     let mut at_vertices = Meetings::new(tessellation.vertices().len(), vertices);
     let mut at_edges = Meetings::new(edges.ends.len(), copied_lines.iter().copied());
@@ -250,18 +288,18 @@ fn junction_types(
             at_edges.note(*edge as usize, sides);
         }
     }
-    (at_vertices.types(), at_edges.types())
+    (at_vertices.all(), at_edges.all())
 }
 
 fn vertex_pair(pair: &PeriodicPair<voronoi::VertexId>) -> PeriodicPair<u32> {
     PeriodicPair { secondary: pair.secondary.0, primary: pair.primary.0, shift: pair.shift }
 }
 
-/// How many places, periodic copies left out, have so many sides.
-fn count_originals(types: &[NodeType], side_count: i8, copies: impl Iterator<Item = u32>) -> usize {
-    let has_enough = |node_type: &NodeType| node_type.side_count() >= side_count;
-    let all = types.iter().filter(|node_type| has_enough(node_type)).count();
-    all - copies.filter(|copy| has_enough(&types[*copy as usize])).count()
+/// The number of sides at each place, periodic copies left out.
+fn originals(meetings: &[Meeting], copies: impl Iterator<Item = u32>) -> impl Iterator<Item = u8> {
+    let mut is_copy = vec![false; meetings.len()];
+    copies.for_each(|copy| is_copy[copy as usize] = true);
+    meetings.iter().zip(is_copy).filter(|(_, is_copy)| !is_copy).map(|(at, _)| at.sides)
 }
 
 fn copied_vertices(tessellation: &Tessellation) -> impl Iterator<Item = u32> {
@@ -300,14 +338,21 @@ impl Meetings {
         }
     }
 
-    fn types(mut self) -> Vec<NodeType> {
+    /// What meets at every place.
+    fn all(mut self) -> Vec<Meeting> {
         self.sides.sort_unstable();
         self.sides.dedup();
-        let mut side_counts = vec![0; self.originals.len()];
-        for (original, ..) in &self.sides {
-            side_counts[*original] += 1;
+        let mut counts = vec![[0, 0]; self.originals.len()];
+        for (original, side, _) in &self.sides {
+            let [sides, grains] = &mut counts[*original];
+            *sides += 1;
+            *grains += usize::from(side.grain().is_some());
         }
         let places = self.originals.iter().zip(&self.is_outer);
-        places.map(|((original, _), is_outer)| NodeType::new(side_counts[*original], *is_outer)).collect()
+        let meeting = |((original, _), is_outer): (&(usize, Shift), &bool)| {
+            let [sides, grains] = counts[*original];
+            Meeting::new(sides, grains, *is_outer)
+        };
+        places.map(meeting).collect()
     }
 }

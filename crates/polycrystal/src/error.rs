@@ -1,5 +1,7 @@
 use std::fmt;
 
+use voronoi::Dimension;
+
 use crate::{Faults, GrainId, Side};
 
 /// A way to a result that was tried before the one that led there, and what it said: geometry that tangles one way need not another.
@@ -131,12 +133,15 @@ pub enum NetworkError {
     },
     /// The grains' volumes could not be restored.
     #[error(
-        "grain {} misses its volume by {relative_error:e} of it after relaxation; relax for a shorter time",
+        "grain {} (equivalent diameter {diameter:.3e}) misses its volume by {relative_error:.1e} of it after relaxation; relax for \
+         a shorter time, or for none",
         grain.0
     )]
     VolumeNotRestored {
         /// The grain that is farthest from its volume.
         grain: GrainId,
+        /// The equivalent diameter that it should have.
+        diameter: f64,
         /// Difference to the volume of its cell, as a share of that.
         relative_error: f64,
     },
@@ -162,4 +167,43 @@ pub enum NetworkError {
     /// The finished network does not keep its contract.
     #[error("the network is invalid: {0}; relax for a shorter time, or move seeds or points a little")]
     Invalid(Faults),
+}
+
+impl NetworkError {
+    /// The grains that the error is about: none where it does not know which; nothing where it is about no grain at all.
+    pub fn grains(&self) -> Option<Vec<GrainId>> {
+        match self {
+            Self::BoundaryTooSmall { sides } => Some(sides.iter().filter_map(|side| side.grain()).collect()),
+            Self::MeetsItself { grain }
+            | Self::VolumeNotRestored { grain, .. }
+            | Self::GrainVanished { grain, .. } => Some(vec![*grain]),
+            Self::CutInvalid(faults) | Self::Invalid(faults) => Some(
+                faults
+                    .0
+                    .iter()
+                    .find_map(|fault| Some(fault.grains()).filter(|all| !all.is_empty()))
+                    .unwrap_or_default(),
+            ),
+            Self::Folded { .. } | Self::CutCrosses { .. } => Some(Vec::new()),
+            Self::TooLarge { .. }
+            | Self::Mesh(_)
+            | Self::PeriodicSurface
+            | Self::NotOnWall { .. }
+            | Self::MissingGrain { .. }
+            | Self::BadEdgeLength(_)
+            | Self::BadRelaxationTime(_)
+            | Self::BadTension { .. } => None,
+        }
+    }
+
+    /// A grain of the plane or of space misses its volume by a share of it; by all of it where it has none that is a number.
+    pub(crate) fn volume_not_restored(
+        dimension: Dimension,
+        grain: GrainId,
+        volume: f64,
+        relative_error: f64,
+    ) -> Self {
+        let relative_error = if relative_error.is_nan() { 1.0 } else { relative_error };
+        Self::VolumeNotRestored { grain, diameter: dimension.ball_diameter(volume), relative_error }
+    }
 }

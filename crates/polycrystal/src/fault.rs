@@ -115,6 +115,16 @@ pub enum Fault {
         /// The type that fits.
         derived: NodeType,
     },
+    /// Not as many grains meet at a point as it has.
+    #[error("point {point} has {stated} as its number of grains, and {derived} meet there")]
+    WrongGrainCount {
+        /// The point.
+        point: u32,
+        /// The number that it has.
+        stated: u8,
+        /// The number of grains around.
+        derived: u8,
+    },
     /// A grain has no volume, or a negative one: its surface is turned inside out.
     #[error("grain {} has the volume {volume:e}", grain.0)]
     NoVolume {
@@ -136,10 +146,14 @@ pub enum Fault {
         grain: GrainId,
     },
     /// A grain does not have the volume that it should.
-    #[error("the volume of grain {} is off by {relative_error:e} of what it should be", grain.0)]
+    #[error(
+        "the volume of grain {} (equivalent diameter {diameter:.3e}) is off by {relative_error:.1e} of what it should be", grain.0
+    )]
     WrongVolume {
         /// The grain.
         grain: GrainId,
+        /// The equivalent diameter that it should have.
+        diameter: f64,
         /// The difference as a share of the volume that it should have.
         relative_error: f64,
     },
@@ -185,6 +199,7 @@ impl Fault {
             Self::Folded { .. } => "folded",
             Self::Crossing { .. } => "crossing",
             Self::WrongNodeType { .. } => "wrong node type",
+            Self::WrongGrainCount { .. } => "wrong number of grains",
             Self::NoVolume { .. } => "no volume",
             Self::MissingGrain { .. } => "missing grain",
             Self::UnknownGrain { .. } => "unknown grain",
@@ -199,7 +214,8 @@ impl Fault {
             Self::NotFinite { point }
             | Self::Orphan { point }
             | Self::PinchedPoint { point, .. }
-            | Self::WrongNodeType { point, .. } => (vec![*point], Vec::new()),
+            | Self::WrongNodeType { point, .. }
+            | Self::WrongGrainCount { point, .. } => (vec![*point], Vec::new()),
             Self::DuplicatePoints { points } => (points.to_vec(), Vec::new()),
             Self::NoArea { element } | Self::Turned { element } | Self::WrongSides { element, .. } => {
                 (Vec::new(), vec![*element])

@@ -6,10 +6,11 @@ use voronoi::{Domain, Wall};
 
 use crate::control_mesh::{ControlMesh, JunctionCounts};
 use crate::face_mesh::id;
+use crate::node_type::Meeting;
 use crate::seams::{Seams, Use};
 use crate::{
-    Boundary, BoundaryId, Claims, Elements, Junctions, Level, Mesh, NetworkError, NodeType, PeriodicCopies,
-    Side, Surface, WallSets, certify,
+    Boundary, BoundaryId, Claims, Elements, Junctions, Level, Mesh, NetworkError, PeriodicCopies, Side,
+    Surface, WallSets, certify,
 };
 
 /// Distance from a wall that is not square to an axis, in units of the domain's diagonal, within which points lie on it.
@@ -58,21 +59,19 @@ impl ControlMesh {
             .iter_mut()
             .zip(&walls)
             .for_each(|(point, walls)| *point = wall_sets.put_on_walls(*walls, *point));
-        let node_types: Vec<NodeType> = sides_of.iter_mut().map(type_of).collect();
-        let place_types: Vec<NodeType> = seams
+        let meetings: Vec<Meeting> = sides_of.iter_mut().map(meeting).collect();
+        let at_places: Vec<Meeting> = seams
             .places()
-            .map(|at| type_of(&mut at.iter().flat_map(|at| elements.sides_of(at)).collect()))
+            .map(|at| meeting(&mut at.iter().flat_map(|at| elements.sides_of(at)).collect()))
             .collect();
-        let at_least =
-            |types: &[NodeType], count| types.iter().filter(|kind| kind.side_count() >= count).count();
-        let quadruple_points = at_least(&node_types, 4);
+        let at_points = || meetings.iter().map(|at| at.sides);
         let generations = vec![0; points.len()];
         let copies = PeriodicCopies::default();
-        let (mesh, edge_node_types, triple_lines) = match &elements.ordered {
+        let (mesh, at_edges, junctions) = match &elements.ordered {
             Ordered::Segments(segments) => {
                 let corners: Vec<u32> = seams.places().map(|at| at[0].place).collect();
                 let mesh = CurveMesh::new(points.len(), segments.clone(), &corners)?;
-                (Mesh::Segments(mesh), Vec::new(), at_least(&node_types, 3))
+                (Mesh::Segments(mesh), Vec::new(), JunctionCounts::new(at_points(), at_points()))
             }
             Ordered::Triangles(triangles) => {
                 let ends: Vec<[u32; 2]> = uses().collect();
@@ -83,29 +82,31 @@ impl ControlMesh {
                 let mesh = TriangleMesh::new(points.len(), triangles.clone(), &features)?;
                 let inside = |edge: u32| {
                     let triangle = mesh.edge_triangles(edge).expect("an edge inside a boundary has two")[0];
-                    NodeType::inside(&boundaries[boundary_of[triangle as usize].index()])
+                    Meeting::inside(&boundaries[boundary_of[triangle as usize].index()])
                 };
-                let mut types: Vec<Option<NodeType>> = vec![None; mesh.edge_count()];
-                for (at, kind) in seams.places().zip(&place_types) {
+                let mut at_lines: Vec<Option<Meeting>> = vec![None; mesh.edge_count()];
+                for (at, meeting) in seams.places().zip(&at_places) {
                     let edge = mesh.triangle_edges(at[0].element)[usize::from(at[0].corner)];
-                    types[edge as usize] = Some(*kind);
+                    at_lines[edge as usize] = Some(*meeting);
                 }
-                let types =
-                    (0u32..).zip(types).map(|(edge, kind)| kind.unwrap_or_else(|| inside(edge))).collect();
-                let triple_lines = lines.count(&place_types, 3);
-                (Mesh::Triangles(mesh), types, triple_lines)
+                let at_edges =
+                    (0u32..).zip(at_lines).map(|(edge, at)| at.unwrap_or_else(|| inside(edge))).collect();
+                let junctions = JunctionCounts::new(lines.sides(&at_places), at_points());
+                (Mesh::Triangles(mesh), at_edges, junctions)
             }
         };
-        let level = Level { mesh, boundary_of, node_types, generations, walls, copies, edge_node_types };
-        let junctions = JunctionCounts { triple_lines, quadruple_points };
+        let node_types = meetings.iter().map(|at| at.node_type).collect();
+        let grain_counts = meetings.iter().map(|at| at.grains).collect();
+        let level =
+            Level { mesh, boundary_of, node_types, grain_counts, generations, walls, copies, at_edges };
         Ok(Self { level, points, boundaries, wall_sets, junctions })
     }
 }
 
-fn type_of(sides: &mut Vec<Side>) -> NodeType {
+fn meeting(sides: &mut Vec<Side>) -> Meeting {
     sides.sort_unstable();
     sides.dedup();
-    NodeType::of_sides(sides)
+    Meeting::of_sides(sides)
 }
 
 /// The elements of a surface, turned so that the smaller side comes first.
@@ -262,13 +263,12 @@ impl<'a> Lines<'a> {
         (0u32..).zip(&self.edges_at).filter(|(_, edges)| is_corner(edges)).map(|(point, _)| point).collect()
     }
 
-    /// The number of lines on which at least so many sides meet.
-    fn count(&self, types: &[NodeType], side_count: i8) -> usize {
+    /// The number of sides of each line.
+    fn sides(&self, at_edges: &[Meeting]) -> impl Iterator<Item = u8> {
         let mut pieces = Pieces::new(self.ends.len());
         for edges in self.edges_at.iter().filter(|edges| edges.len() == 2) {
             pieces.join(edges[0], edges[1]);
         }
-        let edges = (0u32..).zip(types).filter(|(_, kind)| kind.side_count() >= side_count);
-        edges.filter(|(edge, _)| pieces.root(*edge) == *edge).count()
+        (0u32..).zip(at_edges).filter(move |(edge, _)| pieces.root(*edge) == *edge).map(|(_, at)| at.sides)
     }
 }

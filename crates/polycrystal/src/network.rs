@@ -6,8 +6,8 @@ use voronoi::{Domain, Tessellation};
 use crate::control_mesh::{ControlMesh, JunctionCounts};
 use crate::folds::element_normals;
 use crate::tension::{checked_tension, mean_tension};
-use crate::volume::{boundary_volumes, sum_over_grains};
-use crate::{Boundary, FaceMesh, Freedom, Level, MeshSize, NetworkError, Surface, WallSet, WallSets};
+use crate::volume::{boundary_cones, volumes_of_grains};
+use crate::{Boundary, FaceMesh, Freedom, Level, Mesh, MeshSize, NetworkError, Surface, WallSet, WallSets};
 
 /// How triple lines and the domain's edges are smoothed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -220,8 +220,8 @@ impl Network {
     }
 
     /// Numbers of triple lines and quadruple points.
-    pub fn junction_counts(&self) -> JunctionCounts {
-        self.junctions
+    pub fn junction_counts(&self) -> &JunctionCounts {
+        &self.junctions
     }
 
     /// Number of grains.
@@ -291,11 +291,55 @@ impl Network {
         points
     }
 
+    /// The points of the finest level for flat boundaries: each new one midway between the ends of its edge.
+    ///
+    /// Within a plane [`Self::subdivide`] would change nothing but where points are, and in the fan of a long, thin boundary it would
+    /// put triangles over each other. Halving edges keeps the shape of every triangle.
+    ///
+    /// # Panics
+    /// When there is not one point per vertex of the control mesh.
+    pub fn divide(&self, control_points: &[DVec3]) -> Vec<DVec3> {
+        assert_eq!(
+            control_points.len(),
+            self.control_mesh().vertex_count(),
+            "there must be one point per vertex"
+        );
+        let mut points = control_points.to_vec();
+        self.control_mesh().copies.place(&self.domain, &mut points);
+        for pair in self.levels.windows(2) {
+            let middle = |[a, b]: [u32; 2]| points[a as usize].midpoint(points[b as usize]);
+            let middles: Vec<DVec3> = match &pair[0].mesh {
+                Mesh::Triangles(mesh) => {
+                    let edges = 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits");
+                    edges.into_par_iter().map(|edge| middle(mesh.edge(edge))).collect()
+                }
+                Mesh::Segments(mesh) => mesh.segments().par_iter().map(|ends| middle(*ends)).collect(),
+            };
+            points.extend(middles);
+            pair[1].copies.place(&self.domain, &mut points);
+        }
+        points
+    }
+
     /// Volume (in the plane: area) of each grain, for points of the given level.
     pub fn grain_volumes(&self, level: &Level, points: &[DVec3]) -> Vec<f64> {
-        let origin = self.domain.lower().midpoint(self.domain.upper());
-        let volumes = boundary_volumes(&Surface::of_level(level, points, &self.sides()), origin);
-        sum_over_grains(&self.boundaries, &volumes, self.grain_count())
+        let cones = boundary_cones(&Surface::of_level(level, points, &self.sides()));
+        volumes_of_grains(&self.boundaries, &cones, self.grain_count())
+    }
+
+    /// Surface area (in the plane: perimeter) of each grain, for points of the given level.
+    pub(crate) fn grain_areas(&self, level: &Level, points: &[DVec3]) -> Vec<f64> {
+        let of_element = |normal: DVec3| match self.domain.dimension() {
+            voronoi::Dimension::Two => normal.length(),
+            voronoi::Dimension::Three => 0.5 * normal.length(),
+        };
+        let mut areas = vec![0.0; self.grain_count()];
+        for (normal, boundary) in element_normals(level, points).into_iter().zip(&level.boundary_of) {
+            for (grain, _) in self.boundaries[boundary.index()].signed_grains() {
+                areas[grain.index()] += of_element(normal);
+            }
+        }
+        areas
     }
 
     /// The edge of a cube (in the plane: of a square) with the mean grain volume: the unit of lengths in relaxation.

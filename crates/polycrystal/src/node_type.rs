@@ -13,17 +13,17 @@ impl NodeType {
     pub const OUTER: Self = Self(12);
 
     /// The type of a point inside a boundary.
-    pub(crate) fn inside(boundary: &Boundary) -> Self {
+    fn inside(boundary: &Boundary) -> Self {
         if boundary.is_interior() { Self::INTERIOR } else { Self::OUTER }
     }
 
     /// The type of a point by the sides that meet there, sorted and without duplicates. The exterior counts as one side.
     pub fn of_sides(sides: &[Side]) -> Self {
-        Self::new(sides.len(), sides.contains(&Side::Exterior))
+        Meeting::of_sides(sides).node_type
     }
 
     /// The type of a point where so many sides meet.
-    pub(crate) fn new(side_count: usize, is_outer: bool) -> Self {
+    fn new(side_count: usize, is_outer: bool) -> Self {
         // DREAM.3D knows no more than four grains: what has more counts as a quadruple point.
         let kind = match side_count {
             0..=2 => 2,
@@ -46,5 +46,35 @@ impl NodeType {
     /// The code.
     pub fn code(self) -> i8 {
         self.0
+    }
+}
+
+/// What meets at a point, or along a line. Of the counts, 255 stands for that many and more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Meeting {
+    pub(crate) node_type: NodeType,
+    /// Number of sides; the exterior is one of them.
+    pub(crate) sides: u8,
+    /// Number of grains.
+    pub(crate) grains: u8,
+}
+
+impl Meeting {
+    /// What meets where there are so many sides, of which so many are grains.
+    pub(crate) fn new(sides: usize, grains: usize, is_outer: bool) -> Self {
+        let [side_count, grains] = [sides, grains].map(|count| u8::try_from(count).unwrap_or(u8::MAX));
+        Self { node_type: NodeType::new(sides, is_outer), sides: side_count, grains }
+    }
+
+    /// What meets where these sides do, sorted and without duplicates.
+    pub(crate) fn of_sides(sides: &[Side]) -> Self {
+        let grains = sides.iter().filter(|side| side.grain().is_some()).count();
+        Self::new(sides.len(), grains, sides.contains(&Side::Exterior))
+    }
+
+    /// What meets inside a boundary.
+    pub(crate) fn inside(boundary: &Boundary) -> Self {
+        let grains = if boundary.wall.is_some() { 1 } else { 2 };
+        Self { node_type: NodeType::inside(boundary), sides: 2, grains }
     }
 }

@@ -2,7 +2,7 @@ use glam::DVec3;
 
 use crate::closing::open_place_count;
 use crate::seams::Seams;
-use crate::volume::boundary_volumes;
+use crate::volume::boundary_cones;
 use crate::{Side, Surface};
 
 /// The sides of each boundary in the order in which normals point from first to second, for surfaces whose order of sides
@@ -17,7 +17,7 @@ pub fn outward_sides(surface: &Surface<'_>) -> Vec<[Side; 2]> {
         sides.iter().map(|at| if is_outer(at) == outer { [at[1], at[0]] } else { *at }).collect()
     };
     let origin = surface.points.first().copied().unwrap_or(DVec3::ZERO);
-    let volumes = boundary_volumes(surface, origin);
+    let volumes = boundary_cones(surface).into_iter().map(|cone| cone.volume_from(origin));
     let outer = surface.sides.iter().zip(volumes).filter(|(sides, _)| is_outer(sides));
     let enclosed: f64 =
         outer.map(|(sides, volume)| if sides[0] == Side::Exterior { -volume } else { volume }).sum();

@@ -135,6 +135,8 @@ pub struct Relaxed {
     pub time: f64,
     /// Why the points of the level after that one did not move too, where they should have: then these are the last that were good.
     pub given_up: Option<Attempt>,
+    /// Whether no point moved: boundaries are as flat as the cells, and finer points lie midway between coarser ones.
+    pub is_flat: bool,
 }
 
 impl Relaxed {
@@ -143,6 +145,9 @@ impl Relaxed {
     /// # Panics
     /// When the network is not the one that was relaxed.
     pub fn finest_points(&self, network: &Network) -> Vec<DVec3> {
+        if self.is_flat {
+            return network.divide(&self.points);
+        }
         network.subdivide_between(self.level, network.levels().len() - 1, &self.points)
     }
 }
@@ -210,7 +215,8 @@ fn relax_levels(
         if volumes == Volumes::Kept {
             flow(0).restore_lost_volumes(&mut points)?;
         }
-        return Ok(Relaxed { level: 0, points, steps: 0, time: 0.0, given_up: None });
+        let is_flat = points == control_points;
+        return Ok(Relaxed { level: 0, points, steps: 0, time: 0.0, given_up: None, is_flat });
     }
     let last = (network.levels().len() - 1).min(finest);
     let whole_time = time * network.mean_grain_size().powi(2);
@@ -262,7 +268,7 @@ fn relax_levels(
                 let (level, steps) = (level - 1, done_before - count);
                 let given_up =
                     Some(Attempt::new(format!("moving the points of level {}", level + 1), &error));
-                return Ok(Relaxed { level, points, steps, time: before, given_up });
+                return Ok(Relaxed { level, points, steps, time: before, given_up, is_flat: false });
             }
         }
     }
@@ -270,7 +276,7 @@ fn relax_levels(
         let volumes = network.grain_volumes(&network.levels()[last], &points);
         check_grains_are_left(network, &volumes, whole_time)?;
     }
-    Ok(Relaxed { level: last, points, steps, time: passed, given_up: None })
+    Ok(Relaxed { level: last, points, steps, time: passed, given_up: None, is_flat: false })
 }
 
 /// Checks that no grain has shrunk to nothing by a time: it would have to vanish, and its neighbours to meet, for others to grow on as

@@ -1,6 +1,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
+use voronoi::Dimension;
 
+use crate::volume::last_place;
 use crate::{BoundaryId, GrainId, Level, Mesh, Network, Side};
 
 /// A labelled surface in space, or labelled lines in the plane z = 0: what a network is on one level, or what a file holds.
@@ -39,6 +41,14 @@ impl<'a> Elements<'a> {
     /// Whether there is no element.
     pub fn is_empty(self) -> bool {
         self.len() == 0
+    }
+
+    /// That of the domain which the elements divide.
+    pub fn dimension(self) -> Dimension {
+        match self {
+            Self::Triangles(_) => Dimension::Three,
+            Self::Segments(_) => Dimension::Two,
+        }
     }
 
     /// The points of an element.
@@ -84,6 +94,11 @@ impl<'a> Surface<'a> {
     /// The surface of one level of a network; `sides` are those of [`Network::sides`].
     pub fn of_level(level: &'a Level, points: &'a [DVec3], sides: &'a [[Side; 2]]) -> Self {
         Self { points, elements: (&level.mesh).into(), boundary_of: &level.boundary_of, sides }
+    }
+
+    /// How far double precision keeps points from where they should be: a last place of the largest coordinate.
+    pub fn last_place(&self) -> f64 {
+        last_place(self.points)
     }
 
     /// The sides of an element.

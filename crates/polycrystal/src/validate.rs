@@ -19,12 +19,15 @@ pub fn validate(network: &Network, points: &[DVec3]) -> Result<Certificate, Faul
     let volumes: Vec<(GrainId, f64)> =
         (0u32..).map(GrainId).zip(network.cell_volumes().iter().copied()).collect();
     let node_types: Vec<_> = level.node_types.iter().copied().map(Some).collect();
+    let originals = network.domain().is_periodic().then(|| level.originals());
     let claims = Claims {
         // Types in a periodic domain count the grains a period away, which the surface calls exterior.
         node_types: (!network.domain().is_periodic()).then_some(&node_types),
+        grain_counts: Some(&level.grain_counts),
+        originals: originals.as_deref(),
         grain_volumes: Some(&volumes),
         domain_volume: Some(network.domain().measure()),
-        rounding: 0.0,
+        rounding: surface.last_place(),
     };
     let mut certificate = inspect(&surface, &Seams::of_level(level), &claims);
     // The surface does not know what it is like through the walls.

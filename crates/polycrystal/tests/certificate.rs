@@ -173,6 +173,20 @@ fn swapped_labels_are_found() {
 }
 
 #[test]
+fn a_wrong_number_of_grains_is_found() {
+    let parts = Parts::good();
+    let (network, _) = random_network(&Domain::unit_cube(), 12, 7, 1);
+    let mut grain_counts = network.finest().grain_counts.clone();
+    let faults = |grain_counts: &[u8]| {
+        certify(&parts.surface(), &Claims { grain_counts: Some(grain_counts), ..Claims::default() }).faults.0
+    };
+    assert_eq!(faults(&grain_counts), []);
+    let (_, point) = parts.inner_triangle();
+    grain_counts[point as usize] = 5;
+    assert_eq!(faults(&grain_counts), [Fault::WrongGrainCount { point, stated: 5, derived: 2 }]);
+}
+
+#[test]
 fn a_duplicated_point_is_found() {
     let mut parts = Parts::good();
     let (triangle, point) = parts.inner_triangle();

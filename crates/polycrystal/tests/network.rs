@@ -52,6 +52,8 @@ fn node_types_are_those_of_the_sides_around_on_every_level() {
         for level in network.levels() {
             for (vertex, sides) in sides_around(&network, level).iter().enumerate() {
                 assert_eq!(level.node_types[vertex], NodeType::of_sides(sides), "vertex {vertex}");
+                let grains = sides.iter().filter(|side| side.grain().is_some()).count();
+                assert_eq!(usize::from(level.grain_counts[vertex]), grains, "vertex {vertex}");
             }
         }
     }

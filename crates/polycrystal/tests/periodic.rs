@@ -3,7 +3,7 @@
 #[allow(dead_code, reason = "every test file uses its own share")]
 mod common;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use common::random_seeds;
 use glam::{BVec3, DVec3};
@@ -134,6 +134,8 @@ fn junctions_are_counted_once() {
     assert_eq!(network.junction_counts().triple_lines, lines);
     assert_eq!(network.junction_counts().quadruple_points, points);
     assert_eq!(lines, 2 * points);
+    assert_eq!(network.junction_counts().lines_by_sides, BTreeMap::from([(3, lines)]));
+    assert_eq!(network.junction_counts().points_by_sides, BTreeMap::from([(4, points)]));
     for level in network.levels() {
         for pair in &level.copies.vertices {
             let [copy, original] =
@@ -147,6 +149,23 @@ fn junctions_are_counted_once() {
         assert!(!outer(boundary.index()) || is_outer);
     }
     assert!(network.finest().node_types.contains(&NodeType::OUTER));
+}
+
+/// A cube that repeats: eight images of the one grain meet at a corner, four along an edge, two in a face.
+#[test]
+fn images_of_a_grain_count_as_grains() {
+    let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
+    let (_, network, flat) = network(&domain, &[DVec3::splat(0.5)], 2);
+    let level = network.finest();
+    let points = network.subdivide(&flat);
+    for (point, grains) in points.iter().zip(&level.grain_counts) {
+        let on_planes = point.to_array().iter().filter(|at| (**at - at.round()).abs() < 1e-12).count();
+        assert_eq!(*grains, [1, 2, 4, 8][on_planes], "{point}");
+    }
+    let counts = network.junction_counts();
+    assert_eq!(counts.lines_by_sides, BTreeMap::from([(4, 3)]));
+    assert_eq!(counts.points_by_sides, BTreeMap::from([(8, 1)]));
+    validate(&network, &points).expect("the grains at all copies of a point are as many as it states");
 }
 
 #[test]

@@ -84,6 +84,21 @@ fn grains_with_small_features_relax_too() {
     }
 }
 
+/// Measured from the middle of the box, volumes of these grains would lose all digits that tell them apart; and their long, thin
+/// boundaries fold where subdivision moves points within them.
+#[test]
+fn grains_clustered_in_a_corner_are_valid_without_relaxation() {
+    let domain = Domain::unit_cube();
+    for extent in [1e-3, 1e-5] {
+        let seeds: Vec<DVec3> = random_seeds(&domain, 40, 1).iter().map(|seed| *seed * extent).collect();
+        let (network, flat) = network(&domain, &seeds, 2);
+        let relaxed = relax(&network, &flat, &Relaxation::Time(0.0), |_, _| ()).expect("nothing moves");
+        assert!(relaxed.is_flat && relaxed.points == flat);
+        let certificate = validate(&network, &relaxed.finest_points(&network)).expect("valid");
+        assert!(certificate.largest_volume_error < 1e-9, "{}", certificate.largest_volume_error);
+    }
+}
+
 #[test]
 fn time_zero_gives_regularised_grains_the_volumes_of_their_cells() {
     let (network, flat) = regular_network(&Domain::unit_cube(), 50, 4, 1);

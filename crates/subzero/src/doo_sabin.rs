@@ -56,14 +56,10 @@ impl PolygonMesh {
     /// inner edge in the order of the edges, then one around each inner vertex in the order of the vertices.
     ///
     /// # Errors
-    /// [`MeshError::ValenceTwo`] names an inner vertex with two edges, whose face would have two corners.
-    ///
-    /// # Panics
-    /// If the finer mesh outgrows 32-bit ids.
+    /// [`MeshError::ValenceTwo`] names an inner vertex with two edges, whose face would have two corners;
+    /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids.
     pub fn doo_sabin_refine(&self, weights: DooSabinWeights) -> Result<Refinement<Self>, MeshError> {
-        if let Err(error) = check_size("half-edges", self.corners.len().saturating_mul(8)) {
-            panic!("the finer mesh does not fit: {error}");
-        }
+        check_size("half-edges", self.corners.len().saturating_mul(8))?;
         let stencils = StencilTable::from_rows(self.corners.len(), |h, rows| {
             let corners = self.face(self.faces_of[h as usize]);
             let own = (h - self.face_starts[self.faces_of[h as usize] as usize]) as usize;

@@ -9,7 +9,7 @@ pub enum VoronoiError {
     #[error("no seeds: give at least one")]
     NoSeeds,
     /// More seeds than 32-bit ids can name.
-    #[error("{count} seeds are more than the {} that ids can name", Generator::MAX_SITES)]
+    #[error("{count} seeds are more than the {} that ids can name; take fewer", Generator::MAX_SITES)]
     TooManySeeds {
         /// Number of seeds given.
         count: usize,
@@ -88,7 +88,7 @@ pub enum VoronoiError {
         vertex: usize,
     },
     /// A seed has a coordinate that is NaN or infinite.
-    #[error("seed {seed} at {} has a coordinate that is not a finite number", Point(*.position))]
+    #[error("seed {seed} at {} has a coordinate that is not a finite number; correct it or remove the seed", Point(*.position))]
     NotFinite {
         /// Position of the seed in the input.
         seed: usize,
@@ -106,7 +106,9 @@ pub enum VoronoiError {
         domain: String,
     },
     /// A power weight is NaN or infinite.
-    #[error("seed {seed} has the weight {weight}, which is not a finite number")]
+    #[error(
+        "seed {seed} has the weight {weight}, which is not a finite number; correct it or remove the seed"
+    )]
     BadWeight {
         /// Position of the seed in the input.
         seed: usize,

@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use grainsmooth::vtk::VtkFormat;
+use grainsmooth::vtk::{VtkEncoding, VtkFormat};
 use grainsmooth::{
     FileOptions, Names, Output, OutputDirectory, OutputFormat, SeriesOutput, StatisticsOutput, StlEncoding,
     TableFormat,
@@ -67,6 +67,12 @@ pub struct FileArguments {
     #[arg(long)]
     arrays: bool,
 
+    /// How .vtp, .vtu, .vti and .vtm hold their numbers: raw is the fastest; base64 and zlib are read by more programs
+    ///
+    /// Example: --vtk-encoding zlib -o grains.vtu
+    #[arg(long, value_name = "ENCODING", value_enum, default_value_t = Encoding::Raw)]
+    vtk_encoding: Encoding,
+
     /// Write measures of the smooth network: as JSON, or as CSV of the grains with F.boundaries.csv and so on beside it
     ///
     /// Example: --stats grains.json
@@ -123,6 +129,14 @@ impl From<GrainFormat> for OutputFormat {
             GrainFormat::Obj => Self::Obj,
         }
     }
+}
+
+/// `--vtk-encoding` as it is spelled.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Encoding {
+    Raw,
+    Base64,
+    Zlib,
 }
 
 /// `--names` as it is spelled.
@@ -197,7 +211,13 @@ impl FileArguments {
         };
         let stl = if self.ascii { StlEncoding::Ascii } else { StlEncoding::Binary };
         let at_least_one = |count| NonZeroU32::new(count).unwrap_or(NonZeroU32::MIN);
-        FileOptions { names, voxels: voxels.map(|counts| counts.map(at_least_one)), stl, arrays: self.arrays }
+        let voxels = voxels.map(|counts| counts.map(at_least_one));
+        let encoding = match self.vtk_encoding {
+            Encoding::Raw => VtkEncoding::Raw,
+            Encoding::Base64 => VtkEncoding::Base64,
+            Encoding::Zlib => VtkEncoding::Zlib,
+        };
+        FileOptions { names, voxels, stl, arrays: self.arrays, encoding }
     }
 }
 

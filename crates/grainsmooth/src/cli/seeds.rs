@@ -31,8 +31,8 @@ pub struct SeedArguments {
     #[arg(long, value_names = ["LATTICE", "N"], num_args = 2, value_parser = parse_lattice, allow_negative_numbers = true, conflicts_with_all = ["seeds", "rng_seed", "seeding"])]
     lattice: Option<Vec<LatticeValue>>,
 
-    /// Read seeds from a file instead: text with x, y, z on each line (x, y in 2D), where a last column radius weights the
-    /// cells; .xyz; .json, such as --cells-json writes; or Neper's .tess, which tells the box as well
+    /// Read seeds from a file instead: text with x, y, z on each line (x, y in 2D), or with names of columns in the first line,
+    /// where radius, diameter or weight makes power cells; .xyz; .json; or Neper's .tess, which tells the box as well
     ///
     /// Example: --seeds-file seeds.csv
     #[arg(long, value_name = "FILE", conflicts_with_all = ["seeds", "rng_seed", "seeding", "lattice"])]
@@ -43,6 +43,15 @@ pub struct SeedArguments {
     /// Example: --seeds-file spheres.csv --drop-empty
     #[arg(long, requires = "seeds_file")]
     pub drop_empty: bool,
+
+    /// Merge cells below F mean equivalent diameters into what surrounds them; 0 keeps all
+    ///
+    /// The smallest cell below loses its seed and the cells are made again, so that its neighbours grow into its place, until none is
+    /// below. The grains have the volumes of these cells. SeedId leads from their numbers back to the seeds.
+    ///
+    /// Example: --min-diameter 0.2
+    #[arg(long, value_name = "F", default_value_t = 0.0, value_parser = parse_share, allow_negative_numbers = true)]
+    pub min_diameter: f64,
 
     /// Even out the grains: move every seed to the centroid of its cell, N times
     ///
@@ -93,6 +102,11 @@ impl SeedArguments {
             (Some(_), _) => usage("--lattice takes a lattice and the number of its cells, such as bcc 4"),
         }
     }
+}
+
+fn parse_share(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share: &f64| (0.0..1.0).contains(share));
+    share.ok_or_else(|| "give a share of the mean diameter, from 0 (off) to below 1".to_owned())
 }
 
 fn parse_lattice(text: &str) -> Result<LatticeValue, String> {

@@ -23,11 +23,12 @@ pub struct SmoothingArguments {
     #[arg(long, value_name = "H", value_parser = parse_edge_length, allow_negative_numbers = true, conflicts_with = "faces")]
     edge_length: Option<f64>,
 
-    /// Relaxation time, in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat
+    /// Relaxation time, in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat [default: 0.3; in
+    /// 2D equilibrium, but 0.3 with --free, --edge-length or --regularize 0]
     ///
     /// Example: --relax 0.1
-    #[arg(long, value_name = "T", default_value = "0.3", value_parser = parse_relaxation, allow_negative_numbers = true)]
-    pub relax: Relaxation,
+    #[arg(long, value_name = "T", value_parser = parse_relaxation, allow_negative_numbers = true)]
+    pub relax: Option<Relaxation>,
 
     /// Tension of the walls, in units of that between grains; 0 lets boundaries meet walls at right angles
     ///

@@ -22,7 +22,12 @@ const ANGLE_OF_NONE: f64 = 2.0 * TAU;
 ///
 /// The columns are the three Euler angles after Bunge, x, y, image quality 1, confidence 1, phase 1, detector signal 1 and
 /// fit 0; y points down, as everywhere in such maps. Pixels outside of all grains have no solution: confidence -1.
-pub(crate) fn write(grid: &LabelGrid, config: &Config, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(
+    grid: &LabelGrid<'_>,
+    grain_count: usize,
+    config: &Config,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     let [columns, rows, _] = grid.size;
     let (x_step, y_step) = (grid.spacing.x, grid.spacing.y);
     config.write_comments("# ", out)?;
@@ -36,36 +41,46 @@ pub(crate) fn write(grid: &LabelGrid, config: &Config, out: &mut dyn Write) -> i
          # NROWS: {rows}\n#\n# OPERATOR: grainsmooth {}\n#\n# SAMPLEID: \n#\n# SCANID: \n#\n",
         env!("CARGO_PKG_VERSION")
     )?;
-    let angles = euler_angles(grid, config.random_seed);
-    for row in 0..rows {
-        for column in 0..columns {
-            // The first row of a map is the topmost.
-            let side = grid.labels[(rows - 1 - row) * columns + column];
-            let (x, y) = (column as f64 * x_step, row as f64 * y_step);
-            let Side::Grain(grain) = side else {
-                // As TSL writes pixels without a solution.
-                writeln!(
-                    out,
-                    "{ANGLE_OF_NONE:.5} {ANGLE_OF_NONE:.5} {ANGLE_OF_NONE:.5} {x:?} {y:?} -1.0 -1.000 0 -1 180.000"
-                )?;
-                continue;
-            };
-            let [phi1, big_phi, phi2] = angles[grain.index()];
-            writeln!(out, "{phi1:.5} {big_phi:.5} {phi2:.5} {x:?} {y:?} 1.0 1.000 1 1 0.000")?;
+    let angles = euler_angles(grain_count, config.random_seed);
+    // The first row of a map is the topmost.
+    let mut row = 0;
+    for slab in (0..grid.slab_count()).rev() {
+        for labels in grid.slab(slab).chunks(columns).rev() {
+            write_row(labels, row, [x_step, y_step], &angles, out)?;
+            row += 1;
         }
     }
     Ok(())
 }
 
+/// Writes the pixels of a row.
+fn write_row(
+    labels: &[Side],
+    row: usize,
+    [x_step, y_step]: [f64; 2],
+    angles: &[[f64; 3]],
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    for (column, side) in labels.iter().enumerate() {
+        let (x, y) = (column as f64 * x_step, row as f64 * y_step);
+        let Side::Grain(grain) = side else {
+            // As TSL writes pixels without a solution.
+            writeln!(
+                out,
+                "{ANGLE_OF_NONE:.5} {ANGLE_OF_NONE:.5} {ANGLE_OF_NONE:.5} {x:?} {y:?} -1.0 -1.000 0 -1 180.000"
+            )?;
+            continue;
+        };
+        let [phi1, big_phi, phi2] = angles[grain.index()];
+        writeln!(out, "{phi1:.5} {big_phi:.5} {phi2:.5} {x:?} {y:?} 1.0 1.000 1 1 0.000")?;
+    }
+    Ok(())
+}
+
 /// Bunge's angles of every grain, in radians: two uniform, and the cosine of the middle one uniform.
-fn euler_angles(grid: &LabelGrid, random_seed: u64) -> Vec<[f64; 3]> {
+fn euler_angles(grain_count: usize, random_seed: u64) -> Vec<[f64; 3]> {
     let mut generator = ChaCha8Rng::seed_from_u64(random_seed);
     generator.set_stream(STREAM);
     let mut fraction = || (generator.next_u64() >> 11) as f64 * 2f64.powi(-53);
-    let grains = grid.labels.iter().filter_map(|side| match side {
-        Side::Grain(grain) => Some(grain.index() + 1),
-        Side::Exterior => None,
-    });
-    let count = grains.max().unwrap_or(0);
-    (0..count).map(|_| [TAU * fraction(), (2.0 * fraction() - 1.0).acos(), TAU * fraction()]).collect()
+    (0..grain_count).map(|_| [TAU * fraction(), (2.0 * fraction() - 1.0).acos(), TAU * fraction()]).collect()
 }

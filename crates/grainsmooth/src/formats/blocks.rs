@@ -9,10 +9,10 @@ use polycrystal::{BoundaryId, GrainId, Mesh, Side};
 use rayon::prelude::*;
 
 use super::grains::GrainMeasure;
-use super::lines::Junctions;
+use super::lines::{JunctionLine, Junctions};
 use super::surface::Surface;
 use crate::measured_arrays::{MeasuredArrays, NumberArrays};
-use crate::network_file::{boundary_polylines, triangles};
+use crate::network_file::{NUMBER_OF_GRAINS, SEED_ID, boundary_polylines, triangles};
 use crate::vtk::{Array, Cells, PolyData, Tuples, Values, VtkFormat, write_vtk};
 use crate::vtk::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
 use crate::{Error, Output, Polycrystal, StagedFiles};
@@ -98,6 +98,7 @@ impl Polycrystal {
             .collect();
         // Points are fewer than 2^31: each has an edge of two directions with a 32-bit id.
         let point_ids = |piece: usize| ids(piece).into_iter().map(u32::cast_signed).collect();
+        let grain_counts = |piece: usize| self.grain_counts(&ids(piece));
         let normals = |piece: usize| {
             let ids = ids(piece);
             normals(&points_of(&ids), &triangles_of(piece, &ids))
@@ -117,6 +118,7 @@ impl Polycrystal {
             point_arrays: vec![
                 ("Normals", PieceVectors::Vectors(&normals)),
                 ("PointId", PieceVectors::Int32(&point_ids)),
+                (NUMBER_OF_GRAINS, PieceVectors::UInt8(&grain_counts)),
             ],
             cell_arrays: vec![
                 (names.sides(), PieceValue::Int32Pair(&labels)),
@@ -129,7 +131,7 @@ impl Polycrystal {
             data.point_arrays.push(("MeanCurvature", PieceVectors::Float64(&mean)));
             data.point_arrays.push(("GaussianCurvature", PieceVectors::Float64(&gaussian)));
         }
-        write_pieces(&data, out)
+        write_pieces(&data, self.config.file.encoding, out)
     }
 
     /// All grains, each a closed surface with points of its own and all normals outward.
@@ -155,6 +157,7 @@ impl Polycrystal {
         let area = |number: usize| measures[number].area;
         let neighbors = |number: usize| measures[number].neighbors;
         let sphericity = |number: usize| measures[number].sphericity;
+        let seed = |number: usize| self.cells.seed_ids[number].cast_signed();
         let numbers: Vec<usize> = (0..parts.len()).collect();
         let of_grains = measured.map_or_else(NumberArrays::default, |all| all.of_grains(&numbers));
         let mut data = PieceData {
@@ -164,6 +167,7 @@ impl Polycrystal {
             point_arrays: Vec::new(),
             cell_arrays: vec![
                 (names.grain(), PieceValue::Int32(&name)),
+                (SEED_ID, PieceValue::Int32(&seed)),
                 ("Volume", PieceValue::Float64(&volume)),
                 ("Area", PieceValue::Float64(&area)),
                 ("Neighbors", PieceValue::Int32(&neighbors)),
@@ -172,7 +176,7 @@ impl Polycrystal {
             field: self.field(),
         };
         data.cell_arrays.extend(measured_pieces(&of_grains));
-        write_pieces(&data, out)
+        write_pieces(&data, self.config.file.encoding, out)
     }
 
     /// The lines where at least three sides meet, as polylines.
@@ -183,12 +187,7 @@ impl Polycrystal {
         measured: Option<&MeasuredArrays<'_>>,
         out: &mut dyn Write,
     ) -> io::Result<()> {
-        let around = |line: &super::lines::JunctionLine| {
-            sides(
-                line.boundaries.iter().flat_map(|boundary| self.network.boundaries()[boundary.index()].sides),
-            )
-        };
-        let lines = junctions.lines.iter().map(|line| (line, around(line)));
+        let lines = junctions.lines.iter().map(|line| (line, self.sides_around(line)));
         let lines: Vec<_> = lines.filter(|(_, sides)| sides.len() >= 3).collect();
         let mut ids: Vec<u32> = lines.iter().flat_map(|(line, _)| line.points.iter().copied()).collect();
         ids.sort_unstable();
@@ -197,18 +196,19 @@ impl Polycrystal {
         let renumbered = |id: &u32| point_id(ids.partition_point(|other| other < id));
         let cells: Vec<Vec<u32>> =
             lines.iter().map(|(line, _)| line.points.iter().map(renumbered).collect()).collect();
-        let sides = self.side_table(lines.iter().map(|(_, sides)| sides));
+        let sides = self.side_table(lines.iter().map(|(_, sides)| sides), self.most_sides(junctions));
         let polylines = lines.iter().map(|(line, _)| &line.points[..]);
         let of_lines = measured.map_or_else(NumberArrays::default, |all| all.of_lines(polylines));
+        let grain_counts = self.grain_counts(&ids);
         let mut data = PolyData {
             points: &points,
             cells: Cells::Polylines(&cells),
-            point_arrays: Vec::new(),
+            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&grain_counts) }],
             cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
             field: self.field(),
         };
         data.cell_arrays.extend(of_lines.arrays());
-        write_vtk(&data, VtkFormat::Vtp, out)
+        write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
     }
 
     /// The points where at least four sides meet.
@@ -219,31 +219,40 @@ impl Polycrystal {
         measured: Option<&MeasuredArrays<'_>>,
         out: &mut dyn Write,
     ) -> io::Result<()> {
-        let mut at: Vec<(u32, Side)> = Vec::new();
-        for line in &junctions.lines {
-            let of_line =
-                line.boundaries.iter().flat_map(|boundary| self.network.boundaries()[boundary.index()].sides);
-            let ends = [line.points[0], line.points[line.points.len() - 1]];
-            at.extend(of_line.flat_map(|side| ends.map(|end| (end, side))));
-        }
-        at.sort_unstable();
-        at.dedup();
-        let points = at.chunk_by(|a, b| a.0 == b.0).filter(|sides| sides.len() >= 4);
-        let points: Vec<(u32, Vec<Side>)> =
-            points.map(|at| (at[0].0, at.iter().map(|(_, side)| *side).collect())).collect();
-        let sides = self.side_table(points.iter().map(|(_, sides)| sides));
+        let points = self.quadruple_points(junctions);
+        let sides = self.side_table(points.iter().map(|(_, sides)| sides), self.most_sides(junctions));
         let ids: Vec<u32> = points.iter().map(|(point, _)| *point).collect();
         let points: Vec<DVec3> = ids.iter().map(|point| surface.points[*point as usize]).collect();
         let of_points = measured.map_or_else(NumberArrays::default, |all| all.of_quadruple_points(&ids));
+        let grain_counts = self.grain_counts(&ids);
         let mut data = PolyData {
             points: &points,
             cells: Cells::Vertices(points.len()),
-            point_arrays: Vec::new(),
+            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&grain_counts) }],
             cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
             field: self.field(),
         };
         data.cell_arrays.extend(of_points.arrays());
-        write_vtk(&data, VtkFormat::Vtp, out)
+        write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
+    }
+
+    /// The sides that meet in a line.
+    fn sides_around(&self, line: &JunctionLine) -> Vec<Side> {
+        let boundaries = line.boundaries.iter().map(|boundary| &self.network.boundaries()[boundary.index()]);
+        sides(boundaries.flat_map(|boundary| boundary.sides))
+    }
+
+    /// The points where at least four sides meet, and these.
+    fn quadruple_points(&self, junctions: &Junctions) -> Vec<(u32, Vec<Side>)> {
+        let mut at: Vec<(u32, Side)> = Vec::new();
+        for line in &junctions.lines {
+            let ends = [line.points[0], line.points[line.points.len() - 1]];
+            at.extend(self.sides_around(line).into_iter().flat_map(|side| ends.map(|end| (end, side))));
+        }
+        at.sort_unstable();
+        at.dedup();
+        let points = at.chunk_by(|a, b| a.0 == b.0).filter(|sides| sides.len() >= 4);
+        points.map(|at| (at[0].0, at.iter().map(|(_, side)| *side).collect())).collect()
     }
 
     /// What is measured, wound as the files want it, if they are to have it.
@@ -259,10 +268,27 @@ impl Polycrystal {
         self.config.file.arrays.then(|| MeasuredArrays::new(self, cells))
     }
 
-    /// The numbers of the sides that meet in each of some places.
-    pub(super) fn side_table<'a>(&self, places: impl Iterator<Item = &'a Vec<Side>> + Clone) -> SideTable {
+    /// The most sides that meet anywhere.
+    fn most_sides(&self, junctions: &Junctions) -> usize {
+        let of_lines = junctions.lines.iter().map(|line| self.sides_around(line).len());
+        let of_points = self.quadruple_points(junctions).into_iter().map(|(_, sides)| sides.len());
+        of_lines.chain(of_points).max().unwrap_or(1)
+    }
+
+    /// How many grains meet at some of the points.
+    pub(super) fn grain_counts(&self, points: &[u32]) -> Vec<u8> {
+        let counts = &self.network.finest().grain_counts;
+        points.iter().map(|point| counts[*point as usize]).collect()
+    }
+
+    /// The numbers of the sides that meet in each of some places. All blocks of a file have as many components, of which
+    /// ParaView warns where they differ.
+    pub(super) fn side_table<'a>(
+        &self,
+        places: impl Iterator<Item = &'a Vec<Side>>,
+        components: usize,
+    ) -> SideTable {
         let names = self.config.file.names;
-        let components = places.clone().map(Vec::len).max().unwrap_or(1);
         let row = |sides: &Vec<Side>| {
             let numbers = sides.iter().map(|side| names.side_number(*side));
             numbers.chain(std::iter::repeat(NO_SIDE)).take(components).collect::<Vec<i32>>()
@@ -271,7 +297,7 @@ impl Polycrystal {
     }
 }
 
-/// As many sides for each place as meet in the one with the most.
+/// As many sides for each place as meet anywhere.
 pub(super) struct SideTable {
     components: usize,
     numbers: Vec<i32>,

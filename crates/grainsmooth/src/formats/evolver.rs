@@ -10,7 +10,7 @@ use glam::DVec3;
 use polycrystal::{Network, Side};
 use voronoi::{Domain, Wall};
 
-use super::surface::{Part, side_name};
+use super::surface::{Part, side_name, write_seed_comments};
 use crate::Polycrystal;
 
 /// Writes the file; each point stays on its walls, and each body keeps its volume.
@@ -19,6 +19,7 @@ pub(crate) fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Resul
     let (domain, sets, walls) = (network.domain(), network.wall_sets(), &network.finest().walls);
     writeln!(out, "// grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
     polycrystal.config.write_comments("// ", out)?;
+    write_seed_comments(polycrystal.cells.renumbered(), "// ", out)?;
     writeln!(out)?;
     if domain.is_periodic() {
         // Filled, so that Evolver knows that one of the volumes follows from the others.

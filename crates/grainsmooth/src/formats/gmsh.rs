@@ -3,6 +3,9 @@
 //! <https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format>. Gmsh fills only volumes that a script makes, never those of a
 //! mesh file; `gmsh -3` on the script does. Gmsh counts from 1, so grain 0 is volume 1, and boundary 0 surface 1. Quadruple
 //! points are its points, triple lines and the edges of the domain its curves.
+//!
+//! A volume of Gmsh is connected. Where the box cuts a periodic network, a grain in several pieces is several volumes, which
+//! are one physical volume; and a boundary several surfaces, which are one physical surface.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -10,9 +13,10 @@ use std::io::{self, Write};
 use glam::DVec3;
 use polycrystal::BoundaryId;
 
+use super::connected::{ConnectedParts, pieces_of_grain};
 use super::lines::Junctions;
-use super::surface::{Surface, side_name};
-use crate::Config;
+use super::surface::{Surface, side_name, write_seed_comments};
+use crate::Polycrystal;
 
 /// Gmsh's codes for elements.
 const LINE: u32 = 1;
@@ -22,36 +26,53 @@ const POINT: u32 = 15;
 /// Writes the script, which reads the mesh file of the given name beside it.
 pub(crate) fn write_script(
     surface: &Surface<'_>,
-    grain_count: usize,
+    polycrystal: &Polycrystal,
     mesh: &str,
-    config: &Config,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     writeln!(out, "// grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
-    config.write_comments("// ", out)?;
+    polycrystal.config.write_comments("// ", out)?;
+    write_seed_comments(polycrystal.cells.renumbered(), "// ", out)?;
     writeln!(out, "Merge \"{mesh}\";")?;
+    let grain_count = polycrystal.network.grain_count();
+    let ConnectedParts { surface: connected, boundaries } = ConnectedParts::of(surface);
+    let mut surfaces_of = vec![Vec::new(); surface.parts.len()];
+    for (piece, boundary) in connected.parts.iter().zip(&boundaries) {
+        surfaces_of[boundary.index()].push(tag(piece.boundary).to_string());
+    }
     for part in &surface.parts {
         let ([from, to], tag) = (part.sides.map(side_name), tag(part.boundary));
-        let number = part.boundary.0;
-        writeln!(out, "Physical Surface(\"boundary{number} {from} {to}\", {tag}) = {{{tag}}};")?;
+        let (number, surfaces) = (part.boundary.0, surfaces_of[part.boundary.index()].join(", "));
+        writeln!(out, "Physical Surface(\"boundary{number} {from} {to}\", {tag}) = {{{surfaces}}};")?;
     }
-    for (grain, parts) in surface.parts_of_grains(grain_count).iter().enumerate() {
-        let tag = grain + 1;
-        let surfaces = parts.iter().map(|(part, is_inward)| {
-            let sign = if *is_inward { "-" } else { "" };
-            format!("{sign}{}", self::tag(surface.parts[*part].boundary))
-        });
-        let surfaces: Vec<String> = surfaces.collect();
-        writeln!(out, "Surface Loop({tag}) = {{{}}};", surfaces.join(", "))?;
-        writeln!(out, "Volume({tag}) = {{{tag}}};\nPhysical Volume(\"grain{grain}\", {tag}) = {{{tag}}};")?;
+    // The first piece of a grain has its number; the others follow.
+    let mut other_tags = grain_count + 1..;
+    for (grain, parts) in connected.parts_of_grains(grain_count).iter().enumerate() {
+        let first = grain + 1;
+        let tags = std::iter::once(first).chain(other_tags.by_ref());
+        let mut volumes = Vec::new();
+        for (piece, tag) in pieces_of_grain(&connected, parts).iter().zip(tags) {
+            let surfaces = piece.iter().map(|(part, is_inward)| {
+                let sign = if *is_inward { "-" } else { "" };
+                format!("{sign}{}", self::tag(connected.parts[*part].boundary))
+            });
+            let surfaces: Vec<String> = surfaces.collect();
+            writeln!(out, "Surface Loop({tag}) = {{{}}};", surfaces.join(", "))?;
+            writeln!(out, "Volume({tag}) = {{{tag}}};")?;
+            volumes.push(tag.to_string());
+        }
+        writeln!(out, "Physical Volume(\"grain{grain}\", {first}) = {{{}}};", volumes.join(", "))?;
     }
     Ok(())
 }
 
 /// Writes the mesh file. Names stand in the script: meshio wants them for every cell, or for none.
-pub(crate) fn write(surface: &Surface<'_>, config: &Config, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(surface: &Surface<'_>, polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
+    let surface = &ConnectedParts::of(surface).surface;
     let junctions = Junctions::of(surface);
-    writeln!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n{}$EndComments", config.to_toml())?;
+    write!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n{}", polycrystal.config.to_toml())?;
+    write_seed_comments(polycrystal.cells.renumbered(), "", out)?;
+    writeln!(out, "$EndComments")?;
     write_entities(surface, &junctions, out)?;
     write_nodes(surface, &junctions, out)?;
     write_elements(surface, &junctions, out)

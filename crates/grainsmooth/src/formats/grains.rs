@@ -8,10 +8,11 @@ use rayon::prelude::*;
 use voronoi::Dimension;
 
 use super::surface::Surface;
-use super::{Names, obj, ply, stl};
+use super::{obj, ply, stl};
+use crate::network_file::SEED_ID;
 use crate::output::OutputDirectory;
 use crate::vtk::{Array, Cells, Each, FieldEntry, PolyData, Values, VtkFormat, write_vtk};
-use crate::{Error, OutputFormat, Polycrystal, StagedFiles};
+use crate::{Error, FileOptions, OutputFormat, Polycrystal, StagedFiles};
 
 /// What is measured of a grain's surface, its parts on walls included.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,12 +76,17 @@ impl Polycrystal {
         format: OutputFormat,
         out: &mut dyn Write,
     ) -> io::Result<()> {
+        let renumbered = self.cells.renumbered().get(grain.index()..=grain.index()).unwrap_or_default();
         match format {
-            OutputFormat::Stl => stl::write(surface, &format!("grain{}", grain.0), &self.config, out),
-            OutputFormat::Ply => ply::write(surface, &self.config, out),
-            OutputFormat::Obj => obj::write(surface, &self.config, out),
+            OutputFormat::Stl => {
+                let seed = renumbered.first().map_or(String::new(), |seed| format!(" {SEED_ID} {seed}"));
+                stl::write(surface, &format!("grain{}{seed}", grain.0), &self.config, out)
+            }
+            OutputFormat::Ply => ply::write(surface, &self.config, renumbered, out),
+            OutputFormat::Obj => obj::write(surface, &self.config, renumbered, out),
             OutputFormat::Vtk(format) => {
-                write_vtk_grain(surface, self.config.file.names, self.field(), format, out)
+                let seed = self.cells.seed_ids[grain.index()].cast_signed();
+                write_vtk_grain(surface, seed, &self.config.file, self.field(), format, out)
             }
             _ => Err(io::Error::other("this format holds no surfaces")),
         }
@@ -90,11 +96,13 @@ impl Polycrystal {
 /// A grain with the arrays of the `grains` block, and what lies beyond each triangle.
 fn write_vtk_grain(
     surface: &Surface<'_>,
-    names: Names,
+    seed: i32,
+    options: &FileOptions,
     field: Vec<FieldEntry>,
     format: VtkFormat,
     out: &mut dyn Write,
 ) -> io::Result<()> {
+    let names = options.names;
     let triangles: Vec<[u32; 3]> = surface.triangles().collect();
     let of_triangle = surface.parts.iter().flat_map(|part| surface.triangles_of(part).map(move |_| part));
     let parts: Vec<_> = of_triangle.collect();
@@ -104,7 +112,7 @@ fn write_vtk_grain(
     let beyond = |index: usize| names.side_number(parts[index].sides[1]);
     let boundary_id = |index: usize| parts[index].boundary.0.cast_signed();
     let (volume, area, sphericity) = (|_| volume, |_| area, |_| sphericity);
-    let neighbors = |_| neighbors;
+    let (neighbors, seed) = (|_| neighbors, |_| seed);
     let doubles = |value| Values::Float64Of(Each { count, value });
     let integers = |value| Values::Int32Of(Each { count, value });
     let data = PolyData {
@@ -113,6 +121,7 @@ fn write_vtk_grain(
         point_arrays: Vec::new(),
         cell_arrays: vec![
             Array { name: names.grain(), values: integers(&grain) },
+            Array { name: SEED_ID, values: integers(&seed) },
             Array { name: "Beyond", values: integers(&beyond) },
             Array { name: "BoundaryId", values: integers(&boundary_id) },
             Array { name: "Volume", values: doubles(&volume) },
@@ -122,5 +131,5 @@ fn write_vtk_grain(
         ],
         field,
     };
-    write_vtk(&data, format, out)
+    write_vtk(&data, format, options.encoding, out)
 }

@@ -7,6 +7,7 @@
 //! looked at together with their images a period away.
 
 use std::num::NonZeroU32;
+use std::ops::Range;
 
 use glam::DVec3;
 use polycrystal::{Boundary, GrainId, Mesh, Side};
@@ -16,33 +17,62 @@ use voronoi::{Dimension, Domain};
 
 use crate::Polycrystal;
 
-/// Labels of a grid of voxels that fills the domain.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LabelGrid {
+/// Voxels that are labelled at the same time: few enough for little memory (32 MB), and many enough for all threads.
+const SLAB_VOXELS: usize = 1 << 22;
+
+/// Voxels that a row counts for besides its own: its crossings, of which few grids have more.
+const VOXELS_OF_ROW: usize = 64;
+
+/// Bytes that a slab takes while it is labelled and written: its labels, its crossings and what is written of them.
+pub(crate) const LABEL_BYTES: u128 = 32 * SLAB_VOXELS as u128;
+
+/// A grid of voxels that fills the domain. Their labels are found slab by slab, so a grid may be larger than memory.
+pub struct LabelGrid<'a> {
     /// Number of voxels along each axis; 1 along z in 2D.
     pub size: [usize; 3],
     /// Corner of the grid with the smallest coordinates.
     pub origin: DVec3,
     /// Side lengths of a voxel; along z that along x in 2D.
     pub spacing: DVec3,
-    /// What the centre of each voxel is in, x fastest, then y, then z.
-    pub labels: Vec<Side>,
+    polycrystal: &'a Polycrystal,
+    /// Rows that are labelled at the same time, at least one.
+    slab_rows: usize,
+    centers: Centers,
+    images: Vec<DVec3>,
+    /// The boundaries' elements that rows cross, by first slice.
+    elements: Vec<Element>,
+}
+
+/// A triangle or segment in one of its images, and the slices of constant z that may cross it.
+#[derive(Debug, Clone, Copy)]
+struct Element {
+    start: u32,
+    end: u32,
+    id: u32,
+    image: u32,
+}
+
+/// Consecutive rows of voxels along x: whole slices, or some rows of one.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Slab {
+    slices: Range<usize>,
+    rows: Range<usize>,
 }
 
 /// A row passes from one side of a boundary to the other just before the centre of a voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Crossing {
-    /// Row within its slice.
-    row: usize,
+    /// Row within its slab.
+    row: u32,
     /// The first voxel whose centre lies beyond; as many as there are voxels if none does.
-    voxel: usize,
+    voxel: u32,
     left: Side,
     entered: Side,
 }
 
-impl LabelGrid {
-    /// Labels `size` voxels, slices in parallel; in 2D the third number is not used.
-    pub fn new(polycrystal: &Polycrystal, size: [NonZeroU32; 3]) -> Self {
+impl<'a> LabelGrid<'a> {
+    /// A grid of `size` voxels; in 2D the third number is not used.
+    pub fn new(polycrystal: &'a Polycrystal, size: [NonZeroU32; 3]) -> Self {
         let domain = polycrystal.network.domain();
         let mut size = size.map(|count| count.get() as usize);
         if domain.dimension() == Dimension::Two {
@@ -54,12 +84,138 @@ impl LabelGrid {
             spacing.z = spacing.x;
         }
         let centers = Centers { domain: domain.clone(), size };
-        let crossings = crossings_by_slice(polycrystal, &centers);
-        let fills_box = domain.is_box();
-        let slices: Vec<Vec<Side>> =
-            crossings.into_par_iter().map(|crossings| fill_slice(size, fills_box, crossings)).collect();
-        Self { size, origin: domain.lower(), spacing, labels: slices.concat() }
+        let images = images(domain);
+        let elements = elements(polycrystal, &centers, &images);
+        let slab_rows = (SLAB_VOXELS / (size[0] + VOXELS_OF_ROW)).max(1);
+        Self { size, origin: domain.lower(), spacing, polycrystal, slab_rows, centers, images, elements }
     }
+
+    /// Number of voxels.
+    pub fn voxel_count(&self) -> u64 {
+        self.size.iter().map(|count| *count as u64).product()
+    }
+
+    /// What the centre of each voxel is in, x fastest, then y, then z.
+    pub fn labels(&self) -> Vec<Side> {
+        (0..self.slab_count()).flat_map(|slab| self.slab(slab)).collect()
+    }
+
+    /// Number of slabs.
+    pub fn slab_count(&self) -> usize {
+        let [_, ny, nz] = self.size;
+        if self.slices_of_slab() > 1 {
+            nz.div_ceil(self.slices_of_slab())
+        } else {
+            nz * ny.div_ceil(self.rows_of_slab())
+        }
+    }
+
+    /// The labels of a slab, in the order of [`labels`](Self::labels): its rows are found in parallel.
+    pub fn slab(&self, index: usize) -> Vec<Side> {
+        let slab = self.slab_at(index);
+        let mut crossings = self.crossings(&slab);
+        crossings.par_sort_unstable();
+        let nx = self.size[0];
+        let fills_box = self.polycrystal.network.domain().is_box();
+        let mut labels = vec![Side::Exterior; slab.slices.len() * slab.rows.len() * nx];
+        (0u32..).zip(labels.chunks_mut(nx)).collect::<Vec<_>>().into_par_iter().for_each(|(row, labels)| {
+            let start = crossings.partition_point(|crossing| crossing.row < row);
+            let count = crossings[start..].partition_point(|crossing| crossing.row == row);
+            fill_row(&crossings[start..start + count], fills_box, labels);
+        });
+        labels
+    }
+
+    /// Whole slices of a slab; 1 where a slab is one slice or less.
+    fn slices_of_slab(&self) -> usize {
+        let [_, ny, nz] = self.size;
+        (self.slab_rows / ny).clamp(1, nz)
+    }
+
+    /// Rows of a slab within each of its slices.
+    fn rows_of_slab(&self) -> usize {
+        self.slab_rows.min(self.size[1])
+    }
+
+    fn slab_at(&self, index: usize) -> Slab {
+        let [_, ny, nz] = self.size;
+        let (slices, rows) = (self.slices_of_slab(), self.rows_of_slab());
+        if slices > 1 {
+            return Slab { slices: index * slices..((index + 1) * slices).min(nz), rows: 0..ny };
+        }
+        let of_slice = ny.div_ceil(rows);
+        let (slice, first) = (index / of_slice, index % of_slice * rows);
+        Slab { slices: slice..slice + 1, rows: first..(first + rows).min(ny) }
+    }
+
+    /// All crossings of a slab's rows with boundaries.
+    fn crossings(&self, slab: &Slab) -> Vec<Crossing> {
+        let (network, points) = (&self.polycrystal.network, &self.polycrystal.points);
+        let level = network.finest();
+        let candidates = &self.elements
+            [..self.elements.partition_point(|element| (element.start as usize) < slab.slices.end)];
+        let candidates = candidates.par_iter().filter(|element| (element.end as usize) > slab.slices.start);
+        let of_element = |element: &Element| {
+            let boundary = &network.boundaries()[level.boundary_of[element.id as usize].index()];
+            let at = |point: u32| points[point as usize] + self.images[element.image as usize];
+            match &level.mesh {
+                Mesh::Segments(mesh) => segment_crossings(
+                    &self.centers,
+                    slab,
+                    mesh.segments()[element.id as usize].map(at),
+                    boundary,
+                ),
+                Mesh::Triangles(mesh) => {
+                    let corners = mesh.triangles()[element.id as usize].map(at);
+                    let slices = slab.slices.start.max(element.start as usize)
+                        ..slab.slices.end.min(element.end as usize);
+                    slices
+                        .flat_map(|slice| triangle_crossings(&self.centers, slab, slice, corners, boundary))
+                        .collect()
+                }
+            }
+        };
+        candidates.flat_map_iter(of_element).collect()
+    }
+}
+
+/// All elements in all images that a slice may cross, by first slice.
+fn elements(polycrystal: &Polycrystal, centers: &Centers, images: &[DVec3]) -> Vec<Element> {
+    let level = polycrystal.network.finest();
+    let count = u32::try_from(level.element_count()).expect("ids of elements fit 32 bits");
+    let last = [0, 1].map(|axis| centers.coordinate(axis, centers.size[axis] - 1));
+    let of_image = |(image, offset): (u32, &DVec3)| {
+        let found = (0..count).into_par_iter().filter_map(move |id| {
+            let corners: &[u32] = match &level.mesh {
+                Mesh::Segments(mesh) => &mesh.segments()[id as usize],
+                Mesh::Triangles(mesh) => &mesh.triangles()[id as usize],
+            };
+            let corners = corners.iter().map(|corner| polycrystal.points[*corner as usize] + *offset);
+            let bounds =
+                |(lower, upper): (DVec3, DVec3), corner: DVec3| (lower.min(corner), upper.max(corner));
+            let (lower, upper) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), bounds);
+            let (start, end) = match &level.mesh {
+                Mesh::Segments(_) => (0, 1),
+                Mesh::Triangles(_) => {
+                    let end = (centers.first_at(2, upper.z) + 1).min(centers.size[2]);
+                    (centers.first_at(2, lower.z).min(end), end)
+                }
+            };
+            let is_met = start < end && lower.y <= last[1] && upper.y >= centers.coordinate(1, 0);
+            // What lies before the first centre of a row matters: it tells where the row begins.
+            let is_met = is_met && lower.x <= last[0];
+            is_met.then(|| Element { start: index(start), end: index(end), id, image })
+        });
+        found.collect::<Vec<_>>()
+    };
+    let mut elements: Vec<Element> = (0u32..).zip(images).flat_map(of_image).collect();
+    elements.par_sort_unstable_by_key(|element| (element.start, element.id, element.image));
+    elements
+}
+
+/// A number of voxels along an axis, or of rows in a slab.
+fn index(number: usize) -> u32 {
+    u32::try_from(number).expect("an axis has no more than 2^32 voxels, and a slab no more rows")
 }
 
 /// Where the centres of voxels are.
@@ -90,44 +246,6 @@ impl Centers {
     }
 }
 
-/// All crossings of rows with boundaries, for each slice of constant z.
-fn crossings_by_slice(polycrystal: &Polycrystal, centers: &Centers) -> Vec<Vec<Crossing>> {
-    let level = polycrystal.network.finest();
-    let boundary =
-        |element: u32| &polycrystal.network.boundaries()[level.boundary_of[element as usize].index()];
-    let images = images(polycrystal.network.domain());
-    let at = |point: u32, image: usize| polycrystal.points[point as usize] + images[image];
-    let count = u32::try_from(level.element_count()).expect("ids of elements fit 32 bits");
-    let all = (0..images.len()).flat_map(|image| (0..count).map(move |element| (element, image)));
-    match &level.mesh {
-        Mesh::Segments(mesh) => {
-            let ends = |element: u32, image| mesh.segments()[element as usize].map(|point| at(point, image));
-            let crossings = all.flat_map(|(element, image)| {
-                segment_crossings(centers, ends(element, image), boundary(element))
-            });
-            vec![crossings.collect()]
-        }
-        Mesh::Triangles(mesh) => {
-            let corners =
-                |element: u32, image| mesh.triangles()[element as usize].map(|point| at(point, image));
-            let mut of_slice = vec![Vec::new(); centers.size[2]];
-            for (element, image) in all {
-                let [a, b, c] = corners(element, image).map(|corner| corner.z);
-                let end = (centers.first_at(2, a.max(b).max(c)) + 1).min(centers.size[2]);
-                let start = centers.first_at(2, a.min(b).min(c)).min(end);
-                of_slice[start..end].iter_mut().for_each(|slice: &mut Vec<_>| slice.push((element, image)));
-            }
-            let crossings = of_slice.into_par_iter().enumerate().map(|(slice, elements)| {
-                let of_triangle = |&(element, image): &(u32, usize)| {
-                    triangle_crossings(centers, slice, corners(element, image), boundary(element))
-                };
-                elements.iter().flat_map(of_triangle).collect()
-            });
-            crossings.collect()
-        }
-    }
-}
-
 /// Where grains stand beside their own place: a whole grain reaches less than a period beyond the domain.
 fn images(domain: &Domain) -> Vec<DVec3> {
     let size = domain.size();
@@ -139,9 +257,10 @@ fn images(domain: &Domain) -> Vec<DVec3> {
     images
 }
 
-/// The crossings of a slice's rows with a triangle.
+/// The crossings of a triangle with the rows of a slab in one slice.
 fn triangle_crossings(
     centers: &Centers,
+    slab: &Slab,
     slice: usize,
     corners: [DVec3; 3],
     boundary: &Boundary,
@@ -153,7 +272,7 @@ fn triangle_crossings(
         return Vec::new();
     }
     let [y0, y1, y2] = corners.map(|corner| corner.y);
-    let rows = centers.first_at(1, y0.min(y1).min(y2))..centers.size[1];
+    let rows = centers.first_at(1, y0.min(y1).min(y2)).max(slab.rows.start)..slab.rows.end;
     let last = y0.max(y1).max(y2);
     let [x0, x1, x2] = corners.map(|corner| corner.x);
     let rows = rows.map(|row| (row, centers.coordinate(1, row))).take_while(|(_, y)| *y <= last);
@@ -171,16 +290,22 @@ fn triangle_crossings(
             if area > 0.0 { first_side <= 0.0 } else { first_side >= 0.0 }
         };
         let range = centers.first_at(0, x0.min(x1).min(x2))..centers.first_at(0, x0.max(x1).max(x2));
+        let row = (slice - slab.slices.start) * slab.rows.len() + row - slab.rows.start;
         crossing(centers, row, range, is_beyond, boundary, area > 0.0)
     })
     .collect()
 }
 
-/// The crossings of rows with a segment in the plane.
-fn segment_crossings(centers: &Centers, [start, end]: [DVec3; 2], boundary: &Boundary) -> Vec<Crossing> {
+/// The crossings of a slab's rows with a segment in the plane.
+fn segment_crossings(
+    centers: &Centers,
+    slab: &Slab,
+    [start, end]: [DVec3; 2],
+    boundary: &Boundary,
+) -> Vec<Crossing> {
     let [a, b] = [start, end].map(|end| Coord { x: end.x, y: end.y });
     // A row on a point counts as moved in +y, so it is not on the lower end of a segment that begins there.
-    let rows = centers.first_at(1, start.y.min(end.y))..centers.size[1];
+    let rows = centers.first_at(1, start.y.min(end.y)).max(slab.rows.start)..slab.rows.end;
     let rows = rows.map(|row| (row, centers.coordinate(1, row)));
     let upward = start.y < end.y;
     rows.take_while(|(_, y)| *y < start.y.max(end.y))
@@ -191,7 +316,7 @@ fn segment_crossings(centers: &Centers, [start, end]: [DVec3; 2], boundary: &Bou
                 if upward { left <= 0.0 } else { left >= 0.0 }
             };
             let range = centers.first_at(0, start.x.min(end.x))..centers.first_at(0, start.x.max(end.x));
-            crossing(centers, row, range, is_beyond, boundary, upward)
+            crossing(centers, row - slab.rows.start, range, is_beyond, boundary, upward)
         })
         .collect()
 }
@@ -201,7 +326,7 @@ fn segment_crossings(centers: &Centers, [start, end]: [DVec3; 2], boundary: &Bou
 fn crossing(
     centers: &Centers,
     row: usize,
-    range: std::ops::Range<usize>,
+    range: Range<usize>,
     is_beyond: impl Fn(usize) -> bool,
     boundary: &Boundary,
     is_forward: bool,
@@ -214,7 +339,7 @@ fn crossing(
     }
     let [first, second] = boundary.sides;
     let (left, entered) = if is_forward { (first, second) } else { (second, first) };
-    Crossing { row, voxel, left, entered }
+    Crossing { row: index(row), voxel: index(voxel), left, entered }
 }
 
 /// Whether `row`, moved by an infinitesimal in y and a yet smaller one in z, lies left of the line through two points.
@@ -229,32 +354,31 @@ fn is_left(from: Coord<f64>, to: Coord<f64>, row: Coord<f64>) -> bool {
     }
 }
 
-/// The labels of a slice. Between two centres a row may cross several boundaries, in an order that does not matter: it is
+/// The labels of a row. Between two centres it may cross several boundaries, in an order that does not matter: it is
 /// in the grain that it has entered once more than it has left, or in none where the domain does not fill its box.
-fn fill_slice(size: [usize; 3], fills_box: bool, mut crossings: Vec<Crossing>) -> Vec<Side> {
-    crossings.sort_unstable();
-    let mut crossings = crossings.into_iter().peekable();
-    let mut labels = Vec::with_capacity(size[0] * size[1]);
-    for row in 0..size[1] {
-        // Grains that the row is in, and how often: more than one only where images of grains round differently.
-        let mut counts: Vec<(GrainId, i32)> = Vec::new();
-        for voxel in 0..size[0] {
-            while let Some(Crossing { left, entered, .. }) =
-                crossings.next_if(|crossing| (crossing.row, crossing.voxel) <= (row, voxel))
-            {
-                add(&mut counts, left, -1);
-                add(&mut counts, entered, 1);
-            }
-            counts.retain(|(_, count)| *count != 0);
-            let grain = counts.iter().max_by_key(|(_, count)| *count).map(|(grain, _)| Side::Grain(*grain));
-            // Between images that round differently there may be a gap.
-            let nothing = if fills_box { labels.last().copied() } else { Some(Side::Exterior) };
-            labels.push(grain.or(nothing).unwrap_or(Side::Grain(GrainId(0))));
+fn fill_row(crossings: &[Crossing], fills_box: bool, labels: &mut [Side]) {
+    let mut crossings = crossings.iter().peekable();
+    // Grains that the row is in, and how often: more than one only where images of grains round differently.
+    let mut counts: Vec<(GrainId, i32)> = Vec::new();
+    // Between images that round differently there may be a gap: it goes to the grain before, or at the start to the one after.
+    let mut before = Side::Exterior;
+    for voxel in 0..labels.len() {
+        while let Some(crossing) = crossings.next_if(|crossing| crossing.voxel as usize <= voxel) {
+            add(&mut counts, crossing.left, -1);
+            add(&mut counts, crossing.entered, 1);
         }
-        // What lies beyond the last centre.
-        while crossings.next_if(|crossing| crossing.row <= row).is_some() {}
+        counts.retain(|(_, count)| *count != 0);
+        match counts.iter().max_by_key(|(_, count)| *count) {
+            Some((grain, _)) => {
+                let label = Side::Grain(*grain);
+                if fills_box && before == Side::Exterior {
+                    labels[..voxel].fill(label);
+                }
+                (before, labels[voxel]) = (label, label);
+            }
+            None => labels[voxel] = if fills_box { before } else { Side::Exterior },
+        }
     }
-    labels
 }
 
 fn add(counts: &mut Vec<(GrainId, i32)>, side: Side, change: i32) {
@@ -262,5 +386,34 @@ fn add(counts: &mut Vec<(GrainId, i32)>, side: Side, change: i32) {
     match counts.iter_mut().find(|(other, _)| *other == grain) {
         Some((_, count)) => *count += change,
         None => counts.push((grain, change)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Config, SeedSource, make_polycrystal};
+
+    #[test]
+    fn labels_are_the_same_in_slabs_of_any_size() {
+        for (dimension, periodic) in [
+            (Dimension::Two, glam::BVec3::FALSE),
+            (Dimension::Three, glam::BVec3::FALSE),
+            (Dimension::Three, glam::BVec3::TRUE),
+        ] {
+            let seeds = SeedSource::Random { count: 8 };
+            let config = Config { seeds, dimension, periodic, levels: 1, ..Config::default() };
+            let polycrystal = make_polycrystal(&config, &|_, _, _| ()).unwrap();
+            let size = [11, 7, 5].map(|count| NonZeroU32::new(count).unwrap());
+            let mut grid = LabelGrid::new(&polycrystal, size);
+            let whole = grid.labels();
+            assert_eq!((grid.slab_count(), whole.len() as u64), (1, grid.voxel_count()));
+            // A row, two rows, a slice, three slices.
+            for slab_rows in [1, 2, 7, 21] {
+                grid.slab_rows = slab_rows;
+                assert!(grid.slab_count() > 1 || (dimension == Dimension::Two && slab_rows >= 7));
+                assert_eq!(grid.labels(), whole, "{slab_rows}");
+            }
+        }
     }
 }

@@ -4,13 +4,15 @@
 
 use std::io::{self, Write};
 
+use rayon::prelude::*;
+
 use super::{LabelGrid, Names};
 
 /// Header and magic together must be a multiple of this.
 const ALIGNMENT: usize = 64;
 
 /// Writes the labels.
-pub(crate) fn write(grid: &LabelGrid, names: Names, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(grid: &LabelGrid<'_>, names: Names, out: &mut dyn Write) -> io::Result<()> {
     let [nx, ny, nz] = grid.size;
     let mut header = format!("{{'descr': '<i4', 'fortran_order': True, 'shape': ({nx}, {ny}, {nz}), }}");
     let magic = b"\x93NUMPY\x01\x00";
@@ -23,5 +25,9 @@ pub(crate) fn write(grid: &LabelGrid, names: Names, out: &mut dyn Write) -> io::
     out.write_all(magic)?;
     out.write_all(&u16::try_from(header.len()).map_err(io::Error::other)?.to_le_bytes())?;
     out.write_all(header.as_bytes())?;
-    grid.labels.iter().try_for_each(|side| out.write_all(&names.voxel_number(*side).to_le_bytes()))
+    (0..grid.slab_count()).try_for_each(|slab| {
+        let numbers: Vec<[u8; 4]> =
+            grid.slab(slab).into_par_iter().map(|label| names.voxel_number(label).to_le_bytes()).collect();
+        out.write_all(numbers.as_flattened())
+    })
 }

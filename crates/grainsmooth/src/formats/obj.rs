@@ -4,13 +4,19 @@ use std::io::{self, Write};
 
 use glam::DVec3;
 
-use super::surface::{Surface, side_name};
+use super::surface::{Surface, side_name, write_seed_comments};
 use crate::Config;
 
 /// Writes all points, in the fewest digits that give the same number back, then the boundaries.
-pub(crate) fn write(surface: &Surface<'_>, config: &Config, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(
+    surface: &Surface<'_>,
+    config: &Config,
+    seed_ids: &[u32],
+    out: &mut dyn Write,
+) -> io::Result<()> {
     writeln!(out, "# grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
     config.write_comments("# ", out)?;
+    write_seed_comments(seed_ids, "# ", out)?;
     for DVec3 { x, y, z } in surface.points.iter() {
         writeln!(out, "v {x:?} {y:?} {z:?}")?;
     }

@@ -8,10 +8,10 @@ use earcut::Earcut;
 use glam::{DVec2, DVec3};
 use polycrystal::{GrainId, Side};
 
-use super::blocks::{SideTable, point_id};
+use super::blocks::point_id;
 use crate::Polycrystal;
 use crate::measured_arrays::{MeasuredArrays, NumberArrays};
-use crate::network_file::boundary_polylines;
+use crate::network_file::{NUMBER_OF_GRAINS, SEED_ID, boundary_polylines};
 use crate::vtk::{Array, Cells, Each, PolyData, Values, VtkFormat, write_vtk};
 
 /// What is measured of a grain in the plane.
@@ -51,12 +51,14 @@ impl Polycrystal {
         let id = |point: usize| ids[point].cast_signed();
         let of_lines = measured.map_or_else(NumberArrays::default, |all| all.of_cells(&boundary_of));
         let of_points = measured.map_or_else(NumberArrays::default, |all| all.curvatures_at(&ids));
+        let grain_counts = self.grain_counts(&ids);
         let mut data = PolyData {
             points: &points,
             cells: Cells::Polylines(&cells),
             point_arrays: vec![
                 Array { name: "Normals", values: Values::Vectors(&normals) },
                 Array { name: "PointId", values: Values::Int32Of(Each { count: points.len(), value: &id }) },
+                Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&grain_counts) },
             ],
             cell_arrays: vec![
                 Array { name: names.sides(), values: Values::Int32PairsOf(Each { count, value: &labels }) },
@@ -66,7 +68,7 @@ impl Polycrystal {
         };
         data.cell_arrays.extend(of_lines.arrays());
         data.point_arrays.extend(of_points.arrays());
-        write_vtk(&data, VtkFormat::Vtp, out)
+        write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
     }
 
     /// The interior of each grain as triangles with points of their own.
@@ -95,6 +97,7 @@ impl Polycrystal {
         let doubles = |value| Values::Float64Of(Each { count, value });
         let measure = |triangle: usize| -> &PlaneMeasure { &measures[grain_of[triangle]] };
         let number = |triangle: usize| names.number(GrainId(point_id(grain_of[triangle])));
+        let seed = |triangle: usize| self.cells.seed_ids[grain_of[triangle]].cast_signed();
         let area = |triangle: usize| measure(triangle).area;
         let perimeter = |triangle: usize| measure(triangle).perimeter;
         let neighbors = |triangle: usize| measure(triangle).neighbors;
@@ -105,6 +108,7 @@ impl Polycrystal {
             point_arrays: Vec::new(),
             cell_arrays: vec![
                 Array { name: names.grain(), values: integers(&number) },
+                Array { name: SEED_ID, values: integers(&seed) },
                 Array { name: "Volume", values: doubles(&area) },
                 Array { name: "Area", values: doubles(&perimeter) },
                 Array { name: "Neighbors", values: integers(&neighbors) },
@@ -112,7 +116,7 @@ impl Polycrystal {
             ],
             field: self.field(),
         };
-        write_vtk(&data, VtkFormat::Vtp, out)
+        write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
     }
 
     /// The points where at least so many sides meet: 3 for triple points, 4 for quadruple points.
@@ -129,19 +133,24 @@ impl Polycrystal {
         }
         at.sort_unstable();
         at.dedup();
-        let junctions = at.chunk_by(|a, b| a.0 == b.0).filter(|sides| sides.len() >= fewest);
-        let (points, sides): (Vec<DVec3>, Vec<Vec<Side>>) = junctions
-            .map(|at| (self.points[at[0].0 as usize], at.iter().map(|(_, side)| *side).collect()))
-            .unzip();
-        let sides: SideTable = self.side_table(sides.iter());
+        let all: Vec<(u32, Vec<Side>)> = at
+            .chunk_by(|a, b| a.0 == b.0)
+            .map(|at| (at[0].0, at.iter().map(|(_, side)| *side).collect()))
+            .collect();
+        let junctions = || all.iter().filter(|(_, sides)| sides.len() >= fewest);
+        let ids: Vec<u32> = junctions().map(|(point, _)| *point).collect();
+        let points: Vec<DVec3> = ids.iter().map(|id| self.points[*id as usize]).collect();
+        let components = all.iter().map(|(_, sides)| sides.len()).max().unwrap_or(1);
+        let sides = self.side_table(junctions().map(|(_, sides)| sides), components);
+        let grain_counts = self.grain_counts(&ids);
         let data = PolyData {
             points: &points,
             cells: Cells::Vertices(points.len()),
-            point_arrays: Vec::new(),
+            point_arrays: vec![Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&grain_counts) }],
             cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
             field: self.field(),
         };
-        write_vtk(&data, VtkFormat::Vtp, out)
+        write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
     }
 
     /// The boundaries' points, in order with the first side on the left, and their numbers.

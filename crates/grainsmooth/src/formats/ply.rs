@@ -2,13 +2,19 @@
 
 use std::io::{self, Write};
 
-use super::surface::{Surface, label};
+use super::surface::{Surface, label, write_seed_comments};
 use crate::Config;
 
 /// Writes all points and triangles.
-pub(crate) fn write(surface: &Surface<'_>, config: &Config, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write(
+    surface: &Surface<'_>,
+    config: &Config,
+    seed_ids: &[u32],
+    out: &mut dyn Write,
+) -> io::Result<()> {
     writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
     config.write_comments("comment ", out)?;
+    write_seed_comments(seed_ids, "comment ", out)?;
     write!(
         out,
         "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n\

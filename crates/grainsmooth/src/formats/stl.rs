@@ -28,7 +28,9 @@ pub(crate) fn write(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     if let Some(point) = surface.points.iter().find(|point| !point.as_vec3().is_finite()) {
-        return Err(io::Error::other(format!("{point} is too far out for STL's single precision")));
+        return Err(io::Error::other(format!(
+            "{point} is too far out for STL's single precision; write .vtp instead"
+        )));
     }
     match config.file.stl {
         StlEncoding::Binary => write_binary(surface, &title(name, config, HEADER_BYTES), out),

@@ -1,12 +1,17 @@
 //! The triangles of a network, or of one of its grains, boundary by boundary.
 
 use std::borrow::Cow;
+use std::io::{self, Write};
 use std::ops::Range;
 
 use glam::DVec3;
 use polycrystal::{Boundary, BoundaryId, GrainId, Level, Mesh, Side};
 
 use crate::Polycrystal;
+use crate::network_file::SEED_ID;
+
+/// Seeds named by a line of comments, which so stays below the 255 bytes that some readers know.
+const SEEDS_A_LINE: usize = 20;
 
 /// Triangles that share points, in parts: one for each boundary.
 pub(crate) struct Surface<'a> {
@@ -54,9 +59,27 @@ impl<'a> Surface<'a> {
         })
     }
 
+    /// The same points and triangles in other parts, each with its boundary, its sides and its triangles by number.
+    pub(crate) fn with_parts(&self, parts: Vec<(BoundaryId, [Side; 2], Vec<u32>)>) -> Surface<'_> {
+        let mut order = Vec::with_capacity(self.order.len());
+        let part = |(boundary, sides, triangles): (BoundaryId, [Side; 2], Vec<u32>)| {
+            let start = order.len();
+            order.extend(triangles);
+            Part { boundary, sides, range: start..order.len() }
+        };
+        let parts = parts.into_iter().map(part).collect();
+        let (points, triangles) = (Cow::Borrowed(&*self.points), Cow::Borrowed(&*self.triangles));
+        Surface { points, triangles, order, parts }
+    }
+
     /// Number of triangles.
     pub(crate) fn triangle_count(&self) -> usize {
         self.triangles.len()
+    }
+
+    /// The triangles of a part, by number.
+    pub(crate) fn numbers_of(&self, part: &Part) -> &[u32] {
+        &self.order[part.range.clone()]
     }
 
     /// The triangles of a part.
@@ -157,6 +180,14 @@ pub(crate) fn side_name(side: Side) -> String {
         Side::Grain(grain) => format!("grain{}", grain.0),
         Side::Exterior => "exterior".to_owned(),
     }
+}
+
+/// Writes the numbers of grains' seeds, in the order of the grains, with a format's sign for comments before each line.
+pub(crate) fn write_seed_comments(seed_ids: &[u32], sign: &str, out: &mut dyn Write) -> io::Result<()> {
+    seed_ids.chunks(SEEDS_A_LINE).try_for_each(|ids| {
+        let ids: Vec<String> = ids.iter().map(u32::to_string).collect();
+        writeln!(out, "{sign}{SEED_ID} {}", ids.join(" "))
+    })
 }
 
 /// The unit normal of a triangle.

@@ -68,7 +68,7 @@ pub struct Oriented {
 /// What the cells fill.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TessDomain {
-    /// Neper's name for it; `cube` is any box, `square` any rectangle, `poly` any convex polyhedron or polygon.
+    /// Neper's name for it; `cube` is any box, `square` any rectangle (`cube` there too in files of Neper, read as `square`), `poly` any convex polyhedron or polygon.
     pub kind: String,
     /// The corner of its bounding box with the smallest coordinates.
     pub lower: DVec3,
@@ -127,10 +127,13 @@ impl Tess {
             // A file ends with the last wall that bounds something.
             while walls.pop_if(|faces| faces.is_empty()).is_some() {}
         }
+        // The same number added to all weights leaves the cells as they are, and radii need weights that are not negative.
+        let least = cells.weights.iter().copied().fold(0.0, f64::min);
+        let seed = |position, weight: &f64| TessSeed { position, radius: (weight - least).sqrt() };
         let seeds = tessellation.seeds().iter().zip(&cells.weights);
         let mut tess = Self {
             dimension: domain.dimension(),
-            seeds: seeds.map(|(&position, weight)| TessSeed { position, radius: weight.sqrt() }).collect(),
+            seeds: seeds.map(|(&position, weight)| seed(position, weight)).collect(),
             vertices: tessellation.vertices().to_vec(),
             edges: Vec::new(),
             faces: Vec::new(),
@@ -146,6 +149,41 @@ impl Tess {
             tess.periodicity = Some(TessPeriodicity::new(cells, &tess));
         }
         tess
+    }
+
+    /// The volume of each cell (in the plane: area) as its faces bound it.
+    pub fn cell_volumes(&self) -> Vec<f64> {
+        let corner = |face: &TessFace, index: usize| self.vertices[face.vertices[index] as usize];
+        match self.dimension {
+            Dimension::Two => {
+                let area = |face: &TessFace| {
+                    // About a corner, so that no digits cancel far from the origin.
+                    let at = |index| corner(face, index) - corner(face, 0);
+                    (2..face.vertices.len())
+                        .map(|last| at(last - 1).cross(at(last)).z / 2.0)
+                        .sum::<f64>()
+                        .abs()
+                };
+                self.faces.iter().map(area).collect()
+            }
+            Dimension::Three => {
+                let cone = |part: &Oriented, apex: DVec3| {
+                    let face = &self.faces[part.index as usize];
+                    let at = |index| corner(face, index) - apex;
+                    let triangles = 2..face.vertices.len();
+                    let volume: f64 =
+                        triangles.map(|last| at(0).dot(at(last - 1).cross(at(last))) / 6.0).sum();
+                    if part.is_reversed { -volume } else { volume }
+                };
+                let volume = |parts: &Vec<Oriented>| {
+                    let faces = parts.iter().map(|part| &self.faces[part.index as usize]);
+                    let apex = faces.flat_map(|face| face.vertices.first()).next();
+                    let apex = apex.map_or(DVec3::ZERO, |&vertex| self.vertices[vertex as usize]);
+                    parts.iter().map(|part| cone(part, apex)).sum()
+                };
+                self.polyhedra.iter().map(volume).collect()
+            }
+        }
     }
 
     fn fill_space(&mut self, cells: &Tessellated) {

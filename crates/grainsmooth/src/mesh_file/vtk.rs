@@ -27,7 +27,7 @@ pub(super) fn read_legacy(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
 
 /// Reads a .vtp or .vtu file.
 pub(super) fn read_xml(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
-    let bytes = xml_parts::points_and_faces(bytes);
+    let bytes = xml_parts::points_and_faces(bytes)?;
     in_thread(|| mesh_of(Vtk::parse_xml(&bytes[..]).map_err(problem)?.data))
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use crate::vtk::{Array, Cells, FieldEntry, FieldValue, PolyData, Values, VtkFormat, write_vtk};
+use crate::vtk::{Array, Cells, FieldEntry, FieldValue, PolyData, Values, VtkEncoding, VtkFormat, write_vtk};
 use crate::{Error, Output, StagedFiles, write_together};
 
 /// A file format that meshes are written in.
@@ -71,7 +71,7 @@ pub fn stage_mesh(
     files: &mut StagedFiles,
 ) -> Result<(), Error> {
     output.stage(files, |out| match output.format() {
-        MeshFormat::Vtk(format) => write_vtk(&poly_data(mesh), format, out),
+        MeshFormat::Vtk(format) => write_vtk(&poly_data(mesh), format, VtkEncoding::Raw, out),
         MeshFormat::Obj => write_obj(mesh, out),
         MeshFormat::Ply => write_ply(mesh, out),
         MeshFormat::Stl => write_stl(mesh, out),
@@ -181,9 +181,12 @@ fn write_stl(mesh: &MeshToWrite<'_>, out: &mut dyn Write) -> io::Result<()> {
         Ok(())
     })?;
     if let Some(point) = outside {
-        return Err(io::Error::other(format!("{point} is too far out for STL's single precision")));
+        return Err(io::Error::other(format!(
+            "{point} is too far out for STL's single precision; write .vtp instead"
+        )));
     }
-    u32::try_from(triangles.len()).map_err(|_| io::Error::other("more triangles than STL can count"))?;
+    u32::try_from(triangles.len())
+        .map_err(|_| io::Error::other("more triangles than STL can count; write .ply instead"))?;
     stl_io::write_stl(&mut &mut *out, triangles.iter())
 }
 

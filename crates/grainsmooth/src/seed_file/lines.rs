@@ -1,6 +1,4 @@
 //! Seeds from lines of text: CSV and XYZ.
-//!
-//! Read line by line: the `csv` crate says of a record after comments the line where the comments began.
 
 use glam::DVec3;
 use voronoi::Dimension;
@@ -10,65 +8,143 @@ use super::{FileSeed, SeedPlace, SeedProblem, shortened, weight};
 /// What is wrong, and where.
 type Located<T> = Result<T, (SeedPlace, SeedProblem)>;
 
-/// The columns of a file.
+/// What a column may say of the size of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Columns {
-    Xy,
-    Xyz,
-    XyRadius,
-    XyzRadius,
+enum Size {
+    Radius,
+    Diameter,
+    Weight,
+}
+
+impl Size {
+    fn named(name: &str) -> Option<Self> {
+        match name {
+            "radius" => Some(Self::Radius),
+            "diameter" => Some(Self::Diameter),
+            "weight" => Some(Self::Weight),
+            _ => None,
+        }
+    }
+
+    /// The power weight that a number of this column stands for.
+    fn weight(self, number: f64) -> Result<f64, SeedProblem> {
+        match self {
+            Self::Radius => weight(number),
+            Self::Diameter if number < 0.0 => Err(SeedProblem::NegativeDiameter { diameter: number }),
+            Self::Diameter => weight(number / 2.0),
+            Self::Weight => Ok(number),
+        }
+    }
+}
+
+/// Where the lines of a file have what of a seed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Columns {
+    count: usize,
+    x: usize,
+    y: usize,
+    z: Option<usize>,
+    size: Option<(usize, Size)>,
 }
 
 impl Columns {
-    /// What the first line names them.
-    fn named(names: &[&str], dimension: Dimension) -> Option<Self> {
-        let names: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        match (names.as_slice(), dimension) {
-            (["x", "y"], Dimension::Two) => Some(Self::Xy),
-            (["x", "y", "radius"], Dimension::Two) => Some(Self::XyRadius),
-            (["x", "y", "z"], _) => Some(Self::Xyz),
-            (["x", "y", "z", "radius"], _) => Some(Self::XyzRadius),
-            _ => None,
+    const XY: Self = Self { count: 2, x: 0, y: 1, z: None, size: None };
+    const XYZ: Self = Self { count: 3, z: Some(2), ..Self::XY };
+    const XYZ_RADIUS: Self = Self { count: 4, size: Some((3, Size::Radius)), ..Self::XYZ };
+
+    /// What the names in the first line say; columns of other names are passed over.
+    fn named(names: &[&str], dimension: Dimension) -> Result<Self, SeedProblem> {
+        let lower: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
+        let mut columns = Self { count: names.len(), ..Self::XY };
+        let mut found = [None; 3];
+        for (place, name) in lower.iter().enumerate() {
+            if let Some(axis) = ["x", "y", "z"].iter().position(|axis| axis == name) {
+                if found[axis].replace(place).is_some() {
+                    return Err(SeedProblem::NamedTwice { name: name.clone() });
+                }
+            } else if let Some(size) = Size::named(name)
+                && let Some((other, _)) = columns.size.replace((place, size))
+            {
+                return Err(SeedProblem::SizedTwice { names: [lower[other].clone(), name.clone()] });
+            }
+        }
+        match (found, dimension) {
+            ([Some(x), Some(y), None], Dimension::Two) => Ok(Self { x, y, ..columns }),
+            ([Some(x), Some(y), Some(z)], _) => Ok(Self { x, y, z: Some(z), ..columns }),
+            _ => Err(SeedProblem::ColumnNames { names: shortened(&names.join(", ")), dimension }),
         }
     }
 
     /// What so many columns without names are.
     fn counted(count: usize, dimension: Dimension) -> Option<Self> {
         match (count, dimension) {
-            (2, Dimension::Two) => Some(Self::Xy),
-            (3, _) => Some(Self::Xyz),
-            (4, _) => Some(Self::XyzRadius),
+            (2, Dimension::Two) => Some(Self::XY),
+            (3, _) => Some(Self::XYZ),
+            (4, _) => Some(Self::XYZ_RADIUS),
+            _ => None,
+        }
+    }
+
+    /// The columns of one line: after x and y, z may stand, as programs write it that know three dimensions only.
+    fn of_line(self, count: usize) -> Option<Self> {
+        match (self, count) {
+            _ if self.count == count => Some(self),
+            (Self::XY, 3) => Some(Self::XYZ),
             _ => None,
         }
     }
 }
 
 /// Seeds of a CSV file, one a line.
+///
+/// Columns stand between semicolons where the first line has them, else between commas; in lines without, between blanks or tabs.
 pub(super) fn csv(content: &[u8], dimension: Dimension) -> Located<Vec<FileSeed>> {
+    // The `csv` crate says of a record after comments the line where the comments began.
+    let (mut text, mut places) = (String::new(), Vec::new());
+    for line in lines(content) {
+        let (place, line) = line?;
+        if !line.is_empty() && !line.starts_with('#') {
+            text.extend([line, "\n"]);
+            places.push(place);
+        }
+    }
+    let delimiter = match text.lines().next() {
+        Some(first) if first.contains(';') => b';',
+        _ if text.contains(',') => b',',
+        _ => b' ',
+    };
+    if delimiter == b' ' {
+        text = text.replace('\t', " ");
+    }
+    let mut reader = csv::ReaderBuilder::new();
+    reader.has_headers(false).flexible(true).delimiter(delimiter).trim(csv::Trim::All);
+    let mut reader = reader.from_reader(text.as_bytes());
+    let mut record = csv::StringRecord::new();
     let mut seeds = Vec::new();
     let mut known_columns = None;
-    for line in lines(content) {
-        let (place, text) = line?;
-        if text.is_empty() || text.starts_with('#') {
-            continue;
+    while reader.read_record(&mut record).expect("text in memory, with any number of columns") {
+        let line = record.position().map_or(0, csv::Position::line);
+        let place = places[usize::try_from(line).unwrap_or(1).saturating_sub(1)];
+        if reader.position().line() > line + 1 {
+            return Err((place, SeedProblem::OpenQuote));
         }
-        let columns: Vec<&str> = if text.contains(',') {
-            text.split(',').map(str::trim).collect()
-        } else {
-            text.split_whitespace().collect()
+        let texts: Vec<&str> = match (delimiter, record.len()) {
+            (b' ', _) => record.iter().filter(|text| !text.is_empty()).collect(),
+            (_, 1) => record[0].split_whitespace().collect(),
+            _ => record.iter().collect(),
         };
-        let are_names = columns.iter().all(|column| column.parse::<f64>().is_err());
+        let are_names = texts.iter().all(|text| text.parse::<f64>().is_err());
         if known_columns.is_none() && are_names {
-            let names = || SeedProblem::ColumnNames { names: shortened(&columns.join(", ")), dimension };
-            known_columns = Some(Columns::named(&columns, dimension).ok_or_else(|| (place, names()))?);
+            known_columns = Some(Columns::named(&texts, dimension).map_err(|problem| (place, problem))?);
             continue;
         }
-        let count = SeedProblem::ColumnCount { found: columns.len(), dimension };
-        let kind = known_columns.or_else(|| Columns::counted(columns.len(), dimension));
-        let kind = kind.ok_or((place, count))?;
-        known_columns = Some(kind);
-        let (position, weight) = seed(&columns, kind, dimension).map_err(|problem| (place, problem))?;
+        let found = texts.len();
+        let columns = known_columns.or_else(|| Columns::counted(found, dimension));
+        let columns = columns.ok_or((place, SeedProblem::ColumnCount { found, dimension }))?;
+        known_columns = Some(columns);
+        let unequal = SeedProblem::UnequalColumns { found, expected: columns.count };
+        let columns = columns.of_line(found).ok_or((place, unequal))?;
+        let (position, weight) = seed(&texts, columns, dimension).map_err(|problem| (place, problem))?;
         seeds.push(FileSeed { position, weight, place });
     }
     Ok(seeds)
@@ -94,9 +170,9 @@ pub(super) fn xyz(content: &[u8], dimension: Dimension) -> Located<Vec<FileSeed>
         }
         let columns: Vec<&str> = text.split_whitespace().collect();
         let (kind, coordinates) = match columns.len() {
-            3 => (Columns::Xyz, &columns[..]),
-            4 => (Columns::Xyz, &columns[1..]),
-            5 => (Columns::XyzRadius, &columns[1..]),
+            3 => (Columns::XYZ, &columns[..]),
+            4 => (Columns::XYZ, &columns[1..]),
+            5 => (Columns::XYZ_RADIUS, &columns[1..]),
             found => return Err(located(SeedProblem::XyzColumnCount { found })),
         };
         let (position, weight) = seed(coordinates, kind, dimension).map_err(located)?;
@@ -120,15 +196,10 @@ fn lines(content: &[u8]) -> impl Iterator<Item = Located<(SeedPlace, &str)>> {
 
 /// Position and weight in a line.
 fn seed(texts: &[&str], columns: Columns, dimension: Dimension) -> Result<(DVec3, Option<f64>), SeedProblem> {
-    let numbers: Vec<f64> = texts.iter().map(|text| number(text, dimension)).collect::<Result<_, _>>()?;
-    let (position, radius) = match (columns, numbers.as_slice()) {
-        (Columns::Xy, &[x, y]) => (DVec3::new(x, y, 0.0), None),
-        (Columns::Xy | Columns::Xyz, &[x, y, z]) => (DVec3::new(x, y, z), None),
-        (Columns::XyRadius, &[x, y, radius]) => (DVec3::new(x, y, 0.0), Some(radius)),
-        (Columns::XyzRadius, &[x, y, z, radius]) => (DVec3::new(x, y, z), Some(radius)),
-        _ => return Err(SeedProblem::ColumnCount { found: texts.len(), dimension }),
-    };
-    Ok((super::in_dimension(position, dimension)?, radius.map(weight).transpose()?))
+    let number = |place: usize| number(texts[place], dimension);
+    let position = DVec3::new(number(columns.x)?, number(columns.y)?, columns.z.map_or(Ok(0.0), number)?);
+    let weight = columns.size.map(|(place, size)| size.weight(number(place)?)).transpose()?;
+    Ok((super::in_dimension(position, dimension)?, weight))
 }
 
 fn number(column: &str, dimension: Dimension) -> Result<f64, SeedProblem> {

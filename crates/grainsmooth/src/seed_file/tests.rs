@@ -52,6 +52,25 @@ fn radii_follow_the_coordinates() {
     assert_eq!(read(named, Dimension::Two), Ok(vec![weighted(2, 1.0, 2.0, 0.0, 0.5)]));
 }
 
+/// Columns of other names, in another order, quoted, or between semicolons were refused.
+#[test]
+fn names_choose_columns_in_any_order() {
+    let weighted = |line, weight| FileSeed { weight: Some(weight), ..seed(line, 1.0, 2.0, 3.0) };
+    for (content, expected) in [
+        ("z,y,x\n3,2,1\n", seed(2, 1.0, 2.0, 3.0)),
+        ("\"Z\";\"name\";\"y\";\"X\"\n\"3\";\"a; \"\"b\"\"\";2;1\n", seed(2, 1.0, 2.0, 3.0)),
+        ("# R\n\"n\"  \"x\" \"y\" \"z\"\n\"a b\" 1 2\t3\n", seed(3, 1.0, 2.0, 3.0)),
+        ("id\tx\ty\tz\tradius\n7\t1\t2\t3\t0.5\n", weighted(2, 0.25)),
+        ("Diameter,x,y,z\n1,1,2,3\n", weighted(2, 0.25)),
+        ("x, y, z, weight, volume\n1, 2, 3, -0.25, nan\n", weighted(2, -0.25)),
+        ("x y z\n1,2,3\n", seed(2, 1.0, 2.0, 3.0)),
+    ] {
+        assert_eq!(read(content, Dimension::Three), Ok(vec![expected]), "{content}");
+    }
+    let plane = "volume,y,x\n5,2,1\n";
+    assert_eq!(read(plane, Dimension::Two), Ok(vec![seed(2, 1.0, 2.0, 0.0)]));
+}
+
 #[test]
 fn each_mistake_is_named_with_its_line() {
     let long = "1".repeat(50) + "o";
@@ -60,33 +79,50 @@ fn each_mistake_is_named_with_its_line() {
         (
             "1,2,3\n\n# c\n1,abc,3\n",
             3,
-            "seeds.csv line 4: \"abc\" is not a number; write x, y, z as decimal numbers",
+            "seeds.csv line 4: \"abc\" is not a number; write x, y, z as numbers such as 0.5",
         ),
-        ("1,2,3\n1,,3", 3, "seeds.csv line 2: \"\" is not a number; write x, y, z as decimal numbers"),
-        ("1,2 3", 2, "seeds.csv line 1: \"2 3\" is not a number; write x, y as decimal numbers"),
+        ("1,2,3\n1,,3", 3, "seeds.csv line 2: \"\" is not a number; write x, y, z as numbers such as 0.5"),
+        ("1,2 3", 2, "seeds.csv line 1: \"2 3\" is not a number; write x, y as numbers such as 0.5"),
         ("1, nan, 3", 3, "seeds.csv line 1: \"nan\" is not a finite number; correct or remove the seed"),
         ("1, 2, -inf", 3, "seeds.csv line 1: \"-inf\" is not a finite number; correct or remove the seed"),
         ("1, 2, 1e999", 3, "seeds.csv line 1: \"1e999\" is not a finite number; correct or remove the seed"),
-        ("x,y,z\n1,2\n", 3, "seeds.csv line 2: 2 columns; write x, y, z on each line"),
-        ("1,2,3,4,5\n", 3, "seeds.csv line 1: 5 columns; write x, y, z on each line"),
+        ("x,y,z\n1,2\n", 3, "seeds.csv line 2: 2 columns after lines of 3; write as many on each line"),
+        (
+            "1,2,3,4,5\n",
+            3,
+            "seeds.csv line 1: 5 columns; write x, y, z on each line, or name the columns in the first",
+        ),
         ("1,2,3,-4\n", 3, "seeds.csv line 1: radius is -4; write 0 or more"),
-        ("1,2,3\n1,2,3,4\n", 3, "seeds.csv line 2: 4 columns; write x, y, z on each line"),
-        ("1\n", 2, "seeds.csv line 1: 1 columns; write x, y on each line"),
+        ("1,2,3\n1,2,3,4\n", 3, "seeds.csv line 2: 4 columns after lines of 3; write as many on each line"),
+        ("1\n", 2, "seeds.csv line 1: 1 columns; write x, y on each line, or name the columns in the first"),
         (
             "1,2,0.5",
             2,
             "seeds.csv line 1: z is 0.5 in a 2D run; set it to 0, run in 3D, or name the columns x, y, radius",
         ),
+        ("a,b,x\n1,2,3", 3, "seeds.csv line 1: columns named \"a, b, x\"; name those of the seeds x, y, z"),
+        ("x,y\n1,2,3", 3, "seeds.csv line 1: columns named \"x, y\"; name those of the seeds x, y, z"),
+        ("x,y,z,X\n1,2,3,4", 3, "seeds.csv line 1: two columns named x; rename one of them"),
         (
-            "z,y,x\n1,2,3",
+            "x,y,z,weight,radius\n1,2,3,4,5",
             3,
-            "seeds.csv line 1: columns named \"z, y, x\"; name them x, y, z or drop the line",
+            "seeds.csv line 1: columns weight and radius both say how large grains are; rename one of them",
         ),
-        ("x,y\n1,2,3", 3, "seeds.csv line 1: columns named \"x, y\"; name them x, y, z or drop the line"),
-        ("1,2,3\nx,y,z", 3, "seeds.csv line 2: \"x\" is not a number; write x, y, z as decimal numbers"),
-        ("", 3, "seeds.csv: holds no seeds; write x, y, z on each line"),
-        ("x,y,z\n# 1,2,3\n\n", 3, "seeds.csv: holds no seeds; write x, y, z on each line"),
-        (&format!("1,2,{long}"), 3, &format!("{cut}write x, y, z as decimal numbers")),
+        ("# c\n\nx,y,z,diameter\n\n1,2,3,-4", 3, "seeds.csv line 5: diameter is -4; write 0 or more"),
+        (
+            "x;y;z\n0,5;1;1",
+            3,
+            "seeds.csv line 2: \"0,5\" is not a number; write x, y, z as numbers such as 0.5",
+        ),
+        (
+            "x,y,z,name\n1,2,3,\"a\n1,2,3",
+            3,
+            "seeds.csv line 2: a quote that the line does not close; close or remove it",
+        ),
+        ("1,2,3\nx,y,z", 3, "seeds.csv line 2: \"x\" is not a number; write x, y, z as numbers such as 0.5"),
+        ("", 3, "seeds.csv: holds no seeds; give a file with one or more"),
+        ("x,y,z\n# 1,2,3\n\n", 3, "seeds.csv: holds no seeds; give a file with one or more"),
+        (&format!("1,2,{long}"), 3, &format!("{cut}write x, y, z as numbers such as 0.5")),
     ] {
         let dimension = if dimension == 2 { Dimension::Two } else { Dimension::Three };
         assert_eq!(read(content, dimension), Err(message.to_owned()));
@@ -137,8 +173,8 @@ fn xyz_files_begin_with_a_count_and_name_elements() {
             "1\n\n1 2\n",
             "s.xyz line 3: 2 columns; write an element, x, y, z and perhaps a radius on each line",
         ),
-        ("1\n\nFe 1 2 x\n", "s.xyz line 3: \"x\" is not a number; write x, y, z as decimal numbers"),
-        ("0\n\n", "s.xyz: holds no seeds; write x, y, z on each line"),
+        ("1\n\nFe 1 2 x\n", "s.xyz line 3: \"x\" is not a number; write x, y, z as numbers such as 0.5"),
+        ("0\n\n", "s.xyz: holds no seeds; give a file with one or more"),
     ] {
         assert_eq!(read_as("s.xyz", file, Dimension::Three), Err(message.to_owned()));
     }

@@ -5,8 +5,8 @@ use std::io::{self, Write};
 use glam::DVec3;
 use vtkio::model::ByteOrder;
 
-use super::raw::{AppendedNumbers, Numbers};
-use super::{Array, FieldEntry, FieldValue};
+use super::raw::{Numbers, NumbersOfFile};
+use super::{Array, FieldEntry, FieldValue, VtkEncoding};
 
 /// A regular grid of cells.
 #[derive(Debug, Clone)]
@@ -30,48 +30,50 @@ pub struct ImageData<'a> {
 ///
 /// # Panics
 /// When an array has another length than there are cells.
-pub fn write_vti(data: &ImageData<'_>, out: &mut dyn Write) -> io::Result<()> {
+pub fn write_vti(data: &ImageData<'_>, encoding: VtkEncoding, out: &mut dyn Write) -> io::Result<()> {
     let [nx, ny, nz] = data.size;
     let (origin, spacing) = (numbers(data.origin), numbers(data.spacing));
-    let mut appended = AppendedNumbers::default();
-    write_head("ImageData", out)?;
+    let mut numbers_of_file = NumbersOfFile::new(encoding);
+    let mut document = Vec::new();
+    let head = &mut document;
+    write_head("ImageData", &numbers_of_file, head)?;
     writeln!(
-        out,
+        head,
         "<ImageData WholeExtent=\"0 {nx} 0 {ny} 0 {nz}\" Origin=\"{origin}\" Spacing=\"{spacing}\" Direction=\"1 0 0 0 1 0 0 0 1\">"
     )?;
-    writeln!(out, "<FieldData>")?;
-    write_field(&data.field, &mut appended, out)?;
-    writeln!(out, "</FieldData>\n<Piece Extent=\"0 {nx} 0 {ny} 0 {nz}\">\n<PointData/>\n<CellData>")?;
+    writeln!(head, "<FieldData>")?;
+    write_field(&data.field, &mut numbers_of_file, head)?;
+    writeln!(head, "</FieldData>\n<Piece Extent=\"0 {nx} 0 {ny} 0 {nz}\">\n<PointData/>\n<CellData>")?;
     for Array { name, values } in &data.cell_arrays {
         assert_eq!(values.len(), nx * ny * nz, "cell array {name}");
         let (kind, components) = (values.scalar_type(), values.component_count());
-        let offset = appended.append(Numbers::of(*values));
+        let offset = numbers_of_file.append(Numbers::of(*values));
         writeln!(
-            out,
+            head,
             "<DataArray type=\"{kind:?}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"{offset}\"/>"
         )?;
     }
-    writeln!(out, "</CellData>\n</Piece>\n</ImageData>")?;
-    appended.write(out)?;
-    writeln!(out, "</VTKFile>")
+    writeln!(head, "</CellData>\n</Piece>\n</ImageData>")?;
+    numbers_of_file.write_file(&document, out)
 }
 
 /// Begins a file.
-pub(super) fn write_head(kind: &str, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write_head(kind: &str, numbers: &NumbersOfFile<'_>, out: &mut dyn Write) -> io::Result<()> {
     let byte_order = match ByteOrder::native() {
         ByteOrder::LittleEndian => "LittleEndian",
         ByteOrder::BigEndian => "BigEndian",
     };
+    let compressor = numbers.compressor().map_or(String::new(), |name| format!(" compressor=\"{name}\""));
     writeln!(
         out,
-        "<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"{byte_order}\" header_type=\"UInt64\">"
+        "<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"{byte_order}\" header_type=\"UInt64\"{compressor}>"
     )
 }
 
 /// Lists what is said about the file as a whole.
 pub(super) fn write_field(
     field: &[FieldEntry],
-    appended: &mut AppendedNumbers<'_>,
+    numbers_of_file: &mut NumbersOfFile<'_>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     for FieldEntry { name, value } in field {
@@ -81,8 +83,9 @@ pub(super) fn write_field(
             FieldValue::Numbers(numbers) => {
                 ("DataArray", "Float64", numbers.len(), bytemuck::cast_slice(numbers).to_vec())
             }
+            FieldValue::Ids(ids) => ("DataArray", "Int32", ids.len(), bytemuck::cast_slice(ids).to_vec()),
         };
-        let offset = appended.append(Numbers::bytes(bytes));
+        let offset = numbers_of_file.append(Numbers::bytes(bytes));
         writeln!(
             out,
             "<{element} type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"{count}\" format=\"appended\" offset=\"{offset}\"/>"

@@ -74,6 +74,7 @@ fn write_arrays(keyword: &str, count: usize, arrays: &[Array<'_>], out: &mut dyn
     for Array { name, values } in arrays {
         let (kind, bytes) = match values.scalar_type() {
             ScalarType::Int8 => ("char", size_of::<i8>()),
+            ScalarType::UInt8 => ("unsigned_char", size_of::<u8>()),
             ScalarType::Float64 => ("double", size_of::<f64>()),
             _ => ("int", size_of::<i32>()),
         };
@@ -99,6 +100,10 @@ fn write_field(entries: &[FieldEntry], out: &mut dyn Write) -> io::Result<()> {
             FieldValue::Numbers(numbers) => {
                 writeln!(out, "{name} 1 {} double", numbers.len())?;
                 numbers.iter().try_for_each(|number| out.write_all(&number.to_be_bytes()))?;
+            }
+            FieldValue::Ids(ids) => {
+                writeln!(out, "{name} 1 {} int", ids.len())?;
+                ids.iter().try_for_each(|id| out.write_all(&id.to_be_bytes()))?;
             }
             FieldValue::Text(text) => {
                 writeln!(out, "{name} 1 1 string")?;

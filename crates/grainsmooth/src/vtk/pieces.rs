@@ -5,9 +5,12 @@ use std::io::{self, Write};
 
 use glam::DVec3;
 
-use super::FieldEntry;
 use super::image::{write_field, write_head};
-use super::raw::{AppendedNumbers, Numbers};
+use super::raw::{Numbers, NumbersOfFile};
+use super::{FieldEntry, VtkEncoding};
+
+/// Pieces that are made at the same time; bounds the memory that they take.
+const PIECES_AT_ONCE: usize = 64;
 
 /// Number of points and triangles of a piece.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,6 +37,7 @@ pub(crate) struct PieceData<'a> {
 
 /// Values at the points of a piece.
 pub(crate) enum PieceVectors<'a> {
+    UInt8(&'a (dyn Fn(usize) -> Vec<u8> + Sync)),
     Int32(&'a (dyn Fn(usize) -> Vec<i32> + Sync)),
     Float64(&'a (dyn Fn(usize) -> Vec<f64> + Sync)),
     Vectors(&'a (dyn Fn(usize) -> Vec<DVec3> + Sync)),
@@ -51,7 +55,11 @@ pub(crate) enum PieceValue<'a> {
 }
 
 /// Writes the file.
-pub(crate) fn write_pieces(data: &PieceData<'_>, out: &mut dyn Write) -> io::Result<()> {
+pub(crate) fn write_pieces(
+    data: &PieceData<'_>,
+    encoding: VtkEncoding,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     let sum = |count: fn(&PieceSize) -> usize| data.sizes.iter().map(count).sum::<usize>();
     let (points, triangles) = (sum(|size| size.points), sum(|size| size.triangles));
     let first_points: Vec<usize> = data
@@ -65,18 +73,23 @@ pub(crate) fn write_pieces(data: &PieceData<'_>, out: &mut dyn Write) -> io::Res
     // VTK's ids are signed.
     let wide = i32::try_from(3 * triangles).is_err();
     let (id_type, id_width) = if wide { ("Int64", 8) } else { ("Int32", 4) };
-    let mut appended = AppendedNumbers::default();
-    write_head("PolyData", out)?;
-    writeln!(out, "<PolyData>\n<FieldData>")?;
-    write_field(&data.field, &mut appended, out)?;
+    let mut numbers = NumbersOfFile::new(encoding);
+    let mut document = Vec::new();
+    let head = &mut document;
+    write_head("PolyData", &numbers, head)?;
+    writeln!(head, "<PolyData>\n<FieldData>")?;
+    write_field(&data.field, &mut numbers, head)?;
     writeln!(
-        out,
+        head,
         "</FieldData>\n<Piece NumberOfPoints=\"{points}\" NumberOfPolys=\"{triangles}\">\n<PointData>"
     )?;
     let count = data.sizes.len();
-    let mut list = Listing { appended, out };
+    let mut list = Listing { numbers, head };
     for (name, values) in &data.point_arrays {
         match values {
+            PieceVectors::UInt8(make) => {
+                list.array(name, "UInt8", 1, pieces(points, count, make))?;
+            }
             PieceVectors::Int32(make) => {
                 list.array(name, "Int32", 1, pieces(4 * points, count, |piece| bytes(&make(piece))))?;
             }
@@ -130,24 +143,23 @@ pub(crate) fn write_pieces(data: &PieceData<'_>, out: &mut dyn Write) -> io::Res
     };
     list.array("offsets", id_type, 1, ends)?;
     list.line("</Polys>\n</Piece>\n</PolyData>")?;
-    let Listing { appended, out } = list;
-    appended.write(out)?;
-    writeln!(out, "</VTKFile>")
+    let Listing { numbers, .. } = list;
+    numbers.write_file(&document, out)
 }
 
 /// The elements of the file and the arrays that they refer to.
 struct Listing<'a, 'b> {
-    appended: AppendedNumbers<'a>,
-    out: &'b mut dyn Write,
+    numbers: NumbersOfFile<'a>,
+    head: &'b mut Vec<u8>,
 }
 
 impl<'a> Listing<'a, '_> {
     fn line(&mut self, text: &str) -> io::Result<()> {
-        writeln!(self.out, "{text}")
+        writeln!(self.head, "{text}")
     }
 
     fn array(&mut self, name: &str, kind: &str, components: usize, numbers: Numbers<'a>) -> io::Result<()> {
-        let offset = self.appended.append(numbers);
+        let offset = self.numbers.append(numbers);
         self.line(&format!(
             "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"{offset}\"/>"
         ))
@@ -155,7 +167,7 @@ impl<'a> Listing<'a, '_> {
 }
 
 fn pieces<'a>(byte_count: usize, count: usize, make: impl Fn(usize) -> Vec<u8> + Sync + 'a) -> Numbers<'a> {
-    Numbers::Pieces { byte_count: byte_count as u64, count, make: Box::new(make) }
+    Numbers::Pieces { byte_count: byte_count as u64, count, at_once: PIECES_AT_ONCE, make: Box::new(make) }
 }
 
 fn bytes<T: bytemuck::NoUninit>(values: &[T]) -> Vec<u8> {

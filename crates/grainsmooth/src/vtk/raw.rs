@@ -1,16 +1,17 @@
-//! Raw bytes at the end of an XML file: `<AppendedData encoding="raw">`, and arrays as other programs encode them.
+//! The numbers of an XML file: as raw bytes at its end, or encoded within their elements; and arrays as other programs encode them.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
 
 use rayon::prelude::*;
 
-use super::Values;
+use super::{Blocks, Values, VtkEncoding};
 
 mod coding;
+mod encode;
 mod inline;
 
-pub(crate) use inline::{attribute, find};
+pub(crate) use inline::{attribute, find, try_inlined};
 pub use inline::{field_bytes, field_numbers, field_text, inlined};
 
 /// Numbers that are computed before they are written; so few that they are still in the cache then.
@@ -18,9 +19,6 @@ const BLOCK_NUMBERS: usize = 1 << 17;
 
 /// Numbers that one task computes.
 const TASK_NUMBERS: usize = 1 << 13;
-
-/// Pieces that are made at the same time; bounds the memory that they take.
-const PIECES_AT_ONCE: usize = 64;
 
 /// Makes the bytes of a piece.
 type MakePiece<'a> = Box<dyn Fn(usize) -> Vec<u8> + Sync + 'a>;
@@ -47,6 +45,8 @@ pub(crate) enum Numbers<'a> {
         byte_count: u64,
         /// Number of pieces.
         count: usize,
+        /// Pieces that are made at the same time.
+        at_once: usize,
         /// Makes those of a piece.
         make: MakePiece<'a>,
     },
@@ -78,6 +78,7 @@ impl<'a> Numbers<'a> {
     pub(crate) fn of(values: Values<'a>) -> Self {
         match values {
             Values::Int8(values) => Self::slice(values),
+            Values::UInt8(values) => Self::slice(values),
             Values::Int32(values) => Self::slice(values),
             Values::Int32Pairs(pairs) => Self::slice(pairs),
             Values::Float64(values) => Self::slice(values),
@@ -87,6 +88,13 @@ impl<'a> Numbers<'a> {
             Values::Int32Of(each) => Self::each(each.count, each.value),
             Values::Int32PairsOf(each) => Self::each(each.count, each.value),
             Values::Int32Tuples(tuples) => Self::slice(tuples.values),
+            // Blocks are large, and each is made in parallel.
+            Values::Int32Blocks(Blocks { count, blocks, make }) => Self::Pieces {
+                byte_count: (count * size_of::<i32>()) as u64,
+                count: blocks,
+                at_once: 1,
+                make: Box::new(|block| bytemuck::cast_slice(&make(block)).to_vec()),
+            },
             Values::Float64Of(each) => Self::each(each.count, each.value),
         }
     }
@@ -139,9 +147,9 @@ impl<'a> Numbers<'a> {
                     use_block(bytes)?;
                 }
             }
-            Self::Pieces { count, make, .. } => {
-                for first in (0..*count).step_by(PIECES_AT_ONCE) {
-                    let pieces = first..(first + PIECES_AT_ONCE).min(*count);
+            Self::Pieces { count, at_once, make, .. } => {
+                for first in (0..*count).step_by(*at_once) {
+                    let pieces = first..(first + at_once).min(*count);
                     let made: Vec<Vec<u8>> = pieces.into_par_iter().map(make).collect();
                     made.into_iter().try_for_each(|mut piece| use_block(&mut piece))?;
                 }
@@ -158,32 +166,76 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// The arrays of a file, in the order in which they are appended.
-#[derive(Default)]
-pub(crate) struct AppendedNumbers<'a> {
-    arrays: Vec<Numbers<'a>>,
+/// The arrays of a file, in the order in which its document refers to them.
+pub(crate) struct NumbersOfFile<'a> {
+    encoding: VtkEncoding,
+    arrays: Vec<(u64, Numbers<'a>)>,
     next_offset: u64,
 }
 
-impl<'a> AppendedNumbers<'a> {
-    /// Adds an array and returns where its bytes will begin.
+impl<'a> NumbersOfFile<'a> {
+    /// No arrays yet.
+    pub(crate) fn new(encoding: VtkEncoding) -> Self {
+        Self { encoding, arrays: Vec::new(), next_offset: 0 }
+    }
+
+    /// What the head of the file calls its compression.
+    pub(crate) fn compressor(&self) -> Option<&'static str> {
+        (self.encoding == VtkEncoding::Zlib).then_some("vtkZLibDataCompressor")
+    }
+
+    /// Adds an array and returns where its raw bytes will begin, by which the document refers to it.
     pub(crate) fn append(&mut self, numbers: Numbers<'a>) -> u64 {
         let offset = self.next_offset;
         self.next_offset += size_of::<u64>() as u64 + numbers.byte_count();
-        self.arrays.push(numbers);
+        self.arrays.push((offset, numbers));
         offset
     }
 
-    /// Writes the element: before each array its number of bytes.
-    pub(crate) fn write(&self, out: &mut dyn Write) -> io::Result<()> {
-        write!(out, "<AppendedData encoding=\"raw\">\n_")?;
-        for array in &self.arrays {
+    /// Writes a file whose document, but for its last tag, refers to the arrays.
+    pub(crate) fn write_file(&self, document: impl AsRef<[u8]>, out: &mut dyn Write) -> io::Result<()> {
+        let document = str::from_utf8(document.as_ref()).map_err(io::Error::other)?;
+        match self.encoding {
+            VtkEncoding::Raw => self.write_behind(document, out)?,
+            VtkEncoding::Base64 | VtkEncoding::Zlib => self.write_within(document, out)?,
+        }
+        writeln!(out, "</VTKFile>")
+    }
+
+    /// The document, and raw bytes behind it: before each array its number of bytes.
+    fn write_behind(&self, document: &str, out: &mut dyn Write) -> io::Result<()> {
+        write!(out, "{}\n<AppendedData encoding=\"raw\">\n_", document.trim_end())?;
+        for (_, array) in &self.arrays {
             out.write_all(&array.byte_count().to_ne_bytes())?;
             array.write(out)?;
         }
         writeln!(out, "\n</AppendedData>")
     }
+
+    /// The document with each array within the element that refers to it.
+    fn write_within(&self, document: &str, out: &mut dyn Write) -> io::Result<()> {
+        let mut rest = document;
+        while let Some((before, after)) = rest.split_once(REFERENCE) {
+            let unknown = || io::Error::other("an element refers to no array");
+            let (offset, after) = after.split_once("\"/>").ok_or_else(unknown)?;
+            let offset: u64 = offset.parse().map_err(io::Error::other)?;
+            let index = self.arrays.binary_search_by_key(&offset, |(offset, _)| *offset);
+            let (_, array) = &self.arrays[index.map_err(|_| unknown())?];
+            let element = before.rsplit('<').next().and_then(|tag| tag.split(' ').next()).unwrap_or_default();
+            write!(out, "{before}format=\"binary\">")?;
+            match self.encoding {
+                VtkEncoding::Zlib => encode::write_compressed(array, out)?,
+                _ => encode::write_base64(array, out)?,
+            }
+            write!(out, "</{element}>")?;
+            rest = after;
+        }
+        writeln!(out, "{}", rest.trim_end())
+    }
 }
+
+/// How elements of the document refer to an array, before its offset.
+const REFERENCE: &str = "format=\"appended\" offset=\"";
 
 #[cfg(test)]
 mod tests {
@@ -201,7 +253,7 @@ mod tests {
                 numbers.write_big_endian(4, &mut written).unwrap();
                 assert!(written == big);
             }
-            let mut numbers = AppendedNumbers::default();
+            let mut numbers = NumbersOfFile::new(VtkEncoding::Raw);
             assert_eq!(numbers.append(Numbers::slice(&values)), 0);
             assert_eq!(numbers.append(Numbers::bytes(vec![])), 8 + 4 * count as u64);
         }

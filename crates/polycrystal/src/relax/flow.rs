@@ -21,7 +21,7 @@ use super::wedges::Wedges;
 use crate::folds::{element_normals, folded_pairs};
 use crate::measures::rms_residual;
 use crate::seams::Seams;
-use crate::volume::sum_over_grains;
+use crate::volume::{Cone, volumes_of_grains};
 use crate::{GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
 use best::{Badness, Best};
 
@@ -258,8 +258,8 @@ impl<'a> Flow<'a> {
         let energy = terms.iter().map(|terms| terms.energy).sum();
         let refined = self.refined(points);
         let before = (element_normals(self.surface(), &refined), refined);
-        let volumes: Vec<f64> = terms.iter().map(|terms| terms.volume).collect();
-        let volumes = sum_over_grains(self.network.boundaries(), &volumes, self.network.grain_count());
+        let cones: Vec<Cone> = terms.iter().map(|terms| terms.cone).collect();
+        let volumes = volumes_of_grains(self.network.boundaries(), &cones, self.network.grain_count());
         let missing = self.missing(&volumes);
         let mut clusters = self.clusters.clone();
         clusters.join_short_edges(self.control_mesh(), points, self.rigid_length(points));

@@ -9,10 +9,11 @@
 
 use glam::DVec3;
 use subzero::StencilTable;
+use voronoi::Dimension;
 
 use super::patches::place_in;
 use super::rows::Rows;
-use crate::volume::{segment_area, triangle_volume};
+use crate::volume::{Cone, segment_area, triangle_volume};
 
 /// The smallest cotangent that a triangle's angle counts with: obtuse triangles would otherwise push points apart.
 const SMALLEST_COTANGENT: f64 = 0.05;
@@ -114,28 +115,31 @@ pub(super) struct PatchTerms {
     pub(super) mass: Vec<f64>,
     /// Stiffness of each edge of the control mesh.
     pub(super) stiffness: Vec<f64>,
-    /// Volume of the surface's cone from the origin.
-    pub(super) volume: f64,
+    /// The cone to the surface.
+    pub(super) cone: Cone,
 }
 
 impl Patch {
-    /// The terms at the given control points; the cone of the volume starts at `origin`.
-    pub(super) fn terms(&self, points: &[DVec3], origin: DVec3, largest_cotangent: f64) -> PatchTerms {
-        let local: Vec<DVec3> = self.control_points.iter().map(|p| points[*p as usize] - origin).collect();
+    /// The terms at the given control points.
+    pub(super) fn terms(&self, points: &[DVec3], largest_cotangent: f64) -> PatchTerms {
+        // From a point of the patch, for far from the origin volumes lose digits.
+        let apex = points[self.control_points[0] as usize];
+        let local: Vec<DVec3> = self.control_points.iter().map(|p| points[*p as usize] - apex).collect();
         let (mass, stiffness) = self.mass_and_stiffness(&local, largest_cotangent);
         let count = local.len();
         let tension = self.share * self.tension;
         let Some(refinement) = &self.refinement else {
-            let Variation { energy, gradient, sweep, volume } =
-                Variation::new(&self.elements, &local, tension);
-            return PatchTerms { energy, gradient, sweep, mass, stiffness, volume };
+            let variation = Variation::new(&self.elements, &local, tension);
+            let cone = variation.cone(apex, &self.elements);
+            let Variation { energy, gradient, sweep, .. } = variation;
+            return PatchTerms { energy, gradient, sweep, mass, stiffness, cone };
         };
         let surface = refinement.stencils.apply(&local);
-        let Variation { energy, gradient, sweep, volume } =
-            Variation::new(&refinement.elements, &surface, tension);
-        let gradient = refinement.stencils.pull_back(&gradient, count);
-        let sweep = refinement.stencils.pull_back(&sweep, count);
-        PatchTerms { energy, gradient, sweep, mass, stiffness, volume }
+        let variation = Variation::new(&refinement.elements, &surface, tension);
+        let cone = variation.cone(apex, &refinement.elements);
+        let gradient = refinement.stencils.pull_back(&variation.gradient, count);
+        let sweep = refinement.stencils.pull_back(&variation.sweep, count);
+        PatchTerms { energy: variation.energy, gradient, sweep, mass, stiffness, cone }
     }
 
     /// Lumped masses, and the cotangent Laplacian times the tension as a spring constant for each edge.
@@ -216,5 +220,15 @@ impl Variation {
             }
         }
         Self { energy: tension * area, gradient, sweep, volume }
+    }
+
+    /// The cone to the surface, for points relative to its apex.
+    fn cone(&self, apex: DVec3, elements: &Elements) -> Cone {
+        let dimension = match elements {
+            Elements::Triangles(_) => Dimension::Three,
+            Elements::Segments(_) => Dimension::Two,
+        };
+        // All points that move as one sweep along the sum of normals.
+        Cone::new(apex, self.volume, self.sweep.iter().sum(), dimension)
     }
 }

@@ -23,8 +23,6 @@ pub(super) struct Patches {
     patch_of_place: Vec<u32>,
     /// The first place of each patch.
     first_places: Vec<usize>,
-    /// Cones for volumes start here.
-    origin: DVec3,
     /// The largest cotangent that an angle counts with.
     pub(super) largest_cotangent: f64,
 }
@@ -71,9 +69,8 @@ impl Patches {
             .zip(&patches)
             .flat_map(|(number, patch)| std::iter::repeat_n(number, patch.control_points.len()))
             .collect();
-        let origin = network.domain().lower().midpoint(network.domain().upper());
         let largest_cotangent = LARGEST_COTANGENT;
-        Self { patches, place_starts, places, patch_of_place, first_places, origin, largest_cotangent }
+        Self { patches, place_starts, places, patch_of_place, first_places, largest_cotangent }
     }
 
     /// The places of a control point, patch after patch.
@@ -98,10 +95,7 @@ impl Patches {
     }
 
     pub(super) fn terms(&self, points: &[DVec3]) -> Vec<PatchTerms> {
-        self.patches
-            .par_iter()
-            .map(|patch| patch.terms(points, self.origin, self.largest_cotangent))
-            .collect()
+        self.patches.par_iter().map(|patch| patch.terms(points, self.largest_cotangent)).collect()
     }
 }
 

@@ -31,7 +31,10 @@ pub fn read_tess(text: &str) -> Result<Tess, TessProblem> {
     words.expect("**format")?;
     let version = words.next("the version")?;
     if !VERSIONS.contains(&version) {
-        return Err(words.problem(format!("version {version:?} is none of {}", VERSIONS.join(", "))));
+        return Err(words.problem(format!(
+            "version {version:?} is none of {}; write the file again with another Neper",
+            VERSIONS.join(", ")
+        )));
     }
     words.expect("**general")?;
     let dimension = match words.next("the dimension")? {
@@ -284,7 +287,10 @@ impl Reader<'_> {
     fn domain(&mut self, tess: &Tess) -> Result<TessDomain, TessProblem> {
         let words = &mut self.words;
         words.expect("*general")?;
-        let kind = words.next("the kind of domain")?.to_owned();
+        let kind = match (words.next("the kind of domain")?, tess.dimension) {
+            ("cube", Dimension::Two) => "square",
+            (kind, _) => kind,
+        };
         words.expect("*vertex")?;
         let count = words.count("the number of corners")?;
         let (mut lower, mut upper) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -298,7 +304,7 @@ impl Reader<'_> {
         if count == 0 {
             return Err(words.problem("a domain without corners".to_owned()));
         }
-        let mut domain = TessDomain { kind, lower, upper, walls: Vec::new() };
+        let mut domain = TessDomain { kind: kind.to_owned(), lower, upper, walls: Vec::new() };
         match (domain.kind.as_str(), tess.dimension) {
             ("cube", Dimension::Three) => {
                 domain.walls = vec![Vec::new(); 6];

@@ -1,9 +1,12 @@
 //! VTK files of labelled networks: cells with two sides each.
 
+use std::ops::RangeInclusive;
+
 use vtkio::IOBuffer;
 use vtkio::model::{Attribute, CellType, DataSet, Vtk};
 
 use super::{MeshFile, MeshFileProblem, cells, in_thread, inline, legacy_parts, problem, xml_parts};
+use crate::network_file::NUMBER_OF_GRAINS;
 use crate::vtk::{field_numbers, field_text};
 
 /// Cell arrays that hold the two sides, in the order in which they are looked for: DREAM.3D's and this program's, then
@@ -11,6 +14,10 @@ use crate::vtk::{field_numbers, field_text};
 pub(crate) const LABEL_ARRAYS: [&str; 3] = ["FaceLabels", "boundary_labels", "BoundaryLabels"];
 
 const NODE_TYPES: &str = "NodeTypes";
+
+const PERIODIC_ORIGINALS: &str = "PeriodicOriginal";
+
+const POINT_ARRAYS: [&str; 3] = [NODE_TYPES, NUMBER_OF_GRAINS, PERIODIC_ORIGINALS];
 
 const BOUNDARY_IDS: &str = "BoundaryId";
 
@@ -60,6 +67,10 @@ pub(crate) struct LabelledCells {
     pub(crate) boundary_ids: Option<Vec<i64>>,
     /// Types of points, if there are any.
     pub(crate) node_types: Option<Vec<i64>>,
+    /// Numbers of grains at points, if there are any.
+    pub(crate) grain_counts: Option<Vec<u8>>,
+    /// Of each point the one that it is a copy of, if there are any.
+    pub(crate) originals: Option<Vec<u32>>,
     /// Whether points are in single precision.
     pub(crate) is_single: bool,
     pub(crate) remarks: Remarks,
@@ -74,8 +85,8 @@ pub(crate) fn read_legacy(bytes: &[u8]) -> Result<LabelledCells, MeshFileProblem
 
 /// Reads a .vtp or .vtu file.
 pub(crate) fn read_xml(bytes: &[u8]) -> Result<LabelledCells, MeshFileProblem> {
-    let wanted: Vec<&str> = LABEL_ARRAYS.into_iter().chain([NODE_TYPES, BOUNDARY_IDS]).collect();
-    let parts = xml_parts::network(bytes, &wanted);
+    let wanted: Vec<&str> = LABEL_ARRAYS.into_iter().chain(POINT_ARRAYS).chain([BOUNDARY_IDS]).collect();
+    let parts = xml_parts::network(bytes, &wanted)?;
     in_thread(|| {
         let cells = of_data(Vtk::parse_xml(&parts[..]).map_err(problem)?.data)?;
         Ok(LabelledCells { remarks: Remarks::of_xml(bytes), ..cells })
@@ -145,17 +156,39 @@ fn of_data(data: DataSet) -> Result<LabelledCells, MeshFileProblem> {
     found.label_array = name;
     let ids = array(&attributes.cell, BOUNDARY_IDS).and_then(whole_numbers);
     found.boundary_ids = ids.filter(|ids| ids.len() == skipped + count).map(|ids| ids[skipped..].to_vec());
-    if let Some(types) = array(&attributes.point, NODE_TYPES).and_then(whole_numbers) {
-        if types.len() != found.mesh.points.len() {
-            return Err(problem(format!(
-                "{NODE_TYPES} has {} numbers for {} points",
-                types.len(),
-                found.mesh.points.len()
-            )));
+    let count = found.mesh.points.len();
+    let of_points = |name| match array(&attributes.point, name).and_then(whole_numbers) {
+        Some(numbers) if numbers.len() != count => {
+            Err(problem(format!("{name} has {} numbers for {count} points", numbers.len())))
         }
-        found.node_types = Some(types);
+        numbers => Ok(numbers),
+    };
+    found.node_types = of_points(NODE_TYPES)?;
+    if let Some(counts) = of_points(NUMBER_OF_GRAINS)? {
+        found.grain_counts = Some(within(&counts, NUMBER_OF_GRAINS, 1..=i64::from(u8::MAX))?);
+    }
+    if let Some(originals) = of_points(PERIODIC_ORIGINALS)? {
+        // There are fewer points than 2^31.
+        let last = i64::try_from(count).unwrap_or(i64::MAX) - 1;
+        found.originals = Some(within(&originals, PERIODIC_ORIGINALS, 0..=last)?);
     }
     Ok(found)
+}
+
+/// Numbers of points that all lie in a range.
+fn within<T: TryFrom<i64>>(
+    numbers: &[i64],
+    name: &str,
+    range: RangeInclusive<i64>,
+) -> Result<Vec<T>, MeshFileProblem> {
+    let number = |(point, number): (usize, &i64)| {
+        let fitting = T::try_from(*number).ok().filter(|_| range.contains(number));
+        let [first, last] = [range.start(), range.end()];
+        fitting.ok_or_else(|| {
+            problem(format!("{name} of point {point} is {number} and not from {first} to {last}"))
+        })
+    };
+    numbers.iter().enumerate().map(number).collect()
 }
 
 /// Labels without the zeros that meshio puts after each pair in legacy files.

@@ -5,7 +5,8 @@
 
 use std::ops::Range;
 
-use crate::vtk::{attribute, find, inlined};
+use super::{MeshFileProblem, problem};
+use crate::vtk::{attribute, find, try_inlined};
 
 /// Elements that no mesh needs.
 const NOT_NEEDED: [&str; 5] = ["FieldData", "PointData", "CellData", "Verts", "Lines"];
@@ -21,14 +22,14 @@ const PERHAPS_EMPTY: [(&str, &str); 4] = [
 /// The file with points and faces alone.
 ///
 /// What is no XML comes back as it is, for `vtkio` to refuse.
-pub(super) fn points_and_faces(bytes: &[u8]) -> Vec<u8> {
+pub(super) fn points_and_faces(bytes: &[u8]) -> Result<Vec<u8>, MeshFileProblem> {
     parts(bytes, |head| NOT_NEEDED.iter().for_each(|name| remove(head, name)))
 }
 
 /// The file with points, cells, and those of their arrays whose names are wanted.
 ///
 /// What is no XML comes back as it is, for `vtkio` to refuse.
-pub(super) fn network(bytes: &[u8], wanted: &[&str]) -> Vec<u8> {
+pub(super) fn network(bytes: &[u8], wanted: &[&str]) -> Result<Vec<u8>, MeshFileProblem> {
     parts(bytes, |head| {
         remove(head, "FieldData");
         for name in ["PointData", "CellData"] {
@@ -53,7 +54,7 @@ fn remove(head: &mut String, name: &str) {
 }
 
 /// The file after `reduce` has taken away from what stands before its appended data.
-fn parts(bytes: &[u8], reduce: impl FnOnce(&mut String)) -> Vec<u8> {
+fn parts(bytes: &[u8], reduce: impl FnOnce(&mut String)) -> Result<Vec<u8>, MeshFileProblem> {
     let appended = find(bytes, b"<AppendedData").unwrap_or(bytes.len());
     let (head, appended) = bytes.split_at(appended);
     let mut head = String::from_utf8_lossy(head).into_owned();
@@ -70,7 +71,7 @@ fn parts(bytes: &[u8], reduce: impl FnOnce(&mut String)) -> Vec<u8> {
             }
         }
     }
-    inlined(&[head.as_bytes(), appended].concat())
+    try_inlined(&[head.as_bytes(), appended].concat()).map_err(problem)
 }
 
 /// Where the first element of this name stands.

@@ -10,13 +10,18 @@ use super::coding::{Coding, Encoded};
 ///
 /// Field data that are no numbers stay without their values; [`field_text`] reads those.
 pub fn inlined(file: &[u8]) -> Vec<u8> {
+    try_inlined(file).unwrap_or_else(|_| file.to_vec())
+}
+
+/// As [`inlined`], or what is damaged.
+pub(crate) fn try_inlined(file: &[u8]) -> Result<Vec<u8>, String> {
     let (head, appended) = split(file);
     let text = String::from_utf8_lossy(head);
-    match inline(&text, &Appended::of(appended)) {
+    Ok(match inline(&text, &Appended::of(appended))? {
         Some(inlined) if appended.is_empty() => inlined.into_bytes(),
         Some(inlined) => (inlined + "</VTKFile>").into_bytes(),
         None => file.to_vec(),
-    }
+    })
 }
 
 /// A text of the field data of a .vtp, .vtu or .vti file, whichever program wrote it; nothing where the file has no such entry.
@@ -96,39 +101,42 @@ impl<'a> Appended<'a> {
     }
 }
 
-/// The document with its arrays within its elements; nothing if they do not fit together, or nothing needs to change.
-fn inline(head: &str, appended: &Appended<'_>) -> Option<String> {
-    let coding = Coding::of(head)?;
-    if matches!(appended, Appended::None) && !coding.is_compressed() {
-        return None;
+/// The document with its arrays within its elements; nothing if nothing needs to change, or it is no document.
+fn inline(head: &str, appended: &Appended<'_>) -> Result<Option<String>, String> {
+    let Some(coding) = Coding::of(head) else { return Ok(None) };
+    if !head.contains("format=\"appended\"") && !coding.is_compressed() {
+        return Ok(None);
     }
+    let cut_off = || "its last element is cut off".to_owned();
     let mut inlined = String::with_capacity(head.len());
     let mut rest = head;
     while let Some(start) = rest.find("<DataArray") {
-        let end = start + rest[start..].find('>')? + 1;
+        let end = start + rest[start..].find('>').ok_or_else(cut_off)? + 1;
         let tag = &rest[start..end];
         inlined.push_str(&rest[..start]);
         rest = &rest[end..];
         let array = match attribute(tag, "format") {
-            Some("appended") if attribute(tag, "offset").is_some() => appended.array(coding, tag)?,
+            Some("appended") if attribute(tag, "offset").is_some() => appended.array(coding, tag),
             Some("binary") if coding.is_compressed() && !tag.ends_with("/>") => {
-                coding.of_text(rest.split('<').next()?.trim().as_bytes())?
+                rest.split('<').next().and_then(|content| coding.of_text(content.trim().as_bytes()))
             }
             _ => {
                 inlined.push_str(tag);
                 continue;
             }
         };
+        let name = attribute(tag, "Name").unwrap_or("without a name");
+        let array = array.ok_or_else(|| format!("the numbers of its array {name} are damaged or cut off"))?;
         inlined.push_str(&tag.trim_end_matches('>').trim_end_matches('/').replacen("appended", "binary", 1));
         inlined.push('>');
         inlined.push_str(&array.text);
         inlined.push_str("</DataArray>");
         // An element that was not empty closes itself.
         if !tag.ends_with("/>") {
-            rest = rest.split_once("</DataArray>")?.1;
+            rest = rest.split_once("</DataArray>").ok_or_else(cut_off)?.1;
         }
     }
-    Some(inlined + rest)
+    Ok(Some(inlined + rest))
 }
 
 /// Where `what` stands first.

@@ -7,7 +7,7 @@ use serde::Serialize;
 use vtkio::model::ByteOrder;
 use vtkio::xml::{DataArrayFormat, DataSetType, ScalarType};
 
-use super::super::raw::{AppendedNumbers, Numbers};
+use super::super::raw::{Numbers, NumbersOfFile};
 use super::super::{Array, Cells, FieldEntry, FieldValue, PolyData};
 use super::XmlFormat;
 
@@ -31,6 +31,8 @@ pub(super) struct Document {
     byte_order: ByteOrder,
     #[serde(rename = "@header_type")]
     header_type: ScalarType,
+    #[serde(rename = "@compressor", skip_serializing_if = "Option::is_none")]
+    compressor: Option<&'static str>,
     #[serde(rename = "$value")]
     data_set: DataSet,
 }
@@ -114,7 +116,7 @@ struct Header<Type> {
 
 impl Document {
     /// Describes `data` and lists its arrays in `numbers`.
-    pub(super) fn new<'a>(data: &PolyData<'a>, format: XmlFormat, numbers: &mut AppendedNumbers<'a>) -> Self {
+    pub(super) fn new<'a>(data: &PolyData<'a>, format: XmlFormat, numbers: &mut NumbersOfFile<'a>) -> Self {
         let grid = Grid {
             field_data: Arrays {
                 arrays: data.field.iter().map(|entry| field(entry, format, numbers)).collect(),
@@ -130,13 +132,14 @@ impl Document {
             version: VERSION,
             byte_order: ByteOrder::native(),
             header_type: ScalarType::UInt64,
+            compressor: numbers.compressor(),
             data_set,
         }
     }
 }
 
 impl Piece {
-    fn new<'a>(data: &PolyData<'a>, format: XmlFormat, numbers: &mut AppendedNumbers<'a>) -> Self {
+    fn new<'a>(data: &PolyData<'a>, format: XmlFormat, numbers: &mut NumbersOfFile<'a>) -> Self {
         let points = array("Points", ScalarType::Float64, 3, numbers.append(Numbers::slice(data.points)));
         let mut piece = Self {
             number_of_points: data.points.len(),
@@ -161,7 +164,7 @@ impl Piece {
 }
 
 impl Topology {
-    fn new<'a>(data: &PolyData<'a>, format: XmlFormat, numbers: &mut AppendedNumbers<'a>) -> Self {
+    fn new<'a>(data: &PolyData<'a>, format: XmlFormat, numbers: &mut NumbersOfFile<'a>) -> Self {
         // VTK's ids are signed, and both arrays must have the same width.
         let largest = data.points.len().max(data.cells.corner_count());
         let wide = i32::try_from(largest).is_err();
@@ -235,7 +238,7 @@ fn ids<'a>(count: usize, id: impl Fn(usize) -> u64 + Sync + 'a, wide: bool) -> N
     if wide { Numbers::each(count, id) } else { Numbers::each(count, move |index| id(index) as u32) }
 }
 
-fn attributes<'a>(arrays: &[Array<'a>], numbers: &mut AppendedNumbers<'a>) -> Vec<Element> {
+fn attributes<'a>(arrays: &[Array<'a>], numbers: &mut NumbersOfFile<'a>) -> Vec<Element> {
     arrays
         .iter()
         .map(|Array { name, values }| {
@@ -244,7 +247,7 @@ fn attributes<'a>(arrays: &[Array<'a>], numbers: &mut AppendedNumbers<'a>) -> Ve
         .collect()
 }
 
-fn field(entry: &FieldEntry, format: XmlFormat, numbers: &mut AppendedNumbers<'_>) -> Element {
+fn field(entry: &FieldEntry, format: XmlFormat, numbers: &mut NumbersOfFile<'_>) -> Element {
     match (&entry.value, format) {
         (FieldValue::Integer(number), _) => {
             let offset = numbers.append(Numbers::bytes(number.to_ne_bytes().to_vec()));
@@ -255,6 +258,10 @@ fn field(entry: &FieldEntry, format: XmlFormat, numbers: &mut AppendedNumbers<'_
             Element::DataArray(
                 Header::new(entry.name, ScalarType::Float64, 1, offset).with_tuples(values.len()),
             )
+        }
+        (FieldValue::Ids(ids), _) => {
+            let offset = numbers.append(Numbers::bytes(bytemuck::cast_slice(ids).to_vec()));
+            Element::DataArray(Header::new(entry.name, ScalarType::Int32, 1, offset).with_tuples(ids.len()))
         }
         (FieldValue::Text(text), XmlFormat::UnstructuredGrid) => {
             let offset = numbers.append(Numbers::bytes(text.clone().into_bytes()));

@@ -3,13 +3,14 @@
 use glam::DVec3;
 
 use super::{Clusters, Flow, dot};
-use crate::volume::largest_relative_error;
+use crate::volume::{largest_relative_error, last_place, swept_by_rounding};
 use crate::{GrainId, NetworkError, Volumes};
 
 /// Difference of a grain's volume from its cell's, as a share of the cell's, that ends the iteration on volumes.
 const VOLUME_TOLERANCE: f64 = 1e-12;
 
-/// Difference that is accepted where rounding keeps the iteration above that: small grains in large boxes.
+/// Difference that is accepted where rounding keeps the iteration above that, beside what the rounding of points themselves explains:
+/// small grains in large boxes.
 const VOLUME_LIMIT: f64 = 1e-10;
 
 /// Bounds on the factor by which a volume correction is larger than its gradient asks for.
@@ -52,12 +53,22 @@ impl Flow<'_> {
 
     /// As [`Self::restore_volumes`] where a volume differs by more than rounding; else no point moves.
     pub(in crate::relax) fn restore_lost_volumes(&self, points: &mut [DVec3]) -> Result<(), NetworkError> {
-        let missing =
-            self.missing(&self.network.grain_volumes(self.network.finest(), &self.finest_points(points)));
-        if self.largest_error(&missing).1 > VOLUME_LIMIT {
+        let surface = self.finest_points(points);
+        let missing = self.missing(&self.network.grain_volumes(self.network.finest(), &surface));
+        if !self.is_rounding(&missing, &surface) {
             self.restore_volumes(points)?;
         }
         Ok(())
+    }
+
+    /// Whether rounding of the points may be all that volumes lack.
+    fn is_rounding(&self, missing: &[f64], surface: &[DVec3]) -> bool {
+        let areas = self.network.grain_areas(self.network.finest(), surface);
+        let rounding = last_place(surface);
+        let mut grains = missing.iter().zip(self.network.cell_volumes().iter().zip(areas));
+        grains.all(|(lack, (volume, area))| {
+            lack.abs() <= VOLUME_LIMIT * volume + swept_by_rounding(rounding, area)
+        })
     }
 
     fn restore_with(&self, clusters: &Clusters, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
@@ -77,12 +88,14 @@ impl Flow<'_> {
                 stalled = relative_error > 0.5 * self.largest_error(last).1;
                 gain = (gain / (1.0 - left)).clamp(SMALLEST_GAIN, LARGEST_GAIN);
             }
-            if relative_error <= VOLUME_TOLERANCE || (stalled && relative_error <= VOLUME_LIMIT) {
+            if relative_error <= VOLUME_TOLERANCE || (stalled && self.is_rounding(&missing, &surface)) {
                 return Ok(surface);
             }
             // A correction that makes things worse (NaN included) would only be followed by others.
             if step == VOLUME_STEPS || relative_error.is_nan() || relative_error >= 1.0 {
-                return Err(NetworkError::VolumeNotRestored { grain, relative_error });
+                let dimension = self.network.domain().dimension();
+                let volume = self.network.cell_volumes()[grain.index()];
+                return Err(NetworkError::volume_not_restored(dimension, grain, volume, relative_error));
             }
             let wanted: Vec<f64> = missing.iter().map(|lack| gain * lack).collect();
             let moves = system.volume_correction(&wanted);

@@ -157,7 +157,13 @@ impl Descent {
             }
         }
         if relative_error > AREA_LIMIT {
-            return Err(NetworkError::VolumeNotRestored { grain, relative_error });
+            let area = foam.areas[grain.index()];
+            return Err(NetworkError::volume_not_restored(
+                voronoi::Dimension::Two,
+                grain,
+                area,
+                relative_error,
+            ));
         }
         // What is too short to move at all is at rest, or on its way to nothing.
         Ok(Step { is_at_rest: vanishing.is_empty(), vanishing })

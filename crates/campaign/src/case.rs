@@ -1,0 +1,259 @@
+//! One run before it runs: its command line, its files, and what it promises.
+
+use crate::domain::{self, Domain};
+use crate::draw::Draw;
+use crate::mistake;
+use crate::options::Options;
+use crate::outputs::{self, Promise};
+use crate::seeds::{Arrangement, LatticeCells, draw_seeds};
+
+/// Share of runs with a deliberate mistake in their input.
+const MISTAKES: f64 = 0.06;
+
+/// Share of runs whose options stand in a TOML file.
+const CONFIG_FILES: f64 = 0.05;
+
+/// What a campaign keeps its runs to, so that they end in time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Limits {
+    /// Most grains of a run.
+    pub grains: u32,
+    /// Triangles (in the plane: segments) of the finest level that are about the most.
+    pub triangles: u32,
+}
+
+impl Limits {
+    /// Of a campaign by hand.
+    pub const USUAL: Self = Self { grains: 400, triangles: 400_000 };
+}
+
+/// What the angles of a run's triangles are counted with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AngleClass {
+    /// Relaxed for a time, between walls.
+    Walls,
+    /// Relaxed for a time, periodic, grains whole.
+    Periodic,
+    /// Relaxed for a time, periodic, cut at the box.
+    Cut,
+    /// Relaxed to equilibrium, grains whole.
+    Equilibrium,
+    /// Flat, or with short edges kept: triangles are as thin as the cells are.
+    Unregularized,
+    /// In the plane, where there are no triangles.
+    Plane,
+}
+
+impl AngleClass {
+    /// All classes.
+    pub const ALL: [Self; 6] =
+        [Self::Walls, Self::Periodic, Self::Cut, Self::Equilibrium, Self::Unregularized, Self::Plane];
+
+    /// The class in a few words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Walls => "walls",
+            Self::Periodic => "periodic",
+            Self::Cut => "cut at the box",
+            Self::Equilibrium => "equilibrium",
+            Self::Unregularized => "flat or not regularized",
+            Self::Plane => "plane",
+        }
+    }
+}
+
+/// A run before it runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// How its seeds are placed, or the mistake.
+    pub kind: String,
+    /// Options on the command line.
+    pub options: Options,
+    /// Files that stand in its directory beforehand: name and content.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// The mistake's value, which the refusal has to name.
+    pub mistake: Option<String>,
+    /// What a good run leaves.
+    pub promise: Promise,
+    /// Whether relaxation keeps the volumes of the cells.
+    pub keeps_volumes: bool,
+    /// Two or three.
+    pub dimension: usize,
+    /// What its angles are counted with.
+    pub angles: AngleClass,
+}
+
+impl Case {
+    /// Draws run `index` of a campaign.
+    pub fn draw(seed: u64, index: u64, limits: Limits) -> Self {
+        let draw = &mut Draw::of_run(seed, index);
+        let mut options = Options::default();
+        let dimension = if draw.chance(0.25) { 2 } else { 3 };
+        if dimension == 2 {
+            options.set("dim", [2]);
+        }
+        let arrangement = Arrangement::draw(draw);
+        let count = draw.count(limits.grains);
+        let lattice = LatticeCells::draw(draw, dimension, count);
+        let proportions = match arrangement {
+            Arrangement::Lattice | Arrangement::JitteredLattice => lattice.proportions(draw),
+            _ => domain::proportions(draw, dimension),
+        };
+        let domain = Domain::draw(draw, proportions, &mut options);
+        let mut files = domain.files.clone();
+        files.extend(draw_seeds(draw, arrangement, count, &lattice, &domain, &mut options));
+        smoothing(draw, &domain, count, limits, &mut options);
+        let promise = outputs::draw(draw, dimension, &mut options);
+        let mut case = Self {
+            kind: arrangement.name().to_owned(),
+            keeps_volumes: !options.has("free"),
+            angles: angle_class(&domain, &options),
+            options,
+            files,
+            mistake: None,
+            promise,
+            dimension,
+        };
+        if draw.chance(MISTAKES) {
+            mistake::make(draw, &mut case);
+        } else if draw.chance(CONFIG_FILES) {
+            case.files.push(("run.toml".to_owned(), case.options.toml().into_bytes()));
+            case.options = Options::default();
+            case.options.set("config", ["run.toml"]);
+        }
+        case
+    }
+}
+
+/// Draws the options of the control mesh, relaxation and subdivision.
+fn smoothing(draw: &mut Draw, domain: &Domain, count: u32, limits: Limits, options: &mut Options) {
+    let is_plane = domain.sides.len() == 2;
+    // Triangles on a grain's share of the control mesh; segments in the plane.
+    let mut share = if is_plane { 6.0 } else { 81.0 };
+    match draw.weighted(&[(0.72, "fan"), (0.12, "plain"), (0.16, "edge length")]) {
+        "plain" => options.set("faces", ["plain"]),
+        "edge length" => {
+            let relative = draw.magnitude(0.25, 3.0);
+            options.set("edge-length", [domain.spacing(count) * relative]);
+            // Small triangles cover the faces, each of some two by two edge lengths.
+            share *= (0.8 / relative).powi(2).max(1.0);
+        }
+        _ => {}
+    }
+    match draw.weighted(&[
+        (0.45, "default"),
+        (0.12, "flat"),
+        (0.18, "equilibrium"),
+        (0.22, "time"),
+        (0.03, "any"),
+    ]) {
+        "flat" => options.set("relax", [0]),
+        "equilibrium" => options.set("relax", ["equilibrium"]),
+        "time" => options.set("relax", [draw.magnitude(0.01, 1.0)]),
+        "any" => options.set("relax", [draw.magnitude(1e-9, 10.0)]),
+        _ => {}
+    }
+    if draw.chance(0.1) {
+        options.switch("free");
+    }
+    if draw.chance(0.15) {
+        options.set("wall-tension", [draw.between(0.0, 1.5)]);
+    }
+    match draw.weighted(&[(0.7, "default"), (0.15, "off"), (0.15, "any")]) {
+        "off" => options.set("regularize", [0]),
+        "any" => options.set("regularize", [draw.between(0.0, 0.5)]),
+        _ => {}
+    }
+    if draw.chance(0.1) {
+        options.set("junctions", ["corner"]);
+    }
+    if draw.chance(0.1) {
+        options.set("lloyd", [draw.whole(1..=5)]);
+    }
+    let growth: f64 = if is_plane { 2.0 } else { 4.0 };
+    let affordable = (f64::from(limits.triangles) / (share * f64::from(count))).log(growth).max(0.0);
+    let levels = f64::from(draw.weighted(&[(0.15, 0), (0.3, 1), (0.3, 2), (0.25, 3)]));
+    options.set("levels", [levels.min(affordable.floor())]);
+}
+
+fn angle_class(domain: &Domain, options: &Options) -> AngleClass {
+    let is_off = |name| options.value(name) == Some("0");
+    let is_equilibrium = options.value("relax") == Some("equilibrium");
+    match domain.sides.len() {
+        2 => AngleClass::Plane,
+        _ if is_off("relax") || is_off("regularize") => AngleClass::Unregularized,
+        _ if domain.is_cut => AngleClass::Cut,
+        _ if is_equilibrium => AngleClass::Equilibrium,
+        _ if domain.is_periodic => AngleClass::Periodic,
+        _ => AngleClass::Walls,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn run_is_the_same_whenever_it_is_drawn() {
+        assert_eq!(Case::draw(5, 731, Limits::USUAL), Case::draw(5, 731, Limits::USUAL));
+        assert_ne!(Case::draw(5, 731, Limits::USUAL), Case::draw(5, 732, Limits::USUAL));
+    }
+
+    #[test]
+    fn campaign_draws_every_option_of_the_program() {
+        let cases: Vec<Case> = (0..2000).map(|index| Case::draw(1, index, Limits::USUAL)).collect();
+        let is_given = |name: &str| cases.iter().any(|case| case.options.has(name));
+        let options = [
+            "arrays",
+            "ascii",
+            "box",
+            "cells-csv",
+            "cells-json",
+            "chord-error",
+            "color-by",
+            "config",
+            "dim",
+            "domain",
+            "drop-empty",
+            "dry-run",
+            "edge-length",
+            "every",
+            "explode",
+            "faces",
+            "format",
+            "free",
+            "grains-dir",
+            "grains-format",
+            "half-spaces",
+            "json-summary",
+            "junctions",
+            "lattice",
+            "levels",
+            "lloyd",
+            "names",
+            "no-mesh",
+            "output",
+            "periodic",
+            "periodic-cut",
+            "picture",
+            "picture-size",
+            "quiet",
+            "regularize",
+            "relax",
+            "report",
+            "rng-seed",
+            "seeding",
+            "seeds",
+            "seeds-file",
+            "series",
+            "stats",
+            "threads",
+            "voxels",
+            "wall-tension",
+        ];
+        for name in options {
+            assert!(is_given(name), "no run has --{name}");
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! What a run writes.
+
+use crate::draw::Draw;
+use crate::options::Options;
+
+/// What a good run leaves behind.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Promise {
+    /// Files that have to be there.
+    pub files: Vec<String>,
+    /// What names of files may begin with.
+    pub stems: Vec<&'static str>,
+    /// A surface file that `grainsmooth check` reads.
+    pub surface: Option<String>,
+    /// Whether something goes to standard output.
+    pub prints: bool,
+}
+
+impl Promise {
+    fn file(&mut self, stem: &'static str, name: impl Into<String>) {
+        self.files.push(name.into());
+        self.stems.push(stem);
+    }
+}
+
+/// The table of the flat cells, whose volumes the grains have to keep.
+pub const CELLS: &str = "cells.json";
+
+/// The run's figures.
+pub const SUMMARY: &str = "summary.json";
+
+/// Draws what a run writes, into the options.
+pub fn draw(draw: &mut Draw, dimension: usize, options: &mut Options) -> Promise {
+    let mut promise = Promise::default();
+    options.set("threads", [draw.whole(1..=2)]);
+    if draw.chance(0.1) {
+        options.switch("quiet");
+    }
+    if draw.chance(0.15) {
+        options.set("cells-csv", ["cells.csv"]);
+        promise.file("cells", "cells.csv");
+    }
+    match draw.weighted(&[(0.02, Mode::NoMesh), (0.02, Mode::DryRun), (0.96, Mode::Whole)]) {
+        Mode::NoMesh => {
+            options.switch("no-mesh");
+            return promise;
+        }
+        Mode::DryRun => {
+            options.switch("dry-run");
+            return Promise { prints: true, ..Promise::default() };
+        }
+        Mode::Whole => {}
+    }
+    network(draw, dimension, options, &mut promise);
+    if promise.surface.is_some() || draw.chance(0.2) {
+        options.set("cells-json", [CELLS]);
+        promise.file("cells", CELLS);
+    }
+    if promise.surface.is_none() || draw.chance(0.7) {
+        options.set("json-summary", [SUMMARY]);
+        promise.file("summary", SUMMARY);
+    }
+    tables(draw, dimension, options, &mut promise);
+    pictures(draw, options, &mut promise);
+    promise
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Mode {
+    NoMesh,
+    DryRun,
+    Whole,
+}
+
+fn network(draw: &mut Draw, dimension: usize, options: &mut Options, promise: &mut Promise) {
+    let surfaces = [(45.0, "vtp"), (12.0, "vtu"), (10.0, "vtk"), (6.0, "vtm")];
+    let others: &[(f64, &str)] = if dimension == 2 {
+        &[(3.0, "tess"), (2.0, "vti"), (2.0, "npy"), (3.0, "ang")]
+    } else {
+        &[
+            (3.0, "stl"),
+            (3.0, "ply"),
+            (3.0, "obj"),
+            (4.0, "msh"),
+            (3.0, "fe"),
+            (3.0, "tess"),
+            (2.0, "vti"),
+            (2.0, "npy"),
+        ]
+    };
+    let format = draw.weighted(&[&surfaces, others].concat());
+    if ["vti", "npy", "ang"].contains(&format) {
+        options.set("voxels", (0..dimension).map(|_| draw.whole(1..=40)));
+    }
+    if format == "stl" && draw.chance(0.5) {
+        options.switch("ascii");
+    }
+    if draw.chance(0.2) {
+        let tools = ["grainsmooth", "dream3d", "pyvista", "virmat", "neper"];
+        options.set("names", [draw.one_of(&tools)]);
+    }
+    if draw.chance(0.15) {
+        options.switch("arrays");
+    }
+    if draw.chance(0.03) && !["vtm", "msh"].contains(&format) {
+        options.set("output", ["-"]);
+        options.set("format", [format]);
+        promise.prints = true;
+        return;
+    }
+    let name = format!("out.{format}");
+    if ["vtp", "vtu", "vtk"].contains(&format) {
+        promise.surface = Some(name.clone());
+    }
+    promise.file("out", name.clone());
+    match format {
+        "vtm" => promise.files.push("out".to_owned()),
+        "msh" => promise.files.push("out.geo".to_owned()),
+        _ => {}
+    }
+    options.set("output", [name]);
+}
+
+fn tables(draw: &mut Draw, dimension: usize, options: &mut Options, promise: &mut Promise) {
+    if draw.chance(0.2) {
+        let name = draw.one_of(&["stats.json", "stats.csv"]);
+        options.set("stats", [name]);
+        promise.file("stats", name);
+        if name == "stats.csv" {
+            let tables: &[&str] = match dimension {
+                2 => &["boundaries", "triple_points"],
+                _ => &["boundaries", "triple_lines", "quadruple_points"],
+            };
+            promise.files.extend(tables.iter().map(|table| format!("stats.{table}.csv")));
+        }
+    }
+    if draw.chance(0.07) && (!options.has("periodic-cut") || draw.chance(0.05)) {
+        options.set("series", ["series.pvd"]);
+        if draw.chance(0.5) {
+            options.set("every", [draw.whole(1..=10)]);
+        }
+        promise.file("series", "series.pvd");
+        promise.files.push("series_0000.vtp".to_owned());
+    }
+    if draw.chance(0.1) && dimension == 3 {
+        options.set("grains-dir", ["grains"]);
+        let format = draw.one_of(&["vtp", "stl", "ply", "obj"]);
+        options.set("grains-format", [format]);
+        promise.file("grains", format!("grains/grain_0.{format}"));
+    }
+}
+
+fn pictures(draw: &mut Draw, options: &mut Options, promise: &mut Promise) {
+    if draw.chance(0.1) {
+        options.set("picture", ["picture.png"]);
+        options.set("picture-size", [draw.whole(16..=300), draw.whole(16..=300)]);
+        options.set("color-by", [draw.one_of(&["grain", "size", "neighbors"])]);
+        options.set("explode", [draw.one_of(&[0.0, 0.3, 10.0])]);
+        promise.file("picture", "picture.png");
+    }
+    if draw.chance(0.06) {
+        options.set("report", ["report.html"]);
+        promise.file("report", "report.html");
+    }
+}

@@ -1,0 +1,104 @@
+//! Which messages of the program refuse input for a reason that lies in it, and name that.
+//!
+//! All other messages of exit status 1 count as failed results. Exit status 2 is a mistake on the command line, always in the
+//! input.
+
+/// A kind of error, and what its message holds: all of the words of one row.
+type Kind = (&'static str, &'static [&'static str]);
+
+/// The refusals among the errors of `grainsmooth::Error`, `voronoi::VoronoiError` and `polycrystal::NetworkError`.
+///
+/// Not here, so failed results: `BoundaryTooSmall`, `MeetsItself`, `CutCrosses`, `CutInvalid`, `VolumeNotRestored`, `Folded` and
+/// `Invalid`, which are the program's own limits, and `WriteOutput`.
+pub const REFUSALS: &[Kind] = &[
+    // Paths and formats.
+    ("UnknownExtension", &["unknown extension; name the file"]),
+    ("FormatDimension", &["this format holds", "choose another"]),
+    ("NoVoxels", &["this format holds voxels", "--voxels"]),
+    ("FormatSeveralFiles", &["standard output takes a single file"]),
+    ("NoOutputDirectory", &["no directory", "create it or choose another path"]),
+    ("OutputNotAFile", &["is not a regular file"]),
+    ("OutputDirectoryTaken", &["is not an empty directory"]),
+    ("OutputNotWritable", &["cannot be written", "allow it or choose another path"]),
+    // Files of seeds and domains.
+    ("SeedFileUnreadable, DomainFileUnreadable", &["cannot be read", "give the path of a readable"]),
+    ("NoSeedsInFile", &["holds no seeds"]),
+    ("SeedProblem::NotUtf8", &["not UTF-8 text"]),
+    ("SeedProblem::ColumnNames", &["columns named"]),
+    ("SeedProblem::ColumnCount", &["columns; write"]),
+    ("SeedProblem::NotANumber", &["is not a number; write"]),
+    ("SeedProblem::NotFinite", &["is not a finite number; correct or remove the seed"]),
+    ("SeedProblem::NegativeRadius", &["radius is", "write 0 or more"]),
+    ("SeedProblem::NotInPlane", &["in a 2D run"]),
+    ("HalfSpaceInFile", &["half-space", "line"]),
+    // Seeds and domains.
+    ("OutsideDomain", &["lies outside the domain"]),
+    ("DuplicateSeeds", &["stand at the same place", "remove one of them"]),
+    ("DuplicateSeedsInFile", &["the same seed", "twice; remove one of them"]),
+    ("EmptyGrains", &["weights leave", "without volume", "--drop-empty"]),
+    ("UnboundedDomain", &["half-spaces have no end in the direction"]),
+    ("EmptyDomain", &["leaves nothing of what those before it have in common"]),
+    ("FlatDomain", &["the domain between", "is flat"]),
+    ("TooManyWalls", &["walls that a domain can have"]),
+    // Sizes.
+    ("CellsExceedMemory", &["cells would take", "of memory"]),
+    ("LevelsExceedMemory", &["levels would take", "of memory"]),
+    ("LevelsExceedIds", &["levels would make", "more than ids can name"]),
+    ("TooLarge", &["more than 32-bit ids can name"]),
+    // A grain that vanishes while it is free to, where the message names the longest time that works.
+    ("GrainVanished", &["shrinks to nothing", "--relax "]),
+];
+
+/// The kind of refusal that a message is, if it is one.
+pub fn refusal(message: &str) -> Option<&'static str> {
+    let fits = |(_, parts): &&Kind| parts.iter().all(|part| message.contains(part));
+    REFUSALS.iter().find(fits).map(|(name, _)| *name)
+}
+
+/// The message with its numbers replaced, so that messages of one kind are alike.
+pub fn without_numbers(message: &str) -> String {
+    let mut kind = String::new();
+    let mut rest = message;
+    while let Some(start) = rest.find(|character: char| character.is_ascii_digit()) {
+        let end = rest[start..].find(|character: char| !"0123456789.eE+-".contains(character));
+        let end = end.map_or(rest.len(), |end| start + end);
+        kind += rest[..start].trim_end_matches('-');
+        kind.push('#');
+        // A full stop or a dash at the end is none of the number.
+        let number = rest[start..end].trim_end_matches(['.', '-', '+', 'e', 'E']);
+        rest = &rest[start + number.len()..];
+    }
+    kind + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_of_one_kind_are_alike() {
+        let messages = [
+            "grain 3 misses its volume by 1.25e-3 of it after relaxation; relax for a shorter time",
+            "grain 17 misses its volume by -2 of it after relaxation; relax for a shorter time",
+        ];
+        let kind = "grain # misses its volume by # of it after relaxation; relax for a shorter time";
+        assert_eq!(messages.map(without_numbers), [kind, kind]);
+        assert_eq!(without_numbers("elements 1 and 25."), "elements # and #.");
+    }
+
+    #[test]
+    fn failures_of_the_program_are_no_refusals() {
+        use polycrystal::{GrainId, NetworkError, Side};
+        let sides = [Side::Grain(GrainId(0)), Side::Exterior];
+        let grain = GrainId(4);
+        for error in [
+            NetworkError::BoundaryTooSmall { sides },
+            NetworkError::MeetsItself { grain },
+            NetworkError::CutCrosses { axis: "x" },
+            NetworkError::VolumeNotRestored { grain, diameter: 0.1, relative_error: 1.0 },
+            NetworkError::Folded { count: 2 },
+        ] {
+            assert_eq!(refusal(&error.to_string()), None, "{error}");
+        }
+    }
+}

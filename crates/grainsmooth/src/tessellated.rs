@@ -1,0 +1,170 @@
+//! From a config to its seeds and flat cells.
+
+use std::time::Duration;
+
+use glam::DVec3;
+use voronoi::{CellId, Domain, Side, Tessellation, VoronoiError};
+
+use crate::memory::{available_memory, check_cells};
+use crate::pipeline::{Clock, seed_count};
+use crate::{
+    Config, EquivalentDiameters, Error, FileSeed, Progress, SeedPlace, SeedSource, Stage, poisson_disc_seeds,
+    random_seeds, read_seed_file,
+};
+
+/// The cells of a config's seeds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tessellated {
+    /// All cells; none is empty.
+    pub tessellation: Tessellation,
+    /// Power weight of each seed: 0 where there are no radii.
+    pub weights: Vec<f64>,
+    /// The number of each cell's seed, in the order in which all were given, from 0: what `SeedId` holds. It is the cell's own
+    /// unless seeds were dropped or merged.
+    pub seed_ids: Vec<u32>,
+    /// The numbers of seeds that are left out because their neighbours outweigh them.
+    pub dropped_seeds: Vec<u32>,
+    /// The numbers of seeds that are left out because their cells were below [`Config::min_diameter`].
+    pub merged_seeds: Vec<u32>,
+    /// Time that each stage took.
+    pub times: Vec<(Stage, Duration)>,
+}
+
+impl Tessellated {
+    /// The numbers of the cells' seeds, for formats that tell them only where they are not those of the cells, as seeds were left
+    /// out; else nothing.
+    pub(crate) fn renumbered(&self) -> &[u32] {
+        let is_renumbered = !self.dropped_seeds.is_empty() || !self.merged_seeds.is_empty();
+        if is_renumbered { &self.seed_ids } else { &[] }
+    }
+}
+
+/// Computes the cells alone.
+///
+/// # Errors
+/// Whatever is wrong with the seeds; [`Error::EmptyGrains`] unless the config drops them.
+pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Error> {
+    let mut clock = Clock { progress, times: Vec::new() };
+    let domain = config.domain()?;
+    let mut seeds = NumberedSeeds::new(clock.time(Stage::Seeds, || seeds(config, &domain))?);
+    let (mut dropped_seeds, mut merged_seeds) = (Vec::new(), Vec::new());
+    let (tessellation, weights) = clock.time(Stage::Cells, || {
+        let mut all = cells_of(config, &domain, &seeds.seeds)?;
+        for step in 1..=config.lloyd_steps {
+            let centroids = all.0.centroids();
+            seeds.seeds.iter_mut().zip(centroids).for_each(|(seed, centroid)| seed.position = centroid);
+            all = cells_of(config, &domain, &seeds.seeds)?;
+            progress(Stage::Cells, step as usize, config.lloyd_steps as usize);
+        }
+        let empty = all.0.empty_cells();
+        if !empty.is_empty() {
+            if !config.drop_empty {
+                return Err(Error::EmptyGrains { grains: empty.iter().map(|cell| cell.0).collect() });
+            }
+            dropped_seeds = seeds.without(&empty);
+            all = cells_of(config, &domain, &seeds.seeds)?;
+        }
+        loop {
+            let small = small_cells(&all.0, config.min_diameter);
+            if small.is_empty() {
+                break;
+            }
+            merged_seeds.extend(seeds.without(&small));
+            all = cells_of(config, &domain, &seeds.seeds)?;
+        }
+        merged_seeds.sort_unstable();
+        Ok::<_, Error>(all)
+    })?;
+    let times = clock.times;
+    Ok(Tessellated { tessellation, weights, seed_ids: seeds.ids, dropped_seeds, merged_seeds, times })
+}
+
+/// Seeds with the numbers that they had among all.
+struct NumberedSeeds {
+    seeds: Vec<FileSeed>,
+    ids: Vec<u32>,
+}
+
+impl NumberedSeeds {
+    fn new(seeds: Vec<FileSeed>) -> Self {
+        Self { ids: (0u32..).take(seeds.len()).collect(), seeds }
+    }
+
+    /// Takes the seeds of some cells out, and returns their numbers.
+    fn without(&mut self, cells: &[CellId]) -> Vec<u32> {
+        let mut is_kept = vec![true; self.seeds.len()];
+        cells.iter().for_each(|cell| is_kept[cell.index()] = false);
+        let numbers = cells.iter().map(|cell| self.ids[cell.index()]).collect();
+        let mut kept = is_kept.iter();
+        self.seeds.retain(|_| *kept.next().unwrap_or(&true));
+        let mut kept = is_kept.iter();
+        self.ids.retain(|_| *kept.next().unwrap_or(&true));
+        numbers
+    }
+}
+
+/// The cells to take out next: those below a share of the mean equivalent diameter, of neighbours the smallest.
+///
+/// When these are gone the others are as they were, or have grown. So in the end the same cells are left as if the smallest of all
+/// had gone each time.
+fn small_cells(cells: &Tessellation, share: f64) -> Vec<CellId> {
+    if share == 0.0 {
+        return Vec::new();
+    }
+    let dimension = cells.domain().dimension();
+    let diameters: Vec<f64> =
+        cells.cell_measures().iter().map(|cell| dimension.ball_diameter(cell.volume)).collect();
+    let limit = share * EquivalentDiameters::new(dimension, &diameters).mean;
+    let is_smaller =
+        |a: CellId, b: CellId| diameters[a.index()].total_cmp(&diameters[b.index()]).then(a.cmp(&b)).is_lt();
+    let is_smallest = |cell: &CellId| {
+        diameters[cell.index()] < limit
+            && cells.neighbors(*cell).into_iter().all(|side| match side {
+                Side::Cell(other) | Side::Image(other, _) => !is_smaller(other, *cell),
+                Side::Wall(_) => true,
+            })
+    };
+    (0u32..).map(CellId).take(diameters.len()).filter(is_smallest).collect()
+}
+
+/// The cells of some seeds, and the seeds' weights.
+fn cells_of(config: &Config, domain: &Domain, seeds: &[FileSeed]) -> Result<(Tessellation, Vec<f64>), Error> {
+    let positions: Vec<DVec3> = seeds.iter().map(|seed| seed.position).collect();
+    let weights: Vec<f64> = seeds.iter().map(|seed| seed.weight.unwrap_or(0.0)).collect();
+    let tessellation = if seeds.iter().any(|seed| seed.weight.is_some()) {
+        Tessellation::power(domain, &positions, &weights)
+    } else {
+        Tessellation::new(domain, &positions)
+    };
+    Ok((tessellation.map_err(|error| located(error, config, seeds))?, weights))
+}
+
+fn seeds(config: &Config, domain: &Domain) -> Result<Vec<FileSeed>, Error> {
+    if let Some(count) = seed_count(config) {
+        check_cells(count, available_memory())?;
+    }
+    let positions = match &config.seeds {
+        SeedSource::File(path) => return read_seed_file(path, config.dimension),
+        SeedSource::Random { count } => random_seeds(*count, domain, config.random_seed),
+        SeedSource::PoissonDisc { count } => poisson_disc_seeds(*count, domain, config.random_seed),
+        SeedSource::Lattice { lattice, cells } => config.lattice_seeds(*lattice, *cells, domain),
+    };
+    let numbered = (1..).map(SeedPlace::Entry).zip(positions);
+    Ok(numbered.map(|(place, position)| FileSeed { position, weight: None, place }).collect())
+}
+
+/// The error with the line of the seed file that it comes from.
+fn located(error: VoronoiError, config: &Config, seeds: &[FileSeed]) -> Error {
+    let SeedSource::File(path) = &config.seeds else { return error.into() };
+    let seed = match &error {
+        VoronoiError::NotFinite { seed, .. }
+        | VoronoiError::OutsideDomain { seed, .. }
+        | VoronoiError::BadWeight { seed, .. } => *seed,
+        VoronoiError::DuplicateSeeds { first, second, position } => {
+            let places = [seeds[*first].place, seeds[*second].place];
+            return Error::DuplicateSeedsInFile { path: path.clone(), places, position: *position };
+        }
+        _ => return error.into(),
+    };
+    Error::SeedInFile { path: path.clone(), place: seeds[seed].place, cause: error }
+}

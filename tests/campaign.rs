@@ -1,0 +1,32 @@
+//! A slice of a campaign: random runs of the program, each certified. `crates/campaign` runs as many as one likes.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::path::PathBuf;
+
+use campaign::{Limits, Outcome, Record, Slice, Summary, run_slice};
+
+#[test]
+fn sixty_random_runs_end_without_panic_invalid_result_or_leftover() {
+    let slice = Slice {
+        program: PathBuf::from(env!("CARGO_BIN_EXE_grainsmooth")),
+        seed: 17,
+        from: 0,
+        runs: 60,
+        // Small, so that all of them take less than a minute.
+        limits: Limits { grains: 30, triangles: 10_000 },
+        keep: None,
+    };
+    let records = run_slice(&slice, |_| Ok(())).unwrap();
+    assert_eq!(records.len(), 60);
+    // Tables of cells are still written before the run is known to succeed.
+    let is_table = |name: &String| name.starts_with("cells.");
+    let is_bad = |record: &Record| {
+        matches!(record.outcome, Outcome::Invalid | Outcome::Panic) || !record.left.iter().all(is_table)
+    };
+    let bad: Vec<&Record> = records.iter().filter(|record| is_bad(record)).collect();
+    assert!(bad.is_empty(), "{bad:#?}\n{}", Summary(&records));
+    // A campaign that certifies nothing would be as quiet.
+    let good = records.iter().filter(|record| record.outcome == Outcome::Good);
+    let certified = good.filter(|record| record.volume_error.is_some_and(|error| error <= 1e-9)).count();
+    assert!(certified >= 20, "{}", Summary(&records));
+}
