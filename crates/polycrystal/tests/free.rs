@@ -103,7 +103,7 @@ fn a_grain_that_shrinks_to_nothing_is_named() {
     // Some have three sides or four.
     let relaxed = flow(&network, &flat, 1.0).map(|relaxed| relaxed.steps);
     let Err(NetworkError::GrainVanished { time, .. }) = relaxed else { panic!("{relaxed:?}") };
-    assert!(time < 0.5, "{time}");
+    assert!(time > 0.1 && time < 0.9, "{time}");
     assert!(flow(&network, &flat, 0.5 * time).is_ok(), "{time}");
 }
 
