@@ -103,7 +103,11 @@ mod tests {
         std::fs::write(&path, SLABS).unwrap();
         let config = Config { seeds: SeedSource::File(path), ..Config::default() };
         let cells = tessellate(&config, &|_, _, _| ()).unwrap();
-        let missed = |grain| NetworkError::VolumeNotRestored { grain: GrainId(grain), relative_error: 1e-3 };
+        let missed = |grain| NetworkError::VolumeNotRestored {
+            grain: GrainId(grain),
+            diameter: 0.1,
+            relative_error: 1e-3,
+        };
         let said = |cause: NetworkError| Error::from(cause).with_grain(&cells).to_string();
         // A slab of volume 5e-4.
         let thin = "grain 3 (SeedId 3), 1.66e-1 mean equivalent diameters wide (9.847e-2)";

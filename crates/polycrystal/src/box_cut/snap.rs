@@ -204,7 +204,6 @@ impl Snapping<'_> {
             place[axis] = self.domain.lower()[axis];
             planes[axis] = true;
             step.0[axis] = if was_above { 0 } else { 1 };
-        } else {
         }
         for held in (0..3).filter(|held| planes[*held]) {
             place[held] = self.domain.lower()[held];
