@@ -22,8 +22,9 @@ use voronoi::{Dimension, Domain, Shift};
 use crate::face_mesh::id;
 use crate::{BoundaryId, Elements, GrainId, Junctions, Network, NetworkError, Side, Surface};
 use caps::caps;
-use pieces::Pieces;
+use pieces::{Pieces, Torus};
 use shape::widen;
+use snap::snap;
 use volumes::restore;
 
 /// A point of the torus, moved by whole periods.
@@ -48,15 +49,30 @@ struct Piece {
     boundary: Option<BoundaryId>,
 }
 
-/// Which points may move for the sake of triangles at the planes of the box.
+/// Which points move for the sake of triangles at the planes of the box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Shaping {
+    /// Those near planes before the cut, and those of thin triangles after it.
+    Full,
+    /// Those near planes before the cut.
+    Near,
+    /// Those of thin triangles after the cut.
+    Thin,
     /// None.
     None,
-    /// Those of flat boundaries, within these.
-    Flat,
-    /// All; the volumes of grains are restored.
-    Curved,
+}
+
+impl Shaping {
+    /// What to try where points come in each other's way.
+    const ALL: [Self; 4] = [Self::Full, Self::Near, Self::Thin, Self::None];
+
+    fn moves_near(self) -> bool {
+        matches!(self, Self::Full | Self::Near)
+    }
+
+    fn moves_thin(self) -> bool {
+        matches!(self, Self::Full | Self::Thin)
+    }
 }
 
 impl Network {
@@ -75,21 +91,31 @@ impl Network {
     /// # Panics
     /// When there is not one point per vertex of the finest level.
     pub fn cut_at_box(&self, points: &[DVec3], is_flat: bool) -> Result<(Self, Vec<DVec3>), NetworkError> {
-        let shaping = match (self.domain().dimension(), is_flat) {
-            (Dimension::Two, _) => Shaping::None,
-            (Dimension::Three, true) => Shaping::Flat,
-            (Dimension::Three, false) => Shaping::Curved,
-        };
-        match self.cut(points, shaping) {
-            // Where points have come in each other's way, they stay.
-            Err(_) if shaping != Shaping::None => self.cut(points, Shaping::None),
-            result => result,
+        if self.domain().dimension() == Dimension::Two {
+            return self.cut(points, Shaping::None, is_flat);
         }
+        let mut cut = self.cut(points, Shaping::ALL[0], is_flat);
+        for shaping in &Shaping::ALL[1..] {
+            if cut.is_ok() {
+                break;
+            }
+            cut = self.cut(points, *shaping, is_flat);
+        }
+        cut
     }
 
-    fn cut(&self, points: &[DVec3], shaping: Shaping) -> Result<(Self, Vec<DVec3>), NetworkError> {
+    fn cut(
+        &self,
+        points: &[DVec3],
+        shaping: Shaping,
+        is_flat: bool,
+    ) -> Result<(Self, Vec<DVec3>), NetworkError> {
         let domain = self.domain();
-        let mut pieces = Pieces::of_network(self, points, shaping);
+        let mut torus = Torus::new(self, points);
+        if shaping.moves_near() {
+            snap(self, &mut torus, points, is_flat);
+        }
+        let mut pieces = Pieces::of_network(self, torus);
         for axis in periodic_axes(domain) {
             pieces.cut(axis);
         }
@@ -99,10 +125,10 @@ impl Network {
         }
         let only_grain = (self.grain_count() == 1).then_some(Side::Grain(GrainId(0)));
         let caps = caps(&mut pieces, only_grain)?;
-        if shaping != Shaping::None {
-            widen(&mut pieces, &caps, shaping == Shaping::Flat);
+        if shaping.moves_thin() {
+            widen(&mut pieces, &caps, is_flat);
         }
-        if shaping == Shaping::Curved {
+        if shaping != Shaping::None && !is_flat {
             restore(&mut pieces, &caps, self.cell_volumes());
         }
         self.in_box(&pieces, &caps)

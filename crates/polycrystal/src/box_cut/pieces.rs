@@ -5,8 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use voronoi::{Dimension, Domain, Shift};
 
-use super::snap::snap;
-use super::{Corner, Piece, Shaping, periodic_axes, place_in_box};
+use super::{Corner, Piece, periodic_axes, place_in_box};
 use crate::face_mesh::id;
 use crate::triangle_quality::squared_sine;
 use crate::{Elements, GrainId, Network, Side};
@@ -49,7 +48,7 @@ pub(super) struct Torus {
 }
 
 impl Torus {
-    fn new(network: &Network, points: &[DVec3]) -> Self {
+    pub(super) fn new(network: &Network, points: &[DVec3]) -> Self {
         let level = network.finest();
         assert_eq!(points.len(), level.vertex_count(), "there must be one point per vertex");
         let domain = network.domain();
@@ -83,15 +82,9 @@ impl Torus {
 }
 
 impl Pieces {
-    /// Whole elements, of boundaries that come twice those of one. Where points can move, those near planes lie in these.
-    pub(super) fn of_network(network: &Network, points: &[DVec3], shaping: Shaping) -> Self {
+    /// Whole elements, of boundaries that come twice those of one.
+    pub(super) fn of_network(network: &Network, torus: Torus) -> Self {
         let level = network.finest();
-        let mut torus = Torus::new(network, points);
-        match shaping {
-            Shaping::None => {}
-            Shaping::Flat => snap(network, &mut torus, points, true),
-            Shaping::Curved => snap(network, &mut torus, points, false),
-        }
         let mut pieces = Self {
             pieces: Vec::new(),
             meets_itself: None,

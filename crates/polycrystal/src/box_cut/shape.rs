@@ -25,8 +25,8 @@ const STEPS: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
 /// Factor by which the square of the smallest sine has to grow.
 const GAIN: f64 = 1.02;
 
-/// Cosine of the largest angle by which a triangle may turn from where its boundary faces there (45 degrees).
-const LARGEST_TURN: f64 = 0.7;
+/// Cosine of the largest angle by which a triangle may turn from where its boundary faces there (32 degrees).
+const LARGEST_TURN: f64 = 0.85;
 
 /// Moves points around thin triangles, in flat networks only those inside caps.
 pub(super) fn widen(pieces: &mut Pieces, caps: &[Piece], is_flat: bool) {

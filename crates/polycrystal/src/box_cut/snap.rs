@@ -203,7 +203,7 @@ impl Snapping<'_> {
         if into_plane {
             place[axis] = self.domain.lower()[axis];
             planes[axis] = true;
-            step.0[axis] = if was_above { 0 } else { 1 };
+            step.0[axis] = i8::from(!was_above);
         }
         for held in (0..3).filter(|held| planes[*held]) {
             place[held] = self.domain.lower()[held];
