@@ -79,6 +79,7 @@ fn summary_counts_what_the_file_holds() {
         "junctions",
         "mesh",
         "angles",
+        "residual",
         "triangles",
         "volumes",
         "validation",

@@ -29,14 +29,16 @@ impl Domain {
             (0.45, Kind::Walls),
             (0.42, Kind::Periodic),
             (0.09, Kind::Curved),
-            (0.04, Kind::Planes),
+            (0.03, Kind::Planes),
+            (0.02, Kind::Surface),
         ]) {
             Kind::Walls => {}
             Kind::Periodic => domain.repeat(draw, options),
             Kind::Curved => domain.curve(draw, options),
             Kind::Planes => domain.cut_corners(draw, options),
+            Kind::Surface => domain.close_surface(options),
         }
-        if !options.has("half-spaces") {
+        if domain.files.is_empty() {
             options.set("box", &domain.sides);
         }
         domain
@@ -111,6 +113,21 @@ impl Domain {
         let longest = self.sides.iter().copied().fold(0.0, f64::max);
         self.inner = 0.28 * shortest / longest;
     }
+
+    /// An octahedron in the box; in the plane the box itself.
+    fn close_surface(&mut self, options: &mut Options) {
+        let &[x, y, z] = &self.sides[..] else { return };
+        let mut content = String::new();
+        for [i, j, k] in [[0., 1., 1.], [2., 1., 1.], [1., 0., 1.], [1., 2., 1.], [1., 1., 0.], [1., 1., 2.]]
+        {
+            content += &format!("v {:?} {:?} {:?}\n", i * x / 2.0, j * y / 2.0, k * z / 2.0);
+        }
+        content += "f 6 2 4\nf 6 4 1\nf 6 1 3\nf 6 3 2\nf 5 4 2\nf 5 1 4\nf 5 3 1\nf 5 2 3\n";
+        self.files.push(("body.obj".to_owned(), content.into_bytes()));
+        options.set("domain", ["body.obj"]);
+        // The box of a third of the sides touches the faces.
+        self.inner = 0.33;
+    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -119,6 +136,7 @@ enum Kind {
     Periodic,
     Curved,
     Planes,
+    Surface,
 }
 
 /// Sides of a box in proportion: a cube, or up to 20:1.

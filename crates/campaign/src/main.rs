@@ -38,7 +38,7 @@ struct Arguments {
     #[arg(long)]
     program: Option<PathBuf>,
 
-    /// Keep the input of runs that are neither good nor refused in this directory
+    /// Keep the input of runs that are neither good nor refused, or have thin triangles, in this directory
     #[arg(long)]
     keep: Option<PathBuf>,
 

@@ -1,5 +1,8 @@
 //! A command line of `grainsmooth`, while it is put together.
 
+/// Options that are given once for each of their values.
+const REPEATED: [&str; 1] = ["output"];
+
 /// Options by their long names, each with its values; a switch has none.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Options(Vec<(&'static str, Vec<String>)>);
@@ -34,8 +37,12 @@ impl Options {
 
     /// The words of the command line.
     pub fn words(&self) -> Vec<String> {
-        let words = |(name, values): &(&str, Vec<String>)| {
-            std::iter::once(format!("--{name}")).chain(values.iter().cloned()).collect::<Vec<_>>()
+        let words = |(name, values): &(&str, Vec<String>)| -> Vec<String> {
+            let option = format!("--{name}");
+            if REPEATED.contains(name) {
+                return values.iter().flat_map(|value| [option.clone(), value.clone()]).collect();
+            }
+            std::iter::once(option).chain(values.iter().cloned()).collect()
         };
         self.0.iter().flat_map(words).collect()
     }
@@ -62,8 +69,12 @@ mod tests {
         options.set("seeds", [7]);
         options.switch("free");
         options.set("box", [1e-9, 1.0]);
-        assert_eq!(options.words().join(" "), "--seeds 7 --free --box 0.000000001 1");
-        assert_eq!(options.toml(), "seeds = \"7\"\nfree = true\nbox = [\"0.000000001\", \"1\"]\n");
+        options.set("output", ["a.vtp", "b.stl"]);
+        let words = "--seeds 7 --free --box 0.000000001 1 --output a.vtp --output b.stl";
+        assert_eq!(options.words().join(" "), words);
+        let toml =
+            "seeds = \"7\"\nfree = true\nbox = [\"0.000000001\", \"1\"]\noutput = [\"a.vtp\", \"b.stl\"]\n";
+        assert_eq!(options.toml(), toml);
         assert_eq!(options.value("seeds"), Some("7"));
         assert!(options.has("free") && options.value("free").is_none());
     }

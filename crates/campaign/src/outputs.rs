@@ -102,23 +102,31 @@ fn network(draw: &mut Draw, dimension: usize, options: &mut Options, promise: &m
     if draw.chance(0.15) {
         options.switch("arrays");
     }
+    let mut outputs = Vec::new();
     if draw.chance(0.03) && !["vtm", "msh"].contains(&format) {
-        options.set("output", ["-"]);
         options.set("format", [format]);
         promise.prints = true;
-        return;
+        outputs.push("-".to_owned());
+    } else {
+        let name = format!("out.{format}");
+        promise.file("out", name.clone());
+        match format {
+            "vtm" => promise.files.push("out".to_owned()),
+            "msh" => promise.files.push("out.geo".to_owned()),
+            _ => {}
+        }
+        outputs.push(name);
     }
-    let name = format!("out.{format}");
-    if ["vtp", "vtu", "vtk"].contains(&format) {
+    let is_surface = ["vtp", "vtu", "vtk"].contains(&format) && !promise.prints;
+    promise.surface = is_surface.then(|| outputs[0].clone());
+    // What `check` cannot read is written as what it reads too.
+    if draw.chance(if is_surface { 0.05 } else { 0.85 }) {
+        let name = format!("surface.{}", draw.one_of(&["vtp", "vtu", "vtk"]));
+        promise.file("surface", name.clone());
         promise.surface = Some(name.clone());
+        outputs.push(name);
     }
-    promise.file("out", name.clone());
-    match format {
-        "vtm" => promise.files.push("out".to_owned()),
-        "msh" => promise.files.push("out.geo".to_owned()),
-        _ => {}
-    }
-    options.set("output", [name]);
+    options.set("output", outputs);
 }
 
 fn tables(draw: &mut Draw, dimension: usize, options: &mut Options, promise: &mut Promise) {

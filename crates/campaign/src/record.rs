@@ -67,6 +67,15 @@ impl Record {
     pub fn is_unacceptable(&self) -> bool {
         matches!(self.outcome, Outcome::Invalid | Outcome::Panic) || !self.left.is_empty()
     }
+
+    /// Whether somebody may want to repeat the run: it is neither good nor refused, or has thin triangles that regularized cells
+    /// should not have.
+    pub fn is_notable(&self) -> bool {
+        let is_thin = self.least_angle.is_some_and(|angle| angle < THIN);
+        !matches!(self.outcome, Outcome::Good | Outcome::Refused)
+            || self.is_unacceptable()
+            || is_thin && self.angle_class != AngleClass::Unregularized
+    }
 }
 
 /// What records sum up to, in a text for people.

@@ -26,7 +26,7 @@ pub struct Slice {
     pub runs: u64,
     /// What the runs are kept to.
     pub limits: Limits,
-    /// Directory for the input of runs that are neither good nor refused, each in a directory of its own.
+    /// Directory for the input of [notable](Record::is_notable) runs, each in a directory of its own.
     pub keep: Option<PathBuf>,
 }
 
@@ -62,13 +62,7 @@ fn run_one(slice: &Slice, index: u64) -> anyhow::Result<Record> {
         _ => changes(&before, &content(directory.path())?, &ended),
     };
     let (outcome, message, certificate) = judge(&case, slice, directory.path(), &ended)?;
-    let is_wrong = !matches!(outcome, Outcome::Good | Outcome::Refused) || !left.is_empty();
-    if let Some(keep) = slice.keep.as_ref().filter(|_| is_wrong) {
-        let kept = keep.join(format!("{}-{index}", slice.seed));
-        case.files.iter().try_for_each(|(name, content)| put(&kept.join(name), content))?;
-        put(&kept.join("command"), format!("grainsmooth {}\n{message}\n", shell_words(&words)).as_bytes())?;
-    }
-    Ok(Record {
+    let record = Record {
         seed: slice.seed,
         index,
         kind: case.kind.clone(),
@@ -83,7 +77,13 @@ fn run_one(slice: &Slice, index: u64) -> anyhow::Result<Record> {
         least_angle: certificate.angles.map(|[least, _]| least),
         first_percentile_angle: certificate.angles.map(|[_, percentile]| percentile),
         volume_error: certificate.volume_error,
-    })
+    };
+    if let Some(keep) = slice.keep.as_ref().filter(|_| record.is_notable()) {
+        let kept = keep.join(format!("{}-{index}", slice.seed));
+        case.files.iter().try_for_each(|(name, content)| put(&kept.join(name), content))?;
+        put(&kept.join("command"), format!("grainsmooth {}\n", record.command).as_bytes())?;
+    }
+    Ok(record)
 }
 
 /// What the run ended with, and why it is not good.

@@ -48,6 +48,13 @@ impl FailedGrain {
     }
 }
 
+impl FailedGrain {
+    /// The least share, with two decimals, that is well above this grain's.
+    fn limit(&self) -> f64 {
+        (100.0 * MARGIN * self.share).ceil() / 100.0
+    }
+}
+
 impl Error {
     /// The error with the grain that it is about.
     pub(crate) fn with_grain(self, cells: &Tessellated) -> Self {
@@ -67,12 +74,51 @@ impl fmt::Display for FailedGrain {
         let which = if *is_smallest { "the smallest is grain" } else { "grain" };
         write!(
             out,
-            "{which} {grain} (SeedId {seed}) of equivalent diameter {diameter:.3e}, {share:.2e} of the mean"
+            "{which} {grain} (SeedId {seed}), {share:.2e} mean equivalent diameters wide ({diameter:.3e})"
         )?;
         if *share < SMALL {
-            let limit = (100.0 * MARGIN * share).ceil() / 100.0;
-            write!(out, "; merge such cells with --min-diameter {limit}")?;
+            write!(out, "; merge such cells with --min-diameter {}", self.limit())?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use polycrystal::GrainId;
+
+    use super::*;
+    use crate::{Config, SeedSource, tessellate};
+
+    /// Slabs across x, of which the fourth is thin.
+    const SLABS: &str =
+        "0.1 0.5 0.5\n0.3 0.5 0.5\n0.5 0.5 0.5\n0.5005 0.5 0.5\n0.501 0.5 0.5\n0.7 0.5 0.5\n0.9 0.5 0.5\n";
+
+    /// A run once failed over one tiny cell without saying how small it was, or what would help.
+    #[test]
+    fn failures_name_the_grain_its_size_and_a_remedy_that_takes_it_out() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("seeds.txt");
+        std::fs::write(&path, SLABS).unwrap();
+        let config = Config { seeds: SeedSource::File(path), ..Config::default() };
+        let cells = tessellate(&config, &|_, _, _| ()).unwrap();
+        let missed = |grain| NetworkError::VolumeNotRestored {
+            grain: GrainId(grain),
+            diameter: 0.1,
+            relative_error: 1e-3,
+        };
+        let said = |cause: NetworkError| Error::from(cause).with_grain(&cells).to_string();
+        // A slab of volume 5e-4.
+        let thin = "grain 3 (SeedId 3), 1.66e-1 mean equivalent diameters wide (9.847e-2)";
+        let remedy = "; merge such cells with --min-diameter 0.2";
+        assert!(said(missed(3)).ends_with(&format!("; {thin}{remedy}")), "{}", said(missed(3)));
+        let folded = said(NetworkError::Folded { count: 2 });
+        assert!(folded.ends_with(&format!("; the smallest is {thin}{remedy}")), "{folded}");
+        assert!(!said(missed(0)).contains("--min-diameter"), "{}", said(missed(0)));
+        assert!(!said(NetworkError::BadEdgeLength(0.0)).contains("grain"));
+        let merged = tessellate(&Config { min_diameter: 0.2, ..config }, &|_, _, _| ()).unwrap();
+        assert_eq!(merged.merged_seeds, [3]);
+        assert_eq!(merged.seed_ids, [0, 1, 2, 4, 5, 6]);
     }
 }

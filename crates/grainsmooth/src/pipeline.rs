@@ -143,7 +143,7 @@ impl Polycrystal {
         }
         let volumes = self.network.cell_volumes().to_vec();
         let start = Instant::now();
-        let cut = self.network.cut_at_box(&self.points).map_err(Error::from);
+        let cut = self.network.cut_at_box(&self.points, self.relaxed.is_flat).map_err(Error::from);
         let (network, points) = cut.map_err(|error| error.with_grain(&self.cells))?;
         (self.network, self.points) = (network.with_cell_volumes(volumes), points);
         self.add_time(Stage::Subdivision, start.elapsed());

@@ -7,8 +7,12 @@
 //! All of this happens on the torus: a point is one of the box, and a shift by whole periods. What is found on one side of a
 //! plane is so found on the other, and points on opposite walls differ in that one coordinate alone, bit for bit.
 
+mod cap_points;
 mod caps;
 mod pieces;
+mod shape;
+mod snap;
+mod volumes;
 
 use std::collections::BTreeMap;
 
@@ -18,7 +22,10 @@ use voronoi::{Dimension, Domain, Shift};
 use crate::face_mesh::id;
 use crate::{BoundaryId, Elements, GrainId, Junctions, Network, NetworkError, Side, Surface};
 use caps::caps;
-use pieces::Pieces;
+use pieces::{Pieces, Torus};
+use shape::widen;
+use snap::snap;
+use volumes::restore;
 
 /// A point of the torus, moved by whole periods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -38,6 +45,34 @@ impl Corner {
 struct Piece {
     corners: Vec<Corner>,
     sides: [Side; 2],
+    /// The boundary that it is part of; none for a cap.
+    boundary: Option<BoundaryId>,
+}
+
+/// Which points move for the sake of triangles at the planes of the box.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Shaping {
+    /// Those near planes before the cut, and those of thin triangles after it.
+    Full,
+    /// Those near planes before the cut.
+    Near,
+    /// Those of thin triangles after the cut.
+    Thin,
+    /// None.
+    None,
+}
+
+impl Shaping {
+    /// What to try where points come in each other's way.
+    const ALL: [Self; 4] = [Self::Full, Self::Near, Self::Thin, Self::None];
+
+    fn moves_near(self) -> bool {
+        matches!(self, Self::Full | Self::Near)
+    }
+
+    fn moves_thin(self) -> bool {
+        matches!(self, Self::Full | Self::Thin)
+    }
 }
 
 impl Network {
@@ -47,51 +82,93 @@ impl Network {
     /// Points on opposite walls are the same, bit for bit, but for the coordinate across. A boundary that lies in a plane of the box
     /// becomes two walls, and one at which a grain meets its own image is left out: in the box there is the same on both sides.
     ///
+    /// In space, points near the planes move so that these cut no slivers, and volumes are restored; those of boundaries that are flat
+    /// move within these alone.
+    ///
     /// # Errors
     /// [`NetworkError::CutCrosses`]; [`NetworkError::MeetsItself`] where that leaves folds; [`NetworkError::CutInvalid`] where the pieces are no valid network.
     ///
     /// # Panics
     /// When there is not one point per vertex of the finest level.
-    pub fn cut_at_box(&self, points: &[DVec3]) -> Result<(Self, Vec<DVec3>), NetworkError> {
+    pub fn cut_at_box(&self, points: &[DVec3], is_flat: bool) -> Result<(Self, Vec<DVec3>), NetworkError> {
+        if self.domain().dimension() == Dimension::Two {
+            return self.cut(points, Shaping::None, is_flat);
+        }
+        let mut cut = self.cut(points, Shaping::ALL[0], is_flat);
+        for shaping in &Shaping::ALL[1..] {
+            if cut.is_ok() {
+                break;
+            }
+            cut = self.cut(points, *shaping, is_flat);
+        }
+        cut
+    }
+
+    fn cut(
+        &self,
+        points: &[DVec3],
+        shaping: Shaping,
+        is_flat: bool,
+    ) -> Result<(Self, Vec<DVec3>), NetworkError> {
         let domain = self.domain();
-        let mut pieces = Pieces::of_network(self, points);
+        let mut torus = Torus::new(self, points);
+        if shaping.moves_near() {
+            snap(self, &mut torus, points, is_flat);
+        }
+        let mut pieces = Pieces::of_network(self, torus);
         for axis in periodic_axes(domain) {
             pieces.cut(axis);
         }
         pieces.move_into_box();
+        if domain.dimension() == Dimension::Three {
+            pieces.triangulate();
+        }
         let only_grain = (self.grain_count() == 1).then_some(Side::Grain(GrainId(0)));
         let caps = caps(&mut pieces, only_grain)?;
-        let Pieces { pieces, places, meets_itself, .. } = pieces;
+        if shaping.moves_thin() {
+            widen(&mut pieces, &caps, is_flat);
+        }
+        if shaping != Shaping::None && !is_flat {
+            restore(&mut pieces, &caps, self.cell_volumes());
+        }
+        self.in_box(&pieces, &caps)
+    }
+
+    /// The network that pieces and caps make up.
+    fn in_box(&self, pieces: &Pieces, caps: &[Piece]) -> Result<(Self, Vec<DVec3>), NetworkError> {
+        let domain = self.domain();
         let mut numbers: BTreeMap<Corner, u32> = BTreeMap::new();
         let mut box_points = Vec::new();
-        let mut sides: Vec<[Side; 2]> = pieces.iter().chain(&caps).map(|piece| piece.sides).collect();
-        sides.sort_unstable();
-        sides.dedup();
+        let all = || pieces.pieces.iter().chain(caps);
+        // Where a boundary between a grain and its own image was left out, others end that lie between the same grains.
+        let mut boundaries: Vec<([Side; 2], Option<BoundaryId>)> =
+            all().map(|piece| (piece.sides, piece.boundary)).collect();
+        boundaries.sort_unstable();
+        boundaries.dedup();
         let (mut triangles, mut segments, mut boundary_of) = (Vec::new(), Vec::new(), Vec::new());
-        for piece in pieces.iter().chain(&caps) {
+        for piece in all() {
             let mut number = |corner: &Corner| {
                 *numbers.entry(*corner).or_insert_with(|| {
-                    box_points.push(place_in_box(domain, places[corner.point as usize], corner.shift));
+                    box_points.push(pieces.place(*corner));
                     id(box_points.len() - 1)
                 })
             };
             let corners: Vec<u32> = piece.corners.iter().map(&mut number).collect();
             match domain.dimension() {
                 Dimension::Two => segments.push([corners[0], corners[1]]),
-                Dimension::Three => {
-                    triangles.extend((2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]]))
-                }
+                Dimension::Three => triangles.push([corners[0], corners[1], corners[2]]),
             }
-            let side = sides.binary_search(&piece.sides).expect("all were listed");
-            boundary_of.resize(triangles.len() + segments.len(), BoundaryId(id(side)));
+            let boundary = boundaries.binary_search(&(piece.sides, piece.boundary));
+            boundary_of.push(BoundaryId(id(boundary.expect("all were listed"))));
         }
         let elements = match domain.dimension() {
             Dimension::Two => Elements::Segments(&segments),
             Dimension::Three => Elements::Triangles(&triangles),
         };
+        let sides: Vec<[Side; 2]> = boundaries.iter().map(|(sides, _)| *sides).collect();
         let surface = Surface { points: &box_points, elements, boundary_of: &boundary_of, sides: &sides };
         let walled = domain.clone().with_periods(glam::BVec3::FALSE);
-        match (Self::of_surface(&walled, &surface, Junctions::Crease, 0), meets_itself) {
+        match (Self::of_surface(&walled, &surface, Junctions::Crease, 0), pieces.meets_itself) {
             (Err(NetworkError::Invalid(_)), Some(grain)) => Err(NetworkError::MeetsItself { grain }),
             (Err(NetworkError::Invalid(faults)), None) => Err(NetworkError::CutInvalid(faults)),
             (result, _) => result,

@@ -9,7 +9,7 @@
 //! First the control points move, then those of level 1, which start where subdivision puts them.
 
 mod clusters;
-mod conjugate_gradients;
+pub(crate) mod conjugate_gradients;
 mod equilibrium;
 mod face_corners;
 mod flow;

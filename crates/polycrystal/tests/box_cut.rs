@@ -5,9 +5,9 @@ mod common;
 
 use std::collections::BTreeSet;
 
-use common::random_seeds;
+use common::{random_seeds, regular_network};
 use glam::{BVec3, DVec3};
-use polycrystal::{Junctions, Network, NetworkError, Relaxation, relax, validate};
+use polycrystal::{Junctions, Mesh, Network, NetworkError, Relaxation, TriangleQuality, relax, validate};
 use voronoi::{Domain, Tessellation};
 
 fn cuboid() -> Domain {
@@ -30,7 +30,8 @@ fn check_cut(domain: &Domain, count: usize) {
         .map(|seed| if domain.dimension() == voronoi::Dimension::Two { seed.with_z(0.0) } else { seed })
         .collect();
     let (network, points) = relaxed(domain, &seeds);
-    let (cut, cut_points) = network.cut_at_box(&points).unwrap_or_else(|error| panic!("{domain}: {error}"));
+    let (cut, cut_points) =
+        network.cut_at_box(&points, false).unwrap_or_else(|error| panic!("{domain}: {error}"));
     let cut = cut.with_cell_volumes(network.cell_volumes().to_vec());
     let validation = validate(&cut, &cut_points).expect("valid");
     assert!(validation.largest_volume_error < 1e-9, "{validation:?}");
@@ -116,10 +117,53 @@ fn lattices_are_cut_where_they_lie_in_the_walls() {
 fn cut_is_valid(domain: &Domain, seeds: &[DVec3], name: &str) {
     let (network, points) = relaxed(domain, seeds);
     let (cut, cut_points) =
-        network.cut_at_box(&points).unwrap_or_else(|error| panic!("{name}, {domain}: {error}"));
+        network.cut_at_box(&points, false).unwrap_or_else(|error| panic!("{name}, {domain}: {error}"));
     let cut = cut.with_cell_volumes(network.cell_volumes().to_vec());
     let validation = validate(&cut, &cut_points).unwrap_or_else(|error| panic!("{name}, {domain}: {error}"));
     assert!(validation.largest_volume_error < 1e-9, "{name}, {domain}: {validation:?}");
+}
+
+/// A plane through a network passes near many points; what it cut there used to have angles of 0.00 degrees.
+#[test]
+fn planes_of_the_box_cut_no_slivers() {
+    let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
+    for (count, random_seed) in [(20, 1), (40, 2), (40, 3), (60, 4)] {
+        let (network, flat) = regular_network(&domain, count, random_seed, 2);
+        let (cut, points) = network.cut_at_box(&common::relaxed(&network, &flat), false).expect("is cut");
+        let cut = cut.with_cell_volumes(network.cell_volumes().to_vec());
+        let validation = validate(&cut, &points).expect("valid");
+        assert!(validation.largest_volume_error < 1e-9, "{validation:?}");
+        let triangles = validation.triangles.expect("three dimensions");
+        assert!(triangles.least >= TriangleQuality::BOUND, "{triangles:?} of {count} grains, {random_seed}");
+        assert!(triangles.first_percentile >= 8.0, "{triangles:?} of {count} grains, {random_seed}");
+    }
+}
+
+#[test]
+fn flat_boundaries_stay_flat_when_they_are_cut() {
+    let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
+    let tessellation = Tessellation::new(&domain, &random_seeds(&domain, 30, 6)).expect("valid seeds");
+    let (network, flat) = Network::new(&tessellation, Junctions::Crease, 2).expect("a small network");
+    let (cut, points) = network.cut_at_box(&network.divide(&flat), true).expect("is cut");
+    let cut = cut.with_cell_volumes(network.cell_volumes().to_vec());
+    let validation = validate(&cut, &points).expect("valid");
+    assert!(validation.largest_volume_error < 1e-12, "{validation:?}");
+    let Mesh::Triangles(mesh) = &cut.finest().mesh else { unreachable!("three dimensions") };
+    let mut planes: Vec<Option<(f64, DVec3, DVec3)>> = vec![None; cut.boundaries().len()];
+    let triangles = || mesh.triangles().iter().zip(&cut.finest().boundary_of);
+    for (corners, boundary) in triangles() {
+        let [a, b, c] = corners.map(|corner| points[corner as usize]);
+        let normal = (b - a).cross(c - a);
+        let largest = planes[boundary.index()].get_or_insert((0.0, a, normal));
+        if normal.length() > largest.0 {
+            *largest = (normal.length(), a, normal.normalize());
+        }
+    }
+    for (corners, boundary) in triangles() {
+        let (_, origin, normal) = planes[boundary.index()].expect("has triangles");
+        let off = corners.map(|corner| (points[corner as usize] - origin).dot(normal).abs());
+        assert!(off.iter().all(|off| *off < 1e-11), "{off:?}");
+    }
 }
 
 /// Where a grain is its own neighbour nothing stands between the two in the box.
@@ -130,7 +174,7 @@ fn few_grains_are_cut_or_refused() {
         let domain = domain.with_periods(BVec3::TRUE);
         for count in 1..5 {
             let (network, points) = relaxed(&domain, &random_seeds(&domain, count, 5));
-            match network.cut_at_box(&points) {
+            match network.cut_at_box(&points, false) {
                 Ok((in_box, box_points)) => {
                     let in_box = in_box.with_cell_volumes(network.cell_volumes().to_vec());
                     let validation = validate(&in_box, &box_points).expect("valid");

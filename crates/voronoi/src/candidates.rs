@@ -9,9 +9,9 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 
 use crate::generator::Generator;
-use crate::grid::SeedGrid;
 use crate::half_space::HalfSpace;
-use crate::wide::{self, Around, LANES, PlaneColumns, Ray, Units};
+use crate::site_tree::SiteTree;
+use crate::wide::{self, Around, LANES, PlaneColumns, Ray, Units, Within, signed_square};
 
 /// Half the distance between 1 and the next number in single precision.
 const SINGLE_ROUNDOFF: f64 = f32::EPSILON as f64 / 2.0;
@@ -60,13 +60,14 @@ impl Candidates {
         // The power of two at or above the reciprocal; where there is none, single precision will not tell much.
         let biased_exponent = distance.to_bits() >> 52 & 0x7ff;
         let scale = f64::from_bits(2046u64.saturating_sub(biased_exponent).clamp(1, 2045) << 52);
-        let half_square = 0.5 * scale * (1.0 - EVALUATION_ERROR);
-        self.units =
-            Units { scale, half_square, first_rounded, largest_unit: POSITION_ERROR / position_error };
-    }
-
-    pub(crate) fn len(&self) -> usize {
-        self.count
+        self.units = Units {
+            scale,
+            half_unit: 0.5 * scale * (1.0 - EVALUATION_ERROR),
+            // The factor above makes a negative difference too large.
+            weight_error: 4.0 * EVALUATION_ERROR,
+            first_rounded,
+            largest_unit: POSITION_ERROR / position_error,
+        };
     }
 
     pub(crate) fn generators(&self) -> &[Generator] {
@@ -82,42 +83,33 @@ impl Candidates {
         self.count += 1;
     }
 
-    /// Adds the bisectors of `seed` at `center` with the sites of a grid up to a distance away, but for those less far than the
-    /// root of the first of two squares; the second is that of the distance. No site has a weight yet.
+    /// Adds the bisectors of a seed with the sites of a tree that are farther away than a radius, if there is one, and within that of
+    /// `within`; the sites are within a reach. False if too many would have to be looked at: then none is added.
     #[inline]
     pub(crate) fn push_within(
         &mut self,
         seed: u32,
-        center: DVec3,
-        grid: &SeedGrid,
-        distance: f64,
-        squares: [f64; 2],
-    ) {
+        tree: &SiteTree,
+        within: &Within,
+        reach: f64,
+        from: Option<f64>,
+        most: usize,
+    ) -> bool {
         let mut runs = std::mem::take(&mut self.runs);
-        runs.clear();
-        let mut most = LANES;
-        grid.for_each_run(center, distance, |run| {
-            most += run.len();
-            runs.push(run);
-        });
-        self.make_room(most);
-        let first = self.count;
-        let generators = &mut self.generators[first..];
-        let [x, y, z, offsets] = [&mut self.x, &mut self.y, &mut self.z, &mut self.offsets];
-        let planes = [&mut x[first..], &mut y[first..], &mut z[first..], &mut offsets[first..]];
-        let around = Around { seed, center, squares, units: self.units };
-        self.count += wide::compact(grid.columns(), &runs, &around, generators, planes);
-        self.runs = runs;
-    }
-
-    /// Moves bisectors from number `first` on outward, each by what is given with the square of its site's distance.
-    pub(crate) fn shift_offsets(&mut self, first: usize, shift: impl Fn(Generator) -> (f64, f64)) {
-        let planes = self.generators[first..self.count].iter().zip(&mut self.offsets[first..self.count]);
-        for (generator, offset) in planes {
-            let (shift, squared) = shift(*generator);
-            let shift = shift * wide::unit(squared) * self.units.scale;
-            *offset += single(shift - EVALUATION_ERROR * shift.abs());
+        let is_found = tree.find_runs(within, reach, most, &mut runs);
+        if is_found {
+            self.make_room(LANES + runs.iter().map(|run| run.len()).sum::<usize>());
+            let first = self.count;
+            let generators = &mut self.generators[first..];
+            let [x, y, z, offsets] = [&mut self.x, &mut self.y, &mut self.z, &mut self.offsets];
+            let planes = [&mut x[first..], &mut y[first..], &mut z[first..], &mut offsets[first..]];
+            let limits = [from, Some(within.radius)].map(|radius| Some(signed_square(2.0 * radius?)));
+            let &Within { center, own_weight, .. } = within;
+            let around = Around { seed, center, own_weight, limits, units: self.units };
+            self.count += wide::compact(tree.columns(), &runs, &around, generators, planes);
         }
+        self.runs = runs;
+        is_found
     }
 
     /// Fills the last lanes, after planes were added.

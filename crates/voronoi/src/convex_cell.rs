@@ -19,7 +19,7 @@ pub(crate) struct ConvexCell {
     seed: u32,
     planes: Vec<HalfSpace>,
     /// Of each vertex, the planes that meet there.
-    triples: Vec<[u16; 3]>,
+    triples: Vec<[u32; 3]>,
     x: Vec<f64>,
     y: Vec<f64>,
     z: Vec<f64>,
@@ -28,7 +28,7 @@ pub(crate) struct ConvexCell {
     /// Largest distance of a vertex from the seed, with its error.
     radius: f64,
     cut: Vec<usize>,
-    hole: Vec<(u16, u16)>,
+    hole: Vec<(u32, u32)>,
 }
 
 impl ConvexCell {
@@ -46,11 +46,11 @@ impl ConvexCell {
             cut: Vec::new(),
             hole: Vec::new(),
         };
-        for corner in 0..8u16 {
+        for corner in 0..8u32 {
             let upper = [corner & 1, (corner >> 1) & 1, (corner >> 2) & 1];
             let [a, b, c] = [upper[0], 2 + upper[1], 4 + upper[2]];
             // Each lower wall turns the orientation of the triple round once.
-            let triple = if upper.iter().sum::<u16>() % 2 == 1 { [a, b, c] } else { [a, c, b] };
+            let triple = if upper.iter().sum::<u32>() % 2 == 1 { [a, b, c] } else { [a, c, b] };
             cell.push_vertex(triple, input);
         }
         cell.update_radius();
@@ -83,7 +83,7 @@ impl ConvexCell {
             } else if value < -error {
                 false
             } else {
-                let planes = self.triples[v].map(|p| self.planes[usize::from(p)].generator);
+                let planes = self.triples[v].map(|p| self.planes[p as usize].generator);
                 input.decide(self.seed, planes, plane.generator).beyond
             };
             if beyond {
@@ -114,7 +114,7 @@ impl ConvexCell {
                 buffer.swap_remove(v);
             }
         }
-        let new = u16::try_from(self.planes.len()).expect("a cell is cut by fewer than 65 536 planes");
+        let new = u32::try_from(self.planes.len()).expect("there are fewer than 2^32 generators");
         self.planes.push(plane);
         for edge in 0..self.hole.len() {
             let (from, to) = self.hole[edge];
@@ -125,8 +125,8 @@ impl ConvexCell {
         }
     }
 
-    fn push_vertex(&mut self, triple: [u16; 3], input: ExactInput) {
-        let planes = triple.map(|p| &self.planes[usize::from(p)]);
+    fn push_vertex(&mut self, triple: [u32; 3], input: ExactInput) {
+        let planes = triple.map(|p| &self.planes[p as usize]);
         let vertex = Intersection::rounded(planes).filter(|vertex| vertex.is_good_to(LOOSE));
         let vertex = vertex.unwrap_or_else(|| Intersection::exact(self.seed, planes, input));
         self.triples.push(triple);
@@ -151,18 +151,18 @@ impl ConvexCell {
     fn forget_unused_planes(&mut self) {
         let mut used = vec![false; self.planes.len()];
         for p in self.triples.iter().flatten() {
-            used[usize::from(*p)] = true;
+            used[*p as usize] = true;
         }
-        let mut new_index = vec![0u16; self.planes.len()];
-        let mut kept = 0u16;
+        let mut new_index = vec![0u32; self.planes.len()];
+        let mut kept = 0;
         for (index, is_used) in new_index.iter_mut().zip(&used) {
             *index = kept;
-            kept += u16::from(*is_used);
+            kept += u32::from(*is_used);
         }
         let mut keep = used.iter();
         self.planes.retain(|_| *keep.next().unwrap_or(&true));
         for p in self.triples.iter_mut().flatten() {
-            *p = new_index[usize::from(*p)];
+            *p = new_index[*p as usize];
         }
     }
 }
@@ -181,7 +181,36 @@ impl Cutting for ConvexCell {
     }
 
     fn vertices(&self) -> Vec<[Generator; 3]> {
-        let generators = |triple: &[u16; 3]| triple.map(|p| self.planes[usize::from(p)].generator);
+        let generators = |triple: &[u32; 3]| triple.map(|p| self.planes[p as usize].generator);
         self.triples.iter().map(generators).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::Domain;
+    use crate::images::ImageTable;
+
+    /// Numbers of planes once had 16 bits: a cell with as many neighbours ended the program.
+    #[test]
+    fn more_planes_than_16_bits_number() {
+        let centre = DVec3::splat(0.5);
+        let mut seeds = vec![centre];
+        seeds.extend(DVec3::AXES.into_iter().flat_map(|axis| [centre - 0.25 * axis, centre + 0.25 * axis]));
+        let (domain, images) = (Domain::unit_cube(), ImageTable::default());
+        let input = ExactInput { domain: &domain, seeds: &seeds, weights: None, images: &images };
+        let mut cell = ConvexCell::new(0, input);
+        for site in 1..7 {
+            // As if so many had cut the cell, and were cut off themselves.
+            cell.planes.resize(70_000, cell.planes[0]);
+            cell.cut(Generator::site(site), input);
+        }
+        let vertices = cell.vertices();
+        assert_eq!(vertices.len(), 8);
+        assert!(vertices.iter().flatten().all(|generator| (1..7).contains(&generator.0)));
+        assert!((cell.radius() - 0.125 * 3f64.sqrt()).abs() < 1e-12);
     }
 }

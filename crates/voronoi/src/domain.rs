@@ -5,7 +5,6 @@ use std::sync::Arc;
 use glam::{BVec3, DVec3};
 
 use crate::big::{is_outside, unit_normal};
-use crate::generator::Generator;
 use crate::half_space::{EVALUATION_ERROR, HalfSpace};
 use crate::polyhedron::{Extent, Polyhedron};
 use crate::{Tessellation, VoronoiError, Wall, WallPlane};
@@ -45,7 +44,7 @@ impl Dimension {
     }
 }
 
-/// Most walls of a polyhedron: with twice as many vertices, places in one cell fit 16 bits.
+/// Most walls of a polyhedron: that many numbers of 32 bits stand for walls, and not for sites.
 pub(crate) const MOST_WALLS: u16 = 1 << 15;
 
 /// An axis-parallel box, or a rectangle in the plane z = 0, that may repeat periodically along some of its axes; or a convex
@@ -137,9 +136,10 @@ impl Domain {
         if !(measure > 0.0 && measure.is_finite()) {
             return Err(flat);
         }
-        domain.polyhedron = domain
-            .polyhedron
-            .map(|all| Arc::new(Polyhedron { measure, center, ..Arc::unwrap_or_clone(all) }));
+        if let Some(polyhedron) = &mut domain.polyhedron {
+            let polyhedron = Arc::make_mut(polyhedron);
+            (polyhedron.measure, polyhedron.center) = (measure, center);
+        }
         Ok(domain)
     }
 
@@ -152,24 +152,7 @@ impl Domain {
         name: Option<String>,
     ) -> Self {
         let normals: Vec<DVec3> = walls.iter().map(unit_normal).collect();
-        let from_origin =
-            |(plane, normal): (_, &_)| HalfSpace::of_plane(DVec3::ZERO, Generator::NONE, plane, *normal);
-        let (mut distances, mut largest) = (Vec::with_capacity(walls.len()), 0.0f64);
-        for HalfSpace { offset, offset_size, .. } in walls.iter().zip(&normals).map(from_origin) {
-            distances.push(offset);
-            largest = largest.max(offset_size);
-        }
-        let corner = lower.abs().max(upper.abs()).element_sum();
-        let distance_error = 2.0 * EVALUATION_ERROR * (largest + corner);
-        let polyhedron = Polyhedron {
-            walls,
-            normals,
-            distances,
-            distance_error,
-            measure: f64::NAN,
-            center: DVec3::NAN,
-            name,
-        };
+        let polyhedron = Polyhedron::new(walls, normals, lower.abs().max(upper.abs()), name);
         Self { polyhedron: Some(Arc::new(polyhedron)), ..Self::boxed(lower, upper, dimension) }
     }
 
@@ -302,20 +285,12 @@ impl Domain {
         if wall.is_upper() { self.upper[wall.axis()] } else { self.lower[wall.axis()] }
     }
 
-    /// The walls of a polyhedron that may be up to a distance from a point in it, and some more.
-    pub(crate) fn walls_within(&self, point: DVec3, distance: f64) -> impl Iterator<Item = Wall> {
-        let (normals, distances, error) = match self.polyhedron.as_deref() {
-            Some(Polyhedron { normals, distances, distance_error, .. }) => {
-                (&normals[..], &distances[..], *distance_error)
-            }
-            None => (&[][..], &[][..], 0.0),
-        };
-        let walls = (0u32..).map(Wall).zip(normals.iter().zip(distances));
-        let near = walls.filter(move |(_, (normal, out))| {
-            let is_far = *out - normal.dot(point) > distance + error;
-            !is_far
-        });
-        near.map(|(wall, _)| wall)
+    /// Visits the walls of a polyhedron that may be up to a distance from a point, or have it beyond them, and some more.
+    #[inline]
+    pub(crate) fn for_each_wall_within(&self, point: DVec3, distance: f64, visit: impl FnMut(Wall)) {
+        if let Some(polyhedron) = &self.polyhedron {
+            polyhedron.for_each_wall_within(point, distance, visit);
+        }
     }
 
     /// Where cells begin before anything cuts them: coordinate of a side of the box, of one thrice as large around a polyhedron.
@@ -331,13 +306,17 @@ impl Domain {
         if self.is_box() {
             return point.cmpge(self.lower).all() && point.cmple(self.upper).all();
         }
-        self.walls().all(|wall| {
+        let mut is_inside = true;
+        self.for_each_wall_within(point, 0.0, |wall| {
             let HalfSpace { offset, offset_size, .. } = HalfSpace::of_wall(point, wall, self);
-            if offset.abs() > EVALUATION_ERROR * offset_size {
-                return offset > 0.0;
-            }
-            !is_outside(&self.wall_planes()[wall.index()], point)
-        })
+            is_inside = is_inside
+                && if offset.abs() > EVALUATION_ERROR * offset_size {
+                    offset > 0.0
+                } else {
+                    !is_outside(&self.wall_planes()[wall.index()], point)
+                };
+        });
+        is_inside
     }
 
     /// Number of axes along which the domain extends.

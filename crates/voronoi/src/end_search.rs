@@ -24,6 +24,19 @@ const LOOSE: f64 = 2e-12;
 /// another round would cost more than the additional sites.
 const FORESIGHT: f64 = 1.12;
 
+/// Sites that are looked at to collect those around a cell, at most. For what is farther away, the boxes are asked about every single
+/// vertex: that takes as long as going over some hundreds of planes twice.
+const MOST_CANDIDATES: usize = 2000;
+
+/// Growth of the radius from one round of the search around a cell to the next: twice the volume.
+const GROWTH: f64 = 1.26;
+
+/// Share of the distance of an edge's end that is looked at in any case before it is believed to be that far.
+const LEAST_STEP: f64 = 0.25;
+
+/// How often the radius is halved to find one with few enough sites.
+const MOST_HALVINGS: usize = 64;
+
 /// A vertex of a cell.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NewVertex {
@@ -42,28 +55,40 @@ pub(crate) struct EndSearch<'a> {
     input: ExactInput<'a>,
     seed: u32,
     candidates: Candidates,
-    /// All seeds up to this distance are candidates.
-    reach: f64,
-    /// Up to this distance they show whether a vertex is one of the cell.
+    /// All planes up to this distance are candidates.
     radius: f64,
+    /// Whether candidates would be too many farther away.
+    is_crowded: bool,
+    /// Where they were not at the last seed of which they were.
+    uncrowded: f64,
+    /// Planes that may cut off the vertex under way.
+    maybe: Vec<Generator>,
 }
 
 impl<'a> EndSearch<'a> {
     pub(crate) fn new(search: &'a Search<'a>) -> Self {
-        let (input, candidates) = (search.input(), Candidates::default());
-        Self { search, input, seed: 0, candidates, reach: -1.0, radius: -1.0 }
+        Self {
+            search,
+            input: search.input(),
+            seed: 0,
+            candidates: Candidates::default(),
+            radius: -1.0,
+            is_crowded: false,
+            uncrowded: f64::INFINITY,
+            maybe: Vec::new(),
+        }
     }
 
     /// Turns to another seed.
     pub(crate) fn start(&mut self, seed: u32) {
         self.seed = seed;
-        (self.reach, self.radius) = (-1.0, -1.0);
+        self.radius = -1.0;
+        self.is_crowded = false;
     }
 
     /// Prepares for the ends of edges from vertices up to a distance.
     pub(crate) fn expect(&mut self, distance: f64) -> Result<(), ImagesMissing> {
-        let reach = self.search.reach(self.seed, distance);
-        self.gather(FORESIGHT * reach).or_else(|ImagesMissing| self.gather(reach))
+        self.gather(FORESIGHT * distance).or_else(|ImagesMissing| self.gather(distance))
     }
 
     /// The other end of an edge from a vertex with the planes `used` at `start`. The edge runs along two of these, which are in
@@ -74,7 +99,7 @@ impl<'a> EndSearch<'a> {
         used: [Generator; 3],
         start: DVec3,
     ) -> Result<NewVertex, ImagesMissing> {
-        self.gather_around(start.length())?;
+        self.gather(start.length())?;
         let edge = self.half_spaces(edge);
         let direction = edge[0].normal.cross(edge[1].normal);
         let mut end: Option<(Generator, Intersection, f32)> = None;
@@ -93,14 +118,11 @@ impl<'a> EndSearch<'a> {
                 (crossing, number) = self.candidates.next_crossing(&ray, (crossing, number));
             }
             let (generator, at, _) = *end.get_or_insert_with(|| self.any_end(&edge));
-            if distance(&at) <= self.radius {
-                return Ok(self.confirm(&edge, generator, at));
+            let distance = at.distance();
+            if distance <= self.radius || self.is_crowded {
+                return self.confirm(&edge, generator, at);
             }
-            let wanted = self.search.reach(self.seed, distance(&at));
-            if wanted <= self.reach {
-                return Ok(self.confirm(&edge, generator, at));
-            }
-            self.gather(self.search.grow(self.reach, wanted))?;
+            self.gather(distance.min((GROWTH * self.radius).max(LEAST_STEP * distance)))?;
         }
     }
 
@@ -108,8 +130,8 @@ impl<'a> EndSearch<'a> {
     pub(crate) fn vertex_of(&mut self, [a, b, c]: [Generator; 3]) -> Result<NewVertex, ImagesMissing> {
         let edge = self.half_spaces([a, b]);
         let at = self.intersect(&edge, c).expect("the planes of a vertex are in positive orientation");
-        self.gather_around(distance(&at))?;
-        Ok(self.confirm(&edge, c, at))
+        self.gather(at.distance())?;
+        self.confirm(&edge, c, at)
     }
 
     #[inline]
@@ -127,39 +149,65 @@ impl<'a> EndSearch<'a> {
     }
 
     /// The first end of an edge, given a plane that ends it there or later: whatever cuts that end off comes first.
-    fn confirm(&self, edge: &[HalfSpace; 2], mut generator: Generator, mut at: Intersection) -> NewVertex {
-        let input = self.input;
-        let mut has_tie = false;
-        'confirm: loop {
+    fn confirm(
+        &mut self,
+        edge: &[HalfSpace; 2],
+        mut generator: Generator,
+        mut at: Intersection,
+    ) -> Result<NewVertex, ImagesMissing> {
+        loop {
             let planes = [edge[0].generator, edge[1].generator, generator];
+            let (mut has_tie, mut farthest) = (false, f64::NEG_INFINITY);
+            let mut cutter = self.find_maybe_beyond(planes, &at)?;
+            for other in self.maybe.iter().filter(|other| !planes.contains(other)) {
+                let plane = HalfSpace::new(self.seed, *other, self.input);
+                let excess = plane.normal.dot(at.position) - plane.offset;
+                let error = plane.sum() * at.evaluation_error() + EVALUATION_ERROR * plane.offset_size;
+                let decision = if excess.abs() > error {
+                    Decision { beyond: excess > 0.0, tie: false }
+                } else {
+                    self.input.decide(self.seed, planes, *other)
+                };
+                has_tie |= decision.tie;
+                if decision.beyond && excess > farthest {
+                    (cutter, farthest) = (Some(*other), excess);
+                }
+            }
+            let Some(cutter) = cutter else {
+                return Ok(NewVertex { planes, position: at.position, has_tie });
+            };
+            generator = cutter;
+            at = self.intersect(edge, cutter).expect("a plane that cuts a vertex off ends the edge");
+        }
+    }
+
+    /// Lists planes among which are all that may cut off the vertex of some planes, unless one certainly does: then that is returned.
+    #[inline]
+    fn find_maybe_beyond(
+        &mut self,
+        planes: [Generator; 3],
+        at: &Intersection,
+    ) -> Result<Option<Generator>, ImagesMissing> {
+        let (seed, input) = (self.seed, self.input);
+        self.maybe.clear();
+        if at.distance() <= self.radius {
             let probe = self.candidates.probe(at.position, at.error);
             // The vertex's own planes are always among those that it may lie beyond.
             if self.candidates.count_maybe_beyond(probe) > 3 {
-                has_tie = false;
-                for other in self.candidates.maybe_beyond(probe) {
-                    if planes.contains(&other) {
-                        continue;
-                    }
-                    let plane = HalfSpace::new(self.seed, other, input);
-                    let excess = plane.normal.dot(at.position) - plane.offset;
-                    let error = plane.sum() * at.evaluation_error() + EVALUATION_ERROR * plane.offset_size;
-                    let decision = if excess.abs() > error {
-                        Decision { beyond: excess > 0.0, tie: false }
-                    } else {
-                        input.decide(self.seed, planes, other)
-                    };
-                    has_tie |= decision.tie;
-                    if decision.beyond {
-                        generator = other;
-                        at = self
-                            .intersect(edge, other)
-                            .expect("a plane that cuts a vertex off ends the edge");
-                        continue 'confirm;
-                    }
-                }
+                self.maybe.extend(self.candidates.maybe_beyond(probe));
             }
-            return NewVertex { planes, position: at.position, has_tie };
+            return Ok(None);
         }
+        let cutter = self.search.farthest_cut(seed, planes, at, &mut self.maybe)?;
+        if cutter.is_none() {
+            let place = input.seeds[seed as usize] + at.position;
+            let maybe = &mut self.maybe;
+            input
+                .domain
+                .for_each_wall_within(place, 2.0 * at.error, |wall| maybe.push(Generator::facet(wall)));
+            maybe.extend(sides(input).map(Generator::side));
+        }
+        Ok(cutter)
     }
 
     /// Where a plane cuts an edge; none where it runs along it or faces the other way.
@@ -175,40 +223,62 @@ impl<'a> EndSearch<'a> {
             .then(|| Intersection::exact(self.seed, planes, input))
     }
 
-    /// Makes all sites candidates that can touch or cut the part of the cell within `radius`.
+    /// Makes all planes up to a distance candidates, unless too many sites would have to be looked at: then fewer at first, and later
+    /// none.
     #[inline]
-    fn gather_around(&mut self, radius: f64) -> Result<(), ImagesMissing> {
-        if radius <= self.radius { Ok(()) } else { self.gather(self.search.reach(self.seed, radius)) }
+    fn gather(&mut self, radius: f64) -> Result<(), ImagesMissing> {
+        if radius <= self.radius || self.is_crowded { Ok(()) } else { self.gather_sites(radius) }
     }
 
-    /// Makes all sites up to a distance candidates, and walls whose mirror images of the seed are as near.
-    fn gather(&mut self, reach: f64) -> Result<(), ImagesMissing> {
-        if reach <= self.reach {
-            return Ok(());
+    fn gather_sites(&mut self, mut radius: f64) -> Result<(), ImagesMissing> {
+        let (seed, search, before) = (self.seed, self.search, self.radius);
+        let from = (before >= 0.0).then_some(before);
+        if from.is_none() {
+            let reach = search.reach(seed, radius);
+            self.candidates.restart(reach, search.first_image(), search.position_error());
         }
-        let (seed, input, range) = (self.seed, self.input, [self.reach, reach]);
-        let candidates = &mut self.candidates;
-        if self.reach < 0.0 {
-            candidates.restart(reach, self.search.first_image(), self.search.position_error());
+        if !search.gather(&mut self.candidates, seed, from, radius, MOST_CANDIDATES)? {
+            self.is_crowded = true;
+            if from.is_some() {
+                return Ok(());
+            }
+            let mut is_gathered = false;
+            radius = radius.min(4.0 * self.uncrowded);
+            for _ in 0..MOST_HALVINGS {
+                radius *= 0.5;
+                is_gathered = search.gather(&mut self.candidates, seed, from, radius, MOST_CANDIDATES)?;
+                if is_gathered {
+                    break;
+                }
+            }
+            if !is_gathered {
+                self.candidates.fill_lanes();
+                return Ok(());
+            }
+            self.uncrowded = radius;
         }
-        self.search.gather(candidates, seed, range)?;
-        let plane = (input.domain.dimension() == Dimension::Two).then_some(PLANE);
-        for wall in Wall::ALL[..2 * input.domain.axes()].iter().copied().chain(plane) {
-            let doubled = 2.0 * input.outermost_distance(seed, wall);
-            // Across periodic axes the seed's own images are sites like others.
-            if doubled > range[0] && doubled <= range[1] && !input.domain.periodic().test(wall.axis()) {
-                candidates.push(&HalfSpace::new(seed, Generator::side(wall), input));
+        let (input, candidates) = (self.input, &mut self.candidates);
+        for side in sides(input) {
+            let distance = input.outermost_distance(seed, side);
+            if distance > before && distance <= radius {
+                candidates.push(&HalfSpace::new(seed, Generator::side(side), input));
             }
         }
-        input.for_each_facet_within(seed, range, |plane, _| candidates.push(&plane));
+        input.for_each_facet_within(seed, radius, |plane, distance| {
+            if distance > before {
+                candidates.push(&plane);
+            }
+        });
         candidates.fill_lanes();
-        self.reach = reach;
-        self.radius = self.search.radius(seed, reach);
+        self.radius = radius;
         Ok(())
     }
 }
 
-/// Bound on a vertex's distance from the seed: the error bounds each coordinate, so a distance by sqrt(3) times it.
-fn distance(at: &Intersection) -> f64 {
-    at.position.length() + 2.0 * at.error
+/// The sides of the box that bound cells, with the plane of what is flat; across periodic axes a seed's own images are sites like
+/// others.
+fn sides(input: ExactInput<'_>) -> impl Iterator<Item = Wall> {
+    let plane = (input.domain.dimension() == Dimension::Two).then_some(PLANE);
+    let walls = Wall::ALL[..2 * input.domain.axes()].iter().copied();
+    walls.chain(plane).filter(move |wall| !input.domain.periodic().test(wall.axis()))
 }

@@ -11,7 +11,7 @@ pub enum VoronoiError {
     /// More seeds than 32-bit ids can name.
     #[error("{count} seeds are more than the {} that ids can name; take fewer", Generator::MAX_SITES)]
     TooManySeeds {
-        /// Number of seeds given.
+        /// Number of seeds, with their periodic images if it is these that are too many.
         count: usize,
     },
     /// A side of the domain is not a positive, finite length.

@@ -28,14 +28,11 @@ const MOST_BLOCKS: i32 = 1024;
 /// Covers the rounding of a position in units of blocks, at most about [`MOST_BLOCKS`].
 const BLOCK_MARGIN: f64 = 1e-9;
 
-/// Seeds in the grid's order: their numbers in the input and their coordinates.
-#[derive(Clone, Copy)]
-pub(crate) struct Columns<'a> {
-    pub(crate) sites: &'a [u32],
-    pub(crate) x: &'a [f64],
-    pub(crate) y: &'a [f64],
-    pub(crate) z: &'a [f64],
-}
+/// Blocks from a place up to which rows of blocks are gone through: beyond, larger boxes are quicker.
+const MOST_STEPS: f64 = 4.0;
+
+/// Seeds in a block beyond which it is crowded: thrice the mean, which random seeds hardly ever come to.
+const CROWD: usize = 24;
 
 /// The seeds in order of tiles, in these of bricks, of blocks, and of coordinates: an order that permuting the seeds does not change.
 pub(crate) struct SeedGrid {
@@ -48,17 +45,16 @@ pub(crate) struct SeedGrid {
     offsets: [Vec<u32>; 3],
     /// Of each block along x, the last one in the same tile.
     tile_ends: Vec<u32>,
-    /// Seeds of block b are `starts[b]..starts[b + 1]`.
+    /// Places of the seeds of block b are `starts[b]..starts[b + 1]`.
     starts: Vec<u32>,
     tiles: Vec<Range<u32>>,
     /// The seeds' places in the input.
     pub(crate) order: Vec<u32>,
-    columns: [Vec<f64>; 3],
 }
 
 impl SeedGrid {
     /// Sorts the seeds into blocks that are as close to cubes as the seeds' bounding box allows.
-    pub(crate) fn new(seeds: Vec<DVec3>) -> Self {
+    pub(crate) fn new(seeds: &[DVec3]) -> Self {
         let lower = seeds.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let upper = seeds.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
         let size = upper - lower;
@@ -75,84 +71,26 @@ impl SeedGrid {
             if width > 0.0 { width } else { 1.0 }
         }));
         let (offsets, tile_blocks) = block_offsets(tile, tile_counts);
-        let mut grid = Self {
-            lower,
-            block,
-            density: 1.0 / block,
-            counts,
-            offsets,
-            tile_ends: (0..counts.x).map(|x| ((x / tile.x + 1) * tile.x - 1).cast_unsigned()).collect(),
-            starts: Vec::new(),
-            tiles: Vec::new(),
-            order: Vec::new(),
-            columns: [const { Vec::new() }; 3],
-        };
-        grid.sort(&seeds, tile_counts.element_product().unsigned_abs() as usize * tile_blocks);
-        let tile_starts = grid.starts.iter().copied().step_by(tile_blocks);
-        let tile_starts: Vec<u32> = tile_starts.collect();
-        grid.tiles =
-            tile_starts.windows(2).map(|pair| pair[0]..pair[1]).filter(|tile| !tile.is_empty()).collect();
-        grid
-    }
-
-    fn sort(&mut self, seeds: &[DVec3], block_count: usize) {
+        let density = 1.0 / block;
         let block_of = |seed: &DVec3| {
-            let place = (*seed - self.lower) * self.density;
+            let place = (*seed - lower) * density;
             // Casting saturates, and the clamp takes in the seed on the upper side.
-            let block = place.as_ivec3().clamp(IVec3::ZERO, self.counts - 1).as_usizevec3();
-            self.offsets[0][block.x] + self.offsets[1][block.y] + self.offsets[2][block.z]
+            let block = place.as_ivec3().clamp(IVec3::ZERO, counts - 1).as_usizevec3();
+            offsets[0][block.x] + offsets[1][block.y] + offsets[2][block.z]
         };
-        let blocks: Vec<u32> = seeds.par_iter().map(block_of).collect();
-        let mut starts = vec![0u32; block_count + 1];
-        for block in &blocks {
-            starts[*block as usize + 1] += 1;
-        }
-        for block in 0..block_count {
-            starts[block + 1] += starts[block];
-        }
-        let mut next = starts.clone();
-        self.order = vec![0; seeds.len()];
-        for (seed, block) in (0u32..).zip(&blocks) {
-            let slot = &mut next[*block as usize];
-            self.order[*slot as usize] = seed;
-            *slot += 1;
-        }
-        // Adding zero makes -0 and 0 the same place.
-        let key = |id: &u32| (seeds[*id as usize] + DVec3::ZERO).to_array();
-        let before = |a: &u32, b: &u32| {
-            let (left, right) = (key(a), key(b));
-            let by_axis = |axis: usize| left[axis].total_cmp(&right[axis]);
-            by_axis(0).then_with(|| by_axis(1)).then_with(|| by_axis(2)).then(a.cmp(b))
-        };
-        let (mut rest, mut parts) = (&mut self.order[..], Vec::new());
-        for first in (0..block_count).step_by(BLOCKS_SORTED_AT_ONCE) {
-            let starts = &starts[first..=(first + BLOCKS_SORTED_AT_ONCE).min(block_count)];
-            let (part, others) = rest.split_at_mut((starts[starts.len() - 1] - starts[0]) as usize);
-            parts.push((starts, part));
-            rest = others;
-        }
-        parts.into_par_iter().for_each(|(starts, part)| {
-            for block in starts.windows(2) {
-                let [from, to] = [block[0], block[1]].map(|start| (start - starts[0]) as usize);
-                part[from..to].sort_unstable_by(before);
-            }
-        });
-        self.columns =
-            [0, 1, 2].map(|axis| self.order.par_iter().map(|id| seeds[*id as usize][axis]).collect());
-        self.starts = starts;
+        let block_count = tile_counts.element_product().unsigned_abs() as usize * tile_blocks;
+        let (starts, order) = sort(seeds, &seeds.par_iter().map(block_of).collect::<Vec<u32>>(), block_count);
+        let tile_starts: Vec<u32> = starts.iter().copied().step_by(tile_blocks).collect();
+        let tiles =
+            tile_starts.windows(2).map(|pair| pair[0]..pair[1]).filter(|tile| !tile.is_empty()).collect();
+        let tile_ends = (0..counts.x).map(|x| ((x / tile.x + 1) * tile.x - 1).cast_unsigned()).collect();
+        Self { lower, block, density, counts, offsets, tile_ends, starts, tiles, order }
     }
 
     /// The ids of two seeds at one place, the smallest such pair.
-    pub(crate) fn duplicates(&self) -> Option<(u32, u32)> {
-        let places = 1..self.order.len();
-        let pairs =
-            places.filter(|place| self.columns.iter().all(|column| column[place - 1] == column[*place]));
-        pairs.map(|place| (self.order[place - 1], self.order[place])).min()
-    }
-
-    /// The same grid for seeds that were brought into its order.
-    pub(crate) fn renumbered(self) -> Self {
-        Self { order: (0u32..).take(self.order.len()).collect(), ..self }
+    pub(crate) fn duplicates(&self, seeds: &[DVec3]) -> Option<(u32, u32)> {
+        let pairs = self.order.windows(2).map(|pair| (pair[0], pair[1]));
+        pairs.filter(|(a, b)| seeds[*a as usize] == seeds[*b as usize]).min()
     }
 
     /// The ranges of seeds, by place in the grid's order, that make up compact parts of space.
@@ -160,40 +98,19 @@ impl SeedGrid {
         &self.tiles
     }
 
-    /// Longest side of a block along the axes that have several; infinite if there are none.
-    pub(crate) fn block_size(&self) -> f64 {
-        let sides = (0..3).filter(|axis| self.counts[*axis] > 1).map(|axis| self.block[axis]);
-        sides.reduce(f64::max).unwrap_or(f64::INFINITY)
-    }
-
-    /// Visits all seeds further than `from` and at most `to` from a place, as their number in the input, the vector to
-    /// them and its squared length.
-    pub(crate) fn for_each_within(
-        &self,
-        center: DVec3,
-        from: f64,
-        to: f64,
-        mut visit: impl FnMut(u32, DVec3, f64),
-    ) {
-        let (from, to_squared) = (if from < 0.0 { -1.0 } else { from * from }, to * to);
-        let Columns { sites, x, y, z } = self.columns();
-        self.for_each_run(center, to, |run| {
-            for k in run.start as usize..run.end as usize {
-                let to_seed = DVec3::new(x[k], y[k], z[k]) - center;
-                let squared = to_seed.length_squared();
-                if squared > from && squared <= to_squared {
-                    visit(sites[k], to_seed, squared);
-                }
-            }
-        });
-    }
-
-    /// Visits runs of seeds that follow one another in the grid's order, among which are all those at most `to` from a place.
+    /// Finds runs of seeds that follow one another in the grid's order, among which are all those at most `to` from a place; false if
+    /// these are more than some number of seeds, or too many blocks.
     #[inline]
-    pub(crate) fn for_each_run(&self, center: DVec3, to: f64, mut visit: impl FnMut(Range<u32>)) {
+    pub(crate) fn find_runs(&self, center: DVec3, to: f64, most: usize, runs: &mut Vec<Range<u32>>) -> bool {
         let to_squared = to * to;
         let place = (center - self.lower) * self.density;
         let steps = to * self.density + BLOCK_MARGIN;
+        // Along an axis with one block, it is all the same.
+        let is_far = steps.cmpgt(DVec3::splat(MOST_STEPS)) & self.counts.cmpgt(IVec3::splat(8));
+        if is_far.any() {
+            return false;
+        }
+        let mut count = 0;
         let first = (place - steps).max(DVec3::ZERO).as_ivec3().clamp(IVec3::ZERO, self.counts - 1);
         let last = (place + steps).max(DVec3::ZERO).as_ivec3().clamp(IVec3::ZERO, self.counts - 1);
         // Squared distance from a row of blocks along one axis.
@@ -220,17 +137,62 @@ impl SeedGrid {
                     let last = end.min(self.tile_ends[x] as usize);
                     let start = self.starts[(row + self.offsets[0][x]) as usize];
                     let stop = self.starts[(row + self.offsets[0][last]) as usize + 1];
-                    visit(start..stop);
+                    count += (stop - start) as usize;
+                    runs.push(start..stop);
                     x = last + 1;
+                }
+                if count > most {
+                    return false;
                 }
             }
         }
+        true
     }
 
-    pub(crate) fn columns(&self) -> Columns<'_> {
-        let [x, y, z] = &self.columns;
-        Columns { sites: &self.order, x, y, z }
+    /// The ranges of seeds in blocks that have so many that their order does not tell which are near one another.
+    pub(crate) fn crowded_blocks(&self) -> impl Iterator<Item = Range<usize>> {
+        let blocks = self.starts.windows(2).map(|block| block[0] as usize..block[1] as usize);
+        blocks.filter(|block| block.len() > CROWD)
     }
+}
+
+/// Sorts seeds, of which the blocks are given, by block and then by coordinates. Returns where the blocks start, and the order.
+fn sort(seeds: &[DVec3], blocks: &[u32], block_count: usize) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0u32; block_count + 1];
+    for block in blocks {
+        starts[*block as usize + 1] += 1;
+    }
+    for block in 0..block_count {
+        starts[block + 1] += starts[block];
+    }
+    let mut next = starts.clone();
+    let mut order = vec![0; seeds.len()];
+    for (seed, block) in (0u32..).zip(blocks) {
+        let slot = &mut next[*block as usize];
+        order[*slot as usize] = seed;
+        *slot += 1;
+    }
+    // Adding zero makes -0 and 0 the same place.
+    let key = |id: &u32| (seeds[*id as usize] + DVec3::ZERO).to_array();
+    let before = |a: &u32, b: &u32| {
+        let (left, right) = (key(a), key(b));
+        let by_axis = |axis: usize| left[axis].total_cmp(&right[axis]);
+        by_axis(0).then_with(|| by_axis(1)).then_with(|| by_axis(2)).then(a.cmp(b))
+    };
+    let (mut rest, mut parts) = (&mut order[..], Vec::new());
+    for first in (0..block_count).step_by(BLOCKS_SORTED_AT_ONCE) {
+        let starts = &starts[first..=(first + BLOCKS_SORTED_AT_ONCE).min(block_count)];
+        let (part, others) = rest.split_at_mut((starts[starts.len() - 1] - starts[0]) as usize);
+        parts.push((starts, part));
+        rest = others;
+    }
+    parts.into_par_iter().for_each(|(starts, part)| {
+        for block in starts.windows(2) {
+            let [from, to] = [block[0], block[1]].map(|start| (start - starts[0]) as usize);
+            part[from..to].sort_unstable_by(before);
+        }
+    });
+    (starts, order)
 }
 
 /// How many cubes, of which some number fills a box, lie along each axis; 1 along axes that are thinner than the cubes.
@@ -302,30 +264,16 @@ mod tests {
     }
 
     #[test]
-    fn rings_of_distance_hold_every_seed_once() {
-        let seeds = seeds();
-        let grid = SeedGrid::new(seeds.clone());
-        for center in [seeds[0], seeds[17], seeds[499]] {
-            let mut seen = vec![0; seeds.len()];
-            for [from, to] in [[-1.0, 0.0], [0.0, 0.03], [0.03, 0.3], [0.3, 10.0]] {
-                grid.for_each_within(center, from, to, |id, to_seed, squared| {
-                    let id = id as usize;
-                    seen[id] += 1;
-                    assert_eq!(to_seed, seeds[id] - center);
-                    assert!(squared.sqrt() > from && squared.sqrt() <= to);
-                });
-            }
-            assert!(seen.iter().all(|count| *count == 1));
-        }
-    }
-
-    #[test]
     fn tiles_hold_every_seed_and_the_order_does_not_depend_on_that_of_the_seeds() {
         let mut seeds = seeds();
-        let grid = SeedGrid::new(seeds.clone());
-        assert!(grid.tiles().len() > 1);
-        assert!(grid.tiles().iter().cloned().flatten().eq(0..20_000));
+        let sorted = |seeds: &[DVec3]| -> Vec<DVec3> {
+            let grid = SeedGrid::new(seeds);
+            assert!(grid.tiles().len() > 1);
+            assert!(grid.tiles().iter().cloned().flatten().eq(0..20_000));
+            grid.order.iter().map(|id| seeds[*id as usize]).collect()
+        };
+        let first = sorted(&seeds);
         seeds.reverse();
-        assert_eq!(SeedGrid::new(seeds.clone()).columns, grid.columns);
+        assert_eq!(sorted(&seeds), first);
     }
 }

@@ -116,6 +116,13 @@ impl Intersection {
         Self { position, error: 4.0 * ROUNDOFF * position.abs().max_element() }
     }
 
+    /// Bound on the distance from the seed.
+    #[inline]
+    pub(crate) fn distance(&self) -> f64 {
+        // The error bounds each coordinate, so a distance by sqrt(3) times it.
+        self.position.length() + 2.0 * self.error
+    }
+
     /// Whether the error is at most `share` of the distance from the seed.
     pub(crate) fn is_good_to(&self, share: f64) -> bool {
         self.error <= share * self.position.length()

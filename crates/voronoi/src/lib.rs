@@ -34,6 +34,7 @@
 
 mod accurate_sum;
 mod big;
+mod box_tree;
 mod candidates;
 mod cell_complex;
 mod cell_edges;
@@ -65,6 +66,7 @@ mod predicate;
 mod regularize;
 mod ring;
 mod search;
+mod site_tree;
 mod tessellation;
 mod tile;
 mod tile_vertex;

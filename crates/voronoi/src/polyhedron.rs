@@ -1,15 +1,20 @@
 //! Half-spaces and what they have in common.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use crate::big::unit_normal;
+use crate::box_tree::{BoxSearch, BoxTree, Boxes, sort_into_boxes};
 use crate::convex_cell::ConvexCell;
 use crate::domain::MOST_WALLS;
 use crate::generator::{Generator, Plane};
+use crate::half_space::{EVALUATION_ERROR, HalfSpace};
 use crate::images::ImageTable;
 use crate::polygon::ConvexPolygon;
 use crate::predicate::ExactInput;
 use crate::search::Cutting;
+use crate::wide::LANES;
 use crate::{Dimension, Domain, VoronoiError, Wall, WallPlane};
 
 /// How much farther than its walls a polyhedron may reach from the origin: beyond, it counts as unbounded.
@@ -21,16 +26,90 @@ pub(crate) struct Polyhedron {
     pub(crate) walls: Vec<WallPlane>,
     /// Their outward normals, of length 1 up to rounding.
     pub(crate) normals: Vec<DVec3>,
+    /// The walls in boxes of their normals, with how far in along these the walls are as weights.
+    boxes: BoxTree,
+    /// The walls in the order of the boxes.
+    order: Vec<Wall>,
     /// How far out along their normals the walls are.
-    pub(crate) distances: Vec<f64>,
+    distances: Vec<f64>,
     /// Bound on the rounding of these distances, and of those between a wall and a point of the polyhedron made of them.
-    pub(crate) distance_error: f64,
+    distance_error: f64,
     /// Volume; in the plane, area.
     pub(crate) measure: f64,
     /// A point inside.
     pub(crate) center: DVec3,
     /// What to call it in messages, if not after its walls.
     pub(crate) name: Option<String>,
+}
+
+impl Polyhedron {
+    /// A polyhedron whose volume is yet to be measured, given walls and their normals, and the largest coordinates of its box.
+    pub(crate) fn new(
+        walls: Vec<WallPlane>,
+        normals: Vec<DVec3>,
+        corner: DVec3,
+        name: Option<String>,
+    ) -> Self {
+        let from_origin =
+            |(plane, normal): (_, &_)| HalfSpace::of_plane(DVec3::ZERO, Generator::NONE, plane, *normal);
+        let (mut distances, mut largest) = (Vec::with_capacity(walls.len()), 0.0f64);
+        for HalfSpace { offset, offset_size, .. } in walls.iter().zip(&normals).map(from_origin) {
+            distances.push(offset);
+            largest = largest.max(offset_size);
+        }
+        let mut order: Vec<u32> = (0u32..).take(walls.len()).collect();
+        sort_into_boxes(&mut order, 0, &|wall| normals[wall as usize]);
+        let order: Vec<Wall> = order.into_iter().map(Wall).collect();
+        let boxes = BoxTree::new(order.len(), |place| {
+            let wall = order[place].index();
+            (normals[wall], -distances[wall])
+        });
+        let distance_error = 2.0 * EVALUATION_ERROR * (largest + corner.element_sum());
+        let (measure, center) = (f64::NAN, DVec3::NAN);
+        Self { walls, normals, boxes, order, distances, distance_error, measure, center, name }
+    }
+
+    /// Visits the walls that may be up to a distance from a point, or have it beyond them, and some more.
+    pub(crate) fn for_each_wall_within(&self, point: DVec3, distance: f64, mut visit: impl FnMut(Wall)) {
+        // That of the polyhedron is for points in it.
+        let limit = distance + self.distance_error + 4.0 * EVALUATION_ERROR * point.abs().element_sum();
+        self.boxes.search(&mut WallSearch { polyhedron: self, point, limit, visit: &mut visit });
+    }
+}
+
+/// A search for the walls that are not farther than a limit inward from a point.
+struct WallSearch<'a, Visit> {
+    polyhedron: &'a Polyhedron,
+    point: DVec3,
+    limit: f64,
+    visit: &'a mut Visit,
+}
+
+impl<Visit: FnMut(Wall)> BoxSearch for WallSearch<'_, Visit> {
+    fn wanted(&self, boxes: &Boxes) -> u32 {
+        let mut wanted = 0;
+        for lane in 0..LANES {
+            let mut out = boxes.weights[lane];
+            for axis in 0..3 {
+                let at = self.point[axis];
+                out += at * if at > 0.0 { boxes.upper[axis][lane] } else { boxes.lower[axis][lane] };
+            }
+            let is_far = -out > self.limit;
+            wanted |= u32::from(!is_far) << lane;
+        }
+        wanted
+    }
+
+    fn visit(&mut self, places: Range<usize>) -> bool {
+        let Polyhedron { order, distances, normals, .. } = self.polyhedron;
+        for wall in &order[places] {
+            let is_far = distances[wall.index()] - normals[wall.index()].dot(self.point) > self.limit;
+            if !is_far {
+                (self.visit)(*wall);
+            }
+        }
+        true
+    }
 }
 
 /// Where a polyhedron is.

@@ -75,24 +75,18 @@ impl<'a> ExactInput<'a> {
         (self.domain.side_coordinate(wall) - self.seeds[seed as usize][axis]).abs()
     }
 
-    /// Visits the walls of a polyhedron that are so far from a seed that their mirror image of it is further away than `from`
-    /// and at most `to`, with that distance: they come into reach like the bisectors with these images.
+    /// Visits the walls of a polyhedron that are at most as far away from a seed as some distance, with theirs.
     #[inline]
-    pub(crate) fn for_each_facet_within(
-        self,
-        seed: u32,
-        [from, to]: [f64; 2],
-        mut visit: impl FnMut(HalfSpace, f64),
-    ) {
+    pub(crate) fn for_each_facet_within(self, seed: u32, to: f64, mut visit: impl FnMut(HalfSpace, f64)) {
         let own = self.seeds[seed as usize];
-        for wall in self.domain.walls_within(own, 0.5 * to) {
+        self.domain.for_each_wall_within(own, to, |wall| {
             let plane = HalfSpace::of_wall(own, wall, self.domain);
             // Rounding must not make it farther than it is.
-            let doubled = (2.0 * (plane.offset - EVALUATION_ERROR * plane.offset_size)).max(0.0);
-            if doubled > from && doubled <= to {
-                visit(plane, doubled);
+            let distance = (plane.offset - EVALUATION_ERROR * plane.offset_size).max(0.0);
+            if distance <= to {
+                visit(plane, distance);
             }
-        }
+        });
     }
 
     /// Whether a site is one of those that a cell begins with: the seed itself or one of its nearest images.

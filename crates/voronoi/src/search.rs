@@ -8,9 +8,12 @@ use rayon::prelude::*;
 use crate::candidates::Candidates;
 use crate::generator::{Generator, Plane};
 use crate::grid::SeedGrid;
+use crate::half_space::Intersection;
 use crate::images::{Image, ImageTable};
 use crate::predicate::ExactInput;
+use crate::site_tree::SiteTree;
 use crate::torus::FaceEnd;
+use crate::wide::{Ball, Within};
 use crate::{Domain, VoronoiError};
 
 /// Thickness of the first layer of images in units of the mean distance of seeds. Cells of random seeds look no farther
@@ -22,9 +25,6 @@ const LAYER_GROWTH: f64 = 3.0;
 
 /// Covers the rounding of distances and radii, relative to them.
 const RADIUS_MARGIN: f64 = 1.0 + 1e-12;
-
-/// Growth of the reach from one round of the search around a cell to the next: twice the volume.
-const REACH_GROWTH: f64 = 1.26;
 
 /// A cell that is being cut: polyhedron or polygon.
 pub(crate) trait Cutting {
@@ -59,7 +59,7 @@ struct Layer {
     /// Along each axis, how far beyond the domain all images are known; infinite where there are no more to know.
     thickness: DVec3,
     images: ImageTable,
-    grid: SeedGrid,
+    sites: SiteTree,
 }
 
 impl<'a> Search<'a> {
@@ -76,12 +76,14 @@ impl<'a> Search<'a> {
         let canonical = |seed: &DVec3| {
             DVec3::select(domain.periodic() & seed.cmpeq(domain.upper()), domain.lower(), *seed)
         };
-        let grid = SeedGrid::new(seeds.par_iter().map(canonical).collect());
-        if let Some((first, second)) = grid.duplicates() {
+        let canonical: Vec<DVec3> = seeds.par_iter().map(canonical).collect();
+        let grid = SeedGrid::new(&canonical);
+        if let Some((first, second)) = grid.duplicates(&canonical) {
             let [first, second] = [first, second].map(|id| id as usize);
             return Err(VoronoiError::DuplicateSeeds { first, second, position: seeds[first] });
         }
         let ids = grid.order.clone();
+        drop(canonical);
         let weights: Option<Vec<f64>> =
             weights.map(|weights| ids.iter().map(|id| weights[*id as usize]).collect());
         let largest_weight = match &weights {
@@ -98,10 +100,12 @@ impl<'a> Search<'a> {
             layers: Vec::new(),
         };
         if domain.is_periodic() {
-            search.widen();
+            search.widen()?;
         } else {
             let (thickness, images) = (DVec3::INFINITY, ImageTable::default());
-            search.layers.push(Layer { thickness, images, grid: grid.renumbered() });
+            let places = (0u32..).take(seeds.len()).collect();
+            let sites = search.tree(search.input_with(&images), places, grid);
+            search.layers.push(Layer { thickness, images, sites });
         }
         Ok(search)
     }
@@ -155,7 +159,10 @@ impl<'a> Search<'a> {
     }
 
     /// Adds a layer of images, until there are enough for every cell.
-    pub(crate) fn widen(&mut self) {
+    ///
+    /// # Errors
+    /// [`VoronoiError::TooManySeeds`] when seeds and images have more numbers than there are.
+    pub(crate) fn widen(&mut self) -> Result<(), VoronoiError> {
         let size = self.domain.size();
         let spacing = (self.domain.measure() / self.seeds.len() as f64).powf(1.0 / self.domain.axes() as f64);
         let exponent = i32::try_from(self.layers.len()).unwrap_or(i32::MAX);
@@ -168,27 +175,29 @@ impl<'a> Search<'a> {
         let none = ImageTable::default();
         let before = self.layers.last().map_or(&none, |layer| &layer.images);
         let images = before.widened(self.domain, &self.seeds, thickness.min(size));
+        if self.seeds.len() + images.list().len() > Generator::MAX_SITES {
+            return Err(VoronoiError::TooManySeeds { count: self.seeds.len() + images.list().len() });
+        }
         let input = self.input_with(&images);
-        let grid = SeedGrid::new((0..input.site_count()).map(|site| input.position(site)).collect());
-        self.layers.push(Layer { thickness, images, grid });
+        let positions: Vec<DVec3> = (0..input.site_count()).map(|site| input.position(site)).collect();
+        let grid = SeedGrid::new(&positions);
+        let sites = self.tree(input, grid.order.clone(), grid);
+        self.layers.push(Layer { thickness, images, sites });
+        Ok(())
+    }
+
+    /// The sites in boxes, given their order by the blocks of a grid.
+    fn tree(&self, input: ExactInput, order: Vec<u32>, grid: SeedGrid) -> SiteTree {
+        let weight = self.weights.is_some().then_some(|site| input.weight(site));
+        SiteTree::new(order, grid, |site| input.position(site), weight)
     }
 
     /// The distance from a seed within which all sites lie that can touch or cut the part of its cell within `radius`.
     pub(crate) fn reach(&self, seed: u32, radius: f64) -> f64 {
         // The bisector with a site at distance d lies (d^2 - excess) / (2 d) away.
-        let reach = radius + (radius * radius + self.excess_weight(seed)).sqrt();
+        let excess = self.largest_weight - self.input().weight(seed);
+        let reach = radius + (radius * radius + excess).sqrt();
         reach * RADIUS_MARGIN + self.position_error()
-    }
-
-    /// A radius such that [`Self::reach`] is at most `reach`; negative if there is none.
-    pub(crate) fn radius(&self, seed: u32, reach: f64) -> f64 {
-        let distance = (reach - self.position_error()) / RADIUS_MARGIN;
-        (distance * distance - self.excess_weight(seed)) / (2.0 * distance * RADIUS_MARGIN)
-    }
-
-    /// By how much the largest weight exceeds that of a seed.
-    fn excess_weight(&self, seed: u32) -> f64 {
-        if self.weights.is_none() { 0.0 } else { self.largest_weight - self.input().weight(seed) }
     }
 
     /// The number of the first image.
@@ -205,87 +214,98 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Next reach of a search that has come to `reach` and needs to go to `wanted`.
-    pub(crate) fn grow(&self, reach: f64, wanted: f64) -> f64 {
-        wanted.min((reach * REACH_GROWTH).max(self.layers[0].grid.block_size()))
-    }
-
-    /// The first layer that knows all sites at most `to` from a seed.
-    fn layer(&self, seed: u32, to: f64) -> Result<&Layer, ImagesMissing> {
+    /// How far from a seed a layer knows all sites.
+    fn known(&self, layer: &Layer, seed: u32) -> f64 {
         let own = self.seeds[seed as usize];
         let to_outside = (own - self.domain.lower()).min(self.domain.upper() - own);
-        let knows_all = |layer: &&Layer| to <= (to_outside + layer.thickness).min_element();
-        self.layers.iter().find(knows_all).ok_or(ImagesMissing)
+        (to_outside + layer.thickness).min_element()
     }
 
-    /// Adds the bisectors of a seed with all sites further than `from` and at most `to` away.
+    /// The first layer that knows all sites at most a reach from a seed.
+    fn layer(&self, seed: u32, reach: f64) -> Result<&Layer, ImagesMissing> {
+        self.layers.iter().find(|layer| reach <= self.known(layer, seed)).ok_or(ImagesMissing)
+    }
+
+    /// Adds the bisectors of a seed with sites that come nearer than the second of two radii, but not nearer than the first if there
+    /// is one. False if more than some number of sites would have to be looked at: then none is added.
     pub(crate) fn gather(
         &self,
         candidates: &mut Candidates,
         seed: u32,
-        [from, to]: [f64; 2],
-    ) -> Result<(), ImagesMissing> {
-        let layer = self.layer(seed, to)?;
-        let own = self.seeds[seed as usize];
-        let first = candidates.len();
-        let squares = [if from < 0.0 { -1.0 } else { from * from }, to * to];
-        candidates.push_within(seed, own, &layer.grid, to, squares);
-        if self.weights.is_some() {
-            let input = self.input();
-            let own_weight = input.weight(seed);
-            candidates.shift_offsets(first, |generator| {
-                let shift = 0.5 * (own_weight - input.weight(generator.0));
-                (shift, (input.position(generator.0) - own).length_squared())
-            });
-        }
-        Ok(())
+        from: Option<f64>,
+        to: f64,
+        most: usize,
+    ) -> Result<bool, ImagesMissing> {
+        let reach = self.reach(seed, to);
+        let layer = self.layer(seed, reach)?;
+        let with_margin = |radius: f64| radius * RADIUS_MARGIN + self.position_error();
+        let within = Within {
+            center: self.seeds[seed as usize],
+            own_weight: self.input().weight(seed),
+            radius: with_margin(to),
+        };
+        Ok(candidates.push_within(seed, &layer.sites, &within, reach, from.map(with_margin), most))
     }
 
-    /// Visits all sites further than `from` and at most `to` from a seed but itself and those that its cell begins with, with
-    /// the square of the distance.
-    fn for_each_within(
+    /// Of the sites that certainly cut off a vertex of some planes of a seed's cell, the one that does so farthest; else none, and
+    /// all that may. The vertex is known up to an error.
+    pub(crate) fn farthest_cut(
         &self,
         seed: u32,
-        [from, to]: [f64; 2],
-        mut visit: impl FnMut(u32, f64),
-    ) -> Result<(), ImagesMissing> {
-        let input = self.input();
-        let grid = &self.layer(seed, to)?.grid;
-        grid.for_each_within(self.seeds[seed as usize], from, to, |site, _, squared| {
-            let is_image = site as usize >= self.seeds.len();
-            if site != seed && !(is_image && input.bounds_from_start(seed, site)) {
-                visit(site, squared);
-            }
-        });
-        Ok(())
+        [a, b, c]: [Generator; 3],
+        at: &Intersection,
+        maybe: &mut Vec<Generator>,
+    ) -> Result<Option<Generator>, ImagesMissing> {
+        let layer = self.layer(seed, self.reach(seed, at.distance()))?;
+        let ball = Ball {
+            center: self.seeds[seed as usize],
+            own_weight: self.input().weight(seed),
+            vertex: at.position,
+            error: at.error + self.position_error(),
+            generators: [Generator::site(seed), a, b, c],
+        };
+        Ok(layer.sites.deepest(&ball, maybe))
     }
 
-    /// The planes of one vertex of the cell that a cut with all near sites makes of `cell`; none if that is empty.
-    pub(crate) fn any_vertex(
+    /// The planes of one vertex of a cell, given what it is cut from; none if the cell is empty.
+    pub(crate) fn any_vertex<C: Cutting>(
         &self,
-        mut cell: impl Cutting,
+        uncut: impl Fn() -> C,
         seed: u32,
     ) -> Result<Option<[Generator; 3]>, ImagesMissing> {
-        let mut near = Vec::new();
-        let mut reach = -1.0;
-        while cell.radius() >= 0.0 && self.reach(seed, cell.radius()) > reach {
-            let next = self.grow(reach, self.reach(seed, cell.radius()));
-            near.clear();
-            self.for_each_within(seed, [reach, next], |site, squared| {
-                near.push((squared, Generator::site(site)));
-            })?;
-            self.input().for_each_facet_within(seed, [reach, next], |facet, doubled| {
-                near.push((doubled * doubled, facet.generator));
+        let input = self.input();
+        for layer in &self.layers {
+            let known = self.known(layer, seed);
+            let mut cell = uncut();
+            let mut near = layer.sites.near_first(self.seeds[seed as usize]);
+            input.for_each_facet_within(seed, f64::INFINITY, |facet, distance| {
+                near.push(facet.generator, (2.0 * distance).powi(2));
             });
-            near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            for (squared, generator) in &near {
-                if cell.radius() < 0.0 || squared.sqrt() > self.reach(seed, cell.radius()) {
-                    break;
+            let own_weight = input.weight(seed);
+            // As for the reach, with the weight of a site or of those in a box; where there is no root, they are too light.
+            let is_wanted = |cell: &C, squared: f64, weight: f64| {
+                let (radius, distance) = (cell.radius(), squared.sqrt());
+                let root_of = radius * radius + (weight - own_weight);
+                let reach = radius + root_of.max(0.0).sqrt();
+                radius >= 0.0
+                    && root_of >= 0.0
+                    && distance <= known
+                    && distance <= reach * RADIUS_MARGIN + self.position_error()
+            };
+            while let Some((plane, squared)) = near.next(|squared, weight| is_wanted(&cell, squared, weight))
+            {
+                let is_own = plane.as_site().is_some_and(|site| {
+                    site == seed || (site as usize >= self.seeds.len() && input.bounds_from_start(seed, site))
+                });
+                let weight = plane.as_site().map_or(own_weight, |site| input.weight(site));
+                if !is_own && is_wanted(&cell, squared, weight) {
+                    cell.cut(plane, input);
                 }
-                cell.cut(*generator, self.input());
             }
-            reach = next;
+            if cell.radius() < 0.0 || self.reach(seed, cell.radius()) <= known {
+                return Ok(cell.vertices().first().copied());
+            }
         }
-        Ok(cell.vertices().first().copied())
+        Err(ImagesMissing)
     }
 }

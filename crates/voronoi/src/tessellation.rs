@@ -170,7 +170,7 @@ impl Tessellation {
         }
         let mut search = Search::new(domain, seeds, weights)?;
         Ok(if domain.is_periodic() {
-            let tiles = cut_tiles(&mut search);
+            let tiles = cut_tiles(&mut search)?;
             weld_periodic(&search, seeds, tiles)
         } else {
             weld(&search, seeds)

@@ -8,7 +8,6 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::Dimension;
 use crate::cell_edges::CellEdges;
 use crate::convex_cell::ConvexCell;
 use crate::end_search::{EndSearch, NewVertex, PLANE};
@@ -18,6 +17,7 @@ use crate::measure::{CellSum, Polygon};
 use crate::polygon::ConvexPolygon;
 use crate::search::{ImagesMissing, Search};
 use crate::tile_vertex::{ALL_FACES, FACE_SLOTS, FACES_OF_FIRST, NONE, TileVertex};
+use crate::{Dimension, VoronoiError};
 
 /// Distance of two vertices, relative to their distances from the seeds that found them, beyond which they cannot coincide: far
 /// above the 1e-12 to which coordinates are known, so that only true candidates go to exact arithmetic.
@@ -51,7 +51,10 @@ pub(crate) struct SharedVertex {
 }
 
 /// Cuts all cells in parallel, with wider search for those that ask for it.
-pub(crate) fn cut_tiles(search: &mut Search) -> Vec<Tile> {
+///
+/// # Errors
+/// [`VoronoiError::TooManySeeds`] as in [`Search::widen`].
+pub(crate) fn cut_tiles(search: &mut Search) -> Result<Vec<Tile>, VoronoiError> {
     let mut tiles: Vec<Option<Tile>> = search.tiles().iter().map(|_| None).collect();
     loop {
         let missing = tiles.par_iter_mut().zip(search.tiles()).filter(|(tile, _)| tile.is_none());
@@ -63,9 +66,9 @@ pub(crate) fn cut_tiles(search: &mut Search) -> Vec<Tile> {
             },
         );
         if tiles.iter().all(Option::is_some) {
-            return tiles.into_iter().flatten().collect();
+            return Ok(tiles.into_iter().flatten().collect());
         }
-        search.widen();
+        search.widen()?;
     }
 }
 
@@ -211,8 +214,8 @@ impl<'a> Builder<'a> {
     fn first_vertex(&self, seed: u32) -> Result<Option<[Generator; 3]>, ImagesMissing> {
         let input = self.search.input();
         match input.domain.dimension() {
-            Dimension::Three => self.search.any_vertex(ConvexCell::new(seed, input), seed),
-            Dimension::Two => self.search.any_vertex(ConvexPolygon::new(seed, input), seed),
+            Dimension::Three => self.search.any_vertex(|| ConvexCell::new(seed, input), seed),
+            Dimension::Two => self.search.any_vertex(|| ConvexPolygon::new(seed, input), seed),
         }
     }
 

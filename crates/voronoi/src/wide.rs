@@ -10,8 +10,10 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
+use crate::box_tree::{BoxSearch, BoxTree, Boxes};
 use crate::generator::Generator;
-use crate::grid::Columns;
+use crate::half_space::EVALUATION_ERROR;
+use crate::site_tree::Columns;
 
 /// Numbers that loops take at a time.
 pub(crate) const LANES: usize = 8;
@@ -125,13 +127,207 @@ fn count_beyond_anywhere(columns: PlaneColumns, point: Vec3, slack: f32) -> u32 
     beyond
 }
 
+/// Whose bisectors with a seed are wanted: those within a radius.
+pub(crate) struct Within {
+    pub(crate) center: DVec3,
+    pub(crate) own_weight: f64,
+    pub(crate) radius: f64,
+}
+
+compiled_thrice! {
+    /// Finds the runs of points in boxes that may have bisectors within a radius; false if these are more than `most` points.
+    fn find_runs(boxes: &BoxTree, within: &Within, most: usize, runs: &mut Vec<Range<u32>>) -> bool = find_runs_anywhere
+}
+
+#[inline(always)]
+fn find_runs_anywhere(boxes: &BoxTree, within: &Within, most: usize, runs: &mut Vec<Range<u32>>) -> bool {
+    let limit = signed_square(2.0 * within.radius);
+    let mut search = RunSearch { within, limit, most, count: 0, runs };
+    boxes.search(&mut search);
+    search.count <= most
+}
+
+struct RunSearch<'a> {
+    within: &'a Within,
+    limit: f64,
+    most: usize,
+    count: usize,
+    runs: &'a mut Vec<Range<u32>>,
+}
+
+impl BoxSearch for RunSearch<'_> {
+    #[inline(always)]
+    fn wanted(&self, boxes: &Boxes) -> u32 {
+        let &Within { center, own_weight, radius } = self.within;
+        let mut wanted = 0;
+        for lane in 0..LANES {
+            let mut squared = 0.0;
+            for axis in 0..3 {
+                let below = boxes.lower[axis][lane] - center[axis];
+                let above = center[axis] - boxes.upper[axis][lane];
+                let beside = larger(larger(below, above), 0.0);
+                squared += beside * beside;
+            }
+            // Of bisectors with sites of one weight, those with sites at the distance of the radius are nearest.
+            let squared = larger(squared, radius * radius);
+            let excess = own_weight - boxes.weights[lane];
+            wanted |= u32::from(!is_farther(squared + excess, squared, self.limit)) << lane;
+        }
+        wanted
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "sites have numbers of 32 bits")]
+    fn visit(&mut self, places: Range<usize>) -> bool {
+        self.count += places.len();
+        let [start, end] = [places.start, places.end].map(|place| place as u32);
+        match self.runs.last_mut() {
+            Some(last) if last.end == start => last.end = end,
+            _ => self.runs.push(start..end),
+        }
+        self.count <= self.most
+    }
+}
+
+/// Whether a bisector is farther away than a limit, given twice its offset and the square of the length of its normal. The limit is
+/// the [`signed_square`] of twice the distance.
+#[inline(always)]
+fn is_farther(doubled_offset: f64, squared: f64, limit: f64) -> bool {
+    // Spares roots. What underflows is near.
+    doubled_offset * doubled_offset.abs() > limit * squared + f64::MIN_POSITIVE
+}
+
+/// The square, negative for a negative number.
+#[inline(always)]
+pub(crate) fn signed_square(number: f64) -> f64 {
+    number * number.abs()
+}
+
+/// The larger of two numbers, in one instruction: which of them counts if one is none does not matter.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The ball around a vertex of a cell, in terms of powers: what lies in it cuts the vertex off.
+pub(crate) struct Ball {
+    /// The cell's seed.
+    pub(crate) center: DVec3,
+    pub(crate) own_weight: f64,
+    /// Relative to the seed.
+    pub(crate) vertex: DVec3,
+    /// Bound on the errors of the coordinates of the vertex and of sites together.
+    pub(crate) error: f64,
+    /// What meets in the vertex.
+    pub(crate) generators: [Generator; 4],
+}
+
+impl Ball {
+    /// By how much less the power of the vertex is from a site between two corners than from the seed, negative where it is less,
+    /// and a bound on the error of that.
+    #[inline(always)]
+    fn depth(&self, lower: [f64; 3], upper: [f64; 3], weight: f64) -> (f64, f64) {
+        let excess = self.own_weight - weight;
+        let (mut depth, mut error) = (excess, EVALUATION_ERROR * excess.abs());
+        for axis in 0..3 {
+            let [lower, upper] = [lower, upper].map(|corner| corner[axis] - self.center[axis]);
+            let vertex = self.vertex[axis];
+            let nearest = smaller(larger(vertex, lower), upper);
+            let doubled = nearest - 2.0 * vertex;
+            let size = nearest.abs() + 2.0 * vertex.abs();
+            // The powers' common term, the square of the vertex, is left out: it may be far larger than the rest.
+            depth += nearest * doubled;
+            error += size * (EVALUATION_ERROR * nearest.abs() + 4.0 * self.error);
+        }
+        (depth, error)
+    }
+}
+
+/// A search for the site that lies deepest in a ball, of those that certainly do.
+pub(crate) struct DeepestSearch<'a> {
+    pub(crate) ball: &'a Ball,
+    pub(crate) columns: Columns<'a>,
+    /// The deepest so far, and its depth.
+    pub(crate) deepest: Option<Generator>,
+    pub(crate) depth: f64,
+    /// As long as there is none, those that may lie in the ball.
+    pub(crate) maybe: &'a mut Vec<Generator>,
+}
+
+compiled_thrice! {
+    /// Looks for the deepest site in a ball.
+    fn find_deepest(boxes: &BoxTree, search: &mut DeepestSearch) -> () = find_deepest_anywhere
+}
+
+#[inline(always)]
+fn find_deepest_anywhere(boxes: &BoxTree, search: &mut DeepestSearch) {
+    boxes.search(search);
+}
+
+impl BoxSearch for DeepestSearch<'_> {
+    #[inline(always)]
+    fn wanted(&self, boxes: &Boxes) -> u32 {
+        let mut wanted = 0;
+        for lane in 0..LANES {
+            let lower = [boxes.lower[0][lane], boxes.lower[1][lane], boxes.lower[2][lane]];
+            let upper = [boxes.upper[0][lane], boxes.upper[1][lane], boxes.upper[2][lane]];
+            let (depth, error) = self.ball.depth(lower, upper, boxes.weights[lane]);
+            let is_outside = depth - error > self.depth;
+            wanted |= u32::from(!is_outside) << lane;
+        }
+        wanted
+    }
+
+    #[inline(always)]
+    fn visit(&mut self, places: Range<usize>) -> bool {
+        let Columns { sites, x, y, z, weights } = self.columns;
+        let [x, y, z] = [x, y, z].map(|column| lanes(&column[places.clone()]));
+        let weights = weights.map_or([0.0; LANES], |weights| lanes(&weights[places.clone()]));
+        let (mut depths, mut errors) = ([0.0; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
+            let position = [x[lane], y[lane], z[lane]];
+            (depths[lane], errors[lane]) = self.ball.depth(position, position, weights[lane]);
+        }
+        for (site, (depth, error)) in sites[places].iter().zip(depths.into_iter().zip(errors)) {
+            let site = Generator::site(*site);
+            if depth - error > self.depth || self.ball.generators.contains(&site) {
+                continue;
+            }
+            if depth + error < 0.0 {
+                if self.deepest.is_none() || depth < self.depth {
+                    (self.deepest, self.depth) = (Some(site), depth);
+                    self.maybe.clear();
+                }
+            } else if self.deepest.is_none() {
+                self.maybe.push(site);
+            }
+        }
+        true
+    }
+}
+
+/// Numbers that fill the first lanes.
+#[inline(always)]
+fn lanes(numbers: &[f64]) -> [f64; LANES] {
+    let mut lanes = [0.0; LANES];
+    lanes[..numbers.len()].copy_from_slice(numbers);
+    lanes
+}
+
 /// How bisectors are scaled.
 #[derive(Debug, Default, Clone, Copy)]
 pub(crate) struct Units {
     /// Units of offsets in a length of 1.
     pub(crate) scale: f64,
-    /// A bisector's offset in these, for a normal and a square of the distance between its sites of 1.
-    pub(crate) half_square: f64,
+    /// A bisector's offset in these, for a normal and twice an offset of 1.
+    pub(crate) half_unit: f64,
+    /// Share of a difference of weights by which an offset is too small.
+    pub(crate) weight_error: f64,
     /// The first site of which the position is rounded, and the largest factor of the normal of such a one's bisector. What needs a
     /// larger one is too near to be known, and may be anywhere.
     pub(crate) first_rounded: u32,
@@ -146,12 +342,13 @@ pub(crate) fn unit(squared: f64) -> f64 {
     f64::from_bits(((3 * 1023 - (squared.to_bits() >> 52)) >> 1) << 52)
 }
 
-/// Which bisectors are wanted: those of a seed somewhere with sites of which the squares of the distances are more than the first of
-/// two and at most the second.
+/// Which bisectors are wanted: those of a seed somewhere that are farther away than the first of two limits, if there is one, and no
+/// farther than the second. Limits are signed squares of twice the distances.
 pub(crate) struct Around {
     pub(crate) seed: u32,
     pub(crate) center: DVec3,
-    pub(crate) squares: [f64; 2],
+    pub(crate) own_weight: f64,
+    pub(crate) limits: [Option<f64>; 2],
     pub(crate) units: Units,
 }
 
@@ -170,33 +367,67 @@ pub(crate) fn compact(
     #[cfg(target_arch = "x86_64")]
     if has_avx512() {
         // SAFETY: the processor has AVX-512.
-        return unsafe { avx512::compact(sites, runs, around, generators, planes) };
+        return unsafe {
+            match sites.weights {
+                Some(weights) => avx512::compact::<true>(sites, weights, runs, around, generators, planes),
+                None => avx512::compact::<false>(sites, &[], runs, around, generators, planes),
+            }
+        };
     }
     compact_anywhere(sites, runs, around, generators, planes)
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "to be rounded")]
 fn compact_anywhere(
     sites: Columns,
     runs: &[Range<u32>],
-    &Around { seed, center, squares: [from, to], units }: &Around,
+    around: &Around,
+    generators: &mut [Generator],
+    planes: [&mut [f32]; 4],
+) -> usize {
+    match sites.weights {
+        Some(weights) => compact_with::<true>(sites, weights, runs, around, generators, planes),
+        // What stands for the weights is not looked at.
+        None => compact_with::<false>(sites, sites.x, runs, around, generators, planes),
+    }
+}
+
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "to be rounded")]
+fn compact_with<const WEIGHTED: bool>(
+    sites: Columns,
+    weights: &[f64],
+    runs: &[Range<u32>],
+    &Around { seed, center, own_weight, limits: [from, to], units }: &Around,
     generators: &mut [Generator],
     [x, y, z, offsets]: [&mut [f32]; 4],
 ) -> usize {
+    // Nothing is as near as what is not a number.
+    let [from, to] = [from, to].map(|limit| limit.unwrap_or(f64::NAN));
     let mut kept = 0;
     for run in runs.iter().map(|run| run.start as usize..run.end as usize) {
-        let columns = sites.x[run.clone()].iter().zip(&sites.y[run.clone()]).zip(&sites.z[run.clone()]);
-        for (((site_x, site_y), site_z), site) in columns.zip(&sites.sites[run]) {
+        let positions = sites.x[run.clone()].iter().zip(&sites.y[run.clone()]).zip(&sites.z[run.clone()]);
+        let weights = &weights[run.clone()];
+        for ((((site_x, site_y), site_z), weight), site) in positions.zip(weights).zip(&sites.sites[run]) {
             let normal = DVec3::new(*site_x, *site_y, *site_z) - center;
             let squared = normal.length_squared();
+            let (doubled_offset, is_within, is_nearer);
+            if WEIGHTED {
+                let excess = own_weight - weight;
+                doubled_offset = squared + (excess - units.weight_error * excess.abs());
+                let square = signed_square(squared + excess);
+                is_within = square <= to * squared + f64::MIN_POSITIVE;
+                is_nearer = square <= from * squared + f64::MIN_POSITIVE;
+            } else {
+                (doubled_offset, is_within, is_nearer) = (squared, squared <= to, squared <= from);
+            }
             // Written in any case, and kept or overwritten by the next: branches would be mispredicted.
             let unit = unit(squared);
             generators[kept] = Generator(*site);
             (x[kept], y[kept], z[kept]) = (normal * unit).as_vec3().into();
-            let offset = squared * units.half_square * unit;
+            let offset = doubled_offset * units.half_unit * unit;
             let is_too_near = (unit > units.largest_unit) & (*site >= units.first_rounded);
             offsets[kept] = if is_too_near { f32::NEG_INFINITY } else { offset as f32 };
-            kept += usize::from((squared > from) & (squared <= to) & (*site != seed));
+            kept += usize::from(!is_nearer & is_within & (*site != seed));
         }
     }
     kept
@@ -208,15 +439,16 @@ mod avx512 {
     use std::ops::Range;
 
     use crate::generator::Generator;
-    use crate::grid::Columns;
+    use crate::site_tree::Columns;
     use crate::wide::Around;
 
     /// Doubles in a register.
     const WIDTH: usize = 8;
 
     #[target_feature(enable = "avx512f,avx512vl,avx512dq")]
-    pub(super) fn compact(
+    pub(super) fn compact<const WEIGHTED: bool>(
         sites: Columns,
+        weights: &[f64],
         runs: &[Range<u32>],
         around: &Around,
         generators: &mut [Generator],
@@ -224,14 +456,19 @@ mod avx512 {
     ) -> usize {
         let len = sites.sites.len();
         assert!([sites.x, sites.y, sites.z].iter().all(|column| column.len() == len));
+        assert!(!WEIGHTED || weights.len() == len);
         let most: usize = runs.iter().map(|run| run.len()).sum();
         assert!(generators.len() >= most + WIDTH && planes.iter().all(|column| column.len() >= most + WIDTH));
         let [x, y, z, offsets] = planes.map(<[f32]>::as_mut_ptr);
         let generators: *mut Generator = generators.as_mut_ptr();
 
         let [center_x, center_y, center_z] = around.center.to_array().map(|number| _mm512_set1_pd(number));
-        let [from, to] = around.squares.map(|square| _mm512_set1_pd(square));
-        let half_square = _mm512_set1_pd(around.units.half_square);
+        // Nothing is as near as what is not a number.
+        let [from, to] = around.limits.map(|limit| _mm512_set1_pd(limit.unwrap_or(f64::NAN)));
+        let least = _mm512_set1_pd(f64::MIN_POSITIVE);
+        let own_weight = _mm512_set1_pd(around.own_weight);
+        let weight_error = _mm512_set1_pd(around.units.weight_error);
+        let half_unit = _mm512_set1_pd(around.units.half_unit);
         let largest_unit = _mm512_set1_pd(around.units.largest_unit);
         let first_rounded = _mm256_set1_epi32(around.units.first_rounded.cast_signed());
         let nowhere = _mm512_set1_pd(f64::NEG_INFINITY);
@@ -262,12 +499,27 @@ mod avx512 {
                 let exponent = _mm512_srli_epi64::<52>(_mm512_castpd_si512(squared));
                 let halved = _mm512_srli_epi64::<1>(_mm512_sub_epi64(biases, exponent));
                 let unit = _mm512_castsi512_pd(_mm512_slli_epi64::<52>(halved));
-                let offset = _mm512_mul_pd(_mm512_mul_pd(squared, half_square), unit);
+                let (offset, size, limits) = if WEIGHTED {
+                    // SAFETY: weights have the same places.
+                    let weight = unsafe { _mm512_maskz_loadu_pd(mask, weights.as_ptr().add(first)) };
+                    let excess = _mm512_sub_pd(own_weight, weight);
+                    let error = _mm512_mul_pd(weight_error, _mm512_abs_pd(excess));
+                    let doubled = _mm512_add_pd(squared, excess);
+                    let limit = |limit| _mm512_add_pd(_mm512_mul_pd(limit, squared), least);
+                    (
+                        _mm512_add_pd(squared, _mm512_sub_pd(excess, error)),
+                        _mm512_mul_pd(doubled, _mm512_abs_pd(doubled)),
+                        [limit(from), limit(to)],
+                    )
+                } else {
+                    (squared, squared, [from, to])
+                };
+                let offset = _mm512_mul_pd(_mm512_mul_pd(offset, half_unit), unit);
                 let is_too_near = _mm512_cmp_pd_mask::<_CMP_GT_OQ>(unit, largest_unit)
                     & _mm256_cmpge_epu32_mask(numbers, first_rounded);
                 let offset = _mm512_mask_mov_pd(offset, is_too_near, nowhere);
-                let keep = _mm512_mask_cmp_pd_mask::<_CMP_GT_OQ>(mask, squared, from)
-                    & _mm512_cmp_pd_mask::<_CMP_LE_OQ>(squared, to)
+                let keep = _mm512_mask_cmp_pd_mask::<_CMP_NLE_UQ>(mask, size, limits[0])
+                    & _mm512_cmp_pd_mask::<_CMP_LE_OQ>(size, limits[1])
                     & _mm256_cmpneq_epi32_mask(numbers, seed);
                 let single = |wide| _mm512_cvtpd_ps(wide);
                 // SAFETY: fewer planes were kept than there are sites before `first` in the runs, and that and the width is at
@@ -301,31 +553,41 @@ mod tests {
 
     #[test]
     fn what_processors_differ_in_gives_the_same_planes() {
-        let (x, y, z) = (column(12_345), column(23_456), column(34_567));
+        let (x, y, z, weights) = (column(12_345), column(23_456), column(34_567), column(45_678));
         let sites: Vec<u32> = (0..101).collect();
-        let sites = Columns { sites: &sites, x: &x, y: &y, z: &z };
         let runs = [0..7, 9..42, 42..50, 50..101];
-        let (center, squares) = (DVec3::new(0.1, 0.2, 0.3), [0.01, 0.9]);
+        let (center, own_weight) = (DVec3::new(0.1, 0.2, 0.3), 0.4);
         // From site 30 on those nearer than about a quarter are too near.
-        let units = Units { scale: 2.0, half_square: 1.0, first_rounded: 30, largest_unit: 2.0 };
-        let around = Around { seed: 17, center, squares, units };
-        let [mut found, mut plain] =
-            [(); 2].map(|()| (vec![Generator(0); 101 + LANES], [const { [0.0f32; 101 + LANES] }; 4]));
-        let (generators, columns) = (&mut found.0, found.1.each_mut().map(|column| &mut column[..]));
-        let count = compact(sites, &runs, &around, generators, columns);
-        let (generators, columns) = (&mut plain.0, plain.1.each_mut().map(|column| &mut column[..]));
-        assert_eq!(count, compact_anywhere(sites, &runs, &around, generators, columns));
-        let (generators, columns) = (&found.0[..count], found.1.each_ref().map(|column| &column[..count]));
-        assert_eq!(generators, &plain.0[..count]);
-        assert_eq!(columns, plain.1.each_ref().map(|column| &column[..count]));
-        assert!(columns[3].contains(&f32::NEG_INFINITY));
-        let near = |k: usize| {
-            let squared = (DVec3::new(x[k], y[k], z[k]) - center).length_squared();
-            k != 17 && k != 7 && k != 8 && squared > squares[0] && squared <= squares[1]
-        };
-        let expected: Vec<usize> = (0..101).filter(|k| near(*k)).collect();
-        assert!(generators.iter().map(|generator| generator.0 as usize).eq(expected.iter().copied()));
+        let units =
+            Units { scale: 2.0, half_unit: 1.0, weight_error: 1e-6, first_rounded: 30, largest_unit: 2.0 };
+        let limits = [Some(signed_square(0.1)), Some(signed_square(0.9))];
+        let around = Around { seed: 17, center, own_weight, limits, units };
+        let mut columns = [const { Vec::new() }; 4];
+        for weights in [Some(&weights[..]), None] {
+            let sites = Columns { sites: &sites, x: &x, y: &y, z: &z, weights };
+            let [mut found, mut plain] =
+                [(); 2].map(|()| (vec![Generator(0); 101 + LANES], [const { [0.0f32; 101 + LANES] }; 4]));
+            let (generators, planes) = (&mut found.0, found.1.each_mut().map(|column| &mut column[..]));
+            let count = compact(sites, &runs, &around, generators, planes);
+            let (generators, planes) = (&mut plain.0, plain.1.each_mut().map(|column| &mut column[..]));
+            assert_eq!(count, compact_anywhere(sites, &runs, &around, generators, planes));
+            let generators = &found.0[..count];
+            columns = found.1.each_ref().map(|column| column[..count].to_vec());
+            assert_eq!(generators, &plain.0[..count]);
+            assert_eq!(columns, plain.1.each_ref().map(|column| column[..count].to_vec()));
+            let near = |k: usize| {
+                let squared = (DVec3::new(x[k], y[k], z[k]) - center).length_squared();
+                let excess = weights.map_or(0.0, |weights| own_weight - weights[k]);
+                let doubled_distance = (squared + excess) / squared.sqrt();
+                k != 17 && k != 7 && k != 8 && doubled_distance > 0.1 && doubled_distance <= 0.9
+            };
+            let expected: Vec<usize> = (0..101).filter(|k| near(*k)).collect();
+            assert!(generators.iter().map(|generator| generator.0 as usize).eq(expected.iter().copied()));
+            assert!(!expected.is_empty());
+        }
 
+        assert!(columns[3].contains(&f32::NEG_INFINITY));
+        let columns = columns.each_ref().map(|column| &column[..]);
         let planes = columns.map(|column| column.as_chunks().0);
         let point = Vec3::new(0.3, -0.2, 0.1);
         assert_eq!(count_beyond(planes, point, 0.01), count_beyond_anywhere(planes, point, 0.01));

@@ -27,7 +27,7 @@ pub struct Expectation {
 }
 
 /// Settings that have nothing to do with what theory says of flat grains, or that flat grains do not heed.
-const FREE_SETTINGS: [&str; 15] = [
+const FREE_SETTINGS: [&str; 16] = [
     "arrays",
     "ascii",
     "box",
@@ -42,6 +42,7 @@ const FREE_SETTINGS: [&str; 15] = [
     "rng-seed",
     "seeds",
     "voxels",
+    "vtk-encoding",
     "wall-tension",
 ];
 

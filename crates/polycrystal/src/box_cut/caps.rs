@@ -7,12 +7,16 @@ use spade::handles::{FixedVertexHandle, InnerTag};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use voronoi::{Dimension, Shift};
 
+use super::cap_points::add_points;
 use super::pieces::{End, Pieces};
 use super::{Corner, Piece, periodic_axes, place_in_box};
 use crate::{NetworkError, Side};
 
 type Delaunay = ConstrainedDelaunayTriangulation<Point2<f64>>;
 type Face = spade::handles::FixedFaceHandle<InnerTag>;
+
+/// Where along a wall to look for what it belongs to, as a share of it: seeds on lattices have boundaries in its middle.
+const OFF_MIDDLE: f64 = 0.381_966;
 
 /// Caps on all walls across periodic axes: of a grain toward the exterior. What lies within such a wall becomes caps of both
 /// sides, one on each of the opposite walls.
@@ -43,7 +47,7 @@ fn push_cap(caps: &mut Vec<Piece>, axis: usize, corners: &[Corner], grain: Side,
     if end == End::Lower {
         corners.reverse();
     }
-    caps.push(Piece { corners, sides: [grain, Side::Exterior] });
+    caps.push(Piece { corners, sides: [grain, Side::Exterior], boundary: None });
 }
 
 fn crosses(axis: usize) -> NetworkError {
@@ -102,7 +106,13 @@ fn caps_of_line(
         let between = |pair: &[Corner]| known(pair[0], true).or_else(|| known(pair[1], false));
         let mut sides: Vec<Option<Side>> = line.windows(2).map(between).collect();
         // Where no boundary meets the wall the same grain goes on.
+        let middle = || {
+            let mut at = pieces.domain.lower();
+            at[along] += OFF_MIDDLE * pieces.domain.size()[along];
+            at
+        };
         let first = sides.iter().copied().flatten().next_back().or(only_grain);
+        let first = first.or_else(|| seen_from_wall(pieces, axis, end, middle()));
         let mut last = first;
         for side in &mut sides {
             last = side.or(last);
@@ -122,20 +132,20 @@ fn caps_of_line(
 
 /// In space: the triangles of a wall, constrained by the lines in which boundaries meet it from above and from below.
 fn caps_of_plane(
-    pieces: &Pieces,
+    pieces: &mut Pieces,
     axis: usize,
     only_grain: Option<Side>,
     caps: &mut Vec<Piece>,
 ) -> Result<(), NetworkError> {
     let [b, c] = [(axis + 1) % 3, (axis + 2) % 3];
     let place = |corner: Corner| {
-        let place = place_in_box(&pieces.domain, pieces.places[corner.point as usize], corner.shift);
+        let place = pieces.place(corner);
         Point2::new(place[b], place[c])
     };
     // What lies on the left of each edge, seen from above: at the lower wall and at the upper one.
     let mut left_of = [Lefts::default(), Lefts::default()];
     let mut edges = Vec::new();
-    for piece @ Piece { corners, sides: [first, second] } in &pieces.pieces {
+    for piece @ Piece { corners, sides: [first, second], .. } in &pieces.pieces {
         let along = corners.iter().zip(corners.iter().cycle().skip(1)).map(|(from, to)| [*from, *to]);
         if pieces.is_within(piece, axis) {
             let crossed = along.clone().map(|ends| ends.map(place)).map(|[p, q]| p.x * q.y - q.x * p.y);
@@ -185,9 +195,21 @@ fn caps_of_plane(
         }
         delaunay.add_constraint(from, to);
     }
+    add_points(&mut delaunay);
+    for vertex in delaunay.vertices().skip(corners.len()) {
+        let mut place = pieces.domain.lower();
+        (place[b], place[c]) = (vertex.position().x, vertex.position().y);
+        corners.push(pieces.add(place, [0, 1, 2].map(|other| other == axis)));
+    }
     for (end, left_of) in [End::Lower, End::Upper].into_iter().zip(&left_of) {
         let side_at = |ends: [FixedVertexHandle; 2]| left_of.side(ends.map(|end| corners[end.index()]));
-        let sides = fill(&delaunay, side_at);
+        let look = |face: Face| {
+            let [x, y] = delaunay.face(face).center().into();
+            let mut at = pieces.domain.lower();
+            (at[b], at[c]) = (x, y);
+            seen_from_wall(pieces, axis, end, at)
+        };
+        let sides = fill(&delaunay, side_at, look);
         for face in delaunay.inner_faces() {
             let grain = sides.get(&face.fix()).copied().or(only_grain).ok_or_else(|| crosses(axis))?;
             if grain != Side::Exterior {
@@ -249,10 +271,43 @@ fn rims(pieces: &Pieces, [axis, across]: [usize; 2], along: usize) -> Vec<[Corne
     pairs.flat_map(|ends| [ends, ends.map(|end| end.moved(up))]).collect()
 }
 
-/// The side in which each triangle lies, from those of the edges that have one on their left.
+/// What a wall that no boundary meets near a place belongs to: the side, toward the wall, of the first piece across it from there.
+fn seen_from_wall(pieces: &Pieces, axis: usize, end: End, at: DVec3) -> Option<Side> {
+    let others = [(axis + 1) % 3, (axis + 2) % 3];
+    let height_and_side = |piece: &Piece| {
+        let corners: Vec<DVec3> = piece.corners.iter().map(|corner| pieces.place(*corner) - at).collect();
+        let normal = match corners.as_slice() {
+            [start, end] => (*end - *start).cross(DVec3::Z),
+            corners => (corners[1] - corners[0]).cross(corners[2] - corners[0]),
+        };
+        let next = corners.iter().cycle().skip(1);
+        let turns = || {
+            let turn = |(p, q): (&DVec3, &DVec3)| p[others[0]] * q[others[1]] - p[others[1]] * q[others[0]];
+            corners.iter().zip(next.clone()).map(turn)
+        };
+        let is_across = match corners.as_slice() {
+            [start, end] => {
+                let along = 1 - axis;
+                (start[along] > 0.0) != (end[along] > 0.0)
+            }
+            _ => turns().all(|turn| turn > 0.0) || turns().all(|turn| turn < 0.0),
+        };
+        let height = at[axis] + normal.dot(corners[0]) / normal[axis];
+        let [below, above] = if normal[axis] > 0.0 { piece.sides } else { [piece.sides[1], piece.sides[0]] };
+        (is_across && height.is_finite()).then_some((height, below, above))
+    };
+    let across = pieces.pieces.iter().filter_map(height_and_side);
+    match end {
+        End::Lower => across.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, below, _)| below),
+        End::Upper => across.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, _, above)| above),
+    }
+}
+
+/// The side in which each triangle lies, from those of the edges that have one on their left, or where there is none, as `look` finds.
 fn fill(
     delaunay: &Delaunay,
     side_at: impl Fn([FixedVertexHandle; 2]) -> Option<Side>,
+    look: impl Fn(Face) -> Option<Side>,
 ) -> HashMap<Face, Side> {
     let mut sides = HashMap::new();
     let mut next = Vec::new();
@@ -264,17 +319,26 @@ fn fill(
             next.push(face.fix());
         }
     }
-    while let Some(face) = next.pop() {
-        let side = sides[&face];
-        for edge in delaunay.face(face).adjacent_edges() {
-            let is_open = side_at([edge.from().fix(), edge.to().fix()]).is_none();
-            if let (true, Some(neighbor)) = (is_open, edge.rev().face().as_inner()) {
-                sides.entry(neighbor.fix()).or_insert_with(|| {
-                    next.push(neighbor.fix());
-                    side
-                });
+    let mut all = delaunay.inner_faces();
+    loop {
+        while let Some(face) = next.pop() {
+            let side = sides[&face];
+            for edge in delaunay.face(face).adjacent_edges() {
+                let is_open = side_at([edge.from().fix(), edge.to().fix()]).is_none();
+                if let (true, Some(neighbor)) = (is_open, edge.rev().face().as_inner()) {
+                    sides.entry(neighbor.fix()).or_insert_with(|| {
+                        next.push(neighbor.fix());
+                        side
+                    });
+                }
             }
         }
+        let Some(face) = all.next() else { return sides };
+        if !sides.contains_key(&face.fix())
+            && let Some(side) = look(face.fix())
+        {
+            sides.insert(face.fix(), side);
+            next.push(face.fix());
+        }
     }
-    sides
 }

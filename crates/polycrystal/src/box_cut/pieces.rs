@@ -5,8 +5,9 @@ use std::collections::HashMap;
 use glam::DVec3;
 use voronoi::{Dimension, Domain, Shift};
 
-use super::{Corner, Piece, periodic_axes};
+use super::{Corner, Piece, periodic_axes, place_in_box};
 use crate::face_mesh::id;
+use crate::triangle_quality::squared_sine;
 use crate::{Elements, GrainId, Network, Side};
 
 /// Pieces of elements, and the points of the torus in the box.
@@ -34,32 +35,63 @@ pub(super) enum End {
 /// Where an edge meets a plane: the axis, the edge from one of its points, and the plane as seen from there.
 type Cut = (usize, Corner, Corner, i8);
 
-impl Pieces {
-    /// Whole elements, of boundaries that come twice those of one.
-    pub(super) fn of_network(network: &Network, points: &[DVec3]) -> Self {
+/// The points of a network on the torus, and its vertices as copies of them.
+pub(super) struct Torus {
+    /// The point that each vertex is, and the shift from there.
+    pub(super) originals: Vec<Corner>,
+    /// Places of points with lower <= x < upper along periodic axes.
+    pub(super) places: Vec<DVec3>,
+    /// The periods from there to the point.
+    pub(super) moved: Vec<Shift>,
+    /// The axes on whose lower plane each point lies.
+    pub(super) planes: Vec<[bool; 3]>,
+}
+
+impl Torus {
+    pub(super) fn new(network: &Network, points: &[DVec3]) -> Self {
         let level = network.finest();
         assert_eq!(points.len(), level.vertex_count(), "there must be one point per vertex");
-        let domain = network.domain().clone();
+        let domain = network.domain();
         let mut originals: Vec<Corner> =
             (0..id(points.len())).map(|point| Corner { point, shift: Shift::NONE }).collect();
         for pair in &level.copies.vertices {
             originals[pair.secondary as usize] = Corner { point: pair.primary, shift: pair.shift };
         }
-        let mut pieces = Self {
+        let mut torus = Self {
             places: points.to_vec(),
+            moved: vec![Shift::NONE; points.len()],
             planes: vec![[false; 3]; points.len()],
-            pieces: Vec::new(),
-            meets_itself: None,
-            domain,
+            originals,
         };
-        let mut moved = vec![Shift::NONE; points.len()];
-        for point in (0..points.len()).filter(|point| originals[*point].point == id(*point)) {
-            let (place, shift) = home(&pieces.domain, points[point]);
-            (pieces.places[point], moved[point]) = (place, shift);
-            for axis in periodic_axes(&pieces.domain) {
-                pieces.planes[point][axis] = place[axis] == pieces.domain.lower()[axis];
+        for (point, place) in points.iter().enumerate() {
+            if torus.originals[point].point == id(point) {
+                (torus.places[point], torus.moved[point]) = home(domain, *place);
+                for axis in periodic_axes(domain) {
+                    torus.planes[point][axis] = torus.places[point][axis] == domain.lower()[axis];
+                }
             }
         }
+        torus
+    }
+
+    /// A vertex as a point moved by whole periods.
+    pub(super) fn corner(&self, vertex: u32) -> Corner {
+        let Corner { point, shift } = self.originals[vertex as usize];
+        Corner { point, shift: shift + self.moved[point as usize] }
+    }
+}
+
+impl Pieces {
+    /// Whole elements, of boundaries that come twice those of one.
+    pub(super) fn of_network(network: &Network, torus: Torus) -> Self {
+        let level = network.finest();
+        let mut pieces = Self {
+            pieces: Vec::new(),
+            meets_itself: None,
+            domain: network.domain().clone(),
+            places: Vec::new(),
+            planes: Vec::new(),
+        };
         let elements = Elements::from(&level.mesh);
         for (element, boundary) in (0u32..).zip(&level.boundary_of) {
             let beside = network.boundaries()[boundary.index()];
@@ -74,14 +106,36 @@ impl Pieces {
                 pieces.meets_itself = Some(first);
                 continue;
             }
-            let corner = |point: &u32| {
-                let Corner { point, shift } = originals[*point as usize];
-                Corner { point, shift: shift + moved[point as usize] }
-            };
-            let corners = elements.corners(element).iter().map(corner).collect();
-            pieces.pieces.push(Piece { corners, sides });
+            let corners = elements.corners(element).iter().map(|vertex| torus.corner(*vertex)).collect();
+            pieces.pieces.push(Piece { corners, sides, boundary: Some(*boundary) });
         }
-        pieces
+        Self { places: torus.places, planes: torus.planes, ..pieces }
+    }
+
+    /// Divides polygons into triangles, each so that the smallest angle is as large as it can be.
+    pub(super) fn triangulate(&mut self) {
+        for piece in std::mem::take(&mut self.pieces) {
+            let count = piece.corners.len();
+            let fan = |apex: usize| {
+                let at = move |k: usize| (apex + k) % count;
+                (2..count).map(move |k| [apex, at(k - 1), at(k)])
+            };
+            let place = |k: usize| self.place(piece.corners[k]);
+            let least = |apex: usize| {
+                fan(apex).map(|ends| squared_sine(ends.map(place))).fold(f64::INFINITY, f64::min)
+            };
+            let apexes = (0..count).map(|apex| (least(apex), apex));
+            let best = apexes.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+            let (_, apex) = best.expect("a piece has corners");
+            let triangle =
+                |ends: [usize; 3]| Piece { corners: ends.map(|k| piece.corners[k]).to_vec(), ..piece };
+            self.pieces.extend(fan(apex).map(triangle));
+        }
+    }
+
+    /// Where a corner of a piece in the box is.
+    pub(super) fn place(&self, corner: Corner) -> DVec3 {
+        place_in_box(&self.domain, self.places[corner.point as usize], corner.shift)
     }
 
     /// Cuts all pieces at the planes across an axis.
@@ -137,7 +191,8 @@ impl Pieces {
         if !sides_of_corners.contains(&1) {
             halves[1].clear();
         }
-        let [below, above] = halves.map(|corners| Piece { corners, sides: piece.sides });
+        let [below, above] =
+            halves.map(|corners| Piece { corners, sides: piece.sides, boundary: piece.boundary });
         (below, above)
     }
 

@@ -1,17 +1,17 @@
 //! The method of conjugate gradients with a preconditioner, for the few unknowns of the grains.
 
 /// When to stop.
-pub(super) struct Limits {
+pub(crate) struct Limits {
     /// The preconditioned residual as a share of its first value.
-    pub(super) tolerance: f64,
-    pub(super) steps: usize,
+    pub(crate) tolerance: f64,
+    pub(crate) steps: usize,
 }
 
 /// Solves `A x = b` for a symmetric positive (semi)definite A and consistent b, starting from zero.
 ///
 /// `apply` multiplies a vector with A, `precondition` with a symmetric, positive (semi)definite matrix that is much like
 /// A's inverse.
-pub(super) fn solve(
+pub(crate) fn solve(
     apply: impl Fn(&[f64]) -> Vec<f64>,
     precondition: impl Fn(&[f64]) -> Vec<f64>,
     right_side: &[f64],
@@ -44,7 +44,7 @@ pub(super) fn solve(
     solution
 }
 
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 

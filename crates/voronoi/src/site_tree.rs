@@ -1,0 +1,255 @@
+//! Sites in boxes, and the searches among them.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::ops::Range;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::box_tree::{BoxTree, sort_into_boxes};
+use crate::generator::Generator;
+use crate::grid::SeedGrid;
+use crate::wide::{self, Ball, DeepestSearch, LANES, Within};
+
+/// Sites by place: their numbers, their coordinates, and their weights if there are any.
+#[derive(Clone, Copy)]
+pub(crate) struct Columns<'a> {
+    pub(crate) sites: &'a [u32],
+    pub(crate) x: &'a [f64],
+    pub(crate) y: &'a [f64],
+    pub(crate) z: &'a [f64],
+    pub(crate) weights: Option<&'a [f64]>,
+}
+
+impl Columns<'_> {
+    #[inline(always)]
+    pub(crate) fn position(&self, place: usize) -> DVec3 {
+        DVec3::new(self.x[place], self.y[place], self.z[place])
+    }
+
+    #[inline(always)]
+    pub(crate) fn weight(&self, place: usize) -> f64 {
+        self.weights.map_or(0.0, |weights| weights[place])
+    }
+}
+
+/// Places in rows of blocks up to which these are gone through: half as many again as around the largest cells of random seeds.
+const MOST_IN_ROWS: usize = 1000;
+
+/// Sites, sorted so that what is near in space is near in memory, and boxes around them.
+pub(crate) struct SiteTree {
+    grid: SeedGrid,
+    sites: Vec<u32>,
+    columns: [Vec<f64>; 3],
+    weights: Option<Vec<f64>>,
+    boxes: BoxTree,
+}
+
+impl SiteTree {
+    /// Takes sites in the order of a grid.
+    pub(crate) fn new(
+        mut sites: Vec<u32>,
+        grid: SeedGrid,
+        position: impl Fn(u32) -> DVec3 + Sync,
+        weight: Option<impl Fn(u32) -> f64 + Sync>,
+    ) -> Self {
+        for range in grid.crowded_blocks() {
+            let first = range.start;
+            sort_into_boxes(&mut sites[range], first, &position);
+        }
+        let mut columns = [const { Vec::new() }; 3];
+        for (axis, column) in columns.iter_mut().enumerate() {
+            *column = sites.par_iter().map(|site| position(*site)[axis]).collect();
+        }
+        let weights = weight.map(|weight| sites.par_iter().map(|site| weight(*site)).collect());
+        let boxes = BoxTree { point_count: 0, levels: Vec::new() };
+        let mut tree = Self { grid, sites, columns, weights, boxes };
+        let columns = tree.columns();
+        let boxes = BoxTree::new(tree.sites.len(), |place| (columns.position(place), columns.weight(place)));
+        tree.boxes = boxes;
+        tree
+    }
+
+    pub(crate) fn columns(&self) -> Columns<'_> {
+        let [x, y, z] = &self.columns;
+        Columns { sites: &self.sites, x, y, z, weights: self.weights.as_deref() }
+    }
+
+    /// Finds runs of places that hold all sites with which a seed has bisectors within a radius, and so up to some reach; false if
+    /// these are more than some number of places.
+    #[inline]
+    pub(crate) fn find_runs(
+        &self,
+        within: &Within,
+        reach: f64,
+        most: usize,
+        runs: &mut Vec<Range<u32>>,
+    ) -> bool {
+        runs.clear();
+        // Where seeds are spread evenly, and weights differ little, rows of blocks are quicker than boxes.
+        if self.grid.find_runs(within.center, reach, most.min(MOST_IN_ROWS), runs) {
+            return true;
+        }
+        runs.clear();
+        wide::find_runs(&self.boxes, within, most, runs)
+    }
+
+    /// The site that lies deepest in a ball, of those that certainly do; if none does, all that may are listed.
+    pub(crate) fn deepest(&self, ball: &Ball, maybe: &mut Vec<Generator>) -> Option<Generator> {
+        let mut search = DeepestSearch { ball, columns: self.columns(), deepest: None, depth: 0.0, maybe };
+        wide::find_deepest(&self.boxes, &mut search);
+        search.deepest
+    }
+
+    /// The sites in order of their distance from a place.
+    pub(crate) fn near_first(&self, center: DVec3) -> NearFirst<'_> {
+        let mut near = NearFirst { tree: self, center, heap: BinaryHeap::new() };
+        near.push_group(self.boxes.levels.len() - 1, 0, |_, _| true);
+        near
+    }
+}
+
+/// What waits to be visited.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+enum Waiting {
+    /// A box, by its level and number.
+    Box(usize, usize),
+    Plane(Generator),
+}
+
+/// A search from near to far.
+pub(crate) struct NearFirst<'a> {
+    tree: &'a SiteTree,
+    center: DVec3,
+    /// By the squares of distances, of which bits come in the same order.
+    heap: BinaryHeap<Reverse<(u64, Waiting)>>,
+}
+
+impl NearFirst<'_> {
+    /// Lets a plane wait as if it were the bisector with a site of which the square of the distance is given.
+    pub(crate) fn push(&mut self, plane: Generator, squared: f64) {
+        self.heap.push(Reverse((squared.to_bits(), Waiting::Plane(plane))));
+    }
+
+    /// The next plane and the square of its site's distance, if `is_wanted` still says so of the square and the site's weight: once it
+    /// does not, it must not later.
+    pub(crate) fn next(&mut self, is_wanted: impl Fn(f64, f64) -> bool) -> Option<(Generator, f64)> {
+        while let Some(Reverse((squared, waiting))) = self.heap.pop() {
+            match waiting {
+                Waiting::Plane(plane) => return Some((plane, f64::from_bits(squared))),
+                Waiting::Box(0, run) => {
+                    let columns = self.tree.columns();
+                    for place in run * LANES..columns.sites.len().min((run + 1) * LANES) {
+                        let squared = (columns.position(place) - self.center).length_squared();
+                        if is_wanted(squared, columns.weight(place)) {
+                            self.push(Generator::site(columns.sites[place]), squared);
+                        }
+                    }
+                }
+                Waiting::Box(level, group) => self.push_group(level - 1, group, &is_wanted),
+            }
+        }
+        None
+    }
+
+    fn push_group(&mut self, level: usize, group: usize, is_wanted: impl Fn(f64, f64) -> bool) {
+        let boxes = &self.tree.boxes.levels[level][group];
+        for (lane, weight) in
+            boxes.weights.iter().enumerate().filter(|(_, weight)| **weight > f64::NEG_INFINITY)
+        {
+            let [lower, upper] =
+                [&boxes.lower, &boxes.upper].map(|corner| DVec3::from_array(corner.map(|lanes| lanes[lane])));
+            // Rounding must not make it farther than what it holds.
+            let squared = (self.center.clamp(lower, upper) - self.center).length_squared() * (1.0 - 1e-15);
+            if is_wanted(squared, *weight) {
+                self.heap.push(Reverse((squared.to_bits(), Waiting::Box(level, group * LANES + lane))));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Seeds in a box and as many in a corner of it, with weights of which some are large.
+    fn seeds() -> (Vec<DVec3>, Vec<f64>) {
+        let fraction = |i: u32, k: f64| (f64::from(i) * k).fract();
+        let seed = |i: u32| {
+            let seed = DVec3::new(fraction(i, 0.618_034), fraction(i, 0.754_878), fraction(i, 0.569_84));
+            if i.is_multiple_of(2) { seed } else { seed * 0.01 }
+        };
+        let weight = |i: u32| if i.is_multiple_of(97) { 0.01 } else { 1e-6 * fraction(i, 0.41) };
+        ((0..4000).map(seed).collect(), (0..4000).map(weight).collect())
+    }
+
+    fn tree(seeds: &[DVec3], weights: Option<&[f64]>) -> SiteTree {
+        let grid = SeedGrid::new(seeds);
+        assert!(grid.crowded_blocks().next().is_some());
+        let weight = weights.map(|weights| |site: u32| weights[site as usize]);
+        SiteTree::new(grid.order.clone(), grid, |site| seeds[site as usize], weight)
+    }
+
+    #[test]
+    fn runs_hold_all_bisectors_within_a_radius() {
+        let (seeds, weights) = seeds();
+        for weights in [None, Some(&weights[..])] {
+            let tree = tree(&seeds, weights);
+            let weight = |site: usize| weights.map_or(0.0, |weights| weights[site]);
+            for seed in [0, 1, 17, 18, 97, 3999] {
+                for radius in [1e-4, 1e-3, 0.03, 0.3] {
+                    let (center, own_weight) = (seeds[seed], weight(seed));
+                    let within = Within { center, own_weight, radius };
+                    let mut found = vec![false; seeds.len()];
+                    let reach = radius + (radius * radius + 0.01).sqrt();
+                    let mut runs = Vec::new();
+                    assert!(tree.find_runs(&within, reach, usize::MAX, &mut runs));
+                    for place in runs.into_iter().flatten() {
+                        found[tree.sites[place as usize] as usize] = true;
+                    }
+                    for other in (0..seeds.len()).filter(|other| *other != seed) {
+                        let squared = seeds[other].distance_squared(center);
+                        let distance = (squared + own_weight - weight(other)) / (2.0 * squared.sqrt());
+                        assert!(found[other] || distance > radius, "{other} at {distance}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_deepest_site_in_a_ball_is_found_and_else_all_that_may_be_in_it() {
+        let (seeds, weights) = seeds();
+        let tree = tree(&seeds, Some(&weights));
+        let generators = [0, 1, 2, 3].map(Generator::site);
+        for k in 0..300u32 {
+            let vertex = seeds[(7 * k) as usize] * 0.02 - seeds[0];
+            let ball = |own_weight| Ball { center: seeds[0], own_weight, vertex, error: 1e-15, generators };
+            let power = |site: usize| (seeds[site] - seeds[0] - vertex).length_squared() - weights[site];
+            let expected = (4..seeds.len()).min_by(|a, b| power(*a).total_cmp(&power(*b))).expect("seeds");
+            // A ball that the site is in, and one on which it lies.
+            let mut maybe = Vec::new();
+            let own_weight = vertex.length_squared() - power(expected);
+            let found = tree.deepest(&ball(own_weight - 1e-6), &mut maybe);
+            assert_eq!(found, Some(Generator::site(u32::try_from(expected).expect("few"))));
+            assert!(maybe.is_empty());
+            let found = tree.deepest(&ball(own_weight), &mut maybe);
+            assert!(
+                found.is_none() && maybe.contains(&Generator::site(u32::try_from(expected).expect("few")))
+            );
+        }
+    }
+
+    #[test]
+    fn sites_come_from_near_to_far() {
+        let (seeds, _) = seeds();
+        let tree = tree(&seeds, None);
+        let mut near = tree.near_first(seeds[5]);
+        let found = std::iter::from_fn(|| near.next(|squared, _| squared < 0.04));
+        let found: Vec<(Generator, f64)> = found.collect();
+        assert!(found.windows(2).all(|pair| pair[0].1 <= pair[1].1));
+        let expected = seeds.iter().filter(|seed| seed.distance_squared(seeds[5]) < 0.04).count();
+        assert_eq!(found.len(), expected);
+    }
+}
