@@ -310,7 +310,8 @@ fn flat_equilibria_stay_as_they_are() {
 #[test]
 fn one_grain_and_time_zero_change_nothing() {
     let (one, points) = network(&Domain::unit_cube(), &[DVec3::splat(0.3)], 2);
-    assert_eq!(relaxed(&one, &points), one.subdivide(&points));
+    let still = relax(&one, &points, &Relaxation::default(), |_, _| ()).expect("nothing to do");
+    assert!(still.is_flat && still.points == points);
     let (many, points) = random_network(&Domain::unit_cube(), 20, 1, 1);
     let off = Relaxation::Time(0.0);
     assert_eq!(relax(&many, &points, &off, |_, _| ()).expect("nothing to do").points, points);
