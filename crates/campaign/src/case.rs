@@ -171,6 +171,9 @@ fn smoothing(draw: &mut Draw, domain: &Domain, count: u32, limits: Limits, optio
     if draw.chance(0.1) {
         options.set("lloyd", [draw.whole(1..=5)]);
     }
+    if draw.chance(0.05) {
+        options.set("min-diameter", [draw.between(0.0, 0.6)]);
+    }
     let growth: f64 = if is_plane { 2.0 } else { 4.0 };
     let affordable = (f64::from(limits.triangles) / (share * f64::from(count))).log(growth).max(0.0);
     let levels = f64::from(draw.weighted(&[(0.15, 0), (0.3, 1), (0.3, 2), (0.25, 3)]));
@@ -231,6 +234,7 @@ mod tests {
             "lattice",
             "levels",
             "lloyd",
+            "min-diameter",
             "names",
             "no-mesh",
             "output",
@@ -250,6 +254,7 @@ mod tests {
             "stats",
             "threads",
             "voxels",
+            "vtk-encoding",
             "wall-tension",
         ];
         for name in options {

@@ -103,6 +103,10 @@ const MISTAKES: &[Mistake] = &[
 /// Spoils a run by one of the mistakes.
 pub fn make(draw: &mut Draw, case: &mut Case) {
     let (name, value, spoil) = draw.one_of(MISTAKES);
+    // The mistake is the only one: these are refused beside some other options.
+    for option in ["free", "series", "every"] {
+        case.options.unset(option);
+    }
     spoil(case);
     case.kind = format!("mistake: {name}");
     case.mistake = Some(value.to_owned());

@@ -99,6 +99,9 @@ fn network(draw: &mut Draw, dimension: usize, options: &mut Options, promise: &m
         let tools = ["grainsmooth", "dream3d", "pyvista", "virmat", "neper"];
         options.set("names", [draw.one_of(&tools)]);
     }
+    if draw.chance(0.2) {
+        options.set("vtk-encoding", [draw.one_of(&["raw", "base64", "zlib"])]);
+    }
     if draw.chance(0.15) {
         options.switch("arrays");
     }

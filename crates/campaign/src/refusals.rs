@@ -52,7 +52,7 @@ pub const REFUSALS: &[Kind] = &[
     ("LevelsExceedIds", &["levels would make", "more than ids can name"]),
     ("TooLarge", &["more than 32-bit ids can name"]),
     // A grain that vanishes while it is free to, where the message names the longest time that works.
-    ("GrainVanished", &["shrinks to nothing", "--relax "]),
+    ("GrainVanished", &["shrinks to nothing by", "; --relax ", " works"]),
 ];
 
 /// The kind of refusal that a message is, if it is one.
