@@ -326,25 +326,30 @@ impl<'a> Complex<'a> {
                 return None;
             }
         }
-        // A cell may lose faces here and, as its own image, elsewhere.
-        let losing: Vec<CellId> =
-            closing.iter().flat_map(|face| self.cells(*face)).flatten().map(|(cell, _)| cell).collect();
-        let lost = |cell: &CellId| losing.iter().filter(|other| *other == cell).count();
-        let keeps_enough = |cell: &CellId| self.face_counts[cell.index()] >= least_faces + lost(cell);
-        losing.iter().all(keeps_enough).then_some(closing)
+        let losing =
+            |cell: &MovedCell| closing.iter().filter(|face| self.cells(**face).contains(cell)).count();
+        let keeps_enough = |cell: MovedCell| {
+            cell.is_none_or(|(id, _)| self.face_counts[id.index()] >= least_faces + losing(&cell))
+        };
+        closing.iter().flat_map(|face| self.cells(*face)).all(keeps_enough).then_some(closing)
     }
 
-    /// Whether all faces around two vertices are there once, so that what happens there happens nowhere else to the same faces. Only where
-    /// a period is a few cells long is it not. A cell may be there more than once, as its own neighbour: what happens at one place of it
-    /// has no face in common with what happens at the other.
+    /// Whether all that is around two vertices is there once, so that what happens there happens nowhere else to the same faces
+    /// and cells. Only where a period is a few cells long is it not.
     fn is_apart_from_copies(&self, kept: Corner, gone: Corner) -> bool {
         if self.original.periodic_faces().is_empty() {
             return true;
         }
         let mut faces: Vec<MovedFace> = self.faces_at(kept).chain(self.faces_at(gone)).collect();
+        let mut cells: Vec<(CellId, Shift)> =
+            faces.iter().flat_map(|face| self.cells(*face)).flatten().collect();
         faces.sort_unstable();
         faces.dedup();
-        kept.vertex != gone.vertex && faces.windows(2).all(|pair| pair[0].face != pair[1].face)
+        cells.sort_unstable();
+        cells.dedup();
+        kept.vertex != gone.vertex
+            && faces.windows(2).all(|pair| pair[0].face != pair[1].face)
+            && cells.windows(2).all(|pair| pair[0].0 != pair[1].0)
     }
 
     /// Whether the merged vertex can lie on all walls of both, and no edge from the inside comes to lie in a wall.
