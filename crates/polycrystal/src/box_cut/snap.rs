@@ -25,8 +25,10 @@ const LEAST_SHARE: f64 = 0.8;
 /// Sine of an angle that is good enough (14 degrees).
 const GOOD_SINE: f64 = 0.25;
 
-/// Cosine of the largest angle by which a triangle may turn (30 degrees).
-const LARGEST_TURN: f64 = 0.86;
+/// Cosine of the largest angle by which a triangle may turn (8 degrees). At 30 degrees, boundaries that meet a plane at a small angle
+/// leave zigzags in it. Of three networks (20, 30, 60 grains, two levels) the angle that a hundredth of the triangles is below falls from
+/// 11.5 to 10.2, 12.6 to 11.7 and 13.3 to 12.4 degrees for it.
+const LARGEST_TURN: f64 = 0.99;
 
 /// Share of a motion along a boundary or line that must lead toward the plane; else the point leaves the boundary.
 const LEAST_GAIN: f64 = 0.2;
