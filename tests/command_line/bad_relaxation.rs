@@ -17,3 +17,22 @@ fn a_free_grain_that_vanishes_is_named_with_a_time_that_works() {
     assert!(works.parse::<f64>().unwrap() > 0.1, "{said}");
     workplace.run(&format!("{grains} --relax {works} -o a.vtp"));
 }
+
+/// Where no time works, the message once named none, and the time of the first grain as 0.000.
+#[test]
+fn tiny_free_grains_are_named_with_the_way_to_take_them_out() {
+    let workplace = Workplace::new();
+    let tiny = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.5, 0.5]];
+    let tiny = tiny.map(|[x, y]| format!("{} {}\n", 0.5 + 1e-4 * x, 0.5 + 1e-4 * y));
+    let large = ["0.1 0.1\n", "0.9 0.2\n", "0.2 0.9\n", "0.8 0.8\n", "0.5 0.1\n"].map(str::to_owned);
+    workplace.put("seeds.txt", (large.concat() + &tiny.concat()).into_bytes());
+    let arguments = "--dim 2 --seeds-file seeds.txt -n 1 --free";
+    let remedy =
+        "no shorter time that was tried works: merge the smallest cells, such as with --min-diameter 0.5";
+    workplace.refuses(
+        arguments,
+        FAILED,
+        &format!("grain 9 shrinks to nothing by the relaxation time ... {remedy}"),
+    );
+    workplace.run(&format!("{arguments} --min-diameter 0.5 -o a.vtp"));
+}

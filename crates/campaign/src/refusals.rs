@@ -51,8 +51,9 @@ pub const REFUSALS: &[Kind] = &[
     ("LevelsExceedMemory", &["levels would take", "of memory"]),
     ("LevelsExceedIds", &["levels would make", "more than ids can name"]),
     ("TooLarge", &["more than 32-bit ids can name"]),
-    // A grain that vanishes while it is free to, where the message names the longest time that works.
+    // A grain that vanishes while it is free to, where the message names a time that works, or how to take such grains out.
     ("GrainVanished", &["shrinks to nothing by", "; --relax ", " works"]),
+    ("GrainVanished, at any time", &["shrinks to nothing by", "--min-diameter"]),
 ];
 
 /// The kind of refusal that a message is, if it is one.

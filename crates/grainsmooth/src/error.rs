@@ -9,6 +9,17 @@ use crate::memory::{self, LevelSize};
 use crate::mesh_file::MeshFileProblem;
 use crate::{FailedGrain, OutputFormat, SeedPlace, SeedProblem};
 
+/// What helps where grains cannot grow freely for so long: a time that works, if any does.
+fn time_remedy(works: Option<f64>) -> String {
+    works.map_or_else(
+        || {
+            "no shorter time that was tried works: merge the smallest cells, such as with --min-diameter 0.5"
+                .to_owned()
+        },
+        |time| format!("--relax {time} works"),
+    )
+}
+
 /// What can go wrong between the user's input and the files written. Each message is one line that names the
 /// value, the place and the remedy.
 ///
@@ -203,7 +214,7 @@ pub enum Error {
     #[error(transparent)]
     Network(#[from] NetworkError),
     /// Grains cannot grow freely for so long.
-    #[error("{cause}{}", works.map_or(String::new(), |time| format!("; --relax {time} works")))]
+    #[error("{cause}; {}", time_remedy(*works))]
     GrowsTooLong {
         /// What happens then.
         cause: NetworkError,

@@ -50,6 +50,11 @@ impl NetworkError {
     }
 }
 
+/// A number to three significant digits, however small.
+fn to_three_digits(number: f64) -> f64 {
+    format!("{number:.2e}").parse().unwrap_or(number)
+}
+
 /// Why a network could not be made or relaxed.
 #[derive(Debug, thiserror::Error)]
 pub enum NetworkError {
@@ -155,8 +160,9 @@ pub enum NetworkError {
     },
     /// A grain that is free to shrink has done so to nothing.
     #[error(
-        "grain {} shrinks to nothing by the relaxation time {time:.3}, and none can vanish; relax for a shorter time, or keep volumes",
-        grain.0
+        "grain {} shrinks to nothing by the relaxation time {}, and none can vanish; relax for a shorter time, or keep volumes",
+        grain.0,
+        to_three_digits(*time)
     )]
     GrainVanished {
         /// The grain.
