@@ -71,11 +71,15 @@ pub use network::{Junctions, Network};
 pub use node_type::NodeType;
 pub use orientation::outward_sides;
 pub use periodic::PeriodicCopies;
+#[doc(hidden)]
+pub use regular_cells::regular_cells_tuned;
 pub use regular_cells::{RegularCells, regular_cells};
 pub use relax::{
     Balance, Equilibrium, NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, Volumes,
     equilibrate, relax, relax_watched,
 };
+#[doc(hidden)]
+pub use relax::{Tuning, equilibrate_tuned, relax_tuned};
 pub use surface::{Elements, Surface};
 pub use triangle_quality::TriangleQuality;
 pub use validate::validate;

@@ -3,11 +3,7 @@
 use voronoi::{Collapsed, Dimension, Tessellation};
 
 use crate::relax::foreseen_points;
-use crate::{Attempt, FaceMesh, Junctions, Network, NetworkError};
-
-/// Factor by which lines that relaxation will have shortened may be longer than others to collapse: what is short by then goes on
-/// shrinking, and holds the lines around up.
-const FUTURE: f64 = 2.0;
+use crate::{Attempt, FaceMesh, Junctions, Network, NetworkError, Tuning};
 
 /// The cells without edges that are short, or will be: [`Tessellation::regularized`] with `length`, and once more, with twice
 /// that, for the places at which a relaxation of the flat cells puts the vertices.
@@ -20,13 +16,26 @@ const FUTURE: f64 = 2.0;
 /// # Errors
 /// As of [`Network::new`] and [`relax`](crate::relax), but for geometry that tangles.
 pub fn regular_cells(cells: &Tessellation, length: f64) -> Result<RegularCells, NetworkError> {
+    regular_cells_tuned(cells, length, &Tuning::default())
+}
+
+/// As [`regular_cells`], with other numbers than the tuned ones.
+///
+/// # Errors
+/// As of [`regular_cells`].
+#[doc(hidden)]
+pub fn regular_cells_tuned(
+    cells: &Tessellation,
+    length: f64,
+    tuning: &Tuning,
+) -> Result<RegularCells, NetworkError> {
     let (regular, collapsed) = cells.regularized(length);
-    if length == 0.0 || cells.domain().dimension() == Dimension::Two {
+    if length == 0.0 || tuning.forecast_steps == 0 || cells.domain().dimension() == Dimension::Two {
         return Ok(RegularCells { cells: regular, collapsed, given_up: None });
     }
     let volumes = cells.cell_measures().iter().map(|cell| cell.volume).collect();
     let relaxed = Network::with_face_mesh(&regular, FaceMesh::SparseFan, Junctions::Crease, 0)
-        .and_then(|(network, flat)| foreseen_points(&network.with_cell_volumes(volumes), &flat));
+        .and_then(|(network, flat)| foreseen_points(&network.with_cell_volumes(volumes), &flat, tuning));
     let points = match relaxed {
         Ok(points) => points,
         Err(error) if error.is_tangle() => {
@@ -36,7 +45,8 @@ pub fn regular_cells(cells: &Tessellation, length: f64) -> Result<RegularCells, 
         Err(error) => return Err(error),
     };
     // Control points begin with the vertices.
-    let (cells, more) = regular.regularized_for(FUTURE * length, &points[..regular.vertices().len()]);
+    let length = tuning.forecast_factor * length;
+    let (cells, more) = regular.regularized_for(length, &points[..regular.vertices().len()]);
     let collapsed = Collapsed { edges: collapsed.edges + more.edges, faces: collapsed.faces + more.faces };
     Ok(RegularCells { cells, collapsed, given_up: None })
 }

@@ -26,29 +26,18 @@ mod springs;
 mod system;
 mod tangential;
 mod thin_triangles;
+mod tuning;
 mod volume_constraint;
 mod wedges;
 
 use glam::DVec3;
 
 use crate::{Attempt, GrainId, Mesh, Network, NetworkError};
-use flow::{End, Flow, RIGID_LENGTH, Remedy, Stage};
+use flow::{End, Flow, Remedy, Stage};
 
-pub use equilibrium::{Balance, Equilibrium, NetworkRecipe, equilibrate};
+pub use equilibrium::{Balance, Equilibrium, NetworkRecipe, equilibrate, equilibrate_tuned};
 pub use reconnection::Reconnections;
-
-/// The finest level whose points move by themselves for a time. One level of the control mesh has a single point inside a
-/// face, which bounds how well angles at its edges can fit; the next has ten.
-const FINEST_MOVED: usize = 1;
-
-/// The same for equilibrium, which is worth more time: forty points inside a face.
-const FINEST_BALANCED: usize = 2;
-
-/// Steps that the relaxation time is divided into on the control mesh.
-const COARSE_STEPS: usize = 10;
-
-/// Steps that the same time is divided into once more on each finer level, where less is left to do.
-const FINE_STEPS: usize = 6;
+pub use tuning::Tuning;
 
 /// Steps of grains that grow in the plane: with fewer, rates are off by more than a hundredth.
 const GROWTH_STEPS: usize = 60;
@@ -177,26 +166,41 @@ pub fn relax_watched(
     control_points: &[DVec3],
     relaxation: &Relaxation,
     volumes: Volumes,
+    watch: impl FnMut(RelaxationStep<'_>),
+) -> Result<Relaxed, NetworkError> {
+    relax_tuned(network, control_points, relaxation, volumes, &Tuning::default(), watch)
+}
+
+/// As [`relax_watched`], with other numbers than the tuned ones.
+///
+/// # Errors
+/// As of [`relax`].
+#[doc(hidden)]
+pub fn relax_tuned(
+    network: &Network,
+    control_points: &[DVec3],
+    relaxation: &Relaxation,
+    volumes: Volumes,
+    tuning: &Tuning,
     mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<Relaxed, NetworkError> {
     let tension_unit = network.mean_tension();
-    relax_levels(network, control_points, relaxation, volumes, RIGID_LENGTH, tension_unit, &mut watch)
+    relax_levels(network, control_points, relaxation, volumes, tuning, tension_unit, &mut watch)
 }
 
-/// As [`relax_watched`], with tensions in the given unit; control edges below `rigid_length`, in units of the feature size, do not change
-/// their lengths.
+/// As [`relax_tuned`], with tensions in the given unit.
 fn relax_levels(
     network: &Network,
     control_points: &[DVec3],
     relaxation: &Relaxation,
     volumes: Volumes,
-    rigid_length: f64,
+    tuning: &Tuning,
     tension_unit: f64,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<Relaxed, NetworkError> {
     let is_in_space = matches!(network.control_mesh().mesh, Mesh::Triangles(_));
     let flow = |level: usize| {
-        let flow = Flow::new(network, level, volumes, tension_unit).with_rigid_length(rigid_length);
+        let flow = Flow::new(network, level, volumes, tension_unit, *tuning);
         match relaxation {
             // In the plane nothing holds a flow up: steps may be long, and what folds moves as one.
             Relaxation::Equilibrium if is_in_space => flow.until_rest(Remedy::Brake),
@@ -204,9 +208,9 @@ fn relax_levels(
         }
     };
     let (time, finest) = match *relaxation {
-        Relaxation::Time(time) if time.is_finite() && time >= 0.0 => (time, FINEST_MOVED),
+        Relaxation::Time(time) if time.is_finite() && time >= 0.0 => (time, tuning.finest_moved),
         Relaxation::Time(time) => return Err(NetworkError::BadRelaxationTime(time)),
-        Relaxation::Equilibrium => (LONG_STEP, FINEST_BALANCED),
+        Relaxation::Equilibrium => (LONG_STEP, tuning.finest_balanced),
     };
     let has_tension = network.tensions().iter().any(|tension| *tension > 0.0);
     let mut points = control_points.to_vec();
@@ -223,19 +227,19 @@ fn relax_levels(
     // Grains that grow do so for the time that was asked for, not once more on each level.
     let (first, first_steps) = match volumes {
         Volumes::Free => {
-            let fewest = if is_in_space { COARSE_STEPS } else { GROWTH_STEPS };
+            let fewest = if is_in_space { tuning.coarse_steps } else { GROWTH_STEPS };
             let longest = USUAL_TIME / fewest as f64;
             let steps = (fewest..MOST_GROWTH_STEPS).find(|steps| time <= longest * *steps as f64);
             (last, steps.unwrap_or(MOST_GROWTH_STEPS))
         }
-        Volumes::Kept => (0, COARSE_STEPS),
+        Volumes::Kept => (0, tuning.coarse_steps),
     };
-    let steps = first_steps + (last - first) * FINE_STEPS;
+    let steps = first_steps + (last - first) * tuning.fine_steps;
     watch(RelaxationStep { done: 0, count: steps, time: 0.0, level: 0, points: control_points });
     let mut done_before = 0;
     let mut passed = 0.0;
     for level in first..=last {
-        let count = if level == first { first_steps } else { FINE_STEPS };
+        let count = if level == first { first_steps } else { tuning.fine_steps };
         let end = if level == last { End::Finished } else { End::Open };
         let stage = match relaxation {
             Relaxation::Equilibrium if level == last => {
@@ -296,9 +300,11 @@ fn check_grains_are_left(network: &Network, volumes: &[f64], time: f64) -> Resul
 pub(crate) fn foreseen_points(
     network: &Network,
     control_points: &[DVec3],
+    tuning: &Tuning,
 ) -> Result<Vec<DVec3>, NetworkError> {
-    let whole_time = USUAL_TIME * network.mean_grain_size().powi(2);
-    let step_time = whole_time / COARSE_STEPS as f64;
-    let stage = Stage { step_time, steps: COARSE_STEPS, least_gain: 0.0, end: End::Volumes };
-    Flow::new(network, 0, Volumes::Kept, network.mean_tension()).run(control_points, &stage, &mut |_, _| ())
+    let steps = tuning.forecast_steps;
+    let step_time = USUAL_TIME * network.mean_grain_size().powi(2) / steps as f64;
+    let stage = Stage { step_time, steps, least_gain: 0.0, end: End::Volumes };
+    let mut flow = Flow::new(network, 0, Volumes::Kept, network.mean_tension(), *tuning);
+    flow.run(control_points, &stage, &mut |_, _| ())
 }

@@ -3,13 +3,13 @@
 use glam::DVec3;
 use voronoi::{CellComplex, Collapsed, Tessellation};
 
-use super::flow::{Flow, RIGID_LENGTH, Remedy, Taken};
+use super::flow::{Flow, Remedy, Taken};
 use super::local_area::{Conditions, boundary};
 use super::merged_lines::MergedLines;
 use super::plane;
 use super::reconnection::{Reconnections, Reconnector, lengths};
 use super::shape::{ControlPoints, Shape};
-use super::{Relaxation, RelaxationStep, Relaxed, relax_levels};
+use super::{Relaxation, RelaxationStep, Relaxed, Tuning, relax_levels};
 use crate::tension::{checked_tension, in_unit, mean_tension};
 use crate::{
     Attempt, Boundary, FaceMesh, Junctions, Network, NetworkError, SpaceMeasures, TripleLineMeasures,
@@ -31,9 +31,6 @@ const QUIET_LOOKS: usize = 5;
 
 /// ... when the area also changes by less than this share of it from one to the next.
 const QUIET_CHANGE: f64 = 2e-5;
-
-/// Length, in units of the mean grain size, below which lines that are left are drawn together.
-const MERGED: f64 = 0.12;
 
 /// How a network is made of cells.
 #[derive(Clone, Copy)]
@@ -106,6 +103,20 @@ impl Balance {
 pub fn equilibrate(
     tessellation: &Tessellation,
     recipe: &NetworkRecipe<'_>,
+    watch: impl FnMut(RelaxationStep<'_>),
+) -> Result<Equilibrium, NetworkError> {
+    equilibrate_tuned(tessellation, recipe, &Tuning::default(), watch)
+}
+
+/// As [`equilibrate`], with other numbers than the tuned ones.
+///
+/// # Errors
+/// As of [`equilibrate`].
+#[doc(hidden)]
+pub fn equilibrate_tuned(
+    tessellation: &Tessellation,
+    recipe: &NetworkRecipe<'_>,
+    tuning: &Tuning,
     mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<Equilibrium, NetworkError> {
     let mut given = Vec::new();
@@ -116,7 +127,7 @@ pub fn equilibrate(
     let unit = mean_tension(given.iter().map(|(boundary, tension)| (boundary, *tension)));
     let tension = |boundary: &Boundary| in_unit((recipe.tension)(boundary), unit);
     let in_units = NetworkRecipe { tension: &tension, ..*recipe };
-    let mut equilibrium = equilibrate_by_mean_tension(tessellation, &in_units, &mut watch)?;
+    let mut equilibrium = equilibrate_by_mean_tension(tessellation, &in_units, tuning, &mut watch)?;
     equilibrium.network = equilibrium.network.with_tensions(recipe.tension)?;
     Ok(equilibrium)
 }
@@ -125,6 +136,7 @@ pub fn equilibrate(
 fn equilibrate_by_mean_tension(
     tessellation: &Tessellation,
     recipe: &NetworkRecipe<'_>,
+    tuning: &Tuning,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<Equilibrium, NetworkError> {
     if tessellation.domain().dimension() == voronoi::Dimension::Two {
@@ -132,10 +144,10 @@ fn equilibrate_by_mean_tension(
     }
     let mut attempts = Vec::new();
     // Each gets through places where the other does not.
-    let equilibrium = match balanced(tessellation, recipe, Remedy::Join, &mut attempts, watch) {
+    let equilibrium = match balanced(tessellation, recipe, tuning, Remedy::Join, &mut attempts, watch) {
         Err(error) if error.is_tangle() => {
             attempts.push(Attempt::new("letting neighbours switch, what folds moving as one", &error));
-            balanced(tessellation, recipe, Remedy::Brake, &mut attempts, watch)
+            balanced(tessellation, recipe, tuning, Remedy::Brake, &mut attempts, watch)
         }
         result => result,
     };
@@ -146,19 +158,21 @@ fn equilibrate_by_mean_tension(
 fn balanced(
     tessellation: &Tessellation,
     recipe: &NetworkRecipe<'_>,
+    tuning: &Tuning,
     remedy: Remedy,
     attempts: &mut Vec<Attempt>,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<Equilibrium, NetworkError> {
     let mut complex = CellComplex::from(tessellation);
     let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
-    let (shape, reconnections) = settle(&mut complex, recipe, &volumes, remedy)?;
+    let (shape, reconnections) = settle(&mut complex, recipe, &volumes, tuning, remedy)?;
     let mut smooth = |merged_length: f64, rigid_length: f64| {
         let MergedLines { cells, middles, collapsed } = MergedLines::new(&complex, &shape, merged_length);
         let (network, points) = Network::of_curved_lines(&cells, &middles, recipe.junctions, recipe.levels)?;
         let network = network.with_cell_volumes(volumes.clone()).with_tensions(recipe.tension)?;
         let relaxation = Relaxation::Equilibrium;
-        let relaxed = relax_levels(&network, &points, &relaxation, Volumes::Kept, rigid_length, 1.0, watch)?;
+        let tuning = Tuning { rigid_length, ..*tuning };
+        let relaxed = relax_levels(&network, &points, &relaxation, Volumes::Kept, &tuning, 1.0, watch)?;
         let points = relaxed.finest_points(&network);
         validate(&network, &points).map_err(NetworkError::Invalid)?;
         let balance = balance(&network, &points);
@@ -167,8 +181,8 @@ fn balanced(
     };
     // What folds where all may deform need not where the shortest edges keep their lengths, or where all lines are left.
     let ways = [
-        ("equilibrium without short lines", MERGED, 0.0),
-        ("the same with the shortest edges rigid", MERGED, RIGID_LENGTH),
+        ("equilibrium without short lines", tuning.merged_length, 0.0),
+        ("the same with the shortest edges rigid", tuning.merged_length, tuning.rigid_length),
     ];
     for (tried, merged_length, rigid_length) in ways {
         match smooth(merged_length, rigid_length) {
@@ -184,6 +198,7 @@ fn settle(
     complex: &mut CellComplex,
     recipe: &NetworkRecipe<'_>,
     volumes: &[f64],
+    tuning: &Tuning,
     remedy: Remedy,
 ) -> Result<(Shape, Reconnections), NetworkError> {
     // All of a wall has the same area unless it folds, so that tension does nothing but unfold it.
@@ -202,7 +217,8 @@ fn settle(
     let (mut quiet, mut last_energy) = (0, f64::INFINITY);
     let mut looks = 0;
     loop {
-        let mut flow = Flow::new(&network, 0, Volumes::Kept, 1.0).with_rigid_length(0.0).until_rest(remedy);
+        let free = Tuning { rigid_length: 0.0, ..*tuning };
+        let mut flow = Flow::new(&network, 0, Volumes::Kept, 1.0, free).until_rest(remedy);
         // As long as the topology stays, so does the flow.
         let shape = loop {
             let before = lengths(complex);

@@ -12,11 +12,12 @@ use super::check_grains_are_left;
 use super::clusters::Clusters;
 use super::conjugate_gradients::dot;
 use super::face_corners::FaceCorners;
-use super::patch::{LARGEST_COTANGENT_TO_REST, PatchTerms};
+use super::patch::PatchTerms;
 use super::patches::Patches;
 use super::system::{Step, System};
 use super::tangential::{Aim, tangential_moves};
 use super::thin_triangles::Room;
+use super::tuning::Tuning;
 use super::wedges::Wedges;
 use crate::folds::{element_normals, folded_pairs};
 use crate::measures::rms_residual;
@@ -31,21 +32,11 @@ const ATTEMPTS: usize = 24;
 /// Attempts after which all displacements are halved with every other one: what moves at all may be too much.
 const WHOLE_ATTEMPTS: usize = 12;
 
-/// Length, in units of the feature size, below which a control edge no longer changes.
-pub(super) const RIGID_LENGTH: f64 = 0.04;
-
 /// Most edges of the control mesh, as long as the mean, to a feature. Fans have three.
 const FEATURE_EDGES: f64 = 6.0;
 
-/// Cosine of the largest angle between neighbouring elements after a step (75 degrees), so that later subdivision
-/// has room before the 90 degrees of a fold.
-const LARGEST_BEND: f64 = 0.26;
-
 /// Change of that cosine that counts as none.
 const SLIGHT_BEND: f64 = 1e-9;
-
-/// Cosine of the largest angle that an element may turn by within a step (60 degrees).
-const LARGEST_TURN: f64 = 0.5;
 
 /// Attempts at a step toward rest in which points that fold move as one.
 const JOINED_ATTEMPTS: usize = 6;
@@ -117,16 +108,21 @@ pub(super) struct Flow<'a> {
     clusters: Clusters,
     volumes: Volumes,
     remedy: Remedy,
-    /// [`RIGID_LENGTH`] or another one.
-    rigid_length: f64,
+    tuning: Tuning,
 }
 
 impl<'a> Flow<'a> {
     /// The flow of the points of one level, by tensions in the given unit: steps are right where this is their mean.
-    pub(super) fn new(network: &'a Network, level: usize, volumes: Volumes, tension_unit: f64) -> Self {
+    pub(super) fn new(
+        network: &'a Network,
+        level: usize,
+        volumes: Volumes,
+        tension_unit: f64,
+        tuning: Tuning,
+    ) -> Self {
         let surface = (network.levels().len() - 1).min(level + 1);
         let clusters = Clusters::new(&network.levels()[level]);
-        let patches = Patches::new(network, level, surface, tension_unit);
+        let patches = Patches::new(network, level, surface, tension_unit, tuning.largest_cotangent);
         let corners = FaceCorners::new(network, level);
         let Wedged { wedges, neighbors } = Wedged::new(network, surface);
         Self {
@@ -140,20 +136,14 @@ impl<'a> Flow<'a> {
             clusters,
             volumes,
             remedy: Remedy::Join,
-            rigid_length: RIGID_LENGTH,
+            tuning,
         }
-    }
-
-    /// The flow with another length, in units of the feature size, below which control edges do not change.
-    pub(super) fn with_rigid_length(mut self, rigid_length: f64) -> Self {
-        self.rigid_length = rigid_length;
-        self
     }
 
     /// The flow as one until all is at rest.
     pub(super) fn until_rest(mut self, remedy: Remedy) -> Self {
         self.remedy = remedy;
-        self.patches.largest_cotangent = LARGEST_COTANGENT_TO_REST;
+        self.patches.largest_cotangent = self.tuning.largest_cotangent_to_rest;
         self
     }
 
@@ -213,7 +203,7 @@ impl<'a> Flow<'a> {
             count = places.len();
             // What is still to be moved on finer levels may fold there for now.
             if count == 0 || (self.remedy == Remedy::Brake && stage.end == End::Open) {
-                if stage.end == End::Finished {
+                if stage.end == End::Finished && self.tuning.widens {
                     self.widen_all(&mut points, surface, &finest);
                 }
                 return Ok(points);
@@ -271,7 +261,8 @@ impl<'a> Flow<'a> {
                 (system.implicit_displacement(&self.patches, terms_at), vec![0.0; missing.len()])
             }
         };
-        let within = tangential_moves(self.network, self.level, points, self.remedy.aim());
+        let within =
+            tangential_moves(self.network, self.level, points, self.remedy.aim(), self.tuning.centering);
         moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
         if self.remedy == Remedy::Brake {
             self.hold_short_edges(&mut clusters, points, &moves);
@@ -299,8 +290,8 @@ impl<'a> Flow<'a> {
         }
         match self.remedy {
             Remedy::Join if count > 0 => return Err(NetworkError::Folded { count }),
-            Remedy::Join => self.clusters = clusters,
-            Remedy::Brake => {}
+            Remedy::Join if self.tuning.keeps_joined => self.clusters = clusters,
+            Remedy::Join | Remedy::Brake => {}
         }
         let pressures = pressures.iter().map(|pressure| pressure / time).collect();
         Ok(Taken { energy, pressures, volumes })
@@ -326,7 +317,8 @@ impl<'a> Flow<'a> {
     }
 
     fn system(&self, points: &[DVec3], terms: &[PatchTerms], clusters: &Clusters, time: f64) -> System {
-        let step = Step { time, feature_size: self.feature_size(points), volumes: self.volumes };
+        let (volumes, tolerance) = (self.volumes, self.tuning.tolerance);
+        let step = Step { time, feature_size: self.feature_size(points), volumes, tolerance };
         let level = &self.network.levels()[self.level];
         System::new(self.network, &self.patches, terms, points, clusters.number(), step, level)
     }
@@ -345,7 +337,7 @@ impl<'a> Flow<'a> {
     /// Where volumes are free the flow itself is asked for: nothing is held but what a step would fold.
     fn rigid_length(&self, points: &[DVec3]) -> f64 {
         match self.volumes {
-            Volumes::Kept => self.rigid_length * self.feature_size(points),
+            Volumes::Kept => self.tuning.rigid_length * self.feature_size(points),
             Volumes::Free => 0.0,
         }
     }
@@ -383,11 +375,11 @@ impl<'a> Flow<'a> {
         let cosine = |normals: &[DVec3], [a, b]: [u32; 2]| {
             normals[a as usize].normalize_or_zero().dot(normals[b as usize].normalize_or_zero())
         };
-        let bent = folded_pairs(&self.neighbors, &after, LARGEST_BEND);
+        let bent = folded_pairs(&self.neighbors, &after, self.tuning.largest_bend);
         let bent =
             bent.into_iter().filter(|pair| cosine(&after, *pair) < cosine(before, *pair) - SLIGHT_BEND);
         let turned = (0u32..).zip(before.iter().zip(&after)).filter(|(_, (before, after))| {
-            let turn = before.dot(**after) - LARGEST_TURN * before.length() * after.length();
+            let turn = before.dot(**after) - self.tuning.largest_turn * before.length() * after.length();
             turn.is_nan() || turn < 0.0
         });
         turned.map(|(element, _)| element).chain(bent.flatten()).chain(closing).collect()

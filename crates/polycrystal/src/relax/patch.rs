@@ -18,13 +18,6 @@ use crate::volume::{Cone, segment_area, triangle_volume};
 /// The smallest cotangent that a triangle's angle counts with: obtuse triangles would otherwise push points apart.
 const SMALLEST_COTANGENT: f64 = 0.05;
 
-/// The largest for a flow of a given time: that of an angle of 11 degrees. Needles would otherwise glue their ends together.
-pub(super) const LARGEST_COTANGENT: f64 = 5.0;
-
-/// The largest for a flow to rest: that of an angle of 1 degree. Where the matrix is less stiff than the area itself is, points
-/// swing to and fro from step to step, farther each time.
-pub(super) const LARGEST_COTANGENT_TO_REST: f64 = 50.0;
-
 /// A boundary's control mesh, and its surface in terms of the control points.
 #[derive(Debug)]
 pub(super) struct Patch {

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use subzero::StencilTable;
 
 use super::clusters::Numbering;
-use super::patch::{Elements, LARGEST_COTANGENT, LocalStencils, Patch, PatchTerms, Refinement};
+use super::patch::{Elements, LocalStencils, Patch, PatchTerms, Refinement};
 use super::rows::Rows;
 use crate::tension::in_unit;
 use crate::{BoundaryId, Mesh, Network};
@@ -30,7 +30,13 @@ pub(super) struct Patches {
 impl Patches {
     /// Patches whose control points are those of one level, and whose surface is that of the same level or the next. Their tensions are in
     /// the given unit.
-    pub(super) fn new(network: &Network, control: usize, surface: usize, tension_unit: f64) -> Self {
+    pub(super) fn new(
+        network: &Network,
+        control: usize,
+        surface: usize,
+        tension_unit: f64,
+        largest_cotangent: f64,
+    ) -> Self {
         let [control_level, surface_level] = [control, surface].map(|level| &network.levels()[level]);
         let count = network.boundaries().len();
         let control_elements = by_boundary(count, &control_level.boundary_of);
@@ -69,7 +75,6 @@ impl Patches {
             .zip(&patches)
             .flat_map(|(number, patch)| std::iter::repeat_n(number, patch.control_points.len()))
             .collect();
-        let largest_cotangent = LARGEST_COTANGENT;
         Self { patches, place_starts, places, patch_of_place, first_places, largest_cotangent }
     }
 

@@ -11,9 +11,6 @@ use super::springs::add_springs;
 use super::volume_constraint::{Compliance, VolumeConstraint};
 use crate::{Freedom, Level, Network, Volumes};
 
-/// Share of its first residual at which a step is solved: a step is one of several, and the next one starts from where it ends.
-const TOLERANCE: f64 = 1e-3;
-
 /// Most iterations for a step.
 const ITERATIONS: usize = 200;
 
@@ -36,6 +33,7 @@ const CHUNK: usize = 4096;
 pub(super) struct System {
     /// `dt`.
     time: f64,
+    tolerance: f64,
     clusters: Numbering,
     /// The diagonal of `M + dt (K + S)`.
     diagonal: Vec<f64>,
@@ -56,6 +54,8 @@ pub(super) struct Step {
     /// The feature size as control edges have it.
     pub(super) feature_size: f64,
     pub(super) volumes: Volumes,
+    /// Share of its first residual at which it is solved.
+    pub(super) tolerance: f64,
 }
 
 impl System {
@@ -66,7 +66,7 @@ impl System {
         terms: &[PatchTerms],
         points: &[DVec3],
         clusters: Numbering,
-        Step { time, feature_size, volumes }: Step,
+        Step { time, feature_size, volumes, tolerance }: Step,
         level: &Level,
     ) -> Self {
         let springs: Vec<Vec<f64>> = patches
@@ -120,7 +120,7 @@ impl System {
             let compliance = constraint.compliance(&mobility);
             (constraint, compliance)
         });
-        Self { time, clusters, diagonal, sliding, springs, forces, mobility, constraint }
+        Self { time, tolerance, clusters, diagonal, sliding, springs, forces, mobility, constraint }
     }
 
     /// The displacement of every control point that changes the grains' volumes by `changes`, to first order, and is
@@ -175,7 +175,7 @@ impl System {
         add(&mut residual, -1.0, &self.apply(&displacement));
         let mut direction = self.project(&mut residual, &mut pressures);
         let mut size = dot(&residual, &direction);
-        let enough = size * TOLERANCE * TOLERANCE;
+        let enough = size * self.tolerance * self.tolerance;
         for _ in 0..ITERATIONS {
             if size <= enough || size <= 0.0 {
                 break;

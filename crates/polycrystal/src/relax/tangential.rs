@@ -8,9 +8,6 @@ use subzero::VertexRule;
 
 use crate::{Mesh, Network};
 
-/// Share of the way to the mean of its neighbours that a point goes in a step; ten steps go four fifths of it.
-const RATE: f64 = 0.15;
-
 /// Share of the way to the centre of the triangles around that a point goes in a step where there are steps enough.
 const CENTER_RATE: f64 = 0.2;
 
@@ -24,7 +21,13 @@ pub(super) enum Aim {
 }
 
 /// A step of each point inside a boundary, within its tangent plane; the others stay, and in the plane all do.
-pub(super) fn tangential_moves(network: &Network, level: usize, points: &[DVec3], aim: Aim) -> Vec<DVec3> {
+pub(super) fn tangential_moves(
+    network: &Network,
+    level: usize,
+    points: &[DVec3],
+    aim: Aim,
+    rate: f64,
+) -> Vec<DVec3> {
     let level = &network.levels()[level];
     let mut moves = vec![DVec3::ZERO; points.len()];
     let Mesh::Triangles(mesh) = &level.mesh else { return moves };
@@ -45,7 +48,7 @@ pub(super) fn tangential_moves(network: &Network, level: usize, points: &[DVec3]
         }
     }
     let rate = match aim {
-        Aim::Neighbors => RATE,
+        Aim::Neighbors => rate,
         Aim::Center => CENTER_RATE,
     };
     for (point, by) in (0u32..).zip(&mut moves) {

@@ -1,0 +1,73 @@
+//! The tuned numbers of relaxation in space.
+
+/// What relaxation in space is tuned by. Lengths are in units of the feature size (the mean grain size, or a box's shorter side),
+/// times in units of the mean grain size squared.
+///
+/// Each number was chosen by `cargo run --release -p polycrystal --example ablation`, which prints what becomes of forty networks
+/// with and without it; docs/relaxation.md has the table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tuning {
+    /// Steps that the relaxation time is divided into on the control mesh. Five leave angles a tenth of a degree worse, on the control
+    /// mesh alone a whole degree; twenty make triangles thinner.
+    pub coarse_steps: usize,
+    /// Steps that the same time is divided into once more on the next level, where less is left to do. Three leave angles a degree
+    /// worse; twelve make triangles thinner.
+    pub fine_steps: usize,
+    /// Steps of the forecast that tells which edges become short; 0 for none, which leaves a hundred thin triangles.
+    pub forecast_steps: usize,
+    /// Factor by which lines that the forecast has shortened may be longer than others to collapse. With 1 thin triangles stay, 3 takes out
+    /// what lattices need.
+    pub forecast_factor: f64,
+    /// Share of its first residual at which a step is solved: a step is one of several, and the next one starts from where it ends.
+    pub tolerance: f64,
+    /// Length below which a control edge no longer changes. 0 leaves some thin triangles, twice as much spoils angles.
+    pub rigid_length: f64,
+    /// Share of its way to the middle of the triangles around that a point inside a boundary goes in a step. 0 makes
+    /// triangles thinner.
+    pub centering: f64,
+    /// The largest cotangent that an angle counts with in a flow of a given time: that of 11 degrees. Needles would otherwise glue
+    /// their ends together.
+    pub largest_cotangent: f64,
+    /// Cosine of the largest angle that an element may turn by within a step (60 degrees); -1 for any.
+    pub largest_turn: f64,
+    /// Cosine of the largest angle between neighbouring elements after a step (75 degrees), so that later subdivision has room
+    /// before the 90 degrees of a fold; -1 for any.
+    pub largest_bend: f64,
+    /// Whether points that a step would fold move as one in all steps that follow, not in this one alone.
+    pub keeps_joined: bool,
+    /// Whether what is still thin in the end is made wider.
+    pub widens: bool,
+    /// The finest level whose points move by themselves for a time. One level of the control mesh has a single point inside a face,
+    /// which bounds how well angles at its edges can fit; the next has ten.
+    pub finest_moved: usize,
+    /// The same for equilibrium, which is worth more time: forty points inside a face.
+    pub finest_balanced: usize,
+    /// The largest cotangent in a flow to rest: that of 1 degree. Where the matrix is less stiff than the area itself is, points swing
+    /// to and fro from step to step, farther each time.
+    pub largest_cotangent_to_rest: f64,
+    /// Length below which lines that are left in equilibrium are drawn together.
+    pub merged_length: f64,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Self {
+            coarse_steps: 10,
+            fine_steps: 6,
+            forecast_steps: 10,
+            forecast_factor: 2.0,
+            tolerance: 1e-3,
+            rigid_length: 0.04,
+            centering: 0.15,
+            largest_cotangent: 5.0,
+            largest_turn: 0.5,
+            largest_bend: 0.26,
+            keeps_joined: true,
+            widens: true,
+            finest_moved: 1,
+            finest_balanced: 2,
+            largest_cotangent_to_rest: 50.0,
+            merged_length: 0.12,
+        }
+    }
+}
