@@ -271,3 +271,17 @@ fn thin_faces_that_did_not_close_are_not_folded() {
     let said = workplace.run("--seeds 2000 -n 0 -o many.vtp");
     assert!(said.contains("validation  good"), "{said}");
 }
+
+/// Four seeds off a face-centred lattice by 1e-8: opposite grains share faces 1e-16 wide, whose triangles have no direction.
+#[test]
+fn seeds_a_little_off_a_lattice_make_networks() {
+    let workplace = Workplace::new();
+    let offsets = [[0.1, 1.7, 1.0], [0.1, -2.3, 0.5], [1.8, 0.9, -2.1], [-1.5, 1.0, 1.3]];
+    let lattice = [[0.25, 0.25, 0.25], [0.25, 0.75, 0.75], [0.75, 0.25, 0.75], [0.75, 0.75, 0.25]];
+    let seeds = lattice.iter().zip(&offsets).map(|(seed, off)| DVec3::from(*seed) + DVec3::from(*off) * 1e-8);
+    workplace.put("seeds.csv", seed_lines(seeds));
+    for options in ["", "--relax equilibrium", "--regularize 0", "--relax 0"] {
+        let said = workplace.run(&format!("--seeds-file seeds.csv --periodic x,y,z -n 1 {options}"));
+        assert!(said.contains("12.00 faces a grain"), "{said}");
+    }
+}

@@ -226,7 +226,8 @@ pub fn smooth_watched(
     progress: Progress,
     mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<Polycrystal, Error> {
-    let tessellation = &cells.tessellation;
+    let resolved = cells.tessellation.resolved();
+    let tessellation = resolved.as_ref().unwrap_or(&cells.tessellation);
     let mut clock = Clock { progress, times: cells.times.clone() };
     check_levels(control_mesh(config, tessellation), config.levels, available_memory())?;
     let mut attempts = Vec::new();

@@ -73,10 +73,10 @@ pub enum NetworkError {
     /// The triangulated network is no mesh.
     #[error("the control mesh is broken: {0}")]
     Mesh(#[from] subzero::MeshError),
-    /// A boundary is so small that rounding leaves parts of it without area (in the plane: without length).
+    /// A boundary is so small that rounding leaves parts of it without area (in the plane: without length):
+    /// [`Tessellation::resolved`](voronoi::Tessellation::resolved) takes such out, unless it is a cell's last.
     #[error(
-        "the boundary between {} and {} is too small for double precision: more than four grains nearly meet there; move their \
-         seeds by 1e-9 of the box or more, or to a lattice that binary numbers hold exactly",
+        "the boundary between {} and {} is too small for double precision; take out seeds that are as close as this",
         sides[0], sides[1]
     )]
     BoundaryTooSmall {

@@ -64,6 +64,7 @@ mod polygon_triangulation;
 mod polyhedron;
 mod predicate;
 mod regularize;
+mod resolution;
 mod ring;
 mod search;
 mod site_tree;

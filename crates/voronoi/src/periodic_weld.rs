@@ -104,12 +104,12 @@ pub(crate) fn canonical(input: ExactInput, key: &VertexKey) -> (VertexKey, Shift
 
 /// Vertices of the torus joined where exact ties made them one point: a forest in which each knows its parent and how it
 /// is moved relative to it.
-struct UnitedVertices {
+pub(crate) struct UnitedVertices {
     parents: Vec<Corner>,
 }
 
 impl UnitedVertices {
-    fn new(count: usize) -> Self {
+    pub(crate) fn new(count: usize) -> Self {
         let parents = (0u32..).take(count).map(|vertex| Corner { vertex, shift: Shift::NONE });
         Self { parents: parents.collect() }
     }
@@ -128,7 +128,7 @@ impl UnitedVertices {
         }
     }
 
-    fn unite(&mut self, v: Corner, w: Corner) {
+    pub(crate) fn unite(&mut self, v: Corner, w: Corner) {
         let (v, w) = (self.root(v), self.root(w));
         // The smaller number stays, so the result does not depend on the order of the pairs.
         let (kept, joined) = if v.vertex < w.vertex { (v, w) } else { (w, v) };
@@ -137,7 +137,7 @@ impl UnitedVertices {
         }
     }
 
-    fn roots(mut self) -> Vec<Corner> {
+    pub(crate) fn roots(mut self) -> Vec<Corner> {
         let vertices = (0u32..).take(self.parents.len());
         vertices.map(|vertex| self.root(Corner { vertex, shift: Shift::NONE })).collect()
     }

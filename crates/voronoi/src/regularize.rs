@@ -15,7 +15,7 @@ use crate::corner::{ComplexEdge, Corner};
 use crate::images::Image;
 use crate::periodic_weld::unwrapped;
 use crate::ring::{is_folded, is_star_shaped};
-use crate::tessellation::{FaceId, Shift, Side, Tessellation, VertexId};
+use crate::tessellation::{FaceId, Shift, Side, Tessellation};
 use crate::torus::{FaceEnd, TorusFaces};
 use crate::{CellId, Dimension, Wall};
 
@@ -420,33 +420,18 @@ impl<'a> Complex<'a> {
     /// The complex as a tessellation, with vertices and faces numbered anew in their old order.
     fn finish(self) -> (Tessellation, Collapsed) {
         let original = self.original;
-        let faces = original.faces().zip(&self.faces).filter(|(_, corners)| !corners.is_empty());
-        if !original.periodic_faces().is_empty() {
-            let mut torus = TorusFaces::new(self.dimension());
-            for (face, corners) in faces {
-                torus.push(original.face_sides(face).map(face_end), corners.iter().copied());
-            }
-            let mut whole = unwrapped(original.domain(), original.seeds(), &torus, &self.vertices);
-            whole.list_faces_of_cells_in_order();
-            return (whole, self.collapsed);
+        let mut faces = TorusFaces::new(self.dimension());
+        for (face, corners) in original.faces().zip(&self.faces).filter(|(_, corners)| !corners.is_empty()) {
+            faces.push(original.face_sides(face).map(face_end), corners.iter().copied());
         }
-        let mut tessellation = Tessellation::without_faces(original.domain(), original.seeds(), Vec::new());
-        let mut numbers = vec![VertexId(0); self.vertices.len()];
-        let is_kept = |vertex: &usize| !self.faces_at[*vertex].is_empty();
-        for (number, vertex) in (0u32..).zip((0..self.vertices.len()).filter(is_kept)) {
-            numbers[vertex] = VertexId(number);
-            tessellation.vertices.push(self.vertices[vertex]);
-        }
-        for (face, corners) in faces {
-            let corners = corners.iter().map(|corner| numbers[corner.vertex as usize]);
-            tessellation.push_face(original.face_sides(face), corners);
-        }
-        tessellation.list_faces_of_cells_in_order();
-        (tessellation, self.collapsed)
+        let mut whole = unwrapped(original.domain(), original.seeds(), &faces, &self.vertices);
+        whole.list_faces_of_cells_in_order();
+        (whole, self.collapsed)
     }
 }
 
-fn face_end(side: Side) -> FaceEnd {
+/// What lies on a side of a face that is in its own place.
+pub(crate) fn face_end(side: Side) -> FaceEnd {
     match side {
         Side::Cell(CellId(seed)) => FaceEnd::Cell(Image { seed, shift: Shift::NONE }),
         Side::Image(CellId(seed), shift) => FaceEnd::Cell(Image { seed, shift }),

@@ -3,8 +3,8 @@
 mod common;
 
 use common::{
-    BODY_CENTRED, FACE_CENTRED, SIMPLE_CUBIC, assert_complex, assert_power_complex, jittered, lattice,
-    random_seeds, square, tessellate,
+    BODY_CENTRED, FACE_CENTRED, SIMPLE_CUBIC, assert_closed, assert_complex, assert_power_complex, jittered,
+    lattice, random_seeds, square, tessellate,
 };
 use glam::{BVec3, DVec3};
 use voronoi::{Domain, Side, Tessellation, VoronoiError};
@@ -274,4 +274,41 @@ fn a_seed_on_a_wall_touches_it() {
     let tessellation = tessellate(&[DVec3::new(0.0, 0.5, 0.5), DVec3::new(0.7, 0.5, 0.5)]);
     let walls = tessellation.neighbors(voronoi::CellId(0));
     assert!(walls.iter().filter(|side| matches!(side, Side::Wall(_))).count() == 5);
+}
+
+/// Opposite cells of a face-centred lattice touch in points; where there are four in a periodic box and they are 1e-8 off, they share
+/// faces 1e-16 wide. Cells of larger lattices that are 1e-14 off do so as well.
+#[test]
+fn edges_below_double_precision_are_points_once_resolved() {
+    let periodic = Domain::unit_cube().with_periods(BVec3::TRUE);
+    for (domain, cells_along, size) in
+        [(&periodic, 1, 1e-8), (&periodic, 2, 1e-14), (&Domain::unit_cube(), 2, 1e-14)]
+    {
+        let seeds = lattice(cells_along, &FACE_CENTRED);
+        let exact = Tessellation::new(domain, &seeds).expect("valid seeds");
+        assert!(exact.resolved().is_none(), "nothing is short on the lattice itself");
+        let near = Tessellation::new(domain, &jittered(&seeds, size)).expect("valid seeds");
+        let resolved = near.resolved().expect("faces between opposite cells are small");
+        assert_closed(&resolved);
+        assert_eq!(resolved.face_count(), exact.face_count());
+        for (cell, before) in resolved.cell_measures().iter().zip(near.cell_measures()) {
+            assert!((cell.volume - before.volume).abs() < 1e-12 * before.volume);
+        }
+    }
+}
+
+/// A grid whose rows have the same decimals, but not the same last places.
+#[test]
+fn a_grid_of_decimals_has_rectangles_once_resolved() {
+    let coordinate =
+        |place: u32, row: u32| (0.1 * f64::from(row) + 0.13 * f64::from(place)) - 0.1 * f64::from(row);
+    let seeds: Vec<DVec3> = (0..49)
+        .map(|seed| (seed / 7, seed % 7))
+        .map(|(x, y)| DVec3::new(0.1 + coordinate(x, y), 0.1 + coordinate(y, x), 0.0))
+        .collect();
+    let cells = Tessellation::new(&Domain::unit_square(), &seeds).expect("valid seeds");
+    assert!(cells.vertices().len() > 64, "not quite a grid");
+    let resolved = cells.resolved().expect("some edges are short");
+    assert_eq!(resolved.vertices().len(), 64);
+    assert!(resolved.cell_measures().iter().all(|cell| cell.face_count == 4));
 }
