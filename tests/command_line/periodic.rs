@@ -178,16 +178,19 @@ fn cuts_are_refused_where_they_make_no_sense() {
     workplace.refuses(
         "--lattice fcc 1 --box 1 1 2 --periodic y --periodic-cut box --faces plain --relax 0.113 --junctions corner -n 1",
         FAILED,
-        "grain 3 is its own neighbour, and folds where the box cuts it; keep grains whole, or give more seeds; ... wide (7.816e-1)",
+        "grain 1 touches its own image, so cut at the box it would touch itself; keep grains whole, or give more seeds; ... wide (7.816e-1)",
     );
 }
 
-/// Cells of a lattice whose parts in the box touch along an edge of it.
+/// Opposite grains of a face-centred lattice touch in points. With one cell along each axis they are images of one grain.
 #[test]
-fn grains_whose_parts_touch_where_the_box_cuts_them_are_refused_with_a_remedy() {
-    Workplace::new().refuses(
-        "--lattice fcc 1 --box 1 1 0.2 --periodic y,z -n 0 --periodic-cut box --relax 0",
-        FAILED,
-        "cut at the box, the network is invalid: grain ... )",
-    );
+fn a_grain_that_would_touch_itself_in_the_box_is_named() {
+    let workplace = Workplace::new();
+    let lattice = "--periodic x,y,z --periodic-cut box -n 0 --lattice fcc";
+    let said = "grain 0 touches its own image, so cut at the box it would touch itself; keep grains whole, or give more seeds; grain 0 (SeedId 0), 1.00e0 mean equivalent diameters wide ... )";
+    workplace.refuses(&format!("{lattice} 1"), FAILED, said);
+    // Here they touch in lines.
+    workplace.refuses("--lattice fcc 1 --box 1 1 0.2 --periodic y,z -n 0 --periodic-cut box --relax 0", FAILED, said);
+    workplace.run(&format!("{lattice} 2"));
+    workplace.run("--periodic x,y,z -n 0 --lattice fcc 1");
 }

@@ -8,7 +8,7 @@ type Kind = (&'static str, &'static [&'static str]);
 
 /// The refusals among the errors of `grainsmooth::Error`, `voronoi::VoronoiError` and `polycrystal::NetworkError`.
 ///
-/// Not here, so failed results: `BoundaryTooSmall`, `MeetsItself`, `CutCrosses`, `CutInvalid`, `VolumeNotRestored`, `Folded` and
+/// Not here, so failed results: `BoundaryTooSmall`, `CutCrosses`, `CutInvalid`, `VolumeNotRestored`, `Folded` and
 /// `Invalid`, which are the program's own limits, and `WriteOutput`.
 pub const REFUSALS: &[Kind] = &[
     // Paths and formats.
@@ -51,6 +51,7 @@ pub const REFUSALS: &[Kind] = &[
     ("LevelsExceedMemory", &["levels would take", "of memory"]),
     ("LevelsExceedIds", &["levels would make", "more than ids can name"]),
     ("TooLarge", &["more than 32-bit ids can name"]),
+    ("TouchesItself", &["touches its own image", "give more seeds"]),
     // A grain that vanishes while it is free to, where the message names a time that works, or how to take such grains out.
     ("GrainVanished", &["shrinks to nothing by", "; --relax ", " works"]),
     ("GrainVanished, at any time", &["shrinks to nothing by", "--min-diameter"]),
@@ -100,7 +101,6 @@ mod tests {
         let grain = GrainId(4);
         for error in [
             NetworkError::BoundaryTooSmall { sides },
-            NetworkError::MeetsItself { grain },
             NetworkError::CutCrosses { axis: "x" },
             NetworkError::VolumeNotRestored { grain, diameter: 0.1, relative_error: 1.0 },
             NetworkError::Folded { count: 2 },

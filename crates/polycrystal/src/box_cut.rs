@@ -86,7 +86,7 @@ impl Network {
     /// move within these alone.
     ///
     /// # Errors
-    /// [`NetworkError::CutCrosses`]; [`NetworkError::MeetsItself`] where that leaves folds; [`NetworkError::CutInvalid`] where the pieces are no valid network.
+    /// [`NetworkError::CutCrosses`]; [`NetworkError::TouchesItself`]; [`NetworkError::CutInvalid`] where the pieces are no valid network otherwise.
     ///
     /// # Panics
     /// When there is not one point per vertex of the finest level.
@@ -168,11 +168,13 @@ impl Network {
         let sides: Vec<[Side; 2]> = boundaries.iter().map(|(sides, _)| *sides).collect();
         let surface = Surface { points: &box_points, elements, boundary_of: &boundary_of, sides: &sides };
         let walled = domain.clone().with_periods(glam::BVec3::FALSE);
-        match (Self::of_surface(&walled, &surface, Junctions::Crease, 0), pieces.meets_itself) {
-            (Err(NetworkError::Invalid(_)), Some(grain)) => Err(NetworkError::MeetsItself { grain }),
-            (Err(NetworkError::Invalid(faults)), None) => Err(NetworkError::CutInvalid(faults)),
-            (result, _) => result,
-        }
+        Self::of_surface(&walled, &surface, Junctions::Crease, 0).map_err(|error| match error {
+            NetworkError::Invalid(faults) => match faults.pinched_grain() {
+                Some(grain) => NetworkError::TouchesItself { grain },
+                None => NetworkError::CutInvalid(faults),
+            },
+            error => error,
+        })
     }
 }
 

@@ -64,6 +64,17 @@ pub struct Faults(pub Vec<Fault>);
 
 impl std::error::Error for Faults {}
 
+impl Faults {
+    /// The first grain whose surface touches itself, where all faults are of that kind.
+    pub(crate) fn pinched_grain(&self) -> Option<GrainId> {
+        let pinched = self.0.iter().map(|fault| match fault {
+            Fault::Pinched { grain, .. } | Fault::PinchedPoint { grain, .. } => Some(*grain),
+            _ => None,
+        });
+        pinched.collect::<Option<Vec<_>>>()?.first().copied()
+    }
+}
+
 impl fmt::Display for Faults {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let kinds = self.0.chunk_by(|a, b| a.kind() == b.kind());

@@ -100,11 +100,13 @@ pub enum NetworkError {
         /// The number that is left out.
         grain: GrainId,
     },
-    /// A grain of a periodic network meets its own image, and what is left in the box without that boundary is no valid network.
+    /// A grain of a periodic network touches its own image in points or lines alone. In the box the two are one grain, whose surface
+    /// would touch itself: grains of face-centred lattices with one cell along an axis do.
     #[error(
-        "grain {} is its own neighbour, and folds where the box cuts it; keep grains whole, or give more seeds", grain.0
+        "grain {} touches its own image, so cut at the box it would touch itself; keep grains whole, or give more seeds",
+        grain.0
     )]
-    MeetsItself {
+    TouchesItself {
         /// The grain.
         grain: GrainId,
     },
@@ -180,7 +182,7 @@ impl NetworkError {
     pub fn grains(&self) -> Option<Vec<GrainId>> {
         match self {
             Self::BoundaryTooSmall { sides } => Some(sides.iter().filter_map(|side| side.grain()).collect()),
-            Self::MeetsItself { grain }
+            Self::TouchesItself { grain }
             | Self::VolumeNotRestored { grain, .. }
             | Self::GrainVanished { grain, .. } => Some(vec![*grain]),
             Self::CutInvalid(faults) | Self::Invalid(faults) => Some(

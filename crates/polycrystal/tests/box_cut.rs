@@ -181,7 +181,7 @@ fn few_grains_are_cut_or_refused() {
                     assert!(validation.largest_volume_error < 1e-9, "{count} in {domain}: {validation:?}");
                     cut += 1;
                 }
-                Err(error) => assert!(matches!(error, NetworkError::MeetsItself { .. }), "{error}"),
+                Err(error) => assert!(matches!(error, NetworkError::TouchesItself { .. }), "{error}"),
             }
         }
     }

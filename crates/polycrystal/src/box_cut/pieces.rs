@@ -8,7 +8,7 @@ use voronoi::{Dimension, Domain, Shift};
 use super::{Corner, Piece, periodic_axes, place_in_box};
 use crate::face_mesh::id;
 use crate::triangle_quality::squared_sine;
-use crate::{Elements, GrainId, Network, Side};
+use crate::{Elements, Network};
 
 /// Pieces of elements, and the points of the torus in the box.
 pub(super) struct Pieces {
@@ -16,8 +16,6 @@ pub(super) struct Pieces {
     pub(super) pieces: Vec<Piece>,
     /// Places with lower <= x < upper along periodic axes.
     pub(super) places: Vec<DVec3>,
-    /// A grain that meets its own image, if there is one.
-    pub(super) meets_itself: Option<GrainId>,
     /// The axes on whose lower plane each point lies.
     pub(super) planes: Vec<[bool; 3]>,
 }
@@ -87,7 +85,6 @@ impl Pieces {
         let level = network.finest();
         let mut pieces = Self {
             pieces: Vec::new(),
-            meets_itself: None,
             domain: network.domain().clone(),
             places: Vec::new(),
             planes: Vec::new(),
@@ -100,10 +97,7 @@ impl Pieces {
             }
             let sides = beside.sides_across(network.boundaries());
             // Where a grain meets its own image there is nothing between the two.
-            if let [Side::Grain(first), Side::Grain(second)] = sides
-                && first == second
-            {
-                pieces.meets_itself = Some(first);
+            if sides[0] == sides[1] {
                 continue;
             }
             let corners = elements.corners(element).iter().map(|vertex| torus.corner(*vertex)).collect();
