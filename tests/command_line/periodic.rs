@@ -190,7 +190,11 @@ fn a_grain_that_would_touch_itself_in_the_box_is_named() {
     let said = "grain 0 touches its own image, so cut at the box it would touch itself; keep grains whole, or give more seeds; grain 0 (SeedId 0), 1.00e0 mean equivalent diameters wide ... )";
     workplace.refuses(&format!("{lattice} 1"), FAILED, said);
     // Here they touch in lines.
-    workplace.refuses("--lattice fcc 1 --box 1 1 0.2 --periodic y,z -n 0 --periodic-cut box --relax 0", FAILED, said);
+    workplace.refuses(
+        "--lattice fcc 1 --box 1 1 0.2 --periodic y,z -n 0 --periodic-cut box --relax 0",
+        FAILED,
+        said,
+    );
     workplace.run(&format!("{lattice} 2"));
     workplace.run("--periodic x,y,z -n 0 --lattice fcc 1");
 }
