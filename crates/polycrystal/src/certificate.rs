@@ -121,33 +121,50 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>)
     let faults = &mut certificate.faults.0;
     let flat = ids(normals.len()).filter(|element| normals[*element as usize] == DVec3::ZERO);
     faults.extend(flat.map(|element| Fault::NoArea { element }));
-    faults.extend(duplicate_points(surface.points).map(|points| Fault::DuplicatePoints { points }));
-    let meetings = meetings(surface);
+    // Each of these runs for the most part on one thread.
+    let (crossing, ((meetings, duplicates), (closing, is_closed))) = rayon::join(
+        || crossing_elements(surface, seams),
+        || {
+            rayon::join(
+                || (meetings(surface), duplicate_points(surface.points)),
+                || closing_and_pinches(surface, seams),
+            )
+        },
+    );
+    faults.extend(duplicates.map(|points| Fault::DuplicatePoints { points }));
     let orphans = ids(meetings.len()).filter(|point| meetings[*point as usize].is_none());
     faults.extend(orphans.map(|point| Fault::Orphan { point }));
-    let mut closing = faults_of_closing(surface, seams);
-    let is_closed = closing.is_empty();
-    if is_closed {
-        closing = pinched_points(surface, seams);
-    }
-    closing.sort_by_key(Fault::kind);
     faults.extend(closing);
     let has_area = |pair: &[u32; 2]| pair.iter().all(|element| normals[*element as usize] != DVec3::ZERO);
     let folded = folded_pairs(&seams.inner, &normals, FOLD_COSINE).into_iter().filter(has_area);
     faults.extend(folded.map(|elements| Fault::Folded { elements }));
-    let crossing = crossing_elements(surface, seams).into_iter();
-    faults.extend(crossing.map(|elements| Fault::Crossing { elements }));
+    faults.extend(crossing.into_iter().map(|elements| Fault::Crossing { elements }));
     if let Some(stated) = claims.node_types {
         faults.extend(wrong_node_types(stated, &meetings));
     }
     if let Some(stated) = claims.grain_counts {
         faults.extend(wrong_grain_counts(stated, &grain_counts(&meetings, claims.originals)));
     }
-    certificate.grain_volumes = grain_volumes(surface);
-    certificate.check_volumes(surface, claims, is_closed);
-    certificate.angles = statistics(angles(surface, surface.sides, seams.places()));
-    certificate.triangles = triangle_quality(surface);
+    let (volumes, (angles, triangles)) = rayon::join(
+        || grain_volumes(surface),
+        || (statistics(angles(surface, surface.sides, seams.places())), triangle_quality(surface)),
+    );
+    certificate.grain_volumes = volumes;
+    certificate.check_volumes(surface, &normals, claims, is_closed);
+    certificate.angles = angles;
+    certificate.triangles = triangles;
     certificate
+}
+
+/// Where grains are not closed, or are but touch themselves, and whether they are closed.
+fn closing_and_pinches(surface: &Surface<'_>, seams: &Seams) -> (Vec<Fault>, bool) {
+    let mut faults = faults_of_closing(surface, seams);
+    let is_closed = faults.is_empty();
+    if is_closed {
+        faults = pinched_points(surface, seams);
+    }
+    faults.sort_by_key(Fault::kind);
+    (faults, is_closed)
 }
 
 impl Certificate {
@@ -156,11 +173,17 @@ impl Certificate {
         self.faults.0.is_empty()
     }
 
-    fn check_volumes(&mut self, surface: &Surface<'_>, claims: &Claims<'_>, is_closed: bool) {
+    fn check_volumes(
+        &mut self,
+        surface: &Surface<'_>,
+        normals: &[DVec3],
+        claims: &Claims<'_>,
+        is_closed: bool,
+    ) {
         let faults = &mut self.faults.0;
         let empty = self.grain_volumes.iter().filter(|(_, volume)| is_closed && *volume <= 0.0);
         faults.extend(empty.map(|&(grain, volume)| Fault::NoVolume { grain, volume }));
-        let areas = if claims.rounding > 0.0 { side_areas(surface) } else { BTreeMap::new() };
+        let areas = if claims.rounding > 0.0 { side_areas(surface, normals) } else { BTreeMap::new() };
         let mut wrong = Vec::new();
         for (grain, claimed) in claims.grain_volumes.into_iter().flatten() {
             let Ok(found) = self.grain_volumes.binary_search_by_key(grain, |(grain, _)| *grain) else {
@@ -199,13 +222,17 @@ impl Certificate {
 }
 
 /// The area (in the plane: length) of each side's surface.
-fn side_areas(surface: &Surface<'_>) -> BTreeMap<Side, f64> {
+fn side_areas(surface: &Surface<'_>, normals: &[DVec3]) -> BTreeMap<Side, f64> {
     // Normals of triangles are as long as twice the area.
     let share = if matches!(surface.elements, Elements::Triangles(_)) { 0.5 } else { 1.0 };
+    let mut of_boundaries = vec![0.0; surface.sides.len()];
+    for (normal, boundary) in normals.iter().zip(surface.boundary_of) {
+        of_boundaries[boundary.index()] += share * normal.length();
+    }
     let mut areas = BTreeMap::new();
-    for (normal, boundary) in surface.elements.normals(surface.points).iter().zip(surface.boundary_of) {
-        for side in surface.sides[boundary.index()] {
-            *areas.entry(side).or_default() += share * normal.length();
+    for (area, sides) in of_boundaries.iter().zip(surface.sides) {
+        for side in sides {
+            *areas.entry(*side).or_default() += *area;
         }
     }
     areas

@@ -1,5 +1,7 @@
 //! Points where the surface of a grain touches itself, with no edge in common.
 
+use rayon::prelude::*;
+
 use crate::fault::Fault;
 use crate::seams::Seams;
 use crate::{Elements, Side, Surface};
@@ -11,14 +13,14 @@ pub(crate) fn pinched_points(surface: &Surface<'_>, seams: &Seams) -> Vec<Fault>
     let Elements::Triangles(triangles) = surface.elements else { return Vec::new() };
     let fans = Fans::within_boundaries(triangles, &seams.inner);
     // Where there is one fan in all, it is that of both sides.
-    let several = fans.points_of_several(triangles, surface.points.len());
+    let several = fans.points_of_several(surface.points.len());
     if !several.contains(&true) {
         return Vec::new();
     }
     let mut parts: Vec<Part> = Vec::new();
     for (corner, point) in (0u32..).zip(triangles.as_flattened()) {
         if several[*point as usize] {
-            let fan = fans.root(corner);
+            let fan = fans.number(corner);
             parts.extend(surface.sides_of(corner / 3).map(|side| Part { point: *point, side, fan }));
         }
     }
@@ -32,7 +34,7 @@ pub(crate) fn pinched_points(surface: &Surface<'_>, seams: &Seams) -> Vec<Fault>
             let corner = u32::from(at.corner);
             let corners = [3 * at.element + corner, 3 * at.element + (corner + 1) % 3];
             uses.extend(surface.sides_of(at.element).into_iter().flat_map(|side| {
-                corners.map(|corner| (side, triangles.as_flattened()[corner as usize], fans.root(corner)))
+                corners.map(|corner| (side, triangles.as_flattened()[corner as usize], fans.number(corner)))
             }));
         }
         uses.sort_unstable();
@@ -64,42 +66,80 @@ struct Part {
     fan: u32,
 }
 
-/// The corners of all triangles, joined where triangles of one boundary share an edge.
-struct Fans(Joined);
+/// No triangle lies beyond an edge within the boundary.
+const NONE: u32 = u32::MAX;
 
-impl Fans {
-    fn within_boundaries(triangles: &[[u32; 3]], inner: &[[u32; 2]]) -> Self {
-        let mut corners = Joined { parents: (0u32..).take(3 * triangles.len()).collect() };
-        for pair in inner {
-            let [one, other] = pair.map(|triangle| triangles[triangle as usize]);
-            for (k, point) in (0u32..).zip(one) {
-                if let Some(place) = other.iter().position(|corner| *corner == point) {
-                    let place = u32::try_from(place).expect("one of three");
-                    corners.join(3 * pair[0] + k, 3 * pair[1] + place);
+/// How triangles of one boundary follow each other around points.
+///
+/// Corner `k` of triangle `t` has the number `3 t + k`, and so has the edge from there to the triangle's next corner.
+struct Fans<'a> {
+    triangles: &'a [[u32; 3]],
+    /// For each edge, the same edge as the triangle beyond runs along it.
+    beyond: Vec<u32>,
+}
+
+impl<'a> Fans<'a> {
+    fn within_boundaries(triangles: &'a [[u32; 3]], inner: &[[u32; 2]]) -> Self {
+        let mut beyond = vec![NONE; 3 * triangles.len()];
+        for [one, other] in inner {
+            let corners = triangles[*other as usize];
+            for (k, [from, to]) in (0u32..).zip(edges(triangles[*one as usize])) {
+                if let Some((place, _)) = (0u32..).zip(edges(corners)).find(|(_, edge)| *edge == [to, from]) {
+                    let [edge, back] = [3 * one + k, 3 * other + place];
+                    beyond[edge as usize] = back;
+                    beyond[back as usize] = edge;
                 }
             }
         }
-        Self(corners)
+        Self { triangles, beyond }
     }
 
-    /// The number of the fan that a corner belongs to.
-    fn root(&self, corner: u32) -> u32 {
-        self.0.root(corner)
+    /// The corner after one at its point, if the fan does not end there.
+    fn next(&self, corner: u32) -> Option<u32> {
+        let edge_before = if corner.is_multiple_of(3) { corner + 2 } else { corner - 1 };
+        Some(self.beyond[edge_before as usize]).filter(|corner| *corner != NONE)
     }
 
-    /// Whether the corners at each point are of several fans.
-    fn points_of_several(&self, triangles: &[[u32; 3]], point_count: usize) -> Vec<bool> {
-        const NONE: u32 = u32::MAX;
-        let mut first = vec![NONE; point_count];
-        let mut several = vec![false; point_count];
-        for (corner, point) in (0u32..).zip(triangles.as_flattened()) {
-            let root = self.root(corner);
-            let known = &mut first[*point as usize];
-            several[*point as usize] |= *known != NONE && *known != root;
-            *known = root;
+    /// The number of the fan that a corner belongs to: its last corner, or the lowest where it goes all around.
+    fn number(&self, corner: u32) -> u32 {
+        let mut lowest = corner;
+        let mut at = corner;
+        while let Some(next) = self.next(at) {
+            if next == corner {
+                return lowest;
+            }
+            lowest = lowest.min(next);
+            at = next;
         }
-        several
+        at
     }
+
+    /// Whether each point has other corners than those of one fan that goes all around it.
+    fn points_of_several(&self, point_count: usize) -> Vec<bool> {
+        let mut first = vec![NONE; point_count];
+        let mut counts = vec![0u32; point_count];
+        for (corner, point) in (0u32..).zip(self.triangles.as_flattened()) {
+            first[*point as usize] = corner;
+            counts[*point as usize] += 1;
+        }
+        let goes_round = |(first, count): (&u32, &u32)| {
+            let mut at = *first;
+            for _ in 1..*count {
+                match self.next(at) {
+                    Some(next) if next != *first => at = next,
+                    _ => return false,
+                }
+            }
+            true
+        };
+        // A fan that ends is looked at as well: at its ends other boundaries begin.
+        first.par_iter().zip(&counts).map(|at| *at.1 > 0 && !goes_round(at)).collect()
+    }
+}
+
+/// The edges of a triangle, each from its corner of the same place.
+fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
 }
 
 /// Disjoint sets, each named by its lowest member.
