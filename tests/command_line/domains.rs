@@ -145,6 +145,7 @@ fn files_that_hold_no_domain() {
     let workplace = Workplace::new();
     let open = PYRAMID.replace("f 4 1 5\n", "");
     let dented = PYRAMID.replace("f 4 3 2 1\n", "v 1 1 0.5\nf 2 1 6\nf 3 2 6\nf 4 3 6\nf 1 4 6\n");
+    let huge = PYRAMID.replace("v 2", "v 2e200");
     for (name, content, message) in [
         (
             "open.obj",
@@ -171,6 +172,22 @@ fn files_that_hold_no_domain() {
             "none.csv",
             "",
             "none.csv: the half-spaces have no end in the direction ... ; add one with a normal that points there",
+        ),
+        (
+            "far.csv",
+            "1,0,0,1\n0,1e200,0,1e200\n0,0,1,1e200\n-1,-1,-1,0\n",
+            "far.csv line 3: half-space 2 is 1e200 from the origin; move it within 1e30, or leave it out",
+        ),
+        // Once this ended in a panic.
+        (
+            "tiny.csv",
+            "1,0,0,1e-200\n0,1,0,1e-200\n0,0,1,1e-200\n-1,-1,-1,0\n",
+            "tiny.csv: the domain's side along x is ... ; every side must be between 1e-30 and 1e30",
+        ),
+        (
+            "huge.obj",
+            &huge,
+            "huge.obj: point 1 has the coordinate 2e200; scale the mesh, so that none is beyond 1e30",
         ),
     ] {
         workplace.put(name, content);

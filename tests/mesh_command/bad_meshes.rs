@@ -24,6 +24,9 @@ fn bad_meshes_are_refused_by_name() {
         ("two.json", r#"{"vertices": [[0, 0, 0], [1, 0, 0]], "faces": [[0, 1]]}"#),
         ("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
         ("empty.obj", ""),
+        ("huge.obj", "v 0 0 0\nv 1e155 0 0\nv 0 1e155 0\nf 1 2 3\n"),
+        ("tiny.obj", "v 0 0 0\nv 1e-155 0 0\nv 0 1e-155 0\nf 1 2 3\n"),
+        ("huge.txt", "0 0 0\n1 -1e200 0\n2 0 0\n"),
         ("nothing.ply", ""),
         ("valence.off", "OFF\n5 2 0\n0 0 0\n1 1 0\n2 0 0\n1 2 0\n1 -2 0\n4 0 1 2 3\n4 2 1 0 4\n"),
     ] {
@@ -105,6 +108,16 @@ fn bad_meshes_are_refused_by_name() {
         ("loop missing.obj", "missing.obj: cannot be read: ... give the path of a readable mesh file"),
         ("loop cube.blend", "cube.blend: unknown extension; give a file *.obj, ... or *.json"),
         ("catmull-clark cube.obj -n 60", "60 levels would take ... would fit"),
+        // Their normals were none, and nothing said so.
+        (
+            "normals huge.obj",
+            "huge.obj: point 1 has the coordinate 1e155; scale the mesh, so that none is beyond 1e30",
+        ),
+        ("loop tiny.obj", "tiny.obj: the mesh is 1e-155 wide; scale it, so that it is 1e-30 or more"),
+        (
+            "bezier huge.txt",
+            "huge.txt: point 1 has the coordinate -1e200; scale the mesh, so that none is beyond 1e30",
+        ),
     ] {
         workplace.refuses(&format!("mesh {command} -o out.obj"), FAILED, message);
     }

@@ -1,5 +1,4 @@
 use std::num::NonZeroU32;
-use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use glam::{BVec3, DVec3};
@@ -177,10 +176,6 @@ impl Default for Config {
 }
 
 impl Config {
-    /// Shortest and longest side of a box: products of five lengths, which volumes and their derivatives are, must
-    /// stay within the range of doubles.
-    pub const SIDE_RANGE: RangeInclusive<f64> = 1e-30..=1e30;
-
     /// The usual length to regularise by: 0.15 of a grain. Shorter edges would shrink to nothing during relaxation.
     pub const REGULARIZE: f64 = 0.15;
 
@@ -282,8 +277,7 @@ impl Config {
     pub fn domain(&self) -> Result<Domain, Error> {
         let axes = if self.dimension == Dimension::Two { 2 } else { 3 };
         let sides = ['x', 'y', 'z'].into_iter().zip(self.box_size.to_array());
-        if let Some((axis, length)) = sides.take(axes).find(|(_, length)| !Self::SIDE_RANGE.contains(length))
-        {
+        if let Some((axis, length)) = sides.take(axes).find(|(_, length)| !Domain::LENGTHS.contains(length)) {
             return Err(Error::BoxSide { axis, length });
         }
         let center = 0.5 * self.box_size;

@@ -57,7 +57,9 @@ pub(crate) fn half_space_domain(path: &Path, dimension: Dimension) -> Result<Dom
         Dimension::Two => Domain::polygon(walls),
     };
     domain.map_err(|cause| match cause {
-        VoronoiError::BadHalfSpace { wall } | VoronoiError::EmptyDomain { wall } => {
+        VoronoiError::BadHalfSpace { wall }
+        | VoronoiError::FarHalfSpace { wall, .. }
+        | VoronoiError::EmptyDomain { wall } => {
             Error::HalfSpaceInFile { path: path.to_owned(), line: lines[wall], cause }
         }
         _ => Error::DomainInFile { path: path.to_owned(), cause },

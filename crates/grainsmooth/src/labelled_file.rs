@@ -7,8 +7,8 @@ use glam::DVec3;
 use polycrystal::{BoundaryId, Claims, Elements, GrainId, NodeType, Side, Surface, outward_sides};
 use toml::{Table, Value};
 
-use crate::mesh_file::MeshFileProblem;
 use crate::mesh_file::vtk::labelled::{LabelledCells, Remarks, read_legacy, read_xml};
+use crate::mesh_file::{MeshFileProblem, check_lengths};
 use crate::{Error, Names};
 
 /// A labelled surface (in the plane: lines) from a file.
@@ -68,7 +68,9 @@ impl LabelledFile {
             _ => return Err(MeshFileProblem::NotANetworkFormat),
         };
         let bytes = std::fs::read(path).map_err(MeshFileProblem::Unreadable)?;
-        let mut file = Self::of_cells(read(&bytes)?)?;
+        let cells = read(&bytes)?;
+        check_lengths(&cells.mesh.points)?;
+        let mut file = Self::of_cells(cells)?;
         file.sides = outward_sides(&file.surface());
         Ok(file)
     }

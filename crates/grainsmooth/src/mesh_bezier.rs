@@ -7,7 +7,7 @@ use serde::Deserialize;
 use subzero::{BezierCurve, BezierSurface, MeshError};
 
 use crate::Error;
-use crate::mesh_file::MeshFileProblem;
+use crate::mesh_file::{MeshFileProblem, check_lengths};
 
 /// Curves and surfaces as a file gives them.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -36,6 +36,9 @@ pub fn read_bezier(path: &Path) -> Result<BezierFile, Error> {
         let file = if is_json { from_json(&bytes)? } else { from_text(&String::from_utf8_lossy(&bytes))? };
         if file.curves.is_empty() && file.surfaces.is_empty() {
             return Err(MeshError::NoControlPoints.into());
+        }
+        for curve in file.curves.iter().chain(file.surfaces.iter().flat_map(BezierSurface::rows)) {
+            check_lengths(curve.control())?;
         }
         Ok(file)
     };

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use subzero::{BoundaryRule, Crease, Features, PolygonMesh, TriangleMesh};
+use voronoi::Domain;
 
 use crate::Error;
 
@@ -44,7 +45,7 @@ pub struct MeshFile {
 ///
 /// # Errors
 /// [`Error::MeshFile`] when the file cannot be read, is truncated or corrupt, has no faces, a face with less than three
-/// corners or with points that do not exist, or a coordinate that is not finite.
+/// corners or with points that do not exist, or a coordinate that is not finite or so large or small that its powers are not.
 pub fn read_mesh(path: &Path) -> Result<MeshFile, Error> {
     read(path).map_err(|problem| Error::MeshFile { path: path.to_owned(), problem })
 }
@@ -71,6 +72,7 @@ impl MeshFile {
     /// What any mesh must have; how faces fit together is for the scheme to judge.
     fn check(&self) -> Result<(), MeshFileProblem> {
         subzero::check_finite(&self.points)?;
+        check_lengths(&self.points)?;
         for (face, corners) in self.faces.iter().enumerate() {
             if corners.len() < 3 {
                 return Err(subzero::MeshError::TooFewCorners { face, corners: corners.len() }.into());
@@ -117,4 +119,22 @@ impl MeshFile {
         let (soft_corners, boundary) = (&self.corners[..], self.boundary);
         make(&Features { creases: &self.creases, corners: &[], soft_corners, boundary })
     }
+}
+
+/// Checks that areas and volumes, and what is divided by them, are numbers: [`Domain::LENGTHS`]. All points may be one.
+pub(crate) fn check_lengths(points: &[DVec3]) -> Result<(), MeshFileProblem> {
+    for (point, place) in points.iter().enumerate() {
+        let mut coordinates = place.to_array().into_iter();
+        let is_far = |coordinate: &f64| coordinate.is_finite() && coordinate.abs() > *Domain::LENGTHS.end();
+        if let Some(coordinate) = coordinates.find(is_far) {
+            return Err(MeshFileProblem::TooFar { point, coordinate });
+        }
+    }
+    let lower = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let upper = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let width = (upper - lower).max_element();
+    if width > 0.0 && width < *Domain::LENGTHS.start() {
+        return Err(MeshFileProblem::TooSmall { width });
+    }
+    Ok(())
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
+use crate::domain::check_sides;
 use crate::{Dimension, Domain, VoronoiError, WallPlane};
 
 /// How far a vertex may lie outside a face's plane, or a face's normal off that of one in the same plane, in units of the
@@ -20,7 +21,7 @@ impl Domain {
     ///
     /// # Errors
     /// [`VoronoiError::OpenSurface`] names an edge without a second face, [`VoronoiError::NotConvex`] a vertex outside a face by
-    /// more than a millionth of the body's size; [`VoronoiError::FlatDomain`].
+    /// more than a millionth of the body's size; [`VoronoiError::BadDomain`] and [`VoronoiError::FlatDomain`].
     ///
     /// # Panics
     /// When a face refers to a vertex that does not exist.
@@ -29,6 +30,9 @@ impl Domain {
         let used = || faces.iter().flatten().map(|corner| points[*corner as usize]);
         let (lower, upper) =
             (used().fold(DVec3::INFINITY, DVec3::min), used().fold(DVec3::NEG_INFINITY, DVec3::max));
+        if !faces.is_empty() {
+            check_sides(lower, upper, Dimension::Three)?;
+        }
         let size = (upper - lower).length();
         let center = lower.midpoint(upper);
         let at = |corner: u32| points[corner as usize] - center;

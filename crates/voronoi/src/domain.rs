@@ -1,5 +1,6 @@
 use std::f64::consts::PI;
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use glam::{BVec3, DVec3};
@@ -59,10 +60,14 @@ pub struct Domain {
 }
 
 impl Domain {
+    /// Lengths that a domain's sides may have, and half-spaces' distances from the origin up to the largest: products of six lengths, as
+    /// shapes of triangles have them, stay numbers with all their digits.
+    pub const LENGTHS: RangeInclusive<f64> = 1e-30..=1e30;
+
     /// A box in space from one corner to the opposite one.
     ///
     /// # Errors
-    /// [`VoronoiError::BadDomain`] when a side is not positive and finite.
+    /// [`VoronoiError::BadDomain`] when a side is none of [`Self::LENGTHS`].
     pub fn cuboid(lower: DVec3, upper: DVec3) -> Result<Self, VoronoiError> {
         Self::checked(lower, upper, Dimension::Three)
     }
@@ -70,7 +75,7 @@ impl Domain {
     /// A rectangle in the plane z = 0; the z coordinates of the corners are ignored.
     ///
     /// # Errors
-    /// [`VoronoiError::BadDomain`] when a side is not positive and finite.
+    /// [`VoronoiError::BadDomain`] when a side is none of [`Self::LENGTHS`].
     pub fn rectangle(lower: DVec3, upper: DVec3) -> Result<Self, VoronoiError> {
         Self::checked(lower.with_z(0.0), upper.with_z(0.0), Dimension::Two)
     }
@@ -106,7 +111,8 @@ impl Domain {
     /// # Errors
     /// [`VoronoiError::BadHalfSpace`] names a half-space without a normal, [`VoronoiError::EmptyDomain`] one with nothing in
     /// common with those before it; [`VoronoiError::UnboundedDomain`] a direction without end;
-    /// [`VoronoiError::FlatDomain`] when the polyhedron has no volume; [`VoronoiError::TooManyWalls`].
+    /// [`VoronoiError::FlatDomain`] when the polyhedron has no volume; [`VoronoiError::FarHalfSpace`] and [`VoronoiError::BadDomain`] for
+    /// lengths that are none of [`Self::LENGTHS`]; [`VoronoiError::TooManyWalls`].
     pub fn polyhedron(walls: Vec<WallPlane>) -> Result<Self, VoronoiError> {
         Self::cut_out(walls, Dimension::Three, None)
     }
@@ -126,8 +132,9 @@ impl Domain {
         name: Option<String>,
     ) -> Result<Self, VoronoiError> {
         let Extent { lower, upper, center } = Extent::of(&walls, dimension)?;
-        let mut domain = Self::cut_out_of_box(lower, upper, dimension, walls, name);
+        check_sides(lower, upper, dimension)?;
         let flat = VoronoiError::FlatDomain { lower, upper };
+        let mut domain = Self::cut_out_of_box(lower, upper, dimension, walls, name);
         if !domain.contains(center) {
             return Err(flat);
         }
@@ -176,13 +183,10 @@ impl Domain {
     fn checked(lower: DVec3, upper: DVec3, dimension: Dimension) -> Result<Self, VoronoiError> {
         let domain = Self::boxed(lower, upper, dimension);
         let size = domain.size();
-        for axis in 0..domain.axes() {
-            let length = size[axis];
-            if !(length.is_finite() && length > 0.0) {
-                return Err(VoronoiError::BadDomain { axis: ['x', 'y', 'z'][axis], length });
-            }
+        match (0..domain.axes()).find(|axis| size[*axis] <= 0.0) {
+            Some(axis) => Err(VoronoiError::BadDomain { axis: AXES[axis], length: size[axis] }),
+            None => check_sides(lower, upper, dimension).map(|()| domain),
         }
-        Ok(domain)
     }
 
     /// The corner of the (bounding) box with the smallest coordinates.
@@ -325,6 +329,18 @@ impl Domain {
             Dimension::Two => 2,
             Dimension::Three => 3,
         }
+    }
+}
+
+const AXES: [char; 3] = ['x', 'y', 'z'];
+
+/// Checks that the sides of a box are lengths; one that is 0 makes it flat, which is another matter.
+pub(crate) fn check_sides(lower: DVec3, upper: DVec3, dimension: Dimension) -> Result<(), VoronoiError> {
+    let axes = if dimension == Dimension::Two { 2 } else { 3 };
+    let sides = AXES.into_iter().zip((upper - lower).to_array()).take(axes);
+    match sides.into_iter().find(|(_, length)| *length != 0.0 && !Domain::LENGTHS.contains(length)) {
+        Some((axis, length)) => Err(VoronoiError::BadDomain { axis, length }),
+        None => Ok(()),
     }
 }
 

@@ -14,8 +14,8 @@ pub enum VoronoiError {
         /// Number of seeds, with their periodic images if it is these that are too many.
         count: usize,
     },
-    /// A side of the domain is not a positive, finite length.
-    #[error("the domain's side along {axis} is {length}; every side must be positive and finite")]
+    /// A side of the domain is no length, or one whose powers leave the range of numbers.
+    #[error("the domain's side along {axis} is {length:?}; every side must be between 1e-30 and 1e30")]
     BadDomain {
         /// `x`, `y` or `z`.
         axis: char,
@@ -29,6 +29,14 @@ pub enum VoronoiError {
     BadHalfSpace {
         /// Position of the half-space in the input.
         wall: usize,
+    },
+    /// A half-space is farther away than a length may be.
+    #[error("half-space {wall} is {distance:e} from the origin; move it within 1e30, or leave it out")]
+    FarHalfSpace {
+        /// Position of the half-space in the input.
+        wall: usize,
+        /// How far away it is; infinite where that is no number.
+        distance: f64,
     },
     /// Half-spaces have no point in common.
     #[error(
@@ -132,6 +140,18 @@ struct Point(DVec3);
 
 impl std::fmt::Display for Point {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(formatter, "({}, {}, {})", self.0.x, self.0.y, self.0.z)
+        let [x, y, z] = self.0.to_array().map(Number);
+        write!(formatter, "({x}, {y}, {z})")
+    }
+}
+
+/// Writes a number with all its digits, and an exponent where there would be many zeros beside them.
+struct Number(f64);
+
+impl std::fmt::Display for Number {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self(number) = self;
+        let has_many_zeros = *number != 0.0 && !(1e-5..1e16).contains(&number.abs());
+        if has_many_zeros { write!(formatter, "{number:e}") } else { write!(formatter, "{number}") }
     }
 }

@@ -129,7 +129,12 @@ impl Extent {
         if let Some(wall) = walls.iter().position(|wall| !is_plane(wall, dimension)) {
             return Err(VoronoiError::BadHalfSpace { wall });
         }
-        let farthest = walls.iter().map(distance_from_origin).fold(0.0, f64::max);
+        let distances: Vec<f64> = walls.iter().map(distance_from_origin).collect();
+        let is_far = |distance: &f64| distance.is_nan() || distance > Domain::LENGTHS.end();
+        if let Some(wall) = distances.iter().position(is_far) {
+            return Err(VoronoiError::FarHalfSpace { wall, distance: distances[wall] });
+        }
+        let farthest = distances.into_iter().fold(0.0, f64::max);
         let in_plane = if dimension == Dimension::Two { DVec3::new(1.0, 1.0, 0.0) } else { DVec3::ONE };
         let corner = in_plane * FARTHEST * if farthest > 0.0 { farthest } else { 1.0 };
         let domain = Domain::cut_out_of_box(-corner, corner, dimension, walls.to_vec(), None);

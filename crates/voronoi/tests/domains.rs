@@ -482,3 +482,27 @@ proptest! {
         }
     }
 }
+
+/// Half-spaces so near that products of their distances are 0 once ended in a panic; those too far gave a domain called flat.
+#[test]
+fn lengths_whose_powers_are_no_numbers_are_refused() {
+    let cube = |distance: f64| {
+        let normals = [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z];
+        Domain::polyhedron(normals.map(|normal| WallPlane::HalfSpace { normal, offset: distance }).to_vec())
+    };
+    for distance in [1e-200, 5e-324, 1e-31] {
+        assert!(matches!(cube(distance), Err(VoronoiError::BadDomain { axis: 'x', .. })), "{distance}");
+    }
+    for distance in [1.1e30, 1e160, 1e308] {
+        let far = VoronoiError::FarHalfSpace { wall: 0, distance };
+        assert_eq!(cube(distance).map(|_| ()), Err(far), "{distance}");
+    }
+    for distance in [1e-30f64, 1.0, 4e29] {
+        let volume = (2.0 * distance).powi(3);
+        assert!((cube(distance).expect("a cube").measure() / volume - 1.0).abs() < 1e-14, "{distance}");
+    }
+    for side in [0.0, 1e-31, 1e31, 1e160, f64::NAN, f64::INFINITY] {
+        let cuboid = Domain::cuboid(DVec3::ZERO, DVec3::new(1.0, side, 1.0));
+        assert!(matches!(cuboid, Err(VoronoiError::BadDomain { axis: 'y', .. })), "{side}");
+    }
+}

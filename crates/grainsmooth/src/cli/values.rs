@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-use grainsmooth::Config;
+use voronoi::Domain;
 
 /// Names less like a mistaken one are not taken for what was meant: Jaro-Winkler similarity, as clap has it.
 const LEAST_SIMILARITY: f64 = 0.7;
@@ -30,5 +30,5 @@ where
 
 /// A length that can be computed with.
 pub fn length(text: &str) -> Option<f64> {
-    text.parse().ok().filter(|length| Config::SIDE_RANGE.contains(length))
+    text.parse().ok().filter(|length| Domain::LENGTHS.contains(length))
 }

@@ -29,6 +29,20 @@ pub enum MeshFileProblem {
         /// What is wrong.
         what: String,
     },
+    /// A coordinate's powers leave the range of numbers.
+    #[error("point {point} has the coordinate {coordinate:e}; scale the mesh, so that none is beyond 1e30")]
+    TooFar {
+        /// The point, counted from 0.
+        point: usize,
+        /// The coordinate.
+        coordinate: f64,
+    },
+    /// Powers of the mesh's size leave the range of numbers.
+    #[error("the mesh is {width:e} wide; scale it, so that it is 1e-30 or more")]
+    TooSmall {
+        /// The largest side of its bounding box.
+        width: f64,
+    },
     /// The file has no faces.
     #[error("holds no faces; give a surface mesh")]
     NoFaces,
