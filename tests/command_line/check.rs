@@ -464,7 +464,7 @@ fn legacy_files_as_others_write_them_are_read() {
     let remarked = file.replace("POLYDATA\n", volumes);
     workplace.put("cubes.vtk", &remarked);
     let found = report(&workplace, "cubes.vtk", FAILED);
-    let message = "the volume of grain 1 (equivalent diameter 7.816e-1) is off by 1.0e0 of what it should be";
+    let message = "the volume of grain 1 is off by 1.0e0 of what it should be; its equivalent diameter should be 7.816e-1";
     assert_eq!(found["faults"][0]["message"], message);
     assert_eq!(found["faults"].as_array().unwrap().len(), 1);
     workplace.put("cubes.vtk", remarked.replace("0.5 0.25", "0.5 0.5"));
@@ -495,6 +495,13 @@ fn legacy_files_as_others_write_them_are_read() {
         "check cubes.vtk",
         FAILED,
         "cubes.vtk: FaceLabels has 66 numbers where 22 cells need two each; give a complete VTK file",
+    );
+    // Once this found crossings, and a volume that is no number.
+    workplace.put("cubes.vtk", file.replace("0.5 0 1\n", "0.5 0 1e160\n"));
+    workplace.refuses(
+        "check cubes.vtk",
+        FAILED,
+        "cubes.vtk: point 5 has the coordinate 1e160; scale the mesh, so that none is beyond 1e30",
     );
     workplace.put("cubes.vtk", file.replace("0.5 0 1\n", "0.5 nan 1\n"));
     workplace.refuses(

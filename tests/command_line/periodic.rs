@@ -195,6 +195,16 @@ fn a_grain_that_would_touch_itself_in_the_box_is_named() {
         FAILED,
         said,
     );
+    // What each way of cutting said was dropped once.
+    let output = workplace.command(&format!("{lattice} 1")).assert().code(FAILED).get_output().clone();
+    let log = String::from_utf8(output.stderr).unwrap();
+    let given_up =
+        |log: &str| log.lines().filter(|line| line.starts_with("given up    the cut at the box, ")).count();
+    assert_eq!(given_up(&log), 3, "{log}");
+    assert_eq!(log.lines().count(), 4, "{log}");
+    let output =
+        workplace.command(&format!("{lattice} 1 --quiet")).assert().code(FAILED).get_output().clone();
+    assert_eq!(given_up(&String::from_utf8(output.stderr).unwrap()), 0);
     workplace.run(&format!("{lattice} 2"));
     workplace.run("--periodic x,y,z -n 0 --lattice fcc 1");
 }

@@ -62,6 +62,10 @@ impl Workplace {
         let before = self.content();
         let output = command.assert().code(code).stdout("").get_output().clone();
         let said = String::from_utf8(output.stderr).unwrap();
+        // Attempts that were given up stand before it.
+        let attempts: usize =
+            said.split_inclusive('\n').take_while(|line| line.starts_with("given up ")).map(str::len).sum();
+        let said = &said[attempts..];
         // clap adds the usage and the way to the help, after an empty line.
         let (first, rest) = said.split_once('\n').unwrap();
         match code {

@@ -35,6 +35,8 @@ pub const REFUSALS: &[Kind] = &[
     ("SeedProblem::NegativeDiameter", &["diameter is", "write 0 or more"]),
     ("SeedProblem::Tess, of other cells", &["its cell has the", "whose cells are those of its seeds"]),
     ("SeedProblem::Tess, of the domain", &["the domain is a", "give a file whose domain is a"]),
+    ("SeedProblem::BadId", &["is no whole number from 0 to", "number the seeds"]),
+    ("SeedProblem::IdTwice, NoId", &["give each seed its own, or"]),
     ("SeedProblem::NotInPlane", &["in a 2D run"]),
     ("HalfSpaceInFile", &["half-space", "line"]),
     // Seeds and domains.
@@ -44,6 +46,7 @@ pub const REFUSALS: &[Kind] = &[
     ("EmptyGrains", &["weights leave", "without volume", "--drop-empty"]),
     ("UnboundedDomain", &["half-spaces have no end in the direction"]),
     ("EmptyDomain", &["leaves nothing of what those before it have in common"]),
+    ("BadDomain", &["every side must be between"]),
     ("FlatDomain", &["the domain between", "is flat"]),
     ("TooManyWalls", &["walls that a domain can have"]),
     // Sizes.
@@ -102,7 +105,7 @@ mod tests {
         for error in [
             NetworkError::BoundaryTooSmall { sides },
             NetworkError::CutCrosses { axis: "x" },
-            NetworkError::VolumeNotRestored { grain, diameter: 0.1, relative_error: 1.0 },
+            NetworkError::VolumeNotRestored { grain, relative_error: 1.0 },
             NetworkError::Folded { count: 2 },
         ] {
             assert_eq!(refusal(&error.to_string()), None, "{error}");

@@ -86,6 +86,9 @@ fn run_one(slice: &Slice, index: u64) -> anyhow::Result<Record> {
     Ok(record)
 }
 
+/// How a line begins that tells an attempt.
+const GIVEN_UP: &str = "given up    ";
+
 /// What the run ended with, and why it is not good.
 fn judge(
     case: &Case,
@@ -93,7 +96,9 @@ fn judge(
     directory: &Path,
     ended: &Ended,
 ) -> anyhow::Result<(Outcome, String, Certificate)> {
-    let message = ended.err.lines().next().unwrap_or_default().to_owned();
+    // Attempts that were given up come before it.
+    let said = ended.err.lines().find(|line| !line.starts_with(GIVEN_UP));
+    let message = said.unwrap_or_default().to_owned();
     let without = |outcome, message| Ok((outcome, message, Certificate::default()));
     if let Some(line) = ended.err.lines().find(|line| line.contains("panicked at")) {
         let said = ended.err.lines().skip_while(|other| *other != line).nth(1).unwrap_or_default();
@@ -127,7 +132,7 @@ fn complaint(case: &Case, ended: &Ended, message: &str) -> Option<String> {
         return Some("a failure without a message".to_owned());
     }
     // clap adds the usage below.
-    if ended.code == 1 && ended.err.lines().count() != 1 {
+    if ended.code == 1 && ended.err.lines().filter(|line| !line.starts_with(GIVEN_UP)).count() != 1 {
         return Some("a message of more than one line".to_owned());
     }
     let value = case.mistake.as_ref()?;

@@ -83,7 +83,7 @@ impl CheckReport {
         let certificate = certify(&surface, &claims);
         let report = |fault: &Fault| ReportedFault {
             kind: fault.kind(),
-            message: fault.to_string(),
+            message: in_words(fault),
             points: fault.ids().0,
             elements: fault.ids().1,
             grains: fault.grains().iter().map(|grain| grain.0).collect(),
@@ -115,6 +115,16 @@ impl CheckReport {
             statistics: statistics(file, &surface, &certificate),
             faults: certificate.faults.0.iter().map(report).collect(),
         }
+    }
+}
+
+/// The fault, and how large a grain of another volume should be.
+fn in_words(fault: &Fault) -> String {
+    match fault {
+        Fault::WrongVolume { diameter, .. } => {
+            format!("{fault}; its equivalent diameter should be {diameter:.3e}")
+        }
+        _ => fault.to_string(),
     }
 }
 

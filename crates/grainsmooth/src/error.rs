@@ -7,18 +7,7 @@ use voronoi::{Dimension, VoronoiError};
 
 use crate::memory::{self, LevelSize};
 use crate::mesh_file::MeshFileProblem;
-use crate::{FailedGrain, OutputFormat, SeedPlace, SeedProblem};
-
-/// What helps where grains cannot grow freely for so long: a time that works, if any does.
-fn time_remedy(works: Option<f64>) -> String {
-    works.map_or_else(
-        || {
-            "no shorter time that was tried works: merge the smallest cells, such as with --min-diameter 0.5"
-                .to_owned()
-        },
-        |time| format!("--relax {time} works"),
-    )
-}
+use crate::{Failure, OutputFormat, SeedPlace, SeedProblem};
 
 /// What can go wrong between the user's input and the files written. Each message is one line that names the
 /// value, the place and the remedy.
@@ -213,22 +202,9 @@ pub enum Error {
     /// The network cannot be made, relaxed, or is invalid.
     #[error(transparent)]
     Network(#[from] NetworkError),
-    /// Grains cannot grow freely for so long.
-    #[error("{cause}; {}", time_remedy(*works))]
-    GrowsTooLong {
-        /// What happens then.
-        cause: NetworkError,
-        /// A time for which they can.
-        works: Option<f64>,
-    },
-    /// The same, with the grain that it failed at.
-    #[error("{cause}; {grain}")]
-    Grain {
-        /// What failed.
-        cause: NetworkError,
-        /// The grain.
-        grain: FailedGrain,
-    },
+    /// The same, with all that is known of it.
+    #[error("{0}")]
+    Failed(Box<Failure>),
     /// A mesh file cannot be used.
     #[error("{}: {problem}", path.display())]
     MeshFile {

@@ -4,7 +4,7 @@ use std::fmt;
 
 use polycrystal::NetworkError;
 
-use crate::{EquivalentDiameters, Error, Tessellated};
+use crate::{EquivalentDiameters, Tessellated};
 
 /// Share of the mean diameter from which on a grain is not blamed for its size: of 50 000 cells of random seeds in a periodic box
 /// (`--rng-seed 1`) one is below.
@@ -30,7 +30,7 @@ pub struct FailedGrain {
 
 impl FailedGrain {
     /// The smallest of the grains that a failure names, of all if it names none; nothing if it is not about grains.
-    fn of(cause: &NetworkError, cells: &Tessellated) -> Option<Self> {
+    pub(crate) fn of(cause: &NetworkError, cells: &Tessellated) -> Option<Self> {
         let named = cause.grains()?;
         let dimension = cells.tessellation.domain().dimension();
         let measures = cells.tessellation.cell_measures();
@@ -49,22 +49,9 @@ impl FailedGrain {
 }
 
 impl FailedGrain {
-    /// The least share, with two decimals, that is well above this grain's.
-    fn limit(&self) -> f64 {
-        (100.0 * MARGIN * self.share).ceil() / 100.0
-    }
-}
-
-impl Error {
-    /// The error with the grain that it is about.
-    pub(crate) fn with_grain(self, cells: &Tessellated) -> Self {
-        match self {
-            Self::Network(cause) => match FailedGrain::of(&cause, cells) {
-                Some(grain) => Self::Grain { cause, grain },
-                None => Self::Network(cause),
-            },
-            other => other,
-        }
+    /// The `--min-diameter`, with two decimals, that takes this grain out, if its size is to blame.
+    pub(crate) fn least_diameter(&self) -> Option<f64> {
+        (self.share < SMALL).then(|| (100.0 * MARGIN * self.share).ceil() / 100.0)
     }
 }
 
@@ -75,21 +62,18 @@ impl fmt::Display for FailedGrain {
         write!(
             out,
             "{which} {grain} (SeedId {seed}), {share:.2e} mean equivalent diameters wide ({diameter:.3e})"
-        )?;
-        if *share < SMALL {
-            write!(out, "; merge such cells with --min-diameter {}", self.limit())?;
-        }
-        Ok(())
+        )
     }
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
-    use polycrystal::GrainId;
+    use polycrystal::{Fault, Faults, GrainId};
 
     use super::*;
-    use crate::{Config, SeedSource, tessellate};
+    use crate::failure::Growth;
+    use crate::{Config, Error, Failure, SeedSource, tessellate};
 
     /// Slabs across x, of which the fourth is thin.
     const SLABS: &str =
@@ -103,12 +87,8 @@ mod tests {
         std::fs::write(&path, SLABS).unwrap();
         let config = Config { seeds: SeedSource::File(path), ..Config::default() };
         let cells = tessellate(&config, &|_, _, _| ()).unwrap();
-        let missed = |grain| NetworkError::VolumeNotRestored {
-            grain: GrainId(grain),
-            diameter: 0.1,
-            relative_error: 1e-3,
-        };
-        let said = |cause: NetworkError| Error::from(cause).with_grain(&cells).to_string();
+        let missed = |grain| NetworkError::VolumeNotRestored { grain: GrainId(grain), relative_error: 1e-3 };
+        let said = |cause: NetworkError| Error::from(Failure::new(cause, Vec::new(), &cells)).to_string();
         // A slab of volume 5e-4.
         let thin = "grain 3 (SeedId 3), 1.66e-1 mean equivalent diameters wide (9.847e-2)";
         let remedy = "; merge such cells with --min-diameter 0.2";
@@ -116,7 +96,17 @@ mod tests {
         let folded = said(NetworkError::Folded { count: 2 });
         assert!(folded.ends_with(&format!("; the smallest is {thin}{remedy}")), "{folded}");
         assert!(!said(missed(0)).contains("--min-diameter"), "{}", said(missed(0)));
+        // The diameter was told twice where a volume is missed, and not at all in other errors.
+        let off = Fault::WrongVolume { grain: GrainId(3), diameter: 0.1, relative_error: 1e-3 };
+        for error in [missed(3), NetworkError::Invalid(Faults(vec![off]))] {
+            let said = said(error);
+            assert_eq!(said.matches("equivalent diameter").count(), 1, "{said}");
+        }
         assert!(!said(NetworkError::BadEdgeLength(0.0)).contains("grain"));
+        // Where grains grow freely the message once named no seed.
+        let vanished = NetworkError::GrainVanished { grain: GrainId(3), time: 0.01 };
+        let grows = Failure::new(vanished, Vec::new(), &cells).with_growth(Growth::Until(0.005));
+        assert!(grows.to_string().ends_with(&format!("; {thin}; --relax 0.005 works")), "{grows}");
         let merged = tessellate(&Config { min_diameter: 0.2, ..config }, &|_, _, _| ()).unwrap();
         assert_eq!(merged.merged_seeds, [3]);
         assert_eq!(merged.seed_ids, [0, 1, 2, 4, 5, 6]);

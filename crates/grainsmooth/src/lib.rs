@@ -23,6 +23,7 @@ mod equivalent_diameters;
 mod error;
 mod estimate;
 mod failed_grain;
+mod failure;
 mod formats;
 mod labelled_file;
 mod lattice;
@@ -62,6 +63,7 @@ pub use equivalent_diameters::EquivalentDiameters;
 pub use error::Error;
 pub use estimate::Estimate;
 pub use failed_grain::FailedGrain;
+pub use failure::{Failure, Growth};
 pub use formats::{LabelGrid, Names, StlEncoding};
 pub use formats::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
@@ -79,7 +81,9 @@ pub use pipeline::{
 };
 pub use poisson_disc::poisson_disc_seeds;
 pub use report::Html;
-pub use seed_file::{FileDomain, FileSeed, SeedPlace, SeedProblem, read_file_domain, read_seed_file};
+pub use seed_file::{
+    FileDomain, FileSeed, SeedPlace, SeedProblem, read_file_domain, read_seed_file,
+};
 pub use seeding::random_seeds;
 pub use series::{Series, SeriesOutput};
 pub use staged_files::{StagedFiles, write_together};

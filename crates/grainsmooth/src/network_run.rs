@@ -41,6 +41,11 @@ pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     files.check_space(&config)?;
     let result = pool.install(|| compute(&config, &files, &line));
     line.clear();
+    if let Err(Error::Failed(failure)) = &result
+        && !arguments.run.quiet
+    {
+        failure.attempts.iter().for_each(|attempt| say(&format!("given up    {attempt}")));
+    }
     let summary = result?;
     if !arguments.run.quiet {
         let names: Vec<String> = files.paths().iter().map(|path| path.display().to_string()).collect();

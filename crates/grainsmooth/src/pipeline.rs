@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use polycrystal::{
-    AngleStatistics, Attempt, Balance, Boundary, Certificate, Equilibrium, HerringResidual, MeshSize,
+    AngleStatistics, Attempt, Balance, Boundary, BoxCut, Certificate, Equilibrium, HerringResidual, MeshSize,
     Network, NetworkError,
 };
 use polycrystal::{Measures, RegularCells, Side, measure_network};
@@ -17,9 +17,10 @@ use polycrystal::{
 };
 use voronoi::{Collapsed, Dimension, Tessellation};
 
+use crate::failure::Growth;
 use crate::formats::LABEL_BYTES;
 use crate::memory::{ControlMesh, LevelSize, available_memory, check_levels};
-use crate::{Config, Error, PeriodicCut, SeedSource, Tessellated, Topology, tessellate};
+use crate::{Config, Error, Failure, PeriodicCut, SeedSource, Tessellated, Topology, tessellate};
 
 /// A part of a run, in the order in which they follow each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -143,12 +144,22 @@ impl Polycrystal {
         }
         let volumes = self.network.cell_volumes().to_vec();
         let start = Instant::now();
-        let cut = self.network.cut_at_box(&self.points, self.relaxed.is_flat).map_err(Error::from);
-        let (network, points) = cut.map_err(|error| error.with_grain(&self.cells))?;
-        (self.network, self.points) = (network.with_cell_volumes(volumes), points);
+        match self.network.cut_at_box(&self.points, self.relaxed.is_flat) {
+            Ok(BoxCut { network, points, attempts }) => {
+                (self.network, self.points) = (network.with_cell_volumes(volumes), points);
+                self.attempts.extend(attempts);
+            }
+            Err(error) => return Err(Failure::new(error, self.attempts, &self.cells).into()),
+        }
         self.add_time(Stage::Subdivision, start.elapsed());
         let start = Instant::now();
-        self.validation = validate(&self.network, &self.points).map_err(NetworkError::Invalid)?;
+        match validate(&self.network, &self.points) {
+            Ok(validation) => self.validation = validation,
+            Err(faults) => {
+                let error = NetworkError::Invalid(faults);
+                return Err(Failure::new(error, self.attempts, &self.cells).into());
+            }
+        }
         self.add_time(Stage::Validation, start.elapsed());
         Ok(self)
     }
@@ -237,15 +248,16 @@ pub fn smooth_watched(
         match smooth_regularized(config, tessellation, regularization, &mut attempts, &mut clock, &mut watch)
         {
             Err(error) if error.is_tangle() && tries.len() > 0 => {
-                attempts.push(Attempt::new(regularization.in_words(), &error));
+                error.give_up(regularization.in_words(), &mut attempts);
             }
-            Err(cause) if config.volumes == Volumes::Free && cause.is_of_time() => {
-                return Err(Error::GrowsTooLong {
-                    works: time_that_works(config, tessellation, &cause),
-                    cause,
-                });
+            Err(error) => {
+                let failure = Failure::new(error, attempts, &cells);
+                if config.volumes == Volumes::Kept || !failure.cause.is_of_time() {
+                    return Err(failure.into());
+                }
+                let works = time_that_works(config, tessellation, &failure.cause);
+                return Err(failure.with_growth(works.map_or(Growth::Never, Growth::Until)).into());
             }
-            Err(error) => return Err(Error::from(error).with_grain(&cells)),
             Ok(smoothed) => break (regularization, smoothed),
         }
     };
@@ -395,7 +407,7 @@ fn smooth_regularized(
                 }
                 // Equilibrium is then that of the topology that regularisation leaves.
                 Err(error) if error.is_tangle() => {
-                    attempts.push(Attempt::new("letting neighbours switch", &error));
+                    error.give_up("letting neighbours switch", attempts);
                 }
                 Err(error) => return Err(error),
             }

@@ -90,7 +90,7 @@ impl fmt::Display for Summary<'_> {
                 "topology    kept: angles are off 120 degrees where grains would switch neighbours"
             )?;
         }
-        if polycrystal.relaxed.given_up.is_some() {
+        if !polycrystal.relaxed.given_up.is_empty() {
             writeln!(
                 out,
                 "relaxation  of the points of level {} and coarser ones only",

@@ -199,7 +199,7 @@ fn relax(
         equilibrate_tuned(cells, &recipe, &tuning, |_| ()).map_err(|error| error.to_string()).and_then(
             |Equilibrium { network, relaxed, attempts, .. }| {
                 let points = relaxed.finest_points(&network);
-                check_nothing_given_up(attempts.first().or(relaxed.given_up.as_ref()))?;
+                check_nothing_given_up(attempts.first().or(relaxed.given_up.first()))?;
                 Ok((network, points))
             },
         )
@@ -232,7 +232,7 @@ fn relax_for_a_time(
     let network = network.with_cell_volumes(cells.cell_measures().iter().map(|cell| cell.volume).collect());
     let relaxed =
         relax_tuned(&network, &flat, &Relaxation::default(), Volumes::Kept, tuning, |_| ()).map_err(text)?;
-    check_nothing_given_up(relaxed.given_up.as_ref().or(regular.given_up.as_ref()))?;
+    check_nothing_given_up(relaxed.given_up.first().or(regular.given_up.first()))?;
     let points = relaxed.finest_points(&network);
     Ok((network, points))
 }

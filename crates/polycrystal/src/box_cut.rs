@@ -20,7 +20,7 @@ use glam::DVec3;
 use voronoi::{Dimension, Domain, Shift};
 
 use crate::face_mesh::id;
-use crate::{BoundaryId, Elements, GrainId, Junctions, Network, NetworkError, Side, Surface};
+use crate::{Attempt, BoundaryId, Elements, GrainId, Junctions, Network, NetworkError, Side, Surface};
 use caps::caps;
 use pieces::{Pieces, Torus};
 use shape::widen;
@@ -63,8 +63,17 @@ enum Shaping {
 }
 
 impl Shaping {
-    /// What to try where points come in each other's way.
-    const ALL: [Self; 4] = [Self::Full, Self::Near, Self::Thin, Self::None];
+    /// What to try, one after the other; where points come in each other's way, none may move at last.
+    const SOME: [Self; 3] = [Self::Full, Self::Near, Self::Thin];
+
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::Full => "the cut at the box, points of thin triangles moved before and after it",
+            Self::Near => "the cut at the box, points near its planes moved before it",
+            Self::Thin => "the cut at the box, points of thin triangles moved after it",
+            Self::None => "the cut at the box, no points moved",
+        }
+    }
 
     fn moves_near(self) -> bool {
         matches!(self, Self::Full | Self::Near)
@@ -73,6 +82,17 @@ impl Shaping {
     fn moves_thin(self) -> bool {
         matches!(self, Self::Full | Self::Thin)
     }
+}
+
+/// A periodic network in its box alone.
+#[derive(Debug, Clone)]
+pub struct BoxCut {
+    /// The network, of a single level.
+    pub network: Network,
+    /// Its points.
+    pub points: Vec<DVec3>,
+    /// Ways to better triangles that were tried before, and tangled.
+    pub attempts: Vec<Attempt>,
 }
 
 impl Network {
@@ -90,18 +110,21 @@ impl Network {
     ///
     /// # Panics
     /// When there is not one point per vertex of the finest level.
-    pub fn cut_at_box(&self, points: &[DVec3], is_flat: bool) -> Result<(Self, Vec<DVec3>), NetworkError> {
-        if self.domain().dimension() == Dimension::Two {
-            return self.cut(points, Shaping::None, is_flat);
-        }
-        let mut cut = self.cut(points, Shaping::ALL[0], is_flat);
-        for shaping in &Shaping::ALL[1..] {
-            if cut.is_ok() {
-                break;
+    pub fn cut_at_box(&self, points: &[DVec3], is_flat: bool) -> Result<BoxCut, NetworkError> {
+        let mut attempts = Vec::new();
+        if self.domain().dimension() == Dimension::Three {
+            for shaping in Shaping::SOME {
+                match self.cut(points, shaping, is_flat) {
+                    Ok((network, points)) => return Ok(BoxCut { network, points, attempts }),
+                    Err(error) if error.is_tangle() => error.give_up(shaping.in_words(), &mut attempts),
+                    Err(error) => return Err(error.after(attempts)),
+                }
             }
-            cut = self.cut(points, *shaping, is_flat);
         }
-        cut
+        match self.cut(points, Shaping::None, is_flat) {
+            Ok((network, points)) => Ok(BoxCut { network, points, attempts }),
+            Err(error) => Err(error.after(attempts)),
+        }
     }
 
     fn cut(

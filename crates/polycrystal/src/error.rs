@@ -1,7 +1,5 @@
 use std::fmt;
 
-use voronoi::Dimension;
-
 use crate::{Faults, GrainId, Side};
 
 /// A way to a result that was tried before the one that led there, and what it said: geometry that tangles one way need not another.
@@ -13,13 +11,6 @@ pub struct Attempt {
     pub said: String,
 }
 
-impl Attempt {
-    /// What was tried, and its error.
-    pub fn new(tried: impl Into<String>, error: &NetworkError) -> Self {
-        Self { tried: tried.into(), said: error.to_string() }
-    }
-}
-
 impl fmt::Display for Attempt {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{}: {}", self.tried, self.said)
@@ -27,21 +18,55 @@ impl fmt::Display for Attempt {
 }
 
 impl NetworkError {
+    /// Notes this error as that of a way that was given up, after those that led to it.
+    pub fn give_up(self, tried: impl Into<String>, attempts: &mut Vec<Attempt>) {
+        let (before, last) = self.into_attempts();
+        attempts.extend(before);
+        attempts.push(Attempt { tried: tried.into(), said: last.to_string() });
+    }
+
+    /// The error after other ways that were given up, which it then tells too.
+    #[must_use]
+    pub fn after(self, mut attempts: Vec<Attempt>) -> Self {
+        let (before, last) = self.into_attempts();
+        attempts.extend(before);
+        if attempts.is_empty() { last } else { Self::GivenUp { attempts, last: Box::new(last) } }
+    }
+
+    /// What was tried before, and the error that the last way ended with.
+    pub fn into_attempts(self) -> (Vec<Attempt>, Self) {
+        match self {
+            Self::GivenUp { attempts, last } => (attempts, *last),
+            error => (Vec::new(), error),
+        }
+    }
+
+    /// The error that the last way ended with.
+    fn last(&self) -> &Self {
+        match self {
+            Self::GivenUp { last, .. } => last,
+            error => error,
+        }
+    }
+
     /// Whether geometry tangled on this way, so that another way may lead to a network: no other error is worth a second attempt.
     pub fn is_tangle(&self) -> bool {
         matches!(
-            self,
+            self.last(),
             Self::Invalid(_)
                 | Self::Folded { .. }
                 | Self::VolumeNotRestored { .. }
                 | Self::BoundaryTooSmall { .. }
+                | Self::TouchesItself { .. }
+                | Self::CutCrosses { .. }
+                | Self::CutInvalid(_)
         )
     }
 
     /// Whether a shorter relaxation may be without this error.
     pub fn is_of_time(&self) -> bool {
         matches!(
-            self,
+            self.last(),
             Self::Invalid(_)
                 | Self::Folded { .. }
                 | Self::VolumeNotRestored { .. }
@@ -140,15 +165,12 @@ pub enum NetworkError {
     },
     /// The grains' volumes could not be restored.
     #[error(
-        "grain {} (equivalent diameter {diameter:.3e}) misses its volume by {relative_error:.1e} of it after relaxation; relax for \
-         a shorter time, or for none",
+        "grain {} misses its volume by {relative_error:.1e} of it after relaxation; relax for a shorter time, or for none",
         grain.0
     )]
     VolumeNotRestored {
         /// The grain that is farthest from its volume.
         grain: GrainId,
-        /// The equivalent diameter that it should have.
-        diameter: f64,
         /// Difference to the volume of its cell, as a share of that.
         relative_error: f64,
     },
@@ -175,6 +197,14 @@ pub enum NetworkError {
     /// The finished network does not keep its contract.
     #[error("the network is invalid: {0}; relax for a shorter time, or move seeds or points a little")]
     Invalid(Faults),
+    /// Every way that was tried tangled.
+    #[error("{last}")]
+    GivenUp {
+        /// What the ways before the last one said.
+        attempts: Vec<Attempt>,
+        /// What the last one said.
+        last: Box<NetworkError>,
+    },
 }
 
 impl NetworkError {
@@ -192,6 +222,7 @@ impl NetworkError {
                     .find_map(|fault| Some(fault.grains()).filter(|all| !all.is_empty()))
                     .unwrap_or_default(),
             ),
+            Self::GivenUp { last, .. } => last.grains(),
             Self::Folded { .. } | Self::CutCrosses { .. } => Some(Vec::new()),
             Self::TooLarge { .. }
             | Self::Mesh(_)
@@ -204,14 +235,33 @@ impl NetworkError {
         }
     }
 
-    /// A grain of the plane or of space misses its volume by a share of it; by all of it where it has none that is a number.
-    pub(crate) fn volume_not_restored(
-        dimension: Dimension,
-        grain: GrainId,
-        volume: f64,
-        relative_error: f64,
-    ) -> Self {
+    /// A grain misses its volume by a share of it; by all of it where it has none that is a number.
+    pub(crate) fn volume_not_restored(grain: GrainId, relative_error: f64) -> Self {
         let relative_error = if relative_error.is_nan() { 1.0 } else { relative_error };
-        Self::VolumeNotRestored { grain, diameter: dimension.ball_diameter(volume), relative_error }
+        Self::VolumeNotRestored { grain, relative_error }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What ways before the last said was dropped once.
+    #[test]
+    fn the_last_error_is_shown_and_all_are_kept() {
+        let [first, second] = [2, 3].map(|count| NetworkError::Folded { count });
+        let mut attempts = Vec::new();
+        first.give_up("a", &mut attempts);
+        let inner = second.after(attempts);
+        assert!(inner.is_tangle() && inner.to_string().starts_with("3 edges"), "{inner}");
+        let mut attempts = Vec::new();
+        inner.give_up("b", &mut attempts);
+        let last = NetworkError::VolumeNotRestored { grain: GrainId(1), relative_error: 0.5 };
+        let all = last.after(attempts);
+        assert_eq!(all.grains(), Some(vec![GrainId(1)]));
+        let (attempts, last) = all.into_attempts();
+        assert!(matches!(last, NetworkError::VolumeNotRestored { .. }), "{last}");
+        let said = attempts.iter().map(|attempt| attempt.to_string()[..10].to_owned());
+        assert_eq!(said.collect::<Vec<_>>(), ["a: 2 edges", "b: 3 edges"]);
     }
 }

@@ -146,9 +146,7 @@ pub enum Fault {
         grain: GrainId,
     },
     /// A grain does not have the volume that it should.
-    #[error(
-        "the volume of grain {} (equivalent diameter {diameter:.3e}) is off by {relative_error:.1e} of what it should be", grain.0
-    )]
+    #[error("the volume of grain {} is off by {relative_error:.1e} of what it should be", grain.0)]
     WrongVolume {
         /// The grain.
         grain: GrainId,

@@ -55,6 +55,7 @@ mod wall_set;
 
 pub use angles::{AngleStatistics, WeightedAngle, angles_between_boundaries, dihedral_angles};
 pub use boundary::{Boundary, BoundaryId, GrainId, Side, Twin};
+pub use box_cut::BoxCut;
 pub use certificate::{Certificate, Claims, Faults, certify};
 pub use control_mesh::JunctionCounts;
 pub use error::{Attempt, NetworkError};

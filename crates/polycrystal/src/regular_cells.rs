@@ -31,7 +31,7 @@ pub fn regular_cells_tuned(
 ) -> Result<RegularCells, NetworkError> {
     let (regular, collapsed) = cells.regularized(length);
     if length == 0.0 || tuning.forecast_steps == 0 || cells.domain().dimension() == Dimension::Two {
-        return Ok(RegularCells { cells: regular, collapsed, given_up: None });
+        return Ok(RegularCells { cells: regular, collapsed, given_up: Vec::new() });
     }
     let volumes = cells.cell_measures().iter().map(|cell| cell.volume).collect();
     let relaxed = Network::with_face_mesh(&regular, FaceMesh::SparseFan, Junctions::Crease, 0)
@@ -39,7 +39,8 @@ pub fn regular_cells_tuned(
     let points = match relaxed {
         Ok(points) => points,
         Err(error) if error.is_tangle() => {
-            let given_up = Some(Attempt::new("foreseeing which edges become short", &error));
+            let mut given_up = Vec::new();
+            error.give_up("foreseeing which edges become short", &mut given_up);
             return Ok(RegularCells { cells: regular, collapsed, given_up });
         }
         Err(error) => return Err(error),
@@ -48,7 +49,7 @@ pub fn regular_cells_tuned(
     let length = tuning.forecast_factor * length;
     let (cells, more) = regular.regularized_for(length, &points[..regular.vertices().len()]);
     let collapsed = Collapsed { edges: collapsed.edges + more.edges, faces: collapsed.faces + more.faces };
-    Ok(RegularCells { cells, collapsed, given_up: None })
+    Ok(RegularCells { cells, collapsed, given_up: Vec::new() })
 }
 
 /// Cells without short edges.
@@ -59,5 +60,5 @@ pub struct RegularCells {
     /// What was taken out of them.
     pub collapsed: Collapsed,
     /// Why edges that become short were not taken out, where they should have been.
-    pub given_up: Option<Attempt>,
+    pub given_up: Vec<Attempt>,
 }

@@ -123,7 +123,7 @@ pub struct Relaxed {
     /// Time passed, as of [`RelaxationStep::time`].
     pub time: f64,
     /// Why the points of the level after that one did not move too, where they should have: then these are the last that were good.
-    pub given_up: Option<Attempt>,
+    pub given_up: Vec<Attempt>,
     /// Whether no point moved: boundaries are as flat as the cells, and finer points lie midway between coarser ones.
     pub is_flat: bool,
 }
@@ -220,7 +220,7 @@ fn relax_levels(
             flow(0).restore_lost_volumes(&mut points)?;
         }
         let is_flat = points == control_points;
-        return Ok(Relaxed { level: 0, points, steps: 0, time: 0.0, given_up: None, is_flat });
+        return Ok(Relaxed { level: 0, points, steps: 0, time: 0.0, given_up: Vec::new(), is_flat });
     }
     let last = (network.levels().len() - 1).min(finest);
     let whole_time = time * network.mean_grain_size().powi(2);
@@ -268,11 +268,22 @@ fn relax_levels(
             Err(error) => {
                 // Finer points fold where coarser ones do not: these will have to do.
                 let end = Stage { step_time: 0.0, steps: 0, least_gain: 0.0, end: End::Finished };
-                points = flow(level - 1).run(&points, &end, &mut |_, _| ())?;
+                let mut attempts = Vec::new();
+                error.give_up(format!("moving the points of level {level}"), &mut attempts);
+                let run = flow(level - 1).run(&points, &end, &mut |_, _| ());
+                points = match run {
+                    Ok(points) => points,
+                    Err(error) => return Err(error.after(attempts)),
+                };
                 let (level, steps) = (level - 1, done_before - count);
-                let given_up =
-                    Some(Attempt::new(format!("moving the points of level {}", level + 1), &error));
-                return Ok(Relaxed { level, points, steps, time: before, given_up, is_flat: false });
+                return Ok(Relaxed {
+                    level,
+                    points,
+                    steps,
+                    time: before,
+                    given_up: attempts,
+                    is_flat: false,
+                });
             }
         }
     }
@@ -280,7 +291,7 @@ fn relax_levels(
         let volumes = network.grain_volumes(&network.levels()[last], &points);
         check_grains_are_left(network, &volumes, whole_time)?;
     }
-    Ok(Relaxed { level: last, points, steps, time: passed, given_up: None, is_flat: false })
+    Ok(Relaxed { level: last, points, steps, time: passed, given_up: Vec::new(), is_flat: false })
 }
 
 /// Checks that no grain has shrunk to nothing by a time: it would have to vanish, and its neighbours to meet, for others to grow on as

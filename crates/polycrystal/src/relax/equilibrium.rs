@@ -146,12 +146,15 @@ fn equilibrate_by_mean_tension(
     // Each gets through places where the other does not.
     let equilibrium = match balanced(tessellation, recipe, tuning, Remedy::Join, &mut attempts, watch) {
         Err(error) if error.is_tangle() => {
-            attempts.push(Attempt::new("letting neighbours switch, what folds moving as one", &error));
+            error.give_up("letting neighbours switch, what folds moving as one", &mut attempts);
             balanced(tessellation, recipe, tuning, Remedy::Brake, &mut attempts, watch)
         }
         result => result,
     };
-    Ok(Equilibrium { attempts, ..equilibrium? })
+    match equilibrium {
+        Ok(equilibrium) => Ok(Equilibrium { attempts, ..equilibrium }),
+        Err(error) => Err(error.after(attempts)),
+    }
 }
 
 /// As [`equilibrate`], with one remedy for what folds while the topology changes.
@@ -186,7 +189,7 @@ fn balanced(
     ];
     for (tried, merged_length, rigid_length) in ways {
         match smooth(merged_length, rigid_length) {
-            Err(error) if error.is_tangle() => attempts.push(Attempt::new(tried, &error)),
+            Err(error) if error.is_tangle() => error.give_up(tried, attempts),
             result => return result,
         }
     }

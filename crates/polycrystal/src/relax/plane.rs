@@ -180,7 +180,7 @@ impl SmoothEdges {
             show(steps, &descent.state);
         }
         let points = self.points(&foam, &descent.state);
-        Ok(Relaxed { level, points, steps, time: steps as f64, given_up: None, is_flat: false })
+        Ok(Relaxed { level, points, steps, time: steps as f64, given_up: Vec::new(), is_flat: false })
     }
 
     fn points(&self, foam: &Foam<'_>, state: &[f64]) -> Vec<DVec3> {

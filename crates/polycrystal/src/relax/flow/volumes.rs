@@ -40,15 +40,19 @@ impl Flow<'_> {
         let mut short = free.clone();
         short.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
         let start = points.to_vec();
-        self.restore_with(&self.clusters, points)
-            .or_else(|_| {
-                points.copy_from_slice(&start);
-                self.restore_with(&short, points)
-            })
-            .or_else(|_| {
-                points.copy_from_slice(&start);
-                self.restore_with(&free, points)
-            })
+        let mut attempts = Vec::new();
+        let ways = [
+            ("restoring volumes, what folded moving as one", &self.clusters),
+            ("restoring volumes, short edges rigid", &short),
+        ];
+        for (tried, clusters) in ways {
+            match self.restore_with(clusters, points) {
+                Err(error) if error.is_tangle() => error.give_up(tried, &mut attempts),
+                result => return result,
+            }
+            points.copy_from_slice(&start);
+        }
+        self.restore_with(&free, points).map_err(|error| error.after(attempts))
     }
 
     /// As [`Self::restore_volumes`] where a volume differs by more than rounding; else no point moves.
@@ -93,9 +97,7 @@ impl Flow<'_> {
             }
             // A correction that makes things worse (NaN included) would only be followed by others.
             if step == VOLUME_STEPS || relative_error.is_nan() || relative_error >= 1.0 {
-                let dimension = self.network.domain().dimension();
-                let volume = self.network.cell_volumes()[grain.index()];
-                return Err(NetworkError::volume_not_restored(dimension, grain, volume, relative_error));
+                return Err(NetworkError::volume_not_restored(grain, relative_error));
             }
             let wanted: Vec<f64> = missing.iter().map(|lack| gain * lack).collect();
             let moves = system.volume_correction(&wanted);

@@ -157,13 +157,7 @@ impl Descent {
             }
         }
         if relative_error > AREA_LIMIT {
-            let area = foam.areas[grain.index()];
-            return Err(NetworkError::volume_not_restored(
-                voronoi::Dimension::Two,
-                grain,
-                area,
-                relative_error,
-            ));
+            return Err(NetworkError::volume_not_restored(grain, relative_error));
         }
         // What is too short to move at all is at rest, or on its way to nothing.
         Ok(Step { is_at_rest: vanishing.is_empty(), vanishing })
