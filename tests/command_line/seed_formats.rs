@@ -2,6 +2,48 @@
 
 use crate::workplace::{FAILED, USAGE, Workplace};
 
+/// A column `id` of the user's own was once passed over.
+#[test]
+fn ids_of_a_seed_file_become_seed_ids() {
+    let workplace = Workplace::new();
+    workplace.put("seeds.csv", "id,x,y,z\n40,0.2,0.2,0.2\n7,0.8,0.3,0.4\n12,0.3,0.8,0.7\n");
+    workplace.run("--seeds-file seeds.csv -n 0 --relax 0 --cells-csv cells.csv -o a.tess");
+    let numbers = |table: Vec<u8>| {
+        let table = String::from_utf8(table).unwrap();
+        let last = table.lines().map(|line| line.rsplit(',').next().unwrap().to_owned());
+        last.collect::<Vec<_>>()
+    };
+    assert_eq!(numbers(workplace.bytes("cells.csv")), ["SeedId", "40", "7", "12"]);
+    // Tables and Neper's files lead back to the same numbers.
+    for file in ["cells.csv", "a.tess"] {
+        workplace.run(&format!("--seeds-file {file} --no-mesh --cells-csv again.csv"));
+        assert_eq!(numbers(workplace.bytes("again.csv")), ["SeedId", "40", "7", "12"], "{file}");
+    }
+    workplace.put("twice.csv", "id,x,y,z\n1,0.2,0.2,0.2\n1,0.8,0.3,0.4\n");
+    workplace.refuses(
+        "--seeds-file twice.csv",
+        FAILED,
+        "twice.csv line 3: id 1 is that of line 2 too; give each seed its own, or rename the column",
+    );
+}
+
+/// Orientations of Neper's files were dropped without a word.
+#[test]
+fn orientations_that_are_passed_over_are_named() {
+    let workplace = Workplace::new();
+    workplace.run("--seeds 3 -n 0 --relax 0 -o a.tess");
+    let tess = String::from_utf8(workplace.bytes("a.tess")).unwrap();
+    let oriented = "  *ori\n   rodrigues:active\n   0.1 0.2 0.3\n   0.2 0.1 0.0\n   0.0 0.0 0.1\n  *seed\n";
+    workplace.put("b.tess", tess.replace("  *seed\n", oriented));
+    let line = "passed over orientations in b.tess";
+    let said = workplace.run("--seeds-file b.tess -n 0 --relax 0 -o a.vtp");
+    assert!(said.lines().any(|other| other == line), "{said}");
+    let said = workplace.run("--seeds-file b.tess --no-mesh --cells-csv a.csv");
+    assert!(said.lines().any(|other| other == line), "{said}");
+    let said = workplace.run("--seeds-file a.tess -n 0 --relax 0 -o a.vtp");
+    assert!(!said.contains("passed over"), "{said}");
+}
+
 #[test]
 fn tess_file_gives_seeds_box_and_periods() {
     let workplace = Workplace::new();

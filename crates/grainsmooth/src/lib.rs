@@ -82,7 +82,7 @@ pub use pipeline::{
 pub use poisson_disc::poisson_disc_seeds;
 pub use report::Html;
 pub use seed_file::{
-    FileDomain, FileSeed, SeedPlace, SeedProblem, read_file_domain, read_seed_file,
+    FileDomain, FileSeed, FileSeeds, SeedPlace, SeedProblem, read_file_domain, read_seed_file,
 };
 pub use seeding::random_seeds;
 pub use series::{Series, SeriesOutput};

@@ -76,7 +76,7 @@ impl Polycrystal {
             OutputFormat::Msh => write_gmsh(&self.surface()?, self, out),
             OutputFormat::Fe => write_evolver(self, out),
             OutputFormat::Tess => {
-                write_tess(&Tess::new(&self.cells), self.cells.renumbered(), out)?;
+                write_tess(&Tess::new(&self.cells), out)?;
                 self.write_settings_behind(out)
             }
             OutputFormat::Vti => self.write_vti(out),

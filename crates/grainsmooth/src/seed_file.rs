@@ -1,5 +1,6 @@
 //! Seeds from files.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::fs;
 use std::io;
@@ -21,8 +22,19 @@ pub struct FileSeed {
     pub position: DVec3,
     /// Power weight, the square of the radius of the seed's sphere; nothing where the file has no radii.
     pub weight: Option<f64>,
+    /// Its number, which `SeedId` is to hold; nothing where the file has none.
+    pub id: Option<u32>,
     /// Where it stands, for what is to be said about the seed later.
     pub place: SeedPlace,
+}
+
+/// The seeds of a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileSeeds {
+    /// One or more, in the order of the file.
+    pub seeds: Vec<FileSeed>,
+    /// What the file also tells of its grains, and has no place here.
+    pub passed_over: Option<&'static str>,
 }
 
 /// Where a seed stands in its file.
@@ -114,6 +126,23 @@ pub enum SeedProblem {
         /// The diameter.
         diameter: f64,
     },
+    /// A number of a seed that `SeedId` cannot hold.
+    #[error("id {value:?} is no whole number from 0 to {}; number the seeds, or rename the column", i32::MAX)]
+    BadId {
+        /// The number, cut short.
+        value: String,
+    },
+    /// Two seeds have the same number.
+    #[error("id {id} is that of {first} too; give each seed its own, or rename the column")]
+    IdTwice {
+        /// The number.
+        id: u32,
+        /// Where the other seed stands.
+        first: SeedPlace,
+    },
+    /// Some seeds have numbers, and this one has none.
+    #[error("no id, and other seeds have one; give each seed its own, or none")]
+    NoId,
     /// A seed of a 2D run has a third coordinate.
     #[error("z is {z} in a 2D run; set it to 0, run in 3D, or name the columns x, y, radius")]
     NotInPlane {
@@ -197,27 +226,29 @@ impl SeedFormat {
 ///
 /// - Any text, `.csv`: one seed a line, `x, y, z`, or `x, y` in 2D. Columns stand between semicolons, commas, blanks or tabs, and
 ///   may be quoted. The first line may name the columns, which then have any order; one of `radius`, `diameter` and `weight`
-///   makes the cells power (Laguerre) cells, and columns of other names are passed over, so a [table of cells](crate::CellTable) is
-///   read. Without names, a fourth column is the radius. Empty lines and lines that begin with `#` are skipped. In 2D
+///   makes the cells power (Laguerre) cells, `SeedId` or else `id` numbers the seeds, and columns of other names are passed over, so a
+///   [table of cells](crate::CellTable) is read. Without names, a fourth column is the radius. Empty lines and lines that begin with `#` are skipped. In 2D
 ///   a third coordinate is taken when it is 0, as programs write it that know three dimensions only.
 /// - `.xyz`: the number of seeds, a remark, then lines of an element (not used), x, y, z and perhaps a radius.
-/// - `.json`: a list of `[x, y, z]` or `[x, y, z, radius]`, or a [table of cells](crate::CellTable), whose seeds and weights
-///   are taken.
+/// - `.json`: a list of `[x, y, z]` or `[x, y, z, radius]`, or a [table of cells](crate::CellTable), whose seeds, weights and numbers
+///   (`SeedId` or else `id`) are taken.
 /// - `.tess`: Neper's seeds and weights (radii), where its cells are those of its seeds to 1e-6 of their volume; what they fill is
-///   told by [`read_file_domain`]. Orientations are passed over.
+///   told by [`read_file_domain`]. The `*id` of a cell is the number of its seed, from 1 there and from 0 here.
+///   [`FileSeeds::passed_over`] tells whether it has orientations, which are not read.
 ///
 /// # Errors
 /// [`Error::SeedFileUnreadable`] when the file cannot be read; [`Error::NoSeedsInFile`] when it holds none;
 /// [`Error::BadSeed`] at the first place that is not as above or holds a number that is not finite.
-pub fn read_seed_file(path: &Path, dimension: Dimension) -> Result<Vec<FileSeed>, Error> {
+pub fn read_seed_file(path: &Path, dimension: Dimension) -> Result<FileSeeds, Error> {
     let content = content(path)?;
+    let alone = |seeds| FileSeeds { seeds, passed_over: None };
     let seeds = match SeedFormat::of_path(path) {
-        SeedFormat::Csv => lines::csv(&content, dimension),
-        SeedFormat::Xyz => lines::xyz(&content, dimension),
-        SeedFormat::Json => json::seeds(&content, dimension),
+        SeedFormat::Csv => lines::csv(&content, dimension).map(alone),
+        SeedFormat::Xyz => lines::xyz(&content, dimension).map(alone),
+        SeedFormat::Json => json::seeds(&content, dimension).map(alone),
         SeedFormat::Tess => tess::seeds(&content),
     };
-    let mut seeds = seeds.map_err(|problem| located(path, problem))?;
+    let FileSeeds { mut seeds, passed_over } = seeds.map_err(|problem| located(path, problem))?;
     if seeds.is_empty() {
         return Err(Error::NoSeedsInFile { path: path.to_owned() });
     }
@@ -225,7 +256,31 @@ pub fn read_seed_file(path: &Path, dimension: Dimension) -> Result<Vec<FileSeed>
     if seeds.iter().all(|seed| seed.weight == Some(0.0)) {
         seeds.iter_mut().for_each(|seed| seed.weight = None);
     }
-    Ok(seeds)
+    check_ids(&seeds).map_err(|problem| located(path, problem))?;
+    Ok(FileSeeds { seeds, passed_over })
+}
+
+/// Checks that each seed has a number of its own, or none has one.
+fn check_ids(seeds: &[FileSeed]) -> Result<(), (SeedPlace, SeedProblem)> {
+    let mut places = BTreeMap::new();
+    for seed in seeds {
+        if let Some(id) = seed.id
+            && let Some(first) = places.insert(id, seed.place)
+        {
+            return Err((seed.place, SeedProblem::IdTwice { id, first }));
+        }
+    }
+    match seeds.iter().find(|seed| seed.id.is_none()) {
+        Some(seed) if !places.is_empty() => Err((seed.place, SeedProblem::NoId)),
+        _ => Ok(()),
+    }
+}
+
+/// A number of a seed, perhaps written as 3.0, from its text.
+fn id(text: &str) -> Result<u32, SeedProblem> {
+    let whole = text.strip_suffix(".0").unwrap_or(text).parse::<u32>().ok();
+    let held = whole.filter(|id| i32::try_from(*id).is_ok());
+    held.ok_or_else(|| SeedProblem::BadId { value: shortened(text) })
 }
 
 /// What the seeds of a file fill.

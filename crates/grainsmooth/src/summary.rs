@@ -6,7 +6,9 @@ use std::time::Duration;
 use polycrystal::{AngleStatistics, Balance, Boundary, HerringResidual, Reconnections, Relaxation};
 use voronoi::{Collapsed, Dimension};
 
-use crate::{Config, EquivalentDiameters, Polycrystal, Regularization, Stage, Tessellated, TriangleAngles};
+use crate::{
+    Config, EquivalentDiameters, Polycrystal, Regularization, SeedSource, Stage, Tessellated, TriangleAngles,
+};
 
 /// A polycrystal in a few lines of text: counts, angles, volumes, validation, times.
 pub struct Summary<'a>(pub &'a Polycrystal);
@@ -138,6 +140,9 @@ fn write_seeds(out: &mut fmt::Formatter<'_>, config: &Config, cells: &Tessellate
     let seeds = tessellation.cell_count() + cells.dropped_seeds.len() + cells.merged_seeds.len();
     if let Some(lattice) = config.lattice_report(tessellation.domain(), seeds) {
         writeln!(out, "lattice     {lattice}")?;
+    }
+    if let (Some(passed_over), SeedSource::File(path)) = (cells.passed_over, &config.seeds) {
+        writeln!(out, "passed over {passed_over} in {}", path.display())?;
     }
     if !cells.dropped_seeds.is_empty() {
         writeln!(out, "dropped     {} that others outweigh", Seeds(&cells.dropped_seeds))?;

@@ -8,8 +8,8 @@ use voronoi::{CellId, Domain, Side, Tessellation, VoronoiError};
 use crate::memory::{available_memory, check_cells};
 use crate::pipeline::{Clock, seed_count};
 use crate::{
-    Config, EquivalentDiameters, Error, FileSeed, Progress, SeedPlace, SeedSource, Stage, poisson_disc_seeds,
-    random_seeds, read_seed_file,
+    Config, EquivalentDiameters, Error, FileSeed, FileSeeds, Progress, SeedPlace, SeedSource, Stage,
+    poisson_disc_seeds, random_seeds, read_seed_file,
 };
 
 /// The cells of a config's seeds.
@@ -19,22 +19,22 @@ pub struct Tessellated {
     pub tessellation: Tessellation,
     /// Power weight of each seed: 0 where there are no radii.
     pub weights: Vec<f64>,
-    /// The number of each cell's seed, in the order in which all were given, from 0: what `SeedId` holds. It is the cell's own
-    /// unless seeds were dropped or merged.
+    /// The number of each cell's seed, as its file gives it, else in the order in which all were given, from 0: what `SeedId` holds.
     pub seed_ids: Vec<u32>,
     /// The numbers of seeds that are left out because their neighbours outweigh them.
     pub dropped_seeds: Vec<u32>,
     /// The numbers of seeds that are left out because their cells were below [`Config::min_diameter`].
     pub merged_seeds: Vec<u32>,
+    /// What the file of the seeds also tells of grains, and has no place here.
+    pub passed_over: Option<&'static str>,
     /// Time that each stage took.
     pub times: Vec<(Stage, Duration)>,
 }
 
 impl Tessellated {
-    /// The numbers of the cells' seeds, for formats that tell them only where they are not those of the cells, as seeds were left
-    /// out; else nothing.
+    /// The numbers of the cells' seeds, for formats that tell them only where they are not those of the cells; else nothing.
     pub(crate) fn renumbered(&self) -> &[u32] {
-        let is_renumbered = !self.dropped_seeds.is_empty() || !self.merged_seeds.is_empty();
+        let is_renumbered = (0u32..).zip(&self.seed_ids).any(|(cell, seed)| cell != *seed);
         if is_renumbered { &self.seed_ids } else { &[] }
     }
 }
@@ -46,7 +46,8 @@ impl Tessellated {
 pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Error> {
     let mut clock = Clock { progress, times: Vec::new() };
     let domain = config.domain()?;
-    let mut seeds = NumberedSeeds::new(clock.time(Stage::Seeds, || seeds(config, &domain))?);
+    let FileSeeds { seeds, passed_over } = clock.time(Stage::Seeds, || seeds(config, &domain))?;
+    let mut seeds = NumberedSeeds::new(seeds);
     let (mut dropped_seeds, mut merged_seeds) = (Vec::new(), Vec::new());
     let (tessellation, weights) = clock.time(Stage::Cells, || {
         let mut all = cells_of(config, &domain, &seeds.seeds)?;
@@ -76,7 +77,8 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
         Ok::<_, Error>(all)
     })?;
     let times = clock.times;
-    Ok(Tessellated { tessellation, weights, seed_ids: seeds.ids, dropped_seeds, merged_seeds, times })
+    let seed_ids = seeds.ids;
+    Ok(Tessellated { tessellation, weights, seed_ids, dropped_seeds, merged_seeds, passed_over, times })
 }
 
 /// Seeds with the numbers that they had among all.
@@ -87,7 +89,7 @@ struct NumberedSeeds {
 
 impl NumberedSeeds {
     fn new(seeds: Vec<FileSeed>) -> Self {
-        Self { ids: (0u32..).take(seeds.len()).collect(), seeds }
+        Self { ids: (0u32..).zip(&seeds).map(|(number, seed)| seed.id.unwrap_or(number)).collect(), seeds }
     }
 
     /// Takes the seeds of some cells out, and returns their numbers.
@@ -139,7 +141,7 @@ fn cells_of(config: &Config, domain: &Domain, seeds: &[FileSeed]) -> Result<(Tes
     Ok((tessellation.map_err(|error| located(error, config, seeds))?, weights))
 }
 
-fn seeds(config: &Config, domain: &Domain) -> Result<Vec<FileSeed>, Error> {
+fn seeds(config: &Config, domain: &Domain) -> Result<FileSeeds, Error> {
     if let Some(count) = seed_count(config) {
         check_cells(count, available_memory())?;
     }
@@ -150,7 +152,8 @@ fn seeds(config: &Config, domain: &Domain) -> Result<Vec<FileSeed>, Error> {
         SeedSource::Lattice { lattice, cells } => config.lattice_seeds(*lattice, *cells, domain),
     };
     let numbered = (1..).map(SeedPlace::Entry).zip(positions);
-    Ok(numbered.map(|(place, position)| FileSeed { position, weight: None, place }).collect())
+    let seeds = numbered.map(|(place, position)| FileSeed { position, weight: None, id: None, place });
+    Ok(FileSeeds { seeds: seeds.collect(), passed_over: None })
 }
 
 /// The error with the line of the seed file that it comes from.

@@ -20,6 +20,10 @@ pub(crate) use write::write;
 pub struct Tess {
     /// Two or three dimensions.
     pub dimension: Dimension,
+    /// The number of each cell's seed; none where they are numbered one after the other.
+    pub ids: Vec<u32>,
+    /// Whether cells have orientations, which are not read.
+    pub has_orientations: bool,
     /// One seed for each cell; none where the file has none.
     pub seeds: Vec<TessSeed>,
     /// Positions of the vertices; z = 0 in 2D.
@@ -133,6 +137,8 @@ impl Tess {
         let seeds = tessellation.seeds().iter().zip(&cells.weights);
         let mut tess = Self {
             dimension: domain.dimension(),
+            ids: cells.renumbered().to_vec(),
+            has_orientations: false,
             seeds: seeds.map(|(&position, weight)| seed(position, weight)).collect(),
             vertices: tessellation.vertices().to_vec(),
             edges: Vec::new(),

@@ -21,7 +21,10 @@ pub(super) fn seeds(content: &[u8], dimension: Dimension) -> Result<Vec<FileSeed
     numbered
         .map(|(place, entry)| {
             let (position, weight) = seed(entry, dimension).map_err(|problem| (place, problem))?;
-            Ok(FileSeed { position, weight, place })
+            let id = entry.get("SeedId").or_else(|| entry.get("id"));
+            let id =
+                id.map(|id| super::id(&id.to_string())).transpose().map_err(|problem| (place, problem))?;
+            Ok(FileSeed { position, weight, id, place })
         })
         .collect()
 }

@@ -45,10 +45,11 @@ struct Columns {
     y: usize,
     z: Option<usize>,
     size: Option<(usize, Size)>,
+    id: Option<usize>,
 }
 
 impl Columns {
-    const XY: Self = Self { count: 2, x: 0, y: 1, z: None, size: None };
+    const XY: Self = Self { count: 2, x: 0, y: 1, z: None, size: None, id: None };
     const XYZ: Self = Self { count: 3, z: Some(2), ..Self::XY };
     const XYZ_RADIUS: Self = Self { count: 4, size: Some((3, Size::Radius)), ..Self::XYZ };
 
@@ -68,6 +69,9 @@ impl Columns {
                 return Err(SeedProblem::SizedTwice { names: [lower[other].clone(), name.clone()] });
             }
         }
+        // A table of cells has both: the numbers of cells, and those that their seeds had.
+        let named = |name| lower.iter().position(|other| other == name);
+        columns.id = named("seedid").or_else(|| named("id"));
         match (found, dimension) {
             ([Some(x), Some(y), None], Dimension::Two) => Ok(Self { x, y, ..columns }),
             ([Some(x), Some(y), Some(z)], _) => Ok(Self { x, y, z: Some(z), ..columns }),
@@ -145,7 +149,8 @@ pub(super) fn csv(content: &[u8], dimension: Dimension) -> Located<Vec<FileSeed>
         let unequal = SeedProblem::UnequalColumns { found, expected: columns.count };
         let columns = columns.of_line(found).ok_or((place, unequal))?;
         let (position, weight) = seed(&texts, columns, dimension).map_err(|problem| (place, problem))?;
-        seeds.push(FileSeed { position, weight, place });
+        let id = columns.id.map(|column| super::id(texts[column])).transpose();
+        seeds.push(FileSeed { position, weight, id: id.map_err(|problem| (place, problem))?, place });
     }
     Ok(seeds)
 }
@@ -176,7 +181,7 @@ pub(super) fn xyz(content: &[u8], dimension: Dimension) -> Located<Vec<FileSeed>
             found => return Err(located(SeedProblem::XyzColumnCount { found })),
         };
         let (position, weight) = seed(coordinates, kind, dimension).map_err(located)?;
-        seeds.push(FileSeed { position, weight, place });
+        seeds.push(FileSeed { position, weight, id: None, place });
     }
     if seeds.len() < announced {
         return Err((first, SeedProblem::FewerThanAnnounced { announced, found: seeds.len() }));

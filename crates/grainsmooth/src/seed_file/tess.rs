@@ -3,7 +3,7 @@
 use glam::{BVec3, DVec3};
 use voronoi::{Dimension, Domain, Tessellation, VoronoiError};
 
-use super::{FileDomain, FileSeed, SeedPlace, SeedProblem};
+use super::{FileDomain, FileSeed, FileSeeds, SeedPlace, SeedProblem};
 use crate::{Tess, TessProblem, read_tess};
 
 /// How far a cell's volume in the file may differ from that of the cell that its seed makes, as a share of it. Neper writes 12 digits.
@@ -12,13 +12,14 @@ const VOLUME_TOLERANCE: f64 = 1e-6;
 type Located<T> = Result<T, (SeedPlace, SeedProblem)>;
 
 /// The seeds of a file, whose cells were found to be those of its seeds.
-pub(super) fn seeds(content: &[u8]) -> Located<Vec<FileSeed>> {
+pub(super) fn seeds(content: &[u8]) -> Located<FileSeeds> {
     let tess = read(content)?;
     let seeds: Vec<FileSeed> = (1..)
         .zip(&tess.seeds)
         .map(|(number, seed)| FileSeed {
             position: seed.position,
             weight: Some(seed.radius * seed.radius),
+            id: tess.ids.get(number - 1).copied(),
             place: SeedPlace::Entry(number),
         })
         .collect();
@@ -26,7 +27,7 @@ pub(super) fn seeds(content: &[u8]) -> Located<Vec<FileSeed>> {
         return Err(problem("the cells have no seeds; give a file with *seed, as Neper writes them"));
     }
     check_cells(&tess, &domain_of(&tess)?)?;
-    Ok(seeds)
+    Ok(FileSeeds { seeds, passed_over: tess.has_orientations.then_some("orientations") })
 }
 
 /// What the cells of a file fill.

@@ -13,11 +13,12 @@ fn read_as(name: &str, content: impl AsRef<[u8]>, dimension: Dimension) -> Resul
     let path = directory.path().join(name);
     fs::write(&path, content).unwrap();
     let prefix = format!("{}{}", directory.path().display(), std::path::MAIN_SEPARATOR);
-    read_seed_file(&path, dimension).map_err(|error| error.to_string().replace(&prefix, ""))
+    let seeds = read_seed_file(&path, dimension).map_err(|error| error.to_string().replace(&prefix, ""));
+    seeds.map(|FileSeeds { seeds, .. }| seeds)
 }
 
 fn seed(line: usize, x: f64, y: f64, z: f64) -> FileSeed {
-    FileSeed { position: DVec3::new(x, y, z), weight: None, place: SeedPlace::Line(line) }
+    FileSeed { position: DVec3::new(x, y, z), weight: None, id: None, place: SeedPlace::Line(line) }
 }
 
 #[test]
@@ -60,7 +61,7 @@ fn names_choose_columns_in_any_order() {
         ("z,y,x\n3,2,1\n", seed(2, 1.0, 2.0, 3.0)),
         ("\"Z\";\"name\";\"y\";\"X\"\n\"3\";\"a; \"\"b\"\"\";2;1\n", seed(2, 1.0, 2.0, 3.0)),
         ("# R\n\"n\"  \"x\" \"y\" \"z\"\n\"a b\" 1 2\t3\n", seed(3, 1.0, 2.0, 3.0)),
-        ("id\tx\ty\tz\tradius\n7\t1\t2\t3\t0.5\n", weighted(2, 0.25)),
+        ("name\tx\ty\tz\tradius\n7\t1\t2\t3\t0.5\n", weighted(2, 0.25)),
         ("Diameter,x,y,z\n1,1,2,3\n", weighted(2, 0.25)),
         ("x, y, z, weight, volume\n1, 2, 3, -0.25, nan\n", weighted(2, -0.25)),
         ("x y z\n1,2,3\n", seed(2, 1.0, 2.0, 3.0)),
@@ -143,7 +144,7 @@ fn files_that_are_no_text_or_cannot_be_read() {
 }
 
 fn entry(number: usize, x: f64, y: f64, z: f64, weight: Option<f64>) -> FileSeed {
-    FileSeed { position: DVec3::new(x, y, z), weight, place: SeedPlace::Entry(number) }
+    FileSeed { position: DVec3::new(x, y, z), weight, id: None, place: SeedPlace::Entry(number) }
 }
 
 #[test]
@@ -189,7 +190,8 @@ fn json_is_a_list_or_a_table_of_cells() {
     let expected = vec![entry(1, 0.1, 0.2, 0.0, None), entry(2, 1.0, 2.0, 0.0, Some(9.0))];
     assert_eq!(read_as("s.json", plane, Dimension::Two), Ok(expected));
     let table = r#"{"cells": [{"id": 0, "seed": [1, 2, 3], "weight": 0.1, "volume": 3}]}"#;
-    assert_eq!(read_as("s.json", table, Dimension::Three), Ok(vec![entry(1, 1.0, 2.0, 3.0, Some(0.1))]));
+    let numbered = FileSeed { id: Some(0), ..entry(1, 1.0, 2.0, 3.0, Some(0.1)) };
+    assert_eq!(read_as("s.json", table, Dimension::Three), Ok(vec![numbered]));
     let unweighted = r#"{"cells": [{"seed": [1, 2, 3], "weight": 0}]}"#;
     assert_eq!(read_as("s.json", unweighted, Dimension::Three), Ok(vec![entry(1, 1.0, 2.0, 3.0, None)]));
 
@@ -207,6 +209,59 @@ fn json_is_a_list_or_a_table_of_cells() {
     }
     let negative = read_as("s.json", "[[1, 2, 3, -1]]", Dimension::Three);
     assert_eq!(negative, Err("s.json entry 1: radius is -1; write 0 or more".to_owned()));
+}
+
+/// A column of numbers was once passed over, and grains got others.
+#[test]
+fn ids_of_seeds_are_kept() {
+    let ids = |name: &str, content: &str| {
+        let seeds = read_as(name, content, Dimension::Three);
+        seeds.map(|seeds| seeds.iter().map(|seed| seed.id).collect::<Vec<_>>())
+    };
+    let two = |first, second| Ok(vec![Some(first), Some(second)]);
+    assert_eq!(ids("s.csv", "id,x,y,z\n17,1,2,3\n4.0,4,5,6\n"), two(17, 4));
+    assert_eq!(ids("s.csv", "ID;x;y;z\n2147483647;1;2;3\n0;4;5;6\n"), two(2_147_483_647, 0));
+    // As a table of cells has both.
+    assert_eq!(ids("s.csv", "id,x,y,z,SeedId\n0,1,2,3,5\n1,4,5,6,9\n"), two(5, 9));
+    let json = r#"[{"id": 3, "seed": [1, 2, 3]}, {"id": 1, "SeedId": 8, "seed": [4, 5, 6]}]"#;
+    assert_eq!(ids("s.json", json), two(3, 8));
+    assert_eq!(ids("s.csv", "1,2,3\n4,5,6\n"), Ok(vec![None, None]));
+
+    let remedy = "number the seeds, or rename the column";
+    for (name, content, message) in [
+        (
+            "s.csv",
+            "id x y z\nA7 1 2 3\n",
+            format!("line 2: id \"A7\" is no whole number from 0 to 2147483647; {remedy}"),
+        ),
+        (
+            "s.csv",
+            "id x y z\n-1 1 2 3\n",
+            format!("line 2: id \"-1\" is no whole number from 0 to 2147483647; {remedy}"),
+        ),
+        (
+            "s.csv",
+            "id x y z\n2147483648 1 2 3\n",
+            format!("line 2: id \"2147483648\" is no whole number from 0 to 2147483647; {remedy}"),
+        ),
+        (
+            "s.csv",
+            "id x y z\n0.5 1 2 3\n",
+            format!("line 2: id \"0.5\" is no whole number from 0 to 2147483647; {remedy}"),
+        ),
+        (
+            "s.csv",
+            "id x y z\n3 1 2 3\n4 1 2 4\n3 1 2 5\n",
+            "line 4: id 3 is that of line 2 too; give each seed its own, or rename the column".to_owned(),
+        ),
+        (
+            "s.json",
+            r#"[{"id": 3, "seed": [1, 2, 3]}, [4, 5, 6]]"#,
+            "entry 2: no id, and other seeds have one; give each seed its own, or none".to_owned(),
+        ),
+    ] {
+        assert_eq!(ids(name, content), Err(format!("{name} {message}")));
+    }
 }
 
 /// Files of every format that can be read.

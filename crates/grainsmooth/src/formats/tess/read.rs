@@ -46,6 +46,8 @@ pub fn read_tess(text: &str) -> Result<Tess, TessProblem> {
     let mut reader = Reader { words, version, cell_count: 0 };
     let mut tess = Tess {
         dimension,
+        ids: Vec::new(),
+        has_orientations: false,
         seeds: Vec::new(),
         vertices: Vec::new(),
         edges: Vec::new(),
@@ -57,7 +59,7 @@ pub fn read_tess(text: &str) -> Result<Tess, TessProblem> {
     loop {
         match reader.words.next("***end")? {
             "***end" => break,
-            "**cell" => tess.seeds = reader.cells()?,
+            "**cell" => reader.cells(&mut tess)?,
             "**vertex" => tess.vertices = reader.vertices()?,
             "**edge" => tess.edges = reader.edges(tess.vertices.len())?,
             "**face" => tess.faces = reader.faces(&tess)?,
@@ -128,6 +130,13 @@ impl<'a> Words<'a> {
             self.number("a y coordinate")?,
             self.number("a z coordinate")?,
         ))
+    }
+
+    /// The number of a cell from 0, as it is of the seed, where the next word counts from 1.
+    fn seed_id(&mut self) -> Result<u32, TessProblem> {
+        let word = self.next("the id of a cell")?;
+        let id = word.parse::<i32>().ok().and_then(|id| u32::try_from(id - 1).ok());
+        id.ok_or_else(|| self.problem(format!("{word:?} is no id of a cell; number cells from 1")))
     }
 
     /// Checks that the next word is the number of the item at `index`.
@@ -221,19 +230,22 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn cells(&mut self) -> Result<Vec<TessSeed>, TessProblem> {
+    fn cells(&mut self, tess: &mut Tess) -> Result<(), TessProblem> {
         self.cell_count = self.words.count("the number of cells")?;
-        let mut seeds = Vec::new();
         while !self.words.is_at("**") {
-            if self.words.next("***end")? != "*seed" {
-                continue;
+            match self.words.next("***end")? {
+                "*id" => tess.ids = self.words.list(self.cell_count, |words, _| words.seed_id())?,
+                "*seed" => {
+                    tess.seeds = self.words.list(self.cell_count, |words, index| {
+                        words.id("seed", index)?;
+                        Ok(TessSeed { position: words.point()?, radius: words.number("a weight")? })
+                    })?;
+                }
+                "*ori" => tess.has_orientations = true,
+                _ => {}
             }
-            seeds = self.words.list(self.cell_count, |words, index| {
-                words.id("seed", index)?;
-                Ok(TessSeed { position: words.point()?, radius: words.number("a weight")? })
-            })?;
         }
-        Ok(seeds)
+        Ok(())
     }
 
     fn vertices(&mut self) -> Result<Vec<DVec3>, TessProblem> {

@@ -8,15 +8,15 @@ use voronoi::{Dimension, Wall};
 
 use super::{Oriented, POLYHEDRON, Tess, TessCopy, TessDomain, TessPeriodicity};
 
-/// Writes the file. Cells have as their ids the numbers of the seeds that they are from, if these are given.
-pub(crate) fn write(tess: &Tess, seed_ids: &[u32], out: &mut dyn Write) -> io::Result<()> {
+/// Writes the file.
+pub(crate) fn write(tess: &Tess, out: &mut dyn Write) -> io::Result<()> {
     let dimension = if tess.dimension == Dimension::Two { 2 } else { 3 };
     let kind = if tess.periodicity.is_some() { "periodic" } else { "standard" };
     writeln!(out, "***tess\n **format\n   3.5\n **general\n   {dimension} {kind}")?;
     let cell_count = if dimension == 2 { tess.faces.len() } else { tess.polyhedra.len() };
     writeln!(out, " **cell\n  {cell_count}")?;
-    if !seed_ids.is_empty() {
-        let ids: Vec<String> = seed_ids.iter().map(|id| (u64::from(*id) + 1).to_string()).collect();
+    if !tess.ids.is_empty() {
+        let ids: Vec<String> = tess.ids.iter().map(|id| (u64::from(*id) + 1).to_string()).collect();
         writeln!(out, "  *id\n   {}", ids.join(" "))?;
     }
     if !tess.seeds.is_empty() {
