@@ -103,7 +103,9 @@ fn refine(delaunay: &mut Delaunay, outline_count: usize, edge_length: f64) -> Op
         let longest = face.adjacent_edges().map(|edge| edge.length_2()).into_iter().fold(0.0, f64::max);
         2.0 * face.area() < FLATTEST * longest
     };
-    if delaunay.inner_faces().any(is_flat) {
+    // Those outside, between points on one side of the polygon, are as flat as rounding has it, and left alone.
+    let is_inside = inside_faces(delaunay, outline_count)?;
+    if delaunay.inner_faces().any(|face| is_inside[face.fix().index()] && is_flat(face)) {
         return None;
     }
     let mean_edge = MEAN_EDGE * edge_length;
