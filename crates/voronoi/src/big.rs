@@ -5,7 +5,10 @@ use num_bigint::BigInt;
 use num_traits::{Signed, ToPrimitive, Zero};
 
 use crate::WallPlane;
-use crate::exact_plane::{Decision, ExactPlane, decision, decompose, exponent_of, normal_and_excess};
+use crate::exact_plane::{
+    Decision, ExactPlane, decision, decompose, exponent_of, half_space_unit, normal_and_excess,
+    times_power_of_two,
+};
 use crate::generator::{Generator, Plane};
 use crate::predicate::ExactInput;
 
@@ -73,9 +76,7 @@ fn wall_plane(plane: &WallPlane, point: DVec3, exponent: i32) -> ([BigInt; 3], B
     let point = integers(point);
     match plane {
         WallPlane::HalfSpace { normal, offset } => {
-            let of_normal = normal.to_array().into_iter().filter_map(exponent_of);
-            let unit = of_normal.chain(exponent_of(*offset).map(|of_offset| of_offset - exponent)).min();
-            let unit = unit.unwrap_or(0);
+            let unit = half_space_unit(*normal, *offset, exponent);
             let normal = normal.to_array().map(|coordinate| to_integer(coordinate, unit));
             let offset = to_integer(*offset, unit + exponent) - dot(&normal, &point);
             (normal, offset)
@@ -144,9 +145,5 @@ fn ratio(numerator: BigInt, denominator: &BigInt, exponent: i32) -> f64 {
     let shift = bits(denominator) - bits(&numerator) + 64;
     let shifted = if shift >= 0 { numerator << shift } else { numerator >> shift.unsigned_abs() };
     let quotient = shifted / denominator;
-    let scale = i64::from(exponent) - shift;
-    // Two factors, for one power of two alone may leave the range of doubles where the product does not.
-    let half = scale / 2;
-    let power = |e: i64| 2f64.powi(i32::try_from(e).unwrap_or(i32::MIN));
-    quotient.to_f64().unwrap_or(f64::NAN) * power(half) * power(scale - half)
+    times_power_of_two(quotient.to_f64().unwrap_or(f64::NAN), i64::from(exponent) - shift)
 }

@@ -136,6 +136,13 @@ fn break_tie<N: Ord + Default, D>(
     changes.iter().find(|(_, sign)| sign.is_ne()).is_some_and(|(_, sign)| sign.is_gt())
 }
 
+/// The exponent of the units in which the normal of a half-space and its offset, for coordinates in units of two to an exponent, are
+/// integers.
+pub(crate) fn half_space_unit(normal: DVec3, offset: f64, exponent: i32) -> i32 {
+    let of_normal = normal.to_array().into_iter().filter_map(exponent_of);
+    of_normal.chain(exponent_of(offset).map(|of_offset| of_offset - exponent)).min().unwrap_or(0)
+}
+
 /// The smallest exponent such that all coordinates involved are integers times two to it, and all weights integers times
 /// two to twice it.
 pub(crate) fn common_exponent(input: ExactInput, seed: u32, generators: &[Generator]) -> i32 {
@@ -179,4 +186,12 @@ pub(crate) fn decompose(value: f64) -> (i64, i32) {
     let (magnitude, exponent) =
         if biased == 0 { (fraction, -1074) } else { (fraction | (1 << 52), biased - 1075) };
     (if value < 0.0 { -magnitude } else { magnitude }, exponent)
+}
+
+/// `number * 2^exponent`, rounded once unless it is tiny.
+pub(crate) fn times_power_of_two(number: f64, exponent: i64) -> f64 {
+    // Two factors, for one power of two alone may leave the range of doubles where the product does not.
+    let half = exponent / 2;
+    let power = |e: i64| 2f64.powi(i32::try_from(e).unwrap_or(i32::MIN));
+    number * power(half) * power(exponent - half)
 }

@@ -3,22 +3,29 @@
 use std::cmp::Ordering;
 
 use ethnum::I256;
+use glam::DVec3;
 
-use crate::exact_plane::{Decision, ExactPlane, decision, decompose, normal_and_excess};
-use crate::generator::Generator;
+use crate::exact_plane::{
+    Decision, ExactPlane, decision, decompose, half_space_unit, normal_and_excess, times_power_of_two,
+};
+use crate::generator::{Generator, Plane};
 use crate::predicate::ExactInput;
+use crate::{Wall, WallPlane};
 
-/// Bits of a normal's coordinates. The products of two normals then take 121, those of three 183, and twice an offset takes 124;
-/// the product of the last two would take 309 bits, but is made in halves.
+/// Bits of a normal's coordinates. The products of two normals then take 121, those of three 183, and twice an offset takes 125 at
+/// most; the product of the last two would take 310 bits, but is made in halves.
 const NORMAL_BITS: u32 = 60;
+
+/// Bits of a seed's coordinates where it sees the walls of a polyhedron.
+const POINT_BITS: u32 = 62;
 
 /// Bits of coordinates, periods and weights, of which differences are taken.
 const NUMBER_BITS: u32 = 120;
 
 type NarrowPlane = ExactPlane<i64, i128>;
 
-/// The planes of generators as a seed sees them, in units of two to an exponent; none where they are too long, or those of a
-/// polyhedron.
+/// The planes of generators as a seed sees them, in units of two to an exponent; none where they are too long, or those of
+/// walls through points.
 pub(crate) fn planes<const N: usize>(
     input: ExactInput,
     seed: u32,
@@ -30,14 +37,40 @@ pub(crate) fn planes<const N: usize>(
 }
 
 fn plane(input: ExactInput, seed: u32, generator: Generator, exponent: i32) -> Option<NarrowPlane> {
-    let (normal, excess) = normal_and_excess(input, seed, generator, exponent, integer)?;
-    let mut short = [0; 3];
-    for (short, coordinate) in short.iter_mut().zip(normal) {
-        *short = i64::try_from(coordinate).ok().filter(|n| n.unsigned_abs() < 1 << NORMAL_BITS)?;
+    if let Plane::Facet(wall) = generator.plane() {
+        return facet(input, seed, wall, exponent);
     }
-    let square = || short.iter().map(|n| i128::from(*n) * i128::from(*n)).sum::<i128>();
+    let (normal, excess) = normal_and_excess(input, seed, generator, exponent, integer)?;
+    let normal = short(normal, NORMAL_BITS)?;
+    let square = || normal.iter().map(|n| i128::from(*n) * i128::from(*n)).sum::<i128>();
     let doubled_offset = if generator.as_site().is_some() { square() + excess } else { excess };
-    Some(ExactPlane { normal: short, doubled_offset, generator })
+    Some(ExactPlane { normal, doubled_offset, generator })
+}
+
+/// The plane of a polyhedron's wall, if it is that of a half-space.
+fn facet(input: ExactInput, seed: u32, wall: Wall, exponent: i32) -> Option<NarrowPlane> {
+    let WallPlane::HalfSpace { normal, offset } = input.domain.wall_planes()[wall.index()] else {
+        return None;
+    };
+    let integers = |point: DVec3, exponent: i32| {
+        let [x, y, z] = point.to_array().map(|coordinate| integer(coordinate, exponent));
+        Some([x?, y?, z?])
+    };
+    let unit = half_space_unit(normal, offset, exponent);
+    let point = short(integers(input.seeds[seed as usize], exponent)?, POINT_BITS)?;
+    let normal = short(integers(normal, unit)?, NORMAL_BITS)?;
+    let products = normal.iter().zip(point).map(|(n, x)| i128::from(*n) * i128::from(x));
+    let offset = integer(offset, unit + exponent)? - products.sum::<i128>();
+    Some(ExactPlane { normal, doubled_offset: 2 * offset, generator: Generator::facet(wall) })
+}
+
+/// Coordinates with at most some bits.
+fn short(coordinates: [i128; 3], bits: u32) -> Option<[i64; 3]> {
+    let mut short = [0; 3];
+    for (short, coordinate) in short.iter_mut().zip(coordinates) {
+        *short = i64::try_from(coordinate).ok().filter(|n| n.unsigned_abs() < 1 << bits)?;
+    }
+    Some(short)
 }
 
 /// As [`ExactInput::decide`], for the three planes of a vertex and the one that may cut it off.
@@ -61,6 +94,33 @@ pub(crate) fn decide(planes: &[NarrowPlane; 4]) -> Decision {
 pub(crate) fn is_positive(planes: &[NarrowPlane; 3]) -> bool {
     let [a, b, c] = planes.each_ref().map(|plane| &plane.normal);
     dot(a, &cross(b, c)) > I256::ZERO
+}
+
+/// As [`ExactInput::vertex`], in lengths again.
+pub(crate) fn vertex(planes: &[NarrowPlane; 3], exponent: i32) -> DVec3 {
+    let [a, b, c] = planes.each_ref().map(|plane| &plane.normal);
+    let minors = [cross(b, c), cross(c, a), cross(a, b)];
+    let denominator = dot(a, &minors[0]) * I256::from(2);
+    let coordinate = |axis: usize| {
+        // Three products of 124 and 121 bits.
+        let products = planes.iter().zip(&minors);
+        let numerator =
+            products.map(|(plane, minor)| I256::from(plane.doubled_offset) * I256::from(minor[axis])).sum();
+        ratio(numerator, denominator, exponent)
+    };
+    DVec3::new(coordinate(0), coordinate(1), coordinate(2))
+}
+
+/// `numerator / denominator * 2^exponent` in double precision.
+fn ratio(numerator: I256, denominator: I256, exponent: i32) -> f64 {
+    if numerator == I256::ZERO {
+        return 0.0;
+    }
+    // 64 bits of quotient, more than a double holds. With the at most 185 of the denominator that is less than there are.
+    let bits = |value: I256| 256 - value.unsigned_abs().leading_zeros().cast_signed();
+    let shift = bits(denominator) - bits(numerator) + 64;
+    let shifted = if shift >= 0 { numerator << shift } else { numerator >> -shift };
+    times_power_of_two((shifted / denominator).as_f64(), i64::from(exponent) - i64::from(shift))
 }
 
 fn sign(number: I256) -> Ordering {
@@ -91,12 +151,12 @@ fn integer(number: f64, exponent: i32) -> Option<i128> {
 
 #[cfg(test)]
 mod tests {
-    use glam::{BVec3, DVec3};
+    use glam::BVec3;
 
     use super::*;
     use crate::exact_plane::common_exponent;
     use crate::images::ImageTable;
-    use crate::{Domain, Wall, big};
+    use crate::{Domain, big};
 
     /// Decisions among seeds on a coarse grid, of which many are tied, and near it.
     #[test]
@@ -137,6 +197,13 @@ mod tests {
             let big = big::decide(&big::planes(input, 0, generators, exponent));
             assert_eq!(decision, big, "{seeds:?} {generators:?}");
             assert!(input.is_positive(0, [a, b, c]));
+            let [x, y, z, _] = planes;
+            let of_three = big::planes(input, 0, [a, b, c], exponent);
+            assert_eq!(
+                vertex(&[x, y, z], exponent),
+                big::vertex(&of_three, exponent),
+                "{seeds:?} {generators:?}"
+            );
             tied += usize::from(decision.tie);
             decided += 1;
         }

@@ -155,7 +155,10 @@ impl<'a> ExactInput<'a> {
     /// The vertex of three planes relative to the seed, each coordinate rounded to nearest but for one or two last places.
     pub(crate) fn vertex(self, seed: u32, planes: [Generator; 3]) -> DVec3 {
         let exponent = common_exponent(self, seed, &planes);
-        big::vertex(&big::planes(self, seed, planes, exponent), exponent)
+        match narrow::planes(self, seed, planes, exponent) {
+            Some(planes) => narrow::vertex(&planes, exponent),
+            None => big::vertex(&big::planes(self, seed, planes, exponent), exponent),
+        }
     }
 }
 
