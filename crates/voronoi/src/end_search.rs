@@ -3,6 +3,9 @@
 //! An edge leaves a vertex along two planes, and ends at the first plane to cut it. Whatever suggests that plane, the end is
 //! taken only after every seed near enough has been shown not to cut it off.
 
+use std::collections::HashSet;
+
+use foldhash::fast::FixedState;
 use glam::DVec3;
 
 use crate::candidates::Candidates;
@@ -11,6 +14,7 @@ use crate::generator::Generator;
 use crate::half_space::{EVALUATION_ERROR, HalfSpace, Intersection};
 use crate::predicate::ExactInput;
 use crate::search::{ImagesMissing, Search};
+use crate::site_tree::InBox;
 use crate::{Dimension, Wall};
 
 /// In two dimensions the plane z = 0 is a third plane through every corner, so that polygons are faces of polyhedra.
@@ -20,13 +24,16 @@ pub(crate) const PLANE: Wall = Wall::ALL[5];
 /// of magnitude, so coordinates are good to about 1e-13 of the cell's size.
 const LOOSE: f64 = 2e-12;
 
+/// The same for vertices that only stand in for others on the way to the end of an edge.
+const LOOSE_ON_THE_WAY: f64 = 1e-9;
+
 /// How much farther than from known vertices the search looks at first: most of the vertices that it finds are within that, and
 /// another round would cost more than the additional sites.
 const FORESIGHT: f64 = 1.12;
 
 /// Sites that are looked at to collect those around a cell, at most. For what is farther away, the boxes are asked about every single
-/// vertex: that takes as long as going over some hundreds of planes twice.
-const MOST_CANDIDATES: usize = 2000;
+/// vertex.
+const MOST_CANDIDATES: usize = 500;
 
 /// Growth of the radius from one round of the search around a cell to the next: twice the volume.
 const GROWTH: f64 = 1.26;
@@ -34,8 +41,8 @@ const GROWTH: f64 = 1.26;
 /// Share of the distance of an edge's end that is looked at in any case before it is believed to be that far.
 const LEAST_STEP: f64 = 0.25;
 
-/// How often the radius is halved to find one with few enough sites.
-const MOST_HALVINGS: usize = 64;
+/// Share of a radius that candidates are known to, below which all are gathered anew: single precision counts in units near the first.
+const LEAST_SHARE: f64 = 1e-3;
 
 /// A vertex of a cell.
 #[derive(Debug, Clone, Copy)]
@@ -59,8 +66,8 @@ pub(crate) struct EndSearch<'a> {
     radius: f64,
     /// Whether candidates would be too many farther away.
     is_crowded: bool,
-    /// Where they were not at the last seed of which they were.
-    uncrowded: f64,
+    /// What was made a candidate beyond these.
+    suggested: HashSet<Generator, FixedState>,
     /// Planes that may cut off the vertex under way.
     maybe: Vec<Generator>,
 }
@@ -74,7 +81,7 @@ impl<'a> EndSearch<'a> {
             candidates: Candidates::default(),
             radius: -1.0,
             is_crowded: false,
-            uncrowded: f64::INFINITY,
+            suggested: HashSet::default(),
             maybe: Vec::new(),
         }
     }
@@ -84,11 +91,25 @@ impl<'a> EndSearch<'a> {
         self.seed = seed;
         self.radius = -1.0;
         self.is_crowded = false;
+        self.suggested.clear();
     }
 
     /// Prepares for the ends of edges from vertices up to a distance.
     pub(crate) fn expect(&mut self, distance: f64) -> Result<(), ImagesMissing> {
         self.gather(FORESIGHT * distance).or_else(|ImagesMissing| self.gather(distance))
+    }
+
+    /// Takes planes for candidates, near or far, where there are too many candidates to know all.
+    pub(crate) fn suggest(&mut self, planes: impl IntoIterator<Item = Generator>) {
+        if !self.is_crowded {
+            return;
+        }
+        for plane in planes {
+            if self.suggested.insert(plane) {
+                self.candidates.push(&HalfSpace::new(self.seed, plane, self.input));
+            }
+        }
+        self.candidates.fill_lanes();
     }
 
     /// The other end of an edge from a vertex with the planes `used` at `start`. The edge runs along two of these, which are in
@@ -174,8 +195,12 @@ impl<'a> EndSearch<'a> {
                 }
             }
             let Some(cutter) = cutter else {
+                if !at.is_good_to(LOOSE) {
+                    at = self.exact(edge, generator);
+                }
                 return Ok(NewVertex { planes, position: at.position, has_tie });
             };
+            self.suggest([cutter]);
             generator = cutter;
             at = self.intersect(edge, cutter).expect("a plane that cuts a vertex off ends the edge");
         }
@@ -198,74 +223,64 @@ impl<'a> EndSearch<'a> {
             }
             return Ok(None);
         }
-        let cutter = self.search.farthest_cut(seed, planes, at, &mut self.maybe)?;
-        if cutter.is_none() {
-            let place = input.seeds[seed as usize] + at.position;
-            let maybe = &mut self.maybe;
-            input
-                .domain
-                .for_each_wall_within(place, 2.0 * at.error, |wall| maybe.push(Generator::facet(wall)));
-            maybe.extend(sides(input).map(Generator::side));
+        if let Some(InBox { site, sites }) = self.search.farthest_cut(seed, planes, at, &mut self.maybe)? {
+            // What is near that is likely to be near the end of this edge and of others.
+            let others = sites.iter().filter(|other| **other != seed).map(|other| Generator::site(*other));
+            self.suggest(others);
+            return Ok(Some(site));
         }
-        Ok(cutter)
+        let place = input.seeds[seed as usize] + at.position;
+        let maybe = &mut self.maybe;
+        input.domain.for_each_wall_within(place, 2.0 * at.error, |wall| maybe.push(Generator::facet(wall)));
+        maybe.extend(sides(input).map(Generator::side));
+        Ok(None)
     }
 
     /// Where a plane cuts an edge; none where it runs along it or faces the other way.
     fn intersect(&self, edge: &[HalfSpace; 2], generator: Generator) -> Option<Intersection> {
-        let input = self.input;
-        let third = HalfSpace::new(self.seed, generator, input);
+        let third = HalfSpace::new(self.seed, generator, self.input);
         let planes = [&edge[0], &edge[1], &third];
-        if let Some(at) = Intersection::rounded(planes).filter(|at| at.is_good_to(LOOSE)) {
+        if let Some(at) = Intersection::rounded(planes).filter(|at| at.is_good_to(LOOSE_ON_THE_WAY)) {
             return Some(at);
         }
-        input
-            .is_positive(self.seed, planes.map(|plane| plane.generator))
-            .then(|| Intersection::exact(self.seed, planes, input))
+        let is_positive = self.input.is_positive(self.seed, planes.map(|plane| plane.generator));
+        is_positive.then(|| self.exact(edge, generator))
     }
 
-    /// Makes all planes up to a distance candidates, unless too many sites would have to be looked at: then fewer at first, and later
-    /// none.
+    fn exact(&self, edge: &[HalfSpace; 2], generator: Generator) -> Intersection {
+        let third = HalfSpace::new(self.seed, generator, self.input);
+        Intersection::exact(self.seed, [&edge[0], &edge[1], &third], self.input)
+    }
+
+    /// Makes all planes up to a distance candidates, unless too many sites would have to be looked at.
     #[inline]
     fn gather(&mut self, radius: f64) -> Result<(), ImagesMissing> {
         if radius <= self.radius || self.is_crowded { Ok(()) } else { self.gather_sites(radius) }
     }
 
-    fn gather_sites(&mut self, mut radius: f64) -> Result<(), ImagesMissing> {
-        let (seed, search, before) = (self.seed, self.search, self.radius);
-        let from = (before >= 0.0).then_some(before);
+    fn gather_sites(&mut self, radius: f64) -> Result<(), ImagesMissing> {
+        let (seed, search) = (self.seed, self.search);
+        let from = (self.radius > LEAST_SHARE * radius).then_some(self.radius);
         if from.is_none() {
             let reach = search.reach(seed, radius);
+            self.radius = -1.0;
             self.candidates.restart(reach, search.first_image(), search.position_error());
         }
         if !search.gather(&mut self.candidates, seed, from, radius, MOST_CANDIDATES)? {
             self.is_crowded = true;
-            if from.is_some() {
-                return Ok(());
-            }
-            let mut is_gathered = false;
-            radius = radius.min(4.0 * self.uncrowded);
-            for _ in 0..MOST_HALVINGS {
-                radius *= 0.5;
-                is_gathered = search.gather(&mut self.candidates, seed, from, radius, MOST_CANDIDATES)?;
-                if is_gathered {
-                    break;
-                }
-            }
-            if !is_gathered {
-                self.candidates.fill_lanes();
-                return Ok(());
-            }
-            self.uncrowded = radius;
+            self.suggest(sides(self.input).map(Generator::side));
+            return Ok(());
         }
         let (input, candidates) = (self.input, &mut self.candidates);
+        let is_new = |distance: f64| from.is_none_or(|from| distance > from);
         for side in sides(input) {
             let distance = input.outermost_distance(seed, side);
-            if distance > before && distance <= radius {
+            if is_new(distance) && distance <= radius {
                 candidates.push(&HalfSpace::new(seed, Generator::side(side), input));
             }
         }
         input.for_each_facet_within(seed, radius, |plane, distance| {
-            if distance > before {
+            if is_new(distance) {
                 candidates.push(&plane);
             }
         });

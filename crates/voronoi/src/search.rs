@@ -11,7 +11,7 @@ use crate::grid::SeedGrid;
 use crate::half_space::Intersection;
 use crate::images::{Image, ImageTable};
 use crate::predicate::ExactInput;
-use crate::site_tree::SiteTree;
+use crate::site_tree::{InBox, SiteTree};
 use crate::torus::FaceEnd;
 use crate::wide::{Ball, Within};
 use crate::{Domain, VoronoiError};
@@ -255,7 +255,7 @@ impl<'a> Search<'a> {
         [a, b, c]: [Generator; 3],
         at: &Intersection,
         maybe: &mut Vec<Generator>,
-    ) -> Result<Option<Generator>, ImagesMissing> {
+    ) -> Result<Option<InBox<'_>>, ImagesMissing> {
         let layer = self.layer(seed, self.reach(seed, at.distance()))?;
         let ball = Ball {
             center: self.seeds[seed as usize],
@@ -275,37 +275,59 @@ impl<'a> Search<'a> {
     ) -> Result<Option<[Generator; 3]>, ImagesMissing> {
         let input = self.input();
         for layer in &self.layers {
-            let known = self.known(layer, seed);
-            let mut cell = uncut();
-            let mut near = layer.sites.near_first(self.seeds[seed as usize]);
-            input.for_each_facet_within(seed, f64::INFINITY, |facet, distance| {
-                near.push(facet.generator, (2.0 * distance).powi(2));
-            });
-            let own_weight = input.weight(seed);
-            // As for the reach, with the weight of a site or of those in a box; where there is no root, they are too light.
-            let is_wanted = |cell: &C, squared: f64, weight: f64| {
-                let (radius, distance) = (cell.radius(), squared.sqrt());
-                let root_of = radius * radius + (weight - own_weight);
-                let reach = radius + root_of.max(0.0).sqrt();
-                radius >= 0.0
-                    && root_of >= 0.0
-                    && distance <= known
-                    && distance <= reach * RADIUS_MARGIN + self.position_error()
+            // What has the seed's own place for its cell makes short work of it, where nothing is left in the end.
+            let at_seed = Ball {
+                center: self.seeds[seed as usize],
+                own_weight: input.weight(seed),
+                vertex: DVec3::ZERO,
+                error: self.position_error(),
+                generators: [Generator::site(seed); 4],
             };
-            while let Some((plane, squared)) = near.next(|squared, weight| is_wanted(&cell, squared, weight))
-            {
-                let is_own = plane.as_site().is_some_and(|site| {
-                    site == seed || (site as usize >= self.seeds.len() && input.bounds_from_start(seed, site))
-                });
-                let weight = plane.as_site().map_or(own_weight, |site| input.weight(site));
-                if !is_own && is_wanted(&cell, squared, weight) {
-                    cell.cut(plane, input);
+            if let Some(InBox { site, .. }) = layer.sites.deepest(&at_seed, &mut Vec::new()) {
+                let mut cell = uncut();
+                cell.cut(site, input);
+                self.cut_by_near(&mut cell, seed, layer);
+                if cell.radius() < 0.0 {
+                    return Ok(None);
                 }
             }
-            if cell.radius() < 0.0 || self.reach(seed, cell.radius()) <= known {
+            let mut cell = uncut();
+            self.cut_by_near(&mut cell, seed, layer);
+            if cell.radius() < 0.0 || self.reach(seed, cell.radius()) <= self.known(layer, seed) {
                 return Ok(cell.vertices().first().copied());
             }
         }
         Err(ImagesMissing)
+    }
+
+    /// Cuts a cell by what a layer knows, from near to far.
+    fn cut_by_near(&self, cell: &mut impl Cutting, seed: u32, layer: &Layer) {
+        let (input, known) = (self.input(), self.known(layer, seed));
+        let mut near = layer.sites.near_first(self.seeds[seed as usize]);
+        input.for_each_facet_within(seed, f64::INFINITY, |facet, distance| {
+            near.push(facet.generator, (2.0 * distance).powi(2));
+        });
+        let own_weight = input.weight(seed);
+        // As for the reach, with the weight of a site or of those in a box; where there is no root, they are too light.
+        let is_wanted = |radius: f64, squared: f64, weight: f64| {
+            let distance = squared.sqrt();
+            let root_of = radius * radius + (weight - own_weight);
+            let reach = radius + root_of.max(0.0).sqrt();
+            radius >= 0.0
+                && root_of >= 0.0
+                && distance <= known
+                && distance <= reach * RADIUS_MARGIN + self.position_error()
+        };
+        while let Some((plane, squared)) =
+            near.next(|squared, weight| is_wanted(cell.radius(), squared, weight))
+        {
+            let is_own = plane.as_site().is_some_and(|site| {
+                site == seed || (site as usize >= self.seeds.len() && input.bounds_from_start(seed, site))
+            });
+            let weight = plane.as_site().map_or(own_weight, |site| input.weight(site));
+            if !is_own && is_wanted(cell.radius(), squared, weight) {
+                cell.cut(plane, input);
+            }
+        }
     }
 }

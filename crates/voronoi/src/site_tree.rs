@@ -96,10 +96,13 @@ impl SiteTree {
     }
 
     /// The site that lies deepest in a ball, of those that certainly do; if none does, all that may are listed.
-    pub(crate) fn deepest(&self, ball: &Ball, maybe: &mut Vec<Generator>) -> Option<Generator> {
-        let mut search = DeepestSearch { ball, columns: self.columns(), deepest: None, depth: 0.0, maybe };
+    pub(crate) fn deepest(&self, ball: &Ball, maybe: &mut Vec<Generator>) -> Option<InBox<'_>> {
+        let mut search = DeepestSearch::new(ball, self.columns(), maybe);
         wide::find_deepest(&self.boxes, &mut search);
-        search.deepest
+        let place = search.deepest?;
+        let first = place / LANES * LANES;
+        let sites = &self.sites[first..self.sites.len().min(first + LANES)];
+        Some(InBox { site: Generator::site(self.sites[place]), sites })
     }
 
     /// The sites in order of their distance from a place.
@@ -108,6 +111,13 @@ impl SiteTree {
         near.push_group(self.boxes.levels.len() - 1, 0, |_, _| true);
         near
     }
+}
+
+/// A site that was found, and all that are in the same box.
+#[derive(Debug, PartialEq)]
+pub(crate) struct InBox<'a> {
+    pub(crate) site: Generator,
+    pub(crate) sites: &'a [u32],
 }
 
 /// What waits to be visited.
@@ -232,7 +242,10 @@ mod tests {
             let mut maybe = Vec::new();
             let own_weight = vertex.length_squared() - power(expected);
             let found = tree.deepest(&ball(own_weight - 1e-6), &mut maybe);
-            assert_eq!(found, Some(Generator::site(u32::try_from(expected).expect("few"))));
+            let expected_site = u32::try_from(expected).expect("few");
+            assert!(found.is_some_and(|found| {
+                found.site == Generator::site(expected_site) && found.sites.contains(&expected_site)
+            }));
             assert!(maybe.is_empty());
             let found = tree.deepest(&ball(own_weight), &mut maybe);
             assert!(

@@ -180,6 +180,10 @@ impl<'a> Builder<'a> {
         let radius = open.map(|(vertex, _)| self.relative_to(seed, vertex).length()).reduce(f64::max);
         if let Some(radius) = radius {
             self.end_search.expect(radius)?;
+            for edge_of in &self.current {
+                let vertex = &self.vertices[(edge_of / 4) as usize];
+                self.end_search.suggest(vertex.planes(vertex.slot(own)));
+            }
         }
         while let Some(edge_of) = self.current.pop() {
             let (vertex, edge) = (&self.vertices[(edge_of / 4) as usize], (edge_of % 4) as usize);
