@@ -8,6 +8,7 @@ use crate::generator::Generator;
 use crate::half_space::{EVALUATION_ERROR, HalfSpace, Intersection};
 use crate::predicate::ExactInput;
 use crate::search::Cutting;
+use crate::wide::{self, CHUNK};
 
 /// Relative error bound of a vertex above which its coordinates are computed exactly while cutting: a loose bound sends
 /// every later decision about the vertex to exact arithmetic, which costs more than the vertex.
@@ -28,6 +29,8 @@ pub(crate) struct ConvexCell {
     /// Largest distance of a vertex from the seed, with its error.
     radius: f64,
     cut: Vec<usize>,
+    /// Chunks of vertices that may have some beyond a plane.
+    chunks: Vec<u32>,
     hole: Vec<(u32, u32)>,
 }
 
@@ -44,6 +47,7 @@ impl ConvexCell {
             errors: Vec::new(),
             radius: 0.0,
             cut: Vec::new(),
+            chunks: Vec::new(),
             hole: Vec::new(),
         };
         for corner in 0..8u32 {
@@ -64,18 +68,14 @@ impl ConvexCell {
         let own_error = EVALUATION_ERROR * offset_size;
         let count = self.triples.len();
         let (x, y, z, errors) = (&self.x[..count], &self.y[..count], &self.z[..count], &self.errors[..count]);
-        // Most planes tried miss the cell: one pass without branches tells.
-        let mut highest = f64::NEG_INFINITY;
-        for v in 0..count {
-            let value = normal.x * x[v] + normal.y * y[v] + normal.z * z[v] - offset;
-            let upper_bound = value + sum * errors[v];
-            highest = if upper_bound > highest { upper_bound } else { highest };
-        }
-        if highest < -own_error {
-            return false;
-        }
+        // Most planes tried miss the cell, or nearly all of it: one pass tells where to look.
+        wide::find_beyond([x, y, z, errors], normal, offset, -own_error, &mut self.chunks);
         self.cut.clear();
-        for v in 0..count {
+        let vertices = self.chunks.iter().flat_map(|chunk| {
+            let first = *chunk as usize * CHUNK;
+            first..count.min(first + CHUNK)
+        });
+        for v in vertices {
             let value = normal.x * x[v] + normal.y * y[v] + normal.z * z[v] - offset;
             let error = sum * errors[v] + own_error;
             let beyond = if value > error {
@@ -137,12 +137,7 @@ impl ConvexCell {
     }
 
     fn update_radius(&mut self) {
-        let mut squared = 0.0f64;
-        for v in 0..self.triples.len() {
-            let length = self.x[v] * self.x[v] + self.y[v] * self.y[v] + self.z[v] * self.z[v];
-            squared = squared.max(length);
-        }
-        let error = self.errors.iter().fold(0.0f64, |largest, error| largest.max(*error));
+        let (squared, error) = wide::farthest([&self.x, &self.y, &self.z, &self.errors]);
         // The error bounds each coordinate, so a distance by sqrt(3) times it.
         self.radius = squared.sqrt() + 2.0 * error;
     }

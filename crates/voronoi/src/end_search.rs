@@ -179,6 +179,7 @@ impl<'a> EndSearch<'a> {
         loop {
             let planes = [edge[0].generator, edge[1].generator, generator];
             let (mut has_tie, mut farthest) = (false, f64::NEG_INFINITY);
+            self.maybe.clear();
             let mut cutter = self.find_maybe_beyond(planes, &at)?;
             for other in self.maybe.iter().filter(|other| !planes.contains(other)) {
                 let plane = HalfSpace::new(self.seed, *other, self.input);
@@ -214,7 +215,6 @@ impl<'a> EndSearch<'a> {
         at: &Intersection,
     ) -> Result<Option<Generator>, ImagesMissing> {
         let (seed, input) = (self.seed, self.input);
-        self.maybe.clear();
         if at.distance() <= self.radius {
             let probe = self.candidates.probe(at.position, at.error);
             // The vertex's own planes are always among those that it may lie beyond.

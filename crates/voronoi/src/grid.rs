@@ -34,6 +34,9 @@ const MOST_STEPS: f64 = 4.0;
 /// Seeds in a block beyond which it is crowded: thrice the mean, which random seeds hardly ever come to.
 const CROWD: usize = 24;
 
+/// Share of the seeds in crowded blocks from which on blocks do not serve.
+const MOST_CROWDED: f64 = 0.1;
+
 /// The seeds in order of tiles, in these of bricks, of blocks, and of coordinates: an order that permuting the seeds does not change.
 pub(crate) struct SeedGrid {
     lower: DVec3,
@@ -149,10 +152,11 @@ impl SeedGrid {
         true
     }
 
-    /// The ranges of seeds in blocks that have so many that their order does not tell which are near one another.
-    pub(crate) fn crowded_blocks(&self) -> impl Iterator<Item = Range<usize>> {
-        let blocks = self.starts.windows(2).map(|block| block[0] as usize..block[1] as usize);
-        blocks.filter(|block| block.len() > CROWD)
+    /// Whether many seeds are in blocks that have so many that their order does not tell which are near one another.
+    pub(crate) fn is_crowded(&self) -> bool {
+        let counts = self.starts.windows(2).map(|block| (block[1] - block[0]) as usize);
+        let crowded: usize = counts.filter(|count| *count > CROWD).sum();
+        crowded as f64 > MOST_CROWDED * self.order.len() as f64
     }
 }
 

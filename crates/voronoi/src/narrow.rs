@@ -209,4 +209,32 @@ mod tests {
         }
         assert!(tied > 100 && decided - tied > 100, "{tied} of {decided}");
     }
+    /// Vertices on the walls of a polyhedron, and decisions about them.
+    #[test]
+    fn half_spaces_are_those_of_integers_of_any_length() {
+        let domain = Domain::ball(DVec3::splat(0.5), 0.5, 0.01).expect("a ball");
+        let seeds = [DVec3::new(0.3, 0.4, 0.7), DVec3::new(0.35, 0.45, 0.8), DVec3::new(0.6, 0.1, 0.3)];
+        let images = ImageTable::default();
+        let input = ExactInput { domain: &domain, seeds: &seeds, weights: None, images: &images };
+        let walls: Vec<Generator> = domain.walls().map(Generator::facet).collect();
+        let mut compared = 0;
+        for three in walls.windows(3) {
+            for of_vertex in [[three[0], three[1], Generator::site(1)], [three[1], three[0], three[2]]] {
+                let [a, b, c] = of_vertex;
+                let generators = [a, b, c, Generator::site(2)];
+                let exponent = common_exponent(input, 0, &generators);
+                let Some(planes) = planes(input, 0, generators, exponent) else { continue };
+                let [x, y, z, _] = planes.each_ref().map(|plane| plane.normal);
+                if dot(&x, &cross(&y, &z)) > I256::ZERO {
+                    let big = big::planes(input, 0, generators, exponent);
+                    assert_eq!(decide(&planes), big::decide(&big), "{generators:?}");
+                    let [x, y, z, _] = planes;
+                    let big = big::planes(input, 0, of_vertex, exponent);
+                    assert_eq!(vertex(&[x, y, z], exponent), big::vertex(&big, exponent), "{generators:?}");
+                    compared += 1;
+                }
+            }
+        }
+        assert!(compared > 50, "{compared} of {} walls", walls.len());
+    }
 }

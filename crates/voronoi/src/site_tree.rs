@@ -39,7 +39,8 @@ const MOST_IN_ROWS: usize = 1000;
 
 /// Sites, sorted so that what is near in space is near in memory, and boxes around them.
 pub(crate) struct SiteTree {
-    grid: SeedGrid,
+    /// Where few blocks are crowded, and the sites are in its order.
+    grid: Option<SeedGrid>,
     sites: Vec<u32>,
     columns: [Vec<f64>; 3],
     weights: Option<Vec<f64>>,
@@ -47,17 +48,18 @@ pub(crate) struct SiteTree {
 }
 
 impl SiteTree {
-    /// Takes sites in the order of a grid.
+    /// Takes sites in the order of a grid, and brings them into another one where its blocks are crowded.
     pub(crate) fn new(
         mut sites: Vec<u32>,
         grid: SeedGrid,
         position: impl Fn(u32) -> DVec3 + Sync,
         weight: Option<impl Fn(u32) -> f64 + Sync>,
     ) -> Self {
-        for range in grid.crowded_blocks() {
-            let first = range.start;
-            sort_into_boxes(&mut sites[range], first, &position);
+        let is_crowded = grid.is_crowded();
+        if is_crowded {
+            sort_into_boxes(&mut sites, 0, &position);
         }
+        let grid = (!is_crowded).then_some(grid);
         let mut columns = [const { Vec::new() }; 3];
         for (axis, column) in columns.iter_mut().enumerate() {
             *column = sites.par_iter().map(|site| position(*site)[axis]).collect();
@@ -88,7 +90,9 @@ impl SiteTree {
     ) -> bool {
         runs.clear();
         // Where seeds are spread evenly, and weights differ little, rows of blocks are quicker than boxes.
-        if self.grid.find_runs(within.center, reach, most.min(MOST_IN_ROWS), runs) {
+        if let Some(grid) = &self.grid
+            && grid.find_runs(within.center, reach, MOST_IN_ROWS, runs)
+        {
             return true;
         }
         runs.clear();
@@ -108,7 +112,8 @@ impl SiteTree {
     /// The sites in order of their distance from a place.
     pub(crate) fn near_first(&self, center: DVec3) -> NearFirst<'_> {
         let mut near = NearFirst { tree: self, center, heap: BinaryHeap::new() };
-        near.push_group(self.boxes.levels.len() - 1, 0, |_, _| true);
+        let level = u32::try_from(self.boxes.levels.len() - 1).expect("there are eleven levels at most");
+        near.push_group(level, 0, |_, _| true);
         near
     }
 }
@@ -120,60 +125,57 @@ pub(crate) struct InBox<'a> {
     pub(crate) sites: &'a [u32],
 }
 
-/// What waits to be visited.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-enum Waiting {
-    /// A box, by its level and number.
-    Box(usize, usize),
-    Plane(Generator),
-}
+/// In place of the level of boxes: what waits is a plane.
+const PLANE: u32 = u32::MAX;
 
 /// A search from near to far.
 pub(crate) struct NearFirst<'a> {
     tree: &'a SiteTree,
     center: DVec3,
-    /// By the squares of distances, of which bits come in the same order.
-    heap: BinaryHeap<Reverse<(u64, Waiting)>>,
+    /// What waits to be visited: the square of its distance, of which the bits come in the same order, and the level and the number of
+    /// a box, or [`PLANE`] and a generator.
+    heap: BinaryHeap<Reverse<(u64, u32, u32)>>,
 }
 
 impl NearFirst<'_> {
     /// Lets a plane wait as if it were the bisector with a site of which the square of the distance is given.
     pub(crate) fn push(&mut self, plane: Generator, squared: f64) {
-        self.heap.push(Reverse((squared.to_bits(), Waiting::Plane(plane))));
+        self.heap.push(Reverse((squared.to_bits(), PLANE, plane.0)));
     }
 
     /// The next plane and the square of its site's distance, if `is_wanted` still says so of the square and the site's weight: once it
     /// does not, it must not later.
     pub(crate) fn next(&mut self, is_wanted: impl Fn(f64, f64) -> bool) -> Option<(Generator, f64)> {
-        while let Some(Reverse((squared, waiting))) = self.heap.pop() {
-            match waiting {
-                Waiting::Plane(plane) => return Some((plane, f64::from_bits(squared))),
-                Waiting::Box(0, run) => {
+        while let Some(Reverse((squared, level, number))) = self.heap.pop() {
+            let first = number as usize * LANES;
+            match level {
+                PLANE => return Some((Generator(number), f64::from_bits(squared))),
+                0 => {
                     let columns = self.tree.columns();
-                    for place in run * LANES..columns.sites.len().min((run + 1) * LANES) {
+                    for place in first..columns.sites.len().min(first + LANES) {
                         let squared = (columns.position(place) - self.center).length_squared();
                         if is_wanted(squared, columns.weight(place)) {
                             self.push(Generator::site(columns.sites[place]), squared);
                         }
                     }
                 }
-                Waiting::Box(level, group) => self.push_group(level - 1, group, &is_wanted),
+                _ => self.push_group(level - 1, number, &is_wanted),
             }
         }
         None
     }
 
-    fn push_group(&mut self, level: usize, group: usize, is_wanted: impl Fn(f64, f64) -> bool) {
-        let boxes = &self.tree.boxes.levels[level][group];
-        for (lane, weight) in
-            boxes.weights.iter().enumerate().filter(|(_, weight)| **weight > f64::NEG_INFINITY)
-        {
+    fn push_group(&mut self, level: u32, group: u32, is_wanted: impl Fn(f64, f64) -> bool) {
+        let boxes = &self.tree.boxes.levels[level as usize][group as usize];
+        let first = u32::try_from(LANES).expect("eight") * group;
+        let lanes = (first..).zip(0..LANES);
+        for (number, lane) in lanes.filter(|(_, lane)| boxes.weights[*lane] > f64::NEG_INFINITY) {
             let [lower, upper] =
                 [&boxes.lower, &boxes.upper].map(|corner| DVec3::from_array(corner.map(|lanes| lanes[lane])));
             // Rounding must not make it farther than what it holds.
             let squared = (self.center.clamp(lower, upper) - self.center).length_squared() * (1.0 - 1e-15);
-            if is_wanted(squared, *weight) {
-                self.heap.push(Reverse((squared.to_bits(), Waiting::Box(level, group * LANES + lane))));
+            if is_wanted(squared, boxes.weights[lane]) {
+                self.heap.push(Reverse((squared.to_bits(), level, number)));
             }
         }
     }
@@ -196,7 +198,7 @@ mod tests {
 
     fn tree(seeds: &[DVec3], weights: Option<&[f64]>) -> SiteTree {
         let grid = SeedGrid::new(seeds);
-        assert!(grid.crowded_blocks().next().is_some());
+        assert!(grid.is_crowded());
         let weight = weights.map(|weights| |site: u32| weights[site as usize]);
         SiteTree::new(grid.order.clone(), grid, |site| seeds[site as usize], weight)
     }
