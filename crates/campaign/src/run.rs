@@ -86,8 +86,13 @@ fn run_one(slice: &Slice, index: u64) -> anyhow::Result<Record> {
     Ok(record)
 }
 
-/// How a line begins that tells an attempt.
-const GIVEN_UP: &str = "given up    ";
+/// Lines before the message: what was tried, and the progress of long runs.
+const LOG: [&str; 2] = ["given up    ", "progress    "];
+
+/// The lines of standard error that are not of the log.
+fn said(ended: &Ended) -> impl Iterator<Item = &str> {
+    ended.err.lines().filter(|line| !LOG.iter().any(|start| line.starts_with(start)))
+}
 
 /// What the run ended with, and why it is not good.
 fn judge(
@@ -97,8 +102,7 @@ fn judge(
     ended: &Ended,
 ) -> anyhow::Result<(Outcome, String, Certificate)> {
     // Attempts that were given up come before it.
-    let said = ended.err.lines().find(|line| !line.starts_with(GIVEN_UP));
-    let message = said.unwrap_or_default().to_owned();
+    let message = said(ended).next().unwrap_or_default().to_owned();
     let without = |outcome, message| Ok((outcome, message, Certificate::default()));
     if let Some(line) = ended.err.lines().find(|line| line.contains("panicked at")) {
         let said = ended.err.lines().skip_while(|other| *other != line).nth(1).unwrap_or_default();
@@ -132,7 +136,7 @@ fn complaint(case: &Case, ended: &Ended, message: &str) -> Option<String> {
         return Some("a failure without a message".to_owned());
     }
     // clap adds the usage below.
-    if ended.code == 1 && ended.err.lines().filter(|line| !line.starts_with(GIVEN_UP)).count() != 1 {
+    if ended.code == 1 && said(ended).count() != 1 {
         return Some("a message of more than one line".to_owned());
     }
     let value = case.mistake.as_ref()?;
