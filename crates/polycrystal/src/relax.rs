@@ -1,9 +1,9 @@
 //! Relaxation toward the equilibrium of grain-boundary tension at fixed grain volumes.
 //!
 //! The energy is the area of all boundaries between grains; its gradient flow is motion by mean curvature. A semi-implicit
-//! step of time dt solves `(M + dt (K + S)) d = -dt g + J^T p`, `J d = v` for the displacement d of the moved points x, with
+//! step of time dt solves `(M + dt K) d = -dt g + J^T p`, `J d = v` for the displacement d of the moved points x, with
 //! M the area that each stands for, K the cotangent stiffness of the mesh that they make up (Dziuk 1991), g the gradient of
-//! the area of the next finer level, S springs on small features, J the gradient of the grains' volumes, v what these
+//! the area of the next finer level, J the gradient of the grains' volumes, v what these
 //! lack, and p the pressures that make up for it.
 //!
 //! First the control points move, then those of level 1, which start where subdivision puts them.
@@ -11,7 +11,6 @@
 mod clusters;
 pub(crate) mod conjugate_gradients;
 mod equilibrium;
-mod face_corners;
 mod flow;
 mod local_area;
 mod merged_lines;
@@ -22,7 +21,6 @@ mod plane;
 mod reconnection;
 mod rows;
 mod shape;
-mod springs;
 mod system;
 mod tangential;
 mod thin_triangles;

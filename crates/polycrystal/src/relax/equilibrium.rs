@@ -143,32 +143,9 @@ fn equilibrate_by_mean_tension(
         return plane::equilibrate(tessellation, recipe, watch);
     }
     let mut attempts = Vec::new();
-    // Each gets through places where the other does not.
-    let equilibrium = match balanced(tessellation, recipe, tuning, Remedy::Join, &mut attempts, watch) {
-        Err(error) if error.is_tangle() => {
-            error.give_up("letting neighbours switch, what folds moving as one", &mut attempts);
-            balanced(tessellation, recipe, tuning, Remedy::Brake, &mut attempts, watch)
-        }
-        result => result,
-    };
-    match equilibrium {
-        Ok(equilibrium) => Ok(Equilibrium { attempts, ..equilibrium }),
-        Err(error) => Err(error.after(attempts)),
-    }
-}
-
-/// As [`equilibrate`], with one remedy for what folds while the topology changes.
-fn balanced(
-    tessellation: &Tessellation,
-    recipe: &NetworkRecipe<'_>,
-    tuning: &Tuning,
-    remedy: Remedy,
-    attempts: &mut Vec<Attempt>,
-    watch: &mut impl FnMut(RelaxationStep<'_>),
-) -> Result<Equilibrium, NetworkError> {
     let mut complex = CellComplex::from(tessellation);
     let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
-    let (shape, reconnections) = settle(&mut complex, recipe, &volumes, tuning, remedy)?;
+    let (shape, reconnections) = settle(&mut complex, recipe, &volumes, tuning)?;
     let mut smooth = |merged_length: f64, rigid_length: f64| {
         let MergedLines { cells, middles, collapsed } = MergedLines::new(&complex, &shape, merged_length);
         let (network, points) = Network::of_curved_lines(&cells, &middles, recipe.junctions, recipe.levels)?;
@@ -187,13 +164,20 @@ fn balanced(
         ("equilibrium without short lines", tuning.merged_length, 0.0),
         ("the same with the shortest edges rigid", tuning.merged_length, tuning.rigid_length),
     ];
+    let mut first = None;
     for (tried, merged_length, rigid_length) in ways {
         match smooth(merged_length, rigid_length) {
-            Err(error) if error.is_tangle() => error.give_up(tried, attempts),
-            result => return result,
+            Err(error) if error.is_tangle() => error.give_up(tried, &mut attempts),
+            result => {
+                first = Some(result);
+                break;
+            }
         }
     }
-    smooth(0.0, 0.0)
+    match first.unwrap_or_else(|| smooth(0.0, 0.0)) {
+        Ok(equilibrium) => Ok(Equilibrium { attempts, ..equilibrium }),
+        Err(error) => Err(error.after(attempts)),
+    }
 }
 
 /// Lets the control points flow and the topology change until both are at rest; the complex is then as they are.
@@ -202,7 +186,6 @@ fn settle(
     recipe: &NetworkRecipe<'_>,
     volumes: &[f64],
     tuning: &Tuning,
-    remedy: Remedy,
 ) -> Result<(Shape, Reconnections), NetworkError> {
     // All of a wall has the same area unless it folds, so that tension does nothing but unfold it.
     let tension =
@@ -221,7 +204,7 @@ fn settle(
     let mut looks = 0;
     loop {
         let free = Tuning { rigid_length: 0.0, ..*tuning };
-        let mut flow = Flow::new(&network, 0, Volumes::Kept, 1.0, free).until_rest(remedy);
+        let mut flow = Flow::new(&network, 0, Volumes::Kept, 1.0, free).until_rest(Remedy::Join);
         // As long as the topology stays, so does the flow.
         let shape = loop {
             let before = lengths(complex);

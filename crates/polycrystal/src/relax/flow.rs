@@ -8,17 +8,16 @@ mod widening;
 use glam::DVec3;
 use voronoi::Dimension;
 
-use super::check_grains_are_left;
 use super::clusters::Clusters;
 use super::conjugate_gradients::dot;
-use super::face_corners::FaceCorners;
 use super::patch::PatchTerms;
 use super::patches::Patches;
 use super::system::{Step, System};
-use super::tangential::{Aim, tangential_moves};
+use super::tangential::tangential_moves;
 use super::thin_triangles::Room;
 use super::tuning::Tuning;
 use super::wedges::Wedges;
+use super::{USUAL_TIME, check_grains_are_left};
 use crate::folds::{element_normals, folded_pairs};
 use crate::measures::rms_residual;
 use crate::seams::Seams;
@@ -34,6 +33,9 @@ const WHOLE_ATTEMPTS: usize = 12;
 
 /// Most edges of the control mesh, as long as the mean, to a feature. Fans have three.
 const FEATURE_EDGES: f64 = 6.0;
+
+/// Share of its first residual at which a step of grains that grow is solved: rates of growth are asked for, not only where they lead.
+const FREE_TOLERANCE: f64 = 1e-3;
 
 /// Change of that cosine that counts as none.
 const SLIGHT_BEND: f64 = 1e-9;
@@ -51,16 +53,6 @@ pub(super) enum Remedy {
     Join,
     /// They go less far, in this step alone: right for a flow until all is at rest, which comes back to them.
     Brake,
-}
-
-impl Remedy {
-    /// Where points inside boundaries go.
-    fn aim(self) -> Aim {
-        match self {
-            Self::Join => Aim::Neighbors,
-            Self::Brake => Aim::Center,
-        }
-    }
 }
 
 /// A number of steps on one level.
@@ -102,9 +94,6 @@ pub(super) struct Flow<'a> {
     surface: usize,
     /// Neighbouring elements of each boundary on that level.
     neighbors: Vec<[u32; 2]>,
-    corners: FaceCorners,
-    /// The edges of grains on that level.
-    wedges: Wedges,
     clusters: Clusters,
     volumes: Volumes,
     remedy: Remedy,
@@ -123,21 +112,8 @@ impl<'a> Flow<'a> {
         let surface = (network.levels().len() - 1).min(level + 1);
         let clusters = Clusters::new(&network.levels()[level]);
         let patches = Patches::new(network, level, surface, tension_unit, tuning.largest_cotangent);
-        let corners = FaceCorners::new(network, level);
-        let Wedged { wedges, neighbors } = Wedged::new(network, surface);
-        Self {
-            network,
-            patches,
-            level,
-            surface,
-            neighbors,
-            corners,
-            wedges,
-            clusters,
-            volumes,
-            remedy: Remedy::Join,
-            tuning,
-        }
+        let neighbors = Seams::of_level(&network.levels()[surface]).inner;
+        Self { network, patches, level, surface, neighbors, clusters, volumes, remedy: Remedy::Join, tuning }
     }
 
     /// The flow as one until all is at rest.
@@ -203,7 +179,7 @@ impl<'a> Flow<'a> {
             count = places.len();
             // What is still to be moved on finer levels may fold there for now.
             if count == 0 || (self.remedy == Remedy::Brake && stage.end == End::Open) {
-                if stage.end == End::Finished && self.tuning.widens {
+                if stage.end == End::Finished {
                     self.widen_all(&mut points, surface, &finest);
                 }
                 return Ok(points);
@@ -247,13 +223,13 @@ impl<'a> Flow<'a> {
         let terms = self.patches.terms(points);
         let energy = terms.iter().map(|terms| terms.energy).sum();
         let refined = self.refined(points);
-        let before = (element_normals(self.surface(), &refined), refined);
+        let before = element_normals(self.surface(), &refined);
         let cones: Vec<Cone> = terms.iter().map(|terms| terms.cone).collect();
         let volumes = volumes_of_grains(self.network.boundaries(), &cones, self.network.grain_count());
         let missing = self.missing(&volumes);
         let mut clusters = self.clusters.clone();
         clusters.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
-        let system = self.system(points, &terms, &clusters, time);
+        let system = self.system(&terms, &clusters, time);
         let (mut moves, pressures) = match (self.volumes, self.control_mesh()) {
             (Volumes::Kept, _) | (_, Mesh::Triangles(_)) => system.displacement(&missing),
             (Volumes::Free, Mesh::Segments(_)) => {
@@ -261,25 +237,20 @@ impl<'a> Flow<'a> {
                 (system.implicit_displacement(&self.patches, terms_at), vec![0.0; missing.len()])
             }
         };
-        let within =
-            tangential_moves(self.network, self.level, points, self.remedy.aim(), self.tuning.centering);
+        let within = tangential_moves(self.network, self.level, points, self.centering(time));
         moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
-        if self.remedy == Remedy::Brake {
-            self.hold_short_edges(&mut clusters, points, &moves);
-        }
         self.unite(&clusters, &mut moves, 0);
         let mut count = 0;
         for attempt in 0..ATTEMPTS {
             let moved = displaced(points, &moves);
             let broken = self.broken_elements(&before, &moved);
-            let folding = self.corners.folding(points, &moved);
-            count = broken.len() + folding.len();
+            count = broken.len();
             if count == 0 {
                 *points = moved;
                 break;
             }
             let broken = broken.into_iter().map(|element| self.dependencies(self.surface, element));
-            let places: Vec<Vec<u32>> = broken.chain(folding.iter().map(|corner| corner.to_vec())).collect();
+            let places: Vec<Vec<u32>> = broken.collect();
             if self.remedy == Remedy::Join || attempt < JOINED_ATTEMPTS {
                 places.iter().for_each(|points| clusters.join_all(points));
                 self.unite(&clusters, &mut moves, attempt);
@@ -288,10 +259,16 @@ impl<'a> Flow<'a> {
                 clusters.number().scale(&mut moves, &places.concat(), factor);
             }
         }
-        match self.remedy {
-            Remedy::Join if count > 0 => return Err(NetworkError::Folded { count }),
-            Remedy::Join if self.tuning.keeps_joined => self.clusters = clusters,
-            Remedy::Join | Remedy::Brake => {}
+        if self.remedy == Remedy::Join {
+            if count > 0 {
+                return Err(NetworkError::Folded { count });
+            }
+            // What turns over in the plane as grains grow may be going on to vanish.
+            let is_growth_in_plane =
+                self.volumes == Volumes::Free && matches!(self.control_mesh(), Mesh::Segments(_));
+            if self.tuning.keeps_joined && !is_growth_in_plane {
+                self.clusters = clusters;
+            }
         }
         let pressures = pressures.iter().map(|pressure| pressure / time).collect();
         Ok(Taken { energy, pressures, volumes })
@@ -316,11 +293,25 @@ impl<'a> Flow<'a> {
         }
     }
 
-    fn system(&self, points: &[DVec3], terms: &[PatchTerms], clusters: &Clusters, time: f64) -> System {
-        let (volumes, tolerance) = (self.volumes, self.tuning.tolerance);
-        let step = Step { time, feature_size: self.feature_size(points), volumes, tolerance };
+    /// The share of its way to the centre of the triangles around that a point goes in a step. Where grains grow, a step of no time moves
+    /// nothing: points that move within a curved boundary leave it a little, and that counts as growth.
+    fn centering(&self, time: f64) -> f64 {
+        let usual = USUAL_TIME / self.tuning.coarse_steps as f64 * self.network.mean_grain_size().powi(2);
+        match self.volumes {
+            Volumes::Kept => self.tuning.centering,
+            Volumes::Free => self.tuning.centering * (time / usual).min(1.0),
+        }
+    }
+
+    fn system(&self, terms: &[PatchTerms], clusters: &Clusters, time: f64) -> System {
+        let volumes = self.volumes;
+        let tolerance = match volumes {
+            Volumes::Kept => self.tuning.tolerance,
+            Volumes::Free => FREE_TOLERANCE,
+        };
+        let step = Step { time, volumes, tolerance };
         let level = &self.network.levels()[self.level];
-        System::new(self.network, &self.patches, terms, points, clusters.number(), step, level)
+        System::new(self.network, &self.patches, terms, clusters.number(), step, level)
     }
 
     /// The feature size as control edges of this level have it. Where they are fine, what is short among them is not what is
@@ -366,23 +357,25 @@ impl<'a> Flow<'a> {
         folds.map(|element| self.dependencies(self.finest(), element)).collect()
     }
 
-    /// Elements that a step has turned too far, or bent too far and more than they were, or closed upon others; given the
-    /// normals and points before.
-    fn broken_elements(&self, (before, start): &(Vec<DVec3>, Vec<DVec3>), moved: &[DVec3]) -> Vec<u32> {
-        let refined = self.refined(moved);
-        let closing = self.wedges.closing(start, &refined);
-        let after = element_normals(self.surface(), &refined);
+    /// Elements that a step has turned too far, or bent too far and more than they were; given the normals before.
+    fn broken_elements(&self, before: &[DVec3], moved: &[DVec3]) -> Vec<u32> {
+        let after = element_normals(self.surface(), &self.refined(moved));
         let cosine = |normals: &[DVec3], [a, b]: [u32; 2]| {
             normals[a as usize].normalize_or_zero().dot(normals[b as usize].normalize_or_zero())
         };
-        let bent = folded_pairs(&self.neighbors, &after, self.tuning.largest_bend);
+        // Growth is asked for step by step: where a line shrinks it bends, and what is held there would not grow as it should.
+        let largest_bend = match self.volumes {
+            Volumes::Kept => self.tuning.largest_bend,
+            Volumes::Free => -1.0,
+        };
+        let bent = folded_pairs(&self.neighbors, &after, largest_bend);
         let bent =
             bent.into_iter().filter(|pair| cosine(&after, *pair) < cosine(before, *pair) - SLIGHT_BEND);
         let turned = (0u32..).zip(before.iter().zip(&after)).filter(|(_, (before, after))| {
             let turn = before.dot(**after) - self.tuning.largest_turn * before.length() * after.length();
             turn.is_nan() || turn < 0.0
         });
-        turned.map(|(element, _)| element).chain(bent.flatten()).chain(closing).collect()
+        turned.map(|(element, _)| element).chain(bent.flatten()).collect()
     }
 
     /// All control points that an element of a level depends on; those of the surface's element that it descends from.

@@ -15,9 +15,6 @@ use super::patches::place_in;
 use super::rows::Rows;
 use crate::volume::{Cone, segment_area, triangle_volume};
 
-/// The smallest cotangent that a triangle's angle counts with: obtuse triangles would otherwise push points apart.
-const SMALLEST_COTANGENT: f64 = 0.05;
-
 /// A boundary's control mesh, and its surface in terms of the control points.
 #[derive(Debug)]
 pub(super) struct Patch {
@@ -150,9 +147,9 @@ impl Patch {
                     let doubled_area = (b - a).cross(c - a).length();
                     for k in 0..3 {
                         let [apex, from, to] = [0, 1, 2].map(|step| at(corners[(k + step) % 3]));
-                        // A triangle without area has no cotangent: the upper limit stands in.
+                        // A triangle without area has no cotangent: the upper limit stands in. Obtuse angles would push points apart.
                         let cotangent = (from - apex).dot(to - apex) / doubled_area.max(f64::MIN_POSITIVE);
-                        let cotangent = cotangent.clamp(SMALLEST_COTANGENT, largest_cotangent);
+                        let cotangent = cotangent.clamp(0.0, largest_cotangent);
                         stiffness[across[k] as usize] += 0.5 * self.share * self.tension * cotangent;
                         mass[corners[k] as usize] += self.share * doubled_area / 6.0;
                     }

@@ -7,7 +7,6 @@ use super::clusters::Numbering;
 use super::patch::{Patch, PatchTerms};
 use super::patches::Patches;
 use super::rows::Rows;
-use super::springs::add_springs;
 use super::volume_constraint::{Compliance, VolumeConstraint};
 use crate::{Freedom, Level, Network, Volumes};
 
@@ -29,7 +28,7 @@ const ALONG_LINES: f64 = 0.01;
 /// Unknowns that one task works on; fixed, so that no sum depends on the number of threads.
 const CHUNK: usize = 4096;
 
-/// `(M + dt (K + S)) d = -dt g + J^T p` for the displacements d of clusters, with pressures p such that `J d` is given.
+/// `(M + dt K) d = -dt g + J^T p` for the displacements d of clusters, with pressures p such that `J d` is given.
 pub(super) struct System {
     /// `dt`.
     time: f64,
@@ -51,35 +50,21 @@ pub(super) struct System {
 /// What a step is like.
 pub(super) struct Step {
     pub(super) time: f64,
-    /// The feature size as control edges have it.
-    pub(super) feature_size: f64,
     pub(super) volumes: Volumes,
     /// Share of its first residual at which it is solved.
     pub(super) tolerance: f64,
 }
 
 impl System {
-    /// The system of a step of the given time from the given points.
+    /// The system of a step of the given time, from points with the given terms.
     pub(super) fn new(
         network: &Network,
         patches: &Patches,
         terms: &[PatchTerms],
-        points: &[DVec3],
         clusters: Numbering,
-        Step { time, feature_size, volumes, tolerance }: Step,
+        Step { time, volumes, tolerance }: Step,
         level: &Level,
     ) -> Self {
-        let springs: Vec<Vec<f64>> = patches
-            .patches
-            .par_iter()
-            .zip(terms)
-            .map(|(patch, terms)| {
-                let mut springs = terms.stiffness.clone();
-                add_springs(&mut springs, patch, points, feature_size);
-                springs.iter_mut().for_each(|spring| *spring *= time);
-                springs
-            })
-            .collect();
         let count = clusters.cluster_count();
         let points_of = |cluster| {
             patches.places_of_cluster(&clusters, cluster).map(|place| patches.point_of_place(place))
@@ -90,7 +75,7 @@ impl System {
                 for (end, edge) in links.row(point) {
                     let other = clusters.numbers()[control_points[*end as usize] as usize];
                     if other as usize != cluster {
-                        entries.push((other, springs[patch][*edge as usize]));
+                        entries.push((other, time * terms[patch].stiffness[*edge as usize]));
                     }
                 }
             }
@@ -156,7 +141,7 @@ impl System {
         self.of_points(&displacement)
     }
 
-    /// `dt (K + S) d`.
+    /// `dt K d`.
     fn stiff(&self, displacement: &[DVec3]) -> Vec<DVec3> {
         let row = |cluster: usize| {
             let springs = self.springs.row(cluster).iter();
@@ -239,7 +224,7 @@ impl System {
         (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect()
     }
 
-    /// `(M + dt (K + S)) d`.
+    /// `(M + dt K) d`.
     fn apply(&self, displacement: &[DVec3]) -> Vec<DVec3> {
         let row = |cluster: usize| {
             let springs = self.springs.row(cluster).iter();

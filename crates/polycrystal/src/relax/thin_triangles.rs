@@ -19,11 +19,11 @@ const POWER: i32 = 3;
 /// d: the area that counts as none, in units of s. A needle of a tenth of a degree has as much.
 const NO_AREA: f64 = 1e-3;
 
-/// Most steps down the gradient; most places take some ten, the worst of 20 networks of 200 grains took 244.
-const STEPS: usize = 300;
+/// Most steps down the gradient; most places take some ten. Much longer searches make of rounding what can be seen.
+pub(super) const STEPS: usize = 100;
 
 /// So many steps in a row that lessen the energy by less than the share below lead nowhere: a line is too short, or a corner too sharp.
-const PATIENCE: usize = 40;
+const PATIENCE: usize = 20;
 const LEAST_GAIN: f64 = 0.02;
 
 /// Times that a step is halved before it counts as one that leads nowhere.
@@ -116,15 +116,15 @@ impl Room {
     }
 
     /// Where the points go so that no triangle has an angle whose sine is below `wanted`; nothing if they do not come so far, as where
-    /// a line is too short.
-    pub(super) fn widened(&self, wanted: f64) -> Option<Vec<(u32, DVec3)>> {
+    /// a line is too short, within so many steps.
+    pub(super) fn widened(&self, wanted: f64, steps: usize) -> Option<Vec<(u32, DVec3)>> {
         let mut points = self.start.clone();
         let mut at = self.distortion(&points);
         let bend = at.least_cosine.min(LARGEST_TURN);
         let mut direction = at.toward.clone();
         let mut length: f64 = 1.0;
         let mut last_energy = f64::INFINITY;
-        for step in 0..STEPS {
+        for step in 0..steps {
             if step % PATIENCE == 0 {
                 if at.energy > (1.0 - LEAST_GAIN) * last_energy {
                     return None;
@@ -311,7 +311,7 @@ mod tests {
         let after = room.distortion(&room.start).least_sine;
         assert!(after < 0.5 * before, "{after} {before}");
         let wanted = 0.9 * before;
-        let moved = room.widened(wanted).expect("room enough");
+        let moved = room.widened(wanted, STEPS).expect("room enough");
         for (point, place) in moved {
             let place_of = room.points.iter().position(|other| *other == point).expect("one of them");
             room.start[place_of] = place;

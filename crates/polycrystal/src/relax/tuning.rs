@@ -13,7 +13,8 @@ pub struct Tuning {
     /// Steps that the same time is divided into once more on the next level, where less is left to do. Three leave angles a degree
     /// worse; twelve make triangles thinner.
     pub fine_steps: usize,
-    /// Steps of the forecast that tells which edges become short; 0 for none, which leaves a hundred thin triangles.
+    /// Steps of the forecast that tells which edges become short; 0 for none, which leaves a hundred thin triangles. Five make angles
+    /// and triangles a little worse.
     pub forecast_steps: usize,
     /// Factor by which lines that the forecast has shortened may be longer than others to collapse. With 1 thin triangles stay, 3 takes out
     /// what lattices need.
@@ -22,7 +23,7 @@ pub struct Tuning {
     pub tolerance: f64,
     /// Length below which a control edge no longer changes. 0 leaves some thin triangles, twice as much spoils angles.
     pub rigid_length: f64,
-    /// Share of its way to the middle of the triangles around that a point inside a boundary goes in a step. 0 makes
+    /// Share of its way to the centre of the triangles around that a point inside a boundary goes in a step. 0 makes
     /// triangles thinner.
     pub centering: f64,
     /// The largest cotangent that an angle counts with in a flow of a given time: that of 11 degrees. Needles would otherwise glue
@@ -35,8 +36,9 @@ pub struct Tuning {
     pub largest_bend: f64,
     /// Whether points that a step would fold move as one in all steps that follow, not in this one alone.
     pub keeps_joined: bool,
-    /// Whether what is still thin in the end is made wider.
-    pub widens: bool,
+    /// Times that widening what is still thin in the end may look at as many triangles as there are: some places are hopeless, and must not
+    /// take longer than the flow. 0 leaves all as it is.
+    pub widening: f64,
     /// The finest level whose points move by themselves for a time. One level of the control mesh has a single point inside a face,
     /// which bounds how well angles at its edges can fit; the next has ten.
     pub finest_moved: usize,
@@ -56,14 +58,14 @@ impl Default for Tuning {
             fine_steps: 6,
             forecast_steps: 10,
             forecast_factor: 2.0,
-            tolerance: 1e-3,
+            tolerance: 1e-2,
             rigid_length: 0.04,
-            centering: 0.15,
+            centering: 0.2,
             largest_cotangent: 5.0,
             largest_turn: 0.5,
             largest_bend: 0.26,
             keeps_joined: true,
-            widens: true,
+            widening: 10.0,
             finest_moved: 1,
             finest_balanced: 2,
             largest_cotangent_to_rest: 50.0,

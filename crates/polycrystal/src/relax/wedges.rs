@@ -8,14 +8,8 @@ use rayon::prelude::*;
 use crate::seams::{Seams, Use};
 use crate::{Elements, Side, Surface};
 
-/// Cosine of the smallest angle that a step may leave a grain at a triple line (2 degrees).
-const SHARPEST: f64 = 0.9994;
-
 /// Cosine of the angle from which on one beyond 180 degrees is one that has closed (315 degrees, or -45).
 const LEAST_TURNED: f64 = 0.7;
-
-/// Change of that cosine that counts as none.
-const SLIGHT: f64 = 1e-9;
 
 /// The edges of all grains in space: two triangles of different boundaries with a grain between them. None in the plane, where
 /// short lines may well turn about.
@@ -56,19 +50,6 @@ impl Wedges {
             }));
         }
         Self { wedges }
-    }
-
-    /// The elements at edges that a step from `before` to `after` makes too sharp, or sharper, or closes.
-    pub(super) fn closing(&self, before: &[DVec3], after: &[DVec3]) -> Vec<u32> {
-        let closes = |wedge: &&Wedge| {
-            let new = wedge.opening(after);
-            // Most are wide open.
-            new[0] > 0.0 && {
-                let old = wedge.opening(before);
-                (new[0] > SHARPEST && new[0] > old[0] + SLIGHT) || (is_turned(new) && !is_turned(old))
-            }
-        };
-        self.wedges.par_iter().filter(closes).flat_map_iter(|wedge| wedge.elements).collect()
     }
 
     /// The elements at edges where grains are turned inside out.
@@ -113,7 +94,7 @@ mod tests {
         let level = network.control_mesh();
         let sides = network.sides();
         let wedges = Wedges::new(&Surface::of_level(level, &flat, &sides), &Seams::of_level(level));
-        assert!(wedges.turned(&flat).is_empty() && wedges.closing(&flat, &flat).is_empty());
+        assert!(wedges.turned(&flat).is_empty());
         // What is inside the boundary at x = 0.5, y < 0.5, goes far beyond the one at y = 0.5.
         let mut pushed = flat.clone();
         for point in &mut pushed {
@@ -121,6 +102,6 @@ mod tests {
                 *point = DVec3::new(0.95, 0.7, point.z);
             }
         }
-        assert!(!wedges.turned(&pushed).is_empty() && !wedges.closing(&flat, &pushed).is_empty());
+        assert!(!wedges.turned(&pushed).is_empty());
     }
 }

@@ -1,29 +1,12 @@
-//! What a flow to rest does about short edges and folds, which it has the time to come back to.
+//! What a flow to rest does about folds, which it has the time to come back to.
 
 use glam::DVec3;
 use subzero::VertexRule;
 
-use super::{ATTEMPTS, Clusters, Flow, Wedged};
+use super::{ATTEMPTS, Flow, Wedged};
 use crate::Mesh;
 
-/// Length, in units of the feature size, below which a flow toward rest lets no edge shrink.
-const HELD_LENGTH: f64 = 0.02;
-
 impl Flow<'_> {
-    /// Makes the ends of edges that a step would leave too short, and shorter than they are, move as one.
-    pub(super) fn hold_short_edges(&self, clusters: &mut Clusters, points: &[DVec3], moves: &[DVec3]) {
-        let Mesh::Triangles(mesh) = self.control_mesh() else { return };
-        let least = HELD_LENGTH * self.feature_size(points);
-        for edge in 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits") {
-            let [a, b] = mesh.edge(edge).map(|end| end as usize);
-            let before = points[a].distance(points[b]);
-            let after = (points[a] + moves[a]).distance(points[b] + moves[b]);
-            if after < least && after < before {
-                clusters.join_all(&mesh.edge(edge));
-            }
-        }
-    }
-
     /// Takes folds out of the finest level, as far as that goes.
     pub(super) fn iron_folds(&self, points: &mut [DVec3], finest: &Wedged) {
         for _ in 0..ATTEMPTS {

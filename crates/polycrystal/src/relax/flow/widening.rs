@@ -8,8 +8,9 @@ use subzero::VertexRule;
 
 use super::{Flow, Room, Wedged};
 use crate::relax::patches::by_boundary;
+use crate::relax::thin_triangles::STEPS;
 use crate::triangle_quality::squared_sine;
-use crate::{BoundaryId, Mesh, TriangleQuality};
+use crate::{BoundaryId, Mesh, TriangleQuality, Volumes};
 
 /// Smallest angle, in units of the bound, of a triangle that stays as it is ...
 const GOOD: f64 = 1.1;
@@ -32,13 +33,18 @@ const TRIES: [Moving; 3] = [Moving::Inside, Moving::Lines, Moving::Lines];
 impl Flow<'_> {
     /// Makes thin triangles of the finest level wide, as far as nothing folds; `surface` are the points of that level.
     pub(super) fn widen_all(&self, points: &mut Vec<DVec3>, mut surface: Vec<DVec3>, finest: &Wedged) {
-        for moving in TRIES {
+        // Where grains grow, what that does to volumes would count as growth.
+        let widens = self.tuning.widening > 0.0 && self.volumes == Volumes::Kept;
+        let tries = if widens { TRIES.as_slice() } else { &[] };
+        for moving in tries.iter().copied() {
             let movable = self.movable_points(&self.thin_triangles(&surface), moving);
             if movable.is_empty() {
                 break;
             }
             let mut moved = points.clone();
-            self.widen(&mut moved, &movable, moving);
+            if !self.widen(&mut moved, &movable, moving) {
+                continue;
+            }
             for _ in 0..2 {
                 let mut right = moved.clone();
                 let Ok(restored) = self.restored(&mut right) else { break };
@@ -103,32 +109,42 @@ impl Flow<'_> {
         groups
     }
 
-    /// Moves groups of points so that the triangles around are wide.
-    fn widen(&self, points: &mut [DVec3], movable: &[Vec<u32>], moving: Moving) {
+    /// Moves groups of points so that the triangles around are wide; tells whether that was any help.
+    fn widen(&self, points: &mut [DVec3], movable: &[Vec<u32>], moving: Moving) -> bool {
         let level = &self.network.levels()[self.level];
         let elements = by_boundary(self.network.boundaries().len(), &level.boundary_of);
+        let around = |movable: &Vec<u32>| {
+            let places = movable.iter().flat_map(|point| self.patches.places_of_point(*point as usize));
+            let mut boundaries: Vec<usize> =
+                places.map(|place| self.patches.point_of_place(*place).0).collect();
+            boundaries.sort_unstable();
+            boundaries.dedup();
+            boundaries.into_iter().flat_map(|boundary| &elements[boundary]).copied().collect()
+        };
+        let groups: Vec<(&Vec<u32>, Vec<u32>)> =
+            movable.iter().map(|movable| (movable, around(movable))).collect();
+        let work: usize = groups.iter().map(|(_, around)| around.len()).sum();
+        let share = self.tuning.widening * level.element_count() as f64 / work as f64;
+        let steps = (1..=STEPS).take_while(|steps| *steps as f64 <= share).last().unwrap_or(0);
         let together = match moving {
             Moving::Inside => movable.len(),
             // Boundaries share lines: one after the other.
             Moving::Lines => 1,
         };
-        for movable in movable.chunks(together) {
-            let widened = |movable: &Vec<u32>| {
-                let places = movable.iter().flat_map(|point| self.patches.places_of_point(*point as usize));
-                let mut boundaries: Vec<usize> =
-                    places.map(|place| self.patches.point_of_place(*place).0).collect();
-                boundaries.sort_unstable();
-                boundaries.dedup();
-                let around: Vec<u32> =
-                    boundaries.into_iter().flat_map(|boundary| &elements[boundary]).copied().collect();
-                Room::new(self.network, self.level, around, movable, points)?.widened(sine(WIDE))
+        let mut is_wider = false;
+        for groups in groups.chunks(together) {
+            let widened = |(movable, around): &(&Vec<u32>, Vec<u32>)| {
+                let room = Room::new(self.network, self.level, around.clone(), movable, points)?;
+                room.widened(sine(WIDE), steps)
             };
-            let moved: Vec<Vec<(u32, DVec3)>> = movable.par_iter().filter_map(widened).collect();
+            let moved: Vec<Vec<(u32, DVec3)>> = groups.par_iter().filter_map(widened).collect();
+            is_wider |= !moved.is_empty();
             for (point, place) in moved.into_iter().flatten() {
                 points[point as usize] = place;
             }
         }
         level.copies.place(self.network.domain(), points);
+        is_wider
     }
 }
 
