@@ -43,6 +43,11 @@ impl Dimension {
             Self::Three => 3,
         }
     }
+
+    /// Faces that a cell with a volume has at least.
+    pub(crate) fn fewest_faces(self) -> usize {
+        self.fewest_corners() + 1
+    }
 }
 
 /// Most walls of a polyhedron: that many numbers of 32 bits stand for walls, and not for sites.

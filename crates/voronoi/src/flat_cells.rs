@@ -4,15 +4,11 @@
 //! seed's cell is then a polygon. Symbolically it has a thickness; once coincident vertices are united its two faces have the
 //! same corners, and the cells beyond them touch each other. (In the plane: a segment with two edges.)
 
-use crate::Dimension;
 use crate::tessellation::{CellId, FaceId, Side, Tessellation};
 
 /// Takes flat cells out, so that their two neighbours share one face. True if there were any.
 pub(crate) fn remove_flat_cells(tessellation: &mut Tessellation) -> bool {
-    let fewest_faces = match tessellation.domain.dimension() {
-        Dimension::Two => 3,
-        Dimension::Three => 4,
-    };
+    let fewest_faces = tessellation.domain.dimension().fewest_faces();
     let cells = (0u32..).take(tessellation.cell_count()).map(CellId);
     let is_flat = |cell: &CellId| (1..fewest_faces).contains(&tessellation.cell_faces(*cell).len());
     let flat: Vec<CellId> = cells.filter(is_flat).collect();

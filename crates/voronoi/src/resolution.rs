@@ -8,7 +8,7 @@ use crate::periodic_weld::{UnitedVertices, unwrapped};
 use crate::regularize::face_end;
 use crate::tessellation::Tessellation;
 use crate::torus::TorusFaces;
-use crate::{CellId, Corner, Dimension};
+use crate::{CellId, Corner};
 
 /// Shortest edge that has a direction, relative to the largest coordinate of the domain or its extent. Vertices are some 1e-16 of
 /// that beside their exact places, a few times more where planes meet at small angles; so this edge's direction is right to a
@@ -58,10 +58,7 @@ impl Tessellation {
         }
         let mut resolved = unwrapped(domain, self.seeds(), &faces, &self.vertices()[..count]);
         resolved.list_faces_of_cells_in_order();
-        let fewest_faces = match domain.dimension() {
-            Dimension::Two => 3,
-            Dimension::Three => 4,
-        };
+        let fewest_faces = domain.dimension().fewest_faces();
         let is_kept = |cell| resolved.cell_faces(cell).len() >= fewest_faces.min(self.cell_faces(cell).len());
         (0u32..).map(CellId).take(self.cell_count()).all(is_kept).then_some(resolved)
     }
