@@ -70,6 +70,11 @@ impl Candidates {
         };
     }
 
+    /// Takes all planes out. The next are for the same search.
+    pub(crate) fn clear(&mut self) {
+        self.count = 0;
+    }
+
     pub(crate) fn generators(&self) -> &[Generator] {
         &self.generators[..self.count]
     }

@@ -61,6 +61,10 @@ impl ConvexCell {
         cell
     }
 
+    fn generators(&self, triple: [u32; 3]) -> [Generator; 3] {
+        triple.map(|plane| self.planes[plane as usize].generator)
+    }
+
     /// Fills `self.cut` with the vertices beyond the plane; false where there are none.
     fn find_cut(&mut self, plane: &HalfSpace, input: ExactInput) -> bool {
         let HalfSpace { normal, offset, offset_size, .. } = *plane;
@@ -83,8 +87,7 @@ impl ConvexCell {
             } else if value < -error {
                 false
             } else {
-                let planes = self.triples[v].map(|p| self.planes[p as usize].generator);
-                input.decide(self.seed, planes, plane.generator).beyond
+                input.decide(self.seed, self.generators(self.triples[v]), plane.generator).beyond
             };
             if beyond {
                 self.cut.push(v);
@@ -176,8 +179,13 @@ impl Cutting for ConvexCell {
     }
 
     fn vertices(&self) -> Vec<[Generator; 3]> {
-        let generators = |triple: &[u32; 3]| triple.map(|p| self.planes[p as usize].generator);
-        self.triples.iter().map(generators).collect()
+        self.triples.iter().map(|triple| self.generators(*triple)).collect()
+    }
+
+    fn nearest_vertex(&self) -> Option<[Generator; 3]> {
+        let squared = |v: &usize| self.x[*v].powi(2) + self.y[*v].powi(2) + self.z[*v].powi(2);
+        let nearest = (0..self.triples.len()).min_by(|v, w| squared(v).total_cmp(&squared(w)))?;
+        Some(self.generators(self.triples[nearest]))
     }
 }
 
@@ -203,9 +211,8 @@ mod tests {
             cell.planes.resize(70_000, cell.planes[0]);
             cell.cut(Generator::site(site), input);
         }
-        let vertices = cell.vertices();
-        assert_eq!(vertices.len(), 8);
-        assert!(vertices.iter().flatten().all(|generator| (1..7).contains(&generator.0)));
+        assert_eq!(cell.vertices().len(), 8);
+        assert!(cell.vertices().iter().flatten().all(|generator| (1..7).contains(&generator.0)));
         assert!((cell.radius() - 0.125 * 3f64.sqrt()).abs() < 1e-12);
     }
 }

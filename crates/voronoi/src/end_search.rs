@@ -104,6 +104,12 @@ impl<'a> EndSearch<'a> {
         if !self.is_crowded {
             return;
         }
+        if self.suggested.len() > MOST_CANDIDATES {
+            // Where a cell has so many neighbours, the last ones are those near the edges that follow.
+            self.suggested.clear();
+            self.candidates.clear();
+            self.radius = -1.0;
+        }
         for plane in planes {
             if self.suggested.insert(plane) {
                 self.candidates.push(&HalfSpace::new(self.seed, plane, self.input));
@@ -155,6 +161,13 @@ impl<'a> EndSearch<'a> {
         self.confirm(&edge, c, at)
     }
 
+    /// A plane that cuts off the vertex of some planes in positive orientation, if there is one.
+    pub(crate) fn cutter(&mut self, [a, b, c]: [Generator; 3]) -> Result<Option<Generator>, ImagesMissing> {
+        let edge = self.half_spaces([a, b]);
+        let at = self.intersect(&edge, c).expect("the planes of a vertex are in positive orientation");
+        Ok(self.find_cutter([a, b, c], &at)?.0)
+    }
+
     #[inline]
     fn half_spaces(&self, [a, b]: [Generator; 2]) -> [HalfSpace; 2] {
         [HalfSpace::new(self.seed, a, self.input), HalfSpace::new(self.seed, b, self.input)]
@@ -178,23 +191,7 @@ impl<'a> EndSearch<'a> {
     ) -> Result<NewVertex, ImagesMissing> {
         loop {
             let planes = [edge[0].generator, edge[1].generator, generator];
-            let (mut has_tie, mut farthest) = (false, f64::NEG_INFINITY);
-            self.maybe.clear();
-            let mut cutter = self.find_maybe_beyond(planes, &at)?;
-            for other in self.maybe.iter().filter(|other| !planes.contains(other)) {
-                let plane = HalfSpace::new(self.seed, *other, self.input);
-                let excess = plane.normal.dot(at.position) - plane.offset;
-                let error = plane.sum() * at.evaluation_error() + EVALUATION_ERROR * plane.offset_size;
-                let decision = if excess.abs() > error {
-                    Decision { beyond: excess > 0.0, tie: false }
-                } else {
-                    self.input.decide(self.seed, planes, *other)
-                };
-                has_tie |= decision.tie;
-                if decision.beyond && excess > farthest {
-                    (cutter, farthest) = (Some(*other), excess);
-                }
-            }
+            let (cutter, has_tie) = self.find_cutter(planes, &at)?;
             let Some(cutter) = cutter else {
                 if !at.is_good_to(LOOSE) {
                     at = self.exact(edge, generator);
@@ -205,6 +202,33 @@ impl<'a> EndSearch<'a> {
             generator = cutter;
             at = self.intersect(edge, cutter).expect("a plane that cuts a vertex off ends the edge");
         }
+    }
+
+    /// A plane that cuts off the vertex of some planes in positive orientation, if there is one, and else whether a further plane passes
+    /// through that, exactly.
+    fn find_cutter(
+        &mut self,
+        planes: [Generator; 3],
+        at: &Intersection,
+    ) -> Result<(Option<Generator>, bool), ImagesMissing> {
+        let (mut has_tie, mut farthest) = (false, f64::NEG_INFINITY);
+        self.maybe.clear();
+        let mut cutter = self.find_maybe_beyond(planes, at)?;
+        for other in self.maybe.iter().filter(|other| !planes.contains(other)) {
+            let plane = HalfSpace::new(self.seed, *other, self.input);
+            let excess = plane.normal.dot(at.position) - plane.offset;
+            let error = plane.sum() * at.evaluation_error() + EVALUATION_ERROR * plane.offset_size;
+            let decision = if excess.abs() > error {
+                Decision { beyond: excess > 0.0, tie: false }
+            } else {
+                self.input.decide(self.seed, planes, *other)
+            };
+            has_tie |= decision.tie;
+            if decision.beyond && excess > farthest {
+                (cutter, farthest) = (Some(*other), excess);
+            }
+        }
+        Ok((cutter, has_tie))
     }
 
     /// Lists planes among which are all that may cut off the vertex of some planes, unless one certainly does: then that is returned.

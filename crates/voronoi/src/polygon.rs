@@ -118,6 +118,12 @@ impl Cutting for ConvexPolygon {
         self.lines.push(line);
     }
 
+    fn nearest_vertex(&self) -> Option<[Generator; 3]> {
+        let squared = |corner: &usize| self.corners[*corner].position.length_squared();
+        let nearest = (0..self.corners.len()).min_by(|a, b| squared(a).total_cmp(&squared(b)))?;
+        Some(self.corner_planes(nearest))
+    }
+
     fn vertices(&self) -> Vec<[Generator; 3]> {
         (0..self.corners.len()).map(|corner| self.corner_planes(corner)).collect()
     }

@@ -26,6 +26,10 @@ const LAYER_GROWTH: f64 = 3.0;
 /// Covers the rounding of distances and radii, relative to them.
 const RADIUS_MARGIN: f64 = 1.0 + 1e-12;
 
+/// Planes that a cell is cut by to find one of its vertices, at most: each looks at all vertices of the cell, and what cuts off a
+/// single one is found in less time than as many more would take.
+const MOST_PLANES: usize = 500;
+
 /// A cell that is being cut: polyhedron or polygon.
 pub(crate) trait Cutting {
     /// A radius around the seed that holds the cell; negative for an empty cell.
@@ -36,6 +40,9 @@ pub(crate) trait Cutting {
 
     /// The planes of each vertex, in positive orientation.
     fn vertices(&self) -> Vec<[Generator; 3]>;
+
+    /// The planes of the vertex nearest to the seed.
+    fn nearest_vertex(&self) -> Option<[Generator; 3]>;
 }
 
 /// A cell needs images of seeds that are farther away than those known.
@@ -267,11 +274,13 @@ impl<'a> Search<'a> {
         Ok(layer.sites.deepest(&ball, maybe))
     }
 
-    /// The planes of one vertex of a cell, given what it is cut from; none if the cell is empty.
+    /// The planes of one vertex of a cell, given what it is cut from, and what finds a plane that cuts off the vertex of some planes; none
+    /// if the cell is empty.
     pub(crate) fn any_vertex<C: Cutting>(
         &self,
         uncut: impl Fn() -> C,
         seed: u32,
+        mut cutter: impl FnMut([Generator; 3]) -> Result<Option<Generator>, ImagesMissing>,
     ) -> Result<Option<[Generator; 3]>, ImagesMissing> {
         let input = self.input();
         for layer in &self.layers {
@@ -292,7 +301,15 @@ impl<'a> Search<'a> {
                 }
             }
             let mut cell = uncut();
-            self.cut_by_near(&mut cell, seed, layer);
+            if !self.cut_by_near(&mut cell, seed, layer) {
+                while let Some(vertex) = cell.nearest_vertex() {
+                    match cutter(vertex)? {
+                        Some(plane) => cell.cut(plane, input),
+                        None => return Ok(Some(vertex)),
+                    }
+                }
+                return Ok(None);
+            }
             if cell.radius() < 0.0 || self.reach(seed, cell.radius()) <= self.known(layer, seed) {
                 return Ok(cell.vertices().first().copied());
             }
@@ -300,8 +317,8 @@ impl<'a> Search<'a> {
         Err(ImagesMissing)
     }
 
-    /// Cuts a cell by what a layer knows, from near to far.
-    fn cut_by_near(&self, cell: &mut impl Cutting, seed: u32, layer: &Layer) {
+    /// Cuts a cell by what a layer knows, from near to far; false if these are too many planes.
+    fn cut_by_near(&self, cell: &mut impl Cutting, seed: u32, layer: &Layer) -> bool {
         let (input, known) = (self.input(), self.known(layer, seed));
         let mut near = layer.sites.near_first(self.seeds[seed as usize]);
         input.for_each_facet_within(seed, f64::INFINITY, |facet, distance| {
@@ -318,6 +335,7 @@ impl<'a> Search<'a> {
                 && distance <= known
                 && distance <= reach * RADIUS_MARGIN + self.position_error()
         };
+        let mut count = 0;
         while let Some((plane, squared)) =
             near.next(|squared, weight| is_wanted(cell.radius(), squared, weight))
         {
@@ -326,8 +344,13 @@ impl<'a> Search<'a> {
             });
             let weight = plane.as_site().map_or(own_weight, |site| input.weight(site));
             if !is_own && is_wanted(cell.radius(), squared, weight) {
+                count += 1;
+                if count > MOST_PLANES {
+                    return false;
+                }
                 cell.cut(plane, input);
             }
         }
+        true
     }
 }

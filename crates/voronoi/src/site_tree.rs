@@ -111,7 +111,11 @@ impl SiteTree {
 
     /// The sites in order of their distance from a place.
     pub(crate) fn near_first(&self, center: DVec3) -> NearFirst<'_> {
-        let mut near = NearFirst { tree: self, center, heap: BinaryHeap::new() };
+        let [top] = &self.boxes.levels[self.boxes.levels.len() - 1][..] else {
+            unreachable!("one group holds all");
+        };
+        let largest_weight = top.weights.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let mut near = NearFirst { tree: self, center, largest_weight, heap: BinaryHeap::new() };
         let level = u32::try_from(self.boxes.levels.len() - 1).expect("there are eleven levels at most");
         near.push_group(level, 0, |_, _| true);
         near
@@ -132,6 +136,8 @@ const PLANE: u32 = u32::MAX;
 pub(crate) struct NearFirst<'a> {
     tree: &'a SiteTree,
     center: DVec3,
+    /// Of all sites.
+    largest_weight: f64,
     /// What waits to be visited: the square of its distance, of which the bits come in the same order, and the level and the number of
     /// a box, or [`PLANE`] and a generator.
     heap: BinaryHeap<Reverse<(u64, u32, u32)>>,
@@ -144,9 +150,12 @@ impl NearFirst<'_> {
     }
 
     /// The next plane and the square of its site's distance, if `is_wanted` still says so of the square and the site's weight: once it
-    /// does not, it must not later.
+    /// does not, it must not later, nor of what is farther away or lighter.
     pub(crate) fn next(&mut self, is_wanted: impl Fn(f64, f64) -> bool) -> Option<(Generator, f64)> {
         while let Some(Reverse((squared, level, number))) = self.heap.pop() {
+            if !is_wanted(f64::from_bits(squared), self.largest_weight) {
+                return None;
+            }
             let first = number as usize * LANES;
             match level {
                 PLANE => return Some((Generator(number), f64::from_bits(squared))),

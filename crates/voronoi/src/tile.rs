@@ -215,11 +215,12 @@ impl<'a> Builder<'a> {
     }
 
     /// The planes of one vertex of a cell of which none is known; none if the cell is empty.
-    fn first_vertex(&self, seed: u32) -> Result<Option<[Generator; 3]>, ImagesMissing> {
-        let input = self.search.input();
+    fn first_vertex(&mut self, seed: u32) -> Result<Option<[Generator; 3]>, ImagesMissing> {
+        let (search, input) = (self.search, self.search.input());
+        let cutter = |planes| self.end_search.cutter(planes);
         match input.domain.dimension() {
-            Dimension::Three => self.search.any_vertex(|| ConvexCell::new(seed, input), seed),
-            Dimension::Two => self.search.any_vertex(|| ConvexPolygon::new(seed, input), seed),
+            Dimension::Three => search.any_vertex(|| ConvexCell::new(seed, input), seed, cutter),
+            Dimension::Two => search.any_vertex(|| ConvexPolygon::new(seed, input), seed, cutter),
         }
     }
 

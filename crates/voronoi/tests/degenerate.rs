@@ -7,7 +7,7 @@ use common::{
     lattice, random_seeds, square, tessellate,
 };
 use glam::{BVec3, DVec3};
-use voronoi::{Domain, Side, Tessellation, VoronoiError};
+use voronoi::{CellId, Domain, Side, Tessellation, VoronoiError};
 
 /// Face and vertex counts of the cell that holds the centre of the cube's inner part.
 fn inner_counts(tessellation: &Tessellation, near: DVec3) -> (usize, usize) {
@@ -65,6 +65,28 @@ fn few_seeds() {
     }
     let alone = tessellate(&[DVec3::splat(0.3)]);
     assert_eq!((alone.vertices().len(), alone.face_count()), (8, 6));
+}
+
+/// Such a cell was cut by all its neighbours one by one, which took a time that grew with the square of their number.
+#[test]
+fn cells_of_thousands_of_neighbours() {
+    let center = DVec3::splat(0.5);
+    let mut sphere: Vec<DVec3> =
+        random_seeds(3000, 3).iter().map(|seed| center + 0.45 * (*seed - center).normalize()).collect();
+    sphere.push(center);
+    let tessellation = tessellate(&sphere);
+    assert_complex(&tessellation);
+    assert_eq!(tessellation.cell_faces(CellId(3000)).len(), 3000);
+
+    let radius = |seed: &DVec3| 0.45 * DVec3::new(seed.x - 0.5, seed.y - 0.5, 0.0).normalize();
+    let in_plane = center.with_z(0.0);
+    let mut circle: Vec<DVec3> = random_seeds(3000, 3).iter().map(|seed| in_plane + radius(seed)).collect();
+    circle.push(in_plane);
+    let weights = vec![1.0; circle.len()];
+    let tessellation =
+        Tessellation::power(&Domain::unit_square(), &circle, &weights).expect("seeds are good");
+    assert_power_complex(&tessellation, &weights);
+    assert_eq!(tessellation.cell_faces(CellId(3000)).len(), 3000);
 }
 
 #[test]
