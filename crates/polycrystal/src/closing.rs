@@ -60,6 +60,20 @@ fn walks(surface: &Surface<'_>, at: &[Use], changed: Option<(u32, [Side; 2])>) -
 }
 
 fn is_closed(surface: &Surface<'_>, at: &[Use], changed: Option<(u32, [Side; 2])>) -> bool {
+    if changed.is_none()
+        && let [a, b, c] = at
+    {
+        // Nearly all places are like this, and this is quick.
+        let walk = |at: &Use| {
+            let ([first, second], way) = (surface.sides_of(at.element), at.direction(surface.elements));
+            if way > 0 { [first, second] } else { [second, first] }
+        };
+        let [[a, after_a], [b, after_b], [c, after_c]] = [walk(a), walk(b), walk(c)];
+        let is_round = |sides: [Side; 3]| sides == [a, b, c];
+        if is_round([after_b, after_c, after_a]) || is_round([after_c, after_a, after_b]) {
+            return true;
+        }
+    }
     let walks = walks(surface, at, changed);
     walks.chunk_by(|a, b| a.0 == b.0).all(|walks| walks.iter().map(|(_, way)| way).sum::<i32>() == 0)
 }
@@ -121,8 +135,12 @@ fn repeated_elements(surface: &Surface<'_>, at: &[Use]) -> Vec<Fault> {
         for second in &at[index + 1..] {
             let places = if first.element < second.element { (first, second) } else { (second, first) };
             let elements = [places.0.element, places.1.element];
+            let [a, b] = elements.map(|element| surface.elements.corners(element));
             // Each pair meets at all its places: the one with the lowest point tells.
-            if corners(elements[0]) == corners(elements[1]) && tells(surface, first) {
+            if a.iter().all(|corner| b.contains(corner))
+                && corners(elements[0]) == corners(elements[1])
+                && tells(surface, first)
+            {
                 faults.push(Fault::DuplicateElements { elements });
             }
         }

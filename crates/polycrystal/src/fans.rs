@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::fault::Fault;
-use crate::seams::Seams;
+use crate::seams::{Seams, Use};
 use crate::{Elements, Side, Surface};
 
 /// The points of closed surfaces in space where the triangles of a grain are not one fan around the point but several.
@@ -12,14 +12,13 @@ use crate::{Elements, Side, Surface};
 pub(crate) fn pinched_points(surface: &Surface<'_>, seams: &Seams) -> Vec<Fault> {
     let Elements::Triangles(triangles) = surface.elements else { return Vec::new() };
     let fans = Fans::within_boundaries(triangles, &seams.inner);
-    // Where there is one fan in all, it is that of both sides.
-    let several = fans.points_of_several(surface.points.len());
-    if !several.contains(&true) {
+    let suspects = suspects(surface, seams, &fans);
+    if !suspects.contains(&true) {
         return Vec::new();
     }
     let mut parts: Vec<Part> = Vec::new();
     for (corner, point) in (0u32..).zip(triangles.as_flattened()) {
-        if several[*point as usize] {
+        if suspects[*point as usize] {
             let fan = fans.number(corner);
             parts.extend(surface.sides_of(corner / 3).map(|side| Part { point: *point, side, fan }));
         }
@@ -56,6 +55,59 @@ pub(crate) fn pinched_points(surface: &Surface<'_>, seams: &Seams) -> Vec<Fault>
         }
     }
     faults
+}
+
+/// Points that more looks like than one fan on each side: a quick look that leaves few.
+fn suspects(surface: &Surface<'_>, seams: &Seams, fans: &Fans<'_>) -> Vec<bool> {
+    let (mut suspects, counts) = fans.points_of_several(surface.points.len());
+    let mut open: Vec<OpenFan> = fans.open_fans(seams, &counts);
+    open.par_sort_unstable_by_key(|fan| fan.point);
+    for at in open.chunk_by(|a, b| a.point == b.point) {
+        let point = at[0].point as usize;
+        let corners: u32 = at.iter().map(|fan| fan.corners).sum();
+        suspects[point] = corners != counts[point] || !hang_together(surface, at);
+    }
+    suspects
+}
+
+/// A fan that does not go all around its point.
+#[derive(Debug, Clone, Copy)]
+struct OpenFan {
+    point: u32,
+    /// One of its triangles.
+    element: u32,
+    /// The edges where it begins and ends.
+    places: [u32; 2],
+    /// How many triangles it has.
+    corners: u32,
+}
+
+/// Whether those fans around a point that have a grain on one side hang together at edges, for each grain.
+fn hang_together(surface: &Surface<'_>, fans: &[OpenFan]) -> bool {
+    if fans.len() > 64 {
+        return false;
+    }
+    let has_side = |fan: &OpenFan, side: Side| surface.sides_of(fan.element).contains(&side);
+    let meet = |a: &OpenFan, b: &OpenFan| a.places.iter().any(|place| b.places.contains(place));
+    fans.iter().enumerate().all(|(first, fan)| {
+        surface.sides_of(fan.element).into_iter().filter(|side| side.grain().is_some()).all(|side| {
+            // The first fan of a grain looks at all others.
+            if fans[..first].iter().any(|fan| has_side(fan, side)) {
+                return true;
+            }
+            let mut reached = 1u64 << first;
+            let mut left = 0u64;
+            (first + 1..fans.len()).filter(|at| has_side(&fans[*at], side)).for_each(|at| left |= 1 << at);
+            while left != 0 {
+                let members = |set: u64| (0..fans.len()).filter(move |at| set >> at & 1 == 1);
+                let next = members(left).find(|at| members(reached).any(|by| meet(&fans[by], &fans[*at])));
+                let Some(next) = next else { return false };
+                reached |= 1 << next;
+                left &= !(1 << next);
+            }
+            true
+        })
+    })
 }
 
 /// A fan of triangles of one boundary around a point, as one of its sides has it.
@@ -96,8 +148,7 @@ impl<'a> Fans<'a> {
 
     /// The corner after one at its point, if the fan does not end there.
     fn next(&self, corner: u32) -> Option<u32> {
-        let edge_before = if corner.is_multiple_of(3) { corner + 2 } else { corner - 1 };
-        Some(self.beyond[edge_before as usize]).filter(|corner| *corner != NONE)
+        Some(self.beyond[edge_before(corner) as usize]).filter(|corner| *corner != NONE)
     }
 
     /// The number of the fan that a corner belongs to: its last corner, or the lowest where it goes all around.
@@ -114,8 +165,31 @@ impl<'a> Fans<'a> {
         at
     }
 
-    /// Whether each point has other corners than those of one fan that goes all around it.
-    fn points_of_several(&self, point_count: usize) -> Vec<bool> {
+    /// The fans that begin and end at seams; points have so many corners.
+    fn open_fans(&self, seams: &Seams, counts: &[u32]) -> Vec<OpenFan> {
+        // Most pages of it are never touched.
+        let mut places = vec![0; self.beyond.len()];
+        let edge = |at: &Use| 3 * at.element + u32::from(at.corner);
+        seams.uses.iter().for_each(|at| places[edge(at) as usize] = at.place);
+        let fan_from = |at: &Use| {
+            let first = edge(at);
+            let point = self.triangles.as_flattened()[first as usize];
+            let mut last = first;
+            let mut corners = 1;
+            while let Some(next) = self.next(last)
+                && corners <= counts[point as usize]
+            {
+                last = next;
+                corners += 1;
+            }
+            let places = [at.place, places[edge_before(last) as usize]];
+            OpenFan { point, element: at.element, places, corners }
+        };
+        seams.uses.par_iter().map(fan_from).collect()
+    }
+
+    /// Whether each point has other corners than those of one fan that goes all around it, and how many it has.
+    fn points_of_several(&self, point_count: usize) -> (Vec<bool>, Vec<u32>) {
         let mut first = vec![NONE; point_count];
         let mut counts = vec![0u32; point_count];
         for (corner, point) in (0u32..).zip(self.triangles.as_flattened()) {
@@ -132,9 +206,14 @@ impl<'a> Fans<'a> {
             }
             true
         };
-        // A fan that ends is looked at as well: at its ends other boundaries begin.
-        first.par_iter().zip(&counts).map(|at| *at.1 > 0 && !goes_round(at)).collect()
+        let several = first.par_iter().zip(&counts).map(|at| *at.1 > 0 && !goes_round(at)).collect();
+        (several, counts)
     }
+}
+
+/// The edge that ends at a corner, in its triangle.
+fn edge_before(corner: u32) -> u32 {
+    if corner.is_multiple_of(3) { corner + 2 } else { corner - 1 }
 }
 
 /// The edges of a triangle, each from its corner of the same place.
