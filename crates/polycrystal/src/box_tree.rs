@@ -9,10 +9,18 @@ pub(crate) struct Bounds {
     upper: DVec3,
 }
 
+impl Default for Bounds {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
 impl Bounds {
+    /// Around nothing: overlaps nothing.
     const EMPTY: Self = Self { lower: DVec3::INFINITY, upper: DVec3::NEG_INFINITY };
 
     /// The smallest box around some points.
+    #[inline]
     pub(crate) fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, |bounds, point| Self {
             lower: bounds.lower.min(point),
@@ -20,7 +28,8 @@ impl Bounds {
         })
     }
 
-    fn with(self, other: Self) -> Self {
+    #[inline]
+    pub(crate) fn with(self, other: Self) -> Self {
         Self { lower: self.lower.min(other.lower), upper: self.upper.max(other.upper) }
     }
 
@@ -30,134 +39,262 @@ impl Bounds {
     }
 
     /// Whether the boxes have a point in common; touching counts.
+    #[inline]
     pub(crate) fn overlaps(&self, other: &Self) -> bool {
         self.lower.cmple(other.upper).all() && other.lower.cmple(self.upper).all()
     }
 
+    #[inline]
     pub(crate) fn size(&self) -> DVec3 {
         self.upper - self.lower
     }
 
+    #[inline]
     fn middle(&self) -> DVec3 {
         self.lower.midpoint(self.upper)
     }
 }
 
-/// Boxes by position in a list, sorted into a binary tree.
+/// Items and the boxes around groups of them. The boxes of the items themselves are asked for where they are needed: most never are.
 #[derive(Debug)]
 pub(crate) struct BoxTree {
-    /// Positions of the boxes in the list, and the boxes: those of each leaf together.
-    items: Vec<(u32, Bounds)>,
-    /// The root first; the first child of an inner node follows it.
-    nodes: Vec<Node>,
+    /// The items, those of each leaf together.
+    items: Vec<u32>,
+    /// Boxes of the leaves, then of each few of these, and so on to the root.
+    boxes: Vec<Bounds>,
 }
 
+/// Items in a leaf, and nodes in a node above; powers of two. Four and eight are as good.
+const LEAF_SIZE: usize = 8;
+const BRANCHES: usize = 4;
+
+/// How many times as large as those of the items the squared diagonals of the leaves may be, all in all, for the items to stay in
+/// the order in which they come. Eight neighbours of a surface have once to four times as much, of a line eight times, strewn
+/// items as many times as there are leaves.
+const LARGEST_SPREAD: f64 = 16.0;
+
+/// A node: its level above the leaves, and its number there and in the list of all boxes.
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    bounds: Bounds,
-    /// The items below.
-    start: u32,
-    end: u32,
-    /// The second child of an inner node, 0 for leaves.
-    second: u32,
+    level: u32,
+    index: usize,
+    place: usize,
 }
 
-/// Boxes in a leaf: fewer make the tree deeper, more make leaves that are compared in vain.
-const LEAF_SIZE: usize = 6;
-
 impl BoxTree {
-    /// # Panics
-    /// When there are 2^32 boxes or more.
-    pub(crate) fn new(boxes: impl Iterator<Item = Bounds>) -> Self {
-        let mut tree = Self { items: (0u32..).zip(boxes).collect(), nodes: Vec::new() };
-        let count = tree.items.len();
-        if count > 0 {
-            tree.nodes.reserve(count.div_ceil(LEAF_SIZE / 2) * 2);
-            tree.split(0, count);
+    /// The tree of some items with these boxes.
+    pub(crate) fn new(items: Vec<u32>, bounds: impl Fn(u32) -> Bounds) -> Self {
+        let mut tree = Self { items, boxes: Vec::new() };
+        let leaves = tree.items.len().div_ceil(LEAF_SIZE);
+        tree.boxes.reserve_exact(leaves + leaves / (BRANCHES - 1) + 2);
+        let spread = tree.add_leaves(&bounds);
+        if leaves > 2 && spread > LARGEST_SPREAD {
+            let mut middles: Vec<(u32, DVec3)> =
+                tree.items.iter().map(|item| (*item, bounds(*item).middle())).collect();
+            sort(&mut middles);
+            tree.items.iter_mut().zip(middles).for_each(|(item, (sorted, _))| *item = sorted);
+            tree.boxes.clear();
+            tree.add_leaves(&bounds);
+        }
+        let mut start = 0;
+        while tree.boxes.len() > start + 1 {
+            let end = tree.boxes.len();
+            for first in (start..end).step_by(BRANCHES) {
+                let below = &tree.boxes[first..end.min(first + BRANCHES)];
+                let around = below.iter().fold(Bounds::EMPTY, |bounds, node| bounds.with(*node));
+                tree.boxes.push(around);
+            }
+            start = end;
         }
         tree
     }
 
-    fn split(&mut self, start: usize, end: usize) -> u32 {
-        let id = |index: usize| u32::try_from(index).expect("fewer boxes than 2^32");
-        let items = &mut self.items[start..end];
-        let bounds = items.iter().fold(Bounds::EMPTY, |bounds, (_, item)| bounds.with(*item));
-        let node = self.nodes.len();
-        self.nodes.push(Node { bounds, start: id(start), end: id(end), second: 0 });
-        if items.len() > LEAF_SIZE {
-            let axis = bounds.size().max_position();
-            let half = items.len() / 2;
-            items
-                .select_nth_unstable_by(half, |(_, a), (_, b)| a.middle()[axis].total_cmp(&b.middle()[axis]));
-            self.split(start, start + half);
-            self.nodes[node].second = self.split(start + half, end);
+    /// Adds the boxes of the leaves, and tells how many times as large as those of the items their squared diagonals are.
+    fn add_leaves(&mut self, bounds: &impl Fn(u32) -> Bounds) -> f64 {
+        let [mut of_items, mut of_leaves] = [0.0; 2];
+        for leaf in self.items.chunks(LEAF_SIZE) {
+            let mut around = Bounds::EMPTY;
+            for item in leaf {
+                let item = bounds(*item);
+                of_items += item.size().length_squared();
+                around = around.with(item);
+            }
+            of_leaves += around.size().length_squared();
+            self.boxes.push(around);
         }
-        id(node)
+        of_leaves / of_items
     }
 
-    /// The box around all boxes, if there are any.
+    /// The box around all items, if there are any.
     pub(crate) fn bounds(&self) -> Option<&Bounds> {
-        self.nodes.first().map(|root| &root.bounds)
+        self.boxes.last()
     }
 
-    /// Calls `found` with each two boxes of the tree that overlap.
-    pub(crate) fn overlaps_within(&self, found: &mut impl FnMut(u32, u32)) {
-        if !self.nodes.is_empty() {
-            self.within(0, found);
+    /// The items, those that lie together one after the other.
+    pub(crate) fn items(&self) -> &[u32] {
+        &self.items
+    }
+
+    /// Calls `found` with each two items of the tree whose boxes overlap.
+    pub(crate) fn overlaps_within(&self, bounds: impl Fn(u32) -> Bounds, found: &mut impl FnMut(u32, u32)) {
+        if let Some(root) = self.root() {
+            self.within(root, &bounds, found);
         }
     }
 
-    /// Calls `found` with each box of the tree and box of the other that overlap.
-    pub(crate) fn overlaps_with(&self, other: &Self, found: &mut impl FnMut(u32, u32)) {
-        if !self.nodes.is_empty() && !other.nodes.is_empty() {
-            self.between(0, other, 0, found);
+    /// Calls `found` with each item of the tree and item of the other whose boxes overlap.
+    pub(crate) fn overlaps_with(
+        &self,
+        other: &Self,
+        bounds: impl Fn(u32) -> Bounds,
+        found: &mut impl FnMut(u32, u32),
+    ) {
+        if let (Some(root), Some(other_root)) = (self.root(), other.root()) {
+            self.between(root, other, other_root, &bounds, found);
         }
     }
 
-    fn within(&self, node: usize, found: &mut impl FnMut(u32, u32)) {
-        let Node { start, end, second, .. } = self.nodes[node];
-        if second == 0 {
-            let items = &self.items[start as usize..end as usize];
-            for (index, (a, bounds)) in items.iter().enumerate() {
-                for (b, _) in items[index + 1..].iter().filter(|(_, other)| bounds.overlaps(other)) {
+    fn root(&self) -> Option<Node> {
+        let mut count = self.items.len().div_ceil(LEAF_SIZE);
+        let mut level = 0;
+        while count > 1 {
+            count = count.div_ceil(BRANCHES);
+            level += 1;
+        }
+        Some(Node { level, index: 0, place: self.boxes.len().checked_sub(1)? })
+    }
+
+    /// The nodes below a node that is no leaf.
+    fn below(&self, node: Node) -> impl Iterator<Item = Node> + Clone {
+        let mut count = self.items.len().div_ceil(LEAF_SIZE);
+        let mut start = 0;
+        for _ in 1..node.level {
+            start += count;
+            count = count.div_ceil(BRANCHES);
+        }
+        let first = node.index * BRANCHES;
+        (first..count.min(first + BRANCHES)).map(move |index| Node {
+            level: node.level - 1,
+            index,
+            place: start + index,
+        })
+    }
+
+    fn leaf_items(&self, leaf: Node) -> &[u32] {
+        let first = leaf.index * LEAF_SIZE;
+        &self.items[first..self.items.len().min(first + LEAF_SIZE)]
+    }
+
+    fn within(&self, node: Node, bounds: &impl Fn(u32) -> Bounds, found: &mut impl FnMut(u32, u32)) {
+        if node.level == 0 {
+            let items = self.leaf_items(node);
+            for (index, a) in items.iter().enumerate() {
+                let around = bounds(*a);
+                for b in items[index + 1..].iter().filter(|b| around.overlaps(&bounds(**b))) {
                     found(*a, *b);
                 }
             }
             return;
         }
-        let second = second as usize;
-        self.within(node + 1, found);
-        self.within(second, found);
-        self.between(node + 1, self, second, found);
+        let mut below = self.below(node);
+        while let Some(first) = below.next() {
+            self.within(first, bounds, found);
+            for second in below.clone() {
+                self.between(first, self, second, bounds, found);
+            }
+        }
     }
 
-    fn between(&self, node: usize, other: &Self, other_node: usize, found: &mut impl FnMut(u32, u32)) {
-        let (here, there) = (&self.nodes[node], &other.nodes[other_node]);
-        if !here.bounds.overlaps(&there.bounds) {
+    fn between(
+        &self,
+        node: Node,
+        other: &Self,
+        other_node: Node,
+        bounds: &impl Fn(u32) -> Bounds,
+        found: &mut impl FnMut(u32, u32),
+    ) {
+        let (here, there) = (&self.boxes[node.place], &other.boxes[other_node.place]);
+        if !here.overlaps(there) {
             return;
         }
-        match (here.second, there.second) {
-            (0, 0) => {
-                let others = &other.items[there.start as usize..there.end as usize];
-                for (a, bounds) in &self.items[here.start as usize..here.end as usize] {
-                    if bounds.overlaps(&there.bounds) {
-                        for (b, _) in others.iter().filter(|(_, other)| bounds.overlaps(other)) {
-                            found(*a, *b);
-                        }
+        if node.level == 0 && other_node.level == 0 {
+            let mut near = [(0, Bounds::EMPTY); LEAF_SIZE];
+            let mut count = 0;
+            for b in other.leaf_items(other_node) {
+                near[count] = (*b, bounds(*b));
+                count += usize::from(near[count].1.overlaps(here));
+            }
+            let near = &near[..count];
+            if near.is_empty() {
+                return;
+            }
+            for a in self.leaf_items(node) {
+                let around = bounds(*a);
+                if around.overlaps(there) {
+                    for (b, _) in near.iter().filter(|(_, other)| around.overlaps(other)) {
+                        found(*a, *b);
                     }
                 }
             }
+        } else if node.level >= other_node.level {
             // The larger is split.
-            (second, other_second)
-                if other_second == 0 || (second != 0 && here.end - here.start > there.end - there.start) =>
-            {
-                self.between(node + 1, other, other_node, found);
-                self.between(second as usize, other, other_node, found);
+            for below in self.below(node) {
+                self.between(below, other, other_node, bounds, found);
             }
-            (_, other_second) => {
-                self.between(node, other, other_node + 1, found);
-                self.between(node, other, other_second as usize, found);
+        } else {
+            for below in other.below(other_node) {
+                self.between(node, other, below, bounds, found);
             }
+        }
+    }
+}
+
+/// Puts items that lie together one after the other: halves along the longest side, each filling whole nodes.
+fn sort(items: &mut [(u32, DVec3)]) {
+    if items.len() <= LEAF_SIZE {
+        return;
+    }
+    let axis = Bounds::around(items.iter().map(|(_, middle)| *middle)).size().max_position();
+    let half = items.len().div_ceil(LEAF_SIZE).next_power_of_two() / 2 * LEAF_SIZE;
+    items.select_nth_unstable_by(half, |(_, a), (_, b)| a[axis].total_cmp(&b[axis]));
+    let (first, second) = items.split_at_mut(half);
+    sort(first);
+    sort(second);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Boxes in the order of space and in none.
+    fn boxes(count: u32) -> Vec<Bounds> {
+        let place = |k: u32| f64::from(k * 7919 % count.max(1));
+        let corner = |k: u32| DVec3::new(place(k) % 10.0, (place(k) / 10.0).floor(), 0.3 * f64::from(k % 3));
+        (0..count).map(|k| Bounds::around([corner(k), corner(k) + DVec3::new(1.2, 0.9, 0.1)])).collect()
+    }
+
+    #[test]
+    fn what_overlaps_is_found_once() {
+        for count in [0, 1, 2, 7, 8, 9, 31, 32, 33, 64, 100, 257, 300] {
+            let boxes = boxes(count);
+            let bounds = |item: u32| boxes[item as usize];
+            let tree = BoxTree::new((0..count).collect(), bounds);
+            let mut within = Vec::new();
+            tree.overlaps_within(bounds, &mut |a, b| within.push([a.min(b), a.max(b)]));
+            within.sort_unstable();
+            let all = (0..count).flat_map(|a| (0..count).map(move |b| [a, b]));
+            let mut overlapping: Vec<[u32; 2]> =
+                all.filter(|[a, b]| bounds(*a).overlaps(&bounds(*b))).collect();
+            let mut between = Vec::new();
+            let half = count / 3;
+            let first = BoxTree::new((0..half).collect(), bounds);
+            let second = BoxTree::new((half..count).collect(), bounds);
+            first.overlaps_with(&second, bounds, &mut |a, b| between.push([a, b]));
+            between.sort_unstable();
+            overlapping.retain(|[a, b]| a < b);
+            assert_eq!(within, overlapping, "{count} boxes");
+            overlapping.retain(|[a, b]| *a < half && half <= *b);
+            assert_eq!(between, overlapping, "{count} boxes");
         }
     }
 }

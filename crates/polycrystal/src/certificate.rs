@@ -9,11 +9,12 @@ use crate::closing::faults_of_closing;
 use crate::fans::pinched_points;
 use crate::fault::Fault;
 use crate::folds::folded_pairs;
+use crate::grouped::Grouped;
 use crate::intersections::crossing_elements;
 use crate::node_type::Meeting;
 use crate::seams::Seams;
-use crate::triangle_quality::triangle_quality;
-use crate::volume::{ConeSum, boundary_cones, swept_by_rounding};
+use crate::triangle_quality::{squared_sine, triangle_quality};
+use crate::volume::{ConeSum, cones_of_boundaries, swept_by_rounding};
 use crate::{AngleStatistics, Elements, GrainId, NodeType, Side, Surface, TriangleQuality};
 
 /// Cosine of the angle between normals beyond which neighbours in one boundary are folded: 90 degrees, and as much more as
@@ -117,13 +118,15 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>)
     if !certificate.faults.0.is_empty() {
         return certificate;
     }
-    let normals = surface.elements.normals(surface.points);
+    let (normals, sines) = normals_and_sines(surface);
+    certificate.triangles = triangle_quality(sines);
+    let by_boundary = surface.elements_by_boundary();
     let faults = &mut certificate.faults.0;
     let flat = ids(normals.len()).filter(|element| normals[*element as usize] == DVec3::ZERO);
     faults.extend(flat.map(|element| Fault::NoArea { element }));
     // Each of these runs for the most part on one thread.
     let (crossing, ((meetings, duplicates), (closing, is_closed))) = rayon::join(
-        || crossing_elements(surface, seams),
+        || crossing_elements(surface, seams, &by_boundary, &normals),
         || {
             rayon::join(
                 || (meetings(surface), duplicate_points(surface.points)),
@@ -145,15 +148,26 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>)
     if let Some(stated) = claims.grain_counts {
         faults.extend(wrong_grain_counts(stated, &grain_counts(&meetings, claims.originals)));
     }
-    let (volumes, (angles, triangles)) = rayon::join(
-        || grain_volumes(surface),
-        || (statistics(angles(surface, surface.sides, seams.places())), triangle_quality(surface)),
+    let (volumes, angles) = rayon::join(
+        || grain_volumes(surface, &by_boundary),
+        || statistics(angles(surface, surface.sides, seams.places())),
     );
     certificate.grain_volumes = volumes;
     certificate.check_volumes(surface, &normals, claims, is_closed);
     certificate.angles = angles;
-    certificate.triangles = triangles;
     certificate
+}
+
+/// The normals of all elements, and of triangles the squared sines of their smallest angles: both from corners that are fetched once.
+fn normals_and_sines(surface: &Surface<'_>) -> (Vec<DVec3>, Vec<f64>) {
+    let Elements::Triangles(triangles) = surface.elements else {
+        return (surface.elements.normals(surface.points), Vec::new());
+    };
+    let of_triangle = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|corner| surface.points[corner as usize]);
+        ((b - a).cross(c - a), squared_sine([a, b, c]))
+    };
+    triangles.par_iter().map(of_triangle).unzip()
 }
 
 /// Where grains are not closed, or are but touch themselves, and whether they are closed.
@@ -250,11 +264,11 @@ fn duplicate_points(points: &[DVec3]) -> impl Iterator<Item = [u32; 2]> {
             x.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ y.rotate_left(23).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
         (mixed ^ z.rotate_left(41)).wrapping_mul(0x1656_67b1_9e37_79f9)
     };
-    let mut keys: Vec<(u64, u32)> = (0..count).into_par_iter().map(|point| (key(point), point)).collect();
+    let mut keys: Vec<u64> = (0..count).into_par_iter().map(|point| join(high(key(point)), point)).collect();
     keys.par_sort_unstable();
     let mut pairs = Vec::new();
-    for equal in keys.chunk_by(|a, b| a.0 == b.0).filter(|equal| equal.len() > 1) {
-        let mut same: Vec<([u64; 3], u32)> = equal.iter().map(|(_, point)| (bits(*point), *point)).collect();
+    for equal in keys.chunk_by(|a, b| high(*a) == high(*b)).filter(|equal| equal.len() > 1) {
+        let mut same: Vec<([u64; 3], u32)> = equal.iter().map(|at| (bits(low(*at)), low(*at))).collect();
         same.sort_unstable();
         for same in same.chunk_by(|a, b| a.0 == b.0) {
             pairs.extend(same[1..].iter().map(|(_, point)| [same[0].1, *point]));
@@ -276,11 +290,17 @@ fn meetings(surface: &Surface<'_>) -> Vec<Option<Meeting>> {
             *at = if *at == NONE || *at == boundary.0 { boundary.0 } else { SEVERAL };
         }
     }
-    let mut around: Vec<(u32, Side)> = Vec::new();
+    // Points with their boundaries. The elements of a boundary come one after the other for the most part.
+    let mut around: Vec<u64> = Vec::new();
+    let mut latest = vec![NONE; surface.points.len()];
     for (element, boundary) in elements() {
         let corners = surface.elements.corners(element).iter();
         for corner in corners.filter(|corner| boundaries[**corner as usize] == SEVERAL) {
-            around.extend(surface.sides[boundary.index()].map(|side| (*corner, side)));
+            let latest = &mut latest[*corner as usize];
+            if *latest != boundary.0 {
+                *latest = boundary.0;
+                around.push(join(*corner, boundary.0));
+            }
         }
     }
     around.par_sort_unstable();
@@ -291,11 +311,29 @@ fn meetings(surface: &Surface<'_>) -> Vec<Option<Meeting>> {
         Some(Meeting::of_sides(&sides))
     };
     let mut meetings: Vec<Option<Meeting>> = boundaries.into_iter().map(of_one).collect();
-    for at in around.chunk_by(|a, b| a.0 == b.0) {
-        let sides: Vec<Side> = at.iter().map(|(_, side)| *side).collect();
-        meetings[at[0].0 as usize] = Some(Meeting::of_sides(&sides));
+    let mut sides: Vec<Side> = Vec::new();
+    for at in around.chunk_by(|a, b| high(*a) == high(*b)) {
+        sides.clear();
+        sides.extend(at.iter().flat_map(|at| surface.sides[low(*at) as usize]));
+        sides.sort_unstable();
+        sides.dedup();
+        meetings[high(at[0]) as usize] = Some(Meeting::of_sides(&sides));
     }
     meetings
+}
+
+/// Two numbers as one, for quick sorting.
+fn join(high: u32, low: u32) -> u64 {
+    u64::from(high) << 32 | u64::from(low)
+}
+
+fn high(joined: u64) -> u32 {
+    u32::try_from(joined >> 32).expect("half of the bits")
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "the lower half of the bits")]
+fn low(joined: u64) -> u32 {
+    joined as u32
 }
 
 /// The number of grains at each point; where there are copies of it, at all of these together, as each grain there is another image.
@@ -335,9 +373,9 @@ fn wrong_node_types(stated: &[Option<NodeType>], derived: &[Option<Meeting>]) ->
     })
 }
 
-fn grain_volumes(surface: &Surface<'_>) -> Vec<(GrainId, f64)> {
+fn grain_volumes(surface: &Surface<'_>, by_boundary: &Grouped<u32>) -> Vec<(GrainId, f64)> {
     let mut volumes: BTreeMap<GrainId, ConeSum> = BTreeMap::new();
-    for (sides, cone) in surface.sides.iter().zip(boundary_cones(surface)) {
+    for (sides, cone) in surface.sides.iter().zip(cones_of_boundaries(surface, by_boundary)) {
         for (side, sign) in sides.iter().zip([1.0, -1.0]) {
             if let Side::Grain(grain) = side {
                 volumes.entry(*grain).or_default().add(&cone, sign);

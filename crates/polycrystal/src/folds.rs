@@ -20,7 +20,12 @@ pub fn folded_edges(level: &Level, points: &[DVec3], cosine: f64) -> Vec<[u32; 2
 pub(crate) fn folded_pairs(pairs: &[[u32; 2]], normals: &[DVec3], cosine: f64) -> Vec<[u32; 2]> {
     let is_folded = |pair: &&[u32; 2]| {
         let [a, b] = pair.map(|element| normals[element as usize]);
-        a.dot(b) < cosine * (a.length() * b.length()) || a == DVec3::ZERO || b == DVec3::ZERO
+        let dot = a.dot(b);
+        // Nearly all pairs are told by this alone.
+        if dot > 0.0 && cosine <= 0.0 {
+            return false;
+        }
+        dot < cosine * (a.length() * b.length()) || a == DVec3::ZERO || b == DVec3::ZERO
     };
     pairs.par_iter().filter(is_folded).copied().collect()
 }

@@ -5,42 +5,52 @@ use rayon::prelude::*;
 
 use crate::box_tree::{Bounds, BoxTree};
 use crate::contact::{segments_cross, triangles_cross};
-use crate::projection::is_graph;
+use crate::grouped::Grouped;
+use crate::projection::{Piece, RimEdge, Room, are_one_graph, is_graph};
 use crate::seams::Seams;
-use crate::{BoundaryId, Elements, Surface};
+use crate::{Elements, Surface};
 
 /// All pairs of elements that meet other than in points and edges that they share; sorted, the lower element first.
 ///
-/// All points must be finite.
-pub(crate) fn crossing_elements(surface: &Surface<'_>, seams: &Seams) -> Vec<[u32; 2]> {
-    let pieces = pieces(surface, seams);
-    let trees: Vec<BoxTree> = pieces
-        .par_iter()
-        .map(|piece| BoxTree::new(piece.elements.iter().map(|element| bounds(surface, *element))))
-        .collect();
+/// All points must be finite; normals are those of [`Elements::normals`].
+pub(crate) fn crossing_elements(
+    surface: &Surface<'_>,
+    seams: &Seams,
+    by_boundary: &Grouped<u32>,
+    normals: &[DVec3],
+) -> Vec<[u32; 2]> {
+    let of_element = |element: u32| bounds(surface, element);
+    let tree = |boundary: usize| BoxTree::new(by_boundary.of(boundary).to_vec(), of_element);
+    let trees: Vec<BoxTree> = (0..by_boundary.count()).into_par_iter().map(tree).collect();
+    let graphs = Graphs::new(surface, seams, normals, &trees);
+    let around = |boundary: u32| trees[boundary as usize].bounds().copied();
+    let of_boundary = |boundary: u32| around(boundary).unwrap_or_default();
+    let boundaries = (0u32..).take(trees.len()).filter(|boundary| around(*boundary).is_some());
+    let all = BoxTree::new(boundaries.collect(), of_boundary);
     let mut near = Vec::new();
-    let all = BoxTree::new(trees.iter().filter_map(|tree| tree.bounds().copied()));
-    all.overlaps_within(&mut |a, b| near.push((a as usize, b as usize)));
-    let between = near.par_iter().flat_map_iter(|&(a, b)| {
+    all.overlaps_within(of_boundary, &mut |a, b| {
+        let pair = [a.min(b), a.max(b)];
+        if !graphs.is_one(pair) {
+            near.push(pair.map(|boundary| boundary as usize));
+        }
+    });
+    let between = near.par_iter().flat_map_iter(|&[a, b]| {
         let mut found = Vec::new();
-        trees[a].overlaps_with(&trees[b], &mut |i, j| {
-            let pair = [pieces[a].elements[i as usize], pieces[b].elements[j as usize]];
-            if cross(surface, pair) {
-                found.push(pair);
+        trees[a].overlaps_with(&trees[b], of_element, &mut |i, j| {
+            if cross(surface, [i, j]) {
+                found.push([i, j]);
             }
         });
         found
     });
-    let within = pieces.par_iter().zip(&trees).flat_map_iter(|(piece, tree)| {
+    let within = trees.par_iter().zip(&graphs.is_graph).filter(|(_, is_graph)| !**is_graph);
+    let within = within.flat_map_iter(|(tree, _)| {
         let mut found = Vec::new();
-        if !piece.is_graph(surface) {
-            tree.overlaps_within(&mut |i, j| {
-                let pair = [i, j].map(|index| piece.elements[index as usize]);
-                if cross(surface, pair) {
-                    found.push(pair);
-                }
-            });
-        }
+        tree.overlaps_within(of_element, &mut |i, j| {
+            if cross(surface, [i, j]) {
+                found.push([i, j]);
+            }
+        });
         found
     });
     let mut found: Vec<[u32; 2]> = between.chain(within).map(|[a, b]| [a.min(b), a.max(b)]).collect();
@@ -48,45 +58,90 @@ pub(crate) fn crossing_elements(surface: &Surface<'_>, seams: &Seams) -> Vec<[u3
     found
 }
 
-/// The elements of one boundary.
-#[derive(Debug, Default)]
-struct Piece {
-    elements: Vec<u32>,
-    /// Where it meets others; empty in the plane.
-    rim: Vec<[u32; 2]>,
+/// What projections prove: boundaries, and pairs of boundaries that share a line, in which no two triangles cross.
+struct Graphs {
+    /// Of each boundary.
+    is_graph: Vec<bool>,
+    /// Of each boundary, those of greater number with which it is one graph.
+    partners: Grouped<u32>,
 }
 
-impl Piece {
-    fn is_graph(&self, surface: &Surface<'_>) -> bool {
-        let Elements::Triangles(all) = surface.elements else { return false };
-        let triangles: Vec<[u32; 3]> = self.elements.iter().map(|element| all[*element as usize]).collect();
-        is_graph(surface.points, &triangles, &self.rim)
+impl Graphs {
+    fn new(surface: &Surface<'_>, seams: &Seams, normals: &[DVec3], trees: &[BoxTree]) -> Self {
+        let count = trees.len();
+        let Elements::Triangles(_) = surface.elements else {
+            return Self { is_graph: vec![false; count], partners: Grouped::new(count, std::iter::empty()) };
+        };
+        let rims = Grouped::new(
+            count,
+            seams.uses.iter().map(|at| {
+                let boundary = surface.boundary_of[at.element as usize];
+                (boundary.index(), RimEdge { place: at.place, ends: at.ends(surface.elements) })
+            }),
+        );
+        let pieces: Vec<Piece<'_>> = trees
+            .par_iter()
+            .enumerate()
+            .map(|(boundary, tree)| Piece {
+                elements: tree.items(),
+                rim: rims.of(boundary),
+                normal: tree.items().iter().map(|element| normals[*element as usize]).sum(),
+                bounds: tree.bounds().copied().unwrap_or_default(),
+            })
+            .collect();
+        let is_one = |room: &mut Room, pair: [u32; 2]| {
+            let [a, b] = pair.map(|boundary| &pieces[boundary as usize]);
+            are_one_graph(surface.points, normals, [a, b], room).then_some(pair)
+        };
+        let pairs: Vec<[u32; 2]> = pairs_at_lines(surface, seams)
+            .into_par_iter()
+            .map_init(Room::default, is_one)
+            .flatten_iter()
+            .collect();
+        let mut is_proved = vec![false; count];
+        pairs.as_flattened().iter().for_each(|boundary| is_proved[*boundary as usize] = true);
+        let alone = pieces.par_iter().zip(is_proved);
+        let is_graph =
+            alone.map(|(piece, is_proved)| is_proved || is_graph(surface.points, normals, piece)).collect();
+        let partners = Grouped::new(count, pairs.iter().map(|[lower, other]| (*lower as usize, *other)));
+        Self { is_graph, partners }
+    }
+
+    /// Whether two boundaries, the lower first, are one graph together.
+    fn is_one(&self, pair: [u32; 2]) -> bool {
+        self.partners.of(pair[0] as usize).contains(&pair[1])
     }
 }
 
-/// The boundaries that have elements.
-fn pieces(surface: &Surface<'_>, seams: &Seams) -> Vec<Piece> {
-    let mut pieces: Vec<Piece> = surface.sides.iter().map(|_| Piece::default()).collect();
-    for (element, boundary) in (0u32..).zip(surface.boundary_of) {
-        pieces[boundary.index()].elements.push(element);
-    }
-    if let Elements::Triangles(_) = surface.elements {
-        for at in &seams.uses {
-            let boundary: BoundaryId = surface.boundary_of[at.element as usize];
-            pieces[boundary.index()].rim.push(at.ends(surface.elements));
+/// The pairs of boundaries that have an edge in common; sorted, the lower first.
+fn pairs_at_lines(surface: &Surface<'_>, seams: &Seams) -> Vec<[u32; 2]> {
+    let mut pairs = Vec::new();
+    for at in seams.places() {
+        for (index, first) in at.iter().enumerate() {
+            for second in &at[index + 1..] {
+                let [a, b] = [first, second].map(|at| surface.boundary_of[at.element as usize].0);
+                if a != b {
+                    pairs.push([a.min(b), a.max(b)]);
+                }
+            }
         }
     }
-    pieces.retain(|piece| !piece.elements.is_empty());
-    pieces
+    pairs.par_sort_unstable();
+    pairs.dedup();
+    pairs
 }
 
 fn bounds(surface: &Surface<'_>, element: u32) -> Bounds {
-    let corners = surface.elements.corners(element);
-    Bounds::around(corners.iter().map(|corner| -> DVec3 { surface.points[*corner as usize] }))
+    let at = |corner: u32| surface.points[corner as usize];
+    match surface.elements {
+        Elements::Triangles(triangles) => Bounds::around(triangles[element as usize].map(at)),
+        Elements::Segments(segments) => Bounds::around(segments[element as usize].map(at)),
+    }
 }
 
 fn cross(surface: &Surface<'_>, [a, b]: [u32; 2]) -> bool {
-    let (a, b) = (a as usize, b as usize);
+    // The lower first: for a triangle that has a corner twice the order matters.
+    let (a, b) = (a.min(b) as usize, a.max(b) as usize);
     match surface.elements {
         Elements::Triangles(triangles) => triangles_cross(surface.points, triangles[a], triangles[b]),
         Elements::Segments(segments) => segments_cross(surface.points, segments[a], segments[b]),

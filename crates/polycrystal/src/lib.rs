@@ -34,6 +34,7 @@ mod fan;
 mod fans;
 mod fault;
 mod folds;
+mod grouped;
 mod intersections;
 mod labelled_mesh;
 mod level;

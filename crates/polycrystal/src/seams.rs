@@ -58,15 +58,24 @@ impl Seams {
         let inner_pair = |pair: Option<[u32; 2]>| pair.filter(is_inner);
         let (inner, mut uses): (Vec<_>, Vec<_>) = match &level.mesh {
             Mesh::Triangles(mesh) => {
-                let ids = |count: usize| 0..u32::try_from(count).expect("ids fit 32 bits");
-                let pairs = ids(mesh.edge_count()).into_par_iter().map(|edge| mesh.edge_triangles(edge));
-                let uses = ids(level.element_count()).into_par_iter().flat_map_iter(|element| {
-                    let edges = (0u8..).zip(mesh.triangle_edges(element));
-                    edges
-                        .filter(|(_, edge)| inner_pair(mesh.edge_triangles(*edge)).is_none())
-                        .map(move |(corner, place)| Use { place, element, corner })
+                let edge_count = u32::try_from(mesh.edge_count()).expect("ids fit 32 bits");
+                let pair = |edge: u32| inner_pair(mesh.edge_triangles(edge));
+                // A bit for each edge: they stay in the cache while the triangles go by.
+                let words = (0..edge_count.div_ceil(64)).into_par_iter().map(|word| {
+                    let edges = 64 * word..edge_count.min(64 * word + 64);
+                    edges.fold(0u64, |bits, edge| bits | u64::from(pair(edge).is_none()) << (edge % 64))
                 });
-                (pairs.filter_map(inner_pair).collect(), uses.collect())
+                let seams: Vec<u64> = words.collect();
+                let is_seam = |edge: u32| seams[(edge / 64) as usize] >> (edge % 64) & 1 == 1;
+                let pairs = (0..edge_count).into_par_iter().filter(|edge| !is_seam(*edge));
+                let pairs = pairs.filter_map(|edge| mesh.edge_triangles(edge));
+                let elements = 0..u32::try_from(level.element_count()).expect("ids fit 32 bits");
+                let uses = elements.into_par_iter().flat_map_iter(|element| {
+                    let edges = (0u8..).zip(mesh.triangle_edges(element));
+                    let at_seams = edges.filter(|(_, edge)| is_seam(*edge));
+                    at_seams.map(move |(corner, place)| Use { place, element, corner })
+                });
+                (pairs.collect(), uses.collect())
             }
             Mesh::Segments(mesh) => {
                 let points = 0..u32::try_from(mesh.vertex_count()).expect("ids fit 32 bits");

@@ -2,6 +2,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::Dimension;
 
+use crate::grouped::Grouped;
 use crate::volume::last_place;
 use crate::{BoundaryId, GrainId, Level, Mesh, Network, Side};
 
@@ -116,6 +117,12 @@ impl<'a> Surface<'a> {
     pub fn middle(&self, element: u32) -> DVec3 {
         let corners = self.elements.corners(element);
         corners.iter().map(|corner| self.points[*corner as usize]).sum::<DVec3>() / corners.len() as f64
+    }
+
+    /// The elements of each boundary.
+    pub(crate) fn elements_by_boundary(&self) -> Grouped<u32> {
+        let elements = (0u32..).zip(self.boundary_of).take(self.elements.len());
+        Grouped::new(self.sides.len(), elements.map(|(element, boundary)| (boundary.index(), element)))
     }
 
     /// All grains, in order of their numbers, which need not be consecutive.

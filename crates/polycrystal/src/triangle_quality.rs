@@ -1,7 +1,4 @@
 use glam::DVec3;
-use rayon::prelude::*;
-
-use crate::{Elements, Surface};
 
 /// The smallest angles of triangles, in degrees: solvers and statistics suffer from small ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,12 +17,8 @@ impl TriangleQuality {
     pub const BOUND: f64 = 1.5;
 }
 
-/// The quality of a surface's triangles; nothing in the plane, and where there are none.
-pub(crate) fn triangle_quality(surface: &Surface<'_>) -> Option<TriangleQuality> {
-    let Elements::Triangles(triangles) = surface.elements else { return None };
-    let of_triangle =
-        |corners: &[u32; 3]| squared_sine(corners.map(|corner| surface.points[corner as usize]));
-    let mut smallest: Vec<f64> = triangles.par_iter().map(of_triangle).collect();
+/// The quality of triangles by the squared sines of their smallest angles; nothing where there are none.
+pub(crate) fn triangle_quality(mut smallest: Vec<f64>) -> Option<TriangleQuality> {
     let place = smallest.len() / 100;
     let (below, at, _) =
         (!smallest.is_empty()).then(|| smallest.select_nth_unstable_by(place, f64::total_cmp))?;
@@ -47,24 +40,14 @@ pub(crate) fn squared_sine([a, b, c]: [DVec3; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BoundaryId, Side};
 
     #[test]
     fn one_thin_triangle_of_many_is_the_least_but_not_the_percentile() {
-        let points = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(1.0, 0.1, 0.0)];
-        let mut triangles = vec![[0, 1, 2]; 150];
-        triangles[70] = [0, 1, 3];
-        let boundary_of = vec![BoundaryId(0); triangles.len()];
-        let surface = Surface {
-            points: &points,
-            elements: Elements::Triangles(&triangles),
-            boundary_of: &boundary_of,
-            sides: &[[Side::Exterior; 2]],
-        };
-        let quality = triangle_quality(&surface).expect("triangles");
+        let mut sines = vec![squared_sine([DVec3::ZERO, DVec3::X, DVec3::Y]); 150];
+        sines[70] = squared_sine([DVec3::ZERO, DVec3::X, DVec3::new(1.0, 0.1, 0.0)]);
+        let quality = triangle_quality(sines).expect("triangles");
         assert!((quality.least - 0.1f64.atan().to_degrees()).abs() < 1e-12);
         assert!((quality.first_percentile - 45.0).abs() < 1e-12);
-        let none = Surface { elements: Elements::Triangles(&[]), boundary_of: &[], ..surface };
-        assert_eq!(triangle_quality(&none), None);
+        assert_eq!(triangle_quality(Vec::new()), None);
     }
 }

@@ -4,7 +4,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::Dimension;
 
-use crate::{Boundary, BoundaryId, Elements, GrainId, Surface};
+use crate::grouped::Grouped;
+use crate::{Boundary, Elements, GrainId, Surface};
 
 /// The volume of the tetrahedron that a triangle spans with the origin.
 pub(crate) fn triangle_volume(corners: [DVec3; 3]) -> f64 {
@@ -45,41 +46,36 @@ impl Cone {
 
 /// Per boundary, the cone from a point of it.
 pub(crate) fn boundary_cones(surface: &Surface<'_>) -> Vec<Cone> {
-    let mut apexes = vec![None; surface.sides.len()];
-    for (element, boundary) in (0u32..).zip(surface.boundary_of) {
-        let first = || surface.points[surface.elements.corners(element)[0] as usize];
-        apexes[boundary.index()].get_or_insert_with(first);
-    }
-    let from_apex = |vertex: u32, boundary: &BoundaryId| {
-        surface.points[vertex as usize] - apexes[boundary.index()].unwrap_or_default()
-    };
-    let of_elements: Vec<(f64, DVec3)> = match surface.elements {
-        Elements::Triangles(triangles) => {
-            let measure = |(corners, boundary): (&[u32; 3], _)| {
-                let [a, b, c] = corners.map(|corner| from_apex(corner, boundary));
-                (triangle_volume([a, b, c]), (b - a).cross(c - a) / 2.0)
-            };
-            triangles.par_iter().zip(surface.boundary_of).map(measure).collect()
-        }
-        Elements::Segments(segments) => {
-            let measure = |(ends, boundary): (&[u32; 2], _)| {
-                let [a, b] = ends.map(|end| from_apex(end, boundary));
-                (segment_area([a, b]), (b - a).cross(DVec3::Z))
-            };
-            segments.par_iter().zip(surface.boundary_of).map(measure).collect()
-        }
-    };
+    cones_of_boundaries(surface, &surface.elements_by_boundary())
+}
+
+/// The same for boundaries with these elements.
+pub(crate) fn cones_of_boundaries(surface: &Surface<'_>, by_boundary: &Grouped<u32>) -> Vec<Cone> {
     let dimension = surface.elements.dimension();
-    // One thread sums, for the order of a sum decides its last digit.
-    let mut sums = vec![(0.0, DVec3::ZERO); surface.sides.len()];
-    for ((volume, area), boundary) in of_elements.iter().zip(surface.boundary_of) {
-        sums[boundary.index()].0 += volume;
-        sums[boundary.index()].1 += *area;
-    }
-    let cone = |(apex, (volume, area)): (Option<DVec3>, (f64, DVec3))| {
-        Cone::new(apex.unwrap_or_default(), volume, area, dimension)
+    let at = |vertex: u32| surface.points[vertex as usize];
+    let cone = |boundary: usize| {
+        let elements = by_boundary.of(boundary);
+        let Some(apex) = elements.first().map(|first| at(surface.elements.corners(*first)[0])) else {
+            return Cone::new(DVec3::ZERO, 0.0, DVec3::ZERO, dimension);
+        };
+        let mut sums = (0.0, DVec3::ZERO);
+        for element in elements {
+            let (volume, area) = match surface.elements {
+                Elements::Triangles(triangles) => {
+                    let [a, b, c] = triangles[*element as usize].map(|corner| at(corner) - apex);
+                    (triangle_volume([a, b, c]), (b - a).cross(c - a) / 2.0)
+                }
+                Elements::Segments(segments) => {
+                    let [a, b] = segments[*element as usize].map(|end| at(end) - apex);
+                    (segment_area([a, b]), (b - a).cross(DVec3::Z))
+                }
+            };
+            sums.0 += volume;
+            sums.1 += area;
+        }
+        Cone::new(apex, sums.0, sums.1, dimension)
     };
-    apexes.into_iter().zip(sums).map(cone).collect()
+    (0..by_boundary.count()).into_par_iter().map(cone).collect()
 }
 
 /// A volume that cones add up to, all from the apex of the first.
@@ -131,7 +127,7 @@ pub(crate) fn volumes_of_grains(boundaries: &[Boundary], cones: &[Cone], grain_c
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Side;
+    use crate::{BoundaryId, Side};
 
     /// From the origin of coordinates, a volume of 1e-21 at a distance of 1 would drown in rounding.
     #[test]
