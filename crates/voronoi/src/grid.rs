@@ -5,6 +5,8 @@ use std::ops::Range;
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
+use crate::box_tree::sort_into_boxes;
+
 /// Seeds a block holds on average: fewer make more rows of blocks to visit, more make more seeds to sort out.
 const SEEDS_PER_BLOCK: f64 = 8.0;
 
@@ -18,6 +20,10 @@ const TILES: f64 = 8.0;
 /// Blocks of a tile that follow one another along y, and along z, before those farther along x, y and z: neighbours that are taken
 /// soon after one another find their vertices in the cache.
 const BLOCKS_PER_BRICK: i32 = 3;
+
+/// Fewest and most seeds in a tile of boxes, and tiles where that leaves them between: boxes in boxes hold powers of eight.
+const SEEDS_PER_TILE: [usize; 2] = [4096, 32_768];
+const TILES_OF_BOXES: usize = 8;
 
 /// Blocks that a thread sorts at once.
 const BLOCKS_SORTED_AT_ONCE: usize = 1024;
@@ -37,7 +43,7 @@ const CROWD: usize = 24;
 /// Share of the seeds in crowded blocks from which on blocks do not serve.
 const MOST_CROWDED: f64 = 0.1;
 
-/// The seeds in order of tiles, in these of bricks, of blocks, and of coordinates: an order that permuting the seeds does not change.
+/// The seeds in order of tiles, in these of bricks, of blocks, and of coordinates, or of boxes: an order that permuting the seeds does not change.
 pub(crate) struct SeedGrid {
     lower: DVec3,
     block: DVec3,
@@ -133,8 +139,9 @@ impl SeedGrid {
                 let step = rest.sqrt() * self.density.x + BLOCK_MARGIN;
                 #[expect(clippy::cast_possible_truncation, reason = "saturates, then clamped")]
                 let [mut x, end] = [place.x - step, place.x + step]
-                    .map(|x| (x.max(0.0) as i32).min(self.counts.x - 1) as usize);
-                let row = self.offsets[1][y as usize] + self.offsets[2][z as usize];
+                    .map(|x| (x.max(0.0) as i32).min(self.counts.x - 1).unsigned_abs() as usize);
+                let row =
+                    self.offsets[1][y.unsigned_abs() as usize] + self.offsets[2][z.unsigned_abs() as usize];
                 while x <= end {
                     // Blocks follow one another up to the end of the tile.
                     let last = end.min(self.tile_ends[x] as usize);
@@ -150,6 +157,19 @@ impl SeedGrid {
             }
         }
         true
+    }
+
+    /// Where blocks are crowded, brings the seeds into boxes instead, and makes tiles of as many of these.
+    pub(crate) fn relieve(&mut self, seeds: &[DVec3]) {
+        if !self.is_crowded() {
+            return;
+        }
+        let count = seeds.len();
+        let mut places: Vec<u32> = (0u32..).take(count).collect();
+        let tile = (count / TILES_OF_BOXES).next_multiple_of(SEEDS_PER_TILE[0]).min(SEEDS_PER_TILE[1]);
+        self.tiles = places.chunks(tile).map(|tile| tile[0]..tile[tile.len() - 1] + 1).collect();
+        sort_into_boxes(&mut places, 0, &|place: u32| seeds[self.order[place as usize] as usize]);
+        self.order = places.into_iter().map(|place| self.order[place as usize]).collect();
     }
 
     /// Whether many seeds are in blocks that have so many that their order does not tell which are near one another.

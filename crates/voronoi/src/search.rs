@@ -84,11 +84,12 @@ impl<'a> Search<'a> {
             DVec3::select(domain.periodic() & seed.cmpeq(domain.upper()), domain.lower(), *seed)
         };
         let canonical: Vec<DVec3> = seeds.par_iter().map(canonical).collect();
-        let grid = SeedGrid::new(&canonical);
+        let mut grid = SeedGrid::new(&canonical);
         if let Some((first, second)) = grid.duplicates(&canonical) {
             let [first, second] = [first, second].map(|id| id as usize);
             return Err(VoronoiError::DuplicateSeeds { first, second, position: seeds[first] });
         }
+        grid.relieve(&canonical);
         let ids = grid.order.clone();
         drop(canonical);
         let weights: Option<Vec<f64>> =
@@ -187,7 +188,8 @@ impl<'a> Search<'a> {
         }
         let input = self.input_with(&images);
         let positions: Vec<DVec3> = (0..input.site_count()).map(|site| input.position(site)).collect();
-        let grid = SeedGrid::new(&positions);
+        let mut grid = SeedGrid::new(&positions);
+        grid.relieve(&positions);
         let sites = self.tree(input, grid.order.clone(), grid);
         self.layers.push(Layer { thickness, images, sites });
         Ok(())

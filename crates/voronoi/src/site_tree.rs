@@ -7,7 +7,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::box_tree::{BoxTree, sort_into_boxes};
+use crate::box_tree::BoxTree;
 use crate::generator::Generator;
 use crate::grid::SeedGrid;
 use crate::wide::{self, Ball, DeepestSearch, LANES, Within};
@@ -48,18 +48,14 @@ pub(crate) struct SiteTree {
 }
 
 impl SiteTree {
-    /// Takes sites in the order of a grid, and brings them into another one where its blocks are crowded.
+    /// Takes sites in the order of a grid, in boxes where its blocks are crowded.
     pub(crate) fn new(
-        mut sites: Vec<u32>,
+        sites: Vec<u32>,
         grid: SeedGrid,
         position: impl Fn(u32) -> DVec3 + Sync,
         weight: Option<impl Fn(u32) -> f64 + Sync>,
     ) -> Self {
-        let is_crowded = grid.is_crowded();
-        if is_crowded {
-            sort_into_boxes(&mut sites, 0, &position);
-        }
-        let grid = (!is_crowded).then_some(grid);
+        let grid = (!grid.is_crowded()).then_some(grid);
         let mut columns = [const { Vec::new() }; 3];
         for (axis, column) in columns.iter_mut().enumerate() {
             *column = sites.par_iter().map(|site| position(*site)[axis]).collect();
@@ -206,8 +202,9 @@ mod tests {
     }
 
     fn tree(seeds: &[DVec3], weights: Option<&[f64]>) -> SiteTree {
-        let grid = SeedGrid::new(seeds);
+        let mut grid = SeedGrid::new(seeds);
         assert!(grid.is_crowded());
+        grid.relieve(seeds);
         let weight = weights.map(|weights| |site: u32| weights[site as usize]);
         SiteTree::new(grid.order.clone(), grid, |site| seeds[site as usize], weight)
     }

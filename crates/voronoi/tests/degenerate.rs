@@ -241,8 +241,8 @@ fn cells_that_are_flat_are_empty() {
     let weights = [0.0, -3.0 / 64.0, -3.0 / 64.0, 0.0];
     let tessellation = Tessellation::power(&Domain::unit_cube(), &seeds, &weights).expect("valid seeds");
     assert_power_complex(&tessellation, &weights);
-    assert_eq!(tessellation.empty_cells(), [voronoi::CellId(1), voronoi::CellId(2)]);
-    assert_eq!(tessellation.neighbors(voronoi::CellId(0))[0], Side::Cell(voronoi::CellId(3)));
+    assert_eq!(tessellation.empty_cells(), [CellId(1), CellId(2)]);
+    assert_eq!(tessellation.neighbors(CellId(0))[0], Side::Cell(CellId(3)));
 }
 
 /// In decimals both bisectors of the first seed are one line; as doubles they are not quite.
@@ -294,7 +294,7 @@ fn bad_seeds_are_named() {
 #[test]
 fn a_seed_on_a_wall_touches_it() {
     let tessellation = tessellate(&[DVec3::new(0.0, 0.5, 0.5), DVec3::new(0.7, 0.5, 0.5)]);
-    let walls = tessellation.neighbors(voronoi::CellId(0));
+    let walls = tessellation.neighbors(CellId(0));
     assert!(walls.iter().filter(|side| matches!(side, Side::Wall(_))).count() == 5);
 }
 
