@@ -72,6 +72,8 @@ fn ply_holds_points_bit_for_bit_and_the_sides_of_each_triangle() {
         Property::Int(x) => f64::from(x),
         ref other => panic!("{name} is {other:?}"),
     };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "wholes from 0")]
+    let place = |number: f64| number as usize;
     let point = |vertex: &DefaultElement| DVec3::from_array(["x", "y", "z"].map(|axis| number(vertex, axis)));
     let points: Vec<DVec3> = ply.payload["vertex"].iter().map(point).collect();
     assert_eq!(points, SPACE.points);
@@ -82,16 +84,16 @@ fn ply_holds_points_bit_for_bit_and_the_sides_of_each_triangle() {
         let Property::ListUInt(ids) = &face["vertex_indices"] else { panic!("no list of corners") };
         let triangle = <[u32; 3]>::try_from(&ids[..]).unwrap().map(|id| points[id as usize]);
         corners.push(triangle.map(bits));
-        let boundary = SPACE.network.boundaries()[number(face, "boundary") as usize];
+        let boundary = SPACE.network.boundaries()[place(number(face, "boundary"))];
         let sides = boundary.sides.map(|side| match side {
             polycrystal::Side::Grain(grain) => f64::from(grain.0),
             polycrystal::Side::Exterior => -1.0,
         });
         assert_eq!([number(face, "grain"), number(face, "neighbor")], sides);
-        of_grains[sides[0] as usize].push(triangle);
+        of_grains[place(sides[0])].push(triangle);
         if sides[1] >= 0.0 {
             let [a, b, c] = triangle;
-            of_grains[sides[1] as usize].push([a, c, b]);
+            of_grains[place(sides[1])].push([a, c, b]);
         }
     }
     assert!(sorted(corners) == expected_triangles());

@@ -246,10 +246,9 @@ proptest! {
 
     /// A file cut short is refused, however it is cut.
     #[test]
-    fn truncated_files_are_refused(part in 0.0..1.0_f64) {
+    fn truncated_files_are_refused(part in 0..1000_usize) {
         let text = ONE_CELL.trim_end();
-        let length = (part * text.len() as f64) as usize;
-        prop_assert!(read_tess(&text[..length.min(text.len() - 1)]).is_err());
+        prop_assert!(read_tess(&text[..part * text.len() / 1000]).is_err());
     }
 
     /// A word replaced by another makes an error or another tessellation, and never a panic or endless memory.

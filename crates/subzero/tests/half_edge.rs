@@ -28,7 +28,9 @@ fn reference_mesh(name: &str) -> (HalfEdgeMesh, Vec<DVec3>) {
 /// Vertices in use less edges plus triangles.
 fn euler_characteristic(mesh: &HalfEdgeMesh) -> i64 {
     let vertices = (0..mesh.vertex_count() as u32).filter(|&v| mesh.outgoing_half_edges(v).next().is_some());
-    vertices.count() as i64 - mesh.edges().count() as i64 + mesh.triangles().count() as i64
+    let [vertices, edges, triangles] = [vertices.count(), mesh.edges().count(), mesh.triangles().count()]
+        .map(|count| i64::try_from(count).expect("few"));
+    vertices - edges + triangles
 }
 
 /// Asserts that the mesh is what a search through its triangles would build.

@@ -97,7 +97,9 @@ fn assert_rows_sum_to(table: &StencilTable, sum: f64) {
 }
 
 fn euler_characteristic(mesh: &TriangleMesh) -> i64 {
-    mesh.vertex_count() as i64 - mesh.edge_count() as i64 + mesh.triangles().len() as i64
+    let [vertices, edges, triangles] = [mesh.vertex_count(), mesh.edge_count(), mesh.triangles().len()]
+        .map(|count| i64::try_from(count).expect("few"));
+    vertices - edges + triangles
 }
 
 proptest! {

@@ -20,19 +20,19 @@ pub enum Dimension {
 }
 
 impl Dimension {
-    /// The edge of the cube of a volume, in the plane of the square of an area.
+    /// The edge of the cube of a volume, in the plane of the square of an area; 0 where rounding made that negative.
     pub fn cube_edge(self, volume: f64) -> f64 {
         match self {
-            Self::Two => volume.sqrt(),
-            Self::Three => volume.cbrt(),
+            Self::Two => volume.max(0.0).sqrt(),
+            Self::Three => volume.max(0.0).cbrt(),
         }
     }
 
-    /// The diameter of the ball of a volume, in the plane of the disc of an area.
+    /// The diameter of the ball of a volume, in the plane of the disc of an area; 0 where rounding made that negative.
     pub fn ball_diameter(self, volume: f64) -> f64 {
         match self {
-            Self::Two => 2.0 * (volume / PI).sqrt(),
-            Self::Three => (6.0 * volume / PI).cbrt(),
+            Self::Two => 2.0 * (volume.max(0.0) / PI).sqrt(),
+            Self::Three => (6.0 * volume.max(0.0) / PI).cbrt(),
         }
     }
 

@@ -506,3 +506,11 @@ fn lengths_whose_powers_are_no_numbers_are_refused() {
         assert!(matches!(cuboid, Err(VoronoiError::BadDomain { axis: 'y', .. })), "{side}");
     }
 }
+
+/// In the plane the diameter of a cell of an area that rounding made negative was no number.
+#[test]
+fn what_rounding_made_negative_has_no_size() {
+    for dimension in [Dimension::Two, Dimension::Three] {
+        assert_eq!((dimension.cube_edge(-1e-20), dimension.ball_diameter(-1e-20)), (0.0, 0.0));
+    }
+}

@@ -126,7 +126,7 @@ proptest! {
         let seeds: Vec<DVec3> = (places.into_iter().zip(jitters).enumerate())
             .map(|(k, ((x, y), (dx, dy)))| {
                 // Within a cell of the grid, so that no two are the same.
-                let moves = if (k as i32) % 3 < share { DVec3::new(dx, dy, 0.0) / 65.0 } else { DVec3::ZERO };
+                let moves = if i32::try_from(k % 3).expect("below 3") < share { DVec3::new(dx, dy, 0.0) / 65.0 } else { DVec3::ZERO };
                 DVec3::new(f64::from(x), f64::from(y), 0.0) / 65.0 + moves
             })
             .collect();

@@ -25,7 +25,7 @@ fn seeds(reference: &Value) -> Vec<DVec3> {
 fn neighbors(tessellation: &Tessellation, cell: CellId) -> Vec<i64> {
     let number = |side: &Side| match side {
         Side::Cell(cell) | Side::Image(cell, _) => i64::from(cell.0),
-        Side::Wall(wall) => -1 - wall.index() as i64,
+        Side::Wall(wall) => -1 - i64::try_from(wall.index()).expect("few"),
     };
     let mut numbers: Vec<i64> = tessellation.neighbors(cell).iter().map(number).collect();
     numbers.sort_unstable();

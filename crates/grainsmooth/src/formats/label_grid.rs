@@ -232,7 +232,11 @@ impl Centers {
     }
 
     /// The first voxel whose centre is at `value` or beyond.
-    #[expect(clippy::cast_possible_truncation, reason = "casts of numbers beyond the range end at its ends")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "casts of numbers beyond the range end at its ends"
+    )]
     fn first_at(&self, axis: usize, value: f64) -> usize {
         let count = self.size[axis];
         let (lower, upper) = (self.domain.lower()[axis], self.domain.upper()[axis]);

@@ -49,7 +49,7 @@ fn vertex(word: &str, vertex_count: usize, line: &Words<'_>) -> Result<i64, Mesh
         Ok(0) => Err(line.problem("a face refers to vertex 0, but OBJ counts from 1")),
         Ok(id) if id > 0 => Ok(i64::from(id) - 1),
         // Negative ids count back from the last vertex so far.
-        Ok(id) => Ok(vertex_count as i64 + i64::from(id)),
+        Ok(id) => Ok(i64::try_from(vertex_count).unwrap_or(i64::MAX) + i64::from(id)),
         Err(_) => Err(line.problem(format!("'{}' is not a vertex of a face", short(word)))),
     }
 }

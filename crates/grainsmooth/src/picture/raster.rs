@@ -148,8 +148,11 @@ impl Band {
     /// The samples whose middles lie between two places, counted from `first`, of which there are `count`.
     fn samples_between(&self, low: f64, high: f64, first: usize, count: usize) -> std::ops::Range<usize> {
         let within = |place: f64| (place - first as f64).clamp(0.0, count as f64);
-        // Casts of clamped numbers lose their fractions only.
-        #[allow(clippy::cast_possible_truncation)]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "casts of clamped numbers lose their fractions only"
+        )]
         let range = within((low - 0.5).ceil()) as usize..within((high + 0.5).floor()) as usize;
         range
     }
@@ -163,8 +166,11 @@ impl Band {
                 let rows = (row..row + SAMPLES).map(|row| row * self.width + column);
                 let samples = rows.flat_map(|start| &self.colors[start..start + SAMPLES]);
                 let mean = samples.map(|color| color[channel]).sum::<f64>() / (SAMPLES * SAMPLES) as f64;
-                // From 0 to 255 without a remainder.
-                #[allow(clippy::cast_possible_truncation)]
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "from 0 to 255 without a remainder"
+                )]
                 let value = (255.0 * mean).round() as u8;
                 *byte = value;
             }

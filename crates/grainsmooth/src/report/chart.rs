@@ -31,8 +31,7 @@ impl Bins {
         let total: f64 = values.iter().map(|(_, weight)| weight).sum();
         let mut shares = Vec::new();
         for (value, weight) in values {
-            // Casts saturate: 0 below.
-            #[allow(clippy::cast_possible_truncation)]
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates: 0 below")]
             let bin = ((value - self.start) / self.width) as usize;
             if shares.len() <= bin {
                 shares.resize(bin + 1, 0.0);

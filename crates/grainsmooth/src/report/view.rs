@@ -58,8 +58,11 @@ pub(super) fn network_json(polycrystal: &Polycrystal) -> io::Result<String> {
     let high = points.iter().copied().reduce(DVec3::max).unwrap_or_default();
     let step = (high - low) / f64::from(u16::MAX);
     let steps = points.iter().flat_map(|point| ((*point - low) / step).round().to_array());
-    // From 0 to 65535 without a remainder.
-    #[allow(clippy::cast_possible_truncation)]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "from 0 to 65535 without a remainder"
+    )]
     let points: Vec<u8> = steps.flat_map(|steps| (steps as u16).to_le_bytes()).collect();
     let triangles: Vec<u8> = surface.triangles().flatten().flat_map(u32::to_le_bytes).collect();
     let part = |part: &crate::formats::Part| Part {
