@@ -171,6 +171,25 @@ fn limits_and_normals() {
     assert!((corner - DVec3::splat(0.5)).length() < 1e-15, "{corner}");
 }
 
+/// Meshes were written raw alone, which some readers do not know.
+#[test]
+fn vtk_files_hold_their_numbers_as_asked() {
+    let workplace = Workplace::new();
+    workplace.put("cube.obj", CUBE_OBJ);
+    for extension in ["vtp", "vtu"] {
+        workplace.run(&format!("mesh catmull-clark cube.obj -o raw.{extension}"));
+        let raw = read(&workplace, &format!("raw.{extension}"));
+        for (encoding, compressor) in [("base64", false), ("zlib", true)] {
+            let name = format!("{encoding}.{extension}");
+            workplace.run(&format!("mesh catmull-clark cube.obj --vtk-encoding {encoding} -o {name}"));
+            assert_eq!(read(&workplace, &name), raw, "{name}");
+            let text = String::from_utf8(workplace.bytes(&name)).unwrap();
+            assert!(!text.contains("AppendedData"), "{name}");
+            assert_eq!(text.contains("vtkZLibDataCompressor"), compressor, "{name}");
+        }
+    }
+}
+
 #[test]
 fn bezier_curves_and_patches() {
     let workplace = Workplace::new();

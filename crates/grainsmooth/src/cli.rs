@@ -22,6 +22,7 @@ mod values;
 pub use documents::{print_completions, print_manual};
 use domain::DomainArguments;
 use files::FileArguments;
+pub use files::VtkArguments;
 use pictures::PictureArguments;
 use run::RunArguments;
 use seeds::SeedArguments;

@@ -7,6 +7,8 @@ use grainsmooth::mesh_file::MeshFormat;
 use grainsmooth::{EdgeEdit, Scheme};
 use subzero::{BoundaryRule, Crease, DooSabinWeights, INFINITE_SHARPNESS, LoopWeights};
 
+use crate::cli::VtkArguments;
+
 /// Subdivide and edit meshes: OBJ, PLY, STL, OFF, VTK or JSON in; VTK, OBJ, PLY, STL or JSON out.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -65,6 +67,9 @@ pub struct FileArguments {
     /// Write JSON, whatever the extension: levels with their parents, and limits
     #[arg(long)]
     pub json: bool,
+
+    #[command(flatten)]
+    pub vtk: VtkArguments,
 
     /// Say nothing unless something is wrong
     #[arg(short, long)]

@@ -234,7 +234,8 @@ impl Job<'_> {
 
     fn content<'a>(&'a self, points: &'a [DVec3], cells: Cells<'a>) -> MeshToWrite<'a> {
         let command_line = &self.command_line;
-        MeshToWrite { points, cells, normals: None, generations: None, command_line }
+        let encoding = self.files.vtk.encoding();
+        MeshToWrite { points, cells, normals: None, generations: None, command_line, encoding }
     }
 
     fn output(&self, path: &Path) -> Result<Output<MeshFormat>, Error> {

@@ -67,11 +67,8 @@ pub struct FileArguments {
     #[arg(long)]
     arrays: bool,
 
-    /// How .vtp, .vtu, .vti and .vtm hold their numbers: raw is the fastest; base64 and zlib are read by more programs
-    ///
-    /// Example: --vtk-encoding zlib -o grains.vtu
-    #[arg(long, value_name = "ENCODING", value_enum, default_value_t = Encoding::Raw)]
-    vtk_encoding: Encoding,
+    #[command(flatten)]
+    vtk: VtkArguments,
 
     /// Write measures of the smooth network: as JSON, or as CSV of the grains with F.boundaries.csv and so on beside it
     ///
@@ -127,6 +124,26 @@ impl From<GrainFormat> for OutputFormat {
             GrainFormat::Stl => Self::Stl,
             GrainFormat::Ply => Self::Ply,
             GrainFormat::Obj => Self::Obj,
+        }
+    }
+}
+
+/// What is asked of XML files of VTK, of networks and of meshes.
+#[derive(Debug, Args)]
+pub struct VtkArguments {
+    /// How .vtp, .vtu, .vti and .vtm hold their numbers: raw is the fastest; base64 and zlib are read by more programs
+    ///
+    /// Example: --vtk-encoding zlib -o grains.vtu
+    #[arg(long, value_name = "ENCODING", value_enum, default_value_t = Encoding::Raw)]
+    vtk_encoding: Encoding,
+}
+
+impl VtkArguments {
+    pub fn encoding(&self) -> VtkEncoding {
+        match self.vtk_encoding {
+            Encoding::Raw => VtkEncoding::Raw,
+            Encoding::Base64 => VtkEncoding::Base64,
+            Encoding::Zlib => VtkEncoding::Zlib,
         }
     }
 }
@@ -212,12 +229,7 @@ impl FileArguments {
         let stl = if self.ascii { StlEncoding::Ascii } else { StlEncoding::Binary };
         let at_least_one = |count| NonZeroU32::new(count).unwrap_or(NonZeroU32::MIN);
         let voxels = voxels.map(|counts| counts.map(at_least_one));
-        let encoding = match self.vtk_encoding {
-            Encoding::Raw => VtkEncoding::Raw,
-            Encoding::Base64 => VtkEncoding::Base64,
-            Encoding::Zlib => VtkEncoding::Zlib,
-        };
-        FileOptions { names, voxels, stl, arrays: self.arrays, encoding }
+        FileOptions { names, voxels, stl, arrays: self.arrays, encoding: self.vtk.encoding() }
     }
 }
 

@@ -51,6 +51,8 @@ pub struct MeshToWrite<'a> {
     pub generations: Option<&'a [i8]>,
     /// The command line that made the mesh. Only VTK files hold it.
     pub command_line: &'a str,
+    /// How XML files of VTK hold their numbers.
+    pub encoding: VtkEncoding,
 }
 
 /// Writes a mesh in any format but JSON.
@@ -71,7 +73,7 @@ pub fn stage_mesh(
     files: &mut StagedFiles,
 ) -> Result<(), Error> {
     output.stage(files, |out| match output.format() {
-        MeshFormat::Vtk(format) => write_vtk(&poly_data(mesh), format, VtkEncoding::Raw, out),
+        MeshFormat::Vtk(format) => write_vtk(&poly_data(mesh), format, mesh.encoding, out),
         MeshFormat::Obj => write_obj(mesh, out),
         MeshFormat::Ply => write_ply(mesh, out),
         MeshFormat::Stl => write_stl(mesh, out),
