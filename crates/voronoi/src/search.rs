@@ -30,6 +30,9 @@ const RADIUS_MARGIN: f64 = 1.0 + 1e-12;
 /// single one is found in less time than as many more would take.
 const MOST_PLANES: usize = 500;
 
+/// The same where seeds crowd: there seeds on curved surfaces are found, and of many of them no vertex is known yet.
+const MOST_PLANES_IN_CROWDS: usize = 64;
+
 /// A cell that is being cut: polyhedron or polygon.
 pub(crate) trait Cutting {
     /// A radius around the seed that holds the cell; negative for an empty cell.
@@ -337,6 +340,7 @@ impl<'a> Search<'a> {
                 && distance <= known
                 && distance <= reach * RADIUS_MARGIN + self.position_error()
         };
+        let most = if layer.sites.is_crowded() { MOST_PLANES_IN_CROWDS } else { MOST_PLANES };
         let mut count = 0;
         while let Some((plane, squared)) =
             near.next(|squared, weight| is_wanted(cell.radius(), squared, weight))
@@ -347,7 +351,7 @@ impl<'a> Search<'a> {
             let weight = plane.as_site().map_or(own_weight, |site| input.weight(site));
             if !is_own && is_wanted(cell.radius(), squared, weight) {
                 count += 1;
-                if count > MOST_PLANES {
+                if count > most {
                     return false;
                 }
                 cell.cut(plane, input);

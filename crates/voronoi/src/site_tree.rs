@@ -69,6 +69,11 @@ impl SiteTree {
         tree
     }
 
+    /// Whether the sites are not in the order of a grid.
+    pub(crate) fn is_crowded(&self) -> bool {
+        self.grid.is_none()
+    }
+
     pub(crate) fn columns(&self) -> Columns<'_> {
         let [x, y, z] = &self.columns;
         Columns { sites: &self.sites, x, y, z, weights: self.weights.as_deref() }
