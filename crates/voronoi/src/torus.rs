@@ -42,7 +42,7 @@ impl FaceEnd {
 /// Faces in flat arrays. The first end is a cell that is not moved; the second is a greater cell, moved or not, the same
 /// cell moved, or a wall.
 pub(crate) struct TorusFaces {
-    fewest_corners: usize,
+    dimension: Dimension,
     ends: Vec<[FaceEnd; 2]>,
     starts: Vec<usize>,
     corners: Vec<Corner>,
@@ -50,12 +50,7 @@ pub(crate) struct TorusFaces {
 
 impl TorusFaces {
     pub(crate) fn new(dimension: Dimension) -> Self {
-        Self {
-            fewest_corners: dimension.fewest_corners(),
-            ends: Vec::new(),
-            starts: vec![0],
-            corners: Vec::new(),
-        }
+        Self { dimension, ends: Vec::new(), starts: vec![0], corners: Vec::new() }
     }
 
     /// The faces of all tiles, in the user's numbers of cells, with corners by number.
@@ -88,7 +83,7 @@ impl TorusFaces {
         if self.corners.len() > first + 1 && self.corners[self.corners.len() - 1] == self.corners[first] {
             self.corners.pop();
         }
-        if self.corners.len() - first < self.fewest_corners {
+        if self.corners.len() - first < self.dimension.fewest_corners() {
             self.corners.truncate(first);
             return;
         }
@@ -123,13 +118,13 @@ impl TorusFaces {
 
     /// Takes cells out that have two faces only, so that the cells beyond share one: see `flat_cells`.
     pub(crate) fn remove_flat_cells(&mut self, cell_count: usize) {
-        let mut face_counts = vec![0u32; cell_count];
+        let mut face_counts = vec![0usize; cell_count];
         for end in self.ends.iter().flatten() {
             if let FaceEnd::Cell(image) = end {
                 face_counts[image.seed as usize] += 1;
             }
         }
-        let fewest_faces = if self.fewest_corners == 2 { 3 } else { 4 };
+        let fewest_faces = self.dimension.fewest_faces();
         let is_flat = |end: &FaceEnd| matches!(end, FaceEnd::Cell(image) if face_counts[image.seed as usize] < fewest_faces);
         let mut faces_of: HashMap<u32, Vec<usize>> = HashMap::new();
         for (face, ends) in self.ends.iter().enumerate() {
@@ -160,12 +155,8 @@ impl TorusFaces {
         if faces_of.is_empty() {
             return;
         }
-        let mut rest = Self {
-            fewest_corners: self.fewest_corners,
-            ends: Vec::new(),
-            starts: vec![0],
-            corners: Vec::new(),
-        };
+        let mut rest =
+            Self { dimension: self.dimension, ends: Vec::new(), starts: vec![0], corners: Vec::new() };
         for (face, (ends, corners)) in self.iter().enumerate() {
             if !is_dropped[face] {
                 let (ends, back, is_turned) = in_order(ends);
