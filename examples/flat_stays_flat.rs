@@ -8,7 +8,7 @@ use grainsmooth::{Config, Polycrystal, SeedSource, make_polycrystal};
 use polycrystal::{BoundaryId, Mesh, Relaxation};
 
 fn main() -> Result<(), grainsmooth::Error> {
-    for time in [0.0, 0.3] {
+    for time in [0.0, 1.2] {
         let seeds = SeedSource::Random { count: 50 };
         let relaxation = Relaxation::Time(time);
         let config = Config { seeds, relaxation, ..Config::default() };

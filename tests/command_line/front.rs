@@ -23,7 +23,8 @@ fn summaries_tell_of_changes_of_topology() {
     let said = workplace.run("--seeds 24 -n 2 --relax equilibrium -o a.vtp --json-summary run.json");
     let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
     let number = |key: &str| run["equilibrium"][key].as_f64().unwrap();
-    let events = ["lines_to_boundaries", "boundaries_to_lines", "boundaries_swapped"].map(number);
+    let changes = |key: &str| run["topology_changes"][key].as_f64().unwrap();
+    let events = ["lines_to_boundaries", "boundaries_to_lines", "boundaries_swapped"].map(changes);
     assert!(events.iter().sum::<f64>() > 0.0, "{said}");
     let [opened, closed, swapped] = events;
     let line = format!(
@@ -50,10 +51,17 @@ fn summaries_tell_of_changes_of_topology() {
     printed(&workplace, "check a.vtp");
     let said = workplace.run("--seeds 24 -n 1 --relax equilibrium --regularize 0 -o b.vtp");
     assert!(said.contains("\ntopology    kept: "), "{said}");
-    // Nothing of the kind with a time.
-    workplace.run("--seeds 5 -n 0 -o b.vtp --json-summary run.json");
+    // In a given time grains switch neighbours, but nobody asks for rest.
+    let said = workplace.run("--seeds 24 -n 0 -o b.vtp --json-summary run.json");
     let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
     assert!(run["equilibrium"].is_null());
+    assert!(run["topology_changes"]["boundaries_to_lines"].as_f64().unwrap() > 0.0, "{said}");
+    let count = |counts: &str, of: &str| run["topology"][counts][of].as_u64().unwrap_or(0);
+    assert!(count("points_by_grains", "4") > 80 && count("points_by_grains", "5") < 4, "{said}");
+    assert_eq!(count("lines_by_boundaries", "4"), 0, "{said}");
+    let said = workplace.run("--seeds 24 -n 0 --regularize 0.05 -o b.vtp --json-summary run.json");
+    let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+    assert!(run["topology_changes"].is_null(), "{said}");
 }
 
 /// In 2D, too: in equilibrium only the bend of segments is between angles and 120 degrees.
@@ -66,7 +74,8 @@ fn summaries_tell_of_changes_of_topology_in_the_plane() {
         let said = workplace.run(&format!("{seeds} {plane}"));
         let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
         let number = |key: &str| run["equilibrium"][key].as_f64().unwrap();
-        let events = ["boundaries_swapped", "lines_to_boundaries", "boundaries_to_lines"].map(number);
+        let changes = |key: &str| run["topology_changes"][key].as_f64().unwrap();
+        let events = ["boundaries_swapped", "lines_to_boundaries", "boundaries_to_lines"].map(changes);
         assert!(events.iter().sum::<f64>() > 0.0, "{said}");
         let [swapped, opened, closed] = events;
         let line = format!(

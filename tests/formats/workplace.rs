@@ -34,7 +34,7 @@ pub fn config(dimension: Dimension, time: f64) -> Config {
         box_size: BOX,
         relaxation: Relaxation::Time(time),
         // What is not relaxed is to stay flat.
-        regularize: if time > 0.0 { Config::REGULARIZE } else { 0.0 },
+        regularize: None,
         levels: 2,
         file: FileOptions {
             voxels: Some([20, 15, 10].map(|n| NonZeroU32::new(n).unwrap())),

@@ -107,9 +107,9 @@ pub struct Config {
     pub wall_tension: f64,
     /// Whether relaxation keeps the grains' volumes.
     pub volumes: Volumes,
-    /// Length, in units of the mean grain size, below which edges of cells collapse before relaxation; 0 keeps all. Without
-    /// relaxation it has no effect: boundaries stay flat, for which no vertex may move.
-    pub regularize: f64,
+    /// Where the topology of the cells is to stay, the length, in units of the mean grain size, below which edges collapse before
+    /// relaxation all the same; 0 keeps all. Nothing lets grains come together and part as tension has it, where they can.
+    pub regularize: Option<f64>,
     /// Number of subdivisions.
     pub levels: u32,
     /// How triple lines are smoothed.
@@ -165,7 +165,7 @@ impl Default for Config {
             relaxation: Relaxation::default(),
             wall_tension: 0.0,
             volumes: Volumes::Kept,
-            regularize: Self::REGULARIZE,
+            regularize: None,
             levels: 3,
             junctions: Junctions::Crease,
             drop_empty: false,
@@ -176,35 +176,52 @@ impl Default for Config {
 }
 
 impl Config {
-    /// The usual length to regularise by, in mean grain sizes: the shortest that leaves triangles as good as longer ones do. Of random
-    /// grains, 0.15 made three times as many points of more than four grains; docs/relaxation.md has the figures.
+    /// The length to regularise by where grains cannot come together and part, in mean grain sizes: the shortest that leaves triangles as
+    /// good as longer ones do. Of random grains, 0.15 made three times as many points of more than four grains; docs/relaxation.md has
+    /// the figures.
     pub const REGULARIZE: f64 = 0.05;
 
     /// The largest: edges as long as half a grain are no small features.
     pub const LARGEST_REGULARIZE: f64 = 0.5;
 
-    /// How far boundaries relax unless something else is asked for: in the plane to equilibrium, which is quick and exact there
-    /// as long as all that stands beside it lets grains switch neighbours; else for the usual time.
+    /// How far boundaries relax unless something else is asked for. In the plane to equilibrium, which is quick and exact there, in
+    /// space for a time: longer where all that stands beside it lets grains switch neighbours.
     pub fn usual_relaxation(&self) -> Relaxation {
-        let balanced = Self { relaxation: Relaxation::Equilibrium, ..self.clone() };
-        match self.dimension {
-            Dimension::Two if balanced.lets_topology_change() => Relaxation::Equilibrium,
-            _ => Relaxation::default(),
+        let usual = match self.dimension {
+            Dimension::Two => Relaxation::Equilibrium,
+            Dimension::Three => Relaxation::USUAL,
+        };
+        let lets_change = Self { relaxation: usual, ..self.clone() }.lets_topology_change();
+        if lets_change { usual } else { Relaxation::default() }
+    }
+
+    /// How far boundaries relax where the topology stays: where it should have changed, for no longer than is usual then.
+    pub(crate) fn relaxation_of_kept_topology(&self) -> Relaxation {
+        match (self.relaxation, Relaxation::default()) {
+            (Relaxation::Time(time), Relaxation::Time(usual)) if self.lets_topology_change() => {
+                Relaxation::Time(time.min(usual))
+            }
+            _ => self.relaxation,
         }
     }
 
-    /// The length to regularise by: none without relaxation.
+    /// The length to regularise by, where the topology is to stay or cannot change: none without relaxation.
     pub(crate) fn effective_regularize(&self) -> f64 {
-        if self.relaxation == Relaxation::Time(0.0) { 0.0 } else { self.regularize }
+        if self.relaxation == Relaxation::Time(0.0) {
+            0.0
+        } else {
+            self.regularize.unwrap_or(Self::REGULARIZE)
+        }
     }
 
-    /// Whether grains may switch neighbours: on the way to equilibrium, at kept volumes, unless nothing of the cells
-    /// is to be changed.
+    /// Whether grains may switch neighbours: at kept volumes, unless the cells' own are asked for. In the plane they do so on the way to
+    /// equilibrium only.
     pub(crate) fn lets_topology_change(&self) -> bool {
-        self.relaxation == Relaxation::Equilibrium
-            && self.volumes == Volumes::Kept
-            && self.is_meshed_freely()
-            && self.effective_regularize() > 0.0
+        let is_on_the_way = match self.dimension {
+            Dimension::Two => self.relaxation == Relaxation::Equilibrium,
+            Dimension::Three => self.relaxation != Relaxation::Time(0.0),
+        };
+        is_on_the_way && self.regularize.is_none() && self.volumes == Volumes::Kept && self.is_meshed_freely()
     }
 
     /// Whether control points go where relaxation needs them: from fans, or in the plane, where there are none.

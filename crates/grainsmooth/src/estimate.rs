@@ -45,7 +45,7 @@ impl Estimate {
         let tessellation = &cells.tessellation;
         let is_flat = config.dimension == Dimension::Two;
         let control_mesh = match config.effective_regularize() {
-            length if length > 0.0 && !(is_flat && config.lets_topology_change()) => {
+            length if length > 0.0 && !config.lets_topology_change() => {
                 let (regular, _) = tessellation.regularized(length);
                 let MeshSize { points, edges, triangles } =
                     config.regular_face_mesh().control_mesh_size(&regular);

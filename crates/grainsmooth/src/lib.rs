@@ -76,7 +76,7 @@ pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputDirectory, OutputFormat};
 pub use picture::{Coloring, Picture, Png};
 pub use pipeline::{
-    Polycrystal, Progress, Regularization, Stage, check_expected_size, make_polycrystal, smooth,
+    Polycrystal, Progress, Reconnected, Regularization, Stage, check_expected_size, make_polycrystal, smooth,
     smooth_watched,
 };
 pub use poisson_disc::poisson_disc_seeds;

@@ -4,15 +4,15 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use polycrystal::{
-    AngleStatistics, Attempt, Balance, Boundary, BoxCut, Certificate, Equilibrium, HerringResidual, MeshSize,
-    Network, NetworkError,
+    AngleStatistics, Attempt, Balance, Boundary, BoxCut, Certificate, HerringResidual, MeshSize, Network,
+    NetworkError, RelaxedCells,
 };
 use polycrystal::{Measures, RegularCells, Side, measure_network};
 use polycrystal::{
     NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, Volumes, WeightedAngle,
 };
 use polycrystal::{
-    angles_between_boundaries, dihedral_angles, equilibrate, herring_residual, regular_cells, relax_watched,
+    angles_between_boundaries, dihedral_angles, herring_residual, regular_cells, relax_cells, relax_watched,
     validate,
 };
 use voronoi::{Collapsed, Dimension, Tessellation};
@@ -96,10 +96,10 @@ pub struct Polycrystal {
     pub regularization: Regularization,
     /// How many faces grains have and how many meet, before a periodic box is cut.
     pub topology: Topology,
-    /// What regularisation took out, or in equilibrium was drawn together.
+    /// What regularisation took out, or was drawn together where the topology changed.
     pub collapsed: Collapsed,
-    /// How relaxation to equilibrium changed the topology and how near it came; nothing where it kept the topology.
-    pub equilibrium: Option<(Reconnections, Balance)>,
+    /// How relaxation changed the topology; nothing where that stayed.
+    pub reconnected: Option<Reconnected>,
     /// What was tried before this result, and why it was given up.
     pub attempts: Vec<Attempt>,
     /// How far triple lines are from rest, if boundaries meet anywhere; of grains cut at a periodic box, before the cut.
@@ -261,7 +261,7 @@ pub fn smooth_watched(
             Ok(smoothed) => break (regularization, smoothed),
         }
     };
-    let Smoothed { network, points, relaxed, collapsed, equilibrium, flat_angles, angles_before, validation } =
+    let Smoothed { network, points, relaxed, collapsed, reconnected, flat_angles, angles_before, validation } =
         smoothed;
     attempts.extend(relaxed.given_up.clone());
     let residual = clock.time(Stage::Validation, || herring_residual(&network, &points));
@@ -277,7 +277,7 @@ pub fn smooth_watched(
         regularization,
         topology,
         collapsed,
-        equilibrium,
+        reconnected,
         attempts,
         residual,
         flat_angles,
@@ -318,9 +318,20 @@ fn two_digits_down(number: f64) -> f64 {
     digits.parse().unwrap_or(number)
 }
 
-/// What is taken out of the cells before relaxation. Cells that may change their neighbours are relaxed as they are instead.
+/// How relaxation changed the topology.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reconnected {
+    /// How often grains came together and parted.
+    pub reconnections: Reconnections,
+    /// How near the network came to equilibrium, where that was asked for.
+    pub balance: Option<Balance>,
+}
+
+/// What becomes of short edges of the cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Regularization {
+    /// Grains come together and part there as tension has it.
+    ByEnergy,
     /// What is short, and what relaxation would make so: the best triangles.
     Foreseeing,
     /// What is short.
@@ -333,6 +344,7 @@ impl Regularization {
     /// A name for programs.
     pub fn name(self) -> &'static str {
         match self {
+            Self::ByEnergy => "by_energy",
             Self::Foreseeing => "full",
             Self::Plain => "short_edges",
             Self::None => "none",
@@ -341,6 +353,7 @@ impl Regularization {
 
     fn in_words(self) -> &'static str {
         match self {
+            Self::ByEnergy => "letting grains switch neighbours",
             Self::Foreseeing => "cells without edges that are or become short",
             Self::Plain => "cells without short edges",
             Self::None => "cells as they are",
@@ -349,12 +362,19 @@ impl Regularization {
 
     /// Whether less was taken out than is usual where regularisation is asked for.
     pub(crate) fn fell_back(self, config: &Config) -> bool {
-        Self::tries(config)[0] != self
+        match self {
+            Self::ByEnergy | Self::Foreseeing => false,
+            Self::Plain => true,
+            Self::None => config.effective_regularize() > 0.0,
+        }
     }
 
     /// What to try, one after the other: where much is taken out, in rare places relaxation makes boundaries fold or cross.
     fn tries(config: &Config) -> &'static [Self] {
         match config.effective_regularize() {
+            _ if config.lets_topology_change() => {
+                &[Self::ByEnergy, Self::Foreseeing, Self::Plain, Self::None]
+            }
             0.0 => &[Self::None],
             _ => &[Self::Foreseeing, Self::Plain, Self::None],
         }
@@ -367,7 +387,7 @@ struct Smoothed {
     points: Vec<DVec3>,
     relaxed: Relaxed,
     collapsed: Collapsed,
-    equilibrium: Option<(Reconnections, Balance)>,
+    reconnected: Option<Reconnected>,
     flat_angles: Vec<WeightedAngle>,
     angles_before: Option<AngleStatistics>,
     validation: Certificate,
@@ -382,37 +402,20 @@ fn smooth_regularized(
     clock: &mut Clock<'_>,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<Smoothed, NetworkError> {
-    let (mut network, flat, mut collapsed) =
+    let progress = clock.progress;
+    let mut watch = |step: RelaxationStep<'_>| {
+        progress(Stage::Relaxation, step.done, step.count);
+        watch(step);
+    };
+    if regularization == Regularization::ByEnergy {
+        return smooth_by_energy(config, tessellation, attempts, clock, &mut watch);
+    }
+    let (mut network, flat, collapsed) =
         clock.time(Stage::Network, || network(config, tessellation, regularization, attempts))?;
     let angles_before = dihedral_angles(&network, network.control_mesh(), &flat);
     let flat_angles = angles_between_boundaries(&network, network.control_mesh(), &flat);
-    let mut equilibrium = None;
-    let progress = clock.progress;
     let relaxed = clock.time(Stage::Relaxation, || {
-        let mut watch = |step: RelaxationStep<'_>| {
-            progress(Stage::Relaxation, step.done, step.count);
-            watch(step);
-        };
-        // Cells that may change their neighbours are not regularised: one try tells all.
-        if let Regularization::Foreseeing = regularization
-            && config.lets_topology_change()
-        {
-            match balanced(config, tessellation, &mut watch) {
-                Ok(balanced) => {
-                    network = balanced.network;
-                    equilibrium = Some((balanced.reconnections, balanced.balance));
-                    collapsed = balanced.merged;
-                    attempts.extend(balanced.attempts);
-                    return Ok(balanced.relaxed);
-                }
-                // Equilibrium is then that of the topology that regularisation leaves.
-                Err(error) if error.is_tangle() => {
-                    error.give_up("letting neighbours switch", attempts);
-                }
-                Err(error) => return Err(error),
-            }
-        }
-        relax_watched(&network, &flat, &config.relaxation, config.volumes, watch)
+        relax_watched(&network, &flat, &config.relaxation_of_kept_topology(), config.volumes, watch)
     })?;
     let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
     if config.volumes == Volumes::Free {
@@ -421,19 +424,50 @@ fn smooth_regularized(
     }
     let validation =
         clock.time(Stage::Validation, || validate(&network, &points).map_err(NetworkError::Invalid))?;
-    Ok(Smoothed { network, points, relaxed, collapsed, equilibrium, flat_angles, angles_before, validation })
+    let reconnected = None;
+    Ok(Smoothed { network, points, relaxed, collapsed, reconnected, flat_angles, angles_before, validation })
 }
 
-/// The network in equilibrium with all changes of topology that this takes.
-fn balanced(
+/// The network of cells that come together and part as tension has it.
+fn smooth_by_energy(
     config: &Config,
     tessellation: &Tessellation,
+    attempts: &mut Vec<Attempt>,
+    clock: &mut Clock<'_>,
     watch: &mut impl FnMut(RelaxationStep<'_>),
-) -> Result<Equilibrium, NetworkError> {
+) -> Result<Smoothed, NetworkError> {
     let Config { junctions, levels, .. } = *config;
+    let (of_cells, flat) = clock.time(Stage::Network, || Network::new(tessellation, junctions, 0))?;
+    let angles_before = dihedral_angles(&of_cells, of_cells.control_mesh(), &flat);
+    let flat_angles = angles_between_boundaries(&of_cells, of_cells.control_mesh(), &flat);
     let tension = |boundary: &Boundary| config.tension(boundary);
     let recipe = NetworkRecipe { junctions, levels: levels as usize, tension: &tension };
-    equilibrate(tessellation, &recipe, watch)
+    let relaxed_cells =
+        clock.time(Stage::Relaxation, || relax_cells(tessellation, &recipe, &config.relaxation, watch))?;
+    let RelaxedCells {
+        network,
+        relaxed,
+        reconnections,
+        merged,
+        balance,
+        validation,
+        validated_in,
+        attempts: tried,
+    } = relaxed_cells;
+    attempts.extend(tried);
+    let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
+    clock.move_time(validated_in, Stage::Relaxation, Stage::Validation);
+    let reconnected = Some(Reconnected { reconnections, balance });
+    Ok(Smoothed {
+        network,
+        points,
+        relaxed,
+        collapsed: merged,
+        reconnected,
+        flat_angles,
+        angles_before,
+        validation,
+    })
 }
 
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.
@@ -443,19 +477,20 @@ fn network(
     regularization: Regularization,
     attempts: &mut Vec<Attempt>,
 ) -> Result<(Network, Vec<DVec3>, Collapsed), NetworkError> {
-    let Config { face_mesh, junctions, levels, regularize, .. } = *config;
+    let Config { face_mesh, junctions, levels, .. } = *config;
+    let length = config.effective_regularize();
     let network_of = |cells, face_mesh| {
         let (network, flat) = Network::with_face_mesh(cells, face_mesh, junctions, levels as usize)?;
         Ok::<_, NetworkError>((network.with_tensions(|boundary| config.tension(boundary))?, flat))
     };
     let (regular, collapsed) = match regularization {
         Regularization::Foreseeing => {
-            let RegularCells { cells, collapsed, given_up } = regular_cells(tessellation, regularize)?;
+            let RegularCells { cells, collapsed, given_up } = regular_cells(tessellation, length)?;
             attempts.extend(given_up);
             (cells, collapsed)
         }
-        Regularization::Plain => tessellation.regularized(regularize),
-        Regularization::None => {
+        Regularization::Plain => tessellation.regularized(length),
+        Regularization::None | Regularization::ByEnergy => {
             let (network, flat) = network_of(tessellation, face_mesh)?;
             return Ok((network, flat, Collapsed::default()));
         }
@@ -482,6 +517,19 @@ impl Clock<'_> {
             None => self.times.push((stage, taken)),
         }
         result
+    }
+
+    /// Counts some time of a stage to another.
+    fn move_time(&mut self, time: Duration, from: Stage, to: Stage) {
+        for (stage, taken) in &mut self.times {
+            if *stage == from {
+                *taken = taken.saturating_sub(time);
+            }
+        }
+        match self.times.iter_mut().find(|(known, _)| *known == to) {
+            Some((_, taken)) => *taken += time,
+            None => self.times.push((to, time)),
+        }
     }
 }
 

@@ -4,11 +4,12 @@ use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use polycrystal::{RelaxationStep, Relaxed};
+use polycrystal::{Network, NetworkError, RelaxationStep, Relaxed};
+use voronoi::Tessellation;
 
 use crate::formats::escaped;
 use crate::vtk::VtkFormat;
-use crate::{Error, Output, OutputFormat, Polycrystal, StagedFiles};
+use crate::{Config, Error, Output, OutputFormat, Polycrystal, StagedFiles};
 
 /// The steps of a relaxation, every so many of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +24,8 @@ struct Frame {
     time: f64,
     level: usize,
     points: Vec<DVec3>,
+    /// The cells that the points are those of, where they are not those of the polycrystal yet.
+    cells: Option<Tessellation>,
 }
 
 /// Where a series goes, found writable.
@@ -75,8 +78,8 @@ impl Series {
         // What folded is taken back and tried again.
         self.frames.retain(|frame| frame.time < step.time);
         if step.done.is_multiple_of(self.every.get() as usize) {
-            let RelaxationStep { time, level, points, .. } = *step;
-            self.frames.push(Frame { time, level, points: points.to_vec() });
+            let RelaxationStep { time, level, points, cells, .. } = *step;
+            self.frames.push(Frame { time, level, points: points.to_vec(), cells: cells.cloned() });
         }
     }
 
@@ -96,10 +99,19 @@ impl Series {
         let is_before = |frame: &&Frame| frame.level <= level && frame.time < time;
         let mut times = Vec::new();
         for frame in self.frames.iter().filter(is_before) {
-            let points = polycrystal.network.subdivide_between(frame.level, finest, &frame.points);
+            let (network, level) = match &frame.cells {
+                Some(cells) => (Some(network_of(cells, &polycrystal.network, &polycrystal.config)?), 0),
+                None => (None, frame.level),
+            };
+            let of_frame = network.as_ref().unwrap_or(&polycrystal.network);
+            let points = of_frame.subdivide_between(level, finest, &frame.points);
             let finished = std::mem::replace(&mut polycrystal.points, points);
+            let last = network.map(|network| std::mem::replace(&mut polycrystal.network, network));
             let written = output.step(times.len()).and_then(|step| polycrystal.stage(&step, files));
             polycrystal.points = finished;
+            if let Some(last) = last {
+                polycrystal.network = last;
+            }
             written?;
             times.push(frame.time);
         }
@@ -115,4 +127,11 @@ impl Series {
             writeln!(out, "</Collection>\n</VTKFile>")
         })
     }
+}
+
+/// The network of cells on their way to those of a finished one.
+fn network_of(cells: &Tessellation, finished: &Network, config: &Config) -> Result<Network, NetworkError> {
+    let (network, _) = Network::new(cells, config.junctions, finished.levels().len() - 1)?;
+    let network = network.with_tensions(|boundary| config.tension(boundary))?;
+    Ok(network.with_cell_volumes(finished.cell_volumes().to_vec()))
 }

@@ -82,7 +82,9 @@ impl Config {
         if self.volumes == Volumes::Free {
             add("free", true.into());
         }
-        add("regularize", self.regularize.into());
+        if let Some(length) = self.regularize {
+            add("regularize", length.into());
+        }
         add("levels", i64::from(self.levels).into());
         let junctions = match self.junctions {
             Junctions::Crease => "crease",

@@ -7,7 +7,8 @@ use polycrystal::{AngleStatistics, Balance, Boundary, HerringResidual, Reconnect
 use voronoi::{Collapsed, Dimension};
 
 use crate::{
-    Config, EquivalentDiameters, Polycrystal, Regularization, SeedSource, Stage, Tessellated, TriangleAngles,
+    Config, EquivalentDiameters, Polycrystal, Reconnected, Regularization, SeedSource, Stage, Tessellated,
+    TriangleAngles,
 };
 
 /// A polycrystal in a few lines of text: counts, angles, volumes, validation, times.
@@ -79,8 +80,8 @@ impl fmt::Display for Summary<'_> {
         if let Some(quality) = polycrystal.validation.triangles {
             writeln!(out, "triangles   {}", TriangleAngles::from(quality))?;
         }
-        if let Some((reconnections, balance)) = &polycrystal.equilibrium {
-            write_equilibrium(out, network.domain().dimension(), *reconnections, *balance)?;
+        if let Some(Reconnected { reconnections, balance }) = &polycrystal.reconnected {
+            write_topology(out, network.domain().dimension(), *reconnections, balance.as_ref())?;
         } else if polycrystal.config.lets_topology_change() {
             writeln!(
                 out,
@@ -172,33 +173,34 @@ impl fmt::Display for Seeds<'_> {
 }
 
 /// How relaxation to equilibrium changed the topology, and how near it came.
-fn write_equilibrium(
+fn write_topology(
     out: &mut fmt::Formatter<'_>,
     dimension: Dimension,
     Reconnections { opened, closed, swapped }: Reconnections,
-    Balance { flagged_lines, largest_residual }: Balance,
+    balance: Option<&Balance>,
 ) -> fmt::Result {
-    match dimension {
+    let flags = match dimension {
         Dimension::Two => {
             writeln!(
                 out,
                 "topology    {swapped} boundaries gave way to others, {opened} points opened to boundaries, {closed} boundaries became points"
             )?;
-            writeln!(
-                out,
-                "equilibrium {flagged_lines} points flagged (of more than three grains, or not at rest); largest residual of others {largest_residual:.4}"
-            )
+            "points flagged (of more than three grains, or not at rest)"
         }
         Dimension::Three => {
             writeln!(
                 out,
                 "topology    {opened} triple lines became boundaries, {closed} boundaries triple lines, {swapped} boundaries changed sides"
             )?;
-            writeln!(
-                out,
-                "equilibrium {flagged_lines} triple lines flagged (short, of four boundaries, or not at rest); largest residual of others {largest_residual:.4}"
-            )
+            "triple lines flagged (short, of four boundaries, or not at rest)"
         }
+    };
+    match balance {
+        Some(Balance { flagged_lines, largest_residual }) => writeln!(
+            out,
+            "equilibrium {flagged_lines} {flags}; largest residual of others {largest_residual:.4}"
+        ),
+        None => Ok(()),
     }
 }
 
@@ -244,6 +246,7 @@ mod tests {
         let config = Config { seeds: SeedSource::Random { count: 4 }, levels: 0, ..Config::default() };
         let mut polycrystal = make_polycrystal(&config, &|_, _, _| ()).unwrap();
         for (regularization, name, line) in [
+            (Regularization::ByEnergy, "by_energy", None),
             (Regularization::Foreseeing, "full", None),
             (
                 Regularization::Plain,
@@ -261,7 +264,7 @@ mod tests {
             assert_eq!(record["regularization"], name);
             assert_eq!(record["regularization_fell_back"], line.is_some());
         }
-        polycrystal.config.regularize = 0.0;
+        polycrystal.config.regularize = Some(0.0);
         assert!(!Summary(&polycrystal).to_string().contains("regularized"), "as asked for");
     }
 }

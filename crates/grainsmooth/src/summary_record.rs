@@ -8,7 +8,7 @@ use serde::Serialize;
 use voronoi::Dimension;
 
 use crate::triangle_angles::TriangleAngles;
-use crate::{EquivalentDiameters, Polycrystal, Regularization, Topology};
+use crate::{EquivalentDiameters, Polycrystal, Reconnected, Topology};
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -30,6 +30,7 @@ pub struct SummaryRecord {
     regularization_fell_back: bool,
     collapsed_edges: usize,
     collapsed_boundaries: usize,
+    topology_changes: Option<TopologyChanges>,
     equilibrium: Option<Equilibrium>,
     /// What was tried before and why it was given up, in order.
     attempts: Vec<Attempt>,
@@ -56,14 +57,18 @@ struct Boundaries {
     twice: usize,
 }
 
-/// What relaxation to equilibrium did, where it may change the topology. In the plane, lines are points.
+/// How relaxation changed the topology, where it may. In the plane, lines are points.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-struct Equilibrium {
+struct TopologyChanges {
     lines_to_boundaries: usize,
     boundaries_to_lines: usize,
     boundaries_swapped: usize,
-    /// Short triple lines that stayed.
-    /// Lines that are not at rest: short, of more than three boundaries, or with a large residual.
+}
+
+/// How near relaxation came to equilibrium, where that was asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct Equilibrium {
+    /// Lines (in the plane: points) that are not at rest: short, of more than three boundaries, or with a large residual.
     flagged_lines: usize,
     /// Of the lines that are not flagged.
     largest_residual: f64,
@@ -118,20 +123,22 @@ impl SummaryRecord {
             triple_lines: junctions.triple_lines,
             quadruple_points: junctions.quadruple_points,
             topology: polycrystal.topology.clone(),
-            // Cells that change their neighbours are not regularised.
-            regularization: match polycrystal.equilibrium {
-                Some(_) => Regularization::None.name(),
-                None => polycrystal.regularization.name(),
-            },
+            regularization: polycrystal.regularization.name(),
             regularization_fell_back: polycrystal.regularization.fell_back(config),
             collapsed_edges: polycrystal.collapsed.edges,
             collapsed_boundaries: polycrystal.collapsed.faces,
-            equilibrium: polycrystal.equilibrium.map(|(reconnections, balance)| Equilibrium {
-                lines_to_boundaries: reconnections.opened,
-                boundaries_to_lines: reconnections.closed,
-                boundaries_swapped: reconnections.swapped,
-                flagged_lines: balance.flagged_lines,
-                largest_residual: balance.largest_residual,
+            topology_changes: polycrystal.reconnected.map(|Reconnected { reconnections, .. }| {
+                TopologyChanges {
+                    lines_to_boundaries: reconnections.opened,
+                    boundaries_to_lines: reconnections.closed,
+                    boundaries_swapped: reconnections.swapped,
+                }
+            }),
+            equilibrium: polycrystal.reconnected.and_then(|reconnected| reconnected.balance).map(|balance| {
+                Equilibrium {
+                    flagged_lines: balance.flagged_lines,
+                    largest_residual: balance.largest_residual,
+                }
             }),
             attempts: polycrystal
                 .attempts

@@ -17,29 +17,48 @@ use std::time::Duration;
 use common::random_seeds;
 use glam::{BVec3, DVec3};
 use polycrystal::{
-    Attempt, Equilibrium, FaceMesh, Junctions, Network, NetworkError, NetworkRecipe, Relaxation, Tuning,
-    Volumes, dihedral_angles, equilibrate_tuned, regular_cells_tuned, relax_tuned, validate,
+    Attempt, FaceMesh, Junctions, Network, NetworkError, NetworkRecipe, Relaxation, RelaxedCells, Tuning,
+    Volumes, dihedral_angles, measure_network, regular_cells_tuned, relax_cells_tuned, relax_tuned, validate,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rustix::time::{ClockId, clock_gettime};
 use voronoi::{Domain, Tessellation};
 
-/// A change of the tuning.
+/// A change of the tuning, or of what is asked for.
 struct Row {
     name: &'static str,
     change: fn(&mut Tuning),
-    face_mesh: FaceMesh,
+    relaxation: Relaxation,
+    /// The topology is kept but for edges shorter than this.
+    regularize: Option<f64>,
 }
 
-/// A row with the usual control points.
 fn row(name: &'static str, change: fn(&mut Tuning)) -> Row {
-    Row { name, change, face_mesh: FaceMesh::SparseFan }
+    Row { name, change, relaxation: Relaxation::USUAL, regularize: None }
+}
+
+fn for_a_time(name: &'static str, time: f64) -> Row {
+    Row { relaxation: Relaxation::Time(time), ..row(name, |_| ()) }
+}
+
+fn regularized(name: &'static str, length: f64) -> Row {
+    Row { relaxation: Relaxation::default(), regularize: Some(length), ..row(name, |_| ()) }
+}
+
+fn to_rest(name: &'static str, change: fn(&mut Tuning)) -> Row {
+    Row { relaxation: Relaxation::Equilibrium, ..row(name, change) }
 }
 
 fn rows() -> Vec<Row> {
     vec![
         row("base", |_| ()),
+        for_a_time("time 0.3", 0.3),
+        for_a_time("time 0.6", 0.6),
+        for_a_time("time 0.9", 0.9),
+        for_a_time("time 3", 3.0),
+        row("no merged lines", |tuning| tuning.merged_length = 0.0),
+        row("merged 0.12", |tuning| tuning.merged_length = 0.12),
         row("no rigid edges", |tuning| tuning.rigid_length = 0.0),
         row("rigid 0.08", |tuning| tuning.rigid_length = 0.08),
         row("no turn, no bend", |tuning| (tuning.largest_turn, tuning.largest_bend) = (-1.0, -1.0)),
@@ -47,32 +66,29 @@ fn rows() -> Vec<Row> {
         row("no centering", |tuning| tuning.centering = 0.0),
         row("no widening", |tuning| tuning.widening = 0.0),
         row("widening 30", |tuning| tuning.widening = 30.0),
-        Row { name: "one fan centre", change: |_| (), face_mesh: FaceMesh::Fan },
-        row("no forecast", |tuning| tuning.forecast_steps = 0),
-        row("forecast 5 steps", |tuning| tuning.forecast_steps = 5),
-        row("forecast x1", |tuning| tuning.forecast_factor = 1.0),
-        row("forecast x3", |tuning| tuning.forecast_factor = 3.0),
         row("level 0 only", |tuning| tuning.finest_moved = 0),
-        row("coarse steps 5", |tuning| tuning.coarse_steps = 5),
-        row("coarse steps 20", |tuning| tuning.coarse_steps = 20),
         row("fine steps 3", |tuning| tuning.fine_steps = 3),
         row("fine steps 12", |tuning| tuning.fine_steps = 12),
         row("tolerance 1e-3", |tuning| tuning.tolerance = 1e-3),
         row("tolerance 1e-1", |tuning| tuning.tolerance = 1e-1),
         row("cotangent 50", |tuning| tuning.largest_cotangent = 50.0),
+        regularized("regularize 0", 0.0),
+        regularized("regularize 0.05", 0.05),
+        regularized("regularize 0.15", 0.15),
     ]
 }
 
 fn rows_of_equilibrium() -> Vec<Row> {
     vec![
-        row("base", |_| ()),
-        row("no merged lines", |tuning| tuning.merged_length = 0.0),
-        row("no centering", |tuning| tuning.centering = 0.0),
-        row("no widening", |tuning| tuning.widening = 0.0),
-        row("widening 30", |tuning| tuning.widening = 30.0),
-        row("levels 0 and 1 only", |tuning| tuning.finest_balanced = 1),
-        row("cotangent 5", |tuning| tuning.largest_cotangent_to_rest = 5.0),
-        row("tolerance 1e-3", |tuning| tuning.tolerance = 1e-3),
+        to_rest("base", |_| ()),
+        to_rest("no merged lines", |tuning| tuning.merged_length = 0.0),
+        to_rest("merged 0.12", |tuning| tuning.merged_length = 0.12),
+        to_rest("no centering", |tuning| tuning.centering = 0.0),
+        to_rest("no widening", |tuning| tuning.widening = 0.0),
+        to_rest("widening 30", |tuning| tuning.widening = 30.0),
+        to_rest("levels 0 and 1 only", |tuning| tuning.finest_balanced = 1),
+        to_rest("cotangent 5", |tuning| tuning.largest_cotangent_to_rest = 5.0),
+        to_rest("tolerance 1e-3", |tuning| tuning.tolerance = 1e-3),
     ]
 }
 
@@ -80,8 +96,6 @@ fn rows_of_equilibrium() -> Vec<Row> {
 struct Family {
     name: &'static str,
     cells: Vec<Tessellation>,
-    /// As of `--regularize`.
-    regularize: f64,
     levels: usize,
 }
 
@@ -91,13 +105,12 @@ fn families() -> Vec<Family> {
     let random = |domain: &Domain| -> Vec<Tessellation> {
         (1..=10).map(|seed| of_seeds(domain, &random_seeds(domain, 60, seed))).collect()
     };
-    let family = |name, cells, regularize| Family { name, cells, regularize, levels: 2 };
+    let family = |name, cells| Family { name, cells, levels: 2 };
     vec![
-        family("box", random(&cube), 0.15),
-        family("per", random(&periodic), 0.15),
-        family("reg0", random(&cube), 0.0),
-        family("latt", lattices(), 0.15),
-        family("pow", (1..=5).map(|seed| of_spheres(&cube, 60, seed)).collect(), 0.15),
+        family("box", random(&cube)),
+        family("per", random(&periodic)),
+        family("latt", lattices()),
+        family("pow", (1..=5).map(|seed| of_spheres(&cube, 60, seed)).collect()),
     ]
 }
 
@@ -108,8 +121,8 @@ fn families_of_equilibrium() -> Vec<Family> {
         (1..=5).map(move |seed| of_seeds(domain, &random_seeds(domain, count, seed))).collect()
     };
     vec![
-        Family { name: "box", cells: random(&cube, 30), regularize: 0.15, levels: 3 },
-        Family { name: "per", cells: random(&periodic, 60), regularize: 0.15, levels: 2 },
+        Family { name: "box", cells: random(&cube, 30), levels: 3 },
+        Family { name: "per", cells: random(&periodic, 60), levels: 2 },
     ]
 }
 
@@ -181,34 +194,18 @@ struct Outcome {
     deviation: f64,
     first_percentile: f64,
     thin: usize,
+    /// The share of the points where five grains or more meet.
+    higher_order: f64,
+    faces: f64,
 }
 
-fn relax(
-    cells: &Tessellation,
-    family: &Family,
-    row: &Row,
-    is_to_rest: bool,
-) -> (Duration, Result<Outcome, String>) {
+fn relax(cells: &Tessellation, family: &Family, row: &Row) -> (Duration, Result<Outcome, String>) {
     let mut tuning = Tuning::default();
     (row.change)(&mut tuning);
     let start = clock_gettime(ClockId::ProcessCPUTime);
-    let finished = if is_to_rest {
-        let recipe = NetworkRecipe {
-            junctions: Junctions::Crease,
-            levels: family.levels,
-            tension: &|boundary| {
-                if boundary.wall.is_none() { 1.0 } else { 0.0 }
-            },
-        };
-        equilibrate_tuned(cells, &recipe, &tuning, |_| ()).map_err(|error| error.to_string()).and_then(
-            |Equilibrium { network, relaxed, attempts, .. }| {
-                let points = relaxed.finest_points(&network);
-                check_nothing_given_up(attempts.first().or(relaxed.given_up.first()))?;
-                Ok((network, points))
-            },
-        )
-    } else {
-        relax_for_a_time(cells, family, row, &tuning)
+    let finished = match row.regularize {
+        Some(length) => keep_topology(cells, length, family, row, &tuning),
+        None => change_topology(cells, family, row, &tuning),
     };
     let taken = clock_gettime(ClockId::ProcessCPUTime) - start;
     let taken = Duration::try_from(taken).unwrap();
@@ -216,26 +213,53 @@ fn relax(
         let certificate = validate(&network, &points).map_err(|fault| fault.to_string())?;
         let triangles = certificate.triangles.unwrap();
         let angles = dihedral_angles(&network, network.finest(), &points).unwrap();
-        let (first_percentile, thin) = (triangles.first_percentile, triangles.thin);
-        Ok(Outcome { deviation: angles.standard_deviation, first_percentile, thin })
+        let measures = measure_network(&network, &points).in_space().unwrap();
+        let higher_order = measures.quadruple_points.iter().filter(|point| point.sides.len() > 4).count();
+        let faces: usize = measures.grains.iter().map(|grain| grain.neighbors.len()).sum();
+        Ok(Outcome {
+            deviation: angles.standard_deviation,
+            first_percentile: triangles.first_percentile,
+            thin: triangles.thin,
+            higher_order: higher_order as f64 / measures.quadruple_points.len() as f64,
+            faces: faces as f64 / measures.grains.len() as f64,
+        })
     });
     (taken, outcome)
 }
 
-fn relax_for_a_time(
+fn change_topology(
     cells: &Tessellation,
     family: &Family,
     row: &Row,
     tuning: &Tuning,
 ) -> Result<(Network, Vec<DVec3>), String> {
+    let recipe = NetworkRecipe {
+        junctions: Junctions::Crease,
+        levels: family.levels,
+        tension: &|boundary| if boundary.wall.is_none() { 1.0 } else { 0.0 },
+    };
+    let relaxed = relax_cells_tuned(cells, &recipe, &row.relaxation, tuning, |_| ());
+    let RelaxedCells { network, relaxed, attempts, .. } = relaxed.map_err(|error| error.to_string())?;
+    check_nothing_given_up(attempts.first().or(relaxed.given_up.first()))?;
+    let points = relaxed.finest_points(&network);
+    Ok((network, points))
+}
+
+fn keep_topology(
+    cells: &Tessellation,
+    regularize: f64,
+    family: &Family,
+    row: &Row,
+    tuning: &Tuning,
+) -> Result<(Network, Vec<DVec3>), String> {
     let text = |error: NetworkError| error.to_string();
-    let regular = regular_cells_tuned(cells, family.regularize, tuning).map_err(text)?;
+    let regular = regular_cells_tuned(cells, regularize, tuning).map_err(text)?;
     let (network, flat) =
-        Network::with_face_mesh(&regular.cells, row.face_mesh, Junctions::Crease, family.levels)
+        Network::with_face_mesh(&regular.cells, FaceMesh::SparseFan, Junctions::Crease, family.levels)
             .map_err(text)?;
     let network = network.with_cell_volumes(cells.cell_measures().iter().map(|cell| cell.volume).collect());
     let relaxed =
-        relax_tuned(&network, &flat, &Relaxation::default(), Volumes::Kept, tuning, |_| ()).map_err(text)?;
+        relax_tuned(&network, &flat, &row.relaxation, Volumes::Kept, tuning, |_| ()).map_err(text)?;
     check_nothing_given_up(relaxed.given_up.first().or(regular.given_up.first()))?;
     let points = relaxed.finest_points(&network);
     Ok((network, points))
@@ -246,14 +270,14 @@ fn check_nothing_given_up(attempt: Option<&Attempt>) -> Result<(), String> {
     attempt.map_or(Ok(()), |attempt| Err(format!("gave up {attempt}")))
 }
 
-fn print_row(row: &Row, families: &[Family], is_to_rest: bool) {
+fn print_row(row: &Row, families: &[Family]) {
     let (mut failures, mut all) = (Vec::new(), Duration::ZERO);
-    let mut columns: [Vec<String>; 4] = Default::default();
+    let mut columns: [Vec<String>; 6] = Default::default();
     for family in families {
         let mut time = Duration::ZERO;
         let mut outcomes = Vec::new();
         for (number, cells) in (1..).zip(&family.cells) {
-            let (taken, outcome) = relax(cells, family, row, is_to_rest);
+            let (taken, outcome) = relax(cells, family, row);
             time += taken;
             match outcome {
                 Ok(outcome) => outcomes.push(outcome),
@@ -264,12 +288,17 @@ fn print_row(row: &Row, families: &[Family], is_to_rest: bool) {
         columns[0].push(format!("{:.2}", mean(|outcome| outcome.deviation)));
         columns[1].push(format!("{:.1}", mean(|outcome| outcome.first_percentile)));
         columns[2].push(format!("{}", outcomes.iter().map(|outcome| outcome.thin).sum::<usize>()));
-        columns[3].push(format!("{:.1}", time.as_secs_f64()));
+        columns[3].push(format!("{:.1}", 100.0 * mean(|outcome| outcome.higher_order)));
+        columns[4].push(format!("{:.2}", mean(|outcome| outcome.faces)));
+        columns[5].push(format!("{:.1}", time.as_secs_f64()));
         all += time;
     }
-    let [deviations, percentiles, thin, times] = columns.map(|column| column.join(" / "));
+    let [deviations, percentiles, thin, higher_order, faces, times] =
+        columns.map(|column| column.join(" / "));
     let (name, count, all) = (row.name, failures.len(), all.as_secs_f64());
-    println!("| {name} | {count} | {deviations} | {percentiles} | {thin} | {times} | {all:.1} |");
+    println!(
+        "| {name} | {count} | {deviations} | {percentiles} | {thin} | {higher_order} | {faces} | {times} | {all:.1} |"
+    );
     failures.iter().for_each(|failure| println!("  {failure}"));
 }
 
@@ -281,11 +310,13 @@ fn main() {
         if is_to_rest { (families_of_equilibrium(), rows_of_equilibrium()) } else { (families(), rows()) };
     let names: Vec<&str> = families.iter().map(|family| family.name).collect();
     let names = names.join(" / ");
-    println!("| change | failures | sd {names} | p1 | thin | CPU s | all |\n|---|---|---|---|---|---|---|");
+    println!(
+        "| change | failures | sd {names} | p1 | thin | points % | faces | CPU s | all |\n|---|---|---|---|---|---|---|---|---|"
+    );
     let is_asked =
         |row: &&Row| arguments.is_empty() || arguments.iter().any(|name| row.name.starts_with(name));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     for row in rows.iter().filter(is_asked) {
-        pool.install(|| print_row(row, &families, is_to_rest));
+        pool.install(|| print_row(row, &families));
     }
 }

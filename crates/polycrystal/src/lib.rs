@@ -77,11 +77,11 @@ pub use periodic::PeriodicCopies;
 pub use regular_cells::regular_cells_tuned;
 pub use regular_cells::{RegularCells, regular_cells};
 pub use relax::{
-    Balance, Equilibrium, NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, Volumes,
-    equilibrate, relax, relax_watched,
+    Balance, NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, RelaxedCells, Volumes, relax,
+    relax_cells, relax_watched,
 };
 #[doc(hidden)]
-pub use relax::{Tuning, equilibrate_tuned, relax_tuned};
+pub use relax::{Tuning, relax_cells_tuned, relax_tuned};
 pub use surface::{Elements, Surface};
 pub use triangle_quality::TriangleQuality;
 pub use validate::validate;

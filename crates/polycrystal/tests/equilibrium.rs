@@ -6,23 +6,24 @@ mod common;
 use common::random_seeds;
 use glam::{BVec3, DVec3};
 use polycrystal::{
-    Balance, Boundary, Equilibrium, Junctions, NetworkRecipe, Reconnections, dihedral_angles, equilibrate,
-    measure_network, validate,
+    Balance, Boundary, Junctions, NetworkRecipe, Reconnections, Relaxation, RelaxedCells, dihedral_angles,
+    measure_network, relax_cells, validate,
 };
 use voronoi::{Domain, Tessellation};
 
-fn balanced(domain: &Domain, seeds: &[DVec3], levels: usize) -> (Equilibrium, Vec<DVec3>) {
+fn balanced(domain: &Domain, seeds: &[DVec3], levels: usize) -> (RelaxedCells, Vec<DVec3>) {
     let tessellation = Tessellation::new(domain, seeds).expect("valid seeds");
     let tension = |boundary: &Boundary| if boundary.wall.is_some() { 0.0 } else { 1.0 };
     let recipe = NetworkRecipe { junctions: Junctions::Crease, levels, tension: &tension };
-    let balanced = equilibrate(&tessellation, &recipe, |_| ()).expect("relaxes");
+    let balanced = relax_cells(&tessellation, &recipe, &Relaxation::Equilibrium, |_| ()).expect("relaxes");
     let points = balanced.relaxed.finest_points(&balanced.network);
     (balanced, points)
 }
 
 fn check_random_grains(domain: &Domain, count: usize, random_seed: u64, largest_spread: f64) {
-    let (Equilibrium { network, reconnections, balance, .. }, points) =
+    let (RelaxedCells { network, reconnections, balance, .. }, points) =
         balanced(domain, &random_seeds(domain, count, random_seed), 2);
+    let balance = balance.expect("equilibrium");
     let validation = validate(&network, &points).expect("closed grains, no folds, no crossings");
     assert!(validation.largest_volume_error < 1e-10, "{validation:?}");
     assert!(reconnections.count() > 0);
@@ -46,8 +47,9 @@ fn random_grains_between_walls_come_to_equilibrium() {
 fn lines_that_are_not_at_rest_are_flagged() {
     let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
     for random_seed in [2, 3] {
-        let (Equilibrium { network, balance, .. }, points) =
+        let (RelaxedCells { network, balance, .. }, points) =
             balanced(&domain, &random_seeds(&domain, 24, random_seed), 2);
+        let balance = balance.expect("equilibrium");
         let measures = measure_network(&network, &points).in_space().expect("space");
         let residuals = || measures.triple_lines.iter().filter_map(|line| line.residual);
         let off = residuals().filter(|residual| *residual > Balance::LARGEST_RESIDUAL).count();
@@ -67,7 +69,8 @@ fn kelvin_cells_keep_their_neighbours() {
         let corner = DVec3::new(f64::from(i % 2), f64::from(i / 2 % 2), f64::from(i / 4));
         seeds.extend([(corner + 0.25) / 2.0, (corner + 0.75) / 2.0]);
     }
-    let (Equilibrium { reconnections, balance, .. }, _) = balanced(&domain, &seeds, 2);
+    let (RelaxedCells { reconnections, balance, .. }, _) = balanced(&domain, &seeds, 2);
+    let balance = balance.expect("equilibrium");
     assert_eq!(reconnections, Reconnections::default());
     assert_eq!(balance.flagged_lines, 0);
     assert!(balance.largest_residual < 0.013, "{balance:?}");

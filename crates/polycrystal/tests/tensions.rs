@@ -8,8 +8,8 @@ use std::cell::Cell;
 use common::{network, random_network, random_seeds};
 use glam::{BVec3, DVec3};
 use polycrystal::{
-    Boundary, Equilibrium, Junctions, Network, NetworkRecipe, Relaxation, Side, equilibrate,
-    herring_residual, measure_network, relax,
+    Boundary, Junctions, Network, NetworkRecipe, Relaxation, RelaxedCells, Side, herring_residual,
+    measure_network, relax, relax_cells,
 };
 use voronoi::{Domain, Tessellation};
 
@@ -21,7 +21,7 @@ fn unequal(boundary: &Boundary) -> f64 {
     }
 }
 
-fn equilibrium(domain: &Domain, seeds: &[DVec3], tension: &dyn Fn(&Boundary) -> f64) -> Equilibrium {
+fn equilibrium(domain: &Domain, seeds: &[DVec3], tension: &dyn Fn(&Boundary) -> f64) -> RelaxedCells {
     equilibrium_at(2, domain, seeds, tension)
 }
 
@@ -30,10 +30,10 @@ fn equilibrium_at(
     domain: &Domain,
     seeds: &[DVec3],
     tension: &dyn Fn(&Boundary) -> f64,
-) -> Equilibrium {
+) -> RelaxedCells {
     let tessellation = Tessellation::new(domain, seeds).expect("valid seeds");
     let recipe = NetworkRecipe { junctions: Junctions::Crease, levels, tension };
-    equilibrate(&tessellation, &recipe, |_| ()).expect("relaxes")
+    relax_cells(&tessellation, &recipe, &Relaxation::Equilibrium, |_| ()).expect("relaxes")
 }
 
 fn check_unit(points_at: impl Fn(f64) -> Vec<DVec3>) {
@@ -61,7 +61,7 @@ fn the_unit_of_tensions_changes_nothing() {
         });
         let seeds = random_seeds(domain, count, 2);
         check_unit(|unit| {
-            let Equilibrium { network, relaxed, .. } =
+            let RelaxedCells { network, relaxed, .. } =
                 equilibrium(domain, &seeds, &|of: &Boundary| unit * unequal(of));
             relaxed.finest_points(&network)
         });
@@ -81,7 +81,7 @@ fn the_law_of_tensions_sees_both_grains_of_each_boundary_of_a_torus() {
             assert!(boundary.wall.is_none() && boundary.twin.is_none(), "{boundary:?}");
             1.0
         };
-        let Equilibrium { network, .. } = equilibrium(&domain, &random_seeds(&domain, 12, 1), &law);
+        let RelaxedCells { network, .. } = equilibrium(&domain, &random_seeds(&domain, 12, 1), &law);
         network.with_tensions(law).expect("good tensions");
         assert!(calls.get() > 100, "{calls:?}");
     }
@@ -113,8 +113,9 @@ fn largest_error(sides: &[Side], angles: &[f64]) -> f64 {
 #[test]
 fn unequal_tensions_in_the_plane_come_to_herrings_angles() {
     let domain = Domain::unit_square().with_periods(BVec3::TRUE);
-    let Equilibrium { network, relaxed, balance, .. } =
+    let RelaxedCells { network, relaxed, balance, .. } =
         equilibrium(&domain, &random_seeds(&domain, 40, 3), &unequal);
+    let balance = balance.expect("equilibrium");
     let measures = measure_network(&network, &relaxed.points).in_plane().expect("the plane");
     assert_eq!(balance.flagged_lines, 0);
     let errors = measures.triple_points.iter().map(|point| largest_error(&point.sides, &point.angles));
@@ -132,8 +133,9 @@ fn a_triple_line_of_unequal_tensions_comes_to_herrings_angles() {
     let seeds = [(0.25, 0.3), (0.75, 0.25), (0.45, 0.8)].map(|(x, y)| DVec3::new(x, y, 0.5));
     let law = |boundary: &Boundary| if boundary.wall.is_some() { 0.0 } else { unequal(boundary) };
     for (levels, largest_error_there) in [(2, 3.5), (3, 2.5)] {
-        let Equilibrium { network, relaxed, balance, .. } =
+        let RelaxedCells { network, relaxed, balance, .. } =
             equilibrium_at(levels, &Domain::unit_cube(), &seeds, &law);
+        let balance = balance.expect("equilibrium");
         let points = relaxed.finest_points(&network);
         let measures = measure_network(&network, &points).in_space().expect("space");
         let inside = measures.triple_lines.iter().filter(|line| !line.sides.contains(&Side::Exterior));
@@ -150,8 +152,9 @@ fn a_triple_line_of_unequal_tensions_comes_to_herrings_angles() {
 #[test]
 fn unequal_tensions_in_space_come_to_rest() {
     let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
-    let Equilibrium { network, relaxed, balance, .. } =
+    let RelaxedCells { network, relaxed, balance, .. } =
         equilibrium(&domain, &random_seeds(&domain, 12, 4), &unequal);
+    let balance = balance.expect("equilibrium");
     let points = relaxed.finest_points(&network);
     let residual = herring_residual(&network, &points).expect("triple lines");
     assert!(residual.rms < 0.03, "{residual:?}, {balance:?}");

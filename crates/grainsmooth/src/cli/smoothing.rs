@@ -23,8 +23,8 @@ pub struct SmoothingArguments {
     #[arg(long, value_name = "H", value_parser = parse_edge_length, allow_negative_numbers = true, conflicts_with = "faces")]
     edge_length: Option<f64>,
 
-    /// Relaxation time, in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat [default: 0.3; in
-    /// 2D equilibrium, but 0.3 with --free, --edge-length or --regularize 0]
+    /// Relaxation time, in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat [default: 1.2, in
+    /// 2D equilibrium; 0.3 with --free, --edge-length, --regularize, and in 3D --faces plain]
     ///
     /// Example: --relax 0.1
     #[arg(long, value_name = "T", value_parser = parse_relaxation, allow_negative_numbers = true)]
@@ -42,11 +42,12 @@ pub struct SmoothingArguments {
     #[arg(long)]
     free: bool,
 
-    /// Length, in units of the mean grain size, below which edges between grains collapse; 0 keeps all, and so does --relax 0
+    /// Keep the neighbours of the cells instead of letting grains switch them, but for edges shorter than L mean grain sizes, which
+    /// become points; 0 keeps all
     ///
     /// Example: --regularize 0.05
-    #[arg(long, value_name = "L", default_value_t = Config::REGULARIZE, value_parser = parse_regularize, allow_negative_numbers = true)]
-    pub regularize: f64,
+    #[arg(long, value_name = "L", value_parser = parse_regularize, allow_negative_numbers = true)]
+    pub regularize: Option<f64>,
 
     /// Number of subdivisions; each makes four triangles of one (two segments in 2D)
     ///

@@ -11,10 +11,13 @@ mod foam;
 mod switching;
 mod tangent;
 
+use std::time::Instant;
+
 use glam::{DVec2, DVec3};
 use voronoi::{CellComplex, Collapsed, Corner, FaceId, Tessellation};
 
-use super::equilibrium::{Balance, Equilibrium, NetworkRecipe};
+use super::balance::Balance;
+use super::cells::{NetworkRecipe, RelaxedCells};
 use super::reconnection::Reconnections;
 use super::{RelaxationStep, Relaxed};
 use crate::{Mesh, Network, NetworkError, Side, measure_network, validate};
@@ -36,12 +39,12 @@ const FEWEST_SEGMENTS: u32 = 2;
 /// Most steps while the topology changes, and most after that. Some fifty are usual.
 const STEPS: usize = 2000;
 
-/// As [`equilibrate`](super::equilibrate), in the plane.
+/// As [`relax_cells`](super::relax_cells), in the plane.
 pub(super) fn equilibrate(
     tessellation: &Tessellation,
     recipe: &NetworkRecipe<'_>,
     watch: &mut impl FnMut(RelaxationStep<'_>),
-) -> Result<Equilibrium, NetworkError> {
+) -> Result<RelaxedCells, NetworkError> {
     let areas: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
     let complex = CellComplex::from(tessellation);
     let turnings = vec![0.0; complex.faces().len()];
@@ -50,14 +53,18 @@ pub(super) fn equilibrate(
     let smooth = SmoothEdges::new(&edges, recipe, &areas)?;
     let relaxed = smooth.balanced(&edges, recipe, states, descent, watch)?;
     let network = smooth.network;
-    validate(&network, &relaxed.points).map_err(NetworkError::Invalid)?;
-    let balance = balance(&network, &relaxed.points);
-    Ok(Equilibrium {
+    let start = Instant::now();
+    let validation = validate(&network, &relaxed.points).map_err(NetworkError::Invalid)?;
+    let validated_in = start.elapsed();
+    let balance = Some(balance(&network, &relaxed.points));
+    Ok(RelaxedCells {
         network,
         relaxed,
         reconnections,
         merged: Collapsed::default(),
         balance,
+        validation,
+        validated_in,
         attempts: Vec::new(),
     })
 }
@@ -168,7 +175,14 @@ impl SmoothEdges {
         let level = self.network.levels().len() - 1;
         let mut show = |done: usize, state: &[f64]| {
             let points = self.points(&foam, state);
-            watch(RelaxationStep { done, count: STEPS, time: done as f64, level, points: &points });
+            watch(RelaxationStep {
+                done,
+                count: STEPS,
+                time: done as f64,
+                level,
+                points: &points,
+                cells: None,
+            });
         };
         states.iter().enumerate().for_each(|(done, state)| show(done, state));
         let mut steps = states.len() - 1;
@@ -211,7 +225,7 @@ impl SmoothEdges {
 /// How near to equilibrium a network in the plane is.
 fn balance(network: &Network, points: &[DVec3]) -> Balance {
     let measures = measure_network(network, points).in_plane().expect("a network in the plane");
-    Balance::of(measures.triple_points.iter().map(|point| {
+    Balance::of_lines(measures.triple_points.iter().map(|point| {
         let is_inside = !point.sides.contains(&Side::Exterior);
         (is_inside && point.sides.len() > 3, point.residual)
     }))

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use voronoi::{CellComplex, ComplexEdge, Corner, FaceId, Shift, Side};
 
-use super::local_area::{Conditions, LocalArea};
+use super::local_area::{Conditions, Excess, LocalArea};
 use super::shape::distinct;
 
 /// Share of the length of what goes by which what comes starts off its middle.
@@ -27,8 +27,8 @@ const THIN: f64 = 2.0;
 /// Length, in the same unit, that an event must leave to all lines.
 const LEAST: f64 = 0.1;
 
-/// Share of a cell's volume by which nothing here may change it: what is lost at once, no step of the flow brings back. With 0.2 a small
-/// grain may be unable to leave a wall.
+/// Share of a cell's volume that all events between two steps of the flow may take or give: what is lost at once, no step brings back.
+/// With 0.2 a small grain may be unable to leave a wall.
 const LARGEST_CHANGE: f64 = 0.3;
 
 /// How often lines between the same grains may go without lessening the area: what comes back is to stay.
@@ -91,25 +91,26 @@ impl Reconnector {
     }
 
     /// Lets all events happen that are due where lines are short, or boundaries with three sides thin; `before` has the lengths
-    /// of lines a while ago.
+    /// of lines a while ago, `excess` is kept up to date.
     pub(super) fn pass(
         &mut self,
         complex: &mut CellComplex,
         conditions: &Conditions<'_>,
         before: &HashMap<ComplexEdge, f64>,
+        excess: &mut Excess,
     ) -> Reconnections {
         let mut done = Reconnections::default();
         for face in complex.faces_with_corners(3) {
             if complex.corners(face).len() == 3
                 && least_height(complex, face) < THIN * self.short
-                && self.happens(Event::Close(face), complex, conditions, Demand::LessArea)
+                && self.happens(Event::Close(face), complex, conditions, Demand::LessArea, excess)
             {
                 done.closed += 1;
             }
         }
         for edge in self.short_lines(complex) {
             if complex.has_edge(edge) {
-                done.add(self.pass_line(edge, complex, conditions, before));
+                done.add(self.pass_line(edge, complex, conditions, before, excess));
             }
         }
         done
@@ -129,6 +130,7 @@ impl Reconnector {
         complex: &mut CellComplex,
         conditions: &Conditions<'_>,
         before: &HashMap<ComplexEdge, f64>,
+        excess: &mut Excess,
     ) -> Reconnections {
         let around = complex.faces_of_edge(edge);
         let with_corners = |count: usize| -> Vec<FaceId> {
@@ -141,7 +143,7 @@ impl Reconnector {
         let count = events.len();
         events.extend(with_corners(4).into_iter().map(|face| (Event::Swap(edge, face), swapped)));
         for (event, done) in &events {
-            if self.happens(*event, complex, conditions, Demand::LessArea) {
+            if self.happens(*event, complex, conditions, Demand::LessArea, excess) {
                 return *done;
             }
         }
@@ -151,14 +153,14 @@ impl Reconnector {
             let sides = sides_at(complex, edge);
             let tries = self.tries.get(&sides).copied().unwrap_or(0);
             for (event, done) in events[..count].iter().filter(|_| tries < MOST_TRIES) {
-                if self.happens(*event, complex, conditions, Demand::NoFold) {
+                if self.happens(*event, complex, conditions, Demand::NoFold, excess) {
                     self.tries.insert(sides, tries + 1);
                     return *done;
                 }
             }
         }
         if now < TINY * self.short {
-            self.settle(edge, complex, conditions);
+            self.settle(edge, complex, conditions, excess);
         }
         Reconnections::default()
     }
@@ -170,28 +172,31 @@ impl Reconnector {
         complex: &mut CellComplex,
         conditions: &Conditions<'_>,
         demand: Demand,
+        excess: &mut Excess,
     ) -> bool {
         let old = event.vertices(complex);
         let snapshot = complex.snapshot(&old);
         let first_new = complex.vertices.len();
-        let mut as_it_is = LocalArea::new(complex, &old, conditions);
+        let mut as_it_is = LocalArea::new(complex, &old, conditions, excess);
+        let excesses: Vec<_> = as_it_is.excesses().collect();
         let folds = as_it_is.fold_count();
         if event.happen(complex, LEAST_GOING * self.short) {
             let added =
                 (first_new..complex.vertices.len()).map(|new| u32::try_from(new).expect("ids fit 32 bits"));
             let all = old.into_iter().chain(added);
             let new: Vec<u32> = all.filter(|vertex| !complex.faces_at(&[*vertex]).is_empty()).collect();
-            let mut changed = LocalArea::new(complex, &new, conditions).with_volumes_of(&as_it_is);
+            let mut changed = LocalArea::new(complex, &new, conditions, excess).with_volumes_of(&as_it_is);
             let is_good = match demand {
                 Demand::LessArea => changed.minimize() < as_it_is.minimize(),
                 Demand::NoFold => true,
             };
             if is_good
                 && changed.shortest_edge() > LEAST * self.short
-                && changed.largest_volume_change() < LARGEST_CHANGE
+                && changed.keeps_volumes(LARGEST_CHANGE, &excesses)
                 && changed.fold_count() <= folds
             {
                 changed.place(complex);
+                changed.excesses().for_each(|(cell, by, _)| excess[cell.index()] = by);
                 return true;
             }
         }
@@ -200,13 +205,21 @@ impl Reconnector {
     }
 
     /// Puts the ends of a line where it has the least area, unless it gets even shorter.
-    fn settle(&self, edge: ComplexEdge, complex: &mut CellComplex, conditions: &Conditions<'_>) {
-        let mut area = LocalArea::new(complex, &[edge.start, edge.end.vertex], conditions);
+    fn settle(
+        &self,
+        edge: ComplexEdge,
+        complex: &mut CellComplex,
+        conditions: &Conditions<'_>,
+        excess: &mut Excess,
+    ) {
+        let mut area = LocalArea::new(complex, &[edge.start, edge.end.vertex], conditions, excess);
+        let excesses: Vec<_> = area.excesses().collect();
         let (shortest, folds) = (area.shortest_edge(), area.fold_count());
         area.minimize();
-        let keeps_volumes = area.largest_volume_change() < LARGEST_CHANGE;
+        let keeps_volumes = area.keeps_volumes(LARGEST_CHANGE, &excesses);
         if area.shortest_edge() > shortest && keeps_volumes && area.fold_count() <= folds {
             area.place(complex);
+            area.excesses().for_each(|(cell, by, _)| excess[cell.index()] = by);
         }
     }
 }

@@ -1,0 +1,203 @@
+//! Relaxation of cells, with the changes of topology that it takes.
+
+use std::time::{Duration, Instant};
+
+use voronoi::{Collapsed, Tessellation};
+
+use super::balance::Balance;
+use super::local_area::boundary;
+use super::merged_lines::MergedLines;
+use super::plane;
+use super::reconnection::Reconnections;
+use super::settling::{SettlingStep, settle};
+use super::{Plan, Relaxation, RelaxationStep, Relaxed, Start, Tuning, relax_levels};
+use crate::tension::{checked_tension, in_unit, mean_tension};
+use crate::{Attempt, Boundary, Certificate, Junctions, Network, NetworkError, Volumes, validate};
+
+/// How a network is made of cells.
+#[derive(Clone, Copy)]
+pub struct NetworkRecipe<'a> {
+    /// How triple lines are smoothed.
+    pub junctions: Junctions,
+    /// Number of subdivisions.
+    pub levels: usize,
+    /// The tension of each boundary.
+    pub tension: &'a dyn Fn(&Boundary) -> f64,
+}
+
+/// What relaxation of cells gives.
+#[derive(Debug, Clone)]
+pub struct RelaxedCells {
+    /// The network with its topology in the end.
+    pub network: Network,
+    /// Where its points are.
+    pub relaxed: Relaxed,
+    /// What changed the topology.
+    pub reconnections: Reconnections,
+    /// Short triple lines, and boundaries with them, that were drawn together into points of higher order.
+    pub merged: Collapsed,
+    /// How near to equilibrium it is, where that was asked for.
+    pub balance: Option<Balance>,
+    /// What validation found.
+    pub validation: Certificate,
+    /// Time that validation took, of all.
+    pub validated_in: Duration,
+    /// What was tried before, and tangled.
+    pub attempts: Vec<Attempt>,
+}
+
+/// Relaxes the grains of a tessellation, and lets them come together and part. Every grain keeps the volume of its cell.
+///
+/// Triple lines that shrink to nothing become boundaries, and boundaries triple lines, where that lessens the area; each
+/// grain stays a closed ball. The network is valid. Control points are in fans.
+///
+/// In the plane, where only [`Relaxation::Equilibrium`] changes the topology, boundaries become arcs of circles, in segments that turn by
+/// a quarter of a degree at most, and meet at triple points. Steps are Newton's there, and count as time 1 each.
+///
+/// # Errors
+/// As of [`relax`](crate::relax), and [`NetworkError::Invalid`], where no way leads to a valid network.
+pub fn relax_cells(
+    tessellation: &Tessellation,
+    recipe: &NetworkRecipe<'_>,
+    relaxation: &Relaxation,
+    watch: impl FnMut(RelaxationStep<'_>),
+) -> Result<RelaxedCells, NetworkError> {
+    relax_cells_tuned(tessellation, recipe, relaxation, &Tuning::default(), watch)
+}
+
+/// As [`relax_cells`], with other numbers than the tuned ones.
+///
+/// # Errors
+/// As of [`relax_cells`].
+#[doc(hidden)]
+pub fn relax_cells_tuned(
+    tessellation: &Tessellation,
+    recipe: &NetworkRecipe<'_>,
+    relaxation: &Relaxation,
+    tuning: &Tuning,
+    mut watch: impl FnMut(RelaxationStep<'_>),
+) -> Result<RelaxedCells, NetworkError> {
+    relaxation.check()?;
+    let mut given = Vec::new();
+    for face in tessellation.faces() {
+        let boundary = boundary(tessellation.face_sides(face));
+        given.push((boundary, checked_tension(&boundary, (recipe.tension)(&boundary))?));
+    }
+    let unit = mean_tension(given.iter().map(|(boundary, tension)| (boundary, *tension)));
+    let tension = |boundary: &Boundary| in_unit((recipe.tension)(boundary), unit);
+    let in_units = NetworkRecipe { tension: &tension, ..*recipe };
+    let has_tension = given.iter().any(|(_, tension)| *tension > 0.0);
+    let moves = has_tension && *relaxation != Relaxation::Time(0.0);
+    let mut relaxed = match (tessellation.domain().dimension(), relaxation) {
+        (voronoi::Dimension::Two, Relaxation::Equilibrium) => {
+            plane::equilibrate(tessellation, &in_units, &mut watch)
+        }
+        (voronoi::Dimension::Three, _) if moves => {
+            relax_in_space(tessellation, &in_units, relaxation, tuning, &mut watch)
+        }
+        _ => relax_as_they_are(tessellation, &in_units, relaxation, tuning, &mut watch),
+    }?;
+    relaxed.network = relaxed.network.with_tensions(recipe.tension)?;
+    Ok(relaxed)
+}
+
+/// As [`relax_cells`] where the topology stays, with tensions whose mean is 1.
+fn relax_as_they_are(
+    tessellation: &Tessellation,
+    recipe: &NetworkRecipe<'_>,
+    relaxation: &Relaxation,
+    tuning: &Tuning,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Result<RelaxedCells, NetworkError> {
+    let (network, flat) = Network::new(tessellation, recipe.junctions, recipe.levels)?;
+    let network = network.with_tensions(recipe.tension)?;
+    let plan = plan(relaxation, Start::Flat, tuning);
+    let relaxed = relax_levels(&network, &flat, &plan, watch)?;
+    let points = relaxed.finest_points(&network);
+    let start = Instant::now();
+    let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
+    Ok(RelaxedCells {
+        network,
+        relaxed,
+        reconnections: Reconnections::default(),
+        merged: Collapsed::default(),
+        balance: None,
+        validation,
+        validated_in: start.elapsed(),
+        attempts: Vec::new(),
+    })
+}
+
+/// The plan for tensions whose mean is 1.
+fn plan<'a>(relaxation: &Relaxation, start: Start, tuning: &'a Tuning) -> Plan<'a> {
+    Plan { relaxation: *relaxation, start, volumes: Volumes::Kept, tuning, tension_unit: 1.0 }
+}
+
+/// As [`relax_cells`] in space, with tensions whose mean is 1 at first.
+fn relax_in_space(
+    tessellation: &Tessellation,
+    recipe: &NetworkRecipe<'_>,
+    relaxation: &Relaxation,
+    tuning: &Tuning,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Result<RelaxedCells, NetworkError> {
+    let mut attempts = Vec::new();
+    let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
+    let settled = settle(tessellation, recipe, &volumes, relaxation, tuning, &mut |step| {
+        let SettlingStep { done, count, time, cells, points } = step;
+        watch(RelaxationStep { done, count, time, level: 0, points, cells: Some(cells) });
+    })?;
+    let mut smooth = |merged_length: f64, rigid_length: f64| {
+        let MergedLines { cells, middles, collapsed: merged } =
+            MergedLines::new(&settled.complex, &settled.shape, merged_length);
+        let (network, points) = Network::of_curved_lines(&cells, &middles, recipe.junctions, recipe.levels)?;
+        let network = network.with_cell_volumes(volumes.clone()).with_tensions(recipe.tension)?;
+        let tuning = Tuning { rigid_length, ..*tuning };
+        let mut later = |step: RelaxationStep<'_>| {
+            // Where it starts is where the last step ended.
+            if step.done > 0 {
+                let (done, count) = (settled.steps + step.done, settled.steps + step.count);
+                watch(RelaxationStep { done, count, time: settled.time + step.time, ..step });
+            }
+        };
+        let plan = plan(relaxation, Start::Relaxed, &tuning);
+        let relaxed = relax_levels(&network, &points, &plan, &mut later)?;
+        let relaxed =
+            Relaxed { steps: settled.steps + relaxed.steps, time: settled.time + relaxed.time, ..relaxed };
+        let points = relaxed.finest_points(&network);
+        let start = Instant::now();
+        let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
+        let validated_in = start.elapsed();
+        let balance = (*relaxation == Relaxation::Equilibrium).then(|| Balance::in_space(&network, &points));
+        let (reconnections, attempts) = (settled.reconnections, Vec::new());
+        Ok::<_, NetworkError>(RelaxedCells {
+            network,
+            relaxed,
+            reconnections,
+            merged,
+            balance,
+            validation,
+            validated_in,
+            attempts,
+        })
+    };
+    // On the way to rest points have time to part; in a given time what is short could not live.
+    let rigid_lengths = match relaxation {
+        Relaxation::Equilibrium => [0.0, tuning.rigid_length],
+        Relaxation::Time(_) => [tuning.rigid_length, 0.0],
+    };
+    let words = |rigid_length: f64| if rigid_length > 0.0 { "rigid" } else { "free" };
+    for rigid_length in rigid_lengths {
+        match smooth(tuning.merged_length, rigid_length) {
+            Err(error) if error.is_tangle() => {
+                let tried = format!("relaxing without short lines, short edges {}", words(rigid_length));
+                error.give_up(tried, &mut attempts);
+            }
+            result => return result.map(|relaxed| RelaxedCells { attempts, ..relaxed }),
+        }
+    }
+    match smooth(0.0, 0.0) {
+        Ok(relaxed) => Ok(RelaxedCells { attempts, ..relaxed }),
+        Err(error) => Err(error.after(attempts)),
+    }
+}
