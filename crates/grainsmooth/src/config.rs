@@ -214,12 +214,15 @@ impl Config {
         }
     }
 
-    /// Whether grains may switch neighbours: at kept volumes, unless the cells' own are asked for. In the plane they do so on the way to
-    /// equilibrium only.
+    /// Whether grains may switch neighbours: at kept volumes, unless the cells' own are asked for. In the plane, and in domains other than a
+    /// box, they do so on the way to equilibrium only: where a sphere's many small walls meet, too many tangle in a given time.
     pub(crate) fn lets_topology_change(&self) -> bool {
         let is_on_the_way = match self.dimension {
             Dimension::Two => self.relaxation == Relaxation::Equilibrium,
-            Dimension::Three => self.relaxation != Relaxation::Time(0.0),
+            Dimension::Three => match self.relaxation {
+                Relaxation::Equilibrium => true,
+                Relaxation::Time(time) => time > 0.0 && self.shape == Shape::Box,
+            },
         };
         is_on_the_way && self.regularize.is_none() && self.volumes == Volumes::Kept && self.is_meshed_freely()
     }

@@ -42,6 +42,47 @@ fn random_grains_between_walls_come_to_equilibrium() {
     check_random_grains(&Domain::unit_cube(), 24, 1, 2.3);
 }
 
+/// All events of one look together once took 81 % of a cell's volume, and no later step brought that back: the flow ended folded.
+#[test]
+fn events_leave_cells_their_volumes() {
+    let domain = Domain::unit_cube();
+    let tessellation = Tessellation::new(&domain, &random_seeds(&domain, 60, 1)).expect("valid seeds");
+    let tension = |boundary: &Boundary| if boundary.wall.is_some() { 0.0 } else { 1.0 };
+    let recipe = NetworkRecipe { junctions: Junctions::Crease, levels: 2, tension: &tension };
+    let relaxed = relax_cells(&tessellation, &recipe, &Relaxation::USUAL, |_| ()).expect("relaxes");
+    let RelaxedCells { network, relaxed, reconnections, balance, validation, attempts, .. } = relaxed;
+    assert!(attempts.is_empty() && relaxed.given_up.is_empty(), "{attempts:?}");
+    assert!(reconnections.count() > 0 && balance.is_none());
+    assert!(validation.largest_volume_error < 1e-10, "{validation:?}");
+    let counts = network.junction_counts();
+    let of_more = |counts: &std::collections::BTreeMap<u8, usize>, usual: u8| -> usize {
+        counts.iter().filter(|(number, _)| **number > usual).map(|(_, count)| count).sum()
+    };
+    assert!(of_more(&counts.lines_by_sides, 3) <= 2, "{counts:?}");
+    assert!(50 * of_more(&counts.points_by_sides, 4) < counts.quadruple_points, "{counts:?}");
+    let points = relaxed.finest_points(&network);
+    let angles = dihedral_angles(&network, network.finest(), &points).expect("triple lines");
+    assert!(angles.standard_deviation < 6.0, "{angles:?}");
+}
+
+/// A time of none moves nothing, and where nothing has tension, nothing comes together.
+#[test]
+fn cells_stay_flat_without_time_or_tension() {
+    let domain = Domain::unit_cube();
+    let tessellation = Tessellation::new(&domain, &random_seeds(&domain, 8, 1)).expect("valid seeds");
+    for (tension, relaxation) in [(1.0, Relaxation::Time(0.0)), (0.0, Relaxation::USUAL)] {
+        let recipe = NetworkRecipe { junctions: Junctions::Crease, levels: 1, tension: &|_| tension };
+        let relaxed = relax_cells(&tessellation, &recipe, &relaxation, |_| ()).expect("valid cells");
+        assert!(relaxed.relaxed.is_flat && relaxed.reconnections == Reconnections::default());
+    }
+    let recipe = NetworkRecipe { junctions: Junctions::Crease, levels: 1, tension: &|_| 1.0 };
+    let refused = relax_cells(&tessellation, &recipe, &Relaxation::Time(f64::NAN), |_| ());
+    assert_eq!(
+        refused.expect_err("no time").to_string(),
+        polycrystal::NetworkError::BadRelaxationTime(f64::NAN).to_string()
+    );
+}
+
 /// Three lines once ended 15 to 25 degrees off, and nothing was flagged.
 #[test]
 fn lines_that_are_not_at_rest_are_flagged() {
