@@ -155,8 +155,7 @@ impl TorusFaces {
         if faces_of.is_empty() {
             return;
         }
-        let mut rest =
-            Self { dimension: self.dimension, ends: Vec::new(), starts: vec![0], corners: Vec::new() };
+        let mut rest = Self::new(self.dimension);
         for (face, (ends, corners)) in self.iter().enumerate() {
             if !is_dropped[face] {
                 let (ends, back, is_turned) = in_order(ends);

@@ -9,7 +9,7 @@ use super::local_area::boundary;
 use super::merged_lines::MergedLines;
 use super::plane;
 use super::reconnection::Reconnections;
-use super::settling::{SettlingStep, settle};
+use super::settling::settle;
 use super::{Plan, Relaxation, RelaxationStep, Relaxed, Start, Tuning, relax_levels};
 use crate::tension::{checked_tension, in_unit, mean_tension};
 use crate::{Attempt, Boundary, Certificate, Junctions, Network, NetworkError, Volumes, validate};
@@ -143,10 +143,7 @@ fn relax_in_space(
 ) -> Result<RelaxedCells, NetworkError> {
     let mut attempts = Vec::new();
     let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
-    let settled = settle(tessellation, recipe, &volumes, relaxation, tuning, &mut |step| {
-        let SettlingStep { done, count, time, cells, points } = step;
-        watch(RelaxationStep { done, count, time, level: 0, points, cells: Some(cells) });
-    })?;
+    let settled = settle(tessellation, recipe, &volumes, relaxation, tuning, watch)?;
     let mut smooth = |merged_length: f64, rigid_length: f64| {
         let MergedLines { cells, middles, collapsed: merged } =
             MergedLines::new(&settled.complex, &settled.shape, merged_length);

@@ -7,7 +7,7 @@ use super::flow::{Flow, Remedy, Taken};
 use super::local_area::Conditions;
 use super::reconnection::{Reconnections, Reconnector, lengths};
 use super::shape::{ControlPoints, Shape};
-use super::{NetworkRecipe, Relaxation, Tuning};
+use super::{NetworkRecipe, Relaxation, RelaxationStep, Tuning};
 use crate::{Boundary, FaceMesh, Network, NetworkError, Volumes};
 
 /// Length, in units of the feature size, below which triple lines may go; in equilibrium few are that short.
@@ -38,19 +38,6 @@ pub(super) struct Settled {
     pub(super) time: f64,
 }
 
-/// The control points after a step.
-pub(super) struct SettlingStep<'a> {
-    pub(super) done: usize,
-    /// Most steps there may be.
-    pub(super) count: usize,
-    /// Time passed, in units of the mean grain size squared.
-    pub(super) time: f64,
-    /// The cells as they are now.
-    pub(super) cells: &'a Tessellation,
-    /// The points of fans on their faces.
-    pub(super) points: &'a [DVec3],
-}
-
 /// Lets control points flow, and grains come together and part, for a time or until all is at rest.
 ///
 /// After each step all short lines, and small boundaries with three sides, are looked at.
@@ -60,7 +47,7 @@ pub(super) fn settle(
     volumes: &[f64],
     relaxation: &Relaxation,
     tuning: &Tuning,
-    watch: &mut impl FnMut(SettlingStep<'_>),
+    watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<Settled, NetworkError> {
     // All of a wall has the same area unless it folds, so that tension does nothing but unfold it.
     let tension =
@@ -82,7 +69,11 @@ pub(super) fn settle(
     let mut reconnections = Reconnections::default();
     let (mut quiet, mut last_energy) = (0, f64::INFINITY);
     let mut steps = 0;
-    watch(SettlingStep { done: 0, count, time: 0.0, cells: &control_points.cells, points: &points });
+    let mut show = |done: usize, cells: &Tessellation, points: &[DVec3]| {
+        let time = done as f64 * step_time;
+        watch(RelaxationStep { done, count, time, level: 0, points, cells: Some(cells) });
+    };
+    show(0, &control_points.cells, &points);
     loop {
         let free = Tuning { rigid_length: 0.0, ..*tuning };
         let mut flow = Flow::new(&network, 0, Volumes::Kept, 1.0, free).until_rest(Remedy::Join);
@@ -91,8 +82,7 @@ pub(super) fn settle(
             let before = lengths(&complex);
             let Taken { energy, pressures, .. } = flow.step(&mut points, step_time * time_unit)?;
             steps += 1;
-            let time = steps as f64 * step_time;
-            watch(SettlingStep { done: steps, count, time, cells: &control_points.cells, points: &points });
+            show(steps, &control_points.cells, &points);
             control_points.place_vertices(&mut complex, &points);
             let shape = control_points.shape(&complex, &points);
             let conditions =
@@ -104,6 +94,7 @@ pub(super) fn settle(
             quiet = if events.count() > 0 { 0 } else { quiet + 1 };
             let is_at_rest = quiet > QUIET_STEPS && (last_energy - energy).abs() < QUIET_CHANGE * energy;
             if is_at_rest || steps == count {
+                let time = steps as f64 * step_time;
                 return Ok(Settled { complex, shape, reconnections, steps, time });
             }
             last_energy = energy;
