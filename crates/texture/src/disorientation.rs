@@ -1,0 +1,52 @@
+//! The least rotation between two crystals.
+
+use glam::DVec3;
+
+use crate::{CrystalSymmetry, Orientation, Sector};
+
+/// How much less the scalar of another equivalent may be to count as equal: rounding is some 1e-16.
+const TIE: f64 = 1e-12;
+
+/// The least rotation that takes one crystal to another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disorientation {
+    /// In degrees.
+    pub angle: f64,
+    /// Unit axis in crystal coordinates, in the [`Sector`] of the Laue group; the z axis for no rotation at all.
+    ///
+    /// It is the same in both crystals, as the rotation is around it. Of several least rotations the one counts whose axis is nearest
+    /// to z, then to x.
+    pub axis: DVec3,
+}
+
+impl CrystalSymmetry {
+    /// The least rotation between two crystals of this symmetry. The order of the two does not matter.
+    pub fn disorientation(self, first: Orientation, second: Orientation) -> Disorientation {
+        let between = first.raw().conjugate() * second.raw();
+        let scalar = |rotation: &glam::DQuat| rotation.dot(between).abs();
+        let largest = self.rotations().iter().map(scalar).fold(0.0, f64::max);
+        let sector = Sector::of(self);
+        let mut angle = f64::INFINITY;
+        let mut axis = DVec3::NEG_Z;
+        for rotation in self.rotations().iter().filter(|rotation| scalar(rotation) >= largest - TIE) {
+            let least = rotation.conjugate() * between;
+            angle = angle.min(2.0 * least.xyz().length().atan2(least.w.abs()).to_degrees());
+            let reduced = sector.reduce(least.xyz().try_normalize().unwrap_or(DVec3::Z));
+            let is_as_near = reduced.z > axis.z - 1e-9 && reduced.x > axis.x;
+            if reduced.z > axis.z + 1e-9 || is_as_near {
+                axis = reduced;
+            }
+        }
+        Disorientation { angle, axis }
+    }
+
+    /// Only the angle of [`Self::disorientation`], in degrees: faster.
+    pub fn disorientation_angle(self, first: Orientation, second: Orientation) -> f64 {
+        let between = first.raw().conjugate() * second.raw();
+        let scalar = |rotation: &glam::DQuat| rotation.dot(between).abs();
+        let by_scalar = |a: &&glam::DQuat, b: &&glam::DQuat| scalar(a).total_cmp(&scalar(b));
+        let rotation = self.rotations().iter().max_by(by_scalar).expect("every group has the identity");
+        let least = rotation.conjugate() * between;
+        2.0 * least.xyz().length().atan2(least.w.abs()).to_degrees()
+    }
+}

@@ -1,0 +1,103 @@
+//! Densities of directions, and their projections.
+
+use glam::DVec3;
+
+use crate::{CrystalSymmetry, FiberKernel, Orientation};
+
+/// A density of axes on the sphere in multiples of random: directions and their opposites count the same, as in diffraction.
+#[derive(Debug, Clone)]
+pub struct PoleFigure {
+    /// With weights that add up to 1.
+    axes: Vec<(DVec3, f64)>,
+    kernel: FiberKernel,
+}
+
+impl PoleFigure {
+    /// Where an axis of the crystal and its equivalents point in the sample: orientations with weights, smoothed by a kernel.
+    pub fn of_crystal_axis(
+        weighted: &[(Orientation, f64)],
+        symmetry: CrystalSymmetry,
+        axis: DVec3,
+        kernel: FiberKernel,
+    ) -> Self {
+        let mut equivalents: Vec<DVec3> = Vec::new();
+        for image in symmetry.rotations().iter().map(|rotation| *rotation * axis.normalize()) {
+            if !equivalents.iter().any(|known| known.dot(image).abs() > 1.0 - 1e-9) {
+                equivalents.push(image);
+            }
+        }
+        let in_sample = weighted.iter().flat_map(|(orientation, weight)| {
+            equivalents.iter().map(|axis| (orientation.to_sample(*axis), *weight))
+        });
+        Self::new(in_sample.collect(), kernel)
+    }
+
+    /// What an axis of the sample is in the crystals: an inverse pole figure, equal at equivalent directions.
+    pub fn of_sample_axis(
+        weighted: &[(Orientation, f64)],
+        symmetry: CrystalSymmetry,
+        axis: DVec3,
+        kernel: FiberKernel,
+    ) -> Self {
+        let in_crystal = weighted.iter().flat_map(|(orientation, weight)| {
+            let seen = orientation.to_crystal(axis.normalize());
+            symmetry.rotations().iter().map(move |rotation| (*rotation * seen, *weight))
+        });
+        Self::new(in_crystal.collect(), kernel)
+    }
+
+    fn new(mut axes: Vec<(DVec3, f64)>, kernel: FiberKernel) -> Self {
+        let sum: f64 = axes.iter().map(|(_, weight)| *weight).sum();
+        axes.iter_mut().for_each(|(_, weight)| *weight /= sum);
+        Self { axes, kernel }
+    }
+
+    /// Density along a direction, in multiples of random.
+    pub fn density(&self, direction: DVec3) -> f64 {
+        let direction = direction.normalize();
+        let of_axis = |(axis, weight): &(DVec3, f64)| {
+            let cosine = axis.dot(direction);
+            0.5 * weight * (self.kernel.density(cosine) + self.kernel.density(-cosine))
+        };
+        self.axes.iter().map(of_axis).sum()
+    }
+}
+
+/// How the upper half of all directions becomes a disc of radius 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Projection {
+    /// Lambert's: equal areas stay equal.
+    #[default]
+    EqualArea,
+    /// Angles stay equal.
+    Stereographic,
+}
+
+impl Projection {
+    /// The point of a direction; of one in the lower half that of its opposite.
+    pub fn project(self, direction: DVec3) -> [f64; 2] {
+        let unit = direction.normalize();
+        let upper = if unit.z < 0.0 { -unit } else { unit };
+        let factor = match self {
+            // sin(t/2) sqrt 2 over sin t.
+            Self::EqualArea => 1.0 / (1.0 + upper.z).sqrt(),
+            Self::Stereographic => 1.0 / (1.0 + upper.z),
+        };
+        [factor * upper.x, factor * upper.y]
+    }
+
+    /// The direction of a point; nothing outside the disc.
+    pub fn direction(self, [x, y]: [f64; 2]) -> Option<DVec3> {
+        let square = x * x + y * y;
+        if square > 1.0 {
+            return None;
+        }
+        Some(match self {
+            Self::EqualArea => {
+                let factor = (2.0 - square).sqrt();
+                DVec3::new(factor * x, factor * y, 1.0 - square)
+            }
+            Self::Stereographic => DVec3::new(2.0 * x, 2.0 * y, 1.0 - square) / (1.0 + square),
+        })
+    }
+}
