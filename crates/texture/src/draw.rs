@@ -113,10 +113,16 @@ fn fraction(generator: &mut impl Rng) -> f64 {
 }
 
 /// Puts items in random order (Fisher and Yates).
-fn shuffle<T>(items: &mut [T], generator: &mut impl Rng) {
+pub(crate) fn shuffle<T>(items: &mut [T], generator: &mut impl Rng) {
     for last in (1..items.len()).rev() {
-        let product = u128::from(generator.next_u64()) * (last as u128 + 1);
-        #[allow(clippy::cast_possible_truncation)] // At most `last`.
-        items.swap(last, (product >> 64) as usize);
+        items.swap(last, below(last + 1, generator));
     }
+}
+
+/// A random number below another.
+pub(crate) fn below(count: usize, generator: &mut impl Rng) -> usize {
+    let product = u128::from(generator.next_u64()) * count as u128;
+    #[allow(clippy::cast_possible_truncation)] // Below the count.
+    let number = (product >> 64) as usize;
+    number
 }

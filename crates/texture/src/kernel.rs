@@ -124,6 +124,11 @@ impl FiberKernel {
         (1.0 + self.exponent) * (0.5 * (1.0 + cosine)).max(0.0).powf(self.exponent)
     }
 
+    /// The cosine of the tilt at which the density is a share of its peak.
+    pub(crate) fn cosine_at(self, share: f64) -> f64 {
+        2.0 * share.powf(1.0 / self.exponent) - 1.0
+    }
+
     /// The tilt in degrees within which a share of the directions lies.
     pub fn tilt_within(self, share: f64) -> f64 {
         // sin^2(t/2) = 1 - U^(1/(k+1)), without the difference of two numbers near 1.

@@ -4,12 +4,17 @@ use glam::DVec3;
 
 use crate::{CrystalSymmetry, FiberKernel, Orientation};
 
+/// Cells along each side of the square around all directions in projection: of 1.3 degrees at the middle.
+const CELLS: usize = 128;
+
 /// A density of axes on the sphere in multiples of random: directions and their opposites count the same, as in diffraction.
 #[derive(Debug, Clone)]
 pub struct PoleFigure {
     /// With weights that add up to 1.
     axes: Vec<(DVec3, f64)>,
     kernel: FiberKernel,
+    /// Cosine of the tilt from which on the kernel counts as nothing.
+    cutoff: f64,
 }
 
 impl PoleFigure {
@@ -29,7 +34,7 @@ impl PoleFigure {
         let in_sample = weighted.iter().flat_map(|(orientation, weight)| {
             equivalents.iter().map(|axis| (orientation.to_sample(*axis), *weight))
         });
-        Self::new(in_sample.collect(), kernel)
+        Self::new(in_sample, kernel)
     }
 
     /// What an axis of the sample is in the crystals: an inverse pole figure, equal at equivalent directions.
@@ -43,13 +48,29 @@ impl PoleFigure {
             let seen = orientation.to_crystal(axis.normalize());
             symmetry.rotations().iter().map(move |rotation| (*rotation * seen, *weight))
         });
-        Self::new(in_crystal.collect(), kernel)
+        Self::new(in_crystal, kernel)
     }
 
-    fn new(mut axes: Vec<(DVec3, f64)>, kernel: FiberKernel) -> Self {
-        let sum: f64 = axes.iter().map(|(_, weight)| *weight).sum();
-        axes.iter_mut().for_each(|(_, weight)| *weight /= sum);
-        Self { axes, kernel }
+    /// Axes that are nearer to each other than a degree or so count as one, for a kernel is wider: however many there are, few are left.
+    fn new(axes: impl Iterator<Item = (DVec3, f64)>, kernel: FiberKernel) -> Self {
+        let mut cells = vec![DVec3::ZERO; CELLS * CELLS];
+        let mut weights = vec![0.0; CELLS * CELLS];
+        let mut sum = 0.0;
+        for (axis, weight) in axes {
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            // From 0 to the number of cells.
+            let place = Projection::EqualArea
+                .project(axis)
+                .map(|part| ((0.5 * (part + 1.0) * CELLS as f64) as usize).min(CELLS - 1));
+            let cell = place[1] * CELLS + place[0];
+            cells[cell] += weight * if axis.z < 0.0 { -axis } else { axis };
+            weights[cell] += weight;
+            sum += weight;
+        }
+        let filled =
+            cells.into_iter().zip(weights).filter(|(axis, weight)| *weight > 0.0 && *axis != DVec3::ZERO);
+        let axes = filled.map(|(axis, weight)| (axis.normalize(), weight / sum)).collect();
+        Self { axes, kernel, cutoff: kernel.cosine_at(1e-7) }
     }
 
     /// Density along a direction, in multiples of random.
@@ -57,7 +78,8 @@ impl PoleFigure {
         let direction = direction.normalize();
         let of_axis = |(axis, weight): &(DVec3, f64)| {
             let cosine = axis.dot(direction);
-            0.5 * weight * (self.kernel.density(cosine) + self.kernel.density(-cosine))
+            let of_end = |cosine: f64| if cosine > self.cutoff { self.kernel.density(cosine) } else { 0.0 };
+            0.5 * weight * (of_end(cosine) + of_end(-cosine))
         };
         self.axes.iter().map(of_axis).sum()
     }

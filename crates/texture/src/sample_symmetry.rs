@@ -29,6 +29,14 @@ impl SampleSymmetry {
         }
     }
 
+    /// Its name in words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Triclinic => "triclinic",
+            Self::Orthorhombic => "orthorhombic",
+        }
+    }
+
     /// The images of a direction of the sample.
     pub fn images(self, direction: DVec3) -> impl Iterator<Item = DVec3> {
         self.rotations().iter().map(move |rotation| *rotation * direction)
