@@ -20,5 +20,6 @@ mod seed_sources;
 mod series;
 mod statistics;
 mod surface_file;
+mod textures;
 mod weights_and_tables;
 mod workplace;

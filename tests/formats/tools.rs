@@ -6,11 +6,14 @@ use std::process::Command;
 
 use grainsmooth::vtk::VtkEncoding;
 use grainsmooth::{
-    Config, OutputDirectory, OutputFormat, PeriodicCut, Polycrystal, SeedSource, StlEncoding, write_together,
+    Config, OutputDirectory, OutputFormat, PeriodicCut, Polycrystal, SeedSource, StlEncoding, TextureOptions,
+    TextureSource, make_polycrystal, write_together,
 };
+use texture::CrystalSymmetry;
+use voronoi::Dimension;
 
 use crate::programs::run;
-use crate::workplace::{PLANE, SPACE, write};
+use crate::workplace::{PLANE, SPACE, config, write};
 
 pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
@@ -79,7 +82,7 @@ fn gmsh_fills_all_pieces_of_grains_that_the_box_cuts() {
         levels: 1,
         ..Config::default()
     };
-    let whole = grainsmooth::make_polycrystal(&config, &|_, _, _| ()).unwrap();
+    let whole = make_polycrystal(&config, &|_, _, _| ()).unwrap();
     let cut = whole.cut_if_asked().unwrap();
     let (_folder, path) = write(&cut, "grains.msh");
     let script = fs::read_to_string(path.with_extension("geo")).unwrap();
@@ -164,5 +167,37 @@ fn vtk_meshio_and_trimesh_read_every_format() {
     let mut python = Command::new("python3");
     python.arg(script).arg(directory.path());
     let Some(output) = run("vtk_meshio_and_trimesh_read_every_format", &mut python) else { return };
+    assert!(output.status.success(), "{}", text(&output.stderr));
+}
+
+/// `orientations.py` says which of the files that it is given disagree with orix.
+#[test]
+fn orix_agrees_on_orientations_colors_and_disorientations() {
+    let directory = tempfile::tempdir().unwrap();
+    for symmetry in [CrystalSymmetry::Octahedral, CrystalSymmetry::Hexagonal] {
+        let texture = TextureOptions {
+            source: Some(TextureSource::Words("random".to_owned())),
+            symmetry,
+            ..TextureOptions::default()
+        };
+        let make = |dimension| {
+            let config = Config { texture: texture.clone(), ..config(dimension, 0.0) };
+            make_polycrystal(&config, &|_, _, _| ()).unwrap()
+        };
+        let write = |polycrystal: &Polycrystal, name: &str| {
+            let path = directory.path().join(format!("{symmetry}{name}"));
+            polycrystal.write(&grainsmooth::Output::check(path).unwrap()).unwrap();
+        };
+        let space = make(Dimension::Three);
+        [".vtm", ".vti", ".vtp", ".vtu", ".vtk", ".ori"].into_iter().for_each(|name| write(&space, name));
+        let plane = make(Dimension::Two);
+        ["_plane.vti", ".ang", ".ctf"].into_iter().for_each(|name| write(&plane, name));
+    }
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/formats/orientations.py");
+    let mut python = Command::new("python3");
+    python.arg(script).arg(directory.path());
+    let Some(output) = run("orix_agrees_on_orientations_colors_and_disorientations", &mut python) else {
+        return;
+    };
     assert!(output.status.success(), "{}", text(&output.stderr));
 }

@@ -252,6 +252,7 @@ mod tests {
             "seeds-file",
             "series",
             "stats",
+            "texture",
             "threads",
             "voxels",
             "vtk-encoding",

@@ -38,6 +38,13 @@ const MISTAKES: &[Mistake] = &[
         output(case, "out.vti");
         case.options.unset("voxels");
     }),
+    ("orientations without a texture", "--texture", |case| {
+        output(case, "out.ori");
+        case.options.unset("texture");
+    }),
+    ("unknown component of a texture", "did you mean 'goss'?", |case| {
+        case.options.set("texture", ["gos(10)"]);
+    }),
     ("directory of grains that is taken", "grains", |case| {
         case.files.push(("grains/file".to_owned(), Vec::new()));
         whole(case);

@@ -35,6 +35,12 @@ impl Options {
         values.first().map(String::as_str)
     }
 
+    /// All values of an option; none where it is not given.
+    pub fn values(&self, name: &str) -> &[String] {
+        let found = self.0.iter().find(|(known, _)| *known == name);
+        found.map_or(&[], |(_, values)| values)
+    }
+
     /// The words of the command line.
     pub fn words(&self) -> Vec<String> {
         let words = |(name, values): &(&str, Vec<String>)| -> Vec<String> {

@@ -62,7 +62,31 @@ pub fn draw(draw: &mut Draw, dimension: usize, options: &mut Options) -> Promise
     }
     tables(draw, dimension, options, &mut promise);
     pictures(draw, options, &mut promise);
+    texture(draw, dimension, options, &mut promise);
     promise
+}
+
+/// Orientations: drawn last, so that all else is as it was without.
+fn texture(draw: &mut Draw, dimension: usize, options: &mut Options, promise: &mut Promise) {
+    if !draw.chance(0.3) {
+        return;
+    }
+    let textures =
+        ["random", "goss(10)", "cube(5)*0.3+random*0.7", "fiber(111||z,10)", "s(0)", "euler(30 45 60,90)"];
+    options.set("texture", [draw.one_of(&textures)]);
+    if draw.chance(0.3) {
+        options.set("crystal-symmetry", [draw.one_of(&["hexagonal", "trigonal", "4/m", "222", "2", "1"])]);
+    }
+    if draw.chance(0.2) {
+        options.set("sample-symmetry", ["orthorhombic"]);
+    }
+    let mut outputs: Vec<String> = options.values("output").to_vec();
+    let of_plane = if dimension == 2 && options.has("voxels") { &["ctf"][..] } else { &[] };
+    let format = draw.one_of(&[&["ori", "txt", "yaml"], of_plane].concat());
+    let name = format!("orientations.{format}");
+    promise.file("orientations", name.clone());
+    outputs.push(name);
+    options.set("output", outputs);
 }
 
 #[derive(Debug, Clone, Copy)]

@@ -15,6 +15,7 @@ pub const REFUSALS: &[Kind] = &[
     ("UnknownExtension", &["unknown extension; name the file"]),
     ("FormatDimension", &["this format holds", "choose another"]),
     ("NoVoxels", &["this format holds voxels", "--voxels"]),
+    ("NoTexture", &["this format holds orientations", "--texture"]),
     ("FormatSeveralFiles", &["standard output takes a single file"]),
     ("NoOutputDirectory", &["no directory", "create it or choose another path"]),
     ("OutputNotAFile", &["is not a regular file"]),
@@ -39,6 +40,9 @@ pub const REFUSALS: &[Kind] = &[
     ("SeedProblem::IdTwice, NoId", &["give each seed its own, or"]),
     ("SeedProblem::NotInPlane", &["in a 2D run"]),
     ("HalfSpaceInFile", &["half-space", "line"]),
+    // Files of orientations.
+    ("TextureSymmetry", &["its crystals are", "give --crystal-symmetry"]),
+    ("BadTextureFile, empty", &["holds no orientation"]),
     // Seeds and domains.
     ("OutsideDomain", &["lies outside the domain"]),
     ("DuplicateSeeds", &["stand at the same place", "remove one of them"]),

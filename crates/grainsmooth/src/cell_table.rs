@@ -7,6 +7,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use serde::Serialize;
+use texture::Orientation;
 use voronoi::{CellId, CellMeasure, Dimension, Side};
 
 use crate::{Config, Error, Output, StagedFiles, Tessellated};
@@ -34,7 +35,37 @@ impl TableFormat {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CellTable {
     settings: BTreeMap<&'static str, toml::Value>,
-    cells: Vec<Row>,
+    cells: Vec<Cell>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Cell {
+    #[serde(flatten)]
+    row: Row,
+    #[serde(flatten)]
+    orientation: Option<CellOrientation>,
+}
+
+/// The orientation of a cell, where it has one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "PascalCase")]
+struct CellOrientation {
+    /// Bunge's, in degrees.
+    euler_angles: [f64; 3],
+    /// Scalar first.
+    quaternion: [f64; 4],
+}
+
+impl CellOrientation {
+    fn new(orientation: Orientation) -> Self {
+        Self { euler_angles: orientation.euler_degrees(), quaternion: orientation.quaternion() }
+    }
+
+    fn in_csv(&self) -> String {
+        let [angles, quaternion] = [&self.euler_angles[..], &self.quaternion]
+            .map(|numbers| numbers.iter().map(|number| format!("{number:?}")).collect::<Vec<_>>().join(" "));
+        format!(",{angles},{quaternion}")
+    }
 }
 
 /// A cell in space or in the plane, with the names that each has there.
@@ -90,10 +121,12 @@ impl CellTable {
             let seed = tessellation.seeds()[id as usize];
             let ids = [id, cells.seed_ids[id as usize]];
             let weight = cells.weights[id as usize];
-            match tessellation.domain().dimension() {
+            let row = match tessellation.domain().dimension() {
                 Dimension::Three => row_in_space(ids, seed, weight, &measure, neighbors),
                 Dimension::Two => row_in_plane(ids, seed, weight, &measure, neighbors),
-            }
+            };
+            let orientation = cells.texture.as_ref().map(|texture| texture.orientations()[id as usize]);
+            Cell { row, orientation: orientation.map(CellOrientation::new) }
         });
         Self { settings: config.settings().into_iter().collect(), cells: rows.collect() }
     }
@@ -113,18 +146,22 @@ impl CellTable {
     }
 
     fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        match self.cells.first() {
-            Some(Row::Plane { .. }) => writeln!(
+        let first = self.cells.first();
+        match first.map(|cell| &cell.row) {
+            Some(Row::Plane { .. }) => write!(
                 out,
                 "id,x,y,weight,area,centroid_x,centroid_y,perimeter,nedges,nverts,equivalent_diameter,circularity,neighbors,SeedId"
             )?,
-            _ => writeln!(
+            _ => write!(
                 out,
                 "id,x,y,z,weight,volume,centroid_x,centroid_y,centroid_z,area,nfaces,nverts,nedges,equivalent_diameter,sphericity,neighbors,SeedId"
             )?,
         }
-        for row in &self.cells {
+        let has_orientations = first.is_some_and(|cell| cell.orientation.is_some());
+        writeln!(out, "{}", if has_orientations { ",EulerAngles,Quaternion" } else { "" })?;
+        for Cell { row, orientation } in &self.cells {
             row.write_csv(out)?;
+            writeln!(out, "{}", orientation.as_ref().map_or_else(String::new, CellOrientation::in_csv))?;
         }
         Ok(())
     }
@@ -172,7 +209,7 @@ impl Row {
             }
         };
         let neighbors: Vec<String> = neighbors.iter().map(i64::to_string).collect();
-        writeln!(out, "{},{seed_id}", neighbors.join(" "))
+        write!(out, "{},{seed_id}", neighbors.join(" "))
     }
 }
 

@@ -17,6 +17,7 @@ mod pictures;
 mod run;
 mod seeds;
 mod smoothing;
+mod texture;
 mod values;
 
 pub use documents::{print_completions, print_manual};
@@ -27,6 +28,7 @@ use pictures::PictureArguments;
 use run::RunArguments;
 use seeds::SeedArguments;
 use smoothing::SmoothingArguments;
+use texture::TextureArguments;
 
 /// Make a virtual polycrystal: smooth, closed grains of exact volume, as a VTK file for ParaView.
 ///
@@ -44,6 +46,8 @@ pub struct Arguments {
     domain: DomainArguments,
     #[command(flatten)]
     smoothing: SmoothingArguments,
+    #[command(flatten)]
+    texture: TextureArguments,
     #[command(flatten)]
     pub files: FileArguments,
     #[command(flatten)]
@@ -104,7 +108,7 @@ impl Arguments {
     /// # Errors
     /// When the file of the seeds cannot tell what they fill.
     pub fn config(&self) -> Result<Config, grainsmooth::Error> {
-        let Self { seeds, domain: arguments, smoothing, files, .. } = self;
+        let Self { seeds, domain: arguments, smoothing, texture, files, .. } = self;
         let of_file = seeds.seeds_file.as_deref().map(read_file_domain).transpose()?.flatten();
         let domain = arguments.with_defaults_of(of_file);
         let periodic_cut = arguments.periodic_cut(domain.periodic);
@@ -134,6 +138,7 @@ impl Arguments {
             junctions: smoothing.junctions(),
             drop_empty: seeds.drop_empty,
             min_diameter: seeds.min_diameter,
+            texture: texture.options(),
             file: files.options(domain.dimension),
         };
         let relaxation = smoothing.relax.unwrap_or_else(|| config.usual_relaxation());

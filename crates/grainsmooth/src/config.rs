@@ -7,7 +7,7 @@ use voronoi::{Dimension, Domain};
 
 use crate::domain_file::{half_space_domain, surface_domain};
 use crate::vtk::VtkEncoding;
-use crate::{Error, Lattice, LatticeFit, Names, StlEncoding};
+use crate::{Error, Lattice, LatticeFit, Names, StlEncoding, TextureOptions};
 
 /// Where seeds come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -119,6 +119,8 @@ pub struct Config {
     /// Cells below this share of the mean equivalent diameter lose their seeds, the smallest first, until none is left and their
     /// neighbours have grown into their places; 0 keeps all. Below 1.
     pub min_diameter: f64,
+    /// The orientations of the grains.
+    pub texture: TextureOptions,
     /// How files are written, apart from their formats.
     pub file: FileOptions,
 }
@@ -170,6 +172,7 @@ impl Default for Config {
             junctions: Junctions::Crease,
             drop_empty: false,
             min_diameter: 0.0,
+            texture: TextureOptions::default(),
             file: FileOptions::default(),
         }
     }
@@ -250,6 +253,11 @@ impl Config {
         let axes = if self.dimension == Dimension::Two { 2 } else { 3 };
         let counts = self.file.voxels.iter().flat_map(|counts| &counts[..axes]);
         counts.map(|count| u128::from(count.get())).reduce(|all, count| all * count).unwrap_or(0)
+    }
+
+    /// Bytes of a voxel in VTK's ImageData: its grain, and three colours where grains have orientations.
+    pub(crate) fn bytes_of_voxel(&self) -> u32 {
+        if self.texture.source.is_some() { 4 + 3 * 3 } else { 4 }
     }
 
     /// The lattice that the seeds form, if they do.

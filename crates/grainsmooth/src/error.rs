@@ -187,6 +187,45 @@ pub enum Error {
         /// The seeds' coordinates.
         position: DVec3,
     },
+    /// Words that are no texture.
+    #[error(transparent)]
+    Texture(#[from] texture::SpecError),
+    /// A file of orientations cannot be read.
+    #[error("{}: cannot be read: {cause}; give the path of a readable text file", path.display())]
+    TextureFileUnreadable {
+        /// The path as given.
+        path: PathBuf,
+        /// Why.
+        cause: io::Error,
+    },
+    /// A file of orientations holds something else.
+    #[error("{} line {line}: {problem}", path.display())]
+    BadTextureFile {
+        /// The path as given.
+        path: PathBuf,
+        /// Line of the file, counted from 1.
+        line: usize,
+        /// What is wrong, and what to do about it.
+        problem: String,
+    },
+    /// A measured map has crystals of another symmetry than is asked for.
+    #[error(
+        "{}: its crystals are {of_file} and not {asked}; give --crystal-symmetry {of_file}", path.display()
+    )]
+    TextureSymmetry {
+        /// The path as given.
+        path: PathBuf,
+        /// What the file says.
+        of_file: texture::CrystalSymmetry,
+        /// What is asked for.
+        asked: texture::CrystalSymmetry,
+    },
+    /// The output's format holds orientations, and there are none.
+    #[error("{}: this format holds orientations; give the grains some, such as --texture random", path.display())]
+    NoTexture {
+        /// The path as given.
+        path: PathBuf,
+    },
     /// The seeds cannot be tessellated.
     #[error(transparent)]
     Voronoi(#[from] VoronoiError),

@@ -121,8 +121,12 @@ fn file_bytes(format: OutputFormat, mesh: &LevelSize, grains: usize, config: &Co
         OutputFormat::Fe => TEXT_POINT * points + TEXT_CORNERS * (edges + triangles),
         // Of a Poisson-Voronoi cell's share: 7 vertices, 14 edges and 8 faces of three lines.
         OutputFormat::Tess => grains as u128 * (7 * TEXT_POINT + 14 * TEXT_CORNERS + 8 * 150),
-        OutputFormat::Vti | OutputFormat::Npy => VTK_HEAD + 4 * voxels,
-        OutputFormat::Ang => VTK_HEAD + TEXT_POINT * voxels,
+        OutputFormat::Vti => VTK_HEAD + u128::from(config.bytes_of_voxel()) * voxels,
+        OutputFormat::Npy => VTK_HEAD + 4 * voxels,
+        OutputFormat::Ang | OutputFormat::Ctf => VTK_HEAD + TEXT_POINT * voxels,
+        // Three or four numbers of 20 characters, and some words.
+        OutputFormat::Txt | OutputFormat::Ori => VTK_HEAD + 80 * grains as u128,
+        OutputFormat::Yaml => VTK_HEAD + 160 * grains as u128,
     };
     match (format, config.file.encoding) {
         (OutputFormat::Vtk(VtkFormat::Vtk), _) | (_, VtkEncoding::Raw) => bytes,

@@ -8,16 +8,18 @@ use polycrystal::{Boundary, BoundaryId, Level, Mesh, Side};
 use rayon::prelude::*;
 
 use crate::formats::{
-    Surface, unit_normal, write_ang, write_evolver, write_gmsh, write_npy, write_obj, write_ply,
+    Surface, unit_normal, write_ang, write_ctf, write_euler, write_evolver, write_gmsh, write_npy, write_obj,
+    write_ply,
 };
-use crate::formats::{write_gmsh_script, write_stl, write_tess};
+use crate::formats::{write_gmsh_script, write_material, write_ori, write_stl, write_tess};
 use crate::measured_arrays::MeasuredArrays;
 use crate::vtk::{
-    Array, Blocks, Cells, Each, FieldEntry, FieldValue, ImageData, PolyData, Values, VtkFormat,
+    Array, Blocks, Cells, Each, FieldEntry, FieldValue, ImageData, ItemBlocks, ItemTuples, Items, PolyData,
+    Values, VtkFormat,
 };
 use crate::vtk::{write_vti, write_vtk};
 use crate::{
-    Error, FileOptions, LabelGrid, Names, Output, OutputFormat, Polycrystal, StagedFiles, Tess,
+    Error, FileOptions, GrainTexture, LabelGrid, Names, Output, OutputFormat, Polycrystal, StagedFiles, Tess,
     write_together,
 };
 
@@ -76,7 +78,7 @@ impl Polycrystal {
             OutputFormat::Msh => write_gmsh(&self.surface()?, self, out),
             OutputFormat::Fe => write_evolver(self, out),
             OutputFormat::Tess => {
-                write_tess(&Tess::new(&self.cells), out)?;
+                write_tess(&Tess::new(&self.cells), self.cells.texture.as_ref(), out)?;
                 self.write_settings_behind(out)
             }
             OutputFormat::Vti => self.write_vti(out),
@@ -84,9 +86,14 @@ impl Polycrystal {
                 write_npy(&self.label_grid()?, self.config.file.names, out)?;
                 self.write_settings_behind(out)
             }
-            OutputFormat::Ang => {
-                write_ang(&self.label_grid()?, self.network.grain_count(), &self.config, out)
+            OutputFormat::Ang => write_ang(&self.label_grid()?, &self.orientations(), &self.config, out),
+            OutputFormat::Ctf => write_ctf(&self.label_grid()?, &self.orientations(), &self.config, out),
+            OutputFormat::Txt => {
+                let volumes = self.network.cell_volumes();
+                write_euler(self.texture()?.orientations(), volumes, &self.config, out)
             }
+            OutputFormat::Ori => write_ori(self.texture()?.orientations(), out),
+            OutputFormat::Yaml => write_material(self.texture()?, &self.config, out),
         }
     }
 
@@ -97,6 +104,10 @@ impl Polycrystal {
 
     pub(crate) fn surface(&self) -> io::Result<Surface<'_>> {
         Surface::network(self).ok_or_else(|| io::Error::other("boundaries in the plane are no surfaces"))
+    }
+
+    fn texture(&self) -> io::Result<&GrainTexture> {
+        self.cells.texture.as_ref().ok_or_else(|| io::Error::other("the grains have no orientations"))
     }
 
     fn label_grid(&self) -> io::Result<LabelGrid<'_>> {
@@ -113,10 +124,20 @@ impl Polycrystal {
         };
         let count = usize::try_from(grid.voxel_count()).map_err(io::Error::other)?;
         let blocks = Blocks { count, blocks: grid.slab_count(), make: &make };
-        let cell_arrays = vec![Array { name: names.voxel(), values: Values::Int32Blocks(blocks) }];
+        let mut cell_arrays = vec![Array { name: names.voxel(), values: Values::Int32Blocks(blocks) }];
+        let grain = |label: Side| label.grain().map(|grain| grain.index());
+        let items = |slab: usize| grid.slab(slab).into_par_iter().map(grain).collect::<Vec<_>>();
+        let texture = self.cells.texture.as_ref();
+        let tuples = texture.map_or_else(Vec::new, |texture| texture.color_arrays(names).to_vec());
+        let count = blocks.count;
+        cell_arrays.extend(tuples.iter().map(|tuples| {
+            let blocks = ItemBlocks { tuples, count, blocks: grid.slab_count(), make: &items };
+            Array { name: tuples.name, values: Values::ItemBlocks(blocks) }
+        }));
         let LabelGrid { size, origin, spacing, .. } = grid;
         let mut field = self.field();
         field.push(self.seed_ids());
+        field.extend(self.orientation_fields());
         write_vti(&ImageData { size, origin, spacing, cell_arrays, field }, encoding, out)
     }
 
@@ -158,6 +179,12 @@ impl Polycrystal {
             cell_arrays.push(Array { name: "PeriodicNeighbor", values: of_cells(&neighbor) });
             point_arrays.push(Array { name: "PeriodicOriginal", values: Values::Int32(&originals) });
         }
+        let disorientations = self.disorientations();
+        let boundary_of = |cell: usize| Some(boundary_of_cell[cell].index());
+        cell_arrays.extend(disorientations.iter().map(|tuples| Array {
+            name: tuples.name,
+            values: Values::Items(Items { tuples, count, item: &boundary_of }),
+        }));
         let measured = self.config.file.arrays.then(|| MeasuredArrays::new(self, cells));
         let (of_cells, of_points, normals);
         if let Some(measured) = &measured {
@@ -175,8 +202,23 @@ impl Polycrystal {
         let mut field = self.field();
         field.push(FieldEntry { name: "Volumes", value: volumes });
         field.push(self.seed_ids());
+        field.extend(self.orientation_fields());
         let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field };
         write_vtk(&data, format, self.config.file.encoding, out)
+    }
+
+    /// What files hold of each grain's orientation; nothing where grains have none.
+    pub(crate) fn grain_tuples(&self) -> Vec<ItemTuples> {
+        let names = self.config.file.names;
+        let Some(texture) = &self.cells.texture else { return Vec::new() };
+        texture.orientation_arrays().into_iter().chain(texture.color_arrays(names)).collect()
+    }
+
+    /// What files hold of each boundary's disorientation; nothing where grains have no orientations.
+    pub(crate) fn disorientations(&self) -> Vec<ItemTuples> {
+        let Some(texture) = &self.cells.texture else { return Vec::new() };
+        let boundaries = self.network.boundaries();
+        texture.boundary_arrays(boundaries.iter().map(|boundary| boundary.sides_across(boundaries)))
     }
 
     /// The number of the grain that lies beyond a boundary a period or more away; that of the exterior where there is none.
@@ -194,6 +236,13 @@ impl Polycrystal {
     fn seed_ids(&self) -> FieldEntry {
         let ids = self.cells.seed_ids.iter().map(|id| id.cast_signed()).collect();
         FieldEntry { name: SEED_ID, value: FieldValue::Ids(ids) }
+    }
+
+    /// The orientation of each grain, where they have one.
+    fn orientation_fields(&self) -> impl Iterator<Item = FieldEntry> {
+        let arrays = self.cells.texture.as_ref().map(GrainTexture::orientation_arrays);
+        let entry = |tuples: ItemTuples| FieldEntry { name: tuples.name, value: FieldValue::Items(tuples) };
+        arrays.into_iter().flatten().map(entry)
     }
 
     /// What every VTK file says about itself.

@@ -35,13 +35,21 @@ pub enum OutputFormat {
     Vti,
     /// The grain of each voxel as a NumPy array.
     Npy,
-    /// The orientation of each pixel.
+    /// The orientation of each pixel, as TSL has it.
     Ang,
+    /// The same, as HKL has it.
+    Ctf,
+    /// A table of the grains' Euler angles.
+    Txt,
+    /// Neper's list of the grains' orientations.
+    Ori,
+    /// DAMASK's list of the grains' materials.
+    Yaml,
 }
 
 impl OutputFormat {
     /// Every format, the default first.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 17] = [
         Self::Vtk(VtkFormat::Vtp),
         Self::Vtk(VtkFormat::Vtu),
         Self::Vtk(VtkFormat::Vtk),
@@ -55,6 +63,10 @@ impl OutputFormat {
         Self::Vti,
         Self::Npy,
         Self::Ang,
+        Self::Ctf,
+        Self::Txt,
+        Self::Ori,
+        Self::Yaml,
     ];
 
     /// The extension that stands for the format, without its dot.
@@ -71,6 +83,10 @@ impl OutputFormat {
             Self::Vti => "vti",
             Self::Npy => "npy",
             Self::Ang => "ang",
+            Self::Ctf => "ctf",
+            Self::Txt => "txt",
+            Self::Ori => "ori",
+            Self::Yaml => "yaml",
         }
     }
 
@@ -88,7 +104,7 @@ impl OutputFormat {
 
     /// Whether the format holds voxels.
     pub fn has_voxels(self) -> bool {
-        matches!(self, Self::Vti | Self::Npy | Self::Ang)
+        matches!(self, Self::Vti | Self::Npy | Self::Ang | Self::Ctf)
     }
 
     /// Whether the format is a single file, as standard output takes.
@@ -100,15 +116,17 @@ impl OutputFormat {
     fn only_dimension(self) -> Option<Dimension> {
         match self {
             Self::Stl | Self::Ply | Self::Obj | Self::Msh | Self::Fe => Some(Dimension::Three),
-            Self::Ang => Some(Dimension::Two),
+            Self::Ang | Self::Ctf => Some(Dimension::Two),
             Self::Vtk(_) | Self::Vtm | Self::Tess | Self::Vti | Self::Npy => None,
+            Self::Txt | Self::Ori | Self::Yaml => None,
         }
     }
 
     /// Checks that the format can hold what a config makes, for an output that messages call `path`.
     ///
     /// # Errors
-    /// [`Error::FormatDimension`]; [`Error::NoVoxels`] for a format of voxels when their number is not given.
+    /// [`Error::FormatDimension`]; [`Error::NoVoxels`] for a format of voxels when their number is not given; [`Error::NoTexture`] for one
+    /// of orientations where grains have none.
     pub fn check_fits(self, path: &Path, config: &Config) -> Result<(), Error> {
         let path = || path.to_owned();
         match self.only_dimension() {
@@ -116,6 +134,9 @@ impl OutputFormat {
                 Err(Error::FormatDimension { path: path(), dimension })
             }
             _ if self.has_voxels() && config.file.voxels.is_none() => Err(Error::NoVoxels { path: path() }),
+            _ if matches!(self, Self::Txt | Self::Ori | Self::Yaml) && config.texture.source.is_none() => {
+                Err(Error::NoTexture { path: path() })
+            }
             _ => Ok(()),
         }
     }
@@ -175,12 +196,12 @@ impl Output {
     /// # Errors
     /// [`Error::OutputExceedsDisk`].
     pub fn check_space(&self, config: &Config) -> Result<(), Error> {
-        let is_of_fixed_size = match self.format {
-            OutputFormat::Npy => true,
-            OutputFormat::Vti => config.file.encoding != VtkEncoding::Zlib,
-            _ => false,
+        let of_voxel = match self.format {
+            OutputFormat::Npy => 4,
+            OutputFormat::Vti if config.file.encoding != VtkEncoding::Zlib => config.bytes_of_voxel(),
+            _ => 0,
         };
-        let needed = if is_of_fixed_size { config.voxel_count() * size_of::<i32>() as u128 } else { 0 };
+        let needed = config.voxel_count() * u128::from(of_voxel);
         match free_space(parent(&self.target)) {
             Some(available) if needed > u128::from(available) => {
                 Err(Error::OutputExceedsDisk { path: self.path.clone(), needed, available })
@@ -352,8 +373,7 @@ mod tests {
             );
         }
 
-        let known =
-            "*.vtp, *.vtu, *.vtk, *.vtm, *.stl, *.ply, *.obj, *.msh, *.fe, *.tess, *.vti, *.npy or *.ang";
+        let known = "*.vtp, *.vtu, *.vtk, *.vtm, *.stl, *.ply, *.obj, *.msh, *.fe, *.tess, *.vti, *.npy, *.ang, *.ctf, *.txt, *.ori or *.yaml";
         for name in ["grains", "grains.off", ".vtp"] {
             let error = Output::check(name).unwrap_err().to_string();
             assert_eq!(error, format!("{name}: unknown extension; name the file {known}"));

@@ -268,7 +268,7 @@ pub fn smooth_watched(
     let times = clock.times;
     let topology = Topology::new(tessellation, &network);
     let config = config.clone();
-    Ok(Polycrystal {
+    let mut polycrystal = Polycrystal {
         config,
         cells,
         network,
@@ -284,7 +284,9 @@ pub fn smooth_watched(
         angles_before,
         validation,
         times,
-    })
+    };
+    polycrystal.fit_misorientations();
+    Ok(polycrystal)
 }
 
 /// A time for which grains can grow freely, where for the config's own they cannot: it is tried.

@@ -1,6 +1,7 @@
 //! A page about a run: its grains to turn round, its statistics, its figures.
 
 mod chart;
+mod orientation_figures;
 mod poisson_voronoi;
 mod view;
 
@@ -9,15 +10,22 @@ use std::io;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use polycrystal::{WeightedAngle, angles_between_boundaries};
+use texture::{AngleHistogram, Pair, RandomDisorientations};
 use voronoi::{CellId, Dimension};
 
-use crate::{Error, Output, Picture, Polycrystal, StagedFiles, Summary};
+use crate::{Error, GrainTexture, Output, Picture, Polycrystal, StagedFiles, Summary};
 use chart::Chart;
 use poisson_voronoi::{SIZE_BIN, angle_density, face_shares, size_shares};
 
 /// The format of reports: one page that needs nothing else.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Html;
+
+/// What curves of geometry belong to.
+const RANDOM_CELLS: &str = "random cells in unbounded space";
+
+/// What histograms are that show what relaxation changes.
+const BEFORE_AND_AFTER: [&str; 2] = ["before", "after"];
 
 /// Width of the bins of angles, in degrees: a run of 200 grains fills each between 90 and 150.
 const ANGLE_BIN: f64 = 5.0;
@@ -48,8 +56,14 @@ impl Polycrystal {
                 ],
             ),
         };
-        let charts: String =
+        let mut charts: String =
             [self.size_chart(), self.face_chart(), self.angle_chart()].iter().map(Chart::figure).collect();
+        if let Some(texture) = &self.cells.texture {
+            charts += &self.disorientation_chart(texture).figure();
+            let orientations = texture.orientations().iter().copied();
+            let weighted: Vec<_> = orientations.zip(self.network.cell_volumes().iter().copied()).collect();
+            charts += &orientation_figures::figures(&weighted, texture.symmetry())?;
+        }
         let title = format!("{} grains", self.network.grain_count());
         Ok(filled(
             include_str!("../assets/report.html"),
@@ -95,8 +109,34 @@ impl Polycrystal {
             // Twice the width of the curve's bins, hence twice its shares.
             bins: chart::Bins { start: 0.0, width: 2.0 * SIZE_BIN },
             before: Vec::new(),
+            names: BEFORE_AND_AFTER,
             after: sizes.collect(),
             exact: exact.collect(),
+            exact_name: RANDOM_CELLS,
+        }
+    }
+
+    fn disorientation_chart(&self, texture: &GrainTexture) -> Chart {
+        let random = RandomDisorientations::new(texture.symmetry());
+        let pairs = self.neighbor_pairs();
+        let angle = |(first, second, area): &Pair| {
+            let [first, second] = [*first, *second].map(|grain| texture.orientations()[grain]);
+            (texture.symmetry().disorientation_angle(first, second), *area)
+        };
+        let curve = (0..=180).map(f64::from).take_while(|angle| *angle <= random.largest() + 1.0);
+        Chart {
+            title: "Disorientations of neighbours",
+            unit: "degrees",
+            of: match self.config.dimension {
+                Dimension::Two => "the length of boundaries",
+                Dimension::Three => "the area of boundaries",
+            },
+            bins: chart::Bins { start: 0.0, width: ANGLE_BIN },
+            before: texture.target().map_or_else(Vec::new, in_degrees),
+            names: ["asked for", "this run"],
+            after: pairs.iter().map(angle).collect(),
+            exact: curve.map(|angle| (angle, ANGLE_BIN * random.density(angle))).collect(),
+            exact_name: "random orientations (Mackenzie)",
         }
     }
 
@@ -117,8 +157,10 @@ impl Polycrystal {
             // Whole numbers in the middle of their bins.
             bins: chart::Bins { start: -0.5, width: 1.0 },
             before: cells.map(count).collect(),
+            names: BEFORE_AND_AFTER,
             after: self.boundary_counts().into_iter().map(count).collect(),
             exact: (least..).zip(shares).map(|(count, share)| (count as f64, *share)).collect(),
+            exact_name: RANDOM_CELLS,
         }
     }
 
@@ -140,10 +182,24 @@ impl Polycrystal {
             },
             bins: chart::Bins { start: 0.0, width: ANGLE_BIN },
             before: weighted(self.flat_angles.clone()),
+            names: BEFORE_AND_AFTER,
             after: weighted(angles_between_boundaries(network, network.finest(), &self.points)),
             exact: exact.collect(),
+            exact_name: RANDOM_CELLS,
         }
     }
+}
+
+/// A histogram as weighted angles, some each degree, for bins of another width.
+fn in_degrees(histogram: &AngleHistogram) -> Vec<(f64, f64)> {
+    let starts = std::iter::once(0.0).chain(histogram.bins().map(|(end, _)| end));
+    let bins = histogram.bins().zip(starts);
+    let parts = bins.flat_map(|((end, share), start)| {
+        let count = (end - start).ceil().max(1.0);
+        let part = move |part: i32| (start + (end - start) * (f64::from(part) + 0.5) / count, share / count);
+        (0..).map(part).take_while(move |(angle, _)| *angle < end)
+    });
+    parts.collect()
 }
 
 /// A template with each `{{name}}` replaced by its value, once: values may hold braces.

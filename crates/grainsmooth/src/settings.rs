@@ -4,12 +4,13 @@ use std::io::{self, Write};
 
 use glam::DVec3;
 use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
+use texture::{CrystalSymmetry, SampleSymmetry};
 use toml::Value;
 use voronoi::Dimension;
 
 use crate::embedded_config::{BEGIN, END, PREFIXES};
 use crate::vtk::VtkEncoding;
-use crate::{Config, FileOptions, PeriodicCut, SeedSource, Shape, StlEncoding};
+use crate::{Config, FileOptions, PeriodicCut, SeedSource, Shape, StlEncoding, TextureOptions};
 
 impl Config {
     /// Every setting by the long name of its option, the default ones too.
@@ -91,6 +92,7 @@ impl Config {
             Junctions::Corner => "corner",
         };
         add("junctions", junctions.into());
+        settings.extend(self.texture.settings());
         settings.extend(self.file.settings(self.dimension));
         settings
     }
@@ -146,6 +148,25 @@ impl Config {
     pub(crate) fn write_comments(&self, sign: &str, out: &mut dyn Write) -> io::Result<()> {
         debug_assert!(PREFIXES.contains(&sign), "embedded_config knows the sign");
         self.to_toml().lines().try_for_each(|line| writeln!(out, "{sign}{line}"))
+    }
+}
+
+impl TextureOptions {
+    fn settings(&self) -> Vec<(&'static str, Value)> {
+        let mut settings = Vec::new();
+        if let Some(source) = &self.source {
+            settings.push(("texture", source.text().into()));
+        }
+        if self.symmetry != CrystalSymmetry::default() {
+            settings.push(("crystal-symmetry", self.symmetry.to_string().into()));
+        }
+        if self.sample_symmetry != SampleSymmetry::default() {
+            settings.push(("sample-symmetry", self.sample_symmetry.name().into()));
+        }
+        if let Some(path) = &self.misorientations {
+            settings.push(("misorientations", path.display().to_string().into()));
+        }
+        settings
     }
 }
 

@@ -12,7 +12,7 @@ use serde::Serialize;
 use voronoi::Dimension;
 
 use crate::table::{Table, Value};
-use crate::{Error, Output, Polycrystal, StagedFiles, TableFormat, Topology};
+use crate::{Error, GrainTexture, Output, Polycrystal, StagedFiles, TableFormat, Topology};
 
 /// The tables beside that of the grains, by dimension.
 const OTHERS_IN_SPACE: [&str; 3] = ["boundaries", "triple_lines", "quadruple_points"];
@@ -79,12 +79,18 @@ struct Distribution {
 impl Polycrystal {
     /// Measures the smoothed network.
     pub fn statistics(&self) -> NetworkStatistics {
-        let (grains, others, distributions) = match self.measures() {
+        let (mut grains, mut others, distributions) = match self.measures() {
             Measures::Space(measures) => {
                 in_space(&measures, &self.cells.seed_ids, &self.network.finest().grain_counts)
             }
             Measures::Plane(measures) => in_plane(&measures, &self.cells.seed_ids),
         };
+        if let Some(texture) = &self.cells.texture {
+            add_orientations(texture, &mut grains);
+            if let Some(boundaries) = others.get_mut("boundaries") {
+                add_disorientations(texture, boundaries);
+            }
+        }
         NetworkStatistics {
             version: env!("CARGO_PKG_VERSION"),
             command_line: self.config.command_line(),
@@ -119,6 +125,30 @@ impl NetworkStatistics {
 }
 
 type Tables = (Table, BTreeMap<&'static str, Table>, BTreeMap<&'static str, Distribution>);
+
+/// Adds what orientation each grain has; the first column is its number.
+fn add_orientations(texture: &GrainTexture, grains: &mut Table) {
+    let orientation = |row: &[Value]| row[0].grain().map(|grain| texture.orientations()[grain.index()]);
+    grains.add_column("EulerAngles", |row| {
+        Value::Numbers(orientation(row).map_or_else(Vec::new, |one| one.euler_degrees().to_vec()))
+    });
+    grains.add_column("Quaternion", |row| {
+        Value::Numbers(orientation(row).map_or_else(Vec::new, |one| one.quaternion().to_vec()))
+    });
+}
+
+/// Adds the least rotation between the sides of each boundary; their numbers are the second and the third column.
+fn add_disorientations(texture: &GrainTexture, boundaries: &mut Table) {
+    let found = |row: &[Value]| {
+        let [first, second] = [row[1].grain()?, row[2].grain()?];
+        texture.disorientation([Side::Grain(first), Side::Grain(second)])
+    };
+    boundaries
+        .add_column("Disorientation", |row| Value::Number(found(row).map_or(f64::NAN, |found| found.angle)));
+    boundaries.add_column("DisorientationAxis", |row| {
+        Value::Numbers(found(row).map_or_else(Vec::new, |found| found.axis.to_array().to_vec()))
+    });
+}
 
 fn in_space(measures: &SpaceMeasures, seed_ids: &[u32], grain_counts: &[u8]) -> Tables {
     let SpaceMeasures { grains, boundaries, triple_lines, quadruple_points, .. } = measures;
@@ -266,7 +296,7 @@ fn grain_table(grains: &[GrainMeasures], seed_ids: &[u32]) -> Table {
         row.push(id(seed_ids[grain.grain.index()]));
         row
     };
-    let columns = &[
+    let columns = vec![
         "id",
         "volume",
         "area",
@@ -308,7 +338,7 @@ fn boundary_table(boundaries: &[BoundaryMeasures]) -> Table {
         row.push(Value::Number(boundary.mean_curvature));
         row
     };
-    let columns = &[
+    let columns = vec![
         "id",
         "side_0",
         "side_1",
@@ -341,7 +371,7 @@ fn triple_line_table(lines: &[TripleLineMeasures]) -> Table {
             ids(line.boundaries.iter().map(|boundary| boundary.0)),
         ]
     };
-    let columns = &[
+    let columns = vec![
         "id",
         "length",
         "smallest_angle",
@@ -366,7 +396,7 @@ fn quadruple_point_table(points: &[QuadruplePointMeasures], grain_counts: &[u8])
         row.push(sides(&at.sides));
         row
     };
-    let columns = &[
+    let columns = vec![
         "point",
         "x",
         "y",
@@ -396,7 +426,7 @@ fn plane_grain_table(grains: &[PlaneGrainMeasures], seed_ids: &[u32]) -> Table {
         row.push(id(seed_ids[grain.grain.index()]));
         row
     };
-    let columns = &[
+    let columns = vec![
         "id",
         "area",
         "perimeter",
@@ -428,7 +458,7 @@ fn plane_boundary_table(boundaries: &[PlaneBoundaryMeasures]) -> Table {
         row.push(Value::Number(boundary.mean_curvature));
         row
     };
-    let columns = &[
+    let columns = vec![
         "id",
         "side_0",
         "side_1",
@@ -452,6 +482,6 @@ fn triple_point_table(points: &[TriplePointMeasures]) -> Table {
         row.push(ids(at.boundaries.iter().map(|boundary| boundary.0)));
         row
     };
-    let columns = &["point", "x", "y", "grains", "sides", "angles", "residual", "boundaries"];
+    let columns = vec!["point", "x", "y", "grains", "sides", "angles", "residual", "boundaries"];
     Table { columns, rows: points.iter().map(row).collect() }
 }

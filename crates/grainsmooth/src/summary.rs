@@ -6,6 +6,7 @@ use std::time::Duration;
 use polycrystal::{AngleStatistics, Balance, Boundary, HerringResidual, Reconnections, Relaxation};
 use voronoi::{Collapsed, Dimension};
 
+use crate::grain_texture::TextureLine;
 use crate::{
     Config, EquivalentDiameters, Polycrystal, Reconnected, Regularization, SeedSource, Stage, Tessellated,
     TriangleAngles,
@@ -24,6 +25,7 @@ impl fmt::Display for Summary<'_> {
         writeln!(out, "grains      {} in {}", network.grain_count(), network.domain())?;
         writeln!(out, "diameters   {}", polycrystal.diameter_statistics())?;
         write_seeds(out, &polycrystal.config, &polycrystal.cells)?;
+        write_texture(out, &polycrystal.cells)?;
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
         let through_walls = count(|boundary| boundary.twin.is_some()) / 2;
         let between_grains = count(Boundary::is_interior) + through_walls;
@@ -131,8 +133,15 @@ impl fmt::Display for CellsSummary<'_> {
         let diameters: Vec<f64> =
             measures.iter().map(|cell| config.dimension.ball_diameter(cell.volume)).collect();
         writeln!(out, "diameters   {}", EquivalentDiameters::new(config.dimension, &diameters))?;
-        write_seeds(out, config, cells)
+        write_seeds(out, config, cells)?;
+        write_texture(out, cells)
     }
+}
+
+/// What the orientations of the grains are.
+fn write_texture(out: &mut fmt::Formatter<'_>, cells: &Tessellated) -> fmt::Result {
+    let Some(texture) = &cells.texture else { return Ok(()) };
+    writeln!(out, "texture     {}", TextureLine(texture, &cells.volumes()))
 }
 
 /// What became of the seeds: a lattice, and those that are left out.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use voronoi::Dimension;
 
 use crate::triangle_angles::TriangleAngles;
-use crate::{EquivalentDiameters, Polycrystal, Reconnected, Topology};
+use crate::{ComponentShare, EquivalentDiameters, HistogramFit, Polycrystal, Reconnected, Topology};
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -26,6 +26,7 @@ pub struct SummaryRecord {
     triple_lines: usize,
     quadruple_points: usize,
     topology: Topology,
+    texture: Option<TextureRecord>,
     regularization: &'static str,
     regularization_fell_back: bool,
     collapsed_edges: usize,
@@ -55,6 +56,17 @@ struct Boundaries {
     on_walls: usize,
     /// Of those between grains, how many stand in the file twice, a period apart.
     twice: usize,
+}
+
+/// The orientations of the grains.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct TextureRecord {
+    crystal_symmetry: &'static str,
+    /// Shares of the volume.
+    components: Vec<ComponentShare>,
+    index: Option<f64>,
+    /// How near the disorientations of neighbours came to a histogram.
+    misorientations: Option<HistogramFit>,
 }
 
 /// How relaxation changed the topology, where it may. In the plane, lines are points.
@@ -123,6 +135,15 @@ impl SummaryRecord {
             triple_lines: junctions.triple_lines,
             quadruple_points: junctions.quadruple_points,
             topology: polycrystal.topology.clone(),
+            texture: polycrystal.cells.texture.as_ref().map(|texture| {
+                let volumes = polycrystal.cells.volumes();
+                TextureRecord {
+                    crystal_symmetry: texture.symmetry().rotation_group(),
+                    components: texture.shares(&volumes),
+                    index: texture.index(&volumes),
+                    misorientations: texture.fit(),
+                }
+            }),
             regularization: polycrystal.regularization.name(),
             regularization_fell_back: polycrystal.regularization.fell_back(config),
             collapsed_edges: polycrystal.collapsed.edges,

@@ -1,11 +1,12 @@
 use std::io::{self, Write};
 
+use polycrystal::GrainId;
 use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
 
 /// Rows of values under named columns: written as CSV, or as a list of JSON objects.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Table {
-    pub(crate) columns: &'static [&'static str],
+    pub(crate) columns: Vec<&'static str>,
     pub(crate) rows: Vec<Vec<Value>>,
 }
 
@@ -23,6 +24,12 @@ pub(crate) enum Value {
 }
 
 impl Table {
+    /// Adds a column behind the others, with a value for each row.
+    pub(crate) fn add_column(&mut self, name: &'static str, value: impl Fn(&[Value]) -> Value) {
+        self.columns.push(name);
+        self.rows.iter_mut().for_each(|row| row.push(value(row)));
+    }
+
     /// Writes a header line, then one line a row.
     pub(crate) fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "{}", self.columns.join(","))?;
@@ -36,6 +43,14 @@ impl Table {
 }
 
 impl Value {
+    /// The grain of this number; nothing for that of the exterior.
+    pub(crate) fn grain(&self) -> Option<GrainId> {
+        match self {
+            Self::Integer(number) => u32::try_from(*number).ok().map(GrainId),
+            _ => None,
+        }
+    }
+
     fn in_csv(&self) -> String {
         let number = |value: &f64| if value.is_finite() { format!("{value:?}") } else { String::new() };
         match self {
@@ -62,7 +77,7 @@ impl Serialize for Table {
         }
         let mut rows = serializer.serialize_seq(Some(self.rows.len()))?;
         for row in &self.rows {
-            rows.serialize_element(&Row(self.columns, row))?;
+            rows.serialize_element(&Row(&self.columns, row))?;
         }
         rows.end()
     }

@@ -8,8 +8,8 @@ use voronoi::{CellId, Domain, Side, Tessellation, VoronoiError};
 use crate::memory::{available_memory, check_cells};
 use crate::pipeline::{Clock, seed_count};
 use crate::{
-    Config, EquivalentDiameters, Error, FileSeed, FileSeeds, Progress, SeedPlace, SeedSource, Stage,
-    poisson_disc_seeds, random_seeds, read_seed_file,
+    Config, EquivalentDiameters, Error, FileSeed, FileSeeds, GrainTexture, Progress, SeedPlace, SeedSource,
+    Stage, poisson_disc_seeds, random_seeds, read_seed_file,
 };
 
 /// The cells of a config's seeds.
@@ -25,6 +25,8 @@ pub struct Tessellated {
     pub dropped_seeds: Vec<u32>,
     /// The numbers of seeds that are left out because their cells were below [`Config::min_diameter`].
     pub merged_seeds: Vec<u32>,
+    /// The orientations of the grains, where they are asked for.
+    pub texture: Option<GrainTexture>,
     /// What the file of the seeds also tells of grains, and has no place here.
     pub passed_over: Option<&'static str>,
     /// Time that each stage took.
@@ -32,6 +34,11 @@ pub struct Tessellated {
 }
 
 impl Tessellated {
+    /// Volumes of the cells; in the plane areas.
+    pub(crate) fn volumes(&self) -> Vec<f64> {
+        self.tessellation.cell_measures().iter().map(|cell| cell.volume).collect()
+    }
+
     /// The numbers of the cells' seeds, for formats that tell them only where they are not those of the cells; else nothing.
     pub(crate) fn renumbered(&self) -> &[u32] {
         let is_renumbered = (0u32..).zip(&self.seed_ids).any(|(cell, seed)| cell != *seed);
@@ -46,6 +53,7 @@ impl Tessellated {
 pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Error> {
     let mut clock = Clock { progress, times: Vec::new() };
     let domain = config.domain()?;
+    let (texture, histogram) = (config.texture.texture()?, config.texture.histogram()?);
     let FileSeeds { seeds, passed_over } = clock.time(Stage::Seeds, || seeds(config, &domain))?;
     let mut seeds = NumberedSeeds::new(seeds);
     let (mut dropped_seeds, mut merged_seeds) = (Vec::new(), Vec::new());
@@ -76,9 +84,23 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
         merged_seeds.sort_unstable();
         Ok::<_, Error>(all)
     })?;
+    let texture = texture.map(|texture| {
+        let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
+        GrainTexture::draw(texture, config.texture.symmetry, &volumes, config.random_seed)
+            .with_target(histogram)
+    });
     let times = clock.times;
     let seed_ids = seeds.ids;
-    Ok(Tessellated { tessellation, weights, seed_ids, dropped_seeds, merged_seeds, passed_over, times })
+    Ok(Tessellated {
+        tessellation,
+        weights,
+        seed_ids,
+        dropped_seeds,
+        merged_seeds,
+        texture,
+        passed_over,
+        times,
+    })
 }
 
 /// Seeds with the numbers that they had among all.

@@ -12,12 +12,14 @@ use vtkio::xml::ScalarType;
 use xml::XmlFormat;
 
 mod image;
+mod item_tuples;
 mod legacy;
 mod pieces;
 mod raw;
 mod xml;
 
 pub use image::{ImageData, write_vti};
+pub use item_tuples::ItemTuples;
 pub(crate) use pieces::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
 pub(crate) use raw::{attribute, find, try_inlined};
 pub use raw::{field_bytes, field_numbers, field_text, inlined};
@@ -164,6 +166,46 @@ pub enum Values<'a> {
     Int32Blocks(Blocks<'a>),
     /// One 64-bit floating point number each, computed when it is written.
     Float64Of(Each<'a, f64>),
+    /// The tuple of an item for each.
+    Items(Items<'a>),
+    /// The same, with the items made block by block when they are written.
+    ItemBlocks(ItemBlocks<'a>),
+}
+
+/// Tuples of items, of which each cell belongs to one or to none.
+#[derive(Clone, Copy)]
+pub struct Items<'a> {
+    /// What each item has.
+    pub tuples: &'a ItemTuples,
+    /// Number of cells.
+    pub count: usize,
+    /// The item of a cell.
+    pub item: &'a (dyn Fn(usize) -> Option<usize> + Sync),
+}
+
+impl fmt::Debug for Items<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{} tuples", self.count)
+    }
+}
+
+/// Tuples of items that are found in blocks, one block after the other.
+#[derive(Clone, Copy)]
+pub struct ItemBlocks<'a> {
+    /// What each item has.
+    pub tuples: &'a ItemTuples,
+    /// Number of cells.
+    pub count: usize,
+    /// Number of blocks.
+    pub blocks: usize,
+    /// The items of the cells of a block.
+    pub make: &'a (dyn Fn(usize) -> Vec<Option<usize>> + Sync),
+}
+
+impl fmt::Debug for ItemBlocks<'_> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{} tuples in {} blocks", self.count, self.blocks)
+    }
 }
 
 /// Tuples of any number of components.
@@ -224,6 +266,8 @@ impl<'a> Values<'a> {
             Self::Float64Of(each) => each.count,
             Self::Int32Tuples(tuples) => tuples.values.len() / tuples.components,
             Self::Int32Blocks(blocks) => blocks.count,
+            Self::Items(items) => items.count,
+            Self::ItemBlocks(blocks) => blocks.count,
         }
     }
 
@@ -240,6 +284,8 @@ impl<'a> Values<'a> {
             Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Float64Pairs(_) => 2,
             Self::Vectors(_) => 3,
             Self::Int32Tuples(tuples) => tuples.components,
+            Self::Items(items) => items.tuples.components,
+            Self::ItemBlocks(blocks) => blocks.tuples.components,
         }
     }
 
@@ -251,6 +297,8 @@ impl<'a> Values<'a> {
             Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Int32Tuples(_) => ScalarType::Int32,
             Self::Float64(_) | Self::Float64Of(_) => ScalarType::Float64,
             Self::Float64Pairs(_) | Self::Vectors(_) => ScalarType::Float64,
+            Self::Items(items) => items.tuples.kind,
+            Self::ItemBlocks(blocks) => blocks.tuples.kind,
         }
     }
 }
@@ -278,6 +326,8 @@ pub enum FieldValue {
     Numbers(Vec<f64>),
     /// Any number of ids, kept as Int32.
     Ids(Vec<i32>),
+    /// A tuple of numbers for each of some items.
+    Items(ItemTuples),
 }
 
 /// Writes `data` in `format`; XML files hold their numbers in `encoding`.

@@ -19,7 +19,8 @@ use super::values::{nearest, whole_number};
 #[command(next_help_heading = "Files")]
 pub struct FileArguments {
     /// File to write; its extension names the format: .vtp, .vtu, .vtk, .vtm, .stl, .ply, .obj, .msh (Gmsh), .fe (Surface Evolver),
-    /// .tess (Neper), and voxels .vti (DAMASK), .npy, .ang; - is standard output; give it again for more files
+    /// .tess (Neper), voxels .vti (DAMASK), .npy, .ang, .ctf, and orientations
+    /// .txt, .ori (Neper), .yaml (DAMASK); - is standard output; give it again for more files
     ///
     /// Example: -o grains.vtp -o grains.msh
     #[arg(short, long, value_name = "PATH", num_args = 1, default_value = "grains.vtp", value_parser = parse_output)]
@@ -43,7 +44,7 @@ pub struct FileArguments {
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t = GrainFormat::Vtp, requires = "grains_dir")]
     pub grains_format: GrainFormat,
 
-    /// Number of voxels along each axis for .vti, .npy and .ang, X Y in 2D
+    /// Number of voxels along each axis for .vti, .npy, .ang and .ctf, X Y in 2D
     ///
     /// Example: --voxels 64 64 64 -o grains.vti
     #[arg(long, value_names = ["NX", "NY", "NZ"], num_args = 2.., value_parser = whole_number(1..=65_536_u32), allow_negative_numbers = true)]

@@ -1,19 +1,15 @@
 //! TSL's text file of orientation maps, .ang: each pixel of a 2D grid with the orientation of its grain.
 //!
-//! Orientations are made up, as grains have none of their own: uniform in the group of rotations, by grain and random seed.
+//! Where no texture is asked for orientations are made up, as grains have none of their own: random, by the config's seed.
 
 use std::f64::consts::TAU;
 use std::io::{self, Write};
 
 use polycrystal::Side;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use texture::{CrystalSymmetry, Orientation};
 
 use super::LabelGrid;
 use crate::Config;
-
-/// The generator's stream for orientations, apart from that of the seeds' positions.
-const STREAM: u64 = 1;
 
 /// In place of each Euler angle where there is none.
 const ANGLE_OF_NONE: f64 = 2.0 * TAU;
@@ -24,24 +20,28 @@ const ANGLE_OF_NONE: f64 = 2.0 * TAU;
 /// fit 0; y points down, as everywhere in such maps. Pixels outside of all grains have no solution: confidence -1.
 pub(crate) fn write(
     grid: &LabelGrid<'_>,
-    grain_count: usize,
+    orientations: &[Orientation],
     config: &Config,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let [columns, rows, _] = grid.size;
     let (x_step, y_step) = (grid.spacing.x, grid.spacing.y);
     config.write_comments("# ", out)?;
+    let symmetry = config.texture.symmetry;
+    let [[a, b, c], [alpha, beta, gamma]] = lattice_constants(symmetry);
+    let number = symmetry_number(symmetry);
     write!(
         out,
         "# TEM_PIXperUM          1.000000\n# x-star                0.000000\n# y-star                0.000000\n\
          # z-star                0.000000\n# WorkingDistance       0.000000\n#\n# Phase 1\n\
-         # MaterialName  grains\n# Formula     \n# Info \n# Symmetry              43\n\
-         # LatticeConstants      1.000 1.000 1.000  90.000  90.000  90.000\n# NumberFamilies        0\n#\n\
+         # MaterialName  grains\n# Formula     \n# Info \n# Symmetry              {number}\n\
+         # LatticeConstants      {a:.3} {b:.3} {c:.3}  {alpha:.3}  {beta:.3}  {gamma:.3}\n# NumberFamilies        0\n#\n\
          # GRID: SqrGrid\n# XSTEP: {x_step:?}\n# YSTEP: {y_step:?}\n# NCOLS_ODD: {columns}\n# NCOLS_EVEN: {columns}\n\
          # NROWS: {rows}\n#\n# OPERATOR: grainsmooth {}\n#\n# SAMPLEID: \n#\n# SCANID: \n#\n",
         env!("CARGO_PKG_VERSION")
     )?;
-    let angles = euler_angles(grain_count, config.random_seed);
+    let radians = |orientation: &Orientation| orientation.euler_degrees().map(f64::to_radians);
+    let angles: Vec<[f64; 3]> = orientations.iter().map(radians).collect();
     // The first row of a map is the topmost.
     let mut row = 0;
     for slab in (0..grid.slab_count()).rev() {
@@ -77,10 +77,30 @@ fn write_row(
     Ok(())
 }
 
-/// Bunge's angles of every grain, in radians: two uniform, and the cosine of the middle one uniform.
-fn euler_angles(grain_count: usize, random_seed: u64) -> Vec<[f64; 3]> {
-    let mut generator = ChaCha8Rng::seed_from_u64(random_seed);
-    generator.set_stream(STREAM);
-    let mut fraction = || (generator.next_u64() >> 11) as f64 * 2f64.powi(-53);
-    (0..grain_count).map(|_| [TAU * fraction(), (2.0 * fraction() - 1.0).acos(), TAU * fraction()]).collect()
+/// Lengths and angles of a unit cell that goes with a symmetry; nobody knows those of made-up grains.
+pub(super) fn lattice_constants(symmetry: CrystalSymmetry) -> [[f64; 3]; 2] {
+    match symmetry {
+        CrystalSymmetry::TrigonalLow
+        | CrystalSymmetry::Trigonal
+        | CrystalSymmetry::HexagonalLow
+        | CrystalSymmetry::Hexagonal => [[1.0, 1.0, 1.6], [90.0, 90.0, 120.0]],
+        _ => [[1.0; 3], [90.0; 3]],
+    }
+}
+
+/// TSL's number of a Laue group.
+fn symmetry_number(symmetry: CrystalSymmetry) -> u8 {
+    match symmetry {
+        CrystalSymmetry::Triclinic => 1,
+        CrystalSymmetry::Monoclinic => 20,
+        CrystalSymmetry::Orthorhombic => 22,
+        CrystalSymmetry::TetragonalLow => 4,
+        CrystalSymmetry::Tetragonal => 42,
+        CrystalSymmetry::TrigonalLow => 3,
+        CrystalSymmetry::Trigonal => 32,
+        CrystalSymmetry::HexagonalLow => 6,
+        CrystalSymmetry::Hexagonal => 62,
+        CrystalSymmetry::Tetrahedral => 23,
+        CrystalSymmetry::Octahedral => 43,
+    }
 }

@@ -126,6 +126,10 @@ impl Polycrystal {
             ],
             field: self.field(),
         };
+        let disorientations = self.disorientations();
+        let boundary = |piece: usize| Some(surface.parts[piece].boundary.index());
+        data.cell_arrays
+            .extend(disorientations.iter().map(|tuples| (tuples.name, PieceValue::Item(tuples, &boundary))));
         data.cell_arrays.extend(measured_pieces(&of_parts));
         if measured.is_some() {
             data.point_arrays.push(("MeanCurvature", PieceVectors::Float64(&mean)));
@@ -175,6 +179,8 @@ impl Polycrystal {
             ],
             field: self.field(),
         };
+        let tuples = self.grain_tuples();
+        data.cell_arrays.extend(tuples.iter().map(|tuples| (tuples.name, PieceValue::Item(tuples, &Some))));
         data.cell_arrays.extend(measured_pieces(&of_grains));
         write_pieces(&data, self.config.file.encoding, out)
     }

@@ -11,7 +11,7 @@ use super::surface::Surface;
 use super::{obj, ply, stl};
 use crate::network_file::SEED_ID;
 use crate::output::OutputDirectory;
-use crate::vtk::{Array, Cells, Each, FieldEntry, PolyData, Values, VtkFormat, write_vtk};
+use crate::vtk::{Array, Cells, Each, FieldEntry, ItemTuples, Items, PolyData, Values, VtkFormat, write_vtk};
 use crate::{Error, FileOptions, OutputFormat, Polycrystal, StagedFiles};
 
 /// What is measured of a grain's surface, its parts on walls included.
@@ -57,13 +57,14 @@ impl Polycrystal {
         let network = self.surface().map_err(failed)?;
         let parts = network.parts_of_grains(self.network.grain_count());
         let format = directory.format();
+        let tuples = self.grain_tuples();
         directory.stage(files, |folder| {
             let grains = (0u32..).zip(&parts).collect::<Vec<_>>().into_par_iter();
             grains.try_for_each(|(id, parts)| {
                 let surface = network.grain(GrainId(id), parts);
                 let name = format!("grain_{id}.{}", format.extension());
                 let mut out = io::BufWriter::new(std::fs::File::create(folder.join(name))?);
-                self.write_grain(&surface, GrainId(id), format, &mut out)?;
+                self.write_grain(&surface, GrainId(id), &tuples, format, &mut out)?;
                 out.flush()
             })
         })
@@ -73,6 +74,7 @@ impl Polycrystal {
         &self,
         surface: &Surface<'_>,
         grain: GrainId,
+        tuples: &[ItemTuples],
         format: OutputFormat,
         out: &mut dyn Write,
     ) -> io::Result<()> {
@@ -86,7 +88,7 @@ impl Polycrystal {
             OutputFormat::Obj => obj::write(surface, &self.config, renumbered, out),
             OutputFormat::Vtk(format) => {
                 let seed = self.cells.seed_ids[grain.index()].cast_signed();
-                write_vtk_grain(surface, seed, &self.config.file, self.field(), format, out)
+                write_vtk_grain(surface, seed, tuples, &self.config.file, self.field(), format, out)
             }
             _ => Err(io::Error::other("this format holds no surfaces")),
         }
@@ -97,6 +99,7 @@ impl Polycrystal {
 fn write_vtk_grain(
     surface: &Surface<'_>,
     seed: i32,
+    tuples: &[ItemTuples],
     options: &FileOptions,
     field: Vec<FieldEntry>,
     format: VtkFormat,
@@ -115,7 +118,7 @@ fn write_vtk_grain(
     let (neighbors, seed) = (|_| neighbors, |_| seed);
     let doubles = |value| Values::Float64Of(Each { count, value });
     let integers = |value| Values::Int32Of(Each { count, value });
-    let data = PolyData {
+    let mut data = PolyData {
         points: &surface.points,
         cells: Cells::Triangles(&triangles),
         point_arrays: Vec::new(),
@@ -131,5 +134,11 @@ fn write_vtk_grain(
         ],
         field,
     };
+    let of_grain =
+        |_| surface.parts.first().and_then(|part| part.sides[0].grain()).map(|grain| grain.index());
+    data.cell_arrays.extend(tuples.iter().map(|tuples| {
+        let items = Items { tuples, count, item: &of_grain };
+        Array { name: tuples.name, values: Values::Items(items) }
+    }));
     write_vtk(&data, format, options.encoding, out)
 }

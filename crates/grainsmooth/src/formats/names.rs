@@ -56,6 +56,14 @@ impl Names {
         }
     }
 
+    /// The arrays of the inverse pole figure colours of the sample's axes.
+    pub(crate) fn inverse_pole_figures(self) -> [&'static str; 3] {
+        match self {
+            Self::Virmat => ["IPF-RD", "IPF-TD", "IPF-ND"],
+            _ => ["IPFColorX", "IPFColorY", "IPFColorZ"],
+        }
+    }
+
     /// The number of a grain.
     pub(crate) fn number(self, grain: GrainId) -> i32 {
         // Grains are far fewer than 2^31, for each has many triangles and those have 32-bit ids.

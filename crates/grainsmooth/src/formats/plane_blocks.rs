@@ -12,7 +12,7 @@ use super::blocks::point_id;
 use crate::Polycrystal;
 use crate::measured_arrays::{MeasuredArrays, NumberArrays};
 use crate::network_file::{NUMBER_OF_GRAINS, SEED_ID, boundary_polylines};
-use crate::vtk::{Array, Cells, Each, PolyData, Values, VtkFormat, write_vtk};
+use crate::vtk::{Array, Cells, Each, Items, PolyData, Values, VtkFormat, write_vtk};
 
 /// What is measured of a grain in the plane.
 struct PlaneMeasure {
@@ -66,6 +66,12 @@ impl Polycrystal {
             ],
             field: self.field(),
         };
+        let disorientations = self.disorientations();
+        let boundary = |line: usize| Some(boundary_of[line].index());
+        data.cell_arrays.extend(disorientations.iter().map(|tuples| {
+            let items = Items { tuples, count, item: &boundary };
+            Array { name: tuples.name, values: Values::Items(items) }
+        }));
         data.cell_arrays.extend(of_lines.arrays());
         data.point_arrays.extend(of_points.arrays());
         write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
@@ -102,7 +108,7 @@ impl Polycrystal {
         let perimeter = |triangle: usize| measure(triangle).perimeter;
         let neighbors = |triangle: usize| measure(triangle).neighbors;
         let circularity = |triangle: usize| measure(triangle).circularity();
-        let data = PolyData {
+        let mut data = PolyData {
             points: &points,
             cells: Cells::Triangles(&triangles),
             point_arrays: Vec::new(),
@@ -116,6 +122,12 @@ impl Polycrystal {
             ],
             field: self.field(),
         };
+        let tuples = self.grain_tuples();
+        let grain = |triangle: usize| Some(grain_of[triangle]);
+        data.cell_arrays.extend(tuples.iter().map(|tuples| {
+            let items = Items { tuples, count, item: &grain };
+            Array { name: tuples.name, values: Values::Items(items) }
+        }));
         write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
     }
 

@@ -13,8 +13,12 @@ pub(super) struct Chart {
     /// Values with their weights; none where nothing changes.
     pub(super) before: Vec<(f64, f64)>,
     pub(super) after: Vec<(f64, f64)>,
+    /// What both are, where there are both.
+    pub(super) names: [&'static str; 2],
     /// Places with shares a bin.
     pub(super) exact: Vec<(f64, f64)>,
+    /// What these belong to.
+    pub(super) exact_name: &'static str,
 }
 
 /// Bins of one width, without end.
@@ -67,9 +71,9 @@ impl Chart {
         let mut keys = if before.is_empty() {
             key("after", "this run")
         } else {
-            key("before", "before") + &key("after", "after")
+            key("before", self.names[0]) + &key("after", self.names[1])
         };
-        keys += &key("exact", "random cells in unbounded space");
+        keys += &key("exact", self.exact_name);
         let svg = self.svg(&before, &after);
         format!("<figure>{svg}<figcaption>Share of {} in %. {keys}</figcaption></figure>", self.of)
     }

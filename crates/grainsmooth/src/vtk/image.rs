@@ -77,18 +77,23 @@ pub(super) fn write_field(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     for FieldEntry { name, value } in field {
-        let (element, kind, count, bytes) = match value {
-            FieldValue::Text(text) => ("Array", "String", 1, format!("{text}\0").into_bytes()),
-            FieldValue::Integer(number) => ("DataArray", "UInt64", 1, number.to_ne_bytes().to_vec()),
+        let (element, kind, components, count, bytes) = match value {
+            FieldValue::Text(text) => ("Array", "String", 1, 1, format!("{text}\0").into_bytes()),
+            FieldValue::Integer(number) => ("DataArray", "UInt64", 1, 1, number.to_ne_bytes().to_vec()),
             FieldValue::Numbers(numbers) => {
-                ("DataArray", "Float64", numbers.len(), bytemuck::cast_slice(numbers).to_vec())
+                ("DataArray", "Float64", 1, numbers.len(), bytemuck::cast_slice(numbers).to_vec())
             }
-            FieldValue::Ids(ids) => ("DataArray", "Int32", ids.len(), bytemuck::cast_slice(ids).to_vec()),
+            FieldValue::Ids(ids) => ("DataArray", "Int32", 1, ids.len(), bytemuck::cast_slice(ids).to_vec()),
+            FieldValue::Items(tuples) => {
+                ("DataArray", tuples.kind_name(), tuples.components, tuples.len(), tuples.all().to_vec())
+            }
         };
         let offset = numbers_of_file.append(Numbers::bytes(bytes));
+        let components =
+            if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
         writeln!(
             out,
-            "<{element} type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"{count}\" format=\"appended\" offset=\"{offset}\"/>"
+            "<{element} type=\"{kind}\" Name=\"{name}\"{components} NumberOfTuples=\"{count}\" format=\"appended\" offset=\"{offset}\"/>"
         )?;
     }
     Ok(())

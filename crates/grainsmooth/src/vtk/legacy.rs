@@ -105,6 +105,14 @@ fn write_field(entries: &[FieldEntry], out: &mut dyn Write) -> io::Result<()> {
                 writeln!(out, "{name} 1 {} int", ids.len())?;
                 ids.iter().try_for_each(|id| out.write_all(&id.to_be_bytes()))?;
             }
+            FieldValue::Items(tuples) => {
+                let (kind, width) = match tuples.kind {
+                    ScalarType::UInt8 => ("unsigned_char", size_of::<u8>()),
+                    _ => ("double", size_of::<f64>()),
+                };
+                writeln!(out, "{name} {} {} {kind}", tuples.components, tuples.len())?;
+                Numbers::bytes(tuples.all().to_vec()).write_big_endian(width, out)?;
+            }
             FieldValue::Text(text) => {
                 writeln!(out, "{name} 1 1 string")?;
                 // The two highest bits say how long the length is: 01 for four bytes in all.

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::image::{write_field, write_head};
 use super::raw::{Numbers, NumbersOfFile};
-use super::{FieldEntry, VtkEncoding};
+use super::{FieldEntry, ItemTuples, VtkEncoding};
 
 /// Pieces that are made at the same time; bounds the memory that they take.
 const PIECES_AT_ONCE: usize = 64;
@@ -52,6 +52,8 @@ pub(crate) enum PieceValue<'a> {
     Float64s(&'a [f64]),
     /// Two for each piece.
     Float64Pairs(&'a [[f64; 2]]),
+    /// The tuple of an item for each piece.
+    Item(&'a ItemTuples, &'a (dyn Fn(usize) -> Option<usize> + Sync)),
 }
 
 /// Writes the file.
@@ -120,6 +122,11 @@ pub(crate) fn write_pieces(
             PieceValue::Float64s(values) => {
                 let make = |piece: usize| repeated(values[piece], sizes[piece].triangles);
                 list.array(name, "Float64", 1, pieces(8 * triangles, count, make))?;
+            }
+            PieceValue::Item(tuples, item) => {
+                let make = |piece: usize| tuples.of(item(piece)).repeat(sizes[piece].triangles);
+                let numbers = pieces(tuples.width() * triangles, count, make);
+                list.array(name, tuples.kind_name(), tuples.components, numbers)?;
             }
             PieceValue::Float64Pairs(values) => {
                 let make = |piece: usize| repeated(values[piece], sizes[piece].triangles);

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use rayon::prelude::*;
 
-use super::{Blocks, Values, VtkEncoding};
+use super::{Blocks, ItemBlocks, Items, Values, VtkEncoding};
 
 mod coding;
 mod encode;
@@ -96,6 +96,15 @@ impl<'a> Numbers<'a> {
                 make: Box::new(|block| bytemuck::cast_slice(&make(block)).to_vec()),
             },
             Values::Float64Of(each) => Self::each(each.count, each.value),
+            Values::Items(Items { tuples, count, item }) => tuples.of_cells(count, item),
+            Values::ItemBlocks(ItemBlocks { tuples, count, blocks, make }) => Self::Pieces {
+                byte_count: (count * tuples.width()) as u64,
+                count: blocks,
+                at_once: 1,
+                make: Box::new(|block| {
+                    make(block).into_iter().flat_map(|item| tuples.of(item)).copied().collect()
+                }),
+            },
         }
     }
 

@@ -4,12 +4,15 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use glam::DVec3;
+use texture::CrystalSymmetry;
 use voronoi::{Dimension, Wall};
 
+use super::super::ori::write as write_ori;
 use super::{Oriented, POLYHEDRON, Tess, TessCopy, TessDomain, TessPeriodicity};
+use crate::GrainTexture;
 
-/// Writes the file.
-pub(crate) fn write(tess: &Tess, out: &mut dyn Write) -> io::Result<()> {
+/// Writes the file, with the cells' orientations if they have some.
+pub(crate) fn write(tess: &Tess, texture: Option<&GrainTexture>, out: &mut dyn Write) -> io::Result<()> {
     let dimension = if tess.dimension == Dimension::Two { 2 } else { 3 };
     let kind = if tess.periodicity.is_some() { "periodic" } else { "standard" };
     writeln!(out, "***tess\n **format\n   3.5\n **general\n   {dimension} {kind}")?;
@@ -19,11 +22,25 @@ pub(crate) fn write(tess: &Tess, out: &mut dyn Write) -> io::Result<()> {
         let ids: Vec<String> = tess.ids.iter().map(|id| (u64::from(*id) + 1).to_string()).collect();
         writeln!(out, "  *id\n   {}", ids.join(" "))?;
     }
+    // Neper knows no others.
+    let symmetry = texture.map(GrainTexture::symmetry).filter(|symmetry| {
+        matches!(
+            symmetry,
+            CrystalSymmetry::Triclinic | CrystalSymmetry::Octahedral | CrystalSymmetry::Hexagonal
+        )
+    });
+    if let Some(symmetry) = symmetry {
+        writeln!(out, "  *crysym\n   {symmetry}")?;
+    }
     if !tess.seeds.is_empty() {
         writeln!(out, "  *seed")?;
     }
     for (id, seed) in (1..).zip(&tess.seeds) {
         writeln!(out, "   {id} {} {:?}", coordinates(seed.position), seed.radius)?;
+    }
+    if let Some(texture) = texture {
+        writeln!(out, "  *ori\n   rodrigues:passive")?;
+        write_ori(texture.orientations(), out)?;
     }
     writeln!(out, " **vertex\n  {}", tess.vertices.len())?;
     for (id, vertex) in (1..).zip(&tess.vertices) {

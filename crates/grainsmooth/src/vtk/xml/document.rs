@@ -263,6 +263,11 @@ fn field(entry: &FieldEntry, format: XmlFormat, numbers: &mut NumbersOfFile<'_>)
             let offset = numbers.append(Numbers::bytes(bytemuck::cast_slice(ids).to_vec()));
             Element::DataArray(Header::new(entry.name, ScalarType::Int32, 1, offset).with_tuples(ids.len()))
         }
+        (FieldValue::Items(tuples), _) => {
+            let offset = numbers.append(Numbers::bytes(tuples.all().to_vec()));
+            let header = Header::new(entry.name, tuples.kind, tuples.components, offset);
+            Element::DataArray(header.with_tuples(tuples.len()))
+        }
         (FieldValue::Text(text), XmlFormat::UnstructuredGrid) => {
             let offset = numbers.append(Numbers::bytes(text.clone().into_bytes()));
             Element::DataArray(Header::new(entry.name, ScalarType::UInt8, 1, offset).with_tuples(text.len()))

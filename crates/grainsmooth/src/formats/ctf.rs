@@ -1,0 +1,98 @@
+//! HKL's text file of orientation maps, .ctf: each pixel of a 2D grid with the orientation of its grain.
+
+use std::io::{self, Write};
+
+use polycrystal::Side;
+use texture::{CrystalSymmetry, Orientation};
+
+use super::LabelGrid;
+use super::ang::lattice_constants;
+use crate::Config;
+
+/// HKL's numbers of the Laue groups, from 1.
+const LAUE_GROUPS: [CrystalSymmetry; 11] = [
+    CrystalSymmetry::Triclinic,
+    CrystalSymmetry::Monoclinic,
+    CrystalSymmetry::Orthorhombic,
+    CrystalSymmetry::TetragonalLow,
+    CrystalSymmetry::Tetragonal,
+    CrystalSymmetry::TrigonalLow,
+    CrystalSymmetry::Trigonal,
+    CrystalSymmetry::HexagonalLow,
+    CrystalSymmetry::Hexagonal,
+    CrystalSymmetry::Tetrahedral,
+    CrystalSymmetry::Octahedral,
+];
+
+/// The symmetry by HKL's number of its Laue group.
+pub(crate) fn hkl_symmetry(number: usize) -> Option<CrystalSymmetry> {
+    LAUE_GROUPS.get(number.checked_sub(1)?).copied()
+}
+
+/// By how many degrees HKL's phi2 is larger than ours: in trigonal and hexagonal crystals its x is along the normal of (10-10), ours along
+/// a two-fold axis.
+pub(crate) fn hkl_turn(symmetry: CrystalSymmetry) -> f64 {
+    let is_turned = matches!(
+        symmetry,
+        CrystalSymmetry::TrigonalLow
+            | CrystalSymmetry::Trigonal
+            | CrystalSymmetry::HexagonalLow
+            | CrystalSymmetry::Hexagonal
+    );
+    if is_turned { 30.0 } else { 0.0 }
+}
+
+/// Writes the map: one line a pixel, x fastest; angles in degrees, coordinates in the user's unit of length.
+///
+/// Band contrast and slope are 255 and the mean deviation 0; y points down, as everywhere in such maps. Pixels outside of all grains
+/// have phase 0.
+pub(crate) fn write(
+    grid: &LabelGrid<'_>,
+    orientations: &[Orientation],
+    config: &Config,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let [columns, rows, _] = grid.size;
+    let (x_step, y_step) = (grid.spacing.x, grid.spacing.y);
+    let symmetry = config.texture.symmetry;
+    let number = 1 + LAUE_GROUPS.iter().take_while(|group| **group != symmetry).count();
+    let [lengths, angles] =
+        lattice_constants(symmetry).map(|three| three.map(|one| format!("{one:.3}")).join(";"));
+    write!(
+        out,
+        "Channel Text File\nPrj\tgrains\nAuthor\tgrainsmooth {}\nJobMode\tGrid\nXCells\t{columns}\nYCells\t{rows}\n\
+         XStep\t{x_step:?}\nYStep\t{y_step:?}\nAcqE1\t0\nAcqE2\t0\nAcqE3\t0\n\
+         Euler angles refer to Sample Coordinate system (CS0)!\tMag\t1\tCoverage\t100\tDevice\t0\tKV\t0\tTiltAngle\t0\tTiltAxis\t0\n\
+         Phases\t1\n{lengths}\t{angles}\tgrains\t{number}\t0\nPhase\tX\tY\tBands\tError\tEuler1\tEuler2\tEuler3\tMAD\tBC\tBS\n",
+        env!("CARGO_PKG_VERSION")
+    )?;
+    let turn = hkl_turn(symmetry);
+    let angles: Vec<[f64; 3]> = orientations
+        .iter()
+        .map(|orientation| {
+            let [phi1, phi, phi2] = orientation.euler_degrees();
+            [phi1, phi, (phi2 + turn) % 360.0]
+        })
+        .collect();
+    // The first row of a map is the topmost.
+    let mut row = 0;
+    for slab in (0..grid.slab_count()).rev() {
+        for labels in grid.slab(slab).chunks(columns).rev() {
+            for (column, side) in labels.iter().enumerate() {
+                let (x, y) = (column as f64 * x_step, row as f64 * y_step);
+                match side {
+                    Side::Grain(grain) => {
+                        let [phi1, phi, phi2] = angles[grain.index()];
+                        writeln!(
+                            out,
+                            "1\t{x:?}\t{y:?}\t10\t0\t{phi1:.5}\t{phi:.5}\t{phi2:.5}\t0.0\t255\t255"
+                        )?;
+                    }
+                    Side::Exterior => writeln!(out, "0\t{x:?}\t{y:?}\t0\t3\t0.0\t0.0\t0.0\t0.0\t0\t0")?,
+                }
+            }
+            row += 1;
+        }
+    }
+    Ok(())
+}
