@@ -8,6 +8,7 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::half_space::EVALUATION_ERROR;
 use crate::wide::LANES;
 
 /// Eight boxes: those of points that follow one another, or of groups that do. What is missing at the end is empty.
@@ -41,14 +42,68 @@ impl Boxes {
         let weight = self.weights.into_iter().fold(f64::NEG_INFINITY, f64::max);
         (DVec3::from_array(lower), DVec3::from_array(upper), weight)
     }
+
+    /// The sum of the shortest sides of all boxes.
+    fn least_sides(&self) -> f64 {
+        let side = |axis: usize, lane: usize| self.upper[axis][lane] - self.lower[axis][lane];
+        let least = |lane: usize| side(0, lane).min(side(1, lane)).min(side(2, lane));
+        // Empty boxes have sides of less than nothing.
+        (0..LANES).map(|lane| least(lane).max(0.0)).sum()
+    }
+}
+
+/// Share of the thickness of boxes below which slabs in them are worth a look: around random points they are half as thick or more.
+const THIN: f64 = 0.25;
+
+/// What the points of eight boxes lie between: pairs of parallel planes, one pair for each box, `|normal . p - middle| <= half`. Where
+/// points lie on a surface that is askew, these are far closer together than the sides of a box.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Slabs {
+    /// Of length 1, or 0 where points lie on a line or are too near for it: then the slab is all space.
+    pub(crate) normals: [[f64; LANES]; 3],
+    pub(crate) middles: [f64; LANES],
+    /// With all errors of rounding.
+    pub(crate) halves: [f64; LANES],
+}
+
+impl Slabs {
+    const EMPTY: Self = Self { normals: [[0.0; LANES]; 3], middles: [0.0; LANES], halves: [0.0; LANES] };
+
+    /// Puts a slab around some points, in the plane of three that are far apart.
+    fn set(&mut self, lane: usize, places: Range<usize>, position: impl Fn(usize) -> DVec3) {
+        let points = || places.clone().map(&position);
+        let farthest = |square: &dyn Fn(DVec3) -> f64| {
+            points().max_by(|a, b| square(*a).total_cmp(&square(*b))).unwrap_or_default()
+        };
+        let first = points().next().unwrap_or_default();
+        let second = farthest(&|point| (point - first).length_squared());
+        let third = farthest(&|point| (point - first).cross(second - first).length_squared());
+        let normal = (second - first).cross(third - first).normalize_or_zero();
+        // Products of what is tiny may have lost their digits.
+        let is_unit = (normal.length_squared() - 1.0).abs() < EVALUATION_ERROR;
+        let normal = if is_unit { normal } else { DVec3::ZERO };
+        let (mut lower, mut upper) = (0.0f64, 0.0f64);
+        for point in points() {
+            let offset = normal.dot(point - first);
+            (lower, upper) = (lower.min(offset), upper.max(offset));
+        }
+        for axis in 0..3 {
+            self.normals[axis][lane] = normal[axis];
+        }
+        self.middles[lane] = normal.dot(first) + 0.5 * (lower + upper);
+        let error = 2.0 * EVALUATION_ERROR * (first.abs() + second.abs()).element_sum();
+        self.halves[lane] = 0.5 * (upper - lower) + error;
+    }
 }
 
 /// Boxes around points that have places: what follows one another there should be near in space.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Default, Clone, PartialEq)]
 pub(crate) struct BoxTree {
     pub(crate) point_count: usize,
     /// The groups of boxes of each level, from those around points up to one that holds all.
     pub(crate) levels: Vec<Vec<Boxes>>,
+    /// Around the points of each group of boxes, level by level, where wanted and far thinner than the boxes.
+    slabs: Vec<Vec<Option<Slabs>>>,
 }
 
 impl BoxTree {
@@ -79,7 +134,35 @@ impl BoxTree {
             levels.push(std::mem::replace(&mut level, next));
         }
         levels.push(level);
-        Self { point_count, levels }
+        Self { point_count, levels, slabs: Vec::new() }
+    }
+
+    /// Puts slabs around what is in boxes where these are far thinner, given the position at each place.
+    pub(crate) fn add_slabs(&mut self, position: impl Fn(usize) -> DVec3 + Sync) {
+        let mut points_in_box = LANES;
+        for groups in &self.levels {
+            let slabs_of_group = |(group, boxes): (usize, &Boxes)| {
+                let mut slabs = Slabs::EMPTY;
+                for lane in 0..LANES {
+                    let [first, end] = [0, 1].map(|k| (group * LANES + lane + k) * points_in_box);
+                    slabs.set(lane, first.min(self.point_count)..end.min(self.point_count), &position);
+                }
+                let thickness: f64 = slabs.halves.iter().map(|half| 2.0 * half).sum();
+                (thickness < THIN * boxes.least_sides()).then_some(slabs)
+            };
+            let slabs: Vec<Option<Slabs>> = groups.par_iter().enumerate().map(slabs_of_group).collect();
+            // What is not thin in small boxes is not in large ones.
+            if slabs.iter().all(Option::is_none) {
+                return;
+            }
+            self.slabs.push(slabs);
+            points_in_box *= LANES;
+        }
+    }
+
+    #[cfg(test)]
+    pub(crate) fn has_slabs(&self) -> bool {
+        self.slabs.iter().flatten().any(Option::is_some)
     }
 
     /// Looks through the boxes that are wanted.
@@ -94,6 +177,11 @@ impl BoxTree {
             // What is beyond the end is wanted only if numbers overflow.
             let Some(boxes) = self.levels[level].get(group) else { continue };
             let mut chosen = search.wanted(boxes);
+            if chosen != 0
+                && let Some(slabs) = self.slabs.get(level).and_then(|level| level[group].as_ref())
+            {
+                chosen &= search.reached(boxes, slabs);
+            }
             while chosen != 0 {
                 // The last first: so the first waits on top.
                 let lane = chosen.ilog2();
@@ -117,6 +205,12 @@ impl BoxTree {
 pub(crate) trait BoxSearch {
     /// Which boxes of a group are to be looked into, a bit for each.
     fn wanted(&self, boxes: &Boxes) -> u32;
+
+    /// Of some boxes, those of which the slabs may hold what is wanted.
+    #[inline(always)]
+    fn reached(&self, _boxes: &Boxes, _slabs: &Slabs) -> u32 {
+        u32::MAX
+    }
 
     /// Visits points that follow one another; false to end the search.
     fn visit(&mut self, places: Range<usize>) -> bool;

@@ -61,10 +61,14 @@ impl SiteTree {
             *column = sites.par_iter().map(|site| position(*site)[axis]).collect();
         }
         let weights = weight.map(|weight| sites.par_iter().map(|site| weight(*site)).collect());
-        let boxes = BoxTree { point_count: 0, levels: Vec::new() };
+        let boxes = BoxTree::default();
         let mut tree = Self { grid, sites, columns, weights, boxes };
         let columns = tree.columns();
-        let boxes = BoxTree::new(tree.sites.len(), |place| (columns.position(place), columns.weight(place)));
+        let mut boxes =
+            BoxTree::new(tree.sites.len(), |place| (columns.position(place), columns.weight(place)));
+        if tree.is_crowded() {
+            boxes.add_slabs(|place| columns.position(place));
+        }
         tree.boxes = boxes;
         tree
     }
@@ -264,6 +268,39 @@ mod tests {
             assert!(
                 found.is_none() && maybe.contains(&Generator::site(u32::try_from(expected).expect("few")))
             );
+        }
+    }
+
+    /// On a sphere boxes are far thicker than what is in them, and slabs tell what a ball that touches it from inside or outside meets.
+    #[test]
+    fn the_deepest_site_on_a_sphere_is_found_behind_slabs() {
+        let (directions, weights) = seeds();
+        let seeds: Vec<DVec3> = directions.iter().map(|seed| (*seed - 0.3).normalize() + 2.0).collect();
+        let weights: Vec<f64> = weights.iter().map(|weight| 0.01 * weight).collect();
+        for weights in [None, Some(&weights[..])] {
+            let tree = tree(&seeds, weights);
+            assert!(tree.boxes.has_slabs());
+            let weight = |site: usize| weights.map_or(0.0, |weights| weights[site]);
+            for k in 0..300u32 {
+                let own = (13 * k) as usize;
+                let vertex = (seeds[own] - 2.0) * if k.is_multiple_of(2) { -0.5 } else { 0.5 };
+                let power = |site: usize| (seeds[site] - seeds[own] - vertex).length_squared() - weight(site);
+                let others = (0..seeds.len()).filter(|site| *site != own);
+                let expected = others.min_by(|a, b| power(*a).total_cmp(&power(*b))).expect("seeds");
+                let expected_site = Generator::site(u32::try_from(expected).expect("few"));
+                let generators = [Generator::site(13 * k); 4];
+                // What lies deeper than a little less, what lies on the ball, and a little more, which nothing does.
+                for (more, is_in, may_be_in) in
+                    [(1e-9, true, true), (0.0, false, true), (-1e-9, false, false)]
+                {
+                    let own_weight = vertex.length_squared() - power(expected) - more;
+                    let ball = Ball { center: seeds[own], own_weight, vertex, error: 1e-15, generators };
+                    let mut maybe = Vec::new();
+                    let found = tree.deepest(&ball, &mut maybe);
+                    assert_eq!(found.map(|found| found.site), is_in.then_some(expected_site));
+                    assert_eq!(maybe.contains(&expected_site), may_be_in && !is_in);
+                }
+            }
         }
     }
 

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
-use crate::box_tree::{BoxSearch, BoxTree, Boxes};
+use crate::box_tree::{BoxSearch, BoxTree, Boxes, Slabs};
 use crate::generator::Generator;
 use crate::half_space::EVALUATION_ERROR;
 use crate::site_tree::Columns;
@@ -332,6 +332,29 @@ impl BoxSearch for DeepestSearch<'_> {
             smaller(larger(vertex[axis], lower), upper)
         };
         self.may_be_deeper(nearest, &boxes.weights)
+    }
+
+    #[inline(always)]
+    fn reached(&self, boxes: &Boxes, slabs: &Slabs) -> u32 {
+        let Ball { center, own_weight, vertex, error, .. } = *self.ball;
+        let place = center + vertex;
+        // Of an offset, as errors of coordinates make at most the root of 3 times as much.
+        let offset_error = 2.0 * error + EVALUATION_ERROR * (center.abs() + vertex.abs()).element_sum();
+        let radius = vertex.length() * (1.0 + EVALUATION_ERROR) + 2.0 * error;
+        let squared = radius * radius;
+        let mut reached = 0;
+        for lane in 0..LANES {
+            let offset = slabs.normals[0][lane] * place.x
+                + slabs.normals[1][lane] * place.y
+                + slabs.normals[2][lane] * place.z
+                - slabs.middles[lane];
+            let gap = offset.abs() - slabs.halves[lane] - offset_error;
+            let excess = boxes.weights[lane] - own_weight;
+            let limit = squared + (excess + EVALUATION_ERROR * excess.abs());
+            let is_beside = (gap > 0.0) & (gap * gap * (1.0 - EVALUATION_ERROR) > limit);
+            reached |= u32::from(!is_beside) << lane;
+        }
+        reached
     }
 
     #[inline(always)]
