@@ -54,3 +54,13 @@ for name, symmetry in (("cubic", Oh), ("hexagonal", D6h)):
         given = Orientation.from_euler(angles, symmetry=symmetry, degrees=True)
         read = Orientation(scan.rotations.data, symmetry=symmetry)
         assert np.degrees(given.angle_with(read)).max() < tolerance, (name, extension)
+
+# Names as VirMat has them, and grains in files of their own.
+virmat = pyvista.read(folder / "virmat.vtm")["grains"]
+cubic = pyvista.read(folder / "cubic.vtm")["grains"]
+for theirs, ours in (("IPF-RD", "IPFColorX"), ("IPF-TD", "IPFColorY"), ("IPF-ND", "IPFColorZ")):
+    assert np.array_equal(virmat[theirs], cubic[ours]), theirs
+for grain in np.unique(cubic["GrainId"]):
+    one = pyvista.read(folder / "each" / f"grain_{grain}.vtp")
+    for name in ("EulerAngles", "Quaternion", "IPFColorX", "IPFColorY", "IPFColorZ"):
+        assert np.array_equal(one[name][0], cubic[name][cubic["GrainId"] == grain][0]), (grain, name)

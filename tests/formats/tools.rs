@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use grainsmooth::vtk::VtkEncoding;
+use grainsmooth::vtk::{VtkEncoding, VtkFormat};
 use grainsmooth::{
     Config, OutputDirectory, OutputFormat, PeriodicCut, Polycrystal, SeedSource, StlEncoding, TextureOptions,
     TextureSource, make_polycrystal, write_together,
@@ -190,6 +190,15 @@ fn orix_agrees_on_orientations_colors_and_disorientations() {
         };
         let space = make(Dimension::Three);
         [".vtm", ".vti", ".vtp", ".vtu", ".vtk", ".ori"].into_iter().for_each(|name| write(&space, name));
+        if symmetry == CrystalSymmetry::Octahedral {
+            let folder = directory.path().join("each");
+            let grains = OutputDirectory::check(folder, OutputFormat::Vtk(VtkFormat::Vtp)).unwrap();
+            write_together(|files| space.stage_grains(&grains, files)).unwrap();
+            let mut renamed = space.clone();
+            renamed.config.file.names = grainsmooth::Names::Virmat;
+            let path = directory.path().join("virmat.vtm");
+            renamed.write(&grainsmooth::Output::check(path).unwrap()).unwrap();
+        }
         let plane = make(Dimension::Two);
         ["_plane.vti", ".ang", ".ctf"].into_iter().for_each(|name| write(&plane, name));
     }

@@ -130,7 +130,7 @@ fn corner_names(symmetry: CrystalSymmetry) -> [&'static str; 3] {
         CrystalSymmetry::Octahedral | CrystalSymmetry::Tetrahedral => ["001", "101", "111"],
         CrystalSymmetry::Hexagonal => ["0001", "2-1-10", "10-10"],
         CrystalSymmetry::HexagonalLow => ["0001", "2-1-10", "11-20"],
-        CrystalSymmetry::Trigonal => ["0001", "01-10", "10-10"],
+        CrystalSymmetry::Trigonal => ["0001", "1-100", "10-10"],
         CrystalSymmetry::TrigonalLow => ["0001", "2-1-10", "-12-10"],
         CrystalSymmetry::Tetragonal => ["001", "100", "110"],
         CrystalSymmetry::TetragonalLow | CrystalSymmetry::Orthorhombic => ["001", "100", "010"],
