@@ -300,6 +300,22 @@ fn neighbours_get_the_disorientations_asked_for_and_components_keep_their_volume
     }
 }
 
+/// The summary once told that their disorientations are NaN from those asked for.
+#[test]
+fn grain_without_neighbours_has_no_disorientations() {
+    let workplace = Workplace::new();
+    workplace.put("angles.csv", LOW_ANGLES);
+    for run in ["--seeds 1", "--seeds 1 --periodic x,y,z", "--seeds 1 --dim 2"] {
+        let said = workplace.run(&format!(
+            "{run} --relax 0 -n 0 --texture random --misorientations angles.csv --report r.html --json-summary s.json -o a.vtp"
+        ));
+        assert!(said.contains("cubic crystals, random 100.0 %") && !said.contains("NaN"), "{said}");
+        assert_eq!(json(&workplace, "s.json")["texture"]["misorientations"], Value::Null);
+        let page = String::from_utf8(workplace.bytes("r.html")).unwrap();
+        assert!(!page.split_once("<h2>Statistics</h2>").unwrap().1.contains("NaN"), "{run}");
+    }
+}
+
 #[test]
 fn histogram_of_disorientations_that_is_mistaken() {
     let workplace = Workplace::new();

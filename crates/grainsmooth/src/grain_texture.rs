@@ -78,9 +78,9 @@ impl GrainTexture {
         Self { target, ..self }
     }
 
-    /// Swaps orientations toward the histogram that is asked for, if one is.
+    /// Swaps orientations toward the histogram that is asked for, if one is and grains have neighbours.
     fn swap(&mut self, pairs: &[Pair], volumes: &[f64], random_seed: u64) {
-        let Some(target) = &self.target else { return };
+        let Some(target) = self.target.as_ref().filter(|_| !pairs.is_empty()) else { return };
         let mut generator = ChaCha8Rng::seed_from_u64(random_seed);
         generator.set_stream(SWAP_STREAM);
         let before = target.distance(&self.orientations, self.symmetry, pairs);

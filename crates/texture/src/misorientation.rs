@@ -102,6 +102,7 @@ impl AngleHistogram {
     }
 
     /// How far the disorientations of some pairs, by area, are from these shares: the sum of the differences of all bins, from 0 to 2.
+    /// Not a number without pairs.
     pub fn distance(&self, orientations: &[Orientation], symmetry: CrystalSymmetry, pairs: &[Pair]) -> f64 {
         let mut areas = vec![0.0; self.shares.len() + 1];
         for (first, second, area) in pairs {
