@@ -15,6 +15,7 @@ mod periodic;
 mod pictures;
 #[path = "../common/programs.rs"]
 mod programs;
+mod remedies;
 mod seed_formats;
 mod seed_sources;
 mod series;
