@@ -14,6 +14,7 @@ mod clusters;
 pub(crate) mod conjugate_gradients;
 mod flow;
 mod local_area;
+mod local_size;
 mod merged_lines;
 mod multigrid;
 mod patch;

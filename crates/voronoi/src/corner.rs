@@ -30,6 +30,11 @@ impl ComplexEdge {
         seen(from, to).min(seen(to, from))
     }
 
+    /// The vertices at its ends; twice the same where it leads from a vertex to its own copy.
+    pub fn vertices(self) -> [u32; 2] {
+        [self.start, self.end.vertex]
+    }
+
     /// Both ends as seen from one of them in its own place, which comes first: from the end, or from the start.
     pub(crate) fn across(self, from_end: bool) -> [Corner; 2] {
         let unmoved = |vertex| Corner { vertex, shift: Shift::NONE };

@@ -42,10 +42,11 @@ impl Clusters {
         points.windows(2).for_each(|pair| self.join(pair[0], pair[1]));
     }
 
-    /// Joins the ends of all edges of a mesh that are shorter than `length`.
-    pub(super) fn join_short_edges(&mut self, mesh: &Mesh, points: &[DVec3], length: f64) {
+    /// Joins the ends of all edges of a mesh that are shorter than `length` times the smaller of the sizes at their ends.
+    pub(super) fn join_short_edges(&mut self, mesh: &Mesh, points: &[DVec3], sizes: &[f64], length: f64) {
         let mut join = |[a, b]: [u32; 2]| {
-            if points[a as usize].distance(points[b as usize]) < length {
+            let size = sizes[a as usize].min(sizes[b as usize]);
+            if points[a as usize].distance(points[b as usize]) < length * size {
                 self.join(a, b);
             }
         };

@@ -10,6 +10,7 @@ use voronoi::Dimension;
 
 use super::clusters::Clusters;
 use super::conjugate_gradients::dot;
+use super::local_size::LocalSize;
 use super::patch::PatchTerms;
 use super::patches::Patches;
 use super::system::{Step, System};
@@ -88,6 +89,8 @@ pub(super) struct Taken {
 pub(super) struct Flow<'a> {
     network: &'a Network,
     patches: Patches,
+    /// Of each control point, as of [`LocalSize::at_points`].
+    sizes: Vec<f64>,
     /// The level whose points move.
     level: usize,
     /// The level whose surface carries energy and volumes during the flow: one subdivision on, if there is any.
@@ -112,8 +115,20 @@ impl<'a> Flow<'a> {
         let surface = (network.levels().len() - 1).min(level + 1);
         let clusters = Clusters::new(&network.levels()[level]);
         let patches = Patches::new(network, level, surface, tension_unit, tuning.largest_cotangent);
+        let sizes = LocalSize::new(network, tuning.small_grain).at_points(network, level, &patches, volumes);
         let neighbors = Seams::of_level(&network.levels()[surface]).inner;
-        Self { network, patches, level, surface, neighbors, clusters, volumes, remedy: Remedy::Join, tuning }
+        Self {
+            network,
+            patches,
+            sizes,
+            level,
+            surface,
+            neighbors,
+            clusters,
+            volumes,
+            remedy: Remedy::Join,
+            tuning,
+        }
     }
 
     /// The flow as one until all is at rest.
@@ -228,7 +243,7 @@ impl<'a> Flow<'a> {
         let volumes = volumes_of_grains(self.network.boundaries(), &cones, self.network.grain_count());
         let missing = self.missing(&volumes);
         let mut clusters = self.clusters.clone();
-        clusters.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
+        clusters.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
         let system = self.system(&terms, &clusters, time);
         let (mut moves, pressures) = match (self.volumes, self.control_mesh()) {
             (Volumes::Kept, _) | (_, Mesh::Triangles(_)) => system.displacement(&missing),
@@ -311,7 +326,7 @@ impl<'a> Flow<'a> {
         };
         let step = Step { time, volumes, tolerance };
         let level = &self.network.levels()[self.level];
-        System::new(self.network, &self.patches, terms, clusters.number(), step, level)
+        System::new(self.network, &self.patches, terms, &self.sizes, clusters.number(), step, level)
     }
 
     /// The feature size as control edges of this level have it. Where they are fine, what is short among them is not what is

@@ -6,6 +6,7 @@ use glam::DVec3;
 use voronoi::{CellComplex, ComplexEdge, Corner, FaceId, Shift, Side};
 
 use super::local_area::{Conditions, Excess, LocalArea};
+use super::local_size::LocalSize;
 use super::shape::distinct;
 
 /// Share of the length of what goes by which what comes starts off its middle.
@@ -79,15 +80,22 @@ enum Demand {
 
 /// Looks for events.
 pub(super) struct Reconnector {
-    /// Length below which lines are short.
+    /// Length below which lines are short where no grain is small.
     short: f64,
+    /// The size of small grains: around them lines are short only if they are as much shorter.
+    size: LocalSize,
     /// Of lines, by all sides that touch them, how often they went without lessening the area.
     tries: HashMap<Vec<Side>, u8>,
 }
 
 impl Reconnector {
-    pub(super) fn new(short: f64) -> Self {
-        Self { short, tries: HashMap::new() }
+    pub(super) fn new(short: f64, size: LocalSize) -> Self {
+        Self { short, size, tries: HashMap::new() }
+    }
+
+    /// Length below which lines are short at some vertices.
+    fn short_at(&self, complex: &CellComplex, vertices: &[u32], conditions: &Conditions<'_>) -> f64 {
+        self.short * self.size.at_vertices(complex, vertices, conditions.volumes)
     }
 
     /// Lets all events happen that are due where lines are short, or boundaries with three sides thin; `before` has the lengths
@@ -102,13 +110,13 @@ impl Reconnector {
         let mut done = Reconnections::default();
         for face in complex.faces_with_corners(3) {
             if complex.corners(face).len() == 3
-                && least_height(complex, face) < THIN * self.short
+                && self.is_thin(face, complex, conditions)
                 && self.happens(Event::Close(face), complex, conditions, Demand::LessArea, excess)
             {
                 done.closed += 1;
             }
         }
-        for edge in self.short_lines(complex) {
+        for edge in self.short_lines(complex, conditions) {
             if complex.has_edge(edge) {
                 done.add(self.pass_line(edge, complex, conditions, before, excess));
             }
@@ -116,10 +124,20 @@ impl Reconnector {
         done
     }
 
+    /// Whether a boundary with three sides is thin.
+    fn is_thin(&self, face: FaceId, complex: &CellComplex, conditions: &Conditions<'_>) -> bool {
+        let height = least_height(complex, face);
+        let short = || self.short_at(complex, &Event::Close(face).vertices(complex), conditions);
+        height < THIN * self.short && height < THIN * short()
+    }
+
     /// The short lines, shortest first.
-    fn short_lines(&self, complex: &CellComplex) -> Vec<ComplexEdge> {
+    fn short_lines(&self, complex: &CellComplex, conditions: &Conditions<'_>) -> Vec<ComplexEdge> {
         let lengths = complex.edges().into_iter().map(|edge| (length(complex, edge), edge));
-        let mut short: Vec<(f64, ComplexEdge)> = lengths.filter(|(length, _)| *length < self.short).collect();
+        let is_short = |(length, edge): &(f64, ComplexEdge)| {
+            *length < self.short && *length < self.short_at(complex, &edge.vertices(), conditions)
+        };
+        let mut short: Vec<(f64, ComplexEdge)> = lengths.filter(is_short).collect();
         short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         short.into_iter().map(|(_, edge)| edge).collect()
     }
@@ -148,8 +166,9 @@ impl Reconnector {
             }
         }
         let now = length(complex, edge);
+        let short = self.short_at(complex, &edge.vertices(), conditions);
         let is_shrinking = before.get(&edge).is_some_and(|before| now < *before);
-        if now < self.short && is_shrinking {
+        if now < short && is_shrinking {
             let sides = sides_at(complex, edge);
             let tries = self.tries.get(&sides).copied().unwrap_or(0);
             for (event, done) in events[..count].iter().filter(|_| tries < MOST_TRIES) {
@@ -159,7 +178,7 @@ impl Reconnector {
                 }
             }
         }
-        if now < TINY * self.short {
+        if now < TINY * short {
             self.settle(edge, complex, conditions, excess);
         }
         Reconnections::default()
@@ -175,12 +194,13 @@ impl Reconnector {
         excess: &mut Excess,
     ) -> bool {
         let old = event.vertices(complex);
+        let short = self.short_at(complex, &old, conditions);
         let snapshot = complex.snapshot(&old);
         let first_new = complex.vertices.len();
         let mut as_it_is = LocalArea::new(complex, &old, conditions, excess);
         let excesses: Vec<_> = as_it_is.excesses().collect();
         let folds = as_it_is.fold_count();
-        if event.happen(complex, LEAST_GOING * self.short) {
+        if event.happen(complex, LEAST_GOING * short) {
             let added =
                 (first_new..complex.vertices.len()).map(|new| u32::try_from(new).expect("ids fit 32 bits"));
             let all = old.into_iter().chain(added);
@@ -191,7 +211,7 @@ impl Reconnector {
                 Demand::NoFold => true,
             };
             if is_good
-                && changed.shortest_edge() > LEAST * self.short
+                && changed.shortest_edge() > LEAST * short
                 && changed.keeps_volumes(LARGEST_CHANGE, &excesses)
                 && changed.fold_count() <= folds
             {
@@ -212,7 +232,7 @@ impl Reconnector {
         conditions: &Conditions<'_>,
         excess: &mut Excess,
     ) {
-        let mut area = LocalArea::new(complex, &[edge.start, edge.end.vertex], conditions, excess);
+        let mut area = LocalArea::new(complex, &edge.vertices(), conditions, excess);
         let excesses: Vec<_> = area.excesses().collect();
         let (shortest, folds) = (area.shortest_edge(), area.fold_count());
         area.minimize();
@@ -228,7 +248,7 @@ impl Event {
     /// The vertices that it takes away or moves.
     fn vertices(self, complex: &CellComplex) -> Vec<u32> {
         match self {
-            Self::Open(edge) => vec![edge.start, edge.end.vertex],
+            Self::Open(edge) => edge.vertices().to_vec(),
             Self::Close(face) | Self::Swap(_, face) => {
                 complex.corners(face).iter().map(|corner| corner.vertex).collect()
             }
@@ -296,7 +316,7 @@ fn on_walls(complex: &CellComplex, sides: &[Side], mut point: DVec3) -> DVec3 {
 
 /// All sides that touch a line, a cell and its images as one.
 fn sides_at(complex: &CellComplex, edge: ComplexEdge) -> Vec<Side> {
-    let faces = complex.faces_at(&[edge.start, edge.end.vertex]);
+    let faces = complex.faces_at(&edge.vertices());
     distinct(faces.into_iter().flat_map(|face| complex.sides(face)))
 }
 

@@ -5,6 +5,7 @@ use voronoi::{CellComplex, Tessellation};
 
 use super::flow::{Flow, Remedy, Taken};
 use super::local_area::Conditions;
+use super::local_size::LocalSize;
 use super::reconnection::{Reconnections, Reconnector, lengths};
 use super::shape::{ControlPoints, Shape};
 use super::{NetworkRecipe, Relaxation, RelaxationStep, Tuning};
@@ -64,7 +65,7 @@ pub(super) fn settle(
     let mut complex = CellComplex::from(tessellation);
     let mut control_points = ControlPoints::new(&complex);
     let (mut network, mut points) = network_of(&control_points)?;
-    let mut reconnector = Reconnector::new(SHORT * network.feature_size());
+    let mut reconnector = Reconnector::new(SHORT * network.feature_size(), LocalSize::new(&network, tuning.small_grain));
     let time_unit = network.mean_grain_size().powi(2);
     let mut reconnections = Reconnections::default();
     let (mut quiet, mut last_energy) = (0, f64::INFINITY);

@@ -61,6 +61,7 @@ impl System {
         network: &Network,
         patches: &Patches,
         terms: &[PatchTerms],
+        sizes: &[f64],
         clusters: Numbering,
         Step { time, volumes, tolerance }: Step,
         level: &Level,
@@ -82,7 +83,11 @@ impl System {
         };
         let springs = Rows::made_by(count, row);
         let diagonal = |cluster: usize| {
-            let mass: f64 = points_of(cluster).map(|(patch, point)| terms[patch].mass[point]).sum();
+            let masses = points_of(cluster).map(|(patch, point)| {
+                let size = sizes[patches.patches[patch].control_points[point] as usize];
+                terms[patch].mass[point] / size.powi(2)
+            });
+            let mass: f64 = masses.sum();
             springs.row(cluster).iter().fold(mass, |sum, (_, spring)| sum + spring)
         };
         let diagonal: Vec<f64> = (0..count).into_par_iter().with_min_len(CHUNK).map(diagonal).collect();

@@ -23,6 +23,9 @@ pub struct Tuning {
     pub tolerance: f64,
     /// Length below which a control edge no longer changes. 0 leaves some thin triangles, twice as much spoils angles.
     pub rigid_length: f64,
+    /// Size of a grain, as a share of the mean, below which the flow around is as slow as in its own units of length. 0 lets all flow as fast;
+    /// clusters of small grains then fold.
+    pub small_grain: f64,
     /// Share of its way to the centre of the triangles around that a point inside a boundary goes in a step. 0 makes
     /// triangles thinner.
     pub centering: f64,
@@ -61,6 +64,7 @@ impl Default for Tuning {
             forecast_factor: 2.0,
             tolerance: 1e-2,
             rigid_length: 0.04,
+            small_grain: 0.5,
             centering: 0.2,
             largest_cotangent: 5.0,
             largest_turn: 0.5,

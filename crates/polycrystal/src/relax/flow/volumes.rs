@@ -38,7 +38,7 @@ impl Flow<'_> {
     fn restore_volumes(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
         let free = Clusters::new(&self.network.levels()[self.level]);
         let mut short = free.clone();
-        short.join_short_edges(self.control_mesh(), points, self.rigid_length(points));
+        short.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
         let start = points.to_vec();
         let mut attempts = Vec::new();
         let ways = [
