@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use polycrystal::{Network, NetworkError, RelaxationStep, Relaxed};
+use polycrystal::{Moving, Network, NetworkError, RelaxationStep, Relaxed};
 use voronoi::Tessellation;
 
 use crate::formats::escaped;
@@ -78,8 +78,14 @@ impl Series {
         // What folded is taken back and tried again.
         self.frames.retain(|frame| frame.time < step.time);
         if step.done.is_multiple_of(self.every.get() as usize) {
-            let RelaxationStep { time, level, points, cells, .. } = *step;
-            self.frames.push(Frame { time, level, points: points.to_vec(), cells: cells.cloned() });
+            let (level, points, cells) = match step.now {
+                Moving::Points { level, points } => (level, points.to_vec(), None),
+                Moving::Cells(cells) => {
+                    let (cells, points) = cells();
+                    (0, points, Some(cells))
+                }
+            };
+            self.frames.push(Frame { time: step.time, level, points, cells });
         }
     }
 

@@ -77,8 +77,8 @@ pub use periodic::PeriodicCopies;
 pub use regular_cells::regular_cells_tuned;
 pub use regular_cells::{RegularCells, regular_cells};
 pub use relax::{
-    Balance, NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, RelaxedCells, Volumes, relax,
-    relax_cells, relax_watched,
+    Balance, Moving, NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, RelaxedCells,
+    Volumes, relax, relax_cells, relax_watched,
 };
 #[doc(hidden)]
 pub use relax::{Tuning, relax_cells_tuned, relax_tuned};

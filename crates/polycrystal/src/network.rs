@@ -344,18 +344,28 @@ impl Network {
 
     /// The edge of a cube (in the plane: of a square) with the mean grain volume: the unit of lengths in relaxation.
     pub fn mean_grain_size(&self) -> f64 {
-        self.domain.dimension().cube_edge(self.domain.measure() / self.grain_count() as f64)
+        mean_grain_size(&self.domain, self.grain_count())
     }
 
     /// The mean grain size, or the box's shortest side where that is shorter: the size of what can be seen to be small.
     pub(crate) fn feature_size(&self) -> f64 {
-        let size = self.domain.size();
-        let shortest = match self.domain.dimension() {
-            voronoi::Dimension::Two => size.truncate().min_element(),
-            voronoi::Dimension::Three => size.min_element(),
-        };
-        self.mean_grain_size().min(shortest)
+        feature_size(&self.domain, self.grain_count())
     }
+}
+
+/// As of [`Network::mean_grain_size`], of so many grains in a domain.
+pub(crate) fn mean_grain_size(domain: &Domain, grain_count: usize) -> f64 {
+    domain.dimension().cube_edge(domain.measure() / grain_count as f64)
+}
+
+/// As of [`Network::feature_size`], of so many grains in a domain.
+pub(crate) fn feature_size(domain: &Domain, grain_count: usize) -> f64 {
+    let size = domain.size();
+    let shortest = match domain.dimension() {
+        voronoi::Dimension::Two => size.truncate().min_element(),
+        voronoi::Dimension::Three => size.min_element(),
+    };
+    mean_grain_size(domain, grain_count).min(shortest)
 }
 
 /// Subdivision multiplies elements by four (in the plane: two); the largest ids are those of half-edges, three a triangle.

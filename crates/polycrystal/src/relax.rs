@@ -8,10 +8,13 @@
 //!
 //! First the control points move, then those of level 1, which start where subdivision puts them.
 
+mod assembly;
 mod balance;
 mod cells;
 mod clusters;
 pub(crate) mod conjugate_gradients;
+mod fan_flow;
+mod fans;
 mod flow;
 mod local_area;
 mod local_size;
@@ -112,7 +115,7 @@ pub enum Volumes {
 }
 
 /// Where a relaxation is after one of its steps.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct RelaxationStep<'a> {
     /// Steps done.
     pub done: usize,
@@ -121,13 +124,23 @@ pub struct RelaxationStep<'a> {
     /// Time passed under curvature flow with unit mobility, in units of the mean grain size squared. Levels follow each other:
     /// each finer one takes the whole time once more.
     pub time: f64,
-    /// The level whose points move now.
-    pub level: usize,
-    /// The points of that level.
-    pub points: &'a [DVec3],
-    /// While the topology changes, the cells that the points are those of: their network with [`FaceMesh::Fan`](crate::FaceMesh::Fan) has
-    /// them as control points.
-    pub cells: Option<&'a Tessellation>,
+    /// What moves now, and where it is.
+    pub now: Moving<'a>,
+}
+
+/// What a step of a relaxation moves, where it is then.
+#[derive(Clone, Copy)]
+pub enum Moving<'a> {
+    /// The points of one level of the network.
+    Points {
+        /// The level.
+        level: usize,
+        /// Where its points are.
+        points: &'a [DVec3],
+    },
+    /// Cells while their topology changes. What this makes on demand are the cells, and where the control points of their network with
+    /// [`FaceMesh::Fan`](crate::FaceMesh::Fan) are.
+    Cells(&'a dyn Fn() -> (Tessellation, Vec<DVec3>)),
 }
 
 /// Where the control points are before a relaxation.
@@ -274,7 +287,12 @@ fn relax_levels(
         }
     };
     let steps = first_steps + (last - first) * tuning.fine_steps;
-    watch(RelaxationStep { done: 0, count: steps, time: 0.0, level: 0, points: control_points, cells: None });
+    watch(RelaxationStep {
+        done: 0,
+        count: steps,
+        time: 0.0,
+        now: Moving::Points { level: 0, points: control_points },
+    });
     let mut done_before = 0;
     let mut passed = 0.0;
     // The level that the points are of, and whether they are good enough as they are.
@@ -298,9 +316,7 @@ fn relax_levels(
                 done: done_before + done,
                 count: steps,
                 time,
-                level,
-                points,
-                cells: None,
+                now: Moving::Points { level, points },
             });
         };
         let run = flow(level).run(&begin, &stage, &mut show);

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::grouped::Grouped;
 use crate::{Freedom, Level, Mesh};
 
 /// Groups of control points that are displaced by the same vector, so that what lies between them keeps its shape.
@@ -17,9 +18,14 @@ pub(super) struct Clusters {
 impl Clusters {
     /// Every point of a level on its own, but for those that are others moved by whole periods.
     pub(super) fn new(level: &Level) -> Self {
-        let mut clusters = Self { parents: (0u32..).take(level.vertex_count()).collect() };
+        let mut clusters = Self::apart(level.vertex_count());
         level.copies.vertices.iter().for_each(|pair| clusters.join(pair.secondary, pair.primary));
         clusters
+    }
+
+    /// So many points, each on its own.
+    pub(super) fn apart(count: usize) -> Self {
+        Self { parents: (0u32..).take(count).collect() }
     }
 
     fn root(&mut self, mut point: u32) -> u32 {
@@ -73,35 +79,32 @@ impl Clusters {
                 numbers[parent as usize]
             };
         }
-        let mut members: Vec<u32> = (0u32..).take(numbers.len()).collect();
-        members.sort_by_key(|point| numbers[*point as usize]);
-        let mut starts = vec![0; count as usize + 1];
-        for number in &numbers {
-            starts[*number as usize + 1] += 1;
-        }
-        for cluster in 1..starts.len() {
-            starts[cluster] += starts[cluster - 1];
-        }
-        Numbering { numbers, members, starts }
+        let members = numbers.iter().map(|number| *number as usize).zip(0u32..);
+        let members = Grouped::new(count as usize, members);
+        Numbering { numbers, members }
     }
 }
 
 /// Clusters by number.
 pub(super) struct Numbering {
     numbers: Vec<u32>,
-    /// The control points sorted by cluster; those of cluster c are `members[starts[c]..starts[c + 1]]`.
-    members: Vec<u32>,
-    starts: Vec<usize>,
+    /// The control points of each cluster.
+    members: Grouped<u32>,
 }
 
 impl Numbering {
     pub(super) fn cluster_count(&self) -> usize {
-        self.starts.len() - 1
+        self.members.count()
     }
 
     /// The cluster of each control point.
     pub(super) fn numbers(&self) -> &[u32] {
         &self.numbers
+    }
+
+    /// The displacement of each control point, given those of the clusters.
+    pub(super) fn of_points(&self, of_clusters: &[DVec3]) -> Vec<DVec3> {
+        self.numbers.iter().map(|number| of_clusters[*number as usize]).collect()
     }
 
     /// How the points of a cluster can move as one, given how each can.
@@ -131,6 +134,6 @@ impl Numbering {
 
     /// The control points of a cluster.
     pub(super) fn members(&self, cluster: usize) -> &[u32] {
-        &self.members[self.starts[cluster]..self.starts[cluster + 1]]
+        self.members.of(cluster)
     }
 }

@@ -8,12 +8,13 @@ mod widening;
 use glam::DVec3;
 use voronoi::Dimension;
 
-use super::clusters::Clusters;
+use super::assembly::{assemble, gradient};
+use super::clusters::{Clusters, Numbering};
 use super::conjugate_gradients::dot;
 use super::local_size::LocalSize;
 use super::patch::PatchTerms;
 use super::patches::Patches;
-use super::system::{Step, System};
+use super::system::System;
 use super::tangential::tangential_moves;
 use super::thin_triangles::Room;
 use super::tuning::Tuning;
@@ -79,8 +80,6 @@ pub(super) enum End {
 /// What a step found where it began.
 pub(super) struct Taken {
     pub(super) energy: f64,
-    /// The pressure of each grain, up to one that is the same for all; 0 where volumes are free.
-    pub(super) pressures: Vec<f64>,
     /// The volume of each grain.
     pub(super) volumes: Vec<f64>,
 }
@@ -115,7 +114,9 @@ impl<'a> Flow<'a> {
         let surface = (network.levels().len() - 1).min(level + 1);
         let clusters = Clusters::new(&network.levels()[level]);
         let patches = Patches::new(network, level, surface, tension_unit, tuning.largest_cotangent);
-        let sizes = LocalSize::new(network, tuning.small_grain).at_points(network, level, &patches, volumes);
+        let unit = tuning.small_grain * network.mean_grain_size();
+        let sizes =
+            LocalSize::new(network.domain().dimension(), unit).at_points(network, level, &patches, volumes);
         let neighbors = Seams::of_level(&network.levels()[surface]).inner;
         Self {
             network,
@@ -136,11 +137,6 @@ impl<'a> Flow<'a> {
         self.remedy = remedy;
         self.patches.largest_cotangent = self.tuning.largest_cotangent_to_rest;
         self
-    }
-
-    /// Lets points that move as one since a step would have folded them go their own ways again.
-    pub(super) fn part_joined(&mut self) {
-        self.clusters = Clusters::new(&self.network.levels()[self.level]);
     }
 
     /// Takes the steps of a stage.
@@ -244,14 +240,19 @@ impl<'a> Flow<'a> {
         let missing = self.missing(&volumes);
         let mut clusters = self.clusters.clone();
         clusters.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
-        let system = self.system(&terms, &clusters, time);
-        let (mut moves, pressures) = match (self.volumes, self.control_mesh()) {
-            (Volumes::Kept, _) | (_, Mesh::Triangles(_)) => system.displacement(&missing),
+        let numbering = clusters.number();
+        let system = self.system(&terms, &numbering, time);
+        let moves = match (self.volumes, self.control_mesh()) {
+            (Volumes::Kept, _) | (_, Mesh::Triangles(_)) => system.displacement(&missing).0,
             (Volumes::Free, Mesh::Segments(_)) => {
-                let terms_at = |moves: &[DVec3]| self.patches.terms(&displaced(points, moves));
-                (system.implicit_displacement(&self.patches, terms_at), vec![0.0; missing.len()])
+                let gradient_after = |moves: &[DVec3]| {
+                    let terms = self.patches.terms(&displaced(points, &numbering.of_points(moves)));
+                    gradient(&self.patches, &terms, &numbering)
+                };
+                system.implicit_displacement(gradient_after)
             }
         };
+        let mut moves = numbering.of_points(&moves);
         let within = tangential_moves(self.network, self.level, points, self.centering(time));
         moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
         self.unite(&clusters, &mut moves, 0);
@@ -285,8 +286,7 @@ impl<'a> Flow<'a> {
                 self.clusters = clusters;
             }
         }
-        let pressures = pressures.iter().map(|pressure| pressure / time).collect();
-        Ok(Taken { energy, pressures, volumes })
+        Ok(Taken { energy, volumes })
     }
 
     /// How far points are from rest; nothing where no boundaries meet, and in the plane.
@@ -318,15 +318,14 @@ impl<'a> Flow<'a> {
         }
     }
 
-    fn system(&self, terms: &[PatchTerms], clusters: &Clusters, time: f64) -> System {
-        let volumes = self.volumes;
-        let tolerance = match volumes {
+    fn system(&self, terms: &[PatchTerms], clusters: &Numbering, time: f64) -> System {
+        let tolerance = match self.volumes {
             Volumes::Kept => self.tuning.tolerance,
             Volumes::Free => FREE_TOLERANCE,
         };
-        let step = Step { time, volumes, tolerance };
         let level = &self.network.levels()[self.level];
-        System::new(self.network, &self.patches, terms, &self.sizes, clusters.number(), step, level)
+        let parts = assemble(self.network, &self.patches, terms, &self.sizes, clusters, self.volumes, level);
+        System::new(parts, time, tolerance)
     }
 
     /// The feature size as control edges of this level have it. Where they are fine, what is short among them is not what is

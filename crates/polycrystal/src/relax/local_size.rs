@@ -14,14 +14,13 @@ use crate::{Boundary, Network, Volumes};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LocalSize {
     dimension: Dimension,
-    /// 0 where all grains count as large.
     unit: f64,
 }
 
 impl LocalSize {
-    /// In units of the given share of the mean size of a network's grains.
-    pub(super) fn new(network: &Network, share: f64) -> Self {
-        Self { dimension: network.domain().dimension(), unit: share * network.mean_grain_size() }
+    /// In units of a size; where that is 0 all grains count as large.
+    pub(super) fn new(dimension: Dimension, unit: f64) -> Self {
+        Self { dimension, unit }
     }
 
     /// That of a grain of the given volume.

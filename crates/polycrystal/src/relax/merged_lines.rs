@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use voronoi::{CellComplex, Collapsed, Side, Tessellation, VertexId};
 
-use super::shape::{ControlPoints, Shape, distinct};
+use super::shape::{Shape, distinct, line_of};
 
 /// The cells of a complex without short lines.
 pub(super) struct MergedLines {
@@ -21,13 +21,14 @@ pub(super) struct MergedLines {
 impl MergedLines {
     /// Draws lines shorter than `length` together, as [`Tessellation::regularized`] has it; the others keep their bulges.
     pub(super) fn new(complex: &CellComplex, shape: &Shape, length: f64) -> Self {
-        let control_points = ControlPoints::new(complex);
-        let lines = lines_of(&control_points.cells).into_iter().zip(control_points.bulges_of_lines(shape));
+        let (all, corners) = complex.tessellation();
+        let bulges = all.edges().ends.into_iter().map(|ends| shape.bulge_of_line(line_of(&corners, ends)));
+        let lines = lines_of(&all).into_iter().zip(bulges);
         let mut known: HashMap<Vec<Side>, Vec<(DVec3, DVec3)>> = HashMap::new();
         for ((sides, middle), bulge) in lines {
             known.entry(sides).or_default().push((middle, bulge));
         }
-        let (cells, collapsed) = control_points.cells.regularized(length);
+        let (cells, collapsed) = all.regularized(length);
         let curved = |(sides, middle): (Vec<Side>, DVec3)| {
             let before = known.get(&sides).into_iter().flatten();
             let distance = |line: &(DVec3, DVec3)| line.0.distance_squared(middle);
@@ -59,6 +60,7 @@ mod tests {
     use voronoi::Domain;
 
     use super::*;
+    use crate::relax::fans::Fans;
 
     #[test]
     fn lines_that_are_not_merged_keep_their_bulges() {
@@ -66,10 +68,6 @@ mod tests {
         let domain = Domain::unit_cube().with_periods(glam::BVec3::TRUE);
         let cells = Tessellation::new(&domain, &seeds.collect::<Vec<_>>()).expect("valid seeds");
         let complex = CellComplex::from(&cells);
-        let control_points = ControlPoints::new(&complex);
-        // Points of vertices, lines and faces, each pair with the bulge that its two boundaries give.
-        let lines = lines_of(&control_points.cells);
-        let vertices = control_points.cells.vertices();
         let bulge = |sides: &[Side]| {
             let ids = sides.iter().map(|side| match side {
                 Side::Cell(cell) => f64::from(cell.0),
@@ -77,10 +75,16 @@ mod tests {
             });
             DVec3::new(0.001, -0.002, 0.0005) * ids.sum::<f64>()
         };
-        let bent = lines.iter().map(|(sides, middle)| *middle + bulge(sides));
-        let mut points: Vec<DVec3> = vertices.iter().copied().chain(bent).collect();
-        points.resize(points.len() + cells.face_count(), DVec3::ZERO);
-        let shape = control_points.shape(&complex, &points);
+        // Each line with the bulge that its boundaries give.
+        let fans = Fans::new(&complex, &|_| 1.0);
+        let mut points = Shape::default().points(&complex, &fans);
+        for line in 0..fans.lines.len() {
+            let faces = fans.faces_of_line(line);
+            let sides = distinct(faces.into_iter().flat_map(|face| complex.sides(face)));
+            points[fans.point_of_line(line)] += bulge(&sides);
+        }
+        let shape = Shape::new(&fans, &points);
+        let lines = lines_of(&complex.tessellation().0);
         for (length, is_short) in [(0.0, false), (0.1, true)] {
             let merged = MergedLines::new(&complex, &shape, length);
             assert_eq!(merged.collapsed.edges > 0, is_short);

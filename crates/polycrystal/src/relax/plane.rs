@@ -19,7 +19,7 @@ use voronoi::{CellComplex, Collapsed, Corner, FaceId, Tessellation};
 use super::balance::Balance;
 use super::cells::{NetworkRecipe, RelaxedCells};
 use super::reconnection::Reconnections;
-use super::{RelaxationStep, Relaxed};
+use super::{Moving, RelaxationStep, Relaxed};
 use crate::{Mesh, Network, NetworkError, Side, measure_network, validate};
 use bow::point_on_arc;
 use descent::Descent;
@@ -179,9 +179,7 @@ impl SmoothEdges {
                 done,
                 count: STEPS,
                 time: done as f64,
-                level,
-                points: &points,
-                cells: None,
+                now: Moving::Points { level, points: &points },
             });
         };
         states.iter().enumerate().for_each(|(done, state)| show(done, state));

@@ -1,11 +1,11 @@
-//! How a network's control points and a cell complex that changes belong together.
+//! How triple lines and boundaries of a cell complex bulge.
 
 use std::collections::HashMap;
 
 use glam::DVec3;
 use voronoi::{CellComplex, ComplexEdge, Corner, FaceId, Side, Tessellation};
 
-use crate::{Network, folded_edges};
+use super::fans::Fans;
 
 /// Cosine of the largest bend of a boundary that keeps its bulges (75 degrees): later levels must not reach 90.
 const LARGEST_BEND: f64 = 0.26;
@@ -15,120 +15,107 @@ const TURNS: usize = 3;
 
 /// How far triple lines and boundaries bulge: from the mean of the vertices around to their one control point.
 ///
-/// A line is known by the boundaries that meet there, so that it keeps its shape while its ends change.
-#[derive(Debug, Default)]
+/// Walls do not: what is inside them follows their rims.
+#[derive(Debug, Default, Clone)]
 pub(super) struct Shape {
-    lines: HashMap<Vec<FaceId>, DVec3>,
-    faces: HashMap<FaceId, DVec3>,
+    /// Sorted by line.
+    lines: Vec<(ComplexEdge, DVec3)>,
+    /// By the number of the boundary.
+    faces: Vec<DVec3>,
 }
 
-/// The cells of a complex and which control points of their network, with fans, belong to what.
-pub(super) struct ControlPoints {
-    pub(super) cells: Tessellation,
-    /// Of each vertex of the cells, that of the complex.
-    corners: Vec<Corner>,
-    /// Control points of lines and faces, each with the vertices around it. Copies in a periodic domain are left out.
-    lines: Vec<(Vec<FaceId>, usize, Vec<usize>)>,
-    faces: Vec<(FaceId, usize, Vec<usize>)>,
-    /// The lines round each face.
-    lines_of_face: Vec<Vec<usize>>,
-}
-
-impl ControlPoints {
-    pub(super) fn new(complex: &CellComplex) -> Self {
-        let (cells, corners) = complex.tessellation();
-        let edges = cells.edges();
-        let lines = (corners.len()..).zip(&edges.ends).map(|(point, ends)| {
-            let line = ComplexEdge::between(ends.map(|end| corners[end.index()]));
-            (complex.faces_of_edge(line), point, ends.map(voronoi::VertexId::index).to_vec())
-        });
-        let lines = lines.collect();
-        let first_face = corners.len() + edges.ends.len();
-        let mut corner_edges = edges.of_corner.iter();
-        let (mut faces, mut lines_of_face) = (Vec::new(), Vec::new());
-        for ((face, number), point) in cells.faces().zip(complex.faces()).zip(first_face..) {
-            let around = cells.face_corners(face);
-            let lines = corner_edges.by_ref().take(around.len()).map(|edge| *edge as usize);
-            lines_of_face.push(lines.collect());
-            faces.push((number, point, around.iter().map(|vertex| vertex.index()).collect()));
+impl Shape {
+    /// That of fans with the given points.
+    pub(super) fn new(fans: &Fans, points: &[DVec3]) -> Self {
+        let of_line = |(number, line): (usize, &ComplexEdge)| {
+            points[fans.point_of_line(number)] - fans.middle(*line, points)
+        };
+        let lines = fans.lines.iter().enumerate();
+        let lines = lines.map(|(number, line)| (*line, of_line((number, line)))).collect();
+        let mut faces = vec![DVec3::ZERO; fans.faces.last().map_or(0, |face| face.index() + 1)];
+        for (fan, face) in fans.faces.iter().enumerate().filter(|(fan, _)| fans.wall(*fan).is_none()) {
+            faces[face.index()] = points[fans.center_of(fan)] - fans.mean_of_corners(fan, points);
         }
-        Self { cells, corners, lines, faces, lines_of_face }
+        Self { lines, faces }
     }
 
-    /// How far the lines of the cells bulge, in the order of their edges.
-    pub(super) fn bulges_of_lines(&self, shape: &Shape) -> Vec<DVec3> {
-        self.lines.iter().map(|(line, ..)| shape.lines.get(line).copied().unwrap_or_default()).collect()
+    /// How far a boundary bulges.
+    pub(super) fn bulge(&self, face: FaceId) -> DVec3 {
+        self.faces.get(face.index()).copied().unwrap_or_default()
     }
 
-    /// Puts the vertices of the complex where the control points are.
-    pub(super) fn place_vertices(&self, complex: &mut CellComplex, points: &[DVec3]) {
-        for (point, corner) in points.iter().zip(&self.corners) {
-            let shift = corner.shift.vector(self.cells.domain());
-            complex.vertices[corner.vertex as usize] = *point - shift;
-        }
+    /// How far a line bulges.
+    pub(super) fn bulge_of_line(&self, line: ComplexEdge) -> DVec3 {
+        let place = self.lines.binary_search_by_key(&line, |(line, _)| *line);
+        place.map_or(DVec3::ZERO, |place| self.lines[place].1)
     }
 
-    /// The shape of lines and boundaries. Walls have none: what is inside them follows their rims.
-    pub(super) fn shape(&self, complex: &CellComplex, points: &[DVec3]) -> Shape {
-        let bulge = |point: usize, around: &[usize]| points[point] - mean(points, around);
-        let lines = self.lines.iter().map(|(line, point, ends)| (line.clone(), bulge(*point, ends)));
-        let is_free = |face: FaceId| !matches!(complex.sides(face)[1], Side::Wall(_));
-        let faces = self.faces.iter().filter(|(face, ..)| is_free(*face));
-        Shape {
-            lines: lines.collect(),
-            faces: faces.map(|(face, point, around)| (*face, bulge(*point, around))).collect(),
-        }
+    /// That of fans some of whose lines have got other ends: they are known by the boundaries that meet there.
+    pub(super) fn with_new_ends(mut self, before: &Fans, fans: &Fans) -> Self {
+        let is_gone = |(_, line): &(usize, &ComplexEdge)| fans.lines.binary_search(line).is_err();
+        let gone = before.lines.iter().enumerate().filter(is_gone);
+        let gone: HashMap<Vec<FaceId>, DVec3> =
+            gone.map(|(number, _)| (before.faces_of_line(number), self.lines[number].1)).collect();
+        let of_line = |(number, line): (usize, &ComplexEdge)| {
+            let known = self.lines.binary_search_by_key(line, |(line, _)| *line);
+            let bulge = match known {
+                Ok(place) => self.lines[place].1,
+                Err(_) => gone.get(&fans.faces_of_line(number)).copied().unwrap_or_default(),
+            };
+            (*line, bulge)
+        };
+        self.lines = fans.lines.iter().enumerate().map(of_line).collect();
+        self
     }
 
-    /// The control points of a network with fans, where the complex has its vertices, in the given shape.
-    ///
-    /// What would be folded is flat.
-    pub(super) fn points(&self, complex: &CellComplex, network: &Network, shape: &Shape) -> Vec<DVec3> {
-        let mut points: Vec<DVec3> = self.corners.iter().map(|corner| complex.position(*corner)).collect();
-        for (line, _, ends) in &self.lines {
-            let bulge = shape.lines.get(line).copied().unwrap_or_default();
-            points.push(mean(&points, ends) + bulge);
+    /// The points of fans in this shape, with the vertices where the complex has them. What would be folded is flat.
+    pub(super) fn points(&self, complex: &CellComplex, fans: &Fans) -> Vec<DVec3> {
+        let mut points = complex.vertices[..fans.vertex_count()].to_vec();
+        for line in &fans.lines {
+            points.push(fans.middle(*line, &points) + self.bulge_of_line(*line));
         }
-        for (face, _, around) in &self.faces {
-            let bulge = shape.faces.get(face).copied().unwrap_or_default();
-            points.push(mean(&points, around) + bulge);
+        for (fan, face) in fans.faces.iter().enumerate() {
+            points.push(fans.mean_of_corners(fan, &points) + self.bulge(*face));
         }
-        // Centres of copied faces come last, and are placed in the end.
-        points.resize(network.control_mesh().vertex_count(), DVec3::ZERO);
         for _ in 0..TURNS {
-            let finest = network.finest();
-            let folds = folded_edges(finest, &network.subdivide(&points), LARGEST_BEND);
-            let boundaries = folds.into_iter().flatten().map(|element| finest.boundary_of[element as usize]);
-            let mut folded: Vec<usize> = boundaries
-                .map(|boundary| {
-                    let twin = network.boundaries()[boundary.index()].twin;
-                    twin.map_or(boundary.index(), |twin| twin.boundary.index().min(boundary.index()))
-                })
-                .collect();
-            folded.sort_unstable();
-            folded.dedup();
-            for face in &folded {
-                for line in &self.lines_of_face[*face] {
-                    let (_, point, ends) = &self.lines[*line];
-                    points[*point] = mean(&points, ends);
+            let folded = fans.folded(&points, LARGEST_BEND);
+            for fan in &folded {
+                for slot in fans.slots_of(*fan)[..fans.rim_len(*fan)].iter().skip(1).step_by(2) {
+                    let line = fans.lines[slot.point as usize - fans.vertex_count()];
+                    points[slot.point as usize] = fans.middle(line, &points);
                 }
-                let (_, point, around) = &self.faces[*face];
-                points[*point] = mean(&points, around);
+                points[fans.center_of(*fan)] = fans.mean_of_corners(*fan, &points);
             }
             if folded.is_empty() {
                 break;
             }
         }
-        network.control_mesh().copies.place(network.domain(), &mut points);
         points
+    }
+
+    /// The complex with whole cells, and the control points of its network with fans in this shape.
+    pub(super) fn cells(&self, complex: &CellComplex) -> (Tessellation, Vec<DVec3>) {
+        let (cells, corners) = complex.tessellation();
+        let mut points = cells.vertices().to_vec();
+        let mean = |points: &[DVec3], some: &[voronoi::VertexId]| {
+            some.iter().map(|vertex| points[vertex.index()]).sum::<DVec3>() / some.len() as f64
+        };
+        for ends in &cells.edges().ends {
+            let bulge = self.bulge_of_line(line_of(&corners, *ends));
+            points.push(mean(&points, ends) + bulge);
+        }
+        let primaries = complex.faces();
+        let copied = cells.periodic_faces().iter().map(|pair| primaries[pair.primary.index()]);
+        for (face, number) in cells.faces().zip(primaries.iter().copied().chain(copied)) {
+            points.push(mean(&points, cells.face_corners(face)) + self.bulge(number));
+        }
+        (cells, points)
     }
 }
 
-impl Shape {
-    /// How far a boundary bulges.
-    pub(super) fn bulge(&self, face: FaceId) -> DVec3 {
-        self.faces.get(&face).copied().unwrap_or_default()
-    }
+/// The line of a complex that leads from one vertex of its cells to another; `corners` has the complex's vertices of these.
+pub(super) fn line_of(corners: &[Corner], ends: [voronoi::VertexId; 2]) -> ComplexEdge {
+    ComplexEdge::between(ends.map(|end| corners[end.index()]))
 }
 
 /// Some sides, each once and sorted; a cell and its images are one.
@@ -141,8 +128,4 @@ pub(super) fn distinct(sides: impl IntoIterator<Item = Side>) -> Vec<Side> {
     sides.sort_unstable();
     sides.dedup();
     sides
-}
-
-fn mean(points: &[DVec3], some: &[usize]) -> DVec3 {
-    some.iter().map(|point| points[*point]).sum::<DVec3>() / some.len() as f64
 }

@@ -1,14 +1,11 @@
-//! The linear system of one step: least energy under the constraint of the grains' volumes.
+//! The linear system of one step: least energy under linear constraints. What its unknowns stand for it does not know.
 
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::clusters::Numbering;
-use super::patch::{Patch, PatchTerms};
-use super::patches::Patches;
 use super::rows::Rows;
 use super::volume_constraint::{Compliance, VolumeConstraint};
-use crate::{Freedom, Level, Network, Volumes};
+use crate::Freedom;
 
 /// Most iterations for a step.
 const ITERATIONS: usize = 200;
@@ -22,142 +19,108 @@ const LOOSE: f64 = 0.1;
 /// Error of the pressures that give the volumes.
 const TIGHT: f64 = 1e-6;
 
-/// Share of a junction's mass that resists in all directions: without, nothing would hold points along a triple line.
-const ALONG_LINES: f64 = 0.01;
-
 /// Unknowns that one task works on; fixed, so that no sum depends on the number of threads.
-const CHUNK: usize = 4096;
+pub(super) const CHUNK: usize = 4096;
 
-/// `(M + dt K) d = -dt g + J^T p` for the displacements d of clusters, with pressures p such that `J d` is given.
+/// What a system is made of: unknown displacements, the energy around where they start, and how volumes follow.
+pub(super) struct Parts {
+    /// The mass M of each unknown.
+    pub(super) masses: Vec<f64>,
+    /// The gradient g of the energy.
+    pub(super) gradient: Vec<DVec3>,
+    /// The stiffness K, as springs to other unknowns; columns may come more than once.
+    pub(super) springs: Rows<f64>,
+    /// What walls leave to each unknown.
+    pub(super) freedoms: Vec<Freedom>,
+    /// The gradients J of the volumes; nothing where they are free.
+    pub(super) volumes: Option<VolumeConstraint>,
+    /// What the mass of some unknowns is less than isotropic.
+    pub(super) sliding: Vec<(usize, DMat3)>,
+}
+
+/// `(M + dt K) d = -dt g + J^T p` for displacements d, with pressures p such that `J d` is given.
 pub(super) struct System {
     /// `dt`.
     time: f64,
+    /// Share of its first residual at which it is solved.
     tolerance: f64,
-    clusters: Numbering,
-    /// The diagonal of `M + dt (K + S)`.
+    /// The diagonal of `M + dt K`.
     diagonal: Vec<f64>,
-    /// What the mass of some clusters is less than isotropic: only where volumes are free.
     sliding: Vec<(usize, DMat3)>,
-    /// What is beside the diagonal, with the sign turned; columns may come more than once.
     springs: Rows<f64>,
     /// `-dt g`.
     forces: Vec<DVec3>,
     mobility: Vec<Mobility>,
-    /// Nothing where volumes are free.
     constraint: Option<(VolumeConstraint, Compliance)>,
 }
 
-/// What a step is like.
-pub(super) struct Step {
-    pub(super) time: f64,
-    pub(super) volumes: Volumes,
-    /// Share of its first residual at which it is solved.
-    pub(super) tolerance: f64,
-}
-
 impl System {
-    /// The system of a step of the given time, from points with the given terms.
-    pub(super) fn new(
-        network: &Network,
-        patches: &Patches,
-        terms: &[PatchTerms],
-        sizes: &[f64],
-        clusters: Numbering,
-        Step { time, volumes, tolerance }: Step,
-        level: &Level,
-    ) -> Self {
-        let count = clusters.cluster_count();
-        let points_of = |cluster| {
-            patches.places_of_cluster(&clusters, cluster).map(|place| patches.point_of_place(place))
+    /// The system of a step of the given time, which is solved up to a share of its first residual.
+    pub(super) fn new(parts: Parts, time: f64, tolerance: f64) -> Self {
+        let Parts { masses, gradient, springs, freedoms, volumes, sliding } = parts;
+        let diagonal = |(unknown, mass): (usize, &f64)| {
+            let stiffness: f64 = springs.row(unknown).iter().map(|(_, spring)| spring).sum();
+            mass + time * stiffness
         };
-        let row = |cluster: usize, entries: &mut Vec<(u32, f64)>| {
-            for (patch, point) in points_of(cluster) {
-                let Patch { control_points, links, .. } = &patches.patches[patch];
-                for (end, edge) in links.row(point) {
-                    let other = clusters.numbers()[control_points[*end as usize] as usize];
-                    if other as usize != cluster {
-                        entries.push((other, time * terms[patch].stiffness[*edge as usize]));
-                    }
-                }
-            }
-        };
-        let springs = Rows::made_by(count, row);
-        let diagonal = |cluster: usize| {
-            let masses = points_of(cluster).map(|(patch, point)| {
-                let size = sizes[patches.patches[patch].control_points[point] as usize];
-                terms[patch].mass[point] / size.powi(2)
-            });
-            let mass: f64 = masses.sum();
-            springs.row(cluster).iter().fold(mass, |sum, (_, spring)| sum + spring)
-        };
-        let diagonal: Vec<f64> = (0..count).into_par_iter().with_min_len(CHUNK).map(diagonal).collect();
-        let forces = forces(patches, terms, &clusters, time);
-        let sliding = match volumes {
-            Volumes::Kept => Vec::new(),
-            Volumes::Free => sliding_masses(patches, terms, &clusters, level),
-        };
-        let mobility = |(cluster, diagonal): (usize, &f64)| {
+        let diagonal: Vec<f64> = masses.par_iter().with_min_len(CHUNK).enumerate().map(diagonal).collect();
+        let mobility = |(diagonal, freedom): (&f64, Freedom)| {
             let inverse = if *diagonal > 0.0 { 1.0 / diagonal } else { 0.0 };
-            Mobility {
-                inverse,
-                freedom: clusters.freedom(cluster, |point| network.freedom(level.walls[point as usize])),
-            }
+            Mobility { inverse, freedom }
         };
         let mobility: Vec<Mobility> =
-            diagonal.par_iter().with_min_len(CHUNK).enumerate().map(mobility).collect();
-        let constraint = (volumes == Volumes::Kept).then(|| {
-            let constraint = VolumeConstraint::new(network, patches, terms, &clusters);
+            diagonal.par_iter().with_min_len(CHUNK).zip(freedoms).map(mobility).collect();
+        let constraint = volumes.map(|constraint| {
             let compliance = constraint.compliance(&mobility);
             (constraint, compliance)
         });
-        Self { time, tolerance, clusters, diagonal, sliding, springs, forces, mobility, constraint }
+        let mut forces = gradient;
+        forces.par_iter_mut().with_min_len(CHUNK).for_each(|force| *force *= -time);
+        Self { time, tolerance, diagonal, sliding, springs, forces, mobility, constraint }
     }
 
-    /// The displacement of every control point that changes the grains' volumes by `changes`, to first order, and is
-    /// otherwise that of the flow; and the pressures of all grains times the time of the step (none where volumes are free).
+    /// The displacements that change volumes by `changes`, to first order, and are otherwise those of the flow; and the
+    /// pressures times the time of the step (none where volumes are free).
     ///
     /// Solved by projected conjugate gradients. Their residual is freed of what pressures balance again and again, so that
     /// these need not be exact (Gould, Hribar and Nocedal 2001, section 5).
     pub(super) fn displacement(&self, changes: &[f64]) -> (Vec<DVec3>, Vec<f64>) {
-        let (displacement, pressures) = self.solve(&self.forces, changes);
-        (self.of_points(&displacement), pressures)
+        self.solve(&self.forces, changes)
     }
 
-    /// The displacement of every control point by the flow of free areas in the plane, with the area's gradient as it is in the end; `terms_at` has the
-    /// terms of the patches after a displacement.
+    /// The displacements by the flow of free areas in the plane, with the energy's gradient as it is in the end: `gradient_after` has it
+    /// after displacements.
     ///
     /// The matrix is stiff along boundaries too, where their length is not. That holds triple points up, the more the shorter edges are: by a
     /// tenth of their way in usual steps. What is left of the forces after a step so has a step of its own, some times.
     pub(super) fn implicit_displacement(
         &self,
-        patches: &Patches,
-        terms_at: impl Fn(&[DVec3]) -> Vec<PatchTerms>,
+        gradient_after: impl Fn(&[DVec3]) -> Vec<DVec3>,
     ) -> Vec<DVec3> {
         let (mut displacement, _) = self.solve(&self.forces, &[]);
         for _ in 0..CORRECTIONS {
-            let terms = terms_at(&self.of_points(&displacement));
-            let mut left = forces(patches, &terms, &self.clusters, self.time);
+            let gradient = gradient_after(&displacement);
+            let mut left: Vec<DVec3> = gradient.iter().map(|gradient| *gradient * -self.time).collect();
             // Of the matrix the mass alone counts: the gradient after the displacement has all of the stiffness.
             add(&mut left, -1.0, &self.apply(&displacement));
             add(&mut left, 1.0, &self.stiff(&displacement));
             let (correction, _) = self.solve(&left, &[]);
             add(&mut displacement, 1.0, &correction);
         }
-        self.of_points(&displacement)
+        displacement
     }
 
     /// `dt K d`.
     fn stiff(&self, displacement: &[DVec3]) -> Vec<DVec3> {
-        let row = |cluster: usize| {
-            let springs = self.springs.row(cluster).iter();
-            springs
-                .map(|(other, spring)| (displacement[cluster] - displacement[*other as usize]) * *spring)
-                .sum()
+        let row = |unknown: usize| {
+            let springs = self.springs.row(unknown).iter();
+            let pulls = springs
+                .map(|(other, spring)| (displacement[unknown] - displacement[*other as usize]) * *spring);
+            pulls.sum::<DVec3>() * self.time
         };
         (0..displacement.len()).into_par_iter().with_min_len(CHUNK).map(row).collect()
     }
 
-    /// The displacement of clusters under some forces, and pressures, as of [`Self::displacement`].
+    /// The displacements under some forces, and pressures, as of [`Self::displacement`].
     fn solve(&self, forces: &[DVec3], changes: &[f64]) -> (Vec<DVec3>, Vec<f64>) {
         let mut pressures = vec![0.0; changes.len()];
         let mut displacement = self.push(changes);
@@ -193,14 +156,9 @@ impl System {
         (displacement, pressures)
     }
 
-    /// The least motion by area of the control points that changes the grains' volumes by `changes`, to first order,
-    /// for a system of time 0.
+    /// The least motion by mass that changes volumes by `changes`, to first order, for a system of time 0.
     pub(super) fn volume_correction(&self, changes: &[f64]) -> Vec<DVec3> {
-        self.of_points(&self.push(changes))
-    }
-
-    fn of_points(&self, of_clusters: &[DVec3]) -> Vec<DVec3> {
-        self.clusters.numbers().iter().map(|number| of_clusters[*number as usize]).collect()
+        self.push(changes)
     }
 
     /// Takes out of a residual what pressures balance, takes these from `sum`, and gives the displacement under the rest if there were only the
@@ -211,9 +169,9 @@ impl System {
         let Some((constraint, compliance)) = &self.constraint else { return moved };
         let pressures = compliance.pressures(&constraint.volume_change(&moved), LOOSE);
         sum.iter_mut().zip(&pressures).for_each(|(sum, pressure)| *sum -= *pressure);
-        let project = |(cluster, residual): (usize, &mut DVec3)| {
-            *residual -= constraint.force(&pressures, cluster);
-            self.mobility[cluster].of(*residual)
+        let project = |(unknown, residual): (usize, &mut DVec3)| {
+            *residual -= constraint.force(&pressures, unknown);
+            self.mobility[unknown].of(*residual)
         };
         residual.par_iter_mut().with_min_len(CHUNK).enumerate().map(project).collect()
     }
@@ -225,40 +183,31 @@ impl System {
             return vec![DVec3::ZERO; self.mobility.len()];
         };
         let pressures = compliance.pressures(changes, TIGHT);
-        let force = |cluster: usize| self.mobility[cluster].of(constraint.force(&pressures, cluster));
+        let force = |unknown: usize| self.mobility[unknown].of(constraint.force(&pressures, unknown));
         (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect()
     }
 
     /// `(M + dt K) d`.
     fn apply(&self, displacement: &[DVec3]) -> Vec<DVec3> {
-        let row = |cluster: usize| {
-            let springs = self.springs.row(cluster).iter();
-            let own = displacement[cluster] * self.diagonal[cluster];
-            springs.fold(own, |sum, (other, spring)| sum - displacement[*other as usize] * *spring)
+        let row = |unknown: usize| {
+            let springs = self.springs.row(unknown).iter();
+            let pull: DVec3 = springs.map(|(other, spring)| displacement[*other as usize] * *spring).sum();
+            displacement[unknown] * self.diagonal[unknown] - pull * self.time
         };
         let mut image: Vec<DVec3> =
             (0..displacement.len()).into_par_iter().with_min_len(CHUNK).map(row).collect();
-        for (cluster, mass) in &self.sliding {
-            image[*cluster] -= *mass * displacement[*cluster];
+        for (unknown, mass) in &self.sliding {
+            image[*unknown] -= *mass * displacement[*unknown];
         }
         image
     }
 }
 
-/// `-dt g` for all clusters.
-fn forces(patches: &Patches, terms: &[PatchTerms], clusters: &Numbering, time: f64) -> Vec<DVec3> {
-    let force = |cluster: usize| {
-        let places = patches.places_of_cluster(clusters, cluster).map(|place| patches.point_of_place(place));
-        places.map(|(patch, point)| terms[patch].gradient[point]).sum::<DVec3>() * -time
-    };
-    (0..clusters.cluster_count()).into_par_iter().with_min_len(CHUNK).map(force).collect()
-}
-
-/// How a cluster answers to a force if there were only the diagonal of the matrix.
+/// How an unknown answers to a force if there were only the diagonal of the matrix.
 pub(super) struct Mobility {
     /// 1 over the diagonal.
     inverse: f64,
-    /// What the walls leave to all points of the cluster.
+    /// What the walls leave to it.
     freedom: Freedom,
 }
 
@@ -280,38 +229,4 @@ fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
     let chunks = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK));
     let sums: Vec<f64> = chunks.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()).collect();
     sums.iter().sum()
-}
-
-/// The part of the mass of junctions that does not resist their motion.
-///
-/// Boundaries resist to be moved along their normals only, and junctions have no drag of their own: a boundary of mass m and
-/// normal n has the mass matrix `m n n^T`. So polygons in the plane shrink and grow by the law of von Neumann and Mullins
-/// exactly, to first order in their angles, whatever the lengths of the segments that meet: with force `sum of a n`, a the
-/// angle by which a segment of length h is off equilibrium, the velocity v has `h/2 n v = a + c` with the same c for all
-/// three, and the area that two of them sweep is the difference of their a.
-///
-/// Curvature flow of kept volumes leads to equilibrium with any masses.
-fn sliding_masses(
-    patches: &Patches,
-    terms: &[PatchTerms],
-    clusters: &Numbering,
-    level: &Level,
-) -> Vec<(usize, DMat3)> {
-    let is_junction = |point: &u32| {
-        let point = *point as usize;
-        level.node_types[point].side_count() - i8::from(!level.walls[point].is_empty()) >= 3
-    };
-    let of_cluster = |cluster: usize| {
-        clusters.members(cluster).iter().any(is_junction).then(|| {
-            let places = patches.places_of_cluster(clusters, cluster);
-            let sliding = places.map(|place| {
-                let (patch, point) = patches.point_of_place(place);
-                let normal = terms[patch].sweep[point].normalize_or_zero();
-                (DMat3::IDENTITY - DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z))
-                    * terms[patch].mass[point]
-            });
-            (cluster, sliding.sum::<DMat3>() * (1.0 - ALONG_LINES))
-        })
-    };
-    (0..clusters.cluster_count()).into_par_iter().filter_map(of_cluster).collect()
 }

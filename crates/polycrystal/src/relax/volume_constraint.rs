@@ -3,14 +3,11 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::clusters::Numbering;
 use super::conjugate_gradients::{Limits, solve};
 use super::multigrid::Multigrid;
-use super::patch::PatchTerms;
-use super::patches::Patches;
 use super::rows::Rows;
 use super::system::Mobility;
-use crate::Network;
+use crate::GrainId;
 
 /// Most iterations. Without rounding as many as there are grains are enough; where rigid parts leave a grain no way to
 /// change its volume there is no solution, and going on would only blow up what rounding leaves.
@@ -28,37 +25,19 @@ pub(super) struct VolumeConstraint {
 }
 
 impl VolumeConstraint {
+    /// That of so many clusters and grains: `fill` adds up the gradients of a cluster.
     pub(super) fn new(
-        network: &Network,
-        patches: &Patches,
-        terms: &[PatchTerms],
-        clusters: &Numbering,
+        cluster_count: usize,
+        grain_count: usize,
+        fill: impl Fn(usize, &mut Sweeps<'_>) + Sync,
     ) -> Self {
         let row = |cluster: usize, entries: &mut Vec<(u32, DVec3)>| {
-            let start = entries.len();
-            let mut length = 0.0;
-            for place in patches.places_of_cluster(clusters, cluster) {
-                let (patch, point) = patches.point_of_place(place);
-                let boundary = &network.boundaries()[patch];
-                // Walls do not move, so what lies on them changes no volume.
-                for (grain, sign) in boundary.signed_grains().filter(|_| boundary.wall.is_none()) {
-                    let gradient = terms[patch].sweep[point] * sign;
-                    length += gradient.length();
-                    match entries[start..].iter_mut().find(|(known, _)| *known == grain.0) {
-                        Some((_, sum)) => *sum += gradient,
-                        None => entries.push((grain.0, gradient)),
-                    }
-                }
-            }
-            // A grain that moves as a whole keeps its volume: no pressure may push against what rounding leaves.
-            for at in (start..entries.len()).rev() {
-                if entries[at].1.length() <= CANCELLED * length {
-                    entries.remove(at);
-                }
-            }
+            let mut sweeps = Sweeps { start: entries.len(), entries, length: 0.0 };
+            fill(cluster, &mut sweeps);
+            sweeps.drop_rounding();
         };
-        let by_cluster = Rows::made_by(clusters.cluster_count(), row);
-        let by_grain = by_cluster.transposed(network.grain_count());
+        let by_cluster = Rows::made_by(cluster_count, row);
+        let by_grain = by_cluster.transposed(grain_count);
         Self { by_cluster, by_grain }
     }
 
@@ -93,6 +72,34 @@ impl VolumeConstraint {
             }
         };
         Compliance::new(Rows::made_by(self.by_grain.len(), row))
+    }
+}
+
+/// What a cluster sweeps, grain by grain, as it adds up.
+pub(super) struct Sweeps<'a> {
+    entries: &'a mut Vec<(u32, DVec3)>,
+    start: usize,
+    /// The sum of all lengths.
+    length: f64,
+}
+
+impl Sweeps<'_> {
+    /// Adds to the gradient of a grain's volume.
+    pub(super) fn add(&mut self, grain: GrainId, gradient: DVec3) {
+        self.length += gradient.length();
+        match self.entries[self.start..].iter_mut().find(|(known, _)| *known == grain.0) {
+            Some((_, sum)) => *sum += gradient,
+            None => self.entries.push((grain.0, gradient)),
+        }
+    }
+
+    /// A grain that moves as a whole keeps its volume: no pressure may push against what rounding leaves.
+    fn drop_rounding(self) {
+        for at in (self.start..self.entries.len()).rev() {
+            if self.entries[at].1.length() <= CANCELLED * self.length {
+                self.entries.remove(at);
+            }
+        }
     }
 }
 

@@ -77,7 +77,8 @@ impl Flow<'_> {
 
     fn restore_with(&self, clusters: &Clusters, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
         let terms = self.patches.terms(points);
-        let system = self.system(&terms, clusters, 0.0);
+        let clusters = clusters.number();
+        let system = self.system(&terms, &clusters, 0.0);
         let mut last: Option<Vec<f64>> = None;
         // The gradient is that of a coarser level: what is too small or large in it is measured and made up for.
         let mut gain = 1.0;
@@ -100,7 +101,7 @@ impl Flow<'_> {
                 return Err(NetworkError::volume_not_restored(grain, relative_error));
             }
             let wanted: Vec<f64> = missing.iter().map(|lack| gain * lack).collect();
-            let moves = system.volume_correction(&wanted);
+            let moves = clusters.of_points(&system.volume_correction(&wanted));
             points.iter_mut().zip(&moves).for_each(|(point, by)| *point += *by);
             last = Some(missing);
             step += 1;
