@@ -159,7 +159,7 @@ impl LocalArea {
             vertices: vertices.to_vec(),
             cells,
         };
-        let volumes = area.volumes(&area.fans(&area.points));
+        let volumes = area.volumes(&area.rings());
         for (cell, volume) in area.cells.iter_mut().zip(volumes) {
             cell.volume = volume;
         }
@@ -176,14 +176,41 @@ impl LocalArea {
         self
     }
 
-    fn fans(&self, points: &[DVec3]) -> Vec<Fan> {
-        self.faces.iter().map(|face| face.fan(points)).collect()
+    /// The corners of each face, and its centre after them, one face after the other.
+    fn rings(&self) -> Vec<DVec3> {
+        let mut rings = Vec::new();
+        self.place_rings(&self.points, &mut rings);
+        rings
+    }
+
+    /// As [`Self::rings`] for vertices at other points.
+    fn place_rings(&self, points: &[DVec3], rings: &mut Vec<DVec3>) {
+        rings.clear();
+        for face in &self.faces {
+            let start = rings.len();
+            rings.extend(face.corners.iter().map(|corner| match *corner {
+                Place::Fixed(point) => point,
+                Place::Moving(moving, shift) => points[moving] + shift,
+            }));
+            let sum: DVec3 = rings[start..].iter().sum();
+            rings.push(sum / face.corners.len() as f64 + face.bulge);
+        }
+    }
+
+    /// The faces as fans.
+    fn fans<'a>(&'a self, rings: &'a [DVec3]) -> impl Iterator<Item = (&'a Polygon, Fan<'a>)> {
+        let mut rest = rings;
+        self.faces.iter().map(move |face| {
+            let (ring, others) = rest.split_at(face.corners.len());
+            rest = &others[1..];
+            (face, Fan { ring, center: others[0] })
+        })
     }
 
     /// The volumes between the faces of each cell and the origin.
-    fn volumes(&self, fans: &[Fan]) -> Vec<f64> {
+    fn volumes(&self, rings: &[DVec3]) -> Vec<f64> {
         let mut volumes = vec![0.0; self.cells.len()];
-        for (face, fan) in self.faces.iter().zip(fans) {
+        for (face, fan) in self.fans(rings) {
             let Sweep { volume, normal } = fan.sweep();
             for Beside { cell, offset, sign } in &face.beside {
                 volumes[*cell] += sign * (volume - offset.dot(normal)) / 6.0;
@@ -197,9 +224,10 @@ impl LocalArea {
     /// Steps go along the gradient as the stiffness of the faces has it, so that they need not be small where triangles are.
     pub(super) fn minimize(&mut self) -> f64 {
         // What cells resist may well make the whole negative: the faces alone tell how large the place is.
-        let faces: f64 = self.fans(&self.points).iter().map(Fan::area).sum();
-        let stiffness = self.stiffness();
-        let (mut area, mut slope) = self.area(&self.points);
+        let mut rings = self.rings();
+        let faces: f64 = self.fans(&rings).map(|(_, fan)| fan.area()).sum();
+        let stiffness = self.stiffness(&rings);
+        let (mut area, mut slope) = self.area(&rings);
         let mut direction = self.solve(&stiffness, &slope);
         let mut step = 1.0;
         for _ in 0..STEPS {
@@ -207,7 +235,8 @@ impl LocalArea {
             for _ in 0..HALVINGS {
                 let moved: Vec<DVec3> =
                     self.points.iter().zip(&direction).map(|(point, by)| *point - *by * step).collect();
-                let (moved_area, moved_slope) = self.area(&moved);
+                self.place_rings(&moved, &mut rings);
+                let (moved_area, moved_slope) = self.area(&rings);
                 if moved_area < area {
                     lower = Some((moved, moved_area, moved_slope));
                     break;
@@ -231,40 +260,47 @@ impl LocalArea {
     }
 
     /// The stiffness of the faces between the vertices: that of the linear elements that the fans are, in each direction the same.
-    fn stiffness(&self) -> Vec<f64> {
+    fn stiffness(&self, rings: &[DVec3]) -> Vec<f64> {
         let count = self.points.len();
         let mut stiffness = vec![0.0; count * count];
-        for face in &self.faces {
-            let Fan { ring, center } = face.fan(&self.points);
+        let mut add = |i: usize, j: usize, value: f64| stiffness[i * count + j] += value;
+        let (mut rims, mut spokes) = (Vec::new(), Vec::new());
+        for (face, Fan { ring, center }) in self.fans(rings) {
             let corners = ring.len();
-            let mut of_center = vec![0.0; count];
-            for corner in &face.corners {
-                if let Place::Moving(moving, _) = corner {
-                    of_center[*moving] += 1.0 / corners as f64;
-                }
-            }
-            let shares = |corner: usize| {
-                let mut shares = vec![0.0; count];
-                if let Place::Moving(moving, _) = face.corners[corner] {
-                    shares[moving] = 1.0;
-                }
-                shares
+            let spring = |apex: DVec3, from: DVec3, to: DVec3| {
+                let (a, b) = (from - apex, to - apex);
+                let cotangent = a.dot(b) / a.cross(b).length().max(f64::MIN_POSITIVE);
+                0.5 * face.tension * cotangent.clamp(LEAST_COTANGENT, LARGEST_COTANGENT)
             };
+            rims.clear();
+            spokes.clear();
+            spokes.resize(corners, 0.0);
             for k in 0..corners {
                 let next = (k + 1) % corners;
-                let places = [ring[k], ring[next], center];
-                let weights = [shares(k), shares(next), of_center.clone()];
-                for opposite in 0..3 {
-                    let [at, from, to] = [0, 1, 2].map(|turn| places[(opposite + turn) % 3]);
-                    let (a, b) = (from - at, to - at);
-                    let cotangent = a.dot(b) / a.cross(b).length().max(f64::MIN_POSITIVE);
-                    let weight = 0.5 * face.tension * cotangent.clamp(LEAST_COTANGENT, LARGEST_COTANGENT);
-                    let [from, to] = [1, 2].map(|turn| &weights[(opposite + turn) % 3]);
-                    for i in 0..count {
-                        for j in 0..count {
-                            stiffness[i * count + j] += weight * (from[i] - to[i]) * (from[j] - to[j]);
-                        }
-                    }
+                rims.push(spring(center, ring[k], ring[next]));
+                spokes[k] += spring(ring[next], center, ring[k]);
+                spokes[next] += spring(ring[k], ring[next], center);
+            }
+            // The centre follows all corners alike.
+            let follows = 1.0 / corners as f64;
+            let moving = || {
+                face.corners.iter().enumerate().filter_map(|(k, corner)| match corner {
+                    Place::Moving(moving, _) => Some((k, *moving)),
+                    Place::Fixed(_) => None,
+                })
+            };
+            let all: f64 = spokes.iter().sum();
+            for (k, i) in moving() {
+                let next = (k + 1) % corners;
+                let previous = (k + corners - 1) % corners;
+                add(i, i, spokes[k] + rims[k] + rims[previous]);
+                if let Place::Moving(j, _) = face.corners[next] {
+                    add(i, j, -rims[k]);
+                    add(j, i, -rims[k]);
+                }
+                for (_, j) in moving() {
+                    add(i, j, (all * follows - spokes[k]) * follows);
+                    add(j, i, -spokes[k] * follows);
                 }
             }
         }
@@ -300,7 +336,7 @@ impl LocalArea {
 
     /// By how much the volume of each cell is above what it is to be, and that as a share of it.
     pub(super) fn excesses(&self) -> impl Iterator<Item = (CellId, f64, f64)> {
-        let cells = self.cells.iter().zip(self.volumes(&self.fans(&self.points)));
+        let cells = self.cells.iter().zip(self.volumes(&self.rings()));
         cells.map(|(cell, volume)| {
             let excess = cell.excess + volume - cell.volume;
             (cell.id, excess, excess / cell.whole)
@@ -318,8 +354,8 @@ impl LocalArea {
     /// The length of the shortest edge that ends at one of the vertices: others stay as they are.
     pub(super) fn shortest_edge(&self) -> f64 {
         let is_moving = |corner: &Place| matches!(corner, Place::Moving(..));
-        let shortest = self.faces.iter().map(|face| {
-            let Fan { ring, .. } = face.fan(&self.points);
+        let rings = self.rings();
+        let shortest = self.fans(&rings).map(|(face, Fan { ring, .. })| {
             let count = ring.len();
             let edges = (0..count).map(|k| [k, (k + 1) % count]);
             let moving = edges.filter(|ends| ends.iter().any(|end| is_moving(&face.corners[*end])));
@@ -331,8 +367,8 @@ impl LocalArea {
     /// Number of folds: where neighbouring triangles of a fan are more than 90 degrees apart, or the angle at a corner is above 180
     /// degrees, which subdivision folds.
     pub(super) fn fold_count(&self) -> usize {
-        let of_face = |face: &Polygon| {
-            let Fan { ring, center } = face.fan(&self.points);
+        let rings = self.rings();
+        let of_face = |Fan { ring, center }: Fan<'_>| {
             let count = ring.len();
             let normals: Vec<DVec3> =
                 (0..count).map(|k| (ring[k] - center).cross(ring[(k + 1) % count] - center)).collect();
@@ -343,7 +379,7 @@ impl LocalArea {
             };
             (0..count).filter(is_folded).count()
         };
-        self.faces.iter().map(of_face).sum()
+        self.fans(&rings).map(|(_, fan)| of_face(fan)).sum()
     }
 
     /// Puts the vertices of the complex where the points are.
@@ -354,17 +390,16 @@ impl LocalArea {
     }
 
     /// The area weighted by tension together with what cells resist, and how it changes with the points.
-    fn area(&self, points: &[DVec3]) -> (f64, Vec<DVec3>) {
-        let fans = self.fans(points);
+    fn area(&self, rings: &[DVec3]) -> (f64, Vec<DVec3>) {
         let mut area = 0.0;
         let mut pulls = Vec::with_capacity(self.cells.len());
-        for (cell, volume) in self.cells.iter().zip(self.volumes(&fans)) {
+        for (cell, volume) in self.cells.iter().zip(self.volumes(rings)) {
             let excess = volume - cell.volume;
             area += (0.5 * cell.stiffness * excess - cell.pressure) * excess;
             pulls.push(cell.stiffness * excess - cell.pressure);
         }
-        let mut slope = vec![DVec3::ZERO; points.len()];
-        for (face, fan) in self.faces.iter().zip(&fans) {
+        let mut slope = vec![DVec3::ZERO; self.points.len()];
+        for (face, fan) in self.fans(rings) {
             // All cells beside a face together pull on its cone from the origin, and on its area.
             let (mut pull, mut pull_of_offset) = (0.0, DVec3::ZERO);
             for Beside { cell, offset, sign } in &face.beside {
@@ -400,21 +435,9 @@ impl LocalArea {
     }
 }
 
-impl Polygon {
-    fn fan(&self, points: &[DVec3]) -> Fan {
-        let at = |corner: &Place| match *corner {
-            Place::Fixed(point) => point,
-            Place::Moving(moving, shift) => points[moving] + shift,
-        };
-        let ring: Vec<DVec3> = self.corners.iter().map(at).collect();
-        let center = ring.iter().sum::<DVec3>() / ring.len() as f64 + self.bulge;
-        Fan { ring, center }
-    }
-}
-
 /// A polygon where its points are: triangles from its centre to each two corners in a row.
-struct Fan {
-    ring: Vec<DVec3>,
+struct Fan<'a> {
+    ring: &'a [DVec3],
     center: DVec3,
 }
 
@@ -426,7 +449,7 @@ struct Sweep {
     normal: DVec3,
 }
 
-impl Fan {
+impl Fan<'_> {
     fn area(&self) -> f64 {
         let ends = self.ring.iter().zip(self.ring.iter().cycle().skip(1));
         ends.map(|(a, b)| 0.5 * (*a - self.center).cross(*b - self.center).length()).sum()
@@ -534,7 +557,7 @@ mod tests {
                 cell.pressure *= 1e3;
                 cell.volume -= 0.02 * cell.pressure.signum();
             }
-            let (before, _) = pressed.area(&pressed.points);
+            let (before, _) = pressed.area(&pressed.rings());
             let after = pressed.minimize();
             assert!(after.is_finite() && after < before - 1e-3, "{before} {after}");
             searched += usize::from(before < 0.0);
@@ -545,10 +568,46 @@ mod tests {
     #[test]
     fn what_one_cell_loses_others_gain() {
         check_moved(|area, moved| {
-            let volumes = area.volumes(&area.fans(moved));
+            let mut rings = Vec::new();
+            area.place_rings(moved, &mut rings);
+            let volumes = area.volumes(&rings);
             let gains = || area.cells.iter().zip(&volumes).map(|(cell, volume)| volume - cell.volume);
             assert!(gains().sum::<f64>().abs() < 1e-15);
             assert!(gains().map(f64::abs).fold(0.0, f64::max) > 1e-4);
+        });
+    }
+
+    /// The energy of springs with the same constants, point by point.
+    #[test]
+    fn the_stiffness_is_that_of_springs_along_the_edges_of_fans() {
+        check_moved(|area, _| {
+            let rings = area.rings();
+            let stiffness = area.stiffness(&rings);
+            let count = area.points.len();
+            let moves: Vec<f64> = (0..count).map(|i| 0.3 + 0.7 * i as f64).collect();
+            let of_matrix: f64 = (0..count * count)
+                .map(|entry| stiffness[entry] * moves[entry / count] * moves[entry % count])
+                .sum();
+            let mut of_springs = 0.0;
+            for (face, Fan { ring, center }) in area.fans(&rings) {
+                let by = |corner: usize| match face.corners[corner] {
+                    Place::Moving(moving, _) => moves[moving],
+                    Place::Fixed(_) => 0.0,
+                };
+                let of_center = (0..ring.len()).map(by).sum::<f64>() / ring.len() as f64;
+                for k in 0..ring.len() {
+                    let next = (k + 1) % ring.len();
+                    let triangle = [(ring[k], by(k)), (ring[next], by(next)), (center, of_center)];
+                    for opposite in 0..3 {
+                        let [apex, from, to] = [0, 1, 2].map(|turn| triangle[(opposite + turn) % 3]);
+                        let (a, b) = (from.0 - apex.0, to.0 - apex.0);
+                        let cotangent =
+                            (a.dot(b) / a.cross(b).length()).clamp(LEAST_COTANGENT, LARGEST_COTANGENT);
+                        of_springs += 0.5 * face.tension * cotangent * (from.1 - to.1).powi(2);
+                    }
+                }
+            }
+            assert!((of_matrix - of_springs).abs() < 1e-12 * of_springs, "{of_matrix} {of_springs}");
         });
     }
 
@@ -556,12 +615,17 @@ mod tests {
     fn slopes_are_those_of_the_area() {
         const STEP: f64 = 1e-6;
         check_moved(|area, moved| {
-            let (_, slope) = area.area(moved);
+            let area_at = |points: &[DVec3]| {
+                let mut rings = Vec::new();
+                area.place_rings(points, &mut rings);
+                area.area(&rings)
+            };
+            let (_, slope) = area_at(moved);
             for (point, axis) in (0..moved.len()).flat_map(|point| DVec3::AXES.map(|axis| (point, axis))) {
                 let at = |step: f64| {
                     let mut moved = moved.to_vec();
                     moved[point] += axis * step;
-                    area.area(&moved).0
+                    area_at(&moved).0
                 };
                 let difference = (at(STEP) - at(-STEP)) / (2.0 * STEP);
                 assert!(
