@@ -13,6 +13,7 @@ mod balance;
 mod cells;
 mod clusters;
 pub(crate) mod conjugate_gradients;
+mod event;
 mod fan_flow;
 mod fans;
 mod flow;

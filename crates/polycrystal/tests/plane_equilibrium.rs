@@ -21,7 +21,7 @@ fn one_tension(boundary: &Boundary) -> f64 {
 
 fn equilibrium_of(
     tessellation: &Tessellation,
-    tension: &dyn Fn(&Boundary) -> f64,
+    tension: &(dyn Fn(&Boundary) -> f64 + Sync),
 ) -> Result<RelaxedCells, NetworkError> {
     let recipe = NetworkRecipe { junctions: Junctions::Crease, levels: 2, tension };
     relax_cells(tessellation, &recipe, &Relaxation::Equilibrium, |_| ())

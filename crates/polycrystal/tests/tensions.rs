@@ -21,7 +21,11 @@ fn unequal(boundary: &Boundary) -> f64 {
     }
 }
 
-fn equilibrium(domain: &Domain, seeds: &[DVec3], tension: &dyn Fn(&Boundary) -> f64) -> RelaxedCells {
+fn equilibrium(
+    domain: &Domain,
+    seeds: &[DVec3],
+    tension: &(dyn Fn(&Boundary) -> f64 + Sync),
+) -> RelaxedCells {
     equilibrium_at(2, domain, seeds, tension)
 }
 
@@ -29,7 +33,7 @@ fn equilibrium_at(
     levels: usize,
     domain: &Domain,
     seeds: &[DVec3],
-    tension: &dyn Fn(&Boundary) -> f64,
+    tension: &(dyn Fn(&Boundary) -> f64 + Sync),
 ) -> RelaxedCells {
     let tessellation = Tessellation::new(domain, seeds).expect("valid seeds");
     let recipe = NetworkRecipe { junctions: Junctions::Crease, levels, tension };

@@ -22,7 +22,7 @@ pub struct NetworkRecipe<'a> {
     /// Number of subdivisions.
     pub levels: usize,
     /// The tension of each boundary.
-    pub tension: &'a dyn Fn(&Boundary) -> f64,
+    pub tension: &'a (dyn Fn(&Boundary) -> f64 + Sync),
 }
 
 /// What relaxation of cells gives.

@@ -39,7 +39,7 @@ const PROGRESS: f64 = 1e-5;
 pub(super) struct Conditions<'a> {
     pub(super) shape: &'a Shape,
     /// Of each boundary, per area, in units of their mean.
-    pub(super) tension: &'a dyn Fn(&Boundary) -> f64,
+    pub(super) tension: &'a (dyn Fn(&Boundary) -> f64 + Sync),
     /// The volumes of all cells.
     pub(super) volumes: &'a [f64],
     /// Their pressures: the area that each volume costs elsewhere.
@@ -52,7 +52,6 @@ pub(super) type Excess = [f64];
 /// Boundaries around vertices that move.
 #[derive(Clone)]
 pub(super) struct LocalArea {
-    vertices: Vec<u32>,
     freedoms: Vec<Freedom>,
     points: Vec<DVec3>,
     faces: Vec<Polygon>,
@@ -156,7 +155,6 @@ impl LocalArea {
             freedoms: vertices.iter().map(|vertex| freedom(complex, *vertex)).collect(),
             points: vertices.iter().map(|vertex| complex.vertices[*vertex as usize]).collect(),
             faces,
-            vertices: vertices.to_vec(),
             cells,
         };
         let volumes = area.volumes(&area.rings());
@@ -382,11 +380,9 @@ impl LocalArea {
         self.fans(&rings).map(|(_, fan)| of_face(fan)).sum()
     }
 
-    /// Puts the vertices of the complex where the points are.
-    pub(super) fn place(&self, complex: &mut CellComplex) {
-        for (vertex, point) in self.vertices.iter().zip(&self.points) {
-            complex.vertices[*vertex as usize] = *point;
-        }
+    /// Where the vertices are.
+    pub(super) fn points(&self) -> &[DVec3] {
+        &self.points
     }
 
     /// The area weighted by tension together with what cells resist, and how it changes with the points.

@@ -1,22 +1,17 @@
 //! Which grains come together and which part.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use glam::DVec3;
-use voronoi::{CellComplex, ComplexEdge, Corner, FaceId, Shift, Side};
+use rayon::prelude::*;
+use voronoi::{CellComplex, CellId, ComplexEdge, FaceId, Side};
 
-use super::local_area::{Conditions, Excess, LocalArea};
+use super::event::Event;
+use super::local_area::{Conditions, Excess, LocalArea, cell_and_offset};
 use super::local_size::LocalSize;
 use super::shape::distinct;
 
-/// Share of the length of what goes by which what comes starts off its middle.
-const OPENING: f64 = 0.3;
-
 /// Length, in units of a short line, that what goes counts with at least: it may have shrunk to nothing.
 const LEAST_GOING: f64 = 0.5;
-
-/// Turns among walls that are not at right angles; each takes a point nearer to all of them.
-const WALL_TURNS: usize = 50;
 
 /// Length, in units of a short line, below which lines that stay are put where they have the least area: too short for a step of the flow.
 const TINY: f64 = 0.3;
@@ -34,6 +29,13 @@ const LARGEST_CHANGE: f64 = 0.3;
 
 /// How often lines between the same grains may go without lessening the area: what comes back is to stay.
 const MOST_TRIES: u8 = 3;
+
+/// Cells to a place that is looked at ahead, together with others: so few share a cell with one where something happens that looking
+/// again costs little.
+const CELLS_PER_PLACE: usize = 200;
+
+/// Places that are worth looking at together.
+const FEWEST_TOGETHER: usize = 8;
 
 /// How often grains came together and parted. In the plane, a boundary is an edge, and what was a triple line is a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -61,19 +63,51 @@ impl Reconnections {
     }
 }
 
-/// A change of topology.
+/// A place where something may happen.
 #[derive(Debug, Clone, Copy)]
-enum Event {
-    Open(ComplexEdge),
-    Close(FaceId),
-    /// The face has four sides, one of which is the edge.
-    Swap(ComplexEdge, FaceId),
+enum Place {
+    /// A boundary with three sides.
+    Triangle(FaceId),
+    Line(ComplexEdge),
+}
+
+/// What is to happen at a place.
+struct Decision {
+    event: Event,
+    /// Length that what goes counts with at least.
+    least: f64,
+    /// Where the vertices are to be that the event gives.
+    points: Vec<glam::DVec3>,
+    /// The excess of cells after that.
+    excess: Vec<(CellId, f64)>,
+    done: Reconnections,
+    /// The sides at a line that goes without lessening the area.
+    insisting: Option<Vec<Side>>,
+}
+
+impl Decision {
+    fn carry_out(&self, complex: &mut CellComplex) {
+        let vertices = self.event.happen(complex, self.least).expect("what was possible still is");
+        for (vertex, point) in vertices.into_iter().zip(&self.points) {
+            complex.vertices[vertex as usize] = *point;
+        }
+    }
+}
+
+/// What a place is looked at with: how all is after a step.
+#[derive(Clone, Copy)]
+struct Surroundings<'a> {
+    conditions: &'a Conditions<'a>,
+    /// The lengths of lines a while ago.
+    lengths: &'a HashMap<ComplexEdge, f64>,
 }
 
 /// What an event has to be good for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Demand {
     LessArea,
+    /// Less area, and longer lines.
+    LongerLines,
     /// That it does not fold anything.
     NoFold,
 }
@@ -98,30 +132,86 @@ impl Reconnector {
         self.short * self.size.at_vertices(complex, vertices, conditions.volumes)
     }
 
-    /// Lets all events happen that are due where lines are short, or boundaries with three sides thin; `before` has the lengths
+    /// Lets all events happen that are due where lines are short, or boundaries with three sides thin; `lengths` has the lengths
     /// of lines a while ago, `excess` is kept up to date.
     pub(super) fn pass(
         &mut self,
         complex: &mut CellComplex,
         conditions: &Conditions<'_>,
-        before: &HashMap<ComplexEdge, f64>,
+        lengths: &HashMap<ComplexEdge, f64>,
+        excess: &mut Excess,
+    ) -> Reconnections {
+        let around = Surroundings { conditions, lengths };
+        let triangles: Vec<Place> = complex.faces_with_corners(3).into_iter().map(Place::Triangle).collect();
+        let mut done = self.pass_places(&triangles, complex, around, excess);
+        let lines: Vec<Place> = self.short_lines(complex, conditions).into_iter().map(Place::Line).collect();
+        done.add(self.pass_places(&lines, complex, around, excess));
+        done
+    }
+
+    /// As one place after the other. Other threads look at places ahead, each at a complex of its own; where cells have changed since, what
+    /// they found is stale.
+    fn pass_places(
+        &mut self,
+        places: &[Place],
+        complex: &mut CellComplex,
+        around: Surroundings<'_>,
         excess: &mut Excess,
     ) -> Reconnections {
         let mut done = Reconnections::default();
-        for face in complex.faces_with_corners(3) {
-            if complex.corners(face).len() == 3
-                && self.is_thin(face, complex, conditions)
-                && self.happens(Event::Close(face), complex, conditions, Demand::LessArea, excess)
-            {
-                done.closed += 1;
+        let together = around.conditions.volumes.len() / CELLS_PER_PLACE;
+        let threads = rayon::current_num_threads();
+        if threads == 1 || together < FEWEST_TOGETHER || places.len() < FEWEST_TOGETHER {
+            for place in places {
+                if let Some(decision) = self.decide(*place, complex, around, excess) {
+                    done.add(self.carry_out(&decision, complex, excess));
+                }
             }
+            return done;
         }
-        for edge in self.short_lines(complex, conditions) {
-            if complex.has_edge(edge) {
-                done.add(self.pass_line(edge, complex, conditions, before, excess));
+        let mut copies: Vec<(CellComplex, usize)> =
+            (0..threads).into_par_iter().map(|_| (complex.clone(), 0)).collect();
+        let mut carried_out: Vec<Decision> = Vec::new();
+        for places in places.chunks(together) {
+            let share = places.len().div_ceil(threads);
+            let look_ahead = |((copy, known), places): (&mut (CellComplex, usize), &[Place])| {
+                carried_out[*known..].iter().for_each(|decision| decision.carry_out(copy));
+                *known = carried_out.len();
+                let look = |place: &Place| {
+                    let cells = place.cells(copy);
+                    (cells, self.decide(*place, copy, around, excess))
+                };
+                places.iter().map(look).collect::<Vec<_>>()
+            };
+            let ahead: Vec<_> = copies.par_iter_mut().zip(places.par_chunks(share)).map(look_ahead).collect();
+            let mut changed: HashSet<CellId> = HashSet::new();
+            for (place, (mut cells, mut decision)) in places.iter().zip(ahead.into_iter().flatten()) {
+                if cells.iter().any(|cell| changed.contains(cell)) {
+                    cells = place.cells(complex);
+                    decision = self.decide(*place, complex, around, excess);
+                }
+                if let Some(decision) = decision {
+                    done.add(self.carry_out(&decision, complex, excess));
+                    changed.extend(cells);
+                    carried_out.push(decision);
+                }
             }
         }
         done
+    }
+
+    fn carry_out(
+        &mut self,
+        decision: &Decision,
+        complex: &mut CellComplex,
+        excess: &mut Excess,
+    ) -> Reconnections {
+        decision.carry_out(complex);
+        decision.excess.iter().for_each(|(cell, by)| excess[cell.index()] = *by);
+        if let Some(sides) = &decision.insisting {
+            *self.tries.entry(sides.clone()).or_default() += 1;
+        }
+        decision.done
     }
 
     /// Whether a boundary with three sides is thin.
@@ -142,176 +232,138 @@ impl Reconnector {
         short.into_iter().map(|(_, edge)| edge).collect()
     }
 
-    fn pass_line(
-        &mut self,
+    /// What is to happen at a place, if anything. The complex is as it was, but for the time that this takes.
+    fn decide(
+        &self,
+        place: Place,
+        complex: &mut CellComplex,
+        around: Surroundings<'_>,
+        excess: &Excess,
+    ) -> Option<Decision> {
+        match place {
+            Place::Triangle(face) => {
+                let is_due =
+                    complex.corners(face).len() == 3 && self.is_thin(face, complex, around.conditions);
+                let close = || self.consider(Event::Close(face), complex, around, Demand::LessArea, excess);
+                is_due.then(close).flatten()
+            }
+            Place::Line(edge) if complex.has_edge(edge) => {
+                self.decide_about_line(edge, complex, around, excess)
+            }
+            Place::Line(_) => None,
+        }
+    }
+
+    fn decide_about_line(
+        &self,
         edge: ComplexEdge,
         complex: &mut CellComplex,
-        conditions: &Conditions<'_>,
-        before: &HashMap<ComplexEdge, f64>,
-        excess: &mut Excess,
-    ) -> Reconnections {
-        let around = complex.faces_of_edge(edge);
+        around: Surroundings<'_>,
+        excess: &Excess,
+    ) -> Option<Decision> {
+        let faces = complex.faces_of_edge(edge);
         let with_corners = |count: usize| -> Vec<FaceId> {
-            around.iter().copied().filter(|face| complex.corners(*face).len() == count).collect()
+            faces.iter().copied().filter(|face| complex.corners(*face).len() == count).collect()
         };
-        let [opened, closed, swapped] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
-            .map(|[opened, closed, swapped]| Reconnections { opened, closed, swapped });
-        let mut events = vec![(Event::Open(edge), opened)];
-        events.extend(with_corners(3).into_iter().map(|face| (Event::Close(face), closed)));
+        let mut events = vec![Event::Open(edge)];
+        events.extend(with_corners(3).into_iter().map(Event::Close));
         let count = events.len();
-        events.extend(with_corners(4).into_iter().map(|face| (Event::Swap(edge, face), swapped)));
-        for (event, done) in &events {
-            if self.happens(*event, complex, conditions, Demand::LessArea, excess) {
-                return *done;
+        events.extend(with_corners(4).into_iter().map(|face| Event::Swap(edge, face)));
+        for event in &events {
+            let decision = self.consider(*event, complex, around, Demand::LessArea, excess);
+            if decision.is_some() {
+                return decision;
             }
         }
         let now = length(complex, edge);
-        let short = self.short_at(complex, &edge.vertices(), conditions);
-        let is_shrinking = before.get(&edge).is_some_and(|before| now < *before);
+        let short = self.short_at(complex, &edge.vertices(), around.conditions);
+        let is_shrinking = around.lengths.get(&edge).is_some_and(|before| now < *before);
         if now < short && is_shrinking {
             let sides = sides_at(complex, edge);
             let tries = self.tries.get(&sides).copied().unwrap_or(0);
-            for (event, done) in events[..count].iter().filter(|_| tries < MOST_TRIES) {
-                if self.happens(*event, complex, conditions, Demand::NoFold, excess) {
-                    self.tries.insert(sides, tries + 1);
-                    return *done;
+            for event in events[..count].iter().filter(|_| tries < MOST_TRIES) {
+                if let Some(decision) = self.consider(*event, complex, around, Demand::NoFold, excess) {
+                    return Some(Decision { insisting: Some(sides), ..decision });
                 }
             }
         }
-        if now < TINY * short {
-            self.settle(edge, complex, conditions, excess);
-        }
-        Reconnections::default()
+        let is_tiny = now < TINY * short;
+        let settle = || self.consider(Event::Move(edge), complex, around, Demand::LongerLines, excess);
+        is_tiny.then(settle).flatten()
     }
 
-    /// Lets an event happen if it keeps its promise.
-    fn happens(
+    /// What comes of an event that keeps its promise.
+    fn consider(
         &self,
         event: Event,
         complex: &mut CellComplex,
-        conditions: &Conditions<'_>,
+        around: Surroundings<'_>,
         demand: Demand,
-        excess: &mut Excess,
-    ) -> bool {
+        excess: &Excess,
+    ) -> Option<Decision> {
+        let conditions = around.conditions;
         let old = event.vertices(complex);
         let short = self.short_at(complex, &old, conditions);
+        let least = LEAST_GOING * short;
         let snapshot = complex.snapshot(&old);
-        let first_new = complex.vertices.len();
         let mut as_it_is = LocalArea::new(complex, &old, conditions, excess);
         let excesses: Vec<_> = as_it_is.excesses().collect();
-        let folds = as_it_is.fold_count();
-        if event.happen(complex, LEAST_GOING * short) {
-            let added =
-                (first_new..complex.vertices.len()).map(|new| u32::try_from(new).expect("ids fit 32 bits"));
-            let all = old.into_iter().chain(added);
-            let new: Vec<u32> = all.filter(|vertex| !complex.faces_at(&[*vertex]).is_empty()).collect();
+        let (shortest, folds) = (as_it_is.shortest_edge(), as_it_is.fold_count());
+        let changed = event.happen(complex, least).and_then(|new| {
             let mut changed = LocalArea::new(complex, &new, conditions, excess).with_volumes_of(&as_it_is);
-            let is_good = match demand {
-                Demand::LessArea => changed.minimize() < as_it_is.minimize(),
-                Demand::NoFold => true,
+            let (is_good, shortest) = match demand {
+                Demand::LessArea => (changed.minimize() < as_it_is.minimize(), LEAST * short),
+                Demand::LongerLines => (changed.minimize().is_finite(), shortest),
+                Demand::NoFold => (true, LEAST * short),
             };
-            if is_good
-                && changed.shortest_edge() > LEAST * short
+            let keeps_promise = is_good
+                && changed.shortest_edge() > shortest
                 && changed.keeps_volumes(LARGEST_CHANGE, &excesses)
-                && changed.fold_count() <= folds
-            {
-                changed.place(complex);
-                changed.excesses().for_each(|(cell, by, _)| excess[cell.index()] = by);
-                return true;
-            }
-        }
+                && changed.fold_count() <= folds;
+            keeps_promise.then_some(changed)
+        });
         complex.restore(snapshot);
-        false
+        let changed = changed?;
+        let excess = changed.excesses().map(|(cell, by, _)| (cell, by)).collect();
+        let points = changed.points().to_vec();
+        Some(Decision { event, least, points, excess, done: Reconnections::of(event), insisting: None })
     }
+}
 
-    /// Puts the ends of a line where it has the least area, unless it gets even shorter.
-    fn settle(
-        &self,
-        edge: ComplexEdge,
-        complex: &mut CellComplex,
-        conditions: &Conditions<'_>,
-        excess: &mut Excess,
-    ) {
-        let mut area = LocalArea::new(complex, &edge.vertices(), conditions, excess);
-        let excesses: Vec<_> = area.excesses().collect();
-        let (shortest, folds) = (area.shortest_edge(), area.fold_count());
-        area.minimize();
-        let keeps_volumes = area.keeps_volumes(LARGEST_CHANGE, &excesses);
-        if area.shortest_edge() > shortest && keeps_volumes && area.fold_count() <= folds {
-            area.place(complex);
-            area.excesses().for_each(|(cell, by, _)| excess[cell.index()] = by);
+impl Reconnections {
+    fn of(event: Event) -> Self {
+        let none = Self::default();
+        match event {
+            Event::Open(_) => Self { opened: 1, ..none },
+            Event::Close(_) => Self { closed: 1, ..none },
+            Event::Swap(..) => Self { swapped: 1, ..none },
+            Event::Move(_) => none,
         }
     }
 }
 
-impl Event {
-    /// The vertices that it takes away or moves.
-    fn vertices(self, complex: &CellComplex) -> Vec<u32> {
-        match self {
-            Self::Open(edge) => edge.vertices().to_vec(),
-            Self::Close(face) | Self::Swap(_, face) => {
-                complex.corners(face).iter().map(|corner| corner.vertex).collect()
-            }
-        }
+impl Place {
+    /// All cells that what happens here may depend on or change; none where it is gone.
+    fn cells(self, complex: &CellComplex) -> Vec<CellId> {
+        let faces = match self {
+            Self::Triangle(face) => vec![face],
+            Self::Line(edge) if complex.has_edge(edge) => complex.faces_of_edge(edge),
+            Self::Line(_) => Vec::new(),
+        };
+        let small = faces.into_iter().filter(|face| complex.corners(*face).len() <= 4);
+        let corners = small.flat_map(|face| complex.corners(face)).map(|corner| corner.vertex);
+        let ends = match self {
+            Self::Triangle(_) => Vec::new(),
+            Self::Line(edge) => edge.vertices().to_vec(),
+        };
+        let vertices: Vec<u32> = corners.chain(ends).collect();
+        let sides = complex.faces_at(&vertices).into_iter().flat_map(|face| complex.sides(face));
+        let cells = sides.filter_map(|side| cell_and_offset(side, complex.domain()));
+        let mut cells: Vec<CellId> = cells.map(|(cell, _)| cell).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        cells
     }
-
-    /// Whether it is possible and has happened; where not, something may have changed all the same.
-    ///
-    /// What goes counts as no shorter than `least`.
-    fn happen(self, complex: &mut CellComplex, least: f64) -> bool {
-        match self {
-            Self::Open(edge) => open(complex, edge, least),
-            Self::Close(face) => close(complex, face, least),
-            Self::Swap(edge, face) => open(complex, edge, least) && close(complex, face, least),
-        }
-    }
-}
-
-fn open(complex: &mut CellComplex, edge: ComplexEdge, least: f64) -> bool {
-    let Some(star) = complex.reconnectable_edge(edge) else { return false };
-    let start = Corner { vertex: edge.start, shift: Shift::NONE };
-    let ends = [start, edge.end].map(|end| complex.position(end));
-    let middle = ends[0].midpoint(ends[1]);
-    let length = OPENING * ends[0].distance(ends[1]).max(least);
-    let [first, second] = star.ends;
-    let places = [0, 1, 2].map(|k| {
-        let along: DVec3 = star.outer.iter().map(|outer| direction(complex, middle, outer[k])).sum();
-        let sides = [first, second, star.around[(k + 1) % 3], star.around[(k + 2) % 3]];
-        on_walls(complex, &sides, middle + along.normalize_or_zero() * length)
-    });
-    complex.edge_to_triangle(edge, places).is_some()
-}
-
-fn close(complex: &mut CellComplex, face: FaceId, least: f64) -> bool {
-    let Some((star, corners)) = complex.reconnectable_triangle(face) else { return false };
-    let corners = corners.map(|corner| complex.position(corner));
-    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-    let length = OPENING * corners[0].distance(middle).max(least);
-    let [a, b, c] = star.around;
-    let places = [0, 1].map(|end: usize| {
-        let along: DVec3 = star.outer[end].iter().map(|outer| direction(complex, middle, *outer)).sum();
-        on_walls(complex, &[a, b, c, star.ends[end]], middle + along.normalize_or_zero() * length)
-    });
-    complex.triangle_to_edge(face, places).is_some()
-}
-
-fn direction(complex: &CellComplex, from: DVec3, to: Corner) -> DVec3 {
-    (complex.position(to) - from).normalize_or_zero()
-}
-
-/// The point of the walls among some sides that is near another one.
-fn on_walls(complex: &CellComplex, sides: &[Side], mut point: DVec3) -> DVec3 {
-    let walls = sides.iter().filter_map(|side| match side {
-        Side::Wall(wall) => Some(complex.domain().wall_equation(*wall)),
-        Side::Cell(_) | Side::Image(..) => None,
-    });
-    let walls: Vec<(DVec3, f64)> = walls.collect();
-    for _ in 0..WALL_TURNS {
-        for (normal, distance) in &walls {
-            point += *normal * (distance - normal.dot(point));
-        }
-    }
-    point
 }
 
 /// All sides that touch a line, a cell and its images as one.
