@@ -110,14 +110,9 @@ impl Grid {
     }
 }
 
-fn diagonal(matrix: &Rows<f64>, row: usize) -> f64 {
-    let own = matrix.row(row).iter().find(|(column, _)| *column as usize == row);
-    own.map_or(0.0, |(_, value)| *value)
-}
-
 fn inverse_diagonal(matrix: &Rows<f64>) -> Vec<f64> {
     let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
-    (0..matrix.len()).map(|row| inverse(diagonal(matrix, row))).collect()
+    matrix.diagonal().into_iter().map(inverse).collect()
 }
 
 /// Groups each unknown whose neighbours are all free with these; what is left over joins a neighbour's group.

@@ -81,3 +81,11 @@ impl<T: Copy> Rows<T> {
         self.starts.len() - 1
     }
 }
+
+impl Rows<f64> {
+    /// The entries on the diagonal, 0 where there is none.
+    pub(super) fn diagonal(&self) -> Vec<f64> {
+        let own = |row: usize| self.row(row).iter().find(|(column, _)| *column as usize == row);
+        (0..self.len()).map(|row| own(row).map_or(0.0, |(_, value)| *value)).collect()
+    }
+}

@@ -106,20 +106,28 @@ impl Sweeps<'_> {
 /// How the volumes of grains answer to pressures: a symmetric matrix over the grains.
 pub(super) struct Compliance {
     grids: Multigrid,
+    diagonal: Vec<f64>,
+    /// The sum of the diagonal.
+    total: f64,
 }
 
 impl Compliance {
     /// That of a symmetric, positive semidefinite matrix.
     fn new(matrix: Rows<f64>) -> Self {
-        Self { grids: Multigrid::new(matrix) }
+        let diagonal = matrix.diagonal();
+        // Where nothing can move there is nothing to share out.
+        let total = diagonal.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        Self { grids: Multigrid::new(matrix), diagonal, total }
     }
 
     /// The pressures that bring about the given changes of volume, up to an error of this share.
     pub(super) fn pressures(&self, changes: &[f64], tolerance: f64) -> Vec<f64> {
         // The same pressure everywhere moves nothing, as the walls hold: a total other than zero, which rounding leaves,
-        // has no answer and would grow without bound.
-        let mean = changes.iter().sum::<f64>() / changes.len() as f64;
-        let balanced: Vec<f64> = changes.iter().map(|change| change - mean).collect();
+        // has no answer and would grow without bound. Grains take it as they give way: one far smaller than the others may be
+        // smaller than their rounding.
+        let share = changes.iter().sum::<f64>() / self.total;
+        let balanced: Vec<f64> =
+            changes.iter().zip(&self.diagonal).map(|(change, own)| change - share * own).collect();
         let limits = Limits { tolerance, steps: ITERATIONS.min(2 * changes.len() + 20) };
         let precondition = |residual: &[f64]| self.grids.precondition(residual);
         solve(|vector| self.grids.apply(vector), precondition, &balanced, &limits)
