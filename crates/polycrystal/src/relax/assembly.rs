@@ -9,12 +9,13 @@ use super::patches::Patches;
 use super::rows::Rows;
 use super::system::{CHUNK, Parts};
 use super::volume_constraint::{Sweeps, VolumeConstraint};
+use crate::volume::last_place;
 use crate::{Level, Network, Volumes};
 
 /// Share of a junction's mass that resists in all directions: without, nothing would hold points along a triple line.
 const ALONG_LINES: f64 = 0.01;
 
-/// The parts whose unknowns are clusters of control points of a level, each of a size as of [`LocalSize`](super::local_size::LocalSize).
+/// The parts whose unknowns are clusters of the points of a level, each of a size as of [`LocalSize`](super::local_size::LocalSize).
 pub(super) fn assemble(
     network: &Network,
     patches: &Patches,
@@ -23,6 +24,7 @@ pub(super) fn assemble(
     clusters: &Numbering,
     volumes: Volumes,
     level: &Level,
+    points: &[DVec3],
 ) -> Parts {
     let count = clusters.cluster_count();
     let points_of =
@@ -62,7 +64,7 @@ pub(super) fn assemble(
         springs: Rows::made_by(count, row),
         freedoms: clusters_in_chunks().map(freedom).collect(),
         volumes: (volumes == Volumes::Kept)
-            .then(|| VolumeConstraint::new(count, network.grain_count(), sweeps)),
+            .then(|| VolumeConstraint::new(count, network.grain_count(), last_place(points), sweeps)),
         sliding: match volumes {
             Volumes::Kept => Vec::new(),
             Volumes::Free => sliding_masses(patches, terms, clusters, level),

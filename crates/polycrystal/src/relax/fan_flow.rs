@@ -11,6 +11,7 @@ use super::rows::Rows;
 use super::system::{CHUNK, Parts, System};
 use super::tuning::Tuning;
 use super::volume_constraint::{Sweeps, VolumeConstraint};
+use crate::volume::last_place;
 use crate::{Freedom, GrainId, NetworkError};
 
 /// Attempts at a step, each with what the last one folded moving as one.
@@ -52,7 +53,7 @@ impl FanFlow<'_> {
             volumes.iter().zip(now).map(|(volume, now)| volume - now).collect()
         };
         let freedoms: Vec<Freedom> = self.of_points(|point| fans.freedom(point));
-        let system = System::new(self.parts(&terms, &freedoms), time, tuning.tolerance);
+        let system = System::new(self.parts(&terms, &freedoms, last_place(points)), time, tuning.tolerance);
         let (mut moves, pressures) = system.displacement(&missing);
         for fan in 0..fans.faces.len() {
             let center = fans.center_of(fan);
@@ -83,7 +84,7 @@ impl FanFlow<'_> {
         (0..self.fans.point_count()).into_par_iter().with_min_len(CHUNK).map(of_point).collect()
     }
 
-    fn parts(&self, terms: &FanTerms, freedoms: &[Freedom]) -> Parts {
+    fn parts(&self, terms: &FanTerms, freedoms: &[Freedom], rounding: f64) -> Parts {
         let fans = self.fans;
         let of_slot = |fan: usize, slot: usize| &terms.of_slot[fans.first_slot(fan) + slot];
         let springs = |point: usize, entries: &mut Vec<(u32, f64)>| {
@@ -132,7 +133,7 @@ impl FanFlow<'_> {
             gradient: self.of_points(gradient),
             springs: Rows::made_by(fans.point_count(), springs),
             freedoms: freedoms.to_vec(),
-            volumes: Some(VolumeConstraint::new(fans.point_count(), self.volumes.len(), sweeps)),
+            volumes: Some(VolumeConstraint::new(fans.point_count(), self.volumes.len(), rounding, sweeps)),
             sliding: Vec::new(),
         }
     }

@@ -241,7 +241,7 @@ impl<'a> Flow<'a> {
         let mut clusters = self.clusters.clone();
         clusters.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
         let numbering = clusters.number();
-        let system = self.system(&terms, &numbering, time);
+        let system = self.system(&terms, &numbering, time, points);
         let moves = match (self.volumes, self.control_mesh()) {
             (Volumes::Kept, _) | (_, Mesh::Triangles(_)) => system.displacement(&missing).0,
             (Volumes::Free, Mesh::Segments(_)) => {
@@ -318,13 +318,14 @@ impl<'a> Flow<'a> {
         }
     }
 
-    fn system(&self, terms: &[PatchTerms], clusters: &Numbering, time: f64) -> System {
+    fn system(&self, terms: &[PatchTerms], clusters: &Numbering, time: f64, points: &[DVec3]) -> System {
         let tolerance = match self.volumes {
             Volumes::Kept => self.tuning.tolerance,
             Volumes::Free => FREE_TOLERANCE,
         };
         let level = &self.network.levels()[self.level];
-        let parts = assemble(self.network, &self.patches, terms, &self.sizes, clusters, self.volumes, level);
+        let parts =
+            assemble(self.network, &self.patches, terms, &self.sizes, clusters, self.volumes, level, points);
         System::new(parts, time, tolerance)
     }
 

@@ -16,6 +16,10 @@ const ITERATIONS: usize = 2000;
 /// Length of a sum of gradients, as a share of the sum of all lengths at a cluster, that is rounding.
 const CANCELLED: f64 = 1e-13;
 
+/// The same in units of the last place of the points times the root of that sum, which is the size of what moves: where that is small, points
+/// are coarse. Sums of some hundred gradients stay below 10.
+const COARSE: f64 = 30.0;
+
 /// How the volumes of grains change when clusters move: a sparse matrix J with a vector for each cluster and grain.
 pub(super) struct VolumeConstraint {
     /// Of each cluster, its grains and the gradients of their volumes.
@@ -25,16 +29,17 @@ pub(super) struct VolumeConstraint {
 }
 
 impl VolumeConstraint {
-    /// That of so many clusters and grains: `fill` adds up the gradients of a cluster.
+    /// That of so many clusters and grains: `fill` adds up the gradients of a cluster. `rounding` is a last place of the points.
     pub(super) fn new(
         cluster_count: usize,
         grain_count: usize,
+        rounding: f64,
         fill: impl Fn(usize, &mut Sweeps<'_>) + Sync,
     ) -> Self {
         let row = |cluster: usize, entries: &mut Vec<(u32, DVec3)>| {
             let mut sweeps = Sweeps { start: entries.len(), entries, length: 0.0 };
             fill(cluster, &mut sweeps);
-            sweeps.drop_rounding();
+            sweeps.drop_rounding(rounding);
         };
         let by_cluster = Rows::made_by(cluster_count, row);
         let by_grain = by_cluster.transposed(grain_count);
@@ -94,9 +99,10 @@ impl Sweeps<'_> {
     }
 
     /// A grain that moves as a whole keeps its volume: no pressure may push against what rounding leaves.
-    fn drop_rounding(self) {
+    fn drop_rounding(self, rounding: f64) {
+        let cancelled = CANCELLED * self.length + COARSE * rounding * self.length.sqrt();
         for at in (self.start..self.entries.len()).rev() {
-            if self.entries[at].1.length() <= CANCELLED * self.length {
+            if self.entries[at].1.length() <= cancelled {
                 self.entries.remove(at);
             }
         }

@@ -78,7 +78,7 @@ impl Flow<'_> {
     fn restore_with(&self, clusters: &Clusters, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
         let terms = self.patches.terms(points);
         let clusters = clusters.number();
-        let system = self.system(&terms, &clusters, 0.0);
+        let system = self.system(&terms, &clusters, 0.0, points);
         let mut last: Option<Vec<f64>> = None;
         // The gradient is that of a coarser level: what is too small or large in it is measured and made up for.
         let mut gain = 1.0;
