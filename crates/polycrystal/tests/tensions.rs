@@ -86,7 +86,7 @@ fn the_law_of_tensions_sees_both_grains_of_each_boundary_of_a_torus() {
             1.0
         };
         let RelaxedCells { network, .. } = equilibrium(&domain, &random_seeds(&domain, 12, 1), &law);
-        network.with_tensions(&law).expect("good tensions");
+        network.with_tensions(law).expect("good tensions");
         assert!(calls.into_inner() > 100);
     }
 }

@@ -15,16 +15,22 @@ use crate::{Level, Network, Volumes};
 /// Share of a junction's mass that resists in all directions: without, nothing would hold points along a triple line.
 const ALONG_LINES: f64 = 0.01;
 
-/// The parts whose unknowns are clusters of the points of a level, each of a size as of [`LocalSize`](super::local_size::LocalSize).
+/// What moves: clusters of the points of a level.
+pub(super) struct Unknowns<'a> {
+    pub(super) level: &'a Level,
+    pub(super) points: &'a [DVec3],
+    /// Of each point, as of [`LocalSize`](super::local_size::LocalSize).
+    pub(super) sizes: &'a [f64],
+    pub(super) clusters: &'a Numbering,
+}
+
+/// The parts of a step of some unknowns.
 pub(super) fn assemble(
     network: &Network,
     patches: &Patches,
     terms: &[PatchTerms],
-    sizes: &[f64],
-    clusters: &Numbering,
+    Unknowns { level, points, sizes, clusters }: Unknowns<'_>,
     volumes: Volumes,
-    level: &Level,
-    points: &[DVec3],
 ) -> Parts {
     let count = clusters.cluster_count();
     let points_of =

@@ -8,7 +8,7 @@ mod widening;
 use glam::DVec3;
 use voronoi::Dimension;
 
-use super::assembly::{assemble, gradient};
+use super::assembly::{Unknowns, assemble, gradient};
 use super::clusters::{Clusters, Numbering};
 use super::conjugate_gradients::dot;
 use super::local_size::LocalSize;
@@ -324,8 +324,8 @@ impl<'a> Flow<'a> {
             Volumes::Free => FREE_TOLERANCE,
         };
         let level = &self.network.levels()[self.level];
-        let parts =
-            assemble(self.network, &self.patches, terms, &self.sizes, clusters, self.volumes, level, points);
+        let unknowns = Unknowns { level, points, sizes: &self.sizes, clusters };
+        let parts = assemble(self.network, &self.patches, terms, unknowns, self.volumes);
         System::new(parts, time, tolerance)
     }
 
