@@ -161,17 +161,23 @@ impl System {
         self.push(changes)
     }
 
-    /// Takes out of a residual what pressures balance, takes these from `sum`, and gives the displacement under the rest if there were only the
-    /// diagonal of the matrix.
+    /// Takes out of a residual what walls and pressures balance, takes the pressures from `sum`, and gives the displacement under the rest if
+    /// there were only the diagonal of the matrix.
+    ///
+    /// What walls hold is large at rest, where the rest is rounding: left in, it would grow from one iteration to the next.
     fn project(&self, residual: &mut [DVec3], sum: &mut [f64]) -> Vec<DVec3> {
+        let free = |(residual, mobility): (&mut DVec3, &Mobility)| {
+            *residual = mobility.freedom.project(*residual);
+            *residual * mobility.inverse
+        };
         let moved: Vec<DVec3> =
-            residual.iter().zip(&self.mobility).map(|(r, mobility)| mobility.of(*r)).collect();
+            residual.par_iter_mut().with_min_len(CHUNK).zip(&self.mobility).map(free).collect();
         let Some((constraint, compliance)) = &self.constraint else { return moved };
         let pressures = compliance.pressures(&constraint.volume_change(&moved), LOOSE);
         sum.iter_mut().zip(&pressures).for_each(|(sum, pressure)| *sum -= *pressure);
         let project = |(unknown, residual): (usize, &mut DVec3)| {
             *residual -= constraint.force(&pressures, unknown);
-            self.mobility[unknown].of(*residual)
+            free((residual, &self.mobility[unknown]))
         };
         residual.par_iter_mut().with_min_len(CHUNK).enumerate().map(project).collect()
     }
