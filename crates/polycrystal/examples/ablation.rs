@@ -61,6 +61,7 @@ fn rows() -> Vec<Row> {
         row("merged 0.12", |tuning| tuning.merged_length = 0.12),
         row("no rigid edges", |tuning| tuning.rigid_length = 0.0),
         row("rigid 0.08", |tuning| tuning.rigid_length = 0.08),
+        row("no slow small grains", |tuning| tuning.small_grain = 0.0),
         row("no turn, no bend", |tuning| (tuning.largest_turn, tuning.largest_bend) = (-1.0, -1.0)),
         row("joins forgotten", |tuning| tuning.keeps_joined = false),
         row("no centering", |tuning| tuning.centering = 0.0),
