@@ -41,6 +41,8 @@ const MISTAKES: &[Mistake] = &[
     ("orientations without a texture", "--texture", |case| {
         output(case, "out.ori");
         case.options.unset("texture");
+        // It is refused without a texture before anything is written.
+        case.options.unset("sample-symmetry");
     }),
     ("unknown component of a texture", "did you mean 'goss'?", |case| {
         case.options.set("texture", ["gos(10)"]);
