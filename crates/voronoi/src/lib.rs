@@ -72,6 +72,7 @@ mod tessellation;
 mod tile;
 mod tile_vertex;
 mod torus;
+pub mod volumes;
 mod wall;
 mod weld;
 mod wide;

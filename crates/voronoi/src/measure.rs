@@ -177,6 +177,16 @@ pub(crate) fn cell_measures(tessellation: &Tessellation) -> Vec<CellMeasure> {
     cells.map(measure).collect()
 }
 
+/// Area and centroid of a face; in the plane length and middle of an edge.
+pub(crate) fn face_area_and_centroid(tessellation: &Tessellation, face: FaceId) -> (f64, DVec3) {
+    if let &[start, end] = tessellation.face_corners(face) {
+        let [start, end] = [start, end].map(|end| tessellation.vertices[end.index()]);
+        return (start.distance(end), start.midpoint(end));
+    }
+    let measure = face_measure(tessellation, face);
+    (measure.doubled_area / 2.0, measure.centroid)
+}
+
 fn face_measure(tessellation: &Tessellation, face: FaceId) -> FaceMeasure {
     let corners = tessellation.face_corners(face);
     let at = |corner: &VertexId| tessellation.vertices[corner.index()];

@@ -314,15 +314,20 @@ impl Tessellation {
     /// Seeds in the centroids of their cells, again and again, even the cells out: each step lowers the sum over all cells
     /// of the integral of `|x - s|^2 - w`.
     pub fn centroids(&self) -> Vec<DVec3> {
+        self.toward_centroids(&self.cell_measures(), 1.0)
+    }
+
+    /// The seeds moved by a fraction of the way to the centroids of their cells, in the domain.
+    pub(crate) fn toward_centroids(&self, measures: &[CellMeasure], fraction: f64) -> Vec<DVec3> {
         let (lower, upper) = (self.domain.lower(), self.domain.upper());
-        let measures = self.cell_measures();
         let inside = measures.iter().zip(&self.seeds).map(|(cell, seed)| {
+            let goal = if fraction < 1.0 { seed.lerp(cell.centroid, fraction) } else { cell.centroid };
             // Across periodic walls the cell of a seed inside may have its centroid outside.
-            let below = self.domain.periodic() & cell.centroid.cmplt(lower);
-            let above = self.domain.periodic() & cell.centroid.cmpge(upper);
+            let below = self.domain.periodic() & goal.cmplt(lower);
+            let above = self.domain.periodic() & goal.cmpge(upper);
             let period = self.domain.size();
-            let wrapped = cell.centroid + DVec3::select(below, period, DVec3::ZERO)
-                - DVec3::select(above, period, DVec3::ZERO);
+            let wrapped =
+                goal + DVec3::select(below, period, DVec3::ZERO) - DVec3::select(above, period, DVec3::ZERO);
             // Rounding may put the centroid of a very thin cell a last place outside.
             let clamped = wrapped.clamp(lower, upper);
             // The same beside an oblique wall, where the way to the seed leads inside.
