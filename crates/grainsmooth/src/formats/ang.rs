@@ -42,15 +42,7 @@ pub(crate) fn write(
     )?;
     let radians = |orientation: &Orientation| orientation.euler_degrees().map(f64::to_radians);
     let angles: Vec<[f64; 3]> = orientations.iter().map(radians).collect();
-    // The first row of a map is the topmost.
-    let mut row = 0;
-    for slab in (0..grid.slab_count()).rev() {
-        for labels in grid.slab(slab).chunks(columns).rev() {
-            write_row(labels, row, [x_step, y_step], &angles, out)?;
-            row += 1;
-        }
-    }
-    Ok(())
+    grid.rows_from_top(|row, labels| write_row(labels, row, [x_step, y_step], &angles, out))
 }
 
 /// Writes the pixels of a row.

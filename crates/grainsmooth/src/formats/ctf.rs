@@ -74,25 +74,17 @@ pub(crate) fn write(
             [phi1, phi, (phi2 + turn) % 360.0]
         })
         .collect();
-    // The first row of a map is the topmost.
-    let mut row = 0;
-    for slab in (0..grid.slab_count()).rev() {
-        for labels in grid.slab(slab).chunks(columns).rev() {
-            for (column, side) in labels.iter().enumerate() {
-                let (x, y) = (column as f64 * x_step, row as f64 * y_step);
-                match side {
-                    Side::Grain(grain) => {
-                        let [phi1, phi, phi2] = angles[grain.index()];
-                        writeln!(
-                            out,
-                            "1\t{x:?}\t{y:?}\t10\t0\t{phi1:.5}\t{phi:.5}\t{phi2:.5}\t0.0\t255\t255"
-                        )?;
-                    }
-                    Side::Exterior => writeln!(out, "0\t{x:?}\t{y:?}\t0\t3\t0.0\t0.0\t0.0\t0.0\t0\t0")?,
+    grid.rows_from_top(|row, labels| {
+        for (column, side) in labels.iter().enumerate() {
+            let (x, y) = (column as f64 * x_step, row as f64 * y_step);
+            match side {
+                Side::Grain(grain) => {
+                    let [phi1, phi, phi2] = angles[grain.index()];
+                    writeln!(out, "1\t{x:?}\t{y:?}\t10\t0\t{phi1:.5}\t{phi:.5}\t{phi2:.5}\t0.0\t255\t255")?;
                 }
+                Side::Exterior => writeln!(out, "0\t{x:?}\t{y:?}\t0\t3\t0.0\t0.0\t0.0\t0.0\t0\t0")?,
             }
-            row += 1;
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }

@@ -100,6 +100,24 @@ impl<'a> LabelGrid<'a> {
         (0..self.slab_count()).flat_map(|slab| self.slab(slab)).collect()
     }
 
+    /// Hands over the rows of a grid in the plane, numbered from the topmost, which is the first row of a map.
+    ///
+    /// # Errors
+    /// The first that comes back.
+    pub(crate) fn rows_from_top<E>(
+        &self,
+        mut take: impl FnMut(usize, &[Side]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut row = 0;
+        for slab in (0..self.slab_count()).rev() {
+            for labels in self.slab(slab).chunks(self.size[0]).rev() {
+                take(row, labels)?;
+                row += 1;
+            }
+        }
+        Ok(())
+    }
+
     /// Number of slabs.
     pub fn slab_count(&self) -> usize {
         let [_, ny, nz] = self.size;

@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use glam::DVec3;
 use voronoi::{Collapsed, Tessellation};
 
 use super::balance::Balance;
@@ -114,18 +115,25 @@ fn relax_as_they_are(
     let plan = plan(relaxation, Start::Flat, tuning);
     let relaxed = relax_levels(&network, &flat, &plan, watch)?;
     let points = relaxed.finest_points(&network);
-    let start = Instant::now();
-    let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
-    Ok(RelaxedCells {
-        network,
-        relaxed,
-        reconnections: Reconnections::default(),
-        merged: Collapsed::default(),
-        balance: None,
-        validation,
-        validated_in: start.elapsed(),
-        attempts: Vec::new(),
-    })
+    RelaxedCells::validated(network, relaxed, &points)
+}
+
+impl RelaxedCells {
+    /// A network whose topology has stayed, with its finest points, which are checked.
+    fn validated(network: Network, relaxed: Relaxed, points: &[DVec3]) -> Result<Self, NetworkError> {
+        let start = Instant::now();
+        let validation = validate(&network, points).map_err(NetworkError::Invalid)?;
+        Ok(Self {
+            network,
+            relaxed,
+            reconnections: Reconnections::default(),
+            merged: Collapsed::default(),
+            balance: None,
+            validation,
+            validated_in: start.elapsed(),
+            attempts: Vec::new(),
+        })
+    }
 }
 
 /// The plan for tensions whose mean is 1.
@@ -162,21 +170,11 @@ fn relax_in_space(
         let relaxed =
             Relaxed { steps: settled.steps + relaxed.steps, time: settled.time + relaxed.time, ..relaxed };
         let points = relaxed.finest_points(&network);
-        let start = Instant::now();
-        let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
-        let validated_in = start.elapsed();
-        let balance = (*relaxation == Relaxation::Equilibrium).then(|| Balance::in_space(&network, &points));
-        let (reconnections, attempts) = (settled.reconnections, Vec::new());
-        Ok::<_, NetworkError>(RelaxedCells {
-            network,
-            relaxed,
-            reconnections,
-            merged,
-            balance,
-            validation,
-            validated_in,
-            attempts,
-        })
+        let cells = RelaxedCells::validated(network, relaxed, &points)?;
+        let balance =
+            (*relaxation == Relaxation::Equilibrium).then(|| Balance::in_space(&cells.network, &points));
+        let reconnections = settled.reconnections;
+        Ok::<_, NetworkError>(RelaxedCells { reconnections, merged, balance, ..cells })
     };
     // On the way to rest points have time to part; in a given time what is short could not live.
     let rigid_lengths = match relaxation {

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::clusters::Clusters;
 use super::fans::{FanTerms, Fans, is_bent};
+use super::flow::{ATTEMPTS, SLIGHT_BEND, WHOLE_ATTEMPTS};
 use super::local_area::cell_and_offset;
 use super::local_size::LocalSize;
 use super::rows::Rows;
@@ -13,15 +14,6 @@ use super::tuning::Tuning;
 use super::volume_constraint::{Sweeps, VolumeConstraint};
 use crate::volume::last_place;
 use crate::{Freedom, GrainId, NetworkError};
-
-/// Attempts at a step, each with what the last one folded moving as one.
-const ATTEMPTS: usize = 24;
-
-/// Attempts after which all displacements are halved with every other one: what moves at all may be too much.
-const WHOLE_ATTEMPTS: usize = 12;
-
-/// Change of the cosine of a bend that counts as none.
-const SLIGHT_BEND: f64 = 1e-9;
 
 /// Fans that flow.
 pub(super) struct FanFlow<'a> {
@@ -49,7 +41,7 @@ impl FanFlow<'_> {
         let terms = fans.terms(points, tuning.largest_cotangent_to_rest);
         let before = fans.normals(points);
         let missing: Vec<f64> = {
-            let now = fans.volumes(volumes.len(), points);
+            let now = fans.volumes(volumes.len(), points, &before);
             volumes.iter().zip(now).map(|(volume, now)| volume - now).collect()
         };
         let freedoms: Vec<Freedom> = self.of_points(|point| fans.freedom(point));

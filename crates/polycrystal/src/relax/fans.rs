@@ -8,7 +8,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::{CellComplex, ComplexEdge, Corner, Domain, FaceId, Shift, Side, Wall};
 
-use super::local_area::{boundary, cell_and_offset};
+use super::local_area::{boundary, cell_and_offset, freedom_on};
 use crate::grouped::Grouped;
 use crate::volume::{Cone, ConeSum};
 use crate::{Boundary, Freedom};
@@ -164,8 +164,7 @@ impl Fans {
         let mut walls: Vec<Wall> = walls.collect();
         walls.sort_unstable();
         walls.dedup();
-        let planes = walls.into_iter().map(|wall| Freedom::InPlane(self.domain.outward_normal(wall)));
-        planes.fold(Freedom::Everywhere, Freedom::and)
+        freedom_on(&self.domain, &walls)
     }
 
     /// The wall that a fan lies on.
@@ -223,19 +222,12 @@ impl Fans {
         normals
     }
 
-    /// The volume of each cell.
-    pub(super) fn volumes(&self, cell_count: usize, points: &[DVec3]) -> Vec<f64> {
-        let area = |fan: usize| {
-            let ring = self.ring(fan, points);
-            let count = ring.len() - 1;
-            let center = ring[count];
-            let normals = (0..count).map(|k| (ring[k] - center).cross(ring[(k + 1) % count] - center));
-            (center, 0.5 * normals.sum::<DVec3>())
-        };
-        let areas: Vec<(DVec3, DVec3)> =
-            (0..self.faces.len()).into_par_iter().with_min_len(FANS_PER_TASK).map(area).collect();
+    /// The volume of each cell, given [`Self::normals`] too.
+    pub(super) fn volumes(&self, cell_count: usize, points: &[DVec3], normals: &[DVec3]) -> Vec<f64> {
         let mut sums = vec![ConeSum::default(); cell_count];
-        for (sides, (center, area)) in self.sides.iter().zip(areas) {
+        for (fan, sides) in self.sides.iter().enumerate() {
+            let center = points[self.center_of(fan)];
+            let area = 0.5 * normals[self.starts[fan]..self.starts[fan + 1] - 1].iter().sum::<DVec3>();
             for (side, sign) in sides.iter().zip([1.0, -1.0]) {
                 let Some((cell, offset)) = cell_and_offset(*side, &self.domain) else { continue };
                 // All triangles end at the centre, so that the cone from there has no volume.

@@ -28,10 +28,10 @@ use crate::{GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
 use best::{Badness, Best};
 
 /// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
-const ATTEMPTS: usize = 24;
+pub(super) const ATTEMPTS: usize = 24;
 
 /// Attempts after which all displacements are halved with every other one: what moves at all may be too much.
-const WHOLE_ATTEMPTS: usize = 12;
+pub(super) const WHOLE_ATTEMPTS: usize = 12;
 
 /// Most edges of the control mesh, as long as the mean, to a feature. Fans have three.
 const FEATURE_EDGES: f64 = 6.0;
@@ -39,8 +39,8 @@ const FEATURE_EDGES: f64 = 6.0;
 /// Share of its first residual at which a step of grains that grow is solved: rates of growth are asked for, not only where they lead.
 const FREE_TOLERANCE: f64 = 1e-3;
 
-/// Change of that cosine that counts as none.
-const SLIGHT_BEND: f64 = 1e-9;
+/// Change of the cosine of a bend that counts as none.
+pub(super) const SLIGHT_BEND: f64 = 1e-9;
 
 /// Attempts at a step toward rest in which points that fold move as one.
 const JOINED_ATTEMPTS: usize = 6;

@@ -5,7 +5,7 @@
 //! its pressure times v; without that small cells would collapse.
 
 use glam::DVec3;
-use voronoi::{CellComplex, CellId, Domain, FaceId, Side};
+use voronoi::{CellComplex, CellId, Domain, FaceId, Side, Wall};
 
 use super::shape::Shape;
 use crate::{Boundary, Freedom, GrainId};
@@ -461,8 +461,13 @@ impl Fan<'_> {
 
 /// What the walls at a vertex leave to it.
 pub(super) fn freedom(complex: &CellComplex, vertex: u32) -> Freedom {
-    let normals = complex.walls_at(vertex).into_iter().map(|wall| complex.domain().outward_normal(wall));
-    normals.map(Freedom::InPlane).fold(Freedom::Everywhere, Freedom::and)
+    freedom_on(complex.domain(), &complex.walls_at(vertex))
+}
+
+/// What some walls leave to a point on all of them.
+pub(super) fn freedom_on(domain: &Domain, walls: &[Wall]) -> Freedom {
+    let planes = walls.iter().map(|wall| Freedom::InPlane(domain.outward_normal(*wall)));
+    planes.fold(Freedom::Everywhere, Freedom::and)
 }
 
 /// The cell on a side, and how far it is from its own place; none beyond walls.

@@ -156,11 +156,6 @@ impl System {
         (displacement, pressures)
     }
 
-    /// The least motion by mass that changes volumes by `changes`, to first order, for a system of time 0.
-    pub(super) fn volume_correction(&self, changes: &[f64]) -> Vec<DVec3> {
-        self.push(changes)
-    }
-
     /// Takes out of a residual what walls and pressures balance, takes the pressures from `sum`, and gives the displacement under the rest if
     /// there were only the diagonal of the matrix.
     ///
@@ -182,9 +177,9 @@ impl System {
         residual.par_iter_mut().with_min_len(CHUNK).enumerate().map(project).collect()
     }
 
-    /// The displacement under the pressures that change volumes by `changes`, if there were only the diagonal of the matrix;
-    /// none where volumes are free.
-    fn push(&self, changes: &[f64]) -> Vec<DVec3> {
+    /// The displacement under the pressures that change volumes by `changes`, if there were only the diagonal of the matrix: for a time of 0
+    /// the least motion by mass, to first order. None where volumes are free.
+    pub(super) fn push(&self, changes: &[f64]) -> Vec<DVec3> {
         let Some((constraint, compliance)) = &self.constraint else {
             return vec![DVec3::ZERO; self.mobility.len()];
         };

@@ -101,7 +101,7 @@ impl Flow<'_> {
                 return Err(NetworkError::volume_not_restored(grain, relative_error));
             }
             let wanted: Vec<f64> = missing.iter().map(|lack| gain * lack).collect();
-            let moves = clusters.of_points(&system.volume_correction(&wanted));
+            let moves = clusters.of_points(&system.push(&wanted));
             points.iter_mut().zip(&moves).for_each(|(point, by)| *point += *by);
             last = Some(missing);
             step += 1;
