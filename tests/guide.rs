@@ -54,7 +54,7 @@ fn guide_does_what_it_says() {
         python.insert_str(0, "import pyvista; pyvista.DataSet.plot = lambda *_, **__: None\n");
     }
     let Some(output) = interpret(&python) else { return };
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{}: {}", output.status, String::from_utf8_lossy(&output.stderr));
     if !can_draw {
         return;
     }

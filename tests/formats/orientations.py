@@ -1,4 +1,7 @@
-"""Reads with VTK and orix what the test has written of orientations, and compares angles, quaternions, colours and disorientations."""
+"""Reads with VTK and orix what the test has written of orientations, and compares angles, quaternions, colours and disorientations.
+
+No other test uses orix: two programs that import it for the first time at once may crash (numba/numba#10128).
+"""
 import pathlib
 import sys
 
@@ -64,3 +67,11 @@ for grain in np.unique(cubic["GrainId"]):
     one = pyvista.read(folder / "each" / f"grain_{grain}.vtp")
     for name in ("EulerAngles", "Quaternion", "IPFColorX", "IPFColorY", "IPFColorZ"):
         assert np.array_equal(one[name][0], cubic[name][cubic["GrainId"] == grain][0]), (grain, name)
+
+# Without a texture, one orientation for each grain, and none for two. Scans go down, grids up.
+labels = pyvista.read(folder / "plain.vti")["material"]
+scan = orix.io.load(folder / "plain.ang")
+assert scan.shape == (15, 20), scan.shape
+turns = np.unique(scan.rotations.data.round(6), axis=0, return_inverse=True)[1].ravel()
+pairs = np.unique(np.stack([labels.reshape(15, 20)[::-1].ravel(), turns]), axis=1)
+assert pairs.shape[1] == len(np.unique(labels)) == turns.max() + 1, pairs

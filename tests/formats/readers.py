@@ -1,11 +1,10 @@
-"""Reads with VTK, meshio, trimesh and orix what the test has written, and compares counts, volumes and labels."""
+"""Reads with VTK, meshio and trimesh what the test has written, and compares counts, volumes and labels."""
 import json
 import pathlib
 import sys
 
 import meshio
 import numpy as np
-import orix.io
 import pyvista
 import trimesh
 from PIL import Image
@@ -114,14 +113,6 @@ assert image.dimensions == tuple(count + 1 for count in labels.shape) == (21, 16
 assert np.array_equal(image["material"], labels.ravel(order="F"))
 assert np.array_equal(np.unique(labels), np.arange(len(volumes)))
 assert pyvista.read(folder / "b.vti").dimensions == (21, 16, 2)
-labels = pyvista.read(folder / "b.vti")["material"]
-scan = orix.io.load(folder / "b.ang")
-assert scan.shape == (15, 20), scan.shape
-turns = np.unique(scan.rotations.data.round(6), axis=0, return_inverse=True)[1].ravel()
-# One orientation for each grain, and none for two.
-# Scans go down, grids up.
-pairs = np.unique(np.stack([labels.reshape(15, 20)[::-1].ravel(), turns]), axis=1)
-assert pairs.shape[1] == len(np.unique(labels)) == turns.max() + 1, pairs
 plane = pyvista.read(folder / "b.vtp")
 assert plane.n_lines == plane["BoundaryId"].max() + 1
 

@@ -238,7 +238,7 @@ for mode in ['Ascii', 'Binary', 'Appended']:
     let mut python = Command::new("python3");
     python.args(["-c", script]).current_dir(workplace.path("."));
     let Some(python) = run("files_of_vtk_itself", &mut python) else { return };
-    assert!(python.status.success(), "{}", String::from_utf8_lossy(&python.stderr));
+    assert!(python.status.success(), "{}: {}", python.status, String::from_utf8_lossy(&python.stderr));
     let mut count = 0;
     for entry in fs::read_dir(workplace.path(".")).unwrap() {
         let path = entry.unwrap().path();
