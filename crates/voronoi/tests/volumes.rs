@@ -122,10 +122,41 @@ fn lattices_keep_weights_and_places() {
         let diagram = PowerDiagram::with_volumes(&domain, &seeds, &volumes).expect("volumes are reached");
         assert!(diagram.weights().iter().all(|weight| *weight == 0.0));
         let moved = diagram.lloyd(2).expect("volumes are kept");
+        assert_eq!(moved.centroid_steps(), 2);
         for (seed, old) in moved.tessellation().seeds().iter().zip(&seeds) {
             assert!(seed.distance(*old) < 1e-14, "{seed} for {old}");
         }
         assert!(moved.weights().iter().all(|weight| weight.abs() < 1e-14), "{:?}", moved.weights());
+    }
+}
+
+/// Seeds, volumes and weights of a prototype.
+#[derive(serde::Deserialize)]
+struct Case {
+    #[serde(rename = "box")]
+    sides: [f64; 3],
+    periodic: [bool; 3],
+    seeds: Vec<[f64; 3]>,
+    target_volumes: Vec<f64>,
+    /// Up to a common constant.
+    weights: Vec<f64>,
+}
+
+#[test]
+fn weights_are_those_of_the_reference() {
+    let cases: Vec<Case> =
+        serde_json::from_str(include_str!("data/exact_volumes.json")).expect("reference data");
+    for Case { sides, periodic, seeds, target_volumes, weights } in cases {
+        let domain = Domain::cuboid(DVec3::ZERO, sides.into()).expect("a good box");
+        let domain = domain.with_periods(periodic.into());
+        let seeds: Vec<DVec3> = seeds.into_iter().map(DVec3::from_array).collect();
+        let volumes = filling(&domain, target_volumes);
+        let diagram = PowerDiagram::with_volumes(&domain, &seeds, &volumes).expect("volumes are reached");
+        assert_volumes(&diagram, &volumes);
+        let mean = weights.iter().sum::<f64>() / weights.len() as f64;
+        for (weight, expected) in diagram.weights().iter().zip(weights) {
+            assert!((weight - (expected - mean)).abs() < 1e-9, "{weight} for {}", expected - mean);
+        }
     }
 }
 
