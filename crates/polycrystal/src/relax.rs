@@ -39,7 +39,7 @@ use glam::DVec3;
 use voronoi::Tessellation;
 
 use crate::{Attempt, GrainId, Mesh, Network, NetworkError};
-use flow::{End, Flow, Remedy, Stage};
+use flow::{End, Flow, Stage};
 
 pub use balance::Balance;
 pub use cells::{NetworkRecipe, RelaxedCells, relax_cells, relax_cells_tuned};
@@ -253,8 +253,8 @@ fn relax_levels(
     let flow = |level: usize| {
         let flow = Flow::new(network, level, volumes, tension_unit, *tuning);
         match relaxation {
-            // In the plane nothing holds a flow up: steps may be long, and what folds moves as one.
-            Relaxation::Equilibrium if is_in_space => flow.until_rest(Remedy::Brake),
+            // In the plane nothing holds a flow up: steps may be long.
+            Relaxation::Equilibrium if is_in_space => flow.until_rest(),
             _ => flow,
         }
     };

@@ -122,16 +122,6 @@ impl Numbering {
         }
     }
 
-    /// Scales the displacements of all clusters of some points, once each.
-    pub(super) fn scale(&self, moves: &mut [DVec3], points: &[u32], factor: f64) {
-        let mut clusters: Vec<u32> = points.iter().map(|point| self.numbers[*point as usize]).collect();
-        clusters.sort_unstable();
-        clusters.dedup();
-        for point in clusters.iter().flat_map(|cluster| self.members(*cluster as usize)) {
-            moves[*point as usize] *= factor;
-        }
-    }
-
     /// The control points of a cluster.
     pub(super) fn members(&self, cluster: usize) -> &[u32] {
         self.members.of(cluster)

@@ -1,7 +1,6 @@
 //! Curvature flow of the points of one level.
 
 mod best;
-mod mending;
 mod volumes;
 mod widening;
 
@@ -41,21 +40,6 @@ const FREE_TOLERANCE: f64 = 1e-3;
 
 /// Change of the cosine of a bend that counts as none.
 pub(super) const SLIGHT_BEND: f64 = 1e-9;
-
-/// Attempts at a step toward rest in which points that fold move as one.
-const JOINED_ATTEMPTS: usize = 6;
-
-/// Attempts before which points that fold all the same go half as far; after that they stay.
-const BRAKED_ATTEMPTS: usize = 14;
-
-/// What becomes of points that a step would fold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Remedy {
-    /// They move as one, from then on: right for a flow of a given time, in which they could not live.
-    Join,
-    /// They go less far, in this step alone: right for a flow until all is at rest, which comes back to them.
-    Brake,
-}
 
 /// A number of steps on one level.
 pub(super) struct Stage {
@@ -98,7 +82,6 @@ pub(super) struct Flow<'a> {
     neighbors: Vec<[u32; 2]>,
     clusters: Clusters,
     volumes: Volumes,
-    remedy: Remedy,
     tuning: Tuning,
 }
 
@@ -118,23 +101,11 @@ impl<'a> Flow<'a> {
         let sizes =
             LocalSize::new(network.domain().dimension(), unit).at_points(network, level, &patches, volumes);
         let neighbors = Seams::of_level(&network.levels()[surface]).inner;
-        Self {
-            network,
-            patches,
-            sizes,
-            level,
-            surface,
-            neighbors,
-            clusters,
-            volumes,
-            remedy: Remedy::Join,
-            tuning,
-        }
+        Self { network, patches, sizes, level, surface, neighbors, clusters, volumes, tuning }
     }
 
     /// The flow as one until all is at rest.
-    pub(super) fn until_rest(mut self, remedy: Remedy) -> Self {
-        self.remedy = remedy;
+    pub(super) fn until_rest(mut self) -> Self {
         self.patches.largest_cotangent = self.tuning.largest_cotangent_to_rest;
         self
     }
@@ -150,9 +121,6 @@ impl<'a> Flow<'a> {
     ) -> Result<Vec<DVec3>, NetworkError> {
         let mut points = start.to_vec();
         let finest = Wedged::new(self.network, self.finest());
-        if self.remedy == Remedy::Brake {
-            self.iron_folds(&mut points, &finest);
-        }
         let mut last_energy = f64::INFINITY;
         let mut best = Best::new();
         for step in 1..=stage.steps {
@@ -164,8 +132,7 @@ impl<'a> Flow<'a> {
                 check_grains_are_left(self.network, &volumes, passed)?;
             }
             progress(step, &points);
-            if self.remedy == Remedy::Brake
-                && stage.end != End::Open
+            if stage.least_gain > 0.0
                 && let Some(badness) = self.badness(&points, &finest)
             {
                 best.offer(badness, &points);
@@ -188,16 +155,11 @@ impl<'a> Flow<'a> {
             };
             let places = self.folded_places(&surface, &finest);
             count = places.len();
-            // What is still to be moved on finer levels may fold there for now.
-            if count == 0 || (self.remedy == Remedy::Brake && stage.end == End::Open) {
+            if count == 0 {
                 if stage.end == End::Finished {
                     self.widen_all(&mut points, surface, &finest);
                 }
                 return Ok(points);
-            }
-            if self.remedy == Remedy::Brake {
-                self.iron(&mut points, &places.concat());
-                continue;
             }
             for place in places {
                 self.clusters.join_all(&place);
@@ -228,8 +190,8 @@ impl<'a> Flow<'a> {
 
     /// One step of curvature flow.
     ///
-    /// What the step folds moves by its mean displacement instead, and in a flow to rest, where that is no help, less far. That is
-    /// local: to solve the step anew for all grains would take as many attempts as the worst place of all.
+    /// What the step folds moves by its mean displacement instead, and as one from then on: it could not live. That is local: to solve the
+    /// step anew for all grains would take as many attempts as the worst place of all.
     pub(super) fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<Taken, NetworkError> {
         let terms = self.patches.terms(points);
         let energy = terms.iter().map(|terms| terms.energy).sum();
@@ -266,25 +228,17 @@ impl<'a> Flow<'a> {
                 break;
             }
             let broken = broken.into_iter().map(|element| self.dependencies(self.surface, element));
-            let places: Vec<Vec<u32>> = broken.collect();
-            if self.remedy == Remedy::Join || attempt < JOINED_ATTEMPTS {
-                places.iter().for_each(|points| clusters.join_all(points));
-                self.unite(&clusters, &mut moves, attempt);
-            } else {
-                let factor = if attempt < BRAKED_ATTEMPTS { 0.5 } else { 0.0 };
-                clusters.number().scale(&mut moves, &places.concat(), factor);
-            }
+            broken.for_each(|points| clusters.join_all(&points));
+            self.unite(&clusters, &mut moves, attempt);
         }
-        if self.remedy == Remedy::Join {
-            if count > 0 {
-                return Err(NetworkError::Folded { count });
-            }
-            // What turns over in the plane as grains grow may be going on to vanish.
-            let is_growth_in_plane =
-                self.volumes == Volumes::Free && matches!(self.control_mesh(), Mesh::Segments(_));
-            if self.tuning.keeps_joined && !is_growth_in_plane {
-                self.clusters = clusters;
-            }
+        if count > 0 {
+            return Err(NetworkError::Folded { count });
+        }
+        // What turns over in the plane as grains grow may be going on to vanish.
+        let is_growth_in_plane =
+            self.volumes == Volumes::Free && matches!(self.control_mesh(), Mesh::Segments(_));
+        if self.tuning.keeps_joined && !is_growth_in_plane {
+            self.clusters = clusters;
         }
         Ok(Taken { energy, volumes })
     }
