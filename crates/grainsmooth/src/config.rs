@@ -221,21 +221,17 @@ impl Config {
     /// box, they do so on the way to equilibrium only: where a sphere's many small walls meet, too many tangle in a given time.
     pub(crate) fn lets_topology_change(&self) -> bool {
         let is_on_the_way = match self.dimension {
-            Dimension::Two => self.relaxation == Relaxation::Equilibrium,
+            // Arcs of circles are divided as they curve.
+            Dimension::Two => {
+                self.relaxation == Relaxation::Equilibrium
+                    && !matches!(self.face_mesh, FaceMesh::Refined { .. })
+            }
             Dimension::Three => match self.relaxation {
                 Relaxation::Equilibrium => true,
                 Relaxation::Time(time) => time > 0.0 && self.shape == Shape::Box,
             },
         };
-        is_on_the_way && self.regularize.is_none() && self.volumes == Volumes::Kept && self.is_meshed_freely()
-    }
-
-    /// Whether control points go where relaxation needs them: from fans, or in the plane, where there are none.
-    fn is_meshed_freely(&self) -> bool {
-        match self.dimension {
-            Dimension::Two => !matches!(self.face_mesh, FaceMesh::Refined { .. }),
-            Dimension::Three => self.face_mesh == FaceMesh::Fan,
-        }
+        is_on_the_way && self.regularize.is_none() && self.volumes == Volumes::Kept
     }
 
     /// The tension of a boundary: 1 between grains, and what is asked for on walls.

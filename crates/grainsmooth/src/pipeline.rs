@@ -438,12 +438,12 @@ fn smooth_by_energy(
     clock: &mut Clock<'_>,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<Smoothed, NetworkError> {
-    let Config { junctions, levels, .. } = *config;
+    let Config { face_mesh, junctions, levels, .. } = *config;
     let (of_cells, flat) = clock.time(Stage::Network, || Network::new(tessellation, junctions, 0))?;
     let angles_before = dihedral_angles(&of_cells, of_cells.control_mesh(), &flat);
     let flat_angles = angles_between_boundaries(&of_cells, of_cells.control_mesh(), &flat);
     let tension = |boundary: &Boundary| config.tension(boundary);
-    let recipe = NetworkRecipe { junctions, levels: levels as usize, tension: &tension };
+    let recipe = NetworkRecipe { face_mesh, junctions, levels: levels as usize, tension: &tension };
     let relaxed_cells =
         clock.time(Stage::Relaxation, || relax_cells(tessellation, &recipe, &config.relaxation, watch))?;
     let RelaxedCells {

@@ -235,6 +235,7 @@ fn change_topology(
     tuning: &Tuning,
 ) -> Result<(Network, Vec<DVec3>), String> {
     let recipe = NetworkRecipe {
+        face_mesh: FaceMesh::Fan,
         junctions: Junctions::Crease,
         levels: family.levels,
         tension: &|boundary| if boundary.wall.is_none() { 1.0 } else { 0.0 },

@@ -259,10 +259,9 @@ fn relax_levels(
         }
     };
     relaxation.check()?;
-    let (time, finest) = match (relaxation, start) {
-        (Relaxation::Time(time), Start::Flat) => (time, tuning.finest_moved),
-        (Relaxation::Time(time), Start::Relaxed) => (time.min(USUAL_TIME), tuning.finest_moved),
-        (Relaxation::Equilibrium, _) => (LONG_STEP, tuning.finest_balanced),
+    let (time, finest) = match relaxation {
+        Relaxation::Time(time) => (time, tuning.finest_moved),
+        Relaxation::Equilibrium => (LONG_STEP, tuning.finest_balanced),
     };
     let has_tension = network.tensions().iter().any(|tension| *tension > 0.0);
     let mut points = control_points.to_vec();

@@ -6,15 +6,16 @@ mod common;
 use common::random_seeds;
 use glam::{BVec3, DVec3};
 use polycrystal::{
-    Balance, Boundary, Junctions, NetworkRecipe, Reconnections, Relaxation, RelaxedCells, dihedral_angles,
-    measure_network, relax_cells, validate,
+    Balance, Boundary, FaceMesh, Junctions, NetworkRecipe, Reconnections, Relaxation, RelaxedCells,
+    dihedral_angles, measure_network, relax_cells, validate,
 };
 use voronoi::{Domain, Tessellation};
 
 fn balanced(domain: &Domain, seeds: &[DVec3], levels: usize) -> (RelaxedCells, Vec<DVec3>) {
     let tessellation = Tessellation::new(domain, seeds).expect("valid seeds");
     let tension = |boundary: &Boundary| if boundary.wall.is_some() { 0.0 } else { 1.0 };
-    let recipe = NetworkRecipe { junctions: Junctions::Crease, levels, tension: &tension };
+    let recipe =
+        NetworkRecipe { face_mesh: FaceMesh::Fan, junctions: Junctions::Crease, levels, tension: &tension };
     let balanced = relax_cells(&tessellation, &recipe, &Relaxation::Equilibrium, |_| ()).expect("relaxes");
     let points = balanced.relaxed.finest_points(&balanced.network);
     (balanced, points)
@@ -48,7 +49,12 @@ fn events_leave_cells_their_volumes() {
     let domain = Domain::unit_cube();
     let tessellation = Tessellation::new(&domain, &random_seeds(&domain, 60, 1)).expect("valid seeds");
     let tension = |boundary: &Boundary| if boundary.wall.is_some() { 0.0 } else { 1.0 };
-    let recipe = NetworkRecipe { junctions: Junctions::Crease, levels: 2, tension: &tension };
+    let recipe = NetworkRecipe {
+        face_mesh: FaceMesh::Fan,
+        junctions: Junctions::Crease,
+        levels: 2,
+        tension: &tension,
+    };
     let relaxed = relax_cells(&tessellation, &recipe, &Relaxation::USUAL, |_| ()).expect("relaxes");
     let RelaxedCells { network, relaxed, reconnections, balance, validation, attempts, .. } = relaxed;
     assert!(attempts.is_empty() && relaxed.given_up.is_empty(), "{attempts:?}");
@@ -71,11 +77,21 @@ fn cells_stay_flat_without_time_or_tension() {
     let domain = Domain::unit_cube();
     let tessellation = Tessellation::new(&domain, &random_seeds(&domain, 8, 1)).expect("valid seeds");
     for (tension, relaxation) in [(1.0, Relaxation::Time(0.0)), (0.0, Relaxation::USUAL)] {
-        let recipe = NetworkRecipe { junctions: Junctions::Crease, levels: 1, tension: &|_| tension };
+        let recipe = NetworkRecipe {
+            face_mesh: FaceMesh::Fan,
+            junctions: Junctions::Crease,
+            levels: 1,
+            tension: &|_| tension,
+        };
         let relaxed = relax_cells(&tessellation, &recipe, &relaxation, |_| ()).expect("valid cells");
         assert!(relaxed.relaxed.is_flat && relaxed.reconnections == Reconnections::default());
     }
-    let recipe = NetworkRecipe { junctions: Junctions::Crease, levels: 1, tension: &|_| 1.0 };
+    let recipe = NetworkRecipe {
+        face_mesh: FaceMesh::Fan,
+        junctions: Junctions::Crease,
+        levels: 1,
+        tension: &|_| 1.0,
+    };
     let refused = relax_cells(&tessellation, &recipe, &Relaxation::Time(f64::NAN), |_| ());
     assert_eq!(
         refused.expect_err("no time").to_string(),

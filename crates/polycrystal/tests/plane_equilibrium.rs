@@ -6,7 +6,7 @@ mod common;
 use common::random_seeds;
 use glam::{BVec3, DVec2, DVec3};
 use polycrystal::{
-    Boundary, Junctions, Mesh, Network, NetworkError, NetworkRecipe, PlaneMeasures, Reconnections,
+    Boundary, FaceMesh, Junctions, Mesh, Network, NetworkError, NetworkRecipe, PlaneMeasures, Reconnections,
     Relaxation, RelaxedCells, Side, measure_network, relax, relax_cells, validate,
 };
 use proptest::prelude::*;
@@ -23,7 +23,7 @@ fn equilibrium_of(
     tessellation: &Tessellation,
     tension: &(dyn Fn(&Boundary) -> f64 + Sync),
 ) -> Result<RelaxedCells, NetworkError> {
-    let recipe = NetworkRecipe { junctions: Junctions::Crease, levels: 2, tension };
+    let recipe = NetworkRecipe { face_mesh: FaceMesh::Fan, junctions: Junctions::Crease, levels: 2, tension };
     relax_cells(tessellation, &recipe, &Relaxation::Equilibrium, |_| ())
 }
 

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use common::{network, random_network, random_seeds};
 use glam::{BVec3, DVec3};
 use polycrystal::{
-    Boundary, Junctions, Network, NetworkRecipe, Relaxation, RelaxedCells, Side, herring_residual,
+    Boundary, FaceMesh, Junctions, Network, NetworkRecipe, Relaxation, RelaxedCells, Side, herring_residual,
     measure_network, relax, relax_cells,
 };
 use voronoi::{Domain, Tessellation};
@@ -36,7 +36,7 @@ fn equilibrium_at(
     tension: &(dyn Fn(&Boundary) -> f64 + Sync),
 ) -> RelaxedCells {
     let tessellation = Tessellation::new(domain, seeds).expect("valid seeds");
-    let recipe = NetworkRecipe { junctions: Junctions::Crease, levels, tension };
+    let recipe = NetworkRecipe { face_mesh: FaceMesh::Fan, junctions: Junctions::Crease, levels, tension };
     relax_cells(&tessellation, &recipe, &Relaxation::Equilibrium, |_| ()).expect("relaxes")
 }
 

@@ -11,13 +11,16 @@ use super::merged_lines::MergedLines;
 use super::plane;
 use super::reconnection::Reconnections;
 use super::settling::settle;
-use super::{Plan, Relaxation, RelaxationStep, Relaxed, Start, Tuning, relax_levels};
+use super::{Plan, Relaxation, RelaxationStep, Relaxed, Start, Tuning, USUAL_TIME, relax_levels};
 use crate::tension::{checked_tension, in_unit, mean_tension};
-use crate::{Attempt, Boundary, Certificate, Junctions, Network, NetworkError, Volumes, validate};
+use crate::{Attempt, Boundary, Certificate, FaceMesh, Junctions, Network, NetworkError, Volumes, validate};
 
 /// How a network is made of cells.
 #[derive(Clone, Copy)]
 pub struct NetworkRecipe<'a> {
+    /// Where its control points are. Grains that come together and part leave lines and boundaries in [`FaceMesh::Fan`] where they are;
+    /// others start from the flat boundaries between them.
+    pub face_mesh: FaceMesh,
     /// How triple lines are smoothed.
     pub junctions: Junctions,
     /// Number of subdivisions.
@@ -110,9 +113,10 @@ fn relax_as_they_are(
     tuning: &Tuning,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<RelaxedCells, NetworkError> {
-    let (network, flat) = Network::new(tessellation, recipe.junctions, recipe.levels)?;
+    let (network, flat) =
+        Network::with_face_mesh(tessellation, recipe.face_mesh, recipe.junctions, recipe.levels)?;
     let network = network.with_tensions(recipe.tension)?;
-    let plan = plan(relaxation, Start::Flat, tuning);
+    let plan = plan(*relaxation, Start::Flat, tuning);
     let relaxed = relax_levels(&network, &flat, &plan, watch)?;
     let points = relaxed.finest_points(&network);
     RelaxedCells::validated(network, relaxed, &points)
@@ -137,8 +141,8 @@ impl RelaxedCells {
 }
 
 /// The plan for tensions whose mean is 1.
-fn plan<'a>(relaxation: &Relaxation, start: Start, tuning: &'a Tuning) -> Plan<'a> {
-    Plan { relaxation: *relaxation, start, volumes: Volumes::Kept, tuning, tension_unit: 1.0 }
+fn plan(relaxation: Relaxation, start: Start, tuning: &Tuning) -> Plan<'_> {
+    Plan { relaxation, start, volumes: Volumes::Kept, tuning, tension_unit: 1.0 }
 }
 
 /// As [`relax_cells`] in space, with tensions whose mean is 1 at first.
@@ -152,21 +156,33 @@ fn relax_in_space(
     let mut attempts = Vec::new();
     let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
     let settled = settle(tessellation, recipe, &volumes, relaxation, tuning, watch)?;
+    // Most of a given time has passed.
+    let later = match *relaxation {
+        Relaxation::Time(time) => Relaxation::Time(time.min(USUAL_TIME)),
+        Relaxation::Equilibrium => Relaxation::Equilibrium,
+    };
     let mut smooth = |merged_length: f64, rigid_length: f64| {
         let MergedLines { cells, middles, collapsed: merged } =
             MergedLines::new(&settled.complex, &settled.shape, merged_length);
-        let (network, points) = Network::of_curved_lines(&cells, &middles, recipe.junctions, recipe.levels)?;
+        let NetworkRecipe { face_mesh, junctions, levels, .. } = *recipe;
+        let ((network, points), start) = match face_mesh {
+            FaceMesh::Fan | FaceMesh::SparseFan => {
+                (Network::of_curved_lines(&cells, &middles, junctions, levels)?, Start::Relaxed)
+            }
+            FaceMesh::Plain | FaceMesh::Refined { .. } => {
+                (Network::with_face_mesh(&cells, face_mesh, junctions, levels)?, Start::Flat)
+            }
+        };
         let network = network.with_cell_volumes(volumes.clone()).with_tensions(recipe.tension)?;
         let tuning = Tuning { rigid_length, ..*tuning };
-        let mut later = |step: RelaxationStep<'_>| {
+        let mut watch_later = |step: RelaxationStep<'_>| {
             // Where it starts is where the last step ended.
             if step.done > 0 {
                 let (done, count) = (settled.steps + step.done, settled.steps + step.count);
                 watch(RelaxationStep { done, count, time: settled.time + step.time, ..step });
             }
         };
-        let plan = plan(relaxation, Start::Relaxed, &tuning);
-        let relaxed = relax_levels(&network, &points, &plan, &mut later)?;
+        let relaxed = relax_levels(&network, &points, &plan(later, start, &tuning), &mut watch_later)?;
         let relaxed =
             Relaxed { steps: settled.steps + relaxed.steps, time: settled.time + relaxed.time, ..relaxed };
         let points = relaxed.finest_points(&network);
