@@ -217,8 +217,8 @@ impl Config {
         }
     }
 
-    /// Whether grains may switch neighbours: at kept volumes, unless the cells' own are asked for. In the plane, and in domains other than a
-    /// box, they do so on the way to equilibrium only: where a sphere's many small walls meet, too many tangle in a given time.
+    /// Whether grains may switch neighbours: at kept volumes, unless the cells' own are asked for. In the plane they do so on the way to
+    /// equilibrium only.
     pub(crate) fn lets_topology_change(&self) -> bool {
         let is_on_the_way = match self.dimension {
             // Arcs of circles are divided as they curve.
@@ -226,10 +226,7 @@ impl Config {
                 self.relaxation == Relaxation::Equilibrium
                     && !matches!(self.face_mesh, FaceMesh::Refined { .. })
             }
-            Dimension::Three => match self.relaxation {
-                Relaxation::Equilibrium => true,
-                Relaxation::Time(time) => time > 0.0 && self.shape == Shape::Box,
-            },
+            Dimension::Three => self.relaxation != Relaxation::Time(0.0),
         };
         is_on_the_way && self.regularize.is_none() && self.volumes == Volumes::Kept
     }

@@ -5,7 +5,9 @@ mod common;
 
 use common::random_seeds;
 use glam::DVec3;
-use polycrystal::{Freedom, Junctions, Network, Relaxation, relax, validate};
+use polycrystal::{
+    FaceMesh, Freedom, Junctions, Network, NetworkRecipe, Relaxation, relax, relax_cells, validate,
+};
 use voronoi::{Domain, Tessellation, WallPlane};
 
 fn domains() -> Vec<(&'static str, Domain)> {
@@ -68,6 +70,39 @@ fn networks_are_valid_flat_and_relaxed() {
                 moved = moved.max(point.distance(*before));
             }
             assert!(moved > 0.01, "{name}: nothing relaxes");
+        }
+    }
+}
+
+/// Vertices that events add at walls that meet at small angles once were off them, and grains of balls lost their volumes.
+#[test]
+fn grains_switch_neighbors_at_the_walls_of_any_domain() {
+    for (name, domain) in domains().into_iter().filter(|(name, _)| *name != "disc") {
+        let seeds: Vec<DVec3> = random_seeds(&domain, 150, 2)
+            .into_iter()
+            .filter(|seed| domain.contains(*seed))
+            .take(25)
+            .collect();
+        let cells = Tessellation::new(&domain, &seeds).expect("seeds");
+        for face_mesh in [FaceMesh::Fan, FaceMesh::Plain, FaceMesh::Refined { edge_length: 0.2 }] {
+            let recipe = NetworkRecipe {
+                face_mesh,
+                junctions: Junctions::Crease,
+                levels: 1,
+                tension: &|boundary| f64::from(u8::from(boundary.wall.is_none())),
+            };
+            let relaxed = relax_cells(&cells, &recipe, &Relaxation::USUAL, |_| ())
+                .unwrap_or_else(|error| panic!("{name} {face_mesh:?}: {error}"));
+            assert!(relaxed.reconnections.count() > 5, "{name}");
+            assert!(relaxed.validation.largest_volume_error < 1e-9, "{name}");
+            let network = &relaxed.network;
+            let points = relaxed.relaxed.finest_points(network);
+            for (point, set) in points.iter().zip(&network.finest().walls) {
+                for wall in network.wall_sets().walls(*set) {
+                    let (normal, distance) = domain.wall_equation(*wall);
+                    assert!((normal.dot(*point) - distance).abs() < 1e-12, "{name}: {point} leaves {wall:?}");
+                }
+            }
         }
     }
 }
