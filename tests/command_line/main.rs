@@ -19,6 +19,7 @@ mod remedies;
 mod seed_formats;
 mod seed_sources;
 mod series;
+mod sizes;
 mod statistics;
 mod surface_file;
 mod textures;

@@ -37,12 +37,17 @@ pub const REFUSALS: &[Kind] = &[
     ("SeedProblem::Tess, of other cells", &["its cell has the", "whose cells are those of its seeds"]),
     ("SeedProblem::Tess, of the domain", &["the domain is a", "give a file whose domain is a"]),
     ("SeedProblem::BadId", &["is no whole number from 0 to", "number the seeds"]),
+    ("SeedProblem::EmptyId", &["the id is empty", "number each seed"]),
     ("SeedProblem::IdTwice, NoId", &["give each seed its own, or"]),
     ("SeedProblem::NotInPlane", &["in a 2D run"]),
     ("HalfSpaceInFile", &["half-space", "line"]),
     // Files of orientations.
     ("TextureSymmetry", &["its crystals are", "give --crystal-symmetry"]),
     ("BadTextureFile, empty", &["holds no orientation"]),
+    // Sizes that are asked for.
+    ("BadSizeFile, empty", &["holds no diameters"]),
+    ("GrainTooLarge", &["does not fit the domain", "take a larger domain"]),
+    ("VolumeCount", &["volumes for", "seeds; give as many"]),
     // Seeds and domains.
     ("OutsideDomain", &["lies outside the domain"]),
     ("DuplicateSeeds", &["stand at the same place", "remove one of them"]),
@@ -53,7 +58,7 @@ pub const REFUSALS: &[Kind] = &[
     ("BadDomain", &["every side must be between"]),
     ("FlatDomain", &["the domain between", "is flat"]),
     ("TooManyWalls", &["walls that a domain can have"]),
-    // Sizes.
+    // Counts.
     ("CellsExceedMemory", &["cells would take", "of memory"]),
     ("LevelsExceedMemory", &["levels would take", "of memory"]),
     ("LevelsExceedIds", &["levels would make", "more than ids can name"]),

@@ -16,6 +16,7 @@ mod files;
 mod pictures;
 mod run;
 mod seeds;
+mod sizes;
 mod smoothing;
 mod texture;
 mod values;
@@ -27,6 +28,7 @@ pub use files::VtkArguments;
 use pictures::PictureArguments;
 use run::RunArguments;
 use seeds::SeedArguments;
+use sizes::SizeArguments;
 use smoothing::SmoothingArguments;
 use texture::TextureArguments;
 
@@ -42,6 +44,8 @@ pub struct Arguments {
     pub command: Option<Command>,
     #[command(flatten)]
     seeds: SeedArguments,
+    #[command(flatten)]
+    sizes: SizeArguments,
     #[command(flatten)]
     domain: DomainArguments,
     #[command(flatten)]
@@ -108,7 +112,7 @@ impl Arguments {
     /// # Errors
     /// When the file of the seeds cannot tell what they fill.
     pub fn config(&self) -> Result<Config, grainsmooth::Error> {
-        let Self { seeds, domain: arguments, smoothing, texture, files, .. } = self;
+        let Self { seeds, sizes, domain: arguments, smoothing, texture, files, .. } = self;
         let of_file = seeds.seeds_file.as_deref().map(read_file_domain).transpose()?.flatten();
         let domain = arguments.with_defaults_of(of_file);
         let periodic_cut = arguments.periodic_cut(domain.periodic);
@@ -120,10 +124,12 @@ impl Arguments {
                 "--free lets grains grow for a time, and has no equilibrium; give one, such as --relax 0.3",
             );
         }
+        let sizes = sizes.options();
         let config = Config {
-            seeds: seeds.source(domain.dimension),
+            seeds: seeds.source(domain.dimension, sizes.source.is_some()),
             random_seed: seeds.rng_seed,
-            lloyd_steps: seeds.lloyd,
+            sizes,
+            lloyd_steps: 0,
             dimension: domain.dimension,
             box_size: domain.box_size,
             shape: arguments.shape(&domain),
@@ -142,7 +148,15 @@ impl Arguments {
             file: files.options(domain.dimension),
         };
         let relaxation = smoothing.relax.unwrap_or_else(|| config.usual_relaxation());
-        Ok(Config { relaxation, ..config })
+        let is_sized = config.is_sized();
+        if is_sized && config.min_diameter > 0.0 {
+            usage(
+                "--min-diameter would change sizes that are given; cut small ones off with from=, or leave it out",
+            );
+        }
+        let config = Config { relaxation, lloyd_steps: seeds.lloyd(is_sized), ..config };
+        let is_count_open = config.sizes.source.is_some() && seeds.is_count_open();
+        if is_count_open { config.with_count_of_sizes() } else { Ok(config) }
     }
 }
 

@@ -7,7 +7,7 @@ use voronoi::{Dimension, Domain};
 
 use crate::domain_file::{half_space_domain, surface_domain};
 use crate::vtk::VtkEncoding;
-use crate::{Error, Lattice, LatticeFit, Names, StlEncoding, TextureOptions};
+use crate::{Error, Lattice, LatticeFit, Names, SizeOptions, StlEncoding, TextureOptions};
 
 /// Where seeds come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,6 +19,11 @@ pub enum SeedSource {
     },
     /// Random in the box, but apart from each other, see [`poisson_disc_seeds`](crate::poisson_disc_seeds).
     PoissonDisc {
+        /// Number of seeds, at least 1.
+        count: usize,
+    },
+    /// The centres of spheres that do not overlap, as large as the grains are to be, see [`place_spheres`](voronoi::volumes::place_spheres).
+    Packed {
         /// Number of seeds, at least 1.
         count: usize,
     },
@@ -87,7 +92,9 @@ pub struct Config {
     pub seeds: SeedSource,
     /// Starts the random generator.
     pub random_seed: u64,
-    /// Number of times that every seed moves to the centroid of its cell (Lloyd's algorithm).
+    /// The sizes of the grains.
+    pub sizes: SizeOptions,
+    /// Number of times that every seed moves to the centroid of its cell (Lloyd's algorithm); given volumes are kept.
     pub lloyd_steps: u32,
     /// Two or three dimensions.
     pub dimension: Dimension,
@@ -157,6 +164,7 @@ impl Default for Config {
         Self {
             seeds: SeedSource::Random { count: 200 },
             random_seed: 1,
+            sizes: SizeOptions::default(),
             lloyd_steps: 0,
             dimension: Dimension::Three,
             box_size: DVec3::ONE,

@@ -3,6 +3,7 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 use polycrystal::NetworkError;
+use voronoi::volumes::VolumesError;
 use voronoi::{Dimension, VoronoiError};
 
 use crate::memory::{self, LevelSize};
@@ -226,6 +227,47 @@ pub enum Error {
         /// The path as given.
         path: PathBuf,
     },
+    /// A file of sizes cannot be read.
+    #[error("{}: cannot be read: {cause}; give the path of a readable text file", path.display())]
+    SizeFileUnreadable {
+        /// The path as given.
+        path: PathBuf,
+        /// Why.
+        cause: io::Error,
+    },
+    /// A file of sizes holds something else.
+    #[error("{} line {line}: {problem}", path.display())]
+    BadSizeFile {
+        /// The path as given.
+        path: PathBuf,
+        /// Line of the file, counted from 1.
+        line: usize,
+        /// What is wrong, and what to do about it.
+        problem: String,
+    },
+    /// A grain of the sizes asked for is larger than the domain.
+    #[error(
+        "a grain of diameter {diameter:.6} does not fit the domain; ask for diameters up to {fits:.6} (to={fits:.6} cuts larger ones off), or take a larger domain"
+    )]
+    GrainTooLarge {
+        /// Its equivalent diameter.
+        diameter: f64,
+        /// The largest that fits.
+        fits: f64,
+    },
+    /// As many volumes as seeds are wanted.
+    #[error("{asked}: {volumes} volumes for {seeds} seeds; give as many")]
+    VolumeCount {
+        /// Where the volumes come from.
+        asked: String,
+        /// Number of volumes.
+        volumes: usize,
+        /// Number of seeds.
+        seeds: usize,
+    },
+    /// Cells cannot have the volumes asked for.
+    #[error(transparent)]
+    Volumes(#[from] VolumesError),
     /// The seeds cannot be tessellated.
     #[error(transparent)]
     Voronoi(#[from] VoronoiError),

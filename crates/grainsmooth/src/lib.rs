@@ -25,6 +25,7 @@ mod estimate;
 mod failed_grain;
 mod failure;
 mod formats;
+mod grain_sizes;
 mod grain_texture;
 mod labelled_file;
 mod lattice;
@@ -44,6 +45,8 @@ mod seed_file;
 mod seeding;
 mod series;
 mod settings;
+mod size_file;
+mod size_options;
 mod staged_files;
 mod statistics;
 mod subdivide;
@@ -71,6 +74,7 @@ pub use formats::{LabelGrid, Names, StlEncoding};
 pub use formats::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
 };
+pub use grain_sizes::{GrainSizes, SizesReached};
 pub use grain_texture::{ComponentShare, GrainTexture, HistogramFit};
 pub use labelled_file::{FileElements, LabelledFile};
 pub use lattice::{Lattice, LatticeFit};
@@ -90,6 +94,7 @@ pub use seed_file::{
 };
 pub use seeding::random_seeds;
 pub use series::{Series, SeriesOutput};
+pub use size_options::{SizeDraw, SizeOptions, SizeSource};
 pub use staged_files::{StagedFiles, write_together};
 pub use statistics::{NetworkStatistics, StatisticsOutput};
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};

@@ -213,7 +213,9 @@ pub(crate) fn voxel_bytes(config: &Config) -> u128 {
 pub(crate) fn seed_count(config: &Config) -> Option<usize> {
     match &config.seeds {
         SeedSource::File(_) => None,
-        SeedSource::Random { count } | SeedSource::PoissonDisc { count } => Some(*count),
+        SeedSource::Random { count } | SeedSource::PoissonDisc { count } | SeedSource::Packed { count } => {
+            Some(*count)
+        }
         SeedSource::Lattice { .. } => config.lattice_fit().map(|fit| fit.seed_count()),
     }
 }

@@ -132,6 +132,9 @@ pub enum SeedProblem {
         /// The number, cut short.
         value: String,
     },
+    /// A seed has no number in the column of numbers.
+    #[error("the id is empty; number each seed, or rename the column")]
+    EmptyId,
     /// Two seeds have the same number.
     #[error("id {id} is that of {first} too; give each seed its own, or rename the column")]
     IdTwice {
@@ -278,6 +281,9 @@ fn check_ids(seeds: &[FileSeed]) -> Result<(), (SeedPlace, SeedProblem)> {
 
 /// A number of a seed, perhaps written as 3.0, from its text.
 fn id(text: &str) -> Result<u32, SeedProblem> {
+    if text.is_empty() {
+        return Err(SeedProblem::EmptyId);
+    }
     let whole = text.strip_suffix(".0").unwrap_or(text).parse::<u32>().ok();
     let held = whole.filter(|id| i32::try_from(*id).is_ok());
     held.ok_or_else(|| SeedProblem::BadId { value: shortened(text) })

@@ -101,7 +101,7 @@ impl Simplices {
 }
 
 /// A number in [0, 1) from the upper 53 bits, as many as a double holds.
-fn unit_fraction(bits: u64) -> f64 {
+pub(crate) fn unit_fraction(bits: u64) -> f64 {
     (bits >> 11) as f64 * 2f64.powi(-53)
 }
 

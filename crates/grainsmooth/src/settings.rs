@@ -10,7 +10,10 @@ use voronoi::Dimension;
 
 use crate::embedded_config::{BEGIN, END, PREFIXES};
 use crate::vtk::VtkEncoding;
-use crate::{Config, FileOptions, PeriodicCut, SeedSource, Shape, StlEncoding, TextureOptions};
+use crate::{
+    Config, FileOptions, PeriodicCut, SeedSource, Shape, SizeDraw, SizeOptions, SizeSource, StlEncoding,
+    TextureOptions,
+};
 
 impl Config {
     /// Every setting by the long name of its option, the default ones too.
@@ -20,11 +23,17 @@ impl Config {
         let mut settings = match &self.seeds {
             SeedSource::Random { count } => self.random("random", *count),
             SeedSource::PoissonDisc { count } => self.random("poisson-disc", *count),
+            SeedSource::Packed { count } => self.random("packed", *count),
             SeedSource::Lattice { lattice, cells } => {
                 vec![("lattice", Value::Array(vec![lattice.name().into(), i64::from(*cells).into()]))]
             }
             SeedSource::File(path) => vec![("seeds-file", path.display().to_string().into())],
         };
+        if matches!(self.sizes.source, Some(SizeSource::VolumeFile(_))) {
+            // The file tells how many.
+            settings.retain(|(name, _)| *name != "seeds");
+        }
+        settings.extend(self.sizes.settings());
         let mut add = |name, value: Value| settings.push((name, value));
         if self.drop_empty {
             add("drop-empty", true.into());
@@ -148,6 +157,20 @@ impl Config {
     pub(crate) fn write_comments(&self, sign: &str, out: &mut dyn Write) -> io::Result<()> {
         debug_assert!(PREFIXES.contains(&sign), "embedded_config knows the sign");
         self.to_toml().lines().try_for_each(|line| writeln!(out, "{sign}{line}"))
+    }
+}
+
+impl SizeOptions {
+    fn settings(&self) -> Vec<(&'static str, Value)> {
+        let mut settings = Vec::new();
+        if let Some(source) = &self.source {
+            let (name, text) = source.setting();
+            settings.push((name, text.into()));
+        }
+        if self.draw != SizeDraw::default() {
+            settings.push(("draw", self.draw.name().into()));
+        }
+        settings
     }
 }
 

@@ -3,13 +3,13 @@
 use std::fmt;
 use std::time::Duration;
 
-use polycrystal::{AngleStatistics, Balance, Boundary, HerringResidual, Reconnections, Relaxation};
+use polycrystal::{AngleStatistics, Balance, Boundary, HerringResidual, Reconnections, Relaxation, Volumes};
 use voronoi::{Collapsed, Dimension};
 
 use crate::grain_texture::TextureLine;
 use crate::{
-    Config, EquivalentDiameters, Polycrystal, Reconnected, Regularization, SeedSource, Stage, Tessellated,
-    TriangleAngles,
+    Config, EquivalentDiameters, Polycrystal, Reconnected, Regularization, SeedSource, SizesReached, Stage,
+    Tessellated, TriangleAngles,
 };
 
 /// A polycrystal in a few lines of text: counts, angles, volumes, validation, times.
@@ -25,6 +25,9 @@ impl fmt::Display for Summary<'_> {
         writeln!(out, "grains      {} in {}", network.grain_count(), network.domain())?;
         writeln!(out, "diameters   {}", polycrystal.diameter_statistics())?;
         write_seeds(out, &polycrystal.config, &polycrystal.cells)?;
+        if let Some(reached) = polycrystal.sizes_reached() {
+            write!(out, "{reached}")?;
+        }
         write_texture(out, &polycrystal.cells)?;
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
         let through_walls = count(|boundary| boundary.twin.is_some()) / 2;
@@ -134,6 +137,9 @@ impl fmt::Display for CellsSummary<'_> {
             measures.iter().map(|cell| config.dimension.ball_diameter(cell.volume)).collect();
         writeln!(out, "diameters   {}", EquivalentDiameters::new(config.dimension, &diameters))?;
         write_seeds(out, config, cells)?;
+        if let Some(sizes) = &cells.sizes {
+            write!(out, "{}", sizes.reached(&cells.volumes(), None))?;
+        }
         write_texture(out, cells)
     }
 }
@@ -214,6 +220,15 @@ fn write_topology(
 }
 
 impl Polycrystal {
+    /// How near the grains came to the sizes that were asked for, where some were.
+    pub(crate) fn sizes_reached(&self) -> Option<SizesReached> {
+        let sizes = self.cells.sizes.as_ref()?;
+        let found = self.validation.grain_volumes.iter();
+        let grains: Vec<f64> = found.map(|(_, volume)| *volume).collect();
+        let is_kept = self.config.volumes == Volumes::Kept;
+        Some(sizes.reached(&self.cells.volumes(), is_kept.then_some(&grains[..])))
+    }
+
     /// How large the grains are. Their volumes are those of their cells unless grains grow.
     pub fn diameter_statistics(&self) -> EquivalentDiameters {
         EquivalentDiameters::new(self.config.dimension, &self.equivalent_diameters())

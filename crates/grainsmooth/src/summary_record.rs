@@ -8,7 +8,9 @@ use serde::Serialize;
 use voronoi::Dimension;
 
 use crate::triangle_angles::TriangleAngles;
-use crate::{ComponentShare, EquivalentDiameters, HistogramFit, Polycrystal, Reconnected, Topology};
+use crate::{
+    ComponentShare, EquivalentDiameters, HistogramFit, Polycrystal, Reconnected, SizesReached, Topology,
+};
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -26,6 +28,8 @@ pub struct SummaryRecord {
     triple_lines: usize,
     quadruple_points: usize,
     topology: Topology,
+    /// The sizes asked for and reached.
+    sizes: Option<SizesReached>,
     texture: Option<TextureRecord>,
     regularization: &'static str,
     regularization_fell_back: bool,
@@ -135,6 +139,7 @@ impl SummaryRecord {
             triple_lines: junctions.triple_lines,
             quadruple_points: junctions.quadruple_points,
             topology: polycrystal.topology.clone(),
+            sizes: polycrystal.sizes_reached(),
             texture: polycrystal.cells.texture.as_ref().map(|texture| {
                 let volumes = polycrystal.cells.volumes();
                 TextureRecord {

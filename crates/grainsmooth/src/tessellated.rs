@@ -3,13 +3,17 @@
 use std::time::Duration;
 
 use glam::DVec3;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use voronoi::volumes::{PowerDiagram, VolumesError, place_spheres};
 use voronoi::{CellId, Domain, Side, Tessellation, VoronoiError};
 
 use crate::memory::{available_memory, check_cells};
 use crate::pipeline::{Clock, seed_count};
+use crate::seeding::unit_fraction;
 use crate::{
-    Config, EquivalentDiameters, Error, FileSeed, FileSeeds, GrainTexture, Progress, SeedPlace, SeedSource,
-    Stage, poisson_disc_seeds, random_seeds, read_seed_file,
+    Config, EquivalentDiameters, Error, FileSeed, FileSeeds, GrainSizes, GrainTexture, Progress, SeedPlace,
+    SeedSource, Stage, poisson_disc_seeds, random_seeds, read_seed_file,
 };
 
 /// The cells of a config's seeds.
@@ -25,6 +29,8 @@ pub struct Tessellated {
     pub dropped_seeds: Vec<u32>,
     /// The numbers of seeds that are left out because their cells were below [`Config::min_diameter`].
     pub merged_seeds: Vec<u32>,
+    /// The volumes that grains were to have, where these are given.
+    pub sizes: Option<GrainSizes>,
     /// The orientations of the grains, where they are asked for.
     pub texture: Option<GrainTexture>,
     /// What the file of the seeds also tells of grains, and has no place here.
@@ -54,10 +60,16 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
     let mut clock = Clock { progress, times: Vec::new() };
     let domain = config.domain()?;
     let (texture, histogram) = (config.texture.texture()?, config.texture.histogram()?);
-    let FileSeeds { seeds, passed_over } = clock.time(Stage::Seeds, || seeds(config, &domain))?;
+    let (FileSeeds { seeds, passed_over }, mut sizes) =
+        clock.time(Stage::Seeds, || seeds(config, &domain))?;
     let mut seeds = NumberedSeeds::new(seeds);
     let (mut dropped_seeds, mut merged_seeds) = (Vec::new(), Vec::new());
     let (tessellation, weights) = clock.time(Stage::Cells, || {
+        if let Some(wanted) = sizes.take() {
+            let diagram = sized_cells(config, &domain, &seeds.seeds, wanted.volumes())?;
+            sizes = Some(wanted.with_centroid_steps(diagram.centroid_steps()));
+            return Ok((diagram.tessellation().clone(), diagram.weights().to_vec()));
+        }
         let mut all = cells_of(config, &domain, &seeds.seeds)?;
         for step in 1..=config.lloyd_steps {
             let centroids = all.0.centroids();
@@ -97,6 +109,7 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
         seed_ids,
         dropped_seeds,
         merged_seeds,
+        sizes,
         texture,
         passed_over,
         times,
@@ -163,19 +176,57 @@ fn cells_of(config: &Config, domain: &Domain, seeds: &[FileSeed]) -> Result<(Tes
     Ok((tessellation.map_err(|error| located(error, config, seeds))?, weights))
 }
 
-fn seeds(config: &Config, domain: &Domain) -> Result<FileSeeds, Error> {
+/// Cells of given volumes, after the centroid steps.
+fn sized_cells(
+    config: &Config,
+    domain: &Domain,
+    seeds: &[FileSeed],
+    volumes: &[f64],
+) -> Result<PowerDiagram, Error> {
+    let positions: Vec<DVec3> = seeds.iter().map(|seed| seed.position).collect();
+    let diagram = PowerDiagram::with_volumes(domain, &positions, volumes)
+        .and_then(|diagram| diagram.lloyd(config.lloyd_steps as usize));
+    diagram.map_err(|error| match error {
+        VolumesError::Voronoi(error) => located(error, config, seeds),
+        error => error.into(),
+    })
+}
+
+/// The seeds, and the volumes that their cells are to have where these are given.
+fn seeds(config: &Config, domain: &Domain) -> Result<(FileSeeds, Option<GrainSizes>), Error> {
     if let Some(count) = seed_count(config) {
         check_cells(count, available_memory())?;
     }
-    let positions = match &config.seeds {
-        SeedSource::File(path) => return read_seed_file(path, config.dimension),
-        SeedSource::Random { count } => random_seeds(*count, domain, config.random_seed),
-        SeedSource::PoissonDisc { count } => poisson_disc_seeds(*count, domain, config.random_seed),
-        SeedSource::Lattice { lattice, cells } => config.lattice_seeds(*lattice, *cells, domain),
+    let sizes = |count| config.is_sized().then(|| GrainSizes::draw(config, domain, count)).transpose();
+    let (positions, sizes) = match &config.seeds {
+        SeedSource::File(path) => {
+            let mut found = read_seed_file(path, config.dimension)?;
+            let sizes = sizes(found.seeds.len())?;
+            if sizes.is_some() && found.seeds.iter().any(|seed| seed.weight.is_some()) {
+                found.seeds.iter_mut().for_each(|seed| seed.weight = None);
+                found.passed_over = Some("radii or weights, as grains have other sizes,");
+            }
+            return Ok((found, sizes));
+        }
+        SeedSource::Packed { count } => {
+            let sizes = GrainSizes::draw(config, domain, *count)?;
+            let mut generator = ChaCha8Rng::seed_from_u64(config.random_seed);
+            let fraction = || unit_fraction(generator.next_u64());
+            (place_spheres(domain, sizes.volumes(), fraction)?, Some(sizes))
+        }
+        SeedSource::Random { count } => (random_seeds(*count, domain, config.random_seed), sizes(*count)?),
+        SeedSource::PoissonDisc { count } => {
+            (poisson_disc_seeds(*count, domain, config.random_seed), sizes(*count)?)
+        }
+        SeedSource::Lattice { lattice, cells } => {
+            let seeds = config.lattice_seeds(*lattice, *cells, domain);
+            let sizes = sizes(seeds.len())?;
+            (seeds, sizes)
+        }
     };
     let numbered = (1..).map(SeedPlace::Entry).zip(positions);
     let seeds = numbered.map(|(place, position)| FileSeed { position, weight: None, id: None, place });
-    Ok(FileSeeds { seeds: seeds.collect(), passed_over: None })
+    Ok((FileSeeds { seeds: seeds.collect(), passed_over: None }, sizes))
 }
 
 /// The error with the line of the seed file that it comes from.

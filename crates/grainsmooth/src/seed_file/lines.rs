@@ -112,6 +112,8 @@ pub(super) fn csv(content: &[u8], dimension: Dimension) -> Located<Vec<FileSeed>
             places.push(place);
         }
     }
+    // Where the last line leaves a quote open, this line ends up inside.
+    text.push('\n');
     let delimiter = match text.lines().next() {
         Some(first) if first.contains(';') => b';',
         _ if text.contains(',') => b',',

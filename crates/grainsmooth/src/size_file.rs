@@ -1,0 +1,201 @@
+//! Sizes of grains from text files.
+
+use std::fs;
+use std::path::Path;
+
+use sizes::{Table, TableError};
+use voronoi::Dimension;
+
+use crate::Error;
+use crate::size_options::axes;
+
+/// The line of a fault, counted from 1, and what it is.
+type Fault = (usize, String);
+
+/// Whether a text is the name of a file of sizes: its extension is one of tables, or there is such a file.
+pub(crate) fn is_size_file(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    matches!(extension.to_str(), Some("csv" | "txt")) || path.is_file()
+}
+
+/// Reads diameters: a list of them, or of volumes; a histogram; or a distribution function.
+///
+/// # Errors
+/// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
+pub(crate) fn read_diameter_file(path: &Path, dimension: Dimension) -> Result<Table, Error> {
+    read(path, |text| {
+        let rows = Rows::new(text)?;
+        let shares = ["cdf"];
+        let by_number = ["weight", "number", "count"];
+        let by_volume = ["volume_fraction", "area_fraction"];
+        let table = if let (Some(diameter), Some(share)) = (rows.named(&DIAMETERS), rows.named(&shares)) {
+            Table::distribution_function(&rows.numbers([diameter, share])?)
+        } else if let (Some(from), Some(to)) = (rows.named(&["from"]), rows.named(&["to"])) {
+            match (rows.named(&by_number), rows.named(&by_volume)) {
+                (Some(weight), None) => Table::histogram(&rows.numbers([from, to, weight])?, None),
+                (None, Some(weight)) => {
+                    Table::histogram(&rows.numbers([from, to, weight])?, Some(axes(dimension)))
+                }
+                _ => {
+                    let problem = "a histogram needs one column of weights, named weight (by number) or volume_fraction";
+                    return Err((rows.first_line, problem.to_owned()));
+                }
+            }
+        } else if let Some(diameter) = rows.named(&DIAMETERS).or_else(|| rows.only()) {
+            Table::list(rows.numbers([diameter])?.as_flattened())
+        } else if let Some(volume) = rows.named(volume_names(dimension)) {
+            let volumes = rows.numbers([volume])?;
+            let diameters: Vec<f64> =
+                volumes.as_flattened().iter().map(|volume| dimension.ball_diameter(*volume)).collect();
+            Table::list(&diameters)
+        } else {
+            let names = "name a list diameter (or volume), a histogram from, to, weight, and a distribution function diameter, cdf";
+            return Err((rows.first_line, format!("columns without these names; {names}")));
+        };
+        table.map_err(|error| (rows.line(&error), error.to_string()))
+    })
+}
+
+/// Reads the volume of each grain (in the plane: area).
+///
+/// # Errors
+/// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
+pub(crate) fn read_volume_file(path: &Path, dimension: Dimension) -> Result<Vec<f64>, Error> {
+    read(path, |text| {
+        let rows = Rows::new(text)?;
+        let name = volume_names(dimension)[0];
+        let (column, is_diameter) = match (rows.named(volume_names(dimension)), rows.named(&DIAMETERS)) {
+            (Some(column), _) => (column, false),
+            (None, Some(column)) => (column, true),
+            (None, None) => match rows.only() {
+                Some(column) => (column, false),
+                None => {
+                    let problem = format!("no column is named {name} or diameter; name one so");
+                    return Err((rows.first_line, problem));
+                }
+            },
+        };
+        let numbers = rows.numbers([column])?;
+        let volumes: Vec<f64> = numbers
+            .as_flattened()
+            .iter()
+            .map(
+                |number| {
+                    if is_diameter { crate::grain_sizes::ball_volume(dimension, *number) } else { *number }
+                },
+            )
+            .collect();
+        let is_bad = |volume: &f64| !(volume.is_finite() && *volume > 0.0);
+        if let Some(row) = volumes.iter().position(is_bad) {
+            let name = if is_diameter { "diameter" } else { name };
+            let number = numbers.as_flattened()[row];
+            let problem =
+                format!("the {name} {number} is not positive and finite; correct it or remove the line");
+            return Err((rows.rows[row].0, problem));
+        }
+        if volumes.is_empty() {
+            return Err((1, "holds no grains; give one on each line".to_owned()));
+        }
+        Ok(volumes)
+    })
+}
+
+/// What columns of diameters may be called.
+const DIAMETERS: [&str; 3] = ["diameter", "equivalent_diameter", "equivalentdiameter"];
+
+/// What columns of volumes may be called; areas of cells in space are something else.
+fn volume_names(dimension: Dimension) -> &'static [&'static str] {
+    match dimension {
+        Dimension::Two => &["area", "volume"],
+        Dimension::Three => &["volume"],
+    }
+}
+
+fn read<T>(path: &Path, parse: impl FnOnce(&str) -> Result<T, Fault>) -> Result<T, Error> {
+    let bytes = fs::read(path).map_err(|cause| Error::SizeFileUnreadable { path: path.to_owned(), cause })?;
+    parse(&String::from_utf8_lossy(&bytes)).map_err(|(line, problem)| Error::BadSizeFile {
+        path: path.to_owned(),
+        line,
+        problem,
+    })
+}
+
+/// The lines of a table, which begins with the names of its columns or has none. Empty lines and those that begin with `#` are left out.
+struct Rows<'a> {
+    /// In lower case.
+    names: Vec<String>,
+    first_line: usize,
+    rows: Vec<(usize, Vec<&'a str>)>,
+}
+
+impl<'a> Rows<'a> {
+    fn new(text: &'a str) -> Result<Self, Fault> {
+        let lines =
+            (1..).zip(text.lines()).map(|(line, text)| (line, text.trim_start_matches('\u{feff}').trim()));
+        let lines: Vec<(usize, &str)> =
+            lines.filter(|(_, text)| !text.is_empty() && !text.starts_with('#')).collect();
+        let first = lines.first().map_or("", |(_, text)| text);
+        let delimiter = [';', ','].into_iter().find(|delimiter| first.contains(*delimiter));
+        let columns = |text: &'a str| -> Vec<&'a str> {
+            let trimmed = |column: &'a str| column.trim().trim_matches('"');
+            match delimiter {
+                Some(delimiter) => text.split(delimiter).map(trimmed).collect(),
+                None => text.split_whitespace().map(trimmed).collect(),
+            }
+        };
+        let mut rows: Vec<(usize, Vec<&str>)> =
+            lines.into_iter().map(|(line, text)| (line, columns(text))).collect();
+        let first_line = rows.first().map_or(1, |(line, _)| *line);
+        let are_names = rows
+            .first()
+            .is_some_and(|(_, columns)| columns.iter().all(|column| column.parse::<f64>().is_err()));
+        let names = if are_names {
+            rows.remove(0).1.into_iter().map(str::to_lowercase).collect()
+        } else {
+            Vec::new()
+        };
+        let count =
+            if are_names { names.len() } else { rows.first().map_or(0, |(_, columns)| columns.len()) };
+        if let Some((line, columns)) = rows.iter().find(|(_, columns)| columns.len() != count) {
+            let found = columns.len();
+            return Err((
+                *line,
+                format!("{found} columns after lines of {count}; write as many on each line"),
+            ));
+        }
+        Ok(Self { names, first_line, rows })
+    }
+
+    /// The column of the first of some names that there is.
+    fn named(&self, names: &[&str]) -> Option<usize> {
+        names.iter().find_map(|name| self.names.iter().position(|other| other == name))
+    }
+
+    /// The one column of a table without names.
+    fn only(&self) -> Option<usize> {
+        let is_one = self.names.is_empty() && self.rows.iter().all(|(_, columns)| columns.len() == 1);
+        is_one.then_some(0)
+    }
+
+    /// The numbers in some columns.
+    fn numbers<const N: usize>(&self, places: [usize; N]) -> Result<Vec<[f64; N]>, Fault> {
+        let row = |(line, columns): &(usize, Vec<&str>)| {
+            let mut numbers = [0.0; N];
+            for (number, place) in numbers.iter_mut().zip(places) {
+                let text = columns[place];
+                let shown: String = text.chars().take(20).collect();
+                *number = text
+                    .parse()
+                    .map_err(|_| (*line, format!("'{shown}' is no number; correct it or remove the line")))?;
+            }
+            Ok(numbers)
+        };
+        self.rows.iter().map(row).collect()
+    }
+
+    /// The line that an error is about.
+    fn line(&self, error: &TableError) -> usize {
+        let row = error.row().and_then(|row| self.rows.get(row - 1));
+        row.map_or(self.first_line, |(line, _)| *line)
+    }
+}

@@ -1,0 +1,185 @@
+//! What is asked of the grains' sizes.
+
+use std::path::{Path, PathBuf};
+
+use sizes::{Distribution, Law, Part, Spec, SpecError};
+use voronoi::{Dimension, Domain};
+
+use crate::grain_sizes::{ball_volume, quantile_volumes};
+use crate::memory::{available_memory, check_cells};
+use crate::size_file::{is_size_file, read_diameter_file, read_volume_file};
+use crate::{Config, Error, SeedSource};
+
+/// Diameters where packed seeds are asked for and nothing is said of sizes: those of recrystallised metals.
+const USUAL_DIAMETERS: &str = "lognormal(mean=1, cv=0.35)";
+
+/// How often the number of grains is corrected by the volumes of those that would be drawn: two or three times change it.
+const MOST_CORRECTIONS: usize = 20;
+
+/// What is asked of the grains' sizes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SizeOptions {
+    /// Where they come from; nothing for what the cells of the seeds have.
+    pub source: Option<SizeSource>,
+    /// How they are drawn from a distribution.
+    pub draw: SizeDraw,
+}
+
+/// Where sizes come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SizeSource {
+    /// A distribution of equivalent diameters in words.
+    Diameters(Spec),
+    /// A file with a distribution of them.
+    DiameterFile(PathBuf),
+    /// A file with the volume of each grain (in the plane: area).
+    VolumeFile(PathBuf),
+}
+
+/// How sizes are drawn from a distribution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SizeDraw {
+    /// The middles of equal shares, in random order: as near the distribution as so many grains can be.
+    #[default]
+    Quantiles,
+    /// Each by itself.
+    Random,
+}
+
+impl SizeDraw {
+    /// As the command line spells it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Quantiles => "quantiles",
+            Self::Random => "random",
+        }
+    }
+}
+
+impl SizeSource {
+    /// A distribution of diameters: a file where one has this name, or the name ends as those of tables do; else words.
+    ///
+    /// # Errors
+    /// What is wrong with the words.
+    pub fn diameters(text: &str) -> Result<Self, SpecError> {
+        let path = Path::new(text);
+        if is_size_file(path) {
+            return Ok(Self::DiameterFile(path.to_owned()));
+        }
+        text.parse().map(Self::Diameters)
+    }
+
+    /// The option that asks for it, and its value.
+    pub(crate) fn setting(&self) -> (&'static str, String) {
+        match self {
+            Self::Diameters(spec) => ("diameters", spec.text().to_owned()),
+            Self::DiameterFile(path) => ("diameters", path.display().to_string()),
+            Self::VolumeFile(path) => ("volumes", path.display().to_string()),
+        }
+    }
+}
+
+/// What grains are to be like.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Wanted {
+    /// Diameters of a distribution.
+    Diameters(Distribution),
+    /// These volumes, but for a common factor.
+    Volumes(Vec<f64>),
+}
+
+impl Config {
+    /// Whether grains have given volumes.
+    pub fn is_sized(&self) -> bool {
+        self.sizes.source.is_some() || matches!(self.seeds, SeedSource::Packed { .. })
+    }
+
+    /// What is asked for in words.
+    pub(crate) fn asked_sizes(&self) -> String {
+        match &self.sizes.source {
+            None => USUAL_DIAMETERS.to_owned(),
+            Some(SizeSource::VolumeFile(path)) => format!("volumes of {}", path.display()),
+            Some(source) => source.setting().1,
+        }
+    }
+
+    /// What grains are to be like, where they have given volumes.
+    ///
+    /// # Errors
+    /// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
+    pub(crate) fn wanted_sizes(&self) -> Result<Wanted, Error> {
+        let axes = axes(self.dimension);
+        Ok(match &self.sizes.source {
+            None => Wanted::Diameters(
+                USUAL_DIAMETERS.parse::<Spec>().expect("a good distribution").distribution(axes),
+            ),
+            Some(SizeSource::Diameters(spec)) => Wanted::Diameters(spec.distribution(axes)),
+            Some(SizeSource::DiameterFile(path)) => {
+                let law = Law::Table(read_diameter_file(path, self.dimension)?);
+                let all = Part::new(law, 0.0, f64::INFINITY).expect("nothing is cut off");
+                Wanted::Diameters(Distribution::new(vec![(1.0, all)], None))
+            }
+            Some(SizeSource::VolumeFile(path)) => Wanted::Volumes(read_volume_file(path, self.dimension)?),
+        })
+    }
+
+    /// The same with as many random seeds as grains of the sizes asked for fill the domain; with those of a file of volumes.
+    ///
+    /// # Errors
+    /// [`Error::GrainTooLarge`]; [`Error::CellsExceedMemory`]; whatever is wrong with the domain or a file.
+    pub fn with_count_of_sizes(self) -> Result<Self, Error> {
+        let domain = self.domain()?;
+        let found = match self.wanted_sizes()? {
+            Wanted::Volumes(volumes) => volumes.len(),
+            Wanted::Diameters(distribution) => count_that_fills(&domain, &distribution, self.sizes.draw)?,
+        };
+        let seeds = match self.seeds {
+            SeedSource::Random { .. } => SeedSource::Random { count: found },
+            SeedSource::PoissonDisc { .. } => SeedSource::PoissonDisc { count: found },
+            SeedSource::Packed { .. } => SeedSource::Packed { count: found },
+            others => others,
+        };
+        Ok(Self { seeds, ..self })
+    }
+}
+
+pub(crate) fn axes(dimension: Dimension) -> u32 {
+    match dimension {
+        Dimension::Two => 2,
+        Dimension::Three => 3,
+    }
+}
+
+/// The number of grains of a distribution that fills a domain. Few grains lack the largest ones of a distribution, so their mean volume is
+/// smaller than its own: what they would have is looked at.
+fn count_that_fills(domain: &Domain, distribution: &Distribution, draw: SizeDraw) -> Result<usize, Error> {
+    let (dimension, measure) = (domain.dimension(), domain.measure());
+    let mean_volume = ball_volume(dimension, 1.0) * distribution.moment(axes(dimension));
+    let mut count = whole(measure / mean_volume);
+    check_cells(count, available_memory())?;
+    let mut tried = Vec::new();
+    while draw == SizeDraw::Quantiles && tried.len() < MOST_CORRECTIONS && !tried.contains(&count) {
+        tried.push(count);
+        let volumes: f64 = quantile_volumes(dimension, distribution, count).iter().sum();
+        count = whole(measure / volumes * count as f64);
+        check_cells(count, available_memory())?;
+    }
+    let largest = distribution.quantile(1.0 - 0.5 / count as f64);
+    let longest = domain.size().max_element();
+    let fits = dimension.ball_diameter(measure).min(longest);
+    if largest > fits {
+        return Err(Error::GrainTooLarge { diameter: largest, fits });
+    }
+    Ok(count)
+}
+
+/// The nearest whole number of grains, one or more.
+fn whole(number: f64) -> usize {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "numbers too large take the largest"
+    )]
+    let whole = number.round() as usize;
+    whole.max(1)
+}

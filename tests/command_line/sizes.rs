@@ -1,0 +1,286 @@
+//! Grains of given sizes: distributions, lists, volumes, what is reached, what is refused.
+
+use serde_json::Value;
+
+use crate::workplace::{FAILED, USAGE, Workplace};
+
+fn json(workplace: &Workplace, name: &str) -> Value {
+    serde_json::from_slice(&workplace.bytes(name)).unwrap()
+}
+
+fn number(value: &Value, key: &str) -> f64 {
+    value[key].as_f64().unwrap_or_else(|| panic!("no number {key} in {value}"))
+}
+
+/// Numbers of a column of a table of cells.
+fn column(workplace: &Workplace, arguments: &str, name: &str) -> Vec<f64> {
+    workplace.run(&format!("{arguments} --no-mesh --cells-json cells.json"));
+    let table = json(workplace, "cells.json");
+    table["cells"].as_array().unwrap().iter().map(|cell| number(cell, name)).collect()
+}
+
+#[test]
+fn distribution_is_reached_by_cells_and_kept_by_relaxation() {
+    let workplace = Workplace::new();
+    for (options, count) in [
+        ("", 60),
+        ("--periodic x,y,z", 60),
+        ("--periodic x,y,z --periodic-cut box", 60),
+        ("--domain sphere --chord-error 0.02", 40),
+        ("--dim 2", 80),
+        ("--dim 2 --periodic x,y", 80),
+        ("--dim 2 --domain disc", 50),
+    ] {
+        let said = workplace.run(&format!(
+            "--seeds {count} --diameters lognormal(mean=3,cv=0.35) {options} -n 1 --json-summary s.json"
+        ));
+        assert!(
+            said.contains("sizes       asked lognormal(mean=3,cv=0.35) (mean 3.0000, cv 0.3500; quantiles)"),
+            "{said}"
+        );
+        let summary = json(&workplace, "s.json");
+        assert_eq!(summary["grains"], count);
+        let sizes = &summary["sizes"];
+        assert!(number(sizes, "cdf_distance") <= 0.5 / f64::from(count) + 1e-12, "{options}: {sizes}");
+        assert!(number(sizes, "largest_volume_error_of_cells") < 1e-10, "{options}: {sizes}");
+        assert!(number(sizes, "largest_volume_error") < 1e-10, "{options}: {sizes}");
+        assert_eq!(sizes["centroid_steps"], 10);
+        let mean = number(&summary["equivalent_diameter"], "mean");
+        assert!((mean / (3.0 * number(sizes, "scale")) - 1.0).abs() < 0.02, "{mean}: {sizes}");
+    }
+}
+
+#[test]
+fn as_many_grains_are_made_as_fill_the_domain() {
+    let workplace = Workplace::new();
+    for (options, axes) in [("--box 100 80 60", 3), ("--dim 2 --box 400 300", 2)] {
+        for diameters in
+            ["lognormal(mean=15,cv=0.35)", "0.8*lognormal(mean=10,cv=0.3)+0.2*equal(25),by=volume"]
+        {
+            workplace.run(&format!("{options} --diameters {diameters} -n 0 --relax 0 --json-summary s.json"));
+            let summary = json(&workplace, "s.json");
+            let scale = number(&summary["sizes"], "scale");
+            let count = number(&summary, "grains");
+            // One grain more or less.
+            assert!(
+                (scale - 1.0).abs() < 1.0 / (f64::from(axes) * count),
+                "{diameters}: {scale} with {count}"
+            );
+        }
+    }
+    // Of what the distribution has in its tail, random draws have what chance gives.
+    workplace.run("--box 9 9 9 --diameters uniform(1,2) --draw random -n 0 --relax 0 --json-summary s.json");
+    let sizes = &json(&workplace, "s.json")["sizes"];
+    assert!((0.9..1.1).contains(&number(sizes, "scale")), "{sizes}");
+    let count = number(&json(&workplace, "s.json"), "grains");
+    assert!(number(sizes, "cdf_distance") > 0.5 / count, "{sizes}");
+}
+
+#[test]
+fn tables_of_diameters_are_distributions() {
+    let workplace = Workplace::new();
+    let listed = "diameter,name\n1,a\n2,b\n# a remark\n3,c\n\n2,d\n";
+    let function = "diameter cdf\n1 0\n1 25\n2 25\n2 75\n3 75\n3 100\n";
+    let volumes = "v;Volume\n0;1\n0;8\n0;8\n0;27\n";
+    for file in [listed, function, volumes, "1\n2\n2\n3\n"] {
+        workplace.put("d.csv", file);
+        let mut found = column(&workplace, "--seeds 4 --diameters d.csv", "equivalent_diameter");
+        found.sort_by(f64::total_cmp);
+        for (diameter, expected) in found.iter().zip([1.0, 2.0, 2.0, 3.0]) {
+            assert!((diameter / found[0] / expected - 1.0).abs() < 1e-9, "{file}: {found:?}");
+        }
+    }
+    // Half of the volume is in grains of diameters 10 to 20.
+    workplace.put("h.txt", "from to volume_fraction\n0 10 50\n10 20 50\n");
+    let found = column(&workplace, "--seeds 200 --diameters h.txt", "volume");
+    let most = found.iter().copied().fold(0.0, f64::max);
+    let small: f64 = found.iter().filter(|volume| **volume < 0.13 * most).sum();
+    assert!((small - 0.5).abs() < 0.05, "{small}");
+}
+
+#[test]
+fn each_grain_has_the_volume_given_to_it() {
+    let workplace = Workplace::new();
+    workplace.put("v.csv", "id, volume\na, 1\nb, 2\nc, 3\nd, 2\n");
+    let found = column(&workplace, "--volumes v.csv", "volume");
+    for (volume, expected) in found.iter().zip([0.125, 0.25, 0.375, 0.25]) {
+        assert!((volume / expected - 1.0).abs() < 1e-10, "{found:?}");
+    }
+    // Seeds of a file stay where they are, and their radii count no more.
+    workplace.put("s.csv", "x,y,z,radius\n.2,.2,.2,.1\n.8,.3,.4,.3\n.5,.5,.8,.1\n.3,.8,.3,.1\n");
+    let said = workplace.run("--seeds-file s.csv --volumes v.csv --no-mesh --cells-json c.json");
+    assert!(said.contains("passed over radii or weights, as grains have other sizes, in s.csv"), "{said}");
+    let cells = json(&workplace, "c.json")["cells"].clone();
+    assert_eq!(cells[1]["seed"], serde_json::json!([0.8, 0.3, 0.4]));
+    assert!((number(&cells[2], "volume") / 0.375 - 1.0).abs() < 1e-10);
+    workplace.put("a.txt", "1\n3\n");
+    let found = column(&workplace, "--volumes a.txt --dim 2 --box 2 2", "area");
+    assert!((found[1] / 3.0 - 1.0).abs() < 1e-10, "{found:?}");
+    // A table of cells gives its volumes back.
+    workplace.run("--seeds 20 --no-mesh --cells-csv cells.csv");
+    let given = column(&workplace, "--seeds 20", "volume");
+    let found = column(&workplace, "--volumes cells.csv", "volume");
+    for (volume, expected) in found.iter().zip(given) {
+        assert!((volume / expected - 1.0).abs() < 1e-9, "{volume} for {expected}");
+    }
+}
+
+#[test]
+fn packed_grains_are_like_those_of_metals() {
+    let workplace = Workplace::new();
+    let cells = "--seeds 300 --periodic x,y,z --seeding packed";
+    let faces = column(&workplace, cells, "nfaces");
+    let mean = faces.iter().sum::<f64>() / 300.0;
+    assert!((mean - 13.72).abs() < 0.25, "{mean} faces");
+    let sphericity = column(&workplace, cells, "sphericity");
+    let mean = sphericity.iter().sum::<f64>() / 300.0;
+    assert!((mean - 0.855).abs() < 0.01, "sphericity {mean}");
+}
+
+#[test]
+fn settings_of_a_file_repeat_its_sizes() {
+    let workplace = Workplace::new();
+    workplace.put("v.csv", "1\n2\n3\n4\n5\n");
+    workplace.put("s.csv", "x,y,z\n.2,.2,.2\n.8,.3,.4\n.5,.5,.8\n");
+    for options in [
+        "--diameters 0.7*uniform(1,2)+0.3*equal(4),by=volume --box 9 9 9",
+        "--diameters gamma(mean=1,cv=0.4) --seeds 12 --draw random --lloyd 2",
+        "--volumes v.csv --seeding poisson-disc",
+        "--seeding packed --seeds 9",
+        "--seeds-file s.csv --diameters weibull(shape=3,scale=1)",
+    ] {
+        workplace.run(&format!("{options} -n 0 --relax 0 -o a.vtp"));
+        workplace.run("--config a.vtp -o b.vtp");
+        assert!(workplace.bytes("a.vtp") == workplace.bytes("b.vtp"), "{options}");
+    }
+    workplace.put("run.toml", "diameters = 'equal(2)'\nseeds = 5\nlloyd = 0\nlevels = 0\nrelax = 0\n");
+    workplace.run("--config run.toml");
+    workplace.run("--config run.toml --lattice sc 2");
+}
+
+#[test]
+fn sizes_that_are_mistaken() {
+    let workplace = Workplace::new();
+    let value = |value: &str, message: &str| {
+        format!("invalid value '{value}' for '--diameters <SPEC|FILE>': diameters '{value}': {message}")
+    };
+    for (spec, message) in [
+        ("lognomal(mean=1,cv=0.3)", "'lognomal' is unknown; did you mean 'lognormal'?"),
+        (
+            "normal(20,5)",
+            "'normal(20,5)' needs mean and sd, or mean and cv, and may have from and to: normal(mean=20, sd=5)",
+        ),
+        ("0.5*equal(3)+equal(4)", "'equal(4)' has no weight, others do; write 0.5*equal(4), say"),
+        (
+            "equal(3),from=5",
+            "'equal(3)': from 5 to inf there is next to nothing of it (a share of 0.0e0); widen the cut-offs",
+        ),
+    ] {
+        workplace.refuses(&format!("--diameters {spec}"), USAGE, &value(spec, message));
+    }
+    workplace.put("v.csv", "1\n2\n");
+    for (arguments, message) in [
+        (
+            "--diameters equal(1) --lattice bcc 2",
+            "the argument '--diameters <SPEC|FILE>' cannot be used with '--lattice <LATTICE> <N>'",
+        ),
+        (
+            "--volumes v.csv --lattice bcc 2",
+            "the argument '--volumes <FILE>' cannot be used with '--lattice <LATTICE> <N>'",
+        ),
+        ("--volumes v.csv --seeds 2", "the argument '--volumes <FILE>' cannot be used with '--seeds <N>'"),
+        (
+            "--volumes v.csv --diameters equal(1)",
+            "the argument '--volumes <FILE>' cannot be used with '--diameters <SPEC|FILE>'",
+        ),
+        (
+            "--diameters equal(1) --min-diameter 0.2",
+            "--min-diameter would change sizes that are given; cut small ones off with from=, or leave it out",
+        ),
+    ] {
+        workplace.refuses(arguments, USAGE, message);
+    }
+    workplace.put("s.csv", ".1,.2,.3\n.5,.5,.5\n.7,.1,.3\n");
+    for (arguments, message) in [
+        ("--volumes v.csv --seeds-file s.csv", "volumes of v.csv: 2 volumes for 3 seeds; give as many"),
+        (
+            "--diameters equal(60) --box 50 50 50",
+            "a grain of diameter 60.000000 does not fit the domain; ask for diameters up to 50.000000 (to=50.000000 cuts larger \
+             ones off), or take a larger domain",
+        ),
+        (
+            "--diameters equal(60) --dim 2 --box 200 2",
+            "a grain of diameter 60.000000 does not fit the domain; ask for diameters up to 22.567583 (to=22.567583 cuts larger \
+             ones off), or take a larger domain",
+        ),
+        (
+            "--diameters equal(1e-6)",
+            "1909859317102744320 cells would take ... are available; take fewer seeds",
+        ),
+        ("--diameters none.csv", "none.csv: cannot be read: ... ; give the path of a readable text file"),
+        ("--volumes none.csv", "none.csv: cannot be read: ... ; give the path of a readable text file"),
+    ] {
+        workplace.refuses(arguments, FAILED, message);
+    }
+}
+
+#[test]
+fn file_of_sizes_that_is_mistaken() {
+    let workplace = Workplace::new();
+    for (option, content, message) in [
+        ("diameters", "", "line 1: holds no diameters; give one or more"),
+        ("diameters", "diameter\n1\nx\n", "line 3: 'x' is no number; correct it or remove the line"),
+        (
+            "diameters",
+            "diameter\n# zero\n0\n",
+            "line 3: the diameter 0 is not positive and finite; correct it or remove the line",
+        ),
+        (
+            "diameters",
+            "size\n1\n",
+            "line 1: columns without these names; name a list diameter (or volume), a histogram from, to, weight, and a \
+             distribution function diameter, cdf",
+        ),
+        (
+            "diameters",
+            "from,to\n1,2\n",
+            "line 1: a histogram needs one column of weights, named weight (by number) or volume_fraction",
+        ),
+        (
+            "diameters",
+            "from,to,weight\n1,3,2\n2,4,2\n",
+            "line 3: the bin from 2 to 4 has no width, or reaches into the one before; list bins from small to large",
+        ),
+        (
+            "diameters",
+            "from,to,count\n1,3,-2\n",
+            "line 2: the weight -2 is not 0 or more; correct it or remove the line",
+        ),
+        ("diameters", "from,to,count\n1,3,0\n", "line 1: every weight is 0; give one that is more"),
+        (
+            "diameters",
+            "diameter,cdf\n1,0.1\n2,1\n",
+            "line 2: the distribution function begins with 0.1; begin with a line of the diameter that none is below, and 0",
+        ),
+        (
+            "diameters",
+            "diameter,cdf\n1,0\n2,1\n1.5,1\n",
+            "line 4: diameters and shares of a distribution function must not fall; list them from small to large",
+        ),
+        (
+            "diameters",
+            "diameter,n\n1,2\n3\n",
+            "line 3: 1 columns after lines of 2; write as many on each line",
+        ),
+        ("volumes", "", "line 1: holds no grains; give one on each line"),
+        ("volumes", "a,b\n1,2\n", "line 1: no column is named volume or diameter; name one so"),
+        (
+            "volumes",
+            "volume\n1\n-1\n",
+            "line 3: the volume -1 is not positive and finite; correct it or remove the line",
+        ),
+    ] {
+        workplace.put("d.csv", content);
+        workplace.refuses(&format!("--{option} d.csv"), FAILED, &format!("d.csv {message}"));
+    }
+}
