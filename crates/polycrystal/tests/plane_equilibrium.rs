@@ -188,6 +188,21 @@ proptest! {
     }
 }
 
+/// Their edges once counted as short beside the others, and went all at once; and the first grain, if it was one of them, bore what rounding
+/// leaves of all areas.
+#[test]
+fn a_cluster_of_small_grains_comes_to_rest() {
+    let domain = Domain::unit_square();
+    let spread = |k: u32| DVec2::new(0.755, 0.570) * f64::from(k) % 1.0;
+    let cluster = (1..=30).map(|k| DVec2::new(0.3, 0.6) + 3e-3 * spread(k));
+    let others = (1..=30).map(spread);
+    let seeds: Vec<DVec3> = cluster.chain(others).map(|seed| seed.extend(0.0)).collect();
+    let cells = Tessellation::new(&domain, &seeds).expect("seeds");
+    let equilibrium = equilibrium_of(&cells, &one_tension).expect("relaxes");
+    assert!(equilibrium.validation.largest_volume_error < 1e-9);
+    assert_eq!(equilibrium.balance.expect("in equilibrium").flagged_lines, 0);
+}
+
 /// Two edges switch at once here, which leaves the area of a small grain off by three quarters.
 #[test]
 fn areas_that_an_event_leaves_far_off_come_back_step_by_step() {

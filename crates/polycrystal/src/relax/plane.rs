@@ -18,8 +18,9 @@ use voronoi::{CellComplex, Collapsed, Corner, FaceId, Tessellation};
 
 use super::balance::Balance;
 use super::cells::{NetworkRecipe, RelaxedCells};
+use super::local_size::LocalSize;
 use super::reconnection::Reconnections;
-use super::{Moving, RelaxationStep, Relaxed};
+use super::{Moving, RelaxationStep, Relaxed, Tuning};
 use crate::{Mesh, Network, NetworkError, Side, measure_network, validate};
 use bow::point_on_arc;
 use descent::Descent;
@@ -85,7 +86,8 @@ fn settle(
     let domain = edges.complex.domain();
     let size = domain.dimension().cube_edge(domain.measure() / areas.len() as f64);
     let feature_size = size.min(domain.size().truncate().min_element());
-    let mut switcher = Switcher::new(feature_size, recipe.tension);
+    let local_size = LocalSize::new(domain.dimension(), Tuning::default().small_grain * size);
+    let mut switcher = Switcher::new(feature_size, local_size, areas, recipe.tension);
     let mut reconnections = switcher.start(edges);
     let mut foam = edges.foam(areas, recipe, |_| CHORDS);
     let mut descent = Descent::new(&foam, edges.state(&foam));

@@ -18,6 +18,9 @@ pub(super) const OWN: usize = 5;
 pub(super) struct Foam<'a> {
     pub(super) arcs: Vec<Arc>,
     pub(super) areas: &'a [f64],
+    /// The largest cell. Its pressure is 0, as the same pressure everywhere moves nothing; its area is what the others leave, and with that
+    /// all rounding.
+    pub(super) pinned: usize,
     pub(super) freedoms: Vec<Freedom>,
     /// Of all arcs that have any.
     pub(super) mean_tension: f64,
@@ -79,6 +82,7 @@ impl<'a> Foam<'a> {
             order: Dissection::new(places, areas.len(), arcs.iter().map(around)),
             mean_tension: tensions().sum::<f64>() / tensions().count().max(1) as f64,
             arcs,
+            pinned: (0..areas.len()).max_by(|a, b| areas[*a].total_cmp(&areas[*b])).unwrap_or(0),
             areas,
             freedoms: (0u32..).take(complex.vertices.len()).map(|vertex| freedom(complex, vertex)).collect(),
         }

@@ -12,10 +12,11 @@ use voronoi::{CellComplex, CellId, FaceId, Shift, Side, Spoke};
 
 use crate::Boundary;
 use crate::relax::local_area::boundary;
+use crate::relax::local_size::LocalSize;
 use crate::relax::reconnection::Reconnections;
 use crate::relax::shape::distinct;
 
-/// Length, in units of the feature size, below which an edge that would vanish may go.
+/// Length, in units of the feature size, below which an edge that would vanish may go; around small grains, in units of theirs.
 const SHORT: f64 = 0.3;
 
 /// Length, in the same unit, below which the cells' own edges do as well: they tell nothing of where the tensions pull.
@@ -46,6 +47,10 @@ pub(super) struct CurvedEdges {
 /// Looks for events.
 pub(super) struct Switcher<'a> {
     size: f64,
+    /// Around small grains edges are short only if they are as much shorter.
+    local_size: LocalSize,
+    /// Of each cell.
+    areas: &'a [f64],
     tension: &'a dyn Fn(&Boundary) -> f64,
     /// Of points, by the cells and walls there, how often they opened.
     tries: HashMap<Vec<Side>, u8>,
@@ -64,35 +69,42 @@ struct Opening {
 }
 
 impl<'a> Switcher<'a> {
-    /// For features of a size; tensions are those of boundaries.
-    pub(super) fn new(size: f64, tension: &'a dyn Fn(&Boundary) -> f64) -> Self {
-        Self { size, tension, tries: HashMap::new() }
+    /// For features of a size, and cells of some areas; tensions are those of boundaries.
+    pub(super) fn new(
+        size: f64,
+        local_size: LocalSize,
+        areas: &'a [f64],
+        tension: &'a dyn Fn(&Boundary) -> f64,
+    ) -> Self {
+        Self { size, local_size, areas, tension, tries: HashMap::new() }
     }
 
     /// Opens what is too short to start with, as far as it then has a reason, and points with too many edges.
     pub(super) fn start(&mut self, edges: &mut CurvedEdges) -> Reconnections {
-        let tiny = edges.shorter_than(TINY * self.size, |_| true);
-        self.switch(edges, &tiny, TINY * self.size, true)
+        self.switch(edges, TINY, |_| true, true)
     }
 
     /// Lets all events happen that are due, of these edges that would vanish and of points with too many edges.
     pub(super) fn pass(&mut self, edges: &mut CurvedEdges, vanishing: &[FaceId]) -> Reconnections {
-        let short = edges.shorter_than(SHORT * self.size, |face| vanishing.contains(&face));
-        self.switch(edges, &short, SHORT * self.size, false)
+        self.switch(edges, SHORT, |face| vanishing.contains(&face), false)
     }
 
     fn switch(
         &mut self,
         edges: &mut CurvedEdges,
-        due: &[FaceId],
-        length: f64,
+        short: f64,
+        is_due: impl Fn(FaceId) -> bool,
         stretches: bool,
     ) -> Reconnections {
         let mut done = Reconnections::default();
-        for face in due {
+        let due = edges.complex.faces().into_iter().filter(|face| is_due(*face));
+        let due = due.filter_map(|face| Some((self.length_below(edges, face, short)?, face)));
+        let mut due: Vec<(f64, FaceId)> = due.collect();
+        due.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (_, face) in due {
             // An event beside it may have stretched it.
-            if edges.chord(*face).length() < length {
-                done.add(self.switch_edge(edges, *face, stretches));
+            if self.length_below(edges, face, short).is_some() {
+                done.add(self.switch_edge(edges, face, stretches));
             }
         }
         loop {
@@ -110,6 +122,15 @@ impl<'a> Switcher<'a> {
             }
         }
         done
+    }
+
+    /// The distance from one end of an edge to the other, where it is below so many feature sizes, and around small grains as many of theirs.
+    fn length_below(&self, edges: &CurvedEdges, face: FaceId, short: f64) -> Option<f64> {
+        let length = edges.chord(face).length();
+        let ends = || edges.complex.corners(face).iter().map(|corner| corner.vertex).collect::<Vec<_>>();
+        let local = || self.local_size.at_vertices(&edges.complex, &ends(), self.areas);
+        let short = short * self.size;
+        (length < short && length < short * local()).then_some(length)
     }
 
     /// Draws an edge together, and opens the point along the edge that saves most. If that is the same again, all is as it was; or
@@ -293,15 +314,6 @@ fn sides_around(spokes: &[Spoke]) -> Vec<Side> {
 }
 
 impl CurvedEdges {
-    /// Some of the edges whose ends are nearer to each other than that, shortest first.
-    fn shorter_than(&self, length: f64, is_one: impl Fn(FaceId) -> bool) -> Vec<FaceId> {
-        let edges = self.complex.faces().into_iter().filter(|face| is_one(*face));
-        let lengths = edges.map(|face| (self.chord(face).length(), face));
-        let mut short: Vec<(f64, FaceId)> = lengths.filter(|(own, _)| *own < length).collect();
-        short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        short.into_iter().map(|(_, face)| face).collect()
-    }
-
     /// From start to end of an edge.
     fn chord(&self, face: FaceId) -> DVec2 {
         match self.complex.corners(face) {

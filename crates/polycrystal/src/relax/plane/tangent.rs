@@ -16,9 +16,6 @@ const LEAST_HELD: f64 = 1e-9;
 /// Least stiffness of an arc against turning, as a share of that without pressure.
 const LEAST_BENDING: f64 = 0.1;
 
-/// The cell whose pressure is 0: the same pressure everywhere moves nothing.
-const PINNED: usize = 0;
-
 /// What the foam is like near a state.
 pub(super) struct Tangent<'a> {
     foam: &'a Foam<'a>,
@@ -119,7 +116,7 @@ impl ArcTerms {
             places[4 + side] = foam.order.cell(cell.unwrap_or(some));
             match cell {
                 None => continue,
-                Some(PINNED) => {
+                Some(cell) if cell == foam.pinned => {
                     matrix[4 + side][4 + side] = -1.0;
                     continue;
                 }
@@ -217,7 +214,7 @@ impl<'a> Tangent<'a> {
                 }
             }
         }
-        values[order.cell(PINNED)] = 0.0;
+        values[order.cell(self.foam.pinned)] = 0.0;
         self.factors.solve(&mut values);
         let pressures: Vec<f64> = (0..changes.len()).map(|cell| -values[order.cell(cell)]).collect();
         let mut motion = self.zero();
