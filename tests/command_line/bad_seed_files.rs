@@ -89,6 +89,24 @@ fn seeds_at_the_same_place() {
     );
 }
 
+/// A quote in the last line once went unseen.
+#[test]
+fn quote_that_is_left_open() {
+    let message =
+        |line| format!("seeds.csv line {line}: a quote that the line does not close; close or remove it");
+    refuses("x,y,z,n\n.1,.2,.3,\"a\n.5,.6,.7,b\n", "", &message(2));
+    for end in ["", "\n", "\n\n# the end\n"] {
+        refuses(format!("x,y,z,n\n.1,.2,.3,a\n.5,.6,.7,\"b{end}"), "", &message(3));
+    }
+}
+
+/// It was once told as no whole number.
+#[test]
+fn id_that_is_empty() {
+    let message = "seeds.csv line 3: the id is empty; number each seed, or rename the column";
+    refuses("id,x,y,z\n7,.1,.2,.3\n,.5,.5,.5\n", "", message);
+}
+
 #[test]
 fn file_that_is_not_text() {
     refuses(

@@ -61,7 +61,7 @@ fn single_grain_is_a_cube_with_three_faces() {
 fn colors_show_sizes() {
     let workplace = Workplace::new();
     workplace.put("two.csv", "0.25, 0.5, 0.5\n0.4, 0.5, 0.5\n");
-    workplace.run("--seeds-file two.csv --relax 0 -n 0 --picture sizes.png --color-by size --quiet");
+    workplace.run("--seeds-file two.csv --relax 0 -n 0 --picture sizes.png --color-by diameter --quiet");
     // Viridis goes from (68, 1, 84) to (253, 231, 37); a face in shade has the same colour, darker.
     let colors = main_colors(&pixels(&workplace.path("sizes.png")));
     let is_shade_of = |pixel: &&Pixel, [r, g, b]: [f64; 3]| {
@@ -176,7 +176,7 @@ fn report_holds_the_network_and_the_run() {
     let points = decoded("points").len() / 6;
     assert_eq!(corners.iter().max().map(|point| *point as usize + 1), Some(points));
     assert_eq!(network["shifts"].as_array().unwrap().len(), 20);
-    for colors in ["grain", "size", "neighbors"] {
+    for colors in ["grain", "diameter", "neighbors"] {
         assert_eq!(network["colors"][colors].as_array().unwrap().len(), 20);
     }
     // The cube, in units of its side, from its middle.

@@ -284,3 +284,110 @@ fn file_of_sizes_that_is_mistaken() {
         workplace.refuses(&format!("--{option} d.csv"), FAILED, &format!("d.csv {message}"));
     }
 }
+
+/// The points of an .obj file.
+fn points(workplace: &Workplace, name: &str) -> Vec<[f64; 3]> {
+    let text = String::from_utf8(workplace.bytes(name)).unwrap();
+    let point = |line: &str| {
+        let mut numbers = line.split_whitespace().map(|word| word.parse().unwrap());
+        std::array::from_fn(|_| numbers.next().unwrap())
+    };
+    text.lines().filter_map(|line| line.strip_prefix("v ")).map(point).collect()
+}
+
+/// All is as in the box divided by the stretch, whose factors are 4, 1/2 and 1/2, and is then multiplied by it.
+#[test]
+fn stretched_grains_are_those_of_the_unstretched_frame() {
+    let workplace = Workplace::new();
+    for options in [
+        "",
+        "--periodic x,y,z",
+        "--periodic x,y,z --periodic-cut box",
+        "--diameters lognormal(mean=1,cv=0.35)",
+    ] {
+        let run = format!("--seeds 30 {options} -n 1");
+        workplace.run(&format!("{run} --box 1 2 2 -o a.obj --json-summary a.json"));
+        let said = workplace.run(&format!(
+            "{run} --box 4 1 1 --aspect-ratio 8 1 1 -o b.obj -o b.vtp --json-summary b.json --report r.html --stats b_stats.json"
+        ));
+        let line = "stretched   by 4.0000, 0.5000, 0.5000 along x, y, z; angles, residual and triangles are those before\n";
+        assert!(said.contains(line) && said.contains(" in [0, 4] x [0, 1] x [0, 1]"), "{said}");
+        let [frame, stretched] = ["a.obj", "b.obj"].map(|name| points(&workplace, name));
+        assert_eq!(frame.len(), stretched.len());
+        for ([x, y, z], found) in frame.iter().zip(&stretched) {
+            assert_eq!([4.0 * x, 0.5 * y, 0.5 * z], *found, "{options}");
+        }
+        let [frame, stretched] = ["a.json", "b.json"].map(|name| json(&workplace, name));
+        for same in [
+            "angles_before",
+            "angles_after",
+            "residual",
+            "triangle_angles",
+            "triple_lines",
+            "equivalent_diameter",
+        ] {
+            assert_eq!(frame[same], stretched[same], "{options}: {same}");
+        }
+        assert_eq!(
+            [&frame["stretch"], &stretched["stretch"]],
+            [&Value::Null, &serde_json::json!([4.0, 0.5, 0.5])]
+        );
+        let report = workplace.command("check --json b.vtp").assert().success().get_output().stdout.clone();
+        let report: Value = serde_json::from_slice(&report).unwrap();
+        let least = number(&report["files"][0]["triangle_angles"], "least");
+        assert!((least / number(&frame["triangle_angles"], "least") - 1.0).abs() < 1e-9, "{least}");
+        workplace.run("--config b.vtp -o c.vtp");
+        assert!(workplace.bytes("b.vtp") == workplace.bytes("c.vtp"), "{options}");
+    }
+    workplace.run("--dim 2 --seeds 30 --box 1 4 --cells-json a.json -o a.vtp");
+    workplace.run("--dim 2 --seeds 30 --box 2 2 --aspect-ratio 4 1 --cells-json b.json -o b.vtp");
+    workplace.command("check b.vtp").assert().success();
+    let [frame, stretched] = ["a.json", "b.json"].map(|name| json(&workplace, name)["cells"].clone());
+    for (frame, stretched) in frame.as_array().unwrap().iter().zip(stretched.as_array().unwrap()) {
+        assert!((number(frame, "area") / number(stretched, "area") - 1.0).abs() < 1e-12);
+        assert!(
+            (2.0 * frame["centroid"][0].as_f64().unwrap() / stretched["centroid"][0].as_f64().unwrap() - 1.0)
+                .abs()
+                < 1e-12
+        );
+    }
+    // Seeds of a file are where the box has them.
+    workplace.put("s.csv", "x,y,z\n.5,.2,.2\n2.8,.3,.4\n3.5,.5,.8\n");
+    workplace.run("--seeds-file s.csv --box 4 1 1 --aspect-ratio 2 1 1 --no-mesh --cells-json c.json");
+    let seed = &json(&workplace, "c.json")["cells"][1]["seed"];
+    assert!((seed[0].as_f64().unwrap() / 2.8 - 1.0).abs() < 1e-15, "{seed}");
+}
+
+#[test]
+fn aspect_ratio_that_is_mistaken() {
+    let workplace = Workplace::new();
+    workplace.put("h.csv", "1,0,0,1\n");
+    let range = "a length in proportion is a number from 0.01 to 100";
+    for (arguments, message) in [
+        ("--aspect-ratio 3 1", "--aspect-ratio takes three numbers, X Y Z, without --dim 2"),
+        ("--dim 2 --aspect-ratio 3 1 1", "--aspect-ratio takes two numbers, X Y, with --dim 2"),
+        ("--aspect-ratio 3 1 0", &format!("invalid value '0' for '--aspect-ratio <X> <Y> [Z]...': {range}")),
+        (
+            "--aspect-ratio 3 -1 1",
+            &format!("invalid value '-1' for '--aspect-ratio <X> <Y> [Z]...': {range}"),
+        ),
+        (
+            "--aspect-ratio 3 1 1 --lattice sc 2",
+            "the argument '--aspect-ratio <X> <Y> [Z]...' cannot be used with '--lattice <LATTICE> <N>'",
+        ),
+        (
+            "--aspect-ratio 3 1 1 --domain sphere",
+            "the argument '--aspect-ratio <X> <Y> [Z]...' cannot be used with '--domain <SHAPE>'",
+        ),
+        (
+            "--aspect-ratio 3 1 1 --half-spaces h.csv",
+            "the argument '--aspect-ratio <X> <Y> [Z]...' cannot be used with '--half-spaces <FILE>'",
+        ),
+        (
+            "--aspect-ratio 3 1 1 --series a.pvd",
+            "the argument '--aspect-ratio <X> <Y> [Z]...' cannot be used with '--series <F>'",
+        ),
+    ] {
+        workplace.refuses(arguments, USAGE, message);
+    }
+}

@@ -105,6 +105,7 @@ impl Case {
         files.extend(draw_seeds(draw, arrangement, count, &lattice, &domain, &mut options));
         smoothing(draw, &domain, count, limits, &mut options);
         let promise = outputs::draw(draw, dimension, &mut options);
+        files.extend(sizes(draw, arrangement, count, &domain, &mut options));
         let mut case = Self {
             kind: arrangement.name().to_owned(),
             keeps_volumes: !options.has("free"),
@@ -124,6 +125,50 @@ impl Case {
         }
         case
     }
+}
+
+/// Draws sizes and shapes of the grains, after all else, so that this is as it was without. Returns the file that they need.
+fn sizes(
+    draw: &mut Draw,
+    arrangement: Arrangement,
+    count: u32,
+    domain: &Domain,
+    options: &mut Options,
+) -> Option<(String, Vec<u8>)> {
+    let is_box = domain.files.is_empty() && !options.has("domain");
+    if is_box && !options.has("lattice") && !options.has("series") && draw.chance(0.1) {
+        let lengths: Vec<f64> = domain.sides.iter().map(|_| draw.magnitude(0.4, 2.5)).collect();
+        options.set("aspect-ratio", lengths);
+    }
+    let is_free = matches!(arrangement, Arrangement::Random | Arrangement::PoissonDisc);
+    let may_be_sized = is_free || matches!(arrangement, Arrangement::Uniform | Arrangement::Radii);
+    if !may_be_sized || options.has("min-diameter") || !draw.chance(0.35) {
+        return None;
+    }
+    if is_free {
+        options.set("seeding", [draw.one_of(&["packed", "packed", "random", "poisson-disc"])]);
+    }
+    let specs = [
+        "lognormal(mean=1,cv=0.35)",
+        "normal(mean=3,sd=1,from=1)",
+        "gamma(mean=2,cv=0.5)",
+        "weibull(shape=2.8,scale=1e-3)",
+        "0.5*uniform(1,2)+0.5*equal(3),by=volume",
+    ];
+    match draw.weighted(&[(0.7, "words"), (0.1, "packed"), (0.2, "volumes")]) {
+        "words" => options.set("diameters", [draw.one_of(&specs)]),
+        "volumes" if is_free => {
+            options.unset("seeds");
+            let lines: String = (0..count).map(|_| format!("{:?}\n", draw.magnitude(0.1, 10.0))).collect();
+            options.set("volumes", ["volumes.csv"]);
+            return Some(("volumes.csv".to_owned(), lines.into_bytes()));
+        }
+        _ => {}
+    }
+    if options.has("diameters") && draw.chance(0.3) {
+        options.set("draw", ["random"]);
+    }
+    None
 }
 
 /// Draws the options of the control mesh, relaxation and subdivision.
@@ -210,14 +255,17 @@ mod tests {
         let options = [
             "arrays",
             "ascii",
+            "aspect-ratio",
             "box",
             "cells-csv",
             "cells-json",
             "chord-error",
             "color-by",
             "config",
+            "diameters",
             "dim",
             "domain",
+            "draw",
             "drop-empty",
             "dry-run",
             "edge-length",
@@ -255,6 +303,7 @@ mod tests {
             "texture",
             "threads",
             "voxels",
+            "volumes",
             "vtk-encoding",
             "wall-tension",
         ];

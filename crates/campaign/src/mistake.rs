@@ -44,6 +44,10 @@ const MISTAKES: &[Mistake] = &[
         // It is refused without a texture before anything is written.
         case.options.unset("sample-symmetry");
     }),
+    ("unknown distribution of diameters", "did you mean 'lognormal'?", |case| {
+        sources(&mut case.options);
+        case.options.set("diameters", ["lognomal(mean=1,cv=0.3)"]);
+    }),
     ("unknown component of a texture", "did you mean 'goss'?", |case| {
         case.options.set("texture", ["gos(10)"]);
     }),
@@ -122,7 +126,17 @@ pub fn make(draw: &mut Draw, case: &mut Case) {
 }
 
 fn sources(options: &mut Options) {
-    for name in ["seeds", "rng-seed", "seeding", "lattice", "seeds-file", "drop-empty"] {
+    for name in [
+        "seeds",
+        "rng-seed",
+        "seeding",
+        "lattice",
+        "seeds-file",
+        "drop-empty",
+        "diameters",
+        "volumes",
+        "draw",
+    ] {
         options.unset(name);
     }
 }
@@ -160,7 +174,7 @@ fn output(case: &mut Case, name: &str) {
 
 /// No domain but the box, and no periods.
 fn plain(options: &mut Options) {
-    for name in ["domain", "chord-error", "half-spaces", "periodic", "periodic-cut", "box"] {
+    for name in ["domain", "chord-error", "half-spaces", "periodic", "periodic-cut", "box", "aspect-ratio"] {
         options.unset(name);
     }
 }

@@ -189,7 +189,7 @@ fn pictures(draw: &mut Draw, options: &mut Options, promise: &mut Promise) {
     if draw.chance(0.1) {
         options.set("picture", ["picture.png"]);
         options.set("picture-size", [draw.whole(16..=300), draw.whole(16..=300)]);
-        options.set("color-by", [draw.one_of(&["grain", "size", "neighbors"])]);
+        options.set("color-by", [draw.one_of(&["grain", "diameter", "neighbors"])]);
         options.set("explode", [draw.one_of(&[0.0, 0.3, 10.0])]);
         promise.file("picture", "picture.png");
     }

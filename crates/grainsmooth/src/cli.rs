@@ -124,6 +124,7 @@ impl Arguments {
                 "--free lets grains grow for a time, and has no equilibrium; give one, such as --relax 0.3",
             );
         }
+        let aspect_ratio = sizes.aspect_ratio(domain.dimension);
         let sizes = sizes.options();
         let config = Config {
             seeds: seeds.source(domain.dimension, sizes.source.is_some()),
@@ -133,6 +134,7 @@ impl Arguments {
             dimension: domain.dimension,
             box_size: domain.box_size,
             shape: arguments.shape(&domain),
+            aspect_ratio,
             face_mesh: smoothing.face_mesh(),
             periodic: domain.periodic,
             periodic_cut,

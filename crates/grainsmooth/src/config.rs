@@ -102,6 +102,9 @@ pub struct Config {
     pub box_size: DVec3,
     /// What of the box, or instead of it, the grains fill.
     pub shape: Shape,
+    /// How long grains are along each axis, in proportion. Everything is computed in a frame in which they are as long along all, and stretched in
+    /// the end. For boxes only; in 2D the last is 1.
+    pub aspect_ratio: DVec3,
     /// Axes along which the box repeats; in 2D the last is ignored.
     pub periodic: BVec3,
     /// Where grains of a periodic domain end in what is written.
@@ -169,6 +172,7 @@ impl Default for Config {
             dimension: Dimension::Three,
             box_size: DVec3::ONE,
             shape: Shape::Box,
+            aspect_ratio: DVec3::ONE,
             periodic: BVec3::FALSE,
             periodic_cut: PeriodicCut::Wrap,
             face_mesh: FaceMesh::Fan,
@@ -299,7 +303,18 @@ impl Config {
         seeds.filter(|seed| domain.contains(*seed)).collect()
     }
 
-    /// What the grains fill; a box is that of [`LatticeFit::box_size`] for a lattice.
+    /// By what coordinates are multiplied in the end: the aspect ratio, with the product 1.
+    pub fn stretch(&self) -> DVec3 {
+        let product = self.aspect_ratio.element_product();
+        let edge = match self.dimension {
+            Dimension::Two => product.sqrt(),
+            Dimension::Three => product.cbrt(),
+        };
+        let stretch = self.aspect_ratio / edge;
+        if self.dimension == Dimension::Two { stretch.with_z(1.0) } else { stretch }
+    }
+
+    /// What the grains fill while they are computed, before [`Self::stretch`]; a box is that of [`LatticeFit::box_size`] for a lattice.
     ///
     /// # Errors
     /// [`Error::BoxSide`] when a side is not positive and finite, or beyond what doubles can compute with;
@@ -321,7 +336,7 @@ impl Config {
             Shape::Surface(path) => return surface_domain(path),
             Shape::HalfSpaces(path) => return half_space_domain(path, self.dimension),
         }
-        let upper = self.lattice_fit().map_or(self.box_size, |fit| fit.box_size());
+        let upper = self.lattice_fit().map_or(self.box_size / self.stretch(), |fit| fit.box_size());
         let domain = match self.dimension {
             Dimension::Two => Domain::rectangle(DVec3::ZERO, upper)?,
             Dimension::Three => Domain::cuboid(DVec3::ZERO, upper)?,

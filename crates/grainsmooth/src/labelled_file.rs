@@ -6,10 +6,11 @@ use std::path::Path;
 use glam::DVec3;
 use polycrystal::{BoundaryId, Claims, Elements, GrainId, NodeType, Side, Surface, outward_sides};
 use toml::{Table, Value};
+use voronoi::Dimension;
 
 use crate::mesh_file::vtk::labelled::{LabelledCells, Remarks, read_legacy, read_xml};
 use crate::mesh_file::{MeshFileProblem, check_lengths};
-use crate::{Error, Names};
+use crate::{Config, Error, Names};
 
 /// A labelled surface (in the plane: lines) from a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -139,8 +140,13 @@ impl LabelledFile {
             || settings.as_ref().is_some_and(sticks_out_of_the_box);
         let node_types =
             node_types.filter(|_| !is_periodic).map(|codes| codes.into_iter().map(node_type).collect());
+        let mut points = mesh.points;
+        let stretch = settings.as_ref().map_or(DVec3::ONE, stretch);
+        if stretch != DVec3::ONE {
+            points.iter_mut().for_each(|point| *point /= stretch);
+        }
         Ok(Self {
-            points: mesh.points,
+            points,
             elements,
             boundary_of,
             sides,
@@ -203,6 +209,19 @@ fn sticks_out_of_the_box(settings: &Table) -> bool {
 fn numbered(volumes: Vec<f64>, settings: &Table) -> Option<Vec<(GrainId, f64)>> {
     let first = u32::from(settings.get("names")?.as_str()? != Names::default().name());
     (volumes.len() < u32::MAX as usize).then(|| (first..).map(GrainId).zip(volumes).collect())
+}
+
+/// By what the settings multiplied coordinates in the end.
+fn stretch(settings: &Table) -> DVec3 {
+    let factors = settings.get("aspect-ratio").and_then(Value::as_array);
+    let factors: Option<Vec<f64>> = factors.and_then(|all| all.iter().map(Value::as_float).collect());
+    let (aspect_ratio, dimension) = match factors.as_deref() {
+        Some(&[x, y]) => (DVec3::new(x, y, 1.0), Dimension::Two),
+        Some(&[x, y, z]) => (DVec3::new(x, y, z), Dimension::Three),
+        _ => return DVec3::ONE,
+    };
+    let stretch = Config { aspect_ratio, dimension, ..Config::default() }.stretch();
+    if stretch.is_finite() && stretch.min_element() > 0.0 { stretch } else { DVec3::ONE }
 }
 
 /// The volume (in the plane: area) of the box, where grains fill that.

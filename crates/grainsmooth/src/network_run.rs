@@ -183,7 +183,7 @@ fn estimate(config: &Config, files: &Files, line: &ProgressLine) -> Result<Estim
 fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String, Error> {
     let progress = |stage, done, count| line.show(stage, done, count);
     if files.is_cells_only {
-        let cells = tessellate(config, &progress)?;
+        let cells = tessellate(config, &progress)?.stretched(config);
         write_together(|staged| files.stage_tables(config, &cells, staged))?;
         return Ok(CellsSummary(config, &cells).to_string().trim_end().to_owned());
     }
@@ -195,7 +195,7 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
             series.add(&step);
         }
     })?;
-    polycrystal = polycrystal.cut_if_asked()?;
+    polycrystal = polycrystal.cut_if_asked()?.stretched_if_asked();
     line.show(Stage::Writing, 0, 1);
     let start = Instant::now();
     write_together(|staged| {

@@ -115,9 +115,18 @@ pub struct Polycrystal {
 }
 
 impl Polycrystal {
-    /// What the network is like. Where it is cut at a periodic box, tensions are not known to be at rest beside the cut.
+    /// What the network is like. Where it is cut at a periodic box, tensions are not known to be at rest beside the cut; where it is
+    /// stretched, nowhere.
     pub(crate) fn measures(&self) -> Measures {
         let mut measures = measure_network(&self.network, &self.points);
+        if self.is_stretched() {
+            match &mut measures {
+                Measures::Space(space) => space.triple_lines.iter_mut().for_each(|line| line.residual = None),
+                Measures::Plane(plane) => {
+                    plane.triple_points.iter_mut().for_each(|point| point.residual = None)
+                }
+            }
+        }
         if self.config.periodic_cut == PeriodicCut::Box && self.config.periodic.any() {
             let is_cut = |sides: &[Side]| sides.contains(&Side::Exterior);
             match &mut measures {
@@ -132,6 +141,33 @@ impl Polycrystal {
             }
         }
         measures
+    }
+
+    /// Whether grains are stretched in the end.
+    pub(crate) fn is_stretched(&self) -> bool {
+        self.config.stretch() != DVec3::ONE
+    }
+
+    /// The points of the finest level before they were stretched.
+    pub(crate) fn unstretched_points(&self) -> Vec<DVec3> {
+        let stretch = self.config.stretch();
+        self.points.iter().map(|point| point / stretch).collect()
+    }
+
+    /// The grains as [`Config::aspect_ratio`] stretches them. What was found of angles, triangles and tensions stays that of the
+    /// frame in which they were at rest.
+    #[must_use]
+    pub fn stretched_if_asked(mut self) -> Self {
+        if !self.is_stretched() {
+            return self;
+        }
+        let stretch = self.config.stretch();
+        for points in [&mut self.points, &mut self.relaxed.points] {
+            points.iter_mut().for_each(|point| *point *= stretch);
+        }
+        self.network = self.network.stretched(stretch);
+        self.cells = self.cells.stretched(&self.config);
+        self
     }
 
     /// The grains of a periodic box cut at its walls, as [`PeriodicCut::Box`](crate::PeriodicCut::Box) asks; others as they are.

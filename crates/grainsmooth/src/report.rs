@@ -183,7 +183,7 @@ impl Polycrystal {
             bins: chart::Bins { start: 0.0, width: ANGLE_BIN },
             before: weighted(self.flat_angles.clone()),
             names: BEFORE_AND_AFTER,
-            after: weighted(angles_between_boundaries(network, network.finest(), &self.points)),
+            after: weighted(angles_between_boundaries(network, network.finest(), &self.unstretched_points())),
             exact: exact.collect(),
             exact_name: RANDOM_CELLS,
         }

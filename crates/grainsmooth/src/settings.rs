@@ -56,6 +56,10 @@ impl Config {
         if !self.shape.is_from_file() {
             add("box", sides.into());
         }
+        if self.aspect_ratio != DVec3::ONE {
+            let axes = if self.dimension == Dimension::Two { 2 } else { 3 };
+            add("aspect-ratio", self.aspect_ratio.to_array()[..axes].to_vec().into());
+        }
         match &self.shape {
             Shape::Box => {}
             Shape::Sphere { chord_error } => {

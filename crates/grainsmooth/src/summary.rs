@@ -3,6 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
+use glam::DVec3;
 use polycrystal::{AngleStatistics, Balance, Boundary, HerringResidual, Reconnections, Relaxation, Volumes};
 use voronoi::{Collapsed, Dimension};
 
@@ -59,6 +60,9 @@ impl fmt::Display for Summary<'_> {
         };
         writeln!(out, "junctions   {}", polycrystal.topology)?;
         writeln!(out, "mesh        {points} points, {elements} {element}s at level {levels}")?;
+        if let Some(stretched) = StretchLine::new(&polycrystal.config) {
+            writeln!(out, "{stretched}; angles, residual and triangles are those before")?;
+        }
         // In lattices four or more grains meet, until they relax.
         match (polycrystal.angles_before, polycrystal.validation.angles) {
             (Some(before), Some(after)) => {
@@ -136,11 +140,36 @@ impl fmt::Display for CellsSummary<'_> {
         let diameters: Vec<f64> =
             measures.iter().map(|cell| config.dimension.ball_diameter(cell.volume)).collect();
         writeln!(out, "diameters   {}", EquivalentDiameters::new(config.dimension, &diameters))?;
+        if let Some(stretched) = StretchLine::new(config) {
+            writeln!(out, "{stretched}")?;
+        }
         write_seeds(out, config, cells)?;
         if let Some(sizes) = &cells.sizes {
             write!(out, "{}", sizes.reached(&cells.volumes(), None))?;
         }
         write_texture(out, cells)
+    }
+}
+
+/// By what grains are stretched.
+struct StretchLine(DVec3, Dimension);
+
+impl StretchLine {
+    fn new(config: &Config) -> Option<Self> {
+        let stretch = config.stretch();
+        (stretch != DVec3::ONE).then_some(Self(stretch, config.dimension))
+    }
+}
+
+impl fmt::Display for StretchLine {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(DVec3 { x, y, z }, dimension) = self;
+        write!(out, "stretched   by {x:.4}, {y:.4}")?;
+        if *dimension == Dimension::Three {
+            write!(out, ", {z:.4} along x, y, z")
+        } else {
+            write!(out, " along x, y")
+        }
     }
 }
 

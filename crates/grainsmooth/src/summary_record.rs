@@ -40,6 +40,8 @@ pub struct SummaryRecord {
     /// What was tried before and why it was given up, in order.
     attempts: Vec<Attempt>,
     residual: Option<Residual>,
+    /// By what coordinates were multiplied in the end; angles and residual are those before.
+    stretch: Option<[f64; 3]>,
     points: usize,
     /// Triangles, in the plane segments.
     elements: usize,
@@ -172,6 +174,7 @@ impl SummaryRecord {
                 .map(|attempt| Attempt { tried: attempt.tried.clone(), said: attempt.said.clone() })
                 .collect(),
             residual: polycrystal.residual.map(|HerringResidual { rms, largest }| Residual { rms, largest }),
+            stretch: polycrystal.is_stretched().then(|| config.stretch().to_array()),
             points: finest.vertex_count(),
             elements: finest.element_count(),
             level: config.levels,

@@ -40,6 +40,16 @@ pub struct Tessellated {
 }
 
 impl Tessellated {
+    /// The cells as [`Config::aspect_ratio`] stretches them.
+    #[must_use]
+    pub fn stretched(self, config: &Config) -> Self {
+        let stretch = config.stretch();
+        if stretch == DVec3::ONE {
+            return self;
+        }
+        Self { tessellation: self.tessellation.stretched(stretch), ..self }
+    }
+
     /// Volumes of the cells; in the plane areas.
     pub(crate) fn volumes(&self) -> Vec<f64> {
         self.tessellation.cell_measures().iter().map(|cell| cell.volume).collect()
@@ -201,6 +211,10 @@ fn seeds(config: &Config, domain: &Domain) -> Result<(FileSeeds, Option<GrainSiz
     let (positions, sizes) = match &config.seeds {
         SeedSource::File(path) => {
             let mut found = read_seed_file(path, config.dimension)?;
+            let stretch = config.stretch();
+            if stretch != DVec3::ONE {
+                found.seeds.iter_mut().for_each(|seed| seed.position /= stretch);
+            }
             let sizes = sizes(found.seeds.len())?;
             if sizes.is_some() && found.seeds.iter().any(|seed| seed.weight.is_some()) {
                 found.seeds.iter_mut().for_each(|seed| seed.weight = None);

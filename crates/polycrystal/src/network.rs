@@ -177,6 +177,20 @@ impl Network {
         self
     }
 
+    /// The network of points whose coordinates are multiplied by a factor of each axis; cells keep their volumes but for the factors'
+    /// product.
+    ///
+    /// # Panics
+    /// As [`Domain::stretched`].
+    #[must_use]
+    pub fn stretched(mut self, factors: DVec3) -> Self {
+        self.domain = self.domain.stretched(factors);
+        self.wall_sets = self.wall_sets.stretched(factors);
+        let product = factors.element_product();
+        self.cell_volumes.iter_mut().for_each(|volume| *volume *= product);
+        self
+    }
+
     /// The network with other tensions: energies per area (in the plane: per length) of its boundaries, in any unit. Without,
     /// boundaries between grains have 1 and walls 0.
     ///

@@ -33,6 +33,13 @@ pub struct WallSets {
 }
 
 impl WallSets {
+    /// The same walls of a box, with each coordinate multiplied by a factor of its axis.
+    pub(crate) fn stretched(mut self, factors: DVec3) -> Self {
+        let coordinates = self.coordinates.iter_mut().flatten();
+        coordinates.for_each(|(axis, coordinate)| *coordinate *= factors[*axis]);
+        self
+    }
+
     /// The sets of a tessellation, and that of each of its vertices. They are those of its walls, its vertices, and the edges
     /// between these: as the domain is convex, what two of them have in common is again one of them.
     pub(crate) fn new(

@@ -77,6 +77,17 @@ impl Domain {
         Self::checked(lower, upper, Dimension::Three)
     }
 
+    /// The box with each coordinate multiplied by a factor of its axis.
+    ///
+    /// # Panics
+    /// When the domain is no box, or a factor is not positive and finite.
+    #[must_use]
+    pub fn stretched(&self, factors: DVec3) -> Self {
+        assert!(self.polyhedron.is_none(), "a box");
+        assert!(factors.is_finite() && factors.min_element() > 0.0, "positive factors");
+        Self { lower: self.lower * factors, upper: self.upper * factors, ..self.clone() }
+    }
+
     /// A rectangle in the plane z = 0; the z coordinates of the corners are ignored.
     ///
     /// # Errors

@@ -131,6 +131,22 @@ impl Tessellation {
         }
     }
 
+    /// The cells with each coordinate multiplied by a factor of its axis: convex as they were, but no longer the cells of their seeds.
+    ///
+    /// # Panics
+    /// As [`Domain::stretched`].
+    #[must_use]
+    pub fn stretched(&self, factors: DVec3) -> Self {
+        let stretch = |points: &[DVec3]| points.iter().map(|point| point * factors).collect();
+        Self {
+            domain: self.domain.stretched(factors),
+            seeds: stretch(&self.seeds),
+            vertices: stretch(&self.vertices),
+            measures: KeptMeasures::default(),
+            ..self.clone()
+        }
+    }
+
     /// Cuts the domain into the Voronoi cells of the seeds, in parallel. In the plane the seeds' z must be 0.
     ///
     /// The same seeds give the same result bit by bit whatever the number of threads.

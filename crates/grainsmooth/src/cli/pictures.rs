@@ -24,9 +24,9 @@ pub struct PictureArguments {
     #[arg(long, value_names = ["W", "H"], num_args = 2, value_parser = whole_number(16..=16_384_u16), allow_negative_numbers = true, requires = "picture")]
     picture_size: Option<Vec<u16>>,
 
-    /// What the colours of grains mean: nothing (grain), their diameter (size) or the number of their boundaries (neighbors)
+    /// What the colours of grains mean: nothing (grain), their equivalent diameter (diameter) or the number of their boundaries (neighbors)
     ///
-    /// Example: --picture sizes.png --color-by size
+    /// Example: --picture sizes.png --color-by diameter
     #[arg(long, value_enum, default_value_t = ColorRule::Grain, requires = "picture")]
     color_by: ColorRule,
 
@@ -47,7 +47,7 @@ pub struct PictureArguments {
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum ColorRule {
     Grain,
-    Size,
+    Diameter,
     Neighbors,
 }
 
@@ -62,7 +62,7 @@ impl PictureArguments {
         };
         let coloring = match self.color_by {
             ColorRule::Grain => Coloring::Grain,
-            ColorRule::Size => Coloring::Size,
+            ColorRule::Diameter => Coloring::Diameter,
             ColorRule::Neighbors => Coloring::Neighbors,
         };
         Ok(Some((Picture { size, coloring, explode: self.explode }, Output::check_as(path, Png)?)))

@@ -1,11 +1,19 @@
 //! Options about the sizes of grains.
 
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use glam::DVec3;
 use grainsmooth::{SizeDraw, SizeOptions, SizeSource};
+use voronoi::Dimension;
 
-/// How large grains are.
+use super::usage;
+
+/// Lengths in proportion: grains a hundred times as long as wide are fibers that no network of boundaries shows.
+const PROPORTIONS: RangeInclusive<f64> = 0.01..=100.0;
+
+/// How large grains are, and how long.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Sizes")]
 pub struct SizeArguments {
@@ -31,6 +39,15 @@ pub struct SizeArguments {
     /// Example: --diameters 'lognormal(mean=20, cv=0.35)' --draw random
     #[arg(long, value_name = "HOW", value_enum, default_value_t = Draw::Quantiles, conflicts_with_all = ["volumes", "lattice"])]
     draw: Draw,
+
+    /// Grains long along some axes, in proportion: 3 1 1 for rolled, 1 1 4 for columnar ones (X Y in 2D)
+    ///
+    /// Cells, network and relaxation are made where grains are as long along all axes, and stretched in the end: angles at triple
+    /// lines are 120 degrees before. The box is as --box says, and volumes are as without.
+    ///
+    /// Example: --aspect-ratio 3 1 1
+    #[arg(long, value_names = ["X", "Y", "Z"], num_args = 2.., value_parser = parse_proportion, conflicts_with_all = ["lattice", "domain", "half_spaces", "series"], allow_negative_numbers = true)]
+    aspect_ratio: Option<Vec<f64>>,
 }
 
 /// `--draw` as it is spelled.
@@ -41,6 +58,22 @@ enum Draw {
 }
 
 impl SizeArguments {
+    /// How long grains are along each axis, in proportion; 1 along z in 2D.
+    pub fn aspect_ratio(&self, dimension: Dimension) -> DVec3 {
+        let ratio = match (self.aspect_ratio.as_deref(), dimension) {
+            (None, _) => DVec3::ONE,
+            (Some(&[x, y]), Dimension::Two) => DVec3::new(x, y, 1.0),
+            (Some(&[x, y, z]), Dimension::Three) => DVec3::new(x, y, z),
+            (Some(_), Dimension::Two) => usage("--aspect-ratio takes two numbers, X Y, with --dim 2"),
+            (Some(_), Dimension::Three) => {
+                usage("--aspect-ratio takes three numbers, X Y Z, without --dim 2")
+            }
+        };
+        // Equal lengths are no stretch.
+        let is_equal = ratio.x == ratio.y && (dimension == Dimension::Two || ratio.x == ratio.z);
+        if is_equal { DVec3::ONE } else { ratio }
+    }
+
     /// What is asked for.
     pub fn options(&self) -> SizeOptions {
         let volumes = || self.volumes.clone().map(SizeSource::VolumeFile);
@@ -50,6 +83,13 @@ impl SizeArguments {
         };
         SizeOptions { source: self.diameters.clone().or_else(volumes), draw }
     }
+}
+
+fn parse_proportion(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| PROPORTIONS.contains(number));
+    number.ok_or_else(|| {
+        format!("a length in proportion is a number from {} to {}", PROPORTIONS.start(), PROPORTIONS.end())
+    })
 }
 
 fn parse_diameters(text: &str) -> Result<SizeSource, String> {

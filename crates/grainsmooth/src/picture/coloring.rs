@@ -9,7 +9,7 @@ pub enum Coloring {
     #[default]
     Grain,
     /// The equivalent diameter, from the smallest (violet) to the largest grain (yellow).
-    Size,
+    Diameter,
     /// The number of boundaries, from the fewest (violet) to the most (yellow).
     Neighbors,
 }
@@ -19,13 +19,13 @@ pub(crate) type Color = [f64; 3];
 
 impl Coloring {
     /// Every way, the default first.
-    pub const ALL: [Self; 3] = [Self::Grain, Self::Size, Self::Neighbors];
+    pub const ALL: [Self; 3] = [Self::Grain, Self::Diameter, Self::Neighbors];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Grain => "grain",
-            Self::Size => "size",
+            Self::Diameter => "diameter",
             Self::Neighbors => "neighbors",
         }
     }
@@ -42,7 +42,7 @@ impl Coloring {
                     .map(|grain| channels(hue(grain)))
                     .collect();
             }
-            Self::Size => polycrystal.equivalent_diameters(),
+            Self::Diameter => polycrystal.equivalent_diameters(),
             Self::Neighbors => polycrystal.boundary_counts().into_iter().map(|count| count as f64).collect(),
         };
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);

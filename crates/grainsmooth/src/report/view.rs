@@ -39,7 +39,7 @@ struct Part {
 #[derive(Serialize)]
 struct Colors {
     grain: Vec<[f32; 3]>,
-    size: Vec<[f32; 3]>,
+    diameter: Vec<[f32; 3]>,
     neighbors: Vec<[f32; 3]>,
 }
 
@@ -79,7 +79,7 @@ pub(super) fn network_json(polycrystal: &Polycrystal) -> io::Result<String> {
         shifts: polycrystal.shifts(1.0 / unit).into_iter().map(|shift| single(shift.to_array())).collect(),
         colors: Colors {
             grain: colors(Coloring::Grain),
-            size: colors(Coloring::Size),
+            diameter: colors(Coloring::Diameter),
             neighbors: colors(Coloring::Neighbors),
         },
     };
