@@ -391,3 +391,65 @@ fn aspect_ratio_that_is_mistaken() {
         workplace.refuses(arguments, USAGE, message);
     }
 }
+
+#[test]
+fn diameters_follow_a_gradient() {
+    let workplace = Workplace::new();
+    workplace.put("g.csv", "position,factor\n0,1\n2,3\n");
+    for (run, axes) in [("--box 1 1 2 --gradient z:g.csv", 3), ("--dim 2 --box 2 1 --gradient x:g.csv", 2)] {
+        let run = format!("{run} --seeds 400 --diameters lognormal(mean=1,cv=0.2)");
+        workplace.run(&format!("{run} --no-mesh --cells-json c.json"));
+        let cells = json(&workplace, "c.json")["cells"].clone();
+        let mut ratios = [Vec::new(), Vec::new()];
+        for cell in cells.as_array().unwrap() {
+            let position = cell["centroid"][if axes == 3 { 2 } else { 0 }].as_f64().unwrap();
+            let ratio = number(cell, "equivalent_diameter") / (1.0 + position);
+            ratios[usize::from(position > 1.0)].push(ratio);
+        }
+        let [small, large] = ratios.map(|all| all.iter().sum::<f64>() / all.len() as f64);
+        assert!((small / large - 1.0).abs() < 0.06, "{run}: {small} and {large}");
+    }
+    let run =
+        "--box 1 1 2 --periodic x,y --gradient z:g.csv --diameters lognormal(mean=0.1,cv=0.2) -n 0 --relax 0";
+    workplace.run(&format!("{run} --json-summary s.json -o a.vtp --report r.html"));
+    let summary = json(&workplace, "s.json");
+    let sizes = &summary["sizes"];
+    assert!((number(sizes, "scale") - 1.0).abs() < 0.02, "{sizes}");
+    assert!(number(sizes, "cdf_distance") <= 0.5 / number(&summary, "grains") + 1e-9, "{sizes}");
+    assert!(number(sizes, "largest_volume_error") < 1e-10, "{sizes}");
+    let page = String::from_utf8(workplace.bytes("r.html")).unwrap();
+    assert!(
+        ["Diameters by number", "Diameters by volume", "asked for"].iter().all(|part| page.contains(part))
+    );
+    workplace.run("--config a.vtp -o b.vtp");
+    assert!(workplace.bytes("a.vtp") == workplace.bytes("b.vtp"));
+    for (arguments, message) in [
+        (
+            "--gradient z:g.csv",
+            "--gradient changes given sizes; give --diameters or --seeding packed as well",
+        ),
+        (
+            "--dim 2 --seeding packed --gradient z:g.csv",
+            "--gradient along z needs three dimensions; with --dim 2 give x or y",
+        ),
+        (
+            "--seeding packed --gradient g.csv",
+            "invalid value 'g.csv' for '--gradient <AXIS:FILE>': give an axis and a file, such as z:factors.csv",
+        ),
+        (
+            "--seeding packed --gradient z:g.csv --domain sphere",
+            "the argument '--gradient <AXIS:FILE>' cannot be used with '--domain <SHAPE>'",
+        ),
+    ] {
+        workplace.refuses(arguments, USAGE, message);
+    }
+    for (content, message) in [
+        ("", "line 1: holds no factors; give a position and a factor on each line"),
+        ("z,f\n1,2\n", "line 1: name two columns position and factor"),
+        ("0 1\n1 -1\n", "line 2: the factor -1 at 1 is not from 0.001 to 1000; correct it"),
+        ("1 1\n0 2\n", "line 2: the position 0 is not above the one before; list them in order"),
+    ] {
+        workplace.put("g.csv", content);
+        workplace.refuses("--seeding packed --gradient z:g.csv", FAILED, &format!("g.csv {message}"));
+    }
+}

@@ -168,6 +168,15 @@ fn sizes(
     if options.has("diameters") && draw.chance(0.3) {
         options.set("draw", ["random"]);
     }
+    if is_box
+        && is_free
+        && (options.has("diameters") || options.value("seeding") == Some("packed"))
+        && draw.chance(0.2)
+    {
+        let lines = format!("0 1\n{:?} {:?}\n", domain.sides[0], draw.magnitude(0.5, 2.0));
+        options.set("gradient", ["x:factors.csv"]);
+        return Some(("factors.csv".to_owned(), lines.into_bytes()));
+    }
     None
 }
 
@@ -274,6 +283,7 @@ mod tests {
             "faces",
             "format",
             "free",
+            "gradient",
             "grains-dir",
             "grains-format",
             "half-spaces",

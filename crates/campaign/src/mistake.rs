@@ -136,6 +136,7 @@ fn sources(options: &mut Options) {
         "diameters",
         "volumes",
         "draw",
+        "gradient",
     ] {
         options.unset(name);
     }
@@ -174,7 +175,16 @@ fn output(case: &mut Case, name: &str) {
 
 /// No domain but the box, and no periods.
 fn plain(options: &mut Options) {
-    for name in ["domain", "chord-error", "half-spaces", "periodic", "periodic-cut", "box", "aspect-ratio"] {
+    for name in [
+        "domain",
+        "chord-error",
+        "half-spaces",
+        "periodic",
+        "periodic-cut",
+        "box",
+        "aspect-ratio",
+        "gradient",
+    ] {
         options.unset(name);
     }
 }

@@ -5,6 +5,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
 use grainsmooth::{Config, PeriodicCut, read_file_domain};
 use polycrystal::{Relaxation, Volumes};
+use voronoi::Dimension;
 
 use crate::check_run::CheckArguments;
 use crate::mesh_cli::MeshArguments;
@@ -157,6 +158,14 @@ impl Arguments {
             );
         }
         let config = Config { relaxation, lloyd_steps: seeds.lloyd(is_sized), ..config };
+        if let Some(gradient) = &config.sizes.gradient {
+            if !is_sized {
+                usage("--gradient changes given sizes; give --diameters or --seeding packed as well");
+            }
+            if gradient.axis == 2 && config.dimension == Dimension::Two {
+                usage("--gradient along z needs three dimensions; with --dim 2 give x or y");
+            }
+        }
         let is_count_open = config.sizes.source.is_some() && seeds.is_count_open();
         if is_count_open { config.with_count_of_sizes() } else { Ok(config) }
     }

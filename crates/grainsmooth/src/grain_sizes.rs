@@ -29,6 +29,8 @@ pub struct GrainSizes {
     /// By which diameters are multiplied to fill the domain.
     scale: f64,
     volumes: Vec<f64>,
+    /// What a gradient multiplied each volume by; nothing without one.
+    factors: Vec<f64>,
     /// How many times seeds moved to the centroids of their cells, and how many times they were to.
     centroid_steps: [usize; 2],
 }
@@ -98,8 +100,19 @@ impl GrainSizes {
             distribution,
             scale: dimension.cube_edge(factor),
             volumes,
+            factors: Vec::new(),
             centroid_steps: [0, config.lloyd_steps as usize],
         })
+    }
+
+    /// The same with each volume multiplied by a factor of its own, and all so that they fill what they filled before.
+    pub(crate) fn with_factors(mut self, factors: Vec<f64>) -> Self {
+        let before: f64 = self.volumes.iter().sum();
+        self.volumes.iter_mut().zip(&factors).for_each(|(volume, factor)| *volume *= factor);
+        let factor = before / self.volumes.iter().sum::<f64>();
+        self.volumes.iter_mut().for_each(|volume| *volume *= factor);
+        self.scale *= self.dimension.cube_edge(factor);
+        Self { factors, ..self }
     }
 
     /// The volumes that grains are to have (in the plane: areas).
@@ -112,6 +125,18 @@ impl GrainSizes {
         Self { centroid_steps: [done, self.centroid_steps[1]], ..self }
     }
 
+    /// The distribution of diameters that was asked for, if one was.
+    pub(crate) fn distribution(&self) -> Option<&Distribution> {
+        self.distribution.as_ref()
+    }
+
+    /// Diameters of grains as they would be without scale and gradient.
+    pub(crate) fn unscaled_diameters(&self, volumes: &[f64]) -> Vec<f64> {
+        let factors = self.factors.iter().copied().chain(std::iter::repeat(1.0));
+        let volumes = volumes.iter().zip(factors).map(|(volume, factor)| volume / factor);
+        volumes.map(|volume| self.dimension.ball_diameter(volume) / self.scale).collect()
+    }
+
     /// How near cells came, and finished grains where these keep their volumes.
     pub(crate) fn reached(&self, cells: &[f64], grains: Option<&[f64]>) -> SizesReached {
         let largest_error = |volumes: &[f64]| {
@@ -119,12 +144,8 @@ impl GrainSizes {
                 volumes.iter().zip(&self.volumes).map(|(volume, target)| (volume / target - 1.0).abs());
             errors.fold(0.0, f64::max)
         };
-        let distance = |distribution| {
-            let volumes = grains.unwrap_or(cells).iter();
-            let diameters =
-                volumes.map(|volume| self.dimension.ball_diameter(*volume) / self.scale).collect();
-            cdf_distance(diameters, distribution)
-        };
+        let distance =
+            |distribution| cdf_distance(self.unscaled_diameters(grains.unwrap_or(cells)), distribution);
         SizesReached {
             asked: self.asked.clone(),
             draw: self.draw.name(),

@@ -25,6 +25,7 @@ mod estimate;
 mod failed_grain;
 mod failure;
 mod formats;
+mod gradient;
 mod grain_sizes;
 mod grain_texture;
 mod labelled_file;
@@ -74,6 +75,7 @@ pub use formats::{LabelGrid, Names, StlEncoding};
 pub use formats::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
 };
+pub use gradient::GradientSource;
 pub use grain_sizes::{GrainSizes, SizesReached};
 pub use grain_texture::{ComponentShare, GrainTexture, HistogramFit};
 pub use labelled_file::{FileElements, LabelledFile};

@@ -10,10 +10,12 @@ use std::io;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use polycrystal::{WeightedAngle, angles_between_boundaries};
+use sizes::Distribution;
 use texture::{AngleHistogram, Pair, RandomDisorientations};
 use voronoi::{CellId, Dimension};
 
-use crate::{Error, GrainTexture, Output, Picture, Polycrystal, StagedFiles, Summary};
+use crate::size_options::axes;
+use crate::{Error, GrainSizes, GrainTexture, Output, Picture, Polycrystal, StagedFiles, Summary};
 use chart::Chart;
 use poisson_voronoi::{SIZE_BIN, angle_density, face_shares, size_shares};
 
@@ -29,6 +31,9 @@ const BEFORE_AND_AFTER: [&str; 2] = ["before", "after"];
 
 /// Width of the bins of angles, in degrees: a run of 200 grains fills each between 90 and 150.
 const ANGLE_BIN: f64 = 5.0;
+
+/// Bins of diameters, from 0 to the largest.
+const DIAMETER_BINS: f64 = 20.0;
 
 impl Polycrystal {
     /// Completes a page with a view of the grains, their statistics beside those of random cells, and the run's summary.
@@ -56,8 +61,13 @@ impl Polycrystal {
                 ],
             ),
         };
-        let mut charts: String =
-            [self.size_chart(), self.face_chart(), self.angle_chart()].iter().map(Chart::figure).collect();
+        let asked = self.cells.sizes.as_ref().and_then(|sizes| Some((sizes, sizes.distribution()?)));
+        let mut of_sizes = match asked {
+            Some((sizes, distribution)) => self.diameter_charts(sizes, distribution),
+            None => vec![self.size_chart()],
+        };
+        of_sizes.extend([self.face_chart(), self.angle_chart()]);
+        let mut charts: String = of_sizes.iter().map(Chart::figure).collect();
         if let Some(texture) = &self.cells.texture {
             charts += &self.disorientation_chart(texture).figure();
             let orientations = texture.orientations().iter().copied();
@@ -114,6 +124,45 @@ impl Polycrystal {
             exact: exact.collect(),
             exact_name: RANDOM_CELLS,
         }
+    }
+
+    /// Diameters by number and by volume, beside those that were asked for.
+    fn diameter_charts(&self, sizes: &GrainSizes, distribution: &Distribution) -> Vec<Chart> {
+        let axes = axes(self.config.dimension);
+        let volumes = self.network.cell_volumes();
+        let diameters = sizes.unscaled_diameters(volumes);
+        let largest = diameters.iter().copied().fold(0.0, f64::max);
+        let width = largest / DIAMETER_BINS;
+        // The share of a bin around each place.
+        let curve = |power: u32| -> Vec<(f64, f64)> {
+            let share = |step: i32| {
+                let middle = 0.25 * width * f64::from(step);
+                let below = |end: f64| distribution.share_below(end, power);
+                (middle, below(middle + 0.5 * width) - below(middle - 0.5 * width))
+            };
+            (0..).map(share).take_while(|(middle, _)| *middle <= 1.1 * largest).collect()
+        };
+        let chart = |title, of, weights: Vec<f64>, power| Chart {
+            title,
+            unit: "equivalent diameter asked for",
+            of,
+            bins: chart::Bins { start: 0.0, width },
+            before: Vec::new(),
+            names: BEFORE_AND_AFTER,
+            after: diameters.iter().copied().zip(weights).collect(),
+            exact: curve(power),
+            exact_name: "asked for",
+        };
+        let of_volume = if axes == 2 { "the area" } else { "the volume" };
+        vec![
+            chart("Diameters by number", "grains", vec![1.0; diameters.len()], 0),
+            chart(
+                if axes == 2 { "Diameters by area" } else { "Diameters by volume" },
+                of_volume,
+                volumes.to_vec(),
+                axes,
+            ),
+        ]
     }
 
     fn disorientation_chart(&self, texture: &GrainTexture) -> Chart {

@@ -174,6 +174,9 @@ impl SizeOptions {
         if self.draw != SizeDraw::default() {
             settings.push(("draw", self.draw.name().into()));
         }
+        if let Some(gradient) = &self.gradient {
+            settings.push(("gradient", gradient.text().into()));
+        }
         settings
     }
 }

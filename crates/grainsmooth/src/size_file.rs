@@ -100,6 +100,41 @@ pub(crate) fn read_volume_file(path: &Path, dimension: Dimension) -> Result<Vec<
     })
 }
 
+/// Reads what diameters are multiplied by along an axis: positions, and factors there.
+///
+/// # Errors
+/// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
+pub(crate) fn read_gradient_file(path: &Path) -> Result<Vec<[f64; 2]>, Error> {
+    read(path, |text| {
+        let rows = Rows::new(text)?;
+        let places = match (rows.named(&["position"]), rows.named(&["factor"])) {
+            (Some(position), Some(factor)) => [position, factor],
+            _ if rows.names.is_empty() && rows.rows.iter().all(|(_, columns)| columns.len() == 2) => [0, 1],
+            _ => return Err((rows.first_line, "name two columns position and factor".to_owned())),
+        };
+        let table = rows.numbers(places)?;
+        if table.is_empty() {
+            return Err((1, "holds no factors; give a position and a factor on each line".to_owned()));
+        }
+        for (row, [position, factor]) in table.iter().enumerate() {
+            let line = rows.rows[row].0;
+            if !(position.is_finite() && (1e-3..=1e3).contains(factor)) {
+                return Err((
+                    line,
+                    format!("the factor {factor} at {position} is not from 0.001 to 1000; correct it"),
+                ));
+            }
+            if row > 0 && *position <= table[row - 1][0] {
+                return Err((
+                    line,
+                    format!("the position {position} is not above the one before; list them in order"),
+                ));
+            }
+        }
+        Ok(table)
+    })
+}
+
 /// What columns of diameters may be called.
 const DIAMETERS: [&str; 3] = ["diameter", "equivalent_diameter", "equivalentdiameter"];
 

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use sizes::{Distribution, Law, Part, Spec, SpecError};
 use voronoi::{Dimension, Domain};
 
+use crate::gradient::Gradient;
 use crate::grain_sizes::{ball_volume, quantile_volumes};
 use crate::memory::{available_memory, check_cells};
 use crate::size_file::{is_size_file, read_diameter_file, read_volume_file};
-use crate::{Config, Error, SeedSource};
+use crate::{Config, Error, GradientSource, SeedSource};
 
 /// Diameters where packed seeds are asked for and nothing is said of sizes: those of recrystallised metals.
 const USUAL_DIAMETERS: &str = "lognormal(mean=1, cv=0.35)";
@@ -23,6 +24,8 @@ pub struct SizeOptions {
     pub source: Option<SizeSource>,
     /// How they are drawn from a distribution.
     pub draw: SizeDraw,
+    /// How diameters change along an axis, for boxes.
+    pub gradient: Option<GradientSource>,
 }
 
 /// Where sizes come from.
@@ -131,7 +134,11 @@ impl Config {
         let domain = self.domain()?;
         let found = match self.wanted_sizes()? {
             Wanted::Volumes(volumes) => volumes.len(),
-            Wanted::Diameters(distribution) => count_that_fills(&domain, &distribution, self.sizes.draw)?,
+            Wanted::Diameters(distribution) => {
+                let factor =
+                    Gradient::of_config(&self)?.map_or(1.0, |gradient| gradient.mean_volume_factor());
+                count_that_fills(&domain, &distribution, self.sizes.draw, factor)?
+            }
         };
         let seeds = match self.seeds {
             SeedSource::Random { .. } => SeedSource::Random { count: found },
@@ -151,17 +158,23 @@ pub(crate) fn axes(dimension: Dimension) -> u32 {
 }
 
 /// The number of grains of a distribution that fills a domain. Few grains lack the largest ones of a distribution, so their mean volume is
-/// smaller than its own: what they would have is looked at.
-fn count_that_fills(domain: &Domain, distribution: &Distribution, draw: SizeDraw) -> Result<usize, Error> {
+/// smaller than its own: what they would have is looked at. Volumes are multiplied by a factor on average.
+fn count_that_fills(
+    domain: &Domain,
+    distribution: &Distribution,
+    draw: SizeDraw,
+    factor: f64,
+) -> Result<usize, Error> {
     let (dimension, measure) = (domain.dimension(), domain.measure());
     let mean_volume = ball_volume(dimension, 1.0) * distribution.moment(axes(dimension));
-    let mut count = whole(measure / mean_volume);
+    let room = measure / factor;
+    let mut count = whole(room / mean_volume);
     check_cells(count, available_memory())?;
     let mut tried = Vec::new();
     while draw == SizeDraw::Quantiles && tried.len() < MOST_CORRECTIONS && !tried.contains(&count) {
         tried.push(count);
         let volumes: f64 = quantile_volumes(dimension, distribution, count).iter().sum();
-        count = whole(measure / volumes * count as f64);
+        count = whole(room / volumes * count as f64);
         check_cells(count, available_memory())?;
     }
     let largest = distribution.quantile(1.0 - 0.5 / count as f64);

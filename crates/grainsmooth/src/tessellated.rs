@@ -8,6 +8,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use voronoi::volumes::{PowerDiagram, VolumesError, place_spheres};
 use voronoi::{CellId, Domain, Side, Tessellation, VoronoiError};
 
+use crate::gradient::Gradient;
 use crate::memory::{available_memory, check_cells};
 use crate::pipeline::{Clock, seed_count};
 use crate::seeding::unit_fraction;
@@ -70,8 +71,18 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
     let mut clock = Clock { progress, times: Vec::new() };
     let domain = config.domain()?;
     let (texture, histogram) = (config.texture.texture()?, config.texture.histogram()?);
-    let (FileSeeds { seeds, passed_over }, mut sizes) =
+    let gradient = Gradient::of_config(config)?;
+    let (FileSeeds { mut seeds, passed_over }, mut sizes) =
         clock.time(Stage::Seeds, || seeds(config, &domain))?;
+    if let Some(gradient) = gradient
+        && let Some(drawn) = sizes.take()
+    {
+        if !matches!(config.seeds, SeedSource::File(_)) {
+            seeds.iter_mut().for_each(|seed| seed.position = gradient.moved(seed.position));
+        }
+        let factors = seeds.iter().map(|seed| gradient.volume_factor(seed.position)).collect();
+        sizes = Some(drawn.with_factors(factors));
+    }
     let mut seeds = NumberedSeeds::new(seeds);
     let (mut dropped_seeds, mut merged_seeds) = (Vec::new(), Vec::new());
     let (tessellation, weights) = clock.time(Stage::Cells, || {

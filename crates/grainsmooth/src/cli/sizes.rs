@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use glam::DVec3;
-use grainsmooth::{SizeDraw, SizeOptions, SizeSource};
+use grainsmooth::{GradientSource, SizeDraw, SizeOptions, SizeSource};
 use voronoi::Dimension;
 
 use super::usage;
@@ -39,6 +39,12 @@ pub struct SizeArguments {
     /// Example: --diameters 'lognormal(mean=20, cv=0.35)' --draw random
     #[arg(long, value_name = "HOW", value_enum, default_value_t = Draw::Quantiles, conflicts_with_all = ["volumes", "lattice"])]
     draw: Draw,
+
+    /// Change the diameters along an axis of the box: a table of positions, and what diameters are multiplied by there
+    ///
+    /// Example: --diameters 'lognormal(mean=20, cv=0.35)' --gradient z:factors.csv
+    #[arg(long, value_name = "AXIS:FILE", value_parser = parse_gradient, conflicts_with_all = ["volumes", "lattice", "domain", "half_spaces"])]
+    gradient: Option<GradientSource>,
 
     /// Grains long along some axes, in proportion: 3 1 1 for rolled, 1 1 4 for columnar ones (X Y in 2D)
     ///
@@ -81,7 +87,16 @@ impl SizeArguments {
             Draw::Quantiles => SizeDraw::Quantiles,
             Draw::Random => SizeDraw::Random,
         };
-        SizeOptions { source: self.diameters.clone().or_else(volumes), draw }
+        SizeOptions { source: self.diameters.clone().or_else(volumes), draw, gradient: self.gradient.clone() }
+    }
+}
+
+fn parse_gradient(text: &str) -> Result<GradientSource, String> {
+    let (axis, path) = text.split_once(':').unwrap_or((text, ""));
+    let axis = ["x", "y", "z"].iter().position(|name| *name == axis);
+    match axis {
+        Some(axis) if !path.is_empty() => Ok(GradientSource { axis, path: path.into() }),
+        _ => Err("give an axis and a file, such as z:factors.csv".to_owned()),
     }
 }
 
