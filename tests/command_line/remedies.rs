@@ -43,6 +43,8 @@ const ROUND: &str = "round";
 
 const SEEDS: File = ("s.csv", "0.1,0.2,0.3\n0.7,0.6,0.5\n");
 
+const OCTAHEDRON: File =
+    ("h.csv", "1,1,1,1\n1,1,-1,1\n1,-1,1,1\n1,-1,-1,1\n-1,1,1,1\n-1,1,-1,1\n-1,-1,1,1\n-1,-1,-1,1\n");
 const PYRAMID: File = ("h.csv", "0,0,-1,0\n1,0,1,1\n-1,0,1,0\n0,1,1,1\n0,-1,1,0\n");
 
 const REMEDIES: &[Remedy] = &[
@@ -93,6 +95,13 @@ const REMEDIES: &[Remedy] = &[
         "--seeds 2 --half-spaces h.csv",
         &[PYRAMID],
         "--seeds 2 --half-spaces h.csv",
+    ),
+    (
+        "NoLatticeSeeds",
+        &[OCTAHEDRON],
+        "--half-spaces h.csv --lattice bcc 1",
+        &[],
+        "--half-spaces h.csv --lattice bcc 4",
     ),
     ("NoSeedsInFile", &[("s.csv", "x,y,z\n")], "--seeds-file s.csv", &[SEEDS], "--seeds-file s.csv"),
     (

@@ -24,6 +24,7 @@ pub const REFUSALS: &[Kind] = &[
     // Files of seeds and domains.
     ("SeedFileUnreadable, DomainFileUnreadable", &["cannot be read", "give the path of a readable"]),
     ("NoSeedsInFile", &["holds no seeds"]),
+    ("NoLatticeSeeds", &["no point of the lattice lies in the domain", "more unit cells"]),
     ("SeedProblem::NotUtf8", &["not UTF-8 text"]),
     ("SeedProblem::ColumnNames", &["columns named"]),
     ("SeedProblem::ColumnCount", &["columns; write"]),

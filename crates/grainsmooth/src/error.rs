@@ -108,6 +108,14 @@ pub enum Error {
         /// The path as given.
         path: PathBuf,
     },
+    /// No point of a lattice lies in the domain.
+    #[error(
+        "no point of the lattice lies in the domain; take more unit cells along its shortest side, such as {more}"
+    )]
+    NoLatticeSeeds {
+        /// More unit cells than were asked for.
+        more: u32,
+    },
     /// A place of a seed file holds no seed.
     #[error("{} {place}: {problem}", path.display())]
     BadSeed {

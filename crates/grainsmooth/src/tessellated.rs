@@ -245,6 +245,9 @@ fn seeds(config: &Config, domain: &Domain) -> Result<(FileSeeds, Option<GrainSiz
         }
         SeedSource::Lattice { lattice, cells } => {
             let seeds = config.lattice_seeds(*lattice, *cells, domain);
+            if seeds.is_empty() {
+                return Err(Error::NoLatticeSeeds { more: cells.saturating_mul(4) });
+            }
             let sizes = sizes(seeds.len())?;
             (seeds, sizes)
         }
