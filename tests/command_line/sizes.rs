@@ -453,3 +453,18 @@ fn diameters_follow_a_gradient() {
         workplace.refuses("--seeding packed --gradient z:g.csv", FAILED, &format!("g.csv {message}"));
     }
 }
+
+/// Of so few grains none is large, though a tenth of the volume should be: by number that shows nowhere.
+#[test]
+fn large_grains_that_are_missing_are_told_by_volume() {
+    let workplace = Workplace::new();
+    let run = "--diameters 0.9*equal(1)+0.1*equal(10),by=volume -n 0 --relax 0 --json-summary s.json --seeds";
+    for (count, least, most) in [("100", 0.099, 0.101), ("5000", 0.0, 0.08)] {
+        let said = workplace.run(&format!("{run} {count} --lloyd 0"));
+        let sizes = &json(&workplace, "s.json")["sizes"];
+        assert!(number(sizes, "cdf_distance") <= 0.0002, "{sizes}");
+        let by_volume = number(sizes, "cdf_distance_by_volume");
+        assert!((least..most).contains(&by_volume), "{sizes}");
+        assert!(said.contains(&format!(" (by volume {by_volume:.4}),")), "{said}");
+    }
+}

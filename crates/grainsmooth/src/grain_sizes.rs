@@ -12,7 +12,7 @@ use voronoi::volumes::TOLERANCE;
 use voronoi::{Dimension, Domain};
 
 use crate::seeding::unit_fraction;
-use crate::size_options::Wanted;
+use crate::size_options::{Wanted, axes};
 use crate::{Config, Error, SizeDraw};
 
 /// The generator's stream for sizes, apart from those of the seeds' positions (0) and of orientations (1, 2).
@@ -48,6 +48,8 @@ pub struct SizesReached {
     asked_cv: Option<f64>,
     /// The largest difference between the share of grains up to a diameter and the distribution's.
     cdf_distance: Option<f64>,
+    /// The same of the shares of the volume, which tells of large grains that are missing.
+    cdf_distance_by_volume: Option<f64>,
     /// Of the cells' volumes.
     largest_volume_error_of_cells: f64,
     /// Of the finished grains' volumes, where they are kept.
@@ -144,15 +146,18 @@ impl GrainSizes {
                 volumes.iter().zip(&self.volumes).map(|(volume, target)| (volume / target - 1.0).abs());
             errors.fold(0.0, f64::max)
         };
-        let distance =
-            |distribution| cdf_distance(self.unscaled_diameters(grains.unwrap_or(cells)), distribution);
+        let distance = |power| {
+            let diameters = self.unscaled_diameters(grains.unwrap_or(cells));
+            self.distribution.as_ref().map(|distribution| cdf_distance(diameters, distribution, power))
+        };
         SizesReached {
             asked: self.asked.clone(),
             draw: self.draw.name(),
             scale: self.scale,
             asked_mean: self.distribution.as_ref().map(Distribution::mean),
             asked_cv: self.distribution.as_ref().map(Distribution::variation),
-            cdf_distance: self.distribution.as_ref().map(distance),
+            cdf_distance: distance(0),
+            cdf_distance_by_volume: distance(axes(self.dimension)),
             largest_volume_error_of_cells: largest_error(cells),
             largest_volume_error: grains.map(largest_error),
             centroid_steps: self.centroid_steps[0],
@@ -188,16 +193,22 @@ fn shuffle(volumes: &mut [f64], generator: &mut ChaCha8Rng) {
     }
 }
 
-/// The largest difference between the shares of diameters up to any one and those of a distribution. What volumes may miss counts as none.
-fn cdf_distance(mut diameters: Vec<f64>, distribution: &Distribution) -> f64 {
+/// The largest difference between the shares of diameters up to any one and those of a distribution: by number with power 0, by
+/// volume with 3, by area with 2. What volumes may miss counts as none.
+fn cdf_distance(mut diameters: Vec<f64>, distribution: &Distribution, power: u32) -> f64 {
     diameters.sort_by(f64::total_cmp);
-    let count = diameters.len() as f64;
-    let differences = diameters.iter().enumerate().map(|(place, diameter)| {
-        let below = distribution.cdf(diameter * (1.0 - TOLERANCE)) - place as f64 / count;
-        let above = (place as f64 + 1.0) / count - distribution.cdf(diameter * (1.0 + TOLERANCE));
-        below.max(above)
+    let weight = |diameter: &f64| (0..power).map(|_| diameter).product::<f64>();
+    let total: f64 = diameters.iter().map(weight).sum();
+    let mut sum = 0.0;
+    let differences = diameters.iter().map(|diameter| {
+        let below = distribution.share_below(diameter * (1.0 - TOLERANCE), power) - sum / total;
+        sum += weight(diameter);
+        below.max(sum / total - distribution.share_below(diameter * (1.0 + TOLERANCE), power))
     });
-    differences.fold(0.0, f64::max)
+    let largest = differences.fold(0.0, f64::max);
+    // What the distribution has above the largest diameter is missing.
+    let end = diameters.last().map_or(0.0, |diameter| diameter * (1.0 + TOLERANCE));
+    largest.max(1.0 - distribution.share_below(end, power))
 }
 
 /// The lines of a summary.
@@ -210,7 +221,10 @@ impl fmt::Display for SizesReached {
         writeln!(out, "; diameters times {:.6} to fill the domain", self.scale)?;
         write!(out, "            reached")?;
         if let Some(distance) = self.cdf_distance {
-            write!(out, " distribution function within {distance:.4},")?;
+            write!(out, " distribution function within {distance:.4}")?;
+        }
+        if let Some(distance) = self.cdf_distance_by_volume {
+            write!(out, " (by volume {distance:.4}),")?;
         }
         write!(out, " volumes of cells within {:.1e}", self.largest_volume_error_of_cells)?;
         if let Some(error) = self.largest_volume_error {
