@@ -314,11 +314,11 @@ const REMEDIES: &[Remedy] = &[
 #[test]
 fn text_in_another_encoding_is_read_once_it_is_saved_as_utf8() {
     let workplace = Workplace::new();
-    workplace.put("s.csv", b"# K\xf6rner\n.1,.2,.3\n");
+    workplace.put("s.csv", b"# K\xf6rner\nx,y,z,Gr\xf6\xdfe\n.1,.2,.3,4\n");
     let arguments = "--seeds-file s.csv -n 0 --relax 0";
-    let message = "s.csv line 1: not UTF-8 text; save the file as UTF-8";
+    let message = "s.csv line 2: not UTF-8 text; save the file as UTF-8";
     workplace.refuses(arguments, FAILED, message);
-    workplace.put("s.csv", "# Körner\n.1,.2,.3\n");
+    workplace.put("s.csv", "# Körner\nx,y,z,Größe\n.1,.2,.3,4\n");
     workplace.run(arguments);
 }
 

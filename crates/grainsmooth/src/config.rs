@@ -255,7 +255,7 @@ impl Config {
 
     /// Number of voxels that are asked for.
     pub(crate) fn voxel_count(&self) -> u128 {
-        let axes = if self.dimension == Dimension::Two { 2 } else { 3 };
+        let axes = usize::from(self.dimension.axes());
         let counts = self.file.voxels.iter().flat_map(|counts| &counts[..axes]);
         counts.map(|count| u128::from(count.get())).reduce(|all, count| all * count).unwrap_or(0)
     }
@@ -305,12 +305,7 @@ impl Config {
 
     /// By what coordinates are multiplied in the end: the aspect ratio, with the product 1.
     pub fn stretch(&self) -> DVec3 {
-        let product = self.aspect_ratio.element_product();
-        let edge = match self.dimension {
-            Dimension::Two => product.sqrt(),
-            Dimension::Three => product.cbrt(),
-        };
-        let stretch = self.aspect_ratio / edge;
+        let stretch = self.aspect_ratio / self.dimension.cube_edge(self.aspect_ratio.element_product());
         if self.dimension == Dimension::Two { stretch.with_z(1.0) } else { stretch }
     }
 
@@ -320,7 +315,7 @@ impl Config {
     /// [`Error::BoxSide`] when a side is not positive and finite, or beyond what doubles can compute with;
     /// whatever is wrong with the domain's file.
     pub fn domain(&self) -> Result<Domain, Error> {
-        let axes = if self.dimension == Dimension::Two { 2 } else { 3 };
+        let axes = usize::from(self.dimension.axes());
         let sides = ['x', 'y', 'z'].into_iter().zip(self.box_size.to_array());
         if let Some((axis, length)) = sides.take(axes).find(|(_, length)| !Domain::LENGTHS.contains(length)) {
             return Err(Error::BoxSide { axis, length });

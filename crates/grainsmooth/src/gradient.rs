@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use glam::DVec3;
-use voronoi::Dimension;
 
 use crate::size_file::read_gradient_file;
 use crate::{Config, Error};
@@ -51,7 +50,7 @@ impl Gradient {
         let stretch = config.stretch()[*axis];
         let mut table = read_gradient_file(path)?;
         table.iter_mut().for_each(|[position, _]| *position /= stretch);
-        let axes = if config.dimension == Dimension::Two { 2 } else { 3 };
+        let axes = i32::from(config.dimension.axes());
         let side = config.box_size[*axis] / stretch;
         let mut gradient =
             Self { axis: *axis, axes, side, table, shares: Vec::new(), mean_volume_factor: 1.0 };

@@ -1,6 +1,5 @@
 //! The volumes that grains are to have, drawn from what is asked for, and what was reached.
 
-use std::f64::consts::PI;
 use std::fmt;
 
 use rand_chacha::ChaCha8Rng;
@@ -12,7 +11,7 @@ use voronoi::volumes::TOLERANCE;
 use voronoi::{Dimension, Domain};
 
 use crate::seeding::unit_fraction;
-use crate::size_options::{Wanted, axes};
+use crate::size_options::Wanted;
 use crate::{Config, Error, SizeDraw};
 
 /// The generator's stream for sizes, apart from those of the seeds' positions (0) and of orientations (1, 2).
@@ -157,20 +156,12 @@ impl GrainSizes {
             asked_mean: self.distribution.as_ref().map(Distribution::mean),
             asked_cv: self.distribution.as_ref().map(Distribution::variation),
             cdf_distance: distance(0),
-            cdf_distance_by_volume: distance(axes(self.dimension)),
+            cdf_distance_by_volume: distance(self.dimension.axes().into()),
             largest_volume_error_of_cells: largest_error(cells),
             largest_volume_error: grains.map(largest_error),
             centroid_steps: self.centroid_steps[0],
             centroid_steps_asked: self.centroid_steps[1],
         }
-    }
-}
-
-/// The volume of the ball of a diameter (in the plane: area of the disc).
-pub(crate) fn ball_volume(dimension: Dimension, diameter: f64) -> f64 {
-    match dimension {
-        Dimension::Two => PI / 4.0 * diameter * diameter,
-        Dimension::Three => PI / 6.0 * diameter * diameter * diameter,
     }
 }
 
@@ -181,7 +172,7 @@ pub(crate) fn quantile_volumes(dimension: Dimension, distribution: &Distribution
 }
 
 fn volumes_at(dimension: Dimension, distribution: &Distribution, shares: Vec<f64>) -> Vec<f64> {
-    let volume = |share| ball_volume(dimension, distribution.quantile(share));
+    let volume = |share| dimension.ball_volume(distribution.quantile(share));
     shares.into_par_iter().map(volume).collect()
 }
 

@@ -115,10 +115,7 @@ impl LatticeFit {
     /// When `count` is 0 or a side is not positive and finite.
     pub fn new(lattice: Lattice, count: u32, box_size: DVec3) -> Self {
         assert!(count > 0, "a lattice has at least one cell");
-        let axes = match lattice.dimension() {
-            Dimension::Two => 2,
-            Dimension::Three => 3,
-        };
+        let axes = usize::from(lattice.dimension().axes());
         let cell = lattice.cell();
         let sides = &box_size.to_array()[..axes];
         assert!(sides.iter().all(|side| side.is_finite() && *side > 0.0), "sides are positive and finite");
@@ -190,11 +187,7 @@ impl LatticeFit {
 
 impl LatticeFit {
     fn joined(&self, values: &[String; 3], separator: &str) -> String {
-        let axes = match self.lattice.dimension() {
-            Dimension::Two => 2,
-            Dimension::Three => 3,
-        };
-        values[..axes].join(separator)
+        values[..usize::from(self.lattice.dimension().axes())].join(separator)
     }
 
     /// The lattice's name and the number of its cells, such as `hcp, 3 x 2 x 2 cells`.

@@ -55,6 +55,7 @@ mod summary;
 mod summary_record;
 mod table;
 mod tessellated;
+mod text_table;
 mod texture_file;
 mod texture_options;
 mod topology;

@@ -14,7 +14,6 @@ use sizes::Distribution;
 use texture::{AngleHistogram, Pair, RandomDisorientations};
 use voronoi::{CellId, Dimension};
 
-use crate::size_options::axes;
 use crate::{Error, GrainSizes, GrainTexture, Output, Picture, Polycrystal, StagedFiles, Summary};
 use chart::Chart;
 use poisson_voronoi::{SIZE_BIN, angle_density, face_shares, size_shares};
@@ -128,7 +127,7 @@ impl Polycrystal {
 
     /// Diameters by number and by volume, beside those that were asked for.
     fn diameter_charts(&self, sizes: &GrainSizes, distribution: &Distribution) -> Vec<Chart> {
-        let axes = axes(self.config.dimension);
+        let axes = u32::from(self.config.dimension.axes());
         let volumes = self.network.cell_volumes();
         let diameters = sizes.unscaled_diameters(volumes);
         let largest = diameters.iter().copied().fold(0.0, f64::max);

@@ -57,7 +57,7 @@ impl Config {
             add("box", sides.into());
         }
         if self.aspect_ratio != DVec3::ONE {
-            let axes = if self.dimension == Dimension::Two { 2 } else { 3 };
+            let axes = usize::from(self.dimension.axes());
             add("aspect-ratio", self.aspect_ratio.to_array()[..axes].to_vec().into());
         }
         match &self.shape {

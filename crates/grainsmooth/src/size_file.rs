@@ -7,7 +7,7 @@ use sizes::{Table, TableError};
 use voronoi::Dimension;
 
 use crate::Error;
-use crate::size_options::axes;
+use crate::text_table::{self, TextProblem};
 
 /// The line of a fault, counted from 1, and what it is.
 type Fault = (usize, String);
@@ -23,8 +23,8 @@ pub(crate) fn is_size_file(path: &Path) -> bool {
 /// # Errors
 /// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
 pub(crate) fn read_diameter_file(path: &Path, dimension: Dimension) -> Result<Table, Error> {
-    read(path, |text| {
-        let rows = Rows::new(text)?;
+    read(path, |content| {
+        let rows = Rows::new(content)?;
         let shares = ["cdf"];
         let by_number = ["weight", "number", "count"];
         let by_volume = ["volume_fraction", "area_fraction"];
@@ -34,7 +34,7 @@ pub(crate) fn read_diameter_file(path: &Path, dimension: Dimension) -> Result<Ta
             match (rows.named(&by_number), rows.named(&by_volume)) {
                 (Some(weight), None) => Table::histogram(&rows.numbers([from, to, weight])?, None),
                 (None, Some(weight)) => {
-                    Table::histogram(&rows.numbers([from, to, weight])?, Some(axes(dimension)))
+                    Table::histogram(&rows.numbers([from, to, weight])?, Some(dimension.axes().into()))
                 }
                 _ => {
                     let problem = "a histogram needs one column of weights, named weight (by number) or volume_fraction";
@@ -61,8 +61,8 @@ pub(crate) fn read_diameter_file(path: &Path, dimension: Dimension) -> Result<Ta
 /// # Errors
 /// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
 pub(crate) fn read_volume_file(path: &Path, dimension: Dimension) -> Result<Vec<f64>, Error> {
-    read(path, |text| {
-        let rows = Rows::new(text)?;
+    read(path, |content| {
+        let rows = Rows::new(content)?;
         let name = volume_names(dimension)[0];
         let (column, is_diameter) = match (rows.named(volume_names(dimension)), rows.named(&DIAMETERS)) {
             (Some(column), _) => (column, false),
@@ -79,11 +79,7 @@ pub(crate) fn read_volume_file(path: &Path, dimension: Dimension) -> Result<Vec<
         let volumes: Vec<f64> = numbers
             .as_flattened()
             .iter()
-            .map(
-                |number| {
-                    if is_diameter { crate::grain_sizes::ball_volume(dimension, *number) } else { *number }
-                },
-            )
+            .map(|number| if is_diameter { dimension.ball_volume(*number) } else { *number })
             .collect();
         let is_bad = |volume: &f64| !(volume.is_finite() && *volume > 0.0);
         if let Some(row) = volumes.iter().position(is_bad) {
@@ -105,8 +101,8 @@ pub(crate) fn read_volume_file(path: &Path, dimension: Dimension) -> Result<Vec<
 /// # Errors
 /// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
 pub(crate) fn read_gradient_file(path: &Path) -> Result<Vec<[f64; 2]>, Error> {
-    read(path, |text| {
-        let rows = Rows::new(text)?;
+    read(path, |content| {
+        let rows = Rows::new(content)?;
         let places = match (rows.named(&["position"]), rows.named(&["factor"])) {
             (Some(position), Some(factor)) => [position, factor],
             _ if rows.names.is_empty() && rows.rows.iter().all(|(_, columns)| columns.len() == 2) => [0, 1],
@@ -146,59 +142,45 @@ fn volume_names(dimension: Dimension) -> &'static [&'static str] {
     }
 }
 
-fn read<T>(path: &Path, parse: impl FnOnce(&str) -> Result<T, Fault>) -> Result<T, Error> {
+fn read<T>(path: &Path, parse: impl FnOnce(&[u8]) -> Result<T, Fault>) -> Result<T, Error> {
     let bytes = fs::read(path).map_err(|cause| Error::SizeFileUnreadable { path: path.to_owned(), cause })?;
-    parse(&String::from_utf8_lossy(&bytes)).map_err(|(line, problem)| Error::BadSizeFile {
-        path: path.to_owned(),
-        line,
-        problem,
-    })
+    parse(&bytes).map_err(|(line, problem)| Error::BadSizeFile { path: path.to_owned(), line, problem })
 }
 
-/// The lines of a table, which begins with the names of its columns or has none. Empty lines and those that begin with `#` are left out.
-struct Rows<'a> {
+/// The lines of a table, which begins with the names of its columns or has none.
+struct Rows {
     /// In lower case.
     names: Vec<String>,
     first_line: usize,
-    rows: Vec<(usize, Vec<&'a str>)>,
+    rows: Vec<(usize, Vec<String>)>,
 }
 
-impl<'a> Rows<'a> {
-    fn new(text: &'a str) -> Result<Self, Fault> {
-        let lines =
-            (1..).zip(text.lines()).map(|(line, text)| (line, text.trim_start_matches('\u{feff}').trim()));
-        let lines: Vec<(usize, &str)> =
-            lines.filter(|(_, text)| !text.is_empty() && !text.starts_with('#')).collect();
-        let first = lines.first().map_or("", |(_, text)| text);
-        let delimiter = [';', ','].into_iter().find(|delimiter| first.contains(*delimiter));
-        let columns = |text: &'a str| -> Vec<&'a str> {
-            let trimmed = |column: &'a str| column.trim().trim_matches('"');
-            match delimiter {
-                Some(delimiter) => text.split(delimiter).map(trimmed).collect(),
-                None => text.split_whitespace().map(trimmed).collect(),
-            }
-        };
-        let mut rows: Vec<(usize, Vec<&str>)> =
-            lines.into_iter().map(|(line, text)| (line, columns(text))).collect();
-        let first_line = rows.first().map_or(1, |(line, _)| *line);
-        let are_names = rows
-            .first()
-            .is_some_and(|(_, columns)| columns.iter().all(|column| column.parse::<f64>().is_err()));
-        let names = if are_names {
-            rows.remove(0).1.into_iter().map(str::to_lowercase).collect()
-        } else {
-            Vec::new()
-        };
-        let count =
-            if are_names { names.len() } else { rows.first().map_or(0, |(_, columns)| columns.len()) };
-        if let Some((line, columns)) = rows.iter().find(|(_, columns)| columns.len() != count) {
+impl Rows {
+    fn new(content: &[u8]) -> Result<Self, Fault> {
+        let of_text = |(line, problem): (usize, TextProblem)| (line, problem.to_string());
+        let mut table = Self { names: Vec::new(), first_line: 1, rows: Vec::new() };
+        let mut count = None;
+        for row in text_table::rows(content).map_err(of_text)? {
+            let row = row.map_err(of_text)?;
+            let columns = row.columns();
             let found = columns.len();
-            return Err((
-                *line,
-                format!("{found} columns after lines of {count}; write as many on each line"),
-            ));
+            if count.is_none() {
+                table.first_line = row.line;
+                if text_table::are_names(&columns) {
+                    table.names = columns.iter().map(|name| name.to_lowercase()).collect();
+                }
+            }
+            let expected = *count.get_or_insert(found);
+            if found != expected {
+                let problem =
+                    format!("{found} columns after lines of {expected}; write as many on each line");
+                return Err((row.line, problem));
+            }
+            if table.names.is_empty() || row.line != table.first_line {
+                table.rows.push((row.line, columns.into_iter().map(str::to_owned).collect()));
+            }
         }
-        Ok(Self { names, first_line, rows })
+        Ok(table)
     }
 
     /// The column of the first of some names that there is.
@@ -214,10 +196,10 @@ impl<'a> Rows<'a> {
 
     /// The numbers in some columns.
     fn numbers<const N: usize>(&self, places: [usize; N]) -> Result<Vec<[f64; N]>, Fault> {
-        let row = |(line, columns): &(usize, Vec<&str>)| {
+        let row = |(line, columns): &(usize, Vec<String>)| {
             let mut numbers = [0.0; N];
             for (number, place) in numbers.iter_mut().zip(places) {
-                let text = columns[place];
+                let text = &columns[place];
                 let shown: String = text.chars().take(20).collect();
                 *number = text
                     .parse()

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use sizes::{Distribution, Law, Part, Spec, SpecError};
-use voronoi::{Dimension, Domain};
+use voronoi::Domain;
 
 use crate::gradient::Gradient;
-use crate::grain_sizes::{ball_volume, quantile_volumes};
+use crate::grain_sizes::quantile_volumes;
 use crate::memory::{available_memory, check_cells};
 use crate::size_file::{is_size_file, read_diameter_file, read_volume_file};
 use crate::{Config, Error, GradientSource, SeedSource};
@@ -111,7 +111,7 @@ impl Config {
     /// # Errors
     /// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
     pub(crate) fn wanted_sizes(&self) -> Result<Wanted, Error> {
-        let axes = axes(self.dimension);
+        let axes = self.dimension.axes().into();
         Ok(match &self.sizes.source {
             None => Wanted::Diameters(
                 USUAL_DIAMETERS.parse::<Spec>().expect("a good distribution").distribution(axes),
@@ -150,13 +150,6 @@ impl Config {
     }
 }
 
-pub(crate) fn axes(dimension: Dimension) -> u32 {
-    match dimension {
-        Dimension::Two => 2,
-        Dimension::Three => 3,
-    }
-}
-
 /// The number of grains of a distribution that fills a domain. Few grains lack the largest ones of a distribution, so their mean volume is
 /// smaller than its own: what they would have is looked at. Volumes are multiplied by a factor on average.
 fn count_that_fills(
@@ -166,7 +159,7 @@ fn count_that_fills(
     factor: f64,
 ) -> Result<usize, Error> {
     let (dimension, measure) = (domain.dimension(), domain.measure());
-    let mean_volume = ball_volume(dimension, 1.0) * distribution.moment(axes(dimension));
+    let mean_volume = dimension.ball_volume(1.0) * distribution.moment(dimension.axes().into());
     let room = measure / factor;
     let mut count = whole(room / mean_volume);
     check_cells(count, available_memory())?;

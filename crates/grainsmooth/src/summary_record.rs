@@ -5,7 +5,6 @@ use std::path::PathBuf;
 
 use polycrystal::{AngleStatistics, Boundary, HerringResidual};
 use serde::Serialize;
-use voronoi::Dimension;
 
 use crate::triangle_angles::TriangleAngles;
 use crate::{
@@ -128,7 +127,7 @@ impl SummaryRecord {
             version: env!("CARGO_PKG_VERSION"),
             command_line: config.command_line(),
             settings: config.settings().into_iter().collect(),
-            dimension: if config.dimension == Dimension::Two { 2 } else { 3 },
+            dimension: config.dimension.axes(),
             grains: network.grain_count(),
             dropped_seeds: polycrystal.cells.dropped_seeds.clone(),
             merged_seeds: polycrystal.cells.merged_seeds.clone(),

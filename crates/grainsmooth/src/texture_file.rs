@@ -7,6 +7,7 @@ use std::path::Path;
 use texture::{AngleHistogram, CrystalSymmetry, HistogramError, Orientation};
 
 use crate::Error;
+use crate::text_table::TextProblem;
 
 mod ang;
 mod ctf;
@@ -66,7 +67,7 @@ pub fn read_texture_file(path: &Path) -> Result<OrientationList, Error> {
         Some(TextureFormat::Ori) => ori::read(&text),
         Some(TextureFormat::Ang) => ang::read(&text),
         Some(TextureFormat::Ctf) => ctf::read(&text),
-        Some(TextureFormat::Euler) | None => euler::read(&text),
+        Some(TextureFormat::Euler) | None => euler::read(&bytes),
     };
     let found = found.and_then(|found| match found.orientations.is_empty() {
         true => Err((1, "holds no orientation; give a file with one or more".to_owned())),
@@ -83,7 +84,7 @@ pub fn read_disorientation_file(path: &Path, symmetry: CrystalSymmetry) -> Resul
     let bytes =
         fs::read(path).map_err(|cause| Error::TextureFileUnreadable { path: path.to_owned(), cause })?;
     let read = || {
-        let numbered = histogram::read(&String::from_utf8_lossy(&bytes))?;
+        let numbered = histogram::read(&bytes)?;
         let (lines, bins): (Vec<usize>, Vec<(f64, f64)>) = numbered.into_iter().unzip();
         AngleHistogram::new(&bins, symmetry).map_err(|error| {
             let bin = match error {
@@ -96,6 +97,10 @@ pub fn read_disorientation_file(path: &Path, symmetry: CrystalSymmetry) -> Resul
         })
     };
     read().map_err(|(line, problem)| Error::BadTextureFile { path: path.to_owned(), line, problem })
+}
+
+fn of_text((line, problem): (usize, TextProblem)) -> Fault {
+    (line, problem.to_string())
 }
 
 /// The columns of a line, between commas, semicolons or blanks.

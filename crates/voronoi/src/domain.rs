@@ -36,6 +36,22 @@ impl Dimension {
         }
     }
 
+    /// The volume of the ball of a diameter, in the plane the area of the disc.
+    pub fn ball_volume(self, diameter: f64) -> f64 {
+        match self {
+            Self::Two => PI / 4.0 * diameter * diameter,
+            Self::Three => PI / 6.0 * diameter * diameter * diameter,
+        }
+    }
+
+    /// The number of axes of coordinates: 2 in the plane, 3 in space.
+    pub fn axes(self) -> u8 {
+        match self {
+            Self::Two => 2,
+            Self::Three => 3,
+        }
+    }
+
     /// Corners that a face has at least.
     pub(crate) fn fewest_corners(self) -> usize {
         match self {
@@ -341,10 +357,7 @@ impl Domain {
 
     /// Number of axes along which the domain extends.
     pub(crate) fn axes(&self) -> usize {
-        match self.dimension {
-            Dimension::Two => 2,
-            Dimension::Three => 3,
-        }
+        usize::from(self.dimension.axes())
     }
 }
 
@@ -352,8 +365,7 @@ const AXES: [char; 3] = ['x', 'y', 'z'];
 
 /// Checks that the sides of a box are lengths; one that is 0 makes it flat, which is another matter.
 pub(crate) fn check_sides(lower: DVec3, upper: DVec3, dimension: Dimension) -> Result<(), VoronoiError> {
-    let axes = if dimension == Dimension::Two { 2 } else { 3 };
-    let sides = AXES.into_iter().zip((upper - lower).to_array()).take(axes);
+    let sides = AXES.into_iter().zip((upper - lower).to_array()).take(dimension.axes().into());
     match sides.into_iter().find(|(_, length)| *length != 0.0 && !Domain::LENGTHS.contains(length)) {
         Some((axis, length)) => Err(VoronoiError::BadDomain { axis, length }),
         None => Ok(()),

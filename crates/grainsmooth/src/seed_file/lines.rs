@@ -4,6 +4,7 @@ use glam::DVec3;
 use voronoi::Dimension;
 
 use super::{FileSeed, SeedPlace, SeedProblem, shortened, weight};
+use crate::text_table::{self, TextProblem};
 
 /// What is wrong, and where.
 type Located<T> = Result<T, (SeedPlace, SeedProblem)>;
@@ -100,48 +101,16 @@ impl Columns {
 }
 
 /// Seeds of a CSV file, one a line.
-///
-/// Columns stand between semicolons where the first line has them, else between commas; in lines without, between blanks or tabs.
 pub(super) fn csv(content: &[u8], dimension: Dimension) -> Located<Vec<FileSeed>> {
-    // The `csv` crate says of a record after comments the line where the comments began.
-    let (mut text, mut places) = (String::new(), Vec::new());
-    for line in lines(content) {
-        let (place, line) = line?;
-        if !line.is_empty() && !line.starts_with('#') {
-            text.extend([line, "\n"]);
-            places.push(place);
-        }
-    }
-    // Where the last line leaves a quote open, this line ends up inside.
-    text.push('\n');
-    let delimiter = match text.lines().next() {
-        Some(first) if first.contains(';') => b';',
-        _ if text.contains(',') => b',',
-        _ => b' ',
-    };
-    if delimiter == b' ' {
-        text = text.replace('\t', " ");
-    }
-    let mut reader = csv::ReaderBuilder::new();
-    reader.has_headers(false).flexible(true).delimiter(delimiter).trim(csv::Trim::All);
-    let mut reader = reader.from_reader(text.as_bytes());
-    let mut record = csv::StringRecord::new();
     let mut seeds = Vec::new();
     let mut known_columns = None;
-    while reader.read_record(&mut record).expect("text in memory, with any number of columns") {
-        let line = record.position().map_or(0, csv::Position::line);
-        let place = places[usize::try_from(line).unwrap_or(1).saturating_sub(1)];
-        if reader.position().line() > line + 1 {
-            return Err((place, SeedProblem::OpenQuote));
-        }
-        let texts: Vec<&str> = match (delimiter, record.len()) {
-            (b' ', _) => record.iter().filter(|text| !text.is_empty()).collect(),
-            (_, 1) => record[0].split_whitespace().collect(),
-            _ => record.iter().collect(),
-        };
-        let are_names = texts.iter().all(|text| text.parse::<f64>().is_err());
-        if known_columns.is_none() && are_names {
-            known_columns = Some(Columns::named(&texts, dimension).map_err(|problem| (place, problem))?);
+    for row in text_table::rows(content).map_err(of_text)? {
+        let row = row.map_err(of_text)?;
+        let place = SeedPlace::Line(row.line);
+        let located = |problem| (place, problem);
+        let texts = row.columns();
+        if known_columns.is_none() && text_table::are_names(&texts) {
+            known_columns = Some(Columns::named(&texts, dimension).map_err(located)?);
             continue;
         }
         let found = texts.len();
@@ -150,9 +119,9 @@ pub(super) fn csv(content: &[u8], dimension: Dimension) -> Located<Vec<FileSeed>
         known_columns = Some(columns);
         let unequal = SeedProblem::UnequalColumns { found, expected: columns.count };
         let columns = columns.of_line(found).ok_or((place, unequal))?;
-        let (position, weight) = seed(&texts, columns, dimension).map_err(|problem| (place, problem))?;
+        let (position, weight) = seed(&texts, columns, dimension).map_err(located)?;
         let id = columns.id.map(|column| super::id(texts[column])).transpose();
-        seeds.push(FileSeed { position, weight, id: id.map_err(|problem| (place, problem))?, place });
+        seeds.push(FileSeed { position, weight, id: id.map_err(located)?, place });
     }
     Ok(seeds)
 }
@@ -160,7 +129,8 @@ pub(super) fn csv(content: &[u8], dimension: Dimension) -> Located<Vec<FileSeed>
 /// Seeds of an XYZ file: their number, a remark, and in each further line the name of an element, which is not used, then
 /// x, y, z and perhaps a radius. In 2D, z is 0.
 pub(super) fn xyz(content: &[u8], dimension: Dimension) -> Located<Vec<FileSeed>> {
-    let mut lines = lines(content);
+    let mut lines = text_table::lines(content)
+        .map(|line| line.map(|(line, text)| (SeedPlace::Line(line), text)).map_err(of_text));
     let Some((first, text)) = lines.next().transpose()? else { return Ok(Vec::new()) };
     let not_a_count = || (first, SeedProblem::NotACount { value: shortened(text) });
     let announced: usize = text.parse().map_err(|_| not_a_count())?;
@@ -191,14 +161,12 @@ pub(super) fn xyz(content: &[u8], dimension: Dimension) -> Located<Vec<FileSeed>
     Ok(seeds)
 }
 
-/// The lines without blanks around them.
-fn lines(content: &[u8]) -> impl Iterator<Item = Located<(SeedPlace, &str)>> {
-    (1..).zip(content.split(|&byte| byte == b'\n')).map(|(line, bytes)| {
-        let place = SeedPlace::Line(line);
-        let text = std::str::from_utf8(bytes).map_err(|_| (place, SeedProblem::NotUtf8))?;
-        // Some editors begin a file with this invisible mark.
-        Ok((place, text.trim_start_matches('\u{feff}').trim()))
-    })
+fn of_text((line, problem): (usize, TextProblem)) -> (SeedPlace, SeedProblem) {
+    let problem = match problem {
+        TextProblem::NotUtf8 => SeedProblem::NotUtf8,
+        TextProblem::OpenQuote => SeedProblem::OpenQuote,
+    };
+    (SeedPlace::Line(line), problem)
 }
 
 /// Position and weight in a line.

@@ -2,24 +2,23 @@
 
 use texture::Orientation;
 
-use super::{Fault, OrientationList, columns, number};
+use super::{Fault, OrientationList, number, of_text};
+use crate::text_table;
 
 /// Names of the columns, in lower case.
 const NAMES: [&str; 4] = ["phi1", "phi", "phi2", "weight"];
 
 /// Reads a table: three or four columns, or columns named in the first line, of which others are passed over. Lines that begin with `#`
 /// are comments. Without weights all are 1.
-pub(super) fn read(text: &str) -> Result<OrientationList, Fault> {
+pub(super) fn read(content: &[u8]) -> Result<OrientationList, Fault> {
     let mut places: Option<Vec<Option<usize>>> = None;
     let mut orientations = Vec::new();
-    for (line, text) in (1..).zip(text.lines().map(|line| line.trim_start_matches('\u{feff}').trim())) {
-        if text.is_empty() || text.starts_with('#') {
-            continue;
-        }
-        let columns = columns(text);
+    for row in text_table::rows(content).map_err(of_text)? {
+        let row = row.map_err(of_text)?;
+        let (line, columns) = (row.line, row.columns());
         let places = match &places {
             Some(places) => places,
-            None if columns.iter().all(|column| column.parse::<f64>().is_err()) => {
+            None if text_table::are_names(&columns) => {
                 places = Some(named(line, &columns)?);
                 continue;
             }
@@ -58,9 +57,8 @@ pub(super) fn read(text: &str) -> Result<OrientationList, Fault> {
 
 /// The places of the columns by their names.
 fn named(line: usize, columns: &[&str]) -> Result<Vec<Option<usize>>, Fault> {
-    let plain = |name: &str| name.trim_matches('"').to_lowercase();
-    let places: Vec<_> =
-        NAMES.iter().map(|name| columns.iter().position(|column| plain(column) == *name)).collect();
+    let place = |name: &&str| columns.iter().position(|column| column.to_lowercase() == **name);
+    let places: Vec<_> = NAMES.iter().map(place).collect();
     match places[..3].iter().position(Option::is_none) {
         None => Ok(places),
         Some(missing) => {

@@ -272,8 +272,7 @@ impl Pieces {
 
     /// The point in the corner of a box that is periodic along all axes.
     pub(super) fn origin(&mut self) -> Corner {
-        let dimensions = if self.domain.dimension() == Dimension::Two { 2 } else { 3 };
-        let planes = [0, 1, 2].map(|axis| axis < dimensions);
+        let planes = [0, 1, 2].map(|axis| axis < self.domain.dimension().axes());
         match self.planes.iter().position(|known| *known == planes) {
             Some(point) => Corner { point: id(point), shift: Shift::NONE },
             None => self.add(self.domain.lower(), planes),

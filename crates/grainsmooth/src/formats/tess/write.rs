@@ -13,7 +13,7 @@ use crate::GrainTexture;
 
 /// Writes the file, with the cells' orientations if they have some.
 pub(crate) fn write(tess: &Tess, texture: Option<&GrainTexture>, out: &mut dyn Write) -> io::Result<()> {
-    let dimension = if tess.dimension == Dimension::Two { 2 } else { 3 };
+    let dimension = tess.dimension.axes();
     let kind = if tess.periodicity.is_some() { "periodic" } else { "standard" };
     writeln!(out, "***tess\n **format\n   3.5\n **general\n   {dimension} {kind}")?;
     let cell_count = if dimension == 2 { tess.faces.len() } else { tess.polyhedra.len() };
@@ -197,7 +197,7 @@ impl Frame {
                 }
             }
         }
-        let walls_at_corner = if tess.dimension == Dimension::Two { 2 } else { 3 };
+        let walls_at_corner = usize::from(tess.dimension.axes());
         let mut vertices_at = BTreeMap::<_, Vec<u32>>::new();
         for (vertex, walls) in (0u32..).zip(&walls_of_vertices) {
             if walls.len() >= walls_at_corner {
