@@ -6,7 +6,7 @@ use common::{BODY_CENTRED, SIMPLE_CUBIC, assert_power_complex, lattice, random_s
 use glam::{BVec3, DVec3};
 use rayon::ThreadPoolBuilder;
 use voronoi::volumes::{PowerDiagram, TOLERANCE, VolumesError, place_spheres};
-use voronoi::{Dimension, Domain, VoronoiError};
+use voronoi::{Dimension, Domain, Tessellation, VoronoiError};
 
 fn periodic_cube() -> Domain {
     Domain::unit_cube().with_periods(BVec3::TRUE)
@@ -191,6 +191,19 @@ fn units_and_origin_do_not_matter() {
             assert!((weight - expected).abs() < 1e-11, "{weight} for {expected} at {scale}, {shift}");
         }
     }
+}
+
+/// The mean was taken off the weights after the cells were made: made again, these differed in the last digits.
+#[test]
+fn weights_make_the_same_cells_again() {
+    let domain = periodic_cube();
+    let volumes = lognormal(&domain, 40, 0.5);
+    let diagram = PowerDiagram::with_volumes(&domain, &placed(&domain, &volumes), &volumes);
+    let diagram = diagram.and_then(|diagram| diagram.lloyd(2)).unwrap();
+    let cells = diagram.tessellation();
+    let again = Tessellation::power(&domain, cells.seeds(), diagram.weights()).unwrap();
+    assert_eq!(again.vertices(), cells.vertices());
+    assert_eq!(again.cell_measures(), cells.cell_measures());
 }
 
 #[test]

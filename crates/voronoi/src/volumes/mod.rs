@@ -151,15 +151,10 @@ impl PowerDiagram {
     }
 
     fn finished(
-        Clipped { tessellation, mut weights, .. }: Clipped,
+        Clipped { tessellation, weights, .. }: Clipped,
         volumes: Vec<f64>,
         centroid_steps: usize,
     ) -> Self {
-        // Equal weights become exactly 0.
-        let first = weights[0];
-        weights.iter_mut().for_each(|weight| *weight -= first);
-        let mean = weights.iter().sum::<f64>() / weights.len() as f64;
-        weights.iter_mut().for_each(|weight| *weight -= mean);
         Self { tessellation, weights, volumes, centroid_steps }
     }
 
@@ -168,7 +163,7 @@ impl PowerDiagram {
         &self.tessellation
     }
 
-    /// The weights, with which [`Tessellation::power`] gives the same cells; their mean is 0.
+    /// The weights, with which [`Tessellation::power`] gives the same cells, bit for bit; their mean is 0.
     pub fn weights(&self) -> &[f64] {
         &self.weights
     }

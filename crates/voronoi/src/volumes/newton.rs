@@ -36,7 +36,13 @@ pub(super) struct Clipped {
 }
 
 impl Clipped {
-    pub(super) fn new(domain: &Domain, seeds: &[DVec3], weights: Vec<f64>) -> Result<Self, VoronoiError> {
+    /// Clips cells with weights of which what they have in common is taken off.
+    pub(super) fn new(domain: &Domain, seeds: &[DVec3], mut weights: Vec<f64>) -> Result<Self, VoronoiError> {
+        // Equal weights become exactly 0.
+        let first = weights[0];
+        weights.iter_mut().for_each(|weight| *weight -= first);
+        let mean = weights.iter().sum::<f64>() / weights.len() as f64;
+        weights.iter_mut().for_each(|weight| *weight -= mean);
         Ok(Self::of(Tessellation::power(domain, seeds, &weights)?, weights))
     }
 
