@@ -6,7 +6,7 @@ use super::workplace::{FAILED, Workplace};
 #[test]
 fn a_free_grain_that_vanishes_is_named_with_a_time_that_works() {
     let workplace = Workplace::new();
-    let grains = "--dim 2 --seeds 30 -n 0 --free";
+    let grains = "--dim 2 --seeds 30 --seeding random -n 0 --free";
     let too_long = format!("{grains} --relax 1");
     workplace.refuses(&too_long, FAILED, "grain ... works");
     let said = workplace.command(&too_long).assert().get_output().stderr.clone();

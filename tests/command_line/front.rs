@@ -20,7 +20,8 @@ fn text(workplace: &Workplace, arguments: &str) -> String {
 #[test]
 fn summaries_tell_of_changes_of_topology() {
     let workplace = Workplace::new();
-    let said = workplace.run("--seeds 24 -n 2 --relax equilibrium -o a.vtp --json-summary run.json");
+    let said = workplace
+        .run("--seeds 24 --seeding random -n 2 --relax equilibrium -o a.vtp --json-summary run.json");
     let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
     let number = |key: &str| run["equilibrium"][key].as_f64().unwrap();
     let changes = |key: &str| run["topology_changes"][key].as_f64().unwrap();
@@ -52,7 +53,7 @@ fn summaries_tell_of_changes_of_topology() {
     let said = workplace.run("--seeds 24 -n 1 --relax equilibrium --regularize 0 -o b.vtp");
     assert!(said.contains("\ntopology    kept: "), "{said}");
     // In a given time grains switch neighbours, but nobody asks for rest.
-    let said = workplace.run("--seeds 24 -n 0 -o b.vtp --json-summary run.json");
+    let said = workplace.run("--seeds 24 --seeding random -n 0 -o b.vtp --json-summary run.json");
     let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
     assert!(run["equilibrium"].is_null());
     assert!(run["topology_changes"]["boundaries_to_lines"].as_f64().unwrap() > 0.0, "{said}");
@@ -69,8 +70,12 @@ fn summaries_tell_of_changes_of_topology() {
 fn summaries_tell_of_changes_of_topology_in_the_plane() {
     let workplace = Workplace::new();
     let plane = "--dim 2 --relax equilibrium -o a.vtp --json-summary run.json";
-    for seeds in ["--seeds 60", "--seeds 60 --periodic x,y", "--seeds 30 --domain disc", "--lattice square 4"]
-    {
+    for seeds in [
+        "--seeds 60 --seeding random",
+        "--seeds 60 --periodic x,y --seeding random",
+        "--seeds 30 --domain disc --seeding random",
+        "--lattice square 4",
+    ] {
         let said = workplace.run(&format!("{seeds} {plane}"));
         let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
         let number = |key: &str| run["equilibrium"][key].as_f64().unwrap();

@@ -181,7 +181,7 @@ fn report_holds_the_network_and_the_run() {
     }
     // The cube, in units of its side, from its middle.
     assert_eq!(network["low"], serde_json::json!([-0.5, -0.5, -0.5]));
-    assert_eq!(page.matches("<svg").count(), 3);
+    assert_eq!(page.matches("<svg").count(), 4);
 }
 
 #[test]
@@ -192,7 +192,7 @@ fn report_in_the_plane_holds_a_picture() {
     let (_, after) = page.split_once("src=\"data:image/png;base64,").unwrap();
     let picture = BASE64.decode(after.split_once('"').unwrap().0).unwrap();
     assert_eq!(Pixmap::decode_png(&picture).unwrap().width(), 1200);
-    assert_eq!(page.matches("<svg").count(), 3);
+    assert_eq!(page.matches("<svg").count(), 4);
 }
 
 /// The screenshot stays in the folder for the tests' files, for people to look at.

@@ -47,7 +47,11 @@ fn orientations_that_are_passed_over_are_named() {
 #[test]
 fn tess_file_gives_seeds_box_and_periods() {
     let workplace = Workplace::new();
-    for arguments in ["--seeds 9 --box 2 1.5 1 --periodic x,z", "--seeds 7 --dim 2 --box 3 1", "--seeds 5"] {
+    for arguments in [
+        "--seeds 9 --seeding random --box 2 1.5 1 --periodic x,z",
+        "--seeds 7 --seeding random --dim 2 --box 3 1",
+        "--seeds 5 --seeding random",
+    ] {
         workplace.run(&format!("{arguments} -n 0 --relax 0 -o one.tess"));
         workplace.run("--seeds-file one.tess -n 0 --relax 0 -o two.tess");
         // Behind the cells stand the settings, which differ in where the seeds are from.
@@ -168,7 +172,7 @@ fn tess_files_whose_cells_are_not_those_of_their_seeds_are_refused() {
 #[test]
 fn the_square_of_a_plane_tess_file_may_be_called_a_cube() {
     let workplace = Workplace::new();
-    workplace.run("--seeds 5 --dim 2 --relax 0 -n 0 -o one.tess --cells-csv one.csv");
+    workplace.run("--seeds 5 --seeding random --dim 2 --relax 0 -n 0 -o one.tess --cells-csv one.csv");
     let tess = String::from_utf8(workplace.bytes("one.tess")).unwrap();
     workplace.put("other.tess", tess.replace("   square\n", "   cube\n"));
     workplace.run("--seeds-file other.tess --no-mesh --cells-csv other.csv");

@@ -195,7 +195,7 @@ fn sizes_that_are_mistaken() {
         ),
         (
             "--diameters equal(1) --min-diameter 0.2",
-            "--min-diameter would change sizes that are given; cut small ones off with from=, or leave it out",
+            "--min-diameter would change sizes that are given; cut small ones off with from=, or give --seeding random",
         ),
     ] {
         workplace.refuses(arguments, USAGE, message);
@@ -425,7 +425,7 @@ fn diameters_follow_a_gradient() {
     assert!(workplace.bytes("a.vtp") == workplace.bytes("b.vtp"));
     for (arguments, message) in [
         (
-            "--gradient z:g.csv",
+            "--seeding random --gradient z:g.csv",
             "--gradient changes given sizes; give --diameters or --seeding packed as well",
         ),
         (

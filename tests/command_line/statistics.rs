@@ -75,7 +75,8 @@ fn statistics_of_a_periodic_network_sum_up() {
 #[test]
 fn higher_order_junctions_are_told_apart() {
     let workplace = Workplace::new();
-    let periodic = "--seeds 60 --periodic x,y,z -n 0 --stats a.json --json-summary run.json -o a.vtp";
+    let periodic =
+        "--seeds 60 --seeding random --periodic x,y,z -n 0 --stats a.json --json-summary run.json -o a.vtp";
     let said = workplace.run(periodic);
     let [all, run] = ["a.json", "run.json"].map(|name| json(&workplace, name));
     let topology = &run["topology"];
@@ -123,7 +124,8 @@ fn higher_order_junctions_are_told_apart() {
     for (arguments, relax) in
         [("--free", 0.3), ("--edge-length 0.05", 0.3), ("--regularize 0", 0.3), ("--relax 0.1", 0.1)]
     {
-        workplace.run(&format!("--dim 2 --seeds 9 -n 0 --json-summary run.json {arguments}"));
+        workplace
+            .run(&format!("--dim 2 --seeds 9 --seeding random -n 0 --json-summary run.json {arguments}"));
         assert_eq!(json(&workplace, "run.json")["settings"]["relax"], relax, "{arguments}");
     }
 }

@@ -128,10 +128,10 @@ impl Arguments {
         let aspect_ratio = sizes.aspect_ratio(domain.dimension);
         let sizes = sizes.options();
         let config = Config {
-            seeds: seeds.source(domain.dimension, sizes.source.is_some()),
+            seeds: seeds.source(domain.dimension),
             random_seed: seeds.rng_seed,
             sizes,
-            lloyd_steps: 0,
+            lloyd_steps: seeds.lloyd,
             dimension: domain.dimension,
             box_size: domain.box_size,
             shape: arguments.shape(&domain),
@@ -154,10 +154,10 @@ impl Arguments {
         let is_sized = config.is_sized();
         if is_sized && config.min_diameter > 0.0 {
             usage(
-                "--min-diameter would change sizes that are given; cut small ones off with from=, or leave it out",
+                "--min-diameter would change sizes that are given; cut small ones off with from=, or give --seeding random",
             );
         }
-        let config = Config { relaxation, lloyd_steps: seeds.lloyd(is_sized), ..config };
+        let config = Config { relaxation, ..config };
         if let Some(gradient) = &config.sizes.gradient {
             if !is_sized {
                 usage("--gradient changes given sizes; give --diameters or --seeding packed as well");

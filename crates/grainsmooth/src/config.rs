@@ -94,8 +94,9 @@ pub struct Config {
     pub random_seed: u64,
     /// The sizes of the grains.
     pub sizes: SizeOptions,
-    /// Number of times that every seed moves to the centroid of its cell (Lloyd's algorithm); given volumes are kept.
-    pub lloyd_steps: u32,
+    /// Number of times that every seed moves to the centroid of its cell (Lloyd's algorithm); given volumes are kept. Where nothing is
+    /// said, [`Config::LLOYD_OF_SIZES`] for grains of given sizes whose places are not given, else none.
+    pub lloyd_steps: Option<u32>,
     /// Two or three dimensions.
     pub dimension: Dimension,
     /// Side lengths of the box, which has its lower corner in the origin; in 2D the last is ignored.
@@ -165,10 +166,10 @@ impl Default for FileOptions {
 impl Default for Config {
     fn default() -> Self {
         Self {
-            seeds: SeedSource::Random { count: 200 },
+            seeds: SeedSource::Packed { count: 200 },
             random_seed: 1,
             sizes: SizeOptions::default(),
-            lloyd_steps: 0,
+            lloyd_steps: None,
             dimension: Dimension::Three,
             box_size: DVec3::ONE,
             shape: Shape::Box,
@@ -195,6 +196,9 @@ impl Config {
     /// good as longer ones do. Of random grains, 0.15 made three times as many points of more than four grains; docs/relaxation.md has
     /// the figures.
     pub const REGULARIZE: f64 = 0.05;
+
+    /// Centroid steps of grains with given sizes: with 10 they have 13.7 faces and a sphericity of 0.855, as those of measured metals.
+    pub const LLOYD_OF_SIZES: u32 = 10;
 
     /// The largest: edges as long as half a grain are no small features.
     pub const LARGEST_REGULARIZE: f64 = 0.5;

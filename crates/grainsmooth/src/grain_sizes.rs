@@ -23,6 +23,8 @@ pub struct GrainSizes {
     dimension: Dimension,
     /// What was asked for.
     asked: String,
+    /// Whether nothing was.
+    is_usual: bool,
     draw: SizeDraw,
     distribution: Option<Distribution>,
     /// By which diameters are multiplied to fill the domain.
@@ -39,6 +41,8 @@ pub struct GrainSizes {
 pub struct SizesReached {
     /// What was asked for, in words.
     asked: String,
+    /// Whether nothing was asked for: these are the usual sizes.
+    is_usual: bool,
     draw: &'static str,
     /// By which the diameters asked for are multiplied to fill the domain.
     scale: f64,
@@ -97,12 +101,13 @@ impl GrainSizes {
         Ok(Self {
             dimension,
             asked: config.asked_sizes(),
+            is_usual: config.sizes.source.is_none(),
             draw: config.sizes.draw,
             distribution,
             scale: dimension.cube_edge(factor),
             volumes,
             factors: Vec::new(),
-            centroid_steps: [0, config.lloyd_steps as usize],
+            centroid_steps: [0, config.centroid_steps() as usize],
         })
     }
 
@@ -151,6 +156,7 @@ impl GrainSizes {
         };
         SizesReached {
             asked: self.asked.clone(),
+            is_usual: self.is_usual,
             draw: self.draw.name(),
             scale: self.scale,
             asked_mean: self.distribution.as_ref().map(Distribution::mean),
@@ -205,9 +211,11 @@ fn cdf_distance(mut diameters: Vec<f64>, distribution: &Distribution, power: u32
 /// The lines of a summary.
 impl fmt::Display for SizesReached {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, "sizes       asked {}", self.asked)?;
-        if let (Some(mean), Some(cv)) = (self.asked_mean, self.asked_cv) {
-            write!(out, " (mean {mean:.4}, cv {cv:.4}; {})", self.draw)?;
+        write!(out, "sizes       {} {}", if self.is_usual { "usual" } else { "asked" }, self.asked)?;
+        match (self.asked_mean, self.asked_cv) {
+            _ if self.is_usual => write!(out, "; others by --diameters, Voronoi cells by --seeding random")?,
+            (Some(mean), Some(cv)) => write!(out, " (mean {mean:.4}, cv {cv:.4}; {})", self.draw)?,
+            _ => {}
         }
         writeln!(out, "; diameters times {:.6} to fill the domain", self.scale)?;
         write!(out, "            reached")?;

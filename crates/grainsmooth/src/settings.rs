@@ -41,7 +41,7 @@ impl Config {
         if self.min_diameter > 0.0 {
             add("min-diameter", self.min_diameter.into());
         }
-        add("lloyd", i64::from(self.lloyd_steps).into());
+        add("lloyd", i64::from(self.centroid_steps()).into());
         let DVec3 { x, y, z } = self.box_size;
         let sides = match self.dimension {
             Dimension::Two => {

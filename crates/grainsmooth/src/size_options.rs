@@ -97,6 +97,13 @@ impl Config {
         self.sizes.source.is_some() || matches!(self.seeds, SeedSource::Packed { .. })
     }
 
+    /// Number of times that every seed moves to the centroid of its cell.
+    pub fn centroid_steps(&self) -> u32 {
+        let has_places = matches!(self.seeds, SeedSource::File(_));
+        let usual = if self.is_sized() && !has_places { Self::LLOYD_OF_SIZES } else { 0 };
+        self.lloyd_steps.unwrap_or(usual)
+    }
+
     /// What is asked for in words.
     pub(crate) fn asked_sizes(&self) -> String {
         match &self.sizes.source {

@@ -92,11 +92,11 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
             return Ok((diagram.tessellation().clone(), diagram.weights().to_vec()));
         }
         let mut all = cells_of(config, &domain, &seeds.seeds)?;
-        for step in 1..=config.lloyd_steps {
+        for step in 1..=config.centroid_steps() {
             let centroids = all.0.centroids();
             seeds.seeds.iter_mut().zip(centroids).for_each(|(seed, centroid)| seed.position = centroid);
             all = cells_of(config, &domain, &seeds.seeds)?;
-            progress(Stage::Cells, step as usize, config.lloyd_steps as usize);
+            progress(Stage::Cells, step as usize, config.centroid_steps() as usize);
         }
         let empty = all.0.empty_cells();
         if !empty.is_empty() {
@@ -206,7 +206,7 @@ fn sized_cells(
 ) -> Result<PowerDiagram, Error> {
     let positions: Vec<DVec3> = seeds.iter().map(|seed| seed.position).collect();
     let diagram = PowerDiagram::with_volumes(domain, &positions, volumes)
-        .and_then(|diagram| diagram.lloyd(config.lloyd_steps as usize));
+        .and_then(|diagram| diagram.lloyd(config.centroid_steps() as usize));
     diagram.map_err(|error| match error {
         VolumesError::Voronoi(error) => located(error, config, seeds),
         error => error.into(),

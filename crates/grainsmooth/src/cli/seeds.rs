@@ -12,9 +12,6 @@ use super::values::{nearest, whole_number};
 /// Grains where nothing is said.
 const USUAL_SEEDS: u32 = 200;
 
-/// Centroid steps of grains with exact sizes: with 10 they have 13.7 faces and a sphericity of 0.855, as those of measured metals.
-const LLOYD_OF_SIZES: u32 = 10;
-
 /// Where seeds come from.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Seeds")]
@@ -25,14 +22,15 @@ pub struct SeedArguments {
     #[arg(long, value_name = "N", value_parser = whole_number(1..=4_000_000_000_u32), allow_negative_numbers = true)]
     seeds: Option<u32>,
 
-    /// Random seeds uniform (random), at least 0.75 mean spacings apart (poisson-disc), or as the centres of spheres that do not
-    /// overlap, for grains of exact sizes (packed) [default: random; packed where --diameters or --volumes are given]
+    /// Seeds as the centres of spheres that do not overlap, for grains of exact sizes as in metals (packed); random, uniform (random)
+    /// or at least 0.75 mean spacings apart (poisson-disc)
     ///
-    /// Without --diameters or --volumes, packed grains have lognormal diameters with a coefficient of variation of 0.35.
+    /// Packed grains have lognormal diameters with a coefficient of variation of 0.35, unless --diameters or --volumes ask for others.
+    /// Random seeds make Voronoi cells, for the exact statistics of those.
     ///
-    /// Example: --seeding packed
-    #[arg(long, value_name = "HOW", value_enum)]
-    seeding: Option<Seeding>,
+    /// Example: --seeding random
+    #[arg(long, value_name = "HOW", value_enum, default_value_t = Seeding::Packed)]
+    seeding: Seeding,
 
     /// Seeds on a lattice instead: sc, bcc, fcc or hcp (square or hex in 2D), with N unit cells along the shortest side
     ///
@@ -62,12 +60,12 @@ pub struct SeedArguments {
     #[arg(long, value_name = "F", default_value_t = 0.0, value_parser = parse_share, allow_negative_numbers = true)]
     pub min_diameter: f64,
 
-    /// Even out the grains: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 0; 10 where grains
-    /// have exact sizes and no --seeds-file tells their places]
+    /// Even out the grains: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 10
+    /// for packed grains, and where else --diameters or --volumes give sizes, but no --seeds-file the places; 0 for others]
     ///
     /// Example: --lloyd 10
     #[arg(long, value_name = "N", value_parser = whole_number(0..=100_000_u32), allow_negative_numbers = true)]
-    lloyd: Option<u32>,
+    pub lloyd: Option<u32>,
 
     /// Start of the random generator: the same number gives the same grains on every machine
     ///
@@ -97,20 +95,13 @@ impl SeedArguments {
         self.seeds.is_none() && self.seeds_file.is_none() && self.lattice.is_none()
     }
 
-    /// Steps of Lloyd's algorithm, for grains that have given sizes or not.
-    pub fn lloyd(&self, is_sized: bool) -> u32 {
-        let usual = if is_sized && self.seeds_file.is_none() { LLOYD_OF_SIZES } else { 0 };
-        self.lloyd.unwrap_or(usual)
-    }
-
-    /// Where seeds of a dimension come from, for grains that are given sizes or not.
-    pub fn source(&self, dimension: Dimension, has_sizes: bool) -> SeedSource {
+    /// Where seeds of a dimension come from.
+    pub fn source(&self, dimension: Dimension) -> SeedSource {
         if let Some(path) = &self.seeds_file {
             return SeedSource::File(path.clone());
         }
         let count = self.seeds.unwrap_or(USUAL_SEEDS) as usize;
-        let usual = if has_sizes { Seeding::Packed } else { Seeding::Random };
-        match (self.lattice.as_deref(), self.seeding.unwrap_or(usual)) {
+        match (self.lattice.as_deref(), self.seeding) {
             (None, Seeding::Random) => SeedSource::Random { count },
             (None, Seeding::PoissonDisc) => SeedSource::PoissonDisc { count },
             (None, Seeding::Packed) => SeedSource::Packed { count },
