@@ -141,6 +141,10 @@ fn sizes(
         options.set("aspect-ratio", lengths);
     }
     let is_free = matches!(arrangement, Arrangement::Random | Arrangement::PoissonDisc);
+    // Packed grains have sizes, which nothing may be merged into.
+    if arrangement == Arrangement::Random && (options.has("min-diameter") || draw.chance(0.5)) {
+        options.set("seeding", ["random"]);
+    }
     let may_be_sized = is_free || matches!(arrangement, Arrangement::Uniform | Arrangement::Radii);
     if !may_be_sized || options.has("min-diameter") || !draw.chance(0.35) {
         return None;
