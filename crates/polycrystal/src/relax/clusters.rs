@@ -3,7 +3,13 @@
 use glam::DVec3;
 
 use crate::grouped::Grouped;
-use crate::{Freedom, Level, Mesh};
+use crate::{Freedom, Level, Mesh, NetworkError};
+
+/// Attempts at a step (and at the whole flow), each with what the last one broke moving as one.
+pub(super) const ATTEMPTS: usize = 24;
+
+/// Attempts after which all displacements are halved with every other one: what moves at all may be too much.
+const WHOLE_ATTEMPTS: usize = 12;
 
 /// Groups of control points that are displaced by the same vector, so that what lies between them keeps its shape.
 ///
@@ -63,6 +69,42 @@ impl Clusters {
             }
             Mesh::Segments(mesh) => mesh.segments().iter().for_each(|segment| join(*segment)),
         }
+    }
+
+    /// Gives all points of each cluster the mean of their displacements, for an attempt that is counted from 0.
+    pub(super) fn unite(&self, moves: &mut [DVec3], of_point: impl Fn(u32) -> Freedom, attempt: usize) {
+        self.number().unite(moves, of_point);
+        if attempt >= WHOLE_ATTEMPTS {
+            moves.iter_mut().for_each(|by| *by *= 0.5);
+        }
+    }
+
+    /// Where points are after displacements, of which those that would break something give way: all points that it depends on move as one.
+    ///
+    /// `broken` gives these points, for each place that is broken with all points where it is told.
+    ///
+    /// # Errors
+    /// [`NetworkError::Folded`] where something is still broken after all attempts.
+    pub(super) fn moved_unbroken<P: AsRef<[u32]>>(
+        &mut self,
+        points: &[DVec3],
+        mut moves: Vec<DVec3>,
+        freedom: impl Fn(u32) -> Freedom,
+        broken: impl Fn(&[DVec3]) -> Vec<P>,
+    ) -> Result<Vec<DVec3>, NetworkError> {
+        self.unite(&mut moves, &freedom, 0);
+        let mut count = 0;
+        for attempt in 0..ATTEMPTS {
+            let moved: Vec<DVec3> = points.iter().zip(&moves).map(|(point, by)| *point + *by).collect();
+            let broken = broken(&moved);
+            count = broken.len();
+            if count == 0 {
+                return Ok(moved);
+            }
+            broken.iter().for_each(|points| self.join_all(points.as_ref()));
+            self.unite(&mut moves, &freedom, attempt);
+        }
+        Err(NetworkError::Folded { count })
     }
 
     /// Numbers the clusters from 0, in order of their smallest points.

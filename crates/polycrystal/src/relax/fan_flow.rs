@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::clusters::Clusters;
 use super::fans::{FanTerms, Fans, is_bent};
-use super::flow::{ATTEMPTS, SLIGHT_BEND, WHOLE_ATTEMPTS};
+use super::flow::SLIGHT_BEND;
 use super::local_area::cell_and_offset;
 use super::local_size::LocalSize;
 use super::rows::Rows;
@@ -52,24 +52,14 @@ impl FanFlow<'_> {
             moves[center] += freedoms[center].project(self.to_middle(fan, points, &before));
         }
         let mut clusters = Clusters::apart(fans.point_count());
-        for attempt in 0..ATTEMPTS {
-            let moved: Vec<DVec3> = points.iter().zip(&moves).map(|(point, by)| *point + *by).collect();
-            let broken = self.broken(&before, &fans.normals(&moved));
-            if broken.is_empty() {
-                *points = moved;
-                let pressures = pressures.iter().map(|pressure| pressure / time).collect();
-                return Ok(Taken { energy: terms.energy, pressures });
-            }
-            broken.iter().for_each(|triangle| clusters.join_all(triangle));
-            clusters.number().unite(&mut moves, |point| freedoms[point as usize]);
-            if attempt >= WHOLE_ATTEMPTS {
-                moves.iter_mut().for_each(|by| *by *= 0.5);
-            }
-            if attempt + 1 == ATTEMPTS {
-                return Err(NetworkError::Folded { count: broken.len() });
-            }
-        }
-        unreachable!("the last attempt returns")
+        *points = clusters.moved_unbroken(
+            points,
+            moves,
+            |point| freedoms[point as usize],
+            |moved| self.broken(&before, &fans.normals(moved)),
+        )?;
+        let pressures = pressures.iter().map(|pressure| pressure / time).collect();
+        Ok(Taken { energy: terms.energy, pressures })
     }
 
     fn of_points<T: Send>(&self, of_point: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {

@@ -8,7 +8,7 @@ use glam::DVec3;
 use voronoi::Dimension;
 
 use super::assembly::{Unknowns, assemble, gradient};
-use super::clusters::{Clusters, Numbering};
+use super::clusters::{ATTEMPTS, Clusters, Numbering};
 use super::conjugate_gradients::dot;
 use super::local_size::LocalSize;
 use super::patch::PatchTerms;
@@ -23,14 +23,8 @@ use crate::folds::{element_normals, folded_pairs};
 use crate::measures::rms_residual;
 use crate::seams::Seams;
 use crate::volume::{Cone, volumes_of_grains};
-use crate::{GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
+use crate::{Freedom, GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
 use best::{Badness, Best};
-
-/// Attempts at a step (and at the whole flow), each with what the last one folded made rigid.
-pub(super) const ATTEMPTS: usize = 24;
-
-/// Attempts after which all displacements are halved with every other one: what moves at all may be too much.
-pub(super) const WHOLE_ATTEMPTS: usize = 12;
 
 /// Most edges of the control mesh, as long as the mean, to a feature. Fans have three.
 const FEATURE_EDGES: f64 = 6.0;
@@ -166,7 +160,7 @@ impl<'a> Flow<'a> {
             }
             let mut moves: Vec<DVec3> =
                 points.iter().zip(start).map(|(point, start)| *point - *start).collect();
-            self.unite(&self.clusters, &mut moves, attempt);
+            self.clusters.unite(&mut moves, |point| self.freedom(point), attempt);
             points = displaced(start, &moves);
         }
         Err(NetworkError::Folded { count })
@@ -217,23 +211,15 @@ impl<'a> Flow<'a> {
         let mut moves = numbering.of_points(&moves);
         let within = tangential_moves(self.network, self.level, points, self.centering(time));
         moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
-        self.unite(&clusters, &mut moves, 0);
-        let mut count = 0;
-        for attempt in 0..ATTEMPTS {
-            let moved = displaced(points, &moves);
-            let broken = self.broken_elements(&before, &moved);
-            count = broken.len();
-            if count == 0 {
-                *points = moved;
-                break;
-            }
-            let broken = broken.into_iter().map(|element| self.dependencies(self.surface, element));
-            broken.for_each(|points| clusters.join_all(&points));
-            self.unite(&clusters, &mut moves, attempt);
-        }
-        if count > 0 {
-            return Err(NetworkError::Folded { count });
-        }
+        *points = clusters.moved_unbroken(
+            points,
+            moves,
+            |point| self.freedom(point),
+            |moved| {
+                let broken = self.broken_elements(&before, moved).into_iter();
+                broken.map(|element| self.dependencies(self.surface, element)).collect()
+            },
+        )?;
         // What turns over in the plane as grains grow may be going on to vanish.
         let is_growth_in_plane =
             self.volumes == Volumes::Free && matches!(self.control_mesh(), Mesh::Segments(_));
@@ -253,13 +239,9 @@ impl<'a> Flow<'a> {
         Some(Badness { has_folds, residual })
     }
 
-    /// Makes the points of each cluster move as one.
-    fn unite(&self, clusters: &Clusters, moves: &mut [DVec3], attempt: usize) {
-        let walls = &self.network.levels()[self.level].walls;
-        clusters.number().unite(moves, |point| self.network.freedom(walls[point as usize]));
-        if attempt >= WHOLE_ATTEMPTS {
-            moves.iter_mut().for_each(|by| *by *= 0.5);
-        }
+    /// How a control point can move.
+    fn freedom(&self, point: u32) -> Freedom {
+        self.network.freedom(self.network.levels()[self.level].walls[point as usize])
     }
 
     /// The share of its way to the centre of the triangles around that a point goes in a step. Where grains grow, a step of no time moves
