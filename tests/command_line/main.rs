@@ -12,6 +12,7 @@ mod domains;
 mod front;
 mod good_runs;
 mod periodic;
+mod phases;
 mod pictures;
 #[path = "../common/programs.rs"]
 mod programs;

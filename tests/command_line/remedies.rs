@@ -64,6 +64,20 @@ const REMEDIES: &[Remedy] = &[
         "--seeds 2 --diameters d.csv",
     ),
     ("GrainTooLarge", &[], "--diameters uniform(0.5,1.1)", &[], "--diameters uniform(0.5,1.1,to=1)"),
+    (
+        "GrainTooLarge",
+        &[],
+        "--phase a:0.9,diameters=equal(0.2) --phase b:0.1,diameters=equal(0.7)",
+        &[],
+        "--phase a:0.9,diameters=equal(0.2) --phase b:0.1,diameters=equal(0.575)",
+    ),
+    (
+        "PhasesError::FewGrains",
+        &[],
+        "--seeds 1 --phase a:0.5 --phase b:0.5",
+        &[],
+        "--seeds 2 --phase a:0.5 --phase b:0.5",
+    ),
     ("GrainTooLarge", &[], "--diameters uniform(0.5,1.1)", &[], "--diameters uniform(0.5,1.1) --box 2 2 2"),
     (
         "VolumeCount",

@@ -106,6 +106,7 @@ impl Case {
         smoothing(draw, &domain, count, limits, &mut options);
         let promise = outputs::draw(draw, dimension, &mut options);
         files.extend(sizes(draw, arrangement, count, &domain, &mut options));
+        phases(draw, &mut options);
         let mut case = Self {
             kind: arrangement.name().to_owned(),
             keeps_volumes: !options.has("free"),
@@ -182,6 +183,31 @@ fn sizes(
         return Some(("factors.csv".to_owned(), lines.into_bytes()));
     }
     None
+}
+
+/// Draws phases, after the sizes, which they may have of their own. At least four grains are of them.
+fn phases(draw: &mut Draw, options: &mut Options) {
+    let is_taken = ["lattice", "volumes", "min-diameter", "seeds-file"].iter().any(|name| options.has(name));
+    let has_few =
+        options.value("seeds").and_then(|seeds| seeds.parse().ok()).is_none_or(|seeds: u32| seeds < 4);
+    if is_taken || has_few || !draw.chance(0.2) {
+        return;
+    }
+    let share = f64::from(draw.whole(1..=19)) / 20.0;
+    let mut of_second = String::new();
+    if options.has("diameters") && draw.chance(0.5) {
+        of_second += ",diameters=lognormal(mean=0.5,cv=0.2)";
+    }
+    if draw.chance(0.3) {
+        of_second += ",texture=goss(10)";
+    }
+    if draw.chance(0.3) {
+        of_second += ",symmetry=hexagonal";
+    }
+    options.set("phase", [format!("first:{:?}", 1.0 - share), format!("second:{share:?}{of_second}")]);
+    if options.has("picture") && draw.chance(0.5) {
+        options.set("color-by", ["phase"]);
+    }
 }
 
 /// Draws the options of the control mesh, relaxation and subdivision.
@@ -302,6 +328,7 @@ mod tests {
             "output",
             "periodic",
             "periodic-cut",
+            "phase",
             "picture",
             "picture-size",
             "quiet",

@@ -41,6 +41,7 @@ const MISTAKES: &[Mistake] = &[
     ("orientations without a texture", "--texture", |case| {
         output(case, "out.ori");
         case.options.unset("texture");
+        case.options.unset("phase");
         // It is refused without a texture before anything is written.
         case.options.unset("sample-symmetry");
     }),
@@ -50,6 +51,11 @@ const MISTAKES: &[Mistake] = &[
     }),
     ("unknown component of a texture", "did you mean 'goss'?", |case| {
         case.options.set("texture", ["gos(10)"]);
+    }),
+    ("fractions that do not add up to 1", "add up to 0.9", |case| {
+        sources(&mut case.options);
+        case.options.unset("min-diameter");
+        case.options.set("phase", ["first:0.5", "second:0.4"]);
     }),
     ("directory of grains that is taken", "grains", |case| {
         case.files.push(("grains/file".to_owned(), Vec::new()));
@@ -120,6 +126,10 @@ pub fn make(draw: &mut Draw, case: &mut Case) {
     for option in ["free", "series", "every"] {
         case.options.unset(option);
     }
+    // Phases may go with a mistake, and then have no colours.
+    if case.options.value("color-by") == Some("phase") {
+        case.options.unset("color-by");
+    }
     spoil(case);
     case.kind = format!("mistake: {name}");
     case.mistake = Some(value.to_owned());
@@ -137,6 +147,7 @@ fn sources(options: &mut Options) {
         "volumes",
         "draw",
         "gradient",
+        "phase",
     ] {
         options.unset(name);
     }

@@ -44,10 +44,11 @@ pub const REFUSALS: &[Kind] = &[
     ("HalfSpaceInFile", &["half-space", "line"]),
     // Files of orientations.
     ("TextureSymmetry", &["its crystals are", "give --crystal-symmetry"]),
+    ("PhasesError::FewGrains", &["grains cannot be of", "seeds or more"]),
     ("BadTextureFile, empty", &["holds no orientation"]),
     // Sizes that are asked for.
     ("BadSizeFile, empty", &["holds no diameters"]),
-    ("GrainTooLarge", &["does not fit the domain", "take a larger domain"]),
+    ("GrainTooLarge", &["does not fit", "take a larger domain"]),
     ("VolumeCount", &["volumes for", "seeds; give as many"]),
     // Seeds and domains.
     ("OutsideDomain", &["lies outside the domain"]),

@@ -42,6 +42,9 @@ pub struct CellTable {
 struct Cell {
     #[serde(flatten)]
     row: Row,
+    /// The number of its phase, where there are phases.
+    #[serde(rename = "Phase", skip_serializing_if = "Option::is_none")]
+    phase: Option<i32>,
     #[serde(flatten)]
     orientation: Option<CellOrientation>,
 }
@@ -126,7 +129,8 @@ impl CellTable {
                 Dimension::Two => row_in_plane(ids, seed, weight, &measure, neighbors),
             };
             let orientation = cells.texture.as_ref().map(|texture| texture.orientations()[id as usize]);
-            Cell { row, orientation: orientation.map(CellOrientation::new) }
+            let phase = cells.phases.as_ref().map(|phases| phases.number(id as usize));
+            Cell { row, phase, orientation: orientation.map(CellOrientation::new) }
         });
         Self { settings: config.settings().into_iter().collect(), cells: rows.collect() }
     }
@@ -158,9 +162,12 @@ impl CellTable {
             )?,
         }
         let has_orientations = first.is_some_and(|cell| cell.orientation.is_some());
+        let has_phases = first.is_some_and(|cell| cell.phase.is_some());
+        write!(out, "{}", if has_phases { ",Phase" } else { "" })?;
         writeln!(out, "{}", if has_orientations { ",EulerAngles,Quaternion" } else { "" })?;
-        for Cell { row, orientation } in &self.cells {
+        for Cell { row, phase, orientation } in &self.cells {
             row.write_csv(out)?;
+            write!(out, "{}", phase.map_or_else(String::new, |phase| format!(",{phase}")))?;
             writeln!(out, "{}", orientation.as_ref().map_or_else(String::new, CellOrientation::in_csv))?;
         }
         Ok(())

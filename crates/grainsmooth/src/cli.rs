@@ -14,6 +14,7 @@ mod config_file;
 mod documents;
 mod domain;
 mod files;
+mod phases;
 mod pictures;
 mod run;
 mod seeds;
@@ -26,6 +27,7 @@ pub use documents::{print_completions, print_manual};
 use domain::DomainArguments;
 use files::FileArguments;
 pub use files::VtkArguments;
+use phases::PhaseArguments;
 use pictures::PictureArguments;
 use run::RunArguments;
 use seeds::SeedArguments;
@@ -47,6 +49,8 @@ pub struct Arguments {
     seeds: SeedArguments,
     #[command(flatten)]
     sizes: SizeArguments,
+    #[command(flatten)]
+    phases: PhaseArguments,
     #[command(flatten)]
     domain: DomainArguments,
     #[command(flatten)]
@@ -113,7 +117,7 @@ impl Arguments {
     /// # Errors
     /// When the file of the seeds cannot tell what they fill.
     pub fn config(&self) -> Result<Config, grainsmooth::Error> {
-        let Self { seeds, sizes, domain: arguments, smoothing, texture, files, .. } = self;
+        let Self { seeds, sizes, phases, domain: arguments, smoothing, texture, files, pictures, .. } = self;
         let of_file = seeds.seeds_file.as_deref().map(read_file_domain).transpose()?.flatten();
         let domain = arguments.with_defaults_of(of_file);
         let periodic_cut = arguments.periodic_cut(domain.periodic);
@@ -126,11 +130,15 @@ impl Arguments {
             );
         }
         let aspect_ratio = sizes.aspect_ratio(domain.dimension);
-        let sizes = sizes.options();
+        let (sizes, phases) = (sizes.options(), phases.options());
+        if pictures.shows_phases() && phases.is_empty() {
+            usage("--color-by phase needs phases; give some with --phase");
+        }
         let config = Config {
             seeds: seeds.source(domain.dimension),
             random_seed: seeds.rng_seed,
             sizes,
+            phases,
             lloyd_steps: seeds.lloyd,
             dimension: domain.dimension,
             box_size: domain.box_size,
@@ -152,6 +160,11 @@ impl Arguments {
         };
         let relaxation = smoothing.relax.unwrap_or_else(|| config.usual_relaxation());
         let is_sized = config.is_sized();
+        if !config.phases.is_empty() && config.min_diameter > 0.0 {
+            usage(
+                "--min-diameter would change the shares of the phases; cut small grains off with from=, or leave it out",
+            );
+        }
         if is_sized && config.min_diameter > 0.0 {
             usage(
                 "--min-diameter would change sizes that are given; cut small ones off with from=, or give --seeding random",
@@ -166,7 +179,13 @@ impl Arguments {
                 usage("--gradient along z needs three dimensions; with --dim 2 give x or y");
             }
         }
-        let is_count_open = config.sizes.source.is_some() && seeds.is_count_open();
+        if let Err(error) = config.check_phases() {
+            usage(&error.to_string());
+        }
+        if texture.has_sample_symmetry() && !config.has_texture() {
+            usage("--sample-symmetry is that of a texture; give --texture as well");
+        }
+        let is_count_open = config.has_sizes() && seeds.is_count_open();
         if is_count_open { config.with_count_of_sizes() } else { Ok(config) }
     }
 }

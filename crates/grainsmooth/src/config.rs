@@ -7,7 +7,7 @@ use voronoi::{Dimension, Domain};
 
 use crate::domain_file::{half_space_domain, surface_domain};
 use crate::vtk::VtkEncoding;
-use crate::{Error, Lattice, LatticeFit, Names, SizeOptions, StlEncoding, TextureOptions};
+use crate::{Error, Lattice, LatticeFit, Names, PhaseOptions, SizeOptions, StlEncoding, TextureOptions};
 
 /// Where seeds come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -94,6 +94,8 @@ pub struct Config {
     pub random_seed: u64,
     /// The sizes of the grains.
     pub sizes: SizeOptions,
+    /// The phases of the grains, in the order of their numbers; none where all are alike.
+    pub phases: Vec<PhaseOptions>,
     /// Number of times that every seed moves to the centroid of its cell (Lloyd's algorithm); given volumes are kept. Where nothing is
     /// said, [`Config::LLOYD_OF_SIZES`] for grains of given sizes whose places are not given, else none.
     pub lloyd_steps: Option<u32>,
@@ -169,6 +171,7 @@ impl Default for Config {
             seeds: SeedSource::Packed { count: 200 },
             random_seed: 1,
             sizes: SizeOptions::default(),
+            phases: Vec::new(),
             lloyd_steps: None,
             dimension: Dimension::Three,
             box_size: DVec3::ONE,
@@ -264,9 +267,10 @@ impl Config {
         counts.map(|count| u128::from(count.get())).reduce(|all, count| all * count).unwrap_or(0)
     }
 
-    /// Bytes of a voxel in VTK's ImageData: its grain, and three colours where grains have orientations.
+    /// Bytes of a voxel in VTK's ImageData: its grain, its phase where there are some, and three colours where grains have orientations.
     pub(crate) fn bytes_of_voxel(&self) -> u32 {
-        if self.texture.source.is_some() { 4 + 3 * 3 } else { 4 }
+        let phase = if self.phases.is_empty() { 0 } else { 4 };
+        4 + phase + if self.has_texture() { 3 * 3 } else { 0 }
     }
 
     /// The lattice that the seeds form, if they do.

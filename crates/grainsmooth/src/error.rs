@@ -8,7 +8,7 @@ use voronoi::{Dimension, VoronoiError};
 
 use crate::memory::{self, LevelSize};
 use crate::mesh_file::MeshFileProblem;
-use crate::{Failure, OutputFormat, SeedPlace, SeedProblem};
+use crate::{Failure, OutputFormat, PhasesError, SeedPlace, SeedProblem};
 
 /// What can go wrong between the user's input and the files written. Each message is one line that names the
 /// value, the place and the remedy.
@@ -219,7 +219,7 @@ pub enum Error {
     },
     /// A measured map has crystals of another symmetry than is asked for.
     #[error(
-        "{}: its crystals are {of_file} and not {asked}; give --crystal-symmetry {of_file}", path.display()
+        "{}: its crystals are {of_file} and not {asked}; give {option}{of_file}", path.display()
     )]
     TextureSymmetry {
         /// The path as given.
@@ -228,6 +228,8 @@ pub enum Error {
         of_file: texture::CrystalSymmetry,
         /// What is asked for.
         asked: texture::CrystalSymmetry,
+        /// What asks for another, before its name.
+        option: &'static str,
     },
     /// The output's format holds orientations, and there are none.
     #[error("{}: this format holds orientations; give the grains some, such as --texture random", path.display())]
@@ -253,13 +255,18 @@ pub enum Error {
         /// What is wrong, and what to do about it.
         problem: String,
     },
+    /// Phases that contradict each other or other options.
+    #[error(transparent)]
+    Phases(#[from] PhasesError),
     /// A grain of the sizes asked for is larger than the domain.
     #[error(
-        "a grain of diameter {diameter:.6} does not fit the domain; ask for diameters up to {fits:.6} (to={fits:.6} cuts larger ones off), or take a larger domain"
+        "a grain of diameter {diameter:.6} does not fit {of}; ask for diameters up to {fits:.6} (to={fits:.6} cuts larger ones off), or take a larger domain"
     )]
     GrainTooLarge {
         /// Its equivalent diameter.
         diameter: f64,
+        /// What it does not fit.
+        of: String,
         /// The largest that fits.
         fits: f64,
     },

@@ -8,10 +8,11 @@ use polycrystal::{Measures, Side};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use serde::Serialize;
-use texture::{AngleHistogram, CrystalSymmetry, Disorientation, IpfKey, Orientation, Pair, Texture};
+use texture::{AngleHistogram, CrystalSymmetry, Disorientation, IpfKey, Orientation, Pair};
 
+use crate::texture_options::PhaseTexture;
 use crate::vtk::ItemTuples;
-use crate::{Config, Names, Polycrystal};
+use crate::{Error, Names, Polycrystal};
 
 /// The generator's stream for orientations, apart from that of the seeds' positions.
 const STREAM: u64 = 1;
@@ -22,13 +23,15 @@ const SWAP_STREAM: u64 = 2;
 /// Swaps that are tried for each grain: of 1728 grains, 20 bring the sum of all bins' differences below a hundredth (a test).
 const TRIES: usize = 20;
 
-/// The orientations of all grains, and the texture that they were drawn from.
+/// The orientations of all grains, and the textures that they were drawn from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GrainTexture {
-    texture: Texture,
-    symmetry: CrystalSymmetry,
+    /// One of each phase; one of all grains without phases.
+    textures: Vec<PhaseTexture>,
+    /// Index of each grain's texture.
+    texture_of: Vec<usize>,
     orientations: Vec<Orientation>,
-    /// Index of the texture's component of each grain.
+    /// Index of each grain's component of its texture.
     components: Vec<usize>,
     /// What the disorientations of neighbours are to be, where that is asked for.
     target: Option<AngleHistogram>,
@@ -57,20 +60,31 @@ pub struct ComponentShare {
 }
 
 impl GrainTexture {
-    /// Draws an orientation for each grain, by volume. The seeds' positions do not depend on what is drawn here.
+    /// Draws an orientation for each grain from its texture, by volume. The seeds' positions do not depend on what is drawn here.
     pub(crate) fn draw(
-        texture: Texture,
-        symmetry: CrystalSymmetry,
+        textures: Vec<PhaseTexture>,
+        texture_of: Vec<usize>,
         volumes: &[f64],
         random_seed: u64,
     ) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(random_seed);
         generator.set_stream(STREAM);
-        // Rounding may leave nothing of a sliver's.
-        let volumes: Vec<f64> = volumes.iter().map(|volume| volume.max(f64::MIN_POSITIVE)).collect();
-        let drawn = texture.draw(&volumes, &mut generator).expect("volumes are positive");
-        let (orientations, components) = (drawn.orientations, drawn.components);
-        Self { texture, symmetry, orientations, components, target: None, fit: None }
+        let mut orientations = vec![Orientation::IDENTITY; volumes.len()];
+        let mut components = vec![0; volumes.len()];
+        for (number, of_phase) in textures.iter().enumerate() {
+            let members: Vec<usize> =
+                (0..volumes.len()).filter(|grain| texture_of[*grain] == number).collect();
+            // Rounding may leave nothing of a sliver's.
+            let volumes: Vec<f64> =
+                members.iter().map(|grain| volumes[*grain].max(f64::MIN_POSITIVE)).collect();
+            let drawn = of_phase.texture.draw(&volumes, &mut generator).expect("volumes are positive");
+            for ((grain, orientation), component) in
+                members.iter().zip(drawn.orientations).zip(drawn.components)
+            {
+                (orientations[*grain], components[*grain]) = (orientation, component);
+            }
+        }
+        Self { textures, texture_of, orientations, components, target: None, fit: None }
     }
 
     /// The same, with a histogram that the disorientations of neighbours are to have when these are known.
@@ -83,12 +97,14 @@ impl GrainTexture {
         let Some(target) = self.target.as_ref().filter(|_| !pairs.is_empty()) else { return };
         let mut generator = ChaCha8Rng::seed_from_u64(random_seed);
         generator.set_stream(SWAP_STREAM);
-        let before = target.distance(&self.orientations, self.symmetry, pairs);
+        // Phases are refused beside a histogram.
+        let symmetry = self.textures[0].symmetry;
+        let before = target.distance(&self.orientations, symmetry, pairs);
         let tries = TRIES * volumes.len();
-        let sources = target.swaps(&self.orientations, self.symmetry, pairs, volumes, tries, &mut generator);
+        let sources = target.swaps(&self.orientations, symmetry, pairs, volumes, tries, &mut generator);
         self.orientations = sources.iter().map(|source| self.orientations[*source]).collect();
         self.components = sources.iter().map(|source| self.components[*source]).collect();
-        let after = target.distance(&self.orientations, self.symmetry, pairs);
+        let after = target.distance(&self.orientations, symmetry, pairs);
         self.fit = Some(HistogramFit { before, after });
     }
 
@@ -102,9 +118,26 @@ impl GrainTexture {
         self.fit
     }
 
-    /// The symmetry of the crystals.
-    pub fn symmetry(&self) -> CrystalSymmetry {
-        self.symmetry
+    /// The symmetry of a grain's crystal.
+    pub fn symmetry_of(&self, grain: usize) -> CrystalSymmetry {
+        self.textures[self.texture_of[grain]].symmetry
+    }
+
+    /// The symmetry of all crystals; nothing where phases have different ones.
+    pub fn symmetry(&self) -> Option<CrystalSymmetry> {
+        let first = self.textures[0].symmetry;
+        self.textures.iter().all(|of_phase| of_phase.symmetry == first).then_some(first)
+    }
+
+    /// Number of textures: one of each phase, or one of all grains.
+    pub fn texture_count(&self) -> usize {
+        self.textures.len()
+    }
+
+    /// The symmetry of a texture's crystals, and the numbers of the grains that have it.
+    pub(crate) fn members(&self, texture: usize) -> (CrystalSymmetry, Vec<usize>) {
+        let members = (0..self.texture_of.len()).filter(|grain| self.texture_of[*grain] == texture);
+        (self.textures[texture].symmetry, members.collect())
     }
 
     /// One of each grain.
@@ -112,35 +145,45 @@ impl GrainTexture {
         &self.orientations
     }
 
-    /// The least rotation between the grains on two sides; nothing where one is the exterior.
+    /// The least rotation between two grains; nothing where their crystals have different symmetries: which axes of two lattices go
+    /// together is no matter of symmetry then.
+    pub(crate) fn between(&self, first: usize, second: usize) -> Option<Disorientation> {
+        let symmetry = self.symmetry_of(first);
+        let is_one = symmetry == self.symmetry_of(second);
+        is_one.then(|| symmetry.disorientation(self.orientations[first], self.orientations[second]))
+    }
+
+    /// The same of the grains on two sides; nothing where one is the exterior.
     pub fn disorientation(&self, sides: [Side; 2]) -> Option<Disorientation> {
         let [Some(first), Some(second)] = sides.map(|side| side.grain().map(|grain| grain.index())) else {
             return None;
         };
-        Some(self.symmetry.disorientation(self.orientations[first], self.orientations[second]))
+        self.between(first, second)
     }
 
-    /// What share of the volume each component was to have, and has.
-    pub fn shares(&self, volumes: &[f64]) -> Vec<ComponentShare> {
-        let total: f64 = volumes.iter().sum();
-        let parts = self.texture.components().enumerate();
+    /// What share of a texture's volume each of its components was to have, and has.
+    pub fn shares(&self, texture: usize, volumes: &[f64]) -> Vec<ComponentShare> {
+        let (_, members) = self.members(texture);
+        let volume =
+            |members: &mut dyn Iterator<Item = &usize>| members.map(|grain| volumes[*grain]).sum::<f64>();
+        let total = volume(&mut members.iter());
+        let parts = self.textures[texture].texture.components().enumerate();
         let share = |(number, (_, asked, name)): (usize, (_, f64, &str))| {
-            let members = volumes.iter().zip(&self.components).filter(|(_, of)| **of == number);
-            let reached = members.map(|(volume, _)| volume).sum::<f64>() / total;
-            ComponentShare { name: name.to_owned(), asked, reached }
+            let own = volume(&mut members.iter().filter(|grain| self.components[**grain] == number));
+            ComponentShare { name: name.to_owned(), asked, reached: own / total }
         };
         parts.map(share).collect()
     }
 
-    /// The texture index: the mean density of the texture at the grains' orientations, by volume. 1 is random. Nothing where a
+    /// A texture's index: its mean density at its grains' orientations, by volume. 1 is random. Nothing where a
     /// component has no spread, and so no density.
-    pub fn index(&self, volumes: &[f64]) -> Option<f64> {
-        let total: f64 = volumes.iter().sum();
-        let weighted = self.orientations.iter().zip(volumes);
-        let density = |(orientation, volume): (&Orientation, &f64)| {
-            volume / total * self.texture.density(*orientation, self.symmetry)
-        };
-        self.texture.is_spread().then(|| weighted.map(density).sum())
+    pub fn index(&self, texture: usize, volumes: &[f64]) -> Option<f64> {
+        let (symmetry, members) = self.members(texture);
+        let texture = &self.textures[texture].texture;
+        let total: f64 = members.iter().map(|grain| volumes[*grain]).sum();
+        let density =
+            |grain: &usize| volumes[*grain] / total * texture.density(self.orientations[*grain], symmetry);
+        texture.is_spread().then(|| members.iter().map(density).sum())
     }
 
     /// `EulerAngles` of each grain (Bunge, degrees) and `Quaternion` (scalar first, not negative).
@@ -154,10 +197,11 @@ impl GrainTexture {
 
     /// The inverse pole figure colours of each grain for the sample's axes.
     pub(crate) fn color_arrays(&self, names: Names) -> [ItemTuples; 3] {
-        let key = IpfKey::new(self.symmetry);
+        let keys: Vec<IpfKey> = self.textures.iter().map(|of_phase| IpfKey::new(of_phase.symmetry)).collect();
         let [x, y, z] = names.inverse_pole_figures();
         [(x, DVec3::X), (y, DVec3::Y), (z, DVec3::Z)].map(|(name, axis)| {
-            ItemTuples::bytes(name, self.orientations.iter().map(|one| key.color_of(*one, axis)))
+            let grains = self.orientations.iter().zip(&self.texture_of);
+            ItemTuples::bytes(name, grains.map(|(one, texture)| keys[*texture].color_of(*one, axis)))
         })
     }
 
@@ -206,32 +250,38 @@ impl Polycrystal {
     }
 
     /// The orientation of each grain: random by the config's seed where no texture is asked for, as maps need some.
-    pub(crate) fn orientations(&self) -> Cow<'_, [Orientation]> {
+    pub(crate) fn orientations(&self) -> Result<Cow<'_, [Orientation]>, Error> {
         match &self.cells.texture {
-            Some(texture) => Cow::Borrowed(&texture.orientations),
+            Some(texture) => Ok(Cow::Borrowed(&texture.orientations)),
             None => {
-                let Config { random_seed, texture, .. } = &self.config;
                 let volumes = self.network.cell_volumes();
-                let drawn = GrainTexture::draw(Texture::random(), texture.symmetry, volumes, *random_seed);
-                Cow::Owned(drawn.orientations)
+                let textures = self.config.textures_or_random()?;
+                let texture_of = self.cells.phase_of();
+                let drawn = GrainTexture::draw(textures, texture_of, volumes, self.config.random_seed);
+                Ok(Cow::Owned(drawn.orientations))
             }
         }
     }
 }
 
-/// The line of a summary, for grains of some volumes.
-pub(crate) struct TextureLine<'a>(pub(crate) &'a GrainTexture, pub(crate) &'a [f64]);
+/// A texture in words, for grains of some volumes.
+pub(crate) struct TextureLine<'a> {
+    pub(crate) texture: &'a GrainTexture,
+    /// Which of its textures.
+    pub(crate) number: usize,
+    pub(crate) volumes: &'a [f64],
+}
 
 impl fmt::Display for TextureLine<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self(texture, volumes) = self;
+        let Self { texture, number, volumes } = self;
         let share = |share: &ComponentShare| {
             let ComponentShare { name, asked, reached } = share;
             format!("{name} {:.1} % of the volume (asked {:.1} %)", 100.0 * reached, 100.0 * asked)
         };
-        let shares: Vec<String> = texture.shares(volumes).iter().map(share).collect();
-        write!(out, "{} crystals, {}", texture.symmetry, shares.join(", "))?;
-        if let Some(index) = texture.index(volumes) {
+        let shares: Vec<String> = texture.shares(*number, volumes).iter().map(share).collect();
+        write!(out, "{} crystals, {}", texture.textures[*number].symmetry, shares.join(", "))?;
+        if let Some(index) = texture.index(*number, volumes) {
             write!(out, "; texture index {index:.2}")?;
         }
         match texture.fit {

@@ -26,6 +26,7 @@ mod failed_grain;
 mod failure;
 mod formats;
 mod gradient;
+mod grain_phases;
 mod grain_sizes;
 mod grain_texture;
 mod labelled_file;
@@ -38,6 +39,7 @@ pub mod mesh_file;
 mod mesh_json;
 mod network_file;
 mod output;
+mod phase_options;
 mod picture;
 mod pipeline;
 mod poisson_disc;
@@ -77,7 +79,8 @@ pub use formats::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
 };
 pub use gradient::GradientSource;
-pub use grain_sizes::{GrainSizes, SizesReached};
+pub use grain_phases::{GrainPhases, PhaseShare};
+pub use grain_sizes::{GrainSizes, SizesFit, SizesReached};
 pub use grain_texture::{ComponentShare, GrainTexture, HistogramFit};
 pub use labelled_file::{FileElements, LabelledFile};
 pub use lattice::{Lattice, LatticeFit};
@@ -85,6 +88,7 @@ pub use mesh_bezier::{BezierFile, read_bezier};
 pub use mesh_edit::{EdgeEdit, edit_edges};
 pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputDirectory, OutputFormat};
+pub use phase_options::{PhaseOptions, PhasesError};
 pub use picture::{Coloring, Picture, Png};
 pub use pipeline::{
     Polycrystal, Progress, Reconnected, Regularization, Stage, check_expected_size, make_polycrystal, smooth,

@@ -8,8 +8,8 @@ use polycrystal::{Boundary, BoundaryId, Level, Mesh, Side};
 use rayon::prelude::*;
 
 use crate::formats::{
-    Surface, unit_normal, write_ang, write_ctf, write_euler, write_evolver, write_gmsh, write_npy, write_obj,
-    write_ply,
+    OrientationMap, Surface, unit_normal, write_ang, write_ctf, write_euler, write_evolver, write_gmsh,
+    write_npy, write_obj, write_ply,
 };
 use crate::formats::{write_gmsh_script, write_material, write_ori, write_stl, write_tess};
 use crate::measured_arrays::MeasuredArrays;
@@ -19,8 +19,8 @@ use crate::vtk::{
 };
 use crate::vtk::{write_vti, write_vtk};
 use crate::{
-    Error, FileOptions, GrainTexture, LabelGrid, Names, Output, OutputFormat, Polycrystal, StagedFiles, Tess,
-    write_together,
+    Config, Error, FileOptions, GrainPhases, GrainTexture, LabelGrid, Names, Output, OutputFormat,
+    Polycrystal, StagedFiles, Tess, Tessellated, write_together,
 };
 
 /// The point array that tells how many grains meet: four at a quadruple point, unless edges collapsed there.
@@ -86,15 +86,36 @@ impl Polycrystal {
                 write_npy(&self.label_grid()?, self.config.file.names, out)?;
                 self.write_settings_behind(out)
             }
-            OutputFormat::Ang => write_ang(&self.label_grid()?, &self.orientations(), &self.config, out),
-            OutputFormat::Ctf => write_ctf(&self.label_grid()?, &self.orientations(), &self.config, out),
+            OutputFormat::Ang => self.write_map(write_ang, out),
+            OutputFormat::Ctf => self.write_map(write_ctf, out),
             OutputFormat::Txt => {
                 let volumes = self.network.cell_volumes();
-                write_euler(self.texture()?.orientations(), volumes, &self.config, out)
+                write_euler(
+                    self.texture()?.orientations(),
+                    volumes,
+                    self.cells.phases.as_ref(),
+                    &self.config,
+                    out,
+                )
             }
             OutputFormat::Ori => write_ori(self.texture()?.orientations(), out),
-            OutputFormat::Yaml => write_material(self.texture()?, &self.config, out),
+            OutputFormat::Yaml => write_material(&self.cells, self.texture()?, &self.config, out),
         }
+    }
+
+    /// A map of orientations in one of the formats.
+    fn write_map(
+        &self,
+        write: fn(&OrientationMap<'_>, &Config, &mut dyn Write) -> io::Result<()>,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
+        let map = OrientationMap {
+            grid: &self.label_grid()?,
+            orientations: &self.orientations().map_err(io::Error::other)?,
+            phase_of: &self.cells.phase_of(),
+            phases: &self.cells.named_symmetries(&self.config),
+        };
+        write(&map, &self.config, out)
     }
 
     /// Behind what formats without comments hold: who reads them stops before.
@@ -127,8 +148,9 @@ impl Polycrystal {
         let mut cell_arrays = vec![Array { name: names.voxel(), values: Values::Int32Blocks(blocks) }];
         let grain = |label: Side| label.grain().map(|grain| grain.index());
         let items = |slab: usize| grid.slab(slab).into_par_iter().map(grain).collect::<Vec<_>>();
-        let texture = self.cells.texture.as_ref();
-        let tuples = texture.map_or_else(Vec::new, |texture| texture.color_arrays(names).to_vec());
+        let Tessellated { phases, texture, .. } = &self.cells;
+        let mut tuples: Vec<ItemTuples> = phases.iter().map(GrainPhases::array).collect();
+        tuples.extend(texture.iter().flat_map(|texture| texture.color_arrays(names)));
         let count = blocks.count;
         cell_arrays.extend(tuples.iter().map(|tuples| {
             let blocks = ItemBlocks { tuples, count, blocks: grid.slab_count(), make: &items };
@@ -137,7 +159,7 @@ impl Polycrystal {
         let LabelGrid { size, origin, spacing, .. } = grid;
         let mut field = self.field();
         field.push(self.seed_ids());
-        field.extend(self.orientation_fields());
+        field.extend(self.grain_fields());
         write_vti(&ImageData { size, origin, spacing, cell_arrays, field }, encoding, out)
     }
 
@@ -202,16 +224,20 @@ impl Polycrystal {
         let mut field = self.field();
         field.push(FieldEntry { name: "Volumes", value: volumes });
         field.push(self.seed_ids());
-        field.extend(self.orientation_fields());
+        field.extend(self.grain_fields());
         let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field };
         write_vtk(&data, format, self.config.file.encoding, out)
     }
 
-    /// What files hold of each grain's orientation; nothing where grains have none.
+    /// What files hold of each grain's phase and orientation, where it has them.
     pub(crate) fn grain_tuples(&self) -> Vec<ItemTuples> {
         let names = self.config.file.names;
-        let Some(texture) = &self.cells.texture else { return Vec::new() };
-        texture.orientation_arrays().into_iter().chain(texture.color_arrays(names)).collect()
+        let Tessellated { phases, texture, .. } = &self.cells;
+        let mut tuples: Vec<ItemTuples> = phases.iter().map(GrainPhases::array).collect();
+        if let Some(texture) = texture {
+            tuples.extend(texture.orientation_arrays().into_iter().chain(texture.color_arrays(names)));
+        }
+        tuples
     }
 
     /// What files hold of each boundary's disorientation; nothing where grains have no orientations.
@@ -238,21 +264,26 @@ impl Polycrystal {
         FieldEntry { name: SEED_ID, value: FieldValue::Ids(ids) }
     }
 
-    /// The orientation of each grain, where they have one.
-    fn orientation_fields(&self) -> impl Iterator<Item = FieldEntry> {
-        let arrays = self.cells.texture.as_ref().map(GrainTexture::orientation_arrays);
+    /// The phase and the orientation of each grain, where they have them.
+    fn grain_fields(&self) -> impl Iterator<Item = FieldEntry> {
+        let Tessellated { phases, texture, .. } = &self.cells;
+        let arrays = texture.as_ref().map(GrainTexture::orientation_arrays);
         let entry = |tuples: ItemTuples| FieldEntry { name: tuples.name, value: FieldValue::Items(tuples) };
-        arrays.into_iter().flatten().map(entry)
+        phases.iter().map(GrainPhases::array).chain(arrays.into_iter().flatten()).map(entry)
     }
 
     /// What every VTK file says about itself.
     pub(crate) fn field(&self) -> Vec<FieldEntry> {
-        vec![
+        let mut field = vec![
             text("Version", format!("grainsmooth {}", env!("CARGO_PKG_VERSION"))),
             text("CommandLine", self.config.command_line()),
             text("Config", self.config.to_toml()),
             FieldEntry { name: "RandomSeed", value: FieldValue::Integer(self.config.random_seed) },
-        ]
+        ];
+        if let Some(phases) = &self.cells.phases {
+            field.push(text("PhaseNames", phases.names().collect::<Vec<_>>().join(",")));
+        }
+        field
     }
 }
 

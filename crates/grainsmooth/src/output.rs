@@ -134,7 +134,7 @@ impl OutputFormat {
                 Err(Error::FormatDimension { path: path(), dimension })
             }
             _ if self.has_voxels() && config.file.voxels.is_none() => Err(Error::NoVoxels { path: path() }),
-            _ if matches!(self, Self::Txt | Self::Ori | Self::Yaml) && config.texture.source.is_none() => {
+            _ if matches!(self, Self::Txt | Self::Ori | Self::Yaml) && !config.has_texture() => {
                 Err(Error::NoTexture { path: path() })
             }
             _ => Ok(()),

@@ -60,18 +60,22 @@ impl Polycrystal {
                 ],
             ),
         };
-        let asked = self.cells.sizes.as_ref().and_then(|sizes| Some((sizes, sizes.distribution()?)));
-        let mut of_sizes = match asked {
-            Some((sizes, distribution)) => self.diameter_charts(sizes, distribution),
-            None => vec![self.size_chart()],
-        };
+        let mut of_sizes =
+            self.cells.sizes.as_ref().map_or_else(Vec::new, |sizes| self.all_diameter_charts(sizes));
+        if of_sizes.is_empty() {
+            of_sizes.push(self.size_chart());
+        }
         of_sizes.extend([self.face_chart(), self.angle_chart()]);
         let mut charts: String = of_sizes.iter().map(Chart::figure).collect();
         if let Some(texture) = &self.cells.texture {
             charts += &self.disorientation_chart(texture).figure();
-            let orientations = texture.orientations().iter().copied();
-            let weighted: Vec<_> = orientations.zip(self.network.cell_volumes().iter().copied()).collect();
-            charts += &orientation_figures::figures(&weighted, texture.symmetry())?;
+            for number in 0..texture.texture_count() {
+                let (symmetry, grains) = texture.members(number);
+                let volumes = self.network.cell_volumes();
+                let weighted = grains.iter().map(|grain| (texture.orientations()[*grain], volumes[*grain]));
+                let weighted: Vec<_> = weighted.collect();
+                charts += &orientation_figures::figures(&weighted, symmetry, &self.of_phase(number))?;
+            }
         }
         let title = format!("{} grains", self.network.grain_count());
         Ok(filled(
@@ -100,6 +104,12 @@ impl Polycrystal {
         lines.map(row).collect()
     }
 
+    /// Behind the title of what shows a phase alone; nothing without phases.
+    fn of_phase(&self, number: usize) -> String {
+        let name = self.cells.phases.as_ref().and_then(|phases| phases.names().nth(number));
+        name.map_or_else(String::new, |name| format!(", {name}"))
+    }
+
     fn size_chart(&self) -> Chart {
         let volumes = self.network.cell_volumes();
         let mean = volumes.iter().sum::<f64>() / volumes.len() as f64;
@@ -112,7 +122,7 @@ impl Polycrystal {
             Dimension::Three => ("Volumes", "volume / mean volume"),
         };
         Chart {
-            title,
+            title: title.to_owned(),
             unit,
             of: "grains",
             // Twice the width of the curve's bins, hence twice its shares.
@@ -125,11 +135,30 @@ impl Polycrystal {
         }
     }
 
-    /// Diameters by number and by volume, beside those that were asked for.
-    fn diameter_charts(&self, sizes: &GrainSizes, distribution: &Distribution) -> Vec<Chart> {
-        let axes = u32::from(self.config.dimension.axes());
+    /// Diameters of all grains, or of each phase where these have diameters of their own, beside what was asked for.
+    fn all_diameter_charts(&self, sizes: &GrainSizes) -> Vec<Chart> {
         let volumes = self.network.cell_volumes();
-        let diameters = sizes.unscaled_diameters(volumes);
+        let has_one = sizes.groups().count() == 1;
+        let mut charts = Vec::new();
+        for (number, (group, grains)) in sizes.groups().enumerate() {
+            let Some(distribution) = group.distribution() else { continue };
+            let diameters = sizes.unscaled_diameters(group, &grains, volumes);
+            let volumes: Vec<f64> = grains.iter().map(|grain| volumes[*grain]).collect();
+            let whose = if has_one { String::new() } else { self.of_phase(number) };
+            charts.extend(self.diameter_charts(&diameters, &volumes, distribution, &whose));
+        }
+        charts
+    }
+
+    /// Diameters of some grains by number and by volume, beside those that were asked for.
+    fn diameter_charts(
+        &self,
+        diameters: &[f64],
+        volumes: &[f64],
+        distribution: &Distribution,
+        whose: &str,
+    ) -> [Chart; 2] {
+        let axes = u32::from(self.config.dimension.axes());
         let largest = diameters.iter().copied().fold(0.0, f64::max);
         let width = largest / DIAMETER_BINS;
         // The share of a bin around each place.
@@ -141,8 +170,8 @@ impl Polycrystal {
             };
             (0..).map(share).take_while(|(middle, _)| *middle <= 1.1 * largest).collect()
         };
-        let chart = |title, of, weights: Vec<f64>, power| Chart {
-            title,
+        let chart = |title: &str, of, weights: Vec<f64>, power| Chart {
+            title: format!("{title}{whose}"),
             unit: "equivalent diameter asked for",
             of,
             bins: chart::Bins { start: 0.0, width },
@@ -153,7 +182,7 @@ impl Polycrystal {
             exact_name: "asked for",
         };
         let of_volume = if axes == 2 { "the area" } else { "the volume" };
-        vec![
+        [
             chart("Diameters by number", "grains", vec![1.0; diameters.len()], 0),
             chart(
                 if axes == 2 { "Diameters by area" } else { "Diameters by volume" },
@@ -165,15 +194,17 @@ impl Polycrystal {
     }
 
     fn disorientation_chart(&self, texture: &GrainTexture) -> Chart {
-        let random = RandomDisorientations::new(texture.symmetry());
         let pairs = self.neighbor_pairs();
-        let angle = |(first, second, area): &Pair| {
-            let [first, second] = [*first, *second].map(|grain| texture.orientations()[grain]);
-            (texture.symmetry().disorientation_angle(first, second), *area)
-        };
-        let curve = (0..=180).map(f64::from).take_while(|angle| *angle <= random.largest() + 1.0);
+        let angle =
+            |(first, second, area): &Pair| texture.between(*first, *second).map(|found| (found.angle, *area));
+        // Neighbours of different symmetries have none, and no curve is that of several.
+        let exact = texture.symmetry().map_or_else(Vec::new, |symmetry| {
+            let random = RandomDisorientations::new(symmetry);
+            let curve = (0..=180).map(f64::from).take_while(|angle| *angle <= random.largest() + 1.0);
+            curve.map(|angle| (angle, ANGLE_BIN * random.density(angle))).collect()
+        });
         Chart {
-            title: "Disorientations of neighbours",
+            title: "Disorientations of neighbours".to_owned(),
             unit: "degrees",
             of: match self.config.dimension {
                 Dimension::Two => "the length of boundaries",
@@ -182,8 +213,8 @@ impl Polycrystal {
             bins: chart::Bins { start: 0.0, width: ANGLE_BIN },
             before: texture.target().map_or_else(Vec::new, in_degrees),
             names: ["asked for", "this run"],
-            after: pairs.iter().map(angle).collect(),
-            exact: curve.map(|angle| (angle, ANGLE_BIN * random.density(angle))).collect(),
+            after: pairs.iter().filter_map(angle).collect(),
+            exact,
             exact_name: "random orientations (Mackenzie)",
         }
     }
@@ -199,7 +230,7 @@ impl Polycrystal {
             Dimension::Three => ("Faces of a grain", "number of faces"),
         };
         Chart {
-            title,
+            title: title.to_owned(),
             unit,
             of: "grains",
             // Whole numbers in the middle of their bins.
@@ -222,7 +253,7 @@ impl Polycrystal {
             .map(|step| 2.0 * f64::from(step))
             .map(|degrees| (degrees, width * angle_density(self.config.dimension, degrees.to_radians())));
         Chart {
-            title: "Angles between boundaries",
+            title: "Angles between boundaries".to_owned(),
             unit: "degrees",
             of: match self.config.dimension {
                 Dimension::Two => "triple points",

@@ -15,6 +15,9 @@ use crate::{
     TextureOptions,
 };
 
+/// The option that comes once for each of its values.
+const PHASE_OPTION: &str = "phase";
+
 impl Config {
     /// Every setting by the long name of its option, the default ones too.
     ///
@@ -34,6 +37,10 @@ impl Config {
             settings.retain(|(name, _)| *name != "seeds");
         }
         settings.extend(self.sizes.settings());
+        if !self.phases.is_empty() {
+            let phases = self.phases.iter().map(|phase| phase.text().into()).collect();
+            settings.push((PHASE_OPTION, Value::Array(phases)));
+        }
         let mut add = |name, value: Value| settings.push((name, value));
         if self.drop_empty {
             add("drop-empty", true.into());
@@ -122,6 +129,10 @@ impl Config {
     pub fn command_line(&self) -> String {
         let mut line = String::from("grainsmooth");
         for (name, value) in self.settings() {
+            if let (PHASE_OPTION, Value::Array(values)) = (name, &value) {
+                line.extend(values.iter().map(|value| format!(" --{name} {}", word(value))));
+                continue;
+            }
             line += &format!(" --{name}");
             match value {
                 Value::Boolean(_) => {}

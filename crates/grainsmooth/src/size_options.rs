@@ -9,13 +9,13 @@ use crate::gradient::Gradient;
 use crate::grain_sizes::quantile_volumes;
 use crate::memory::{available_memory, check_cells};
 use crate::size_file::{is_size_file, read_diameter_file, read_volume_file};
-use crate::{Config, Error, GradientSource, SeedSource};
+use crate::{Config, Error, GradientSource, PhaseOptions, PhasesError, SeedSource};
 
 /// Diameters where packed seeds are asked for and nothing is said of sizes: those of recrystallised metals.
 const USUAL_DIAMETERS: &str = "lognormal(mean=1, cv=0.35)";
 
 /// How often the number of grains is corrected by the volumes of those that would be drawn: two or three times change it.
-const MOST_CORRECTIONS: usize = 20;
+pub(crate) const MOST_CORRECTIONS: usize = 20;
 
 /// What is asked of the grains' sizes.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -92,9 +92,16 @@ pub(crate) enum Wanted {
 }
 
 impl Config {
-    /// Whether grains have given volumes.
+    /// Whether grains have given volumes: phases have exact shares, so their grains do.
     pub fn is_sized(&self) -> bool {
-        self.sizes.source.is_some() || matches!(self.seeds, SeedSource::Packed { .. })
+        self.sizes.source.is_some()
+            || matches!(self.seeds, SeedSource::Packed { .. })
+            || !self.phases.is_empty()
+    }
+
+    /// Whether sizes are asked for that say how many grains there are.
+    pub fn has_sizes(&self) -> bool {
+        self.sizes.source.is_some() || self.phases_have_diameters()
     }
 
     /// Number of times that every seed moves to the centroid of its cell.
@@ -113,13 +120,39 @@ impl Config {
         }
     }
 
+    /// What is asked for in a phase, in words.
+    pub(crate) fn asked_sizes_of_phase(&self, phase: usize) -> String {
+        match &self.phases[phase].diameters {
+            Some(source) => source.setting().1,
+            None => self.asked_sizes(),
+        }
+    }
+
     /// What grains are to be like, where they have given volumes.
     ///
     /// # Errors
     /// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
     pub(crate) fn wanted_sizes(&self) -> Result<Wanted, Error> {
+        self.wanted(self.sizes.source.as_ref())
+    }
+
+    /// What the grains of each phase are to be like.
+    ///
+    /// # Errors
+    /// As of [`Self::wanted_sizes`].
+    pub(crate) fn wanted_sizes_of_phases(&self) -> Result<Vec<Distribution>, Error> {
+        let of_phase = |phase: &PhaseOptions| match self
+            .wanted(phase.diameters.as_ref().or(self.sizes.source.as_ref()))?
+        {
+            Wanted::Diameters(distribution) => Ok(distribution),
+            Wanted::Volumes(_) => Err(PhasesError::Volumes.into()),
+        };
+        self.phases.iter().map(of_phase).collect()
+    }
+
+    fn wanted(&self, source: Option<&SizeSource>) -> Result<Wanted, Error> {
         let axes = self.dimension.axes().into();
-        Ok(match &self.sizes.source {
+        Ok(match source {
             None => Wanted::Diameters(
                 USUAL_DIAMETERS.parse::<Spec>().expect("a good distribution").distribution(axes),
             ),
@@ -138,13 +171,28 @@ impl Config {
     /// # Errors
     /// [`Error::GrainTooLarge`]; [`Error::CellsExceedMemory`]; whatever is wrong with the domain or a file.
     pub fn with_count_of_sizes(self) -> Result<Self, Error> {
+        self.check_phases()?;
         let domain = self.domain()?;
-        let found = match self.wanted_sizes()? {
-            Wanted::Volumes(volumes) => volumes.len(),
-            Wanted::Diameters(distribution) => {
-                let factor =
-                    Gradient::of_config(&self)?.map_or(1.0, |gradient| gradient.mean_volume_factor());
-                count_that_fills(&domain, &distribution, self.sizes.draw, factor)?
+        let factor = Gradient::of_config(&self)?.map_or(1.0, |gradient| gradient.mean_volume_factor());
+        let draw = self.sizes.draw;
+        let found = if self.phases_have_diameters() {
+            let wanted = self.wanted_sizes_of_phases()?;
+            let mut all = 0_usize;
+            for ((distribution, fraction), phase) in
+                wanted.iter().zip(self.phase_fractions()).zip(&self.phases)
+            {
+                let share = Share { fraction, of: format!("the share of phase {}", phase.name) };
+                all = all.saturating_add(count_that_fills(&domain, &share, distribution, draw, factor)?);
+            }
+            check_cells(all, available_memory())?;
+            all
+        } else {
+            match self.wanted_sizes()? {
+                Wanted::Volumes(volumes) => volumes.len(),
+                Wanted::Diameters(distribution) => {
+                    let share = Share { fraction: 1.0, of: "the domain".to_owned() };
+                    count_that_fills(&domain, &share, &distribution, draw, factor)?
+                }
             }
         };
         let seeds = match self.seeds {
@@ -157,15 +205,23 @@ impl Config {
     }
 }
 
-/// The number of grains of a distribution that fills a domain. Few grains lack the largest ones of a distribution, so their mean volume is
+/// What of a domain grains fill.
+struct Share {
+    fraction: f64,
+    /// In words.
+    of: String,
+}
+
+/// The number of grains of a distribution that fills a share of a domain. Few grains lack the largest ones of a distribution, so their mean volume is
 /// smaller than its own: what they would have is looked at. Volumes are multiplied by a factor on average.
 fn count_that_fills(
     domain: &Domain,
+    share: &Share,
     distribution: &Distribution,
     draw: SizeDraw,
     factor: f64,
 ) -> Result<usize, Error> {
-    let (dimension, measure) = (domain.dimension(), domain.measure());
+    let (dimension, measure) = (domain.dimension(), share.fraction * domain.measure());
     let mean_volume = dimension.ball_volume(1.0) * distribution.moment(dimension.axes().into());
     let room = measure / factor;
     let mut count = whole(room / mean_volume);
@@ -181,7 +237,7 @@ fn count_that_fills(
     let longest = domain.size().max_element();
     let fits = dimension.ball_diameter(measure).min(longest);
     if largest > fits {
-        return Err(Error::GrainTooLarge { diameter: largest, fits });
+        return Err(Error::GrainTooLarge { diameter: largest, of: share.of.clone(), fits });
     }
     Ok(count)
 }

@@ -5,12 +5,13 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use polycrystal::{
-    BoundaryMeasures, GrainMeasures, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures, PlaneMeasures,
-    QuadruplePointMeasures, Side, SpaceMeasures, TripleLineMeasures, TriplePointMeasures,
+    BoundaryMeasures, GrainId, GrainMeasures, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures,
+    PlaneMeasures, QuadruplePointMeasures, Side, SpaceMeasures, TripleLineMeasures, TriplePointMeasures,
 };
 use serde::Serialize;
 use voronoi::Dimension;
 
+use crate::grain_phases::PHASE;
 use crate::table::{Table, Value};
 use crate::{Error, GrainTexture, Output, Polycrystal, StagedFiles, TableFormat, Topology};
 
@@ -85,6 +86,10 @@ impl Polycrystal {
             }
             Measures::Plane(measures) => in_plane(&measures, &self.cells.seed_ids),
         };
+        if let Some(phases) = &self.cells.phases {
+            let phase = |grain: GrainId| i64::from(phases.number(grain.index()));
+            grains.add_column(PHASE, |row| Value::Integer(row[0].grain().map_or(0, phase)));
+        }
         if let Some(texture) = &self.cells.texture {
             add_orientations(texture, &mut grains);
             if let Some(boundaries) = others.get_mut("boundaries") {

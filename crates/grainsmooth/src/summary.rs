@@ -28,6 +28,7 @@ impl fmt::Display for Summary<'_> {
         write_seeds(out, &polycrystal.config, &polycrystal.cells)?;
         if let Some(reached) = polycrystal.sizes_reached() {
             write!(out, "{reached}")?;
+            write_phases(out, &polycrystal.cells, network.cell_volumes(), &reached)?;
         }
         write_texture(out, &polycrystal.cells)?;
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
@@ -145,7 +146,10 @@ impl fmt::Display for CellsSummary<'_> {
         }
         write_seeds(out, config, cells)?;
         if let Some(sizes) = &cells.sizes {
-            write!(out, "{}", sizes.reached(&cells.volumes(), None))?;
+            let volumes = cells.volumes();
+            let reached = sizes.reached(&volumes, None);
+            write!(out, "{reached}")?;
+            write_phases(out, cells, &volumes, &reached)?;
         }
         write_texture(out, cells)
     }
@@ -176,7 +180,30 @@ impl fmt::Display for StretchLine {
 /// What the orientations of the grains are.
 fn write_texture(out: &mut fmt::Formatter<'_>, cells: &Tessellated) -> fmt::Result {
     let Some(texture) = &cells.texture else { return Ok(()) };
-    writeln!(out, "texture     {}", TextureLine(texture, &cells.volumes()))
+    let volumes = cells.volumes();
+    for number in 0..texture.texture_count() {
+        let of_phase = cells.phases.as_ref().and_then(|phases| phases.names().nth(number));
+        let of_phase = of_phase.map_or_else(String::new, |name| format!("{name}: "));
+        writeln!(out, "texture     {of_phase}{}", TextureLine { texture, number, volumes: &volumes })?;
+    }
+    Ok(())
+}
+
+/// What of the volume each phase has, for grains of some volumes, and how near its diameters came to what was asked for.
+fn write_phases(
+    out: &mut fmt::Formatter<'_>,
+    cells: &Tessellated,
+    volumes: &[f64],
+    reached: &SizesReached,
+) -> fmt::Result {
+    let Some(phases) = &cells.phases else { return Ok(()) };
+    for (number, share) in phases.shares(&cells.volumes(), volumes).iter().enumerate() {
+        writeln!(out, "phase {:<6}{share}", share.number)?;
+        if let Some(fit) = reached.of_phases().get(number) {
+            writeln!(out, "            {fit}")?;
+        }
+    }
+    Ok(())
 }
 
 /// What became of the seeds: a lattice, and those that are left out.

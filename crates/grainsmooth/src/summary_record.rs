@@ -8,7 +8,8 @@ use serde::Serialize;
 
 use crate::triangle_angles::TriangleAngles;
 use crate::{
-    ComponentShare, EquivalentDiameters, HistogramFit, Polycrystal, Reconnected, SizesReached, Topology,
+    ComponentShare, EquivalentDiameters, HistogramFit, PhaseShare, Polycrystal, Reconnected, SizesFit,
+    SizesReached, Tessellated, Topology,
 };
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
@@ -29,6 +30,9 @@ pub struct SummaryRecord {
     topology: Topology,
     /// The sizes asked for and reached.
     sizes: Option<SizesReached>,
+    /// None where no phases are asked for.
+    phases: Vec<PhaseRecord>,
+    /// Of all grains; of phases each has its own.
     texture: Option<TextureRecord>,
     regularization: &'static str,
     regularization_fell_back: bool,
@@ -74,6 +78,16 @@ struct TextureRecord {
     misorientations: Option<HistogramFit>,
 }
 
+/// A phase, its share of the volume, and what of its own was asked for.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct PhaseRecord {
+    #[serde(flatten)]
+    share: PhaseShare,
+    /// Where phases have diameters of their own.
+    sizes: Option<SizesFit>,
+    texture: Option<TextureRecord>,
+}
+
 /// How relaxation changed the topology, where it may. In the plane, lines are points.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 struct TopologyChanges {
@@ -110,6 +124,31 @@ struct Angles {
     standard_deviation: f64,
 }
 
+/// What became of a texture, if grains have orientations.
+fn texture_record(cells: &Tessellated, number: usize) -> Option<TextureRecord> {
+    let texture = cells.texture.as_ref()?;
+    let volumes = cells.volumes();
+    Some(TextureRecord {
+        crystal_symmetry: texture.members(number).0.rotation_group(),
+        components: texture.shares(number, &volumes),
+        index: texture.index(number, &volumes),
+        misorientations: texture.fit(),
+    })
+}
+
+fn phase_records(polycrystal: &Polycrystal) -> Vec<PhaseRecord> {
+    let cells = &polycrystal.cells;
+    let Some(phases) = &cells.phases else { return Vec::new() };
+    let reached = polycrystal.sizes_reached();
+    let shares = phases.shares(&cells.volumes(), polycrystal.network.cell_volumes());
+    let record = |(number, share): (usize, PhaseShare)| PhaseRecord {
+        share,
+        sizes: reached.as_ref().and_then(|reached| reached.of_phases().get(number).cloned()),
+        texture: texture_record(cells, number),
+    };
+    shares.into_iter().enumerate().map(record).collect()
+}
+
 impl SummaryRecord {
     /// The numbers of a result and the files that it was written to.
     pub fn new(polycrystal: &Polycrystal, written: Vec<PathBuf>) -> Self {
@@ -141,15 +180,13 @@ impl SummaryRecord {
             quadruple_points: junctions.quadruple_points,
             topology: polycrystal.topology.clone(),
             sizes: polycrystal.sizes_reached(),
-            texture: polycrystal.cells.texture.as_ref().map(|texture| {
-                let volumes = polycrystal.cells.volumes();
-                TextureRecord {
-                    crystal_symmetry: texture.symmetry().rotation_group(),
-                    components: texture.shares(&volumes),
-                    index: texture.index(&volumes),
-                    misorientations: texture.fit(),
-                }
-            }),
+            texture: polycrystal
+                .cells
+                .phases
+                .is_none()
+                .then(|| texture_record(&polycrystal.cells, 0))
+                .flatten(),
+            phases: phase_records(polycrystal),
             regularization: polycrystal.regularization.name(),
             regularization_fell_back: polycrystal.regularization.fell_back(config),
             collapsed_edges: polycrystal.collapsed.edges,

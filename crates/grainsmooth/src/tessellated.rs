@@ -5,6 +5,7 @@ use std::time::Duration;
 use glam::DVec3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
+use texture::CrystalSymmetry;
 use voronoi::volumes::{PowerDiagram, VolumesError, place_spheres};
 use voronoi::{CellId, Domain, Side, Tessellation, VoronoiError};
 
@@ -13,8 +14,8 @@ use crate::memory::{available_memory, check_cells};
 use crate::pipeline::{Clock, seed_count};
 use crate::seeding::unit_fraction;
 use crate::{
-    Config, EquivalentDiameters, Error, FileSeed, FileSeeds, GrainSizes, GrainTexture, Progress, SeedPlace,
-    SeedSource, Stage, poisson_disc_seeds, random_seeds, read_seed_file,
+    Config, EquivalentDiameters, Error, FileSeed, FileSeeds, GrainPhases, GrainSizes, GrainTexture, Progress,
+    SeedPlace, SeedSource, Stage, poisson_disc_seeds, random_seeds, read_seed_file,
 };
 
 /// The cells of a config's seeds.
@@ -32,6 +33,8 @@ pub struct Tessellated {
     pub merged_seeds: Vec<u32>,
     /// The volumes that grains were to have, where these are given.
     pub sizes: Option<GrainSizes>,
+    /// The phases of the grains, where they are asked for.
+    pub phases: Option<GrainPhases>,
     /// The orientations of the grains, where they are asked for.
     pub texture: Option<GrainTexture>,
     /// What the file of the seeds also tells of grains, and has no place here.
@@ -56,6 +59,22 @@ impl Tessellated {
         self.tessellation.cell_measures().iter().map(|cell| cell.volume).collect()
     }
 
+    /// Index of each grain's phase; 0 without phases.
+    pub(crate) fn phase_of(&self) -> Vec<usize> {
+        match &self.phases {
+            Some(phases) => phases.phase_of().to_vec(),
+            None => vec![0; self.tessellation.cell_count()],
+        }
+    }
+
+    /// The name of each phase and the symmetry of its crystals; one that is called `grains` without phases.
+    pub(crate) fn named_symmetries(&self, config: &Config) -> Vec<(String, CrystalSymmetry)> {
+        match &self.phases {
+            Some(phases) => phases.names().map(str::to_owned).zip(phases.symmetries()).collect(),
+            None => vec![("grains".to_owned(), config.texture.symmetry)],
+        }
+    }
+
     /// The numbers of the cells' seeds, for formats that tell them only where they are not those of the cells; else nothing.
     pub(crate) fn renumbered(&self) -> &[u32] {
         let is_renumbered = (0u32..).zip(&self.seed_ids).any(|(cell, seed)| cell != *seed);
@@ -70,7 +89,7 @@ impl Tessellated {
 pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Error> {
     let mut clock = Clock { progress, times: Vec::new() };
     let domain = config.domain()?;
-    let (texture, histogram) = (config.texture.texture()?, config.texture.histogram()?);
+    let (textures, histogram) = (config.textures()?, config.texture.histogram()?);
     let gradient = Gradient::of_config(config)?;
     let (FileSeeds { mut seeds, passed_over }, mut sizes) =
         clock.time(Stage::Seeds, || seeds(config, &domain))?;
@@ -117,10 +136,12 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
         merged_seeds.sort_unstable();
         Ok::<_, Error>(all)
     })?;
-    let texture = texture.map(|texture| {
+    let phases = sizes.as_ref().and_then(|sizes| GrainPhases::new(config, sizes));
+    let texture = (!textures.is_empty()).then(|| {
         let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
-        GrainTexture::draw(texture, config.texture.symmetry, &volumes, config.random_seed)
-            .with_target(histogram)
+        let texture_of =
+            phases.as_ref().map_or_else(|| vec![0; volumes.len()], |phases| phases.phase_of().to_vec());
+        GrainTexture::draw(textures, texture_of, &volumes, config.random_seed).with_target(histogram)
     });
     let times = clock.times;
     let seed_ids = seeds.ids;
@@ -131,6 +152,7 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
         dropped_seeds,
         merged_seeds,
         sizes,
+        phases,
         texture,
         passed_over,
         times,

@@ -19,6 +19,10 @@ use super::values::nearest;
 /// Options that a file cannot give: they would name another file, or do something else than a run.
 const NOT_IN_FILES: [&str; 3] = ["config", "help", "version"];
 
+/// What the command line has before other keys, of an option that is a table in a file.
+const NAME: &str = "name";
+const FRACTION: &str = "fraction";
+
 /// The program's arguments with those of the file named by `--config`, if there is one, before them.
 ///
 /// # Errors
@@ -129,7 +133,13 @@ fn words(key: &str, value: &DeValue<'_>, argument: &Arg) -> Result<Vec<OsString>
         (_, true) => Err(format!("'{key}' is true or false")),
         // An option that may come several times: once for each value.
         (DeValue::Array(values), _) if is_repeated(argument) => {
-            let options = values.iter().map(|value| Ok([option.clone(), word(key, value.get_ref())?]));
+            let options = values.iter().map(|value| {
+                let word = match value.get_ref() {
+                    DeValue::Table(table) => named_parts(key, table)?,
+                    value => word(key, value)?,
+                };
+                Ok([option.clone(), word])
+            });
             Ok(options.collect::<Result<Vec<_>, String>>()?.concat())
         }
         (DeValue::Array(values), _) => {
@@ -144,6 +154,25 @@ fn words(key: &str, value: &DeValue<'_>, argument: &Arg) -> Result<Vec<OsString>
 fn is_repeated(argument: &Arg) -> bool {
     let is_single = argument.get_num_args().is_some_and(|count| count.max_values() == 1);
     matches!(argument.get_action(), ArgAction::Append) && is_single
+}
+
+/// A table such as `[[phase]]` as the command line spells it: `NAME:FRACTION,key=value`, with a value for each other key.
+fn named_parts(key: &str, table: &DeTable<'_>) -> Result<OsString, String> {
+    let part = |part: &str| {
+        let value = table.get(part).ok_or_else(|| format!("a table '{key}' needs a {part}"))?;
+        word(part, value.get_ref())
+    };
+    let (mut text, fraction) = (part(NAME)?, part(FRACTION)?);
+    text.push(":");
+    text.push(fraction);
+    let mut others: Vec<_> = table.iter().collect();
+    others.retain(|(name, _)| ![NAME, FRACTION].contains(&name.get_ref().as_ref()));
+    others.sort_by_key(|(name, _)| name.span().start);
+    for (name, value) in others {
+        text.push(format!(",{}=", name.get_ref()));
+        text.push(word(name.get_ref(), value.get_ref())?);
+    }
+    Ok(text)
 }
 
 fn word(key: &str, value: &DeValue<'_>) -> Result<OsString, String> {

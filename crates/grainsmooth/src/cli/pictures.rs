@@ -24,7 +24,8 @@ pub struct PictureArguments {
     #[arg(long, value_names = ["W", "H"], num_args = 2, value_parser = whole_number(16..=16_384_u16), allow_negative_numbers = true, requires = "picture")]
     picture_size: Option<Vec<u16>>,
 
-    /// What the colours of grains mean: nothing (grain), their equivalent diameter (diameter) or the number of their boundaries (neighbors)
+    /// What the colours of grains mean: nothing (grain), their equivalent diameter (diameter), the number of their boundaries (neighbors) or
+    /// their phase (phase: blue, orange, red, cyan, green and on)
     ///
     /// Example: --picture sizes.png --color-by diameter
     #[arg(long, value_enum, default_value_t = ColorRule::Grain, requires = "picture")]
@@ -49,9 +50,15 @@ enum ColorRule {
     Grain,
     Diameter,
     Neighbors,
+    Phase,
 }
 
 impl PictureArguments {
+    /// Whether colours are to tell the phases.
+    pub fn shows_phases(&self) -> bool {
+        matches!(self.color_by, ColorRule::Phase)
+    }
+
     /// The picture asked for, its path found writable.
     pub fn picture(&self) -> Result<Option<(Picture, Output<Png>)>, Error> {
         let Some(path) = &self.picture else { return Ok(None) };
@@ -64,6 +71,7 @@ impl PictureArguments {
             ColorRule::Grain => Coloring::Grain,
             ColorRule::Diameter => Coloring::Diameter,
             ColorRule::Neighbors => Coloring::Neighbors,
+            ColorRule::Phase => Coloring::Phase,
         };
         Ok(Some((Picture { size, coloring, explode: self.explode }, Output::check_as(path, Png)?)))
     }

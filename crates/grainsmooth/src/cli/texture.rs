@@ -29,7 +29,7 @@ pub struct TextureArguments {
     /// Symmetry of the sample: triclinic (none) or orthorhombic, as of rolled sheet, where each component comes in all its variants
     ///
     /// Example: --texture 'copper(8) + s(8) + brass(8)' --sample-symmetry orthorhombic
-    #[arg(long, value_name = "GROUP", default_value = "triclinic", value_parser = parse_sample_symmetry, requires = "texture")]
+    #[arg(long, value_name = "GROUP", default_value = "triclinic", value_parser = parse_sample_symmetry)]
     sample_symmetry: SampleSymmetry,
 
     /// Swap orientations until the disorientations of neighbours, by area, have the histogram in a file: on each line the upper end of a
@@ -41,6 +41,11 @@ pub struct TextureArguments {
 }
 
 impl TextureArguments {
+    /// Whether the sample is to have a symmetry.
+    pub fn has_sample_symmetry(&self) -> bool {
+        self.sample_symmetry != SampleSymmetry::default()
+    }
+
     /// What is asked for.
     pub fn options(&self) -> TextureOptions {
         TextureOptions {

@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use polycrystal::Side;
 use texture::{CrystalSymmetry, Orientation};
 
-use super::LabelGrid;
+use super::OrientationMap;
 use crate::Config;
 
 /// In place of each Euler angle where there is none.
@@ -16,33 +16,36 @@ const ANGLE_OF_NONE: f64 = 2.0 * TAU;
 
 /// Writes the map: one line a pixel, x fastest; angles in radians, coordinates in the user's unit of length.
 ///
-/// The columns are the three Euler angles after Bunge, x, y, image quality 1, confidence 1, phase 1, detector signal 1 and
+/// The columns are the three Euler angles after Bunge, x, y, image quality 1, confidence 1, the phase from 1, detector signal 1 and
 /// fit 0; y points down, as everywhere in such maps. Pixels outside of all grains have no solution: confidence -1.
-pub(crate) fn write(
-    grid: &LabelGrid<'_>,
-    orientations: &[Orientation],
-    config: &Config,
-    out: &mut dyn Write,
-) -> io::Result<()> {
+pub(crate) fn write(map: &OrientationMap<'_>, config: &Config, out: &mut dyn Write) -> io::Result<()> {
+    let OrientationMap { grid, orientations, phases, .. } = map;
     let [columns, rows, _] = grid.size;
     let (x_step, y_step) = (grid.spacing.x, grid.spacing.y);
     config.write_comments("# ", out)?;
-    let symmetry = config.texture.symmetry;
-    let [[a, b, c], [alpha, beta, gamma]] = lattice_constants(symmetry);
-    let number = symmetry_number(symmetry);
     write!(
         out,
         "# TEM_PIXperUM          1.000000\n# x-star                0.000000\n# y-star                0.000000\n\
-         # z-star                0.000000\n# WorkingDistance       0.000000\n#\n# Phase 1\n\
-         # MaterialName  grains\n# Formula     \n# Info \n# Symmetry              {number}\n\
-         # LatticeConstants      {a:.3} {b:.3} {c:.3}  {alpha:.3}  {beta:.3}  {gamma:.3}\n# NumberFamilies        0\n#\n\
-         # GRID: SqrGrid\n# XSTEP: {x_step:?}\n# YSTEP: {y_step:?}\n# NCOLS_ODD: {columns}\n# NCOLS_EVEN: {columns}\n\
+         # z-star                0.000000\n# WorkingDistance       0.000000\n#\n"
+    )?;
+    for (phase, (name, symmetry)) in (1..).zip(*phases) {
+        let [[a, b, c], [alpha, beta, gamma]] = lattice_constants(*symmetry);
+        let number = symmetry_number(*symmetry);
+        write!(
+            out,
+            "# Phase {phase}\n# MaterialName  {name}\n# Formula     \n# Info \n# Symmetry              {number}\n\
+             # LatticeConstants      {a:.3} {b:.3} {c:.3}  {alpha:.3}  {beta:.3}  {gamma:.3}\n# NumberFamilies        0\n#\n"
+        )?;
+    }
+    write!(
+        out,
+        "# GRID: SqrGrid\n# XSTEP: {x_step:?}\n# YSTEP: {y_step:?}\n# NCOLS_ODD: {columns}\n# NCOLS_EVEN: {columns}\n\
          # NROWS: {rows}\n#\n# OPERATOR: grainsmooth {}\n#\n# SAMPLEID: \n#\n# SCANID: \n#\n",
         env!("CARGO_PKG_VERSION")
     )?;
     let radians = |orientation: &Orientation| orientation.euler_degrees().map(f64::to_radians);
     let angles: Vec<[f64; 3]> = orientations.iter().map(radians).collect();
-    grid.rows_from_top(|row, labels| write_row(labels, row, [x_step, y_step], &angles, out))
+    grid.rows_from_top(|row, labels| write_row(labels, row, [x_step, y_step], &angles, map.phase_of, out))
 }
 
 /// Writes the pixels of a row.
@@ -51,6 +54,7 @@ fn write_row(
     row: usize,
     [x_step, y_step]: [f64; 2],
     angles: &[[f64; 3]],
+    phase_of: &[usize],
     out: &mut dyn Write,
 ) -> io::Result<()> {
     for (column, side) in labels.iter().enumerate() {
@@ -64,7 +68,8 @@ fn write_row(
             continue;
         };
         let [phi1, big_phi, phi2] = angles[grain.index()];
-        writeln!(out, "{phi1:.5} {big_phi:.5} {phi2:.5} {x:?} {y:?} 1.0 1.000 1 1 0.000")?;
+        let phase = 1 + phase_of[grain.index()];
+        writeln!(out, "{phi1:.5} {big_phi:.5} {phi2:.5} {x:?} {y:?} 1.0 1.000 {phase} 1 0.000")?;
     }
     Ok(())
 }

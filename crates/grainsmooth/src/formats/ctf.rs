@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 
 use polycrystal::Side;
-use texture::{CrystalSymmetry, Orientation};
+use texture::CrystalSymmetry;
 
-use super::LabelGrid;
+use super::OrientationMap;
 use super::ang::lattice_constants;
 use crate::Config;
 
@@ -46,32 +46,32 @@ pub(crate) fn hkl_turn(symmetry: CrystalSymmetry) -> f64 {
 ///
 /// Band contrast and slope are 255 and the mean deviation 0; y points down, as everywhere in such maps. Pixels outside of all grains
 /// have phase 0.
-pub(crate) fn write(
-    grid: &LabelGrid<'_>,
-    orientations: &[Orientation],
-    config: &Config,
-    out: &mut dyn Write,
-) -> io::Result<()> {
+pub(crate) fn write(map: &OrientationMap<'_>, _: &Config, out: &mut dyn Write) -> io::Result<()> {
+    let OrientationMap { grid, orientations, phase_of, phases } = map;
     let [columns, rows, _] = grid.size;
     let (x_step, y_step) = (grid.spacing.x, grid.spacing.y);
-    let symmetry = config.texture.symmetry;
-    let number = 1 + LAUE_GROUPS.iter().take_while(|group| **group != symmetry).count();
-    let [lengths, angles] =
-        lattice_constants(symmetry).map(|three| three.map(|one| format!("{one:.3}")).join(";"));
     write!(
         out,
         "Channel Text File\nPrj\tgrains\nAuthor\tgrainsmooth {}\nJobMode\tGrid\nXCells\t{columns}\nYCells\t{rows}\n\
          XStep\t{x_step:?}\nYStep\t{y_step:?}\nAcqE1\t0\nAcqE2\t0\nAcqE3\t0\n\
          Euler angles refer to Sample Coordinate system (CS0)!\tMag\t1\tCoverage\t100\tDevice\t0\tKV\t0\tTiltAngle\t0\tTiltAxis\t0\n\
-         Phases\t1\n{lengths}\t{angles}\tgrains\t{number}\t0\nPhase\tX\tY\tBands\tError\tEuler1\tEuler2\tEuler3\tMAD\tBC\tBS\n",
-        env!("CARGO_PKG_VERSION")
+         Phases\t{}\n",
+        env!("CARGO_PKG_VERSION"),
+        phases.len()
     )?;
-    let turn = hkl_turn(symmetry);
+    for (name, symmetry) in *phases {
+        let number = 1 + LAUE_GROUPS.iter().take_while(|group| *group != symmetry).count();
+        let [lengths, angles] =
+            lattice_constants(*symmetry).map(|three| three.map(|one| format!("{one:.3}")).join(";"));
+        writeln!(out, "{lengths}\t{angles}\t{name}\t{number}\t0")?;
+    }
+    writeln!(out, "Phase\tX\tY\tBands\tError\tEuler1\tEuler2\tEuler3\tMAD\tBC\tBS")?;
     let angles: Vec<[f64; 3]> = orientations
         .iter()
-        .map(|orientation| {
+        .zip(*phase_of)
+        .map(|(orientation, phase)| {
             let [phi1, phi, phi2] = orientation.euler_degrees();
-            [phi1, phi, (phi2 + turn) % 360.0]
+            [phi1, phi, (phi2 + hkl_turn(phases[*phase].1)) % 360.0]
         })
         .collect();
     grid.rows_from_top(|row, labels| {
@@ -80,7 +80,11 @@ pub(crate) fn write(
             match side {
                 Side::Grain(grain) => {
                     let [phi1, phi, phi2] = angles[grain.index()];
-                    writeln!(out, "1\t{x:?}\t{y:?}\t10\t0\t{phi1:.5}\t{phi:.5}\t{phi2:.5}\t0.0\t255\t255")?;
+                    let phase = 1 + phase_of[grain.index()];
+                    writeln!(
+                        out,
+                        "{phase}\t{x:?}\t{y:?}\t10\t0\t{phi1:.5}\t{phi:.5}\t{phi2:.5}\t0.0\t255\t255"
+                    )?;
                 }
                 Side::Exterior => writeln!(out, "0\t{x:?}\t{y:?}\t0\t3\t0.0\t0.0\t0.0\t0.0\t0\t0")?,
             }

@@ -6,28 +6,45 @@ use std::io::{self, Write};
 
 use texture::CrystalSymmetry;
 
-use crate::{Config, GrainTexture};
+use crate::{Config, GrainTexture, Tessellated};
 
-/// Writes the file. What mechanics the phase has is for its user to say.
-pub(crate) fn write(texture: &GrainTexture, config: &Config, out: &mut dyn Write) -> io::Result<()> {
+/// The name of the one phase where none are asked for.
+const ONE_PHASE: &str = "A";
+
+/// Writes the file. What mechanics a phase has is for its user to say.
+pub(crate) fn write(
+    cells: &Tessellated,
+    texture: &GrainTexture,
+    config: &Config,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     config.write_comments("# ", out)?;
-    let lattice = match texture.symmetry() {
+    write!(out, "homogenization:\n  SX:\n    N_constituents: 1\n    mechanical: {{type: pass}}\nphase:\n")?;
+    let has_phases = cells.phases.is_some();
+    // In quotes, for names such as 2 and no are something else without.
+    let named = |name: String| if has_phases { format!("\"{name}\"") } else { ONE_PHASE.to_owned() };
+    let phases: Vec<(String, CrystalSymmetry)> =
+        cells.named_symmetries(config).into_iter().map(|(name, symmetry)| (named(name), symmetry)).collect();
+    for (name, symmetry) in &phases {
+        writeln!(out, "  {name}:\n    {}", lattice(*symmetry))?;
+    }
+    writeln!(out, "material:")?;
+    for (orientation, phase) in texture.orientations().iter().zip(cells.phase_of()) {
+        let ([w, x, y, z], (name, _)) = (orientation.quaternion(), &phases[phase]);
+        writeln!(
+            out,
+            "  - homogenization: SX\n    constituents: [{{phase: {name}, v: 1.0, O: [{w:?}, {x:?}, {y:?}, {z:?}]}}]"
+        )?;
+    }
+    Ok(())
+}
+
+/// The lattice of a symmetry, as far as it tells.
+fn lattice(symmetry: CrystalSymmetry) -> &'static str {
+    match symmetry {
         CrystalSymmetry::Octahedral | CrystalSymmetry::Tetrahedral => "lattice: cF  # or cI: body-centred",
         CrystalSymmetry::Hexagonal | CrystalSymmetry::HexagonalLow => "lattice: hP\n    c/a: 1.633",
         CrystalSymmetry::Tetragonal | CrystalSymmetry::TetragonalLow => "lattice: tI\n    c/a: 1.0",
         _ => "lattice: cF  # DAMASK has cF, cI, hP and tI",
-    };
-    write!(
-        out,
-        "homogenization:\n  SX:\n    N_constituents: 1\n    mechanical: {{type: pass}}\n\
-         phase:\n  A:\n    {lattice}\nmaterial:\n"
-    )?;
-    for orientation in texture.orientations() {
-        let [w, x, y, z] = orientation.quaternion();
-        writeln!(
-            out,
-            "  - homogenization: SX\n    constituents: [{{phase: A, v: 1.0, O: [{w:?}, {x:?}, {y:?}, {z:?}]}}]"
-        )?;
     }
-    Ok(())
 }

@@ -1,4 +1,4 @@
-use colorous::{RAINBOW, VIRIDIS};
+use colorous::{RAINBOW, TABLEAU10, VIRIDIS};
 
 use crate::Polycrystal;
 
@@ -12,6 +12,8 @@ pub enum Coloring {
     Diameter,
     /// The number of boundaries, from the fewest (violet) to the most (yellow).
     Neighbors,
+    /// The phase: blue, orange, red, cyan, green and on, in the order of their numbers.
+    Phase,
 }
 
 /// Red, green and blue, from 0 to 1.
@@ -19,7 +21,7 @@ pub(crate) type Color = [f64; 3];
 
 impl Coloring {
     /// Every way, the default first.
-    pub const ALL: [Self; 3] = [Self::Grain, Self::Diameter, Self::Neighbors];
+    pub const ALL: [Self; 4] = [Self::Grain, Self::Diameter, Self::Neighbors, Self::Phase];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
@@ -27,6 +29,7 @@ impl Coloring {
             Self::Grain => "grain",
             Self::Diameter => "diameter",
             Self::Neighbors => "neighbors",
+            Self::Phase => "phase",
         }
     }
 
@@ -41,6 +44,11 @@ impl Coloring {
                     .take(polycrystal.network.grain_count())
                     .map(|grain| channels(hue(grain)))
                     .collect();
+            }
+            Self::Phase => {
+                // After the last colour the first comes again.
+                let color = |phase: usize| channels(TABLEAU10[phase % TABLEAU10.len()]);
+                return polycrystal.cells.phase_of().into_iter().map(color).collect();
             }
             Self::Diameter => polycrystal.equivalent_diameters(),
             Self::Neighbors => polycrystal.boundary_counts().into_iter().map(|count| count as f64).collect(),

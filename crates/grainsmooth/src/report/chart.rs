@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 /// Histograms of one quantity, before and after, with the curve that random cells follow.
 pub(super) struct Chart {
-    pub(super) title: &'static str,
+    pub(super) title: String,
     /// What the horizontal axis counts.
     pub(super) unit: &'static str,
     /// What the shares are of.

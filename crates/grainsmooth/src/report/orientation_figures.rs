@@ -64,8 +64,12 @@ impl Frame<'_> {
     }
 }
 
-/// The figures of weighted orientations: poles of the crystal's main directions, and what the sample's axes are in the crystals.
-pub(super) fn figures(weighted: &[(Orientation, f64)], symmetry: CrystalSymmetry) -> io::Result<String> {
+/// The figures of weighted orientations, with whose they are behind each title: poles of the crystal's main directions, and what the sample's axes are in the crystals.
+pub(super) fn figures(
+    weighted: &[(Orientation, f64)],
+    symmetry: CrystalSymmetry,
+    whose: &str,
+) -> io::Result<String> {
     let kernel = FiberKernel::new(HALFWIDTH).map_err(io::Error::other)?;
     let whole = Frame { center: [0.0; 2], half: 1.0, holds: &|_| true };
     let (mut poles, mut inverse) = (Vec::new(), Vec::new());
@@ -83,18 +87,29 @@ pub(super) fn figures(weighted: &[(Orientation, f64)], symmetry: CrystalSymmetry
     let mut html = String::new();
     let of_sample = [("X", DVec3::X), ("Y", DVec3::Y)];
     for (name, values) in poles {
-        html +=
-            &density_figure(&format!("Pole figure {name}"), &values, &whole, &outline(&whole), &of_sample)?;
+        html += &density_figure(
+            &format!("Pole figure {name}{whose}"),
+            &values,
+            &whole,
+            &outline(&whole),
+            &of_sample,
+        )?;
     }
     let corners: Vec<(&str, DVec3)> = corner_names(symmetry).into_iter().zip(sector.marks()).collect();
     let around = sector_outline(&part, sector);
     for (name, values) in inverse {
-        html += &density_figure(&format!("Inverse pole figure {name}"), &values, &part, &around, &corners)?;
+        html += &density_figure(
+            &format!("Inverse pole figure {name}{whose}"),
+            &values,
+            &part,
+            &around,
+            &corners,
+        )?;
     }
     let key = IpfKey::new(symmetry);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 255")]
     let colors = part.values(|direction| key.color(direction).map(|share| (255.0 * share).round() as u8));
-    let svg = svg("Colours of crystal directions", &colors, &part, &around, &corners)?;
+    let svg = svg(&format!("Colours of crystal directions{whose}"), &colors, &part, &around, &corners)?;
     html += &format!(
         "<figure>{svg}<figcaption>Of the arrays IPFColorX, IPFColorY and IPFColorZ.</figcaption></figure>"
     );

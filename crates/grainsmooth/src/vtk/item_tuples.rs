@@ -25,6 +25,12 @@ impl ItemTuples {
         Self { name, kind: ScalarType::Float64, components: N, bytes, none }
     }
 
+    /// Tuples of 32-bit integers.
+    pub fn integers<const N: usize>(name: &'static str, tuples: impl Iterator<Item = [i32; N]>) -> Self {
+        let bytes = tuples.flat_map(|tuple| bytemuck::cast_slice::<i32, u8>(&tuple).to_vec()).collect();
+        Self { name, kind: ScalarType::Int32, components: N, bytes, none: vec![0; N * size_of::<i32>()] }
+    }
+
     /// Tuples of unsigned 8-bit integers.
     pub fn bytes<const N: usize>(name: &'static str, tuples: impl Iterator<Item = [u8; N]>) -> Self {
         Self {
@@ -44,7 +50,11 @@ impl ItemTuples {
 
     /// The kind of the numbers as XML files name it.
     pub(super) fn kind_name(&self) -> &'static str {
-        if self.kind == ScalarType::UInt8 { "UInt8" } else { "Float64" }
+        match self.kind {
+            ScalarType::UInt8 => "UInt8",
+            ScalarType::Int32 => "Int32",
+            _ => "Float64",
+        }
     }
 
     /// Number of items.

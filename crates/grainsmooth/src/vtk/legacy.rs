@@ -108,6 +108,7 @@ fn write_field(entries: &[FieldEntry], out: &mut dyn Write) -> io::Result<()> {
             FieldValue::Items(tuples) => {
                 let (kind, width) = match tuples.kind {
                     ScalarType::UInt8 => ("unsigned_char", size_of::<u8>()),
+                    ScalarType::Int32 => ("int", size_of::<i32>()),
                     _ => ("double", size_of::<f64>()),
                 };
                 writeln!(out, "{name} {} {} {kind}", tuples.components, tuples.len())?;

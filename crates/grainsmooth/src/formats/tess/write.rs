@@ -23,7 +23,7 @@ pub(crate) fn write(tess: &Tess, texture: Option<&GrainTexture>, out: &mut dyn W
         writeln!(out, "  *id\n   {}", ids.join(" "))?;
     }
     // Neper knows no others.
-    let symmetry = texture.map(GrainTexture::symmetry).filter(|symmetry| {
+    let symmetry = texture.and_then(GrainTexture::symmetry).filter(|symmetry| {
         matches!(
             symmetry,
             CrystalSymmetry::Triclinic | CrystalSymmetry::Octahedral | CrystalSymmetry::Hexagonal
