@@ -107,6 +107,40 @@ fn pictures_do_not_depend_on_threads() {
     assert!(workplace.bytes("1.png") == workplace.bytes("2.png"));
 }
 
+/// Cubes along the sample's axes are red; the key at the right has red, green and blue corners, and letters.
+#[test]
+fn directions_of_crystals_have_colours_and_a_key() {
+    let workplace = Workplace::new();
+    workplace.put("cube.csv", "phi1,Phi,phi2\n0,0,0\n");
+    let cube = "--seeds 2 -n 0 --relax 0 --texture cube.csv --quiet";
+    workplace.run(&format!("{cube} --picture a.png --picture-size 400 300 --color-by ipf-z"));
+    let (mut reds, mut keys) = (0, [0; 3]);
+    for (column, pixel) in pixels(&workplace.path("a.png")).iter().flat_map(|row| row.iter().enumerate()) {
+        reds += usize::from(column < 200 && pixel[0] > 80 && pixel[1] == 0 && pixel[2] == 0);
+        for (corner, count) in keys.iter_mut().enumerate() {
+            let is_pure = (0..3).all(|channel| (channel == corner) == (pixel[channel] > 150));
+            *count += usize::from(column > 250 && is_pure);
+        }
+    }
+    assert!(reds > 10_000, "{reds}");
+    assert!(keys.iter().all(|count| *count > 20), "{keys:?}");
+}
+
+/// Boundaries are coloured, not grains: two crystals turned by 45 degrees about one axis.
+#[test]
+fn disorientations_colour_boundaries() {
+    let workplace = Workplace::new();
+    workplace.put("seeds.csv", "0.25,0.5\n0.75,0.5\n");
+    workplace.put("turned.csv", "phi1,Phi,phi2\n0,0,0\n45,0,0\n");
+    let run = "--dim 2 --seeds-file seeds.csv -n 0 --relax 0 --texture turned.csv --quiet";
+    workplace.run(&format!("{run} --picture a.png --picture-size 400 300 --color-by disorientation"));
+    let rows = pixels(&workplace.path("a.png"));
+    // The end of Viridis, in the line between the grains; the key has it in a row.
+    let yellow = |column: &usize| rows.iter().filter(|row| row[*column] == [253, 231, 37]).count();
+    let columns: Vec<usize> = (0..400).filter(|column| yellow(column) > 100).collect();
+    assert!(!columns.is_empty() && columns.iter().all(|column| *column < 300), "{columns:?}");
+}
+
 #[test]
 fn mistakes_about_pictures_are_named() {
     let workplace = Workplace::new();
@@ -128,6 +162,14 @@ fn mistakes_about_pictures_are_named() {
             "invalid value '-1' for '--explode <X>': give a number from 0 (whole) to 10",
         ),
         ("--no-mesh --picture a.png", "the argument '--no-mesh' cannot be used with '--picture <PATH.png>'"),
+        (
+            "--picture a.png --color-by ipf-z",
+            "--color-by ipf-z shows orientations; give the grains some, such as --texture random",
+        ),
+        (
+            "--picture a.png --color-by disorientation",
+            "--color-by disorientation shows orientations; give the grains some, such as --texture random",
+        ),
     ] {
         workplace.refuses(arguments, USAGE, message);
     }

@@ -3,7 +3,7 @@
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
-use grainsmooth::{Config, PeriodicCut, read_file_domain};
+use grainsmooth::{Coloring, Config, PeriodicCut, read_file_domain};
 use polycrystal::{Relaxation, Volumes};
 use voronoi::Dimension;
 
@@ -131,7 +131,8 @@ impl Arguments {
         }
         let aspect_ratio = sizes.aspect_ratio(domain.dimension);
         let (sizes, phases) = (sizes.options(), phases.options());
-        if pictures.shows_phases() && phases.is_empty() {
+        let coloring = pictures.coloring();
+        if coloring == Coloring::Phase && phases.is_empty() {
             usage("--color-by phase needs phases; give some with --phase");
         }
         let config = Config {
@@ -171,6 +172,12 @@ impl Arguments {
             );
         }
         let config = Config { relaxation, ..config };
+        if coloring.needs_texture() && !config.has_texture() {
+            usage(&format!(
+                "--color-by {} shows orientations; give the grains some, such as --texture random",
+                coloring.name()
+            ));
+        }
         if let Some(gradient) = &config.sizes.gradient {
             if !is_sized {
                 usage("--gradient changes given sizes; give --diameters or --seeding packed as well");

@@ -129,6 +129,17 @@ impl GrainTexture {
         self.textures.iter().all(|of_phase| of_phase.symmetry == first).then_some(first)
     }
 
+    /// The symmetries of the crystals, each once.
+    pub fn symmetries(&self) -> Vec<CrystalSymmetry> {
+        let mut symmetries = Vec::new();
+        for PhaseTexture { symmetry, .. } in &self.textures {
+            if !symmetries.contains(symmetry) {
+                symmetries.push(*symmetry);
+            }
+        }
+        symmetries
+    }
+
     /// Number of textures: one of each phase, or one of all grains.
     pub fn texture_count(&self) -> usize {
         self.textures.len()
@@ -197,12 +208,16 @@ impl GrainTexture {
 
     /// The inverse pole figure colours of each grain for the sample's axes.
     pub(crate) fn color_arrays(&self, names: Names) -> [ItemTuples; 3] {
-        let keys: Vec<IpfKey> = self.textures.iter().map(|of_phase| IpfKey::new(of_phase.symmetry)).collect();
         let [x, y, z] = names.inverse_pole_figures();
-        [(x, DVec3::X), (y, DVec3::Y), (z, DVec3::Z)].map(|(name, axis)| {
-            let grains = self.orientations.iter().zip(&self.texture_of);
-            ItemTuples::bytes(name, grains.map(|(one, texture)| keys[*texture].color_of(*one, axis)))
-        })
+        [(x, DVec3::X), (y, DVec3::Y), (z, DVec3::Z)]
+            .map(|(name, axis)| ItemTuples::bytes(name, self.colors(axis)))
+    }
+
+    /// The inverse pole figure colour of each grain for an axis of the sample.
+    pub(crate) fn colors(&self, axis: DVec3) -> impl Iterator<Item = [u8; 3]> {
+        let keys: Vec<IpfKey> = self.textures.iter().map(|of_phase| IpfKey::new(of_phase.symmetry)).collect();
+        let grains = self.orientations.iter().zip(&self.texture_of);
+        grains.map(move |(one, texture)| keys[*texture].color_of(*one, axis))
     }
 
     /// What files hold of each boundary, given by its sides: the angle of its `Disorientation` in degrees, and the axis.

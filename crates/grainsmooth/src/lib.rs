@@ -17,6 +17,7 @@
 mod cell_table;
 mod check_report;
 mod config;
+mod direction_frame;
 mod domain_file;
 mod embedded_config;
 mod equivalent_diameters;

@@ -2,18 +2,23 @@
 
 mod camera;
 mod coloring;
+mod legend;
 mod patch;
 mod plane;
 mod raster;
+mod text;
 
 use std::io;
 use std::num::NonZeroU16;
 
 use glam::DVec3;
 use polycrystal::Mesh;
-use tiny_skia::Pixmap;
+use tiny_skia::{Pixmap, PixmapPaint, Transform};
 
 use crate::{Error, Output, Polycrystal, StagedFiles};
+
+use coloring::Paint;
+use patch::Seen;
 
 pub use coloring::Coloring;
 
@@ -69,20 +74,38 @@ impl Polycrystal {
 
     /// The bytes of a PNG file.
     pub(crate) fn png(&self, picture: &Picture) -> io::Result<Vec<u8>> {
-        let [width, height] = picture.size.map(|side| u32::from(side.get()));
-        let mut pixmap = Pixmap::new(width, height)
-            .ok_or_else(|| io::Error::other("the picture is too large; give a smaller --picture-size"))?;
-        pixmap.fill(tiny_skia::Color::WHITE);
+        let [width, height] = picture.size;
+        let mut pixmap = blank([width, height])?;
+        let paint = picture.coloring.paint(self);
+        let Some(legend) = &paint.legend else {
+            self.draw(picture, &paint, &mut pixmap)?;
+            return self.encoded(pixmap).map_err(io::Error::other);
+        };
+        let taken = legend.width([width, height].map(|side| usize::from(side.get())));
+        let left = u16::try_from(usize::from(width.get()) - taken).ok().and_then(NonZeroU16::new);
+        let inner = Picture { size: [left.unwrap_or(width), height], ..*picture };
+        let mut scene = blank(inner.size)?;
+        self.draw(&inner, &paint, &mut scene)?;
+        let whole = PixmapPaint::default();
+        pixmap.draw_pixmap(0, 0, scene.as_ref(), &whole, Transform::identity(), None);
+        legend.draw(&mut pixmap);
+        self.encoded(pixmap).map_err(io::Error::other)
+    }
+
+    fn draw(&self, picture: &Picture, paint: &Paint, pixmap: &mut Pixmap) -> io::Result<()> {
         let shifts = self.shifts(picture.explode);
-        let colors = picture.coloring.colors(self);
         match &self.network.finest().mesh {
             Mesh::Triangles(_) => {
-                let patches = patch::patches(self, &shifts, picture.explode > 0.0)?;
-                raster::draw(&patches, &colors, picture, &mut pixmap);
+                let seen = match (picture.explode > 0.0, &paint.boundaries) {
+                    (true, _) => Seen::Grains,
+                    (false, None) => Seen::Outside,
+                    (false, Some(_)) => Seen::Boundaries,
+                };
+                raster::draw(&patch::patches(self, &shifts, seen)?, paint, picture, pixmap);
             }
-            Mesh::Segments(lines) => plane::draw(self, lines, &shifts, &colors, picture, &mut pixmap),
+            Mesh::Segments(lines) => plane::draw(self, lines, &shifts, paint, picture, pixmap),
         }
-        self.encoded(pixmap).map_err(io::Error::other)
+        Ok(())
     }
 
     /// A picture without transparency as PNG, with the settings of the run.
@@ -122,4 +145,13 @@ impl Polycrystal {
         let volumes = self.network.cell_volumes().iter();
         volumes.map(|volume| self.config.dimension.ball_diameter(*volume)).collect()
     }
+}
+
+/// A white picture.
+fn blank(size: [NonZeroU16; 2]) -> io::Result<Pixmap> {
+    let [width, height] = size.map(|side| u32::from(side.get()));
+    let mut pixmap = Pixmap::new(width, height)
+        .ok_or_else(|| io::Error::other("the picture is too large; give a smaller --picture-size"))?;
+    pixmap.fill(tiny_skia::Color::WHITE);
+    Ok(pixmap)
 }

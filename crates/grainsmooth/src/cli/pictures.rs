@@ -3,7 +3,8 @@
 use std::num::NonZeroU16;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use grainsmooth::{Coloring, Error, Html, Output, Picture, Png};
 
 use super::values::whole_number;
@@ -24,12 +25,14 @@ pub struct PictureArguments {
     #[arg(long, value_names = ["W", "H"], num_args = 2, value_parser = whole_number(16..=16_384_u16), allow_negative_numbers = true, requires = "picture")]
     picture_size: Option<Vec<u16>>,
 
-    /// What the colours of grains mean: nothing (grain), their equivalent diameter (diameter), the number of their boundaries (neighbors) or
-    /// their phase (phase: blue, orange, red, cyan, green and on)
+    /// What the colours mean: nothing (grain); a grain's equivalent diameter, number of boundaries (neighbors), phase, or crystal direction
+    /// along an axis (ipf-x, ipf-y, ipf-z); a boundary's disorientation
     ///
-    /// Example: --picture sizes.png --color-by diameter
-    #[arg(long, value_enum, default_value_t = ColorRule::Grain, requires = "picture")]
-    color_by: ColorRule,
+    /// A key stands at the right. Crystal directions and disorientations need a texture.
+    ///
+    /// Example: --picture directions.png --texture random --color-by ipf-z
+    #[arg(long, value_name = "WHAT", value_parser = colorings(), default_value = "grain", requires = "picture")]
+    color_by: Coloring,
 
     /// Move the grains of the picture apart: each away from the middle, by X times its distance from there
     ///
@@ -44,19 +47,10 @@ pub struct PictureArguments {
     report: Option<PathBuf>,
 }
 
-/// `--color-by` as it is spelled.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum ColorRule {
-    Grain,
-    Diameter,
-    Neighbors,
-    Phase,
-}
-
 impl PictureArguments {
-    /// Whether colours are to tell the phases.
-    pub fn shows_phases(&self) -> bool {
-        matches!(self.color_by, ColorRule::Phase)
+    /// How the picture is coloured.
+    pub fn coloring(&self) -> Coloring {
+        self.color_by
     }
 
     /// The picture asked for, its path found writable.
@@ -67,19 +61,22 @@ impl PictureArguments {
             Some([width, height]) => [width, height].map(at_least_one),
             _ => Picture::SIZE,
         };
-        let coloring = match self.color_by {
-            ColorRule::Grain => Coloring::Grain,
-            ColorRule::Diameter => Coloring::Diameter,
-            ColorRule::Neighbors => Coloring::Neighbors,
-            ColorRule::Phase => Coloring::Phase,
-        };
-        Ok(Some((Picture { size, coloring, explode: self.explode }, Output::check_as(path, Png)?)))
+        Ok(Some((
+            Picture { size, coloring: self.color_by, explode: self.explode },
+            Output::check_as(path, Png)?,
+        )))
     }
 
     /// The report asked for, its path found writable.
     pub fn report(&self) -> Result<Option<Output<Html>>, Error> {
         self.report.as_ref().map(|path| Output::check_as(path, Html)).transpose()
     }
+}
+
+/// Every name of a way of colouring.
+fn colorings() -> impl TypedValueParser<Value = Coloring> {
+    let named = |name: String| Coloring::ALL.into_iter().find(|way| way.name() == name).unwrap_or_default();
+    PossibleValuesParser::new(Coloring::ALL.map(Coloring::name)).map(named)
 }
 
 fn parse_png(text: &str) -> Result<PathBuf, String> {

@@ -1,5 +1,8 @@
 use colorous::{RAINBOW, TABLEAU10, VIRIDIS};
+use glam::DVec3;
+use polycrystal::Boundary;
 
+use super::legend::Legend;
 use crate::Polycrystal;
 
 /// What the colours of grains mean.
@@ -14,14 +17,44 @@ pub enum Coloring {
     Neighbors,
     /// The phase: blue, orange, red, cyan, green and on, in the order of their numbers.
     Phase,
+    /// The crystal's direction along the sample's x, in inverse pole figure colours.
+    IpfX,
+    /// The same along y.
+    IpfY,
+    /// The same along z.
+    IpfZ,
+    /// Of each boundary, the disorientation of its grains, from none (violet) to the largest (yellow).
+    Disorientation,
 }
 
 /// Red, green and blue, from 0 to 1.
 pub(crate) type Color = [f64; 3];
 
+/// Of the outer surface where boundaries are coloured: light grey.
+const WALL: Color = [0.85; 3];
+
+/// The colours of a picture.
+pub(crate) struct Paint {
+    /// Of each grain.
+    pub(crate) grains: Vec<Color>,
+    /// Of each boundary, where these are shown and not the grains.
+    pub(crate) boundaries: Option<Vec<Color>>,
+    /// What they mean.
+    pub(crate) legend: Option<Legend>,
+}
+
 impl Coloring {
     /// Every way, the default first.
-    pub const ALL: [Self; 4] = [Self::Grain, Self::Diameter, Self::Neighbors, Self::Phase];
+    pub const ALL: [Self; 8] = [
+        Self::Grain,
+        Self::Diameter,
+        Self::Neighbors,
+        Self::Phase,
+        Self::IpfX,
+        Self::IpfY,
+        Self::IpfZ,
+        Self::Disorientation,
+    ];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
@@ -30,36 +63,113 @@ impl Coloring {
             Self::Diameter => "diameter",
             Self::Neighbors => "neighbors",
             Self::Phase => "phase",
+            Self::IpfX => "ipf-x",
+            Self::IpfY => "ipf-y",
+            Self::IpfZ => "ipf-z",
+            Self::Disorientation => "disorientation",
         }
     }
 
-    /// The colour of each grain.
-    pub(crate) fn colors(self, polycrystal: &Polycrystal) -> Vec<Color> {
-        let values = match self {
-            Self::Grain => {
+    /// Whether it shows orientations, which grains may not have.
+    pub fn needs_texture(self) -> bool {
+        self.sample_axis().is_some() || self == Self::Disorientation
+    }
+
+    fn sample_axis(self) -> Option<DVec3> {
+        match self {
+            Self::IpfX => Some(DVec3::X),
+            Self::IpfY => Some(DVec3::Y),
+            Self::IpfZ => Some(DVec3::Z),
+            _ => None,
+        }
+    }
+
+    /// The colours of a polycrystal, whose grains have orientations where the colours need them.
+    pub(crate) fn paint(self, polycrystal: &Polycrystal) -> Paint {
+        if let (Some(axis), Some(texture)) = (self.sample_axis(), &polycrystal.cells.texture) {
+            let grains = texture.colors(axis).map(|color| color.map(|channel| f64::from(channel) / 255.0));
+            let legend =
+                Legend::Directions { title: self.name().to_owned(), symmetries: texture.symmetries() };
+            return Paint { grains: grains.collect(), boundaries: None, legend: Some(legend) };
+        }
+        match self {
+            Self::Diameter => viridis("diameter", polycrystal.equivalent_diameters(), 4),
+            Self::Neighbors => {
+                let counts = polycrystal.boundary_counts();
+                viridis("boundaries", counts.into_iter().map(|count| count as f64).collect(), 0)
+            }
+            Self::Phase => phases(polycrystal),
+            Self::Disorientation => disorientations(polycrystal),
+            Self::Grain | Self::IpfX | Self::IpfY | Self::IpfZ => {
                 // Multiples of the golden ratio stay far from each other round the circle of hues.
                 let turn = (5_f64.sqrt() - 1.0) / 2.0;
                 let hue = |grain: u32| RAINBOW.eval_continuous((f64::from(grain) * turn).fract());
-                return (0..)
-                    .take(polycrystal.network.grain_count())
-                    .map(|grain| channels(hue(grain)))
-                    .collect();
+                let grains = (0..).take(polycrystal.network.grain_count());
+                let grains = grains.map(|grain| channels(hue(grain))).collect();
+                Paint { grains, boundaries: None, legend: None }
             }
-            Self::Phase => {
-                // After the last colour the first comes again.
-                let color = |phase: usize| channels(TABLEAU10[phase % TABLEAU10.len()]);
-                return polycrystal.cells.phase_of().into_iter().map(color).collect();
-            }
-            Self::Diameter => polycrystal.equivalent_diameters(),
-            Self::Neighbors => polycrystal.boundary_counts().into_iter().map(|count| count as f64).collect(),
-        };
-        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let range = values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least;
-        let place = |value: f64| if range > 0.0 { (value - least) / range } else { 0.5 };
-        values.into_iter().map(|value| channels(VIRIDIS.eval_continuous(place(value)))).collect()
+        }
     }
 }
 
-fn channels(color: colorous::Color) -> Color {
+/// Colours of grains by numbers, which the legend shows with so many digits that mean something; as whole numbers for none.
+fn viridis(title: &str, values: Vec<f64>, digits: usize) -> Paint {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let range = greatest - least;
+    let place = |value: f64| if range > 0.0 { (value - least) / range } else { 0.5 };
+    let ends = [least, greatest].map(|value| rounded(value, digits));
+    Paint {
+        grains: values.into_iter().map(|value| channels(VIRIDIS.eval_continuous(place(value)))).collect(),
+        boundaries: None,
+        legend: Some(Legend::Bar { title: title.to_owned(), ends }),
+    }
+}
+
+fn phases(polycrystal: &Polycrystal) -> Paint {
+    // After the last colour the first comes again.
+    let color = |phase: usize| channels(TABLEAU10[phase % TABLEAU10.len()]);
+    let cells = &polycrystal.cells;
+    let names = cells.phases.iter().flat_map(|phases| phases.names());
+    Paint {
+        grains: cells.phase_of().into_iter().map(color).collect(),
+        boundaries: None,
+        legend: Some(Legend::Names((0..).map(color).zip(names.map(str::to_owned)).collect())),
+    }
+}
+
+/// Colours of boundaries by the angles between the grains' crystals; grains are white, outer surfaces grey.
+fn disorientations(polycrystal: &Polycrystal) -> Paint {
+    let network = &polycrystal.network;
+    let angle = |boundary: &Boundary| {
+        let found = polycrystal.cells.texture.as_ref()?.disorientation(boundary.sides)?;
+        Some(found.angle)
+    };
+    let angles: Vec<Option<f64>> = network.boundaries().iter().map(angle).collect();
+    let largest = angles.iter().flatten().copied().fold(0.0, f64::max);
+    let color = |angle: &Option<f64>| {
+        angle.map_or(WALL, |angle| channels(VIRIDIS.eval_continuous(angle / largest.max(f64::MIN_POSITIVE))))
+    };
+    Paint {
+        grains: vec![[1.0; 3]; network.grain_count()],
+        boundaries: Some(angles.iter().map(color).collect()),
+        legend: Some(Legend::Bar {
+            title: "disorientation".to_owned(),
+            ends: ["0\u{b0}".to_owned(), format!("{largest:.1}\u{b0}")],
+        }),
+    }
+}
+
+pub(super) fn channels(color: colorous::Color) -> Color {
     [color.r, color.g, color.b].map(|channel| f64::from(channel) / 255.0)
+}
+
+/// A number with so many digits that mean something, or as a whole number for none.
+fn rounded(value: f64, digits: usize) -> String {
+    if digits == 0 {
+        return format!("{value:.0}");
+    }
+    let scientific = format!("{value:.*e}", digits - 1);
+    let plain: f64 = scientific.parse().unwrap_or(value);
+    if (1e-3..1e6).contains(&plain.abs()) { plain.to_string() } else { scientific }
 }

@@ -10,6 +10,7 @@ use crate::formats::{Part, Surface};
 /// One side of a boundary, where its grain is moved to.
 pub(super) struct Patch {
     pub(super) grain: usize,
+    pub(super) boundary: usize,
     /// Points of its own.
     pub(super) points: Vec<DVec3>,
     /// Unit normals at the points, out of the grain.
@@ -20,10 +21,26 @@ pub(super) struct Patch {
     pub(super) rim: Vec<[u32; 2]>,
 }
 
-/// What can be seen: of the whole network its outer surface, of grains that are moved apart both sides of every boundary.
-pub(super) fn patches(polycrystal: &Polycrystal, shifts: &[DVec3], is_apart: bool) -> io::Result<Vec<Patch>> {
+/// What can be seen of a network.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Seen {
+    /// Its outer surface.
+    Outside,
+    /// The boundaries between grains, without the outer surface.
+    Boundaries,
+    /// Grains that are moved apart: both sides of every boundary.
+    Grains,
+}
+
+/// What can be seen, with each grain moved by a shift.
+pub(super) fn patches(polycrystal: &Polycrystal, shifts: &[DVec3], seen: Seen) -> io::Result<Vec<Patch>> {
     let surface = polycrystal.surface()?;
-    let sides = surface.parts.iter().filter(|part| is_apart || part.sides[1] == Side::Exterior);
+    let is_seen = |part: &&Part| match seen {
+        Seen::Outside => part.sides[1] == Side::Exterior,
+        Seen::Boundaries => part.sides[1] != Side::Exterior,
+        Seen::Grains => true,
+    };
+    let sides = surface.parts.iter().filter(is_seen);
     let sides: Vec<(&Part, usize)> = sides.flat_map(|part| [(part, 0), (part, 1)]).collect();
     let patch = |(part, side): (&Part, usize)| {
         let grain = part.sides[side].grain()?.index();
@@ -54,7 +71,7 @@ impl Patch {
         }
         normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
         let rim = rim(&triangles);
-        Self { grain, points, normals, triangles, rim }
+        Self { grain, boundary: part.boundary.index(), points, normals, triangles, rim }
     }
 }
 

@@ -2,18 +2,23 @@
 
 use glam::DVec3;
 use subzero::CurveMesh;
-use tiny_skia::{Color as Ink, FillRule, LineCap, Paint, Path, PathBuilder, Pixmap, Stroke, Transform};
+use tiny_skia::{
+    Color as Ink, FillRule, LineCap, Paint as Brush, Path, PathBuilder, Pixmap, Stroke, Transform,
+};
 
 use super::Picture;
-use super::coloring::Color;
+use super::coloring::{Color, Paint};
 use crate::Polycrystal;
 
-/// Draws every grain as a filled polygon with a black outline.
+/// Width of a coloured line, in widths of a black one: colours of thin lines cannot be told apart.
+const COLORED_LINE: f32 = 3.0;
+
+/// Draws every grain as a filled polygon with a black outline, or lines in the colours of boundaries.
 pub(super) fn draw(
     polycrystal: &Polycrystal,
     lines: &CurveMesh,
     shifts: &[DVec3],
-    colors: &[Color],
+    paint: &Paint,
     picture: &Picture,
     pixmap: &mut Pixmap,
 ) {
@@ -36,29 +41,46 @@ pub(super) fn draw(
         line_cap: LineCap::Round,
         ..Stroke::default()
     };
+    let on_picture = |grain: usize, point: u32| {
+        let from_middle = (place(grain, point) - middle) * scale;
+        [single(width / 2.0 + from_middle.x), single(height / 2.0 - from_middle.y)]
+    };
     let path = |grain: usize, outline: &[Vec<u32>]| {
-        let on_picture = |point: &u32| {
-            let from_middle = (place(grain, *point) - middle) * scale;
-            [single(width / 2.0 + from_middle.x), single(height / 2.0 - from_middle.y)]
-        };
-        closed_path(outline.iter().map(|round| round.iter().map(on_picture)))
+        closed_path(outline.iter().map(|round| round.iter().map(|point| on_picture(grain, *point))))
     };
     let paths: Vec<Option<Path>> =
         outlines.iter().enumerate().map(|(grain, outline)| path(grain, outline)).collect();
-    let paint = |[r, g, b]: Color| {
+    let ink = |[r, g, b]: Color| {
         let [r, g, b] = [r, g, b].map(single);
-        let mut paint = Paint { anti_alias: true, ..Paint::default() };
-        paint.set_color(Ink::from_rgba(r, g, b, 1.0).unwrap_or(Ink::BLACK));
-        paint
+        let mut brush = Brush { anti_alias: true, ..Brush::default() };
+        brush.set_color(Ink::from_rgba(r, g, b, 1.0).unwrap_or(Ink::BLACK));
+        brush
     };
-    for (path, color) in paths.iter().zip(colors) {
+    for (path, color) in paths.iter().zip(&paint.grains) {
         if let Some(path) = path {
-            pixmap.fill_path(path, &paint(*color), FillRule::EvenOdd, Transform::identity(), None);
+            pixmap.fill_path(path, &ink(*color), FillRule::EvenOdd, Transform::identity(), None);
         }
     }
     // After all fills, which would cover half of a line.
-    for path in paths.iter().flatten() {
-        pixmap.stroke_path(path, &paint([0.1; 3]), &stroke, Transform::identity(), None);
+    let Some(of_boundaries) = &paint.boundaries else {
+        for path in paths.iter().flatten() {
+            pixmap.stroke_path(path, &ink([0.1; 3]), &stroke, Transform::identity(), None);
+        }
+        return;
+    };
+    let stroke = Stroke { width: COLORED_LINE * stroke.width, ..stroke };
+    let network = &polycrystal.network;
+    for (ends, boundary) in lines.segments().iter().zip(&network.finest().boundary_of) {
+        for (grain, _) in network.boundaries()[boundary.index()].signed_grains() {
+            let mut path = PathBuilder::new();
+            let [[x0, y0], [x1, y1]] = ends.map(|point| on_picture(grain.index(), point));
+            path.move_to(x0, y0);
+            path.line_to(x1, y1);
+            if let Some(path) = path.finish() {
+                let ink = ink(of_boundaries[boundary.index()]);
+                pixmap.stroke_path(&path, &ink, &stroke, Transform::identity(), None);
+            }
+        }
     }
 }
 

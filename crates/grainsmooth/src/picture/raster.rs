@@ -6,7 +6,7 @@ use tiny_skia::Pixmap;
 
 use super::Picture;
 use super::camera::Camera;
-use super::coloring::Color;
+use super::coloring::{Color, Paint};
 use super::patch::Patch;
 
 /// Samples along each side of a pixel: nine shades smooth an edge.
@@ -18,8 +18,8 @@ const BAND: usize = 32;
 /// What lines are drawn in: nearly black.
 const LINE: Color = [0.1; 3];
 
-/// Draws patches in the colours of their grains, as large as the picture allows.
-pub(super) fn draw(patches: &[Patch], colors: &[Color], picture: &Picture, pixmap: &mut Pixmap) {
+/// Draws patches in the colours of their grains or boundaries, as large as the picture allows.
+pub(super) fn draw(patches: &[Patch], paint: &Paint, picture: &Picture, pixmap: &mut Pixmap) {
     let [width, height] = picture.size.map(|side| usize::from(side.get()));
     let camera = Camera::new(patches, [width, height].map(|side| (side * SAMPLES) as f64));
     let shown: Vec<Shown> = patches.par_iter().map(|patch| Shown::new(patch, &camera)).collect();
@@ -29,8 +29,12 @@ pub(super) fn draw(patches: &[Patch], colors: &[Color], picture: &Picture, pixma
         let rows = pixels.len() / (4 * width);
         let mut band = Band::new(number * BAND * SAMPLES, rows * SAMPLES, width * SAMPLES);
         for (patch, shown) in patches.iter().zip(&shown) {
+            let color = match &paint.boundaries {
+                Some(boundaries) => boundaries[patch.boundary],
+                None => paint.grains[patch.grain],
+            };
             if band.meets(shown.rows, half_width) {
-                band.draw_patch(patch, shown, colors[patch.grain], half_width);
+                band.draw_patch(patch, shown, color, half_width);
             }
         }
         band.into_pixels(pixels);

@@ -69,7 +69,7 @@ pub(super) fn network_json(polycrystal: &Polycrystal) -> io::Result<String> {
         count: surface.triangles_of(part).count(),
         sides: part.sides.map(label),
     };
-    let colors = |coloring: Coloring| coloring.colors(polycrystal).into_iter().map(single).collect();
+    let colors = |coloring: Coloring| coloring.paint(polycrystal).grains.into_iter().map(single).collect();
     let network = Network {
         points: BASE64.encode(points),
         low: low.to_array(),
