@@ -226,6 +226,39 @@ fn report_holds_the_network_and_the_run() {
     assert_eq!(page.matches("<svg").count(), 4);
 }
 
+/// Each figure stands in the page and in the summary for programs, with what came of it.
+#[test]
+fn report_tells_what_was_asked_for_and_reached() {
+    let workplace = Workplace::new();
+    let texture = "goss(10)*0.4+random*0.6";
+    workplace.run(&format!(
+        "--seeds 80 -n 0 --relax 0 --diameters lognormal(mean=2,cv=0.3) --phase a:0.8,texture={texture} --phase b:0.2,texture=random --report r.html --json-summary run.json --quiet"
+    ));
+    let page = String::from_utf8(workplace.bytes("r.html")).unwrap();
+    let run: serde_json::Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
+    let rows = run["asked_and_reached"].as_array().unwrap();
+    let row =
+        |what: &str| rows.iter().find(|row| row["what"] == what).unwrap_or_else(|| panic!("{what} in {run}"));
+    for (what, asked, error) in [
+        ("coefficient of variation of diameters", 0.3, 0.02),
+        // Diameters of phases change a little, so that these have their shares.
+        ("largest difference from the distribution function, by number", 0.0, 0.01),
+        ("largest relative error of a grain's volume", 0.0, 1e-10),
+        ("share of the volume, a", 0.8, 1e-10),
+        ("share of the volume, b", 0.2, 1e-10),
+        ("share of the volume, goss(10), a", 0.4, 0.02),
+        ("share of the volume, random, b", 1.0, 1e-12),
+    ] {
+        let [found, reached] = ["asked", "reached"].map(|key| row(what)[key].as_f64().unwrap());
+        assert!((found - asked).abs() < 1e-12 && (reached - asked).abs() < error, "{what}: {reached}");
+        assert!(page.contains(&format!("<th>{what}</th><td>{asked}</td>")), "{what}");
+    }
+    let mean = row("mean diameter");
+    let [reached, found] =
+        [&mean["reached"], &run["equivalent_diameter"]["mean"]].map(|mean| mean.as_f64().unwrap());
+    assert!((reached / found - 1.0).abs() < 1e-12, "{mean}");
+}
+
 #[test]
 fn report_in_the_plane_holds_a_picture() {
     let workplace = Workplace::new();

@@ -10,6 +10,7 @@ use sizes::Distribution;
 use voronoi::volumes::TOLERANCE;
 use voronoi::{Dimension, Domain};
 
+use crate::asked::AskedAndReached;
 use crate::grain_phases::assigned;
 use crate::seeding::unit_fraction;
 use crate::size_options::{MOST_CORRECTIONS, Wanted};
@@ -89,6 +90,9 @@ pub struct SizesFit {
     /// Mean of the distribution that was asked for, before it is scaled, and its coefficient of variation.
     asked_mean: Option<f64>,
     asked_cv: Option<f64>,
+    /// The same of the grains, as if they were not scaled.
+    mean: f64,
+    cv: f64,
     /// The largest difference between the share of grains up to a diameter and the distribution's.
     cdf_distance: Option<f64>,
     /// The same of the shares of the volume, which tells of large grains that are missing.
@@ -249,8 +253,12 @@ impl GrainSizes {
             errors.fold(0.0, f64::max)
         };
         let fit = |(group, members): (&SizeGroup, Vec<usize>)| {
+            let diameters = self.unscaled_diameters(group, &members, grains.unwrap_or(cells));
+            let mean = diameters.iter().sum::<f64>() / diameters.len() as f64;
+            let square = |diameter: &f64| (diameter - mean).powi(2);
+            let variance = diameters.iter().map(square).sum::<f64>() / diameters.len() as f64;
             let distance = |power| {
-                let diameters = self.unscaled_diameters(group, &members, grains.unwrap_or(cells));
+                let diameters = diameters.clone();
                 group.distribution.as_ref().map(|distribution| cdf_distance(diameters, distribution, power))
             };
             SizesFit {
@@ -260,6 +268,8 @@ impl GrainSizes {
                 scale: group.scale,
                 asked_mean: group.distribution.as_ref().map(Distribution::mean),
                 asked_cv: group.distribution.as_ref().map(Distribution::variation),
+                mean,
+                cv: variance.sqrt() / mean,
                 cdf_distance: distance(0),
                 cdf_distance_by_volume: distance(self.dimension.axes().into()),
             }
@@ -279,6 +289,30 @@ impl GrainSizes {
 }
 
 impl SizesReached {
+    /// The figures that were asked for, with the names of the phases.
+    pub(crate) fn asked_and_reached(&self, phases: &[&str]) -> Vec<AskedAndReached> {
+        let fits = self.of_all.iter().map(|fit| (fit, String::new()));
+        let of_phases = self.of_phases.iter().zip(phases);
+        let of_phases = of_phases.map(|(fit, name)| (fit, format!(", {name}")));
+        let mut rows = Vec::new();
+        for (fit, of) in fits.chain(of_phases) {
+            let mut add = |what: &str, asked: Option<f64>, reached: Option<f64>| {
+                if let (Some(asked), Some(reached)) = (asked, reached) {
+                    rows.push(AskedAndReached { what: format!("{what}{of}"), asked, reached });
+                }
+            };
+            add("mean diameter", fit.asked_mean.map(|mean| mean * fit.scale), Some(fit.mean * fit.scale));
+            add("coefficient of variation of diameters", fit.asked_cv, Some(fit.cv));
+            let distance = "largest difference from the distribution function";
+            add(&format!("{distance}, by number"), Some(0.0), fit.cdf_distance);
+            add(&format!("{distance}, by volume"), Some(0.0), fit.cdf_distance_by_volume);
+        }
+        let error = self.largest_volume_error.unwrap_or(self.largest_volume_error_of_cells);
+        let what = "largest relative error of a grain's volume".to_owned();
+        rows.push(AskedAndReached { what, asked: 0.0, reached: error });
+        rows
+    }
+
     /// How near each phase came, where phases have diameters of their own.
     pub fn of_phases(&self) -> &[SizesFit] {
         &self.of_phases

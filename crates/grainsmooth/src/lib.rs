@@ -14,6 +14,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod asked;
 mod cell_table;
 mod check_report;
 mod config;
@@ -49,6 +50,7 @@ mod seed_file;
 mod seeding;
 mod series;
 mod settings;
+mod significant;
 mod size_file;
 mod size_options;
 mod staged_files;
@@ -66,6 +68,7 @@ mod triangle_angles;
 mod unfinished;
 pub mod vtk;
 
+pub use asked::AskedAndReached;
 pub use cell_table::{CellTable, TableFormat};
 pub use check_report::{CheckReport, Expectation, ReportedFault, Spread, Statistic};
 pub use config::{Config, FileOptions, PeriodicCut, SeedSource, Shape};

@@ -14,7 +14,10 @@ use sizes::Distribution;
 use texture::{AngleHistogram, Pair, RandomDisorientations};
 use voronoi::{CellId, Dimension};
 
-use crate::{Error, GrainSizes, GrainTexture, Output, Picture, Polycrystal, StagedFiles, Summary};
+use crate::significant::significant;
+use crate::{
+    AskedAndReached, Error, GrainSizes, GrainTexture, Output, Picture, Polycrystal, StagedFiles, Summary,
+};
 use chart::Chart;
 use poisson_voronoi::{SIZE_BIN, angle_density, face_shares, size_shares};
 
@@ -87,9 +90,25 @@ impl Polycrystal {
                 ("settings", &escaped(&self.config.to_toml())),
                 ("view", &view),
                 ("charts", &charts),
+                ("asked", &self.asked_table()),
                 ("rows", &self.rows()),
             ],
         ))
+    }
+
+    /// What was asked for beside what was reached; nothing where nothing was.
+    fn asked_table(&self) -> String {
+        let row = |AskedAndReached { what, asked, reached }: &AskedAndReached| {
+            let [asked, reached] = [asked, reached].map(|value| significant(*value, 6));
+            format!("<tr><th>{}</th><td>{asked}</td><td>{reached}</td></tr>", escaped(what))
+        };
+        let rows: String = self.asked_and_reached().iter().map(row).collect();
+        if rows.is_empty() {
+            return rows;
+        }
+        format!(
+            "<h2>Asked and reached</h2>\n<table><tr><th></th><td>asked</td><td>reached</td></tr>{rows}</table>"
+        )
     }
 
     /// The summary as rows of a table.

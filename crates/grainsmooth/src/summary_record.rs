@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use crate::triangle_angles::TriangleAngles;
 use crate::{
-    ComponentShare, EquivalentDiameters, HistogramFit, PhaseShare, Polycrystal, Reconnected, SizesFit,
-    SizesReached, Tessellated, Topology,
+    AskedAndReached, ComponentShare, EquivalentDiameters, HistogramFit, PhaseShare, Polycrystal, Reconnected,
+    SizesFit, SizesReached, Tessellated, Topology,
 };
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
@@ -28,6 +28,8 @@ pub struct SummaryRecord {
     triple_lines: usize,
     quadruple_points: usize,
     topology: Topology,
+    /// Every figure that was asked for.
+    asked_and_reached: Vec<AskedAndReached>,
     /// The sizes asked for and reached.
     sizes: Option<SizesReached>,
     /// None where no phases are asked for.
@@ -179,6 +181,7 @@ impl SummaryRecord {
             triple_lines: junctions.triple_lines,
             quadruple_points: junctions.quadruple_points,
             topology: polycrystal.topology.clone(),
+            asked_and_reached: polycrystal.asked_and_reached(),
             sizes: polycrystal.sizes_reached(),
             texture: polycrystal
                 .cells

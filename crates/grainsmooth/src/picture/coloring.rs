@@ -4,6 +4,7 @@ use polycrystal::Boundary;
 
 use super::legend::Legend;
 use crate::Polycrystal;
+use crate::significant::significant;
 
 /// What the colours of grains mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -93,10 +94,10 @@ impl Coloring {
             return Paint { grains: grains.collect(), boundaries: None, legend: Some(legend) };
         }
         match self {
-            Self::Diameter => viridis("diameter", polycrystal.equivalent_diameters(), 4),
+            Self::Diameter => viridis("diameter", polycrystal.equivalent_diameters()),
             Self::Neighbors => {
                 let counts = polycrystal.boundary_counts();
-                viridis("boundaries", counts.into_iter().map(|count| count as f64).collect(), 0)
+                viridis("boundaries", counts.into_iter().map(|count| count as f64).collect())
             }
             Self::Phase => phases(polycrystal),
             Self::Disorientation => disorientations(polycrystal),
@@ -112,13 +113,13 @@ impl Coloring {
     }
 }
 
-/// Colours of grains by numbers, which the legend shows with so many digits that mean something; as whole numbers for none.
-fn viridis(title: &str, values: Vec<f64>, digits: usize) -> Paint {
+/// Colours of grains by numbers.
+fn viridis(title: &str, values: Vec<f64>) -> Paint {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let range = greatest - least;
     let place = |value: f64| if range > 0.0 { (value - least) / range } else { 0.5 };
-    let ends = [least, greatest].map(|value| rounded(value, digits));
+    let ends = [least, greatest].map(|value| significant(value, 4));
     Paint {
         grains: values.into_iter().map(|value| channels(VIRIDIS.eval_continuous(place(value)))).collect(),
         boundaries: None,
@@ -162,14 +163,4 @@ fn disorientations(polycrystal: &Polycrystal) -> Paint {
 
 pub(super) fn channels(color: colorous::Color) -> Color {
     [color.r, color.g, color.b].map(|channel| f64::from(channel) / 255.0)
-}
-
-/// A number with so many digits that mean something, or as a whole number for none.
-fn rounded(value: f64, digits: usize) -> String {
-    if digits == 0 {
-        return format!("{value:.0}");
-    }
-    let scientific = format!("{value:.*e}", digits - 1);
-    let plain: f64 = scientific.parse().unwrap_or(value);
-    if (1e-3..1e6).contains(&plain.abs()) { plain.to_string() } else { scientific }
 }

@@ -1,0 +1,47 @@
+//! What was asked for, beside what came of it.
+
+use serde::Serialize;
+
+use crate::{ComponentShare, PhaseShare, Polycrystal};
+
+/// A figure that was asked for, and its value in the end.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AskedAndReached {
+    /// What it is.
+    pub what: String,
+    /// What was asked for; 0 of differences and errors.
+    pub asked: f64,
+    /// What was reached.
+    pub reached: f64,
+}
+
+impl Polycrystal {
+    /// Every figure that was asked for: of sizes, phases, textures and disorientations. Lengths are in the unit of the box.
+    pub fn asked_and_reached(&self) -> Vec<AskedAndReached> {
+        let cells = &self.cells;
+        let phases: Vec<&str> = cells.phases.iter().flat_map(|phases| phases.names()).collect();
+        let sizes = self.sizes_reached();
+        let mut rows = sizes.map_or_else(Vec::new, |sizes| sizes.asked_and_reached(&phases));
+        let mut add = |what: String, asked: f64, reached: f64| {
+            rows.push(AskedAndReached { what, asked, reached });
+        };
+        let volumes = self.network.cell_volumes();
+        if let Some(phases) = &cells.phases {
+            for PhaseShare { name, fraction_asked, fraction, .. } in phases.shares(&cells.volumes(), volumes)
+            {
+                add(format!("share of the volume, {name}"), fraction_asked, fraction);
+            }
+        }
+        let Some(texture) = &cells.texture else { return rows };
+        for number in 0..texture.texture_count() {
+            let of = phases.get(number).map_or_else(String::new, |phase| format!(", {phase}"));
+            for ComponentShare { name, asked, reached } in texture.shares(number, volumes) {
+                add(format!("share of the volume, {name}{of}"), asked, reached);
+            }
+        }
+        if let Some(fit) = texture.fit() {
+            add("sum of differences from the histogram of disorientations".to_owned(), 0.0, fit.after);
+        }
+        rows
+    }
+}
