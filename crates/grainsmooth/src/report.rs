@@ -57,6 +57,7 @@ impl Polycrystal {
             Dimension::Three => filled(
                 include_str!("../assets/view.html"),
                 &[
+                    ("colorings", &view::options(self)),
                     ("network", &view::network_json(self)?),
                     ("three", include_str!("../assets/three.min.js")),
                     ("viewer", include_str!("../assets/viewer.js")),

@@ -1,5 +1,6 @@
 //! What the page's view shows.
 
+use std::collections::BTreeMap;
 use std::io;
 
 use base64::Engine as _;
@@ -25,7 +26,8 @@ struct Network {
     parts: Vec<Part>,
     /// Where grains move when they move apart.
     shifts: Vec<[f32; 3]>,
-    colors: Colors,
+    /// Of each way of colouring, red, green and blue of each grain, from 0 to 1.
+    colors: BTreeMap<&'static str, Vec<[f32; 3]>>,
 }
 
 /// The triangles of one boundary.
@@ -35,12 +37,15 @@ struct Part {
     sides: [i64; 2],
 }
 
-/// Red, green and blue of each grain, from 0 to 1.
-#[derive(Serialize)]
-struct Colors {
-    grain: Vec<[f32; 3]>,
-    diameter: Vec<[f32; 3]>,
-    neighbors: Vec<[f32; 3]>,
+/// The ways of colouring grains that a view offers.
+fn colorings(polycrystal: &Polycrystal) -> impl Iterator<Item = Coloring> {
+    Coloring::ALL.into_iter().filter(|way| way.colors_grains_of(polycrystal))
+}
+
+/// What the view's list of colours offers.
+pub(super) fn options(polycrystal: &Polycrystal) -> String {
+    let option = |way: Coloring| format!("<option value=\"{}\">by {}</option>", way.name(), way.words());
+    colorings(polycrystal).map(option).collect()
 }
 
 /// The network of the finest level that is not too fine, with points of the finest of all.
@@ -69,7 +74,8 @@ pub(super) fn network_json(polycrystal: &Polycrystal) -> io::Result<String> {
         count: surface.triangles_of(part).count(),
         sides: part.sides.map(label),
     };
-    let colors = |coloring: Coloring| coloring.paint(polycrystal).grains.into_iter().map(single).collect();
+    let colors =
+        |way: Coloring| (way.name(), way.paint(polycrystal).grains.into_iter().map(single).collect());
     let network = Network {
         points: BASE64.encode(points),
         low: low.to_array(),
@@ -77,11 +83,7 @@ pub(super) fn network_json(polycrystal: &Polycrystal) -> io::Result<String> {
         triangles: BASE64.encode(triangles),
         parts: surface.parts.iter().map(part).collect(),
         shifts: polycrystal.shifts(1.0 / unit).into_iter().map(|shift| single(shift.to_array())).collect(),
-        colors: Colors {
-            grain: colors(Coloring::Grain),
-            diameter: colors(Coloring::Diameter),
-            neighbors: colors(Coloring::Neighbors),
-        },
+        colors: colorings(polycrystal).map(colors).collect(),
     };
     Ok(serde_json::to_string(&network)?)
 }
