@@ -126,6 +126,21 @@ fn directions_of_crystals_have_colours_and_a_key() {
     assert!(keys.iter().all(|count| *count > 20), "{keys:?}");
 }
 
+#[test]
+fn keys_to_colours_give_way_in_tiny_pictures() {
+    let workplace = Workplace::new();
+    for (size, what) in
+        [("16 16", "ipf-z"), ("60 16", "phase"), ("16 200", "diameter"), ("40 40", "disorientation")]
+    {
+        workplace.run(&format!(
+            "--seeds 3 -n 0 --relax 0 --texture random --phase iron:1 --picture {what}.png --picture-size {size} --color-by {what} --quiet"
+        ));
+        let rows = pixels(&workplace.path(&format!("{what}.png")));
+        let [width, height] = [rows[0].len(), rows.len()].map(|side| side.to_string());
+        assert_eq!(format!("{width} {height}"), size);
+    }
+}
+
 /// Boundaries are coloured, not grains: two crystals turned by 45 degrees about one axis.
 #[test]
 fn disorientations_colour_boundaries() {

@@ -41,6 +41,7 @@ const MISTAKES: &[Mistake] = &[
     ("orientations without a texture", "--texture", |case| {
         output(case, "out.ori");
         case.options.unset("texture");
+        case.options.unset("color-by");
         case.options.unset("phase");
         // It is refused without a texture before anything is written.
         case.options.unset("sample-symmetry");

@@ -190,6 +190,9 @@ fn pictures(draw: &mut Draw, options: &mut Options, promise: &mut Promise) {
         options.set("picture", ["picture.png"]);
         options.set("picture-size", [draw.whole(16..=300), draw.whole(16..=300)]);
         options.set("color-by", [draw.one_of(&["grain", "diameter", "neighbors"])]);
+        if options.has("texture") && draw.chance(0.5) {
+            options.set("color-by", [draw.one_of(&["ipf-x", "ipf-y", "ipf-z", "disorientation"])]);
+        }
         options.set("explode", [draw.one_of(&[0.0, 0.3, 10.0])]);
         promise.file("picture", "picture.png");
     }

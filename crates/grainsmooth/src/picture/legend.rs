@@ -94,7 +94,7 @@ impl Legend {
                 }
             }
             Self::Directions { title, symmetries } => {
-                let side = self.width(size) - line;
+                let side = self.width(size).saturating_sub(line);
                 let step = side + 3 * line;
                 let top = (size[1] / 2).saturating_sub(symmetries.len() * step / 2);
                 write(title, top.saturating_sub(line), pixmap);
