@@ -123,6 +123,29 @@ fn flat_random_grains_have_the_exact_statistics() {
     }
 }
 
+/// A file carries what its sizes should be: relaxed grains are as near the distribution as cells are.
+#[test]
+fn sizes_stand_beside_what_was_asked_for() {
+    let workplace = Workplace::new();
+    let asked = "lognormal(mean=3,cv=0.5)";
+    for (arguments, distribution) in [
+        (String::new(), Some("lognormal(mean=1, cv=0.35)")),
+        (format!("--dim 2 --diameters {asked}"), Some(asked)),
+        (format!("--diameters {asked} --box 2 1 1 --periodic x,y,z --aspect-ratio 2 1 1"), Some(asked)),
+        (format!("--diameters {asked} --draw random"), None),
+        ("--seeding random".to_owned(), None),
+        ("--phase a:0.5 --phase b:0.5".to_owned(), None),
+    ] {
+        workplace.run(&format!("--seeds 25 {arguments} -n 0 -o a.vtp"));
+        let sizes = &report(&workplace, "a.vtp", 0)["sizes"];
+        assert_eq!(sizes["asked"].as_str(), distribution, "{arguments}");
+        if distribution.is_some() {
+            let distance = sizes["cdf_distance"].as_f64().unwrap();
+            assert!((distance - 0.5 / 25.0).abs() < 1e-9, "{arguments}: {distance}");
+        }
+    }
+}
+
 /// Relaxed networks between walls stood beside flat ones without: 9.92 faces a grain beside 15.535.
 #[test]
 fn theory_stands_beside_what_it_holds_for_alone() {

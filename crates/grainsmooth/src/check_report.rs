@@ -1,5 +1,6 @@
 //! What `grainsmooth check` says about a network from a file.
 
+mod sizes;
 mod statistics;
 
 use std::fmt;
@@ -7,10 +8,12 @@ use std::path::Path;
 
 use polycrystal::{Elements, Fault, Side, certify};
 use serde::Serialize;
+use voronoi::Dimension;
 
 use crate::{LabelledFile, TriangleAngles};
 use statistics::statistics;
 
+pub use sizes::SizesFound;
 pub use statistics::{Expectation, Statistic};
 
 /// Faults of one kind that the text names; JSON has all.
@@ -45,6 +48,8 @@ pub struct CheckReport {
     pub triangle_angles: Option<TriangleAngles>,
     /// What a good network is like, beside exact values where it consists of Poisson-Voronoi cells.
     pub statistics: Vec<Statistic>,
+    /// How near the grains are to the sizes that the file's settings ask for.
+    pub sizes: Option<SizesFound>,
     /// All that is wrong.
     pub faults: Vec<ReportedFault>,
 }
@@ -89,10 +94,11 @@ impl CheckReport {
             grains: fault.grains().iter().map(|grain| grain.0).collect(),
             position: fault.position(&surface).map(|place| place.to_array()),
         };
-        let element = match surface.elements {
-            Elements::Triangles(_) => "triangles",
-            Elements::Segments(_) => "segments",
+        let (element, dimension) = match surface.elements {
+            Elements::Triangles(_) => ("triangles", Dimension::Three),
+            Elements::Segments(_) => ("segments", Dimension::Two),
         };
+        let volumes: Vec<f64> = certificate.grain_volumes.iter().map(|(_, volume)| *volume).collect();
         let mut pairs: Vec<[Side; 2]> = surface.sides.to_vec();
         pairs.iter_mut().for_each(|sides| sides.sort_unstable());
         pairs.sort_unstable();
@@ -106,13 +112,14 @@ impl CheckReport {
             points: surface.points.len(),
             elements: surface.elements.len(),
             element,
-            volume: certificate.grain_volumes.iter().map(|(_, volume)| volume).sum(),
+            volume: volumes.iter().sum(),
             volume_error: claims.domain_volume.map(|_| certificate.total_volume_error),
             dihedral: certificate
                 .angles
                 .map(|angles| Spread { mean: angles.mean, standard_deviation: angles.standard_deviation }),
             triangle_angles: certificate.triangles.map(TriangleAngles::from),
             statistics: statistics(file, &surface, &certificate),
+            sizes: file.settings.as_ref().and_then(|settings| sizes::sizes(settings, &volumes, dimension)),
             faults: certificate.faults.0.iter().map(report).collect(),
         }
     }
@@ -152,6 +159,9 @@ impl fmt::Display for CheckReport {
         }
         if let Some(angles) = self.triangle_angles {
             write!(out, "\n  triangles   {angles}")?;
+        }
+        if let Some(sizes) = &self.sizes {
+            write!(out, "\n  sizes       {sizes}")?;
         }
         for Statistic { name, value, poisson_voronoi } in &self.statistics {
             write!(out, "\n  statistics  {name} {value:.4}")?;

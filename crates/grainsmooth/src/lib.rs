@@ -70,7 +70,7 @@ pub mod vtk;
 
 pub use asked::AskedAndReached;
 pub use cell_table::{CellTable, TableFormat};
-pub use check_report::{CheckReport, Expectation, ReportedFault, Spread, Statistic};
+pub use check_report::{CheckReport, Expectation, ReportedFault, SizesFound, Spread, Statistic};
 pub use config::{Config, FileOptions, PeriodicCut, SeedSource, Shape};
 pub use embedded_config::embedded_config;
 pub use equivalent_diameters::EquivalentDiameters;

@@ -12,7 +12,7 @@ use crate::size_file::{is_size_file, read_diameter_file, read_volume_file};
 use crate::{Config, Error, GradientSource, PhaseOptions, PhasesError, SeedSource};
 
 /// Diameters where packed seeds are asked for and nothing is said of sizes: those of recrystallised metals.
-const USUAL_DIAMETERS: &str = "lognormal(mean=1, cv=0.35)";
+pub(crate) const USUAL_DIAMETERS: &str = "lognormal(mean=1, cv=0.35)";
 
 /// How often the number of grains is corrected by the volumes of those that would be drawn: two or three times change it.
 pub(crate) const MOST_CORRECTIONS: usize = 20;
