@@ -16,6 +16,9 @@ use crate::process;
 /// The largest relative error of a grain's volume.
 const VOLUME_TOLERANCE: f64 = 1e-9;
 
+/// The largest relative difference of the volume of all grains that are measured, also in files of single precision.
+const MEASURED_TOLERANCE: f64 = 1e-5;
+
 /// What was found of a result.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Certificate {
@@ -68,7 +71,7 @@ pub fn certify(case: &Case, program: &Path, directory: &Path, out: &[u8]) -> any
     Ok(certificate)
 }
 
-/// What `grainsmooth check` says about a file.
+/// What `grainsmooth check` and `grainsmooth measure` say about a file.
 fn check(name: &str, program: &Path, directory: &Path, certificate: &mut Certificate) -> anyhow::Result<()> {
     let words = ["check", "--json", name].map(str::to_owned);
     let ended = process::run(program, &words, directory)?;
@@ -79,6 +82,21 @@ fn check(name: &str, program: &Path, directory: &Path, certificate: &mut Certifi
         let fault = report["faults"][0]["message"].as_str().unwrap_or(ended.err.trim());
         let count = report["faults"].as_array().map_or(0, Vec::len);
         certificate.faults.push(format!("check ends with {}: {count} faults, first: {fault}", ended.code));
+        return Ok(());
+    }
+    // What is good can be measured, with the same grains.
+    let words = ["measure", "--json", name].map(str::to_owned);
+    let ended = process::run(program, &words, directory)?;
+    let measured: Value = serde_json::from_slice(&ended.out).unwrap_or_default();
+    let [whole, of_grains] =
+        [&report["volume"], &measured["volume"]].map(|volume| volume.as_f64().unwrap_or(f64::NAN));
+    let is_same = (of_grains / whole - 1.0).abs() <= MEASURED_TOLERANCE;
+    if ended.code != 0 || measured["grains"] != report["grains"] || !is_same {
+        let said = ended.err.trim();
+        certificate.faults.push(format!(
+            "measure ends with {}: {} grains of volume {of_grains} where {} have {whole} {said}",
+            ended.code, measured["grains"], report["grains"]
+        ));
     }
     Ok(())
 }

@@ -8,6 +8,7 @@ use polycrystal::{Relaxation, Volumes};
 use voronoi::Dimension;
 
 use crate::check_run::CheckArguments;
+use crate::measure_run::MeasureArguments;
 use crate::mesh_cli::MeshArguments;
 
 mod config_file;
@@ -25,6 +26,7 @@ mod values;
 
 pub use documents::{print_completions, print_manual};
 use domain::DomainArguments;
+pub use domain::parse_dimension;
 use files::FileArguments;
 pub use files::VtkArguments;
 use phases::PhaseArguments;
@@ -70,6 +72,7 @@ pub struct Arguments {
 pub enum Command {
     Mesh(MeshArguments),
     Check(CheckArguments),
+    Measure(MeasureArguments),
     /// Print what completes options and values in a shell
     ///
     /// Example: grainsmooth completions bash > ~/.local/share/bash-completion/completions/grainsmooth
@@ -94,6 +97,7 @@ Examples:
   grainsmooth --seeds-file seeds.csv --relax 0    flat Voronoi grains from your own seeds
   grainsmooth --picture grains.png --explode 0.4  a picture of the grains, moved apart
   grainsmooth --report grains.html                a page with the grains to turn round, and their statistics
+  grainsmooth measure sample.tess                 what a twin of a sample takes
   grainsmooth --config grains.vtp                 the run that wrote grains.vtp once more
 
 Exit status: 0 good, 1 the run failed or its result is invalid, 2 a mistake on the command line.";

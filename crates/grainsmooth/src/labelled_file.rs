@@ -5,6 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use polycrystal::{BoundaryId, Claims, Elements, GrainId, NodeType, Side, Surface, outward_sides};
+use texture::Orientation;
 use toml::{Table, Value};
 use voronoi::Dimension;
 
@@ -23,6 +24,8 @@ pub struct LabelledFile {
     pub boundary_of: Vec<BoundaryId>,
     /// The two sides of each boundary, in the order in which normals point from first to second.
     pub sides: Vec<[Side; 2]>,
+    /// Whether each boundary comes again a period away, where the file tells it.
+    pub comes_again: Vec<bool>,
     /// Types of points; nothing where the file has none, or a code that means nothing.
     pub node_types: Option<Vec<Option<NodeType>>>,
     /// How many grains meet at each point, if the file says so.
@@ -33,6 +36,10 @@ pub struct LabelledFile {
     pub label_array: &'static str,
     /// The volumes of all grains (in the plane: areas) as the file states them, if this program wrote it.
     pub volumes: Option<Vec<(GrainId, f64)>>,
+    /// The orientations of all grains, if this program wrote the file and they have some.
+    pub orientations: Option<Vec<(GrainId, Orientation)>>,
+    /// What coordinates in the file are those of `points` multiplied by.
+    pub stretch: DVec3,
     /// Whether the file has its points in single precision.
     pub is_single: bool,
     /// The settings by the long names of their options, if this program wrote it.
@@ -89,7 +96,7 @@ impl LabelledFile {
             is_single,
             remarks,
         } = cells;
-        let Remarks { config, volumes } = remarks;
+        let Remarks { config, volumes, euler_angles } = remarks;
         let settings: Option<Table> = config.and_then(|text| text.parse().ok());
         // Without an exterior the volumes of all grains would sum to nothing.
         let zero_is_exterior =
@@ -97,7 +104,7 @@ impl LabelledFile {
         // With the names of other tools, all that a periodic grain has beyond the box has the same labels.
         let boundary_ids = boundary_ids.filter(|_| settings.is_some());
         let mut boundaries: BTreeMap<([i64; 2], Option<i64>), BoundaryId> = BTreeMap::new();
-        let mut sides = Vec::new();
+        let (mut sides, mut comes_again) = (Vec::new(), Vec::new());
         let mut of_cell = Vec::with_capacity(labels.len());
         for (cell, labels) in labels.iter().enumerate() {
             let side = |label: i64| match label {
@@ -116,6 +123,7 @@ impl LabelledFile {
             let id = boundary_ids.as_ref().map(|ids| ids[cell]);
             of_cell.push(*boundaries.entry((*labels, id)).or_insert_with(|| {
                 sides.push(pair);
+                comes_again.push(labels.iter().any(|label| *label < -1));
                 next
             }));
         }
@@ -150,12 +158,19 @@ impl LabelledFile {
             elements,
             boundary_of,
             sides,
+            comes_again,
             node_types,
             // Without their copies points of a periodic network lack grains.
             grain_counts: grain_counts.filter(|_| !is_periodic || originals.is_some()),
             originals: originals.filter(|_| is_periodic),
             label_array,
             volumes: settings.as_ref().and_then(|settings| numbered(volumes?, settings)),
+            orientations: settings.as_ref().and_then(|settings| {
+                let (angles, []) = euler_angles.as_ref()?.as_chunks() else { return None };
+                let orientations = angles.iter().map(|angles| Orientation::from_euler_degrees(*angles));
+                numbered(orientations.collect(), settings)
+            }),
+            stretch,
             is_single,
             settings,
         })
@@ -205,10 +220,10 @@ fn sticks_out_of_the_box(settings: &Table) -> bool {
     !has("periodic", "none") && !has("periodic-cut", "box")
 }
 
-/// Volumes with the numbers of their grains: from 0 by our own names, from 1 by those of other tools.
-fn numbered(volumes: Vec<f64>, settings: &Table) -> Option<Vec<(GrainId, f64)>> {
+/// What is known of all grains with their numbers: from 0 by our own names, from 1 by those of other tools.
+fn numbered<T>(of_grains: Vec<T>, settings: &Table) -> Option<Vec<(GrainId, T)>> {
     let first = u32::from(settings.get("names")?.as_str()? != Names::default().name());
-    (volumes.len() < u32::MAX as usize).then(|| (first..).map(GrainId).zip(volumes).collect())
+    (of_grains.len() < u32::MAX as usize).then(|| (first..).map(GrainId).zip(of_grains).collect())
 }
 
 /// By what the settings multiplied coordinates in the end.

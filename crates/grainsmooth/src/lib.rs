@@ -34,6 +34,7 @@ mod grain_texture;
 mod labelled_file;
 mod lattice;
 mod measured_arrays;
+mod measured_sample;
 pub mod memory;
 mod mesh_bezier;
 mod mesh_edit;
@@ -46,6 +47,7 @@ mod picture;
 mod pipeline;
 mod poisson_disc;
 mod report;
+mod sample_report;
 mod seed_file;
 mod seeding;
 mod series;
@@ -88,6 +90,7 @@ pub use grain_sizes::{GrainSizes, SizesFit, SizesReached};
 pub use grain_texture::{ComponentShare, GrainTexture, HistogramFit};
 pub use labelled_file::{FileElements, LabelledFile};
 pub use lattice::{Lattice, LatticeFit};
+pub use measured_sample::{MeasuredGrain, MeasuredSample};
 pub use mesh_bezier::{BezierFile, read_bezier};
 pub use mesh_edit::{EdgeEdit, edit_edges};
 pub use mesh_json::{bezier_json, levels_json, mesh_json};
@@ -100,6 +103,7 @@ pub use pipeline::{
 };
 pub use poisson_disc::poisson_disc_seeds;
 pub use report::Html;
+pub use sample_report::{FittedDistribution, MeasuredTexture, SampleReport};
 pub use seed_file::{
     FileDomain, FileSeed, FileSeeds, SeedPlace, SeedProblem, read_file_domain, read_seed_file,
 };

@@ -4,6 +4,7 @@ mod check_run;
 mod cli;
 #[cfg(unix)]
 mod interruption;
+mod measure_run;
 mod mesh_cli;
 mod mesh_run;
 mod network_run;
@@ -59,6 +60,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     match command {
         Command::Mesh(mesh) => mesh_run::run(&mesh.command)?,
         Command::Check(check) => return check_run::run(check),
+        Command::Measure(measure) => measure_run::run(measure)?,
         Command::Completions { shell } => cli::print_completions(*shell)?,
         Command::Man => cli::print_manual()?,
     }

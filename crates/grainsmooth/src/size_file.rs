@@ -10,7 +10,7 @@ use crate::Error;
 use crate::text_table::{self, TextProblem};
 
 /// The line of a fault, counted from 1, and what it is.
-type Fault = (usize, String);
+pub(crate) type Fault = (usize, String);
 
 /// Whether a text is the name of a file of sizes: its extension is one of tables, or there is such a file.
 pub(crate) fn is_size_file(path: &Path) -> bool {
@@ -132,7 +132,7 @@ pub(crate) fn read_gradient_file(path: &Path) -> Result<Vec<[f64; 2]>, Error> {
 }
 
 /// What columns of diameters may be called.
-const DIAMETERS: [&str; 3] = ["diameter", "equivalent_diameter", "equivalentdiameter"];
+pub(crate) const DIAMETERS: [&str; 3] = ["diameter", "equivalent_diameter", "equivalentdiameter"];
 
 /// What columns of volumes may be called; areas of cells in space are something else.
 fn volume_names(dimension: Dimension) -> &'static [&'static str] {
@@ -148,15 +148,16 @@ fn read<T>(path: &Path, parse: impl FnOnce(&[u8]) -> Result<T, Fault>) -> Result
 }
 
 /// The lines of a table, which begins with the names of its columns or has none.
-struct Rows {
+pub(crate) struct Rows {
     /// In lower case.
-    names: Vec<String>,
+    pub(crate) names: Vec<String>,
     first_line: usize,
-    rows: Vec<(usize, Vec<String>)>,
+    /// With their lines.
+    pub(crate) rows: Vec<(usize, Vec<String>)>,
 }
 
 impl Rows {
-    fn new(content: &[u8]) -> Result<Self, Fault> {
+    pub(crate) fn new(content: &[u8]) -> Result<Self, Fault> {
         let of_text = |(line, problem): (usize, TextProblem)| (line, problem.to_string());
         let mut table = Self { names: Vec::new(), first_line: 1, rows: Vec::new() };
         let mut count = None;
@@ -189,7 +190,7 @@ impl Rows {
     }
 
     /// The one column of a table without names.
-    fn only(&self) -> Option<usize> {
+    pub(crate) fn only(&self) -> Option<usize> {
         let is_one = self.names.is_empty() && self.rows.iter().all(|(_, columns)| columns.len() == 1);
         is_one.then_some(0)
     }

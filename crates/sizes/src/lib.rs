@@ -18,10 +18,12 @@
 mod distribution;
 mod gamma;
 mod law;
+mod lognormal_fit;
 mod spec;
 mod table;
 
 pub use distribution::{CutError, Distribution, Part};
 pub use law::Law;
+pub use lognormal_fit::LognormalFit;
 pub use spec::{Spec, SpecError};
 pub use table::{Table, TableError};

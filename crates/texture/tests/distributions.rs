@@ -11,7 +11,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::Deserialize;
 use texture::{
     Component, CrystalSymmetry, Drawn, FiberKernel, Kernel, Orientation, PoleFigure, Projection,
-    RandomDisorientations, SampleSymmetry, Texture,
+    RandomDisorientations, SampleSymmetry, Texture, texture_index,
 };
 
 fn drawn(spec: &str, volumes: &[f64], seed: u64) -> Drawn {
@@ -350,4 +350,27 @@ fn projections_lead_back_and_equal_areas_stay_equal() {
     let tilted = DVec3::new(0.75_f64.sqrt(), 0.0, 0.5);
     assert!((Projection::EqualArea.project(tilted)[0] - 0.5_f64.sqrt()).abs() < 1e-15);
     assert!((Projection::Stereographic.project(tilted)[0] - 30_f64.to_radians().tan()).abs() < 1e-15);
+}
+
+/// A density smoothed by a kernel, at what it was drawn from: with the halfwidth h of the mode and of the kernel, that of `h sqrt(3)` or so
+/// at its middle, as squares of small halfwidths add up.
+#[test]
+fn measured_orientations_have_the_index_of_their_texture() {
+    let equal = vec![1.0; 600];
+    let index = |spec: &str, symmetry, halfwidth| {
+        let orientations = drawn(spec, &equal, 4).orientations;
+        let weighted: Vec<(Orientation, f64)> = orientations.into_iter().map(|one| (one, 1.0)).collect();
+        texture_index(&weighted, Kernel::new(halfwidth).unwrap(), symmetry).unwrap()
+    };
+    for symmetry in [CrystalSymmetry::Octahedral, CrystalSymmetry::Hexagonal, CrystalSymmetry::Triclinic] {
+        let random = index("random", symmetry, 10.0);
+        assert!((random - 1.0).abs() < 0.1, "{symmetry}: {random}");
+    }
+    let of_mode = |halfwidth: f64| Kernel::new(halfwidth).unwrap().density(0.0) / 24.0;
+    let goss = index("goss(6)", CrystalSymmetry::Octahedral, 3.0);
+    let expected = of_mode((2.0 * 6f64.powi(2) + 3f64.powi(2)).sqrt());
+    assert!((goss / expected - 1.0).abs() < 0.1, "{goss} {expected}");
+    let mixed = index("goss(6)*0.5 + random*0.5", CrystalSymmetry::Octahedral, 3.0);
+    assert!((mixed / (0.25 * expected + 0.75) - 1.0).abs() < 0.1, "{mixed}");
+    assert_eq!(texture_index(&[], Kernel::new(5.0).unwrap(), CrystalSymmetry::Octahedral), None);
 }

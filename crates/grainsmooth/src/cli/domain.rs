@@ -195,7 +195,7 @@ fn parse_chord_error(text: &str) -> Result<f64, String> {
     length(text).ok_or_else(|| "a chord error is a positive length".to_owned())
 }
 
-fn parse_dimension(text: &str) -> Result<Dimension, String> {
+pub fn parse_dimension(text: &str) -> Result<Dimension, String> {
     match text {
         "2" => Ok(Dimension::Two),
         "3" => Ok(Dimension::Three),

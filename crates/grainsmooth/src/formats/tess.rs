@@ -5,6 +5,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
+use texture::{CrystalSymmetry, Orientation};
 use voronoi::{CellId, Dimension, Shift, Side, Wall};
 
 use crate::Tessellated;
@@ -22,8 +23,13 @@ pub struct Tess {
     pub dimension: Dimension,
     /// The number of each cell's seed; none where they are numbered one after the other.
     pub ids: Vec<u32>,
-    /// Whether cells have orientations, which are not read.
+    /// Whether cells have orientations.
     pub has_orientations: bool,
+    /// The orientation of each cell; none where there are none, or in a descriptor other than passive Rodrigues vectors, quaternions or
+    /// Bunge's Euler angles.
+    pub orientations: Vec<Orientation>,
+    /// The symmetry of the crystals, where the file tells one that is known.
+    pub crystal_symmetry: Option<CrystalSymmetry>,
     /// One seed for each cell; none where the file has none.
     pub seeds: Vec<TessSeed>,
     /// Positions of the vertices; z = 0 in 2D.
@@ -139,6 +145,8 @@ impl Tess {
             dimension: domain.dimension(),
             ids: cells.renumbered().to_vec(),
             has_orientations: false,
+            orientations: Vec::new(),
+            crystal_symmetry: None,
             seeds: seeds.map(|(&position, weight)| seed(position, weight)).collect(),
             vertices: tessellation.vertices().to_vec(),
             edges: Vec::new(),

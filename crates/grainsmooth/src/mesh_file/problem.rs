@@ -68,6 +68,25 @@ pub enum MeshFileProblem {
     /// The extension names no format that can hold a network.
     #[error("unknown extension; give a network as *.vtp, *.vtu or *.vtk")]
     NotANetworkFormat,
+    /// The extension names no format that can hold measured grains.
+    #[error(
+        "unknown extension; give a network (*.vtp, *.vtu, *.vtk), a tessellation (*.tess) or a table (*.csv, *.txt, *.json)"
+    )]
+    NotASampleFormat,
+    /// The boundaries of a grain leave gaps.
+    #[error("grain {grain} is not closed; mend what `grainsmooth check` tells of the file")]
+    NotClosed {
+        /// Its number in the file.
+        grain: u32,
+    },
+    /// A grain has no volume.
+    #[error("grain {grain} has the volume {volume}; give grains of positive volumes")]
+    NoVolume {
+        /// Its number in the file.
+        grain: u32,
+        /// Its volume (in the plane: area).
+        volume: f64,
+    },
     /// A scheme for triangles was given another polygon.
     #[error(
         "face {face} has {corners} corners where triangles are needed; cut it, or take catmull-clark or doo-sabin"

@@ -1,6 +1,7 @@
 //! Reads a .tess file, word by word.
 
 use glam::DVec3;
+use texture::Orientation;
 use voronoi::{Dimension, Wall};
 
 use super::{Oriented, POLYHEDRON, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessSeed};
@@ -21,7 +22,7 @@ const VERSIONS: [&str; 3] = ["3.3", "3.4", "3.5"];
 /// The version from which on an edge of the domain says what curve it is.
 const VERSION_WITH_CURVES: &str = "3.5";
 
-/// Reads a tessellation, standard or periodic; orientations and scales are passed over.
+/// Reads a tessellation, standard or periodic; scales are passed over, and orientations in descriptors that are not known.
 ///
 /// # Errors
 /// [`TessProblem`] at the first word that is not what it must be, or that refers to what does not exist.
@@ -48,6 +49,8 @@ pub fn read_tess(text: &str) -> Result<Tess, TessProblem> {
         dimension,
         ids: Vec::new(),
         has_orientations: false,
+        orientations: Vec::new(),
+        crystal_symmetry: None,
         seeds: Vec::new(),
         vertices: Vec::new(),
         edges: Vec::new(),
@@ -241,11 +244,46 @@ impl Reader<'_> {
                         Ok(TessSeed { position: words.point()?, radius: words.number("a weight")? })
                     })?;
                 }
-                "*ori" => tess.has_orientations = true,
+                "*ori" => {
+                    tess.has_orientations = true;
+                    tess.orientations = self.orientations();
+                }
+                "*crysym" => tess.crystal_symmetry = self.words.next("a symmetry")?.parse().ok(),
                 _ => {}
             }
         }
         Ok(())
+    }
+
+    /// The orientations of the cells; none where they are not as many, or not understood.
+    fn orientations(&mut self) -> Vec<Orientation> {
+        let mut words = Vec::new();
+        while !self.words.is_at("*")
+            && let Some((line, word)) = self.words.words.next()
+        {
+            self.words.line = line;
+            words.push(word);
+        }
+        let Some((descriptor, numbers)) = words.split_first() else { return Vec::new() };
+        let numbers: Option<Vec<f64>> =
+            numbers.iter().map(|word| word.parse().ok().filter(|number: &f64| number.is_finite())).collect();
+        let numbers = numbers.unwrap_or_default();
+        // Passive is what Neper takes where it is not said.
+        let orientations: Option<Vec<Orientation>> = match descriptor.trim_end_matches(":passive") {
+            "rodrigues" => {
+                let vectors = numbers.as_chunks().0.iter();
+                Some(vectors.map(|vector| Orientation::from_rodrigues(DVec3::from_array(*vector))).collect())
+            }
+            "quaternion" => {
+                numbers.as_chunks().0.iter().map(|parts| Orientation::from_quaternion(*parts)).collect()
+            }
+            "euler-bunge" => {
+                let angles = numbers.as_chunks().0.iter();
+                Some(angles.map(|angles| Orientation::from_euler_degrees(*angles)).collect())
+            }
+            _ => None,
+        };
+        orientations.filter(|found| found.len() == self.cell_count).unwrap_or_default()
     }
 
     fn vertices(&mut self) -> Result<Vec<DVec3>, TessProblem> {

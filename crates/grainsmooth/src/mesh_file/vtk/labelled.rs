@@ -25,6 +25,8 @@ const CONFIG: &str = "Config";
 
 const VOLUMES: &str = "Volumes";
 
+const EULER_ANGLES: &str = "EulerAngles";
+
 /// What the field data of a file of this program say, also after another has read and written it.
 #[derive(Debug, Default)]
 pub(crate) struct Remarks {
@@ -32,6 +34,8 @@ pub(crate) struct Remarks {
     pub(crate) config: Option<String>,
     /// The volume of each grain, in the order of their numbers.
     pub(crate) volumes: Option<Vec<f64>>,
+    /// Bunge's angles of each grain in degrees, one after the other.
+    pub(crate) euler_angles: Option<Vec<f64>>,
 }
 
 impl Remarks {
@@ -42,13 +46,19 @@ impl Remarks {
     }
 
     pub(super) fn note_numbers(&mut self, name: &str, numbers: Vec<f64>) {
-        if name == VOLUMES {
-            self.volumes = Some(numbers);
+        match name {
+            VOLUMES => self.volumes = Some(numbers),
+            EULER_ANGLES => self.euler_angles = Some(numbers),
+            _ => {}
         }
     }
 
     fn of_xml(bytes: &[u8]) -> Self {
-        Self { config: field_text(bytes, CONFIG), volumes: field_numbers(bytes, VOLUMES) }
+        Self {
+            config: field_text(bytes, CONFIG),
+            volumes: field_numbers(bytes, VOLUMES),
+            euler_angles: field_numbers(bytes, EULER_ANGLES),
+        }
     }
 }
 
