@@ -22,6 +22,27 @@ fn run_command(line: &str, folder: &Path) {
     program.args(&words[1..]).current_dir(folder).assert().success();
 }
 
+/// The files that come with the project, by the commands that its README names.
+#[test]
+fn small_files_can_be_tried_as_their_readme_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    let copy = folder.path().join("data");
+    std::fs::create_dir(&copy).unwrap();
+    let readme = std::fs::read_to_string(data.join("README.md")).unwrap();
+    for file in std::fs::read_dir(&data).unwrap() {
+        let name = file.unwrap().file_name();
+        std::fs::copy(data.join(&name), copy.join(&name)).unwrap();
+        let name = name.into_string().unwrap();
+        assert!(name == "README.md" || readme.contains(&format!("`{name}`")), "{name} is not explained");
+        assert!(name == "README.md" || readme.contains(&format!("data/{name}")), "{name} is not used");
+    }
+    for (language, text) in blocks(&readme) {
+        assert_eq!(language, "sh");
+        text.lines().for_each(|line| run_command(line, folder.path()));
+    }
+}
+
 #[test]
 fn guide_does_what_it_says() {
     let guide = include_str!("../docs/guide.md");
