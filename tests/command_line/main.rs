@@ -24,6 +24,7 @@ mod series;
 mod sizes;
 mod statistics;
 mod surface_file;
+mod tensions;
 mod textures;
 mod weights_and_tables;
 mod workplace;

@@ -208,6 +208,10 @@ fn phases(draw: &mut Draw, options: &mut Options) {
     if options.has("picture") && draw.chance(0.5) {
         options.set("color-by", ["phase"]);
     }
+    if draw.chance(0.3) {
+        // Far from where three boundaries are without equilibrium.
+        options.set("tension", ["first/second:0.9", "1.1"]);
+    }
 }
 
 /// Draws the options of the control mesh, relaxation and subdivision.
@@ -341,6 +345,7 @@ mod tests {
             "seeds-file",
             "series",
             "stats",
+            "tension",
             "texture",
             "threads",
             "voxels",

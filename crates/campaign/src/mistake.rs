@@ -43,6 +43,7 @@ const MISTAKES: &[Mistake] = &[
         case.options.unset("texture");
         case.options.unset("color-by");
         case.options.unset("phase");
+        case.options.unset("tension");
         // It is refused without a texture before anything is written.
         case.options.unset("sample-symmetry");
     }),
@@ -149,6 +150,7 @@ fn sources(options: &mut Options) {
         "draw",
         "gradient",
         "phase",
+        "tension",
     ] {
         options.unset(name);
     }

@@ -154,6 +154,7 @@ impl Arguments {
             periodic_cut,
             relaxation: Relaxation::default(),
             wall_tension: smoothing.wall_tension,
+            tensions: smoothing.tension.clone(),
             volumes: smoothing.volumes(),
             regularize: smoothing.regularize,
             levels: smoothing.levels,
@@ -191,6 +192,9 @@ impl Arguments {
             }
         }
         if let Err(error) = config.check_phases() {
+            usage(&error.to_string());
+        }
+        if let Err(error) = config.check_laws() {
             usage(&error.to_string());
         }
         if texture.has_sample_symmetry() && !config.has_texture() {

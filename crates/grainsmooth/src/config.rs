@@ -2,12 +2,14 @@ use std::num::NonZeroU32;
 use std::path::PathBuf;
 
 use glam::{BVec3, DVec3};
-use polycrystal::{Boundary, FaceMesh, Junctions, Relaxation, Volumes};
+use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
 use voronoi::{Dimension, Domain};
 
 use crate::domain_file::{half_space_domain, surface_domain};
 use crate::vtk::VtkEncoding;
-use crate::{Error, Lattice, LatticeFit, Names, PhaseOptions, SizeOptions, StlEncoding, TextureOptions};
+use crate::{
+    Error, Lattice, LatticeFit, LawOptions, Names, PhaseOptions, SizeOptions, StlEncoding, TextureOptions,
+};
 
 /// Where seeds come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -116,8 +118,10 @@ pub struct Config {
     pub face_mesh: FaceMesh,
     /// How far boundaries relax; time 0 leaves them flat.
     pub relaxation: Relaxation,
-    /// Tension of the walls, where that between grains is 1.
+    /// Tension of the walls, where that between grains is 1, or in units of the largest between grains.
     pub wall_tension: f64,
+    /// The tensions of boundaries between grains; 1 where there is none for them.
+    pub tensions: Vec<LawOptions>,
     /// Whether relaxation keeps the grains' volumes.
     pub volumes: Volumes,
     /// Where the topology of the cells is to stay, the length, in units of the mean grain size, below which edges collapse before
@@ -182,6 +186,7 @@ impl Default for Config {
             face_mesh: FaceMesh::Fan,
             relaxation: Relaxation::default(),
             wall_tension: 0.0,
+            tensions: Vec::new(),
             volumes: Volumes::Kept,
             regularize: None,
             levels: 3,
@@ -248,11 +253,6 @@ impl Config {
             Dimension::Three => self.relaxation != Relaxation::Time(0.0),
         };
         is_on_the_way && self.regularize.is_none() && self.volumes == Volumes::Kept
-    }
-
-    /// The tension of a boundary: 1 between grains, and what is asked for on walls.
-    pub(crate) fn tension(&self, boundary: &Boundary) -> f64 {
-        if boundary.wall.is_some() { self.wall_tension } else { 1.0 }
     }
 
     /// Control points on the boundaries of regularised cells: in a fan, whose triangles at short lines are thin, those stay whole.

@@ -8,7 +8,7 @@ use voronoi::{Dimension, VoronoiError};
 
 use crate::memory::{self, LevelSize};
 use crate::mesh_file::MeshFileProblem;
-use crate::{Failure, OutputFormat, PhasesError, SeedPlace, SeedProblem};
+use crate::{Failure, LawError, OutputFormat, PhasesError, SeedPlace, SeedProblem};
 
 /// What can go wrong between the user's input and the files written. Each message is one line that names the
 /// value, the place and the remedy.
@@ -258,6 +258,9 @@ pub enum Error {
     /// Phases that contradict each other or other options.
     #[error(transparent)]
     Phases(#[from] PhasesError),
+    /// Laws of boundaries that contradict each other or other options.
+    #[error(transparent)]
+    Law(#[from] LawError),
     /// A grain of the sizes asked for is larger than the domain.
     #[error(
         "a grain of diameter {diameter:.6} does not fit {of}; ask for diameters up to {fits:.6} (to={fits:.6} cuts larger ones off), or take a larger domain"

@@ -15,6 +15,7 @@
 //! ```
 
 mod asked;
+mod boundary_law;
 mod cell_table;
 mod check_report;
 mod config;
@@ -33,6 +34,7 @@ mod grain_sizes;
 mod grain_texture;
 mod labelled_file;
 mod lattice;
+mod law_options;
 mod measured_arrays;
 mod measured_sample;
 pub mod memory;
@@ -71,6 +73,7 @@ mod unfinished;
 pub mod vtk;
 
 pub use asked::AskedAndReached;
+pub use boundary_law::{BoundaryLaw, TensionsReached};
 pub use cell_table::{CellTable, TableFormat};
 pub use check_report::{CheckReport, Expectation, ReportedFault, SizesFound, Spread, Statistic};
 pub use config::{Config, FileOptions, PeriodicCut, SeedSource, Shape};
@@ -90,6 +93,7 @@ pub use grain_sizes::{GrainSizes, SizesFit, SizesReached};
 pub use grain_texture::{ComponentShare, GrainTexture, HistogramFit};
 pub use labelled_file::{FileElements, LabelledFile};
 pub use lattice::{Lattice, LatticeFit};
+pub use law_options::{LawError, LawOptions, LawSource};
 pub use measured_sample::{MeasuredGrain, MeasuredSample};
 pub use mesh_bezier::{BezierFile, read_bezier};
 pub use mesh_edit::{EdgeEdit, edit_edges};

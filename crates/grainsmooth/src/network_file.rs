@@ -26,6 +26,9 @@ use crate::{
 /// The point array that tells how many grains meet: four at a quadruple point, unless edges collapsed there.
 pub(crate) const NUMBER_OF_GRAINS: &str = "NumberOfGrains";
 
+/// The array of the tensions of boundaries.
+pub(crate) const TENSION: &str = "Tension";
+
 /// The array of the numbers of grains' seeds.
 pub(crate) const SEED_ID: &str = "SeedId";
 
@@ -201,9 +204,9 @@ impl Polycrystal {
             cell_arrays.push(Array { name: "PeriodicNeighbor", values: of_cells(&neighbor) });
             point_arrays.push(Array { name: "PeriodicOriginal", values: Values::Int32(&originals) });
         }
-        let disorientations = self.disorientations();
+        let boundary_tuples = self.boundary_tuples();
         let boundary_of = |cell: usize| Some(boundary_of_cell[cell].index());
-        cell_arrays.extend(disorientations.iter().map(|tuples| Array {
+        cell_arrays.extend(boundary_tuples.iter().map(|tuples| Array {
             name: tuples.name,
             values: Values::Items(Items { tuples, count, item: &boundary_of }),
         }));
@@ -240,11 +243,17 @@ impl Polycrystal {
         tuples
     }
 
-    /// What files hold of each boundary's disorientation; nothing where grains have no orientations.
-    pub(crate) fn disorientations(&self) -> Vec<ItemTuples> {
-        let Some(texture) = &self.cells.texture else { return Vec::new() };
+    /// What files hold of each boundary's disorientation, where grains have orientations, and of its tension, where laws are asked for.
+    pub(crate) fn boundary_tuples(&self) -> Vec<ItemTuples> {
         let boundaries = self.network.boundaries();
-        texture.boundary_arrays(boundaries.iter().map(|boundary| boundary.sides_across(boundaries)))
+        let sides = || boundaries.iter().map(|boundary| boundary.sides_across(boundaries));
+        let texture = self.cells.texture.as_ref();
+        let mut tuples = texture.map_or_else(Vec::new, |texture| texture.boundary_arrays(sides()));
+        if !self.config.tensions.is_empty() {
+            tuples
+                .push(ItemTuples::numbers(TENSION, self.network.tensions().iter().map(|tension| [*tension])));
+        }
+        tuples
     }
 
     /// The number of the grain that lies beyond a boundary a period or more away; that of the exterior where there is none.

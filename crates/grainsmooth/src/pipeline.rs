@@ -20,7 +20,10 @@ use voronoi::{Collapsed, Dimension, Tessellation};
 use crate::failure::Growth;
 use crate::formats::LABEL_BYTES;
 use crate::memory::{ControlMesh, LevelSize, available_memory, check_levels};
-use crate::{Config, Error, Failure, PeriodicCut, SeedSource, Tessellated, Topology, tessellate};
+use crate::{
+    BoundaryLaw, Config, Error, Failure, PeriodicCut, SeedSource, TensionsReached, Tessellated, Topology,
+    tessellate,
+};
 
 /// A part of a run, in the order in which they follow each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,6 +107,8 @@ pub struct Polycrystal {
     pub attempts: Vec<Attempt>,
     /// How far triple lines are from rest, if boundaries meet anywhere; of grains cut at a periodic box, before the cut.
     pub residual: Option<HerringResidual>,
+    /// The tensions of boundaries, where laws of them are asked for; of grains cut at a periodic box, before the cut.
+    pub tensions: Option<TensionsReached>,
     /// Angles between boundaries of the flat network, before relaxation.
     pub flat_angles: Vec<WeightedAngle>,
     /// Their statistics, if boundaries meet inside the domain.
@@ -187,6 +192,7 @@ impl Polycrystal {
             }
             Err(error) => return Err(Failure::new(error, self.attempts, &self.cells).into()),
         }
+        self.network = self.network.with_tensions(|boundary| self.cells.law.tension(boundary))?;
         self.add_time(Stage::Subdivision, start.elapsed());
         let start = Instant::now();
         match validate(&self.network, &self.points) {
@@ -283,8 +289,15 @@ pub fn smooth_watched(
     let mut tries = Regularization::tries(config).iter();
     let (regularization, smoothed) = loop {
         let regularization = *tries.next().expect("there is one, and the last is the result");
-        match smooth_regularized(config, tessellation, regularization, &mut attempts, &mut clock, &mut watch)
-        {
+        match smooth_regularized(
+            config,
+            &cells.law,
+            tessellation,
+            regularization,
+            &mut attempts,
+            &mut clock,
+            &mut watch,
+        ) {
             Err(error) if error.is_tangle() && tries.len() > 0 => {
                 error.give_up(regularization.in_words(), &mut attempts);
             }
@@ -293,7 +306,7 @@ pub fn smooth_watched(
                 if config.volumes == Volumes::Kept || !failure.cause.is_of_time() {
                     return Err(failure.into());
                 }
-                let works = time_that_works(config, tessellation, &failure.cause);
+                let works = time_that_works(config, &cells.law, tessellation, &failure.cause);
                 return Err(failure.with_growth(works.map_or(Growth::Never, Growth::Until)).into());
             }
             Ok(smoothed) => break (regularization, smoothed),
@@ -318,17 +331,26 @@ pub fn smooth_watched(
         reconnected,
         attempts,
         residual,
+        tensions: None,
         flat_angles,
         angles_before,
         validation,
         times,
     };
     polycrystal.fit_misorientations();
+    if !polycrystal.config.tensions.is_empty() {
+        polycrystal.tensions = polycrystal.cells.law.reached(&polycrystal.network, &polycrystal.measures());
+    }
     Ok(polycrystal)
 }
 
 /// A time for which grains can grow freely, where for the config's own they cannot: it is tried.
-fn time_that_works(config: &Config, tessellation: &Tessellation, cause: &NetworkError) -> Option<f64> {
+fn time_that_works(
+    config: &Config,
+    law: &BoundaryLaw,
+    tessellation: &Tessellation,
+    cause: &NetworkError,
+) -> Option<f64> {
     let Relaxation::Time(asked) = config.relaxation else { return None };
     let mut time = match cause {
         NetworkError::GrainVanished { time, .. } if *time > 0.0 => 0.9 * time,
@@ -340,8 +362,16 @@ fn time_that_works(config: &Config, tessellation: &Tessellation, cause: &Network
         let shorter = Config { relaxation: Relaxation::Time(time), ..config.clone() };
         let works = |regularization: &Regularization| {
             let attempts = &mut Vec::new();
-            smooth_regularized(&shorter, tessellation, *regularization, attempts, &mut clock, &mut |_| ())
-                .is_ok()
+            smooth_regularized(
+                &shorter,
+                law,
+                tessellation,
+                *regularization,
+                attempts,
+                &mut clock,
+                &mut |_| (),
+            )
+            .is_ok()
         };
         if Regularization::tries(config).iter().any(works) {
             return Some(time);
@@ -436,6 +466,7 @@ struct Smoothed {
 /// The network of cells regularised in one way.
 fn smooth_regularized(
     config: &Config,
+    law: &BoundaryLaw,
     tessellation: &Tessellation,
     regularization: Regularization,
     attempts: &mut Vec<Attempt>,
@@ -448,10 +479,10 @@ fn smooth_regularized(
         watch(step);
     };
     if regularization == Regularization::ByEnergy {
-        return smooth_by_energy(config, tessellation, attempts, clock, &mut watch);
+        return smooth_by_energy(config, law, tessellation, attempts, clock, &mut watch);
     }
     let (mut network, flat, collapsed) =
-        clock.time(Stage::Network, || network(config, tessellation, regularization, attempts))?;
+        clock.time(Stage::Network, || network(config, law, tessellation, regularization, attempts))?;
     let angles_before = dihedral_angles(&network, network.control_mesh(), &flat);
     let flat_angles = angles_between_boundaries(&network, network.control_mesh(), &flat);
     let relaxed = clock.time(Stage::Relaxation, || {
@@ -471,6 +502,7 @@ fn smooth_regularized(
 /// The network of cells that come together and part as tension has it.
 fn smooth_by_energy(
     config: &Config,
+    law: &BoundaryLaw,
     tessellation: &Tessellation,
     attempts: &mut Vec<Attempt>,
     clock: &mut Clock<'_>,
@@ -480,7 +512,7 @@ fn smooth_by_energy(
     let (of_cells, flat) = clock.time(Stage::Network, || Network::new(tessellation, junctions, 0))?;
     let angles_before = dihedral_angles(&of_cells, of_cells.control_mesh(), &flat);
     let flat_angles = angles_between_boundaries(&of_cells, of_cells.control_mesh(), &flat);
-    let tension = |boundary: &Boundary| config.tension(boundary);
+    let tension = |boundary: &Boundary| law.tension(boundary);
     let recipe = NetworkRecipe { face_mesh, junctions, levels: levels as usize, tension: &tension };
     let relaxed_cells =
         clock.time(Stage::Relaxation, || relax_cells(tessellation, &recipe, &config.relaxation, watch))?;
@@ -513,6 +545,7 @@ fn smooth_by_energy(
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.
 fn network(
     config: &Config,
+    law: &BoundaryLaw,
     tessellation: &Tessellation,
     regularization: Regularization,
     attempts: &mut Vec<Attempt>,
@@ -521,7 +554,7 @@ fn network(
     let length = config.effective_regularize();
     let network_of = |cells, face_mesh| {
         let (network, flat) = Network::with_face_mesh(cells, face_mesh, junctions, levels as usize)?;
-        Ok::<_, NetworkError>((network.with_tensions(|boundary| config.tension(boundary))?, flat))
+        Ok::<_, NetworkError>((network.with_tensions(|boundary| law.tension(boundary))?, flat))
     };
     let (regular, collapsed) = match regularization {
         Regularization::Foreseeing => {

@@ -9,7 +9,7 @@ use voronoi::Tessellation;
 
 use crate::formats::escaped;
 use crate::vtk::VtkFormat;
-use crate::{Config, Error, Output, OutputFormat, Polycrystal, StagedFiles};
+use crate::{Error, Output, OutputFormat, Polycrystal, StagedFiles};
 
 /// The steps of a relaxation, every so many of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -106,7 +106,7 @@ impl Series {
         let mut times = Vec::new();
         for frame in self.frames.iter().filter(is_before) {
             let (network, level) = match &frame.cells {
-                Some(cells) => (Some(network_of(cells, &polycrystal.network, &polycrystal.config)?), 0),
+                Some(cells) => (Some(network_of(cells, polycrystal)?), 0),
                 None => (None, frame.level),
             };
             let of_frame = network.as_ref().unwrap_or(&polycrystal.network);
@@ -136,8 +136,9 @@ impl Series {
 }
 
 /// The network of cells on their way to those of a finished one.
-fn network_of(cells: &Tessellation, finished: &Network, config: &Config) -> Result<Network, NetworkError> {
-    let (network, _) = Network::new(cells, config.junctions, finished.levels().len() - 1)?;
-    let network = network.with_tensions(|boundary| config.tension(boundary))?;
+fn network_of(cells: &Tessellation, polycrystal: &Polycrystal) -> Result<Network, NetworkError> {
+    let (finished, junctions) = (&polycrystal.network, polycrystal.config.junctions);
+    let (network, _) = Network::new(cells, junctions, finished.levels().len() - 1)?;
+    let network = network.with_tensions(|boundary| polycrystal.cells.law.tension(boundary))?;
     Ok(network.with_cell_volumes(finished.cell_volumes().to_vec()))
 }

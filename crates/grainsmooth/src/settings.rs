@@ -11,12 +11,12 @@ use voronoi::Dimension;
 use crate::embedded_config::{BEGIN, END, PREFIXES};
 use crate::vtk::VtkEncoding;
 use crate::{
-    Config, FileOptions, PeriodicCut, SeedSource, Shape, SizeDraw, SizeOptions, SizeSource, StlEncoding,
-    TextureOptions,
+    Config, FileOptions, LawOptions, PeriodicCut, PhaseOptions, SeedSource, Shape, SizeDraw, SizeOptions,
+    SizeSource, StlEncoding, TextureOptions,
 };
 
-/// The option that comes once for each of its values.
-const PHASE_OPTION: &str = "phase";
+/// Options that come once for each of their values.
+const REPEATED: [&str; 2] = ["phase", "tension"];
 
 impl Config {
     /// Every setting by the long name of its option, the default ones too.
@@ -38,8 +38,7 @@ impl Config {
         }
         settings.extend(self.sizes.settings());
         if !self.phases.is_empty() {
-            let phases = self.phases.iter().map(|phase| phase.text().into()).collect();
-            settings.push((PHASE_OPTION, Value::Array(phases)));
+            settings.push(("phase", texts(self.phases.iter().map(PhaseOptions::text))));
         }
         let mut add = |name, value: Value| settings.push((name, value));
         if self.drop_empty {
@@ -100,6 +99,9 @@ impl Config {
             Relaxation::Equilibrium => add("relax", "equilibrium".into()),
         }
         add("wall-tension", self.wall_tension.into());
+        if !self.tensions.is_empty() {
+            add("tension", texts(self.tensions.iter().map(LawOptions::text)));
+        }
         if self.volumes == Volumes::Free {
             add("free", true.into());
         }
@@ -129,7 +131,7 @@ impl Config {
     pub fn command_line(&self) -> String {
         let mut line = String::from("grainsmooth");
         for (name, value) in self.settings() {
-            if let (PHASE_OPTION, Value::Array(values)) = (name, &value) {
+            if let (true, Value::Array(values)) = (REPEATED.contains(&name), &value) {
                 line.extend(values.iter().map(|value| format!(" --{name} {}", word(value))));
                 continue;
             }
@@ -234,6 +236,10 @@ impl FileOptions {
 /// A number of any size: TOML's own end at 2^63, from where on it is a text.
 fn number(number: u64) -> Value {
     i64::try_from(number).map_or_else(|_| number.to_string().into(), Value::Integer)
+}
+
+fn texts(texts: impl Iterator<Item = String>) -> Value {
+    Value::Array(texts.map(Value::from).collect())
 }
 
 /// A value as a word of the command line.

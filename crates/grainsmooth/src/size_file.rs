@@ -131,6 +131,41 @@ pub(crate) fn read_gradient_file(path: &Path) -> Result<Vec<[f64; 2]>, Error> {
     })
 }
 
+/// Reads tensions over the disorientation: angles in degrees, and the values there.
+///
+/// # Errors
+/// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
+pub(crate) fn read_law_file(path: &Path) -> Result<Vec<[f64; 2]>, Error> {
+    read(path, |content| {
+        let rows = Rows::new(content)?;
+        let places = match (rows.named(&["angle"]), rows.named(&["tension"])) {
+            (Some(angle), Some(tension)) => [angle, tension],
+            _ if rows.names.is_empty() && rows.rows.iter().all(|(_, columns)| columns.len() == 2) => [0, 1],
+            _ => return Err((rows.first_line, "name two columns angle and tension".to_owned())),
+        };
+        let table = rows.numbers(places)?;
+        if table.is_empty() {
+            return Err((1, "holds no angles; give an angle and a tension on each line".to_owned()));
+        }
+        for (row, [angle, value]) in table.iter().enumerate() {
+            let line = rows.rows[row].0;
+            if !((0.0..=180.0).contains(angle) && value.is_finite() && *value >= 0.0) {
+                let problem = format!(
+                    "the tension {value} at {angle} degrees is negative or no number, or the angle not from 0 to 180; correct it"
+                );
+                return Err((line, problem));
+            }
+            if row > 0 && *angle <= table[row - 1][0] {
+                return Err((
+                    line,
+                    format!("the angle {angle} is not above the one before; list them in order"),
+                ));
+            }
+        }
+        Ok(table)
+    })
+}
+
 /// What columns of diameters may be called.
 pub(crate) const DIAMETERS: [&str; 3] = ["diameter", "equivalent_diameter", "equivalentdiameter"];
 

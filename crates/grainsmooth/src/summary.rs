@@ -81,6 +81,9 @@ impl fmt::Display for Summary<'_> {
             )?,
             (None, None) => {}
         }
+        if let Some(tensions) = &polycrystal.tensions {
+            write!(out, "{tensions}")?;
+        }
         if let Some(HerringResidual { rms, largest }) = polycrystal.residual {
             writeln!(
                 out,

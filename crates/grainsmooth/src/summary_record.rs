@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::triangle_angles::TriangleAngles;
 use crate::{
     AskedAndReached, ComponentShare, EquivalentDiameters, HistogramFit, PhaseShare, Polycrystal, Reconnected,
-    SizesFit, SizesReached, Tessellated, Topology,
+    SizesFit, SizesReached, TensionsReached, Tessellated, Topology,
 };
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
@@ -45,6 +45,8 @@ pub struct SummaryRecord {
     /// What was tried before and why it was given up, in order.
     attempts: Vec<Attempt>,
     residual: Option<Residual>,
+    /// Where laws of them are asked for.
+    tensions: Option<TensionsReached>,
     /// By what coordinates were multiplied in the end; angles and residual are those before.
     stretch: Option<[f64; 3]>,
     points: usize,
@@ -213,6 +215,7 @@ impl SummaryRecord {
                 .map(|attempt| Attempt { tried: attempt.tried.clone(), said: attempt.said.clone() })
                 .collect(),
             residual: polycrystal.residual.map(|HerringResidual { rms, largest }| Residual { rms, largest }),
+            tensions: polycrystal.tensions.clone(),
             stretch: polycrystal.is_stretched().then(|| config.stretch().to_array()),
             points: finest.vertex_count(),
             elements: finest.element_count(),

@@ -43,7 +43,7 @@ impl Table {
 }
 
 impl Value {
-    /// The grain of this number; nothing for that of the exterior.
+    /// The number as that of a grain; nothing for that of the exterior.
     pub(crate) fn grain(&self) -> Option<GrainId> {
         match self {
             Self::Integer(number) => u32::try_from(*number).ok().map(GrainId),

@@ -14,8 +14,8 @@ use crate::memory::{available_memory, check_cells};
 use crate::pipeline::{Clock, seed_count};
 use crate::seeding::unit_fraction;
 use crate::{
-    Config, EquivalentDiameters, Error, FileSeed, FileSeeds, GrainPhases, GrainSizes, GrainTexture, Progress,
-    SeedPlace, SeedSource, Stage, poisson_disc_seeds, random_seeds, read_seed_file,
+    BoundaryLaw, Config, EquivalentDiameters, Error, FileSeed, FileSeeds, GrainPhases, GrainSizes,
+    GrainTexture, Progress, SeedPlace, SeedSource, Stage, poisson_disc_seeds, random_seeds, read_seed_file,
 };
 
 /// The cells of a config's seeds.
@@ -37,6 +37,8 @@ pub struct Tessellated {
     pub phases: Option<GrainPhases>,
     /// The orientations of the grains, where they are asked for.
     pub texture: Option<GrainTexture>,
+    /// What boundaries have.
+    pub law: BoundaryLaw,
     /// What the file of the seeds also tells of grains, and has no place here.
     pub passed_over: Option<&'static str>,
     /// Time that each stage took.
@@ -143,6 +145,7 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
             phases.as_ref().map_or_else(|| vec![0; volumes.len()], |phases| phases.phase_of().to_vec());
         GrainTexture::draw(textures, texture_of, &volumes, config.random_seed).with_target(histogram)
     });
+    let law = BoundaryLaw::new(config, phases.as_ref(), texture.as_ref(), tessellation.cell_count())?;
     let times = clock.times;
     let seed_ids = seeds.ids;
     Ok(Tessellated {
@@ -154,6 +157,7 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
         sizes,
         phases,
         texture,
+        law,
         passed_over,
         times,
     })

@@ -1,7 +1,7 @@
 //! Options about the control mesh, relaxation and subdivision.
 
 use clap::{Args, ValueEnum};
-use grainsmooth::Config;
+use grainsmooth::{Config, LawOptions};
 use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
 
 use super::values::{length, whole_number};
@@ -30,11 +30,18 @@ pub struct SmoothingArguments {
     #[arg(long, value_name = "T", value_parser = parse_relaxation, allow_negative_numbers = true)]
     pub relax: Option<Relaxation>,
 
-    /// Tension of the walls, in units of that between grains; 0 lets boundaries meet walls at right angles
+    /// Tension of the walls, in units of that between grains, of the largest with --tension; 0 lets boundaries meet walls at right angles
     ///
     /// Example: --wall-tension 0.5
     #[arg(long, value_name = "G", default_value_t = 0.0, value_parser = parse_tension, allow_negative_numbers = true)]
     pub wall_tension: f64,
+
+    /// Tension of boundaries between grains, in any unit: a number, read-shockley(15) over the disorientation, either times a number, or a
+    /// table of angles and tensions; with PHASE/PHASE: before it, of boundaries between these [default: 1]
+    ///
+    /// Example: --texture 'goss(10)' --tension 'read-shockley(15)'
+    #[arg(long, value_name = "[A/B:]LAW", num_args = 1)]
+    pub tension: Vec<LawOptions>,
 
     /// Let grains grow and shrink by curvature instead of keeping their volumes (in 2D: areas); none may vanish
     ///

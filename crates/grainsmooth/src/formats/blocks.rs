@@ -126,10 +126,10 @@ impl Polycrystal {
             ],
             field: self.field(),
         };
-        let disorientations = self.disorientations();
+        let boundary_tuples = self.boundary_tuples();
         let boundary = |piece: usize| Some(surface.parts[piece].boundary.index());
         data.cell_arrays
-            .extend(disorientations.iter().map(|tuples| (tuples.name, PieceValue::Item(tuples, &boundary))));
+            .extend(boundary_tuples.iter().map(|tuples| (tuples.name, PieceValue::Item(tuples, &boundary))));
         data.cell_arrays.extend(measured_pieces(&of_parts));
         if measured.is_some() {
             data.point_arrays.push(("MeanCurvature", PieceVectors::Float64(&mean)));

@@ -66,9 +66,9 @@ impl Polycrystal {
             ],
             field: self.field(),
         };
-        let disorientations = self.disorientations();
+        let boundary_tuples = self.boundary_tuples();
         let boundary = |line: usize| Some(boundary_of[line].index());
-        data.cell_arrays.extend(disorientations.iter().map(|tuples| {
+        data.cell_arrays.extend(boundary_tuples.iter().map(|tuples| {
             let items = Items { tuples, count, item: &boundary };
             Array { name: tuples.name, values: Values::Items(items) }
         }));

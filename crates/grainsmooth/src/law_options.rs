@@ -1,0 +1,214 @@
+//! What tensions are asked for, by phases and by disorientation.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use thiserror::Error;
+
+use crate::Config;
+use crate::size_file::is_size_file;
+
+/// The name of the law of small angles.
+const READ_SHOCKLEY: &str = "read-shockley";
+
+/// A law for the boundaries between two phases, or for all that have none of their own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LawOptions {
+    /// The names of the phases on both sides, in any order; nothing for all boundaries.
+    pub phases: Option<[String; 2]>,
+    /// What they have.
+    pub law: LawSource,
+}
+
+/// What boundaries have, in any unit.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LawSource {
+    /// The same whatever the disorientation.
+    Number(f64),
+    /// A number times x (1 - ln x) after Read and Shockley (1950), with x the disorientation as a share of an angle, from where on it is 1.
+    ReadShockley {
+        /// The number.
+        factor: f64,
+        /// The angle in degrees.
+        angle: f64,
+    },
+    /// A text file with angles in degrees and what boundaries have there.
+    File(PathBuf),
+}
+
+impl FromStr for LawOptions {
+    type Err = String;
+
+    /// Reads a law, or one of two phases: `ferrite/austenite:0.8*read-shockley(15)`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let pair = text.split_once(':').and_then(|(pair, law)| Some((pair.split_once('/')?, law)));
+        match pair {
+            Some(((first, second), law)) => {
+                let phases = [first, second].map(|name| name.trim().to_owned());
+                Ok(Self { phases: Some(phases), law: law.parse()? })
+            }
+            None => Ok(Self { phases: None, law: text.parse()? }),
+        }
+    }
+}
+
+impl FromStr for LawSource {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let text = text.trim();
+        if is_size_file(Path::new(text)) {
+            return Ok(Self::File(text.into()));
+        }
+        let mistaken = || {
+            format!(
+                "'{text}' is no law; give a number such as 0.8, read-shockley(15), that times a number, or a .csv file"
+            )
+        };
+        let number = |text: &str| {
+            let number = text.trim().parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0);
+            number.ok_or_else(mistaken)
+        };
+        let (factor, curve) = match text.split_once('*') {
+            Some((factor, curve)) => (number(factor)?, curve.trim()),
+            None => (1.0, text),
+        };
+        let Some((name, angle)) = curve.split_once('(') else { return number(text).map(Self::Number) };
+        let angle =
+            angle.trim().strip_suffix(')').filter(|_| name.trim() == READ_SHOCKLEY).ok_or_else(mistaken)?;
+        let degrees = number(angle)?;
+        if !(degrees > 0.0 && degrees <= 180.0) {
+            return Err(format!("the angle {angle} is not above 0, up to 180 degrees"));
+        }
+        Ok(Self::ReadShockley { factor, angle: degrees })
+    }
+}
+
+impl LawOptions {
+    /// As it is given.
+    pub fn text(&self) -> String {
+        let law = match &self.law {
+            LawSource::Number(number) => format!("{number:?}"),
+            LawSource::ReadShockley { factor, angle } => format!("{factor:?}*{READ_SHOCKLEY}({angle:?})"),
+            LawSource::File(path) => path.display().to_string(),
+        };
+        match &self.phases {
+            Some([first, second]) => format!("{first}/{second}:{law}"),
+            None => law,
+        }
+    }
+}
+
+/// A law that does not go with the grains that there are.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum LawError {
+    /// A law names a phase that there is not.
+    #[error("--tension names the phase '{name}'; the phases are {known}")]
+    UnknownPhase {
+        /// The name.
+        name: String,
+        /// Those that there are.
+        known: String,
+    },
+    /// Two laws are for the same boundaries.
+    #[error("--tension has two laws for {boundaries}; leave one out")]
+    Twice {
+        /// Which.
+        boundaries: String,
+    },
+    /// A law of the disorientation, and grains have no orientations.
+    #[error("--tension {law} depends on orientations; give the grains some, such as --texture random")]
+    NoOrientations {
+        /// The law.
+        law: String,
+    },
+    /// A law of the disorientation, and crystals of two symmetries have none.
+    #[error(
+        "phases {first} and {second} have crystals of different symmetries and no disorientation; give the boundaries between them a number: --tension {first}/{second}:1"
+    )]
+    NoDisorientation {
+        /// A phase.
+        first: String,
+        /// Another.
+        second: String,
+    },
+    /// Orientations that are swapped after boundaries have relaxed by them.
+    #[error(
+        "--misorientations swaps orientations when boundaries have relaxed, and --tension {law} needs them before; leave one of them out"
+    )]
+    Swapped {
+        /// The law.
+        law: String,
+    },
+    /// No boundary has any.
+    #[error("--tension gives no boundary more than 0; give one a positive number")]
+    AllVanish,
+}
+
+impl Config {
+    /// Checks that the laws of boundaries go with each other, the phases and the orientations.
+    ///
+    /// # Errors
+    /// What does not.
+    pub fn check_laws(&self) -> Result<(), LawError> {
+        self.laws_of_pairs().map(|_| ())
+    }
+
+    /// Which of some laws the boundaries between each two phases have, as rows of a square table: of one row without phases. Nothing
+    /// where no law is for them.
+    ///
+    /// # Errors
+    /// As of [`Self::check_laws`].
+    pub(crate) fn laws_of_pairs(&self) -> Result<Vec<Option<&LawSource>>, LawError> {
+        let count = self.phases.len().max(1);
+        let mut table: Vec<Option<&LawSource>> = vec![None; count * count];
+        let known = || match self.phases.is_empty() {
+            true => "none; give some with --phase".to_owned(),
+            false => self.phases.iter().map(|phase| phase.name.as_str()).collect::<Vec<_>>().join(", "),
+        };
+        let mut of_all = None;
+        for law in &self.tensions {
+            let Some(names) = &law.phases else {
+                if of_all.replace(&law.law).is_some() {
+                    return Err(LawError::Twice { boundaries: "all boundaries".to_owned() });
+                }
+                continue;
+            };
+            let mut pair = [0; 2];
+            for (place, name) in pair.iter_mut().zip(names) {
+                let found = self.phases.iter().position(|phase| phase.name == *name);
+                *place =
+                    found.ok_or_else(|| LawError::UnknownPhase { name: name.clone(), known: known() })?;
+            }
+            let [first, second] = pair;
+            if table[first * count + second].is_some() {
+                return Err(LawError::Twice { boundaries: names.join("/") });
+            }
+            table[first * count + second] = Some(&law.law);
+            table[second * count + first] = Some(&law.law);
+        }
+        for (place, law) in table.iter_mut().enumerate() {
+            *law = law.or(of_all);
+            let Some(source) = law else { continue };
+            if matches!(source, LawSource::Number(_)) {
+                continue;
+            }
+            let text = || LawOptions { phases: None, law: (*source).clone() }.text();
+            if !self.has_texture() {
+                return Err(LawError::NoOrientations { law: text() });
+            }
+            if self.texture.misorientations.is_some() {
+                return Err(LawError::Swapped { law: text() });
+            }
+            let symmetry = |phase: usize| {
+                self.phases.get(phase).and_then(|phase| phase.symmetry).unwrap_or(self.texture.symmetry)
+            };
+            let (first, second) = (place / count, place % count);
+            if symmetry(first) != symmetry(second) {
+                let [first, second] = [first, second].map(|phase| self.phases[phase].name.clone());
+                return Err(LawError::NoDisorientation { first, second });
+            }
+        }
+        Ok(table)
+    }
+}
