@@ -23,6 +23,7 @@ fn files_run_their_run_again() {
         ("a.ang", flat),
         ("a.vtp", flat),
         ("a.npy", flat),
+        ("a.inp", flat),
         ("a.tess", solid),
         ("a.vtu", &format!("{solid} --vtk-encoding base64")),
         ("a.vtp", &format!("{flat} --vtk-encoding zlib")),

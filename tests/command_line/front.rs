@@ -278,7 +278,7 @@ fn standard_output_takes_the_bytes_of_the_file() {
     workplace.refuses(
         "-o - --format pli",
         USAGE,
-        "invalid value 'pli' for '--format <FORMAT>': did you mean ply? the formats are those of *.vtp, *.vtu, *.vtk, *.vtm, *.stl, *.ply, *.obj, *.msh, *.fe, *.tess, *.vti, *.npy, *.ang, *.ctf, *.txt, *.ori or *.yaml",
+        "invalid value 'pli' for '--format <FORMAT>': did you mean ply? the formats are those of *.vtp, *.vtu, *.vtk, *.vtm, *.stl, *.ply, *.obj, *.msh, *.fe, *.tess, *.vti, *.npy, *.inp, *.ang, *.ctf, *.txt, *.ori or *.yaml",
     );
     workplace.refuses(
         "-o a.vtp --format ply",

@@ -213,3 +213,58 @@ fn orix_agrees_on_orientations_colors_and_disorientations() {
     };
     assert!(output.status.success(), "{}: {}", output.status, text(&output.stderr));
 }
+
+/// A patch test: the stress is the same everywhere, and CalculiX tells it in the axes of each grain's crystal.
+#[test]
+fn calculix_stretches_voxels_evenly() {
+    let mut config = Config {
+        seeds: SeedSource::Random { count: 9 },
+        box_size: glam::DVec3::new(2.0, 1.0, 1.0),
+        levels: 0,
+        texture: TextureOptions {
+            source: Some(TextureSource::new("random").unwrap()),
+            ..TextureOptions::default()
+        },
+        ..config(Dimension::Three, 0.3)
+    };
+    config.file.voxels = Some([12, 6, 5].map(|count| std::num::NonZeroU32::new(count).unwrap()));
+    let polycrystal = make_polycrystal(&config, &|_, _, _| ()).unwrap();
+    let (folder, path) = write(&polycrystal, "grains.inp");
+    assert_eq!(fs::read_to_string(path).unwrap().matches("*SOLID SECTION").count(), 9);
+    let deck = "*INCLUDE, INPUT=grains.inp
+*MATERIAL, NAME=GRAINS
+*ELASTIC
+1000, 0.3
+*BOUNDARY
+X0, 1
+Y0, 2
+Z0, 3
+*STEP
+*STATIC
+*BOUNDARY
+X1, 1, 1, 0.002
+*EL PRINT, ELSET=ELEMENTS
+S
+*END STEP
+";
+    fs::write(folder.path().join("deck.inp"), deck).unwrap();
+    let mut calculix = Command::new("ccx");
+    calculix.args(["-i", "deck"]).current_dir(folder.path());
+    let Some(output) = run("calculix_stretches_voxels_evenly", &mut calculix) else { return };
+    assert!(output.status.success(), "{}", text(&output.stdout));
+    let printed = fs::read_to_string(folder.path().join("deck.dat")).unwrap();
+    let orientations = polycrystal.cells.texture.as_ref().unwrap().orientations();
+    let mut points = 0;
+    for line in printed.lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        // Element, integration point, six components, and whose axes they are in.
+        let [_, _, stress @ .., axes] = &words[..] else { continue };
+        let Some(grain) = axes.strip_prefix("ORIENTATION_") else { continue };
+        let stress: Vec<f64> = stress.iter().map(|word| word.parse().unwrap()).collect();
+        let x = orientations[grain.parse::<usize>().unwrap()].to_crystal(glam::DVec3::X);
+        let exact = [x.x * x.x, x.y * x.y, x.z * x.z, x.x * x.y, x.x * x.z, x.y * x.z];
+        assert!(stress.iter().zip(exact).all(|(stress, exact)| (stress - exact).abs() < 1e-6), "{line}");
+        points += 1;
+    }
+    assert_eq!(points, 8 * 12 * 6 * 5);
+}

@@ -99,7 +99,7 @@ enum Mode {
 fn network(draw: &mut Draw, dimension: usize, options: &mut Options, promise: &mut Promise) {
     let surfaces = [(45.0, "vtp"), (12.0, "vtu"), (10.0, "vtk"), (6.0, "vtm")];
     let others: &[(f64, &str)] = if dimension == 2 {
-        &[(3.0, "tess"), (2.0, "vti"), (2.0, "npy"), (3.0, "ang")]
+        &[(3.0, "tess"), (2.0, "vti"), (2.0, "npy"), (2.0, "inp"), (3.0, "ang")]
     } else {
         &[
             (3.0, "stl"),
@@ -110,10 +110,11 @@ fn network(draw: &mut Draw, dimension: usize, options: &mut Options, promise: &m
             (3.0, "tess"),
             (2.0, "vti"),
             (2.0, "npy"),
+            (1.0, "inp"),
         ]
     };
     let format = draw.weighted(&[&surfaces, others].concat());
-    if ["vti", "npy", "ang"].contains(&format) {
+    if ["vti", "npy", "inp", "ang"].contains(&format) {
         options.set("voxels", (0..dimension).map(|_| draw.whole(1..=40)));
     }
     if format == "stl" && draw.chance(0.5) {

@@ -16,7 +16,7 @@ pub(crate) const BEGIN: &str = "# grainsmooth configuration";
 pub(crate) const END: &str = "# end of configuration";
 
 /// What stands before each line of the text where a format has its own sign for comments.
-pub(crate) const PREFIXES: [&str; 3] = ["comment ", "# ", "// "];
+pub(crate) const PREFIXES: [&str; 4] = ["comment ", "# ", "// ", "** "];
 
 /// Most formats have the text near their beginning: so many bytes are searched.
 const SEARCHED_AT_BEGIN: u64 = 1 << 20;

@@ -123,6 +123,8 @@ fn file_bytes(format: OutputFormat, mesh: &LevelSize, grains: usize, config: &Co
         OutputFormat::Tess => grains as u128 * (7 * TEXT_POINT + 14 * TEXT_CORNERS + 8 * 150),
         OutputFormat::Vti => VTK_HEAD + u128::from(config.bytes_of_voxel()) * voxels,
         OutputFormat::Npy => VTK_HEAD + 4 * voxels,
+        // A node and an element each, and its number in a set.
+        OutputFormat::Inp => VTK_HEAD + (TEXT_POINT + 3 * TEXT_CORNERS) * voxels,
         OutputFormat::Ang | OutputFormat::Ctf => VTK_HEAD + TEXT_POINT * voxels,
         // Three or four numbers of 20 characters, and some words.
         OutputFormat::Txt | OutputFormat::Ori => VTK_HEAD + 80 * grains as u128,

@@ -11,7 +11,7 @@ use crate::formats::{
     OrientationMap, Surface, unit_normal, write_ang, write_ctf, write_euler, write_evolver, write_gmsh,
     write_npy, write_obj, write_ply,
 };
-use crate::formats::{write_gmsh_script, write_material, write_ori, write_stl, write_tess};
+use crate::formats::{write_gmsh_script, write_inp, write_material, write_ori, write_stl, write_tess};
 use crate::measured_arrays::MeasuredArrays;
 use crate::vtk::{
     Array, Blocks, Cells, Each, FieldEntry, FieldValue, ImageData, ItemBlocks, ItemTuples, Items, PolyData,
@@ -89,6 +89,7 @@ impl Polycrystal {
                 write_npy(&self.label_grid()?, self.config.file.names, out)?;
                 self.write_settings_behind(out)
             }
+            OutputFormat::Inp => write_inp(&self.label_grid()?, &self.cells, &self.config, out),
             OutputFormat::Ang => self.write_map(write_ang, out),
             OutputFormat::Ctf => self.write_map(write_ctf, out),
             OutputFormat::Txt => {

@@ -35,6 +35,8 @@ pub enum OutputFormat {
     Vti,
     /// The grain of each voxel as a NumPy array.
     Npy,
+    /// A hexahedron for each voxel, for Abaqus and CalculiX.
+    Inp,
     /// The orientation of each pixel, as TSL has it.
     Ang,
     /// The same, as HKL has it.
@@ -49,7 +51,7 @@ pub enum OutputFormat {
 
 impl OutputFormat {
     /// Every format, the default first.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Vtk(VtkFormat::Vtp),
         Self::Vtk(VtkFormat::Vtu),
         Self::Vtk(VtkFormat::Vtk),
@@ -62,6 +64,7 @@ impl OutputFormat {
         Self::Tess,
         Self::Vti,
         Self::Npy,
+        Self::Inp,
         Self::Ang,
         Self::Ctf,
         Self::Txt,
@@ -82,6 +85,7 @@ impl OutputFormat {
             Self::Tess => "tess",
             Self::Vti => "vti",
             Self::Npy => "npy",
+            Self::Inp => "inp",
             Self::Ang => "ang",
             Self::Ctf => "ctf",
             Self::Txt => "txt",
@@ -104,7 +108,7 @@ impl OutputFormat {
 
     /// Whether the format holds voxels.
     pub fn has_voxels(self) -> bool {
-        matches!(self, Self::Vti | Self::Npy | Self::Ang | Self::Ctf)
+        matches!(self, Self::Vti | Self::Npy | Self::Inp | Self::Ang | Self::Ctf)
     }
 
     /// Whether the format is a single file, as standard output takes.
@@ -117,7 +121,7 @@ impl OutputFormat {
         match self {
             Self::Stl | Self::Ply | Self::Obj | Self::Msh | Self::Fe => Some(Dimension::Three),
             Self::Ang | Self::Ctf => Some(Dimension::Two),
-            Self::Vtk(_) | Self::Vtm | Self::Tess | Self::Vti | Self::Npy => None,
+            Self::Vtk(_) | Self::Vtm | Self::Tess | Self::Vti | Self::Npy | Self::Inp => None,
             Self::Txt | Self::Ori | Self::Yaml => None,
         }
     }

@@ -19,7 +19,7 @@ use super::values::{nearest, whole_number};
 #[command(next_help_heading = "Files")]
 pub struct FileArguments {
     /// File to write; its extension names the format: .vtp, .vtu, .vtk, .vtm, .stl, .ply, .obj, .msh (Gmsh), .fe (Surface Evolver),
-    /// .tess (Neper), voxels .vti (DAMASK), .npy, .ang, .ctf, and orientations
+    /// .tess (Neper), voxels .vti (DAMASK), .npy, .inp (Abaqus, CalculiX), .ang, .ctf, and orientations
     /// .txt, .ori (Neper), .yaml (DAMASK); - is standard output; give it again for more files
     ///
     /// Example: -o grains.vtp -o grains.msh
