@@ -101,6 +101,7 @@ pub struct PowerDiagram {
     weights: Vec<f64>,
     volumes: Vec<f64>,
     centroid_steps: usize,
+    newton_steps: usize,
 }
 
 impl PowerDiagram {
@@ -120,8 +121,8 @@ impl PowerDiagram {
         }
         let volumes = check_volumes(domain, volumes)?;
         let mut state = first(domain, seeds, &volumes)?;
-        approach(&mut state, &volumes, GOAL)?;
-        Ok(Self::finished(state, volumes, 0))
+        let newton_steps = approach(&mut state, &volumes, GOAL)?;
+        Ok(Self { newton_steps, ..Self::finished(state, volumes) })
     }
 
     /// Moves each seed to the centroid of its cell, with new weights that keep the volumes, and does so again and again. Cells grow
@@ -133,7 +134,7 @@ impl PowerDiagram {
     /// # Errors
     /// [`VolumesError::NotReached`], as [`Self::with_volumes`].
     pub fn lloyd(self, steps: usize) -> Result<Self, VolumesError> {
-        let Self { tessellation, weights, volumes, mut centroid_steps } = self;
+        let Self { tessellation, weights, volumes, mut centroid_steps, newton_steps } = self;
         let mut state = Clipped::of(tessellation, weights);
         for _ in 0..steps {
             let moved = (0..MOST_HALVED_STEPS).find_map(|halvings| {
@@ -147,15 +148,11 @@ impl PowerDiagram {
             centroid_steps += 1;
         }
         approach(&mut state, &volumes, GOAL)?;
-        Ok(Self::finished(state, volumes, centroid_steps))
+        Ok(Self { centroid_steps, newton_steps, ..Self::finished(state, volumes) })
     }
 
-    fn finished(
-        Clipped { tessellation, weights, .. }: Clipped,
-        volumes: Vec<f64>,
-        centroid_steps: usize,
-    ) -> Self {
-        Self { tessellation, weights, volumes, centroid_steps }
+    fn finished(Clipped { tessellation, weights, .. }: Clipped, volumes: Vec<f64>) -> Self {
+        Self { tessellation, weights, volumes, centroid_steps: 0, newton_steps: 0 }
     }
 
     /// The cells. Their seeds are those of the input until [`Self::lloyd`] moves them.
@@ -171,6 +168,11 @@ impl PowerDiagram {
     /// How many times seeds moved to the centroids of their cells.
     pub fn centroid_steps(&self) -> usize {
         self.centroid_steps
+    }
+
+    /// How many steps of Newton's method the first weights took.
+    pub fn newton_steps(&self) -> usize {
+        self.newton_steps
     }
 
     /// The target volumes, by grain.

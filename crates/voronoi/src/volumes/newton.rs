@@ -126,12 +126,13 @@ impl Clipped {
 }
 
 /// Changes weights until no relative error of volumes is above a goal, or, where rounding does not let them come so near, above
-/// [`TOLERANCE`].
-pub(super) fn approach(state: &mut Clipped, targets: &[f64], goal: f64) -> Result<(), VolumesError> {
-    for _ in 0..MOST_STEPS {
+/// [`TOLERANCE`]. Returns how many steps that took.
+pub(super) fn approach(state: &mut Clipped, targets: &[f64], goal: f64) -> Result<usize, VolumesError> {
+    let mut steps = 0;
+    while steps < MOST_STEPS {
         let (error, _) = state.largest_error(targets);
         if error <= goal {
-            return Ok(());
+            return Ok(steps);
         }
         let mut direction = vec![0.0; targets.len()];
         let residual = (0.1 * error).clamp(RESIDUALS[0], RESIDUALS[1]);
@@ -149,9 +150,10 @@ pub(super) fn approach(state: &mut Clipped, targets: &[f64], goal: f64) -> Resul
         }
         let Some(next) = next else { break };
         *state = next;
+        steps += 1;
     }
     match state.largest_error(targets) {
-        (error, _) if error <= goal.max(TOLERANCE) => Ok(()),
+        (error, _) if error <= goal.max(TOLERANCE) => Ok(steps),
         (_, grain) => Err(VolumesError::NotReached {
             grain,
             target: targets[grain],
