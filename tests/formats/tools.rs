@@ -170,6 +170,27 @@ fn vtk_meshio_and_trimesh_read_every_format() {
     assert!(output.status.success(), "{}: {}", output.status, text(&output.stderr));
 }
 
+/// `materials.py` says where a grid and its materials disagree.
+#[test]
+fn damask_reads_materials_with_the_phases_of_voxels() {
+    let directory = tempfile::tempdir().unwrap();
+    let phases = ["first:0.6,symmetry=hexagonal", "second:0.4"].map(|phase| phase.parse().unwrap());
+    let texture = TextureOptions {
+        source: Some(TextureSource::Words("random".to_owned())),
+        ..TextureOptions::default()
+    };
+    let config = Config { texture, phases: phases.to_vec(), ..config(Dimension::Three, 0.0) };
+    let polycrystal = make_polycrystal(&config, &|_, _, _| ()).unwrap();
+    for name in ["grains.vti", "material.yaml"] {
+        polycrystal.write(&grainsmooth::Output::check(directory.path().join(name)).unwrap()).unwrap();
+    }
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/formats/materials.py");
+    let mut python = Command::new("python3");
+    python.arg(script).arg(directory.path());
+    let Some(output) = run("damask_reads_materials_with_the_phases_of_voxels", &mut python) else { return };
+    assert!(output.status.success(), "{}: {}", output.status, text(&output.stderr));
+}
+
 /// `orientations.py` says which of the files that it is given disagree with orix.
 #[test]
 fn orix_agrees_on_orientations_colors_and_disorientations() {
