@@ -54,18 +54,23 @@ impl Texture {
     }
 
     /// The component of each volume.
+    ///
+    /// Volumes go, the largest first, to the component that lacks most of its share; half of the volume itself counts as there (Webster's
+    /// divisors). By what components lack absolutely, those with small shares would have small grains.
     fn assign(&self, volumes: &[f64], generator: &mut impl Rng) -> Vec<usize> {
         let total: f64 = volumes.iter().sum();
-        let mut lacking: Vec<f64> = self.components().map(|(_, share, _)| share * total).collect();
+        let shares: Vec<f64> = self.components().map(|(_, share, _)| share).collect();
+        let mut lacking: Vec<f64> = shares.iter().map(|share| share * total).collect();
         let mut order: Vec<usize> = (0..volumes.len()).collect();
         // Equal volumes may stand in the order of a lattice, which a texture must not copy.
         shuffle(&mut order, generator);
         order.sort_by(|a, b| volumes[*b].total_cmp(&volumes[*a]));
         let mut components = vec![0; volumes.len()];
         for index in order {
+            let claim = |component: usize| (lacking[component] - 0.5 * volumes[index]) / shares[component];
             let mut most = 0;
-            for (component, lack) in lacking.iter().enumerate() {
-                if *lack > lacking[most] {
+            for component in 1..shares.len() {
+                if claim(component) > claim(most) {
                     most = component;
                 }
             }

@@ -242,6 +242,20 @@ fn components_have_their_volumes_within_a_hundredth() {
     }
 }
 
+/// The component with the smaller share once had the smaller grains: their mean diameter was 0.77 of the others'.
+#[test]
+fn components_of_any_share_have_grains_alike_in_size() {
+    let volumes = volumes(500);
+    let Drawn { components, .. } = drawn("goss(10)*0.2 + random*0.8", &volumes, 5);
+    let mean_diameter = |component: usize| {
+        let of = components.iter().zip(&volumes).filter(|(of, _)| **of == component);
+        let diameters: Vec<f64> = of.map(|(_, volume)| volume.cbrt()).collect();
+        diameters.iter().sum::<f64>() / diameters.len() as f64
+    };
+    let ratio = mean_diameter(0) / mean_diameter(1);
+    assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
+}
+
 #[test]
 fn equal_volumes_in_the_order_of_a_lattice_do_not_get_components_in_turn() {
     let drawn = drawn("cube(5)*0.5 + random*0.5", &[1.0; 1000], 4);
