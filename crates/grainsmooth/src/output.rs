@@ -377,7 +377,7 @@ mod tests {
             );
         }
 
-        let known = "*.vtp, *.vtu, *.vtk, *.vtm, *.stl, *.ply, *.obj, *.msh, *.fe, *.tess, *.vti, *.npy, *.ang, *.ctf, *.txt, *.ori or *.yaml";
+        let known = "*.vtp, *.vtu, *.vtk, *.vtm, *.stl, *.ply, *.obj, *.msh, *.fe, *.tess, *.vti, *.npy, *.inp, *.ang, *.ctf, *.txt, *.ori or *.yaml";
         for name in ["grains", "grains.off", ".vtp"] {
             let error = Output::check(name).unwrap_err().to_string();
             assert_eq!(error, format!("{name}: unknown extension; name the file {known}"));
