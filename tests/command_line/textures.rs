@@ -43,14 +43,14 @@ fn drawn_components_have_their_volumes_and_disorientations_are_those_of_the_orie
     let workplace = Workplace::new();
     let spec = "goss(5)*0.4+random*0.6";
     let said = workplace.run(&format!(
-        "--seeds 150 -n 0 --texture {spec} --stats a.json --json-summary s.json --cells-json c.json -o a.vtp"
+        "--seeds 150 --rng-seed 3 -n 0 --texture {spec} --stats a.json --json-summary s.json --cells-json c.json -o a.vtp"
     ));
     let line = said.lines().find(|line| line.starts_with("texture ")).unwrap();
     assert!(line.contains("cubic crystals, goss(5) ") && line.contains("(asked 40.0 %)"), "{line}");
     let stats = json(&workplace, "a.json");
     let found = orientations(&stats["grains"]);
     assert_eq!(found, orientations(&json(&workplace, "c.json")["cells"]), "cells become grains");
-    // Goss within 15 degrees; of random ones some are, too.
+    // Goss within 15 degrees; of random ones some are, too: the largest, a sixteenth of the volume, where the seed is 1.
     let goss = Orientation::from_euler_degrees([0.0, 45.0, 0.0]);
     let volumes = stats["grains"].as_array().unwrap().iter().map(|grain| grain["volume"].as_f64().unwrap());
     let angle = |one: &Orientation| CrystalSymmetry::Octahedral.disorientation_angle(*one, goss);
