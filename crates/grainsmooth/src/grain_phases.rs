@@ -3,7 +3,7 @@
 use std::fmt;
 
 use serde::Serialize;
-use texture::CrystalSymmetry;
+use texture::{Apportionment, CrystalSymmetry};
 
 use crate::vtk::ItemTuples;
 use crate::{Config, GrainSizes};
@@ -114,28 +114,20 @@ pub(crate) const PHASE: &str = "Phase";
 
 /// The phase of each of some volumes, so that phases have such shares of the sum and grains alike in size.
 ///
-/// Volumes go, the largest first, to the phase that lacks most of its share; half of the volume itself counts as there (Webster's
-/// divisors). By what phases lack absolutely, a fifth of the volume went to the smaller half of the grains: their mean diameter was 0.93
-/// where that of the others was 1.12. Each phase gets one at least.
+/// They go, the largest first, as [`Apportionment`] has it. Each phase gets one at least.
 pub(crate) fn assigned(volumes: &[f64], fractions: &[f64]) -> Vec<usize> {
-    let total: f64 = volumes.iter().sum();
-    let mut lacking: Vec<f64> = fractions.iter().map(|fraction| fraction * total).collect();
+    let mut parts = Apportionment::new(fractions.to_vec(), volumes.iter().sum());
     let mut order: Vec<usize> = (0..volumes.len()).collect();
     order.sort_by(|a, b| volumes[*b].total_cmp(&volumes[*a]));
     let mut is_empty = vec![true; fractions.len()];
     let mut phase_of = vec![0; volumes.len()];
     for (place, grain) in order.into_iter().enumerate() {
-        let volume = volumes[grain];
         let empty = is_empty.iter().filter(|is_empty| **is_empty).count();
         let are_for_empty = volumes.len() - place <= empty;
-        let claim = |phase: usize| (lacking[phase] - 0.5 * volume) / fractions[phase];
         let may = (0..fractions.len()).filter(|phase| !are_for_empty || is_empty[*phase]);
-        // Of equal claims the first.
-        let best = may.reduce(|best, phase| if claim(phase) > claim(best) { phase } else { best });
-        let phase = best.unwrap_or(0);
+        let phase = parts.give(volumes[grain], may).unwrap_or(0);
         phase_of[grain] = phase;
         is_empty[phase] = false;
-        lacking[phase] -= volume;
     }
     phase_of
 }

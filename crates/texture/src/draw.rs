@@ -3,7 +3,7 @@
 use rand_core::Rng;
 use thiserror::Error;
 
-use crate::{Component, Orientation, Texture};
+use crate::{Apportionment, Component, Orientation, Texture};
 
 /// Orientations that were drawn.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,28 +54,17 @@ impl Texture {
     }
 
     /// The component of each volume.
-    ///
-    /// Volumes go, the largest first, to the component that lacks most of its share; half of the volume itself counts as there (Webster's
-    /// divisors). By what components lack absolutely, those with small shares would have small grains.
     fn assign(&self, volumes: &[f64], generator: &mut impl Rng) -> Vec<usize> {
-        let total: f64 = volumes.iter().sum();
         let shares: Vec<f64> = self.components().map(|(_, share, _)| share).collect();
-        let mut lacking: Vec<f64> = shares.iter().map(|share| share * total).collect();
+        let count = shares.len();
+        let mut parts = Apportionment::new(shares, volumes.iter().sum());
         let mut order: Vec<usize> = (0..volumes.len()).collect();
         // Equal volumes may stand in the order of a lattice, which a texture must not copy.
         shuffle(&mut order, generator);
         order.sort_by(|a, b| volumes[*b].total_cmp(&volumes[*a]));
         let mut components = vec![0; volumes.len()];
         for index in order {
-            let claim = |component: usize| (lacking[component] - 0.5 * volumes[index]) / shares[component];
-            let mut most = 0;
-            for component in 1..shares.len() {
-                if claim(component) > claim(most) {
-                    most = component;
-                }
-            }
-            components[index] = most;
-            lacking[most] -= volumes[index];
+            components[index] = parts.give(volumes[index], 0..count).unwrap_or(0);
         }
         components
     }

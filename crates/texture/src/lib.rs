@@ -20,6 +20,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod apportionment;
 mod beta;
 mod component;
 mod disorientation;
@@ -39,6 +40,7 @@ mod spec;
 mod symmetry;
 mod texture;
 
+pub use apportionment::Apportionment;
 pub use component::Component;
 pub use disorientation::Disorientation;
 pub use draw::{DrawError, Drawn};

@@ -5,6 +5,7 @@
 use std::io::{self, Write};
 
 use glam::DVec3;
+use voronoi::Dimension;
 
 use super::LabelGrid;
 use crate::{Config, Tessellated};
@@ -27,28 +28,28 @@ pub(crate) fn write(
     config.write_comments("** ", out)?;
     let grains: Vec<Option<u32>> =
         grid.labels().into_iter().map(|label| label.grain().map(|grain| grain.0)).collect();
-    let hexahedra = Hexahedra { grid, is_plane: grid_is_plane(config), grains };
+    let hexahedra = Hexahedra { grid, dimension: config.dimension, grains };
     hexahedra.write_nodes(out)?;
     hexahedra.write_elements(out)?;
     hexahedra.write_grains(cells, config, out)
 }
 
-fn grid_is_plane(config: &Config) -> bool {
-    config.dimension == voronoi::Dimension::Two
-}
-
 struct Hexahedra<'a> {
     grid: &'a LabelGrid<'a>,
-    is_plane: bool,
+    dimension: Dimension,
     /// Of each voxel; nothing outside the domain.
     grains: Vec<Option<u32>>,
 }
 
 impl Hexahedra<'_> {
+    fn is_plane(&self) -> bool {
+        self.dimension == Dimension::Two
+    }
+
     /// Number of nodes along each axis.
     fn node_counts(&self) -> [usize; 3] {
         let [x, y, z] = self.grid.size;
-        [x + 1, y + 1, if self.is_plane { 1 } else { z + 1 }]
+        [x + 1, y + 1, if self.is_plane() { 1 } else { z + 1 }]
     }
 
     /// The nodes of a voxel, in the order of Abaqus: counter-clockwise seen from above, the lower ones first.
@@ -57,7 +58,7 @@ impl Hexahedra<'_> {
         let [i, j, k] = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)];
         let [x, y, _] = self.node_counts();
         let corners = [[0, 0], [1, 0], [1, 1], [0, 1]];
-        let layers = if self.is_plane { 0..=0 } else { 0..=1 };
+        let layers = if self.is_plane() { 0..=0 } else { 0..=1 };
         let node = |k: usize, [di, dj]: [usize; 2]| i + di + x * (j + dj + y * k);
         layers.flat_map(|dk| corners.map(|corner| node(k + dk, corner))).collect()
     }
@@ -73,10 +74,9 @@ impl Hexahedra<'_> {
         for node in used() {
             let steps = DVec3::from_array(place(node).map(|step| step as f64));
             let DVec3 { x, y, z } = self.grid.origin + steps * self.grid.spacing;
-            writeln!(out, "{}, {x:?}, {y:?}, {:?}", node + 1, if self.is_plane { 0.0 } else { z })?;
+            writeln!(out, "{}, {x:?}, {y:?}, {:?}", node + 1, if self.is_plane() { 0.0 } else { z })?;
         }
-        let axes = if self.is_plane { 2 } else { 3 };
-        for (axis, name) in ["X", "Y", "Z"].into_iter().take(axes).enumerate() {
+        for (axis, name) in ["X", "Y", "Z"].into_iter().take(self.dimension.axes().into()).enumerate() {
             for (end, step) in [(0, 0), (1, self.grid.size[axis])] {
                 writeln!(out, "*NSET, NSET={name}{end}")?;
                 write_numbers(used().filter(|node| place(*node)[axis] == step), out)?;
@@ -86,7 +86,10 @@ impl Hexahedra<'_> {
     }
 
     fn write_elements(&self, out: &mut dyn Write) -> io::Result<()> {
-        let kind = if self.is_plane { "CPS4" } else { "C3D8" };
+        let kind = match self.dimension {
+            Dimension::Two => "CPS4",
+            Dimension::Three => "C3D8",
+        };
         writeln!(out, "*ELEMENT, TYPE={kind}, ELSET=ELEMENTS")?;
         for voxel in (0..self.grains.len()).filter(|voxel| self.grains[*voxel].is_some()) {
             write!(out, "{}", voxel + 1)?;
