@@ -92,6 +92,27 @@ fn a_ball_has_its_mean_width_and_shrinks_by_the_law() {
 }
 
 #[test]
+fn a_grain_small_against_its_distance_keeps_its_digits() {
+    let far = DVec3::new(0.75, 0.5, 0.25);
+    let edge = 2f64.powi(-20);
+    let tetrahedron =
+        |place: DVec3, edge: f64| [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|at| place + edge * at);
+    let points = [tetrahedron(DVec3::ZERO, 0.125), tetrahedron(far, edge)].concat();
+    let of_one = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let triangles: Vec<[u32; 3]> = [of_one, of_one.map(|corners| corners.map(|corner| corner + 4))].concat();
+    let boundary_of: Vec<BoundaryId> = (0..8).map(|triangle| BoundaryId(triangle / 4)).collect();
+    let sides = [0, 1].map(|grain| [Side::Grain(GrainId(grain)), Side::Exterior]);
+    let elements = Elements::Triangles(&triangles);
+    let surface = Surface { points: &points, elements, boundary_of: &boundary_of, sides: &sides };
+    let all = measure(&surface).in_space().expect("surfaces");
+    let small = &all.grains[1];
+    close(small.volume / (edge.powi(3) / 6.0), 1.0, 1e-15);
+    assert!((small.centroid - far - DVec3::splat(edge / 4.0)).length() < 1e-15);
+    // The integral of (x - edge/4)^2 is edge^5/160.
+    close(small.inertia.x_axis.x / (edge.powi(5) / 80.0), 1.0, 1e-14);
+}
+
+#[test]
 fn a_box_has_half_the_sum_of_its_sides_as_mean_width() {
     let [a, b, c] = [1.0, 2.0, 0.5];
     let domain = Domain::cuboid(DVec3::ZERO, DVec3::new(a, b, c)).expect("positive sides");

@@ -92,11 +92,10 @@ pub struct TriplePointMeasures {
 pub(super) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeasures {
     let surface = &complex.surface;
     let at = |point: u32| surface.points[point as usize].truncate();
-    let origin = surface.points.first().map_or(DVec2::ZERO, |point| point.truncate());
-    let mut sums = vec![Sums::default(); surface.sides.len()];
-    for (segment, boundary) in segments.iter().zip(surface.boundary_of) {
-        sums[boundary.index()].add_segment(segment.map(|end| at(end) - origin));
-    }
+    let by_boundary = surface.elements_by_boundary();
+    let ends_of =
+        |boundary: usize| by_boundary.of(boundary).iter().map(|segment| segments[*segment as usize].map(at));
+    let mut sums: Vec<Sums> = (0..surface.sides.len()).map(|boundary| Sums::of(ends_of(boundary))).collect();
     for pair in &complex.inner {
         let boundary = surface.boundary_of[pair[0] as usize];
         let [one, other] = pair.map(|segment| segments[segment as usize]);
@@ -112,7 +111,9 @@ pub(super) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeas
             // Of a copy the turning is known at the original only, where the sides are the other way round.
             let original = complex.originals[boundary].index();
             let turning = if original == boundary { sign * own.turning } else { -sums[original].turning };
-            grains.entry(grain).or_default().add(own, complex.sides[boundary][1 - end], sign, turning);
+            let grain = grains.entry(grain).or_default();
+            grain.add(own, complex.sides[boundary][1 - end], turning);
+            grain.enclosed.add_fans(ends_of(boundary), sign);
         }
     }
     let mut triple_points = Vec::new();
@@ -138,68 +139,92 @@ pub(super) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeas
     let boundaries = ids
         .zip(&sums)
         .filter(|(id, _)| complex.is_original(*id))
-        .map(|(id, sums)| sums.boundary(id, complex.sides[id.index()], origin));
+        .map(|(id, sums)| sums.boundary(id, complex.sides[id.index()]));
     PlaneMeasures {
         boundaries: boundaries.collect(),
-        grains: grains.into_iter().map(|(grain, sums)| sums.measures(grain, origin)).collect(),
+        grains: grains.into_iter().map(|(grain, sums)| sums.measures(grain)).collect(),
         triple_points,
         dihedral_angles: statistics(complex.angles()),
     }
 }
 
-/// Integrals over a boundary, and over the fan from the origin to it: positive where its first side is.
-#[derive(Debug, Clone, Copy)]
+/// Integrals over a boundary.
+#[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     length: f64,
-    /// The integrals of the position and of the unit normal along the boundary.
+    /// The integral of the position along the boundary, from the origin.
     line_moment: DVec2,
+    origin: DVec2,
+    /// The integral of the unit normal.
     normal: DVec2,
-    area: f64,
-    first_moment: DVec2,
-    second_moment: DMat2,
     turning: f64,
 }
 
-impl Default for Sums {
-    /// Nothing yet. What glam calls the default of a matrix is the identity.
-    fn default() -> Self {
-        let [line_moment, normal, first_moment] = [DVec2::ZERO; 3];
-        let second_moment = DMat2::ZERO;
-        Self { length: 0.0, line_moment, normal, area: 0.0, first_moment, second_moment, turning: 0.0 }
-    }
-}
-
 impl Sums {
-    fn add_segment(&mut self, [a, b]: [DVec2; 2]) {
-        let area = 0.5 * a.perp_dot(b);
-        let length = a.distance(b);
-        let sum = a + b;
-        let square = |v: DVec2| DMat2::from_cols(v * v.x, v * v.y);
-        self.length += length;
-        self.line_moment += sum * (0.5 * length);
-        self.normal -= (b - a).perp();
-        self.area += area;
-        // A triangle's integrals of r and of r r^T, one corner being the origin.
-        self.first_moment += sum * (area / 3.0);
-        self.second_moment += (square(a) + square(b) + square(sum)) * (area / 12.0);
+    fn of(segments: impl Iterator<Item = [DVec2; 2]> + Clone) -> Self {
+        let mut sums =
+            Self { origin: segments.clone().next().map_or(DVec2::ZERO, |[a, _]| a), ..Self::default() };
+        for ends in segments {
+            let [a, b] = ends.map(|end| end - sums.origin);
+            let length = a.distance(b);
+            sums.length += length;
+            sums.line_moment += (a + b) * (0.5 * length);
+            sums.normal -= (b - a).perp();
+        }
+        sums
     }
 
-    fn boundary(&self, boundary: BoundaryId, sides: [Side; 2], origin: DVec2) -> PlaneBoundaryMeasures {
+    fn boundary(&self, boundary: BoundaryId, sides: [Side; 2]) -> PlaneBoundaryMeasures {
         let per_length = if self.length > 0.0 { 1.0 / self.length } else { 0.0 };
         PlaneBoundaryMeasures {
             boundary,
             sides,
             length: self.length,
-            centroid: origin + self.line_moment * per_length,
+            centroid: self.origin + self.line_moment * per_length,
             mean_normal: self.normal * per_length,
             mean_curvature: self.turning * per_length,
         }
     }
 }
 
+/// Integrals over a grain, as the sum of fans to its boundaries.
+///
+/// Their apex is a point of the grain: of a grain that is small against its distance, fans from elsewhere leave no digit.
+#[derive(Debug, Clone, Copy)]
+struct Enclosed {
+    apex: Option<DVec2>,
+    area: f64,
+    first_moment: DVec2,
+    second_moment: DMat2,
+}
+
+impl Default for Enclosed {
+    /// Nothing yet. What glam calls the default of a matrix is the identity.
+    fn default() -> Self {
+        Self { apex: None, area: 0.0, first_moment: DVec2::ZERO, second_moment: DMat2::ZERO }
+    }
+}
+
+impl Enclosed {
+    fn add_fans(&mut self, segments: impl Iterator<Item = [DVec2; 2]>, sign: f64) {
+        let square = |v: DVec2| DMat2::from_cols(v * v.x, v * v.y);
+        for ends in segments {
+            let apex = *self.apex.get_or_insert(ends[0]);
+            let [a, b] = ends.map(|end| end - apex);
+            let area = sign * 0.5 * a.perp_dot(b);
+            let sum = a + b;
+            self.area += area;
+            // A triangle's integrals of r and of r r^T, one corner being the apex.
+            self.first_moment += sum * (area / 3.0);
+            self.second_moment += (square(a) + square(b) + square(sum)) * (area / 12.0);
+        }
+    }
+}
+
 #[derive(Debug, Default)]
 struct GrainSums {
-    sums: Sums,
+    length: f64,
+    enclosed: Enclosed,
     /// Turning within boundaries to other grains.
     inner_turning: f64,
     corner_count: usize,
@@ -207,19 +232,17 @@ struct GrainSums {
 }
 
 impl GrainSums {
-    fn add(&mut self, boundary: &Sums, beyond: Side, sign: f64, turning: f64) {
-        self.sums.length += boundary.length;
-        self.sums.area += sign * boundary.area;
-        self.sums.first_moment += sign * boundary.first_moment;
-        self.sums.second_moment += boundary.second_moment * sign;
+    fn add(&mut self, boundary: &Sums, beyond: Side, turning: f64) {
+        self.length += boundary.length;
         if beyond != Side::Exterior {
             self.inner_turning += turning;
         }
         self.beyond.push(beyond);
     }
 
-    fn measures(self, grain: GrainId, origin: DVec2) -> PlaneGrainMeasures {
-        let Sums { length, area, first_moment, second_moment, .. } = self.sums;
+    fn measures(self, grain: GrainId) -> PlaneGrainMeasures {
+        let length = self.length;
+        let Enclosed { apex, area, first_moment, second_moment } = self.enclosed;
         let centroid = first_moment / area;
         let square = DMat2::from_cols(centroid * centroid.x, centroid * centroid.y);
         let equivalent_diameter = Dimension::Two.ball_diameter(area);
@@ -231,7 +254,7 @@ impl GrainSums {
             grain,
             area,
             perimeter: length,
-            centroid: origin + centroid,
+            centroid: apex.unwrap_or_default() + centroid,
             second_moment: second_moment - square * area,
             circularity: PI * equivalent_diameter / length,
             equivalent_diameter,

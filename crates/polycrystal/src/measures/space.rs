@@ -7,6 +7,7 @@ use voronoi::Dimension;
 use super::complex::Complex;
 use super::lines::{Line, Lines};
 use crate::angles::{place_length, statistics};
+use crate::volume::triangle_volume;
 use crate::{AngleStatistics, BoundaryId, GrainId, Side, Surface};
 
 /// What a network in space is like.
@@ -139,12 +140,13 @@ pub struct QuadruplePointMeasures {
 
 pub(super) fn measure(complex: &Complex<'_>, triangles: &[[u32; 3]]) -> SpaceMeasures {
     let surface = &complex.surface;
-    let origin = surface.points.first().copied().unwrap_or(DVec3::ZERO);
-    let mut sums = vec![Sums::default(); surface.sides.len()];
-    for (triangle, boundary) in triangles.iter().zip(surface.boundary_of) {
-        let corners = triangle.map(|corner| surface.points[corner as usize] - origin);
-        sums[boundary.index()].add_triangle(corners);
-    }
+    let at = |corner: u32| surface.points[corner as usize];
+    let by_boundary = surface.elements_by_boundary();
+    let corners_of = |boundary: usize| {
+        by_boundary.of(boundary).iter().map(|triangle| triangles[*triangle as usize].map(at))
+    };
+    let mut sums: Vec<Sums> =
+        (0..surface.sides.len()).map(|boundary| Sums::of(corners_of(boundary))).collect();
     for pair in &complex.inner {
         let boundary = surface.boundary_of[pair[0] as usize];
         sums[boundary.index()].edges += bend(surface, *pair, &triangles[pair[0] as usize]);
@@ -157,7 +159,9 @@ pub(super) fn measure(complex: &Complex<'_>, triangles: &[[u32; 3]]) -> SpaceMea
             let original = complex.originals[boundary].index();
             let edges = if original == boundary { sign * own.edges } else { -sums[original].edges };
             let beyond = complex.sides[boundary][1 - end];
-            grains.entry(grain).or_default().add_boundary(own, beyond, sign, edges);
+            let grain = grains.entry(grain).or_default();
+            grain.add_boundary(own, beyond, edges);
+            grain.enclosed.add_cones(corners_of(boundary), sign);
         }
     }
     let lines = Lines::of(complex);
@@ -189,11 +193,11 @@ pub(super) fn measure(complex: &Complex<'_>, triangles: &[[u32; 3]]) -> SpaceMea
     let ids = (0u32..).map(BoundaryId);
     let boundaries = ids.zip(&sums).filter(|(id, _)| complex.is_original(*id)).map(|(id, sums)| {
         let sides = complex.sides[id.index()];
-        sums.boundary(id, sides, &rims[id.index()], origin)
+        sums.boundary(id, sides, &rims[id.index()])
     });
     SpaceMeasures {
         boundaries: boundaries.collect(),
-        grains: grains.into_iter().map(|(grain, sums)| sums.measures(grain, origin)).collect(),
+        grains: grains.into_iter().map(|(grain, sums)| sums.measures(grain)).collect(),
         triple_lines,
         quadruple_points: quadruple_points(complex, triangles, tangents),
         dihedral_angles: statistics(complex.angles()),
@@ -207,57 +211,79 @@ struct Rim {
     perimeter: f64,
 }
 
-/// Integrals over a boundary, and over the cone from the origin to it: positive where its first side is.
-#[derive(Debug, Clone, Copy)]
+/// Integrals over a boundary.
+#[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     area: f64,
     /// The sum of the normals of triangles, as long as their areas.
     normal: DVec3,
-    /// The integral of the position over the area.
+    /// The integral over the area of the position, from the origin.
     area_moment: DVec3,
-    volume: f64,
-    first_moment: DVec3,
-    second_moment: DMat3,
+    origin: DVec3,
     /// Lengths of edges times their exterior angles.
     edges: f64,
 }
 
-impl Default for Sums {
-    /// Nothing yet. What glam calls the default of a matrix is the identity.
-    fn default() -> Self {
-        let [normal, area_moment, first_moment] = [DVec3::ZERO; 3];
-        let second_moment = DMat3::ZERO;
-        Self { area: 0.0, normal, area_moment, volume: 0.0, first_moment, second_moment, edges: 0.0 }
-    }
-}
-
 impl Sums {
-    fn add_triangle(&mut self, [a, b, c]: [DVec3; 3]) {
-        let volume = a.dot(b.cross(c)) / 6.0;
-        let normal = 0.5 * (b - a).cross(c - a);
-        let sum = a + b + c;
-        let square = |v: DVec3| DMat3::from_cols(v * v.x, v * v.y, v * v.z);
-        self.area += normal.length();
-        self.normal += normal;
-        self.area_moment += sum * (normal.length() / 3.0);
-        self.volume += volume;
-        // A tetrahedron's integrals of r and of r r^T, one corner being the origin.
-        self.first_moment += sum * (volume / 4.0);
-        self.second_moment += (square(a) + square(b) + square(c) + square(sum)) * (volume / 20.0);
+    fn of(triangles: impl Iterator<Item = [DVec3; 3]> + Clone) -> Self {
+        let mut sums =
+            Self { origin: triangles.clone().next().map_or(DVec3::ZERO, |[a, ..]| a), ..Self::default() };
+        for corners in triangles {
+            let [a, b, c] = corners.map(|corner| corner - sums.origin);
+            let normal = 0.5 * (b - a).cross(c - a);
+            sums.area += normal.length();
+            sums.normal += normal;
+            sums.area_moment += (a + b + c) * (normal.length() / 3.0);
+        }
+        sums
     }
 
-    fn boundary(&self, boundary: BoundaryId, sides: [Side; 2], rim: &Rim, origin: DVec3) -> BoundaryMeasures {
+    fn boundary(&self, boundary: BoundaryId, sides: [Side; 2], rim: &Rim) -> BoundaryMeasures {
         let per_area = if self.area > 0.0 { 1.0 / self.area } else { 0.0 };
         BoundaryMeasures {
             boundary,
             sides,
             area: self.area,
-            centroid: origin + self.area_moment * per_area,
+            centroid: self.origin + self.area_moment * per_area,
             mean_normal: self.normal * per_area,
             edge_count: rim.edge_count,
             perimeter: rim.perimeter,
             // An edge has half its angle as the integral of mean curvature across it.
             mean_curvature: 0.5 * self.edges * per_area,
+        }
+    }
+}
+
+/// Integrals over a grain, as the sum of cones to its boundaries.
+///
+/// Their apex is a point of the grain: of a grain that is small against its distance, cones from elsewhere leave no digit.
+#[derive(Debug, Clone, Copy)]
+struct Enclosed {
+    apex: Option<DVec3>,
+    volume: f64,
+    first_moment: DVec3,
+    second_moment: DMat3,
+}
+
+impl Default for Enclosed {
+    /// Nothing yet. What glam calls the default of a matrix is the identity.
+    fn default() -> Self {
+        Self { apex: None, volume: 0.0, first_moment: DVec3::ZERO, second_moment: DMat3::ZERO }
+    }
+}
+
+impl Enclosed {
+    fn add_cones(&mut self, triangles: impl Iterator<Item = [DVec3; 3]>, sign: f64) {
+        let square = |v: DVec3| DMat3::from_cols(v * v.x, v * v.y, v * v.z);
+        for corners in triangles {
+            let apex = *self.apex.get_or_insert(corners[0]);
+            let [a, b, c] = corners.map(|corner| corner - apex);
+            let volume = sign * triangle_volume([a, b, c]);
+            let sum = a + b + c;
+            self.volume += volume;
+            // A tetrahedron's integrals of r and of r r^T, one corner being the apex.
+            self.first_moment += sum * (volume / 4.0);
+            self.second_moment += (square(a) + square(b) + square(c) + square(sum)) * (volume / 20.0);
         }
     }
 }
@@ -420,7 +446,8 @@ fn count_vertices(
 
 #[derive(Debug, Default)]
 struct GrainSums {
-    sums: Sums,
+    area: f64,
+    enclosed: Enclosed,
     /// Lengths times exterior angles of all edges.
     edges: f64,
     /// The same within boundaries to other grains.
@@ -435,11 +462,8 @@ struct GrainSums {
 }
 
 impl GrainSums {
-    fn add_boundary(&mut self, boundary: &Sums, beyond: Side, sign: f64, edges: f64) {
-        self.sums.area += boundary.area;
-        self.sums.volume += sign * boundary.volume;
-        self.sums.first_moment += sign * boundary.first_moment;
-        self.sums.second_moment += boundary.second_moment * sign;
+    fn add_boundary(&mut self, boundary: &Sums, beyond: Side, edges: f64) {
+        self.area += boundary.area;
         self.edges += edges;
         if beyond != Side::Exterior {
             self.inner_edges += edges;
@@ -447,8 +471,9 @@ impl GrainSums {
         self.beyond.push(beyond);
     }
 
-    fn measures(self, grain: GrainId, origin: DVec3) -> GrainMeasures {
-        let Sums { area, volume, first_moment, second_moment, .. } = self.sums;
+    fn measures(self, grain: GrainId) -> GrainMeasures {
+        let area = self.area;
+        let Enclosed { apex, volume, first_moment, second_moment } = self.enclosed;
         let centroid = first_moment / volume;
         let square = DMat3::from_cols(centroid * centroid.x, centroid * centroid.y, centroid * centroid.z);
         let central = second_moment - square * volume;
@@ -465,7 +490,7 @@ impl GrainSums {
             grain,
             volume,
             area,
-            centroid: origin + centroid,
+            centroid: apex.unwrap_or_default() + centroid,
             inertia: DMat3::from_diagonal(DVec3::splat(trace)) - central,
             sphericity: PI * equivalent_diameter.powi(2) / area,
             equivalent_diameter,
