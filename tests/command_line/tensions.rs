@@ -169,15 +169,15 @@ fn tensions_that_are_mistaken() {
     for (text, message) in [
         (
             "high",
-            "'high' is no law; give a number such as 0.8, read-shockley(15), that times a number, or a .csv file",
+            "'high' is no law; give a number such as 0.8, read-shockley(15), humphreys(15), one of them times a number, or a .csv file",
         ),
         (
             "-1",
-            "'-1' is no law; give a number such as 0.8, read-shockley(15), that times a number, or a .csv file",
+            "'-1' is no law; give a number such as 0.8, read-shockley(15), humphreys(15), one of them times a number, or a .csv file",
         ),
         (
             "read(15)",
-            "'read(15)' is no law; give a number such as 0.8, read-shockley(15), that times a number, or a .csv file",
+            "'read(15)' is no law; give a number such as 0.8, read-shockley(15), humphreys(15), one of them times a number, or a .csv file",
         ),
         ("read-shockley(200)", "the angle 200 is not above 0, up to 180 degrees"),
     ] {
@@ -197,11 +197,16 @@ fn tensions_that_are_mistaken() {
         ),
         (
             "--phase a:0.5 --phase b:0.5,symmetry=hexagonal --texture random --tension read-shockley(15)",
-            "phases a and b have crystals of different symmetries and no disorientation; give the boundaries between them a number: --tension a/b:1",
+            "--tension depends on disorientations, and phases a and b have crystals of different symmetries; give the boundaries between them a number, such as a/b:1",
         ),
         (
             "--texture random --misorientations m.csv --tension read-shockley(15)",
-            "--misorientations swaps orientations when boundaries have relaxed, and --tension 1.0*read-shockley(15.0) needs them before; leave one of them out",
+            "--tension 1.0*read-shockley(15.0) needs orientations before boundaries relax, and --misorientations swaps them after; leave one of them out",
+        ),
+        ("--mobility 2", "--mobility is for grains that grow; give --free as well"),
+        (
+            "--free --mobility a/b:2",
+            "--mobility names the phase 'a'; the phases are none; give some with --phase",
         ),
     ] {
         workplace.refuses(arguments, USAGE, message);
@@ -224,5 +229,57 @@ fn tensions_that_are_mistaken() {
         "--seeds 3 --tension 0",
         FAILED,
         "--tension gives no boundary more than 0; give one a positive number",
+    );
+}
+
+/// Two grains of one kind lose or gain area by what curvature has it, times the mobility of their boundaries.
+#[test]
+fn mobilities_are_those_of_the_law_and_change_the_growth() {
+    let workplace = Workplace::new();
+    let run = |law: &str| {
+        let said = workplace.run(&format!(
+            "--dim 2 --periodic x,y --seeds 40 -n 1 --relax 0.02 --free --texture cube(6) {law} --stats t.json --json-summary s.json -o a.vtp"
+        ));
+        (said, json(&workplace, "t.json"), json(&workplace, "s.json"))
+    };
+    let areas = |table: &Value| -> Vec<f64> {
+        table["grains"].as_array().unwrap().iter().map(|grain| number(grain, "area")).collect()
+    };
+    let (_, unit, _) = run("");
+    let (said, grown, summary) = run("--mobility humphreys(15)");
+    assert!(said.contains("mobilities  asked 1.0*humphreys(15.0); from "), "{said}");
+    assert_ne!(areas(&unit), areas(&grown));
+    let reached = &summary["mobilities"];
+    for boundary in grown["boundaries"].as_array().unwrap() {
+        let angle = number(boundary, "Disorientation") / 15.0;
+        let mobility = (1.0 - (-5.0 * angle.powi(4)).exp()).max(0.05);
+        assert!((number(boundary, "Mobility") - mobility).abs() < 1e-9, "{boundary}: not {mobility}");
+        assert!(number(reached, "least") <= mobility + 1e-9 && mobility <= number(reached, "largest") + 1e-9);
+    }
+    assert!(String::from_utf8_lossy(&workplace.bytes("a.vtp")).contains(r#"Name="Mobility""#));
+    // The unit is that of the mean.
+    for (a, b) in areas(&grown).iter().zip(areas(&run("--mobility 1e-6*humphreys(15)").1)) {
+        assert!((a / b - 1.0).abs() < 1e-9, "{a} and {b}");
+    }
+    for (a, b) in areas(&unit).iter().zip(areas(&run("--mobility 7").1)) {
+        assert!((a / b - 1.0).abs() < 1e-9, "{a} and {b}");
+    }
+}
+
+/// Either fell back without a word of why, or named a grain to merge.
+#[test]
+fn what_has_no_equilibrium_is_named_where_nothing_comes_to_rest() {
+    let workplace = Workplace::new();
+    let wet = "--phase a:0.5 --phase b:0.5 --tension 1 --seeds 30 -n 0";
+    let said = workplace.run(&format!("{wet} --tension a/a:6"));
+    assert!(
+        said.contains("led to no valid network, as lines without equilibrium are never at rest"),
+        "{said}"
+    );
+    std::fs::remove_file(workplace.path("grains.vtp")).unwrap();
+    workplace.refuses(
+        &format!("{wet} --tension a/a:3 --dim 2 --rng-seed 8"),
+        FAILED,
+        "the network is invalid:  ... ; at 12 triple points one tension exceeds the sum of the others, as of grains 11-13-16, and nothing is at rest there: give tensions of which none is above twice the least",
     );
 }

@@ -245,6 +245,10 @@ fn smoothing(draw: &mut Draw, domain: &Domain, count: u32, limits: Limits, optio
     if draw.chance(0.1) {
         options.switch("free");
     }
+    if options.has("free") && draw.chance(0.3) {
+        let law = if options.has("texture") { "humphreys(15)" } else { "2" };
+        options.set("mobility", [law]);
+    }
     if draw.chance(0.15) {
         options.set("wall-tension", [draw.between(0.0, 1.5)]);
     }
@@ -328,6 +332,7 @@ mod tests {
             "lloyd",
             "min-diameter",
             "names",
+            "mobility",
             "no-mesh",
             "output",
             "periodic",

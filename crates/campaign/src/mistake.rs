@@ -44,6 +44,7 @@ const MISTAKES: &[Mistake] = &[
         case.options.unset("color-by");
         case.options.unset("phase");
         case.options.unset("tension");
+        case.options.unset("mobility");
         // It is refused without a texture before anything is written.
         case.options.unset("sample-symmetry");
     }),
@@ -151,6 +152,7 @@ fn sources(options: &mut Options) {
         "gradient",
         "phase",
         "tension",
+        "mobility",
     ] {
         options.unset(name);
     }

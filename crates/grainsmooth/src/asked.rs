@@ -16,7 +16,7 @@ pub struct AskedAndReached {
 }
 
 impl Polycrystal {
-    /// Every figure that was asked for: of sizes, phases, textures and disorientations. Lengths are in the unit of the box.
+    /// Every figure that was asked for: of sizes, phases, tensions, textures and disorientations. Lengths are in the unit of the box.
     pub fn asked_and_reached(&self) -> Vec<AskedAndReached> {
         let cells = &self.cells;
         let phases: Vec<&str> = cells.phases.iter().flat_map(|phases| phases.names()).collect();
@@ -30,6 +30,13 @@ impl Polycrystal {
             for PhaseShare { name, fraction_asked, fraction, .. } in phases.shares(&cells.volumes(), volumes)
             {
                 add(format!("share of the volume, {name}"), fraction_asked, fraction);
+            }
+        }
+        if let Some(tensions) = &self.tensions {
+            let without = tensions.without_equilibrium.len() as f64;
+            add("lines where one tension exceeds the sum of the others".to_owned(), 0.0, without);
+            if let Some(residual) = self.residual {
+                add("residual of Herring's condition, rms".to_owned(), 0.0, residual.rms);
             }
         }
         let Some(texture) = &cells.texture else { return rows };

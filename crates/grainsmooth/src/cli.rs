@@ -155,6 +155,7 @@ impl Arguments {
             relaxation: Relaxation::default(),
             wall_tension: smoothing.wall_tension,
             tensions: smoothing.tension.clone(),
+            mobilities: smoothing.mobility.clone(),
             volumes: smoothing.volumes(),
             regularize: smoothing.regularize,
             levels: smoothing.levels,

@@ -122,6 +122,8 @@ pub struct Config {
     pub wall_tension: f64,
     /// The tensions of boundaries between grains; 1 where there is none for them.
     pub tensions: Vec<LawOptions>,
+    /// Mobilities of boundaries, in any unit, where grains grow; empty where all are 1.
+    pub mobilities: Vec<LawOptions>,
     /// Whether relaxation keeps the grains' volumes.
     pub volumes: Volumes,
     /// Where the topology of the cells is to stay, the length, in units of the mean grain size, below which edges collapse before
@@ -187,6 +189,7 @@ impl Default for Config {
             relaxation: Relaxation::default(),
             wall_tension: 0.0,
             tensions: Vec::new(),
+            mobilities: Vec::new(),
             volumes: Volumes::Kept,
             regularize: None,
             levels: 3,

@@ -3,18 +3,24 @@
 use std::fmt;
 
 use polycrystal::{Attempt, NetworkError};
+use voronoi::Dimension;
 
+use crate::boundary_law::line_name;
 use crate::{Error, FailedGrain, Tessellated};
 
 /// Why no network could be made of some cells. In words it is one line: what went wrong last, with whom, and what helps.
 #[derive(Debug)]
 pub struct Failure {
+    /// Of the cells.
+    pub dimension: Dimension,
     /// What went wrong on the last way that was tried.
     pub cause: NetworkError,
     /// The grain that it failed at, if it is about grains.
     pub grain: Option<FailedGrain>,
     /// What helps where grains cannot grow freely for so long.
     pub growth: Option<Growth>,
+    /// The grains around each line of the cells (in the plane: point) where one tension exceeds the sum of the others.
+    pub without_equilibrium: Vec<Vec<u32>>,
     /// What was tried before, and what each attempt said.
     pub attempts: Vec<Attempt>,
 }
@@ -34,7 +40,9 @@ impl Failure {
         let (more, cause) = error.into_attempts();
         attempts.extend(more);
         let grain = FailedGrain::of(&cause, cells);
-        Self { cause, grain, growth: None, attempts }
+        let without_equilibrium = cells.law.without_equilibrium_in(&cells.tessellation);
+        let dimension = cells.tessellation.domain().dimension();
+        Self { dimension, cause, grain, growth: None, without_equilibrium, attempts }
     }
 
     /// The same, with what helps where grains grow.
@@ -54,6 +62,16 @@ impl fmt::Display for Failure {
         write!(out, "{}", self.cause)?;
         if let Some(grain) = &self.grain {
             write!(out, "; {grain}")?;
+        }
+        if let [first, ..] = &self.without_equilibrium[..] {
+            // No merged cell helps where tensions leave nothing at rest.
+            return write!(
+                out,
+                "; at {} triple {} one tension exceeds the sum of the others, as of grains {}, and nothing is at rest there: give tensions of which none is above twice the least",
+                self.without_equilibrium.len(),
+                if self.dimension == Dimension::Two { "points" } else { "lines" },
+                line_name(first)
+            );
         }
         match (self.growth, self.grain.and_then(|grain| grain.least_diameter())) {
             (Some(Growth::Until(time)), _) => write!(out, "; --relax {time} works"),

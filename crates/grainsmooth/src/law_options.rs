@@ -1,15 +1,13 @@
-//! What tensions are asked for, by phases and by disorientation.
+//! What tensions and mobilities are asked for, by phases and by disorientation.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use polycrystal::Volumes;
 use thiserror::Error;
 
 use crate::Config;
 use crate::size_file::is_size_file;
-
-/// The name of the law of small angles.
-const READ_SHOCKLEY: &str = "read-shockley";
 
 /// A law for the boundaries between two phases, or for all that have none of their own.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,15 +23,67 @@ pub struct LawOptions {
 pub enum LawSource {
     /// The same whatever the disorientation.
     Number(f64),
-    /// A number times x (1 - ln x) after Read and Shockley (1950), with x the disorientation as a share of an angle, from where on it is 1.
-    ReadShockley {
-        /// The number.
+    /// A curve over the disorientation.
+    Curve {
+        /// What it is multiplied by.
         factor: f64,
-        /// The angle in degrees.
+        /// Which.
+        curve: LawCurve,
+        /// The angle in degrees from where boundaries count as of high angle.
         angle: f64,
     },
     /// A text file with angles in degrees and what boundaries have there.
     File(PathBuf),
+}
+
+/// A curve over the disorientation as a share x of an angle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LawCurve {
+    /// x (1 - ln x), and 1 from 1 on: tensions after Read and Shockley (1950).
+    ReadShockley,
+    /// 1 - exp(-5 x^4): mobilities after Humphreys (1997).
+    Humphreys,
+}
+
+impl LawCurve {
+    const ALL: [Self; 2] = [Self::ReadShockley, Self::Humphreys];
+
+    /// Its name on the command line.
+    fn name(self) -> &'static str {
+        match self {
+            Self::ReadShockley => "read-shockley",
+            Self::Humphreys => "humphreys",
+        }
+    }
+
+    /// Its value, from 0 to 1, at a share from 0 on.
+    pub(crate) fn at(self, share: f64) -> f64 {
+        match self {
+            Self::ReadShockley if share >= 1.0 => 1.0,
+            Self::ReadShockley if share > 0.0 => share * (1.0 - libm::log(share)),
+            Self::ReadShockley => 0.0,
+            Self::Humphreys => -libm::expm1(-5.0 * share.powi(4)),
+        }
+    }
+}
+
+/// What laws are for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LawKind {
+    /// Energy per area.
+    Tension,
+    /// Velocity per pressure.
+    Mobility,
+}
+
+impl LawKind {
+    /// Its name, as in options and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tension => "tension",
+            Self::Mobility => "mobility",
+        }
+    }
 }
 
 impl FromStr for LawOptions {
@@ -62,7 +112,7 @@ impl FromStr for LawSource {
         }
         let mistaken = || {
             format!(
-                "'{text}' is no law; give a number such as 0.8, read-shockley(15), that times a number, or a .csv file"
+                "'{text}' is no law; give a number such as 0.8, read-shockley(15), humphreys(15), one of them times a number, or a .csv file"
             )
         };
         let number = |text: &str| {
@@ -74,13 +124,14 @@ impl FromStr for LawSource {
             None => (1.0, text),
         };
         let Some((name, angle)) = curve.split_once('(') else { return number(text).map(Self::Number) };
-        let angle =
-            angle.trim().strip_suffix(')').filter(|_| name.trim() == READ_SHOCKLEY).ok_or_else(mistaken)?;
+        let curve =
+            LawCurve::ALL.into_iter().find(|curve| curve.name() == name.trim()).ok_or_else(mistaken)?;
+        let angle = angle.trim().strip_suffix(')').ok_or_else(mistaken)?;
         let degrees = number(angle)?;
         if !(degrees > 0.0 && degrees <= 180.0) {
             return Err(format!("the angle {angle} is not above 0, up to 180 degrees"));
         }
-        Ok(Self::ReadShockley { factor, angle: degrees })
+        Ok(Self::Curve { factor, curve, angle: degrees })
     }
 }
 
@@ -89,7 +140,9 @@ impl LawOptions {
     pub fn text(&self) -> String {
         let law = match &self.law {
             LawSource::Number(number) => format!("{number:?}"),
-            LawSource::ReadShockley { factor, angle } => format!("{factor:?}*{READ_SHOCKLEY}({angle:?})"),
+            LawSource::Curve { factor, curve, angle } => {
+                format!("{factor:?}*{}({angle:?})", curve.name())
+            }
             LawSource::File(path) => path.display().to_string(),
         };
         match &self.phases {
@@ -101,9 +154,19 @@ impl LawOptions {
 
 /// A law that does not go with the grains that there are.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum LawError {
+#[error("--{} {problem}", kind.name())]
+pub struct LawError {
+    /// What the law is for.
+    pub kind: LawKind,
+    /// What is wrong with it.
+    pub problem: LawProblem,
+}
+
+/// What is wrong with a law.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum LawProblem {
     /// A law names a phase that there is not.
-    #[error("--tension names the phase '{name}'; the phases are {known}")]
+    #[error("names the phase '{name}'; the phases are {known}")]
     UnknownPhase {
         /// The name.
         name: String,
@@ -111,20 +174,20 @@ pub enum LawError {
         known: String,
     },
     /// Two laws are for the same boundaries.
-    #[error("--tension has two laws for {boundaries}; leave one out")]
+    #[error("has two laws for {boundaries}; leave one out")]
     Twice {
         /// Which.
         boundaries: String,
     },
     /// A law of the disorientation, and grains have no orientations.
-    #[error("--tension {law} depends on orientations; give the grains some, such as --texture random")]
+    #[error("{law} depends on orientations; give the grains some, such as --texture random")]
     NoOrientations {
         /// The law.
         law: String,
     },
     /// A law of the disorientation, and crystals of two symmetries have none.
     #[error(
-        "phases {first} and {second} have crystals of different symmetries and no disorientation; give the boundaries between them a number: --tension {first}/{second}:1"
+        "depends on disorientations, and phases {first} and {second} have crystals of different symmetries; give the boundaries between them a number, such as {first}/{second}:1"
     )]
     NoDisorientation {
         /// A phase.
@@ -134,43 +197,63 @@ pub enum LawError {
     },
     /// Orientations that are swapped after boundaries have relaxed by them.
     #[error(
-        "--misorientations swaps orientations when boundaries have relaxed, and --tension {law} needs them before; leave one of them out"
+        "{law} needs orientations before boundaries relax, and --misorientations swaps them after; leave one of them out"
     )]
     Swapped {
         /// The law.
         law: String,
     },
     /// No boundary has any.
-    #[error("--tension gives no boundary more than 0; give one a positive number")]
+    #[error("gives no boundary more than 0; give one a positive number")]
     AllVanish,
+    /// Mobilities of boundaries whose grains keep their volumes.
+    #[error("is for grains that grow; give --free as well")]
+    NotFree,
 }
 
 impl Config {
+    /// The laws of a kind that are asked for.
+    pub fn laws(&self, kind: LawKind) -> &[LawOptions] {
+        match kind {
+            LawKind::Tension => &self.tensions,
+            LawKind::Mobility => &self.mobilities,
+        }
+    }
+
     /// Checks that the laws of boundaries go with each other, the phases and the orientations.
     ///
     /// # Errors
     /// What does not.
     pub fn check_laws(&self) -> Result<(), LawError> {
-        self.laws_of_pairs().map(|_| ())
+        self.laws_of_pairs(LawKind::Tension)?;
+        self.laws_of_pairs(LawKind::Mobility)?;
+        if !self.mobilities.is_empty() && self.volumes == Volumes::Kept {
+            return Err(LawError { kind: LawKind::Mobility, problem: LawProblem::NotFree });
+        }
+        Ok(())
     }
 
-    /// Which of some laws the boundaries between each two phases have, as rows of a square table: of one row without phases. Nothing
+    /// Which laws of a kind the boundaries between each two phases have, as rows of a square table: of one row without phases. Nothing
     /// where no law is for them.
     ///
     /// # Errors
     /// As of [`Self::check_laws`].
-    pub(crate) fn laws_of_pairs(&self) -> Result<Vec<Option<&LawSource>>, LawError> {
+    pub(crate) fn laws_of_pairs(&self, kind: LawKind) -> Result<Vec<Option<&LawSource>>, LawError> {
+        self.find_laws(self.laws(kind)).map_err(|problem| LawError { kind, problem })
+    }
+
+    fn find_laws<'a>(&'a self, laws: &'a [LawOptions]) -> Result<Vec<Option<&'a LawSource>>, LawProblem> {
         let count = self.phases.len().max(1);
-        let mut table: Vec<Option<&LawSource>> = vec![None; count * count];
+        let mut table: Vec<Option<&'a LawSource>> = vec![None; count * count];
         let known = || match self.phases.is_empty() {
             true => "none; give some with --phase".to_owned(),
             false => self.phases.iter().map(|phase| phase.name.as_str()).collect::<Vec<_>>().join(", "),
         };
         let mut of_all = None;
-        for law in &self.tensions {
+        for law in laws {
             let Some(names) = &law.phases else {
                 if of_all.replace(&law.law).is_some() {
-                    return Err(LawError::Twice { boundaries: "all boundaries".to_owned() });
+                    return Err(LawProblem::Twice { boundaries: "all boundaries".to_owned() });
                 }
                 continue;
             };
@@ -178,11 +261,11 @@ impl Config {
             for (place, name) in pair.iter_mut().zip(names) {
                 let found = self.phases.iter().position(|phase| phase.name == *name);
                 *place =
-                    found.ok_or_else(|| LawError::UnknownPhase { name: name.clone(), known: known() })?;
+                    found.ok_or_else(|| LawProblem::UnknownPhase { name: name.clone(), known: known() })?;
             }
             let [first, second] = pair;
             if table[first * count + second].is_some() {
-                return Err(LawError::Twice { boundaries: names.join("/") });
+                return Err(LawProblem::Twice { boundaries: names.join("/") });
             }
             table[first * count + second] = Some(&law.law);
             table[second * count + first] = Some(&law.law);
@@ -195,10 +278,10 @@ impl Config {
             }
             let text = || LawOptions { phases: None, law: (*source).clone() }.text();
             if !self.has_texture() {
-                return Err(LawError::NoOrientations { law: text() });
+                return Err(LawProblem::NoOrientations { law: text() });
             }
             if self.texture.misorientations.is_some() {
-                return Err(LawError::Swapped { law: text() });
+                return Err(LawProblem::Swapped { law: text() });
             }
             let symmetry = |phase: usize| {
                 self.phases.get(phase).and_then(|phase| phase.symmetry).unwrap_or(self.texture.symmetry)
@@ -206,7 +289,7 @@ impl Config {
             let (first, second) = (place / count, place % count);
             if symmetry(first) != symmetry(second) {
                 let [first, second] = [first, second].map(|phase| self.phases[phase].name.clone());
-                return Err(LawError::NoDisorientation { first, second });
+                return Err(LawProblem::NoDisorientation { first, second });
             }
         }
         Ok(table)

@@ -73,7 +73,7 @@ mod unfinished;
 pub mod vtk;
 
 pub use asked::AskedAndReached;
-pub use boundary_law::{BoundaryLaw, TensionsReached};
+pub use boundary_law::{BoundaryLaw, LawReached, TensionsReached};
 pub use cell_table::{CellTable, TableFormat};
 pub use check_report::{CheckReport, Expectation, ReportedFault, SizesFound, Spread, Statistic};
 pub use config::{Config, FileOptions, PeriodicCut, SeedSource, Shape};
@@ -93,7 +93,7 @@ pub use grain_sizes::{GrainSizes, SizesFit, SizesReached};
 pub use grain_texture::{ComponentShare, GrainTexture, HistogramFit};
 pub use labelled_file::{FileElements, LabelledFile};
 pub use lattice::{Lattice, LatticeFit};
-pub use law_options::{LawError, LawOptions, LawSource};
+pub use law_options::{LawCurve, LawError, LawKind, LawOptions, LawProblem, LawSource};
 pub use measured_sample::{MeasuredGrain, MeasuredSample};
 pub use mesh_bezier::{BezierFile, read_bezier};
 pub use mesh_edit::{EdgeEdit, edit_edges};

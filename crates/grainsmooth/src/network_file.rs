@@ -29,6 +29,9 @@ pub(crate) const NUMBER_OF_GRAINS: &str = "NumberOfGrains";
 /// The array of the tensions of boundaries.
 pub(crate) const TENSION: &str = "Tension";
 
+/// The array of boundaries' mobilities.
+pub(crate) const MOBILITY: &str = "Mobility";
+
 /// The array of the numbers of grains' seeds.
 pub(crate) const SEED_ID: &str = "SeedId";
 
@@ -253,6 +256,10 @@ impl Polycrystal {
         if !self.config.tensions.is_empty() {
             tuples
                 .push(ItemTuples::numbers(TENSION, self.network.tensions().iter().map(|tension| [*tension])));
+        }
+        if !self.config.mobilities.is_empty() {
+            let mobilities = self.network.mobilities().iter();
+            tuples.push(ItemTuples::numbers(MOBILITY, mobilities.map(|mobility| [*mobility])));
         }
         tuples
     }

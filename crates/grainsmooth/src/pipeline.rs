@@ -21,8 +21,8 @@ use crate::failure::Growth;
 use crate::formats::LABEL_BYTES;
 use crate::memory::{ControlMesh, LevelSize, available_memory, check_levels};
 use crate::{
-    BoundaryLaw, Config, Error, Failure, PeriodicCut, SeedSource, TensionsReached, Tessellated, Topology,
-    tessellate,
+    BoundaryLaw, Config, Error, Failure, LawReached, PeriodicCut, SeedSource, TensionsReached, Tessellated,
+    Topology, tessellate,
 };
 
 /// A part of a run, in the order in which they follow each other.
@@ -109,6 +109,8 @@ pub struct Polycrystal {
     pub residual: Option<HerringResidual>,
     /// The tensions of boundaries, where laws of them are asked for; of grains cut at a periodic box, before the cut.
     pub tensions: Option<TensionsReached>,
+    /// Mobilities, where laws are asked for.
+    pub mobilities: Option<LawReached>,
     /// Angles between boundaries of the flat network, before relaxation.
     pub flat_angles: Vec<WeightedAngle>,
     /// Their statistics, if boundaries meet inside the domain.
@@ -192,7 +194,7 @@ impl Polycrystal {
             }
             Err(error) => return Err(Failure::new(error, self.attempts, &self.cells).into()),
         }
-        self.network = self.network.with_tensions(|boundary| self.cells.law.tension(boundary))?;
+        self.network = self.cells.law.apply(self.network)?;
         self.add_time(Stage::Subdivision, start.elapsed());
         let start = Instant::now();
         match validate(&self.network, &self.points) {
@@ -332,15 +334,16 @@ pub fn smooth_watched(
         attempts,
         residual,
         tensions: None,
+        mobilities: None,
         flat_angles,
         angles_before,
         validation,
         times,
     };
     polycrystal.fit_misorientations();
-    if !polycrystal.config.tensions.is_empty() {
-        polycrystal.tensions = polycrystal.cells.law.reached(&polycrystal.network, &polycrystal.measures());
-    }
+    let law = &polycrystal.cells.law;
+    polycrystal.tensions = law.tensions_reached(&polycrystal.network, || polycrystal.measures());
+    polycrystal.mobilities = law.mobilities_reached(&polycrystal.network);
     Ok(polycrystal)
 }
 
@@ -554,7 +557,7 @@ fn network(
     let length = config.effective_regularize();
     let network_of = |cells, face_mesh| {
         let (network, flat) = Network::with_face_mesh(cells, face_mesh, junctions, levels as usize)?;
-        Ok::<_, NetworkError>((network.with_tensions(|boundary| law.tension(boundary))?, flat))
+        Ok::<_, NetworkError>((law.apply(network)?, flat))
     };
     let (regular, collapsed) = match regularization {
         Regularization::Foreseeing => {

@@ -139,6 +139,6 @@ impl Series {
 fn network_of(cells: &Tessellation, polycrystal: &Polycrystal) -> Result<Network, NetworkError> {
     let (finished, junctions) = (&polycrystal.network, polycrystal.config.junctions);
     let (network, _) = Network::new(cells, junctions, finished.levels().len() - 1)?;
-    let network = network.with_tensions(|boundary| polycrystal.cells.law.tension(boundary))?;
+    let network = polycrystal.cells.law.apply(network)?;
     Ok(network.with_cell_volumes(finished.cell_volumes().to_vec()))
 }

@@ -102,6 +102,9 @@ impl Config {
         if !self.tensions.is_empty() {
             add("tension", texts(self.tensions.iter().map(LawOptions::text)));
         }
+        if !self.mobilities.is_empty() {
+            add("mobility", texts(self.mobilities.iter().map(LawOptions::text)));
+        }
         if self.volumes == Volumes::Free {
             add("free", true.into());
         }

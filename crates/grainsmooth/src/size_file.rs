@@ -6,8 +6,8 @@ use std::path::Path;
 use sizes::{Table, TableError};
 use voronoi::Dimension;
 
-use crate::Error;
 use crate::text_table::{self, TextProblem};
+use crate::{Error, LawKind};
 
 /// The line of a fault, counted from 1, and what it is.
 pub(crate) type Fault = (usize, String);
@@ -135,23 +135,24 @@ pub(crate) fn read_gradient_file(path: &Path) -> Result<Vec<[f64; 2]>, Error> {
 ///
 /// # Errors
 /// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
-pub(crate) fn read_law_file(path: &Path) -> Result<Vec<[f64; 2]>, Error> {
+pub(crate) fn read_law_file(path: &Path, kind: LawKind) -> Result<Vec<[f64; 2]>, Error> {
     read(path, |content| {
         let rows = Rows::new(content)?;
-        let places = match (rows.named(&["angle"]), rows.named(&["tension"])) {
-            (Some(angle), Some(tension)) => [angle, tension],
+        let places = match (rows.named(&["angle"]), rows.named(&[kind.name()])) {
+            (Some(angle), Some(value)) => [angle, value],
             _ if rows.names.is_empty() && rows.rows.iter().all(|(_, columns)| columns.len() == 2) => [0, 1],
-            _ => return Err((rows.first_line, "name two columns angle and tension".to_owned())),
+            _ => return Err((rows.first_line, format!("name two columns angle and {}", kind.name()))),
         };
         let table = rows.numbers(places)?;
         if table.is_empty() {
-            return Err((1, "holds no angles; give an angle and a tension on each line".to_owned()));
+            return Err((1, format!("holds no angles; give an angle and a {} on each line", kind.name())));
         }
         for (row, [angle, value]) in table.iter().enumerate() {
             let line = rows.rows[row].0;
             if !((0.0..=180.0).contains(angle) && value.is_finite() && *value >= 0.0) {
                 let problem = format!(
-                    "the tension {value} at {angle} degrees is negative or no number, or the angle not from 0 to 180; correct it"
+                    "the {} {value} at {angle} degrees is negative or no number, or the angle not from 0 to 180; correct it",
+                    kind.name()
                 );
                 return Err((line, problem));
             }

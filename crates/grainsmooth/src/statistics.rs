@@ -12,7 +12,7 @@ use serde::Serialize;
 use voronoi::Dimension;
 
 use crate::grain_phases::PHASE;
-use crate::network_file::TENSION;
+use crate::network_file::{MOBILITY, TENSION};
 use crate::table::{Table, Value};
 use crate::{Error, GrainTexture, Output, Polycrystal, StagedFiles, TableFormat, Topology};
 
@@ -91,9 +91,15 @@ impl Polycrystal {
             let phase = |grain: GrainId| i64::from(phases.number(grain.index()));
             grains.add_column(PHASE, |row| Value::Integer(row[0].grain().map_or(0, phase)));
         }
-        if let Some(boundaries) = others.get_mut("boundaries").filter(|_| !self.config.tensions.is_empty()) {
-            let tension = |number: &Value| Some(self.network.tensions()[number.grain()?.index()]);
-            boundaries.add_column(TENSION, |row| Value::Number(tension(&row[0]).unwrap_or(f64::NAN)));
+        let laws = [
+            (TENSION, &self.config.tensions, self.network.tensions()),
+            (MOBILITY, &self.config.mobilities, self.network.mobilities()),
+        ];
+        for (name, _, values) in laws.into_iter().filter(|(_, laws, _)| !laws.is_empty()) {
+            if let Some(boundaries) = others.get_mut("boundaries") {
+                let value = |number: &Value| Some(values[number.grain()?.index()]);
+                boundaries.add_column(name, |row| Value::Number(value(&row[0]).unwrap_or(f64::NAN)));
+            }
         }
         if let Some(texture) = &self.cells.texture {
             add_orientations(texture, &mut grains);

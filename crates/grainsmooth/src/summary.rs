@@ -84,6 +84,9 @@ impl fmt::Display for Summary<'_> {
         if let Some(tensions) = &polycrystal.tensions {
             write!(out, "{tensions}")?;
         }
+        if let Some(mobilities) = &polycrystal.mobilities {
+            writeln!(out, "mobilities  {mobilities}")?;
+        }
         if let Some(HerringResidual { rms, largest }) = polycrystal.residual {
             writeln!(
                 out,
@@ -96,15 +99,15 @@ impl fmt::Display for Summary<'_> {
         if let Some(Reconnected { reconnections, balance }) = &polycrystal.reconnected {
             write_topology(out, network.domain().dimension(), *reconnections, balance.as_ref())?;
         } else if polycrystal.config.lets_topology_change() {
+            let without =
+                polycrystal.tensions.as_ref().map_or(0, |tensions| tensions.without_equilibrium.len());
+            let cause = if without == 0 { "" } else { ", as lines without equilibrium are never at rest" };
             writeln!(
                 out,
-                "topology    kept: letting grains switch neighbours led to no valid network; angles are off 120 degrees where they would"
+                "topology    kept: letting grains switch neighbours led to no valid network{cause}; angles are not at rest where they would"
             )?;
         } else if polycrystal.config.relaxation == Relaxation::Equilibrium {
-            writeln!(
-                out,
-                "topology    kept: angles are off 120 degrees where grains would switch neighbours"
-            )?;
+            writeln!(out, "topology    kept: angles are not at rest where grains would switch neighbours")?;
         }
         if !polycrystal.relaxed.given_up.is_empty() {
             writeln!(

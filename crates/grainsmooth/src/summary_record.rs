@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use crate::triangle_angles::TriangleAngles;
 use crate::{
-    AskedAndReached, ComponentShare, EquivalentDiameters, HistogramFit, PhaseShare, Polycrystal, Reconnected,
-    SizesFit, SizesReached, TensionsReached, Tessellated, Topology,
+    AskedAndReached, ComponentShare, EquivalentDiameters, HistogramFit, LawReached, PhaseShare, Polycrystal,
+    Reconnected, SizesFit, SizesReached, TensionsReached, Tessellated, Topology,
 };
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
@@ -47,6 +47,7 @@ pub struct SummaryRecord {
     residual: Option<Residual>,
     /// Where laws of them are asked for.
     tensions: Option<TensionsReached>,
+    mobilities: Option<LawReached>,
     /// By what coordinates were multiplied in the end; angles and residual are those before.
     stretch: Option<[f64; 3]>,
     points: usize,
@@ -216,6 +217,7 @@ impl SummaryRecord {
                 .collect(),
             residual: polycrystal.residual.map(|HerringResidual { rms, largest }| Residual { rms, largest }),
             tensions: polycrystal.tensions.clone(),
+            mobilities: polycrystal.mobilities.clone(),
             stretch: polycrystal.is_stretched().then(|| config.stretch().to_array()),
             points: finest.vertex_count(),
             elements: finest.element_count(),

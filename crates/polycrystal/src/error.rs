@@ -152,6 +152,18 @@ pub enum NetworkError {
     /// The relaxation time is negative or not a number.
     #[error("the relaxation time is {0}; it must be 0 (off) or a positive, finite number")]
     BadRelaxationTime(f64),
+    /// The mobility of a boundary is not positive.
+    #[error(
+        "the mobility of the boundary between {} and {} is {mobility}; it must be a positive, finite number",
+        sides[0],
+        sides[1]
+    )]
+    BadMobility {
+        /// Its sides.
+        sides: [Side; 2],
+        /// Its mobility.
+        mobility: f64,
+    },
     /// The tension of a boundary is negative or not a number.
     #[error(
         "the tension between {} and {} is {tension}; it must be 0 or a positive, finite number",
@@ -231,6 +243,7 @@ impl NetworkError {
             | Self::MissingGrain { .. }
             | Self::BadEdgeLength(_)
             | Self::BadRelaxationTime(_)
+            | Self::BadMobility { .. }
             | Self::BadTension { .. } => None,
         }
     }

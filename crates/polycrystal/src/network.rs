@@ -5,7 +5,7 @@ use voronoi::{Domain, Tessellation};
 
 use crate::control_mesh::{ControlMesh, JunctionCounts};
 use crate::folds::element_normals;
-use crate::tension::{checked_tension, mean_tension};
+use crate::tension::{checked_mobility, checked_tension, mean_in_flow};
 use crate::volume::{boundary_cones, volumes_of_grains};
 use crate::{Boundary, FaceMesh, Freedom, Level, Mesh, MeshSize, NetworkError, Surface, WallSet, WallSets};
 
@@ -30,6 +30,7 @@ pub struct Network {
     cell_volumes: Vec<f64>,
     /// Of each boundary.
     tensions: Vec<f64>,
+    mobilities: Vec<f64>,
     wall_sets: WallSets,
     /// From the control mesh to the finest.
     levels: Vec<Level>,
@@ -154,6 +155,7 @@ impl Network {
         let tension = |boundary: &Boundary| if boundary.wall.is_none() { 1.0 } else { 0.0 };
         let network = Self {
             tensions: boundaries.iter().map(tension).collect(),
+            mobilities: vec![1.0; boundaries.len()],
             domain: domain.clone(),
             boundaries,
             junctions,
@@ -212,9 +214,36 @@ impl Network {
         &self.tensions
     }
 
-    /// The unit of tensions in relaxation, as of [`mean_tension`].
+    /// The network with other mobilities, velocity per pressure, of its boundaries, in any unit; without, all have 1. In [`relax`] a boundary
+    /// moves the faster. Where volumes are kept this changes the way to rest, and not rest itself; [`relax_cells`] knows of none.
+    ///
+    /// [`relax`]: crate::relax()
+    /// [`relax_cells`]: crate::relax_cells
+    ///
+    /// # Errors
+    /// [`NetworkError::BadMobility`].
+    pub fn with_mobilities(mut self, mobility: impl Fn(&Boundary) -> f64) -> Result<Self, NetworkError> {
+        self.mobilities.clear();
+        for boundary in &self.boundaries {
+            let boundary = boundary.between_grains(&self.boundaries);
+            self.mobilities.push(checked_mobility(&boundary, mobility(&boundary))?);
+        }
+        Ok(self)
+    }
+
+    /// The mobility of each boundary, by number.
+    pub fn mobilities(&self) -> &[f64] {
+        &self.mobilities
+    }
+
+    /// The unit of tensions in relaxation, as of [`mean_in_flow`].
     pub(crate) fn mean_tension(&self) -> f64 {
-        mean_tension(self.boundaries.iter().zip(self.tensions.iter().copied()))
+        mean_in_flow(self.boundaries.iter().zip(self.tensions.iter().copied()))
+    }
+
+    /// The unit of mobilities in relaxation.
+    pub(crate) fn mean_mobility(&self) -> f64 {
+        mean_in_flow(self.boundaries.iter().zip(self.mobilities.iter().copied()))
     }
 
     /// The domain that the grains fill.

@@ -8,8 +8,8 @@ use std::f64::consts::{FRAC_PI_3, PI};
 use common::random_seeds;
 use glam::{BVec3, DVec3};
 use polycrystal::{
-    FaceMesh, Junctions, Moving, Network, NetworkError, PlaneMeasures, Relaxation, Relaxed, Volumes,
-    measure_network, relax_watched,
+    BoundaryId, Elements, FaceMesh, GrainId, Junctions, Moving, Network, NetworkError, PlaneMeasures,
+    Relaxation, Relaxed, Side, Surface, Volumes, measure_network, relax_watched,
 };
 use voronoi::{Domain, Tessellation};
 
@@ -178,4 +178,48 @@ fn kept_volumes_are_the_default_and_free_ones_change() {
         errors.fold(0.0, f64::max)
     });
     assert!(errors[0] < 1e-10 && errors[1] > 1e-3, "{errors:?}");
+}
+
+/// A disc loses an area of 2 pi times mobility times tension per time, the mean mobility being the unit of time.
+#[test]
+fn a_boundary_of_three_times_the_mobility_moves_three_times_as_fast() {
+    let mut points = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+    let mut segments = vec![[0, 1], [1, 2], [2, 3], [3, 0]];
+    let mut boundary_of = vec![BoundaryId(0); 4];
+    let (count, radius) = (200, 0.2);
+    for (disc, x) in [(1, 0.25), (2, 0.75)] {
+        let first = u32::try_from(points.len()).expect("few points");
+        let place = |k: u32| {
+            let angle = 2.0 * PI * f64::from(k) / f64::from(count);
+            DVec3::new(x + radius * angle.cos(), 0.5 + radius * angle.sin(), 0.0)
+        };
+        points.extend((0..count).map(place));
+        segments.extend((0..count).map(|k| [first + k, first + (k + 1) % count]));
+        boundary_of.resize(segments.len(), BoundaryId(disc));
+    }
+    let host = Side::Grain(GrainId(0));
+    let sides = [[host, Side::Exterior], [host, Side::Grain(GrainId(1))], [host, Side::Grain(GrainId(2))]];
+    // The host lies outside the discs.
+    segments[4..].iter_mut().for_each(|ends| ends.reverse());
+    let elements = Elements::Segments(&segments);
+    let surface = Surface { points: &points, elements, boundary_of: &boundary_of, sides: &sides };
+    let domain = Domain::unit_square();
+    let (network, flat) =
+        Network::of_surface(&domain, &surface, Junctions::Crease, 0).expect("two discs in a square");
+    let fast = Side::Grain(GrainId(2));
+    for unit in [1.0, 1e-6] {
+        let mobility = |sides: [Side; 2]| unit * if sides.contains(&fast) { 3.0 } else { 1.0 };
+        let network =
+            network.clone().with_mobilities(|boundary| mobility(boundary.sides)).expect("all positive");
+        let time = 0.02;
+        let end = flow(&network, &flat, time).expect("discs are left").points;
+        let whole_time = time * network.mean_grain_size().powi(2);
+        let [before, after] = [&flat, &end].map(|points| measures(&network, points).grains);
+        for (grain, share) in [(1, 0.5), (2, 1.5)] {
+            let rate = (after[grain].area - before[grain].area) / whole_time;
+            assert!((rate / (-2.0 * PI * share) - 1.0).abs() < 0.005, "{rate} of disc {grain}");
+        }
+    }
+    let refused = network.with_mobilities(|_| 0.0);
+    assert!(matches!(refused, Err(NetworkError::BadMobility { .. })));
 }

@@ -36,12 +36,18 @@ pub struct SmoothingArguments {
     #[arg(long, value_name = "G", default_value_t = 0.0, value_parser = parse_tension, allow_negative_numbers = true)]
     pub wall_tension: f64,
 
-    /// Tension of boundaries between grains, in any unit: a number, read-shockley(15) over the disorientation, either times a number, or a
+    /// Tension of boundaries between grains, in any unit: a number, read-shockley(15) over the disorientation, that times a number, or a
     /// table of angles and tensions; with PHASE/PHASE: before it, of boundaries between these [default: 1]
     ///
     /// Example: --texture 'goss(10)' --tension 'read-shockley(15)'
     #[arg(long, value_name = "[A/B:]LAW", num_args = 1)]
     pub tension: Vec<LawOptions>,
+
+    /// Mobility of boundaries between grains that grow, in any unit: a law as of --tension, such as humphreys(15) [default: 1]
+    ///
+    /// Example: --relax 0.02 --free --texture 'goss(10)' --mobility 'humphreys(15)'
+    #[arg(long, value_name = "[A/B:]LAW", num_args = 1)]
+    pub mobility: Vec<LawOptions>,
 
     /// Let grains grow and shrink by curvature instead of keeping their volumes (in 2D: areas); none may vanish
     ///

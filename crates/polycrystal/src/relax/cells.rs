@@ -12,7 +12,7 @@ use super::plane;
 use super::reconnection::Reconnections;
 use super::settling::settle;
 use super::{Plan, Relaxation, RelaxationStep, Relaxed, Start, Tuning, USUAL_TIME, relax_levels};
-use crate::tension::{checked_tension, in_unit, mean_tension};
+use crate::tension::{checked_tension, in_unit, mean_in_flow};
 use crate::{Attempt, Boundary, Certificate, FaceMesh, Junctions, Network, NetworkError, Volumes, validate};
 
 /// How a network is made of cells.
@@ -87,7 +87,7 @@ pub fn relax_cells_tuned(
         let boundary = boundary(tessellation.face_sides(face));
         given.push((boundary, checked_tension(&boundary, (recipe.tension)(&boundary))?));
     }
-    let unit = mean_tension(given.iter().map(|(boundary, tension)| (boundary, *tension)));
+    let unit = mean_in_flow(given.iter().map(|(boundary, tension)| (boundary, *tension)));
     let tension = |boundary: &Boundary| in_unit((recipe.tension)(boundary), unit);
     let in_units = NetworkRecipe { tension: &tension, ..*recipe };
     let has_tension = given.iter().any(|(_, tension)| *tension > 0.0);

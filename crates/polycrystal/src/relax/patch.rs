@@ -30,8 +30,16 @@ pub(super) struct Patch {
     pub(super) links: Rows<u32>,
     /// The surface, where it is finer than the control mesh.
     pub(super) refinement: Option<Refinement>,
+    pub(super) law: Law,
+}
+
+/// How a boundary pulls and moves.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Law {
     /// Energy per area.
     pub(super) tension: f64,
+    /// Velocity per pressure, above 0.
+    pub(super) mobility: f64,
     /// 1, or 1/2 for a boundary that a periodic network holds twice.
     pub(super) share: f64,
 }
@@ -101,7 +109,7 @@ pub(super) struct PatchTerms {
     pub(super) gradient: Vec<DVec3>,
     /// Volume swept from the first side to the second, per displacement of each control point.
     pub(super) sweep: Vec<DVec3>,
-    /// Share of the area that each control point stands for.
+    /// Share of the area over mobility that each control point stands for.
     pub(super) mass: Vec<f64>,
     /// Stiffness of each edge of the control mesh.
     pub(super) stiffness: Vec<f64>,
@@ -117,7 +125,7 @@ impl Patch {
         let local: Vec<DVec3> = self.control_points.iter().map(|p| points[*p as usize] - apex).collect();
         let (mass, stiffness) = self.mass_and_stiffness(&local, largest_cotangent);
         let count = local.len();
-        let tension = self.share * self.tension;
+        let tension = self.law.share * self.law.tension;
         let Some(refinement) = &self.refinement else {
             let variation = Variation::new(&self.elements, &local, tension);
             let cone = variation.cone(apex, &self.elements);
@@ -136,9 +144,11 @@ impl Patch {
     fn mass_and_stiffness(&self, local: &[DVec3], largest_cotangent: f64) -> (Vec<f64>, Vec<f64>) {
         let mut mass = vec![0.0; local.len()];
         let mut stiffness = vec![0.0; self.edges.len()];
-        if self.tension == 0.0 {
+        let Law { tension, mobility, share } = self.law;
+        if tension == 0.0 {
             return (mass, stiffness);
         }
+        let (stiffness_share, mass_share) = (share * tension, share / mobility);
         let at = |point: u32| local[point as usize];
         match &self.elements {
             Elements::Triangles(triangles) => {
@@ -150,16 +160,16 @@ impl Patch {
                         // A triangle without area has no cotangent: the upper limit stands in. Obtuse angles would push points apart.
                         let cotangent = (from - apex).dot(to - apex) / doubled_area.max(f64::MIN_POSITIVE);
                         let cotangent = cotangent.clamp(0.0, largest_cotangent);
-                        stiffness[across[k] as usize] += 0.5 * self.share * self.tension * cotangent;
-                        mass[corners[k] as usize] += self.share * doubled_area / 6.0;
+                        stiffness[across[k] as usize] += 0.5 * stiffness_share * cotangent;
+                        mass[corners[k] as usize] += mass_share * doubled_area / 6.0;
                     }
                 }
             }
             Elements::Segments(segments) => {
                 for (ends, stiffness) in segments.iter().zip(&mut stiffness) {
                     let length = at(ends[0]).distance(at(ends[1])).max(f64::MIN_POSITIVE);
-                    *stiffness += self.share * self.tension / length;
-                    ends.iter().for_each(|end| mass[*end as usize] += 0.5 * self.share * length);
+                    *stiffness += stiffness_share / length;
+                    ends.iter().for_each(|end| mass[*end as usize] += 0.5 * mass_share * length);
                 }
             }
         }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use subzero::StencilTable;
 
 use super::clusters::Numbering;
-use super::patch::{Elements, LocalStencils, Patch, PatchTerms, Refinement};
+use super::patch::{Elements, Law, LocalStencils, Patch, PatchTerms, Refinement};
 use super::rows::Rows;
 use crate::tension::in_unit;
 use crate::{BoundaryId, Mesh, Network};
@@ -39,6 +39,7 @@ impl Patches {
     ) -> Self {
         let [control_level, surface_level] = [control, surface].map(|level| &network.levels()[level]);
         let count = network.boundaries().len();
+        let mobility_unit = network.mean_mobility();
         let control_elements = by_boundary(count, &control_level.boundary_of);
         let surface_elements = by_boundary(count, &surface_level.boundary_of);
         let patches: Vec<Patch> = (0..count)
@@ -47,9 +48,12 @@ impl Patches {
                 let surface = (surface > control).then(|| {
                     (network.stencils(control), &surface_level.mesh, surface_elements[boundary].as_slice())
                 });
-                let share = if network.boundaries()[boundary].twin.is_some() { 0.5 } else { 1.0 };
-                let tension = (in_unit(network.tensions()[boundary], tension_unit), share);
-                new_patch(&control_level.mesh, &control_elements[boundary], surface, tension)
+                let law = Law {
+                    tension: in_unit(network.tensions()[boundary], tension_unit),
+                    mobility: in_unit(network.mobilities()[boundary], mobility_unit),
+                    share: if network.boundaries()[boundary].twin.is_some() { 0.5 } else { 1.0 },
+                };
+                new_patch(&control_level.mesh, &control_elements[boundary], surface, law)
             })
             .collect();
         let mut place_starts = vec![0; control_level.vertex_count() + 1];
@@ -137,7 +141,7 @@ fn new_patch(
     control: &Mesh,
     numbers: &[u32],
     surface: Option<(&StencilTable, &Mesh, &[u32])>,
-    (tension, share): (f64, f64),
+    law: Law,
 ) -> Patch {
     let (control_points, elements) = local_elements(control, numbers);
     let (edges, edges_across) = local_edges(control, numbers, &control_points);
@@ -146,7 +150,7 @@ fn new_patch(
         Refinement { stencils: LocalStencils::new(stencils, &control_points, &points), elements }
     });
     let links = links(control_points.len(), &edges);
-    Patch { control_points, elements, edges, edges_across, links, refinement, tension, share }
+    Patch { control_points, elements, edges, edges_across, links, refinement, law }
 }
 
 /// Of each point the other ends of its edges, and their numbers.
