@@ -106,7 +106,7 @@ fn boundaries(tessellation: &Tessellation) -> Vec<Boundary> {
     boundaries
 }
 
-fn boundary(sides: [voronoi::Side; 2]) -> Boundary {
+pub(crate) fn boundary(sides: [voronoi::Side; 2]) -> Boundary {
     let wall = match sides[1] {
         voronoi::Side::Wall(wall) => Some(wall),
         voronoi::Side::Cell(_) | voronoi::Side::Image(..) => None,
@@ -296,7 +296,7 @@ fn vertex_pair(pair: &PeriodicPair<voronoi::VertexId>) -> PeriodicPair<u32> {
 }
 
 /// The number of sides at each place, periodic copies left out.
-fn originals(meetings: &[Meeting], copies: impl Iterator<Item = u32>) -> impl Iterator<Item = u8> {
+pub(crate) fn originals(meetings: &[Meeting], copies: impl Iterator<Item = u32>) -> impl Iterator<Item = u8> {
     let mut is_copy = vec![false; meetings.len()];
     copies.for_each(|copy| is_copy[copy as usize] = true);
     meetings.iter().zip(is_copy).filter(|(_, is_copy)| !is_copy).map(|(at, _)| at.sides)
@@ -307,7 +307,7 @@ fn copied_vertices(tessellation: &Tessellation) -> impl Iterator<Item = u32> {
 }
 
 /// The sides that meet at places: cells, each in the place where it is seen from an original, or the exterior.
-struct Meetings {
+pub(crate) struct Meetings {
     /// Of each place, its original and the shift from there.
     originals: Vec<(usize, Shift)>,
     /// Originals and sides that touch them, with repeats.
@@ -316,7 +316,7 @@ struct Meetings {
 }
 
 impl Meetings {
-    fn new(count: usize, copies: impl Iterator<Item = PeriodicPair<u32>>) -> Self {
+    pub(crate) fn new(count: usize, copies: impl Iterator<Item = PeriodicPair<u32>>) -> Self {
         let mut originals: Vec<(usize, Shift)> = (0..count).map(|place| (place, Shift::NONE)).collect();
         for pair in copies {
             originals[pair.secondary as usize] = (pair.primary as usize, pair.shift);
@@ -325,7 +325,7 @@ impl Meetings {
     }
 
     /// Notes that a face with these sides touches a place.
-    fn note(&mut self, place: usize, sides: [voronoi::Side; 2]) {
+    pub(crate) fn note(&mut self, place: usize, sides: [voronoi::Side; 2]) {
         let (original, shift) = self.originals[place];
         for side in sides {
             let (side, moved, is_outside) = match side {
@@ -339,7 +339,7 @@ impl Meetings {
     }
 
     /// What meets at every place.
-    fn all(mut self) -> Vec<Meeting> {
+    pub(crate) fn all(mut self) -> Vec<Meeting> {
         self.sides.sort_unstable();
         self.sides.dedup();
         let mut counts = vec![[0, 0]; self.originals.len()];

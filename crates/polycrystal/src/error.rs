@@ -125,6 +125,12 @@ pub enum NetworkError {
         /// The number that is left out.
         grain: GrainId,
     },
+    /// A grain of several cells is in pieces, or its cells touch in no more than a line somewhere.
+    #[error("the cells of grain {} do not hang together by faces; give its pieces numbers of their own", grain.0)]
+    GrainInPieces {
+        /// The grain.
+        grain: GrainId,
+    },
     /// A grain of a periodic network touches its own image in points or lines alone. In the box the two are one grain, whose surface
     /// would touch itself: grains of face-centred lattices with one cell along an axis do.
     #[error(
@@ -225,6 +231,7 @@ impl NetworkError {
         match self {
             Self::BoundaryTooSmall { sides } => Some(sides.iter().filter_map(|side| side.grain()).collect()),
             Self::TouchesItself { grain }
+            | Self::GrainInPieces { grain }
             | Self::VolumeNotRestored { grain, .. }
             | Self::GrainVanished { grain, .. } => Some(vec![*grain]),
             Self::CutInvalid(faults) | Self::Invalid(faults) => Some(

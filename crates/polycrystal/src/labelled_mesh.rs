@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use subzero::{Crease, CurveMesh, Features, TriangleMesh};
-use voronoi::{Domain, Wall};
+use voronoi::{Domain, PeriodicPair, Wall};
 
 use crate::control_mesh::{ControlMesh, JunctionCounts};
 use crate::face_mesh::id;
@@ -91,7 +91,7 @@ impl ControlMesh {
                 }
                 let at_edges =
                     (0u32..).zip(at_lines).map(|(edge, at)| at.unwrap_or_else(|| inside(edge))).collect();
-                let junctions = JunctionCounts::new(lines.sides(&at_places), at_points());
+                let junctions = JunctionCounts::new(lines.sides(&at_places, &[]), at_points());
                 (Mesh::Triangles(mesh), at_edges, junctions)
             }
         };
@@ -216,14 +216,14 @@ impl Connected {
 }
 
 /// Disjoint sets of numbers.
-struct Pieces(Vec<u32>);
+pub(crate) struct Pieces(Vec<u32>);
 
 impl Pieces {
-    fn new(count: usize) -> Self {
+    pub(crate) fn new(count: usize) -> Self {
         Self((0u32..).take(count).collect())
     }
 
-    fn root(&mut self, mut member: u32) -> u32 {
+    pub(crate) fn root(&mut self, mut member: u32) -> u32 {
         while self.0[member as usize] != member {
             let grandparent = self.0[self.0[member as usize] as usize];
             self.0[member as usize] = grandparent;
@@ -232,21 +232,21 @@ impl Pieces {
         member
     }
 
-    fn join(&mut self, a: u32, b: u32) {
+    pub(crate) fn join(&mut self, a: u32, b: u32) {
         let [a, b] = [a, b].map(|member| self.root(member));
         self.0[a.max(b) as usize] = a.min(b);
     }
 }
 
 /// Where boundaries meet: edges and the lines that they make up.
-struct Lines<'a> {
+pub(crate) struct Lines<'a> {
     ends: &'a [[u32; 2]],
     /// The edges at each point.
     edges_at: Vec<Vec<u32>>,
 }
 
 impl<'a> Lines<'a> {
-    fn new(point_count: usize, ends: &'a [[u32; 2]]) -> Self {
+    pub(crate) fn new(point_count: usize, ends: &'a [[u32; 2]]) -> Self {
         let mut edges_at = vec![Vec::new(); point_count];
         for (edge, ends) in (0u32..).zip(ends) {
             ends.iter().for_each(|end| edges_at[*end as usize].push(edge));
@@ -255,7 +255,7 @@ impl<'a> Lines<'a> {
     }
 
     /// The points where lines end, or all on lines.
-    fn corners(&self, junctions: Junctions) -> Vec<u32> {
+    pub(crate) fn corners(&self, junctions: Junctions) -> Vec<u32> {
         let is_corner = |edges: &Vec<u32>| match junctions {
             Junctions::Crease => !matches!(edges.len(), 0 | 2),
             Junctions::Corner => !edges.is_empty(),
@@ -263,9 +263,14 @@ impl<'a> Lines<'a> {
         (0u32..).zip(&self.edges_at).filter(|(_, edges)| is_corner(edges)).map(|(point, _)| point).collect()
     }
 
-    /// The number of sides of each line.
-    fn sides(&self, at_edges: &[Meeting]) -> impl Iterator<Item = u8> {
+    /// The number of sides of each line, given the edges that are others moved by whole periods.
+    pub(crate) fn sides(
+        &self,
+        at_edges: &[Meeting],
+        copies: &[PeriodicPair<u32>],
+    ) -> impl Iterator<Item = u8> {
         let mut pieces = Pieces::new(self.ends.len());
+        copies.iter().for_each(|pair| pieces.join(pair.secondary, pair.primary));
         for edges in self.edges_at.iter().filter(|edges| edges.len() == 2) {
             pieces.join(edges[0], edges[1]);
         }

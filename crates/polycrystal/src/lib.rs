@@ -34,6 +34,7 @@ mod fan;
 mod fans;
 mod fault;
 mod folds;
+mod grain_mesh;
 mod grouped;
 mod intersections;
 mod labelled_mesh;

@@ -7,7 +7,9 @@ use crate::control_mesh::{ControlMesh, JunctionCounts};
 use crate::folds::element_normals;
 use crate::tension::{checked_mobility, checked_tension, mean_in_flow};
 use crate::volume::{boundary_cones, volumes_of_grains};
-use crate::{Boundary, FaceMesh, Freedom, Level, Mesh, MeshSize, NetworkError, Surface, WallSet, WallSets};
+use crate::{
+    Boundary, FaceMesh, Freedom, GrainId, Level, Mesh, MeshSize, NetworkError, Surface, WallSet, WallSets,
+};
 
 /// How triple lines and the domain's edges are smoothed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -62,16 +64,41 @@ impl Network {
         junctions: Junctions,
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
-        if let FaceMesh::Refined { edge_length } = face_mesh
-            && !(edge_length.is_finite() && edge_length > 0.0)
-        {
-            return Err(NetworkError::BadEdgeLength(edge_length));
-        }
+        check_edge_length(face_mesh)?;
         let size = face_mesh.control_mesh_size(tessellation);
         check_size(tessellation.domain(), &size, level_count)?;
         let control_mesh = ControlMesh::new(tessellation, face_mesh, junctions)?;
         let cell_volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
         Self::assemble(tessellation.domain(), control_mesh, cell_volumes, level_count)
+    }
+
+    /// As [`Self::with_face_mesh`] of grains of one cell or several each, by the grain of each cell. Faces between cells of one grain drop
+    /// out; a boundary is what faces between two grains make up where they hang together, in however many planes they lie.
+    ///
+    /// Grains need not be convex, and one may lie within another. In a periodic domain, cells of a grain stand where they touch each other.
+    ///
+    /// # Errors
+    /// As [`Self::with_face_mesh`]; [`NetworkError::GrainInPieces`], [`NetworkError::MissingGrain`].
+    ///
+    /// # Panics
+    /// When there is not one grain for each cell.
+    pub fn of_grains(
+        tessellation: &Tessellation,
+        grain_of_cell: &[GrainId],
+        face_mesh: FaceMesh,
+        junctions: Junctions,
+        level_count: usize,
+    ) -> Result<(Self, Vec<DVec3>), NetworkError> {
+        check_edge_length(face_mesh)?;
+        let size = face_mesh.control_mesh_size(tessellation);
+        check_size(tessellation.domain(), &size, level_count)?;
+        let control_mesh = ControlMesh::of_grains(tessellation, grain_of_cell, face_mesh, junctions)?;
+        let grain_count = grain_of_cell.iter().map(|grain| grain.index() + 1).max().unwrap_or(0);
+        let mut volumes = vec![0.0; grain_count];
+        for (grain, cell) in grain_of_cell.iter().zip(tessellation.cell_measures()) {
+            volumes[grain.index()] += cell.volume;
+        }
+        Self::assemble(tessellation.domain(), control_mesh, volumes, level_count)
     }
 
     /// The network of cells in space, each of whose lines goes through one point, its middle.
@@ -393,6 +420,15 @@ impl Network {
     /// The mean grain size, or the box's shortest side where that is shorter: the size of what can be seen to be small.
     pub(crate) fn feature_size(&self) -> f64 {
         feature_size(&self.domain, self.grain_count())
+    }
+}
+
+fn check_edge_length(face_mesh: FaceMesh) -> Result<(), NetworkError> {
+    match face_mesh {
+        FaceMesh::Refined { edge_length } if !(edge_length.is_finite() && edge_length > 0.0) => {
+            Err(NetworkError::BadEdgeLength(edge_length))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -32,6 +32,11 @@ const FEATURE_EDGES: f64 = 6.0;
 /// Share of its first residual at which a step of grains that grow is solved: rates of growth are asked for, not only where they lead.
 const FREE_TOLERANCE: f64 = 1e-3;
 
+/// Most steps of points toward the middle of the triangles around, and their share of the way, where a start is folded by subdivision. The walls
+/// of a host whose cells are as flat as a fiftieth of it take one step.
+const CENTERING_STEPS: usize = 10;
+const CENTERING: f64 = 0.5;
+
 /// Change of the cosine of a bend that counts as none.
 pub(super) const SLIGHT_BEND: f64 = 1e-9;
 
@@ -108,6 +113,43 @@ impl<'a> Flow<'a> {
     ///
     /// `progress` is told the number of steps done and where the points are.
     pub(super) fn run(
+        &mut self,
+        start: &[DVec3],
+        stage: &Stage,
+        progress: &mut impl FnMut(usize, &[DVec3]),
+    ) -> Result<Vec<DVec3>, NetworkError> {
+        let clusters = self.clusters.clone();
+        match self.run_from(start, stage, progress) {
+            Err(error @ NetworkError::Folded { .. }) => {
+                let Some(centered) = self.centered(start) else { return Err(error) };
+                self.clusters = clusters;
+                self.run_from(&centered, stage, progress)
+            }
+            result => result,
+        }
+    }
+
+    /// Points that fold the finest level, moved within their boundaries until they do not: a boundary of several faces has points inside
+    /// that are crowded, and subdivision puts triangles there over each other even in a plane. Nothing where no point is to move.
+    fn centered(&self, start: &[DVec3]) -> Option<Vec<DVec3>> {
+        let finest = Wedged::new(self.network, self.finest());
+        let folds = |points: &[DVec3]| self.folded_places(&self.finest_points(points), &finest).len();
+        let mut best = (folds(start), None);
+        let mut points = start.to_vec();
+        for _ in 0..CENTERING_STEPS {
+            if best.0 == 0 {
+                break;
+            }
+            points = displaced(&points, &tangential_moves(self.network, self.level, &points, CENTERING));
+            let count = folds(&points);
+            if count < best.0 {
+                best = (count, Some(points.clone()));
+            }
+        }
+        best.1
+    }
+
+    fn run_from(
         &mut self,
         start: &[DVec3],
         stage: &Stage,
