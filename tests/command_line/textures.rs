@@ -224,7 +224,7 @@ fn file_of_orientations_that_is_mistaken() {
         (
             "a.ang",
             &ang("1 2 3 0 0 1 1 1\n1 2 3 0 0 1 1 2\n", "43"),
-            "a.ang line 5: a point of phase 2 after points of phase 1; give a map with the points of one of its 2 phases",
+            "a.ang line 5: a point of phase 2 after points of phase 1; name one of its 2 phases behind the path: #2",
         ),
         (
             "a.ctf",
@@ -253,6 +253,40 @@ fn file_of_orientations_that_is_mistaken() {
     let drawn = orientations(&json(&workplace, "a.json")["grains"]);
     let given = Orientation::from_euler_degrees([1.5, 2.0, 3.0]);
     assert!(CrystalSymmetry::Triclinic.disorientation_angle(drawn[0], given) < 1e-9);
+}
+
+/// The orientations of each phase of a map are for grains of that phase.
+#[test]
+fn a_map_of_two_phases_gives_the_texture_of_each() {
+    let workplace = Workplace::new();
+    workplace.run("--dim 2 --seeds 12 -n 0 --phase a:0.5,symmetry=hexagonal --phase b:0.5 --texture random --voxels 40 40 -o m.ang -o m.ctf --stats m.json");
+    let measured = json(&workplace, "m.json");
+    let of_phase = |table: &Value, phase: i64| -> Vec<Orientation> {
+        let grains = table["grains"].as_array().unwrap().iter().zip(orientations(&table["grains"]));
+        grains.filter(|(grain, _)| grain["Phase"].as_i64() == Some(phase)).map(|(_, found)| found).collect()
+    };
+    for map in ["m.ang", "m.ctf"] {
+        workplace.run(&format!(
+            "--seeds 9 -n 0 --phase a:0.5,symmetry=hexagonal,texture={map}#1 --phase b:0.5,texture={map}#2 --stats t.json -o a.vtp"
+        ));
+        let drawn = json(&workplace, "t.json");
+        for (phase, symmetry) in [(1, CrystalSymmetry::Hexagonal), (2, CrystalSymmetry::Octahedral)] {
+            let known = of_phase(&measured, phase);
+            for found in of_phase(&drawn, phase) {
+                let nearest = known.iter().map(|one| symmetry.disorientation_angle(*one, found));
+                let nearest = nearest.fold(f64::INFINITY, f64::min);
+                assert!(nearest < 2e-3, "{map}: {nearest} degrees, which is more than the map's digits");
+            }
+        }
+        // A file tells its settings, and these make it again.
+        workplace.run("--config a.vtp -o b.vtp");
+        assert!(workplace.bytes("a.vtp") == workplace.bytes("b.vtp"));
+        workplace.refuses(
+            &format!("--texture {map}#3"),
+            FAILED,
+            &format!("{map} line 1: holds no point of phase 3; it has phases 1, 2"),
+        );
+    }
 }
 
 /// Mackenzie's shares in bins of 5 degrees, with three times as much below 15 degrees.

@@ -54,19 +54,19 @@ impl TextureFormat {
 /// The line of a fault, counted from 1, and what it is.
 type Fault = (usize, String);
 
-/// Reads the orientations of a file; of one without a known extension as a table of Euler angles.
+/// Reads the orientations of a file, of one phase where a map has several; of one without a known extension as a table of Euler angles.
 ///
 /// # Errors
 /// [`Error::TextureFileUnreadable`]; [`Error::BadTextureFile`].
-pub fn read_texture_file(path: &Path) -> Result<OrientationList, Error> {
+pub fn read_texture_file(path: &Path, phase: Option<i64>) -> Result<OrientationList, Error> {
     let bytes =
         fs::read(path).map_err(|cause| Error::TextureFileUnreadable { path: path.to_owned(), cause })?;
     // Names of phases and comments may have any coding; numbers have one.
     let text = String::from_utf8_lossy(&bytes);
     let found = match TextureFormat::of_path(path) {
         Some(TextureFormat::Ori) => ori::read(&text),
-        Some(TextureFormat::Ang) => ang::read(&text),
-        Some(TextureFormat::Ctf) => ctf::read(&text),
+        Some(TextureFormat::Ang) => ang::read(&text, phase),
+        Some(TextureFormat::Ctf) => ctf::read(&text, phase),
         Some(TextureFormat::Euler) | None => euler::read(&bytes),
     };
     let found = found.and_then(|found| match found.orientations.is_empty() {
@@ -118,18 +118,34 @@ fn number(line: usize, column: &str) -> Result<f64, Fault> {
     })
 }
 
-/// The one phase of a map's points, each with its line.
-fn only_phase(points: &[(usize, i64)]) -> Result<Option<i64>, Fault> {
-    let phases: BTreeSet<i64> = points.iter().map(|(_, phase)| *phase).collect();
-    let Some(first) = points.first().map(|(_, phase)| *phase) else { return Ok(None) };
-    match points.iter().find(|(_, phase)| *phase != first) {
-        None => Ok(Some(first)),
-        Some((line, phase)) => Err((
-            *line,
-            format!(
-                "a point of phase {phase} after points of phase {first}; give a map with the points of one of its {} phases",
-                phases.len()
-            ),
-        )),
+/// A point of a map.
+struct MapPoint {
+    line: usize,
+    phase: i64,
+    /// In degrees.
+    angles: [f64; 3],
+}
+
+/// Leaves the points of one phase, and gives that: the one that is asked for, or the only one; nothing where there are no points.
+fn keep_phase(points: &mut Vec<MapPoint>, asked: Option<i64>) -> Result<Option<i64>, Fault> {
+    let Some(first) = points.first().map(|point| point.phase) else { return Ok(None) };
+    let phases: BTreeSet<i64> = points.iter().map(|point| point.phase).collect();
+    let Some(asked) = asked else {
+        return match points.iter().find(|point| point.phase != first) {
+            None => Ok(Some(first)),
+            Some(MapPoint { line, phase, .. }) => Err((
+                *line,
+                format!(
+                    "a point of phase {phase} after points of phase {first}; name one of its {} phases behind the path: #{phase}",
+                    phases.len()
+                ),
+            )),
+        };
+    };
+    if !phases.contains(&asked) {
+        let known: Vec<String> = phases.iter().map(i64::to_string).collect();
+        return Err((1, format!("holds no point of phase {asked}; it has phases {}", known.join(", "))));
     }
+    points.retain(|point| point.phase == asked);
+    Ok(Some(asked))
 }

@@ -26,18 +26,29 @@ pub enum TextureSource {
     /// Words, as [`Texture`] reads them.
     Words(String),
     /// A file of orientations.
-    File(PathBuf),
+    File {
+        /// Where it is.
+        path: PathBuf,
+        /// Which of the phases of a map.
+        phase: Option<i64>,
+    },
 }
 
 impl TextureSource {
-    /// A file where one has this name, or the name ends as those of textures do; else words.
+    /// A file where one has this name, or the name ends as those of textures do, with `#2` behind it for the second phase of a map; else words.
     ///
     /// # Errors
     /// What is wrong with the words.
     pub fn new(text: &str) -> Result<Self, texture::SpecError> {
-        let path = Path::new(text);
-        if TextureFormat::of_path(path).is_some() || path.is_file() {
-            return Ok(Self::File(path.to_owned()));
+        let is_file = |path: &Path| TextureFormat::of_path(path).is_some() || path.is_file();
+        if is_file(Path::new(text)) {
+            return Ok(Self::File { path: text.into(), phase: None });
+        }
+        if let Some((path, phase)) = text.rsplit_once('#')
+            && let Some(TextureFormat::Ang | TextureFormat::Ctf) = TextureFormat::of_path(Path::new(path))
+            && let Ok(phase) = phase.parse()
+        {
+            return Ok(Self::File { path: path.into(), phase: Some(phase) });
         }
         text.parse::<Texture>().map(|_| Self::Words(text.to_owned()))
     }
@@ -46,7 +57,8 @@ impl TextureSource {
     pub fn text(&self) -> String {
         match self {
             Self::Words(text) => text.clone(),
-            Self::File(path) => path.display().to_string(),
+            Self::File { path, phase: None } => path.display().to_string(),
+            Self::File { path, phase: Some(phase) } => format!("{}#{phase}", path.display()),
         }
     }
 }
@@ -74,8 +86,8 @@ impl TextureOptions {
     ) -> Result<Texture, Error> {
         let texture = match source {
             TextureSource::Words(text) => text.parse()?,
-            TextureSource::File(path) => {
-                let found = read_texture_file(path)?;
+            TextureSource::File { path, phase } => {
+                let found = read_texture_file(path, *phase)?;
                 if let Some(of_file) = found.symmetry.filter(|of_file| *of_file != symmetry) {
                     return Err(Error::TextureSymmetry {
                         path: path.clone(),

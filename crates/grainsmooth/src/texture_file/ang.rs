@@ -5,16 +5,16 @@ use std::f64::consts::TAU;
 
 use texture::{CrystalSymmetry, Orientation};
 
-use super::{Fault, OrientationList, columns, number, only_phase};
+use super::{Fault, MapPoint, OrientationList, columns, keep_phase, number};
 
 /// Columns of the confidence and of the phase.
 const CONFIDENCE: usize = 6;
 const PHASE: usize = 7;
 
-/// Reads the points of a map, each of weight 1.
-pub(super) fn read(text: &str) -> Result<OrientationList, Fault> {
+/// Reads the points of a map, of one phase where one is asked for, each of weight 1.
+pub(super) fn read(text: &str, asked: Option<i64>) -> Result<OrientationList, Fault> {
     let mut symmetries: BTreeMap<i64, CrystalSymmetry> = BTreeMap::new();
-    let (mut phase, mut orientations, mut points) = (1, Vec::new(), Vec::new());
+    let (mut phase, mut points) = (1, Vec::new());
     for (line, text) in (1..).zip(text.lines().map(str::trim)) {
         if let Some(head) = text.strip_prefix('#') {
             match columns(head)[..] {
@@ -45,14 +45,16 @@ pub(super) fn read(text: &str) -> Result<OrientationList, Fault> {
         if numbers[CONFIDENCE] < 0.0 || angles.iter().any(|angle| *angle > 1.99 * TAU) {
             continue;
         }
-        orientations.push((Orientation::from_euler_degrees(angles.map(f64::to_degrees)), 1.0));
         #[expect(clippy::cast_possible_truncation, reason = "numbers of phases are small")]
-        points.push((line, numbers[PHASE] as i64));
+        let phase = numbers[PHASE] as i64;
+        points.push(MapPoint { line, phase, angles: angles.map(f64::to_degrees) });
     }
     // A map of one phase may call it 0.
-    let symmetry = only_phase(&points)?.and_then(|phase| {
+    let symmetry = keep_phase(&mut points, asked)?.and_then(|phase| {
         symmetries.get(&phase).copied().or_else(|| symmetries.values().next().copied().filter(|_| phase == 0))
     });
+    let orientations =
+        points.into_iter().map(|point| (Orientation::from_euler_degrees(point.angles), 1.0)).collect();
     Ok(OrientationList { orientations, symmetry })
 }
 

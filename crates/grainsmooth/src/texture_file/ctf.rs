@@ -2,17 +2,17 @@
 
 use texture::{CrystalSymmetry, Orientation};
 
-use super::{Fault, OrientationList, number, only_phase};
+use super::{Fault, MapPoint, OrientationList, keep_phase, number};
 use crate::formats::hkl_symmetry;
 
-/// Reads the points of a map, each of weight 1.
+/// Reads the points of a map, of one phase where one is asked for, each of weight 1.
 ///
 /// In trigonal and hexagonal crystals HKL has x along the normal of (10-10), 30 degrees from the two-fold axis that is along x here.
-pub(super) fn read(text: &str) -> Result<OrientationList, Fault> {
+pub(super) fn read(text: &str, phase: Option<i64>) -> Result<OrientationList, Fault> {
     let mut symmetries: Vec<Option<CrystalSymmetry>> = Vec::new();
     let mut phases_to_come = 0;
     let mut places: Option<[usize; 4]> = None;
-    let mut found = Vec::new();
+    let mut points = Vec::new();
     for (line, text) in (1..).zip(text.lines()) {
         let columns: Vec<&str> = text.split_whitespace().collect();
         let Some(places) = places else {
@@ -40,7 +40,7 @@ pub(super) fn read(text: &str) -> Result<OrientationList, Fault> {
         #[expect(clippy::cast_possible_truncation, reason = "numbers of phases are small")]
         let phase = value(0)? as i64;
         if phase != 0 {
-            found.push(((line, phase), [value(1)?, value(2)?, value(3)?]));
+            points.push(MapPoint { line, phase, angles: [value(1)?, value(2)?, value(3)?] });
         }
     }
     if places.is_none() {
@@ -49,12 +49,11 @@ pub(super) fn read(text: &str) -> Result<OrientationList, Fault> {
             "no line names the columns Phase, Euler1, Euler2 and Euler3; give a whole .ctf file".to_owned(),
         ));
     }
-    let points: Vec<(usize, i64)> = found.iter().map(|(point, _)| *point).collect();
-    let phase = only_phase(&points)?.and_then(|phase| usize::try_from(phase - 1).ok());
+    let phase = keep_phase(&mut points, phase)?.and_then(|phase| usize::try_from(phase - 1).ok());
     let symmetry = phase.and_then(|phase| symmetries.get(phase).copied().flatten());
     let turn = hkl_turn(symmetry);
     let orientation = |[phi1, phi, phi2]: [f64; 3]| Orientation::from_euler_degrees([phi1, phi, phi2 - turn]);
-    let orientations = found.into_iter().map(|(_, angles)| (orientation(angles), 1.0)).collect();
+    let orientations = points.into_iter().map(|point| (orientation(point.angles), 1.0)).collect();
     Ok(OrientationList { orientations, symmetry })
 }
 
