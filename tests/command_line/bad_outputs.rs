@@ -1,5 +1,7 @@
 use std::fs;
 
+use grainsmooth::OutputFormat;
+
 use crate::workplace::{FAILED, USAGE, Workplace};
 
 /// So many that computing them would outlast the test: a bad path must be found before.
@@ -8,7 +10,7 @@ const BEFORE_COMPUTING: &str = "--seeds 100000 -n 0";
 #[test]
 fn extension_that_names_no_format() {
     let workplace = Workplace::new();
-    let known = "*.vtp, *.vtu, *.vtk, *.vtm, *.stl, *.ply, *.obj, *.msh, *.fe, *.tess, *.vti, *.npy, *.inp, *.ang, *.ctf, *.txt, *.ori or *.yaml";
+    let known = OutputFormat::known_extensions();
     for name in ["grains.off", "grains", "vtp", ".vtp", "grains.vtp.gz"] {
         let message =
             format!("invalid value '{name}' for '--output <PATH>': unknown extension; name the file {known}");

@@ -4,6 +4,7 @@
 use std::io::Read;
 use std::process::Stdio;
 
+use grainsmooth::OutputFormat;
 use serde_json::Value;
 
 use crate::workplace::{FAILED, USAGE, Workplace};
@@ -278,7 +279,10 @@ fn standard_output_takes_the_bytes_of_the_file() {
     workplace.refuses(
         "-o - --format pli",
         USAGE,
-        "invalid value 'pli' for '--format <FORMAT>': did you mean ply? the formats are those of *.vtp, *.vtu, *.vtk, *.vtm, *.stl, *.ply, *.obj, *.msh, *.fe, *.tess, *.vti, *.npy, *.inp, *.ang, *.ctf, *.txt, *.ori or *.yaml",
+        &format!(
+            "invalid value 'pli' for '--format <FORMAT>': did you mean ply? the formats are those of {}",
+            OutputFormat::known_extensions()
+        ),
     );
     workplace.refuses(
         "-o a.vtp --format ply",
@@ -366,6 +370,18 @@ fn completions_and_manual_know_every_option() {
     assert!(manual.contains(".TH grainsmooth 1"));
     for option in options {
         assert!(manual.contains(option), "{option}");
+    }
+}
+
+#[test]
+fn each_format_is_in_the_docs() {
+    let (formats, options) = (include_str!("../../docs/formats.md"), include_str!("../../docs/options.md"));
+    let rows: Vec<&str> = formats.lines().filter(|line| line.starts_with("| `.")).collect();
+    let output = options.lines().find(|line| line.contains("`--output PATH`")).unwrap();
+    for format in OutputFormat::ALL {
+        let name = format!("`.{}`", format.extension());
+        assert!(rows.iter().any(|row| row.split('|').nth(1).unwrap().contains(&name)), "formats.md: {name}");
+        assert!(output.contains(&name), "options.md: {name}");
     }
 }
 

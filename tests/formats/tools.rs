@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use grainsmooth::vtk::{VtkEncoding, VtkFormat};
+use grainsmooth::vtk::VtkEncoding;
 use grainsmooth::{
     Config, OutputDirectory, OutputFormat, PeriodicCut, Polycrystal, SeedSource, StlEncoding, TextureOptions,
     TextureSource, make_polycrystal, write_together,
@@ -147,7 +147,9 @@ fn vtk_meshio_and_trimesh_read_every_format() {
             }
         }
     }
-    let grains = OutputDirectory::check(directory.path().join("each"), OutputFormat::Stl).unwrap();
+    let grains =
+        OutputDirectory::check(directory.path().join("each"), OutputFormat::of_extension("stl").unwrap())
+            .unwrap();
     write_together(|files| SPACE.stage_grains(&grains, files)).unwrap();
     let level = SPACE.network.finest();
     let counts = SPACE.network.junction_counts();
@@ -213,7 +215,7 @@ fn orix_agrees_on_orientations_colors_and_disorientations() {
         [".vtm", ".vti", ".vtp", ".vtu", ".vtk", ".ori"].into_iter().for_each(|name| write(&space, name));
         if symmetry == CrystalSymmetry::Octahedral {
             let folder = directory.path().join("each");
-            let grains = OutputDirectory::check(folder, OutputFormat::Vtk(VtkFormat::Vtp)).unwrap();
+            let grains = OutputDirectory::check(folder, OutputFormat::VTP).unwrap();
             write_together(|files| space.stage_grains(&grains, files)).unwrap();
             let mut renamed = space.clone();
             renamed.config.file.names = grainsmooth::Names::Virmat;

@@ -83,7 +83,7 @@ pub use error::Error;
 pub use estimate::Estimate;
 pub use failed_grain::FailedGrain;
 pub use failure::{Failure, Growth};
-pub use formats::{LabelGrid, Names, StlEncoding};
+pub use formats::{LabelGrid, Names, OutputFormat, StlEncoding};
 pub use formats::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
 };
@@ -98,7 +98,7 @@ pub use measured_sample::{MeasuredGrain, MeasuredSample};
 pub use mesh_bezier::{BezierFile, read_bezier};
 pub use mesh_edit::{EdgeEdit, edit_edges};
 pub use mesh_json::{bezier_json, levels_json, mesh_json};
-pub use output::{Output, OutputDirectory, OutputFormat};
+pub use output::{Output, OutputDirectory};
 pub use phase_options::{PhaseOptions, PhasesError};
 pub use picture::{Coloring, Picture, Png};
 pub use pipeline::{

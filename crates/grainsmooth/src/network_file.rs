@@ -7,20 +7,14 @@ use glam::DVec3;
 use polycrystal::{Boundary, BoundaryId, Level, Mesh, Side};
 use rayon::prelude::*;
 
-use crate::formats::{
-    OrientationMap, Surface, unit_normal, write_ang, write_ctf, write_euler, write_evolver, write_gmsh,
-    write_npy, write_obj, write_ply,
-};
-use crate::formats::{write_gmsh_script, write_inp, write_material, write_ori, write_stl, write_tess};
+use crate::formats::{Surface, unit_normal};
 use crate::measured_arrays::MeasuredArrays;
+use crate::vtk::write_vtk;
 use crate::vtk::{
-    Array, Blocks, Cells, Each, FieldEntry, FieldValue, ImageData, ItemBlocks, ItemTuples, Items, PolyData,
-    Values, VtkFormat,
+    Array, Cells, Each, FieldEntry, FieldValue, ItemTuples, Items, PolyData, Values, VtkFormat,
 };
-use crate::vtk::{write_vti, write_vtk};
 use crate::{
-    Config, Error, FileOptions, GrainPhases, GrainTexture, LabelGrid, Names, Output, OutputFormat,
-    Polycrystal, StagedFiles, Tess, Tessellated, write_together,
+    Error, GrainPhases, GrainTexture, LabelGrid, Names, Output, Polycrystal, Tessellated, write_together,
 };
 
 /// The point array that tells how many grains meet: four at a quadruple point, unless edges collapsed there.
@@ -51,82 +45,8 @@ impl Polycrystal {
         write_together(|files| self.stage(output, files))
     }
 
-    /// As [`write`](Self::write), as one of several outputs that appear together.
-    ///
-    /// # Errors
-    /// [`Error::WriteOutput`]; [`Error::OutputTwice`]; as of [`Output::check_fits`].
-    pub fn stage(&self, output: &Output, files: &mut StagedFiles) -> Result<(), Error> {
-        output.check_fits(&self.config)?;
-        if output.format() == OutputFormat::Vtm {
-            return self.stage_blocks(output, files);
-        }
-        output.stage(files, |out| self.write_to(output.format(), out))?;
-        match output.gmsh_script()? {
-            Some(script) => {
-                let mesh = output.path().file_name().unwrap_or_default().to_string_lossy();
-                script.stage(files, |out| write_gmsh_script(&self.surface()?, self, &mesh, out))
-            }
-            None => Ok(()),
-        }
-    }
-
-    /// Writes a format that is a single file; of a Gmsh mesh what is not its script.
-    ///
-    /// # Errors
-    /// Whatever `out` reports; that the format is several files, or cannot hold this polycrystal.
-    pub fn write_to(&self, format: OutputFormat, out: &mut dyn Write) -> io::Result<()> {
-        match format {
-            OutputFormat::Vtk(format) => self.write_vtk(format, out),
-            OutputFormat::Vtm => Err(io::Error::other("several files are not written as one")),
-            OutputFormat::Stl => write_stl(&self.surface()?, "network", &self.config, out),
-            OutputFormat::Ply => write_ply(&self.surface()?, &self.config, self.cells.renumbered(), out),
-            OutputFormat::Obj => write_obj(&self.surface()?, &self.config, self.cells.renumbered(), out),
-            OutputFormat::Msh => write_gmsh(&self.surface()?, self, out),
-            OutputFormat::Fe => write_evolver(self, out),
-            OutputFormat::Tess => {
-                write_tess(&Tess::new(&self.cells), self.cells.texture.as_ref(), out)?;
-                self.write_settings_behind(out)
-            }
-            OutputFormat::Vti => self.write_vti(out),
-            OutputFormat::Npy => {
-                write_npy(&self.label_grid()?, self.config.file.names, out)?;
-                self.write_settings_behind(out)
-            }
-            OutputFormat::Inp => write_inp(&self.label_grid()?, &self.cells, &self.config, out),
-            OutputFormat::Ang => self.write_map(write_ang, out),
-            OutputFormat::Ctf => self.write_map(write_ctf, out),
-            OutputFormat::Txt => {
-                let volumes = self.network.cell_volumes();
-                write_euler(
-                    self.texture()?.orientations(),
-                    volumes,
-                    self.cells.phases.as_ref(),
-                    &self.config,
-                    out,
-                )
-            }
-            OutputFormat::Ori => write_ori(self.texture()?.orientations(), out),
-            OutputFormat::Yaml => write_material(&self.cells, self.texture()?, &self.config, out),
-        }
-    }
-
-    /// A map of orientations in one of the formats.
-    fn write_map(
-        &self,
-        write: fn(&OrientationMap<'_>, &Config, &mut dyn Write) -> io::Result<()>,
-        out: &mut dyn Write,
-    ) -> io::Result<()> {
-        let map = OrientationMap {
-            grid: &self.label_grid()?,
-            orientations: &self.orientations().map_err(io::Error::other)?,
-            phase_of: &self.cells.phase_of(),
-            phases: &self.cells.named_symmetries(&self.config),
-        };
-        write(&map, &self.config, out)
-    }
-
     /// Behind what formats without comments hold: who reads them stops before.
-    fn write_settings_behind(&self, out: &mut dyn Write) -> io::Result<()> {
+    pub(crate) fn write_settings_behind(&self, out: &mut dyn Write) -> io::Result<()> {
         write!(out, "\n{}", self.config.to_toml())
     }
 
@@ -134,43 +54,17 @@ impl Polycrystal {
         Surface::network(self).ok_or_else(|| io::Error::other("boundaries in the plane are no surfaces"))
     }
 
-    fn texture(&self) -> io::Result<&GrainTexture> {
+    pub(crate) fn texture(&self) -> io::Result<&GrainTexture> {
         self.cells.texture.as_ref().ok_or_else(|| io::Error::other("the grains have no orientations"))
     }
 
-    fn label_grid(&self) -> io::Result<LabelGrid<'_>> {
+    pub(crate) fn label_grid(&self) -> io::Result<LabelGrid<'_>> {
         let voxels =
             self.config.file.voxels.ok_or_else(|| io::Error::other("no number of voxels is given"))?;
         Ok(LabelGrid::new(self, voxels))
     }
 
-    fn write_vti(&self, out: &mut dyn Write) -> io::Result<()> {
-        let grid = self.label_grid()?;
-        let FileOptions { names, encoding, .. } = self.config.file;
-        let make = |slab: usize| {
-            grid.slab(slab).into_par_iter().map(|label| names.voxel_number(label)).collect::<Vec<i32>>()
-        };
-        let count = usize::try_from(grid.voxel_count()).map_err(io::Error::other)?;
-        let blocks = Blocks { count, blocks: grid.slab_count(), make: &make };
-        let mut cell_arrays = vec![Array { name: names.voxel(), values: Values::Int32Blocks(blocks) }];
-        let grain = |label: Side| label.grain().map(|grain| grain.index());
-        let items = |slab: usize| grid.slab(slab).into_par_iter().map(grain).collect::<Vec<_>>();
-        let Tessellated { phases, texture, .. } = &self.cells;
-        let mut tuples: Vec<ItemTuples> = phases.iter().map(GrainPhases::array).collect();
-        tuples.extend(texture.iter().flat_map(|texture| texture.color_arrays(names)));
-        let count = blocks.count;
-        cell_arrays.extend(tuples.iter().map(|tuples| {
-            let blocks = ItemBlocks { tuples, count, blocks: grid.slab_count(), make: &items };
-            Array { name: tuples.name, values: Values::ItemBlocks(blocks) }
-        }));
-        let LabelGrid { size, origin, spacing, .. } = grid;
-        let mut field = self.field();
-        field.push(self.seed_ids());
-        field.extend(self.grain_fields());
-        write_vti(&ImageData { size, origin, spacing, cell_arrays, field }, encoding, out)
-    }
-
-    fn write_vtk(&self, format: VtkFormat, out: &mut dyn Write) -> io::Result<()> {
+    pub(crate) fn write_vtk(&self, format: VtkFormat, out: &mut dyn Write) -> io::Result<()> {
         let level = self.network.finest();
         let names = self.config.file.names;
         let (polylines, boundaries_of_lines) = boundary_polylines(level, self.network.boundaries(), names);
@@ -276,13 +170,13 @@ impl Polycrystal {
     }
 
     /// The number of each grain's seed.
-    fn seed_ids(&self) -> FieldEntry {
+    pub(crate) fn seed_ids(&self) -> FieldEntry {
         let ids = self.cells.seed_ids.iter().map(|id| id.cast_signed()).collect();
         FieldEntry { name: SEED_ID, value: FieldValue::Ids(ids) }
     }
 
     /// The phase and the orientation of each grain, where they have them.
-    fn grain_fields(&self) -> impl Iterator<Item = FieldEntry> {
+    pub(crate) fn grain_fields(&self) -> impl Iterator<Item = FieldEntry> {
         let Tessellated { phases, texture, .. } = &self.cells;
         let arrays = texture.as_ref().map(GrainTexture::orientation_arrays);
         let entry = |tuples: ItemTuples| FieldEntry { name: tuples.name, value: FieldValue::Items(tuples) };

@@ -87,7 +87,11 @@ impl Files {
         let is_cells_only = run.no_mesh;
         let outputs = if is_cells_only { Vec::new() } else { files.outputs()? };
         outputs.iter().try_for_each(|output| output.check_fits(config))?;
-        let grains = files.grains_dir.as_ref().map(|path| files.grains_format.check(path)).transpose()?;
+        let grains = files
+            .grains_dir
+            .as_ref()
+            .map(|path| OutputDirectory::check(path, files.grains_format))
+            .transpose()?;
         if let Some(grains) = &grains {
             grains.check_fits(config)?;
         }

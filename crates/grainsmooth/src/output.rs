@@ -9,142 +9,7 @@ use voronoi::Dimension;
 use crate::memory::free_space;
 use crate::staged_files::{StagedFiles, write_together};
 use crate::unfinished::{Unfinished, parent};
-use crate::vtk::{VtkEncoding, VtkFormat};
-use crate::{Config, Error};
-
-/// A file format that results are written in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum OutputFormat {
-    /// One of VTK's for surfaces.
-    Vtk(VtkFormat),
-    /// VTK's multi-block file, with its blocks in a folder of the same name.
-    Vtm,
-    /// STL, every boundary once.
-    Stl,
-    /// PLY, binary.
-    Ply,
-    /// OBJ with a group for each boundary.
-    Obj,
-    /// Gmsh's mesh format 4.1.
-    Msh,
-    /// Surface Evolver's datafile.
-    Fe,
-    /// Neper's tessellation of the flat cells.
-    Tess,
-    /// The grain of each voxel as VTK ImageData.
-    Vti,
-    /// The grain of each voxel as a NumPy array.
-    Npy,
-    /// A hexahedron for each voxel, for Abaqus and CalculiX.
-    Inp,
-    /// The orientation of each pixel, as TSL has it.
-    Ang,
-    /// The same, as HKL has it.
-    Ctf,
-    /// A table of the grains' Euler angles.
-    Txt,
-    /// Neper's list of the grains' orientations.
-    Ori,
-    /// DAMASK's list of the grains' materials.
-    Yaml,
-}
-
-impl OutputFormat {
-    /// Every format, the default first.
-    pub const ALL: [Self; 18] = [
-        Self::Vtk(VtkFormat::Vtp),
-        Self::Vtk(VtkFormat::Vtu),
-        Self::Vtk(VtkFormat::Vtk),
-        Self::Vtm,
-        Self::Stl,
-        Self::Ply,
-        Self::Obj,
-        Self::Msh,
-        Self::Fe,
-        Self::Tess,
-        Self::Vti,
-        Self::Npy,
-        Self::Inp,
-        Self::Ang,
-        Self::Ctf,
-        Self::Txt,
-        Self::Ori,
-        Self::Yaml,
-    ];
-
-    /// The extension that stands for the format, without its dot.
-    pub fn extension(self) -> &'static str {
-        match self {
-            Self::Vtk(format) => format.extension(),
-            Self::Vtm => "vtm",
-            Self::Stl => "stl",
-            Self::Ply => "ply",
-            Self::Obj => "obj",
-            Self::Msh => "msh",
-            Self::Fe => "fe",
-            Self::Tess => "tess",
-            Self::Vti => "vti",
-            Self::Npy => "npy",
-            Self::Inp => "inp",
-            Self::Ang => "ang",
-            Self::Ctf => "ctf",
-            Self::Txt => "txt",
-            Self::Ori => "ori",
-            Self::Yaml => "yaml",
-        }
-    }
-
-    /// The format that the path's extension names, in upper or lower case.
-    pub fn of_path(path: &Path) -> Option<Self> {
-        let extension = path.extension()?;
-        Self::ALL.into_iter().find(|format| extension.eq_ignore_ascii_case(format.extension()))
-    }
-
-    /// The extensions as a message lists them: `*.vtp, *.vtu or *.vtk`.
-    pub fn known_extensions() -> String {
-        let [others @ .., last] = Self::ALL.map(|format| format!("*.{}", format.extension()));
-        format!("{} or {last}", others.join(", "))
-    }
-
-    /// Whether the format holds voxels.
-    pub fn has_voxels(self) -> bool {
-        matches!(self, Self::Vti | Self::Npy | Self::Inp | Self::Ang | Self::Ctf)
-    }
-
-    /// Whether the format is a single file, as standard output takes.
-    pub fn is_single_file(self) -> bool {
-        !matches!(self, Self::Vtm | Self::Msh)
-    }
-
-    /// The only dimension that the format can hold, if there is such a one.
-    fn only_dimension(self) -> Option<Dimension> {
-        match self {
-            Self::Stl | Self::Ply | Self::Obj | Self::Msh | Self::Fe => Some(Dimension::Three),
-            Self::Ang | Self::Ctf => Some(Dimension::Two),
-            Self::Vtk(_) | Self::Vtm | Self::Tess | Self::Vti | Self::Npy | Self::Inp => None,
-            Self::Txt | Self::Ori | Self::Yaml => None,
-        }
-    }
-
-    /// Checks that the format can hold what a config makes, for an output that messages call `path`.
-    ///
-    /// # Errors
-    /// [`Error::FormatDimension`]; [`Error::NoVoxels`] for a format of voxels when their number is not given; [`Error::NoTexture`] for one
-    /// of orientations where grains have none.
-    pub fn check_fits(self, path: &Path, config: &Config) -> Result<(), Error> {
-        let path = || path.to_owned();
-        match self.only_dimension() {
-            Some(dimension) if dimension != config.dimension => {
-                Err(Error::FormatDimension { path: path(), dimension })
-            }
-            _ if self.has_voxels() && config.file.voxels.is_none() => Err(Error::NoVoxels { path: path() }),
-            _ if matches!(self, Self::Txt | Self::Ori | Self::Yaml) && !config.has_texture() => {
-                Err(Error::NoTexture { path: path() })
-            }
-            _ => Ok(()),
-        }
-    }
-}
+use crate::{Config, Error, OutputFormat};
 
 /// A path that was found writable, and the format to write there.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -167,24 +32,18 @@ impl Output {
         let path = path.into();
         let Some(format) = OutputFormat::of_path(&path) else { return Err(Error::UnknownExtension { path }) };
         let output = Self::check_as(path, format)?;
-        output.gmsh_script()?;
+        output.file_beside()?;
         Ok(output)
     }
 
-    /// The script beside a Gmsh mesh, found writable.
-    pub(crate) fn gmsh_script(&self) -> Result<Option<Output<()>>, Error> {
-        let is_gmsh = self.format == OutputFormat::Msh;
-        is_gmsh.then(|| Output::check_as(self.path.with_extension("geo"), ())).transpose()
+    /// The file beside this one, where the format has one, found writable.
+    pub(crate) fn file_beside(&self) -> Result<Option<Output<()>>, Error> {
+        self.format.file_beside(&self.path).map(|path| Output::check_as(path, ())).transpose()
     }
 
     /// All files and directories that stand for the output, in full: a Gmsh mesh has a script beside it, blocks have a folder.
     pub fn targets(&self) -> Vec<PathBuf> {
-        let beside = match self.format {
-            OutputFormat::Msh => Some(self.target.with_extension("geo")),
-            OutputFormat::Vtm => Some(self.target.with_extension("")),
-            _ => None,
-        };
-        std::iter::once(self.target.clone()).chain(beside).collect()
+        std::iter::once(self.target.clone()).chain(self.format.beside(&self.target)).collect()
     }
 
     /// Checks that the format can hold what a config makes.
@@ -200,12 +59,7 @@ impl Output {
     /// # Errors
     /// [`Error::OutputExceedsDisk`].
     pub fn check_space(&self, config: &Config) -> Result<(), Error> {
-        let of_voxel = match self.format {
-            OutputFormat::Npy => 4,
-            OutputFormat::Vti if config.file.encoding != VtkEncoding::Zlib => config.bytes_of_voxel(),
-            _ => 0,
-        };
-        let needed = config.voxel_count() * u128::from(of_voxel);
+        let needed = config.voxel_count() * u128::from(self.format.bytes_of_voxel(config));
         match free_space(parent(&self.target)) {
             Some(available) if needed > u128::from(available) => {
                 Err(Error::OutputExceedsDisk { path: self.path.clone(), needed, available })
@@ -368,7 +222,7 @@ mod tests {
 
     #[test]
     fn extension_names_the_format() {
-        assert_eq!(OutputFormat::of_path(Path::new("a.b.VTU")), Some(OutputFormat::Vtk(VtkFormat::Vtu)));
+        assert_eq!(OutputFormat::of_path(Path::new("a.b.VTU")), OutputFormat::of_extension("vtu"));
         assert_eq!(OutputFormat::of_path(Path::new("vtp")), None);
         for format in OutputFormat::ALL {
             assert_eq!(
@@ -377,7 +231,8 @@ mod tests {
             );
         }
 
-        let known = "*.vtp, *.vtu, *.vtk, *.vtm, *.stl, *.ply, *.obj, *.msh, *.fe, *.tess, *.vti, *.npy, *.inp, *.ang, *.ctf, *.txt, *.ori or *.yaml";
+        let known = OutputFormat::known_extensions();
+        assert!(known.starts_with("*.vtp, *.vtu, ") && known.ends_with(" or *.yaml"), "{known}");
         for name in ["grains", "grains.off", ".vtp"] {
             let error = Output::check(name).unwrap_err().to_string();
             assert_eq!(error, format!("{name}: unknown extension; name the file {known}"));
@@ -415,7 +270,10 @@ mod tests {
         let path = directory.path().join("grains.vtk");
         for text in ["first", "second"] {
             let output = Output::check(&path).unwrap();
-            assert_eq!((output.path(), output.format()), (&*path, OutputFormat::Vtk(VtkFormat::Vtk)));
+            assert_eq!(
+                (output.path(), output.format()),
+                (&*path, OutputFormat::of_extension("vtk").unwrap())
+            );
             output.write(|out| out.write_all(text.as_bytes())).unwrap();
             assert_eq!(fs::read_to_string(&path).unwrap(), text);
             assert_eq!(names_in(directory.path()), ["grains.vtk"]);

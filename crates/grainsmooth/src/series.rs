@@ -8,7 +8,6 @@ use polycrystal::{Moving, Network, NetworkError, RelaxationStep, Relaxed};
 use voronoi::Tessellation;
 
 use crate::formats::escaped;
-use crate::vtk::VtkFormat;
 use crate::{Error, Output, OutputFormat, Polycrystal, StagedFiles};
 
 /// The steps of a relaxation, every so many of them.
@@ -57,7 +56,7 @@ impl SeriesOutput {
 
     /// The file of a step: `a_0003.vtp` beside `a.pvd`.
     fn step(&self, number: usize) -> Result<Output, Error> {
-        Output::check_as(step_path(self.path(), number), OutputFormat::Vtk(VtkFormat::Vtp))
+        Output::check_as(step_path(self.path(), number), OutputFormat::VTP)
     }
 }
 

@@ -3,11 +3,11 @@
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use grainsmooth::vtk::{VtkEncoding, VtkFormat};
+use grainsmooth::vtk::VtkEncoding;
 use grainsmooth::{
-    FileOptions, Names, Output, OutputDirectory, OutputFormat, SeriesOutput, StatisticsOutput, StlEncoding,
-    TableFormat,
+    FileOptions, Names, Output, OutputFormat, SeriesOutput, StatisticsOutput, StlEncoding, TableFormat,
 };
 use voronoi::Dimension;
 
@@ -18,12 +18,7 @@ use super::values::{nearest, whole_number};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Files")]
 pub struct FileArguments {
-    /// File to write; its extension names the format: .vtp, .vtu, .vtk, .vtm, .stl, .ply, .obj, .msh (Gmsh), .fe (Surface Evolver),
-    /// .tess (Neper), voxels .vti (DAMASK), .npy, .inp (Abaqus, CalculiX), .ang, .ctf, and orientations
-    /// .txt, .ori (Neper), .yaml (DAMASK); - is standard output; give it again for more files
-    ///
-    /// Example: -o grains.vtp -o grains.msh
-    #[arg(short, long, value_name = "PATH", num_args = 1, default_value = "grains.vtp", value_parser = parse_output)]
+    #[arg(short, long, help = output_help(), long_help = format!("{}\n\nExample: -o grains.vtp -o grains.msh", output_help()), value_name = "PATH", num_args = 1, default_value = "grains.vtp", value_parser = parse_output)]
     output: Vec<PathBuf>,
 
     /// Format of what goes to standard output, named by its extension [default: vtp]
@@ -41,10 +36,10 @@ pub struct FileArguments {
     /// Format of the grains' own files
     ///
     /// Example: --grains-dir grains --grains-format stl
-    #[arg(long, value_name = "FORMAT", value_enum, default_value_t = GrainFormat::Vtp, requires = "grains_dir")]
-    pub grains_format: GrainFormat,
+    #[arg(long, value_name = "FORMAT", value_parser = grain_formats(), default_value = "vtp", requires = "grains_dir")]
+    pub grains_format: OutputFormat,
 
-    /// Number of voxels along each axis for .vti, .npy, .ang and .ctf, X Y in 2D
+    /// Number of voxels along each axis, for formats that hold voxels, X Y in 2D
     ///
     /// Example: --voxels 64 64 64 -o grains.vti
     #[arg(long, value_names = ["NX", "NY", "NZ"], num_args = 2.., value_parser = whole_number(1..=65_536_u32), allow_negative_numbers = true)]
@@ -100,33 +95,6 @@ pub struct FileArguments {
     /// Example: --cells-csv cells.csv
     #[arg(long, value_name = "PATH")]
     pub cells_csv: Option<PathBuf>,
-}
-
-/// `--grains-format` as it is spelled.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum GrainFormat {
-    Vtp,
-    Stl,
-    Ply,
-    Obj,
-}
-
-impl GrainFormat {
-    /// The directory for files of this format, found fit to be made.
-    pub fn check(self, path: &Path) -> Result<OutputDirectory, grainsmooth::Error> {
-        OutputDirectory::check(path, self.into())
-    }
-}
-
-impl From<GrainFormat> for OutputFormat {
-    fn from(format: GrainFormat) -> Self {
-        match format {
-            GrainFormat::Vtp => Self::Vtk(VtkFormat::Vtp),
-            GrainFormat::Stl => Self::Stl,
-            GrainFormat::Ply => Self::Ply,
-            GrainFormat::Obj => Self::Obj,
-        }
-    }
 }
 
 /// What is asked of XML files of VTK, of networks and of meshes.
@@ -192,7 +160,7 @@ impl FileArguments {
 
     /// The format in which the network goes to standard output, if it does.
     pub fn standard_output(&self) -> Option<OutputFormat> {
-        let format = self.format.unwrap_or(OutputFormat::Vtk(VtkFormat::Vtp));
+        let format = self.format.unwrap_or(OutputFormat::VTP);
         match self.output.iter().filter(|path| is_standard_output(path)).count() {
             0 if self.format.is_some() => {
                 usage("--format is for -o -; the extension of a file names its format")
@@ -268,8 +236,21 @@ fn parse_output(text: &str) -> Result<PathBuf, String> {
     Err(format!("unknown extension{hint}; name the file {}", OutputFormat::known_extensions()))
 }
 
+fn output_help() -> String {
+    format!(
+        "File to write; its extension names the format: {}; - is standard output; give it again for more files",
+        OutputFormat::described()
+    )
+}
+
+/// The names of formats for grains' own surfaces.
+fn grain_formats() -> impl TypedValueParser<Value = OutputFormat> {
+    PossibleValuesParser::new(OutputFormat::of_grains().map(OutputFormat::extension))
+        .try_map(|name| OutputFormat::of_extension(&name).ok_or("no format has this name"))
+}
+
 fn parse_format(text: &str) -> Result<OutputFormat, String> {
-    let format = OutputFormat::ALL.into_iter().find(|format| format.extension() == text);
+    let format = OutputFormat::of_extension(text);
     let hint = || nearest_format(text).map_or(String::new(), |name| format!("did you mean {name}? "));
     format.ok_or_else(|| format!("{}the formats are those of {}", hint(), OutputFormat::known_extensions()))
 }

@@ -7,9 +7,24 @@ use std::io::{self, Write};
 
 use polycrystal::Side;
 use texture::{CrystalSymmetry, Orientation};
+use voronoi::Dimension;
 
 use super::OrientationMap;
+use super::format::{Content, Format, HEAD, TEXT_POINT, Writer};
 use crate::Config;
+
+pub(super) const FORMAT: Format = Format {
+    extension: "ang",
+    programs: "",
+    content: Content::Voxels(|_| 0),
+    dimension: Some(Dimension::Two),
+    beside: None,
+    bytes: |size| HEAD + TEXT_POINT * size.voxels(),
+    write: Writer::File(|polycrystal, out| {
+        OrientationMap::of(polycrystal, |map| write(map, &polycrystal.config, out))
+    }),
+    write_grain: None,
+};
 
 /// In place of each Euler angle where there is none.
 const ANGLE_OF_NONE: f64 = 2.0 * TAU;
@@ -18,7 +33,7 @@ const ANGLE_OF_NONE: f64 = 2.0 * TAU;
 ///
 /// The columns are the three Euler angles after Bunge, x, y, image quality 1, confidence 1, the phase from 1, detector signal 1 and
 /// fit 0; y points down, as everywhere in such maps. Pixels outside of all grains have no solution: confidence -1.
-pub(crate) fn write(map: &OrientationMap<'_>, config: &Config, out: &mut dyn Write) -> io::Result<()> {
+fn write(map: &OrientationMap<'_>, config: &Config, out: &mut dyn Write) -> io::Result<()> {
     let OrientationMap { grid, orientations, phases, .. } = map;
     let [columns, rows, _] = grid.size;
     let (x_step, y_step) = (grid.spacing.x, grid.spacing.y);

@@ -8,10 +8,13 @@ use glam::DVec3;
 use polycrystal::{BoundaryId, GrainId, Mesh, Side};
 use rayon::prelude::*;
 
+use super::format::{Beside, Content, Format, Writer};
 use super::grains::GrainMeasure;
 use super::lines::{JunctionLine, Junctions};
 use super::surface::Surface;
+use super::vtk::COMPRESSED;
 use crate::measured_arrays::{MeasuredArrays, NumberArrays};
+use crate::memory::LevelSize;
 use crate::network_file::{NUMBER_OF_GRAINS, SEED_ID, boundary_polylines, triangles};
 use crate::vtk::{Array, Cells, PolyData, Tuples, Values, VtkFormat, write_vtk};
 use crate::vtk::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
@@ -23,9 +26,24 @@ const NO_SIDE: i32 = -2;
 /// The blocks, in the order of the file.
 const BLOCKS: [&str; 4] = ["boundaries", "grains", "triple_lines", "quadruple_points"];
 
+pub(super) const FORMAT: Format = Format {
+    extension: "vtm",
+    programs: "",
+    content: Content::Boundaries,
+    dimension: None,
+    beside: Some(Beside::Folder),
+    bytes: |size| {
+        let LevelSize { points, triangles, .. } = size.mesh;
+        // Boundaries have normals, and every triangle comes at two grains, with five arrays.
+        size.encoded(size.of_network() + 27 * points + 2 * (24 * points + 48 * triangles), COMPRESSED)
+    },
+    write: Writer::Files(Polycrystal::stage_blocks),
+    write_grain: None,
+};
+
 impl Polycrystal {
     /// Completes the blocks, for the folder of the file's name, and the file itself.
-    pub(crate) fn stage_blocks(&self, output: &Output, files: &mut StagedFiles) -> Result<(), Error> {
+    fn stage_blocks(&self, output: &Output, files: &mut StagedFiles) -> Result<(), Error> {
         let folder = output.target().with_extension("");
         let surface = Surface::network(self);
         let space = surface.as_ref().map(|surface| (surface, Junctions::of(surface)));

@@ -4,10 +4,22 @@ use std::io::{self, Write};
 
 use polycrystal::Side;
 use texture::CrystalSymmetry;
+use voronoi::Dimension;
 
 use super::OrientationMap;
 use super::ang::lattice_constants;
-use crate::Config;
+use super::format::{Content, Format, HEAD, TEXT_POINT, Writer};
+
+pub(super) const FORMAT: Format = Format {
+    extension: "ctf",
+    programs: "",
+    content: Content::Voxels(|_| 0),
+    dimension: Some(Dimension::Two),
+    beside: None,
+    bytes: |size| HEAD + TEXT_POINT * size.voxels(),
+    write: Writer::File(|polycrystal, out| OrientationMap::of(polycrystal, |map| write(map, out))),
+    write_grain: None,
+};
 
 /// HKL's numbers of the Laue groups, from 1.
 const LAUE_GROUPS: [CrystalSymmetry; 11] = [
@@ -46,7 +58,7 @@ pub(crate) fn hkl_turn(symmetry: CrystalSymmetry) -> f64 {
 ///
 /// Band contrast and slope are 255 and the mean deviation 0; y points down, as everywhere in such maps. Pixels outside of all grains
 /// have phase 0.
-pub(crate) fn write(map: &OrientationMap<'_>, _: &Config, out: &mut dyn Write) -> io::Result<()> {
+fn write(map: &OrientationMap<'_>, out: &mut dyn Write) -> io::Result<()> {
     let OrientationMap { grid, orientations, phase_of, phases } = map;
     let [columns, rows, _] = grid.size;
     let (x_step, y_step) = (grid.spacing.x, grid.spacing.y);

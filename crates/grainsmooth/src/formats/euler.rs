@@ -4,10 +4,28 @@ use std::io::{self, Write};
 
 use texture::Orientation;
 
+use super::format::{Content, Format, HEAD, Writer};
 use crate::{Config, GrainPhases};
 
+pub(super) const FORMAT: Format = Format {
+    extension: "txt",
+    programs: "",
+    content: Content::Orientations,
+    dimension: None,
+    beside: None,
+    bytes: |size| HEAD + OF_GRAIN * size.grains,
+    write: Writer::File(|polycrystal, out| {
+        let (volumes, phases) = (polycrystal.network.cell_volumes(), polycrystal.cells.phases.as_ref());
+        write(polycrystal.texture()?.orientations(), volumes, phases, &polycrystal.config, out)
+    }),
+    write_grain: None,
+};
+
+/// Bytes of a grain: three or four numbers of 20 characters.
+pub(super) const OF_GRAIN: u128 = 80;
+
 /// Writes a line for each grain, in the order of their numbers, with its phase where there are some.
-pub(crate) fn write(
+fn write(
     orientations: &[Orientation],
     volumes: &[f64],
     phases: Option<&GrainPhases>,

@@ -8,13 +8,25 @@ use std::io::{self, Write};
 
 use glam::DVec3;
 use polycrystal::{Network, Side};
-use voronoi::{Domain, Wall};
+use voronoi::{Dimension, Domain, Wall};
 
+use super::format::{Content, Format, TEXT_CORNERS, TEXT_POINT, Writer};
 use super::surface::{Part, side_name, write_seed_comments};
 use crate::Polycrystal;
 
+pub(super) const FORMAT: Format = Format {
+    extension: "fe",
+    programs: "Surface Evolver",
+    content: Content::Boundaries,
+    dimension: Some(Dimension::Three),
+    beside: None,
+    bytes: |size| TEXT_POINT * size.mesh.points + TEXT_CORNERS * (size.mesh.edges + size.mesh.triangles),
+    write: Writer::File(write),
+    write_grain: None,
+};
+
 /// Writes the file; each point stays on its walls, and each body keeps its volume.
-pub(crate) fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
+fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let (surface, network) = (polycrystal.surface()?, &polycrystal.network);
     let (domain, sets, walls) = (network.domain(), network.wall_sets(), &network.finest().walls);
     writeln!(out, "// grainsmooth {}", env!("CARGO_PKG_VERSION"))?;

@@ -12,19 +12,39 @@ use std::io::{self, Write};
 
 use glam::DVec3;
 use polycrystal::BoundaryId;
+use voronoi::Dimension;
 
 use super::connected::{ConnectedParts, pieces_of_grain};
+use super::format::{Beside, Content, Format, TEXT_CORNERS, TEXT_POINT, Writer};
 use super::lines::Junctions;
 use super::surface::{Surface, side_name, write_seed_comments};
-use crate::Polycrystal;
+use crate::{Error, Output, Polycrystal, StagedFiles};
 
 /// Gmsh's codes for elements.
 const LINE: u32 = 1;
 const TRIANGLE: u32 = 2;
 const POINT: u32 = 15;
 
+pub(super) const FORMAT: Format = Format {
+    extension: "msh",
+    programs: "Gmsh",
+    content: Content::Boundaries,
+    dimension: Some(Dimension::Three),
+    beside: Some(Beside::File("geo")),
+    bytes: |size| TEXT_POINT * size.mesh.points + (TEXT_CORNERS + 8) * size.mesh.triangles,
+    write: Writer::Files(stage),
+    write_grain: None,
+};
+
+fn stage(polycrystal: &Polycrystal, output: &Output, files: &mut StagedFiles) -> Result<(), Error> {
+    output.stage(files, |out| write(&polycrystal.surface()?, polycrystal, out))?;
+    let Some(script) = output.file_beside()? else { return Ok(()) };
+    let mesh = output.path().file_name().unwrap_or_default().to_string_lossy();
+    script.stage(files, |out| write_script(&polycrystal.surface()?, polycrystal, &mesh, out))
+}
+
 /// Writes the script, which reads the mesh file of the given name beside it.
-pub(crate) fn write_script(
+fn write_script(
     surface: &Surface<'_>,
     polycrystal: &Polycrystal,
     mesh: &str,
@@ -67,7 +87,7 @@ pub(crate) fn write_script(
 }
 
 /// Writes the mesh file. Names stand in the script: meshio wants them for every cell, or for none.
-pub(crate) fn write(surface: &Surface<'_>, polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
+fn write(surface: &Surface<'_>, polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let surface = &ConnectedParts::of(surface).surface;
     let junctions = Junctions::of(surface);
     write!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n{}", polycrystal.config.to_toml())?;

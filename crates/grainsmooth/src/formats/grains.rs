@@ -7,12 +7,12 @@ use polycrystal::{GrainId, Side};
 use rayon::prelude::*;
 use voronoi::Dimension;
 
+use super::format::GrainSurface;
 use super::surface::Surface;
-use super::{obj, ply, stl};
 use crate::network_file::SEED_ID;
 use crate::output::OutputDirectory;
-use crate::vtk::{Array, Cells, Each, FieldEntry, ItemTuples, Items, PolyData, Values, VtkFormat, write_vtk};
-use crate::{Error, FileOptions, OutputFormat, Polycrystal, StagedFiles};
+use crate::vtk::{Array, Cells, Each, Items, PolyData, Values, VtkFormat, write_vtk};
+use crate::{Error, FileOptions, Polycrystal, StagedFiles};
 
 /// What is measured of a grain's surface, its parts on walls included.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,6 +57,9 @@ impl Polycrystal {
         let network = self.surface().map_err(failed)?;
         let parts = network.parts_of_grains(self.network.grain_count());
         let format = directory.format();
+        let Some(write) = format.grain_writer() else {
+            return Err(failed(io::Error::other("this format is not for surfaces of single grains")));
+        };
         let tuples = self.grain_tuples();
         directory.stage(files, |folder| {
             let grains = (0u32..).zip(&parts).collect::<Vec<_>>().into_par_iter();
@@ -64,48 +67,24 @@ impl Polycrystal {
                 let surface = network.grain(GrainId(id), parts);
                 let name = format!("grain_{id}.{}", format.extension());
                 let mut out = io::BufWriter::new(std::fs::File::create(folder.join(name))?);
-                self.write_grain(&surface, GrainId(id), &tuples, format, &mut out)?;
+                let file = GrainSurface {
+                    polycrystal: self,
+                    surface: &surface,
+                    grain: GrainId(id),
+                    tuples: &tuples,
+                };
+                write(&file, &mut out)?;
                 out.flush()
             })
         })
     }
-
-    fn write_grain(
-        &self,
-        surface: &Surface<'_>,
-        grain: GrainId,
-        tuples: &[ItemTuples],
-        format: OutputFormat,
-        out: &mut dyn Write,
-    ) -> io::Result<()> {
-        let renumbered = self.cells.renumbered().get(grain.index()..=grain.index()).unwrap_or_default();
-        match format {
-            OutputFormat::Stl => {
-                let seed = renumbered.first().map_or(String::new(), |seed| format!(" {SEED_ID} {seed}"));
-                stl::write(surface, &format!("grain{}{seed}", grain.0), &self.config, out)
-            }
-            OutputFormat::Ply => ply::write(surface, &self.config, renumbered, out),
-            OutputFormat::Obj => obj::write(surface, &self.config, renumbered, out),
-            OutputFormat::Vtk(format) => {
-                let seed = self.cells.seed_ids[grain.index()].cast_signed();
-                write_vtk_grain(surface, seed, tuples, &self.config.file, self.field(), format, out)
-            }
-            _ => Err(io::Error::other("this format holds no surfaces")),
-        }
-    }
 }
 
 /// A grain with the arrays of the `grains` block, and what lies beyond each triangle.
-fn write_vtk_grain(
-    surface: &Surface<'_>,
-    seed: i32,
-    tuples: &[ItemTuples],
-    options: &FileOptions,
-    field: Vec<FieldEntry>,
-    format: VtkFormat,
-    out: &mut dyn Write,
-) -> io::Result<()> {
-    let names = options.names;
+pub(super) fn write_vtk_grain(file: &GrainSurface<'_>, out: &mut dyn Write) -> io::Result<()> {
+    let &GrainSurface { polycrystal, surface, grain, tuples } = file;
+    let FileOptions { names, encoding, .. } = polycrystal.config.file;
+    let seed = polycrystal.cells.seed_ids[grain.index()].cast_signed();
     let triangles: Vec<[u32; 3]> = surface.triangles().collect();
     let of_triangle = surface.parts.iter().flat_map(|part| surface.triangles_of(part).map(move |_| part));
     let parts: Vec<_> = of_triangle.collect();
@@ -132,7 +111,7 @@ fn write_vtk_grain(
             Array { name: "Neighbors", values: integers(&neighbors) },
             Array { name: "Sphericity", values: doubles(&sphericity) },
         ],
-        field,
+        field: polycrystal.field(),
     };
     let of_grain =
         |_| surface.parts.first().and_then(|part| part.sides[0].grain()).map(|grain| grain.index());
@@ -140,5 +119,5 @@ fn write_vtk_grain(
         let items = Items { tuples, count, item: &of_grain };
         Array { name: tuples.name, values: Values::Items(items) }
     }));
-    write_vtk(&data, format, options.encoding, out)
+    write_vtk(&data, VtkFormat::Vtp, encoding, out)
 }

@@ -8,7 +8,22 @@ use glam::DVec3;
 use voronoi::Dimension;
 
 use super::LabelGrid;
+use super::format::{Content, Format, HEAD, TEXT_CORNERS, TEXT_POINT, Writer};
 use crate::{Config, Tessellated};
+
+/// A node and an element for each voxel, and its number in a set.
+pub(super) const FORMAT: Format = Format {
+    extension: "inp",
+    programs: "Abaqus, CalculiX",
+    content: Content::Voxels(|_| 0),
+    dimension: None,
+    beside: None,
+    bytes: |size| HEAD + (TEXT_POINT + 3 * TEXT_CORNERS) * size.voxels(),
+    write: Writer::File(|polycrystal, out| {
+        write(&polycrystal.label_grid()?, &polycrystal.cells, &polycrystal.config, out)
+    }),
+    write_grain: None,
+};
 
 /// Most numbers in a line of a set.
 const OF_LINE: usize = 16;
@@ -19,12 +34,7 @@ const ONE_MATERIAL: &str = "GRAINS";
 /// Writes nodes, elements, and sets of them: `GRAIN_0` and so on, `PHASE_` with a name, and the nodes of the domain's sides, `X0` to `Z1`. With
 /// orientations each grain has its own, by the crystal's first two axes. Materials, named as the phases are, and steps are for the user to
 /// say. Voxels outside the domain, and nodes that no voxel has, are left out: numbers are as of the whole grid, from 1.
-pub(crate) fn write(
-    grid: &LabelGrid<'_>,
-    cells: &Tessellated,
-    config: &Config,
-    out: &mut dyn Write,
-) -> io::Result<()> {
+fn write(grid: &LabelGrid<'_>, cells: &Tessellated, config: &Config, out: &mut dyn Write) -> io::Result<()> {
     config.write_comments("** ", out)?;
     let grains: Vec<Option<u32>> =
         grid.labels().into_iter().map(|label| label.grain().map(|grain| grain.0)).collect();

@@ -6,13 +6,27 @@ use std::io::{self, Write};
 
 use texture::CrystalSymmetry;
 
+use super::format::{Content, Format, HEAD, Writer};
 use crate::{Config, GrainTexture, Tessellated};
+
+pub(super) const FORMAT: Format = Format {
+    extension: "yaml",
+    programs: "DAMASK",
+    content: Content::Orientations,
+    dimension: None,
+    beside: None,
+    bytes: |size| HEAD + 160 * size.grains,
+    write: Writer::File(|polycrystal, out| {
+        write(&polycrystal.cells, polycrystal.texture()?, &polycrystal.config, out)
+    }),
+    write_grain: None,
+};
 
 /// The name of the one phase where none are asked for.
 const ONE_PHASE: &str = "A";
 
 /// Writes the file. What mechanics a phase has is for its user to say.
-pub(crate) fn write(
+fn write(
     cells: &Tessellated,
     texture: &GrainTexture,
     config: &Config,

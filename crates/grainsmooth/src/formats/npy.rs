@@ -6,13 +6,28 @@ use std::io::{self, Write};
 
 use rayon::prelude::*;
 
+use super::format::{Content, Format, HEAD, Writer};
 use super::{LabelGrid, Names};
+
+pub(super) const FORMAT: Format = Format {
+    extension: "npy",
+    programs: "",
+    content: Content::Voxels(|_| 4),
+    dimension: None,
+    beside: None,
+    bytes: |size| HEAD + 4 * size.voxels(),
+    write: Writer::File(|polycrystal, out| {
+        write(&polycrystal.label_grid()?, polycrystal.config.file.names, out)?;
+        polycrystal.write_settings_behind(out)
+    }),
+    write_grain: None,
+};
 
 /// Header and magic together must be a multiple of this.
 const ALIGNMENT: usize = 64;
 
 /// Writes the labels.
-pub(crate) fn write(grid: &LabelGrid<'_>, names: Names, out: &mut dyn Write) -> io::Result<()> {
+fn write(grid: &LabelGrid<'_>, names: Names, out: &mut dyn Write) -> io::Result<()> {
     let [nx, ny, nz] = grid.size;
     let mut header = format!("{{'descr': '<i4', 'fortran_order': True, 'shape': ({nx}, {ny}, {nz}), }}");
     let magic = b"\x93NUMPY\x01\x00";

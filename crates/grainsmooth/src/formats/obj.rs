@@ -3,17 +3,27 @@
 use std::io::{self, Write};
 
 use glam::DVec3;
+use voronoi::Dimension;
 
+use super::format::{Content, Format, TEXT_CORNERS, TEXT_POINT, Writer};
 use super::surface::{Surface, side_name, write_seed_comments};
 use crate::Config;
 
+pub(super) const FORMAT: Format = Format {
+    extension: "obj",
+    programs: "",
+    content: Content::Boundaries,
+    dimension: Some(Dimension::Three),
+    beside: None,
+    bytes: |size| TEXT_POINT * size.mesh.points + TEXT_CORNERS * size.mesh.triangles,
+    write: Writer::File(|polycrystal, out| {
+        write(&polycrystal.surface()?, &polycrystal.config, polycrystal.cells.renumbered(), out)
+    }),
+    write_grain: Some(|file, out| write(file.surface, &file.polycrystal.config, file.renumbered(), out)),
+};
+
 /// Writes all points, in the fewest digits that give the same number back, then the boundaries.
-pub(crate) fn write(
-    surface: &Surface<'_>,
-    config: &Config,
-    seed_ids: &[u32],
-    out: &mut dyn Write,
-) -> io::Result<()> {
+fn write(surface: &Surface<'_>, config: &Config, seed_ids: &[u32], out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "# grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
     config.write_comments("# ", out)?;
     write_seed_comments(seed_ids, "# ", out)?;

@@ -2,16 +2,27 @@
 
 use std::io::{self, Write};
 
+use voronoi::Dimension;
+
+use super::format::{Content, Format, Writer};
 use super::surface::{Surface, label, write_seed_comments};
 use crate::Config;
 
+pub(super) const FORMAT: Format = Format {
+    extension: "ply",
+    programs: "",
+    content: Content::Boundaries,
+    dimension: Some(Dimension::Three),
+    beside: None,
+    bytes: |size| 24 * size.mesh.points + 25 * size.mesh.triangles,
+    write: Writer::File(|polycrystal, out| {
+        write(&polycrystal.surface()?, &polycrystal.config, polycrystal.cells.renumbered(), out)
+    }),
+    write_grain: Some(|file, out| write(file.surface, &file.polycrystal.config, file.renumbered(), out)),
+};
+
 /// Writes all points and triangles.
-pub(crate) fn write(
-    surface: &Surface<'_>,
-    config: &Config,
-    seed_ids: &[u32],
-    out: &mut dyn Write,
-) -> io::Result<()> {
+fn write(surface: &Surface<'_>, config: &Config, seed_ids: &[u32], out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
     config.write_comments("comment ", out)?;
     write_seed_comments(seed_ids, "comment ", out)?;

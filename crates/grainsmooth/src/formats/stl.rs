@@ -2,8 +2,29 @@
 
 use std::io::{self, Write};
 
+use voronoi::Dimension;
+
+use super::format::{Content, Format, GrainSurface, Writer};
 use super::surface::{Surface, unit_normal};
 use crate::Config;
+use crate::network_file::SEED_ID;
+
+/// Every boundary once.
+pub(super) const FORMAT: Format = Format {
+    extension: "stl",
+    programs: "",
+    content: Content::Boundaries,
+    dimension: Some(Dimension::Three),
+    beside: None,
+    bytes: |size| match size.config.file.stl {
+        StlEncoding::Ascii => 270 * size.mesh.triangles,
+        StlEncoding::Binary => 84 + 50 * size.mesh.triangles,
+    },
+    write: Writer::File(|polycrystal, out| {
+        write(&polycrystal.surface()?, "network", &polycrystal.config, out)
+    }),
+    write_grain: Some(write_grain),
+};
 
 /// How an STL file spells its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,12 +42,12 @@ const TITLE_BYTES: usize = 240;
 const HEADER_BYTES: usize = 80;
 
 /// Writes all triangles as one solid.
-pub(crate) fn write(
-    surface: &Surface<'_>,
-    name: &str,
-    config: &Config,
-    out: &mut dyn Write,
-) -> io::Result<()> {
+fn write_grain(file: &GrainSurface<'_>, out: &mut dyn Write) -> io::Result<()> {
+    let seed = file.renumbered().first().map_or(String::new(), |seed| format!(" {SEED_ID} {seed}"));
+    write(file.surface, &format!("grain{}{seed}", file.grain.0), &file.polycrystal.config, out)
+}
+
+fn write(surface: &Surface<'_>, name: &str, config: &Config, out: &mut dyn Write) -> io::Result<()> {
     if let Some(point) = surface.points.iter().find(|point| !point.as_vec3().is_finite()) {
         return Err(io::Error::other(format!(
             "{point} is too far out for STL's single precision; write .vtp instead"

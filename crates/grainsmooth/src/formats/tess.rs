@@ -8,13 +8,29 @@ use glam::DVec3;
 use texture::{CrystalSymmetry, Orientation};
 use voronoi::{CellId, Dimension, Shift, Side, Wall};
 
+use super::format::{Content, Format, TEXT_CORNERS, TEXT_POINT, Writer};
 use crate::Tessellated;
 
 mod read;
 mod write;
 
 pub use read::{TessProblem, read_tess};
-pub(crate) use write::write;
+use write::write;
+
+/// The flat cells. Of a Poisson-Voronoi cell's share there are 7 vertices, 14 edges and 8 faces of three lines.
+pub(super) const FORMAT: Format = Format {
+    extension: "tess",
+    programs: "Neper",
+    content: Content::Boundaries,
+    dimension: None,
+    beside: None,
+    bytes: |size| size.grains * (7 * TEXT_POINT + 14 * TEXT_CORNERS + 8 * 150),
+    write: Writer::File(|polycrystal, out| {
+        write(&Tess::new(&polycrystal.cells), polycrystal.cells.texture.as_ref(), out)?;
+        polycrystal.write_settings_behind(out)
+    }),
+    write_grain: None,
+};
 
 /// What a .tess file holds of a tessellation with one scale.
 #[derive(Debug, Clone, PartialEq)]

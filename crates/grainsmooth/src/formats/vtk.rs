@@ -1,0 +1,41 @@
+//! VTK's formats of one data set: every boundary and every point once.
+
+use super::format::{Content, Format, Writer};
+use super::grains::write_vtk_grain;
+use crate::vtk::VtkFormat;
+
+/// The share of their bytes that compressed networks take: coordinates hardly repeat. 200 random grains took 0.55 at level 3.
+pub(super) const COMPRESSED: [u128; 2] = [11, 20];
+
+pub(super) const VTP: Format = Format {
+    extension: "vtp",
+    programs: "",
+    content: Content::Boundaries,
+    dimension: None,
+    beside: None,
+    bytes: |size| size.encoded(size.of_network(), COMPRESSED),
+    write: Writer::File(|polycrystal, out| polycrystal.write_vtk(VtkFormat::Vtp, out)),
+    write_grain: Some(write_vtk_grain),
+};
+
+pub(super) const VTU: Format = Format {
+    extension: "vtu",
+    programs: "",
+    content: Content::Boundaries,
+    dimension: None,
+    beside: None,
+    bytes: |size| size.encoded(size.of_network() + size.mesh.triangles, COMPRESSED),
+    write: Writer::File(|polycrystal, out| polycrystal.write_vtk(VtkFormat::Vtu, out)),
+    write_grain: None,
+};
+
+pub(super) const VTK: Format = Format {
+    extension: "vtk",
+    programs: "",
+    content: Content::Boundaries,
+    dimension: None,
+    beside: None,
+    bytes: |size| size.of_network(),
+    write: Writer::File(|polycrystal, out| polycrystal.write_vtk(VtkFormat::Vtk, out)),
+    write_grain: None,
+};
