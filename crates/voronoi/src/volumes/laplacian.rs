@@ -3,16 +3,19 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::grains::Grains;
 use crate::measure::face_area_and_centroid;
 use crate::{CellId, FaceId, Side, Tessellation};
 
 /// Iterations of conjugate gradients at most. Up to 20 000 grains took 20 to 50 in a prototype; more are a matrix that rounding spoilt.
 const MOST_ITERATIONS: usize = 2000;
 
-/// A face between two cells that can move against one another.
+/// A face between cells of two grains that can move against one another.
 pub(crate) struct Contact {
     /// The two cells.
     cells: [CellId; 2],
+    /// Their grains.
+    grains: [u32; 2],
     /// By how much the second stands moved by periods where it meets the first.
     image: DVec3,
     centroid: DVec3,
@@ -20,8 +23,8 @@ pub(crate) struct Contact {
     conductance: f64,
 }
 
-/// The matrix `dV_i / dw_j`, symmetric, whose rows add up to 0 (Kitagawa, Merigot and Thibert 2019). Walls and faces between a cell
-/// and its own images play no part in it.
+/// The matrix `dV_i / dw_j` of grains, symmetric, whose rows add up to 0 (Kitagawa, Merigot and Thibert 2019). Walls, faces within a grain
+/// and those between a grain and its own images play no part in it.
 pub(crate) struct Laplacian {
     contacts: Vec<Contact>,
     diagonal: Vec<f64>,
@@ -31,27 +34,28 @@ pub(crate) struct Laplacian {
 }
 
 impl Laplacian {
-    pub(crate) fn new(tessellation: &Tessellation) -> Self {
+    pub(crate) fn new(tessellation: &Tessellation, grains: &Grains) -> Self {
         let primaries = tessellation.face_count() - tessellation.periodic_faces().len();
         let faces = (0..primaries).into_par_iter();
-        let contact =
-            |face: usize| contact(tessellation, FaceId(u32::try_from(face).expect("face ids fit 32 bits")));
+        let contact = |face: usize| {
+            contact(tessellation, grains, FaceId(u32::try_from(face).expect("face ids fit 32 bits")))
+        };
         let contacts: Vec<Contact> = faces.filter_map(contact).collect();
-        let count = tessellation.cell_count();
+        let count = grains.count();
         let mut starts = vec![0; count + 1];
-        let ends = || contacts.iter().flat_map(|contact| contact.cells);
-        ends().for_each(|cell| starts[cell.index() + 1] += 1);
-        (0..count).for_each(|cell| starts[cell + 1] += starts[cell]);
+        let ends = || contacts.iter().flat_map(|contact| contact.grains);
+        ends().for_each(|grain| starts[grain as usize + 1] += 1);
+        (0..count).for_each(|grain| starts[grain + 1] += starts[grain]);
         let mut next = starts.clone();
         let mut columns = vec![0; starts[count]];
         let mut conductances = vec![0.0; starts[count]];
         let mut diagonal = vec![0.0; count];
-        for &Contact { cells: [a, b], conductance, .. } in &contacts {
+        for &Contact { grains: [a, b], conductance, .. } in &contacts {
             for (row, column) in [(a, b), (b, a)] {
-                let place = next[row.index()];
-                next[row.index()] += 1;
-                (columns[place], conductances[place]) = (column.0, conductance);
-                diagonal[row.index()] += conductance;
+                let place = next[row as usize];
+                next[row as usize] += 1;
+                (columns[place], conductances[place]) = (column, conductance);
+                diagonal[row as usize] += conductance;
             }
         }
         Self { contacts, diagonal, starts, columns, conductances }
@@ -102,27 +106,34 @@ impl Laplacian {
 
     /// The right side whose solution are weights with which seeds that moved keep the cells' faces where they are, as nearly as can
     /// be: where each face has its centroid, both its cells have the same power.
-    pub(crate) fn right_side_of_moved(&self, seeds: &[DVec3]) -> Vec<f64> {
-        let mut right_side = vec![0.0; seeds.len()];
-        for &Contact { cells: [a, b], image, centroid, conductance } in &self.contacts {
+    ///
+    /// Each cell has a part of its weight that stays, its `base`.
+    pub(crate) fn right_side_of_moved(&self, seeds: &[DVec3], base: impl Fn(CellId) -> f64) -> Vec<f64> {
+        let mut right_side = vec![0.0; self.diagonal.len()];
+        for &Contact { cells: [a, b], grains, image, centroid, conductance } in &self.contacts {
             let [to_a, to_b] = [seeds[a.index()], seeds[b.index()] + image].map(|seed| centroid - seed);
-            let term = conductance * (to_a - to_b).dot(to_a + to_b);
-            right_side[a.index()] += term;
-            right_side[b.index()] -= term;
+            let term = conductance * ((to_a - to_b).dot(to_a + to_b) - base(a) + base(b));
+            right_side[grains[0] as usize] += term;
+            right_side[grains[1] as usize] -= term;
         }
         right_side
     }
 }
 
-fn contact(tessellation: &Tessellation, face: FaceId) -> Option<Contact> {
+fn contact(tessellation: &Tessellation, grains: &Grains, face: FaceId) -> Option<Contact> {
     let (cells, image) = match tessellation.face_sides(face) {
         [Side::Cell(a), Side::Cell(b)] => ([a, b], DVec3::ZERO),
-        [Side::Cell(a), Side::Image(b, shift)] if a != b => ([a, b], shift.vector(tessellation.domain())),
+        [Side::Cell(a), Side::Image(b, shift)] => ([a, b], shift.vector(tessellation.domain())),
         _ => return None,
     };
+    let of_cells = cells.map(|cell| grains.of(cell));
+    if of_cells[0] == of_cells[1] {
+        return None;
+    }
     let [a, b] = cells.map(|cell| tessellation.seeds()[cell.index()]);
     let (area, centroid) = face_area_and_centroid(tessellation, face);
-    Some(Contact { cells, image, centroid, conductance: area / (2.0 * (b + image).distance(a)) })
+    let conductance = area / (2.0 * (b + image).distance(a));
+    Some(Contact { cells, grains: of_cells, image, centroid, conductance })
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

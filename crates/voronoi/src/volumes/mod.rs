@@ -3,6 +3,7 @@
 //! For any distinct seeds and positive volumes that add up to the domain's there are weights with which the cells have these
 //! volumes, unique up to a common constant (Aurenhammer, Hoffmann and Aronov 1998). [`PowerDiagram::with_volumes`] finds them, and
 //! [`PowerDiagram::lloyd`] moves seeds to the centroids of their cells, which keep their volumes. [`place_spheres`] makes seeds.
+//! [`GrainDiagram`] makes grains of given shapes too, each of several cells.
 //!
 //! ```
 //! use glam::DVec3;
@@ -17,15 +18,23 @@
 //! # Ok::<(), voronoi::volumes::VolumesError>(())
 //! ```
 
+mod grain_diagram;
+mod grains;
 mod laplacian;
 mod newton;
+mod shape;
 mod spheres;
+
+use std::sync::Arc;
 
 use glam::DVec3;
 
 use crate::{Domain, Tessellation, VoronoiError};
+pub use grain_diagram::GrainDiagram;
+use grains::Grains;
 use newton::{Clipped, approach};
-pub use spheres::place_spheres;
+pub use shape::GrainShape;
+pub use spheres::{place_ellipsoids, place_spheres};
 
 /// By how much a grain's volume may miss its target, relative to this.
 pub const TOLERANCE: f64 = 1e-10;
@@ -120,7 +129,11 @@ impl PowerDiagram {
             return Err(VolumesError::Count { seeds: seeds.len(), volumes: volumes.len() });
         }
         let volumes = check_volumes(domain, volumes)?;
-        let mut state = first(domain, seeds, &volumes)?;
+        let radius = |volume: &f64| spheres::sphere_radius(domain.dimension(), *volume);
+        let mut weights: Vec<f64> = volumes.iter().map(|volume| radius(volume).powi(2)).collect();
+        let smallest = weights.iter().copied().fold(f64::INFINITY, f64::min);
+        weights.iter_mut().for_each(|weight| *weight -= smallest);
+        let mut state = first(domain, seeds, weights, &Grains::of_single_cells(seeds.len()))?;
         let newton_steps = approach(&mut state, &volumes, GOAL)?;
         Ok(Self { newton_steps, ..Self::finished(state, volumes) })
     }
@@ -135,7 +148,8 @@ impl PowerDiagram {
     /// [`VolumesError::NotReached`], as [`Self::with_volumes`].
     pub fn lloyd(self, steps: usize) -> Result<Self, VolumesError> {
         let Self { tessellation, weights, volumes, mut centroid_steps, newton_steps } = self;
-        let mut state = Clipped::of(tessellation, weights);
+        let grains = Grains::of_single_cells(weights.len());
+        let mut state = Clipped::of(tessellation, weights, grains);
         for _ in 0..steps {
             let moved = (0..MOST_HALVED_STEPS).find_map(|halvings| {
                 let mut moved = state.moved(0.5f64.powi(halvings)).ok()?;
@@ -181,17 +195,18 @@ impl PowerDiagram {
     }
 }
 
-/// Cells of disjoint spheres about the seeds; where that leaves a cell empty, of weights that differ less, in the end not at all.
-fn first(domain: &Domain, seeds: &[DVec3], volumes: &[f64]) -> Result<Clipped, VolumesError> {
-    let mut weights: Vec<f64> =
-        volumes.iter().map(|volume| spheres::sphere_radius(domain.dimension(), *volume).powi(2)).collect();
-    let smallest = weights.iter().copied().fold(f64::INFINITY, f64::min);
-    weights.iter_mut().for_each(|weight| *weight -= smallest);
+/// Cells of some weights; where that leaves a grain empty, of weights that differ less, in the end not at all.
+fn first(
+    domain: &Domain,
+    seeds: &[DVec3],
+    mut weights: Vec<f64>,
+    grains: &Arc<Grains>,
+) -> Result<Clipped, VolumesError> {
     for is_last in (0..20).map(|halvings| halvings == 19) {
         if is_last {
             weights.fill(0.0);
         }
-        let state = Clipped::new(domain, seeds, weights.clone())?;
+        let state = Clipped::new(domain, seeds, weights.clone(), Arc::clone(grains))?;
         if !state.has_empty() {
             return Ok(state);
         }

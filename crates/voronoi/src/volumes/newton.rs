@@ -1,7 +1,10 @@
 //! Newton's method for weights, with steps that leave no cell empty.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
+use super::grains::Grains;
 use super::laplacian::Laplacian;
 use super::{TOLERANCE, VolumesError};
 use crate::{CellMeasure, Dimension, Domain, Tessellation, VoronoiError};
@@ -26,33 +29,43 @@ const LEAST_KEPT: f64 = 0.1;
 const RESIDUALS: [f64; 2] = [1e-10, 1e-3];
 
 /// How far weights follow moved seeds: to first order only, so more digits mean nothing.
-const MOVED_RESIDUAL: f64 = 1e-3;
+pub(super) const MOVED_RESIDUAL: f64 = 1e-3;
 
 /// Cells, what they were clipped with, and their measures.
 pub(super) struct Clipped {
     pub(super) tessellation: Tessellation,
     pub(super) weights: Vec<f64>,
+    pub(super) grains: Arc<Grains>,
     measures: Vec<CellMeasure>,
+    /// Of grains.
+    volumes: Vec<f64>,
 }
 
 impl Clipped {
     /// Clips cells with weights of which what they have in common is taken off.
-    pub(super) fn new(domain: &Domain, seeds: &[DVec3], mut weights: Vec<f64>) -> Result<Self, VoronoiError> {
+    pub(super) fn new(
+        domain: &Domain,
+        seeds: &[DVec3],
+        mut weights: Vec<f64>,
+        grains: Arc<Grains>,
+    ) -> Result<Self, VoronoiError> {
         // Equal weights become exactly 0.
         let first = weights[0];
         weights.iter_mut().for_each(|weight| *weight -= first);
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
         weights.iter_mut().for_each(|weight| *weight -= mean);
-        Ok(Self::of(Tessellation::power(domain, seeds, &weights)?, weights))
+        Ok(Self::of(Tessellation::power(domain, seeds, &weights)?, weights, grains))
     }
 
-    pub(super) fn of(tessellation: Tessellation, weights: Vec<f64>) -> Self {
+    pub(super) fn of(tessellation: Tessellation, weights: Vec<f64>, grains: Arc<Grains>) -> Self {
         let measures = tessellation.cell_measures();
-        Self { tessellation, weights, measures }
+        let volumes = grains.sums(measures.iter().map(|cell| cell.volume));
+        Self { tessellation, weights, grains, measures, volumes }
     }
 
+    /// Of grains.
     pub(super) fn volumes(&self) -> impl Iterator<Item = f64> {
-        self.measures.iter().map(|cell| cell.volume)
+        self.volumes.iter().copied()
     }
 
     pub(super) fn has_empty(&self) -> bool {
@@ -68,11 +81,11 @@ impl Clipped {
             .zip(&self.measures)
             .map(|(seed, cell)| seed.lerp(cell.centroid, fraction))
             .collect();
-        let laplacian = Laplacian::new(&self.tessellation);
+        let laplacian = Laplacian::new(&self.tessellation, &self.grains);
         let mut weights = self.weights.clone();
-        laplacian.solve(&laplacian.right_side_of_moved(&goals), &mut weights, MOVED_RESIDUAL);
+        laplacian.solve(&laplacian.right_side_of_moved(&goals, |_| 0.0), &mut weights, MOVED_RESIDUAL);
         let seeds = self.tessellation.toward_centroids(&self.measures, fraction);
-        Self::new(self.tessellation.domain(), &seeds, weights)
+        Self::new(self.tessellation.domain(), &seeds, weights, Arc::clone(&self.grains))
     }
 
     /// Largest relative error of any grain, and its number.
@@ -136,13 +149,14 @@ pub(super) fn approach(state: &mut Clipped, targets: &[f64], goal: f64) -> Resul
         }
         let mut direction = vec![0.0; targets.len()];
         let residual = (0.1 * error).clamp(RESIDUALS[0], RESIDUALS[1]);
-        Laplacian::new(&state.tessellation).solve(&state.wanted_changes(targets), &mut direction, residual);
+        let laplacian = Laplacian::new(&state.tessellation, &state.grains);
+        laplacian.solve(&state.wanted_changes(targets), &mut direction, residual);
         let most = if error < NEAR { MOST_HALVINGS_NEAR } else { MOST_HALVINGS };
         let mut next = None;
         for length in (0..most).map(|halvings| 0.5f64.powi(halvings)) {
-            let weights =
-                state.weights.iter().zip(&direction).map(|(weight, way)| weight + length * way).collect();
-            let tried = Clipped::new(state.tessellation.domain(), state.tessellation.seeds(), weights)?;
+            let weights = state.grains.shifted(&state.weights, |grain| length * direction[grain]);
+            let (domain, seeds) = (state.tessellation.domain(), state.tessellation.seeds());
+            let tried = Clipped::new(domain, seeds, weights, Arc::clone(&state.grains))?;
             if tried.is_progress_from(state, targets, error) {
                 next = Some(tried);
                 break;
@@ -154,10 +168,8 @@ pub(super) fn approach(state: &mut Clipped, targets: &[f64], goal: f64) -> Resul
     }
     match state.largest_error(targets) {
         (error, _) if error <= goal.max(TOLERANCE) => Ok(steps),
-        (_, grain) => Err(VolumesError::NotReached {
-            grain,
-            target: targets[grain],
-            reached: state.measures[grain].volume,
-        }),
+        (_, grain) => {
+            Err(VolumesError::NotReached { grain, target: targets[grain], reached: state.volumes[grain] })
+        }
     }
 }
