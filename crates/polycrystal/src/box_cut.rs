@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use voronoi::{Dimension, Domain, Shift};
 
-use crate::face_mesh::id;
+use crate::mesh::id::id;
 use crate::{Attempt, BoundaryId, Elements, GrainId, Junctions, Network, NetworkError, Side, Surface};
 use caps::caps;
 use pieces::{Pieces, Torus};

@@ -20,70 +20,56 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod angles;
-mod boundary;
+mod arcs;
 mod box_cut;
-mod box_tree;
-mod certificate;
-mod closing;
-mod contact;
-mod control_mesh;
-mod error;
-mod face_mesh;
-mod fan;
-mod fans;
-mod fault;
-mod folds;
-mod grain_mesh;
-mod grouped;
-mod intersections;
-mod labelled_mesh;
-mod level;
+mod check;
+mod energy;
+mod events;
+mod flow;
 mod measures;
+mod mesh;
 mod network;
-mod node_type;
-mod orientation;
-mod periodic;
-mod projection;
-mod regular_cells;
 mod relax;
-mod seams;
-mod surface;
-mod tension;
-mod triangle_quality;
-mod validate;
-mod volume;
-mod wall_set;
+mod solver;
 
-pub use angles::{AngleStatistics, WeightedAngle, angles_between_boundaries, dihedral_angles};
-pub use boundary::{Boundary, BoundaryId, GrainId, Side, Twin};
 pub use box_cut::BoxCut;
-pub use certificate::{Certificate, Claims, Faults, certify};
-pub use control_mesh::JunctionCounts;
-pub use error::{Attempt, NetworkError};
-pub use face_mesh::{FaceMesh, MeshSize};
-pub use fault::{Fault, Place};
-pub use folds::folded_edges;
-pub use level::{Level, Mesh};
+pub use check::certificate::{Certificate, Claims, Faults, certify};
+pub use check::fault::{Fault, Place};
+pub use check::folds::folded_edges;
+pub use check::orientation::outward_sides;
+pub use energy::volumes_kept::Volumes;
+pub use events::reconnection::Reconnections;
+pub use flow::balance::Balance;
+pub use flow::recipe::{NetworkRecipe, RelaxedCells};
+pub use flow::relaxation::{Moving, Relaxation, RelaxationStep, Relaxed};
+#[doc(hidden)]
+pub use flow::tuning::Tuning;
+pub use measures::validate::validate;
 pub use measures::{
     BoundaryMeasures, GrainMeasures, HerringResidual, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures,
     PlaneMeasures, PointCurvature, QuadruplePointMeasures, SpaceMeasures, TripleLineMeasures,
-    TriplePointMeasures, herring_residual, measure, measure_network, point_curvatures, point_dihedral_angles,
+    TriplePointMeasures, angles_between_boundaries, dihedral_angles, herring_residual, measure,
+    measure_network, point_curvatures, point_dihedral_angles,
 };
-pub use network::{Junctions, Network};
-pub use node_type::NodeType;
-pub use orientation::outward_sides;
-pub use periodic::PeriodicCopies;
+pub use mesh::angles::{AngleStatistics, WeightedAngle};
+pub use mesh::boundary::{Boundary, BoundaryId, GrainId, Side, Twin};
+pub use mesh::level::{Level, Mesh};
+pub use mesh::node_type::NodeType;
+pub use mesh::periodic::PeriodicCopies;
+pub use mesh::surface::{Elements, Surface};
+pub use mesh::triangle_quality::TriangleQuality;
+pub use mesh::wall_set::{Freedom, WallSet, WallSets};
+pub use network::Network;
+pub use network::control_mesh::JunctionCounts;
+pub use network::error::{Attempt, NetworkError};
+pub use network::face_mesh::{FaceMesh, MeshSize};
+pub use network::junctions::Junctions;
+pub use relax::cells::relax_cells;
 #[doc(hidden)]
-pub use regular_cells::regular_cells_tuned;
-pub use regular_cells::{RegularCells, regular_cells};
-pub use relax::{
-    Balance, Moving, NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, RelaxedCells,
-    Volumes, relax, relax_cells, relax_watched,
-};
+pub use relax::cells::relax_cells_tuned;
 #[doc(hidden)]
-pub use relax::{Tuning, relax_cells_tuned, relax_tuned};
-pub use surface::{Elements, Surface};
-pub use triangle_quality::TriangleQuality;
-pub use validate::validate;
-pub use wall_set::{Freedom, WallSet, WallSets};
+pub use relax::regular_cells::regular_cells_tuned;
+pub use relax::regular_cells::{RegularCells, regular_cells};
+#[doc(hidden)]
+pub use relax::relax_tuned;
+pub use relax::{relax, relax_watched};

@@ -1,15 +1,18 @@
 //! Measures of the grains, boundaries, triple lines and quadruple points of a network.
 
-mod complex;
-mod curvatures;
-mod herring;
-mod lines;
-mod plane;
-mod space;
+pub(crate) mod complex;
+pub(crate) mod curvatures;
+pub(crate) mod dihedral;
+pub(crate) mod herring;
+pub(crate) mod lines;
+pub(crate) mod plane;
+pub(crate) mod space;
+pub(crate) mod validate;
 
 use glam::DVec3;
 
 pub use curvatures::{PointCurvature, point_curvatures};
+pub use dihedral::{angles_between_boundaries, dihedral_angles};
 pub use herring::{HerringResidual, herring_residual};
 pub use plane::{PlaneBoundaryMeasures, PlaneGrainMeasures, PlaneMeasures, TriplePointMeasures};
 pub use space::{BoundaryMeasures, GrainMeasures, QuadruplePointMeasures, SpaceMeasures, TripleLineMeasures};

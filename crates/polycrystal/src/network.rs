@@ -1,25 +1,25 @@
+pub(crate) mod control_mesh;
+pub(crate) mod error;
+pub(crate) mod face_mesh;
+pub(crate) mod fan;
+pub(crate) mod grain_mesh;
+pub(crate) mod junctions;
+pub(crate) mod labelled_mesh;
+pub(crate) mod tension;
+
 use glam::DVec3;
 use rayon::prelude::*;
 use subzero::StencilTable;
 use voronoi::{Domain, Tessellation};
 
-use crate::control_mesh::{ControlMesh, JunctionCounts};
-use crate::folds::element_normals;
-use crate::tension::{checked_mobility, checked_tension, mean_in_flow};
-use crate::volume::{boundary_cones, volumes_of_grains};
+use crate::check::folds::element_normals;
+use crate::mesh::volume::{boundary_cones, volumes_of_grains};
 use crate::{
-    Boundary, FaceMesh, Freedom, GrainId, Level, Mesh, MeshSize, NetworkError, Surface, WallSet, WallSets,
+    Boundary, FaceMesh, Freedom, GrainId, Junctions, Level, Mesh, MeshSize, NetworkError, Side, Surface,
+    WallSet, WallSets,
 };
-
-/// How triple lines and the domain's edges are smoothed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Junctions {
-    /// As cubic B-splines between quadruple points.
-    #[default]
-    Crease,
-    /// Not at all: every control point on them is a corner, and they stay polylines.
-    Corner,
-}
+use control_mesh::{ControlMesh, JunctionCounts};
+use tension::{checked_mobility, checked_tension, mean_in_flow};
 
 /// All boundaries, triple lines and quadruple points of one polycrystal, on every level of subdivision.
 ///
@@ -234,6 +234,11 @@ impl Network {
             self.tensions.push(checked_tension(&boundary, tension(&boundary))?);
         }
         Ok(self)
+    }
+
+    /// The sides of all boundaries, by number.
+    pub fn sides(&self) -> Vec<[Side; 2]> {
+        self.boundaries().iter().map(|boundary| boundary.sides).collect()
     }
 
     /// The tension of each boundary, by number.

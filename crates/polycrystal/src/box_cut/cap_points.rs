@@ -8,7 +8,7 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, PositionInTriangulation, T
 
 use glam::DVec3;
 
-use crate::triangle_quality::squared_sine;
+use crate::mesh::triangle_quality::squared_sine;
 
 type Delaunay = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
@@ -25,7 +25,7 @@ const MOST_POINTS: usize = 3;
 const OFF_CENTER: f64 = 1.6;
 
 /// Adds points until no triangle gets wider by one more.
-pub(super) fn add_points(delaunay: &mut Delaunay) {
+pub(crate) fn add_points(delaunay: &mut Delaunay) {
     let most = (1 + MOST_POINTS) * delaunay.num_vertices();
     loop {
         let mut thin: Vec<(f64, [FixedVertexHandle; 3])> = delaunay

@@ -7,9 +7,9 @@ use spade::handles::{FixedVertexHandle, InnerTag};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use voronoi::{Dimension, Shift};
 
-use super::cap_points::add_points;
-use super::pieces::{End, Pieces};
-use super::{Corner, Piece, periodic_axes, place_in_box};
+use crate::box_cut::cap_points::add_points;
+use crate::box_cut::pieces::{End, Pieces};
+use crate::box_cut::{Corner, Piece, periodic_axes, place_in_box};
 use crate::{NetworkError, Side};
 
 type Delaunay = ConstrainedDelaunayTriangulation<Point2<f64>>;
@@ -20,7 +20,7 @@ const OFF_MIDDLE: f64 = 0.381_966;
 
 /// Caps on all walls across periodic axes: of a grain toward the exterior. What lies within such a wall becomes caps of both
 /// sides, one on each of the opposite walls.
-pub(super) fn caps(pieces: &mut Pieces, only_grain: Option<Side>) -> Result<Vec<Piece>, NetworkError> {
+pub(crate) fn caps(pieces: &mut Pieces, only_grain: Option<Side>) -> Result<Vec<Piece>, NetworkError> {
     let axes: Vec<usize> = periodic_axes(&pieces.domain).collect();
     let is_plane = pieces.domain.dimension() == Dimension::Two;
     // The corners of a box that is periodic along all its axes are one point.

@@ -5,19 +5,19 @@ use std::collections::HashMap;
 use glam::DVec3;
 use voronoi::{Dimension, Domain, Shift};
 
-use super::{Corner, Piece, periodic_axes, place_in_box};
-use crate::face_mesh::id;
-use crate::triangle_quality::squared_sine;
+use crate::box_cut::{Corner, Piece, periodic_axes, place_in_box};
+use crate::mesh::id::id;
+use crate::mesh::triangle_quality::squared_sine;
 use crate::{Elements, Network};
 
 /// Pieces of elements, and the points of the torus in the box.
-pub(super) struct Pieces {
-    pub(super) domain: Domain,
-    pub(super) pieces: Vec<Piece>,
+pub(crate) struct Pieces {
+    pub(crate) domain: Domain,
+    pub(crate) pieces: Vec<Piece>,
     /// Places with lower <= x < upper along periodic axes.
-    pub(super) places: Vec<DVec3>,
+    pub(crate) places: Vec<DVec3>,
     /// The axes on whose lower plane each point lies.
-    pub(super) planes: Vec<[bool; 3]>,
+    pub(crate) planes: Vec<[bool; 3]>,
 }
 
 /// What is nearer to a plane than this share of the box's side lies in it: relaxation leaves lattices so far off by rounding.
@@ -25,7 +25,7 @@ const ROUNDING: f64 = 1e-13;
 
 /// Which of two opposite walls: by how many periods it is moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum End {
+pub(crate) enum End {
     Lower = 0,
     Upper = 1,
 }
@@ -34,19 +34,19 @@ pub(super) enum End {
 type Cut = (usize, Corner, Corner, i8);
 
 /// The points of a network on the torus, and its vertices as copies of them.
-pub(super) struct Torus {
+pub(crate) struct Torus {
     /// The point that each vertex is, and the shift from there.
-    pub(super) originals: Vec<Corner>,
+    pub(crate) originals: Vec<Corner>,
     /// Places of points with lower <= x < upper along periodic axes.
-    pub(super) places: Vec<DVec3>,
+    pub(crate) places: Vec<DVec3>,
     /// The periods from there to the point.
-    pub(super) moved: Vec<Shift>,
+    pub(crate) moved: Vec<Shift>,
     /// The axes on whose lower plane each point lies.
-    pub(super) planes: Vec<[bool; 3]>,
+    pub(crate) planes: Vec<[bool; 3]>,
 }
 
 impl Torus {
-    pub(super) fn new(network: &Network, points: &[DVec3]) -> Self {
+    pub(crate) fn new(network: &Network, points: &[DVec3]) -> Self {
         let level = network.finest();
         assert_eq!(points.len(), level.vertex_count(), "there must be one point per vertex");
         let domain = network.domain();
@@ -73,7 +73,7 @@ impl Torus {
     }
 
     /// A vertex as a point moved by whole periods.
-    pub(super) fn corner(&self, vertex: u32) -> Corner {
+    pub(crate) fn corner(&self, vertex: u32) -> Corner {
         let Corner { point, shift } = self.originals[vertex as usize];
         Corner { point, shift: shift + self.moved[point as usize] }
     }
@@ -81,7 +81,7 @@ impl Torus {
 
 impl Pieces {
     /// Whole elements, of boundaries that come twice those of one.
-    pub(super) fn of_network(network: &Network, torus: Torus) -> Self {
+    pub(crate) fn of_network(network: &Network, torus: Torus) -> Self {
         let level = network.finest();
         let mut pieces = Self {
             pieces: Vec::new(),
@@ -107,7 +107,7 @@ impl Pieces {
     }
 
     /// Divides polygons into triangles, each so that the smallest angle is as large as it can be.
-    pub(super) fn triangulate(&mut self) {
+    pub(crate) fn triangulate(&mut self) {
         for piece in std::mem::take(&mut self.pieces) {
             let count = piece.corners.len();
             let fan = |apex: usize| {
@@ -128,12 +128,12 @@ impl Pieces {
     }
 
     /// Where a corner of a piece in the box is.
-    pub(super) fn place(&self, corner: Corner) -> DVec3 {
+    pub(crate) fn place(&self, corner: Corner) -> DVec3 {
         place_in_box(&self.domain, self.places[corner.point as usize], corner.shift)
     }
 
     /// Cuts all pieces at the planes across an axis.
-    pub(super) fn cut(&mut self, axis: usize) {
+    pub(crate) fn cut(&mut self, axis: usize) {
         let mut cuts: HashMap<Cut, Corner> = HashMap::new();
         for mut piece in std::mem::take(&mut self.pieces) {
             let cells = piece.corners.iter().map(|corner| corner.shift.0[axis]);
@@ -235,14 +235,14 @@ impl Pieces {
     }
 
     /// A new point of the torus.
-    pub(super) fn add(&mut self, place: DVec3, planes: [bool; 3]) -> Corner {
+    pub(crate) fn add(&mut self, place: DVec3, planes: [bool; 3]) -> Corner {
         self.places.push(place);
         self.planes.push(planes);
         Corner { point: id(self.places.len() - 1), shift: Shift::NONE }
     }
 
     /// Moves every piece into the box, of whose upper walls corners are moved by a period.
-    pub(super) fn move_into_box(&mut self) {
+    pub(crate) fn move_into_box(&mut self) {
         for piece in &mut self.pieces {
             let cell = [0, 1, 2].map(|axis| {
                 let shifts = piece.corners.iter().map(|corner| corner.shift.0[axis]);
@@ -254,24 +254,24 @@ impl Pieces {
     }
 
     /// Whether a corner lies on a wall of the box across an axis.
-    pub(super) fn is_on(&self, corner: Corner, axis: usize, end: End) -> bool {
+    pub(crate) fn is_on(&self, corner: Corner, axis: usize, end: End) -> bool {
         self.planes[corner.point as usize][axis] && corner.shift.0[axis] == end as i8
     }
 
     /// The corner on the lower wall opposite of one on a wall.
-    pub(super) fn lowered(&self, corner: Corner, axis: usize, end: End) -> Corner {
+    pub(crate) fn lowered(&self, corner: Corner, axis: usize, end: End) -> Corner {
         let mut down = Shift::NONE;
         down.0[axis] = -(end as i8);
         corner.moved(down)
     }
 
     /// Whether a piece lies in the lower wall across an axis.
-    pub(super) fn is_within(&self, piece: &Piece, axis: usize) -> bool {
+    pub(crate) fn is_within(&self, piece: &Piece, axis: usize) -> bool {
         piece.corners.iter().all(|corner| self.is_on(*corner, axis, End::Lower))
     }
 
     /// The point in the corner of a box that is periodic along all axes.
-    pub(super) fn origin(&mut self) -> Corner {
+    pub(crate) fn origin(&mut self) -> Corner {
         let planes = [0, 1, 2].map(|axis| axis < self.domain.dimension().axes());
         match self.planes.iter().position(|known| *known == planes) {
             Some(point) => Corner { point: id(point), shift: Shift::NONE },

@@ -8,9 +8,9 @@ use std::collections::HashMap;
 use glam::DVec3;
 use voronoi::Domain;
 
-use super::Piece;
-use super::pieces::Pieces;
-use crate::triangle_quality::squared_sine;
+use crate::box_cut::Piece;
+use crate::box_cut::pieces::Pieces;
+use crate::mesh::triangle_quality::squared_sine;
 use crate::{BoundaryId, Freedom};
 
 /// Sine of the smallest angle that is asked for (3 degrees): twice that of a thin triangle.
@@ -29,7 +29,7 @@ const GAIN: f64 = 1.02;
 const LARGEST_TURN: f64 = 0.85;
 
 /// Moves points around thin triangles, in flat networks only those inside caps.
-pub(super) fn widen(pieces: &mut Pieces, caps: &[Piece], is_flat: bool) {
+pub(crate) fn widen(pieces: &mut Pieces, caps: &[Piece], is_flat: bool) {
     let all: Vec<&Piece> = pieces.pieces.iter().chain(caps).collect();
     let mut stars = vec![Vec::new(); pieces.places.len()];
     for (number, piece) in all.iter().enumerate() {
@@ -85,7 +85,7 @@ impl Shape<'_> {
         let corners = &self.all[piece].corners;
         [0, 1, 2].map(|k| {
             let corner = corners[k];
-            super::place_in_box(self.domain, self.places[corner.point as usize], corner.shift)
+            crate::box_cut::place_in_box(self.domain, self.places[corner.point as usize], corner.shift)
         })
     }
 

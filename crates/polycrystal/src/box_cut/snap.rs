@@ -8,9 +8,9 @@ use glam::DVec3;
 use subzero::VertexRule;
 use voronoi::{Domain, Shift};
 
-use super::pieces::Torus;
-use super::{Corner, periodic_axes};
-use crate::triangle_quality::squared_sine;
+use crate::box_cut::pieces::Torus;
+use crate::box_cut::{Corner, periodic_axes};
+use crate::mesh::triangle_quality::squared_sine;
 use crate::{BoundaryId, Freedom, GrainId, Mesh, Network};
 
 /// Distance from a plane, in mean lengths of the edges at a point, within which the point moves into it.
@@ -37,7 +37,7 @@ const LEAST_GAIN: f64 = 0.2;
 const PASSES: usize = 3;
 
 /// Moves points near the planes of the cut into them; those of flat boundaries within these alone.
-pub(super) fn snap(network: &Network, torus: &mut Torus, points: &[DVec3], is_flat: bool) {
+pub(crate) fn snap(network: &Network, torus: &mut Torus, points: &[DVec3], is_flat: bool) {
     let level = network.finest();
     let Mesh::Triangles(mesh) = &level.mesh else { return };
     let triangles = mesh.triangles();

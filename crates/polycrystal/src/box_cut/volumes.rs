@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::Piece;
-use super::pieces::Pieces;
-use crate::relax::conjugate_gradients::{Limits, solve};
+use crate::box_cut::Piece;
+use crate::box_cut::pieces::Pieces;
+use crate::solver::conjugate_gradients::{Limits, solve};
 use crate::{Freedom, Side};
 
 /// What a volume may lack in the end, as a share of it.
@@ -19,7 +19,7 @@ const STEPS: usize = 12;
 const SOLVED: f64 = 1e-6;
 
 /// Moves points so that grains have the given volumes.
-pub(super) fn restore(pieces: &mut Pieces, caps: &[Piece], volumes: &[f64]) {
+pub(crate) fn restore(pieces: &mut Pieces, caps: &[Piece], volumes: &[f64]) {
     for _ in 0..STEPS {
         let missing: Vec<f64> = measured(pieces, caps, volumes.len())
             .iter()
@@ -43,7 +43,7 @@ fn measured(pieces: &Pieces, caps: &[Piece], count: usize) -> Vec<f64> {
             if let Side::Grain(grain) = side {
                 let apex = *apexes[grain.index()].get_or_insert(corners[0]);
                 volumes[grain.index()] +=
-                    sign * crate::volume::triangle_volume(corners.map(|corner| corner - apex));
+                    sign * crate::mesh::volume::triangle_volume(corners.map(|corner| corner - apex));
             }
         }
     }

@@ -2,31 +2,31 @@ use std::borrow::Cow;
 
 use voronoi::Shift;
 
-use crate::angles::{Wedge, WeightedAngle, angles, wedges};
-use crate::seams::{Seams, Use};
+use crate::mesh::angles::{Wedge, WeightedAngle, angles, wedges};
+use crate::mesh::seams::{Seams, Use};
 use crate::{BoundaryId, Elements, Level, Network, Side, Surface};
 
 /// A surface with every place once: in a periodic network without what is a copy of something else, and with the grains
 /// beyond the period as sides.
 pub(crate) struct Complex<'a> {
-    pub(super) surface: Surface<'a>,
+    pub(crate) surface: Surface<'a>,
     /// The two sides of each boundary.
-    pub(super) sides: Cow<'a, [[Side; 2]]>,
+    pub(crate) sides: Cow<'a, [[Side; 2]]>,
     /// The tension of each boundary.
-    pub(super) tensions: Cow<'a, [f64]>,
+    pub(crate) tensions: Cow<'a, [f64]>,
     /// Of each boundary the one that it is a copy of, or itself.
-    pub(super) originals: Vec<BoundaryId>,
+    pub(crate) originals: Vec<BoundaryId>,
     /// Of each point the one that it is a copy of; empty where there are no copies.
     points: Vec<u32>,
     /// Places inside boundaries: two elements each.
-    pub(super) inner: Vec<[u32; 2]>,
+    pub(crate) inner: Vec<[u32; 2]>,
     /// The uses of all other places, sorted by place.
     uses: Vec<Use>,
 }
 
 impl<'a> Complex<'a> {
     /// Any surface. Tensions are 1 between grains, and 0 at the exterior.
-    pub(super) fn of_surface(surface: &Surface<'a>) -> Self {
+    pub(crate) fn of_surface(surface: &Surface<'a>) -> Self {
         let Seams { inner, uses } = Seams::of_elements(surface.elements, surface.boundary_of);
         let originals = (0u32..).take(surface.sides.len()).map(BoundaryId).collect();
         let sides = Cow::Borrowed(surface.sides);
@@ -65,34 +65,34 @@ impl<'a> Complex<'a> {
     }
 
     /// The point that a point is a copy of, or itself.
-    pub(super) fn original(&self, point: u32) -> u32 {
+    pub(crate) fn original(&self, point: u32) -> u32 {
         self.points.get(point as usize).copied().unwrap_or(point)
     }
 
     /// Whether a boundary is not a copy of another.
-    pub(super) fn is_original(&self, boundary: BoundaryId) -> bool {
+    pub(crate) fn is_original(&self, boundary: BoundaryId) -> bool {
         self.originals[boundary.index()] == boundary
     }
 
     /// The boundary of an element that is no copy.
-    pub(super) fn boundary(&self, at: &Use) -> BoundaryId {
+    pub(crate) fn boundary(&self, at: &Use) -> BoundaryId {
         self.surface.boundary_of[at.element as usize]
     }
 
     /// The uses of each place where not two elements of one boundary meet.
-    pub(super) fn places(&self) -> impl Iterator<Item = &[Use]> {
+    pub(crate) fn places(&self) -> impl Iterator<Item = &[Use]> {
         self.uses.chunk_by(|a, b| a.place == b.place)
     }
 
     /// The boundaries that meet at a place, sorted.
-    pub(super) fn boundaries(&self, at: &[Use]) -> Vec<BoundaryId> {
+    pub(crate) fn boundaries(&self, at: &[Use]) -> Vec<BoundaryId> {
         let mut boundaries: Vec<BoundaryId> = at.iter().map(|at| self.boundary(at)).collect();
         boundaries.sort_unstable();
         boundaries
     }
 
     /// The sectors into which boundaries divide what surrounds a place, in order around it.
-    pub(super) fn wedges(&self, at: &[Use]) -> Vec<Wedge> {
+    pub(crate) fn wedges(&self, at: &[Use]) -> Vec<Wedge> {
         wedges(&self.surface, &self.sides, at)
     }
 

@@ -2,8 +2,8 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::plane;
-use crate::seams::Seams;
+use crate::measures::plane;
+use crate::mesh::seams::Seams;
 use crate::{Elements, Surface};
 
 /// How a boundary is curved at a point.

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use super::complex::Complex;
-use super::lines::{Line, Lines};
-use crate::angles::{leg, place_length};
-use crate::seams::Use;
+use crate::measures::complex::Complex;
+use crate::measures::lines::{Line, Lines};
+use crate::mesh::angles::{leg, place_length};
+use crate::mesh::seams::Use;
 use crate::{Elements, Level, Network, Side, Surface};
 
 /// Cosine beyond which two walls count as one plane, across a line on it.
@@ -68,7 +68,7 @@ impl Complex<'_> {
     }
 
     /// The residual of a line, as a mean over its length.
-    pub(super) fn residual_of_line(&self, line: &Line<'_>) -> Option<f64> {
+    pub(crate) fn residual_of_line(&self, line: &Line<'_>) -> Option<f64> {
         if line.boundaries.len() < 3 {
             return None;
         }
@@ -82,7 +82,7 @@ impl Complex<'_> {
     }
 
     /// The residual of a place; nothing where no boundary there has any tension, or walls leave it no way to go.
-    pub(super) fn residual(&self, at: &[Use]) -> Option<f64> {
+    pub(crate) fn residual(&self, at: &[Use]) -> Option<f64> {
         let (mut force, mut tensions) = (DVec3::ZERO, 0.0);
         let mut walls = Vec::new();
         for at in at {

@@ -1,29 +1,29 @@
-use super::complex::Complex;
 use crate::BoundaryId;
-use crate::seams::Use;
+use crate::measures::complex::Complex;
+use crate::mesh::seams::Use;
 
 /// The curves along which the same boundaries meet, triple lines and edges of the domain, and the points where they end.
-pub(super) struct Lines<'a> {
-    pub(super) lines: Vec<Line<'a>>,
+pub(crate) struct Lines<'a> {
+    pub(crate) lines: Vec<Line<'a>>,
     /// Points where lines end, sorted; none is a copy.
-    pub(super) corners: Vec<u32>,
+    pub(crate) corners: Vec<u32>,
 }
 
 /// A curve along which the same boundaries meet.
-pub(super) struct Line<'a> {
+pub(crate) struct Line<'a> {
     /// Its edges in order.
-    pub(super) edges: Vec<&'a [Use]>,
+    pub(crate) edges: Vec<&'a [Use]>,
     /// Its points in order, no copies; the first is the last where the line closes on itself.
-    pub(super) points: Vec<u32>,
+    pub(crate) points: Vec<u32>,
     /// Whether it closes on itself without a corner.
-    pub(super) is_closed: bool,
+    pub(crate) is_closed: bool,
     /// The boundaries that meet in it, sorted; one that meets itself comes twice.
-    pub(super) boundaries: Vec<BoundaryId>,
+    pub(crate) boundaries: Vec<BoundaryId>,
 }
 
 impl<'a> Lines<'a> {
     /// Follows all edges between boundaries.
-    pub(super) fn of(complex: &'a Complex<'_>) -> Self {
+    pub(crate) fn of(complex: &'a Complex<'_>) -> Self {
         let edges: Vec<&[Use]> = complex.places().collect();
         let ends: Vec<[u32; 2]> = edges
             .iter()

@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_PI_3, PI, TAU};
 use glam::{DMat2, DVec2, DVec3};
 use voronoi::Dimension;
 
-use super::complex::Complex;
-use crate::angles::statistics;
+use crate::measures::complex::Complex;
+use crate::mesh::angles::statistics;
 use crate::{AngleStatistics, BoundaryId, GrainId, Side};
 
 /// What a network in the plane is like.
@@ -89,7 +89,7 @@ pub struct TriplePointMeasures {
     pub boundaries: Vec<BoundaryId>,
 }
 
-pub(super) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeasures {
+pub(crate) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeasures {
     let surface = &complex.surface;
     let at = |point: u32| surface.points[point as usize].truncate();
     let by_boundary = surface.elements_by_boundary();
@@ -269,7 +269,7 @@ impl GrainSums {
 }
 
 /// The curvature of a line at each point inside a boundary, positive where the first side is convex; NaN elsewhere.
-pub(super) fn curvatures(points: &[DVec3], segments: &[[u32; 2]], inner: &[[u32; 2]]) -> Vec<f64> {
+pub(crate) fn curvatures(points: &[DVec3], segments: &[[u32; 2]], inner: &[[u32; 2]]) -> Vec<f64> {
     let at = |point: u32| points[point as usize].truncate();
     let mut curvatures = vec![f64::NAN; points.len()];
     for pair in inner {

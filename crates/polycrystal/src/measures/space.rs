@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 use glam::{DMat3, DVec3};
 use voronoi::Dimension;
 
-use super::complex::Complex;
-use super::lines::{Line, Lines};
-use crate::angles::{place_length, statistics};
-use crate::volume::triangle_volume;
+use crate::measures::complex::Complex;
+use crate::measures::lines::{Line, Lines};
+use crate::mesh::angles::{place_length, statistics};
+use crate::mesh::volume::triangle_volume;
 use crate::{AngleStatistics, BoundaryId, GrainId, Side, Surface};
 
 /// What a network in space is like.
@@ -138,7 +138,7 @@ pub struct QuadruplePointMeasures {
     pub largest_angle: f64,
 }
 
-pub(super) fn measure(complex: &Complex<'_>, triangles: &[[u32; 3]]) -> SpaceMeasures {
+pub(crate) fn measure(complex: &Complex<'_>, triangles: &[[u32; 3]]) -> SpaceMeasures {
     let surface = &complex.surface;
     let at = |corner: u32| surface.points[corner as usize];
     let by_boundary = surface.elements_by_boundary();
@@ -364,7 +364,7 @@ fn measure_line(
 fn end_tangents(complex: &Complex<'_>, line: &Line<'_>) -> Vec<(u32, DVec3)> {
     let [Some(first), Some(last)] = [line.edges.first(), line.edges.last()] else { return Vec::new() };
     let [start, end] = [line.points[0], line.points[line.points.len() - 1]];
-    let away = |edge: &[crate::seams::Use], corner: u32| {
+    let away = |edge: &[crate::mesh::seams::Use], corner: u32| {
         let ends = edge[0].ends(complex.surface.elements);
         let [a, b] = ends.map(|end| complex.surface.points[end as usize]);
         let direction = if complex.original(ends[0]) == corner { b - a } else { a - b };

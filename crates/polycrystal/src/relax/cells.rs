@@ -1,54 +1,17 @@
 //! Relaxation of cells, with the changes of topology that it takes.
 
-use std::time::{Duration, Instant};
+use voronoi::Tessellation;
 
-use glam::DVec3;
-use voronoi::{Collapsed, Tessellation};
-
-use super::balance::Balance;
-use super::local_area::boundary;
-use super::merged_lines::MergedLines;
-use super::plane;
-use super::reconnection::Reconnections;
-use super::settling::settle;
-use super::{Plan, Relaxation, RelaxationStep, Relaxed, Start, Tuning, USUAL_TIME, relax_levels};
-use crate::tension::{checked_tension, in_unit, mean_in_flow};
-use crate::{Attempt, Boundary, Certificate, FaceMesh, Junctions, Network, NetworkError, Volumes, validate};
-
-/// How a network is made of cells.
-#[derive(Clone, Copy)]
-pub struct NetworkRecipe<'a> {
-    /// Where its control points are. Grains that come together and part leave lines and boundaries in [`FaceMesh::Fan`] where they are;
-    /// others start from the flat boundaries between them.
-    pub face_mesh: FaceMesh,
-    /// How triple lines are smoothed.
-    pub junctions: Junctions,
-    /// Number of subdivisions.
-    pub levels: usize,
-    /// The tension of each boundary.
-    pub tension: &'a (dyn Fn(&Boundary) -> f64 + Sync),
-}
-
-/// What relaxation of cells gives.
-#[derive(Debug, Clone)]
-pub struct RelaxedCells {
-    /// The network with its topology in the end.
-    pub network: Network,
-    /// Where its points are.
-    pub relaxed: Relaxed,
-    /// What changed the topology.
-    pub reconnections: Reconnections,
-    /// Short triple lines, and boundaries with them, that were drawn together into points of higher order.
-    pub merged: Collapsed,
-    /// How near to equilibrium it is, where that was asked for.
-    pub balance: Option<Balance>,
-    /// What validation found.
-    pub validation: Certificate,
-    /// Time that validation took, of all.
-    pub validated_in: Duration,
-    /// What was tried before, and tangled.
-    pub attempts: Vec<Attempt>,
-}
+use crate::energy::sides::boundary;
+use crate::events::merged_lines::MergedLines;
+use crate::flow::balance::Balance;
+use crate::flow::recipe::{NetworkRecipe, RelaxedCells};
+use crate::flow::relaxation::{Relaxation, RelaxationStep, Relaxed, USUAL_TIME};
+use crate::flow::settling::settle;
+use crate::flow::tuning::Tuning;
+use crate::network::tension::{checked_tension, in_unit, mean_in_flow};
+use crate::relax::{Plan, Start, relax_levels};
+use crate::{Boundary, FaceMesh, Network, NetworkError, Volumes, arcs};
 
 /// Relaxes the grains of a tessellation, and lets them come together and part. Every grain keeps the volume of its cell.
 ///
@@ -94,7 +57,7 @@ pub fn relax_cells_tuned(
     let moves = has_tension && *relaxation != Relaxation::Time(0.0);
     let mut relaxed = match (tessellation.domain().dimension(), relaxation) {
         (voronoi::Dimension::Two, Relaxation::Equilibrium) => {
-            plane::equilibrate(tessellation, &in_units, &mut watch)
+            arcs::equilibrate(tessellation, &in_units, &mut watch)
         }
         (voronoi::Dimension::Three, _) if moves => {
             relax_in_space(tessellation, &in_units, relaxation, tuning, &mut watch)
@@ -120,24 +83,6 @@ fn relax_as_they_are(
     let relaxed = relax_levels(&network, &flat, &plan, watch)?;
     let points = relaxed.finest_points(&network);
     RelaxedCells::validated(network, relaxed, &points)
-}
-
-impl RelaxedCells {
-    /// A network whose topology has stayed, with its finest points, which are checked.
-    fn validated(network: Network, relaxed: Relaxed, points: &[DVec3]) -> Result<Self, NetworkError> {
-        let start = Instant::now();
-        let validation = validate(&network, points).map_err(NetworkError::Invalid)?;
-        Ok(Self {
-            network,
-            relaxed,
-            reconnections: Reconnections::default(),
-            merged: Collapsed::default(),
-            balance: None,
-            validation,
-            validated_in: start.elapsed(),
-            attempts: Vec::new(),
-        })
-    }
 }
 
 /// The plan for tensions whose mean is 1.

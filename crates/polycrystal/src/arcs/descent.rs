@@ -1,0 +1,254 @@
+//! Steps down to the least energy at kept areas.
+//!
+//! Each is one of Newton's method on energy and areas together, with arcs more rigid than they are (Levenberg 1944, Marquardt
+//! 1963): as rigid as the energy needs to fall about as its quadratic model says, and where an arc would turn over, that one alone.
+//! So what happens at one place takes nothing from a step elsewhere, and the number of steps does not grow with the network.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+use voronoi::FaceId;
+
+use crate::NetworkError;
+use crate::arcs::foam::{Arc, Foam};
+use crate::arcs::tangent::{Answer, Tangent};
+use crate::mesh::volume::largest_relative_error;
+use crate::solver::conjugate_gradients::dot;
+
+/// Share of its stiffness by which an arc is more rigid at first.
+const FIRST_RIGIDITY: f64 = 1.0;
+
+/// What the rigidity of arcs is multiplied by after a step that went as the model says ...
+const LOOSENED: f64 = 0.1;
+
+/// ... and before another try where one did not.
+const STIFFENED: f64 = 8.0;
+
+/// Least rigidity after that.
+const LEAST_STIFFENED: f64 = 0.3;
+
+/// Rigidity with which nothing moves.
+const LARGEST_RIGIDITY: f64 = 1e8;
+
+/// Share of its length that a step leaves to an arc's chord.
+const KEPT_LENGTH: f64 = 0.25;
+
+/// How often all chords are looked at for that, as they share ends.
+const SWEEPS: usize = 4;
+
+/// Share of a chord's direction in which an end is free, below which walls hold it.
+const SMALLEST_SHARE: f64 = 0.1;
+
+/// Most that an arc's turning changes in a step, in radians.
+const LARGEST_TURN: f64 = 0.7;
+
+/// Largest turning of an arc, in radians: no arc closes to a circle.
+const LARGEST_TURNING: f64 = 5.0;
+
+/// Energy of what is left to do, as a share of all, that is rest: angles are right to 1e-6 radians then.
+const REST: f64 = 1e-13;
+
+/// Energy that a step should save, as a share of all, below which rounding hides whether it did.
+const HIDDEN: f64 = 1e-12;
+
+/// Error of an area, as a share of it, that counts as none.
+const AREA_TOLERANCE: f64 = 1e-13;
+
+/// Error at rest.
+const AREA_LIMIT: f64 = 1e-10;
+
+/// The same after a step as a share of what that saves of all energy; the next one mends it ...
+const AREA_SHARE: f64 = 1e-2;
+
+/// ... and at most.
+const LOOSE_AREA: f64 = 1e-4;
+
+/// Most corrections of areas.
+const CORRECTIONS: usize = 40;
+
+/// A state on its way down.
+pub(crate) struct Descent {
+    pub(crate) state: Vec<f64>,
+    pressures: Vec<f64>,
+    /// Of each edge by number, how much more rigid it is than its stiffness, as a share of that.
+    rigidities: Vec<f64>,
+}
+
+/// What a step did.
+pub(crate) struct Step {
+    pub(crate) is_at_rest: bool,
+    /// Arcs that would have shrunk to nothing.
+    pub(crate) vanishing: Vec<FaceId>,
+}
+
+impl Descent {
+    pub(crate) fn new(foam: &Foam<'_>, state: Vec<f64>) -> Self {
+        let mut descent =
+            Self { state: Vec::new(), pressures: vec![0.0; foam.areas.len()], rigidities: Vec::new() };
+        descent.go_on(foam, state);
+        descent
+    }
+
+    /// Goes on from another state, of a foam with other edges or segments.
+    pub(crate) fn go_on(&mut self, foam: &Foam<'_>, state: Vec<f64>) {
+        self.state = state;
+        let last = foam.arcs.iter().map(|arc| arc.face.index()).max();
+        let count = last.map_or(0, |last| last + 1).max(self.rigidities.len());
+        self.rigidities.resize(count, FIRST_RIGIDITY);
+    }
+
+    /// One step.
+    ///
+    /// # Errors
+    /// [`NetworkError::VolumeNotRestored`].
+    pub(crate) fn step(&mut self, foam: &Foam<'_>) -> Result<Step, NetworkError> {
+        let energy = foam.energy(&self.state);
+        let missing = foam.missing(&self.state);
+        let (grain, relative_error) = largest_relative_error(&missing, foam.areas);
+        let mut vanishing = Vec::new();
+        // Share of what areas lack that is made up for: after an event, all may be too much for one step.
+        let mut mended = 1.0;
+        while self.rigidities.iter().all(|rigidity| *rigidity < LARGEST_RIGIDITY) {
+            let tangent = Tangent::new(foam, &self.state, &self.pressures, &self.rigidities);
+            if !tangent.is_stable() {
+                self.stiffen_all();
+                continue;
+            }
+            let gradient = tangent.gradient();
+            let wanted: Vec<f64> = missing.iter().map(|lack| mended * lack).collect();
+            let down: Vec<f64> = gradient.iter().map(|slope| -slope).collect();
+            let Answer { mut motion, pressures } = tangent.answer(&down, &wanted);
+            let fall = dot(&pressures, &wanted) - dot(&gradient, &motion);
+            if fall <= REST * energy && relative_error <= AREA_LIMIT {
+                let left = vec![0.0; missing.len()];
+                if let Some(state) = restored(foam, &tangent, self.state.clone(), &left, AREA_TOLERANCE) {
+                    self.state = state;
+                }
+                return Ok(Step { is_at_rest: true, vanishing });
+            }
+            let saved = fall - 0.5 * dot(&motion, &tangent.curvature(&motion));
+            vanishing = hold_chords(foam, &self.state, &mut motion);
+            let moved = self.state.iter().zip(&motion).map(|(x, by)| x + by).collect();
+            let enough = (AREA_SHARE * saved / energy).clamp(AREA_TOLERANCE, LOOSE_AREA);
+            let left: Vec<f64> = missing.iter().zip(&wanted).map(|(lack, wanted)| lack - wanted).collect();
+            let Some(state) = restored(foam, &tangent, moved, &left, enough) else {
+                self.stiffen_all();
+                mended *= 0.5;
+                continue;
+            };
+            let turned = turned_over(foam, &self.state, &state);
+            if !turned.is_empty() {
+                self.stiffen(turned.into_iter().map(FaceId::index));
+                continue;
+            }
+            // What areas still lack, or no longer do, is worth its pressure.
+            let paid = dot(&pressures, &missing) - dot(&pressures, &foam.missing(&state));
+            let share = (energy - foam.energy(&state) + paid) / saved;
+            let is_hidden = saved < HIDDEN * energy;
+            if share > 0.75 || is_hidden {
+                self.rigidities.iter_mut().for_each(|rigidity| *rigidity *= LOOSENED);
+            } else if share < 0.25 {
+                self.stiffen_all();
+            }
+            if share > 0.05 || is_hidden {
+                self.state = state;
+                self.pressures = pressures;
+                return Ok(Step { is_at_rest: false, vanishing });
+            }
+        }
+        if relative_error > AREA_LIMIT {
+            return Err(NetworkError::volume_not_restored(grain, relative_error));
+        }
+        // What is too short to move at all is at rest, or on its way to nothing.
+        Ok(Step { is_at_rest: vanishing.is_empty(), vanishing })
+    }
+
+    fn stiffen_all(&mut self) {
+        self.stiffen(0..self.rigidities.len());
+    }
+
+    fn stiffen(&mut self, edges: impl Iterator<Item = usize>) {
+        for edge in edges {
+            self.rigidities[edge] = (STIFFENED * self.rigidities[edge]).max(LEAST_STIFFENED);
+        }
+    }
+}
+
+/// A state with its areas restored, but for what is left for later, up to an error along the gradients of another one nearby; nothing
+/// where that does not lead there.
+fn restored(
+    foam: &Foam<'_>,
+    tangent: &Tangent<'_>,
+    mut state: Vec<f64>,
+    left: &[f64],
+    enough: f64,
+) -> Option<Vec<f64>> {
+    let mut last = f64::INFINITY;
+    for _ in 0..CORRECTIONS {
+        // More than a circle is no arc, and would cost time for each of its turns.
+        if (0..foam.arcs.len()).any(|arc| foam.turning(arc, &state).abs() > TAU) {
+            return None;
+        }
+        let missing: Vec<f64> =
+            foam.missing(&state).iter().zip(left).map(|(lack, left)| lack - left).collect();
+        let (_, error) = largest_relative_error(&missing, foam.areas);
+        if error <= enough || (error <= AREA_LIMIT && error > 0.5 * last) {
+            return Some(state);
+        }
+        if error.is_nan() || error > last {
+            return None;
+        }
+        last = error;
+        add(&mut state, &tangent.change_areas(&missing));
+    }
+    None
+}
+
+/// Lets no motion take most of an arc's chord, or turn an arc too far; gives the arcs whose chords would vanish.
+fn hold_chords(foam: &Foam<'_>, state: &[f64], motion: &mut [f64]) -> Vec<FaceId> {
+    let mut vanishing = Vec::new();
+    for sweep in 0..SWEEPS {
+        for (number, arc) in foam.arcs.iter().enumerate() {
+            let [start, end] = foam.ends(arc, state);
+            let chord = start.distance(end).max(f64::MIN_POSITIVE);
+            let along = (end - start) / chord;
+            let own = foam.own(number);
+            let stretch = DVec2::new(motion[own[2]] - motion[own[0]], motion[own[3]] - motion[own[1]]);
+            let lack = (KEPT_LENGTH - 1.0) * chord - along.dot(stretch);
+            if lack <= 0.0 {
+                continue;
+            }
+            if sweep == 0 {
+                vanishing.push(arc.face);
+            }
+            // Walls may leave it to one end.
+            let free = foam.free_at_ends(arc, along);
+            let share = lack / (free[0] + free[1]).dot(along).max(SMALLEST_SHARE);
+            for (end, sign) in [(0, -share), (1, share)] {
+                motion[own[2 * end]] += sign * free[end].x;
+                motion[own[2 * end + 1]] += sign * free[end].y;
+            }
+        }
+    }
+    for number in 0..foam.arcs.len() {
+        let place = foam.own(number)[4];
+        let turning = state[place];
+        let turned = turning + motion[place].clamp(-LARGEST_TURN, LARGEST_TURN);
+        motion[place] = turned.clamp(-LARGEST_TURNING, LARGEST_TURNING) - turning;
+    }
+    vanishing
+}
+
+/// The arcs that have turned over.
+fn turned_over(foam: &Foam<'_>, before: &[f64], after: &[f64]) -> Vec<FaceId> {
+    let has_turned = |arc: &&Arc| {
+        let [before, after] =
+            [before, after].map(|state| foam.ends(arc, state)).map(|[start, end]| end - start);
+        before.dot(after) <= 0.0
+    };
+    foam.arcs.iter().filter(has_turned).map(|arc| arc.face).collect()
+}
+
+fn add(to: &mut [f64], what: &[f64]) {
+    to.iter_mut().zip(what).for_each(|(to, what)| *to += what);
+}

@@ -1,0 +1,264 @@
+//! What a foam is like near a state: slopes and curvatures, and the motions that forces and changes of area ask for.
+
+use glam::{DMat2, DVec2, DVec3};
+use rayon::prelude::*;
+
+use crate::arcs::bow::Bow;
+use crate::arcs::foam::{Arc, Foam, OWN};
+use crate::solver::factors::{ELEMENT, Element, Factors};
+
+/// Share of an arc's rigidity that holds its ends in their places, not only to each other.
+const HELD: f64 = 0.1;
+
+/// The same where an arc has no rigidity at all: whole networks on a torus would be free to move.
+const LEAST_HELD: f64 = 1e-9;
+
+/// Least stiffness of an arc against turning, as a share of that without pressure.
+const LEAST_BENDING: f64 = 0.1;
+
+/// What the foam is like near a state.
+pub(crate) struct Tangent<'a> {
+    foam: &'a Foam<'a>,
+    terms: Vec<ArcTerms>,
+    factors: Factors,
+}
+
+/// The first derivatives of an arc's length and areas by its own variables, and what the second ones follow from.
+struct ArcTerms {
+    length: [f64; OWN],
+    areas: [[f64; OWN]; 2],
+    bow: Bow,
+    along: DVec2,
+    chord: f64,
+    /// The difference of pressure from left to right.
+    excess: f64,
+    /// One over the stiffness against turning; 0 for what stays straight.
+    flexibility: f64,
+}
+
+/// A motion, and the pressures that hold areas on it: their force and that asked about together bring it about.
+pub(crate) struct Answer {
+    pub(crate) motion: Vec<f64>,
+    pub(crate) pressures: Vec<f64>,
+}
+
+impl ArcTerms {
+    fn new(foam: &Foam<'_>, number: usize, state: &[f64], pressures: &[f64], rigidity: f64) -> Self {
+        let arc = &foam.arcs[number];
+        let [start, end] = foam.ends(arc, state);
+        let bow = foam.bow(number, state);
+        let chord = start.distance(end).max(f64::MIN_POSITIVE);
+        let along = (end - start) / chord;
+        let pull = along * (arc.tension * bow.length[0]);
+        let length = [-pull.x, -pull.y, pull.x, pull.y, arc.tension * chord * bow.length[1]];
+        let swell = along * (2.0 * chord * bow.area[0]);
+        let bulge = [-swell.x, -swell.y, swell.x, swell.y, chord * chord * bow.area[1]];
+        let areas = [0, 1].map(|side| {
+            let Some((_, offset)) = arc.beside[side] else { return [0.0; OWN] };
+            let (a, b) = (0.5 * (start - offset), 0.5 * (end - offset));
+            let triangle = [b.y, -b.x, -a.y, a.x, 0.0];
+            let sign = if side == 0 { 1.0 } else { -1.0 };
+            [0, 1, 2, 3, 4].map(|k| sign * (triangle[k] + bulge[k]))
+        });
+        let [left, right] = arc.beside.map(|beside| beside.map_or(0.0, |(cell, _)| pressures[cell]));
+        let excess = left - right;
+        let plain = arc.tension * chord * bow.length[2];
+        let bending = plain * (1.0 + rigidity) - excess * chord * chord * bow.area[2];
+        let is_straight = arc.chords == 1 || plain <= 0.0;
+        let flexibility = if is_straight { 0.0 } else { 1.0 / bending.max(LEAST_BENDING * plain) };
+        Self { length, areas, bow, along, chord, excess, flexibility }
+    }
+
+    /// What the arc adds to the matrix: of its ends and of the pressures beside it, after its turning is eliminated.
+    fn element(&self, foam: &Foam<'_>, arc: &Arc, rigidity: f64) -> Element {
+        let Self { bow, along, chord, excess, flexibility, .. } = *self;
+        let pull = arc.tension * bow.length[0] / chord;
+        // Edges without tension count, too: short ones are not to turn over with a step.
+        let stiffness = if arc.tension > 0.0 { pull } else { foam.mean_tension / chord };
+        let normal = along.perp();
+        let spring = outer(normal, normal) * pull
+            + DMat2::from_diagonal(DVec2::splat(rigidity * stiffness - 2.0 * bow.area[0] * excess));
+        let held = DMat2::from_diagonal(DVec2::splat(HELD.mul_add(rigidity, LEAST_HELD) * stiffness));
+        // The triangle to the arc's ends has half the product of these two.
+        let turned = DMat2::from_cols(DVec2::Y, DVec2::NEG_X) * (0.5 * excess);
+        let free = arc.ends.map(|(vertex, _)| {
+            let [x, y] = [DVec3::X, DVec3::Y].map(|axis| foam.freedoms[vertex].project(axis).truncate());
+            DMat2::from_cols(x, y)
+        });
+        // What turns with each end and with each pressure.
+        let wind = self.winding(arc);
+        let mut turns = [0.0; ELEMENT];
+        let mut matrix = [[0.0; ELEMENT]; ELEMENT];
+        for (row, column, block) in
+            [(0, 0, spring + held), (0, 1, turned - spring), (1, 0, -turned - spring), (1, 1, spring + held)]
+        {
+            let mut block = free[row] * block * free[column];
+            if row == column {
+                // Where walls hold, nothing else acts.
+                block += (DMat2::IDENTITY - free[row]) * stiffness;
+            }
+            for (x, values) in block.to_cols_array_2d().into_iter().enumerate() {
+                (0..2).for_each(|y| matrix[2 * row + y][2 * column + x] = values[y]);
+            }
+        }
+        for (end, wind) in [-wind, wind].into_iter().enumerate() {
+            let free = free[end] * wind;
+            (turns[2 * end], turns[2 * end + 1]) = (free.x, free.y);
+        }
+        let mut places = [0; ELEMENT];
+        for (end, (vertex, _)) in arc.ends.into_iter().enumerate() {
+            let place = foam.order.vertex(vertex).expect("the arc ends there");
+            (places[2 * end], places[2 * end + 1]) = (place, place + 1);
+        }
+        let beside = arc.beside.map(|beside| Some(beside?.0));
+        let some = beside[0].or(beside[1]).expect("there is a cell beside each edge");
+        for (side, cell) in beside.into_iter().enumerate() {
+            places[4 + side] = foam.order.cell(cell.unwrap_or(some));
+            match cell {
+                None => continue,
+                Some(cell) if cell == foam.pinned => {
+                    matrix[4 + side][4 + side] = -1.0;
+                    continue;
+                }
+                Some(_) => {}
+            }
+            let own = self.areas[side];
+            for end in [0, 1] {
+                let slope = free[end] * DVec2::new(own[2 * end], own[2 * end + 1]);
+                for axis in [0, 1] {
+                    matrix[4 + side][2 * end + axis] = slope[axis];
+                    matrix[2 * end + axis][4 + side] = slope[axis];
+                }
+            }
+            turns[4 + side] = own[4];
+        }
+        for (row, own) in matrix.iter_mut().zip(&turns) {
+            row.iter_mut().zip(&turns).for_each(|(entry, other)| *entry -= own * other * flexibility);
+        }
+        Element { places, matrix }
+    }
+
+    /// The force on the end per turning; that on the start is the opposite.
+    fn winding(&self, arc: &Arc) -> DVec2 {
+        self.along * (arc.tension * self.bow.length[1] - 2.0 * self.chord * self.bow.area[1] * self.excess)
+    }
+}
+
+fn outer(a: DVec2, b: DVec2) -> DMat2 {
+    DMat2::from_cols(a * b.x, a * b.y)
+}
+
+impl<'a> Tangent<'a> {
+    /// That of a foam at a state under pressures, if each arc is so much more rigid than it is.
+    pub(crate) fn new(foam: &'a Foam<'a>, state: &[f64], pressures: &[f64], rigidities: &[f64]) -> Self {
+        let of_arc = |number: usize| {
+            let arc = &foam.arcs[number];
+            let rigidity = rigidities[arc.face.index()];
+            let terms = ArcTerms::new(foam, number, state, pressures, rigidity);
+            let element = terms.element(foam, arc, rigidity);
+            (terms, element)
+        };
+        let (terms, elements): (Vec<ArcTerms>, Vec<Element>) =
+            (0..foam.arcs.len()).into_par_iter().map(of_arc).unzip();
+        Self { foam, terms, factors: Factors::new(&foam.order, &elements) }
+    }
+
+    /// Whether the energy has a least value on all motions that keep areas.
+    pub(crate) fn is_stable(&self) -> bool {
+        self.factors.negative_count() == self.foam.areas.len()
+    }
+
+    /// The gradient of the energy.
+    pub(crate) fn gradient(&self) -> Vec<f64> {
+        let mut gradient = self.zero();
+        for (number, terms) in self.terms.iter().enumerate() {
+            let own = self.foam.own(number).into_iter().zip(terms.length);
+            own.for_each(|(variable, slope)| gradient[variable] += slope);
+        }
+        self.foam.keep_free(&mut gradient);
+        gradient
+    }
+
+    /// The motion that changes areas so, to first order, with the least stiffness in its way.
+    pub(crate) fn change_areas(&self, changes: &[f64]) -> Vec<f64> {
+        self.answer(&self.zero(), changes).motion
+    }
+
+    fn zero(&self) -> Vec<f64> {
+        vec![0.0; 2 * self.foam.freedoms.len() + self.foam.arcs.len()]
+    }
+
+    /// The motion that a force and changes of area lead to, to first order.
+    pub(crate) fn answer(&self, force: &[f64], changes: &[f64]) -> Answer {
+        let Foam { arcs, order, freedoms, .. } = self.foam;
+        let (forces, torques) = force.split_at(2 * freedoms.len());
+        let places = || (0..freedoms.len()).filter_map(|vertex| Some((vertex, order.vertex(vertex)?)));
+        let mut values = vec![0.0; order.len()];
+        for (vertex, place) in places() {
+            values[place..place + 2].copy_from_slice(&forces[2 * vertex..2 * vertex + 2]);
+        }
+        for (cell, change) in changes.iter().enumerate() {
+            values[order.cell(cell)] += change;
+        }
+        for ((arc, terms), torque) in arcs.iter().zip(&self.terms).zip(torques) {
+            let wound = terms.winding(arc) * (torque * terms.flexibility);
+            for ((vertex, _), wound) in arc.ends.iter().zip([-wound, wound]) {
+                let place = order.vertex(*vertex).expect("the arc ends there");
+                let free = freedoms[*vertex].project(wound.extend(0.0));
+                values[place] -= free.x;
+                values[place + 1] -= free.y;
+            }
+            for (beside, area) in arc.beside.iter().zip(&terms.areas) {
+                if let Some((cell, _)) = beside {
+                    values[order.cell(*cell)] -= area[4] * torque * terms.flexibility;
+                }
+            }
+        }
+        values[order.cell(self.foam.pinned)] = 0.0;
+        self.factors.solve(&mut values);
+        let pressures: Vec<f64> = (0..changes.len()).map(|cell| -values[order.cell(cell)]).collect();
+        let mut motion = self.zero();
+        for (vertex, place) in places() {
+            motion[2 * vertex..2 * vertex + 2].copy_from_slice(&values[place..place + 2]);
+        }
+        self.foam.keep_free(&mut motion);
+        let (places, turns) = motion.split_at_mut(2 * freedoms.len());
+        for (((arc, terms), torque), turn) in arcs.iter().zip(&self.terms).zip(torques).zip(turns) {
+            let [start, end] =
+                arc.ends.map(|(vertex, _)| DVec2::new(places[2 * vertex], places[2 * vertex + 1]));
+            let beside = arc.beside.iter().zip(&terms.areas);
+            let pressed =
+                beside.map(|(beside, area)| beside.map_or(0.0, |(cell, _)| area[4] * pressures[cell]));
+            let wound = terms.winding(arc).dot(end - start);
+            *turn = (torque + pressed.sum::<f64>() - wound) * terms.flexibility;
+        }
+        Answer { motion, pressures }
+    }
+
+    /// The second derivative of the energy under the pressures, times a motion.
+    pub(crate) fn curvature(&self, motion: &[f64]) -> Vec<f64> {
+        let mut image = vec![0.0; motion.len()];
+        for (number, (arc, terms)) in self.foam.arcs.iter().zip(&self.terms).enumerate() {
+            let ArcTerms { bow, along, chord, excess, .. } = terms;
+            let own = self.foam.own(number);
+            let [start, end] =
+                [[own[0], own[1]], [own[2], own[3]]].map(|[x, y]| DVec2::new(motion[x], motion[y]));
+            let (stretch, turn) = (end - start, motion[own[4]]);
+            let longer = along.dot(stretch);
+            let across = stretch - along * longer;
+            let pull = across * (arc.tension * bow.length[0] / chord)
+                + along * (arc.tension * bow.length[1] * turn)
+                - (stretch * (2.0 * bow.area[0]) + along * (2.0 * chord * bow.area[1] * turn)) * excess;
+            let wind = (arc.tension * bow.length[1] - excess * 2.0 * chord * bow.area[1]) * longer
+                + (arc.tension * chord * bow.length[2] - excess * chord * chord * bow.area[2]) * turn;
+            // The triangle to the arc's ends has half the product of these two.
+            let [at_start, at_end] =
+                [-pull + end.perp() * (0.5 * excess), pull - start.perp() * (0.5 * excess)];
+            for (variable, value) in own.into_iter().zip([at_start.x, at_start.y, at_end.x, at_end.y, wind]) {
+                image[variable] += value;
+            }
+        }
+        self.foam.keep_free(&mut image);
+        image
+    }
+}

@@ -1,0 +1,386 @@
+use std::collections::BTreeMap;
+use std::fmt;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::check::closing::faults_of_closing;
+use crate::check::fault::Fault;
+use crate::check::folds::folded_pairs;
+use crate::check::intersections::crossing_elements;
+use crate::check::pinched_points::pinched_points;
+use crate::mesh::angles::{angles, statistics};
+use crate::mesh::grouped::Grouped;
+use crate::mesh::node_type::Meeting;
+use crate::mesh::seams::Seams;
+use crate::mesh::triangle_quality::{squared_sine, triangle_quality};
+use crate::mesh::volume::{ConeSum, cones_of_boundaries, swept_by_rounding};
+use crate::{AngleStatistics, Elements, GrainId, NodeType, Side, Surface, TriangleQuality};
+
+/// Cosine of the angle between normals beyond which neighbours in one boundary are folded: 90 degrees, and as much more as
+/// single precision, in which many files keep coordinates, blurs the right angles of a box.
+const FOLD_COSINE: f64 = -1e-6;
+
+/// Largest difference of a volume from what it should be, as a share of that.
+const VOLUME_TOLERANCE: f64 = 1e-9;
+
+/// What is said about a surface, to be compared with what it is.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Claims<'a> {
+    /// Type of each point; nothing where a file leaves it open.
+    pub node_types: Option<&'a [Option<NodeType>]>,
+    /// Number of grains at each point, see [`Level::grain_counts`](crate::Level::grain_counts).
+    pub grain_counts: Option<&'a [u8]>,
+    /// In a periodic network, the point that each point is a copy of, or itself: grains at all copies meet there.
+    pub originals: Option<&'a [u32]>,
+    /// Volume of each grain (in the plane: area).
+    pub grain_volumes: Option<&'a [(GrainId, f64)]>,
+    /// Volume of the domain (in the plane: area).
+    pub domain_volume: Option<f64>,
+    /// How far each coordinate may be from what the volumes were measured on: [`Surface::last_place`], or half a last place of
+    /// single precision, where that is how points were kept since.
+    pub rounding: f64,
+}
+
+/// What was found about a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Certificate {
+    /// All that is wrong, kind by kind; nothing if the network is valid.
+    pub faults: Faults,
+    /// Volume of each grain (in the plane: area); in order of the grains' numbers.
+    pub grain_volumes: Vec<(GrainId, f64)>,
+    /// Largest difference of a grain's volume from the claimed, as a share of that; 0 when nothing was claimed.
+    pub largest_volume_error: f64,
+    /// Difference of the total volume from the domain's, as a share of that; 0 when nothing was claimed.
+    pub total_volume_error: f64,
+    /// Angles between boundaries, if boundaries meet inside the domain.
+    pub angles: Option<AngleStatistics>,
+    /// How thin triangles are, in space.
+    pub triangles: Option<TriangleQuality>,
+}
+
+/// What is wrong with a surface. Its text names the first fault of each kind.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Faults(pub Vec<Fault>);
+
+impl std::error::Error for Faults {}
+
+impl Faults {
+    /// The first grain whose surface touches itself, where all faults are of that kind.
+    pub(crate) fn pinched_grain(&self) -> Option<GrainId> {
+        let pinched = self.0.iter().map(|fault| match fault {
+            Fault::Pinched { grain, .. } | Fault::PinchedPoint { grain, .. } => Some(*grain),
+            _ => None,
+        });
+        pinched.collect::<Option<Vec<_>>>()?.first().copied()
+    }
+}
+
+impl fmt::Display for Faults {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kinds = self.0.chunk_by(|a, b| a.kind() == b.kind());
+        for (index, faults) in kinds.enumerate() {
+            let start = if index == 0 { "" } else { "; " };
+            write!(out, "{start}{}", faults[0])?;
+            if faults.len() > 1 {
+                write!(out, " ({} such)", faults.len())?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Looks for all that can be wrong with a network: points and elements that should not be there, grains that are not closed
+/// or wind the wrong way, folds, elements that cross (decided exactly), and claims that do not hold.
+///
+/// Where a point is not finite the search ends with these points, and where the grains are not closed volumes are not
+/// compared with claims.
+///
+/// # Panics
+/// When elements refer to points or boundaries that there are not, or claims are not as many as points.
+pub fn certify(surface: &Surface<'_>, claims: &Claims<'_>) -> Certificate {
+    inspect(surface, &Seams::of_elements(surface.elements, surface.boundary_of), claims)
+}
+
+/// The same with seams that are known.
+pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>) -> Certificate {
+    let mut certificate = Certificate {
+        faults: Faults::default(),
+        grain_volumes: Vec::new(),
+        largest_volume_error: 0.0,
+        total_volume_error: 0.0,
+        angles: None,
+        triangles: None,
+    };
+    let ids = |count: usize| 0..u32::try_from(count).expect("ids fit 32 bits");
+    let not_finite = ids(surface.points.len()).filter(|point| !surface.points[*point as usize].is_finite());
+    certificate.faults.0.extend(not_finite.map(|point| Fault::NotFinite { point }));
+    if !certificate.faults.0.is_empty() {
+        return certificate;
+    }
+    let (normals, sines) = normals_and_sines(surface);
+    certificate.triangles = triangle_quality(sines);
+    let by_boundary = surface.elements_by_boundary();
+    let faults = &mut certificate.faults.0;
+    let flat = ids(normals.len()).filter(|element| normals[*element as usize] == DVec3::ZERO);
+    faults.extend(flat.map(|element| Fault::NoArea { element }));
+    // Each of these runs for the most part on one thread.
+    let (crossing, ((meetings, duplicates), (closing, is_closed))) = rayon::join(
+        || crossing_elements(surface, seams, &by_boundary, &normals),
+        || {
+            rayon::join(
+                || (meetings(surface), duplicate_points(surface.points)),
+                || closing_and_pinches(surface, seams),
+            )
+        },
+    );
+    faults.extend(duplicates.map(|points| Fault::DuplicatePoints { points }));
+    let orphans = ids(meetings.len()).filter(|point| meetings[*point as usize].is_none());
+    faults.extend(orphans.map(|point| Fault::Orphan { point }));
+    faults.extend(closing);
+    let has_area = |pair: &[u32; 2]| pair.iter().all(|element| normals[*element as usize] != DVec3::ZERO);
+    let folded = folded_pairs(&seams.inner, &normals, FOLD_COSINE).into_iter().filter(has_area);
+    faults.extend(folded.map(|elements| Fault::Folded { elements }));
+    faults.extend(crossing.into_iter().map(|elements| Fault::Crossing { elements }));
+    if let Some(stated) = claims.node_types {
+        faults.extend(wrong_node_types(stated, &meetings));
+    }
+    if let Some(stated) = claims.grain_counts {
+        faults.extend(wrong_grain_counts(stated, &grain_counts(&meetings, claims.originals)));
+    }
+    let (volumes, angles) = rayon::join(
+        || grain_volumes(surface, &by_boundary),
+        || statistics(angles(surface, surface.sides, seams.places())),
+    );
+    certificate.grain_volumes = volumes;
+    certificate.check_volumes(surface, &normals, claims, is_closed);
+    certificate.angles = angles;
+    certificate
+}
+
+/// The normals of all elements, and of triangles the squared sines of their smallest angles: both from corners that are fetched once.
+fn normals_and_sines(surface: &Surface<'_>) -> (Vec<DVec3>, Vec<f64>) {
+    let Elements::Triangles(triangles) = surface.elements else {
+        return (surface.elements.normals(surface.points), Vec::new());
+    };
+    let of_triangle = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|corner| surface.points[corner as usize]);
+        ((b - a).cross(c - a), squared_sine([a, b, c]))
+    };
+    triangles.par_iter().map(of_triangle).unzip()
+}
+
+/// Where grains are not closed, or are but touch themselves, and whether they are closed.
+fn closing_and_pinches(surface: &Surface<'_>, seams: &Seams) -> (Vec<Fault>, bool) {
+    let mut faults = faults_of_closing(surface, seams);
+    let is_closed = faults.is_empty();
+    if is_closed {
+        faults = pinched_points(surface, seams);
+    }
+    faults.sort_by_key(Fault::kind);
+    (faults, is_closed)
+}
+
+impl Certificate {
+    /// Whether nothing is wrong.
+    pub fn is_good(&self) -> bool {
+        self.faults.0.is_empty()
+    }
+
+    fn check_volumes(
+        &mut self,
+        surface: &Surface<'_>,
+        normals: &[DVec3],
+        claims: &Claims<'_>,
+        is_closed: bool,
+    ) {
+        let faults = &mut self.faults.0;
+        let empty = self.grain_volumes.iter().filter(|(_, volume)| is_closed && *volume <= 0.0);
+        faults.extend(empty.map(|&(grain, volume)| Fault::NoVolume { grain, volume }));
+        let areas = if claims.rounding > 0.0 { side_areas(surface, normals) } else { BTreeMap::new() };
+        let mut wrong = Vec::new();
+        for (grain, claimed) in claims.grain_volumes.into_iter().flatten() {
+            let Ok(found) = self.grain_volumes.binary_search_by_key(grain, |(grain, _)| *grain) else {
+                faults.push(Fault::MissingGrain { grain: *grain });
+                continue;
+            };
+            let relative_error = (self.grain_volumes[found].1 / claimed - 1.0).abs();
+            self.largest_volume_error = self.largest_volume_error.max(relative_error);
+            let area = areas.get(&Side::Grain(*grain)).copied().unwrap_or(0.0);
+            let tolerance = VOLUME_TOLERANCE + swept_by_rounding(claims.rounding, area) / claimed;
+            let is_right = relative_error <= tolerance;
+            if is_closed && !is_right {
+                let diameter = surface.elements.dimension().ball_diameter(*claimed);
+                wrong.push(Fault::WrongVolume { grain: *grain, diameter, relative_error });
+            }
+        }
+        if let Some(claimed) = claims.grain_volumes {
+            let mut known: Vec<GrainId> = claimed.iter().map(|(grain, _)| *grain).collect();
+            known.sort_unstable();
+            let unknown = self.grain_volumes.iter().filter(|(grain, _)| known.binary_search(grain).is_err());
+            faults.extend(unknown.map(|(grain, _)| Fault::UnknownGrain { grain: *grain }));
+        }
+        faults.append(&mut wrong);
+        if let Some(whole) = claims.domain_volume {
+            let total: f64 = self.grain_volumes.iter().map(|(_, volume)| volume).sum();
+            let relative_error = (total / whole - 1.0).abs();
+            self.total_volume_error = relative_error;
+            let outside = areas.get(&Side::Exterior).copied().unwrap_or(0.0);
+            let tolerance = VOLUME_TOLERANCE + swept_by_rounding(claims.rounding, outside) / whole;
+            let is_right = relative_error <= tolerance;
+            if is_closed && !is_right {
+                faults.push(Fault::WrongTotal { relative_error });
+            }
+        }
+    }
+}
+
+/// The area (in the plane: length) of each side's surface.
+fn side_areas(surface: &Surface<'_>, normals: &[DVec3]) -> BTreeMap<Side, f64> {
+    // Normals of triangles are as long as twice the area.
+    let share = if matches!(surface.elements, Elements::Triangles(_)) { 0.5 } else { 1.0 };
+    let mut of_boundaries = vec![0.0; surface.sides.len()];
+    for (normal, boundary) in normals.iter().zip(surface.boundary_of) {
+        of_boundaries[boundary.index()] += share * normal.length();
+    }
+    let mut areas = BTreeMap::new();
+    for (area, sides) in of_boundaries.iter().zip(surface.sides) {
+        for side in sides {
+            *areas.entry(*side).or_default() += *area;
+        }
+    }
+    areas
+}
+
+/// Points with the coordinates of an earlier one, each with the first of these.
+fn duplicate_points(points: &[DVec3]) -> impl Iterator<Item = [u32; 2]> {
+    // Adding zero gives -0 the bits of 0.
+    let bits = |point: u32| (points[point as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
+    let count = u32::try_from(points.len()).expect("ids fit 32 bits");
+    // Sorting short keys is fast, and points of equal keys are few.
+    let key = |point: u32| {
+        let [x, y, z] = bits(point);
+        let mixed =
+            x.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ y.rotate_left(23).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
+        (mixed ^ z.rotate_left(41)).wrapping_mul(0x1656_67b1_9e37_79f9)
+    };
+    let mut keys: Vec<u64> = (0..count).into_par_iter().map(|point| join(high(key(point)), point)).collect();
+    keys.par_sort_unstable();
+    let mut pairs = Vec::new();
+    for equal in keys.chunk_by(|a, b| high(*a) == high(*b)).filter(|equal| equal.len() > 1) {
+        let mut same: Vec<([u64; 3], u32)> = equal.iter().map(|at| (bits(low(*at)), low(*at))).collect();
+        same.sort_unstable();
+        for same in same.chunk_by(|a, b| a.0 == b.0) {
+            pairs.extend(same[1..].iter().map(|(_, point)| [same[0].1, *point]));
+        }
+    }
+    pairs.sort_unstable();
+    pairs.into_iter()
+}
+
+/// What meets at each point by the sides around it; nothing where there is no element.
+fn meetings(surface: &Surface<'_>) -> Vec<Option<Meeting>> {
+    const NONE: u32 = u32::MAX;
+    const SEVERAL: u32 = u32::MAX - 1;
+    let mut boundaries = vec![NONE; surface.points.len()];
+    let elements = || (0u32..).zip(surface.boundary_of).take(surface.elements.len());
+    for (element, boundary) in elements() {
+        for corner in surface.elements.corners(element) {
+            let at = &mut boundaries[*corner as usize];
+            *at = if *at == NONE || *at == boundary.0 { boundary.0 } else { SEVERAL };
+        }
+    }
+    // Points with their boundaries. The elements of a boundary come one after the other for the most part.
+    let mut around: Vec<u64> = Vec::new();
+    let mut latest = vec![NONE; surface.points.len()];
+    for (element, boundary) in elements() {
+        let corners = surface.elements.corners(element).iter();
+        for corner in corners.filter(|corner| boundaries[**corner as usize] == SEVERAL) {
+            let latest = &mut latest[*corner as usize];
+            if *latest != boundary.0 {
+                *latest = boundary.0;
+                around.push(join(*corner, boundary.0));
+            }
+        }
+    }
+    around.par_sort_unstable();
+    around.dedup();
+    let of_one = |boundary: u32| {
+        let mut sides = surface.sides.get(boundary as usize).copied()?;
+        sides.sort_unstable();
+        Some(Meeting::of_sides(&sides))
+    };
+    let mut meetings: Vec<Option<Meeting>> = boundaries.into_iter().map(of_one).collect();
+    let mut sides: Vec<Side> = Vec::new();
+    for at in around.chunk_by(|a, b| high(*a) == high(*b)) {
+        sides.clear();
+        sides.extend(at.iter().flat_map(|at| surface.sides[low(*at) as usize]));
+        sides.sort_unstable();
+        sides.dedup();
+        meetings[high(at[0]) as usize] = Some(Meeting::of_sides(&sides));
+    }
+    meetings
+}
+
+/// Two numbers as one, for quick sorting.
+fn join(high: u32, low: u32) -> u64 {
+    u64::from(high) << 32 | u64::from(low)
+}
+
+fn high(joined: u64) -> u32 {
+    u32::try_from(joined >> 32).expect("half of the bits")
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "the lower half of the bits")]
+fn low(joined: u64) -> u32 {
+    joined as u32
+}
+
+/// The number of grains at each point; where there are copies of it, at all of these together, as each grain there is another image.
+fn grain_counts(meetings: &[Option<Meeting>], originals: Option<&[u32]>) -> Vec<u8> {
+    let of_point = |at: &Option<Meeting>| at.map_or(0, |at| at.grains);
+    let mut counts: Vec<u8> = meetings.iter().map(of_point).collect();
+    let Some(originals) = originals else { return counts };
+    assert_eq!(originals.len(), meetings.len(), "one original for each point");
+    let copies = || (0u32..).zip(originals).filter(|(point, original)| point != *original);
+    for (point, original) in copies() {
+        let own = counts[point as usize];
+        let of_original = &mut counts[*original as usize];
+        *of_original = of_original.saturating_add(own);
+    }
+    for (point, original) in copies() {
+        counts[point as usize] = counts[*original as usize];
+    }
+    counts
+}
+
+fn wrong_grain_counts(stated: &[u8], derived: &[u8]) -> impl Iterator<Item = Fault> {
+    assert_eq!(stated.len(), derived.len(), "one number of grains for each point");
+    let points = (0u32..).zip(stated.iter().zip(derived));
+    points.filter(|(_, (stated, derived))| stated != derived && **derived > 0).map(
+        |(point, (stated, derived))| Fault::WrongGrainCount { point, stated: *stated, derived: *derived },
+    )
+}
+
+fn wrong_node_types(stated: &[Option<NodeType>], derived: &[Option<Meeting>]) -> impl Iterator<Item = Fault> {
+    assert_eq!(stated.len(), derived.len(), "one node type for each point");
+    let points = (0u32..).zip(stated.iter().zip(derived));
+    points.filter_map(|(point, types)| match types {
+        (Some(stated), Some(derived)) if *stated != derived.node_type => {
+            Some(Fault::WrongNodeType { point, stated: *stated, derived: derived.node_type })
+        }
+        _ => None,
+    })
+}
+
+fn grain_volumes(surface: &Surface<'_>, by_boundary: &Grouped<u32>) -> Vec<(GrainId, f64)> {
+    let mut volumes: BTreeMap<GrainId, ConeSum> = BTreeMap::new();
+    for (sides, cone) in surface.sides.iter().zip(cones_of_boundaries(surface, by_boundary)) {
+        for (side, sign) in sides.iter().zip([1.0, -1.0]) {
+            if let Side::Grain(grain) = side {
+                volumes.entry(*grain).or_default().add(&cone, sign);
+            }
+        }
+    }
+    volumes.into_iter().map(|(grain, sum)| (grain, sum.volume)).collect()
+}

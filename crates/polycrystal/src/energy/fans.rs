@@ -1,0 +1,313 @@
+//! The boundaries of a cell complex as flat fans of triangles.
+//!
+//! The rim of a boundary leads through its vertices and a point in each of its lines; the fan's triangles lead from there to a centre.
+//! Points are those of the vertices, in their order in the complex, then those of the lines, then the centres; each once, also in
+//! a periodic domain.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use voronoi::{CellComplex, ComplexEdge, Corner, Domain, FaceId, Shift, Side, Wall};
+
+use crate::energy::sides::{boundary, cell_and_offset, freedom_on};
+use crate::mesh::grouped::Grouped;
+use crate::mesh::volume::{Cone, ConeSum};
+use crate::{Boundary, Freedom};
+
+/// Fans that one task works on.
+const FANS_PER_TASK: usize = 256;
+
+/// The fans of all boundaries.
+pub(crate) struct Fans {
+    domain: Domain,
+    vertex_count: usize,
+    pub(crate) lines: Vec<ComplexEdge>,
+    pub(crate) faces: Vec<FaceId>,
+    /// Of each fan.
+    pub(crate) sides: Vec<[Side; 2]>,
+    pub(crate) tensions: Vec<f64>,
+    /// The slots of fan f are `starts[f]..starts[f + 1]`: those of its rim, in which lines follow vertices, and its centre.
+    starts: Vec<usize>,
+    slots: Vec<Slot>,
+    /// The slots of each point, as pairs of a fan and a slot.
+    of_point: Grouped<[u32; 2]>,
+}
+
+/// A point where a fan has it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Slot {
+    pub(crate) point: u32,
+    offset: DVec3,
+}
+
+impl Slot {
+    /// Where the fan has the point.
+    pub(crate) fn place(self, points: &[DVec3]) -> DVec3 {
+        points[self.point as usize] + self.offset
+    }
+}
+
+/// What a slot brings to a step, and the triangle and the edges that begin there.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct SlotTerms {
+    /// Of the area weighted by tension, by the point.
+    pub(crate) gradient: DVec3,
+    /// Volume swept from the first side to the second, per displacement of the point.
+    pub(crate) sweep: DVec3,
+    /// Share of the area that the point stands for.
+    pub(crate) mass: f64,
+    /// Stiffness of the edge to the next slot of the rim.
+    pub(crate) rim: f64,
+    /// Stiffness of the edge to the centre.
+    pub(crate) spoke: f64,
+}
+
+/// The fans where their points are.
+pub(crate) struct FanTerms {
+    /// Area weighted by tension.
+    pub(crate) energy: f64,
+    pub(crate) of_slot: Vec<SlotTerms>,
+}
+
+impl Fans {
+    pub(crate) fn new(complex: &CellComplex, tension: &dyn Fn(&Boundary) -> f64) -> Self {
+        let domain = complex.domain().clone();
+        let faces = complex.faces();
+        let lines = complex.edges();
+        let vertex_count = complex.vertices.len();
+        let mut starts = vec![0];
+        for face in &faces {
+            starts.push(starts[starts.len() - 1] + 2 * complex.corners(*face).len() + 1);
+        }
+        let mut slots = vec![Slot { point: 0, offset: DVec3::ZERO }; starts[faces.len()]];
+        let fill = |(fan, slots): (usize, &mut [Slot])| {
+            let slot = |point: usize, shift: Shift| Slot { point: id(point), offset: shift.vector(&domain) };
+            let corners = complex.corners(faces[fan]);
+            for (k, from) in corners.iter().enumerate() {
+                let to = corners[(k + 1) % corners.len()];
+                slots[2 * k] = slot(from.vertex as usize, from.shift);
+                let (line, shift) = line_between(*from, to);
+                let number = lines.binary_search(&line).expect("lines of faces are lines of the complex");
+                slots[2 * k + 1] = slot(vertex_count + number, shift);
+            }
+            slots[2 * corners.len()] = slot(vertex_count + lines.len() + fan, Shift::NONE);
+        };
+        split(&mut slots, &starts).into_par_iter().enumerate().with_min_len(FANS_PER_TASK).for_each(fill);
+        let sides: Vec<[Side; 2]> = faces.iter().map(|face| complex.sides(*face)).collect();
+        let point_count = vertex_count + lines.len() + faces.len();
+        let of_point = {
+            let of_fan =
+                (0..faces.len()).flat_map(|fan| (starts[fan]..starts[fan + 1]).map(move |slot| (fan, slot)));
+            let pairs = of_fan.map(|(fan, slot)| (slots[slot].point as usize, [id(fan), id(slot)]));
+            Grouped::new(point_count, pairs)
+        };
+        let tensions = sides.iter().map(|sides| tension(&boundary(*sides))).collect();
+        Self { domain, vertex_count, lines, faces, sides, tensions, starts, slots, of_point }
+    }
+
+    pub(crate) fn domain(&self) -> &Domain {
+        &self.domain
+    }
+
+    /// Number of vertices, which come first among the points.
+    pub(crate) fn vertex_count(&self) -> usize {
+        self.vertex_count
+    }
+
+    pub(crate) fn point_count(&self) -> usize {
+        self.of_point.count()
+    }
+
+    /// The point of a line.
+    pub(crate) fn point_of_line(&self, line: usize) -> usize {
+        self.vertex_count + line
+    }
+
+    /// The centre of a fan.
+    pub(crate) fn center_of(&self, fan: usize) -> usize {
+        self.vertex_count + self.lines.len() + fan
+    }
+
+    /// Number of points in a fan's rim.
+    pub(crate) fn rim_len(&self, fan: usize) -> usize {
+        self.starts[fan + 1] - self.starts[fan] - 1
+    }
+
+    /// The slots of a fan, its centre last.
+    pub(crate) fn slots_of(&self, fan: usize) -> &[Slot] {
+        &self.slots[self.starts[fan]..self.starts[fan + 1]]
+    }
+
+    /// The first slot of a fan.
+    pub(crate) fn first_slot(&self, fan: usize) -> usize {
+        self.starts[fan]
+    }
+
+    /// The fans at a point, and which of their slots it is.
+    pub(crate) fn at_point(&self, point: usize) -> impl Iterator<Item = (usize, usize)> {
+        self.of_point
+            .of(point)
+            .iter()
+            .map(|[fan, slot]| (*fan as usize, *slot as usize - self.starts[*fan as usize]))
+    }
+
+    /// The boundaries that meet at a line, sorted.
+    pub(crate) fn faces_of_line(&self, line: usize) -> Vec<FaceId> {
+        let mut faces: Vec<FaceId> =
+            self.at_point(self.point_of_line(line)).map(|(fan, _)| self.faces[fan]).collect();
+        faces.dedup();
+        faces
+    }
+
+    /// What walls leave to a point.
+    pub(crate) fn freedom(&self, point: usize) -> Freedom {
+        let walls = self.at_point(point).filter_map(|(fan, _)| self.wall(fan));
+        let mut walls: Vec<Wall> = walls.collect();
+        walls.sort_unstable();
+        walls.dedup();
+        freedom_on(&self.domain, &walls)
+    }
+
+    /// The wall that a fan lies on.
+    pub(crate) fn wall(&self, fan: usize) -> Option<Wall> {
+        match self.sides[fan][1] {
+            Side::Wall(wall) => Some(wall),
+            Side::Cell(_) | Side::Image(..) => None,
+        }
+    }
+
+    /// Where a line is halfway between its ends.
+    pub(crate) fn middle(&self, line: ComplexEdge, points: &[DVec3]) -> DVec3 {
+        let end = points[line.end.vertex as usize] + line.end.shift.vector(&self.domain);
+        points[line.start as usize].midpoint(end)
+    }
+
+    /// The mean of the vertices of a fan.
+    pub(crate) fn mean_of_corners(&self, fan: usize, points: &[DVec3]) -> DVec3 {
+        let corners = self.slots_of(fan)[..self.rim_len(fan)].iter().step_by(2);
+        corners.map(|slot| slot.place(points)).sum::<DVec3>() / (self.rim_len(fan) / 2) as f64
+    }
+
+    /// The fans with neighbouring triangles that are further apart than the angle whose cosine is given.
+    pub(crate) fn folded(&self, points: &[DVec3], cosine: f64) -> Vec<usize> {
+        let normals = self.normals(points);
+        let is_folded = |fan: &usize| {
+            let normals = &normals[self.starts[*fan]..self.starts[fan + 1] - 1];
+            let pairs = normals.iter().zip(normals.iter().cycle().skip(1));
+            pairs.into_iter().any(|(a, b)| is_bent(*a, *b, cosine))
+        };
+        (0..self.faces.len()).filter(is_folded).collect()
+    }
+
+    /// The rim of a fan, and its centre last.
+    fn ring(&self, fan: usize, points: &[DVec3]) -> Vec<DVec3> {
+        self.slots_of(fan).iter().map(|slot| slot.place(points)).collect()
+    }
+
+    /// Of each slot of a rim the normal of the triangle that begins there, twice as long as its area; of centres nothing.
+    pub(crate) fn normals(&self, points: &[DVec3]) -> Vec<DVec3> {
+        let mut normals = vec![DVec3::ZERO; self.slots.len()];
+        let fill = |(fan, normals): (usize, &mut [DVec3])| {
+            let ring = self.ring(fan, points);
+            let count = ring.len() - 1;
+            let center = ring[count];
+            for k in 0..count {
+                normals[k] = (ring[k] - center).cross(ring[(k + 1) % count] - center);
+            }
+        };
+        split(&mut normals, &self.starts)
+            .into_par_iter()
+            .enumerate()
+            .with_min_len(FANS_PER_TASK)
+            .for_each(fill);
+        normals
+    }
+
+    /// The volume of each cell, given [`Self::normals`] too.
+    pub(crate) fn volumes(&self, cell_count: usize, points: &[DVec3], normals: &[DVec3]) -> Vec<f64> {
+        let mut sums = vec![ConeSum::default(); cell_count];
+        for (fan, sides) in self.sides.iter().enumerate() {
+            let center = points[self.center_of(fan)];
+            let area = 0.5 * normals[self.starts[fan]..self.starts[fan + 1] - 1].iter().sum::<DVec3>();
+            for (side, sign) in sides.iter().zip([1.0, -1.0]) {
+                let Some((cell, offset)) = cell_and_offset(*side, &self.domain) else { continue };
+                // All triangles end at the centre, so that the cone from there has no volume.
+                let cone = Cone::new(center - offset, 0.0, area, voronoi::Dimension::Three);
+                sums[cell.index()].add(&cone, sign);
+            }
+        }
+        sums.into_iter().map(|sum| sum.volume).collect()
+    }
+
+    /// What a step needs to know, with no cotangent above the given one.
+    pub(crate) fn terms(&self, points: &[DVec3], largest_cotangent: f64) -> FanTerms {
+        let mut of_slot = vec![SlotTerms::default(); self.slots.len()];
+        let fill = |(fan, terms): (usize, &mut [SlotTerms])| {
+            fill_terms(&self.ring(fan, points), self.tensions[fan], largest_cotangent, terms)
+        };
+        let fans = split(&mut of_slot, &self.starts).into_par_iter().enumerate();
+        let energies: Vec<f64> = fans.with_min_len(FANS_PER_TASK).map(fill).collect();
+        FanTerms { energy: energies.iter().sum(), of_slot }
+    }
+}
+
+/// The terms of one fan; gives its area times tension.
+///
+/// With N the normal of a triangle (a, b, c), twice as long as its area, the area's gradient at a is `1/2 N/|N| x (c - b)`, and
+/// the volume that the triangle sweeps per displacement of each of its corners is `N / 6`.
+fn fill_terms(ring: &[DVec3], tension: f64, largest_cotangent: f64, terms: &mut [SlotTerms]) -> f64 {
+    let center = ring.len() - 1;
+    let mut area = 0.0;
+    for k in 0..center {
+        let next = (k + 1) % center;
+        let [c, a, b] = [center, k, next].map(|slot| ring[slot]);
+        let normal = (a - c).cross(b - c);
+        let doubled_area = normal.length();
+        area += 0.5 * doubled_area;
+        let unit = normal / doubled_area.max(f64::MIN_POSITIVE) * (0.5 * tension);
+        for (slot, across) in [(center, b - a), (k, c - b), (next, a - c)] {
+            let terms = &mut terms[slot];
+            terms.gradient += unit.cross(across);
+            terms.sweep += normal / 6.0;
+            if tension > 0.0 {
+                terms.mass += doubled_area / 6.0;
+            }
+        }
+        // A triangle without area has no cotangent: the upper limit stands in. Obtuse angles would push points apart.
+        let spring = |apex: DVec3, from: DVec3, to: DVec3| {
+            let cotangent = (from - apex).dot(to - apex) / doubled_area.max(f64::MIN_POSITIVE);
+            0.5 * tension * cotangent.clamp(0.0, largest_cotangent)
+        };
+        terms[k].rim += spring(c, a, b);
+        terms[k].spoke += spring(b, c, a);
+        terms[next].spoke += spring(a, b, c);
+    }
+    tension * area
+}
+
+/// Whether two normals are further apart than the angle whose cosine is given; those of triangles without area are.
+pub(crate) fn is_bent(a: DVec3, b: DVec3, cosine: f64) -> bool {
+    a.dot(b) < cosine * (a.length() * b.length()) || a == DVec3::ZERO || b == DVec3::ZERO
+}
+
+/// The line between two corners in a row, and the shift of its point there.
+fn line_between(from: Corner, to: Corner) -> (ComplexEdge, Shift) {
+    let line = ComplexEdge::between([from, to]);
+    let starts_here =
+        line.start == from.vertex && line.end == Corner { vertex: to.vertex, shift: to.shift - from.shift };
+    (line, if starts_here { from.shift } else { to.shift })
+}
+
+/// The parts of a list that begin at the given places.
+fn split<'a, T>(mut list: &'a mut [T], starts: &[usize]) -> Vec<&'a mut [T]> {
+    let mut parts = Vec::with_capacity(starts.len() - 1);
+    for ends in starts.windows(2) {
+        let (part, rest) = list.split_at_mut(ends[1] - ends[0]);
+        parts.push(part);
+        list = rest;
+    }
+    parts
+}
+
+fn id(number: usize) -> u32 {
+    u32::try_from(number).expect("ids fit 32 bits")
+}

@@ -1,0 +1,73 @@
+//! How small the grains around a place are.
+//!
+//! Under curvature flow a grain of size l changes within a time of order l^2. A step that suits the mean grain turns over those a
+//! thousandth of it across, whatever solves it. So what is around small grains flows slower, as if in its own units of length: mass
+//! grows as one over the square of the size, and lengths that count as short shrink with it.
+
+use voronoi::{CellComplex, Dimension};
+
+use crate::energy::patches::Patches;
+use crate::energy::sides::cell_and_offset;
+use crate::{Boundary, Network, Volumes};
+
+/// Sizes of grains, in units of a share of the mean, at most 1.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LocalSize {
+    dimension: Dimension,
+    unit: f64,
+}
+
+impl LocalSize {
+    /// In units of a size; where that is 0 all grains count as large.
+    pub(crate) fn new(dimension: Dimension, unit: f64) -> Self {
+        Self { dimension, unit }
+    }
+
+    /// That of a grain of the given volume.
+    pub(crate) fn of_volume(self, volume: f64) -> f64 {
+        if self.unit > 0.0 { (self.dimension.cube_edge(volume) / self.unit).min(1.0) } else { 1.0 }
+    }
+
+    /// That of the smallest grain at some vertices.
+    pub(crate) fn at_vertices(self, complex: &CellComplex, vertices: &[u32], volumes: &[f64]) -> f64 {
+        let faces = complex.faces_at(vertices);
+        let sides = faces.into_iter().flat_map(|face| complex.sides(face));
+        let cells = sides.filter_map(|side| cell_and_offset(side, complex.domain()));
+        cells.map(|(cell, _)| self.of_volume(volumes[cell.index()])).fold(1.0, f64::min)
+    }
+
+    /// That of the smallest grain at each control point of a level. Where grains grow, time is the same for all, and so is 1.
+    pub(crate) fn at_points(
+        self,
+        network: &Network,
+        level: usize,
+        patches: &Patches,
+        volumes: Volumes,
+    ) -> Vec<f64> {
+        let level = &network.levels()[level];
+        let mut sizes = vec![1.0f64; level.vertex_count()];
+        if volumes == Volumes::Free {
+            return sizes;
+        }
+        let of_grain: Vec<f64> =
+            network.cell_volumes().iter().map(|volume| self.of_volume(*volume)).collect();
+        let of_boundary = |boundary: &Boundary| {
+            boundary.signed_grains().map(|(grain, _)| of_grain[grain.index()]).fold(1.0, f64::min)
+        };
+        for (boundary, patch) in network.boundaries().iter().zip(&patches.patches) {
+            let smallest = of_boundary(boundary);
+            for point in &patch.control_points {
+                let size = &mut sizes[*point as usize];
+                *size = size.min(smallest);
+            }
+        }
+        // What is a copy has around it what its original has.
+        for pair in &level.copies.vertices {
+            sizes[pair.primary as usize] = sizes[pair.primary as usize].min(sizes[pair.secondary as usize]);
+        }
+        for pair in &level.copies.vertices {
+            sizes[pair.secondary as usize] = sizes[pair.primary as usize];
+        }
+        sizes
+    }
+}

@@ -1,0 +1,234 @@
+//! One boundary as a finite element.
+//!
+//! The points of a boundary's subdivided surface depend on the control points of that boundary alone, for triple lines are
+//! creases. So all that a boundary brings to the energy is made by itself, in parallel with the others.
+//!
+//! With N the normal of a surface triangle (a, b, c), twice as long as its area, the area's gradient at a is
+//! `1/2 N/|N| x (c - b)`, and the volume that the triangle sweeps per displacement of each of its corners is `N / 6`.
+//! Both are pulled back to the control points by the transposed weights of subdivision.
+
+use glam::DVec3;
+use subzero::StencilTable;
+use voronoi::Dimension;
+
+use crate::energy::patches::place_in;
+use crate::mesh::volume::{Cone, segment_area, triangle_volume};
+use crate::solver::rows::Rows;
+
+/// A boundary's control mesh, and its surface in terms of the control points.
+#[derive(Debug)]
+pub(crate) struct Patch {
+    /// The control points that the boundary depends on; all other fields count them from 0.
+    pub(crate) control_points: Vec<u32>,
+    /// The elements of the control mesh.
+    pub(crate) elements: Elements,
+    /// The edges of the control mesh.
+    pub(crate) edges: Vec<[u32; 2]>,
+    /// Of each element of the control mesh, the edge across from each corner. In the plane, a segment is its own edge.
+    pub(crate) edges_across: Vec<[u32; 3]>,
+    /// Of each control point the other ends of its edges, and the edges' numbers.
+    pub(crate) links: Rows<u32>,
+    /// The surface, where it is finer than the control mesh.
+    pub(crate) refinement: Option<Refinement>,
+    pub(crate) law: Law,
+}
+
+/// How a boundary pulls and moves.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Law {
+    /// Energy per area.
+    pub(crate) tension: f64,
+    /// Velocity per pressure, above 0.
+    pub(crate) mobility: f64,
+    /// 1, or 1/2 for a boundary that a periodic network holds twice.
+    pub(crate) share: f64,
+}
+
+/// Triangles or segments, as numbers of points.
+#[derive(Debug)]
+pub(crate) enum Elements {
+    Triangles(Vec<[u32; 3]>),
+    Segments(Vec<[u32; 2]>),
+}
+
+/// A surface that is finer than the control mesh.
+#[derive(Debug)]
+pub(crate) struct Refinement {
+    pub(crate) stencils: LocalStencils,
+    pub(crate) elements: Elements,
+}
+
+/// How finer points of one boundary follow from its coarser ones.
+#[derive(Debug)]
+pub(crate) struct LocalStencils {
+    /// Finer point f is the mean of the coarser points `ids[starts[f]..starts[f + 1]]` by the weights of the same range.
+    starts: Vec<usize>,
+    ids: Vec<u32>,
+    weights: Vec<f64>,
+}
+
+impl LocalStencils {
+    /// Those of some finer points; `coarser` are all points that these depend on, sorted.
+    pub(crate) fn new(stencils: &StencilTable, coarser: &[u32], finer: &[u32]) -> Self {
+        let mut local = Self { starts: vec![0], ids: Vec::new(), weights: Vec::new() };
+        for point in finer {
+            let (ids, weights) = stencils.row(*point as usize);
+            local.ids.extend(ids.iter().map(|point| place_in(coarser, *point)));
+            local.weights.extend(weights);
+            local.starts.push(local.ids.len());
+        }
+        local
+    }
+
+    fn row(&self, point: usize) -> impl Iterator<Item = (usize, f64)> {
+        let range = self.starts[point]..self.starts[point + 1];
+        self.ids[range.clone()].iter().map(|id| *id as usize).zip(self.weights[range].iter().copied())
+    }
+
+    pub(crate) fn apply(&self, points: &[DVec3]) -> Vec<DVec3> {
+        let point = |f: usize| self.row(f).map(|(c, weight)| points[c] * weight).sum();
+        (0..self.starts.len() - 1).map(point).collect()
+    }
+
+    /// From forces on the finer points to forces on so many coarser ones.
+    pub(crate) fn pull_back(&self, forces: &[DVec3], count: usize) -> Vec<DVec3> {
+        let mut pulled = vec![DVec3::ZERO; count];
+        for (f, force) in forces.iter().enumerate() {
+            self.row(f).for_each(|(c, weight)| pulled[c] += *force * weight);
+        }
+        pulled
+    }
+}
+
+/// What a patch brings to a step.
+#[derive(Debug)]
+pub(crate) struct PatchTerms {
+    /// Area times tension.
+    pub(crate) energy: f64,
+    /// Its gradient at each control point.
+    pub(crate) gradient: Vec<DVec3>,
+    /// Volume swept from the first side to the second, per displacement of each control point.
+    pub(crate) sweep: Vec<DVec3>,
+    /// Share of the area over mobility that each control point stands for.
+    pub(crate) mass: Vec<f64>,
+    /// Stiffness of each edge of the control mesh.
+    pub(crate) stiffness: Vec<f64>,
+    /// The cone to the surface.
+    pub(crate) cone: Cone,
+}
+
+impl Patch {
+    /// The terms at the given control points.
+    pub(crate) fn terms(&self, points: &[DVec3], largest_cotangent: f64) -> PatchTerms {
+        // From a point of the patch, for far from the origin volumes lose digits.
+        let apex = points[self.control_points[0] as usize];
+        let local: Vec<DVec3> = self.control_points.iter().map(|p| points[*p as usize] - apex).collect();
+        let (mass, stiffness) = self.mass_and_stiffness(&local, largest_cotangent);
+        let count = local.len();
+        let tension = self.law.share * self.law.tension;
+        let Some(refinement) = &self.refinement else {
+            let variation = Variation::new(&self.elements, &local, tension);
+            let cone = variation.cone(apex, &self.elements);
+            let Variation { energy, gradient, sweep, .. } = variation;
+            return PatchTerms { energy, gradient, sweep, mass, stiffness, cone };
+        };
+        let surface = refinement.stencils.apply(&local);
+        let variation = Variation::new(&refinement.elements, &surface, tension);
+        let cone = variation.cone(apex, &refinement.elements);
+        let gradient = refinement.stencils.pull_back(&variation.gradient, count);
+        let sweep = refinement.stencils.pull_back(&variation.sweep, count);
+        PatchTerms { energy: variation.energy, gradient, sweep, mass, stiffness, cone }
+    }
+
+    /// Lumped masses, and the cotangent Laplacian times the tension as a spring constant for each edge.
+    fn mass_and_stiffness(&self, local: &[DVec3], largest_cotangent: f64) -> (Vec<f64>, Vec<f64>) {
+        let mut mass = vec![0.0; local.len()];
+        let mut stiffness = vec![0.0; self.edges.len()];
+        let Law { tension, mobility, share } = self.law;
+        if tension == 0.0 {
+            return (mass, stiffness);
+        }
+        let (stiffness_share, mass_share) = (share * tension, share / mobility);
+        let at = |point: u32| local[point as usize];
+        match &self.elements {
+            Elements::Triangles(triangles) => {
+                for (corners, across) in triangles.iter().zip(&self.edges_across) {
+                    let [a, b, c] = corners.map(at);
+                    let doubled_area = (b - a).cross(c - a).length();
+                    for k in 0..3 {
+                        let [apex, from, to] = [0, 1, 2].map(|step| at(corners[(k + step) % 3]));
+                        // A triangle without area has no cotangent: the upper limit stands in. Obtuse angles would push points apart.
+                        let cotangent = (from - apex).dot(to - apex) / doubled_area.max(f64::MIN_POSITIVE);
+                        let cotangent = cotangent.clamp(0.0, largest_cotangent);
+                        stiffness[across[k] as usize] += 0.5 * stiffness_share * cotangent;
+                        mass[corners[k] as usize] += mass_share * doubled_area / 6.0;
+                    }
+                }
+            }
+            Elements::Segments(segments) => {
+                for (ends, stiffness) in segments.iter().zip(&mut stiffness) {
+                    let length = at(ends[0]).distance(at(ends[1])).max(f64::MIN_POSITIVE);
+                    *stiffness += stiffness_share / length;
+                    ends.iter().for_each(|end| mass[*end as usize] += 0.5 * mass_share * length);
+                }
+            }
+        }
+        (mass, stiffness)
+    }
+}
+
+/// Energy and volume of a surface, and how they change with its points.
+struct Variation {
+    energy: f64,
+    gradient: Vec<DVec3>,
+    sweep: Vec<DVec3>,
+    volume: f64,
+}
+
+impl Variation {
+    fn new(elements: &Elements, points: &[DVec3], tension: f64) -> Self {
+        let (mut area, mut volume) = (0.0, 0.0);
+        let mut gradient = vec![DVec3::ZERO; points.len()];
+        let mut sweep = gradient.clone();
+        let at = |point: u32| points[point as usize];
+        match elements {
+            Elements::Triangles(triangles) => {
+                for corners in triangles {
+                    let [a, b, c] = corners.map(at);
+                    let normal = (b - a).cross(c - a);
+                    let unit = normal.normalize_or_zero() * (0.5 * tension);
+                    for (corner, across) in corners.iter().zip([c - b, a - c, b - a]) {
+                        gradient[*corner as usize] += unit.cross(across);
+                        sweep[*corner as usize] += normal / 6.0;
+                    }
+                    area += 0.5 * normal.length();
+                    volume += triangle_volume([a, b, c]);
+                }
+            }
+            Elements::Segments(segments) => {
+                for ends in segments {
+                    let [start, end] = ends.map(at);
+                    let along = end - start;
+                    let unit = along.normalize_or_zero() * tension;
+                    for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
+                        gradient[*end as usize] += unit * sign;
+                        sweep[*end as usize] += along.cross(DVec3::Z) / 2.0;
+                    }
+                    area += along.length();
+                    volume += segment_area([start, end]);
+                }
+            }
+        }
+        Self { energy: tension * area, gradient, sweep, volume }
+    }
+
+    /// The cone to the surface, for points relative to its apex.
+    fn cone(&self, apex: DVec3, elements: &Elements) -> Cone {
+        let dimension = match elements {
+            Elements::Triangles(_) => Dimension::Three,
+            Elements::Segments(_) => Dimension::Two,
+        };
+        // All points that move as one sweep along the sum of normals.
+        Cone::new(apex, self.volume, self.sweep.iter().sum(), dimension)
+    }
+}

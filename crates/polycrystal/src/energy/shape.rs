@@ -1,0 +1,131 @@
+//! How triple lines and boundaries of a cell complex bulge.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+use voronoi::{CellComplex, ComplexEdge, Corner, FaceId, Side, Tessellation};
+
+use crate::energy::fans::Fans;
+
+/// Cosine of the largest bend of a boundary that keeps its bulges (75 degrees): later levels must not reach 90.
+const LARGEST_BEND: f64 = 0.26;
+
+/// Turns of looking for folds; flattening one boundary may fold another, as they share lines.
+const TURNS: usize = 3;
+
+/// How far triple lines and boundaries bulge: from the mean of the vertices around to their one control point.
+///
+/// Walls do not: what is inside them follows their rims.
+#[derive(Debug, Default, Clone)]
+pub(crate) struct Shape {
+    /// Sorted by line.
+    lines: Vec<(ComplexEdge, DVec3)>,
+    /// By the number of the boundary.
+    faces: Vec<DVec3>,
+}
+
+impl Shape {
+    /// That of fans with the given points.
+    pub(crate) fn new(fans: &Fans, points: &[DVec3]) -> Self {
+        let of_line = |(number, line): (usize, &ComplexEdge)| {
+            points[fans.point_of_line(number)] - fans.middle(*line, points)
+        };
+        let lines = fans.lines.iter().enumerate();
+        let lines = lines.map(|(number, line)| (*line, of_line((number, line)))).collect();
+        let mut faces = vec![DVec3::ZERO; fans.faces.last().map_or(0, |face| face.index() + 1)];
+        for (fan, face) in fans.faces.iter().enumerate().filter(|(fan, _)| fans.wall(*fan).is_none()) {
+            faces[face.index()] = points[fans.center_of(fan)] - fans.mean_of_corners(fan, points);
+        }
+        Self { lines, faces }
+    }
+
+    /// How far a boundary bulges.
+    pub(crate) fn bulge(&self, face: FaceId) -> DVec3 {
+        self.faces.get(face.index()).copied().unwrap_or_default()
+    }
+
+    /// How far a line bulges.
+    pub(crate) fn bulge_of_line(&self, line: ComplexEdge) -> DVec3 {
+        let place = self.lines.binary_search_by_key(&line, |(line, _)| *line);
+        place.map_or(DVec3::ZERO, |place| self.lines[place].1)
+    }
+
+    /// That of fans some of whose lines have got other ends: they are known by the boundaries that meet there.
+    pub(crate) fn with_new_ends(mut self, before: &Fans, fans: &Fans) -> Self {
+        let is_gone = |(_, line): &(usize, &ComplexEdge)| fans.lines.binary_search(line).is_err();
+        let gone = before.lines.iter().enumerate().filter(is_gone);
+        let gone: HashMap<Vec<FaceId>, DVec3> =
+            gone.map(|(number, _)| (before.faces_of_line(number), self.lines[number].1)).collect();
+        let of_line = |(number, line): (usize, &ComplexEdge)| {
+            let known = self.lines.binary_search_by_key(line, |(line, _)| *line);
+            let bulge = match known {
+                Ok(place) => self.lines[place].1,
+                Err(_) => gone.get(&fans.faces_of_line(number)).copied().unwrap_or_default(),
+            };
+            (*line, bulge)
+        };
+        self.lines = fans.lines.iter().enumerate().map(of_line).collect();
+        self
+    }
+
+    /// The points of fans in this shape, with the vertices where the complex has them. What would be folded is flat.
+    pub(crate) fn points(&self, complex: &CellComplex, fans: &Fans) -> Vec<DVec3> {
+        let mut points = complex.vertices[..fans.vertex_count()].to_vec();
+        for line in &fans.lines {
+            points.push(fans.middle(*line, &points) + self.bulge_of_line(*line));
+        }
+        for (fan, face) in fans.faces.iter().enumerate() {
+            points.push(fans.mean_of_corners(fan, &points) + self.bulge(*face));
+        }
+        for _ in 0..TURNS {
+            let folded = fans.folded(&points, LARGEST_BEND);
+            for fan in &folded {
+                for slot in fans.slots_of(*fan)[..fans.rim_len(*fan)].iter().skip(1).step_by(2) {
+                    let line = fans.lines[slot.point as usize - fans.vertex_count()];
+                    points[slot.point as usize] = fans.middle(line, &points);
+                }
+                points[fans.center_of(*fan)] = fans.mean_of_corners(*fan, &points);
+            }
+            if folded.is_empty() {
+                break;
+            }
+        }
+        points
+    }
+
+    /// The complex with whole cells, and the control points of its network with fans in this shape.
+    pub(crate) fn cells(&self, complex: &CellComplex) -> (Tessellation, Vec<DVec3>) {
+        let (cells, corners) = complex.tessellation();
+        let mut points = cells.vertices().to_vec();
+        let mean = |points: &[DVec3], some: &[voronoi::VertexId]| {
+            some.iter().map(|vertex| points[vertex.index()]).sum::<DVec3>() / some.len() as f64
+        };
+        for ends in &cells.edges().ends {
+            let bulge = self.bulge_of_line(line_of(&corners, *ends));
+            points.push(mean(&points, ends) + bulge);
+        }
+        let primaries = complex.faces();
+        let copied = cells.periodic_faces().iter().map(|pair| primaries[pair.primary.index()]);
+        for (face, number) in cells.faces().zip(primaries.iter().copied().chain(copied)) {
+            points.push(mean(&points, cells.face_corners(face)) + self.bulge(number));
+        }
+        (cells, points)
+    }
+}
+
+/// The line of a complex that leads from one vertex of its cells to another; `corners` has the complex's vertices of these.
+pub(crate) fn line_of(corners: &[Corner], ends: [voronoi::VertexId; 2]) -> ComplexEdge {
+    ComplexEdge::between(ends.map(|end| corners[end.index()]))
+}
+
+/// Some sides, each once and sorted; a cell and its images are one.
+pub(crate) fn distinct(sides: impl IntoIterator<Item = Side>) -> Vec<Side> {
+    let sides = sides.into_iter().map(|side| match side {
+        Side::Image(cell, _) => Side::Cell(cell),
+        Side::Cell(_) | Side::Wall(_) => side,
+    });
+    let mut sides: Vec<Side> = sides.collect();
+    sides.sort_unstable();
+    sides.dedup();
+    sides
+}

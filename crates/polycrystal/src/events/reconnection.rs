@@ -1,0 +1,393 @@
+//! Which grains come together and which part.
+
+use std::collections::{HashMap, HashSet};
+
+use rayon::prelude::*;
+use voronoi::{CellComplex, CellId, ComplexEdge, FaceId, Side};
+
+use crate::energy::local_size::LocalSize;
+use crate::energy::shape::distinct;
+use crate::energy::sides::cell_and_offset;
+use crate::events::event::Event;
+use crate::events::local_area::{Conditions, Excess, LocalArea};
+
+/// Length, in units of the feature size, below which triple lines may go; in equilibrium few are that short.
+pub(crate) const SHORT: f64 = 0.12;
+
+/// Length, in units of a short line, that what goes counts with at least: it may have shrunk to nothing.
+const LEAST_GOING: f64 = 0.5;
+
+/// Length, in units of a short line, below which lines that stay are put where they have the least area: too short for a step of the flow.
+const TINY: f64 = 0.3;
+
+/// Height, in the same unit, below which boundaries with three sides may go, however long these are: one with bent sides is a good
+/// deal thinner than its corners have it.
+const THIN: f64 = 2.0;
+
+/// Length, in the same unit, that an event must leave to all lines.
+const LEAST: f64 = 0.1;
+
+/// Share of a cell's volume that all events between two steps of the flow may take or give: what is lost at once, no step brings back.
+/// With 0.2 a small grain may be unable to leave a wall.
+const LARGEST_CHANGE: f64 = 0.3;
+
+/// How often lines between the same grains may go without lessening the area: what comes back is to stay.
+const MOST_TRIES: u8 = 3;
+
+/// Cells to a place that is looked at ahead, together with others: so few share a cell with one where something happens that looking
+/// again costs little.
+const CELLS_PER_PLACE: usize = 200;
+
+/// Places that are worth looking at together.
+const FEWEST_TOGETHER: usize = 8;
+
+/// How often grains came together and parted. In the plane, a boundary is an edge, and what was a triple line is a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Reconnections {
+    /// Triple lines that became boundaries with three sides: two grains came to meet. In the plane, points of more than three
+    /// edges that opened to one more.
+    pub opened: usize,
+    /// Boundaries with three sides that became triple lines: two grains parted. In the plane, edges that shrank to such points.
+    pub closed: usize,
+    /// Boundaries with four sides that gave way to one between the grains at two opposite sides. In the plane, edges that gave
+    /// way to one between the grains at their ends (T1).
+    pub swapped: usize,
+}
+
+impl Reconnections {
+    /// All events.
+    pub fn count(self) -> usize {
+        self.opened + self.closed + self.swapped
+    }
+
+    pub(crate) fn add(&mut self, other: Self) {
+        self.opened += other.opened;
+        self.closed += other.closed;
+        self.swapped += other.swapped;
+    }
+}
+
+/// A place where something may happen.
+#[derive(Debug, Clone, Copy)]
+enum Place {
+    /// A boundary with three sides.
+    Triangle(FaceId),
+    Line(ComplexEdge),
+}
+
+/// What is to happen at a place.
+struct Decision {
+    event: Event,
+    /// Length that what goes counts with at least.
+    least: f64,
+    /// Where the vertices are to be that the event gives.
+    points: Vec<glam::DVec3>,
+    /// The excess of cells after that.
+    excess: Vec<(CellId, f64)>,
+    done: Reconnections,
+    /// The sides at a line that goes without lessening the area.
+    insisting: Option<Vec<Side>>,
+}
+
+impl Decision {
+    fn carry_out(&self, complex: &mut CellComplex) {
+        let vertices = self.event.happen(complex, self.least).expect("what was possible still is");
+        for (vertex, point) in vertices.into_iter().zip(&self.points) {
+            complex.vertices[vertex as usize] = *point;
+        }
+    }
+}
+
+/// What a place is looked at with: how all is after a step.
+#[derive(Clone, Copy)]
+struct Surroundings<'a> {
+    conditions: &'a Conditions<'a>,
+    /// The lengths of lines a while ago.
+    lengths: &'a HashMap<ComplexEdge, f64>,
+}
+
+/// What an event has to be good for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Demand {
+    LessArea,
+    /// Less area, and longer lines.
+    LongerLines,
+    /// That it does not fold anything.
+    NoFold,
+}
+
+/// Looks for events.
+pub(crate) struct Reconnector {
+    /// Length below which lines are short where no grain is small.
+    short: f64,
+    /// The size of small grains: around them lines are short only if they are as much shorter.
+    size: LocalSize,
+    /// Of lines, by all sides that touch them, how often they went without lessening the area.
+    tries: HashMap<Vec<Side>, u8>,
+}
+
+impl Reconnector {
+    pub(crate) fn new(short: f64, size: LocalSize) -> Self {
+        Self { short, size, tries: HashMap::new() }
+    }
+
+    /// Length below which lines are short at some vertices.
+    fn short_at(&self, complex: &CellComplex, vertices: &[u32], conditions: &Conditions<'_>) -> f64 {
+        self.short * self.size.at_vertices(complex, vertices, conditions.volumes)
+    }
+
+    /// Lets all events happen that are due where lines are short, or boundaries with three sides thin; `lengths` has the lengths
+    /// of lines a while ago, `excess` is kept up to date.
+    pub(crate) fn pass(
+        &mut self,
+        complex: &mut CellComplex,
+        conditions: &Conditions<'_>,
+        lengths: &HashMap<ComplexEdge, f64>,
+        excess: &mut Excess,
+    ) -> Reconnections {
+        let around = Surroundings { conditions, lengths };
+        let triangles: Vec<Place> = complex.faces_with_corners(3).into_iter().map(Place::Triangle).collect();
+        let mut done = self.pass_places(&triangles, complex, around, excess);
+        let lines: Vec<Place> = self.short_lines(complex, conditions).into_iter().map(Place::Line).collect();
+        done.add(self.pass_places(&lines, complex, around, excess));
+        done
+    }
+
+    /// As one place after the other. Other threads look at places ahead, each at a complex of its own; where cells have changed since, what
+    /// they found is stale.
+    fn pass_places(
+        &mut self,
+        places: &[Place],
+        complex: &mut CellComplex,
+        around: Surroundings<'_>,
+        excess: &mut Excess,
+    ) -> Reconnections {
+        let mut done = Reconnections::default();
+        let together = around.conditions.volumes.len() / CELLS_PER_PLACE;
+        let threads = rayon::current_num_threads();
+        if threads == 1 || together < FEWEST_TOGETHER || places.len() < FEWEST_TOGETHER {
+            for place in places {
+                if let Some(decision) = self.decide(*place, complex, around, excess) {
+                    done.add(self.carry_out(&decision, complex, excess));
+                }
+            }
+            return done;
+        }
+        let mut copies: Vec<(CellComplex, usize)> =
+            (0..threads).into_par_iter().map(|_| (complex.clone(), 0)).collect();
+        let mut carried_out: Vec<Decision> = Vec::new();
+        for places in places.chunks(together) {
+            let share = places.len().div_ceil(threads);
+            let look_ahead = |((copy, known), places): (&mut (CellComplex, usize), &[Place])| {
+                carried_out[*known..].iter().for_each(|decision| decision.carry_out(copy));
+                *known = carried_out.len();
+                let look = |place: &Place| {
+                    let cells = place.cells(copy);
+                    (cells, self.decide(*place, copy, around, excess))
+                };
+                places.iter().map(look).collect::<Vec<_>>()
+            };
+            let ahead: Vec<_> = copies.par_iter_mut().zip(places.par_chunks(share)).map(look_ahead).collect();
+            let mut changed: HashSet<CellId> = HashSet::new();
+            for (place, (mut cells, mut decision)) in places.iter().zip(ahead.into_iter().flatten()) {
+                if cells.iter().any(|cell| changed.contains(cell)) {
+                    cells = place.cells(complex);
+                    decision = self.decide(*place, complex, around, excess);
+                }
+                if let Some(decision) = decision {
+                    done.add(self.carry_out(&decision, complex, excess));
+                    changed.extend(cells);
+                    carried_out.push(decision);
+                }
+            }
+        }
+        done
+    }
+
+    fn carry_out(
+        &mut self,
+        decision: &Decision,
+        complex: &mut CellComplex,
+        excess: &mut Excess,
+    ) -> Reconnections {
+        decision.carry_out(complex);
+        decision.excess.iter().for_each(|(cell, by)| excess[cell.index()] = *by);
+        if let Some(sides) = &decision.insisting {
+            *self.tries.entry(sides.clone()).or_default() += 1;
+        }
+        decision.done
+    }
+
+    /// Whether a boundary with three sides is thin.
+    fn is_thin(&self, face: FaceId, complex: &CellComplex, conditions: &Conditions<'_>) -> bool {
+        let height = least_height(complex, face);
+        let short = || self.short_at(complex, &Event::Close(face).vertices(complex), conditions);
+        height < THIN * self.short && height < THIN * short()
+    }
+
+    /// The short lines, shortest first.
+    fn short_lines(&self, complex: &CellComplex, conditions: &Conditions<'_>) -> Vec<ComplexEdge> {
+        let lengths = complex.edges().into_iter().map(|edge| (length(complex, edge), edge));
+        let is_short = |(length, edge): &(f64, ComplexEdge)| {
+            *length < self.short && *length < self.short_at(complex, &edge.vertices(), conditions)
+        };
+        let mut short: Vec<(f64, ComplexEdge)> = lengths.filter(is_short).collect();
+        short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        short.into_iter().map(|(_, edge)| edge).collect()
+    }
+
+    /// What is to happen at a place, if anything. The complex is as it was, but for the time that this takes.
+    fn decide(
+        &self,
+        place: Place,
+        complex: &mut CellComplex,
+        around: Surroundings<'_>,
+        excess: &Excess,
+    ) -> Option<Decision> {
+        match place {
+            Place::Triangle(face) => {
+                let is_due =
+                    complex.corners(face).len() == 3 && self.is_thin(face, complex, around.conditions);
+                let close = || self.consider(Event::Close(face), complex, around, Demand::LessArea, excess);
+                is_due.then(close).flatten()
+            }
+            Place::Line(edge) if complex.has_edge(edge) => {
+                self.decide_about_line(edge, complex, around, excess)
+            }
+            Place::Line(_) => None,
+        }
+    }
+
+    fn decide_about_line(
+        &self,
+        edge: ComplexEdge,
+        complex: &mut CellComplex,
+        around: Surroundings<'_>,
+        excess: &Excess,
+    ) -> Option<Decision> {
+        let faces = complex.faces_of_edge(edge);
+        let with_corners = |count: usize| -> Vec<FaceId> {
+            faces.iter().copied().filter(|face| complex.corners(*face).len() == count).collect()
+        };
+        let mut events = vec![Event::Open(edge)];
+        events.extend(with_corners(3).into_iter().map(Event::Close));
+        let count = events.len();
+        events.extend(with_corners(4).into_iter().map(|face| Event::Swap(edge, face)));
+        for event in &events {
+            let decision = self.consider(*event, complex, around, Demand::LessArea, excess);
+            if decision.is_some() {
+                return decision;
+            }
+        }
+        let now = length(complex, edge);
+        let short = self.short_at(complex, &edge.vertices(), around.conditions);
+        let is_shrinking = around.lengths.get(&edge).is_some_and(|before| now < *before);
+        if now < short && is_shrinking {
+            let sides = sides_at(complex, edge);
+            let tries = self.tries.get(&sides).copied().unwrap_or(0);
+            for event in events[..count].iter().filter(|_| tries < MOST_TRIES) {
+                if let Some(decision) = self.consider(*event, complex, around, Demand::NoFold, excess) {
+                    return Some(Decision { insisting: Some(sides), ..decision });
+                }
+            }
+        }
+        let is_tiny = now < TINY * short;
+        let settle = || self.consider(Event::Move(edge), complex, around, Demand::LongerLines, excess);
+        is_tiny.then(settle).flatten()
+    }
+
+    /// What comes of an event that keeps its promise.
+    fn consider(
+        &self,
+        event: Event,
+        complex: &mut CellComplex,
+        around: Surroundings<'_>,
+        demand: Demand,
+        excess: &Excess,
+    ) -> Option<Decision> {
+        let conditions = around.conditions;
+        let old = event.vertices(complex);
+        let short = self.short_at(complex, &old, conditions);
+        let least = LEAST_GOING * short;
+        let snapshot = complex.snapshot(&old);
+        let mut as_it_is = LocalArea::new(complex, &old, conditions, excess);
+        let excesses: Vec<_> = as_it_is.excesses().collect();
+        let (shortest, folds) = (as_it_is.shortest_edge(), as_it_is.fold_count());
+        let changed = event.happen(complex, least).and_then(|new| {
+            let mut changed = LocalArea::new(complex, &new, conditions, excess).with_volumes_of(&as_it_is);
+            let (is_good, shortest) = match demand {
+                Demand::LessArea => (changed.minimize() < as_it_is.minimize(), LEAST * short),
+                Demand::LongerLines => (changed.minimize().is_finite(), shortest),
+                Demand::NoFold => (true, LEAST * short),
+            };
+            let keeps_promise = is_good
+                && changed.shortest_edge() > shortest
+                && changed.keeps_volumes(LARGEST_CHANGE, &excesses)
+                && changed.fold_count() <= folds;
+            keeps_promise.then_some(changed)
+        });
+        complex.restore(snapshot);
+        let changed = changed?;
+        let excess = changed.excesses().map(|(cell, by, _)| (cell, by)).collect();
+        let points = changed.points().to_vec();
+        Some(Decision { event, least, points, excess, done: Reconnections::of(event), insisting: None })
+    }
+}
+
+impl Reconnections {
+    fn of(event: Event) -> Self {
+        let none = Self::default();
+        match event {
+            Event::Open(_) => Self { opened: 1, ..none },
+            Event::Close(_) => Self { closed: 1, ..none },
+            Event::Swap(..) => Self { swapped: 1, ..none },
+            Event::Move(_) => none,
+        }
+    }
+}
+
+impl Place {
+    /// All cells that what happens here may depend on or change; none where it is gone.
+    fn cells(self, complex: &CellComplex) -> Vec<CellId> {
+        let faces = match self {
+            Self::Triangle(face) => vec![face],
+            Self::Line(edge) if complex.has_edge(edge) => complex.faces_of_edge(edge),
+            Self::Line(_) => Vec::new(),
+        };
+        let small = faces.into_iter().filter(|face| complex.corners(*face).len() <= 4);
+        let corners = small.flat_map(|face| complex.corners(face)).map(|corner| corner.vertex);
+        let ends = match self {
+            Self::Triangle(_) => Vec::new(),
+            Self::Line(edge) => edge.vertices().to_vec(),
+        };
+        let vertices: Vec<u32> = corners.chain(ends).collect();
+        let sides = complex.faces_at(&vertices).into_iter().flat_map(|face| complex.sides(face));
+        let cells = sides.filter_map(|side| cell_and_offset(side, complex.domain()));
+        let mut cells: Vec<CellId> = cells.map(|(cell, _)| cell).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        cells
+    }
+}
+
+/// All sides that touch a line, a cell and its images as one.
+fn sides_at(complex: &CellComplex, edge: ComplexEdge) -> Vec<Side> {
+    let faces = complex.faces_at(&edge.vertices());
+    distinct(faces.into_iter().flat_map(|face| complex.sides(face)))
+}
+
+/// The lengths of all lines.
+pub(crate) fn lengths(complex: &CellComplex) -> HashMap<ComplexEdge, f64> {
+    complex.edges().into_iter().map(|edge| (edge, length(complex, edge))).collect()
+}
+
+fn length(complex: &CellComplex, edge: ComplexEdge) -> f64 {
+    complex.vertices[edge.start as usize].distance(complex.position(edge.end))
+}
+
+/// The distance from the longest side of a boundary with three sides to the corner opposite.
+fn least_height(complex: &CellComplex, face: FaceId) -> f64 {
+    let [a, b, c] = [0, 1, 2].map(|k| complex.position(complex.corners(face)[k]));
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    (b - a).cross(c - a).length() / longest.max(f64::MIN_POSITIVE)
+}

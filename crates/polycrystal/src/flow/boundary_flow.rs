@@ -1,0 +1,436 @@
+//! Curvature flow of the points of one level.
+
+mod best;
+mod volumes;
+mod widening;
+
+use glam::DVec3;
+use voronoi::Dimension;
+
+use crate::check::folds::{element_normals, folded_pairs};
+use crate::energy::local_size::LocalSize;
+use crate::energy::patch::PatchTerms;
+use crate::energy::patches::Patches;
+use crate::flow::assembly::{Unknowns, assemble, gradient};
+use crate::flow::clusters::{ATTEMPTS, Clusters, Numbering};
+use crate::flow::relaxation::{USUAL_TIME, check_grains_are_left};
+use crate::flow::system::System;
+use crate::flow::tangential::tangential_moves;
+use crate::flow::thin_triangles::Room;
+use crate::flow::tuning::Tuning;
+use crate::flow::wedges::Wedges;
+use crate::measures::rms_residual;
+use crate::mesh::seams::Seams;
+use crate::mesh::volume::{Cone, volumes_of_grains};
+use crate::solver::conjugate_gradients::dot;
+use crate::{Freedom, GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
+use best::{Badness, Best};
+
+/// Most edges of the control mesh, as long as the mean, to a feature. Fans have three.
+const FEATURE_EDGES: f64 = 6.0;
+
+/// Share of its first residual at which a step of grains that grow is solved: rates of growth are asked for, not only where they lead.
+const FREE_TOLERANCE: f64 = 1e-3;
+
+/// Most steps of points toward the middle of the triangles around, and their share of the way, where a start is folded by subdivision. The walls
+/// of a host whose cells are as flat as a fiftieth of it take one step.
+const CENTERING_STEPS: usize = 10;
+const CENTERING: f64 = 0.5;
+
+/// Change of the cosine of a bend that counts as none.
+pub(crate) const SLIGHT_BEND: f64 = 1e-9;
+
+/// A number of steps on one level.
+pub(crate) struct Stage {
+    pub(crate) step_time: f64,
+    pub(crate) steps: usize,
+    /// The stage ends early when a step lessens the energy by less than this share; never for 0.
+    pub(crate) least_gain: f64,
+    pub(crate) end: End,
+}
+
+/// What has to be right at the end of a stage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum End {
+    /// Nothing yet: finer levels follow.
+    Open,
+    /// The volumes of the finest level.
+    Volumes,
+    /// These, and no triangle of the finest level is thin.
+    Finished,
+}
+
+/// What a step found where it began.
+pub(crate) struct Taken {
+    pub(crate) energy: f64,
+    /// The volume of each grain.
+    pub(crate) volumes: Vec<f64>,
+}
+
+/// A network whose points of one level move.
+pub(crate) struct Flow<'a> {
+    network: &'a Network,
+    patches: Patches,
+    /// Of each control point, as of [`LocalSize::at_points`].
+    sizes: Vec<f64>,
+    /// The level whose points move.
+    level: usize,
+    /// The level whose surface carries energy and volumes during the flow: one subdivision on, if there is any.
+    surface: usize,
+    /// Neighbouring elements of each boundary on that level.
+    neighbors: Vec<[u32; 2]>,
+    clusters: Clusters,
+    volumes: Volumes,
+    tuning: Tuning,
+}
+
+impl<'a> Flow<'a> {
+    /// The flow of the points of one level, by tensions in the given unit: steps are right where this is their mean.
+    pub(crate) fn new(
+        network: &'a Network,
+        level: usize,
+        volumes: Volumes,
+        tension_unit: f64,
+        tuning: Tuning,
+    ) -> Self {
+        let surface = (network.levels().len() - 1).min(level + 1);
+        let clusters = Clusters::new(&network.levels()[level]);
+        let patches = Patches::new(network, level, surface, tension_unit, tuning.largest_cotangent);
+        let unit = tuning.small_grain * network.mean_grain_size();
+        let sizes =
+            LocalSize::new(network.domain().dimension(), unit).at_points(network, level, &patches, volumes);
+        let neighbors = Seams::of_level(&network.levels()[surface]).inner;
+        Self { network, patches, sizes, level, surface, neighbors, clusters, volumes, tuning }
+    }
+
+    /// The flow as one until all is at rest.
+    pub(crate) fn until_rest(mut self) -> Self {
+        self.patches.largest_cotangent = self.tuning.largest_cotangent_to_rest;
+        self
+    }
+
+    /// Takes the steps of a stage.
+    ///
+    /// `progress` is told the number of steps done and where the points are.
+    pub(crate) fn run(
+        &mut self,
+        start: &[DVec3],
+        stage: &Stage,
+        progress: &mut impl FnMut(usize, &[DVec3]),
+    ) -> Result<Vec<DVec3>, NetworkError> {
+        let clusters = self.clusters.clone();
+        match self.run_from(start, stage, progress) {
+            Err(error @ NetworkError::Folded { .. }) => {
+                let Some(centered) = self.centered(start) else { return Err(error) };
+                self.clusters = clusters;
+                self.run_from(&centered, stage, progress)
+            }
+            result => result,
+        }
+    }
+
+    /// Points that fold the finest level, moved within their boundaries until they do not: a boundary of several faces has points inside
+    /// that are crowded, and subdivision puts triangles there over each other even in a plane. Nothing where no point is to move.
+    fn centered(&self, start: &[DVec3]) -> Option<Vec<DVec3>> {
+        let finest = Wedged::new(self.network, self.finest());
+        let folds = |points: &[DVec3]| self.folded_places(&self.finest_points(points), &finest).len();
+        let mut best = (folds(start), None);
+        let mut points = start.to_vec();
+        for _ in 0..CENTERING_STEPS {
+            if best.0 == 0 {
+                break;
+            }
+            points = displaced(&points, &tangential_moves(self.network, self.level, &points, CENTERING));
+            let count = folds(&points);
+            if count < best.0 {
+                best = (count, Some(points.clone()));
+            }
+        }
+        best.1
+    }
+
+    fn run_from(
+        &mut self,
+        start: &[DVec3],
+        stage: &Stage,
+        progress: &mut impl FnMut(usize, &[DVec3]),
+    ) -> Result<Vec<DVec3>, NetworkError> {
+        let mut points = start.to_vec();
+        let finest = Wedged::new(self.network, self.finest());
+        let mut last_energy = f64::INFINITY;
+        let mut best = Best::new();
+        for step in 1..=stage.steps {
+            let passed = (step - 1) as f64 * stage.step_time;
+            let taken = self.step(&mut points, stage.step_time);
+            let Taken { energy, volumes, .. } =
+                taken.map_err(|error| self.vanishing(&points, passed, stage.step_time).unwrap_or(error))?;
+            if self.volumes == Volumes::Free {
+                check_grains_are_left(self.network, &volumes, passed)?;
+            }
+            progress(step, &points);
+            if stage.least_gain > 0.0
+                && let Some(badness) = self.badness(&points, &finest)
+            {
+                best.offer(badness, &points);
+                if best.is_final() {
+                    break;
+                }
+            }
+            if (last_energy - energy).abs() < stage.least_gain * energy {
+                break;
+            }
+            last_energy = energy;
+        }
+        points = best.into_points().unwrap_or(points);
+        // Where the finest level folds though no step did, all has moved too far from where it did not.
+        let mut count = 0;
+        for attempt in 0..ATTEMPTS {
+            let surface = match stage.end {
+                End::Open => self.finest_points(&points),
+                End::Volumes | End::Finished => self.restored(&mut points)?,
+            };
+            let places = self.folded_places(&surface, &finest);
+            count = places.len();
+            if count == 0 {
+                if stage.end == End::Finished {
+                    self.widen_all(&mut points, surface, &finest);
+                }
+                return Ok(points);
+            }
+            for place in places {
+                self.clusters.join_all(&place);
+            }
+            let mut moves: Vec<DVec3> =
+                points.iter().zip(start).map(|(point, start)| *point - *start).collect();
+            self.clusters.unite(&mut moves, |point| self.freedom(point), attempt);
+            points = displaced(start, &moves);
+        }
+        Err(NetworkError::Folded { count })
+    }
+
+    /// Where volumes are free, the grain that would vanish within a step, if there is one: a ball of radius r lives for a time of r^2 / 4, a
+    /// disc for r^2 / 2.
+    fn vanishing(&self, points: &[DVec3], passed: f64, step_time: f64) -> Option<NetworkError> {
+        if self.volumes == Volumes::Kept {
+            return None;
+        }
+        let volumes = self.network.grain_volumes(self.surface(), &self.refined(points));
+        let (grain, volume) = (0u32..).zip(volumes).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let dimension = self.network.domain().dimension();
+        let radius = 0.5 * dimension.ball_diameter(volume);
+        let lifetime = radius * radius / if dimension == Dimension::Two { 2.0 } else { 4.0 };
+        let time = (passed + lifetime.max(0.0)) / self.network.mean_grain_size().powi(2);
+        let is_vanishing = volume <= 0.0 || lifetime <= step_time;
+        is_vanishing.then_some(NetworkError::GrainVanished { grain: GrainId(grain), time })
+    }
+
+    /// One step of curvature flow.
+    ///
+    /// What the step folds moves by its mean displacement instead, and as one from then on: it could not live. That is local: to solve the
+    /// step anew for all grains would take as many attempts as the worst place of all.
+    pub(crate) fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<Taken, NetworkError> {
+        let terms = self.patches.terms(points);
+        let energy = terms.iter().map(|terms| terms.energy).sum();
+        let refined = self.refined(points);
+        let before = element_normals(self.surface(), &refined);
+        let cones: Vec<Cone> = terms.iter().map(|terms| terms.cone).collect();
+        let volumes = volumes_of_grains(self.network.boundaries(), &cones, self.network.grain_count());
+        let missing = self.missing(&volumes);
+        let mut clusters = self.clusters.clone();
+        clusters.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
+        let numbering = clusters.number();
+        let system = self.system(&terms, &numbering, time, points);
+        let moves = match (self.volumes, self.control_mesh()) {
+            (Volumes::Kept, _) | (_, Mesh::Triangles(_)) => system.displacement(&missing).0,
+            (Volumes::Free, Mesh::Segments(_)) => {
+                let gradient_after = |moves: &[DVec3]| {
+                    let terms = self.patches.terms(&displaced(points, &numbering.of_points(moves)));
+                    gradient(&self.patches, &terms, &numbering)
+                };
+                system.implicit_displacement(gradient_after)
+            }
+        };
+        let mut moves = numbering.of_points(&moves);
+        let within = tangential_moves(self.network, self.level, points, self.centering(time));
+        moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
+        *points = clusters.moved_unbroken(
+            points,
+            moves,
+            |point| self.freedom(point),
+            |moved| {
+                let broken = self.broken_elements(&before, moved).into_iter();
+                broken.map(|element| self.dependencies(self.surface, element)).collect()
+            },
+        )?;
+        // What turns over in the plane as grains grow may be going on to vanish.
+        let is_growth_in_plane =
+            self.volumes == Volumes::Free && matches!(self.control_mesh(), Mesh::Segments(_));
+        if self.tuning.keeps_joined && !is_growth_in_plane {
+            self.clusters = clusters;
+        }
+        Ok(Taken { energy, volumes })
+    }
+
+    /// How far points are from rest; nothing where no boundaries meet, and in the plane.
+    fn badness(&self, points: &[DVec3], finest: &Wedged) -> Option<Badness> {
+        let Mesh::Triangles(_) = self.control_mesh() else { return None };
+        let surface = self.refined(points);
+        let residual = rms_residual(self.network, self.surface(), &surface)?;
+        let surface = self.network.subdivide_between(self.surface, self.finest(), &surface);
+        let has_folds = !finest.folds(self.network.finest(), &surface).is_empty();
+        Some(Badness { has_folds, residual })
+    }
+
+    /// How a control point can move.
+    fn freedom(&self, point: u32) -> Freedom {
+        self.network.freedom(self.network.levels()[self.level].walls[point as usize])
+    }
+
+    /// The share of its way to the centre of the triangles around that a point goes in a step. Where grains grow, a step of no time moves
+    /// nothing: points that move within a curved boundary leave it a little, and that counts as growth.
+    fn centering(&self, time: f64) -> f64 {
+        let usual = USUAL_TIME / self.tuning.coarse_steps as f64 * self.network.mean_grain_size().powi(2);
+        match self.volumes {
+            Volumes::Kept => self.tuning.centering,
+            Volumes::Free => self.tuning.centering * (time / usual).min(1.0),
+        }
+    }
+
+    fn system(&self, terms: &[PatchTerms], clusters: &Numbering, time: f64, points: &[DVec3]) -> System {
+        let tolerance = match self.volumes {
+            Volumes::Kept => self.tuning.tolerance,
+            Volumes::Free => FREE_TOLERANCE,
+        };
+        let level = &self.network.levels()[self.level];
+        let unknowns = Unknowns { level, points, sizes: &self.sizes, clusters };
+        let parts = assemble(self.network, &self.patches, terms, unknowns, self.volumes);
+        System::new(parts, time, tolerance)
+    }
+
+    /// The feature size as control edges of this level have it. Where they are fine, what is short among them is not what is
+    /// small in the network.
+    fn feature_size(&self, points: &[DVec3]) -> f64 {
+        let usual = 0.5f64.powi(i32::try_from(self.level).expect("a level is a small number"));
+        (usual * self.network.feature_size()).min(FEATURE_EDGES * mean_edge(self.control_mesh(), points))
+    }
+
+    fn finest(&self) -> usize {
+        self.network.levels().len() - 1
+    }
+
+    /// Where volumes are free the flow itself is asked for: nothing is held but what a step would fold.
+    fn rigid_length(&self, points: &[DVec3]) -> f64 {
+        match self.volumes {
+            Volumes::Kept => self.tuning.rigid_length * self.feature_size(points),
+            Volumes::Free => 0.0,
+        }
+    }
+
+    fn surface(&self) -> &'a Level {
+        &self.network.levels()[self.surface]
+    }
+
+    fn control_mesh(&self) -> &'a Mesh {
+        &self.network.levels()[self.level].mesh
+    }
+
+    /// The points of the level that carries the flow.
+    fn refined(&self, points: &[DVec3]) -> Vec<DVec3> {
+        self.network.subdivide_between(self.level, self.surface, points)
+    }
+
+    /// The points of the finest level.
+    fn finest_points(&self, points: &[DVec3]) -> Vec<DVec3> {
+        self.network.subdivide_between(self.level, self.finest(), points)
+    }
+
+    /// The points that each element depends on which is folded on the finest level, or has passed another.
+    fn folded_places(&self, surface: &[DVec3], finest: &Wedged) -> Vec<Vec<u32>> {
+        let folds = finest.folds(self.network.finest(), surface).into_iter().flatten();
+        folds.map(|element| self.dependencies(self.finest(), element)).collect()
+    }
+
+    /// Elements that a step has turned too far, or bent too far and more than they were; given the normals before.
+    fn broken_elements(&self, before: &[DVec3], moved: &[DVec3]) -> Vec<u32> {
+        let after = element_normals(self.surface(), &self.refined(moved));
+        let cosine = |normals: &[DVec3], [a, b]: [u32; 2]| {
+            normals[a as usize].normalize_or_zero().dot(normals[b as usize].normalize_or_zero())
+        };
+        // Growth is asked for step by step: where a line shrinks it bends, and what is held there would not grow as it should.
+        let largest_bend = match self.volumes {
+            Volumes::Kept => self.tuning.largest_bend,
+            Volumes::Free => -1.0,
+        };
+        let bent = folded_pairs(&self.neighbors, &after, largest_bend);
+        let bent =
+            bent.into_iter().filter(|pair| cosine(&after, *pair) < cosine(before, *pair) - SLIGHT_BEND);
+        let turned = (0u32..).zip(before.iter().zip(&after)).filter(|(_, (before, after))| {
+            let turn = before.dot(**after) - self.tuning.largest_turn * before.length() * after.length();
+            turn.is_nan() || turn < 0.0
+        });
+        turned.map(|(element, _)| element).chain(bent.flatten()).collect()
+    }
+
+    /// All control points that an element of a level depends on; those of the surface's element that it descends from.
+    fn dependencies(&self, level: usize, element: u32) -> Vec<u32> {
+        let element = ancestor(&self.network.levels()[self.surface..=level], element) as usize;
+        let vertices: &[u32] = match &self.surface().mesh {
+            Mesh::Triangles(mesh) => &mesh.triangles()[element],
+            Mesh::Segments(mesh) => &mesh.segments()[element],
+        };
+        if self.level == self.surface {
+            return vertices.to_vec();
+        }
+        let rows = vertices.iter().map(|vertex| self.network.stencils(self.level).row(*vertex as usize).0);
+        rows.flatten().copied().collect()
+    }
+}
+
+fn mean_edge(mesh: &Mesh, points: &[DVec3]) -> f64 {
+    let length = |[a, b]: [u32; 2]| points[a as usize].distance(points[b as usize]);
+    match mesh {
+        Mesh::Triangles(mesh) => {
+            let edges = 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits");
+            edges.map(|edge| length(mesh.edge(edge))).sum::<f64>() / mesh.edge_count() as f64
+        }
+        Mesh::Segments(mesh) => {
+            let segments = mesh.segments();
+            segments.iter().map(|ends| length(*ends)).sum::<f64>() / segments.len() as f64
+        }
+    }
+}
+
+/// How the elements of a level meet.
+struct Wedged {
+    wedges: Wedges,
+    /// Pairs of neighbours in one boundary.
+    neighbors: Vec<[u32; 2]>,
+}
+
+impl Wedged {
+    fn new(network: &Network, level: usize) -> Self {
+        let level = &network.levels()[level];
+        let seams = Seams::of_level(level);
+        let wedges = Wedges::new(&Surface::of_level(level, &[], &network.sides()), &seams);
+        Self { wedges, neighbors: seams.inner }
+    }
+
+    /// Pairs of elements that are folded, or have passed each other.
+    fn folds(&self, level: &Level, points: &[DVec3]) -> Vec<[u32; 2]> {
+        let mut folds = folded_pairs(&self.neighbors, &element_normals(level, points), 0.0);
+        folds.extend(self.wedges.turned(points));
+        folds
+    }
+}
+
+fn displaced(points: &[DVec3], moves: &[DVec3]) -> Vec<DVec3> {
+    points.iter().zip(moves).map(|(point, by)| *point + *by).collect()
+}
+
+/// The element of the first of some consecutive levels that an element of the last descends from.
+fn ancestor(levels: &[Level], element: u32) -> u32 {
+    levels[..levels.len() - 1].iter().rev().fold(element, |element, parent| match &parent.mesh {
+        Mesh::Triangles(mesh) => mesh.counts().triangle_parent(element),
+        Mesh::Segments(_) => element / 2,
+    })
+}

@@ -1,0 +1,119 @@
+//! How a flow gives grains the volumes of their cells.
+
+use glam::DVec3;
+
+use crate::flow::boundary_flow::{Clusters, Flow, dot};
+use crate::mesh::volume::{largest_relative_error, last_place, swept_by_rounding};
+use crate::{GrainId, NetworkError, Volumes};
+
+/// Difference of a grain's volume from its cell's, as a share of the cell's, that ends the iteration on volumes.
+const VOLUME_TOLERANCE: f64 = 1e-12;
+
+/// Difference that is accepted where rounding keeps the iteration above that, beside what the rounding of points themselves explains:
+/// small grains in large boxes.
+const VOLUME_LIMIT: f64 = 1e-10;
+
+/// Bounds on the factor by which a volume correction is larger than its gradient asks for.
+const SMALLEST_GAIN: f64 = 0.3;
+const LARGEST_GAIN: f64 = 2.0;
+
+/// Most Newton steps on the volumes; each gains about a digit, for its gradient is that of a coarser level.
+const VOLUME_STEPS: usize = 40;
+
+impl Flow<'_> {
+    /// Makes volumes right where that is asked for; gives the points of the finest level.
+    pub(crate) fn restored(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
+        match self.volumes {
+            Volumes::Kept => self.restore_volumes(points),
+            Volumes::Free => Ok(self.finest_points(points)),
+        }
+    }
+
+    /// Moves points so that the grains of the finest level have the volumes of their cells.
+    ///
+    /// Where much has become rigid, some grain may be unable to change its volume: then only short edges stay rigid, and
+    /// at last none.
+    ///
+    /// Gives the points of the finest level.
+    fn restore_volumes(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
+        let free = Clusters::new(&self.network.levels()[self.level]);
+        let mut short = free.clone();
+        short.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
+        let start = points.to_vec();
+        let mut attempts = Vec::new();
+        let ways = [
+            ("restoring volumes, what folded moving as one", &self.clusters),
+            ("restoring volumes, short edges rigid", &short),
+        ];
+        for (tried, clusters) in ways {
+            match self.restore_with(clusters, points) {
+                Err(error) if error.is_tangle() => error.give_up(tried, &mut attempts),
+                result => return result,
+            }
+            points.copy_from_slice(&start);
+        }
+        self.restore_with(&free, points).map_err(|error| error.after(attempts))
+    }
+
+    /// As [`Self::restore_volumes`] where a volume differs by more than rounding; else no point moves.
+    pub(crate) fn restore_lost_volumes(&self, points: &mut [DVec3]) -> Result<(), NetworkError> {
+        let surface = self.finest_points(points);
+        let missing = self.missing(&self.network.grain_volumes(self.network.finest(), &surface));
+        if !self.is_rounding(&missing, &surface) {
+            self.restore_volumes(points)?;
+        }
+        Ok(())
+    }
+
+    /// Whether rounding of the points may be all that volumes lack.
+    fn is_rounding(&self, missing: &[f64], surface: &[DVec3]) -> bool {
+        let areas = self.network.grain_areas(self.network.finest(), surface);
+        let rounding = last_place(surface);
+        let mut grains = missing.iter().zip(self.network.cell_volumes().iter().zip(areas));
+        grains.all(|(lack, (volume, area))| {
+            lack.abs() <= VOLUME_LIMIT * volume + swept_by_rounding(rounding, area)
+        })
+    }
+
+    fn restore_with(&self, clusters: &Clusters, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
+        let terms = self.patches.terms(points);
+        let clusters = clusters.number();
+        let system = self.system(&terms, &clusters, 0.0, points);
+        let mut last: Option<Vec<f64>> = None;
+        // The gradient is that of a coarser level: what is too small or large in it is measured and made up for.
+        let mut gain = 1.0;
+        let mut step = 0;
+        loop {
+            let surface = self.finest_points(points);
+            let missing = self.missing(&self.network.grain_volumes(self.network.finest(), &surface));
+            let (grain, relative_error) = self.largest_error(&missing);
+            let mut stalled = false;
+            if let Some(last) = &last {
+                let left = dot(&missing, last) / dot(last, last);
+                stalled = relative_error > 0.5 * self.largest_error(last).1;
+                gain = (gain / (1.0 - left)).clamp(SMALLEST_GAIN, LARGEST_GAIN);
+            }
+            if relative_error <= VOLUME_TOLERANCE || (stalled && self.is_rounding(&missing, &surface)) {
+                return Ok(surface);
+            }
+            // A correction that makes things worse (NaN included) would only be followed by others.
+            if step == VOLUME_STEPS || relative_error.is_nan() || relative_error >= 1.0 {
+                return Err(NetworkError::volume_not_restored(grain, relative_error));
+            }
+            let wanted: Vec<f64> = missing.iter().map(|lack| gain * lack).collect();
+            let moves = clusters.of_points(&system.push(&wanted));
+            points.iter_mut().zip(&moves).for_each(|(point, by)| *point += *by);
+            last = Some(missing);
+            step += 1;
+        }
+    }
+
+    /// What each grain's volume lacks.
+    pub(crate) fn missing(&self, volumes: &[f64]) -> Vec<f64> {
+        self.network.cell_volumes().iter().zip(volumes).map(|(cell, grain)| cell - grain).collect()
+    }
+
+    fn largest_error(&self, missing: &[f64]) -> (GrainId, f64) {
+        largest_relative_error(missing, self.network.cell_volumes())
+    }
+}

@@ -1,0 +1,154 @@
+//! What a flow does in the end about thin triangles.
+
+use std::collections::{HashMap, HashSet};
+
+use glam::DVec3;
+use rayon::prelude::*;
+use subzero::VertexRule;
+
+use crate::energy::patches::by_boundary;
+use crate::flow::boundary_flow::{Flow, Room, Wedged};
+use crate::flow::thin_triangles::STEPS;
+use crate::mesh::triangle_quality::squared_sine;
+use crate::{BoundaryId, Mesh, TriangleQuality, Volumes};
+
+/// Smallest angle, in units of the bound, of a triangle that stays as it is ...
+const GOOD: f64 = 1.1;
+
+/// ... and that which others are brought to: the volumes, which are made right after that, take some of it.
+const WIDE: f64 = 1.15;
+
+/// What moves to make triangles wider.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Moving {
+    /// Points inside boundaries.
+    Inside,
+    /// Also points on the lines beside the triangle.
+    Lines,
+}
+
+/// What is tried, one after the other. What lines do to volumes is made right after that, and may take a second time.
+const TRIES: [Moving; 3] = [Moving::Inside, Moving::Lines, Moving::Lines];
+
+impl Flow<'_> {
+    /// Makes thin triangles of the finest level wide, as far as nothing folds; `surface` are the points of that level.
+    pub(super) fn widen_all(&self, points: &mut Vec<DVec3>, mut surface: Vec<DVec3>, finest: &Wedged) {
+        // Where grains grow, what that does to volumes would count as growth.
+        let widens = self.tuning.widening > 0.0 && self.volumes == Volumes::Kept;
+        let tries = if widens { TRIES.as_slice() } else { &[] };
+        for moving in tries.iter().copied() {
+            let movable = self.movable_points(&self.thin_triangles(&surface), moving);
+            if movable.is_empty() {
+                break;
+            }
+            let mut moved = points.clone();
+            if !self.widen(&mut moved, &movable, moving) {
+                continue;
+            }
+            for _ in 0..2 {
+                let mut right = moved.clone();
+                let Ok(restored) = self.restored(&mut right) else { break };
+                let folded = self.folded_places(&restored, finest).concat();
+                if folded.is_empty() {
+                    (*points, surface) = (right, restored);
+                    break;
+                }
+                // Where that folds all stays as it was.
+                for group in movable.iter().filter(|group| folded.iter().any(|point| group.contains(point))) {
+                    group.iter().for_each(|point| moved[*point as usize] = points[*point as usize]);
+                }
+            }
+        }
+    }
+
+    /// Triangles of the finest level, the thinnest first: no order that depends on numbers.
+    fn thin_triangles(&self, surface: &[DVec3]) -> Vec<u32> {
+        let Mesh::Triangles(mesh) = &self.network.finest().mesh else { return Vec::new() };
+        let good = sine(GOOD).powi(2);
+        let squared_sine = |corners: &[u32; 3]| squared_sine(corners.map(|corner| surface[corner as usize]));
+        let triangles = mesh.triangles().par_iter().enumerate();
+        let mut thin: Vec<(f64, usize)> = triangles
+            .map(|(triangle, corners)| (squared_sine(corners), triangle))
+            .filter(|(squared_sine, _)| *squared_sine < good)
+            .collect();
+        thin.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        thin.into_iter().map(|(_, triangle)| u32::try_from(triangle).expect("ids fit 32 bits")).collect()
+    }
+
+    /// What can move for some triangles of the finest level, boundary by boundary. What is a copy follows its original, and lines that
+    /// have copies stay.
+    fn movable_points(&self, thin: &[u32], moving: Moving) -> Vec<Vec<u32>> {
+        let level = &self.network.levels()[self.level];
+        let Mesh::Triangles(mesh) = &level.mesh else { return Vec::new() };
+        let copies = || level.copies.vertices.iter();
+        let originals: HashSet<u32> = copies().map(|pair| pair.primary).collect();
+        let secondaries: HashSet<u32> = copies().map(|pair| pair.secondary).collect();
+        let mut groups: Vec<Vec<u32>> = Vec::new();
+        let mut group_of: HashMap<BoundaryId, usize> = HashMap::new();
+        for triangle in thin {
+            let boundary = self.network.finest().boundary_of[*triangle as usize];
+            let group = *group_of.entry(boundary).or_insert_with(|| {
+                let own = self.patches.patches[boundary.index()].control_points.iter();
+                let inside = own.filter(|point| mesh.vertex_rule(**point) == VertexRule::Smooth);
+                groups.push(inside.copied().collect());
+                groups.len() - 1
+            });
+            if moving == Moving::Lines {
+                let dependencies = self.dependencies(self.finest(), *triangle).into_iter();
+                groups[group].extend(dependencies.filter(|point| {
+                    mesh.vertex_rule(*point) == VertexRule::Crease && !originals.contains(point)
+                }));
+            }
+        }
+        for group in &mut groups {
+            group.retain(|point| !secondaries.contains(point));
+            group.sort_unstable();
+            group.dedup();
+        }
+        groups.retain(|group| !group.is_empty());
+        groups
+    }
+
+    /// Moves groups of points so that the triangles around are wide; tells whether that was any help.
+    fn widen(&self, points: &mut [DVec3], movable: &[Vec<u32>], moving: Moving) -> bool {
+        let level = &self.network.levels()[self.level];
+        let elements = by_boundary(self.network.boundaries().len(), &level.boundary_of);
+        let around = |movable: &Vec<u32>| {
+            let places = movable.iter().flat_map(|point| self.patches.places_of_point(*point as usize));
+            let mut boundaries: Vec<usize> =
+                places.map(|place| self.patches.point_of_place(*place).0).collect();
+            boundaries.sort_unstable();
+            boundaries.dedup();
+            boundaries.into_iter().flat_map(|boundary| &elements[boundary]).copied().collect()
+        };
+        let groups: Vec<(&Vec<u32>, Vec<u32>)> =
+            movable.iter().map(|movable| (movable, around(movable))).collect();
+        let work: usize = groups.iter().map(|(_, around)| around.len()).sum();
+        let share = self.tuning.widening * level.element_count() as f64 / work as f64;
+        let steps = (1..=STEPS).take_while(|steps| *steps as f64 <= share).last().unwrap_or(0);
+        let together = match moving {
+            Moving::Inside => movable.len(),
+            // Boundaries share lines: one after the other.
+            Moving::Lines => 1,
+        };
+        let mut is_wider = false;
+        for groups in groups.chunks(together) {
+            let widened = |(movable, around): &(&Vec<u32>, Vec<u32>)| {
+                let room = Room::new(self.network, self.level, around.clone(), movable, points)?;
+                room.widened(sine(WIDE), steps)
+            };
+            let moved: Vec<Vec<(u32, DVec3)>> = groups.par_iter().filter_map(widened).collect();
+            is_wider |= !moved.is_empty();
+            for (point, place) in moved.into_iter().flatten() {
+                points[point as usize] = place;
+            }
+        }
+        level.copies.place(self.network.domain(), points);
+        is_wider
+    }
+}
+
+/// The sine of an angle in units of the bound.
+fn sine(angle: f64) -> f64 {
+    (angle * TriangleQuality::BOUND).to_radians().sin()
+}

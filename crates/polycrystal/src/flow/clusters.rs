@@ -1,0 +1,182 @@
+//! Control points that move as one.
+
+use glam::DVec3;
+
+use crate::energy::patches::Patches;
+use crate::mesh::grouped::Grouped;
+use crate::{Freedom, Level, Mesh, NetworkError};
+
+/// Attempts at a step (and at the whole flow), each with what the last one broke moving as one.
+pub(crate) const ATTEMPTS: usize = 24;
+
+/// Attempts after which all displacements are halved with every other one: what moves at all may be too much.
+const WHOLE_ATTEMPTS: usize = 12;
+
+/// Groups of control points that are displaced by the same vector, so that what lies between them keeps its shape.
+///
+/// Under curvature flow a feature of size l lives for a time of order l^2: one much smaller than a step would turn inside
+/// out within it. Rigid groups take such features out of the flow without taking them out of the network.
+#[derive(Debug, Clone)]
+pub(crate) struct Clusters {
+    /// Union-find forest over the control points; a root is the smallest point of its cluster.
+    parents: Vec<u32>,
+}
+
+impl Clusters {
+    /// Every point of a level on its own, but for those that are others moved by whole periods.
+    pub(crate) fn new(level: &Level) -> Self {
+        let mut clusters = Self::apart(level.vertex_count());
+        level.copies.vertices.iter().for_each(|pair| clusters.join(pair.secondary, pair.primary));
+        clusters
+    }
+
+    /// So many points, each on its own.
+    pub(crate) fn apart(count: usize) -> Self {
+        Self { parents: (0u32..).take(count).collect() }
+    }
+
+    fn root(&mut self, mut point: u32) -> u32 {
+        while self.parents[point as usize] != point {
+            // Halving the path keeps the forest flat.
+            self.parents[point as usize] = self.parents[self.parents[point as usize] as usize];
+            point = self.parents[point as usize];
+        }
+        point
+    }
+
+    /// Makes two control points move as one.
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parents[a.max(b) as usize] = a.min(b);
+    }
+
+    /// Makes some control points move as one.
+    pub(crate) fn join_all(&mut self, points: &[u32]) {
+        points.windows(2).for_each(|pair| self.join(pair[0], pair[1]));
+    }
+
+    /// Joins the ends of all edges of a mesh that are shorter than `length` times the smaller of the sizes at their ends.
+    pub(crate) fn join_short_edges(&mut self, mesh: &Mesh, points: &[DVec3], sizes: &[f64], length: f64) {
+        let mut join = |[a, b]: [u32; 2]| {
+            let size = sizes[a as usize].min(sizes[b as usize]);
+            if points[a as usize].distance(points[b as usize]) < length * size {
+                self.join(a, b);
+            }
+        };
+        match mesh {
+            Mesh::Triangles(mesh) => {
+                let edges = 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits");
+                edges.for_each(|edge| join(mesh.edge(edge)));
+            }
+            Mesh::Segments(mesh) => mesh.segments().iter().for_each(|segment| join(*segment)),
+        }
+    }
+
+    /// Gives all points of each cluster the mean of their displacements, for an attempt that is counted from 0.
+    pub(crate) fn unite(&self, moves: &mut [DVec3], of_point: impl Fn(u32) -> Freedom, attempt: usize) {
+        self.number().unite(moves, of_point);
+        if attempt >= WHOLE_ATTEMPTS {
+            moves.iter_mut().for_each(|by| *by *= 0.5);
+        }
+    }
+
+    /// Where points are after displacements, of which those that would break something give way: all points that it depends on move as one.
+    ///
+    /// `broken` gives these points, for each place that is broken with all points where it is told.
+    ///
+    /// # Errors
+    /// [`NetworkError::Folded`] where something is still broken after all attempts.
+    pub(crate) fn moved_unbroken<P: AsRef<[u32]>>(
+        &mut self,
+        points: &[DVec3],
+        mut moves: Vec<DVec3>,
+        freedom: impl Fn(u32) -> Freedom,
+        broken: impl Fn(&[DVec3]) -> Vec<P>,
+    ) -> Result<Vec<DVec3>, NetworkError> {
+        self.unite(&mut moves, &freedom, 0);
+        let mut count = 0;
+        for attempt in 0..ATTEMPTS {
+            let moved: Vec<DVec3> = points.iter().zip(&moves).map(|(point, by)| *point + *by).collect();
+            let broken = broken(&moved);
+            count = broken.len();
+            if count == 0 {
+                return Ok(moved);
+            }
+            broken.iter().for_each(|points| self.join_all(points.as_ref()));
+            self.unite(&mut moves, &freedom, attempt);
+        }
+        Err(NetworkError::Folded { count })
+    }
+
+    /// Numbers the clusters from 0, in order of their smallest points.
+    pub(crate) fn number(&self) -> Numbering {
+        let mut numbers = vec![0; self.parents.len()];
+        let mut count = 0;
+        for point in (0u32..).take(self.parents.len()) {
+            // A parent is smaller, and has its number already.
+            let parent = self.parents[point as usize];
+            numbers[point as usize] = if parent == point {
+                count += 1;
+                count - 1
+            } else {
+                numbers[parent as usize]
+            };
+        }
+        let members = numbers.iter().map(|number| *number as usize).zip(0u32..);
+        let members = Grouped::new(count as usize, members);
+        Numbering { numbers, members }
+    }
+}
+
+/// Clusters by number.
+pub(crate) struct Numbering {
+    numbers: Vec<u32>,
+    /// The control points of each cluster.
+    members: Grouped<u32>,
+}
+
+impl Numbering {
+    /// The places of all control points of a cluster in some patches.
+    pub(crate) fn places<'a>(
+        &'a self,
+        cluster: usize,
+        patches: &'a Patches,
+    ) -> impl Iterator<Item = usize> + 'a {
+        let members = self.members(cluster).iter();
+        members.flat_map(|point| patches.places_of_point(*point as usize).iter().copied())
+    }
+
+    pub(crate) fn cluster_count(&self) -> usize {
+        self.members.count()
+    }
+
+    /// The cluster of each control point.
+    pub(crate) fn numbers(&self) -> &[u32] {
+        &self.numbers
+    }
+
+    /// The displacement of each control point, given those of the clusters.
+    pub(crate) fn of_points(&self, of_clusters: &[DVec3]) -> Vec<DVec3> {
+        self.numbers.iter().map(|number| of_clusters[*number as usize]).collect()
+    }
+
+    /// How the points of a cluster can move as one, given how each can.
+    pub(crate) fn freedom(&self, cluster: usize, of_point: impl Fn(u32) -> Freedom) -> Freedom {
+        self.members(cluster).iter().map(|point| of_point(*point)).fold(Freedom::Everywhere, Freedom::and)
+    }
+
+    /// Gives all points of each cluster the mean of their displacements.
+    pub(crate) fn unite(&self, moves: &mut [DVec3], of_point: impl Fn(u32) -> Freedom) {
+        for cluster in (0..self.cluster_count()).filter(|cluster| self.members(*cluster).len() > 1) {
+            let members = self.members(cluster);
+            let sum: DVec3 = members.iter().map(|point| moves[*point as usize]).sum();
+            let mean = self.freedom(cluster, &of_point).project(sum / members.len() as f64);
+            members.iter().for_each(|point| moves[*point as usize] = mean);
+        }
+    }
+
+    /// The control points of a cluster.
+    pub(crate) fn members(&self, cluster: usize) -> &[u32] {
+        self.members.of(cluster)
+    }
+}

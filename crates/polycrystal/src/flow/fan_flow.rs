@@ -1,0 +1,179 @@
+//! Curvature flow of flat fans.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::energy::fans::{FanTerms, Fans, is_bent};
+use crate::energy::local_size::LocalSize;
+use crate::energy::sides::cell_and_offset;
+use crate::flow::boundary_flow::SLIGHT_BEND;
+use crate::flow::clusters::Clusters;
+use crate::flow::system::{CHUNK, Parts, System};
+use crate::flow::tuning::Tuning;
+use crate::flow::volume_constraint::{Sweeps, VolumeConstraint};
+use crate::mesh::volume::last_place;
+use crate::solver::rows::Rows;
+use crate::{Freedom, GrainId, NetworkError};
+
+/// Fans that flow.
+pub(crate) struct FanFlow<'a> {
+    pub(crate) fans: &'a Fans,
+    /// The volume that each cell is to have.
+    pub(crate) volumes: &'a [f64],
+    pub(crate) size: LocalSize,
+    pub(crate) tuning: &'a Tuning,
+}
+
+/// What a step found where it began.
+pub(crate) struct Taken {
+    pub(crate) energy: f64,
+    /// The pressure of each cell, up to one that is the same for all.
+    pub(crate) pressures: Vec<f64>,
+}
+
+impl FanFlow<'_> {
+    /// A step of the given time.
+    ///
+    /// What it folds moves by its mean displacement instead. That is local: to solve the step anew for all cells would take as
+    /// many attempts as the worst place of all.
+    pub(crate) fn step(&self, points: &mut Vec<DVec3>, time: f64) -> Result<Taken, NetworkError> {
+        let Self { fans, volumes, tuning, .. } = *self;
+        let terms = fans.terms(points, tuning.largest_cotangent_to_rest);
+        let before = fans.normals(points);
+        let missing: Vec<f64> = {
+            let now = fans.volumes(volumes.len(), points, &before);
+            volumes.iter().zip(now).map(|(volume, now)| volume - now).collect()
+        };
+        let freedoms: Vec<Freedom> = self.of_points(|point| fans.freedom(point));
+        let system = System::new(self.parts(&terms, &freedoms, last_place(points)), time, tuning.tolerance);
+        let (mut moves, pressures) = system.displacement(&missing);
+        for fan in 0..fans.faces.len() {
+            let center = fans.center_of(fan);
+            moves[center] += freedoms[center].project(self.to_middle(fan, points, &before));
+        }
+        let mut clusters = Clusters::apart(fans.point_count());
+        *points = clusters.moved_unbroken(
+            points,
+            moves,
+            |point| freedoms[point as usize],
+            |moved| self.broken(&before, &fans.normals(moved)),
+        )?;
+        let pressures = pressures.iter().map(|pressure| pressure / time).collect();
+        Ok(Taken { energy: terms.energy, pressures })
+    }
+
+    fn of_points<T: Send>(&self, of_point: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+        (0..self.fans.point_count()).into_par_iter().with_min_len(CHUNK).map(of_point).collect()
+    }
+
+    fn parts(&self, terms: &FanTerms, freedoms: &[Freedom], rounding: f64) -> Parts {
+        let fans = self.fans;
+        let of_slot = |fan: usize, slot: usize| &terms.of_slot[fans.first_slot(fan) + slot];
+        let springs = |point: usize, entries: &mut Vec<(u32, f64)>| {
+            for (fan, slot) in fans.at_point(point) {
+                let slots = fans.slots_of(fan);
+                let count = fans.rim_len(fan);
+                if slot == count {
+                    entries.extend((0..count).map(|k| (slots[k].point, of_slot(fan, k).spoke)));
+                } else {
+                    let before = (slot + count - 1) % count;
+                    let neighbors = [
+                        (before, of_slot(fan, before).rim),
+                        ((slot + 1) % count, of_slot(fan, slot).rim),
+                        (count, of_slot(fan, slot).spoke),
+                    ];
+                    let others = neighbors.map(|(slot, spring)| (slots[slot].point, spring));
+                    entries.extend(others.into_iter().filter(|(other, _)| *other as usize != point));
+                }
+            }
+        };
+        let sweeps = |point: usize, sweeps: &mut Sweeps<'_>| {
+            for (fan, slot) in fans.at_point(point).filter(|(fan, _)| fans.wall(*fan).is_none()) {
+                for (side, sign) in fans.sides[fan].into_iter().zip([1.0, -1.0]) {
+                    if let Some((cell, _)) = cell_and_offset(side, fans.domain()) {
+                        sweeps.add(GrainId(cell.0), of_slot(fan, slot).sweep * sign);
+                    }
+                }
+            }
+        };
+        let of_fan = |fan: usize| {
+            let cells = fans.sides[fan].into_iter().filter_map(|side| cell_and_offset(side, fans.domain()));
+            let sizes = cells.map(|(cell, _)| self.size.of_volume(self.volumes[cell.index()]));
+            sizes.fold(1.0, f64::min)
+        };
+        let sizes: Vec<f64> = (0..fans.faces.len()).map(of_fan).collect();
+        let mass = |point: usize| {
+            let smallest = fans.at_point(point).map(|(fan, _)| sizes[fan]).fold(1.0, f64::min);
+            let mass: f64 = fans.at_point(point).map(|(fan, slot)| of_slot(fan, slot).mass).sum();
+            mass / (smallest * smallest)
+        };
+        let gradient = |point: usize| -> DVec3 {
+            fans.at_point(point).map(|(fan, slot)| of_slot(fan, slot).gradient).sum()
+        };
+        Parts {
+            masses: self.of_points(mass),
+            gradient: self.of_points(gradient),
+            springs: Rows::made_by(fans.point_count(), springs),
+            freedoms: freedoms.to_vec(),
+            volumes: Some(VolumeConstraint::new(fans.point_count(), self.volumes.len(), rounding, sweeps)),
+            sliding: Vec::new(),
+        }
+    }
+
+    /// A share of a centre's way to the middle of the triangles around, within their plane: those of a fan are thin where a line is short.
+    fn to_middle(&self, fan: usize, points: &[DVec3], normals: &[DVec3]) -> DVec3 {
+        let slots = self.fans.slots_of(fan);
+        let count = slots.len() - 1;
+        let center = slots[count].place(points);
+        let (mut way, mut normal, mut weights) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+        for k in 0..count {
+            // Triangles count by area: no line that comes near catches up with the middle, however many points it has.
+            let of_triangle = normals[self.fans.first_slot(fan) + k];
+            let weight = of_triangle.length();
+            let ends = [k, (k + 1) % count].map(|slot| slots[slot].place(points) - center);
+            way += (ends[0] + ends[1]) * weight;
+            normal += of_triangle;
+            weights += 2.0 * weight;
+        }
+        let normal = normal.normalize_or_zero();
+        let within = way - normal * normal.dot(way);
+        within * (self.tuning.centering / weights)
+    }
+
+    /// The points of triangles that a step has turned too far, or bent too far and more than they were; given the normals before and after.
+    fn broken(&self, before: &[DVec3], after: &[DVec3]) -> Vec<[u32; 3]> {
+        let Tuning { largest_turn, largest_bend, .. } = *self.tuning;
+        let cosine = |normals: &[DVec3], [a, b]: [usize; 2]| {
+            normals[a].normalize_or_zero().dot(normals[b].normalize_or_zero())
+        };
+        let is_turned = |slot: usize| {
+            let turn =
+                before[slot].dot(after[slot]) - largest_turn * before[slot].length() * after[slot].length();
+            turn.is_nan() || turn < 0.0
+        };
+        let is_bent = |pair: [usize; 2]| {
+            is_bent(after[pair[0]], after[pair[1]], largest_bend)
+                && cosine(after, pair) < cosine(before, pair) - SLIGHT_BEND
+        };
+        let of_fan = |fan: usize| {
+            let slots = self.fans.slots_of(fan);
+            let (count, first) = (slots.len() - 1, self.fans.first_slot(fan));
+            let mut broken = Vec::new();
+            for k in 0..count {
+                let next = (k + 1) % count;
+                let mut add = |k: usize| {
+                    broken.push([k, (k + 1) % count, count].map(|slot| slots[slot].point));
+                };
+                if is_turned(first + k) {
+                    add(k);
+                }
+                if is_bent([first + k, first + next]) {
+                    add(k);
+                    add(next);
+                }
+            }
+            broken
+        };
+        (0..self.fans.faces.len()).into_par_iter().with_min_len(CHUNK).flat_map_iter(of_fan).collect()
+    }
+}

@@ -1,0 +1,69 @@
+//! What relaxation of cells takes and gives.
+
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
+use voronoi::Collapsed;
+
+use crate::events::reconnection::Reconnections;
+use crate::flow::balance::Balance;
+use crate::flow::relaxation::Relaxed;
+use crate::validate;
+use crate::{Attempt, Boundary, Certificate, FaceMesh, Junctions, Network, NetworkError};
+
+/// How a network is made of cells.
+#[derive(Clone, Copy)]
+pub struct NetworkRecipe<'a> {
+    /// Where its control points are. Grains that come together and part leave lines and boundaries in [`FaceMesh::Fan`] where they are;
+    /// others start from the flat boundaries between them.
+    pub face_mesh: FaceMesh,
+    /// How triple lines are smoothed.
+    pub junctions: Junctions,
+    /// Number of subdivisions.
+    pub levels: usize,
+    /// The tension of each boundary.
+    pub tension: &'a (dyn Fn(&Boundary) -> f64 + Sync),
+}
+
+/// What relaxation of cells gives.
+#[derive(Debug, Clone)]
+pub struct RelaxedCells {
+    /// The network with its topology in the end.
+    pub network: Network,
+    /// Where its points are.
+    pub relaxed: Relaxed,
+    /// What changed the topology.
+    pub reconnections: Reconnections,
+    /// Short triple lines, and boundaries with them, that were drawn together into points of higher order.
+    pub merged: Collapsed,
+    /// How near to equilibrium it is, where that was asked for.
+    pub balance: Option<Balance>,
+    /// What validation found.
+    pub validation: Certificate,
+    /// Time that validation took, of all.
+    pub validated_in: Duration,
+    /// What was tried before, and tangled.
+    pub attempts: Vec<Attempt>,
+}
+
+impl RelaxedCells {
+    /// A network whose topology has stayed, with its finest points, which are checked.
+    pub(crate) fn validated(
+        network: Network,
+        relaxed: Relaxed,
+        points: &[DVec3],
+    ) -> Result<Self, NetworkError> {
+        let start = Instant::now();
+        let validation = validate(&network, points).map_err(NetworkError::Invalid)?;
+        Ok(Self {
+            network,
+            relaxed,
+            reconnections: Reconnections::default(),
+            merged: Collapsed::default(),
+            balance: None,
+            validation,
+            validated_in: start.elapsed(),
+            attempts: Vec::new(),
+        })
+    }
+}

@@ -1,0 +1,233 @@
+//! The linear system of one step: least energy under linear constraints. What its unknowns stand for it does not know.
+
+use glam::{DMat3, DVec3};
+use rayon::prelude::*;
+
+use crate::Freedom;
+use crate::flow::volume_constraint::{Compliance, VolumeConstraint};
+use crate::solver::rows::Rows;
+
+/// Most iterations for a step.
+const ITERATIONS: usize = 200;
+
+/// Corrections of a step of free areas; each leaves about half of the error.
+const CORRECTIONS: usize = 6;
+
+/// Error of the pressures within the iteration, which works on what they leave.
+const LOOSE: f64 = 0.1;
+
+/// Error of the pressures that give the volumes.
+const TIGHT: f64 = 1e-6;
+
+/// Unknowns that one task works on; fixed, so that no sum depends on the number of threads.
+pub(crate) const CHUNK: usize = 4096;
+
+/// What a system is made of: unknown displacements, the energy around where they start, and how volumes follow.
+pub(crate) struct Parts {
+    /// The mass M of each unknown.
+    pub(crate) masses: Vec<f64>,
+    /// The gradient g of the energy.
+    pub(crate) gradient: Vec<DVec3>,
+    /// The stiffness K, as springs to other unknowns; columns may come more than once.
+    pub(crate) springs: Rows<f64>,
+    /// What walls leave to each unknown.
+    pub(crate) freedoms: Vec<Freedom>,
+    /// The gradients J of the volumes; nothing where they are free.
+    pub(crate) volumes: Option<VolumeConstraint>,
+    /// What the mass of some unknowns is less than isotropic.
+    pub(crate) sliding: Vec<(usize, DMat3)>,
+}
+
+/// `(M + dt K) d = -dt g + J^T p` for displacements d, with pressures p such that `J d` is given.
+pub(crate) struct System {
+    /// `dt`.
+    time: f64,
+    /// Share of its first residual at which it is solved.
+    tolerance: f64,
+    /// The diagonal of `M + dt K`.
+    diagonal: Vec<f64>,
+    sliding: Vec<(usize, DMat3)>,
+    springs: Rows<f64>,
+    /// `-dt g`.
+    forces: Vec<DVec3>,
+    mobility: Vec<Mobility>,
+    constraint: Option<(VolumeConstraint, Compliance)>,
+}
+
+impl System {
+    /// The system of a step of the given time, which is solved up to a share of its first residual.
+    pub(crate) fn new(parts: Parts, time: f64, tolerance: f64) -> Self {
+        let Parts { masses, gradient, springs, freedoms, volumes, sliding } = parts;
+        let diagonal = |(unknown, mass): (usize, &f64)| {
+            let stiffness: f64 = springs.row(unknown).iter().map(|(_, spring)| spring).sum();
+            mass + time * stiffness
+        };
+        let diagonal: Vec<f64> = masses.par_iter().with_min_len(CHUNK).enumerate().map(diagonal).collect();
+        let mobility = |(diagonal, freedom): (&f64, Freedom)| {
+            let inverse = if *diagonal > 0.0 { 1.0 / diagonal } else { 0.0 };
+            Mobility { inverse, freedom }
+        };
+        let mobility: Vec<Mobility> =
+            diagonal.par_iter().with_min_len(CHUNK).zip(freedoms).map(mobility).collect();
+        let constraint = volumes.map(|constraint| {
+            let compliance = constraint.compliance(&mobility);
+            (constraint, compliance)
+        });
+        let mut forces = gradient;
+        forces.par_iter_mut().with_min_len(CHUNK).for_each(|force| *force *= -time);
+        Self { time, tolerance, diagonal, sliding, springs, forces, mobility, constraint }
+    }
+
+    /// The displacements that change volumes by `changes`, to first order, and are otherwise those of the flow; and the
+    /// pressures times the time of the step (none where volumes are free).
+    ///
+    /// Solved by projected conjugate gradients. Their residual is freed of what pressures balance again and again, so that
+    /// these need not be exact (Gould, Hribar and Nocedal 2001, section 5).
+    pub(crate) fn displacement(&self, changes: &[f64]) -> (Vec<DVec3>, Vec<f64>) {
+        self.solve(&self.forces, changes)
+    }
+
+    /// The displacements by the flow of free areas in the plane, with the energy's gradient as it is in the end: `gradient_after` has it
+    /// after displacements.
+    ///
+    /// The matrix is stiff along boundaries too, where their length is not. That holds triple points up, the more the shorter edges are: by a
+    /// tenth of their way in usual steps. What is left of the forces after a step so has a step of its own, some times.
+    pub(crate) fn implicit_displacement(
+        &self,
+        gradient_after: impl Fn(&[DVec3]) -> Vec<DVec3>,
+    ) -> Vec<DVec3> {
+        let (mut displacement, _) = self.solve(&self.forces, &[]);
+        for _ in 0..CORRECTIONS {
+            let gradient = gradient_after(&displacement);
+            let mut left: Vec<DVec3> = gradient.iter().map(|gradient| *gradient * -self.time).collect();
+            // Of the matrix the mass alone counts: the gradient after the displacement has all of the stiffness.
+            add(&mut left, -1.0, &self.apply(&displacement));
+            add(&mut left, 1.0, &self.stiff(&displacement));
+            let (correction, _) = self.solve(&left, &[]);
+            add(&mut displacement, 1.0, &correction);
+        }
+        displacement
+    }
+
+    /// `dt K d`.
+    fn stiff(&self, displacement: &[DVec3]) -> Vec<DVec3> {
+        let row = |unknown: usize| {
+            let springs = self.springs.row(unknown).iter();
+            let pulls = springs
+                .map(|(other, spring)| (displacement[unknown] - displacement[*other as usize]) * *spring);
+            pulls.sum::<DVec3>() * self.time
+        };
+        (0..displacement.len()).into_par_iter().with_min_len(CHUNK).map(row).collect()
+    }
+
+    /// The displacements under some forces, and pressures, as of [`Self::displacement`].
+    fn solve(&self, forces: &[DVec3], changes: &[f64]) -> (Vec<DVec3>, Vec<f64>) {
+        let mut pressures = vec![0.0; changes.len()];
+        let mut displacement = self.push(changes);
+        let mut residual = forces.to_vec();
+        add(&mut residual, -1.0, &self.apply(&displacement));
+        let mut direction = self.project(&mut residual, &mut pressures);
+        let mut size = dot(&residual, &direction);
+        let enough = size * self.tolerance * self.tolerance;
+        for _ in 0..ITERATIONS {
+            if size <= enough || size <= 0.0 {
+                break;
+            }
+            let image = self.apply(&direction);
+            let stiffness = dot(&direction, &image);
+            if stiffness.is_nan() || stiffness <= 0.0 {
+                break;
+            }
+            let step = size / stiffness;
+            add(&mut displacement, step, &direction);
+            add(&mut residual, -step, &image);
+            let mut projected = self.project(&mut residual, &mut pressures);
+            let next = dot(&residual, &projected);
+            add(&mut projected, next / size, &direction);
+            direction = projected;
+            size = next;
+        }
+        if let Some((constraint, _)) = &self.constraint {
+            let change = constraint.volume_change(&displacement);
+            let left: Vec<f64> =
+                changes.iter().zip(&change).map(|(wanted, change)| wanted - change).collect();
+            add(&mut displacement, 1.0, &self.push(&left));
+        }
+        (displacement, pressures)
+    }
+
+    /// Takes out of a residual what walls and pressures balance, takes the pressures from `sum`, and gives the displacement under the rest if
+    /// there were only the diagonal of the matrix.
+    ///
+    /// What walls hold is large at rest, where the rest is rounding: left in, it would grow from one iteration to the next.
+    fn project(&self, residual: &mut [DVec3], sum: &mut [f64]) -> Vec<DVec3> {
+        let free = |(residual, mobility): (&mut DVec3, &Mobility)| {
+            *residual = mobility.freedom.project(*residual);
+            *residual * mobility.inverse
+        };
+        let moved: Vec<DVec3> =
+            residual.par_iter_mut().with_min_len(CHUNK).zip(&self.mobility).map(free).collect();
+        let Some((constraint, compliance)) = &self.constraint else { return moved };
+        let pressures = compliance.pressures(&constraint.volume_change(&moved), LOOSE);
+        sum.iter_mut().zip(&pressures).for_each(|(sum, pressure)| *sum -= *pressure);
+        let project = |(unknown, residual): (usize, &mut DVec3)| {
+            *residual -= constraint.force(&pressures, unknown);
+            free((residual, &self.mobility[unknown]))
+        };
+        residual.par_iter_mut().with_min_len(CHUNK).enumerate().map(project).collect()
+    }
+
+    /// The displacement under the pressures that change volumes by `changes`, if there were only the diagonal of the matrix: for a time of 0
+    /// the least motion by mass, to first order. None where volumes are free.
+    pub(crate) fn push(&self, changes: &[f64]) -> Vec<DVec3> {
+        let Some((constraint, compliance)) = &self.constraint else {
+            return vec![DVec3::ZERO; self.mobility.len()];
+        };
+        let pressures = compliance.pressures(changes, TIGHT);
+        let force = |unknown: usize| self.mobility[unknown].of(constraint.force(&pressures, unknown));
+        (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect()
+    }
+
+    /// `(M + dt K) d`.
+    fn apply(&self, displacement: &[DVec3]) -> Vec<DVec3> {
+        let row = |unknown: usize| {
+            let springs = self.springs.row(unknown).iter();
+            let pull: DVec3 = springs.map(|(other, spring)| displacement[*other as usize] * *spring).sum();
+            displacement[unknown] * self.diagonal[unknown] - pull * self.time
+        };
+        let mut image: Vec<DVec3> =
+            (0..displacement.len()).into_par_iter().with_min_len(CHUNK).map(row).collect();
+        for (unknown, mass) in &self.sliding {
+            image[*unknown] -= *mass * displacement[*unknown];
+        }
+        image
+    }
+}
+
+/// How an unknown answers to a force if there were only the diagonal of the matrix.
+pub(crate) struct Mobility {
+    /// 1 over the diagonal.
+    inverse: f64,
+    /// What the walls leave to it.
+    freedom: Freedom,
+}
+
+impl Mobility {
+    /// The displacement under a force.
+    pub(crate) fn of(&self, force: DVec3) -> DVec3 {
+        self.freedom.project(force) * self.inverse
+    }
+}
+
+/// Adds a multiple of a vector to another one.
+fn add(to: &mut [DVec3], factor: f64, what: &[DVec3]) {
+    let pairs = to.par_iter_mut().with_min_len(CHUNK).zip(what);
+    pairs.for_each(|(to, what)| *to += *what * factor);
+}
+
+/// A sum whose order is that of the chunks, whichever thread adds them up.
+fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
+    let chunks = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK));
+    let sums: Vec<f64> = chunks.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()).collect();
+    sums.iter().sum()
+}

@@ -1,0 +1,107 @@
+//! Edges of grains, and how sharp they are.
+//!
+//! Two boundaries of a grain that close like a book would cross behind its back, which no fold within either of them tells.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::mesh::seams::{Seams, Use};
+use crate::{Elements, Side, Surface};
+
+/// Cosine of the angle from which on one beyond 180 degrees is one that has closed (315 degrees, or -45).
+const LEAST_TURNED: f64 = 0.7;
+
+/// The edges of all grains in space: two triangles of different boundaries with a grain between them. None in the plane, where
+/// short lines may well turn about.
+pub(crate) struct Wedges {
+    wedges: Vec<Wedge>,
+}
+
+struct Wedge {
+    /// The edge, as the first element runs along it.
+    ends: [u32; 2],
+    /// What each element has beside the edge.
+    apexes: [u32; 2],
+    elements: [u32; 2],
+    /// 1 where the grain lies on the side that the first element's normal points to, -1 on the other.
+    sense: f64,
+}
+
+impl Wedges {
+    pub(crate) fn new(surface: &Surface<'_>, seams: &Seams) -> Self {
+        let mut wedges = Vec::new();
+        let Elements::Triangles(triangles) = surface.elements else { return Self { wedges } };
+        let apex = |at: &Use| triangles[at.element as usize][usize::from((at.corner + 2) % 3)];
+        let mut uses: Vec<(Side, &Use, f64)> = Vec::new();
+        for place in seams.places() {
+            uses.clear();
+            for at in place {
+                let [first, second] = surface.sides_of(at.element);
+                uses.extend([(first, at, -1.0), (second, at, 1.0)]);
+            }
+            uses.retain(|(side, ..)| *side != Side::Exterior);
+            uses.sort_unstable_by_key(|(side, at, _)| (*side, **at));
+            let pairs = uses.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 2);
+            wedges.extend(pairs.map(|pair| Wedge {
+                ends: pair[0].1.ends(surface.elements),
+                apexes: [pair[0].1, pair[1].1].map(apex),
+                elements: [pair[0].1, pair[1].1].map(|at| at.element),
+                sense: pair[0].2,
+            }));
+        }
+        Self { wedges }
+    }
+
+    /// The elements at edges where grains are turned inside out.
+    pub(crate) fn turned(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
+        let turned = self.wedges.par_iter().filter(|wedge| is_turned(wedge.opening(points)));
+        turned.map(|wedge| wedge.elements).collect()
+    }
+}
+
+/// Whether an angle, given by cosine and sine, is so far above 180 degrees that it is rather one below 0.
+fn is_turned([cosine, sine]: [f64; 2]) -> bool {
+    cosine > LEAST_TURNED && sine < 0.0
+}
+
+impl Wedge {
+    /// Cosine and sine of the grain's angle.
+    fn opening(&self, points: &[DVec3]) -> [f64; 2] {
+        let [start, end] = self.ends.map(|end| points[end as usize]);
+        let along = (end - start).normalize_or_zero();
+        let leg =
+            |apex: u32| (points[apex as usize] - start).reject_from_normalized(along).normalize_or_zero();
+        let [first, second] = self.apexes.map(leg);
+        [first.dot(second), self.sense * along.dot(first.cross(second))]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use voronoi::{Domain, Tessellation};
+
+    use super::*;
+    use crate::{Junctions, Network};
+
+    #[test]
+    fn a_wall_that_is_pushed_through_another_is_turned() {
+        let domain = Domain::unit_cube();
+        let z = 0.5;
+        let seeds =
+            [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)].map(|(x, y)| DVec3::new(x, y, z));
+        let tessellation = Tessellation::new(&domain, &seeds).expect("valid seeds");
+        let (network, flat) = Network::new(&tessellation, Junctions::Crease, 0).expect("a network");
+        let level = network.control_mesh();
+        let sides = network.sides();
+        let wedges = Wedges::new(&Surface::of_level(level, &flat, &sides), &Seams::of_level(level));
+        assert!(wedges.turned(&flat).is_empty());
+        // What is inside the boundary at x = 0.5, y < 0.5, goes far beyond the one at y = 0.5.
+        let mut pushed = flat.clone();
+        for point in &mut pushed {
+            if point.x == 0.5 && point.y > 0.1 && point.y < 0.4 {
+                *point = DVec3::new(0.95, 0.7, point.z);
+            }
+        }
+        assert!(!wedges.turned(&pushed).is_empty());
+    }
+}

@@ -1,0 +1,144 @@
+use glam::DVec3;
+
+use crate::check::certificate::inspect;
+use crate::mesh::seams::Seams;
+use crate::{Certificate, Claims, Faults, GrainId, Network, Surface, dihedral_angles};
+
+/// Checks the finest level of a network with the given points: everything that [`certify`](crate::certify) finds in any
+/// surface, grains that have the volumes of their cells, and the types of points.
+///
+/// # Errors
+/// All that is wrong.
+///
+/// # Panics
+/// When there is not one point per vertex.
+pub fn validate(network: &Network, points: &[DVec3]) -> Result<Certificate, Faults> {
+    let level = network.finest();
+    let sides = network.sides();
+    let surface = Surface::of_level(level, points, &sides);
+    let volumes: Vec<(GrainId, f64)> =
+        (0u32..).map(GrainId).zip(network.cell_volumes().iter().copied()).collect();
+    let node_types: Vec<_> = level.node_types.iter().copied().map(Some).collect();
+    let originals = network.domain().is_periodic().then(|| level.originals());
+    let claims = Claims {
+        // Types in a periodic domain count the grains a period away, which the surface calls exterior.
+        node_types: (!network.domain().is_periodic()).then_some(&node_types),
+        grain_counts: Some(&level.grain_counts),
+        originals: originals.as_deref(),
+        grain_volumes: Some(&volumes),
+        domain_volume: Some(network.domain().measure()),
+        rounding: surface.last_place(),
+    };
+    let mut certificate = inspect(&surface, &Seams::of_level(level), &claims);
+    // The surface does not know what it is like through the walls.
+    if certificate.is_good() && network.domain().is_periodic() {
+        certificate.angles = dihedral_angles(network, level, points);
+    }
+    if certificate.is_good() { Ok(certificate) } else { Err(certificate.faults) }
+}
+
+#[cfg(test)]
+mod tests {
+    use voronoi::{Domain, Tessellation};
+
+    use super::*;
+    use crate::{Boundary, Fault, Junctions, Mesh, Side};
+
+    fn cubes(domain: &Domain) -> (Network, Vec<DVec3>) {
+        let middle = 0.5 * domain.size().z;
+        let seeds: Vec<DVec3> = (0..4)
+            .map(|i| DVec3::new(f64::from(i % 2) * 0.5 + 0.25, f64::from(i / 2) * 0.5 + 0.25, middle))
+            .collect();
+        let tessellation = Tessellation::new(domain, &seeds).expect("valid seeds");
+        let (network, flat) = Network::new(&tessellation, Junctions::Crease, 1).expect("a small network");
+        let points = network.subdivide(&flat);
+        (network, points)
+    }
+
+    /// What is wrong, in the order in which it is found.
+    fn kinds(network: &Network, points: &[DVec3]) -> Vec<&'static str> {
+        let faults = validate(network, points).expect_err("something is wrong");
+        let mut kinds: Vec<&str> = faults.0.iter().map(Fault::kind).collect();
+        kinds.dedup();
+        kinds
+    }
+
+    /// A point inside a boundary, for the faults to start from.
+    fn inner_point(network: &Network) -> usize {
+        let node_types = &network.finest().node_types;
+        node_types.iter().position(|node_type| *node_type == crate::NodeType::INTERIOR).expect("a boundary")
+    }
+
+    #[test]
+    fn good_networks_pass() {
+        for domain in [Domain::unit_cube(), Domain::unit_square()] {
+            let (network, points) = cubes(&domain);
+            let validation = validate(&network, &points).expect("valid");
+            assert!(validation.largest_volume_error < 1e-14 && validation.total_volume_error < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_point_that_is_no_number_is_found() {
+        let (network, mut points) = cubes(&Domain::unit_cube());
+        points[7].y = f64::NAN;
+        let faults = validate(&network, &points).expect_err("no number");
+        assert_eq!(faults.0, [Fault::NotFinite { point: 7 }]);
+    }
+
+    #[test]
+    fn points_at_the_same_place_are_found() {
+        let (network, mut points) = cubes(&Domain::unit_cube());
+        // Two points with no triangle in common.
+        let last = points.len() - 1;
+        points[last] = points[0];
+        let faults = validate(&network, &points).expect_err("a point twice").0;
+        let points = [0, u32::try_from(last).expect("a small network")];
+        assert!(faults.contains(&Fault::DuplicatePoints { points }), "{faults:?}");
+    }
+
+    #[test]
+    fn triangles_and_segments_without_size_are_found() {
+        for domain in [Domain::unit_cube(), Domain::unit_square()] {
+            let (network, mut points) = cubes(&domain);
+            let (a, b) = match &network.finest().mesh {
+                Mesh::Triangles(mesh) => (mesh.triangles()[0][0], mesh.triangles()[0][1]),
+                Mesh::Segments(mesh) => (mesh.segments()[0][0], mesh.segments()[0][1]),
+            };
+            points[a as usize] = points[b as usize];
+            assert_eq!(kinds(&network, &points)[..2], ["no area", "duplicate points"]);
+        }
+    }
+
+    #[test]
+    fn folds_are_found() {
+        for domain in [Domain::unit_cube(), Domain::unit_square()] {
+            let (network, mut points) = cubes(&domain);
+            // Out of its own fan, within the plane of its boundary, which stands across x or y: never along the other.
+            let inner = inner_point(&network);
+            let across = if points[inner].x == 0.5 { 0 } else { 1 };
+            points[inner][1 - across] += 0.9;
+            points[inner][across] += 0.01;
+            assert!(kinds(&network, &points).contains(&"folded"));
+        }
+    }
+
+    #[test]
+    fn grains_of_the_wrong_volume_are_found() {
+        for domain in [Domain::unit_cube(), Domain::unit_square()] {
+            let (network, mut points) = cubes(&domain);
+            points[inner_point(&network)] += DVec3::new(1e-4, 1e-4, 0.0);
+            assert_eq!(kinds(&network, &points), ["wrong volume"]);
+        }
+    }
+
+    #[test]
+    fn grains_that_are_not_closed_are_found() {
+        for domain in [Domain::unit_cube(), Domain::unit_square()] {
+            let (mut network, points) = cubes(&domain);
+            let wrong: &mut Boundary = network.boundary_mut(0);
+            wrong.sides = [Side::Grain(GrainId(2)), Side::Grain(GrainId(3))];
+            assert!(kinds(&network, &points).contains(&"open"));
+        }
+    }
+}

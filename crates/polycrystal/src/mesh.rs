@@ -1,0 +1,14 @@
+//! Boundaries between grains as meshes: elements, levels, walls, copies, and what is measured of them alone.
+
+pub(crate) mod angles;
+pub(crate) mod boundary;
+pub(crate) mod grouped;
+pub(crate) mod id;
+pub(crate) mod level;
+pub(crate) mod node_type;
+pub(crate) mod periodic;
+pub(crate) mod seams;
+pub(crate) mod surface;
+pub(crate) mod triangle_quality;
+pub(crate) mod volume;
+pub(crate) mod wall_set;

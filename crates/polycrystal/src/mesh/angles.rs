@@ -1,0 +1,127 @@
+use glam::DVec3;
+
+use crate::mesh::seams::Use;
+use crate::{Elements, Side, Surface};
+
+/// Mean and spread of the angles between boundaries, in degrees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AngleStatistics {
+    /// Mean; 120 degrees wherever three boundaries meet.
+    pub mean: f64,
+    /// Standard deviation.
+    pub standard_deviation: f64,
+}
+
+/// An angle between two boundaries at a triple line, in the plane at a triple point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WeightedAngle {
+    /// The angle that the grain between them fills, from 0 to 360 degrees.
+    pub degrees: f64,
+    /// The length of the line over which it holds; in the plane 1.
+    pub weight: f64,
+}
+
+/// The angles of the grains that meet at those of these places where three do, and not the exterior. Boundaries have these sides.
+pub(crate) fn angles<'a>(
+    surface: &Surface<'a>,
+    sides: &[[Side; 2]],
+    places: impl Iterator<Item = &'a [Use]>,
+) -> impl Iterator<Item = WeightedAngle> {
+    let is_interior =
+        |at: &Use| !sides[surface.boundary_of[at.element as usize].index()].contains(&Side::Exterior);
+    let triple = places.filter(move |at| at.len() == 3 && at.iter().all(is_interior));
+    triple.flat_map(move |at| {
+        let weight = place_length(surface, at);
+        wedges(surface, sides, at)
+            .into_iter()
+            .map(move |wedge| WeightedAngle { degrees: wedge.angle.to_degrees(), weight })
+    })
+}
+
+/// A sector around a place where boundaries meet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Wedge {
+    /// What fills it.
+    pub(crate) side: Side,
+    /// Between the boundaries that bound it, in radians.
+    pub(crate) angle: f64,
+}
+
+/// The sectors into which boundaries, which have these sides, divide what surrounds a place, in order around it.
+pub(crate) fn wedges(surface: &Surface<'_>, sides: &[[Side; 2]], at: &[Use]) -> Vec<Wedge> {
+    let ends = |at: &Use| at.ends(surface.elements).map(|end| surface.points[end as usize]);
+    let axis = match surface.elements {
+        Elements::Triangles(_) => {
+            let [start, end] = ends(&at[0]);
+            (end - start).normalize_or_zero()
+        }
+        Elements::Segments(_) => DVec3::Z,
+    };
+    let zero = leg(surface, &at[0]);
+    let quarter = axis.cross(zero);
+    let mut spokes: Vec<(f64, Side)> = at
+        .iter()
+        .map(|at| {
+            let [first, second] = sides[surface.boundary_of[at.element as usize].index()];
+            // A triangle that runs along the axis has its second side counter-clockwise of it.
+            let is_along = match surface.elements {
+                Elements::Triangles(_) => {
+                    let [start, end] = ends(at);
+                    (end - start).dot(axis) > 0.0
+                }
+                // A segment that starts here has its first side on the left.
+                Elements::Segments(_) => at.corner == 1,
+            };
+            let leg = leg(surface, at);
+            (leg.dot(quarter).atan2(leg.dot(zero)), if is_along { second } else { first })
+        })
+        .collect();
+    spokes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let next = spokes[1..].iter().map(|(angle, _)| *angle);
+    let ends = next.chain([spokes[0].0 + std::f64::consts::TAU]);
+    spokes.iter().zip(ends).map(|(&(start, side), end)| Wedge { side, angle: end - start }).collect()
+}
+
+/// Mean and spread of angles; nothing where all weights are 0.
+pub(crate) fn statistics(angles: impl Iterator<Item = WeightedAngle>) -> Option<AngleStatistics> {
+    // Sums of weight, weight * angle and weight * angle^2.
+    let mut sums = [0.0; 3];
+    for WeightedAngle { degrees, weight } in angles {
+        for (sum, power) in sums.iter_mut().zip([1.0, degrees, degrees * degrees]) {
+            *sum += weight * power;
+        }
+    }
+    let [weight, first, second] = sums;
+    (weight > 0.0).then(|| {
+        let mean = first / weight;
+        AngleStatistics { mean, standard_deviation: (second / weight - mean * mean).max(0.0).sqrt() }
+    })
+}
+
+/// The length of an edge; in the plane every point counts alike.
+pub(crate) fn place_length(surface: &Surface<'_>, at: &[Use]) -> f64 {
+    match surface.elements {
+        Elements::Triangles(_) => {
+            let [start, end] = at[0].ends(surface.elements).map(|end| surface.points[end as usize]);
+            start.distance(end)
+        }
+        Elements::Segments(_) => 1.0,
+    }
+}
+
+/// The unit vector from an edge into its triangle, square to the edge; in the plane, from a point along its segment.
+pub(crate) fn leg(surface: &Surface<'_>, at: &Use) -> DVec3 {
+    let corners = surface.elements.corners(at.element);
+    let [start, end] = at.ends(surface.elements).map(|end| surface.points[end as usize]);
+    match surface.elements {
+        Elements::Triangles(_) => {
+            let apex = surface.points[corners[usize::from((at.corner + 2) % 3)] as usize];
+            let along = (end - start).normalize_or_zero();
+            (apex - start).reject_from_normalized(along).normalize_or_zero()
+        }
+        Elements::Segments(_) => {
+            let other = surface.points[corners[usize::from(1 - at.corner)] as usize];
+            (other - start).normalize_or_zero()
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! Volumes of grains (areas in the plane) and how they change with the points.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use voronoi::Dimension;
+
+use crate::mesh::grouped::Grouped;
+use crate::{Boundary, Elements, GrainId, Surface};
+
+/// The volume of the tetrahedron that a triangle spans with the origin.
+pub(crate) fn triangle_volume(corners: [DVec3; 3]) -> f64 {
+    corners[0].dot(corners[1].cross(corners[2])) / 6.0
+}
+
+/// The area between a segment in the plane and the origin, positive when counter-clockwise.
+pub(crate) fn segment_area(ends: [DVec3; 2]) -> f64 {
+    0.5 * ends[0].truncate().perp_dot(ends[1].truncate())
+}
+
+/// The cone (in the plane: the triangle) from an apex to a boundary, positive where the apex lies on its first side.
+///
+/// A grain is the sum of the cones from one apex to its boundaries. The nearer that is, the more digits they keep.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Cone {
+    apex: DVec3,
+    volume: f64,
+    /// What the cone gains per length by which its apex moves back.
+    slope: DVec3,
+}
+
+impl Cone {
+    /// A cone of some volume to elements with this sum of normals, each as long as the area (in the plane: the length).
+    pub(crate) fn new(apex: DVec3, volume: f64, area: DVec3, dimension: Dimension) -> Self {
+        let slope = match dimension {
+            Dimension::Two => area / 2.0,
+            Dimension::Three => area / 3.0,
+        };
+        Self { apex, volume, slope }
+    }
+
+    /// The volume of the cone from another apex to the same boundary.
+    pub(crate) fn volume_from(&self, apex: DVec3) -> f64 {
+        self.volume + self.slope.dot(self.apex - apex)
+    }
+}
+
+/// Per boundary, the cone from a point of it.
+pub(crate) fn boundary_cones(surface: &Surface<'_>) -> Vec<Cone> {
+    cones_of_boundaries(surface, &surface.elements_by_boundary())
+}
+
+/// The same for boundaries with these elements.
+pub(crate) fn cones_of_boundaries(surface: &Surface<'_>, by_boundary: &Grouped<u32>) -> Vec<Cone> {
+    let dimension = surface.elements.dimension();
+    let at = |vertex: u32| surface.points[vertex as usize];
+    let cone = |boundary: usize| {
+        let elements = by_boundary.of(boundary);
+        let Some(apex) = elements.first().map(|first| at(surface.elements.corners(*first)[0])) else {
+            return Cone::new(DVec3::ZERO, 0.0, DVec3::ZERO, dimension);
+        };
+        let mut sums = (0.0, DVec3::ZERO);
+        for element in elements {
+            let (volume, area) = match surface.elements {
+                Elements::Triangles(triangles) => {
+                    let [a, b, c] = triangles[*element as usize].map(|corner| at(corner) - apex);
+                    (triangle_volume([a, b, c]), (b - a).cross(c - a) / 2.0)
+                }
+                Elements::Segments(segments) => {
+                    let [a, b] = segments[*element as usize].map(|end| at(end) - apex);
+                    (segment_area([a, b]), (b - a).cross(DVec3::Z))
+                }
+            };
+            sums.0 += volume;
+            sums.1 += area;
+        }
+        Cone::new(apex, sums.0, sums.1, dimension)
+    };
+    (0..by_boundary.count()).into_par_iter().map(cone).collect()
+}
+
+/// A volume that cones add up to, all from the apex of the first.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct ConeSum {
+    apex: Option<DVec3>,
+    pub(crate) volume: f64,
+}
+
+impl ConeSum {
+    pub(crate) fn add(&mut self, cone: &Cone, sign: f64) {
+        let apex = *self.apex.get_or_insert(cone.apex);
+        self.volume += sign * cone.volume_from(apex);
+    }
+}
+
+/// A last place of the largest coordinate.
+pub(crate) fn last_place(points: &[DVec3]) -> f64 {
+    let largest = points.par_iter().map(|point| point.abs().max_element()).reduce(|| 0.0, f64::max);
+    f64::EPSILON * largest
+}
+
+/// What a surface of some area sweeps where each coordinate of its points is off by so much.
+pub(crate) fn swept_by_rounding(rounding: f64, area: f64) -> f64 {
+    rounding * 3f64.sqrt() * area
+}
+
+/// The largest of what some volumes lack, as a share of them, and whose it is.
+///
+/// # Panics
+/// When there are none.
+pub(crate) fn largest_relative_error(missing: &[f64], volumes: &[f64]) -> (GrainId, f64) {
+    let relative = missing.iter().zip(volumes).map(|(lack, volume)| (lack / volume).abs());
+    let errors = (0u32..).map(GrainId).zip(relative);
+    errors.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a network has grains")
+}
+
+/// The volume of each grain (in the plane: its area), measured from a point of it.
+pub(crate) fn volumes_of_grains(boundaries: &[Boundary], cones: &[Cone], grain_count: usize) -> Vec<f64> {
+    let mut sums = vec![ConeSum::default(); grain_count];
+    for (boundary, cone) in boundaries.iter().zip(cones) {
+        for (grain, sign) in boundary.signed_grains() {
+            sums[grain.index()].add(cone, sign);
+        }
+    }
+    sums.into_iter().map(|sum| sum.volume).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{BoundaryId, Side};
+
+    /// From the origin of coordinates, a volume of 1e-21 at a distance of 1 would drown in rounding.
+    #[test]
+    fn a_small_grain_far_from_the_origin_keeps_its_digits() {
+        let size = 2f64.powi(-23);
+        let corner = DVec3::new(1.0, 1.0, 0.5);
+        let points = [corner, corner + DVec3::X * size, corner + DVec3::Y * size, corner + DVec3::Z * size];
+        let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let boundary_of = [0, 1, 2, 3].map(BoundaryId);
+        let sides = [[Side::Grain(GrainId(0)), Side::Exterior]; 4];
+        let elements = Elements::Triangles(&triangles);
+        let cones =
+            boundary_cones(&Surface { points: &points, elements, boundary_of: &boundary_of, sides: &sides });
+        let boundaries = sides.map(|sides| Boundary { sides, wall: None, twin: None });
+        let volume = volumes_of_grains(&boundaries, &cones, 1)[0];
+        assert!((volume / (size.powi(3) / 6.0) - 1.0).abs() < 1e-15, "{volume}");
+        let whole: f64 = cones.iter().map(|cone| cone.volume_from(corner)).sum();
+        assert!((whole / volume - 1.0).abs() < 1e-15);
+    }
+}

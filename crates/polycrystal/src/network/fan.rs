@@ -1,0 +1,212 @@
+//! Fans of triangles from points inside a boundary to its outline.
+//!
+//! From one centre, triangles are thin wherever the outline has a short segment far away, or is long itself. A second centre
+//! there, which takes a part of the first one's ring over, makes two round fans of one.
+
+use glam::DVec3;
+
+use crate::mesh::id::id;
+
+/// Smallest angle, in degrees, of a fan that is good enough.
+const GOOD_ANGLE: f64 = 20.0;
+
+/// Most centres of a boundary.
+pub(crate) const MOST_CENTERS: usize = 3;
+
+/// Factor by which one more centre has to widen the smallest angle.
+const GAIN: f64 = 1.1;
+
+/// Cosine of the largest angle between a triangle and the whole boundary (60 degrees).
+const LARGEST_BEND: f64 = 0.5;
+
+/// Fewest segments of a ring that a centre keeps or takes over: it has one neighbour more, the other centre.
+const FEWEST_SEGMENTS: usize = 2;
+
+/// Sweeps in which each centre goes to the mean of its neighbours, as it will during relaxation.
+const SWEEPS: usize = 6;
+
+/// A boundary's outline, some centres within, and triangles between them.
+#[derive(Clone)]
+pub(crate) struct Fan {
+    outline: usize,
+    /// Those of the outline, then the centres.
+    points: Vec<DVec3>,
+    /// The neighbours round each centre, counter-clockwise.
+    rings: Vec<Vec<u32>>,
+    /// The sum of the triangles' normals, each as long as twice the area: the same whatever is inside the outline.
+    normal: DVec3,
+}
+
+impl Fan {
+    /// A fan round the outline's own centre.
+    pub(crate) fn new(outline: &[DVec3]) -> Self {
+        let center = outline_center(outline);
+        let next = outline.iter().cycle().skip(1);
+        let normal = outline.iter().zip(next).map(|(a, b)| (*a - center).cross(*b - center)).sum();
+        let mut points = outline.to_vec();
+        points.push(center);
+        Self { outline: outline.len(), points, rings: vec![(0..id(outline.len())).collect()], normal }
+    }
+
+    /// The fan with more centres, as long as they make its smallest angle wider.
+    pub(crate) fn with_more_centers(mut self) -> Self {
+        let mut thinnest = self.thinnest(f64::INFINITY);
+        while let Some((worst, cosine)) = thinnest
+            && cosine > GOOD_ANGLE.to_radians().cos()
+            && self.rings.len() < MOST_CENTERS
+        {
+            thinnest = None;
+            let mut bound = (GAIN * cosine.acos()).cos();
+            let centers = worst.into_iter().filter_map(|point| (point as usize).checked_sub(self.outline));
+            let mut best = None;
+            for fan in centers.flat_map(|center| self.splits(center)) {
+                if let Some(found) = fan.thinnest(bound) {
+                    (thinnest, bound) = (Some(found), found.1);
+                    best = Some(fan);
+                }
+            }
+            self = best.unwrap_or(self);
+        }
+        self
+    }
+
+    /// The centres, and the triangles by places in the outline and, after that, among the centres.
+    pub(crate) fn into_mesh(mut self) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let triangles = self.triangles().collect();
+        (self.points.split_off(self.outline), triangles)
+    }
+
+    /// Each triangle once: from that of its centres with the smallest number.
+    fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
+        (id(self.outline)..).zip(&self.rings).flat_map(move |(center, ring)| {
+            let pairs = ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| [*a, *b]);
+            let is_first = move |point: &u32| (*point as usize) < self.outline || *point > center;
+            pairs.filter(move |pair| pair.iter().all(is_first)).map(move |[a, b]| [a, b, center])
+        })
+    }
+
+    /// The triangle with the smallest angle, and that angle's cosine; nothing if the cosine reaches the bound. A triangle that
+    /// turns away from the boundary has no angle.
+    fn thinnest(&self, bound: f64) -> Option<([u32; 3], f64)> {
+        let cosine = |triangle: [u32; 3]| {
+            let [a, b, c] = triangle.map(|point| self.points[point as usize]);
+            let normal = (b - a).cross(c - a);
+            if normal.dot(self.normal) < LARGEST_BEND * normal.length() * self.normal.length() {
+                return 1.0;
+            }
+            let [ab, bc, ca] = [b - a, c - b, a - c].map(DVec3::normalize_or_zero);
+            (-ab.dot(ca)).max(-bc.dot(ab)).max(-ca.dot(bc)).min(1.0)
+        };
+        let mut thinnest: Option<([u32; 3], f64)> = None;
+        for triangle in self.triangles() {
+            let cosine = cosine(triangle);
+            if cosine >= bound {
+                return None;
+            }
+            if thinnest.is_none_or(|(_, largest)| cosine >= largest) {
+                thinnest = Some((triangle, cosine));
+            }
+        }
+        thinnest
+    }
+
+    /// The fans in which a new centre takes a part of a centre's ring over.
+    fn splits(&self, center: usize) -> impl Iterator<Item = Self> {
+        let count = self.rings[center].len();
+        let pairs = (0..count).flat_map(move |first| {
+            let last = (count - 1).min((first + count).saturating_sub(FEWEST_SEGMENTS));
+            (first + FEWEST_SEGMENTS..=last).map(move |second| [first, second])
+        });
+        pairs.map(move |ends| self.split(center, ends))
+    }
+
+    /// A centre keeps its ring from the first of two places to the second, and a new one has the rest.
+    fn split(&self, center: usize, [first, second]: [usize; 2]) -> Self {
+        let mut fan = self.clone();
+        let [old, new] = [center, self.rings.len()].map(|center| id(self.outline + center));
+        let ring = &self.rings[center];
+        let kept = &ring[first..=second];
+        let given = [&ring[second..], &ring[..=first]].concat();
+        fan.points
+            .push(given.iter().map(|point| self.points[*point as usize]).sum::<DVec3>() / given.len() as f64);
+        // Centres of the ring see the new one instead, or, at the ends of its part, beside the old one.
+        for (place, point) in given.iter().enumerate() {
+            let Some(other) = (*point as usize).checked_sub(self.outline) else { continue };
+            let ring = &mut fan.rings[other];
+            let at = ring.iter().position(|point| *point == old).expect("neighbours know each other");
+            if place == 0 {
+                ring.insert(at, new);
+            } else if place == given.len() - 1 {
+                ring.insert(at + 1, new);
+            } else {
+                ring[at] = new;
+            }
+        }
+        fan.rings[center] = [kept, &[new]].concat();
+        fan.rings.push([&given[..], &[old]].concat());
+        fan.smooth();
+        fan
+    }
+
+    fn smooth(&mut self) {
+        for _ in 0..SWEEPS {
+            for (ring, center) in self.rings.iter().zip(self.outline..) {
+                let sum: DVec3 = ring.iter().map(|point| self.points[*point as usize]).sum();
+                self.points[center] = sum / ring.len() as f64;
+            }
+        }
+    }
+}
+
+/// The centroid of an outline: inside the face, and well defined for the thinnest of slivers.
+pub(crate) fn outline_center(outline: &[DVec3]) -> DVec3 {
+    let origin = outline[0];
+    let (mut weighted, mut perimeter) = (DVec3::ZERO, 0.0);
+    for (from, to) in outline.iter().zip(outline.iter().cycle().skip(1)) {
+        let length = from.distance(*to);
+        weighted += (from.midpoint(*to) - origin) * length;
+        perimeter += length;
+    }
+    origin + weighted / perimeter
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn smallest_angle(fan: &Fan) -> f64 {
+        fan.thinnest(f64::INFINITY).expect("a fan has triangles").1.acos().to_degrees()
+    }
+
+    #[test]
+    fn round_outlines_have_one_centre_and_long_ones_have_more() {
+        let ellipse = |width: f64| -> Vec<DVec3> {
+            let angle = |k: u32| f64::from(k) * std::f64::consts::TAU / 10.0;
+            (0..10).map(|k| DVec3::new(width * angle(k).cos(), angle(k).sin(), 0.0)).collect()
+        };
+        assert_eq!(Fan::new(&ellipse(1.0)).with_more_centers().rings.len(), 1);
+        let one = Fan::new(&ellipse(4.0));
+        let more = one.clone().with_more_centers();
+        assert!(more.rings.len() > 1 && smallest_angle(&more) > 1.5 * smallest_angle(&one));
+    }
+
+    #[test]
+    fn triangles_fill_the_outline_once() {
+        let outline = [(0.0, 0.0), (2.0, 0.0), (4.0, 0.1), (4.05, 0.2), (4.0, 1.0), (2.0, 1.2), (0.3, 1.0)];
+        let outline = outline.map(|(x, y)| DVec3::new(x, y, 0.0));
+        let area = |a: DVec3, b: DVec3, c: DVec3| (b - a).cross(c - a).z / 2.0;
+        let whole: f64 = (1..6).map(|k| area(outline[0], outline[k], outline[k + 1])).sum();
+        let fan = Fan::new(&outline).with_more_centers();
+        assert!(fan.rings.len() > 1);
+        let points = fan.points.clone();
+        let (centers, triangles) = fan.into_mesh();
+        assert_eq!(triangles.len(), outline.len() + 2 * (centers.len() - 1));
+        let areas: Vec<f64> = triangles
+            .iter()
+            .map(|t| t.map(|point| points[point as usize]))
+            .map(|[a, b, c]| area(a, b, c))
+            .collect();
+        assert!(areas.iter().all(|area| *area > 0.0));
+        assert!((areas.iter().sum::<f64>() - whole).abs() < 1e-12);
+    }
+}

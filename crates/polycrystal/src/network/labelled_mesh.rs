@@ -1,0 +1,279 @@
+//! The control mesh of any labelled surface.
+
+use glam::DVec3;
+use subzero::{Crease, CurveMesh, Features, TriangleMesh};
+use voronoi::{Domain, PeriodicPair, Wall};
+
+use crate::mesh::id::id;
+use crate::mesh::node_type::Meeting;
+use crate::mesh::seams::{Seams, Use};
+use crate::network::control_mesh::{ControlMesh, JunctionCounts};
+use crate::{
+    Boundary, BoundaryId, Claims, Elements, Junctions, Level, Mesh, NetworkError, PeriodicCopies, Side,
+    Surface, WallSets, certify,
+};
+
+/// Distance from a wall that is not square to an axis, in units of the domain's diagonal, within which points lie on it.
+const ON_WALL: f64 = 1e-12;
+
+impl ControlMesh {
+    /// The control mesh whose points and elements are those of a surface.
+    pub(crate) fn of_surface(
+        domain: &Domain,
+        surface: &Surface<'_>,
+        junctions: Junctions,
+    ) -> Result<Self, NetworkError> {
+        if domain.is_periodic() {
+            return Err(NetworkError::PeriodicSurface);
+        }
+        let claims = Claims { domain_volume: Some(domain.measure()), ..Claims::default() };
+        let certificate = certify(surface, &claims);
+        if !certificate.is_good() {
+            return Err(NetworkError::Invalid(certificate.faults));
+        }
+        let numbered = (0u32..).zip(surface.grains());
+        if let Some((expected, _)) = numbered.clone().find(|(number, grain)| *number != grain.0) {
+            return Err(NetworkError::MissingGrain { grain: crate::GrainId(expected) });
+        }
+        let elements = OrderedElements::new(domain, surface)?;
+        let seams = Seams::of_elements(elements.as_elements(), &elements.boundary_of);
+        let Connected { boundaries, boundary_of } = Connected::new(&elements, &seams);
+        let mut walls_of = vec![Vec::new(); surface.points.len()];
+        let mut sides_of = vec![Vec::new(); surface.points.len()];
+        for (element, boundary) in (0u32..).zip(&boundary_of) {
+            let Boundary { sides, wall, .. } = boundaries[boundary.index()];
+            for corner in elements.as_elements().corners(element) {
+                walls_of[*corner as usize].extend(wall);
+                sides_of[*corner as usize].extend(sides);
+            }
+        }
+        let sorted = |list: &mut Vec<Wall>| {
+            list.sort_unstable();
+            list.dedup();
+        };
+        walls_of.iter_mut().for_each(sorted);
+        let uses = || seams.places().map(|at| at[0].ends(elements.as_elements()));
+        let (wall_sets, walls) = WallSets::of_walls(domain, &walls_of, &boundaries, uses());
+        let mut points = surface.points.to_vec();
+        points
+            .iter_mut()
+            .zip(&walls)
+            .for_each(|(point, walls)| *point = wall_sets.put_on_walls(*walls, *point));
+        let meetings: Vec<Meeting> = sides_of.iter_mut().map(meeting).collect();
+        let at_places: Vec<Meeting> = seams
+            .places()
+            .map(|at| meeting(&mut at.iter().flat_map(|at| elements.sides_of(at)).collect()))
+            .collect();
+        let at_points = || meetings.iter().map(|at| at.sides);
+        let generations = vec![0; points.len()];
+        let copies = PeriodicCopies::default();
+        let (mesh, at_edges, junctions) = match &elements.ordered {
+            Ordered::Segments(segments) => {
+                let corners: Vec<u32> = seams.places().map(|at| at[0].place).collect();
+                let mesh = CurveMesh::new(points.len(), segments.clone(), &corners)?;
+                (Mesh::Segments(mesh), Vec::new(), JunctionCounts::new(at_points(), at_points()))
+            }
+            Ordered::Triangles(triangles) => {
+                let ends: Vec<[u32; 2]> = uses().collect();
+                let lines = Lines::new(points.len(), &ends);
+                let creases: Vec<Crease> = ends.iter().map(|ends| Crease::infinite(*ends)).collect();
+                let corners = lines.corners(junctions);
+                let features = Features { creases: &creases, corners: &corners, ..Features::default() };
+                let mesh = TriangleMesh::new(points.len(), triangles.clone(), &features)?;
+                let inside = |edge: u32| {
+                    let triangle = mesh.edge_triangles(edge).expect("an edge inside a boundary has two")[0];
+                    Meeting::inside(&boundaries[boundary_of[triangle as usize].index()])
+                };
+                let mut at_lines: Vec<Option<Meeting>> = vec![None; mesh.edge_count()];
+                for (at, meeting) in seams.places().zip(&at_places) {
+                    let edge = mesh.triangle_edges(at[0].element)[usize::from(at[0].corner)];
+                    at_lines[edge as usize] = Some(*meeting);
+                }
+                let at_edges =
+                    (0u32..).zip(at_lines).map(|(edge, at)| at.unwrap_or_else(|| inside(edge))).collect();
+                let junctions = JunctionCounts::new(lines.sides(&at_places, &[]), at_points());
+                (Mesh::Triangles(mesh), at_edges, junctions)
+            }
+        };
+        let node_types = meetings.iter().map(|at| at.node_type).collect();
+        let grain_counts = meetings.iter().map(|at| at.grains).collect();
+        let level =
+            Level { mesh, boundary_of, node_types, grain_counts, generations, walls, copies, at_edges };
+        Ok(Self { level, points, boundaries, wall_sets, junctions })
+    }
+}
+
+fn meeting(sides: &mut Vec<Side>) -> Meeting {
+    sides.sort_unstable();
+    sides.dedup();
+    Meeting::of_sides(sides)
+}
+
+/// The elements of a surface, turned so that the smaller side comes first.
+struct OrderedElements {
+    ordered: Ordered,
+    /// Sides and wall of each group of elements that had one boundary.
+    groups: Vec<(BoundaryId, [Side; 2], Option<Wall>)>,
+    /// The group of each element.
+    boundary_of: Vec<BoundaryId>,
+}
+
+enum Ordered {
+    Triangles(Vec<[u32; 3]>),
+    Segments(Vec<[u32; 2]>),
+}
+
+impl OrderedElements {
+    fn new(domain: &Domain, surface: &Surface<'_>) -> Result<Self, NetworkError> {
+        let is_turned = |element: usize| {
+            let [first, second] = surface.sides[surface.boundary_of[element].index()];
+            second < first
+        };
+        let ordered = match surface.elements {
+            Elements::Triangles(triangles) => Ordered::Triangles(
+                triangles
+                    .iter()
+                    .enumerate()
+                    .map(|(t, &[a, b, c])| if is_turned(t) { [a, c, b] } else { [a, b, c] })
+                    .collect(),
+            ),
+            Elements::Segments(segments) => Ordered::Segments(
+                segments
+                    .iter()
+                    .enumerate()
+                    .map(|(s, &[a, b])| if is_turned(s) { [b, a] } else { [a, b] })
+                    .collect(),
+            ),
+        };
+        let mut keys = Vec::with_capacity(surface.boundary_of.len());
+        for (element, boundary) in (0u32..).zip(surface.boundary_of) {
+            let mut sides = surface.sides[boundary.index()];
+            sides.sort_unstable();
+            let wall = match sides[1] {
+                Side::Grain(_) => None,
+                Side::Exterior => {
+                    Some(wall_of(domain, surface, element).ok_or(NetworkError::NotOnWall { element })?)
+                }
+            };
+            keys.push((*boundary, sides, wall));
+        }
+        let mut groups = keys.clone();
+        groups.sort_unstable();
+        groups.dedup();
+        let group = |key| BoundaryId(id(groups.binary_search(key).expect("all were listed")));
+        Ok(Self { ordered, boundary_of: keys.iter().map(group).collect(), groups })
+    }
+
+    fn as_elements(&self) -> Elements<'_> {
+        match &self.ordered {
+            Ordered::Triangles(triangles) => Elements::Triangles(triangles),
+            Ordered::Segments(segments) => Elements::Segments(segments),
+        }
+    }
+
+    fn sides_of(&self, at: &Use) -> [Side; 2] {
+        self.groups[self.boundary_of[at.element as usize].index()].1
+    }
+}
+
+/// The wall that all corners of an element lie on.
+fn wall_of(domain: &Domain, surface: &Surface<'_>, element: u32) -> Option<Wall> {
+    let diagonal = domain.size().length();
+    let is_on = |wall: Wall, point: DVec3| match domain.across_axis(wall) {
+        Some((axis, coordinate)) => point[axis] == coordinate,
+        None => {
+            let (normal, offset) = domain.wall_equation(wall);
+            (normal.dot(point) - offset).abs() <= ON_WALL * diagonal * normal.length()
+        }
+    };
+    let corners = surface.elements.corners(element);
+    domain.walls().find(|wall| corners.iter().all(|corner| is_on(*wall, surface.points[*corner as usize])))
+}
+
+/// The boundaries that elements make up where they hang together.
+struct Connected {
+    boundaries: Vec<Boundary>,
+    boundary_of: Vec<BoundaryId>,
+}
+
+impl Connected {
+    fn new(elements: &OrderedElements, seams: &Seams) -> Self {
+        let mut pieces = Pieces::new(elements.boundary_of.len());
+        seams.inner.iter().for_each(|[a, b]| pieces.join(*a, *b));
+        let mut numbers = vec![None; elements.boundary_of.len()];
+        let mut boundaries = Vec::new();
+        let mut boundary_of = Vec::with_capacity(numbers.len());
+        for (element, group) in (0u32..).zip(&elements.boundary_of) {
+            let number = *numbers[pieces.root(element) as usize].get_or_insert_with(|| {
+                let (_, sides, wall) = elements.groups[group.index()];
+                boundaries.push(Boundary { sides, wall, twin: None });
+                BoundaryId(id(boundaries.len() - 1))
+            });
+            boundary_of.push(number);
+        }
+        Self { boundaries, boundary_of }
+    }
+}
+
+/// Disjoint sets of numbers.
+pub(crate) struct Pieces(Vec<u32>);
+
+impl Pieces {
+    pub(crate) fn new(count: usize) -> Self {
+        Self((0u32..).take(count).collect())
+    }
+
+    pub(crate) fn root(&mut self, mut member: u32) -> u32 {
+        while self.0[member as usize] != member {
+            let grandparent = self.0[self.0[member as usize] as usize];
+            self.0[member as usize] = grandparent;
+            member = grandparent;
+        }
+        member
+    }
+
+    pub(crate) fn join(&mut self, a: u32, b: u32) {
+        let [a, b] = [a, b].map(|member| self.root(member));
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}
+
+/// Where boundaries meet: edges and the lines that they make up.
+pub(crate) struct Lines<'a> {
+    ends: &'a [[u32; 2]],
+    /// The edges at each point.
+    edges_at: Vec<Vec<u32>>,
+}
+
+impl<'a> Lines<'a> {
+    pub(crate) fn new(point_count: usize, ends: &'a [[u32; 2]]) -> Self {
+        let mut edges_at = vec![Vec::new(); point_count];
+        for (edge, ends) in (0u32..).zip(ends) {
+            ends.iter().for_each(|end| edges_at[*end as usize].push(edge));
+        }
+        Self { ends, edges_at }
+    }
+
+    /// The points where lines end, or all on lines.
+    pub(crate) fn corners(&self, junctions: Junctions) -> Vec<u32> {
+        let is_corner = |edges: &Vec<u32>| match junctions {
+            Junctions::Crease => !matches!(edges.len(), 0 | 2),
+            Junctions::Corner => !edges.is_empty(),
+        };
+        (0u32..).zip(&self.edges_at).filter(|(_, edges)| is_corner(edges)).map(|(point, _)| point).collect()
+    }
+
+    /// The number of sides of each line, given the edges that are others moved by whole periods.
+    pub(crate) fn sides(
+        &self,
+        at_edges: &[Meeting],
+        copies: &[PeriodicPair<u32>],
+    ) -> impl Iterator<Item = u8> {
+        let mut pieces = Pieces::new(self.ends.len());
+        copies.iter().for_each(|pair| pieces.join(pair.secondary, pair.primary));
+        for edges in self.edges_at.iter().filter(|edges| edges.len() == 2) {
+            pieces.join(edges[0], edges[1]);
+        }
+        (0u32..).zip(at_edges).filter(move |(edge, _)| pieces.root(*edge) == *edge).map(|(_, at)| at.sides)
+    }
+}
