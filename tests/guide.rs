@@ -1,10 +1,10 @@
-//! The guide, done as it says: its commands, then its Python.
+//! The guide and the recipes, done as they say: commands, then Python.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 #[path = "common/programs.rs"]
 mod programs;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use programs::{run, skip};
@@ -15,25 +15,63 @@ fn blocks(guide: &str) -> Vec<(&str, &str)> {
     fenced.map(|block| block.split_once('\n').unwrap()).collect()
 }
 
+/// The words of a command line; what stands between quotes is one.
+fn words(line: &str) -> Vec<String> {
+    let parts = line.split('\'').enumerate();
+    let words = parts.flat_map(|(number, part)| match number % 2 {
+        0 => part.split_whitespace().map(str::to_owned).collect::<Vec<_>>(),
+        _ => vec![part.to_owned()],
+    });
+    words.collect()
+}
+
 fn run_command(line: &str, folder: &Path) {
-    let words: Vec<&str> = line.split_whitespace().collect();
+    let words = words(line);
+    if words[0] == "gmsh" {
+        let mut gmsh = Command::new("gmsh");
+        if let Some(output) = run(line, gmsh.args(&words[1..]).current_dir(folder)) {
+            assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stdout));
+        }
+        return;
+    }
     assert_eq!(words[0], "grainsmooth", "{line}");
     let mut program = assert_cmd::cargo::cargo_bin_cmd!("grainsmooth");
     program.args(&words[1..]).current_dir(folder).assert().success();
 }
 
+/// A folder with the files that come with the project.
+fn folder_with_data() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let copy = folder.path().join("data");
+    std::fs::create_dir(&copy).unwrap();
+    for file in std::fs::read_dir(data()).unwrap() {
+        let file = file.unwrap();
+        std::fs::copy(file.path(), copy.join(file.file_name())).unwrap();
+    }
+    folder
+}
+
+fn data() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("data")
+}
+
+#[test]
+fn recipes_do_what_they_say() {
+    let folder = folder_with_data();
+    let blocks = blocks(include_str!("../docs/recipes.md"));
+    assert!(blocks.len() > 20 && blocks.iter().all(|(language, _)| *language == "sh"));
+    for (_, text) in blocks {
+        text.lines().for_each(|line| run_command(line, folder.path()));
+    }
+}
+
 /// The files that come with the project, by the commands that its README names.
 #[test]
 fn small_files_can_be_tried_as_their_readme_says() {
-    let folder = tempfile::tempdir().unwrap();
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
-    let copy = folder.path().join("data");
-    std::fs::create_dir(&copy).unwrap();
-    let readme = std::fs::read_to_string(data.join("README.md")).unwrap();
-    for file in std::fs::read_dir(&data).unwrap() {
-        let name = file.unwrap().file_name();
-        std::fs::copy(data.join(&name), copy.join(&name)).unwrap();
-        let name = name.into_string().unwrap();
+    let folder = folder_with_data();
+    let readme = std::fs::read_to_string(data().join("README.md")).unwrap();
+    for file in std::fs::read_dir(data()).unwrap() {
+        let name = file.unwrap().file_name().into_string().unwrap();
         assert!(name == "README.md" || readme.contains(&format!("`{name}`")), "{name} is not explained");
         assert!(name == "README.md" || readme.contains(&format!("data/{name}")), "{name} is not used");
     }
