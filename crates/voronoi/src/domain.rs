@@ -337,6 +337,14 @@ impl Domain {
         if side.is_upper() { upper + room } else { lower - room }
     }
 
+    /// A point moved by whole periods into the box.
+    pub(crate) fn wrapped(&self, point: DVec3) -> DVec3 {
+        let period = self.size();
+        let below = self.periodic & point.cmplt(self.lower);
+        let above = self.periodic & point.cmpge(self.upper);
+        point + DVec3::select(below, period, DVec3::ZERO) - DVec3::select(above, period, DVec3::ZERO)
+    }
+
     /// Whether a point lies in the domain or on its walls; exact.
     pub fn contains(&self, point: DVec3) -> bool {
         if self.is_box() {

@@ -339,11 +339,7 @@ impl Tessellation {
         let inside = measures.iter().zip(&self.seeds).map(|(cell, seed)| {
             let goal = if fraction < 1.0 { seed.lerp(cell.centroid, fraction) } else { cell.centroid };
             // Across periodic walls the cell of a seed inside may have its centroid outside.
-            let below = self.domain.periodic() & goal.cmplt(lower);
-            let above = self.domain.periodic() & goal.cmpge(upper);
-            let period = self.domain.size();
-            let wrapped =
-                goal + DVec3::select(below, period, DVec3::ZERO) - DVec3::select(above, period, DVec3::ZERO);
+            let wrapped = self.domain.wrapped(goal);
             // Rounding may put the centroid of a very thin cell a last place outside.
             let clamped = wrapped.clamp(lower, upper);
             // The same beside an oblique wall, where the way to the seed leads inside.

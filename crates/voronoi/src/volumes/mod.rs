@@ -2,8 +2,8 @@
 //!
 //! For any distinct seeds and positive volumes that add up to the domain's there are weights with which the cells have these
 //! volumes, unique up to a common constant (Aurenhammer, Hoffmann and Aronov 1998). [`PowerDiagram::with_volumes`] finds them, and
-//! [`PowerDiagram::lloyd`] moves seeds to the centroids of their cells, which keep their volumes. [`place_spheres`] makes seeds.
-//! [`GrainDiagram`] makes grains of given shapes too, each of several cells.
+//! [`PowerDiagram::lloyd`] moves seeds to the centroids of their cells, which keep their volumes. [`place_spheres`] makes seeds, and
+//! [`divide_cells`] divides cells by further ones. [`GrainDiagram`] makes grains of given shapes too, each of several cells.
 //!
 //! ```
 //! use glam::DVec3;
@@ -18,6 +18,7 @@
 //! # Ok::<(), voronoi::volumes::VolumesError>(())
 //! ```
 
+mod division;
 mod grain_diagram;
 mod grains;
 mod laplacian;
@@ -30,6 +31,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::{Domain, Tessellation, VoronoiError};
+pub use division::{DividedCells, Division, divide_cells};
 pub use grain_diagram::GrainDiagram;
 use grains::Grains;
 use newton::{Clipped, approach};
