@@ -107,6 +107,7 @@ impl Case {
         let promise = outputs::draw(draw, dimension, &mut options);
         files.extend(sizes(draw, arrangement, count, &domain, &mut options));
         phases(draw, &mut options);
+        inside(draw, &domain, count, &mut options);
         let mut case = Self {
             kind: arrangement.name().to_owned(),
             keeps_volumes: !options.has("free"),
@@ -183,6 +184,22 @@ fn sizes(
         return Some(("factors.csv".to_owned(), lines.into_bytes()));
     }
     None
+}
+
+/// Draws what divides grains, after the phases: into parts of a half to a quarter of their width.
+fn inside(draw: &mut Draw, domain: &Domain, count: u32, options: &mut Options) {
+    // Freely growing parts vanish soon, and so do those of the twins and clusters of files.
+    let is_taken = ["free", "seeds-file", "aspect-ratio"].iter().any(|name| options.has(name));
+    if is_taken || !draw.chance(0.1) {
+        return;
+    }
+    let length = draw.between(0.25, 0.5) * domain.spacing(count) * domain.inner;
+    let pattern = match draw.one_of(&["lamellae", "lamellae across x", "voronoi"]) {
+        "lamellae" => format!("lamellae(width={length:?})"),
+        "lamellae across x" => format!("lamellae(width={length:?},normal=x)"),
+        _ => format!("voronoi(diameter={length:?})"),
+    };
+    options.set("inside", [pattern]);
 }
 
 /// Draws phases, after the sizes, which they may have of their own. At least four grains are of them.
@@ -325,6 +342,7 @@ mod tests {
             "grains-dir",
             "grains-format",
             "half-spaces",
+            "inside",
             "json-summary",
             "junctions",
             "lattice",

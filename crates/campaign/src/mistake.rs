@@ -60,6 +60,9 @@ const MISTAKES: &[Mistake] = &[
         case.options.unset("min-diameter");
         case.options.set("phase", ["first:0.5", "second:0.4"]);
     }),
+    ("grains that are too small to divide", "divides no grain", |case| {
+        case.options.set("inside", ["lamellae(width=1e9)"]);
+    }),
     ("directory of grains that is taken", "grains", |case| {
         case.files.push(("grains/file".to_owned(), Vec::new()));
         whole(case);
@@ -150,6 +153,7 @@ fn sources(options: &mut Options) {
         "volumes",
         "draw",
         "gradient",
+        "inside",
         "phase",
         "tension",
         "mobility",

@@ -1,7 +1,7 @@
 //! A command line of `grainsmooth`, while it is put together.
 
 /// Options that are given once for each of their values.
-const REPEATED: [&str; 4] = ["mobility", "output", "phase", "tension"];
+const REPEATED: [&str; 5] = ["inside", "mobility", "output", "phase", "tension"];
 
 /// Options by their long names, each with its values; a switch has none.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -62,6 +62,8 @@ pub const REFUSALS: &[Kind] = &[
     ("TooManyWalls", &["walls that a domain can have"]),
     // Counts.
     ("CellsExceedMemory", &["cells would take", "of memory"]),
+    ("InsideError::NothingDivided", &["divides no grain", "at most"]),
+    ("PartsExceedMemory", &["parts of grains would take", "of memory"]),
     ("LevelsExceedMemory", &["levels would take", "of memory"]),
     ("LevelsExceedIds", &["levels would make", "more than ids can name"]),
     ("TooLarge", &["more than 32-bit ids can name"]),

@@ -16,7 +16,7 @@ pub struct AskedAndReached {
 }
 
 impl Polycrystal {
-    /// Every figure that was asked for: of sizes, phases, tensions, textures and disorientations. Lengths are in the unit of the box.
+    /// Every figure that was asked for: of sizes, phases, divided grains, tensions, textures and disorientations. Lengths are in the unit of the box.
     pub fn asked_and_reached(&self) -> Vec<AskedAndReached> {
         let cells = &self.cells;
         let phases: Vec<&str> = cells.phases.iter().flat_map(|phases| phases.names()).collect();
@@ -38,6 +38,10 @@ impl Polycrystal {
             if let Some(residual) = self.residual {
                 add("residual of Herring's condition, rms".to_owned(), 0.0, residual.rms);
             }
+        }
+        for divided in cells.parents.iter().flat_map(|parents| parents.patterns()) {
+            let what = format!("{}, {}", divided.length_name(), divided.asked);
+            add(what, divided.length_asked, divided.length);
         }
         let Some(texture) = &cells.texture else { return rows };
         for number in 0..texture.texture_count() {

@@ -42,6 +42,9 @@ pub struct CellTable {
 struct Cell {
     #[serde(flatten)]
     row: Row,
+    /// The number of the seed of the grain that it is a part of, where grains are divided.
+    #[serde(rename = "Parent", skip_serializing_if = "Option::is_none")]
+    parent: Option<u32>,
     /// The number of its phase, where there are phases.
     #[serde(rename = "Phase", skip_serializing_if = "Option::is_none")]
     phase: Option<i32>,
@@ -130,7 +133,8 @@ impl CellTable {
             };
             let orientation = cells.texture.as_ref().map(|texture| texture.orientations()[id as usize]);
             let phase = cells.phases.as_ref().map(|phases| phases.number(id as usize));
-            Cell { row, phase, orientation: orientation.map(CellOrientation::new) }
+            let parent = cells.parents.as_ref().map(|parents| parents.number(id as usize));
+            Cell { row, parent, phase, orientation: orientation.map(CellOrientation::new) }
         });
         Self { settings: config.settings().into_iter().collect(), cells: rows.collect() }
     }
@@ -163,10 +167,12 @@ impl CellTable {
         }
         let has_orientations = first.is_some_and(|cell| cell.orientation.is_some());
         let has_phases = first.is_some_and(|cell| cell.phase.is_some());
+        write!(out, "{}", if first.is_some_and(|cell| cell.parent.is_some()) { ",Parent" } else { "" })?;
         write!(out, "{}", if has_phases { ",Phase" } else { "" })?;
         writeln!(out, "{}", if has_orientations { ",EulerAngles,Quaternion" } else { "" })?;
-        for Cell { row, phase, orientation } in &self.cells {
+        for Cell { row, parent, phase, orientation } in &self.cells {
             row.write_csv(out)?;
+            write!(out, "{}", parent.map_or_else(String::new, |parent| format!(",{parent}")))?;
             write!(out, "{}", phase.map_or_else(String::new, |phase| format!(",{phase}")))?;
             writeln!(out, "{}", orientation.as_ref().map_or_else(String::new, CellOrientation::in_csv))?;
         }

@@ -134,7 +134,7 @@ impl Arguments {
             );
         }
         let aspect_ratio = sizes.aspect_ratio(domain.dimension);
-        let (sizes, phases) = (sizes.options(), phases.options());
+        let (sizes, phases, inside) = (sizes.options(), phases.options(), phases.inside());
         let coloring = pictures.coloring();
         if coloring == Coloring::Phase && phases.is_empty() {
             usage("--color-by phase needs phases; give some with --phase");
@@ -144,6 +144,7 @@ impl Arguments {
             random_seed: seeds.rng_seed,
             sizes,
             phases,
+            inside,
             lloyd_steps: seeds.lloyd,
             dimension: domain.dimension,
             box_size: domain.box_size,
@@ -193,6 +194,9 @@ impl Arguments {
             }
         }
         if let Err(error) = config.check_phases() {
+            usage(&error.to_string());
+        }
+        if let Err(error) = config.check_inside() {
             usage(&error.to_string());
         }
         if let Err(error) = config.check_laws() {

@@ -8,7 +8,8 @@ use voronoi::{Dimension, Domain};
 use crate::domain_file::{half_space_domain, surface_domain};
 use crate::vtk::VtkEncoding;
 use crate::{
-    Error, Lattice, LatticeFit, LawOptions, Names, PhaseOptions, SizeOptions, StlEncoding, TextureOptions,
+    Error, InsideOptions, Lattice, LatticeFit, LawOptions, Names, PhaseOptions, SizeOptions, StlEncoding,
+    TextureOptions,
 };
 
 /// Where seeds come from.
@@ -98,6 +99,8 @@ pub struct Config {
     pub sizes: SizeOptions,
     /// The phases of the grains, in the order of their numbers; none where all are alike.
     pub phases: Vec<PhaseOptions>,
+    /// What grains are divided by; nothing leaves them whole.
+    pub inside: Vec<InsideOptions>,
     /// Number of times that every seed moves to the centroid of its cell (Lloyd's algorithm); given volumes are kept. Where nothing is
     /// said, [`Config::LLOYD_OF_SIZES`] for grains of given sizes whose places are not given, else none.
     pub lloyd_steps: Option<u32>,
@@ -178,6 +181,7 @@ impl Default for Config {
             random_seed: 1,
             sizes: SizeOptions::default(),
             phases: Vec::new(),
+            inside: Vec::new(),
             lloyd_steps: None,
             dimension: Dimension::Three,
             box_size: DVec3::ONE,

@@ -8,7 +8,7 @@ use voronoi::{Dimension, VoronoiError};
 
 use crate::memory::{self, LevelSize};
 use crate::mesh_file::MeshFileProblem;
-use crate::{Failure, LawError, OutputFormat, PhasesError, SeedPlace, SeedProblem};
+use crate::{Failure, InsideError, LawError, OutputFormat, PhasesError, SeedPlace, SeedProblem};
 
 /// What can go wrong between the user's input and the files written. Each message is one line that names the
 /// value, the place and the remedy.
@@ -258,6 +258,9 @@ pub enum Error {
     /// Phases that contradict each other or other options.
     #[error(transparent)]
     Phases(#[from] PhasesError),
+    /// Patterns inside grains that contradict each other or other options, or divide nothing.
+    #[error(transparent)]
+    Inside(#[from] InsideError),
     /// Laws of boundaries that contradict each other or other options.
     #[error(transparent)]
     Law(#[from] LawError),
@@ -319,6 +322,19 @@ pub enum Error {
     )]
     CellsExceedMemory {
         /// Number of seeds asked for.
+        count: usize,
+        /// Bytes that they would take.
+        needed: u128,
+        /// Bytes that there are.
+        available: u64,
+    },
+    /// So many parts of grains need more memory than there is.
+    #[error(
+        "{count} parts of grains would take {} of memory and {} are available; take a larger width or diameter inside them",
+        memory::in_words(*needed), memory::in_words(u128::from(*available))
+    )]
+    PartsExceedMemory {
+        /// Number of parts asked for.
         count: usize,
         /// Bytes that they would take.
         needed: u128,

@@ -62,6 +62,12 @@ impl GrainPhases {
         (!phases.is_empty()).then(|| Self { phases, phase_of: sizes.phase_of().to_vec() })
     }
 
+    /// The same for parts of the grains, given the grain that each is of.
+    pub(crate) fn of_parts(self, parent_of: &[usize]) -> Self {
+        let phase_of = parent_of.iter().map(|parent| self.phase_of[*parent]).collect();
+        Self { phase_of, ..self }
+    }
+
     /// Index of each grain's phase.
     pub fn phase_of(&self) -> &[usize] {
         &self.phase_of

@@ -14,7 +14,8 @@ use crate::vtk::{
     Array, Cells, Each, FieldEntry, FieldValue, ItemTuples, Items, PolyData, Values, VtkFormat,
 };
 use crate::{
-    Error, GrainPhases, GrainTexture, LabelGrid, Names, Output, Polycrystal, Tessellated, write_together,
+    Error, GrainPhases, GrainTexture, LabelGrid, Names, Output, Parents, Polycrystal, Tessellated,
+    write_together,
 };
 
 /// The point array that tells how many grains meet: four at a quadruple point, unless edges collapsed there.
@@ -130,11 +131,12 @@ impl Polycrystal {
         write_vtk(&data, format, self.config.file.encoding, out)
     }
 
-    /// What files hold of each grain's phase and orientation, where it has them.
+    /// What files hold of each grain's parent, phase and orientation, where it has them.
     pub(crate) fn grain_tuples(&self) -> Vec<ItemTuples> {
         let names = self.config.file.names;
-        let Tessellated { phases, texture, .. } = &self.cells;
-        let mut tuples: Vec<ItemTuples> = phases.iter().map(GrainPhases::array).collect();
+        let Tessellated { parents, phases, texture, .. } = &self.cells;
+        let mut tuples: Vec<ItemTuples> = parents.iter().map(Parents::array).collect();
+        tuples.extend(phases.iter().map(GrainPhases::array));
         if let Some(texture) = texture {
             tuples.extend(texture.orientation_arrays().into_iter().chain(texture.color_arrays(names)));
         }
@@ -175,12 +177,13 @@ impl Polycrystal {
         FieldEntry { name: SEED_ID, value: FieldValue::Ids(ids) }
     }
 
-    /// The phase and the orientation of each grain, where they have them.
+    /// The parent, the phase and the orientation of each grain, where they have them.
     pub(crate) fn grain_fields(&self) -> impl Iterator<Item = FieldEntry> {
-        let Tessellated { phases, texture, .. } = &self.cells;
+        let Tessellated { parents, phases, texture, .. } = &self.cells;
         let arrays = texture.as_ref().map(GrainTexture::orientation_arrays);
         let entry = |tuples: ItemTuples| FieldEntry { name: tuples.name, value: FieldValue::Items(tuples) };
-        phases.iter().map(GrainPhases::array).chain(arrays.into_iter().flatten()).map(entry)
+        let whole = parents.iter().map(Parents::array).chain(phases.iter().map(GrainPhases::array));
+        whole.chain(arrays.into_iter().flatten()).map(entry)
     }
 
     /// What every VTK file says about itself.

@@ -385,7 +385,7 @@ fn time_that_works(
 }
 
 /// The largest number of two digits that is not above a positive one.
-fn two_digits_down(number: f64) -> f64 {
+pub(crate) fn two_digits_down(number: f64) -> f64 {
     let unit = 10f64.powf(number.log10().floor() - 1.0);
     let digits = format!("{:.1e}", (number / unit).floor() * unit);
     digits.parse().unwrap_or(number)

@@ -157,7 +157,7 @@ impl Polycrystal {
 
     /// Diameters of all grains, or of each phase where these have diameters of their own, beside what was asked for.
     fn all_diameter_charts(&self, sizes: &GrainSizes) -> Vec<Chart> {
-        let volumes = self.network.cell_volumes();
+        let volumes = &self.cells.by_parents(self.network.cell_volumes())[..];
         let has_one = sizes.groups().count() == 1;
         let mut charts = Vec::new();
         for (number, (group, grains)) in sizes.groups().enumerate() {

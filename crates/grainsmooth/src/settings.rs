@@ -11,12 +11,12 @@ use voronoi::Dimension;
 use crate::embedded_config::{BEGIN, END, PREFIXES};
 use crate::vtk::VtkEncoding;
 use crate::{
-    Config, FileOptions, LawOptions, PeriodicCut, PhaseOptions, SeedSource, Shape, SizeDraw, SizeOptions,
-    SizeSource, StlEncoding, TextureOptions,
+    Config, FileOptions, InsideOptions, LawOptions, PeriodicCut, PhaseOptions, SeedSource, Shape, SizeDraw,
+    SizeOptions, SizeSource, StlEncoding, TextureOptions,
 };
 
 /// Options that come once for each of their values.
-const REPEATED: [&str; 2] = ["phase", "tension"];
+const REPEATED: [&str; 3] = ["inside", "phase", "tension"];
 
 impl Config {
     /// Every setting by the long name of its option, the default ones too.
@@ -39,6 +39,9 @@ impl Config {
         settings.extend(self.sizes.settings());
         if !self.phases.is_empty() {
             settings.push(("phase", texts(self.phases.iter().map(PhaseOptions::text))));
+        }
+        if !self.inside.is_empty() {
+            settings.push(("inside", texts(self.inside.iter().map(InsideOptions::text))));
         }
         let mut add = |name, value: Value| settings.push((name, value));
         if self.drop_empty {

@@ -12,6 +12,7 @@ use serde::Serialize;
 use voronoi::Dimension;
 
 use crate::grain_phases::PHASE;
+use crate::inner_grains::PARENT;
 use crate::network_file::{MOBILITY, TENSION};
 use crate::table::{Table, Value};
 use crate::{Error, GrainTexture, Output, Polycrystal, StagedFiles, TableFormat, Topology};
@@ -87,6 +88,10 @@ impl Polycrystal {
             }
             Measures::Plane(measures) => in_plane(&measures, &self.cells.seed_ids),
         };
+        if let Some(parents) = &self.cells.parents {
+            let parent = |grain: GrainId| i64::from(parents.number(grain.index()));
+            grains.add_column(PARENT, |row| Value::Integer(row[0].grain().map_or(-1, parent)));
+        }
         if let Some(phases) = &self.cells.phases {
             let phase = |grain: GrainId| i64::from(phases.number(grain.index()));
             grains.add_column(PHASE, |row| Value::Integer(row[0].grain().map_or(0, phase)));

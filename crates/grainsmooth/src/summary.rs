@@ -30,6 +30,7 @@ impl fmt::Display for Summary<'_> {
             write!(out, "{reached}")?;
             write_phases(out, &polycrystal.cells, network.cell_volumes(), &reached)?;
         }
+        write_inside(out, &polycrystal.cells)?;
         write_texture(out, &polycrystal.cells)?;
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
         let through_walls = count(|boundary| boundary.twin.is_some()) / 2;
@@ -153,10 +154,11 @@ impl fmt::Display for CellsSummary<'_> {
         write_seeds(out, config, cells)?;
         if let Some(sizes) = &cells.sizes {
             let volumes = cells.volumes();
-            let reached = sizes.reached(&volumes, None);
+            let reached = sizes.reached(&cells.by_parents(&volumes), None);
             write!(out, "{reached}")?;
             write_phases(out, cells, &volumes, &reached)?;
         }
+        write_inside(out, cells)?;
         write_texture(out, cells)
     }
 }
@@ -181,6 +183,12 @@ impl fmt::Display for StretchLine {
             write!(out, " along x, y")
         }
     }
+}
+
+/// What divides grains.
+fn write_inside(out: &mut fmt::Formatter<'_>, cells: &Tessellated) -> fmt::Result {
+    let patterns = cells.parents.iter().flat_map(|parents| parents.patterns());
+    patterns.into_iter().try_for_each(|divided| writeln!(out, "inside      {divided}"))
 }
 
 /// What the orientations of the grains are.
@@ -288,7 +296,8 @@ impl Polycrystal {
         let found = self.validation.grain_volumes.iter();
         let grains: Vec<f64> = found.map(|(_, volume)| *volume).collect();
         let is_kept = self.config.volumes == Volumes::Kept;
-        Some(sizes.reached(&self.cells.volumes(), is_kept.then_some(&grains[..])))
+        let (cells, grains) = (self.cells.volumes(), self.cells.by_parents(&grains));
+        Some(sizes.reached(&self.cells.by_parents(&cells), is_kept.then_some(&grains[..])))
     }
 
     /// How large the grains are. Their volumes are those of their cells unless grains grow.

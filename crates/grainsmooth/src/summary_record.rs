@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use crate::triangle_angles::TriangleAngles;
 use crate::{
-    AskedAndReached, ComponentShare, EquivalentDiameters, HistogramFit, LawReached, PhaseShare, Polycrystal,
-    Reconnected, SizesFit, SizesReached, TensionsReached, Tessellated, Topology,
+    AskedAndReached, ComponentShare, Divided, EquivalentDiameters, HistogramFit, LawReached, PhaseShare,
+    Polycrystal, Reconnected, SizesFit, SizesReached, TensionsReached, Tessellated, Topology,
 };
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
@@ -34,6 +34,8 @@ pub struct SummaryRecord {
     sizes: Option<SizesReached>,
     /// None where no phases are asked for.
     phases: Vec<PhaseRecord>,
+    /// What divides grains; none where nothing does.
+    inside: Vec<Divided>,
     /// Of all grains; of phases each has its own.
     texture: Option<TextureRecord>,
     regularization: &'static str,
@@ -193,6 +195,11 @@ impl SummaryRecord {
                 .then(|| texture_record(&polycrystal.cells, 0))
                 .flatten(),
             phases: phase_records(polycrystal),
+            inside: polycrystal
+                .cells
+                .parents
+                .as_ref()
+                .map_or_else(Vec::new, |parents| parents.patterns().to_vec()),
             regularization: polycrystal.regularization.name(),
             regularization_fell_back: polycrystal.regularization.fell_back(config),
             collapsed_edges: polycrystal.collapsed.edges,

@@ -1,5 +1,6 @@
 //! From a config to its seeds and flat cells.
 
+use std::borrow::Cow;
 use std::time::Duration;
 
 use glam::DVec3;
@@ -10,12 +11,14 @@ use voronoi::volumes::{PowerDiagram, VolumesError, place_spheres};
 use voronoi::{CellId, Domain, Side, Tessellation, VoronoiError};
 
 use crate::gradient::Gradient;
+use crate::inner_grains::InnerGrains;
 use crate::memory::{available_memory, check_cells};
 use crate::pipeline::{Clock, seed_count};
 use crate::seeding::unit_fraction;
 use crate::{
     BoundaryLaw, Config, EquivalentDiameters, Error, FileSeed, FileSeeds, GrainPhases, GrainSizes,
-    GrainTexture, Progress, SeedPlace, SeedSource, Stage, poisson_disc_seeds, random_seeds, read_seed_file,
+    GrainTexture, Parents, Progress, SeedPlace, SeedSource, Stage, poisson_disc_seeds, random_seeds,
+    read_seed_file,
 };
 
 /// The cells of a config's seeds.
@@ -23,15 +26,18 @@ use crate::{
 pub struct Tessellated {
     /// All cells; none is empty.
     pub tessellation: Tessellation,
-    /// Power weight of each seed: 0 where there are no radii.
+    /// Power weight of each seed: 0 where there are no radii, and no grains are divided.
     pub weights: Vec<f64>,
-    /// The number of each cell's seed, as its file gives it, else in the order in which all were given, from 0: what `SeedId` holds.
+    /// The number of each cell's seed, as its file gives it, else in the order in which all were given, from 0: what `SeedId` holds. Where grains are
+    /// divided, seeds are those of their parts.
     pub seed_ids: Vec<u32>,
     /// The numbers of seeds that are left out because their neighbours outweigh them.
     pub dropped_seeds: Vec<u32>,
     /// The numbers of seeds that are left out because their cells were below [`Config::min_diameter`].
     pub merged_seeds: Vec<u32>,
-    /// The volumes that grains were to have, where these are given.
+    /// The grains that these are parts of, where some are divided.
+    pub parents: Option<Parents>,
+    /// The volumes that grains were to have, where these are given: of those that others are parts of.
     pub sizes: Option<GrainSizes>,
     /// The phases of the grains, where they are asked for.
     pub phases: Option<GrainPhases>,
@@ -74,6 +80,14 @@ impl Tessellated {
         match &self.phases {
             Some(phases) => phases.names().map(str::to_owned).zip(phases.symmetries()).collect(),
             None => vec![("grains".to_owned(), config.texture.symmetry)],
+        }
+    }
+
+    /// What cells or grains have, added up by the grains that were drawn: those that are divided as wholes.
+    pub(crate) fn by_parents<'a>(&self, of_grains: &'a [f64]) -> Cow<'a, [f64]> {
+        match &self.parents {
+            Some(parents) => parents.sums(of_grains).into(),
+            None => of_grains.into(),
         }
     }
 
@@ -138,7 +152,21 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
         merged_seeds.sort_unstable();
         Ok::<_, Error>(all)
     })?;
-    let phases = sizes.as_ref().and_then(|sizes| GrainPhases::new(config, sizes));
+    let mut phases = sizes.as_ref().and_then(|sizes| GrainPhases::new(config, sizes));
+    let mut cells = (tessellation, weights, seeds.ids, None);
+    if !config.inside.is_empty() {
+        cells = clock.time(Stage::Cells, || {
+            let (tessellation, weights, ids, _) = cells;
+            let phase_of =
+                phases.as_ref().map_or_else(|| vec![0; ids.len()], |phases| phases.phase_of().to_vec());
+            let inner = InnerGrains::new(config, &tessellation, &weights, &phase_of, ids)?;
+            let InnerGrains { tessellation, weights, parents } = inner;
+            phases = phases.take().map(|phases| phases.of_parts(parents.parent_of()));
+            let ids = (0u32..).take(tessellation.cell_count()).collect();
+            Ok::<_, Error>((tessellation, weights, ids, Some(parents)))
+        })?;
+    }
+    let (tessellation, weights, seed_ids, parents) = cells;
     let texture = (!textures.is_empty()).then(|| {
         let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
         let texture_of =
@@ -147,13 +175,13 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
     });
     let law = BoundaryLaw::new(config, phases.as_ref(), texture.as_ref(), tessellation.cell_count())?;
     let times = clock.times;
-    let seed_ids = seeds.ids;
     Ok(Tessellated {
         tessellation,
         weights,
         seed_ids,
         dropped_seeds,
         merged_seeds,
+        parents,
         sizes,
         phases,
         texture,

@@ -22,7 +22,7 @@ pub struct SizesFound {
 }
 
 /// Settings with which the distribution alone does not say what diameters grains are to have.
-const OTHER_TARGETS: [&str; 5] = ["free", "gradient", "min-diameter", "phase", "volumes"];
+const OTHER_TARGETS: [&str; 6] = ["free", "gradient", "inside", "min-diameter", "phase", "volumes"];
 
 /// What becomes of grains of some volumes (in the plane: areas); nothing where settings ask for no distribution in words, or where diameters
 /// are drawn at random, which leaves open by what they are multiplied.
