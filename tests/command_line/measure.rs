@@ -240,3 +240,31 @@ fn an_open_grain_is_refused() {
         "open.vtk: grain 0 is not closed; mend what `grainsmooth check` tells of the file",
     );
 }
+
+#[test]
+fn the_phases_of_a_sample_and_of_its_twin_have_the_same_shares() {
+    let workplace = Workplace::new();
+    let phases = "--phase a:0.7,diameters=lognormal(mean=3,cv=0.3) --phase b:0.3,diameters=equal(2)";
+    workplace.run(&format!(
+        "{phases} --seeds 60 --box 9 9 9 -n 0 --relax 0 -o a.vtp -o a.tess -o a.vtk --cells-csv a.csv"
+    ));
+    // Neper's cells have groups.
+    assert!(String::from_utf8(workplace.bytes("a.tess")).unwrap().contains("\n  *group\n"));
+    for name in ["a.vtp", "a.tess", "a.vtk", "a.csv"] {
+        let sample = measured(&workplace, name);
+        for (phase, share) in sample["phases"].as_array().unwrap().iter().zip([0.7, 0.3]) {
+            assert!(near(number(phase, &["fraction"]), share, 1e-9), "{name}: {phase}");
+        }
+        run_twin(&workplace, &sample, "twin", "-n 0 --relax 0 -o b.vtp");
+        let twin = measured(&workplace, "b.vtp");
+        for (phase, own) in
+            twin["phases"].as_array().unwrap().iter().zip(sample["phases"].as_array().unwrap())
+        {
+            assert!(near(number(phase, &["fraction"]), number(own, &["fraction"]), 1e-9), "{name}: {twin}");
+            assert!(
+                near(number(phase, &["grains"]), number(own, &["grains"]), 0.15),
+                "{name}: {sample} {twin}"
+            );
+        }
+    }
+}

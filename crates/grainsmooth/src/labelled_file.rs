@@ -38,6 +38,8 @@ pub struct LabelledFile {
     pub volumes: Option<Vec<(GrainId, f64)>>,
     /// The orientations of all grains, if this program wrote the file and they have some.
     pub orientations: Option<Vec<(GrainId, Orientation)>>,
+    /// The numbers of the phases of all grains, if this program wrote the file and they have some.
+    pub phases: Option<Vec<(GrainId, u32)>>,
     /// What coordinates in the file are those of `points` multiplied by.
     pub stretch: DVec3,
     /// Whether the file has its points in single precision.
@@ -96,7 +98,7 @@ impl LabelledFile {
             is_single,
             remarks,
         } = cells;
-        let Remarks { config, volumes, euler_angles } = remarks;
+        let Remarks { config, volumes, euler_angles, phases } = remarks;
         let settings: Option<Table> = config.and_then(|text| text.parse().ok());
         // Without an exterior the volumes of all grains would sum to nothing.
         let zero_is_exterior =
@@ -169,6 +171,15 @@ impl LabelledFile {
                 let (angles, []) = euler_angles.as_ref()?.as_chunks() else { return None };
                 let orientations = angles.iter().map(|angles| Orientation::from_euler_degrees(*angles));
                 numbered(orientations.collect(), settings)
+            }),
+            phases: settings.as_ref().and_then(|settings| {
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "whole and not negative"
+                )]
+                let phases = phases?.into_iter().map(|phase| phase as u32).collect();
+                numbered(phases, settings)
             }),
             stretch,
             is_single,

@@ -111,7 +111,7 @@ pub use pipeline::{
 };
 pub use poisson_disc::poisson_disc_seeds;
 pub use report::Html;
-pub use sample_report::{FittedDistribution, MeasuredTexture, SampleReport};
+pub use sample_report::{FittedDistribution, MeasuredPhase, MeasuredTexture, SampleReport};
 pub use seed_file::{
     FileDomain, FileSeed, FileSeeds, SeedPlace, SeedProblem, read_file_domain, read_seed_file,
 };

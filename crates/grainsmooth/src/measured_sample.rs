@@ -49,6 +49,8 @@ pub struct MeasuredGrain {
     pub second_moment: Option<DVec3>,
     /// How its crystal stands.
     pub orientation: Option<Orientation>,
+    /// The number of its phase.
+    pub phase: Option<u32>,
 }
 
 impl MeasuredSample {
@@ -104,6 +106,11 @@ fn of_network(file: &LabelledFile) -> Result<MeasuredSample, MeshFileProblem> {
             grains[place].orientation = Some(*orientation);
         }
     }
+    for (grain, phase) in file.phases.iter().flatten() {
+        if let Ok(place) = grains.binary_search_by_key(&grain.0, |grain| grain.id) {
+            grains[place].phase = Some(*phase);
+        }
+    }
     let mut sample = MeasuredSample {
         dimension,
         grains,
@@ -150,6 +157,7 @@ fn grains_of(
         is_cut: false,
         second_moment: Some(second_moment),
         orientation: None,
+        phase: None,
     };
     // Of each boundary its size, and the sum of its normals.
     let mut sizes: Vec<(BoundaryId, f64, DVec3)> = Vec::new();

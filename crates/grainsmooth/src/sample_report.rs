@@ -1,5 +1,6 @@
 //! What `grainsmooth measure` says of a sample, and how to make another like it.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
@@ -53,6 +54,8 @@ pub struct SampleReport {
     pub axis_ratio: Option<[f64; 3]>,
     /// The texture, where grains have orientations.
     pub texture: Option<MeasuredTexture>,
+    /// The phases, where grains have several.
+    pub phases: Vec<MeasuredPhase>,
     /// The options of a run that makes grains of the fitted distribution in a box of the sample's size.
     pub twin: Vec<String>,
     /// The same of a run with the measured diameters themselves and, where there are some, orientations; nothing where no table has them.
@@ -76,6 +79,55 @@ pub struct FittedDistribution {
     pub cdf_distance: f64,
     /// The same of the shares of the volume (in the plane: of the area).
     pub cdf_distance_by_volume: f64,
+}
+
+/// A phase of a sample.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MeasuredPhase {
+    /// Its number in the file.
+    pub number: u32,
+    /// Number of its grains.
+    pub grains: usize,
+    /// Its share of the volume (in the plane: of the area).
+    pub fraction: f64,
+    /// The lognormal distribution of its diameters, in words, of the two fits the nearer.
+    pub diameters: String,
+}
+
+impl MeasuredPhase {
+    /// As `--phase` takes it: phases are called by their numbers.
+    fn option(&self) -> String {
+        format!("{}:{:?},diameters={}", self.number, self.fraction, self.diameters)
+    }
+}
+
+/// The phases of a sample; none where all grains are alike, or one has none.
+fn phases(sample: &MeasuredSample) -> Vec<MeasuredPhase> {
+    let mut of_phases: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
+    for grain in &sample.grains {
+        let Some(phase) = grain.phase else { return Vec::new() };
+        of_phases.entry(phase).or_default().push(grain.volume);
+    }
+    if of_phases.len() < 2 {
+        return Vec::new();
+    }
+    let power = sample.dimension.axes().into();
+    let phase = |(number, volumes): (u32, Vec<f64>)| {
+        let diameters: Vec<f64> =
+            volumes.iter().map(|volume| sample.dimension.ball_diameter(*volume)).collect();
+        let fits =
+            [0, power].map(|by| LognormalFit::new(&diameters, by).expect("volumes are positive and finite"));
+        let [distance, by_volume] = fits.map(|fit| cdf_distance(diameters.clone(), &fit.distribution(), 0));
+        let [by_number, of_volume] = &fits;
+        let nearer = if by_volume < distance { of_volume } else { by_number };
+        MeasuredPhase {
+            number,
+            grains: volumes.len(),
+            fraction: volumes.iter().sum::<f64>() / sample.volume(),
+            diameters: nearer.spec(),
+        }
+    };
+    of_phases.into_iter().map(phase).collect()
 }
 
 /// The orientations of a sample.
@@ -126,7 +178,12 @@ impl SampleReport {
         let nearer = if by_volume.cdf_distance < by_number.cdf_distance { &by_volume } else { &by_number };
         let stretch = axis_ratio.filter(|ratio| is_stretched(*ratio, shown.len()));
         let place = options_of_place(sample, stretch);
-        let twin = ["--diameters".to_owned(), nearer.diameters.clone()].into_iter().chain(place.clone());
+        let phases = phases(sample);
+        let sizes: Vec<String> = match phases[..] {
+            [] => vec!["--diameters".to_owned(), nearer.diameters.clone()],
+            _ => phases.iter().flat_map(|phase| ["--phase".to_owned(), phase.option()]).collect(),
+        };
+        let twin = sizes.into_iter().chain(place.clone());
         let is_list = |path: &&Path| {
             let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
             matches!(extension.to_str(), Some("csv" | "txt"))
@@ -163,6 +220,7 @@ impl SampleReport {
             faces: spread(shown.iter().filter_map(|grain| grain.faces.map(|count| count as f64))),
             axis_ratio: axis_ratio.map(|ratio| ratio.to_array()),
             texture,
+            phases,
             twin: twin.collect(),
             twin_of_table,
         }
@@ -333,6 +391,13 @@ impl fmt::Display for SampleReport {
             if let Some(index) = index {
                 write!(out, ", index {index:.3} with a kernel of {halfwidth} degrees")?;
             }
+        }
+        for MeasuredPhase { number, grains, fraction, diameters } in &self.phases {
+            let share = 100.0 * fraction;
+            write!(
+                out,
+                "\n  phase {number:<6}{share:.4} % of the {measure} in {grains} grains, {diameters}"
+            )?;
         }
         write!(out, "\n  twin        {}", command(&self.twin))?;
         if let Some(options) = &self.twin_of_table {

@@ -39,6 +39,8 @@ pub struct Tess {
     pub dimension: Dimension,
     /// The number of each cell's seed; none where they are numbered one after the other.
     pub ids: Vec<u32>,
+    /// The group of each cell, from 1: this program's phases; none where there are none.
+    pub groups: Vec<u32>,
     /// Whether cells have orientations.
     pub has_orientations: bool,
     /// The orientation of each cell; none where there are none, or in a descriptor other than passive Rodrigues vectors, quaternions or
@@ -160,6 +162,12 @@ impl Tess {
         let mut tess = Self {
             dimension: domain.dimension(),
             ids: cells.renumbered().to_vec(),
+            groups: match &cells.phases {
+                Some(phases) => {
+                    (0..tessellation.cell_count()).map(|cell| phases.number(cell).cast_unsigned()).collect()
+                }
+                None => Vec::new(),
+            },
             has_orientations: false,
             orientations: Vec::new(),
             crystal_symmetry: None,

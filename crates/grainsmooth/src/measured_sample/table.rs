@@ -108,6 +108,7 @@ fn grain_of(row: &Row, place: u32, dimension: Dimension) -> Option<MeasuredGrain
         is_cut,
         second_moment: inertia().or_else(|| moment(["moment_xx", "moment_yy", "moment_zz"])),
         orientation: angles.map(Orientation::from_euler_degrees),
+        phase: row.number("phase").and_then(whole),
     })
 }
 

@@ -75,6 +75,7 @@ fn of_tess(tess: &Tess) -> Result<MeasuredSample, crate::mesh_file::MeshFileProb
     for grain in &mut grains {
         let cell = grain.id as usize;
         grain.orientation = tess.orientations.get(cell).copied();
+        grain.phase = tess.groups.get(cell).copied();
         grain.id = tess.ids.get(cell).copied().unwrap_or(grain.id);
     }
     let periodic = tess.periodicity.as_ref();

@@ -48,6 +48,7 @@ pub fn read_tess(text: &str) -> Result<Tess, TessProblem> {
     let mut tess = Tess {
         dimension,
         ids: Vec::new(),
+        groups: Vec::new(),
         has_orientations: false,
         orientations: Vec::new(),
         crystal_symmetry: None,
@@ -238,6 +239,13 @@ impl Reader<'_> {
         while !self.words.is_at("**") {
             match self.words.next("***end")? {
                 "*id" => tess.ids = self.words.list(self.cell_count, |words, _| words.seed_id())?,
+                "*group" => {
+                    tess.groups = self.words.list(self.cell_count, |words, _| {
+                        let group = words.count("the group of a cell")?;
+                        u32::try_from(group)
+                            .map_err(|_| words.problem(format!("{group} is no group of a cell")))
+                    })?;
+                }
                 "*seed" => {
                     tess.seeds = self.words.list(self.cell_count, |words, index| {
                         words.id("seed", index)?;

@@ -22,6 +22,10 @@ pub(crate) fn write(tess: &Tess, texture: Option<&GrainTexture>, out: &mut dyn W
         let ids: Vec<String> = tess.ids.iter().map(|id| (u64::from(*id) + 1).to_string()).collect();
         writeln!(out, "  *id\n   {}", ids.join(" "))?;
     }
+    if !tess.groups.is_empty() {
+        let groups: Vec<String> = tess.groups.iter().map(u32::to_string).collect();
+        writeln!(out, "  *group\n   {}", groups.join(" "))?;
+    }
     // Neper knows no others.
     let symmetry = texture.and_then(GrainTexture::symmetry).filter(|symmetry| {
         matches!(

@@ -6,6 +6,7 @@ use vtkio::IOBuffer;
 use vtkio::model::{Attribute, CellType, DataSet, Vtk};
 
 use super::{MeshFile, MeshFileProblem, cells, in_thread, inline, legacy_parts, problem, xml_parts};
+use crate::grain_phases::PHASE;
 use crate::network_file::NUMBER_OF_GRAINS;
 use crate::vtk::{field_numbers, field_text};
 
@@ -36,6 +37,8 @@ pub(crate) struct Remarks {
     pub(crate) volumes: Option<Vec<f64>>,
     /// Bunge's angles of each grain in degrees, one after the other.
     pub(crate) euler_angles: Option<Vec<f64>>,
+    /// The number of each grain's phase.
+    pub(crate) phases: Option<Vec<f64>>,
 }
 
 impl Remarks {
@@ -49,6 +52,7 @@ impl Remarks {
         match name {
             VOLUMES => self.volumes = Some(numbers),
             EULER_ANGLES => self.euler_angles = Some(numbers),
+            PHASE => self.phases = Some(numbers),
             _ => {}
         }
     }
@@ -58,6 +62,7 @@ impl Remarks {
             config: field_text(bytes, CONFIG),
             volumes: field_numbers(bytes, VOLUMES),
             euler_angles: field_numbers(bytes, EULER_ANGLES),
+            phases: field_numbers(bytes, PHASE),
         }
     }
 }
