@@ -13,15 +13,9 @@ pub(crate) mod regular_cells;
 
 use glam::DVec3;
 
-use crate::flow::boundary_flow::{End, Flow, Stage};
-use crate::flow::relaxation::{USUAL_TIME, check_grains_are_left};
+use crate::flow::boundary_flow::{End, Flow, Grown, Stage};
+use crate::flow::relaxation::USUAL_TIME;
 use crate::{Mesh, Moving, Network, NetworkError, Relaxation, RelaxationStep, Relaxed, Tuning, Volumes};
-
-/// Steps of grains that grow in the plane: with fewer, rates are off by more than a hundredth.
-const GROWTH_STEPS: usize = 60;
-
-/// Most steps of grains that grow: long before that, one has vanished, or all are at rest.
-const MOST_GROWTH_STEPS: usize = 2000;
 
 /// Time of the flow toward equilibrium on each coarser level, in units of the mean grain size squared.
 const LONG_STEP: f64 = 0.3;
@@ -133,16 +127,27 @@ fn relax_levels(
     }
     let last = (network.levels().len() - 1).min(finest);
     let whole_time = time * network.mean_grain_size().powi(2);
-    let (first, first_steps) = match (volumes, start, relaxation) {
-        (Volumes::Kept, Start::Relaxed, Relaxation::Time(_)) => (last, tuning.fine_steps),
-        (Volumes::Kept, ..) => (0, tuning.coarse_steps),
-        // Grains that grow do so for the time that was asked for, not once more on each level.
-        (Volumes::Free, ..) => {
-            let fewest = if is_in_space { tuning.coarse_steps } else { GROWTH_STEPS };
-            let longest = USUAL_TIME / fewest as f64;
-            let steps = (fewest..MOST_GROWTH_STEPS).find(|steps| time <= longest * *steps as f64);
-            (last, steps.unwrap_or(MOST_GROWTH_STEPS))
-        }
+    if volumes == Volumes::Free {
+        let begin = network.subdivide_between(0, last, control_points);
+        let mut steps = 0;
+        let mut show = |Grown { steps: done, left, passed, points }: Grown<'_>| {
+            steps = done;
+            let time = passed / network.mean_grain_size().powi(2);
+            watch(RelaxationStep {
+                done,
+                count: done + left,
+                time,
+                now: Moving::Points { level: last, points },
+            });
+        };
+        show(Grown { steps: 0, left: 1, passed: 0.0, points: &begin });
+        // Grains grow for the time that was asked for, not once more on each level.
+        let points = flow(last).grow(&begin, whole_time, &mut show)?;
+        return Ok(Relaxed { level: last, points, steps, time, given_up: Vec::new(), is_flat: false });
+    }
+    let (first, first_steps) = match (start, relaxation) {
+        (Start::Relaxed, Relaxation::Time(_)) => (last, tuning.fine_steps),
+        _ => (0, tuning.coarse_steps),
     };
     let steps = first_steps + (last - first) * tuning.fine_steps;
     watch(RelaxationStep {
@@ -203,10 +208,6 @@ fn relax_levels(
                 });
             }
         }
-    }
-    if volumes == Volumes::Free {
-        let volumes = network.grain_volumes(&network.levels()[last], &points);
-        check_grains_are_left(network, &volumes, whole_time)?;
     }
     Ok(Relaxed { level: last, points, steps, time: passed, given_up: Vec::new(), is_flat: false })
 }

@@ -1,56 +1,17 @@
 //! Networks of given triangles: a ball in a grain, and what cannot be a network.
 
+#[allow(dead_code, reason = "every test file uses its own share")]
+mod common;
+
 use std::f64::consts::PI;
 
+use common::{Labelled, cube};
 use glam::{DVec3, swizzles::Vec3Swizzles};
 use polycrystal::{
     BoundaryId, Elements, GrainId, Junctions, Network, NetworkError, Relaxation, Side, Surface,
     dihedral_angles, measure_network, relax, validate,
 };
 use voronoi::{Domain, Tessellation};
-
-/// Points, triangles with the boundary of each, and sides.
-struct Labelled {
-    points: Vec<DVec3>,
-    triangles: Vec<[u32; 3]>,
-    boundary_of: Vec<BoundaryId>,
-    sides: Vec<[Side; 2]>,
-}
-
-impl Labelled {
-    fn network(&self, levels: usize) -> Result<(Network, Vec<DVec3>), NetworkError> {
-        let Self { points, triangles, boundary_of, sides } = self;
-        let surface = Surface { points, elements: Elements::Triangles(triangles), boundary_of, sides };
-        Network::of_surface(&Domain::unit_cube(), &surface, Junctions::Crease, levels)
-    }
-
-    /// A body, wound outward, as grain 1 within grain 0, which fills the rest of the unit cube.
-    fn inclusion(points: &[DVec3], triangles: &[[u32; 3]]) -> Self {
-        let (cube, mut all) = cube();
-        let outer = all.len();
-        let mut all_points = cube;
-        let first = u32::try_from(all_points.len()).expect("few points");
-        all.extend(triangles.iter().map(|corners| corners.map(|corner| first + corner)));
-        all_points.extend(points);
-        let boundary_of = (0..all.len()).map(|triangle| BoundaryId(u32::from(triangle >= outer))).collect();
-        let [outer, inner] = [0, 1].map(|grain| Side::Grain(GrainId(grain)));
-        // The body's triangles wind from it outward, to grain 0.
-        Self {
-            points: all_points,
-            triangles: all,
-            boundary_of,
-            sides: vec![[outer, Side::Exterior], [inner, outer]],
-        }
-    }
-}
-
-/// The unit cube, wound outward.
-fn cube() -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let corners = (0..8u32).map(|k| DVec3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2)));
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
-    (corners.collect(), triangles.collect())
-}
 
 fn octahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let points = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z].to_vec();

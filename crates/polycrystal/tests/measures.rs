@@ -5,7 +5,7 @@ mod common;
 
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
 
-use common::{network, random_network, random_seeds, relaxed};
+use common::{ball, network, random_network, random_seeds, relaxed};
 use glam::{BVec3, DMat2, DMat3, DVec2, DVec3};
 use polycrystal::{
     BoundaryId, Elements, GrainId, Mesh, Network, PlaneMeasures, PointCurvature, Side, SpaceMeasures,
@@ -24,37 +24,6 @@ fn in_plane(network: &Network, points: &[DVec3]) -> PlaneMeasures {
 
 fn close(found: f64, exact: f64, tolerance: f64) {
     assert!((found / exact - 1.0).abs() < tolerance, "{found} is not {exact}");
-}
-
-/// An icosahedron whose triangles are cut into four so often, pushed out to a sphere.
-fn ball(radius: f64, center: DVec3, levels: usize) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let golden = (1.0 + 5f64.sqrt()) / 2.0;
-    let mut points: Vec<DVec3> = Vec::new();
-    for [a, b] in [[1.0, golden], [1.0, -golden], [-1.0, golden], [-1.0, -golden]] {
-        points.extend([DVec3::new(0.0, a, b), DVec3::new(a, b, 0.0), DVec3::new(b, 0.0, a)]);
-    }
-    let mut triangles = Vec::new();
-    for a in 0..12u32 {
-        for b in a + 1..12 {
-            for c in b + 1..12 {
-                let corners = [a, b, c].map(|id| points[id as usize]);
-                let is_edge = |i: usize, j: usize| (corners[i].distance(corners[j]) - 2.0).abs() < 1e-9;
-                if is_edge(0, 1) && is_edge(1, 2) && is_edge(2, 0) {
-                    let outward =
-                        (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(corners[0]) > 0.0;
-                    triangles.push(if outward { [a, b, c] } else { [a, c, b] });
-                }
-            }
-        }
-    }
-    assert_eq!(triangles.len(), 20);
-    for _ in 0..levels {
-        let mesh = subzero::TriangleMesh::new(points.len(), triangles, &subzero::Features::default());
-        let refined = mesh.expect("a sphere").midpoint_refine();
-        points = refined.stencils.apply(&points);
-        triangles = refined.mesh.triangles().to_vec();
-    }
-    (points.iter().map(|point| center + radius * point.normalize()).collect(), triangles)
 }
 
 #[test]

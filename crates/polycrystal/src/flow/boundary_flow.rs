@@ -1,6 +1,7 @@
 //! Curvature flow of the points of one level.
 
 mod best;
+mod growth;
 mod volumes;
 mod widening;
 
@@ -13,7 +14,7 @@ use crate::energy::patch::PatchTerms;
 use crate::energy::patches::Patches;
 use crate::flow::assembly::{Unknowns, assemble, gradient};
 use crate::flow::clusters::{ATTEMPTS, Clusters, Numbering};
-use crate::flow::relaxation::{USUAL_TIME, check_grains_are_left};
+use crate::flow::relaxation::USUAL_TIME;
 use crate::flow::system::System;
 use crate::flow::tangential::tangential_moves;
 use crate::flow::thin_triangles::Room;
@@ -25,6 +26,7 @@ use crate::mesh::volume::{Cone, volumes_of_grains};
 use crate::solver::conjugate_gradients::dot;
 use crate::{Freedom, GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
 use best::{Badness, Best};
+pub(crate) use growth::Grown;
 
 /// Most edges of the control mesh, as long as the mean, to a feature. Fans have three.
 const FEATURE_EDGES: f64 = 6.0;
@@ -58,13 +60,6 @@ pub(crate) enum End {
     Volumes,
     /// These, and no triangle of the finest level is thin.
     Finished,
-}
-
-/// What a step found where it began.
-pub(crate) struct Taken {
-    pub(crate) energy: f64,
-    /// The volume of each grain.
-    pub(crate) volumes: Vec<f64>,
 }
 
 /// A network whose points of one level move.
@@ -160,13 +155,7 @@ impl<'a> Flow<'a> {
         let mut last_energy = f64::INFINITY;
         let mut best = Best::new();
         for step in 1..=stage.steps {
-            let passed = (step - 1) as f64 * stage.step_time;
-            let taken = self.step(&mut points, stage.step_time);
-            let Taken { energy, volumes, .. } =
-                taken.map_err(|error| self.vanishing(&points, passed, stage.step_time).unwrap_or(error))?;
-            if self.volumes == Volumes::Free {
-                check_grains_are_left(self.network, &volumes, passed)?;
-            }
+            let energy = self.step(&mut points, stage.step_time)?;
             progress(step, &points);
             if stage.least_gain > 0.0
                 && let Some(badness) = self.badness(&points, &finest)
@@ -181,18 +170,28 @@ impl<'a> Flow<'a> {
             }
             last_energy = energy;
         }
-        points = best.into_points().unwrap_or(points);
+        self.finished(best.into_points().unwrap_or(points), start, stage.end)
+    }
+
+    /// The points at the end of a stage, good where its end has to be.
+    fn finished(
+        &mut self,
+        mut points: Vec<DVec3>,
+        start: &[DVec3],
+        end: End,
+    ) -> Result<Vec<DVec3>, NetworkError> {
+        let finest = Wedged::new(self.network, self.finest());
         // Where the finest level folds though no step did, all has moved too far from where it did not.
         let mut count = 0;
         for attempt in 0..ATTEMPTS {
-            let surface = match stage.end {
+            let surface = match end {
                 End::Open => self.finest_points(&points),
                 End::Volumes | End::Finished => self.restored(&mut points)?,
             };
             let places = self.folded_places(&surface, &finest);
             count = places.len();
             if count == 0 {
-                if stage.end == End::Finished {
+                if end == End::Finished {
                     self.widen_all(&mut points, surface, &finest);
                 }
                 return Ok(points);
@@ -208,12 +207,9 @@ impl<'a> Flow<'a> {
         Err(NetworkError::Folded { count })
     }
 
-    /// Where volumes are free, the grain that would vanish within a step, if there is one: a ball of radius r lives for a time of r^2 / 4, a
+    /// The grain that would vanish within a step, if there is one: a ball of radius r lives for a time of r^2 / 4, a
     /// disc for r^2 / 2.
     fn vanishing(&self, points: &[DVec3], passed: f64, step_time: f64) -> Option<NetworkError> {
-        if self.volumes == Volumes::Kept {
-            return None;
-        }
         let volumes = self.network.grain_volumes(self.surface(), &self.refined(points));
         let (grain, volume) = (0u32..).zip(volumes).min_by(|a, b| a.1.total_cmp(&b.1))?;
         let dimension = self.network.domain().dimension();
@@ -224,11 +220,11 @@ impl<'a> Flow<'a> {
         is_vanishing.then_some(NetworkError::GrainVanished { grain: GrainId(grain), time })
     }
 
-    /// One step of curvature flow.
+    /// One step of curvature flow; gives the energy before.
     ///
     /// What the step folds moves by its mean displacement instead, and as one from then on: it could not live. That is local: to solve the
     /// step anew for all grains would take as many attempts as the worst place of all.
-    pub(crate) fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<Taken, NetworkError> {
+    pub(crate) fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<f64, NetworkError> {
         let terms = self.patches.terms(points);
         let energy = terms.iter().map(|terms| terms.energy).sum();
         let refined = self.refined(points);
@@ -268,7 +264,7 @@ impl<'a> Flow<'a> {
         if self.tuning.keeps_joined && !is_growth_in_plane {
             self.clusters = clusters;
         }
-        Ok(Taken { energy, volumes })
+        Ok(energy)
     }
 
     /// How far points are from rest; nothing where no boundaries meet, and in the plane.
