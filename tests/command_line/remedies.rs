@@ -63,6 +63,20 @@ const REMEDIES: &[Remedy] = &[
         &[("d.csv", "diameter\n1\n")],
         "--seeds 2 --diameters d.csv",
     ),
+    (
+        "InsideError::NothingDivided",
+        &[],
+        "--seeds 5 --inside lamellae(width=9)",
+        &[],
+        "--seeds 5 --inside lamellae(width=0.57)",
+    ),
+    (
+        "PartsExceedMemory",
+        &[],
+        "--seeds 5 --inside lamellae(width=1e-12)",
+        &[],
+        "--seeds 5 --inside lamellae(width=0.05)",
+    ),
     ("GrainTooLarge", &[], "--diameters uniform(0.5,1.1)", &[], "--diameters uniform(0.5,1.1,to=1)"),
     (
         "GrainTooLarge",
