@@ -11,6 +11,7 @@ mod control_meshes;
 mod domains;
 mod front;
 mod good_runs;
+mod grain_shapes;
 mod inside;
 mod measure;
 mod periodic;

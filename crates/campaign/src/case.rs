@@ -108,6 +108,7 @@ impl Case {
         files.extend(sizes(draw, arrangement, count, &domain, &mut options));
         phases(draw, &mut options);
         inside(draw, &domain, count, &mut options);
+        grain_shapes(draw, dimension, &mut options);
         let mut case = Self {
             kind: arrangement.name().to_owned(),
             keeps_volumes: !options.has("free"),
@@ -231,6 +232,37 @@ fn phases(draw: &mut Draw, options: &mut Options) {
     }
 }
 
+/// Draws the shapes of single grains, where nothing else is in their way.
+fn grain_shapes(draw: &mut Draw, dimension: usize, options: &mut Options) {
+    let others = [
+        "lattice",
+        "domain",
+        "half-spaces",
+        "series",
+        "aspect-ratio",
+        "cells-json",
+        "cells-csv",
+        "no-mesh",
+        "periodic",
+        "min-diameter",
+        "seeds-file",
+        "edge-length",
+        "free",
+        "dry-run",
+        "regularize",
+        "inside",
+    ];
+    let is_taken = others.iter().any(|name| options.has(name));
+    let is_flat = options.value("relax") == Some("0");
+    let is_of_cells = options.values("output").iter().any(|name| name.ends_with(".tess"))
+        || options.value("format") == Some("tess");
+    if is_taken || is_flat || is_of_cells || !draw.chance(0.2) {
+        return;
+    }
+    let lengths = if dimension == 2 { "2:1" } else { draw.one_of(&["2:1:1", "1:1.5:1.5"]) };
+    options.set("grain-shapes", [format!("{lengths}{}", draw.one_of(&["", " aligned"]))]);
+}
+
 /// Draws the options of the control mesh, relaxation and subdivision.
 fn smoothing(draw: &mut Draw, domain: &Domain, count: u32, limits: Limits, options: &mut Options) {
     let is_plane = domain.sides.len() == 2;
@@ -339,6 +371,7 @@ mod tests {
             "format",
             "free",
             "gradient",
+            "grain-shapes",
             "grains-dir",
             "grains-format",
             "half-spaces",

@@ -203,6 +203,7 @@ fn plain(options: &mut Options) {
         "periodic-cut",
         "box",
         "aspect-ratio",
+        "grain-shapes",
         "gradient",
     ] {
         options.unset(name);

@@ -16,7 +16,8 @@ pub struct AskedAndReached {
 }
 
 impl Polycrystal {
-    /// Every figure that was asked for: of sizes, phases, divided grains, tensions, textures and disorientations. Lengths are in the unit of the box.
+    /// Every figure that was asked for: of sizes, phases, divided grains, shapes, tensions, textures and disorientations. Lengths are in the unit of
+    /// the box.
     pub fn asked_and_reached(&self) -> Vec<AskedAndReached> {
         let cells = &self.cells;
         let phases: Vec<&str> = cells.phases.iter().flat_map(|phases| phases.names()).collect();
@@ -31,6 +32,10 @@ impl Polycrystal {
             {
                 add(format!("share of the volume, {name}"), fraction_asked, fraction);
             }
+        }
+        if let Some(shapes) = self.shapes_reached() {
+            let reached = shapes.ratio.unwrap_or(shapes.ratio_of_cells);
+            add("length of grains over their width, median".to_owned(), shapes.ratio_asked, reached);
         }
         if let Some(tensions) = &self.tensions {
             let without = tensions.without_equilibrium.len() as f64;

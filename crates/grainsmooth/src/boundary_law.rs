@@ -2,13 +2,15 @@
 
 use std::fmt;
 
-use polycrystal::{Boundary, BoundaryId, Junctions, Measures, Network, NetworkError, Side, measure_network};
+use polycrystal::{
+    Boundary, BoundaryId, FaceMesh, Junctions, Measures, Network, NetworkError, Side, measure_network,
+};
 use serde::Serialize;
-use voronoi::Tessellation;
 
 use crate::size_file::read_law_file;
 use crate::{
     Config, Error, GrainPhases, GrainTexture, LawCurve, LawError, LawKind, LawOptions, LawProblem, LawSource,
+    Tessellated,
 };
 
 /// The least tension or mobility of a boundary, as a share of the largest that laws give: a boundary without tension would fold, one
@@ -230,12 +232,13 @@ impl BoundaryLaw {
     }
 
     /// The grains around each line (in the plane: point) of some cells where one tension exceeds the sum of the others.
-    pub(crate) fn without_equilibrium_in(&self, cells: &Tessellation) -> Vec<Vec<u32>> {
+    pub(crate) fn without_equilibrium_in(&self, cells: &Tessellated) -> Vec<Vec<u32>> {
         if self.tensions.is_none() {
             return Vec::new();
         }
         // Cells of which no network can be made have another fault to name.
-        let Ok((network, points)) = Network::new(cells, Junctions::Crease, 0) else { return Vec::new() };
+        let network = cells.network(&cells.tessellation, FaceMesh::Fan, Junctions::Crease, 0);
+        let Ok((network, points)) = network else { return Vec::new() };
         let Ok(network) = self.apply(network) else { return Vec::new() };
         without_equilibrium(&network, &measure_network(&network, &points))
     }

@@ -134,6 +134,17 @@ impl Arguments {
             );
         }
         let aspect_ratio = sizes.aspect_ratio(domain.dimension);
+        let grain_shapes = sizes.grain_shapes.clone();
+        if let Some(shapes) = &grain_shapes {
+            if domain.periodic.any() {
+                usage(
+                    "--grain-shapes makes grains between walls; leave --periodic out, or give --aspect-ratio for grains that are all long one way",
+                );
+            }
+            if let Err(message) = shapes.check(domain.dimension) {
+                usage(message);
+            }
+        }
         let (sizes, phases, inside) = (sizes.options(), phases.options(), phases.inside());
         let coloring = pictures.coloring();
         if coloring == Coloring::Phase && phases.is_empty() {
@@ -150,6 +161,7 @@ impl Arguments {
             box_size: domain.box_size,
             shape: arguments.shape(&domain),
             aspect_ratio,
+            grain_shapes,
             face_mesh: smoothing.face_mesh(),
             periodic: domain.periodic,
             periodic_cut,
@@ -176,6 +188,11 @@ impl Arguments {
         if is_sized && config.min_diameter > 0.0 {
             usage(
                 "--min-diameter would change sizes that are given; cut small ones off with from=, or give --seeding random",
+            );
+        }
+        if relaxation == Relaxation::Time(0.0) && config.grain_shapes.is_some() {
+            usage(
+                "--grain-shapes makes grains of several cells, which are sharp where these meet; leave --relax 0 out, or give --relax 0.02",
             );
         }
         let config = Config { relaxation, ..config };

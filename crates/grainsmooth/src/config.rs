@@ -8,8 +8,8 @@ use voronoi::{Dimension, Domain};
 use crate::domain_file::{half_space_domain, surface_domain};
 use crate::vtk::VtkEncoding;
 use crate::{
-    Error, InsideOptions, Lattice, LatticeFit, LawOptions, Names, PhaseOptions, SizeOptions, StlEncoding,
-    TextureOptions,
+    Error, InsideOptions, Lattice, LatticeFit, LawOptions, Names, PhaseOptions, ShapeSource, SizeOptions,
+    StlEncoding, TextureOptions,
 };
 
 /// Where seeds come from.
@@ -113,6 +113,8 @@ pub struct Config {
     /// How long grains are along each axis, in proportion. Everything is computed in a frame in which they are as long along all, and stretched in
     /// the end. For boxes only; in 2D the last is 1.
     pub aspect_ratio: DVec3,
+    /// The shape of each grain, in boxes with walls, where some are asked for: grains are then several cells each, and keep their neighbours.
+    pub grain_shapes: Option<ShapeSource>,
     /// Axes along which the box repeats; in 2D the last is ignored.
     pub periodic: BVec3,
     /// Where grains of a periodic domain end in what is written.
@@ -187,6 +189,7 @@ impl Default for Config {
             box_size: DVec3::ONE,
             shape: Shape::Box,
             aspect_ratio: DVec3::ONE,
+            grain_shapes: None,
             periodic: BVec3::FALSE,
             periodic_cut: PeriodicCut::Wrap,
             face_mesh: FaceMesh::Fan,
@@ -212,6 +215,13 @@ impl Config {
     /// the figures.
     pub const REGULARIZE: f64 = 0.05;
 
+    /// The same of cells that make up grains of given shapes, in their own mean sizes.
+    pub const REGULARIZE_OF_SHAPES: f64 = 0.2;
+
+    /// The usual relaxation of grains of given shapes, which it rounds: 200 of 2:1:1 with a ratio of 2.08 have 1.97 at 0.02, 1.82 at 0.1 and 1.70
+    /// at 0.3, with angles that spread by 11.9, 12.7 and 13.9 degrees.
+    pub const RELAXATION_OF_SHAPES: Relaxation = Relaxation::Time(0.05);
+
     /// Centroid steps of grains with given sizes: with 10 they have 13.7 faces and a sphericity of 0.855, as those of measured metals.
     pub const LLOYD_OF_SIZES: u32 = 10;
 
@@ -221,6 +231,9 @@ impl Config {
     /// How far boundaries relax unless something else is asked for. In the plane to equilibrium, which is quick and exact there, in
     /// space for a time: longer where all that stands beside it lets grains switch neighbours.
     pub fn usual_relaxation(&self) -> Relaxation {
+        if self.grain_shapes.is_some() {
+            return Self::RELAXATION_OF_SHAPES;
+        }
         let usual = match self.dimension {
             Dimension::Two => Relaxation::Equilibrium,
             Dimension::Three => Relaxation::USUAL,
@@ -244,7 +257,9 @@ impl Config {
         if self.relaxation == Relaxation::Time(0.0) {
             0.0
         } else {
-            self.regularize.unwrap_or(Self::REGULARIZE)
+            let usual =
+                if self.grain_shapes.is_some() { Self::REGULARIZE_OF_SHAPES } else { Self::REGULARIZE };
+            self.regularize.unwrap_or(usual)
         }
     }
 
@@ -259,7 +274,10 @@ impl Config {
             }
             Dimension::Three => self.relaxation != Relaxation::Time(0.0),
         };
-        is_on_the_way && self.regularize.is_none() && self.volumes == Volumes::Kept
+        is_on_the_way
+            && self.grain_shapes.is_none()
+            && self.regularize.is_none()
+            && self.volumes == Volumes::Kept
     }
 
     /// Control points on the boundaries of regularised cells: in a fan, whose triangles at short lines are thin, those stay whole.

@@ -237,6 +237,12 @@ pub enum Error {
         /// The path as given.
         path: PathBuf,
     },
+    /// The output's format holds convex cells, and grains are several of them.
+    #[error("{}: this format holds convex cells, and --grain-shapes makes grains of several; choose another, such as .vtp", path.display())]
+    CellsOfGrains {
+        /// The path as given.
+        path: PathBuf,
+    },
     /// A file of sizes cannot be read.
     #[error("{}: cannot be read: {cause}; give the path of a readable text file", path.display())]
     SizeFileUnreadable {

@@ -48,7 +48,7 @@ impl Estimate {
             _ => crate::pipeline::control_mesh(config, tessellation),
         };
         let mesh = control_mesh.after(config.levels);
-        let grains = tessellation.cell_count();
+        let grains = cells.grain_count();
         Self {
             grains,
             mesh,

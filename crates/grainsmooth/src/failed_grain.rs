@@ -33,8 +33,8 @@ impl FailedGrain {
     pub(crate) fn of(cause: &NetworkError, cells: &Tessellated) -> Option<Self> {
         let named = cause.grains()?;
         let dimension = cells.tessellation.domain().dimension();
-        let measures = cells.tessellation.cell_measures();
-        let diameters: Vec<f64> = measures.iter().map(|cell| dimension.ball_diameter(cell.volume)).collect();
+        let volumes = cells.volumes();
+        let diameters: Vec<f64> = volumes.iter().map(|volume| dimension.ball_diameter(*volume)).collect();
         let is_named = |grain: &u32| named.is_empty() || named.iter().any(|other| other.0 == *grain);
         let sized = (0u32..).zip(&diameters).filter(|(grain, _)| is_named(grain));
         let (grain, diameter) = sized.min_by(|a, b| a.1.total_cmp(b.1))?;

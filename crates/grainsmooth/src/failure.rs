@@ -40,7 +40,7 @@ impl Failure {
         let (more, cause) = error.into_attempts();
         attempts.extend(more);
         let grain = FailedGrain::of(&cause, cells);
-        let without_equilibrium = cells.law.without_equilibrium_in(&cells.tessellation);
+        let without_equilibrium = cells.law.without_equilibrium_in(cells);
         let dimension = cells.tessellation.domain().dimension();
         Self { dimension, cause, grain, growth: None, without_equilibrium, attempts }
     }

@@ -125,7 +125,7 @@ impl Polycrystal {
     pub(crate) fn shifts(&self, explode: f64) -> Vec<DVec3> {
         let domain = self.network.domain();
         let middle = domain.lower().midpoint(domain.upper());
-        let centroids = self.cells.tessellation.centroids();
+        let centroids = self.cells.centroids();
         centroids.into_iter().map(|centroid| (centroid - middle) * explode).collect()
     }
 

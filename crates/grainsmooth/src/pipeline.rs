@@ -20,6 +20,7 @@ use voronoi::{Collapsed, Dimension, Tessellation};
 use crate::failure::Growth;
 use crate::formats::LABEL_BYTES;
 use crate::memory::{ControlMesh, LevelSize, available_memory, check_levels};
+use crate::tessellated::grain_volumes;
 use crate::{
     BoundaryLaw, Config, Error, Failure, LawReached, PeriodicCut, SeedSource, TensionsReached, Tessellated,
     Topology, tessellate,
@@ -293,7 +294,7 @@ pub fn smooth_watched(
         let regularization = *tries.next().expect("there is one, and the last is the result");
         match smooth_regularized(
             config,
-            &cells.law,
+            &cells,
             tessellation,
             regularization,
             &mut attempts,
@@ -308,7 +309,7 @@ pub fn smooth_watched(
                 if config.volumes == Volumes::Kept || !failure.cause.is_of_time() {
                     return Err(failure.into());
                 }
-                let works = time_that_works(config, &cells.law, tessellation, &failure.cause);
+                let works = time_that_works(config, &cells, tessellation, &failure.cause);
                 return Err(failure.with_growth(works.map_or(Growth::Never, Growth::Until)).into());
             }
             Ok(smoothed) => break (regularization, smoothed),
@@ -319,7 +320,7 @@ pub fn smooth_watched(
     attempts.extend(relaxed.given_up.clone());
     let residual = clock.time(Stage::Validation, || herring_residual(&network, &points));
     let times = clock.times;
-    let topology = Topology::new(tessellation, &network);
+    let topology = Topology::new(&cells, tessellation, &network);
     let config = config.clone();
     let mut polycrystal = Polycrystal {
         config,
@@ -350,7 +351,7 @@ pub fn smooth_watched(
 /// A time for which grains can grow freely, where for the config's own they cannot: it is tried.
 fn time_that_works(
     config: &Config,
-    law: &BoundaryLaw,
+    cells: &Tessellated,
     tessellation: &Tessellation,
     cause: &NetworkError,
 ) -> Option<f64> {
@@ -367,7 +368,7 @@ fn time_that_works(
             let attempts = &mut Vec::new();
             smooth_regularized(
                 &shorter,
-                law,
+                cells,
                 tessellation,
                 *regularization,
                 attempts,
@@ -409,6 +410,8 @@ pub enum Regularization {
     Foreseeing,
     /// What is short.
     Plain,
+    /// What is shorter by some halvings.
+    Shorter(u8),
     /// Nothing.
     None,
 }
@@ -420,6 +423,7 @@ impl Regularization {
             Self::ByEnergy => "by_energy",
             Self::Foreseeing => "full",
             Self::Plain => "short_edges",
+            Self::Shorter(_) => "shorter_edges",
             Self::None => "none",
         }
     }
@@ -429,6 +433,7 @@ impl Regularization {
             Self::ByEnergy => "letting grains switch neighbours",
             Self::Foreseeing => "cells without edges that are or become short",
             Self::Plain => "cells without short edges",
+            Self::Shorter(_) => "cells without still shorter edges",
             Self::None => "cells as they are",
         }
     }
@@ -437,7 +442,9 @@ impl Regularization {
     pub(crate) fn fell_back(self, config: &Config) -> bool {
         match self {
             Self::ByEnergy | Self::Foreseeing => false,
-            Self::Plain => true,
+            // Where grains are of several cells, those are not what relaxation is foreseen of.
+            Self::Plain => config.grain_shapes.is_none(),
+            Self::Shorter(_) => true,
             Self::None => config.effective_regularize() > 0.0,
         }
     }
@@ -449,6 +456,10 @@ impl Regularization {
                 &[Self::ByEnergy, Self::Foreseeing, Self::Plain, Self::None]
             }
             0.0 => &[Self::None],
+            // A grain of several cells may touch itself where an edge is gone, which no cell does.
+            _ if config.grain_shapes.is_some() => {
+                &[Self::Plain, Self::Shorter(1), Self::Shorter(2), Self::Shorter(3), Self::None]
+            }
             _ => &[Self::Foreseeing, Self::Plain, Self::None],
         }
     }
@@ -469,7 +480,7 @@ struct Smoothed {
 /// The network of cells regularised in one way.
 fn smooth_regularized(
     config: &Config,
-    law: &BoundaryLaw,
+    cells: &Tessellated,
     tessellation: &Tessellation,
     regularization: Regularization,
     attempts: &mut Vec<Attempt>,
@@ -482,10 +493,10 @@ fn smooth_regularized(
         watch(step);
     };
     if regularization == Regularization::ByEnergy {
-        return smooth_by_energy(config, law, tessellation, attempts, clock, &mut watch);
+        return smooth_by_energy(config, &cells.law, tessellation, attempts, clock, &mut watch);
     }
     let (mut network, flat, collapsed) =
-        clock.time(Stage::Network, || network(config, law, tessellation, regularization, attempts))?;
+        clock.time(Stage::Network, || network(config, cells, tessellation, regularization, attempts))?;
     let angles_before = dihedral_angles(&network, network.control_mesh(), &flat);
     let flat_angles = angles_between_boundaries(&network, network.control_mesh(), &flat);
     let relaxed = clock.time(Stage::Relaxation, || {
@@ -548,16 +559,16 @@ fn smooth_by_energy(
 /// The network of regularised cells, whose grains are to have the volumes of the cells as they were.
 fn network(
     config: &Config,
-    law: &BoundaryLaw,
+    cells: &Tessellated,
     tessellation: &Tessellation,
     regularization: Regularization,
     attempts: &mut Vec<Attempt>,
 ) -> Result<(Network, Vec<DVec3>, Collapsed), NetworkError> {
     let Config { face_mesh, junctions, levels, .. } = *config;
     let length = config.effective_regularize();
-    let network_of = |cells, face_mesh| {
-        let (network, flat) = Network::with_face_mesh(cells, face_mesh, junctions, levels as usize)?;
-        Ok::<_, NetworkError>((law.apply(network)?, flat))
+    let network_of = |tessellation: &Tessellation, face_mesh| {
+        let (network, flat) = cells.network(tessellation, face_mesh, junctions, levels as usize)?;
+        Ok::<_, NetworkError>((cells.law.apply(network)?, flat))
     };
     let (regular, collapsed) = match regularization {
         Regularization::Foreseeing => {
@@ -566,12 +577,13 @@ fn network(
             (cells, collapsed)
         }
         Regularization::Plain => tessellation.regularized(length),
+        Regularization::Shorter(halvings) => tessellation.regularized(0.5f64.powi(halvings.into()) * length),
         Regularization::None | Regularization::ByEnergy => {
             let (network, flat) = network_of(tessellation, face_mesh)?;
             return Ok((network, flat, Collapsed::default()));
         }
     };
-    let volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
+    let volumes = grain_volumes(tessellation, cells.shapes.as_ref());
     let (network, flat) = network_of(&regular, config.regular_face_mesh())?;
     Ok((network.with_cell_volumes(volumes), flat, collapsed))
 }

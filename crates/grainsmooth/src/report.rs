@@ -12,7 +12,7 @@ use base64::engine::general_purpose::STANDARD as BASE64;
 use polycrystal::{WeightedAngle, angles_between_boundaries};
 use sizes::Distribution;
 use texture::{AngleHistogram, Pair, RandomDisorientations};
-use voronoi::{CellId, Dimension};
+use voronoi::Dimension;
 
 use crate::significant::significant;
 use crate::{
@@ -240,9 +240,7 @@ impl Polycrystal {
     }
 
     fn face_chart(&self) -> Chart {
-        let tessellation = &self.cells.tessellation;
-        let cells =
-            (0..).take(tessellation.cell_count()).map(|cell| tessellation.cell_faces(CellId(cell)).len());
+        let cells = self.cells.face_counts(&self.cells.tessellation);
         let count = |count: usize| (count as f64, 1.0);
         let (least, shares) = face_shares(self.config.dimension);
         let (title, unit) = match self.config.dimension {
@@ -255,7 +253,7 @@ impl Polycrystal {
             of: "grains",
             // Whole numbers in the middle of their bins.
             bins: chart::Bins { start: -0.5, width: 1.0 },
-            before: cells.map(count).collect(),
+            before: cells.into_iter().map(count).collect(),
             names: BEFORE_AND_AFTER,
             after: self.boundary_counts().into_iter().map(count).collect(),
             exact: (least..).zip(shares).map(|(count, share)| (count as f64, *share)).collect(),

@@ -69,6 +69,9 @@ impl Config {
             let axes = usize::from(self.dimension.axes());
             add("aspect-ratio", self.aspect_ratio.to_array()[..axes].to_vec().into());
         }
+        if let Some(shapes) = &self.grain_shapes {
+            add("grain-shapes", shapes.to_string().into());
+        }
         match &self.shape {
             Shape::Box => {}
             Shape::Sphere { chord_error } => {

@@ -3,9 +3,13 @@
 use std::fs;
 use std::path::Path;
 
+use glam::{DMat3, DVec3};
 use sizes::{Table, TableError};
+use texture::Orientation;
 use voronoi::Dimension;
+use voronoi::volumes::GrainShape;
 
+use crate::shape_options::{MOST_RATIO, are_good_lengths};
 use crate::text_table::{self, TextProblem};
 use crate::{Error, LawKind};
 
@@ -164,6 +168,52 @@ pub(crate) fn read_law_file(path: &Path, kind: LawKind) -> Result<Vec<[f64; 2]>,
             }
         }
         Ok(table)
+    })
+}
+
+/// Reads the shape of each grain: lengths in proportion and Bunge's Euler angles of their directions in degrees; in the plane two lengths and
+/// the angle of the first with x.
+///
+/// # Errors
+/// [`Error::SizeFileUnreadable`]; [`Error::BadSizeFile`].
+pub(crate) fn read_shape_file(path: &Path, dimension: Dimension) -> Result<Vec<GrainShape>, Error> {
+    read(path, |content| {
+        let rows = Rows::new(content)?;
+        let names: &[&str] = match dimension {
+            Dimension::Two => &["a", "b", "phi1"],
+            Dimension::Three => &["a", "b", "c", "phi1", "phi", "phi2"],
+        };
+        let places: Option<Vec<usize>> = if rows.names.is_empty() {
+            let is_good = rows.rows.iter().all(|(_, columns)| columns.len() == names.len());
+            is_good.then(|| (0..names.len()).collect())
+        } else {
+            names.iter().map(|name| rows.named(&[name])).collect()
+        };
+        let Some(places) = places else {
+            return Err((rows.first_line, format!("needs the columns {}; name them so", names.join(", "))));
+        };
+        let columns: Vec<Vec<[f64; 1]>> =
+            places.iter().map(|place| rows.numbers([*place])).collect::<Result<_, _>>()?;
+        let axes = usize::from(dimension.axes());
+        let shape = |row: usize| {
+            let value = |column: usize| columns[column][row][0];
+            let lengths: Vec<f64> = (0..axes).map(value).collect();
+            let angles: Vec<f64> = (axes..names.len()).map(value).collect();
+            if !are_good_lengths(&lengths) || !angles.iter().all(|angle| angle.is_finite()) {
+                let problem = format!(
+                    "lengths are positive, the longest at most {MOST_RATIO} times the shortest, and angles finite; correct it"
+                );
+                return Err((rows.rows[row].0, problem));
+            }
+            let orientation = Orientation::from_euler_degrees(match angles[..] {
+                [phi1, phi, phi2] => [phi1, phi, phi2],
+                _ => [angles[0], 0.0, 0.0],
+            });
+            let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| orientation.to_sample(axis));
+            let lengths = DVec3::new(lengths[0], lengths[1], *lengths.get(2).unwrap_or(&1.0));
+            Ok(GrainShape { lengths, axes: DMat3::from_cols(x, y, z) })
+        };
+        (0..rows.rows.len()).map(shape).collect()
     })
 }
 

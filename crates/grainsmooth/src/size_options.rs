@@ -97,6 +97,7 @@ impl Config {
         self.sizes.source.is_some()
             || matches!(self.seeds, SeedSource::Packed { .. })
             || !self.phases.is_empty()
+            || self.grain_shapes.is_some()
     }
 
     /// Whether sizes are asked for that say how many grains there are.

@@ -4,13 +4,15 @@ use std::fmt;
 use std::time::Duration;
 
 use glam::DVec3;
-use polycrystal::{AngleStatistics, Balance, Boundary, HerringResidual, Reconnections, Relaxation, Volumes};
+use polycrystal::{
+    AngleStatistics, Balance, Boundary, HerringResidual, Reconnections, Relaxation, Volumes, measure_network,
+};
 use voronoi::{Collapsed, Dimension};
 
 use crate::grain_texture::TextureLine;
 use crate::{
-    Config, EquivalentDiameters, Polycrystal, Reconnected, Regularization, SeedSource, SizesReached, Stage,
-    Tessellated, TriangleAngles,
+    Config, EquivalentDiameters, Polycrystal, Reconnected, Regularization, SeedSource, ShapesReached,
+    SizesReached, Stage, Tessellated, TriangleAngles,
 };
 
 /// A polycrystal in a few lines of text: counts, angles, volumes, validation, times.
@@ -31,6 +33,9 @@ impl fmt::Display for Summary<'_> {
             write_phases(out, &polycrystal.cells, network.cell_volumes(), &reached)?;
         }
         write_inside(out, &polycrystal.cells)?;
+        if let Some(reached) = polycrystal.shapes_reached() {
+            write!(out, "{reached}")?;
+        }
         write_texture(out, &polycrystal.cells)?;
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
         let through_walls = count(|boundary| boundary.twin.is_some()) / 2;
@@ -223,7 +228,7 @@ fn write_phases(
 /// What became of the seeds: a lattice, and those that are left out.
 fn write_seeds(out: &mut fmt::Formatter<'_>, config: &Config, cells: &Tessellated) -> fmt::Result {
     let tessellation = &cells.tessellation;
-    let seeds = tessellation.cell_count() + cells.dropped_seeds.len() + cells.merged_seeds.len();
+    let seeds = cells.grain_count() + cells.dropped_seeds.len() + cells.merged_seeds.len();
     if let Some(lattice) = config.lattice_report(tessellation.domain(), seeds) {
         writeln!(out, "lattice     {lattice}")?;
     }
@@ -298,6 +303,12 @@ impl Polycrystal {
         let is_kept = self.config.volumes == Volumes::Kept;
         let (cells, grains) = (self.cells.volumes(), self.cells.by_parents(&grains));
         Some(sizes.reached(&self.cells.by_parents(&cells), is_kept.then_some(&grains[..])))
+    }
+
+    /// How near the grains came to the shapes that were asked for, where some were.
+    pub(crate) fn shapes_reached(&self) -> Option<ShapesReached> {
+        let shapes = self.cells.shapes.as_ref()?;
+        Some(shapes.reached(Some(&measure_network(&self.network, &self.points))))
     }
 
     /// How large the grains are. Their volumes are those of their cells unless grains grow.

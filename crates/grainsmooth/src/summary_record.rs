@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::triangle_angles::TriangleAngles;
 use crate::{
     AskedAndReached, ComponentShare, Divided, EquivalentDiameters, HistogramFit, LawReached, PhaseShare,
-    Polycrystal, Reconnected, SizesFit, SizesReached, TensionsReached, Tessellated, Topology,
+    Polycrystal, Reconnected, ShapesReached, SizesFit, SizesReached, TensionsReached, Tessellated, Topology,
 };
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
@@ -32,6 +32,8 @@ pub struct SummaryRecord {
     asked_and_reached: Vec<AskedAndReached>,
     /// The sizes asked for and reached.
     sizes: Option<SizesReached>,
+    /// The shapes asked for and reached.
+    shapes: Option<ShapesReached>,
     /// None where no phases are asked for.
     phases: Vec<PhaseRecord>,
     /// What divides grains; none where nothing does.
@@ -188,6 +190,7 @@ impl SummaryRecord {
             topology: polycrystal.topology.clone(),
             asked_and_reached: polycrystal.asked_and_reached(),
             sizes: polycrystal.sizes_reached(),
+            shapes: polycrystal.shapes_reached(),
             texture: polycrystal
                 .cells
                 .phases

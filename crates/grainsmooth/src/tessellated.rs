@@ -4,10 +4,13 @@ use std::borrow::Cow;
 use std::time::Duration;
 
 use glam::DVec3;
+use polycrystal::{FaceMesh, Junctions, Network, NetworkError};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use texture::CrystalSymmetry;
-use voronoi::volumes::{PowerDiagram, VolumesError, place_spheres};
+use voronoi::volumes::{
+    GrainDiagram, GrainShape, PowerDiagram, VolumesError, place_ellipsoids, place_spheres,
+};
 use voronoi::{CellId, Domain, Side, Tessellation, VoronoiError};
 
 use crate::gradient::Gradient;
@@ -16,9 +19,9 @@ use crate::memory::{available_memory, check_cells};
 use crate::pipeline::{Clock, seed_count};
 use crate::seeding::unit_fraction;
 use crate::{
-    BoundaryLaw, Config, EquivalentDiameters, Error, FileSeed, FileSeeds, GrainPhases, GrainSizes,
-    GrainTexture, Parents, Progress, SeedPlace, SeedSource, Stage, poisson_disc_seeds, random_seeds,
-    read_seed_file,
+    BoundaryLaw, Config, EquivalentDiameters, Error, FileSeed, FileSeeds, GrainPhases, GrainShapes,
+    GrainSizes, GrainTexture, Parents, Progress, SeedPlace, SeedSource, Stage, poisson_disc_seeds,
+    random_seeds, read_seed_file,
 };
 
 /// The cells of a config's seeds.
@@ -43,6 +46,8 @@ pub struct Tessellated {
     pub phases: Option<GrainPhases>,
     /// The orientations of the grains, where they are asked for.
     pub texture: Option<GrainTexture>,
+    /// The shapes of grains of several cells each, where some are asked for; without, each cell is a grain.
+    pub shapes: Option<GrainShapes>,
     /// What boundaries have.
     pub law: BoundaryLaw,
     /// What the file of the seeds also tells of grains, and has no place here.
@@ -62,16 +67,52 @@ impl Tessellated {
         Self { tessellation: self.tessellation.stretched(stretch), ..self }
     }
 
-    /// Volumes of the cells; in the plane areas.
+    /// Number of grains.
+    pub(crate) fn grain_count(&self) -> usize {
+        self.shapes.as_ref().map_or_else(|| self.tessellation.cell_count(), GrainShapes::count)
+    }
+
+    /// Volumes of the grains in the flat cells; in the plane areas.
     pub(crate) fn volumes(&self) -> Vec<f64> {
-        self.tessellation.cell_measures().iter().map(|cell| cell.volume).collect()
+        grain_volumes(&self.tessellation, self.shapes.as_ref())
+    }
+
+    /// Centroids of the grains in the flat cells.
+    pub(crate) fn centroids(&self) -> Vec<DVec3> {
+        let Some(shapes) = &self.shapes else { return self.tessellation.centroids() };
+        let cells = self.tessellation.cell_measures();
+        let sums = shapes.sums(cells.iter().map(|cell| cell.volume * cell.centroid));
+        sums.into_iter().zip(self.volumes()).map(|(sum, volume)| sum / volume).collect()
+    }
+
+    /// Number of faces of each grain in some cells, those of this or what regularisation made of them.
+    pub(crate) fn face_counts(&self, tessellation: &Tessellation) -> Vec<usize> {
+        let cells = (0u32..).take(tessellation.cell_count()).map(CellId);
+        match &self.shapes {
+            Some(shapes) => shapes.face_counts(tessellation),
+            None => cells.map(|cell| tessellation.cell_faces(cell).len()).collect(),
+        }
+    }
+
+    /// The network of the grains of some cells, those of this or what regularisation made of them.
+    pub(crate) fn network(
+        &self,
+        tessellation: &Tessellation,
+        face_mesh: FaceMesh,
+        junctions: Junctions,
+        levels: usize,
+    ) -> Result<(Network, Vec<DVec3>), NetworkError> {
+        match &self.shapes {
+            Some(shapes) => Network::of_grains(tessellation, shapes.of_cell(), face_mesh, junctions, levels),
+            None => Network::with_face_mesh(tessellation, face_mesh, junctions, levels),
+        }
     }
 
     /// Index of each grain's phase; 0 without phases.
     pub(crate) fn phase_of(&self) -> Vec<usize> {
         match &self.phases {
             Some(phases) => phases.phase_of().to_vec(),
-            None => vec![0; self.tessellation.cell_count()],
+            None => vec![0; self.grain_count()],
         }
     }
 
@@ -98,6 +139,15 @@ impl Tessellated {
     }
 }
 
+/// Volumes of the grains that cells make up; in the plane areas.
+pub(crate) fn grain_volumes(tessellation: &Tessellation, shapes: Option<&GrainShapes>) -> Vec<f64> {
+    let cells = tessellation.cell_measures().into_iter().map(|cell| cell.volume);
+    match shapes {
+        Some(shapes) => shapes.sums(cells),
+        None => cells.collect(),
+    }
+}
+
 /// Computes the cells alone.
 ///
 /// # Errors
@@ -120,8 +170,16 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
     }
     let mut seeds = NumberedSeeds::new(seeds);
     let (mut dropped_seeds, mut merged_seeds) = (Vec::new(), Vec::new());
+    let mut shapes = None;
     let (tessellation, weights) = clock.time(Stage::Cells, || {
         if let Some(wanted) = sizes.take() {
+            if let Some(wanted_shapes) = config.wanted_shapes(seeds.seeds.len())? {
+                let diagram = shaped_grains(config, &domain, &seeds.seeds, wanted.volumes(), &wanted_shapes)?;
+                sizes = Some(wanted.with_centroid_steps(diagram.centroid_steps()));
+                let asked = config.grain_shapes.as_ref().map_or_else(String::new, ToString::to_string);
+                shapes = Some(GrainShapes::of_diagram(asked, wanted_shapes, &diagram)?);
+                return Ok((diagram.tessellation().clone(), diagram.weights().to_vec()));
+            }
             let diagram = sized_cells(config, &domain, &seeds.seeds, wanted.volumes())?;
             sizes = Some(wanted.with_centroid_steps(diagram.centroid_steps()));
             return Ok((diagram.tessellation().clone(), diagram.weights().to_vec()));
@@ -168,12 +226,12 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
     }
     let (tessellation, weights, seed_ids, parents) = cells;
     let texture = (!textures.is_empty()).then(|| {
-        let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
+        let volumes = grain_volumes(&tessellation, shapes.as_ref());
         let texture_of =
             phases.as_ref().map_or_else(|| vec![0; volumes.len()], |phases| phases.phase_of().to_vec());
         GrainTexture::draw(textures, texture_of, &volumes, config.random_seed).with_target(histogram)
     });
-    let law = BoundaryLaw::new(config, phases.as_ref(), texture.as_ref(), tessellation.cell_count())?;
+    let law = BoundaryLaw::new(config, phases.as_ref(), texture.as_ref(), seed_ids.len())?;
     let times = clock.times;
     Ok(Tessellated {
         tessellation,
@@ -185,6 +243,7 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
         sizes,
         phases,
         texture,
+        shapes,
         law,
         passed_over,
         times,
@@ -267,6 +326,23 @@ fn sized_cells(
     })
 }
 
+/// Grains of given volumes and shapes, after the centroid steps.
+fn shaped_grains(
+    config: &Config,
+    domain: &Domain,
+    seeds: &[FileSeed],
+    volumes: &[f64],
+    shapes: &[GrainShape],
+) -> Result<GrainDiagram, Error> {
+    let positions: Vec<DVec3> = seeds.iter().map(|seed| seed.position).collect();
+    let diagram = GrainDiagram::with_shapes(domain, &positions, volumes, shapes)
+        .and_then(|diagram| diagram.lloyd(config.centroid_steps() as usize));
+    diagram.map_err(|error| match error {
+        VolumesError::Voronoi(error) => located(error, config, seeds),
+        error => error.into(),
+    })
+}
+
 /// The seeds, and the volumes that their cells are to have where these are given.
 fn seeds(config: &Config, domain: &Domain) -> Result<(FileSeeds, Option<GrainSizes>), Error> {
     if let Some(count) = seed_count(config) {
@@ -291,7 +367,11 @@ fn seeds(config: &Config, domain: &Domain) -> Result<(FileSeeds, Option<GrainSiz
             let sizes = GrainSizes::draw(config, domain, *count)?;
             let mut generator = ChaCha8Rng::seed_from_u64(config.random_seed);
             let fraction = || unit_fraction(generator.next_u64());
-            (place_spheres(domain, sizes.volumes(), fraction)?, Some(sizes))
+            let places = match config.wanted_shapes(*count)? {
+                Some(shapes) => place_ellipsoids(domain, sizes.volumes(), &shapes, fraction)?,
+                None => place_spheres(domain, sizes.volumes(), fraction)?,
+            };
+            (places, Some(sizes))
         }
         SeedSource::Random { count } => (random_seeds(*count, domain, config.random_seed), sizes(*count)?),
         SeedSource::PoissonDisc { count } => {

@@ -5,7 +5,9 @@ use std::fmt;
 
 use polycrystal::Network;
 use serde::Serialize;
-use voronoi::{Dimension, Side, Tessellation};
+use voronoi::{Dimension, Tessellation};
+
+use crate::Tessellated;
 
 /// Faces a grain, and junctions by what meets there.
 ///
@@ -27,9 +29,8 @@ pub struct Topology {
 
 impl Topology {
     /// That of a network and of the cells that it came from. Of periodic copies one counts.
-    pub(crate) fn new(cells: &Tessellation, network: &Network) -> Self {
-        let faces_of_cells = cells.faces().flat_map(|face| cells.face_sides(face));
-        let before = faces_of_cells.filter(|side| matches!(side, Side::Cell(_))).count();
+    pub(crate) fn new(cells: &Tessellated, tessellation: &Tessellation, network: &Network) -> Self {
+        let before: usize = cells.face_counts(tessellation).iter().sum();
         let after = network.boundaries().iter().flat_map(|boundary| boundary.signed_grains()).count();
         let junctions = network.junction_counts();
         let dimension = network.domain().dimension();
@@ -39,7 +40,7 @@ impl Topology {
         };
         Self {
             dimension,
-            faces_before: before as f64 / cells.cell_count() as f64,
+            faces_before: before as f64 / network.grain_count() as f64,
             faces: after as f64 / network.grain_count() as f64,
             lines_by_boundaries,
             points_by_grains,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use glam::DVec3;
-use grainsmooth::{GradientSource, SizeDraw, SizeOptions, SizeSource};
+use grainsmooth::{GradientSource, ShapeSource, SizeDraw, SizeOptions, SizeSource};
 use voronoi::Dimension;
 
 use super::usage;
@@ -54,6 +54,16 @@ pub struct SizeArguments {
     /// Example: --aspect-ratio 3 1 1
     #[arg(long, value_names = ["X", "Y", "Z"], num_args = 2.., value_parser = parse_proportion, conflicts_with_all = ["lattice", "domain", "half_spaces", "series"], allow_negative_numbers = true)]
     aspect_ratio: Option<Vec<f64>>,
+
+    /// Give each grain a shape: an ellipsoid (in 2D an ellipse) with lengths in proportion, in a random direction or along x, y and z
+    ///
+    /// Grains are several cells each, which makes them as long as there is room for; volumes are as exact as without, and the summary tells the
+    /// ratio that was reached. A file (.csv, .txt) has a line for each grain: lengths a, b, c and Bunge's Euler angles phi1, Phi, phi2 in
+    /// degrees, in 2D a, b and phi1. Relaxation rounds grains: --relax tells how far.
+    ///
+    /// Example: --grain-shapes '3:1:1 aligned'
+    #[arg(long, value_name = "SPEC|FILE", value_parser = ShapeSource::parse, conflicts_with_all = ["lattice", "domain", "half_spaces", "series", "aspect_ratio", "inside", "cells_json", "cells_csv", "no_mesh"])]
+    pub grain_shapes: Option<ShapeSource>,
 }
 
 /// `--draw` as it is spelled.

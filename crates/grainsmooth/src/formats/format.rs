@@ -238,6 +238,9 @@ impl OutputFormat {
             }
             (_, Content::Voxels(_)) if config.file.voxels.is_none() => Err(Error::NoVoxels { path: path() }),
             (_, Content::Orientations) if !config.has_texture() => Err(Error::NoTexture { path: path() }),
+            _ if config.grain_shapes.is_some() && self.extension() == "tess" => {
+                Err(Error::CellsOfGrains { path: path() })
+            }
             _ => Ok(()),
         }
     }

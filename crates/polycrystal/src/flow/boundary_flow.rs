@@ -6,6 +6,7 @@ mod volumes;
 mod widening;
 
 use glam::DVec3;
+use subzero::VertexRule;
 use voronoi::Dimension;
 
 use crate::check::folds::{element_normals, folded_pairs};
@@ -34,10 +35,10 @@ const FEATURE_EDGES: f64 = 6.0;
 /// Share of its first residual at which a step of grains that grow is solved: rates of growth are asked for, not only where they lead.
 const FREE_TOLERANCE: f64 = 1e-3;
 
-/// Most steps of points toward the middle of the triangles around, and their share of the way, where a start is folded by subdivision. The walls
-/// of a host whose cells are as flat as a fiftieth of it take one step.
-const CENTERING_STEPS: usize = 10;
-const CENTERING: f64 = 0.5;
+/// Most steps of either kind where a start is folded by subdivision, and the share of its way that a point goes. The walls of a host whose cells
+/// are as flat as a fiftieth of it take one step.
+const UNFOLDING_STEPS: usize = 10;
+const UNFOLDING: f64 = 0.5;
 
 /// Change of the cosine of a bend that counts as none.
 pub(crate) const SLIGHT_BEND: f64 = 1e-9;
@@ -60,6 +61,15 @@ pub(crate) enum End {
     Volumes,
     /// These, and no triangle of the finest level is thin.
     Finished,
+}
+
+/// What becomes of places that are folded after a stage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Folded {
+    /// They go back toward where they were.
+    GiveWay,
+    /// They are rounded: where they were is folded too.
+    Round,
 }
 
 /// A network whose points of one level move.
@@ -114,40 +124,73 @@ impl<'a> Flow<'a> {
         progress: &mut impl FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
         let clusters = self.clusters.clone();
-        match self.run_from(start, stage, progress) {
+        match self.run_from(start, stage, Folded::GiveWay, progress) {
             Err(error @ NetworkError::Folded { .. }) => {
-                let Some(centered) = self.centered(start) else { return Err(error) };
+                let Some(unfolded) = self.unfolded(start) else { return Err(error) };
                 self.clusters = clusters;
-                self.run_from(&centered, stage, progress)
+                self.run_from(&unfolded, stage, Folded::Round, progress)
             }
             result => result,
         }
     }
 
-    /// Points that fold the finest level, moved within their boundaries until they do not: a boundary of several faces has points inside
-    /// that are crowded, and subdivision puts triangles there over each other even in a plane. Nothing where no point is to move.
-    fn centered(&self, start: &[DVec3]) -> Option<Vec<DVec3>> {
+    /// Points that fold the finest level, moved until they do not: a boundary of several faces has points inside that are crowded, so that
+    /// subdivision puts triangles there over each other even in a plane, and edges inside that are sharp. The first are centred within their
+    /// boundaries, and where folds remain, they go to the middle of their neighbours. Nothing where no point is to move.
+    fn unfolded(&self, start: &[DVec3]) -> Option<Vec<DVec3>> {
         let finest = Wedged::new(self.network, self.finest());
-        let folds = |points: &[DVec3]| self.folded_places(&self.finest_points(points), &finest).len();
-        let mut best = (folds(start), None);
         let mut points = start.to_vec();
-        for _ in 0..CENTERING_STEPS {
-            if best.0 == 0 {
+        let mut places = self.folded_places(&self.finest_points(&points), &finest);
+        let mut best = (places.len(), None);
+        for step in 0..2 * UNFOLDING_STEPS {
+            if places.is_empty() {
                 break;
             }
-            points = displaced(&points, &tangential_moves(self.network, self.level, &points, CENTERING));
-            let count = folds(&points);
-            if count < best.0 {
-                best = (count, Some(points.clone()));
+            let moves = if step < UNFOLDING_STEPS {
+                tangential_moves(self.network, self.level, &points, UNFOLDING)
+            } else {
+                self.rounding(&points, &places)
+            };
+            points = displaced(&points, &moves);
+            places = self.folded_places(&self.finest_points(&points), &finest);
+            if places.len() < best.0 {
+                best = (places.len(), Some(points.clone()));
+            } else if step + 1 == UNFOLDING_STEPS {
+                points = best.1.clone().unwrap_or_else(|| start.to_vec());
             }
         }
         best.1
+    }
+
+    /// A step of the points inside boundaries and on lines that some places depend on, toward the middle of their neighbours.
+    fn rounding(&self, points: &[DVec3], places: &[Vec<u32>]) -> Vec<DVec3> {
+        let mut moves = vec![DVec3::ZERO; points.len()];
+        let Mesh::Triangles(mesh) = self.control_mesh() else { return moves };
+        let mut is_moved = vec![false; points.len()];
+        places.iter().flatten().for_each(|point| is_moved[*point as usize] = true);
+        let mut counts = vec![0.0; points.len()];
+        for edge in 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits") {
+            let [a, b] = mesh.edge(edge).map(|end| end as usize);
+            let way = points[b] - points[a];
+            moves[a] += way;
+            moves[b] -= way;
+            counts[a] += 1.0;
+            counts[b] += 1.0;
+        }
+        for (point, by) in (0u32..).zip(&mut moves) {
+            let place = point as usize;
+            let moves_it = is_moved[place] && mesh.vertex_rule(point) != VertexRule::Corner;
+            let step = *by * (UNFOLDING / counts[place]);
+            *by = if moves_it { self.freedom(point).project(step) } else { DVec3::ZERO };
+        }
+        moves
     }
 
     fn run_from(
         &mut self,
         start: &[DVec3],
         stage: &Stage,
+        folded: Folded,
         progress: &mut impl FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
         let mut points = start.to_vec();
@@ -170,7 +213,7 @@ impl<'a> Flow<'a> {
             }
             last_energy = energy;
         }
-        self.finished(best.into_points().unwrap_or(points), start, stage.end)
+        self.finished(best.into_points().unwrap_or(points), start, stage.end, folded)
     }
 
     /// The points at the end of a stage, good where its end has to be.
@@ -179,6 +222,7 @@ impl<'a> Flow<'a> {
         mut points: Vec<DVec3>,
         start: &[DVec3],
         end: End,
+        folded: Folded,
     ) -> Result<Vec<DVec3>, NetworkError> {
         let finest = Wedged::new(self.network, self.finest());
         // Where the finest level folds though no step did, all has moved too far from where it did not.
@@ -195,6 +239,10 @@ impl<'a> Flow<'a> {
                     self.widen_all(&mut points, surface, &finest);
                 }
                 return Ok(points);
+            }
+            if folded == Folded::Round {
+                points = displaced(&points, &self.rounding(&points, &places));
+                continue;
             }
             for place in places {
                 self.clusters.join_all(&place);

@@ -57,6 +57,7 @@ impl NetworkError {
                 | Self::Folded { .. }
                 | Self::VolumeNotRestored { .. }
                 | Self::BoundaryTooSmall { .. }
+                | Self::GrainInPieces { .. }
                 | Self::TouchesItself { .. }
                 | Self::CutCrosses { .. }
                 | Self::CutInvalid(_)

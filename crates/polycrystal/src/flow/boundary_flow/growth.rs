@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{End, Flow};
+use super::{End, Flow, Folded};
 use crate::NetworkError;
 use crate::check::folds::element_normals;
 use crate::flow::relaxation::{USUAL_TIME, check_grains_are_left};
@@ -84,7 +84,7 @@ impl Flow<'_> {
                 Err(error) => return Err(self.vanishing(&points, passed, longest).unwrap_or(error)),
             }
         }
-        self.finished(points, start, End::Finished)
+        self.finished(points, start, End::Finished, Folded::GiveWay)
     }
 
     /// A step at once and in halves, and where both lead together.
