@@ -27,6 +27,19 @@ fn sums(table: &Value, name: &str, column: &str) -> Vec<f64> {
     sums
 }
 
+/// They bent and came apart, in the plane until lines crossed.
+#[test]
+fn lamellae_stay_plane_unless_a_time_is_given() {
+    let workplace = Workplace::new();
+    for options in
+        ["--dim 2 --seeds 20 --inside lamellae(width=0.03)", "--seeds 10 --inside lamellae(width=0.1) -n 1"]
+    {
+        workplace.run(&format!("{options} --stats a.json"));
+        workplace.run(&format!("{options} --relax 0 --stats b.json"));
+        assert_eq!(json(&workplace, "a.json")["grains"], json(&workplace, "b.json")["grains"], "{options}");
+    }
+}
+
 #[test]
 fn divided_grains_keep_their_volumes_before_and_after_relaxation() {
     let workplace = Workplace::new();

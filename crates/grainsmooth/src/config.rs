@@ -8,8 +8,8 @@ use voronoi::{Dimension, Domain};
 use crate::domain_file::{half_space_domain, surface_domain};
 use crate::vtk::VtkEncoding;
 use crate::{
-    Error, InsideOptions, Lattice, LatticeFit, LawOptions, Names, PhaseOptions, ShapeSource, SizeOptions,
-    StlEncoding, TextureOptions,
+    Error, InsideOptions, InsidePattern, Lattice, LatticeFit, LawOptions, Names, PhaseOptions, ShapeSource,
+    SizeOptions, StlEncoding, TextureOptions,
 };
 
 /// Where seeds come from.
@@ -229,8 +229,12 @@ impl Config {
     pub const LARGEST_REGULARIZE: f64 = 0.5;
 
     /// How far boundaries relax unless something else is asked for. In the plane to equilibrium, which is quick and exact there, in
-    /// space for a time: longer where all that stands beside it lets grains switch neighbours.
+    /// space for a time: longer where all that stands beside it lets grains switch neighbours. Not at all where grains are divided into
+    /// lamellae, which would bend and come apart.
     pub fn usual_relaxation(&self) -> Relaxation {
+        if self.inside.iter().any(|inside| matches!(inside.pattern, InsidePattern::Lamellae { .. })) {
+            return Relaxation::Time(0.0);
+        }
         if self.grain_shapes.is_some() {
             return Self::RELAXATION_OF_SHAPES;
         }

@@ -12,7 +12,7 @@ use crate::{CellId, Dimension, Domain, Side, Tessellation, VoronoiError, WallPla
 /// How far the seeds of parts stand from their cell's, in units of the way to the points that divide it. Parts meet where those points
 /// have it whatever this is, but the surface of the cell bends with it. 200 cells of cv 0.35 in a unit cube, in 890 lamellae of width 0.05: their
 /// corners are at most 0.19, 0.059, 0.0058 and 0.00058 of their cell's cube root off that surface at 0.3, 0.1, 0.01 and 0.001 (a tenth of it in the
-/// median). The walls between parts are plane within 7e-14 at 0.01 and 8e-12 at 1e-4, and at 1e-5 volumes come no nearer than 1e-9.
+/// median). The walls between parts are plane within 7e-14 at 0.01 and 8e-12 at 1e-4, and at 1e-6 volumes come no nearer than 1e-9.
 const NEARNESS: f64 = 0.01;
 
 /// Volumes below this share of a cell's mean part are left to the parts around: the ends of lamellae at a cell's corners would be grains a
