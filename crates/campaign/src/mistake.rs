@@ -129,7 +129,7 @@ const MISTAKES: &[Mistake] = &[
 pub fn make(draw: &mut Draw, case: &mut Case) {
     let (name, value, spoil) = draw.one_of(MISTAKES);
     // The mistake is the only one: these are refused beside some other options.
-    for option in ["free", "series", "every"] {
+    for option in ["free", "mobility", "series", "every"] {
         case.options.unset(option);
     }
     // Phases may go with a mistake, and then have no colours.
