@@ -64,9 +64,7 @@ impl Network {
         junctions: Junctions,
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
-        check_edge_length(face_mesh)?;
-        let size = face_mesh.control_mesh_size(tessellation);
-        check_size(tessellation.domain(), &size, level_count)?;
+        check_face_mesh(tessellation, face_mesh, level_count)?;
         let control_mesh = ControlMesh::new(tessellation, face_mesh, junctions)?;
         let cell_volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
         Self::assemble(tessellation.domain(), control_mesh, cell_volumes, level_count)
@@ -89,9 +87,7 @@ impl Network {
         junctions: Junctions,
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
-        check_edge_length(face_mesh)?;
-        let size = face_mesh.control_mesh_size(tessellation);
-        check_size(tessellation.domain(), &size, level_count)?;
+        check_face_mesh(tessellation, face_mesh, level_count)?;
         let control_mesh = ControlMesh::of_grains(tessellation, grain_of_cell, face_mesh, junctions)?;
         let grain_count = grain_of_cell.iter().map(|grain| grain.index() + 1).max().unwrap_or(0);
         let mut volumes = vec![0.0; grain_count];
@@ -108,8 +104,7 @@ impl Network {
         junctions: Junctions,
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
-        let size = FaceMesh::SparseFan.control_mesh_size(tessellation);
-        check_size(tessellation.domain(), &size, level_count)?;
+        check_face_mesh(tessellation, FaceMesh::SparseFan, level_count)?;
         let control_mesh = ControlMesh::of_curved_lines(tessellation, middles, junctions)?;
         let cell_volumes = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
         Self::assemble(tessellation.domain(), control_mesh, cell_volumes, level_count)
@@ -428,13 +423,18 @@ impl Network {
     }
 }
 
-fn check_edge_length(face_mesh: FaceMesh) -> Result<(), NetworkError> {
-    match face_mesh {
-        FaceMesh::Refined { edge_length } if !(edge_length.is_finite() && edge_length > 0.0) => {
-            Err(NetworkError::BadEdgeLength(edge_length))
-        }
-        _ => Ok(()),
+/// Checks that the faces of cells can be filled as asked, and refined so often.
+fn check_face_mesh(
+    tessellation: &Tessellation,
+    face_mesh: FaceMesh,
+    level_count: usize,
+) -> Result<(), NetworkError> {
+    if let FaceMesh::Refined { edge_length } = face_mesh
+        && !(edge_length.is_finite() && edge_length > 0.0)
+    {
+        return Err(NetworkError::BadEdgeLength(edge_length));
     }
+    check_size(tessellation.domain(), &face_mesh.control_mesh_size(tessellation), level_count)
 }
 
 /// As of [`Network::mean_grain_size`], of so many grains in a domain.

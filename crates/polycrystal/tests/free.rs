@@ -116,7 +116,7 @@ fn balls_and_discs_shrink_by_their_curvature_until_nothing_is_left() {
         let (points, triangles) = ball(radius, DVec3::splat(0.5), resolution);
         let (network, start) = Labelled::inclusion(&points, &triangles).network(1).expect("a ball");
         check_shrinking(&network, &start, 4.0, |volume| (0.75 * volume / PI).powf(2.0 / 3.0), resolution);
-        let (network, start) = disc(radius, 20 << resolution);
+        let (network, start) = discs(&[0.5], radius, 20 << resolution, 1);
         check_shrinking(&network, &start, 2.0, |area| area / PI, resolution);
     }
 }
@@ -151,23 +151,28 @@ fn check_shrinking(
     assert!(steps > 10 && steps < 100, "{steps} steps");
 }
 
-/// A disc of so many segments in the unit square, as grain 1.
-fn disc(radius: f64, count: u32) -> (Network, Vec<DVec3>) {
+/// Discs of so many segments in the unit square, as grains from 1; their centres have these first coordinates.
+fn discs(centers: &[f64], radius: f64, count: u32, levels: usize) -> (Network, Vec<DVec3>) {
     let mut points = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
     let mut segments = vec![[0, 1], [1, 2], [2, 3], [3, 0]];
-    let place = |k: u32| {
-        let angle = 2.0 * PI * f64::from(k) / f64::from(count);
-        DVec3::new(0.5 + radius * angle.cos(), 0.5 + radius * angle.sin(), 0.0)
-    };
-    points.extend((0..count).map(place));
-    segments.extend((0..count).map(|k| [4 + k, 4 + (k + 1) % count]));
-    let boundary_of: Vec<BoundaryId> =
-        (0..segments.len()).map(|segment| BoundaryId(u32::from(segment >= 4))).collect();
-    let [host, disc] = [0, 1].map(|grain| Side::Grain(GrainId(grain)));
-    let sides = [[host, Side::Exterior], [disc, host]];
+    let mut boundary_of = vec![BoundaryId(0); 4];
+    let host = Side::Grain(GrainId(0));
+    let mut sides = vec![[host, Side::Exterior]];
+    for (disc, x) in (1..).zip(centers) {
+        let first = u32::try_from(points.len()).expect("few points");
+        let place = |k: u32| {
+            let angle = 2.0 * PI * f64::from(k) / f64::from(count);
+            DVec3::new(x + radius * angle.cos(), 0.5 + radius * angle.sin(), 0.0)
+        };
+        points.extend((0..count).map(place));
+        segments.extend((0..count).map(|k| [first + k, first + (k + 1) % count]));
+        boundary_of.resize(segments.len(), BoundaryId(disc));
+        sides.push([Side::Grain(GrainId(disc)), host]);
+    }
     let elements = Elements::Segments(&segments);
     let surface = Surface { points: &points, elements, boundary_of: &boundary_of, sides: &sides };
-    Network::of_surface(&Domain::unit_square(), &surface, Junctions::Crease, 1).expect("a disc")
+    Network::of_surface(&Domain::unit_square(), &surface, Junctions::Crease, levels)
+        .expect("discs in a square")
 }
 
 /// MacPherson and Srolovitz 2007: the growth of a grain by its mean width and the length of its triple lines.
@@ -246,29 +251,7 @@ fn kept_volumes_are_the_default_and_free_ones_change() {
 /// A disc loses an area of 2 pi times mobility times tension per time, the mean mobility being the unit of time.
 #[test]
 fn a_boundary_of_three_times_the_mobility_moves_three_times_as_fast() {
-    let mut points = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
-    let mut segments = vec![[0, 1], [1, 2], [2, 3], [3, 0]];
-    let mut boundary_of = vec![BoundaryId(0); 4];
-    let (count, radius) = (200, 0.2);
-    for (disc, x) in [(1, 0.25), (2, 0.75)] {
-        let first = u32::try_from(points.len()).expect("few points");
-        let place = |k: u32| {
-            let angle = 2.0 * PI * f64::from(k) / f64::from(count);
-            DVec3::new(x + radius * angle.cos(), 0.5 + radius * angle.sin(), 0.0)
-        };
-        points.extend((0..count).map(place));
-        segments.extend((0..count).map(|k| [first + k, first + (k + 1) % count]));
-        boundary_of.resize(segments.len(), BoundaryId(disc));
-    }
-    let host = Side::Grain(GrainId(0));
-    let sides = [[host, Side::Exterior], [host, Side::Grain(GrainId(1))], [host, Side::Grain(GrainId(2))]];
-    // The host lies outside the discs.
-    segments[4..].iter_mut().for_each(|ends| ends.reverse());
-    let elements = Elements::Segments(&segments);
-    let surface = Surface { points: &points, elements, boundary_of: &boundary_of, sides: &sides };
-    let domain = Domain::unit_square();
-    let (network, flat) =
-        Network::of_surface(&domain, &surface, Junctions::Crease, 0).expect("two discs in a square");
+    let (network, flat) = discs(&[0.25, 0.75], 0.2, 200, 0);
     let fast = Side::Grain(GrainId(2));
     for unit in [1.0, 1e-6] {
         let mobility = |sides: [Side; 2]| unit * if sides.contains(&fast) { 3.0 } else { 1.0 };

@@ -213,7 +213,7 @@ impl<'a> Flow<'a> {
             }
             last_energy = energy;
         }
-        self.finished(best.into_points().unwrap_or(points), start, stage.end, folded)
+        self.finished(best.into_points().unwrap_or(points), start, stage.end, folded, &finest)
     }
 
     /// The points at the end of a stage, good where its end has to be.
@@ -223,8 +223,8 @@ impl<'a> Flow<'a> {
         start: &[DVec3],
         end: End,
         folded: Folded,
+        finest: &Wedged,
     ) -> Result<Vec<DVec3>, NetworkError> {
-        let finest = Wedged::new(self.network, self.finest());
         // Where the finest level folds though no step did, all has moved too far from where it did not.
         let mut count = 0;
         for attempt in 0..ATTEMPTS {
@@ -232,11 +232,11 @@ impl<'a> Flow<'a> {
                 End::Open => self.finest_points(&points),
                 End::Volumes | End::Finished => self.restored(&mut points)?,
             };
-            let places = self.folded_places(&surface, &finest);
+            let places = self.folded_places(&surface, finest);
             count = places.len();
             if count == 0 {
                 if end == End::Finished {
-                    self.widen_all(&mut points, surface, &finest);
+                    self.widen_all(&mut points, surface, finest);
                 }
                 return Ok(points);
             }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{End, Flow, Folded};
+use super::{End, Flow, Folded, Wedged};
 use crate::NetworkError;
 use crate::check::folds::element_normals;
 use crate::flow::relaxation::{USUAL_TIME, check_grains_are_left};
@@ -84,7 +84,8 @@ impl Flow<'_> {
                 Err(error) => return Err(self.vanishing(&points, passed, longest).unwrap_or(error)),
             }
         }
-        self.finished(points, start, End::Finished, Folded::GiveWay)
+        let finest = Wedged::new(self.network, self.finest());
+        self.finished(points, start, End::Finished, Folded::GiveWay, &finest)
     }
 
     /// A step at once and in halves, and where both lead together.
