@@ -8,8 +8,8 @@ use std::ops::Range;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::half_space::EVALUATION_ERROR;
-use crate::wide::LANES;
+use crate::exact::half_space::EVALUATION_ERROR;
+use crate::lanes::LANES;
 
 /// Eight boxes: those of points that follow one another, or of groups that do. What is missing at the end is empty.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-use crate::generator::Generator;
+use crate::exact::generator::Generator;
 
 /// Why a tessellation could not be made. Seeds are named by their position in the input, counted from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

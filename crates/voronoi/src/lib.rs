@@ -1,7 +1,7 @@
-//! Voronoi cells in two and three dimensions, welded into one cell complex.
+//! Voronoi cells in two and three dimensions, merged into one cell complex.
 //!
 //! [`Tessellation::new`] cuts a box into the cells of a set of seeds. Every geometric decision is exact (floating filter,
-//! then integers, then a symbolic tie-break), so all cells agree and the weld is purely combinatorial: a vertex *is* the
+//! then integers, then a symbolic tie-break), so all cells agree and merging is purely combinatorial: a vertex *is* the
 //! set of seeds and walls that meet there. No distance tolerance appears anywhere.
 //!
 //! ```
@@ -32,57 +32,31 @@
 //! # Ok::<(), voronoi::VoronoiError>(())
 //! ```
 
-mod accurate_sum;
-mod big;
+mod bodies;
 mod box_tree;
-mod candidates;
+mod build;
 mod cell_complex;
-mod cell_edges;
-mod cell_faces;
-mod convex_cell;
-mod convex_surface;
-mod corner;
-mod curved_domain;
+mod clip;
+mod diagram;
 mod domain;
-mod end_search;
 mod error;
-mod exact_plane;
-mod flat_cells;
-mod generator;
-mod grid;
-mod half_space;
-mod images;
-mod measure;
-mod narrow;
-mod periodic_weld;
-mod planar_cells;
-mod planar_measures;
-mod planar_squares;
-mod planar_weld;
-mod polygon;
+mod exact;
+mod lanes;
 mod polygon_triangulation;
-mod polyhedron;
-mod predicate;
-mod regularize;
-mod resolution;
-mod ring;
-mod search;
-mod site_tree;
-mod tessellation;
-mod tile;
-mod tile_vertex;
-mod torus;
+mod short_edges;
+mod sites;
 pub mod volumes;
-mod wall;
-mod weld;
-mod wide;
 
 pub use cell_complex::{CellComplex, Snapshot, Spoke, Star};
-pub use corner::{ComplexEdge, Corner};
+pub use diagram::cell_sum::CellMeasure;
+pub use diagram::corner::{ComplexEdge, Corner};
+pub use diagram::edges::Edges;
+pub use diagram::ids::{CellId, FaceId, PeriodicPair, VertexId};
+pub use diagram::side::Side;
+pub use diagram::tessellation::Tessellation;
 pub use domain::{Dimension, Domain};
 pub use error::VoronoiError;
-pub use measure::CellMeasure;
+pub use exact::shift::Shift;
+pub use exact::wall::{Wall, WallPlane};
 pub use polygon_triangulation::{PolygonTriangulation, triangulate_polygon};
-pub use regularize::Collapsed;
-pub use tessellation::{CellId, Edges, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};
-pub use wall::{Wall, WallPlane};
+pub use short_edges::regularize::Collapsed;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::grains::Grains;
 use super::newton::{Clipped, approach};
 use super::{GOAL, PowerDiagram, VolumesError};
-use crate::measure::face_area_and_centroid;
+use crate::diagram::measures::face_area_and_centroid;
 use crate::{CellId, Dimension, Domain, Side, Tessellation, VoronoiError, WallPlane};
 
 /// How far the seeds of parts stand from their cell's, in units of the way to the points that divide it. Parts meet where those points

@@ -10,7 +10,7 @@ use super::newton::{Clipped, MOVED_RESIDUAL, approach};
 use super::shape::{GrainShape, InscribedSphere};
 use super::spheres::{SPHERE_FRACTION, wrapped};
 use super::{GOAL, GOAL_BETWEEN_STEPS, MOST_HALVED_STEPS, VolumesError, check_volumes, first};
-use crate::measure::face_area_and_centroid;
+use crate::diagram::measures::face_area_and_centroid;
 use crate::{CellId, Domain, Side, Tessellation};
 
 /// By how much a grain in two pieces may get more cells before it gets a rounder shape.

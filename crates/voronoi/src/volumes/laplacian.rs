@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::grains::Grains;
-use crate::measure::face_area_and_centroid;
+use crate::diagram::measures::face_area_and_centroid;
 use crate::{CellId, FaceId, Side, Tessellation};
 
 /// Iterations of conjugate gradients at most. Up to 20 000 grains took 20 to 50 in a prototype; more are a matrix that rounding spoilt.

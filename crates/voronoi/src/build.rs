@@ -1,0 +1,89 @@
+//! From seeds to the cell complex.
+
+mod cell_edges;
+mod cell_sums;
+mod flat_cells;
+mod merge;
+mod periodic_merge;
+mod planar_cells;
+mod planar_merge;
+mod planar_squares;
+mod tile;
+mod tile_vertex;
+mod vertex_numbers;
+
+use glam::DVec3;
+
+use crate::exact::generator::Generator;
+use crate::sites::search::Search;
+use crate::{Dimension, Domain, Tessellation, VoronoiError};
+use merge::merge;
+use periodic_merge::merge_periodic;
+use planar_cells::tessellate;
+use tile::cut_tiles;
+
+impl Tessellation {
+    /// Cuts the domain into the Voronoi cells of the seeds, in parallel. In the plane the seeds' z must be 0.
+    ///
+    /// The same seeds give the same result bit by bit whatever the number of threads.
+    ///
+    /// # Errors
+    /// [`VoronoiError`] names the first seed that is not finite, outside the domain or a duplicate.
+    pub fn new(domain: &Domain, seeds: &[DVec3]) -> Result<Self, VoronoiError> {
+        Self::cut(domain, seeds, None)
+    }
+
+    /// Cuts the domain into the power (Laguerre) cells of the seeds: a point belongs to the seed s with the smallest
+    /// `|x - s|^2 - w`. The weight w is the squared radius of a sphere around the seed.
+    ///
+    /// A seed whose neighbours outweigh it has no cell; [`Self::empty_cells`] lists those.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; [`VoronoiError::BadWeight`] for a weight that is not finite.
+    ///
+    /// # Panics
+    /// When there are not as many weights as seeds.
+    pub fn power(domain: &Domain, seeds: &[DVec3], weights: &[f64]) -> Result<Self, VoronoiError> {
+        assert_eq!(seeds.len(), weights.len(), "one weight for each seed");
+        if let Some((seed, weight)) = weights.iter().enumerate().find(|(_, weight)| !weight.is_finite()) {
+            return Err(VoronoiError::BadWeight { seed, weight: *weight });
+        }
+        Self::cut(domain, seeds, Some(weights))
+    }
+
+    fn cut(domain: &Domain, seeds: &[DVec3], weights: Option<&[f64]>) -> Result<Self, VoronoiError> {
+        check_seeds(domain, seeds)?;
+        let is_plain = weights.is_none() && !domain.is_periodic() && domain.is_box();
+        if is_plain
+            && domain.dimension() == Dimension::Two
+            && let Some(tessellation) = tessellate(domain, seeds)
+        {
+            return Ok(tessellation);
+        }
+        let mut search = Search::new(domain, seeds, weights)?;
+        Ok(if domain.is_periodic() {
+            let tiles = cut_tiles(&mut search)?;
+            merge_periodic(&search, seeds, tiles)
+        } else {
+            merge(&search, seeds)
+        })
+    }
+}
+
+fn check_seeds(domain: &Domain, seeds: &[DVec3]) -> Result<(), VoronoiError> {
+    if seeds.is_empty() {
+        return Err(VoronoiError::NoSeeds);
+    }
+    if seeds.len() > Generator::MAX_SITES {
+        return Err(VoronoiError::TooManySeeds { count: seeds.len() });
+    }
+    for (seed, &position) in seeds.iter().enumerate() {
+        if !position.is_finite() {
+            return Err(VoronoiError::NotFinite { seed, position });
+        }
+        if !domain.contains(position) {
+            return Err(VoronoiError::OutsideDomain { seed, position, domain: domain.to_string() });
+        }
+    }
+    Ok(())
+}

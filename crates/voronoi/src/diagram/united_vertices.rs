@@ -1,0 +1,42 @@
+use crate::{Corner, Shift};
+
+/// Vertices of the torus joined where exact ties made them one point: a forest in which each knows its parent and how it
+/// is moved relative to it.
+pub(crate) struct UnitedVertices {
+    parents: Vec<Corner>,
+}
+
+impl UnitedVertices {
+    pub(crate) fn new(count: usize) -> Self {
+        let parents = (0u32..).take(count).map(|vertex| Corner { vertex, shift: Shift::NONE });
+        Self { parents: parents.collect() }
+    }
+
+    fn root(&mut self, of: Corner) -> Corner {
+        let mut at = of;
+        loop {
+            let parent = self.parents[at.vertex as usize];
+            if parent.vertex == at.vertex {
+                return at;
+            }
+            let grandparent = self.parents[parent.vertex as usize];
+            let skipped = Corner { shift: parent.shift + grandparent.shift, ..grandparent };
+            self.parents[at.vertex as usize] = skipped;
+            at = Corner { shift: at.shift + skipped.shift, ..skipped };
+        }
+    }
+
+    pub(crate) fn unite(&mut self, v: Corner, w: Corner) {
+        let (v, w) = (self.root(v), self.root(w));
+        // The smaller number stays, so the result does not depend on the order of the pairs.
+        let (kept, joined) = if v.vertex < w.vertex { (v, w) } else { (w, v) };
+        if kept.vertex != joined.vertex {
+            self.parents[joined.vertex as usize] = Corner { shift: kept.shift - joined.shift, ..kept };
+        }
+    }
+
+    pub(crate) fn roots(mut self) -> Vec<Corner> {
+        let vertices = (0u32..).take(self.parents.len());
+        vertices.map(|vertex| self.root(Corner { vertex, shift: Shift::NONE })).collect()
+    }
+}

@@ -1,0 +1,158 @@
+//! Whole cells from the complex of the torus.
+//!
+//! Each face that joins a cell to a moved one gets its copy at the other cell, so that all cells are whole, and copies are told by
+//! their originals and a shift.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::diagram::torus::TorusFaces;
+use crate::exact::face_end::FaceEnd;
+use crate::exact::image::Image;
+use crate::{Corner, Domain, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};
+
+/// The tessellation with whole cells, their faces not listed yet: of a face between a cell and a moved one, a copy at each.
+pub(crate) fn unwrapped(
+    domain: &Domain,
+    seeds: &[DVec3],
+    faces: &TorusFaces,
+    positions: &[DVec3],
+) -> Tessellation {
+    let places = VertexPlaces::new(faces, positions.len());
+    let vertices = Vec::with_capacity(places.count());
+    let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);
+    let period = |shift: Shift| shift.vector(domain);
+    let moved = |original: &Corner| positions[original.vertex as usize] + period(original.shift);
+    tessellation.vertices.par_extend(places.originals.par_iter().map(moved));
+    for (copy, original) in places.copies() {
+        let shift = copy.moved.shift - places.originals[original.index()].shift;
+        let position = tessellation.vertices[original.index()] + period(shift);
+        tessellation.vertices.push(position);
+        tessellation.periodic_vertices.push(PeriodicPair { secondary: copy.id, primary: original, shift });
+    }
+    // Faces that join a cell to a moved one, by the shift back.
+    let copied: Vec<(u32, Shift)> = (0u32..)
+        .zip(faces.ends())
+        .filter_map(|(face, ends)| match ends[1] {
+            FaceEnd::Cell(Image { shift, .. }) if shift != Shift::NONE => Some((face, Shift::NONE - shift)),
+            _ => None,
+        })
+        .collect();
+    let corners_of =
+        |face: u32| &faces.corners()[faces.starts()[face as usize]..faces.starts()[face as usize + 1]];
+    let copied_corners: Vec<VertexId> = copied
+        .par_iter()
+        .flat_map_iter(|(face, back)| {
+            let moved = move |corner: &Corner| Corner { shift: corner.shift + *back, ..*corner };
+            corners_of(*face).iter().rev().map(moved).map(|corner| places.id(corner))
+        })
+        .collect();
+    let face_count = faces.ends().len() + copied.len();
+    tessellation.face_sides.reserve_exact(face_count);
+    tessellation.face_starts.reserve_exact(face_count);
+    tessellation.face_corners.reserve_exact(faces.corners().len() + copied_corners.len());
+    let sides = |ends: [FaceEnd; 2], shift: Shift| ends.map(|end| Side::of(end, shift));
+    tessellation.face_sides.par_extend(faces.ends().par_iter().map(|ends| sides(*ends, Shift::NONE)));
+    tessellation.face_starts.par_extend(&faces.starts()[1..]);
+    tessellation.face_corners.par_extend(faces.corners().par_iter().map(|corner| places.id(*corner)));
+    let mut copied_corners = &copied_corners[..];
+    for (face, back) in copied {
+        let [first, second] = faces.ends()[face as usize];
+        let (corners, rest) = copied_corners.split_at(corners_of(face).len());
+        copied_corners = rest;
+        let secondary = tessellation.push_face(sides([second, first], back), corners.iter().copied());
+        tessellation.periodic_faces.push(PeriodicPair { secondary, primary: FaceId(face), shift: back });
+    }
+    tessellation.put_vertices_on_walls();
+    tessellation
+}
+
+/// Numbers of all places at which the whole cells have vertices: first an original of each vertex of the torus, where it
+/// is not moved if there is a cell there, then the copies.
+struct VertexPlaces {
+    originals: Vec<Corner>,
+    /// Of each vertex of the torus, its original.
+    original_of: Vec<VertexId>,
+    /// All places but those of unmoved originals, sorted, with their ids.
+    moved: Vec<NumberedVertex>,
+}
+
+#[derive(Clone, Copy)]
+struct NumberedVertex {
+    moved: Corner,
+    id: VertexId,
+}
+
+impl VertexPlaces {
+    fn new(faces: &TorusFaces, vertex_count: usize) -> Self {
+        let is_used: Vec<AtomicBool> = (0..vertex_count).map(|_| AtomicBool::new(false)).collect();
+        // Of a corner, what there is to note: where it is not moved, that it is used.
+        let note = |corner: Corner| match corner.shift {
+            Shift::NONE => {
+                is_used[corner.vertex as usize].store(true, Ordering::Relaxed);
+                None
+            }
+            _ => Some(corner),
+        };
+        let moved = faces.par_iter().flat_map_iter(|(ends, corners)| {
+            let back = match ends[1] {
+                FaceEnd::Cell(Image { shift, .. }) if shift != Shift::NONE => Some(Shift::NONE - shift),
+                _ => None,
+            };
+            let copies = back.into_iter().flat_map(move |back| {
+                corners.iter().map(move |corner| Corner { shift: corner.shift + back, ..*corner })
+            });
+            corners.iter().copied().chain(copies).filter_map(note)
+        });
+        let mut moved: Vec<Corner> = moved.collect();
+        moved.par_sort_unstable();
+        moved.dedup();
+        let mut places = Self {
+            originals: Vec::with_capacity(vertex_count),
+            original_of: Vec::with_capacity(vertex_count),
+            moved: Vec::new(),
+        };
+        let id = |count: usize| VertexId(u32::try_from(count).expect("vertex ids fit 32 bits"));
+        for (vertex, is_used) in (0u32..).zip(is_used) {
+            let original = if is_used.into_inner() {
+                Some(Corner { vertex, shift: Shift::NONE })
+            } else {
+                let first = moved.partition_point(|at| at.vertex < vertex);
+                moved.get(first).copied().filter(|at| at.vertex == vertex)
+            };
+            places.original_of.push(id(places.originals.len()));
+            places.originals.extend(original);
+        }
+        let mut next = places.originals.len();
+        for moved in moved {
+            let original = places.original_of[moved.vertex as usize];
+            if places.originals[original.index()] == moved {
+                places.moved.push(NumberedVertex { moved, id: original });
+            } else {
+                places.moved.push(NumberedVertex { moved, id: id(next) });
+                next += 1;
+            }
+        }
+        places
+    }
+
+    fn count(&self) -> usize {
+        self.originals.len() + self.copies().count()
+    }
+
+    /// The copies in order of id, and their originals.
+    fn copies(&self) -> impl Iterator<Item = (NumberedVertex, VertexId)> {
+        let with_original = self.moved.iter().map(|at| (*at, self.original_of[at.moved.vertex as usize]));
+        with_original.filter(|(at, original)| at.id != *original)
+    }
+
+    fn id(&self, at: Corner) -> VertexId {
+        if at.shift == Shift::NONE {
+            return self.original_of[at.vertex as usize];
+        }
+        let place = self.moved.binary_search_by_key(&at, |known| known.moved);
+        self.moved[place.expect("all corners were numbered")].id
+    }
+}
