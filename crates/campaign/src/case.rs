@@ -13,6 +13,9 @@ const MISTAKES: f64 = 0.06;
 /// Share of runs whose options stand in a TOML file.
 const CONFIG_FILES: f64 = 0.05;
 
+/// Share of runs with grains of given shapes, of those in boxes without lattices.
+const SHAPES: f64 = 0.06;
+
 /// What a campaign keeps its runs to, so that they end in time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
@@ -39,6 +42,8 @@ pub enum AngleClass {
     Cut,
     /// Relaxed to equilibrium, grains whole.
     Equilibrium,
+    /// Grains of given shapes, several cells each.
+    Shapes,
     /// Flat, or with short edges kept: triangles are as thin as the cells are.
     Unregularized,
     /// In the plane, where there are no triangles.
@@ -47,8 +52,15 @@ pub enum AngleClass {
 
 impl AngleClass {
     /// All classes.
-    pub const ALL: [Self; 6] =
-        [Self::Walls, Self::Periodic, Self::Cut, Self::Equilibrium, Self::Unregularized, Self::Plane];
+    pub const ALL: [Self; 7] = [
+        Self::Walls,
+        Self::Periodic,
+        Self::Cut,
+        Self::Equilibrium,
+        Self::Shapes,
+        Self::Unregularized,
+        Self::Plane,
+    ];
 
     /// The class in a few words.
     pub fn name(self) -> &'static str {
@@ -57,6 +69,7 @@ impl AngleClass {
             Self::Periodic => "periodic",
             Self::Cut => "cut at the box",
             Self::Equilibrium => "equilibrium",
+            Self::Shapes => "grain shapes",
             Self::Unregularized => "flat or not regularized",
             Self::Plane => "plane",
         }
@@ -104,11 +117,11 @@ impl Case {
         let mut files = domain.files.clone();
         files.extend(draw_seeds(draw, arrangement, count, &lattice, &domain, &mut options));
         smoothing(draw, &domain, count, limits, &mut options);
-        let promise = outputs::draw(draw, dimension, &mut options);
+        let mut promise = outputs::draw(draw, dimension, &mut options);
         files.extend(sizes(draw, arrangement, count, &domain, &mut options));
         phases(draw, &mut options);
         inside(draw, &domain, count, &mut options);
-        grain_shapes(draw, dimension, &mut options);
+        grain_shapes(draw, dimension, &mut options, &mut promise);
         let mut case = Self {
             kind: arrangement.name().to_owned(),
             keeps_volumes: !options.has("free"),
@@ -232,35 +245,44 @@ fn phases(draw: &mut Draw, options: &mut Options) {
     }
 }
 
-/// Draws the shapes of single grains, where nothing else is in their way.
-fn grain_shapes(draw: &mut Draw, dimension: usize, options: &mut Options) {
-    let others = [
-        "lattice",
-        "domain",
-        "half-spaces",
-        "series",
-        "aspect-ratio",
-        "cells-json",
-        "cells-csv",
-        "no-mesh",
-        "periodic",
-        "min-diameter",
-        "seeds-file",
-        "edge-length",
-        "free",
-        "dry-run",
-        "regularize",
-        "inside",
-    ];
-    let is_taken = others.iter().any(|name| options.has(name));
-    let is_flat = options.value("relax") == Some("0");
+/// What does not go with the shapes of single grains.
+const NOT_WITH_SHAPES: [&str; 10] = [
+    "aspect-ratio",
+    "cells-csv",
+    "cells-json",
+    "inside",
+    "min-diameter",
+    "no-mesh",
+    "periodic",
+    "periodic-cut",
+    "series",
+    "every",
+];
+
+/// Draws the shapes of single grains in boxes without lattices, and takes out what does not go with them.
+fn grain_shapes(draw: &mut Draw, dimension: usize, options: &mut Options, promise: &mut Promise) {
+    let is_taken = ["lattice", "domain", "half-spaces"].iter().any(|name| options.has(name));
     let is_of_cells = options.values("output").iter().any(|name| name.ends_with(".tess"))
         || options.value("format") == Some("tess");
-    if is_taken || is_flat || is_of_cells || !draw.chance(0.2) {
+    if is_taken || is_of_cells || !draw.chance(SHAPES) {
         return;
     }
-    let lengths = if dimension == 2 { "2:1" } else { draw.one_of(&["2:1:1", "1:1.5:1.5"]) };
-    options.set("grain-shapes", [format!("{lengths}{}", draw.one_of(&["", " aligned"]))]);
+    NOT_WITH_SHAPES.iter().for_each(|name| options.unset(name));
+    let is_gone = |file: &str| file.starts_with("cells.") || file.starts_with("series");
+    promise.files.retain(|file| !is_gone(file));
+    if promise.surface.is_some() && !options.has("json-summary") {
+        options.set("json-summary", [outputs::SUMMARY]);
+        promise.file("summary", outputs::SUMMARY);
+    }
+    // Cells alone are sharp where those of a grain meet.
+    if options.value("relax") == Some("0") {
+        options.unset("relax");
+    }
+    let lengths: &[&str] = match dimension {
+        2 => &["2:1", "3:1", "1:1.5"],
+        _ => &["2:1:1", "3:1:1", "1:1.5:1.5", "3:3:1", "3:2:1", "1:1:1"],
+    };
+    options.set("grain-shapes", [format!("{}{}", draw.one_of(lengths), draw.one_of(&["", " aligned"]))]);
 }
 
 /// Draws the options of the control mesh, relaxation and subdivision.
@@ -327,6 +349,7 @@ fn angle_class(domain: &Domain, options: &Options) -> AngleClass {
     match domain.sides.len() {
         2 => AngleClass::Plane,
         _ if is_off("relax") || is_off("regularize") => AngleClass::Unregularized,
+        _ if options.has("grain-shapes") => AngleClass::Shapes,
         _ if domain.is_cut => AngleClass::Cut,
         _ if is_equilibrium => AngleClass::Equilibrium,
         _ if domain.is_periodic => AngleClass::Periodic,

@@ -17,7 +17,7 @@ pub struct Promise {
 }
 
 impl Promise {
-    fn file(&mut self, stem: &'static str, name: impl Into<String>) {
+    pub(crate) fn file(&mut self, stem: &'static str, name: impl Into<String>) {
         self.files.push(name.into());
         self.stems.push(stem);
     }

@@ -119,7 +119,7 @@ mod tests {
             NetworkError::BoundaryTooSmall { sides },
             NetworkError::CutCrosses { axis: "x" },
             NetworkError::VolumeNotRestored { grain, relative_error: 1.0 },
-            NetworkError::Folded { count: 2 },
+            NetworkError::Folded { count: 2, grains: Vec::new() },
         ] {
             assert_eq!(refusal(&error.to_string()), None, "{error}");
         }

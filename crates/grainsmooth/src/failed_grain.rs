@@ -93,7 +93,7 @@ mod tests {
         let thin = "grain 3 (SeedId 3), 1.66e-1 mean equivalent diameters wide (9.847e-2)";
         let remedy = "; merge such cells with --min-diameter 0.2";
         assert!(said(missed(3)).ends_with(&format!("; {thin}{remedy}")), "{}", said(missed(3)));
-        let folded = said(NetworkError::Folded { count: 2 });
+        let folded = said(NetworkError::Folded { count: 2, grains: Vec::new() });
         assert!(folded.ends_with(&format!("; the smallest is {thin}{remedy}")), "{folded}");
         assert!(!said(missed(0)).contains("--min-diameter"), "{}", said(missed(0)));
         // The diameter was told twice where a volume is missed, and not at all in other errors.

@@ -4,11 +4,11 @@ use std::f64::consts::{FRAC_PI_3, PI, TAU};
 use std::fmt;
 
 use glam::{DMat2, DMat3, DQuat, DVec3};
-use polycrystal::{FaceMesh, GrainId, Junctions, Measures, Network, NetworkError, measure_network};
+use polycrystal::{GrainId, Measures};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::Serialize;
-use voronoi::volumes::{GrainDiagram, GrainShape};
+use voronoi::volumes::{GrainDiagram, GrainShape, VolumesError};
 use voronoi::{Dimension, Tessellation};
 
 use crate::seeding::unit_fraction;
@@ -23,9 +23,10 @@ pub struct GrainShapes {
     dimension: Dimension,
     asked: String,
     wanted: Vec<GrainShape>,
+    diagram: Box<GrainDiagram>,
     /// Of each cell.
     of_cell: Vec<GrainId>,
-    /// Grains that are rounder than was asked for, as they would be in pieces.
+    /// Grains that are rounder than was asked for.
     rounder: usize,
     /// Of each grain in the flat cells.
     ratios_of_cells: Vec<f64>,
@@ -45,7 +46,7 @@ pub struct ShapesReached {
     pub ratio: Option<f64>,
     /// Mean number of cells that make up a grain.
     pub cells_per_grain: f64,
-    /// Number of grains that got a rounder shape than was asked for, so as not to be in pieces.
+    /// Number of grains that got a rounder shape than was asked for, so as not to be in pieces or folded.
     pub rounder: usize,
 }
 
@@ -73,21 +74,36 @@ fn random_rotation([share, first, second]: [f64; 3]) -> DQuat {
 
 impl GrainShapes {
     /// What became of the shapes asked for in a diagram.
+    pub(crate) fn of_diagram(asked: String, wanted: Vec<GrainShape>, diagram: GrainDiagram) -> Self {
+        let of_cell = diagram.grain_of_cell().iter().copied().map(GrainId).collect();
+        let dimension = diagram.tessellation().domain().dimension();
+        let moments = diagram.second_moments();
+        let ratios_of_cells = match dimension {
+            Dimension::Three => moments.into_iter().map(|moment| ratio_in_space(inertia(moment))).collect(),
+            Dimension::Two => {
+                moments.into_iter().map(|moment| ratio_in_plane(DMat2::from_mat3(moment))).collect()
+            }
+        };
+        let rounder = diagram.contrasts().iter().filter(|contrast| **contrast < 1.0).count();
+        Self { dimension, asked, wanted, diagram: Box::new(diagram), of_cell, rounder, ratios_of_cells }
+    }
+
+    /// The same with rounder shapes of some grains, of all where none is told, whose cells lead to no network; nothing where these are balls.
     ///
     /// # Errors
-    /// As of [`Network::of_grains`].
-    pub(crate) fn of_diagram(
-        asked: String,
-        wanted: Vec<GrainShape>,
-        diagram: &GrainDiagram,
-    ) -> Result<Self, NetworkError> {
-        let of_cell: Vec<GrainId> = diagram.grain_of_cell().iter().copied().map(GrainId).collect();
-        let (network, points) =
-            Network::of_grains(diagram.tessellation(), &of_cell, FaceMesh::Fan, Junctions::Crease, 0)?;
-        let ratios_of_cells = ratios(&measure_network(&network, &points));
-        let rounder = diagram.contrasts().iter().filter(|contrast| **contrast < 1.0).count();
-        let dimension = diagram.tessellation().domain().dimension();
-        Ok(Self { dimension, asked, wanted, of_cell, rounder, ratios_of_cells })
+    /// As of [`GrainDiagram::rounder`].
+    pub(crate) fn with_rounder(&self, grains: &[GrainId]) -> Result<Option<Self>, VolumesError> {
+        let all: Vec<usize> = match grains {
+            [] => (0..self.count()).collect(),
+            some => some.iter().map(|grain| grain.index()).collect(),
+        };
+        let rounder = self.diagram.rounder(all)?;
+        Ok(rounder.map(|diagram| Self::of_diagram(self.asked.clone(), self.wanted.clone(), diagram)))
+    }
+
+    /// The cells.
+    pub(crate) fn diagram(&self) -> &GrainDiagram {
+        &self.diagram
     }
 
     /// The grain of each cell.
@@ -159,6 +175,11 @@ fn ratios(measures: &Measures) -> Vec<f64> {
     }
 }
 
+/// The moment of inertia of a second moment.
+fn inertia(moment: DMat3) -> DMat3 {
+    DMat3::from_diagonal(DVec3::splat(moment.x_axis.x + moment.y_axis.y + moment.z_axis.z)) - moment
+}
+
 /// Of a moment of inertia I the integrals of squares along its axes are half the trace less each eigenvalue. Eigenvalues are by Smith 1961.
 fn ratio_in_space(inertia: DMat3) -> f64 {
     let trace = inertia.x_axis.x + inertia.y_axis.y + inertia.z_axis.z;
@@ -199,10 +220,12 @@ impl fmt::Display for ShapesReached {
         }
         match rounder {
             0 => writeln!(out, " (medians)"),
-            1 => writeln!(out, " (medians); 1 grain is rounder than asked, as it would be in pieces"),
+            1 => {
+                writeln!(out, " (medians); 1 grain is rounder than asked, as it would be in pieces or folded")
+            }
             _ => writeln!(
                 out,
-                " (medians); {rounder} grains are rounder than asked, as they would be in pieces"
+                " (medians); {rounder} grains are rounder than asked, as they would be in pieces or folded"
             ),
         }
     }

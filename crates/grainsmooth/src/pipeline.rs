@@ -80,6 +80,9 @@ impl Stage {
 const SHORTER: f64 = 0.6;
 const SHORTER_TIMES: usize = 12;
 
+/// How often the grains of given shapes at which relaxation fails get rounder ones. Of 200 grains of 3:1:1 some take one round.
+const MOST_ROUNDINGS: usize = 10;
+
 /// Told how far a run is: the stage, the steps of it that are done, and their number.
 pub type Progress<'a> = &'a (dyn Fn(Stage, usize, usize) + Sync);
 
@@ -280,41 +283,40 @@ pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result
 /// As of [`smooth`].
 pub fn smooth_watched(
     config: &Config,
-    cells: Tessellated,
+    mut cells: Tessellated,
     progress: Progress,
     mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<Polycrystal, Error> {
-    let resolved = cells.tessellation.resolved();
-    let tessellation = resolved.as_ref().unwrap_or(&cells.tessellation);
+    let mut resolved = cells.tessellation.resolved();
     let mut clock = Clock { progress, times: cells.times.clone() };
-    check_levels(control_mesh(config, tessellation), config.levels, available_memory())?;
     let mut attempts = Vec::new();
-    let mut tries = Regularization::tries(config).iter();
+    let mut roundings = 0..MOST_ROUNDINGS;
     let (regularization, smoothed) = loop {
-        let regularization = *tries.next().expect("there is one, and the last is the result");
-        match smooth_regularized(
-            config,
-            &cells,
-            tessellation,
-            regularization,
-            &mut attempts,
-            &mut clock,
-            &mut watch,
-        ) {
-            Err(error) if error.is_tangle() && tries.len() > 0 => {
-                error.give_up(regularization.in_words(), &mut attempts);
-            }
-            Err(error) => {
-                let failure = Failure::new(error, attempts, &cells);
-                if config.volumes == Volumes::Kept || !failure.cause.is_of_time() {
-                    return Err(failure.into());
-                }
-                let works = time_that_works(config, &cells, tessellation, &failure.cause);
-                return Err(failure.with_growth(works.map_or(Growth::Never, Growth::Until)).into());
-            }
-            Ok(smoothed) => break (regularization, smoothed),
+        let tessellation = resolved.as_ref().unwrap_or(&cells.tessellation);
+        check_levels(control_mesh(config, tessellation), config.levels, available_memory())?;
+        let (regularization, error) =
+            match smooth_cells(config, &cells, tessellation, &mut attempts, &mut clock, &mut watch) {
+                Ok(smoothed) => break smoothed,
+                Err(error) => error,
+            };
+        if error.is_tangle()
+            && roundings.next().is_some()
+            && let Some(rounder) =
+                clock.time(Stage::Cells, || cells.with_rounder(&error.grains().unwrap_or_default()))?
+        {
+            error.give_up(regularization.in_words(), &mut attempts);
+            resolved = rounder.tessellation.resolved();
+            cells = rounder;
+            continue;
         }
+        let failure = Failure::new(error, attempts, &cells);
+        if config.volumes == Volumes::Kept || !failure.cause.is_of_time() {
+            return Err(failure.into());
+        }
+        let works = time_that_works(config, &cells, tessellation, &failure.cause);
+        return Err(failure.with_growth(works.map_or(Growth::Never, Growth::Until)).into());
     };
+    let tessellation = resolved.as_ref().unwrap_or(&cells.tessellation);
     let Smoothed { network, points, relaxed, collapsed, reconnected, flat_angles, angles_before, validation } =
         smoothed;
     attempts.extend(relaxed.given_up.clone());
@@ -346,6 +348,28 @@ pub fn smooth_watched(
     polycrystal.tensions = law.tensions_reached(&polycrystal.network, || polycrystal.measures());
     polycrystal.mobilities = law.mobilities_reached(&polycrystal.network);
     Ok(polycrystal)
+}
+
+/// The network of some cells, by the first way that leads to one. An error comes with the last way.
+fn smooth_cells(
+    config: &Config,
+    cells: &Tessellated,
+    tessellation: &Tessellation,
+    attempts: &mut Vec<Attempt>,
+    clock: &mut Clock<'_>,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Result<(Regularization, Smoothed), (Regularization, NetworkError)> {
+    let mut tries = Regularization::tries(config).iter();
+    loop {
+        let regularization = *tries.next().expect("there is one, and the last is the result");
+        match smooth_regularized(config, cells, tessellation, regularization, attempts, clock, watch) {
+            Err(error) if error.is_tangle() && tries.len() > 0 => {
+                error.give_up(regularization.in_words(), attempts);
+            }
+            Err(error) => return Err((regularization, error)),
+            Ok(smoothed) => return Ok((regularization, smoothed)),
+        }
+    }
 }
 
 /// A time for which grains can grow freely, where for the config's own they cannot: it is tried.
@@ -457,9 +481,7 @@ impl Regularization {
             }
             0.0 => &[Self::None],
             // A grain of several cells may touch itself where an edge is gone, which no cell does.
-            _ if config.grain_shapes.is_some() => {
-                &[Self::Plain, Self::Shorter(1), Self::Shorter(2), Self::Shorter(3), Self::None]
-            }
+            _ if config.grain_shapes.is_some() => &[Self::Plain, Self::Shorter(1), Self::Shorter(2)],
             _ => &[Self::Foreseeing, Self::Plain, Self::None],
         }
     }

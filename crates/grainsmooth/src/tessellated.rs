@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::time::Duration;
 
 use glam::DVec3;
-use polycrystal::{FaceMesh, Junctions, Network, NetworkError};
+use polycrystal::{FaceMesh, GrainId, Junctions, Network, NetworkError};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use texture::CrystalSymmetry;
@@ -65,6 +65,18 @@ impl Tessellated {
             return self;
         }
         Self { tessellation: self.tessellation.stretched(stretch), ..self }
+    }
+
+    /// The cells with rounder shapes of the grains that led to no network, where shapes are asked for and some are no balls yet.
+    ///
+    /// # Errors
+    /// As of [`GrainDiagram::rounder`].
+    pub(crate) fn with_rounder(&self, grains: &[GrainId]) -> Result<Option<Self>, VolumesError> {
+        let Some(shapes) = &self.shapes else { return Ok(None) };
+        let Some(rounder) = shapes.with_rounder(grains)? else { return Ok(None) };
+        let diagram = rounder.diagram();
+        let (tessellation, weights) = (diagram.tessellation().clone(), diagram.weights().to_vec());
+        Ok(Some(Self { tessellation, weights, shapes: Some(rounder), ..self.clone() }))
     }
 
     /// Number of grains.
@@ -177,8 +189,9 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
                 let diagram = shaped_grains(config, &domain, &seeds.seeds, wanted.volumes(), &wanted_shapes)?;
                 sizes = Some(wanted.with_centroid_steps(diagram.centroid_steps()));
                 let asked = config.grain_shapes.as_ref().map_or_else(String::new, ToString::to_string);
-                shapes = Some(GrainShapes::of_diagram(asked, wanted_shapes, &diagram)?);
-                return Ok((diagram.tessellation().clone(), diagram.weights().to_vec()));
+                let cells = (diagram.tessellation().clone(), diagram.weights().to_vec());
+                shapes = Some(GrainShapes::of_diagram(asked, wanted_shapes, diagram));
+                return Ok(cells);
             }
             let diagram = sized_cells(config, &domain, &seeds.seeds, wanted.volumes())?;
             sizes = Some(wanted.with_centroid_steps(diagram.centroid_steps()));

@@ -111,6 +111,7 @@ fn lengths(diagram: &GrainDiagram, shapes: &[GrainShape]) -> Vec<DVec3> {
     let (tessellation, of_cell) = (diagram.tessellation(), diagram.grain_of_cell());
     let period = tessellation.domain().size();
     let cells = tessellation.cell_measures();
+    let moments = diagram.second_moments();
     let of_grain = |grain: usize| {
         let own: Vec<usize> = (0..of_cell.len()).filter(|cell| of_cell[*cell] as usize == grain).collect();
         // Grains are smaller than half a period, so each cell stands next to the first.
@@ -131,6 +132,7 @@ fn lengths(diagram: &GrainDiagram, shapes: &[GrainShape]) -> Vec<DVec3> {
                 second_moment(tessellation, CellId(u32::try_from(*cell).expect("few cells")), centroid - by)
             })
             .fold(DMat3::ZERO, |sum, next| sum + next);
+        assert!(moments[grain].abs_diff_eq(moment, 1e-9 * (moment.x_axis.x + moment.y_axis.y)), "{grain}");
         DVec3::from_array([0, 1, 2].map(|axis| {
             let axis = shapes[grain].axes.col(axis);
             axis.dot(moment * axis).max(0.0).sqrt()

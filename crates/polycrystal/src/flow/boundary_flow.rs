@@ -226,7 +226,7 @@ impl<'a> Flow<'a> {
         finest: &Wedged,
     ) -> Result<Vec<DVec3>, NetworkError> {
         // Where the finest level folds though no step did, all has moved too far from where it did not.
-        let mut count = 0;
+        let (mut count, mut grains) = (0, Vec::new());
         for attempt in 0..ATTEMPTS {
             let surface = match end {
                 End::Open => self.finest_points(&points),
@@ -234,6 +234,7 @@ impl<'a> Flow<'a> {
             };
             let places = self.folded_places(&surface, finest);
             count = places.len();
+            grains = self.folded_grains(&surface, finest);
             if count == 0 {
                 if end == End::Finished {
                     self.widen_all(&mut points, surface, finest);
@@ -252,7 +253,7 @@ impl<'a> Flow<'a> {
             self.clusters.unite(&mut moves, |point| self.freedom(point), attempt);
             points = displaced(start, &moves);
         }
-        Err(NetworkError::Folded { count })
+        Err(NetworkError::Folded { count, grains })
     }
 
     /// The grain that would vanish within a step, if there is one: a ball of radius r lives for a time of r^2 / 4, a
@@ -392,6 +393,20 @@ impl<'a> Flow<'a> {
     fn folded_places(&self, surface: &[DVec3], finest: &Wedged) -> Vec<Vec<u32>> {
         let folds = finest.folds(self.network.finest(), surface).into_iter().flatten();
         folds.map(|element| self.dependencies(self.finest(), element)).collect()
+    }
+
+    /// The grains beside what is folded on the finest level, in order.
+    fn folded_grains(&self, surface: &[DVec3], finest: &Wedged) -> Vec<GrainId> {
+        let level = self.network.finest();
+        let folds = finest.folds(level, surface).into_iter().flatten();
+        let sides = folds.flat_map(|element| {
+            let boundary = level.boundary_of[element as usize];
+            self.network.boundaries()[boundary.index()].sides
+        });
+        let mut grains: Vec<GrainId> = sides.filter_map(|side| side.grain()).collect();
+        grains.sort_unstable();
+        grains.dedup();
+        grains
     }
 
     /// Elements that a step has turned too far, or bent too far and more than they were; given the normals before.

@@ -105,7 +105,7 @@ impl Clusters {
             broken.iter().for_each(|points| self.join_all(points.as_ref()));
             self.unite(&mut moves, &freedom, attempt);
         }
-        Err(NetworkError::Folded { count })
+        Err(NetworkError::Folded { count, grains: Vec::new() })
     }
 
     /// Numbers the clusters from 0, in order of their smallest points.

@@ -200,6 +200,8 @@ pub enum NetworkError {
     Folded {
         /// Number of edges whose two triangles are more than 90 degrees apart.
         count: usize,
+        /// The grains beside them, where they are known.
+        grains: Vec<GrainId>,
     },
     /// A grain that is free to shrink has done so to nothing.
     #[error(
@@ -243,7 +245,8 @@ impl NetworkError {
                     .unwrap_or_default(),
             ),
             Self::GivenUp { last, .. } => last.grains(),
-            Self::Folded { .. } | Self::CutCrosses { .. } => Some(Vec::new()),
+            Self::Folded { grains, .. } => Some(grains.clone()),
+            Self::CutCrosses { .. } => Some(Vec::new()),
             Self::TooLarge { .. }
             | Self::Mesh(_)
             | Self::PeriodicSurface
@@ -270,7 +273,7 @@ mod tests {
     /// What ways before the last said was dropped once.
     #[test]
     fn the_last_error_is_shown_and_all_are_kept() {
-        let [first, second] = [2, 3].map(|count| NetworkError::Folded { count });
+        let [first, second] = [2, 3].map(|count| NetworkError::Folded { count, grains: Vec::new() });
         let mut attempts = Vec::new();
         first.give_up("a", &mut attempts);
         let inner = second.after(attempts);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::grains::Grains;
 use super::laplacian::Laplacian;
@@ -30,7 +30,7 @@ const LEAST_CONTRAST: f64 = 0.4;
 ///
 /// The cells of a grain are those of spheres inscribed in its ellipsoid. Their weights are the squared radii and one unknown of the grain,
 /// which Newton's method finds as in [`PowerDiagram`](super::PowerDiagram); faces between cells of one grain drop out.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct GrainDiagram {
     centers: Vec<DVec3>,
     volumes: Vec<f64>,
@@ -40,6 +40,8 @@ pub struct GrainDiagram {
     fineness: Vec<u32>,
     tessellation: Tessellation,
     weights: Vec<f64>,
+    /// What each grain's cells have beside their squared radii, once weights are found.
+    shifts: Option<Vec<f64>>,
     grains: Arc<Grains>,
     /// By how much each cell has to be moved to stand with its grain.
     moves: Vec<DVec3>,
@@ -91,6 +93,7 @@ impl GrainDiagram {
             fineness: vec![0; count],
             tessellation,
             weights: vec![0.0; count],
+            shifts: None,
             grains: Grains::of_single_cells(count),
             moves: vec![DVec3::ZERO; count],
             centroid_steps: 0,
@@ -109,33 +112,66 @@ impl GrainDiagram {
             let moved = (0..MOST_HALVED_STEPS).find_map(|halvings| self.moved(0.5f64.powi(halvings)));
             let Some((centers, sites, state)) = moved else { break };
             self.centers = centers;
-            self.take(sites.moves, state);
+            self.take(sites, state);
             self.centroid_steps += 1;
         }
         let mut state = self.state();
         approach(&mut state, &self.volumes, GOAL)?;
-        let moves = std::mem::take(&mut self.moves);
-        self.take(moves, state);
+        let sites = self.sites(&self.centers);
+        self.take(sites, state);
         if !self.split_grains().is_empty() {
             self.solve()?;
         }
         Ok(self)
     }
 
+    /// The diagram with rounder shapes for some grains, whose cells lead to no network; nothing where all of them are balls. Centres stay.
+    ///
+    /// # Errors
+    /// [`VolumesError::NotReached`].
+    pub fn rounder(&self, grains: impl IntoIterator<Item = usize>) -> Result<Option<Self>, VolumesError> {
+        let mut rounder = self.clone();
+        grains.into_iter().for_each(|grain| rounder.round(grain));
+        if rounder.contrasts == self.contrasts {
+            return Ok(None);
+        }
+        rounder.solve()?;
+        Ok(Some(rounder))
+    }
+
+    /// Gives a grain a rounder shape, unless it is a ball.
+    fn round(&mut self, grain: usize) {
+        self.fineness[grain] = 0;
+        let contrast = LESS_CONTRAST * self.contrasts[grain];
+        self.contrasts[grain] = if contrast < LEAST_CONTRAST { 0.0 } else { contrast };
+    }
+
+    /// What Newton's method begins with: what grains had before, with other cells, or else spheres of a part of the volumes, which do not
+    /// overlap.
+    fn start(&self, sites: &Sites, grains: &Arc<Grains>) -> Result<Clipped, VolumesError> {
+        let domain = self.tessellation.domain();
+        if let Some(shifts) = &self.shifts {
+            let weights = grains.shifted(&sites.bases, |grain| shifts[grain]);
+            let state = Clipped::new(domain, &sites.seeds, weights, Arc::clone(grains))?;
+            if !state.has_empty() {
+                return Ok(state);
+            }
+        }
+        // Squared radii of all that a grain has fall alike.
+        let share = 1.0 - domain.dimension().cube_edge(SPHERE_FRACTION).powi(2);
+        let largest = grain_maxima(sites, self.centers.len());
+        let weights = grains.shifted(&sites.bases, |grain| -share * largest[grain]);
+        first(domain, &sites.seeds, weights, grains)
+    }
+
     /// Finds weights, with other cells for grains in several pieces until there are none.
     fn solve(&mut self) -> Result<(), VolumesError> {
         loop {
-            let domain = self.tessellation.domain().clone();
             let sites = self.sites(&self.centers);
-            let count = self.centers.len();
-            let grains = Grains::of_cells(sites.of_cell.clone(), count);
-            // As spheres of a part of the volumes, which do not overlap: squared radii of all that a grain has fall alike.
-            let share = 1.0 - domain.dimension().cube_edge(SPHERE_FRACTION).powi(2);
-            let largest = grain_maxima(&sites, count);
-            let weights = grains.shifted(&sites.bases, |grain| -share * largest[grain]);
-            let mut state = first(&domain, &sites.seeds, weights, &grains)?;
+            let grains = Grains::of_cells(sites.of_cell.clone(), self.centers.len());
+            let mut state = self.start(&sites, &grains)?;
             approach(&mut state, &self.volumes, GOAL)?;
-            self.take(sites.moves, state);
+            self.take(sites, state);
             let split = self.split_grains();
             if split.is_empty() {
                 return Ok(());
@@ -144,9 +180,7 @@ impl GrainDiagram {
                 if self.fineness[grain] < MOST_FINENESS {
                     self.fineness[grain] += 1;
                 } else {
-                    self.fineness[grain] = 0;
-                    let contrast = LESS_CONTRAST * self.contrasts[grain];
-                    self.contrasts[grain] = if contrast < LEAST_CONTRAST { 0.0 } else { contrast };
+                    self.round(grain);
                 }
             }
         }
@@ -182,8 +216,13 @@ impl GrainDiagram {
         Clipped::of(self.tessellation.clone(), self.weights.clone(), Arc::clone(&self.grains))
     }
 
-    fn take(&mut self, moves: Vec<DVec3>, Clipped { tessellation, weights, grains, .. }: Clipped) {
-        self.moves = moves;
+    fn take(&mut self, sites: Sites, Clipped { tessellation, weights, grains, .. }: Clipped) {
+        let mut shifts = vec![0.0; self.centers.len()];
+        for ((grain, weight), base) in sites.of_cell.iter().zip(&weights).zip(&sites.bases) {
+            shifts[*grain as usize] = weight - base;
+        }
+        self.shifts = Some(shifts);
+        self.moves = sites.moves;
         self.tessellation = tessellation;
         self.weights = weights;
         self.grains = grains;
@@ -235,6 +274,21 @@ impl GrainDiagram {
             *volume += cell.volume;
         }
         self.centers.iter().zip(sums).map(|(center, (sum, volume))| center + sum / volume).collect()
+    }
+
+    /// Of each grain the integral of `r r^T` over it, with r from its centroid: in the plane over its area. It tells the ellipsoid that a grain
+    /// is like.
+    pub fn second_moments(&self) -> Vec<DMat3> {
+        let cells = self.tessellation.cell_measures();
+        let centroids = self.centroids();
+        let mut moments = vec![DMat3::ZERO; self.centers.len()];
+        let all = (0u32..).map(CellId).zip(&cells).zip(&self.moves).zip(self.grains.of_each_cell());
+        for (((cell, measure), moved), grain) in all {
+            let way = measure.centroid + *moved - centroids[*grain as usize];
+            let of_cell = second_moment(&self.tessellation, cell, measure.centroid);
+            moments[*grain as usize] += of_cell + square(way) * measure.volume;
+        }
+        moments
     }
 
     /// Grains whose cells do not all hang together by faces that are no mere necks, where they stand with the grain.
@@ -309,6 +363,30 @@ fn grain_maxima(sites: &Sites, count: usize) -> Vec<f64> {
         largest[*grain as usize] = largest[*grain as usize].max(*base);
     }
     largest
+}
+
+fn square(way: DVec3) -> DMat3 {
+    DMat3::from_cols(way * way.x, way * way.y, way * way.z)
+}
+
+/// The second moment of a cell about a place in it: that of cones to its faces, which are convex as it is.
+fn second_moment(tessellation: &Tessellation, cell: CellId, about: DVec3) -> DMat3 {
+    let mut sum = DMat3::ZERO;
+    for &face in tessellation.cell_faces(cell) {
+        let corners = tessellation.face_corners(face);
+        let at = |place: usize| tessellation.vertices()[corners[place].index()] - about;
+        if let [_, _] = corners {
+            let [a, b] = [at(0), at(1)];
+            let area = 0.5 * a.truncate().perp_dot(b.truncate()).abs();
+            sum += (square(a) + square(b) + square(a + b)) * (area / 12.0);
+        }
+        for last in 2..corners.len() {
+            let [a, b, c] = [at(0), at(last - 1), at(last)];
+            let volume = a.dot(b.cross(c)).abs() / 6.0;
+            sum += (square(a) + square(b) + square(c) + square(a + b + c)) * (volume / 20.0);
+        }
+    }
+    sum
 }
 
 /// The root of a cell in a forest of cells.

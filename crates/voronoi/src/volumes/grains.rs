@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::CellId;
 
 /// The grains that cells make up.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub(crate) struct Grains {
     /// Of each cell.
     of_cell: Vec<u32>,

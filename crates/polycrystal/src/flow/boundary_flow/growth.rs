@@ -79,7 +79,7 @@ impl Flow<'_> {
                     let count = 1;
                     return Err(self
                         .vanishing(&points, passed, longest)
-                        .unwrap_or(NetworkError::Folded { count }));
+                        .unwrap_or(NetworkError::Folded { count, grains: Vec::new() }));
                 }
                 Err(error) => return Err(self.vanishing(&points, passed, longest).unwrap_or(error)),
             }
