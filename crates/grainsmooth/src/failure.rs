@@ -21,6 +21,8 @@ pub struct Failure {
     pub growth: Option<Growth>,
     /// The grains around each line of the cells (in the plane: point) where one tension exceeds the sum of the others.
     pub without_equilibrium: Vec<Vec<u32>>,
+    /// Whether grains were to have given shapes.
+    pub has_shapes: bool,
     /// What was tried before, and what each attempt said.
     pub attempts: Vec<Attempt>,
 }
@@ -42,7 +44,8 @@ impl Failure {
         let grain = FailedGrain::of(&cause, cells);
         let without_equilibrium = cells.law.without_equilibrium_in(cells);
         let dimension = cells.tessellation.domain().dimension();
-        Self { dimension, cause, grain, growth: None, without_equilibrium, attempts }
+        let has_shapes = cells.shapes.is_some();
+        Self { dimension, cause, grain, growth: None, without_equilibrium, has_shapes, attempts }
     }
 
     /// The same, with what helps where grains grow.
@@ -72,6 +75,9 @@ impl fmt::Display for Failure {
                 if self.dimension == Dimension::Two { "points" } else { "lines" },
                 line_name(first)
             );
+        }
+        if self.has_shapes {
+            return write!(out, "; give --grain-shapes a lower ratio, or another --rng-seed");
         }
         match (self.growth, self.grain.and_then(|grain| grain.least_diameter())) {
             (Some(Growth::Until(time)), _) => write!(out, "; --relax {time} works"),
