@@ -13,8 +13,8 @@ const MISTAKES: f64 = 0.06;
 /// Share of runs whose options stand in a TOML file.
 const CONFIG_FILES: f64 = 0.05;
 
-/// Share of runs with grains of given shapes, of those in boxes without lattices.
-const SHAPES: f64 = 0.06;
+/// Share of runs with grains of given shapes, of those in boxes whose seeds can have sizes.
+const SHAPES: f64 = 0.1;
 
 /// What a campaign keeps its runs to, so that they end in time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -121,7 +121,7 @@ impl Case {
         files.extend(sizes(draw, arrangement, count, &domain, &mut options));
         phases(draw, &mut options);
         inside(draw, &domain, count, &mut options);
-        grain_shapes(draw, dimension, &mut options, &mut promise);
+        grain_shapes(draw, arrangement, dimension, &mut options, &mut promise);
         let mut case = Self {
             kind: arrangement.name().to_owned(),
             keeps_volumes: !options.has("free"),
@@ -161,8 +161,7 @@ fn sizes(
     if arrangement == Arrangement::Random && (options.has("min-diameter") || draw.chance(0.5)) {
         options.set("seeding", ["random"]);
     }
-    let may_be_sized = is_free || matches!(arrangement, Arrangement::Uniform | Arrangement::Radii);
-    if !may_be_sized || options.has("min-diameter") || !draw.chance(0.35) {
+    if !arrangement.may_be_sized() || options.has("min-diameter") || !draw.chance(0.35) {
         return None;
     }
     if is_free {
@@ -259,9 +258,16 @@ const NOT_WITH_SHAPES: [&str; 10] = [
     "every",
 ];
 
-/// Draws the shapes of single grains in boxes without lattices, and takes out what does not go with them.
-fn grain_shapes(draw: &mut Draw, dimension: usize, options: &mut Options, promise: &mut Promise) {
-    let is_taken = ["lattice", "domain", "half-spaces"].iter().any(|name| options.has(name));
+/// Draws the shapes of single grains, in boxes with seeds that can have sizes, and takes out what does not go with them.
+fn grain_shapes(
+    draw: &mut Draw,
+    arrangement: Arrangement,
+    dimension: usize,
+    options: &mut Options,
+    promise: &mut Promise,
+) {
+    let is_taken =
+        !arrangement.may_be_sized() || ["domain", "half-spaces"].iter().any(|name| options.has(name));
     let is_of_cells = options.values("output").iter().any(|name| name.ends_with(".tess"))
         || options.value("format") == Some("tess");
     if is_taken || is_of_cells || !draw.chance(SHAPES) {

@@ -59,6 +59,11 @@ impl Arrangement {
         draw.weighted(&Self::WEIGHTS)
     }
 
+    /// Whether grains can have given volumes: seeds that nearly coincide leave no room for them.
+    pub fn may_be_sized(self) -> bool {
+        matches!(self, Self::Random | Self::PoissonDisc | Self::Uniform | Self::Radii)
+    }
+
     /// The arrangement in a word or two.
     pub fn name(self) -> &'static str {
         match self {
