@@ -261,8 +261,12 @@ fn phases_that_are_mistaken() {
         ("a:0", "'0' is no share of the volume; give a number above 0, up to 1"),
         ("a:1.2", "'1.2' is no share of the volume; give a number above 0, up to 1"),
         ("a:1,textur=random", "'textur' is unknown; did you mean 'texture'?"),
-        ("a:1,color=red", "'color' is unknown; a phase may have diameters=, texture=, symmetry="),
-        ("a:1,goss(10)", "'goss(10)' has no key; a phase may have diameters=, texture=, symmetry="),
+        ("a:1,color=red", "'color' is unknown; a phase may have diameters=, texture=, symmetry=, place="),
+        (
+            "a:0.5,place=corner",
+            "'corner' is no place; give interior, boundaries, triple-lines, quadruple-points, clustered, dispersed",
+        ),
+        ("a:1,goss(10)", "'goss(10)' has no key; a phase may have diameters=, texture=, symmetry=, place="),
         ("a:1,symmetry=432,symmetry=622", "symmetry stands twice; leave one out"),
         (
             "a:1,diameters=lognomal(mean=1,cv=1)",
@@ -307,6 +311,38 @@ fn phases_that_are_mistaken() {
             "--phase a:1 --min-diameter 0.2",
             "--min-diameter would change the shares of the phases; cut small grains off with from=, or leave it out",
         ),
+        (
+            "--phase a:0.5,place=interior --phase b:0.5,place=boundaries",
+            "each phase has place=interior or another place in the grains of others; leave place= out of one",
+        ),
+        (
+            "--dim 2 --phase a:0.9 --phase b:0.1,place=quadruple-points",
+            "place=quadruple-points needs three dimensions; with --dim 2 give triple-lines, for the points where three grains meet",
+        ),
+        (
+            "--phase a:0.9 --phase b:0.1,place=interior --seeding random",
+            "place=interior of phase b does not go with --seeding and --seeds-file, as its grains are between others; leave one of them out",
+        ),
+        (
+            "--phase a:0.9 --phase b:0.1,place=dispersed --grain-shapes 2:1:1",
+            "place=dispersed of phase b does not go with --grain-shapes; leave one of them out",
+        ),
+        (
+            "--phase a:0.9 --phase b:0.1,place=boundaries --periodic x",
+            "place=boundaries of phase b does not go with --periodic; leave one of them out",
+        ),
+        (
+            "--phase a:1,place=clustered",
+            "place=clustered of phase a does not go with a single phase; leave one of them out",
+        ),
+        (
+            "--phase a:0.9 --phase b:0.1,place=boundaries --cells-csv c.csv",
+            "place= puts grains into others, which then are of several cells; leave --cells-csv, --cells-json, --no-mesh and --series out",
+        ),
+        (
+            "--phase a:0.9 --phase b:0.1,place=boundaries --relax 0",
+            "place= makes grains of several cells, which are sharp where these meet; leave --relax 0 out, or give --relax 0.02",
+        ),
         ("--picture a.png --color-by phase", "--color-by phase needs phases; give some with --phase"),
         ("--sample-symmetry orthorhombic", "--sample-symmetry is that of a texture; give --texture as well"),
     ] {
@@ -314,6 +350,14 @@ fn phases_that_are_mistaken() {
     }
     workplace.put("m.ctf", "Channel Text File\nXCells\t1\nYCells\t1\nXStep\t1\nYStep\t1\nPhases\t1\n1;1;1\t90;90;90\ta\t11\t0\nPhase\tX\tY\tBands\tError\tEuler1\tEuler2\tEuler3\tMAD\tBC\tBS\n1\t0\t0\t9\t0\t1\t2\t3\t0\t0\t0\n");
     for (arguments, message) in [
+        (
+            "--seeds 2 --phase a:0.9 --phase b:0.1,place=triple-lines",
+            "there is no place on triple lines; give the phase a smaller share, fewer grains or another place, or more grains to the others",
+        ),
+        (
+            "--seeds 60 --phase a:0.5 --phase b:0.5,place=quadruple-points",
+            "there is room at quadruple points for ... grains; give the phase a smaller share, fewer grains or another place, or more grains to the others",
+        ),
         (
             "--seeds 2 --phase a:0.4 --phase b:0.3 --phase c:0.3",
             "2 grains cannot be of 3 phases; give 3 seeds or more",
@@ -329,5 +373,54 @@ fn phases_that_are_mistaken() {
         ),
     ] {
         workplace.refuses(arguments, FAILED, message);
+    }
+}
+
+#[test]
+fn grains_of_a_phase_are_where_they_were_to_be() {
+    let workplace = Workplace::new();
+    for (options, place, cells, share) in [
+        ("--seeds 40", "interior", 1, 0.04),
+        ("--seeds 40 --periodic x,y,z", "interior", 1, 0.04),
+        ("--seeds 40", "boundaries", 2, 0.04),
+        ("--seeds 40", "triple-lines", 3, 0.04),
+        ("--seeds 36", "quadruple-points", 4, 0.01),
+        ("--seeds 60 --dim 2", "interior", 1, 0.04),
+        ("--seeds 60 --dim 2", "boundaries", 2, 0.04),
+        ("--seeds 60 --dim 2 --rng-seed 2", "triple-lines", 3, 0.04),
+    ] {
+        let first = format!("--phase a:{},diameters=lognormal(mean=20,cv=0.3)", 1.0 - share);
+        let second = format!("--phase b:{share},diameters=equal(7),place={place}");
+        let arguments = format!("{options} {first} {second} -n 1 -o a.vtp --json-summary s.json");
+        let said = workplace.run(&arguments);
+        let summary = json(&workplace, "s.json");
+        let phase = &rows(&summary, "phases")[1];
+        assert_eq!(phase["place"], place);
+        let (grains, in_place) = (number(phase, "grains"), number(phase, "in_place"));
+        assert!(in_place >= 0.8 * grains, "{options} {place}: {in_place} of {grains}");
+        assert!((number(phase, "fraction") / share - 1.0).abs() < 1e-10, "{options} {place}: {phase}");
+        let many = if cells == 1 { "" } else { "s" };
+        assert!(said.contains(&format!("{place} ({in_place} touch {cells} grain{many})")), "{said}");
+        assert!(number(&summary["sizes"], "largest_volume_error") < 1e-10, "{options} {place}");
+        workplace.command("check a.vtp").assert().success();
+    }
+}
+
+#[test]
+fn grains_of_a_phase_touch_each_other_more_or_less_as_asked() {
+    let workplace = Workplace::new();
+    for options in ["--seeds 150", "--seeds 150 --dim 2 --periodic x,y", "--seeds 150 --seeding random"] {
+        let contiguity = |place: &str| {
+            let arguments = format!("{options} --phase a:0.75 --phase b:0.25{place}");
+            workplace.run(&format!("{arguments} -n 0 --relax 0 --json-summary s.json"));
+            let summary = json(&workplace, "s.json");
+            let phase = &rows(&summary, "phases")[1];
+            assert!((number(phase, "fraction_of_cells") / 0.25 - 1.0).abs() < 1e-10, "{options}: {phase}");
+            number(phase, "contiguity")
+        };
+        let [dispersed, any, clustered] = [",place=dispersed", "", ",place=clustered"].map(contiguity);
+        assert!(dispersed < 0.1, "{options}: {dispersed}");
+        assert!((any - 0.25).abs() < 0.1, "{options}: {any}");
+        assert!(clustered > 0.5, "{options}: {clustered}");
     }
 }

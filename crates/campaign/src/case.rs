@@ -199,11 +199,42 @@ fn sizes(
     None
 }
 
+/// Draws where the grains of a second phase are; inside others and between them where all goes together.
+fn place(draw: &mut Draw, options: &Options) -> &'static str {
+    let others = [
+        "lattice",
+        "seeds-file",
+        "seeding",
+        "series",
+        "cells-json",
+        "cells-csv",
+        "no-mesh",
+        "gradient",
+        "grain-shapes",
+        "free",
+        "dry-run",
+    ];
+    let is_flat = options.value("relax") == Some("0");
+    let is_of_cells = options.values("output").iter().any(|name| name.ends_with(".tess"))
+        || options.value("format") == Some("tess");
+    if !draw.chance(0.4) || options.has("gradient") {
+        return "";
+    }
+    if is_flat || is_of_cells || others.iter().any(|name| options.has(name)) {
+        return draw.one_of(&[",place=clustered", ",place=dispersed"]);
+    }
+    if options.has("periodic") {
+        return draw.one_of(&[",place=clustered", ",place=dispersed", ",place=interior"]);
+    }
+    draw.one_of(&[",place=interior", ",place=boundaries", ",place=triple-lines", ",place=clustered"])
+}
+
 /// Draws what divides grains, after the phases: into parts of a half to a quarter of their width.
 fn inside(draw: &mut Draw, domain: &Domain, count: u32, options: &mut Options) {
     // Freely growing parts vanish soon, and so do those of the twins and clusters of files.
     let is_taken = ["free", "seeds-file", "aspect-ratio"].iter().any(|name| options.has(name));
-    if is_taken || !draw.chance(0.1) {
+    let is_placed = options.values("phase").iter().any(|phase| phase.contains("place="));
+    if is_taken || is_placed || !draw.chance(0.1) {
         return;
     }
     let length = draw.between(0.25, 0.5) * domain.spacing(count) * domain.inner;
@@ -234,6 +265,7 @@ fn phases(draw: &mut Draw, options: &mut Options) {
     if draw.chance(0.3) {
         of_second += ",symmetry=hexagonal";
     }
+    of_second += place(draw, options);
     options.set("phase", [format!("first:{:?}", 1.0 - share), format!("second:{share:?}{of_second}")]);
     if options.has("picture") && draw.chance(0.5) {
         options.set("color-by", ["phase"]);

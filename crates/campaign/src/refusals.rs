@@ -44,6 +44,12 @@ pub const REFUSALS: &[Kind] = &[
     ("HalfSpaceInFile", &["half-space", "line"]),
     // Files of orientations.
     ("TextureSymmetry", &["its crystals are", "give --crystal-symmetry"]),
+    ("NoPlace", &["there is room", "grains; give the phase a smaller share, fewer grains or another place"]),
+    ("NoPlace, none", &["there is no place", "or another place"]),
+    (
+        "NoRoomAround",
+        &["the phases with place= are too crowded", "give them smaller shares or smaller grains"],
+    ),
     ("PhasesError::FewGrains", &["grains cannot be of", "seeds or more"]),
     ("BadTextureFile, empty", &["holds no orientation"]),
     // Sizes that are asked for.

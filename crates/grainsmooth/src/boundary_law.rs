@@ -237,7 +237,7 @@ impl BoundaryLaw {
             return Vec::new();
         }
         // Cells of which no network can be made have another fault to name.
-        let network = cells.network(&cells.tessellation, FaceMesh::Fan, Junctions::Crease, 0);
+        let network = cells.network(&cells.tessellation, FaceMesh::Fan, Junctions::Crease, 0.0, 0);
         let Ok((network, points)) = network else { return Vec::new() };
         let Ok(network) = self.apply(network) else { return Vec::new() };
         without_equilibrium(&network, &measure_network(&network, &points))

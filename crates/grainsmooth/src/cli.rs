@@ -190,6 +190,20 @@ impl Arguments {
                 "--min-diameter would change sizes that are given; cut small ones off with from=, or give --seeding random",
             );
         }
+        let is_of_cells =
+            files.cells_csv.is_some() || files.cells_json.is_some() || self.run.no_mesh || files.has_series();
+        if config.grain_shapes.is_none() && config.has_grains_of_several_cells() {
+            if is_of_cells {
+                usage(
+                    "place= puts grains into others, which then are of several cells; leave --cells-csv, --cells-json, --no-mesh and --series out",
+                );
+            }
+            if relaxation == Relaxation::Time(0.0) {
+                usage(
+                    "place= makes grains of several cells, which are sharp where these meet; leave --relax 0 out, or give --relax 0.02",
+                );
+            }
+        }
         if relaxation == Relaxation::Time(0.0) && config.grain_shapes.is_some() {
             usage(
                 "--grain-shapes makes grains of several cells, which are sharp where these meet; leave --relax 0 out, or give --relax 0.02",

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 use polycrystal::NetworkError;
-use voronoi::volumes::VolumesError;
+use voronoi::volumes::{PlaceError, VolumesError};
 use voronoi::{Dimension, VoronoiError};
 
 use crate::memory::{self, LevelSize};
@@ -238,7 +238,7 @@ pub enum Error {
         path: PathBuf,
     },
     /// The output's format holds convex cells, and grains are several of them.
-    #[error("{}: this format holds convex cells, and --grain-shapes makes grains of several; choose another, such as .vtp", path.display())]
+    #[error("{}: this format holds convex cells, and --grain-shapes and place= make grains of several; choose another, such as .vtp", path.display())]
     CellsOfGrains {
         /// The path as given.
         path: PathBuf,
@@ -261,6 +261,14 @@ pub enum Error {
         /// What is wrong, and what to do about it.
         problem: String,
     },
+    /// Grains of a phase have no place where they are to be.
+    #[error(
+        "{0}; give the phase a smaller share, fewer grains or another place, or more grains to the others"
+    )]
+    NoPlace(#[from] PlaceError),
+    /// Grains that are put into others leave no room for one.
+    #[error("the phases with place= are too crowded: {0}; give them smaller shares or smaller grains")]
+    NoRoomAround(#[source] VolumesError),
     /// Phases that contradict each other or other options.
     #[error(transparent)]
     Phases(#[from] PhasesError),

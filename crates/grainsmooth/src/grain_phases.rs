@@ -4,9 +4,12 @@ use std::fmt;
 
 use serde::Serialize;
 use texture::{Apportionment, CrystalSymmetry};
+use voronoi::Tessellation;
+use voronoi::volumes::InclusionPlace;
 
+use crate::placed_grains::contact_areas;
 use crate::vtk::ItemTuples;
-use crate::{Config, GrainSizes};
+use crate::{Config, GrainCells, GrainSizes, PhasePlace};
 
 /// The phases, and which of them each grain is of.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +17,16 @@ pub struct GrainPhases {
     phases: Vec<Phase>,
     /// Index of each grain's phase.
     phase_of: Vec<usize>,
+    /// What is told of the neighbours of each phase's grains, in the cells.
+    neighbors: Vec<PhaseNeighbors>,
+}
+
+/// What the grains of a phase have beside them.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct PhaseNeighbors {
+    contiguity: Option<f64>,
+    /// Of grains that are to touch so many others, how many do.
+    in_place: Option<usize>,
 }
 
 /// What all grains of a phase share.
@@ -25,6 +38,7 @@ struct Phase {
     symmetry: CrystalSymmetry,
     /// By which diameters that all phases share are multiplied beside their common factor, so that the phase has its volume.
     scale: f64,
+    place: Option<PhasePlace>,
 }
 
 /// What of the volume a phase has.
@@ -46,7 +60,16 @@ pub struct PhaseShare {
     pub fraction: f64,
     /// By which diameters that all phases share are multiplied beside their common factor.
     pub scale: f64,
+    /// Where its grains were to be.
+    pub place: Option<PhasePlace>,
+    /// Number of grains that touch as many others in the cells as meet at their place.
+    pub in_place: Option<usize>,
+    /// The share of its grains' surface in the cells, walls left out, that they have with each other, each such boundary counted for both grains; none without such surface.
+    pub contiguity: Option<f64>,
 }
+
+/// The least share of a grain's surface that another must have to count as one that it touches.
+const LEAST_CONTACT: f64 = 0.02;
 
 impl GrainPhases {
     /// The phases that a config asks for, as sizes were given to them; nothing without phases.
@@ -56,10 +79,34 @@ impl GrainPhases {
             fraction,
             symmetry: options.symmetry.unwrap_or(config.texture.symmetry),
             scale: *scale,
+            place: options.place,
         };
         let asked = config.phases.iter().zip(config.phase_fractions());
         let phases: Vec<Phase> = asked.zip(sizes.phase_scales()).map(phase).collect();
-        (!phases.is_empty()).then(|| Self { phases, phase_of: sizes.phase_of().to_vec() })
+        let neighbors = vec![PhaseNeighbors::default(); phases.len()];
+        (!phases.is_empty()).then(|| Self { phases, phase_of: sizes.phase_of().to_vec(), neighbors })
+    }
+
+    /// The same with what is beside the grains.
+    pub(crate) fn among(mut self, cells: &Tessellation, grains: Option<&GrainCells>) -> Self {
+        let contacts = contact_areas(cells, grains, self.phase_of.len());
+        for (number, phase) in self.phases.iter().enumerate() {
+            let own =
+                || contacts.iter().zip(&self.phase_of).filter(|(_, of)| **of == number).map(|(own, _)| own);
+            let is_alike = |(other, _): &&(usize, f64)| self.phase_of[*other] == number;
+            let area: f64 = own().flatten().map(|(_, area)| area).sum();
+            let alike: f64 = own().flatten().filter(is_alike).map(|(_, area)| area).sum();
+            let touched = |own: &&Vec<(usize, f64)>| {
+                let least = LEAST_CONTACT * own.iter().map(|(_, area)| area).sum::<f64>();
+                own.iter().filter(|(_, area)| *area > least).count()
+            };
+            let place = phase.place.and_then(PhasePlace::of_inclusions);
+            self.neighbors[number] = PhaseNeighbors {
+                contiguity: (area > 0.0).then(|| alike / area),
+                in_place: place.map(|place| own().filter(|own| touched(own) == place.cells()).count()),
+            };
+        }
+        self
     }
 
     /// The same for parts of the grains, given the grain that each is of.
@@ -110,6 +157,9 @@ impl GrainPhases {
             fraction_of_cells: share(cells, index),
             fraction: share(grains, index),
             scale: phase.scale,
+            place: phase.place,
+            in_place: self.neighbors[index].in_place,
+            contiguity: self.neighbors[index].contiguity,
         };
         phases.map(found).collect()
     }
@@ -140,14 +190,24 @@ pub(crate) fn assigned(volumes: &[f64], fractions: &[f64]) -> Vec<usize> {
 
 impl fmt::Display for PhaseShare {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, grains, crystal_symmetry, fraction, fraction_asked, scale, .. } = self;
+        let Self { name, grains, crystal_symmetry, fraction, fraction_asked, scale, place, .. } = self;
         write!(
             out,
             "{name} {:.6} % of the volume (asked {:.6} %) in {grains} grains, {crystal_symmetry}",
             100.0 * fraction,
             100.0 * fraction_asked
         )?;
-        if (scale - 1.0).abs() > 5e-7 { write!(out, ", diameters times {scale:.6}") } else { Ok(()) }
+        if (scale - 1.0).abs() > 5e-7 {
+            write!(out, ", diameters times {scale:.6}")?;
+        }
+        match (place, self.in_place, self.contiguity) {
+            (Some(place), Some(count), _) => {
+                let cells = place.of_inclusions().map_or(0, InclusionPlace::cells);
+                write!(out, ", {place} ({count} touch {cells} grain{})", if cells == 1 { "" } else { "s" })
+            }
+            (Some(place), None, Some(contiguity)) => write!(out, ", {place} (contiguity {contiguity:.2})"),
+            _ => Ok(()),
+        }
     }
 }
 

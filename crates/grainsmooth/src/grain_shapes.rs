@@ -8,11 +8,11 @@ use polycrystal::{GrainId, Measures};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::Serialize;
+use voronoi::Dimension;
 use voronoi::volumes::{GrainDiagram, GrainShape, VolumesError};
-use voronoi::{Dimension, Tessellation};
 
 use crate::seeding::unit_fraction;
-use crate::{Config, Error};
+use crate::{Config, Error, GrainCells};
 
 /// The generator's stream for directions, apart from those of positions (0), orientations (1, 2) and sizes (3).
 const STREAM: u64 = 4;
@@ -24,8 +24,6 @@ pub struct GrainShapes {
     asked: String,
     wanted: Vec<GrainShape>,
     diagram: Box<GrainDiagram>,
-    /// Of each cell.
-    of_cell: Vec<GrainId>,
     /// Grains that are rounder than was asked for.
     rounder: usize,
     /// Of each grain in the flat cells.
@@ -75,7 +73,6 @@ fn random_rotation([share, first, second]: [f64; 3]) -> DQuat {
 impl GrainShapes {
     /// What became of the shapes asked for in a diagram.
     pub(crate) fn of_diagram(asked: String, wanted: Vec<GrainShape>, diagram: GrainDiagram) -> Self {
-        let of_cell = diagram.grain_of_cell().iter().copied().map(GrainId).collect();
         let dimension = diagram.tessellation().domain().dimension();
         let moments = diagram.second_moments();
         let ratios_of_cells = match dimension {
@@ -85,7 +82,7 @@ impl GrainShapes {
             }
         };
         let rounder = diagram.contrasts().iter().filter(|contrast| **contrast < 1.0).count();
-        Self { dimension, asked, wanted, diagram: Box::new(diagram), of_cell, rounder, ratios_of_cells }
+        Self { dimension, asked, wanted, diagram: Box::new(diagram), rounder, ratios_of_cells }
     }
 
     /// The same with rounder shapes of some grains, of all where none is told, whose cells lead to no network; nothing where these are balls.
@@ -94,7 +91,7 @@ impl GrainShapes {
     /// As of [`GrainDiagram::rounder`].
     pub(crate) fn with_rounder(&self, grains: &[GrainId]) -> Result<Option<Self>, VolumesError> {
         let all: Vec<usize> = match grains {
-            [] => (0..self.count()).collect(),
+            [] => (0..self.wanted.len()).collect(),
             some => some.iter().map(|grain| grain.index()).collect(),
         };
         let rounder = self.diagram.rounder(all)?;
@@ -107,42 +104,8 @@ impl GrainShapes {
     }
 
     /// The grain of each cell.
-    pub fn of_cell(&self) -> &[GrainId] {
-        &self.of_cell
-    }
-
-    /// Number of grains.
-    pub(crate) fn count(&self) -> usize {
-        self.wanted.len()
-    }
-
-    /// The sums over the cells of each grain.
-    pub(crate) fn sums<T: Copy + Default + std::ops::AddAssign>(
-        &self,
-        of_cells: impl Iterator<Item = T>,
-    ) -> Vec<T> {
-        let mut sums = vec![T::default(); self.count()];
-        self.of_cell.iter().zip(of_cells).for_each(|(grain, value)| sums[grain.index()] += value);
-        sums
-    }
-
-    /// Number of faces of each grain: two grains that touch in several places have as many in the network, and one here.
-    pub(crate) fn face_counts(&self, tessellation: &Tessellation) -> Vec<usize> {
-        let mut pairs = Vec::new();
-        for face in tessellation.faces() {
-            let sides = tessellation.face_sides(face).map(|side| match side {
-                voronoi::Side::Cell(cell) => Ok(self.of_cell[cell.index()]),
-                other => Err(other),
-            });
-            if sides[0] != sides[1] {
-                pairs.extend([sides, [sides[1], sides[0]]]);
-            }
-        }
-        pairs.sort_unstable();
-        pairs.dedup();
-        let mut counts = vec![0; self.count()];
-        pairs.iter().filter_map(|[side, _]| side.ok()).for_each(|grain| counts[grain.index()] += 1);
-        counts
+    pub(crate) fn grain_cells(&self) -> GrainCells {
+        GrainCells::new(self.diagram.grain_of_cell(), self.wanted.len())
     }
 
     /// What was asked for and reached, by what the finished grains are like.
@@ -159,7 +122,7 @@ impl GrainShapes {
             ratio_asked: median(self.wanted.iter().map(ratio).collect()),
             ratio_of_cells: median(self.ratios_of_cells.clone()),
             ratio: measures.map(|measures| median(ratios(measures))),
-            cells_per_grain: self.of_cell.len() as f64 / self.count() as f64,
+            cells_per_grain: self.diagram.grain_of_cell().len() as f64 / self.wanted.len() as f64,
             rounder: self.rounder,
         }
     }

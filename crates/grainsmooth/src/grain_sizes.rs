@@ -202,6 +202,15 @@ impl GrainSizes {
         Self { factors, ..self }
     }
 
+    /// The same with other numbers: grain k is what grain `order[k]` was.
+    pub(crate) fn in_order(self, order: &[usize]) -> Self {
+        Self {
+            volumes: order.iter().map(|grain| self.volumes[*grain]).collect(),
+            phase_of: order.iter().map(|grain| self.phase_of[*grain]).collect(),
+            ..self
+        }
+    }
+
     /// The volumes that grains are to have (in the plane: areas).
     pub fn volumes(&self) -> &[f64] {
         &self.volumes

@@ -29,6 +29,7 @@ mod failed_grain;
 mod failure;
 mod formats;
 mod gradient;
+mod grain_cells;
 mod grain_phases;
 mod grain_shapes;
 mod grain_sizes;
@@ -48,8 +49,10 @@ mod mesh_json;
 mod network_file;
 mod output;
 mod phase_options;
+mod phase_place;
 mod picture;
 mod pipeline;
+mod placed_grains;
 mod poisson_disc;
 mod report;
 mod sample_report;
@@ -92,6 +95,7 @@ pub use formats::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
 };
 pub use gradient::GradientSource;
+pub use grain_cells::GrainCells;
 pub use grain_phases::{GrainPhases, PhaseShare};
 pub use grain_shapes::{GrainShapes, ShapesReached};
 pub use grain_sizes::{GrainSizes, SizesFit, SizesReached};
@@ -107,6 +111,7 @@ pub use mesh_edit::{EdgeEdit, edit_edges};
 pub use mesh_json::{bezier_json, levels_json, mesh_json};
 pub use output::{Output, OutputDirectory};
 pub use phase_options::{PhaseOptions, PhasesError};
+pub use phase_place::PhasePlace;
 pub use picture::{Coloring, Picture, Png};
 pub use pipeline::{
     Polycrystal, Progress, Reconnected, Regularization, Stage, check_expected_size, make_polycrystal, smooth,

@@ -5,8 +5,9 @@ use std::str::FromStr;
 
 use texture::CrystalSymmetry;
 use thiserror::Error;
+use voronoi::Dimension;
 
-use crate::{Config, SizeSource, TextureSource};
+use crate::{Config, PhasePlace, SeedSource, SizeSource, TextureSource};
 
 /// How far the sum of all fractions may be from 1: rounding of decimal numbers.
 const SUM_TOLERANCE: f64 = 1e-9;
@@ -27,12 +28,14 @@ pub struct PhaseOptions {
     pub texture: Option<TextureSource>,
     /// The symmetry of its crystals; nothing for that of all.
     pub symmetry: Option<CrystalSymmetry>,
+    /// Where its grains are; nothing for anywhere.
+    pub place: Option<PhasePlace>,
 }
 
 /// What a phase may have, by key, and how it is read.
 type Key = (&'static str, fn(&mut PhaseOptions, &str) -> Result<(), String>);
 
-const KEYS: [Key; 3] = [
+const KEYS: [Key; 4] = [
     ("diameters", |phase, text| {
         phase.diameters = Some(SizeSource::diameters(text).map_err(|error| error.to_string())?);
         Ok(())
@@ -43,6 +46,10 @@ const KEYS: [Key; 3] = [
     }),
     ("symmetry", |phase, text| {
         phase.symmetry = Some(text.parse().map_err(|error: texture::SymmetryError| error.to_string())?);
+        Ok(())
+    }),
+    ("place", |phase, text| {
+        phase.place = Some(text.parse()?);
         Ok(())
     }),
 ];
@@ -70,8 +77,14 @@ impl FromStr for PhaseOptions {
         let fraction = number.ok_or_else(|| {
             format!("'{}' is no share of the volume; give a number above 0, up to 1", fraction.trim())
         })?;
-        let mut phase =
-            Self { name: name.to_owned(), fraction, diameters: None, texture: None, symmetry: None };
+        let mut phase = Self {
+            name: name.to_owned(),
+            fraction,
+            diameters: None,
+            texture: None,
+            symmetry: None,
+            place: None,
+        };
         let mut given: Vec<(Key, String)> = Vec::new();
         for piece in pieces(rest) {
             match (key_of(piece)?, given.last_mut()) {
@@ -141,6 +154,7 @@ impl PhaseOptions {
             ("diameters", self.diameters.as_ref().map(|source| source.setting().1)),
             ("texture", self.texture.as_ref().map(TextureSource::text)),
             ("symmetry", self.symmetry.as_ref().map(ToString::to_string)),
+            ("place", self.place.as_ref().map(ToString::to_string)),
         ];
         for (key, value) in values {
             text.extend(value.map(|value| format!(",{key}={value}")));
@@ -189,6 +203,30 @@ pub enum PhasesError {
         "volumes that are given to each grain and fractions of phases contradict each other; leave one of them out"
     )]
     Volumes,
+    /// All phases are to be put into others.
+    #[error("each phase has place={place} or another place in the grains of others; leave place= out of one")]
+    NoMatrix {
+        /// The place of the first.
+        place: PhasePlace,
+    },
+    /// A place that there is in three dimensions only.
+    #[error(
+        "place={place} needs three dimensions; with --dim 2 give triple-lines, for the points where three grains meet"
+    )]
+    PlaceInPlane {
+        /// The place.
+        place: PhasePlace,
+    },
+    /// An option that a place does not go with.
+    #[error("place={place} of phase {name} does not go with {option}; leave one of them out")]
+    PlaceAnd {
+        /// The place.
+        place: PhasePlace,
+        /// The phase that has it.
+        name: String,
+        /// The option.
+        option: &'static str,
+    },
     /// Fewer grains than phases.
     #[error("{grains} grains cannot be of {phases} phases; give {phases} seeds or more")]
     FewGrains {
@@ -232,10 +270,40 @@ impl Config {
             }
             _ => {}
         }
+        self.check_places()?;
         if self.texture.source.is_some() && phases.iter().all(|phase| phase.texture.is_some()) {
             return Err(PhasesError::NotUsed { option: "texture", key: "texture" });
         }
         Ok(())
+    }
+
+    /// Checks that the places of phases go with each other and with other options.
+    fn check_places(&self) -> Result<(), PhasesError> {
+        let placed = self.phases.iter().filter_map(|phase| Some((phase, phase.place?)));
+        for (phase, place) in placed {
+            let is_put = place.of_inclusions().is_some();
+            if place == PhasePlace::QuadruplePoints && self.dimension == Dimension::Two {
+                return Err(PhasesError::PlaceInPlane { place });
+            }
+            let is_packed = matches!(self.seeds, SeedSource::Packed { .. });
+            let options = [
+                (is_put && !is_packed, "--seeding and --seeds-file, as its grains are between others"),
+                (self.grain_shapes.is_some(), "--grain-shapes"),
+                (self.sizes.gradient.is_some(), "--gradient"),
+                (is_put && !self.inside.is_empty(), "--inside"),
+                (is_put && place != PhasePlace::Interior && self.periodic.any(), "--periodic"),
+                (self.phases.len() == 1, "a single phase"),
+            ];
+            if let Some((_, option)) = options.into_iter().find(|(is_given, _)| *is_given) {
+                return Err(PhasesError::PlaceAnd { place, name: phase.name.clone(), option });
+            }
+        }
+        let of_inclusions =
+            |phase: &PhaseOptions| phase.place.filter(|place| place.of_inclusions().is_some());
+        match self.phases.iter().map(of_inclusions).collect::<Option<Vec<_>>>().as_deref() {
+            Some([place, ..]) => Err(PhasesError::NoMatrix { place: *place }),
+            _ => Ok(()),
+        }
     }
 
     /// The share of the volume that each phase is to have; they add up to 1. None without phases.

@@ -467,7 +467,7 @@ impl Regularization {
         match self {
             Self::ByEnergy | Self::Foreseeing => false,
             // Where grains are of several cells, those are not what relaxation is foreseen of.
-            Self::Plain => config.grain_shapes.is_none(),
+            Self::Plain => !config.has_grains_of_several_cells(),
             Self::Shorter(_) => true,
             Self::None => config.effective_regularize() > 0.0,
         }
@@ -481,7 +481,7 @@ impl Regularization {
             }
             0.0 => &[Self::None],
             // A grain of several cells may touch itself where an edge is gone, which no cell does.
-            _ if config.grain_shapes.is_some() => &[Self::Plain, Self::Shorter(1), Self::Shorter(2)],
+            _ if config.has_grains_of_several_cells() => &[Self::Plain, Self::Shorter(1), Self::Shorter(2)],
             _ => &[Self::Foreseeing, Self::Plain, Self::None],
         }
     }
@@ -588,11 +588,17 @@ fn network(
 ) -> Result<(Network, Vec<DVec3>, Collapsed), NetworkError> {
     let Config { face_mesh, junctions, levels, .. } = *config;
     let length = config.effective_regularize();
-    let network_of = |tessellation: &Tessellation, face_mesh| {
-        let (network, flat) = cells.network(tessellation, face_mesh, junctions, levels as usize)?;
+    let network_of = |tessellation: &Tessellation, face_mesh, coarsening| {
+        let (network, flat) =
+            cells.network(tessellation, face_mesh, junctions, coarsening, levels as usize)?;
         Ok::<_, NetworkError>((cells.law.apply(network)?, flat))
     };
     let (regular, collapsed) = match regularization {
+        Regularization::Plain | Regularization::Shorter(_) if cells.grain_cells.is_some() => {
+            let halvings = if let Regularization::Shorter(halvings) = regularization { halvings } else { 0 };
+            let (network, flat) = network_of(tessellation, face_mesh, 0.5f64.powi(halvings.into()) * length)?;
+            return Ok((network, flat, Collapsed::default()));
+        }
         Regularization::Foreseeing => {
             let RegularCells { cells, collapsed, given_up } = regular_cells(tessellation, length)?;
             attempts.extend(given_up);
@@ -601,12 +607,12 @@ fn network(
         Regularization::Plain => tessellation.regularized(length),
         Regularization::Shorter(halvings) => tessellation.regularized(0.5f64.powi(halvings.into()) * length),
         Regularization::None | Regularization::ByEnergy => {
-            let (network, flat) = network_of(tessellation, face_mesh)?;
+            let (network, flat) = network_of(tessellation, face_mesh, 0.0)?;
             return Ok((network, flat, Collapsed::default()));
         }
     };
-    let volumes = grain_volumes(tessellation, cells.shapes.as_ref());
-    let (network, flat) = network_of(&regular, config.regular_face_mesh())?;
+    let volumes = grain_volumes(tessellation, cells.grain_cells.as_ref());
+    let (network, flat) = network_of(&regular, config.regular_face_mesh(), 0.0)?;
     Ok((network.with_cell_volumes(volumes), flat, collapsed))
 }
 

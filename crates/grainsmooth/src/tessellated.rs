@@ -17,11 +17,12 @@ use crate::gradient::Gradient;
 use crate::inner_grains::InnerGrains;
 use crate::memory::{available_memory, check_cells};
 use crate::pipeline::{Clock, seed_count};
+use crate::placed_grains::{PlacedGrains, rearranged};
 use crate::seeding::unit_fraction;
 use crate::{
-    BoundaryLaw, Config, EquivalentDiameters, Error, FileSeed, FileSeeds, GrainPhases, GrainShapes,
-    GrainSizes, GrainTexture, Parents, Progress, SeedPlace, SeedSource, Stage, poisson_disc_seeds,
-    random_seeds, read_seed_file,
+    BoundaryLaw, Config, EquivalentDiameters, Error, FileSeed, FileSeeds, GrainCells, GrainPhases,
+    GrainShapes, GrainSizes, GrainTexture, Parents, Progress, SeedPlace, SeedSource, Stage,
+    poisson_disc_seeds, random_seeds, read_seed_file,
 };
 
 /// The cells of a config's seeds.
@@ -46,7 +47,9 @@ pub struct Tessellated {
     pub phases: Option<GrainPhases>,
     /// The orientations of the grains, where they are asked for.
     pub texture: Option<GrainTexture>,
-    /// The shapes of grains of several cells each, where some are asked for; without, each cell is a grain.
+    /// The grain of each cell, where grains are of several cells; without, each cell is a grain.
+    pub grain_cells: Option<GrainCells>,
+    /// The shapes of the grains, where some are asked for.
     pub shapes: Option<GrainShapes>,
     /// What boundaries have.
     pub law: BoundaryLaw,
@@ -76,32 +79,33 @@ impl Tessellated {
         let Some(rounder) = shapes.with_rounder(grains)? else { return Ok(None) };
         let diagram = rounder.diagram();
         let (tessellation, weights) = (diagram.tessellation().clone(), diagram.weights().to_vec());
-        Ok(Some(Self { tessellation, weights, shapes: Some(rounder), ..self.clone() }))
+        let grain_cells = Some(rounder.grain_cells());
+        Ok(Some(Self { tessellation, weights, grain_cells, shapes: Some(rounder), ..self.clone() }))
     }
 
     /// Number of grains.
     pub(crate) fn grain_count(&self) -> usize {
-        self.shapes.as_ref().map_or_else(|| self.tessellation.cell_count(), GrainShapes::count)
+        self.grain_cells.as_ref().map_or_else(|| self.tessellation.cell_count(), GrainCells::count)
     }
 
     /// Volumes of the grains in the flat cells; in the plane areas.
     pub(crate) fn volumes(&self) -> Vec<f64> {
-        grain_volumes(&self.tessellation, self.shapes.as_ref())
+        grain_volumes(&self.tessellation, self.grain_cells.as_ref())
     }
 
     /// Centroids of the grains in the flat cells.
     pub(crate) fn centroids(&self) -> Vec<DVec3> {
-        let Some(shapes) = &self.shapes else { return self.tessellation.centroids() };
+        let Some(grains) = &self.grain_cells else { return self.tessellation.centroids() };
         let cells = self.tessellation.cell_measures();
-        let sums = shapes.sums(cells.iter().map(|cell| cell.volume * cell.centroid));
+        let sums = grains.sums(cells.iter().map(|cell| cell.volume * cell.centroid));
         sums.into_iter().zip(self.volumes()).map(|(sum, volume)| sum / volume).collect()
     }
 
     /// Number of faces of each grain in some cells, those of this or what regularisation made of them.
     pub(crate) fn face_counts(&self, tessellation: &Tessellation) -> Vec<usize> {
         let cells = (0u32..).take(tessellation.cell_count()).map(CellId);
-        match &self.shapes {
-            Some(shapes) => shapes.face_counts(tessellation),
+        match &self.grain_cells {
+            Some(grains) => grains.face_counts(tessellation),
             None => cells.map(|cell| tessellation.cell_faces(cell).len()).collect(),
         }
     }
@@ -112,10 +116,13 @@ impl Tessellated {
         tessellation: &Tessellation,
         face_mesh: FaceMesh,
         junctions: Junctions,
+        coarsening: f64,
         levels: usize,
     ) -> Result<(Network, Vec<DVec3>), NetworkError> {
-        match &self.shapes {
-            Some(shapes) => Network::of_grains(tessellation, shapes.of_cell(), face_mesh, junctions, levels),
+        match &self.grain_cells {
+            Some(grains) => {
+                Network::of_grains(tessellation, grains.of_cell(), face_mesh, junctions, coarsening, levels)
+            }
             None => Network::with_face_mesh(tessellation, face_mesh, junctions, levels),
         }
     }
@@ -152,10 +159,10 @@ impl Tessellated {
 }
 
 /// Volumes of the grains that cells make up; in the plane areas.
-pub(crate) fn grain_volumes(tessellation: &Tessellation, shapes: Option<&GrainShapes>) -> Vec<f64> {
+pub(crate) fn grain_volumes(tessellation: &Tessellation, grains: Option<&GrainCells>) -> Vec<f64> {
     let cells = tessellation.cell_measures().into_iter().map(|cell| cell.volume);
-    match shapes {
-        Some(shapes) => shapes.sums(cells),
+    match grains {
+        Some(grains) => grains.sums(cells),
         None => cells.collect(),
     }
 }
@@ -182,18 +189,33 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
     }
     let mut seeds = NumberedSeeds::new(seeds);
     let (mut dropped_seeds, mut merged_seeds) = (Vec::new(), Vec::new());
-    let mut shapes = None;
+    let (mut grain_cells, mut shapes) = (None, None);
     let (tessellation, weights) = clock.time(Stage::Cells, || {
-        if let Some(wanted) = sizes.take() {
+        if let Some(mut wanted) = sizes.take() {
+            if config.has_inclusions() {
+                let placed = PlacedGrains::new(config, &domain, &wanted)?;
+                seeds.ids = (0u32..).take(wanted.volumes().len()).collect();
+                sizes = Some(wanted.with_centroid_steps(placed.centroid_steps));
+                grain_cells = Some(placed.grain_cells);
+                return Ok((placed.tessellation, placed.weights));
+            }
             if let Some(wanted_shapes) = config.wanted_shapes(seeds.seeds.len())? {
                 let diagram = shaped_grains(config, &domain, &seeds.seeds, wanted.volumes(), &wanted_shapes)?;
                 sizes = Some(wanted.with_centroid_steps(diagram.centroid_steps()));
                 let asked = config.grain_shapes.as_ref().map_or_else(String::new, ToString::to_string);
                 let cells = (diagram.tessellation().clone(), diagram.weights().to_vec());
-                shapes = Some(GrainShapes::of_diagram(asked, wanted_shapes, diagram));
+                let made = GrainShapes::of_diagram(asked, wanted_shapes, diagram);
+                grain_cells = Some(made.grain_cells());
+                shapes = Some(made);
                 return Ok(cells);
             }
-            let diagram = sized_cells(config, &domain, &seeds.seeds, wanted.volumes())?;
+            let mut diagram = sized_cells(config, &domain, &seeds.seeds, wanted.volumes())?;
+            if let Some(order) = rearranged(config, diagram.tessellation(), &wanted) {
+                wanted = wanted.in_order(&order);
+                let places = diagram.tessellation().seeds();
+                seeds.seeds.iter_mut().zip(places).for_each(|(seed, place)| seed.position = *place);
+                diagram = sized_cells(config, &domain, &seeds.seeds, wanted.volumes())?;
+            }
             sizes = Some(wanted.with_centroid_steps(diagram.centroid_steps()));
             return Ok((diagram.tessellation().clone(), diagram.weights().to_vec()));
         }
@@ -223,7 +245,10 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
         merged_seeds.sort_unstable();
         Ok::<_, Error>(all)
     })?;
-    let mut phases = sizes.as_ref().and_then(|sizes| GrainPhases::new(config, sizes));
+    let mut phases = sizes
+        .as_ref()
+        .and_then(|sizes| GrainPhases::new(config, sizes))
+        .map(|phases| phases.among(&tessellation, grain_cells.as_ref()));
     let mut cells = (tessellation, weights, seeds.ids, None);
     if !config.inside.is_empty() {
         cells = clock.time(Stage::Cells, || {
@@ -239,7 +264,7 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
     }
     let (tessellation, weights, seed_ids, parents) = cells;
     let texture = (!textures.is_empty()).then(|| {
-        let volumes = grain_volumes(&tessellation, shapes.as_ref());
+        let volumes = grain_volumes(&tessellation, grain_cells.as_ref());
         let texture_of =
             phases.as_ref().map_or_else(|| vec![0; volumes.len()], |phases| phases.phase_of().to_vec());
         GrainTexture::draw(textures, texture_of, &volumes, config.random_seed).with_target(histogram)
@@ -256,6 +281,7 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
         sizes,
         phases,
         texture,
+        grain_cells,
         shapes,
         law,
         passed_over,
@@ -378,6 +404,10 @@ fn seeds(config: &Config, domain: &Domain) -> Result<(FileSeeds, Option<GrainSiz
         }
         SeedSource::Packed { count } => {
             let sizes = GrainSizes::draw(config, domain, *count)?;
+            if config.has_inclusions() {
+                // Their places are known with the cells.
+                return Ok((FileSeeds { seeds: Vec::new(), passed_over: None }, Some(sizes)));
+            }
             let mut generator = ChaCha8Rng::seed_from_u64(config.random_seed);
             let fraction = || unit_fraction(generator.next_u64());
             let places = match config.wanted_shapes(*count)? {

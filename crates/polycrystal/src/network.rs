@@ -1,3 +1,4 @@
+pub(crate) mod coarsening;
 pub(crate) mod control_mesh;
 pub(crate) mod error;
 pub(crate) mod face_mesh;
@@ -75,6 +76,9 @@ impl Network {
     ///
     /// Grains need not be convex, and one may lie within another. In a periodic domain, cells of a grain stand where they touch each other.
     ///
+    /// `coarsening` closes edges that cells leave in the boundaries and lines between grains: those shorter than this part of the size of the smallest grain
+    /// there (the edge of a cube as large; in the plane, of a square). Lines between two points of four grains close where they are shorter than two fifths of that. 0 keeps all edges.
+    ///
     /// # Errors
     /// As [`Self::with_face_mesh`]; [`NetworkError::GrainInPieces`], [`NetworkError::MissingGrain`].
     ///
@@ -85,15 +89,20 @@ impl Network {
         grain_of_cell: &[GrainId],
         face_mesh: FaceMesh,
         junctions: Junctions,
+        coarsening: f64,
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
         check_face_mesh(tessellation, face_mesh, level_count)?;
-        let control_mesh = ControlMesh::of_grains(tessellation, grain_of_cell, face_mesh, junctions)?;
         let grain_count = grain_of_cell.iter().map(|grain| grain.index() + 1).max().unwrap_or(0);
         let mut volumes = vec![0.0; grain_count];
         for (grain, cell) in grain_of_cell.iter().zip(tessellation.cell_measures()) {
             volumes[grain.index()] += cell.volume;
         }
+        let dimension = tessellation.domain().dimension();
+        let lengths =
+            volumes.iter().map(|volume| coarsening * dimension.cube_edge(*volume)).collect::<Vec<f64>>();
+        let control_mesh =
+            ControlMesh::of_grains(tessellation, grain_of_cell, &lengths, face_mesh, junctions)?;
         Self::assemble(tessellation.domain(), control_mesh, volumes, level_count)
     }
 

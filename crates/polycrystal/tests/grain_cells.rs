@@ -26,7 +26,7 @@ fn of_grains(
     grains: &[GrainId],
     levels: usize,
 ) -> Result<(Network, Vec<DVec3>), NetworkError> {
-    Network::of_grains(tessellation, grains, FaceMesh::Fan, Junctions::Crease, levels)
+    Network::of_grains(tessellation, grains, FaceMesh::Fan, Junctions::Crease, 0.0, levels)
 }
 
 /// Cells join their neighbours, the nearest seeds first, as long as both are alone.

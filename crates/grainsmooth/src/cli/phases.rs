@@ -10,7 +10,8 @@ pub struct PhaseArguments {
     /// Make a phase of a name, with a share of the volume that is exact (in 2D of the area); give it again for each phase
     ///
     /// Shares add up to 1. Behind them may stand what the grains of a phase have of their own: diameters= as of --diameters, texture= as of
-    /// --texture, symmetry= as of --crystal-symmetry.
+    /// --texture, symmetry= as of --crystal-symmetry; and place=, where its grains are among the others: interior, boundaries, triple-lines,
+    /// quadruple-points, clustered, dispersed.
     ///
     /// Example: --phase ferrite:0.8 --phase 'austenite:0.2,texture=goss(10)'
     #[arg(long, value_name = "NAME:SHARE[,KEY=VALUE]", num_args = 1, conflicts_with_all = ["volumes", "lattice", "misorientations"])]

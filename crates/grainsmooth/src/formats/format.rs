@@ -238,7 +238,7 @@ impl OutputFormat {
             }
             (_, Content::Voxels(_)) if config.file.voxels.is_none() => Err(Error::NoVoxels { path: path() }),
             (_, Content::Orientations) if !config.has_texture() => Err(Error::NoTexture { path: path() }),
-            _ if config.grain_shapes.is_some() && self.extension() == "tess" => {
+            _ if config.has_grains_of_several_cells() && self.extension() == "tess" => {
                 Err(Error::CellsOfGrains { path: path() })
             }
             _ => Ok(()),

@@ -7,6 +7,7 @@ use voronoi::{CellId, PeriodicPair, Shift, Tessellation};
 use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
 use crate::mesh::seams::Seams;
+use crate::network::coarsening::{coarsened, coarsened_segments};
 use crate::network::control_mesh::{ControlMesh, JunctionCounts, Meetings, boundary, originals};
 use crate::network::labelled_mesh::{Lines, Pieces};
 use crate::{
@@ -16,16 +17,17 @@ use crate::{
 
 impl ControlMesh {
     /// That of grains instead of cells: what lies between cells of one grain is left out, and boundaries are made up of what hangs together
-    /// between two grains.
+    /// between two grains. In space, edges close that are shorter than the `lengths` of all grains there.
     pub(crate) fn of_grains(
         tessellation: &Tessellation,
         grain_of_cell: &[GrainId],
+        lengths: &[f64],
         face_mesh: FaceMesh,
         junctions: Junctions,
     ) -> Result<Self, NetworkError> {
         check_grains(tessellation, grain_of_cell)?;
         let Self { level, points, wall_sets, .. } = Self::new(tessellation, face_mesh, junctions)?;
-        let kept = KeptElements::new(tessellation, grain_of_cell, &level);
+        let kept = KeptElements::new(tessellation, grain_of_cell, &level, lengths, &points);
         let kept_points = || (0u32..).zip(&kept.numbers).filter(|(_, number)| number.is_some());
         let points: Vec<DVec3> = kept_points().map(|(old, _)| points[old as usize]).collect();
         let walls: Vec<_> = kept_points().map(|(old, _)| level.walls[old as usize]).collect();
@@ -137,6 +139,41 @@ struct KeptElements {
     numbers: Vec<Option<u32>>,
 }
 
+/// Two sides, the smaller first.
+fn sorted(mut sides: [voronoi::Side; 2]) -> [voronoi::Side; 2] {
+    sides.sort_unstable();
+    sides
+}
+
+/// Below what edges at each point are short: the least length of all grains there; nothing where points are copies of each other.
+fn limits(
+    lengths: &[f64],
+    elements: Elements<'_>,
+    sides: &[[voronoi::Side; 2]],
+    level: &Level,
+    point_count: usize,
+) -> Vec<Option<f64>> {
+    let mut limits = vec![Some(f64::INFINITY); point_count];
+    for (element, sides) in (0u32..).zip(sides) {
+        for grain in sides.iter().filter_map(|side| match side {
+            voronoi::Side::Cell(grain) | voronoi::Side::Image(grain, _) => Some(grain.index()),
+            voronoi::Side::Wall(_) => None,
+        }) {
+            for corner in elements.corners(element) {
+                let limit = &mut limits[*corner as usize];
+                *limit = limit.map(|limit| limit.min(lengths[grain]));
+            }
+        }
+    }
+    // Points between cells of one grain.
+    limits.iter_mut().for_each(|limit| *limit = limit.filter(|limit| limit.is_finite()));
+    for pair in &level.copies.vertices {
+        limits[pair.primary as usize] = None;
+        limits[pair.secondary as usize] = None;
+    }
+    limits
+}
+
 enum KeptMesh {
     Triangles(Vec<[u32; 3]>),
     Segments(Vec<[u32; 2]>),
@@ -152,7 +189,14 @@ impl<'a> From<&'a KeptMesh> for Elements<'a> {
 }
 
 impl KeptElements {
-    fn new(tessellation: &Tessellation, grain_of_cell: &[GrainId], level: &Level) -> Self {
+    /// Those of a level, with edges closed that are shorter than the `lengths` of all grains there.
+    fn new(
+        tessellation: &Tessellation,
+        grain_of_cell: &[GrainId],
+        level: &Level,
+        lengths: &[f64],
+        points: &[DVec3],
+    ) -> Self {
         let grain = |cell: CellId| CellId(grain_of_cell[cell.index()].0);
         let of_faces: Vec<[voronoi::Side; 2]> = tessellation
             .faces()
@@ -165,34 +209,40 @@ impl KeptElements {
             })
             .collect();
         // A cell comes before what is moved and before walls: only two grains of one place may have to change places.
-        let sides_of = |boundary: &BoundaryId| of_faces[boundary.index()];
         let is_turned = |[first, second]: [voronoi::Side; 2]| second < first;
-        let is_kept = |[first, second]: [voronoi::Side; 2]| first != second;
-        let mut count = 0;
-        let mut next = |is_kept: bool| {
-            is_kept.then(|| {
-                count += 1;
-                count - 1
-            })
-        };
-        let elements: Vec<Option<u32>> =
-            level.boundary_of.iter().map(|boundary| next(is_kept(sides_of(boundary)))).collect();
-        let of_kept = || level.boundary_of.iter().map(sides_of);
-        let mut is_used = vec![false; level.vertex_count()];
+        let of_elements = (0u32..).zip(level.boundary_of.iter().map(|boundary| of_faces[boundary.index()]));
+        let mut kept: Vec<(u32, [voronoi::Side; 2])> =
+            of_elements.filter(|(_, [first, second])| first != second).collect();
+        let sides: Vec<[voronoi::Side; 2]> = kept.iter().map(|(_, sides)| sorted(*sides)).collect();
         let mut mesh = match &level.mesh {
             Mesh::Triangles(mesh) => {
-                let all = mesh.triangles().iter().zip(of_kept()).filter(|(_, sides)| is_kept(*sides));
-                let turn = |(&[a, b, c], sides): (&[u32; 3], _)| {
-                    if is_turned(sides) { [a, c, b] } else { [a, b, c] }
+                let turn = |(element, sides): &(u32, _)| {
+                    let [a, b, c] = mesh.triangles()[*element as usize];
+                    if is_turned(*sides) { [a, c, b] } else { [a, b, c] }
                 };
-                KeptMesh::Triangles(all.map(turn).collect())
+                let triangles: Vec<[u32; 3]> = kept.iter().map(turn).collect();
+                let limits = limits(lengths, Elements::Triangles(&triangles), &sides, level, points.len());
+                let left = coarsened(points, &limits, &triangles, &sides);
+                let mut is_left = left.iter().map(Option::is_some);
+                kept.retain(|_| is_left.next() == Some(true));
+                KeptMesh::Triangles(left.into_iter().flatten().collect())
             }
             Mesh::Segments(mesh) => {
-                let all = mesh.segments().iter().zip(of_kept()).filter(|(_, sides)| is_kept(*sides));
-                let turn = |(&[a, b], sides): (&[u32; 2], _)| if is_turned(sides) { [b, a] } else { [a, b] };
-                KeptMesh::Segments(all.map(turn).collect())
+                let turn = |(element, sides): &(u32, _)| {
+                    let [a, b] = mesh.segments()[*element as usize];
+                    if is_turned(*sides) { [b, a] } else { [a, b] }
+                };
+                let segments: Vec<[u32; 2]> = kept.iter().map(turn).collect();
+                let limits = limits(lengths, Elements::Segments(&segments), &sides, level, points.len());
+                let left = coarsened_segments(points, &limits, &segments, &sides);
+                let mut is_left = left.iter().map(Option::is_some);
+                kept.retain(|_| is_left.next() == Some(true));
+                KeptMesh::Segments(left.into_iter().flatten().collect())
             }
         };
+        let mut elements = vec![None; level.boundary_of.len()];
+        (0u32..).zip(&kept).for_each(|(number, (element, _))| elements[*element as usize] = Some(number));
+        let mut is_used = vec![false; level.vertex_count()];
         mesh.corners_mut().for_each(|corner| is_used[*corner as usize] = true);
         let mut count = 0;
         let mut next = |is_used: bool| {
@@ -204,10 +254,7 @@ impl KeptElements {
         let numbers: Vec<Option<u32>> = is_used.into_iter().map(&mut next).collect();
         mesh.corners_mut()
             .for_each(|corner| *corner = numbers[*corner as usize].expect("used points have numbers"));
-        let sides = of_kept().filter(|sides| is_kept(*sides)).map(|mut sides| {
-            sides.sort_unstable();
-            sides
-        });
+        let sides = kept.into_iter().map(|(_, sides)| sorted(sides));
         Self { mesh, sides: sides.collect(), elements, numbers }
     }
 

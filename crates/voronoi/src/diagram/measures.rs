@@ -14,6 +14,11 @@ impl Tessellation {
         cell_measures(self)
     }
 
+    /// The area of a face; in the plane its length.
+    pub fn face_area(&self, face: FaceId) -> f64 {
+        face_area_and_centroid(self, face).0
+    }
+
     /// The centroid of every cell, in the domain: where a step of Lloyd's algorithm moves the seeds. That of an empty cell is
     /// its seed.
     ///

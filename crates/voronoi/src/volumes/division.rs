@@ -78,14 +78,22 @@ pub fn divide_cells(
         };
         let Some(division) = &divisions[cell.index()] else { return Ok(whole) };
         assert_eq!(division.points.len(), division.weights.len(), "one weight for each point");
-        let (volumes, points) = part_volumes(&tessellation.cell_domain(*cell)?, measure.centroid, division)?;
+        // All that are empty at once, others one after the other: what takes up the first may be large enough then.
+        let too_small = |volumes: &[f64]| {
+            let least = SMALLEST_PART * volumes.iter().sum::<f64>() / volumes.len() as f64;
+            let smallest = volumes.iter().copied().fold(f64::INFINITY, f64::min);
+            if smallest < least { smallest.max(0.0) } else { 0.0 }
+        };
+        let (volumes, points) =
+            part_volumes(&tessellation.cell_domain(*cell)?, measure.centroid, division, too_small)?;
         if points.len() < 2 {
             return Ok(whole);
         }
         let sum: f64 = volumes.iter().sum();
         let volumes = volumes.iter().map(|volume| volume * (measure.volume / sum)).collect();
         let kept = division.of(&points);
-        let (seeds, weights) = seeds_of_parts(tessellation, *cell, measure.centroid, weight, &kept);
+        let (seeds, weights) = seeds_of_parts(tessellation, *cell, measure.centroid, weight, &kept, NEARNESS);
+        let seeds = seeds.into_iter().map(|seed| tessellation.domain().wrapped(seed)).collect();
         Ok(Parts { seeds, weights, volumes, points })
     });
     let parts = parts.collect::<Result<Vec<_>, VolumesError>>()?;
@@ -116,7 +124,7 @@ struct Parts {
 
 impl Division {
     /// The division by some of the points.
-    fn of(&self, points: &[usize]) -> Self {
+    pub(super) fn of(&self, points: &[usize]) -> Self {
         Self {
             points: points.iter().map(|point| self.points[*point]).collect(),
             weights: points.iter().map(|point| self.weights[*point]).collect(),
@@ -139,11 +147,13 @@ impl Division {
     }
 }
 
-/// The volumes of the parts that a domain is divided into, and the points that they are of, without those that are empty or too small.
-fn part_volumes(
+/// The volumes of the parts that a domain is divided into, and the points that they are of, without those that are empty or not above
+/// what `too_small` says of the volumes of all.
+pub(super) fn part_volumes(
     domain: &Domain,
     middle: DVec3,
     division: &Division,
+    too_small: impl Fn(&[f64]) -> f64,
 ) -> Result<(Vec<f64>, Vec<usize>), VolumesError> {
     let mut points: Vec<usize> = (0..division.points.len()).collect();
     loop {
@@ -155,25 +165,23 @@ fn part_volumes(
             (0..MOST_HALVINGS).map(seeds_at).find(are_inside).unwrap_or_else(|| seeds_at(MOST_HALVINGS));
         let parts = Tessellation::power(domain, &seeds, &weights)?;
         let volumes: Vec<f64> = parts.cell_measures().iter().map(|cell| cell.volume).collect();
-        let least = SMALLEST_PART * volumes.iter().sum::<f64>() / volumes.len() as f64;
-        let smallest = volumes.iter().copied().fold(f64::INFINITY, f64::min);
-        if smallest >= least {
+        let limit = too_small(&volumes);
+        if volumes.iter().all(|volume| *volume > limit) {
             return Ok((volumes, points));
         }
-        // All that are empty at once, others one after the other: what takes up the first may be large enough then.
         let mut of_points = volumes.iter();
-        let limit = smallest.max(0.0);
         points.retain(|_| of_points.next().is_none_or(|volume| *volume > limit));
     }
 }
 
-/// The seeds of a cell's parts in the domain of all, and their weights, with which the cell's surface stays where it is on average.
-fn seeds_of_parts(
+/// The seeds of a cell's parts where the cell stands, and their weights, with which the cell's surface stays where it is on average.
+pub(super) fn seeds_of_parts(
     tessellation: &Tessellation,
     cell: CellId,
     middle: DVec3,
     weight: f64,
     division: &Division,
+    nearness: f64,
 ) -> (Vec<DVec3>, Vec<f64>) {
     let (domain, seed) = (tessellation.domain(), tessellation.seeds()[cell.index()]);
     let faces = tessellation.cell_faces(cell).iter().map(|face| face_area_and_centroid(tessellation, *face));
@@ -181,7 +189,7 @@ fn seeds_of_parts(
     let area: f64 = faces.iter().map(|(area, _)| area).sum();
     let tries = (0..=MOST_HALVINGS).map(|halvings| {
         // The seed may stand on a wall, with points beyond it: then it moves toward the middle, or nearness ends the matter.
-        let nearness = NEARNESS * 0.5f64.powi(halvings);
+        let nearness = nearness * 0.5f64.powi(halvings);
         let seed = if halvings == 0 { seed } else { seed.lerp(middle, NEARNESS) };
         let (seeds, mut weights) = division.seeds(seed, nearness);
         let rise = |(area, place): &(f64, DVec3)| {
@@ -190,12 +198,11 @@ fn seeds_of_parts(
         };
         let rise = faces.iter().map(rise).sum::<f64>() / area;
         weights.iter_mut().for_each(|own| *own += weight + rise);
-        let seeds: Vec<DVec3> = seeds.into_iter().map(|seed| domain.wrapped(seed)).collect();
         (seeds, weights)
     });
     let mut last = None;
     for (seeds, weights) in tries {
-        let are_inside = seeds.iter().all(|seed| domain.contains(*seed));
+        let are_inside = seeds.iter().all(|seed| domain.contains(domain.wrapped(*seed)));
         last = Some((seeds, weights));
         if are_inside {
             break;

@@ -4,14 +4,13 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
-use super::grains::Grains;
+use super::grains::{Grains, pieces_of_cells};
 use super::laplacian::Laplacian;
 use super::newton::{Clipped, MOVED_RESIDUAL, approach};
 use super::shape::{GrainShape, InscribedSphere};
-use super::spheres::{SPHERE_FRACTION, wrapped};
+use super::spheres::{SPHERE_FRACTION, whole_periods, wrapped};
 use super::{GOAL, GOAL_BETWEEN_STEPS, MOST_HALVED_STEPS, VolumesError, check_volumes, first};
-use crate::diagram::measures::face_area_and_centroid;
-use crate::{CellId, Domain, Side, Tessellation};
+use crate::{CellId, Domain, Tessellation};
 
 /// By how much a grain in two pieces may get more cells before it gets a rounder shape.
 const MOST_FINENESS: u32 = 2;
@@ -293,35 +292,15 @@ impl GrainDiagram {
 
     /// Grains whose cells do not all hang together by faces that are no mere necks, where they stand with the grain.
     fn split_grains(&self) -> Vec<usize> {
-        let mut roots: Vec<usize> = (0..self.tessellation.cell_count()).collect();
-        let (period, dimension) = (self.tessellation.domain().size(), self.tessellation.domain().dimension());
-        let measures = self.tessellation.cell_measures();
-        for face in self.tessellation.faces() {
-            let (a, b, image) = match self.tessellation.face_sides(face) {
-                [Side::Cell(a), Side::Cell(b)] => (a, b, DVec3::ZERO),
-                [Side::Cell(a), Side::Image(b, shift)] => (a, b, shift.vector(self.tessellation.domain())),
-                _ => continue,
-            };
-            let stands = self.moves[b.index()] - self.moves[a.index()];
-            let is_there = ((stands - image) / period).abs().max_element() < 0.5 || stands == image;
-            let size = measures[a.index()].volume.min(measures[b.index()].volume);
-            let least = LEAST_NECK * dimension.cube_edge(size).powi(i32::from(dimension.axes()) - 1);
-            if self.grains.of(a) == self.grains.of(b)
-                && is_there
-                && face_area_and_centroid(&self.tessellation, face).0 >= least
-            {
-                let [a, b] = [a, b].map(|cell| root(&mut roots, cell.index()));
-                roots[a.max(b)] = a.min(b);
-            }
-        }
-        let mut pieces = vec![0; self.centers.len()];
-        let cells = (0u32..).map(CellId).zip(&roots);
-        for (cell, _) in cells.filter(|(cell, root)| cell.index() == **root) {
+        let pieces = pieces_of_cells(&self.tessellation, &self.grains, &self.moves, LEAST_NECK);
+        let mut counts = vec![0; self.centers.len()];
+        let cells = (0u32..).map(CellId).zip(&pieces);
+        for (cell, _) in cells.filter(|(cell, piece)| cell.index() == **piece) {
             if !self.tessellation.cell_faces(cell).is_empty() {
-                pieces[self.grains.of(cell) as usize] += 1;
+                counts[self.grains.of(cell) as usize] += 1;
             }
         }
-        pieces.iter().enumerate().filter(|(_, count)| **count > 1).map(|(grain, _)| grain).collect()
+        counts.iter().enumerate().filter(|(_, count)| **count > 1).map(|(grain, _)| grain).collect()
     }
 
     /// The cells, of which some may be empty.
@@ -387,19 +366,4 @@ fn second_moment(tessellation: &Tessellation, cell: CellId, about: DVec3) -> DMa
         }
     }
     sum
-}
-
-/// The root of a cell in a forest of cells.
-fn root(roots: &mut [usize], mut cell: usize) -> usize {
-    while roots[cell] != cell {
-        roots[cell] = roots[roots[cell]];
-        cell = roots[cell];
-    }
-    cell
-}
-
-/// A way along the periodic axes as whole periods.
-fn whole_periods(domain: &Domain, way: DVec3) -> DVec3 {
-    let periods = (way / domain.size()).round() * domain.size();
-    DVec3::select(domain.periodic(), periods, DVec3::ZERO)
 }

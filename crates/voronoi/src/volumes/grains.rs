@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::CellId;
+use glam::DVec3;
+
+use crate::diagram::measures::face_area_and_centroid;
+use crate::{CellId, Side, Tessellation};
 
 /// The grains that cells make up.
 #[derive(Debug, PartialEq)]
@@ -51,4 +54,47 @@ impl Grains {
         let cells = weights.iter().zip(&self.of_cell);
         cells.map(|(weight, grain)| weight + shift(*grain as usize)).collect()
     }
+}
+
+/// Of each cell, one that stands for the piece of its grain that it is in: cells hang together where they stand once they are moved by `moves`, by faces
+/// that are no mere necks. Those have an area below `least_neck` faces of a cube (in the plane: sides of a square) as large as the smaller
+/// cell.
+pub(super) fn pieces_of_cells(
+    tessellation: &Tessellation,
+    grains: &Grains,
+    moves: &[DVec3],
+    least_neck: f64,
+) -> Vec<usize> {
+    let mut roots: Vec<usize> = (0..tessellation.cell_count()).collect();
+    let domain = tessellation.domain();
+    let (period, dimension) = (domain.size(), domain.dimension());
+    let measures = tessellation.cell_measures();
+    for face in tessellation.faces() {
+        let (a, b, image) = match tessellation.face_sides(face) {
+            [Side::Cell(a), Side::Cell(b)] => (a, b, DVec3::ZERO),
+            [Side::Cell(a), Side::Image(b, shift)] => (a, b, shift.vector(domain)),
+            _ => continue,
+        };
+        if grains.of(a) != grains.of(b) {
+            continue;
+        }
+        let stands = moves[b.index()] - moves[a.index()];
+        let is_there = ((stands - image) / period).abs().max_element() < 0.5 || stands == image;
+        let size = measures[a.index()].volume.min(measures[b.index()].volume);
+        let least = least_neck * dimension.cube_edge(size).powi(i32::from(dimension.axes()) - 1);
+        if is_there && face_area_and_centroid(tessellation, face).0 >= least {
+            let [a, b] = [a, b].map(|cell| root(&mut roots, cell.index()));
+            roots[a.max(b)] = a.min(b);
+        }
+    }
+    (0..roots.len()).map(|cell| root(&mut roots, cell)).collect()
+}
+
+/// The root of a cell in a forest of cells.
+fn root(roots: &mut [usize], mut cell: usize) -> usize {
+    while roots[cell] != cell {
+        roots[cell] = roots[roots[cell]];
+        cell = roots[cell];
+    }
+    cell
 }

@@ -21,8 +21,10 @@
 mod division;
 mod grain_diagram;
 mod grains;
+mod inclusions;
 mod laplacian;
 mod newton;
+mod places;
 mod shape;
 mod spheres;
 
@@ -34,7 +36,9 @@ use crate::{Domain, Tessellation, VoronoiError};
 pub use division::{DividedCells, Division, divide_cells};
 pub use grain_diagram::GrainDiagram;
 use grains::Grains;
+pub use inclusions::{Inclusion, InsertedGrains, insert_grains};
 use newton::{Clipped, approach};
+pub use places::{InclusionPlace, PlaceError, place_inclusions};
 pub use shape::GrainShape;
 pub use spheres::{place_ellipsoids, place_spheres};
 
@@ -89,6 +93,12 @@ pub enum VolumesError {
     #[error("grain {grain} has no volume even without weights; move its seed away from its neighbours'")]
     TooNear {
         /// Position of the grain in the input.
+        grain: usize,
+    },
+    /// A grain that others are put into comes apart.
+    #[error("grain {grain} comes apart, as others are put into it")]
+    InPieces {
+        /// The grain.
         grain: usize,
     },
     /// A volume was not reached: coordinates have too few digits for a cell that small, or that far from the origin.

@@ -135,6 +135,12 @@ pub(super) fn wrapped(domain: &Domain, place: DVec3) -> DVec3 {
     DVec3::select(domain.periodic(), inside, place)
 }
 
+/// A way along the periodic axes as whole periods.
+pub(super) fn whole_periods(domain: &Domain, way: DVec3) -> DVec3 {
+    let periods = (way / domain.size()).round() * domain.size();
+    DVec3::select(domain.periodic(), periods, DVec3::ZERO)
+}
+
 fn random_point(domain: &Domain, fraction: &mut impl FnMut() -> f64) -> DVec3 {
     let mut draw = || {
         let share = DVec3::new(fraction(), fraction(), 0.0);
@@ -154,7 +160,7 @@ fn random_point(domain: &Domain, fraction: &mut impl FnMut() -> f64) -> DVec3 {
 }
 
 /// Spheres of similar radius in the blocks of a grid.
-struct SphereGrid<'a> {
+pub(super) struct SphereGrid<'a> {
     domain: &'a Domain,
     largest_radius: f64,
     counts: UVec3,
@@ -163,7 +169,7 @@ struct SphereGrid<'a> {
 
 impl<'a> SphereGrid<'a> {
     /// A grid for spheres up to a radius, in blocks at least as wide as two of them, and not many more blocks than spheres.
-    fn new(domain: &'a Domain, largest_radius: f64, spheres: usize) -> Self {
+    pub(super) fn new(domain: &'a Domain, largest_radius: f64, spheres: usize) -> Self {
         let size = domain.size();
         let filled: f64 = (0..domain.axes()).map(|axis| size[axis]).product();
         let mean_width = (filled / spheres as f64).powf(1.0 / domain.axes() as f64);
@@ -185,13 +191,13 @@ impl<'a> SphereGrid<'a> {
         (z as usize * along_y + y as usize) * along_x + x as usize
     }
 
-    fn insert(&mut self, center: DVec3, radius: f64) {
+    pub(super) fn insert(&mut self, center: DVec3, radius: f64) {
         let block = self.block(self.coordinates(center).to_array());
         self.blocks[block].push((center, radius));
     }
 
     /// By how much a sphere overlaps one of these at most, in units of the sum of both radii; negative if it does not.
-    fn overlap(&self, center: DVec3, radius: f64) -> f64 {
+    pub(super) fn overlap(&self, center: DVec3, radius: f64) -> f64 {
         let coordinates = self.coordinates(center);
         let [along_x, along_y, along_z] = [0, 1, 2].map(|axis| self.near(axis, coordinates[axis]));
         let blocks = along_z.into_iter().flatten().flat_map(|z| {
@@ -216,7 +222,7 @@ impl<'a> SphereGrid<'a> {
 }
 
 /// The shortest of the ways that differ by periods of the domain.
-fn nearest_image(domain: &Domain, way: DVec3) -> DVec3 {
+pub(super) fn nearest_image(domain: &Domain, way: DVec3) -> DVec3 {
     let nearest = way - domain.size() * (way / domain.size()).round();
     DVec3::select(domain.periodic(), nearest, way)
 }

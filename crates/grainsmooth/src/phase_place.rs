@@ -1,0 +1,86 @@
+//! Where the grains of a phase are.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::Serialize;
+use voronoi::volumes::InclusionPlace;
+
+/// Where the grains of a phase are, among those of the others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PhasePlace {
+    /// Each inside another grain.
+    Interior,
+    /// Each on the boundary between two.
+    Boundaries,
+    /// Each on a line where three meet (in the plane: a point).
+    TripleLines,
+    /// Each at a point where four meet.
+    QuadruplePoints,
+    /// Side by side.
+    Clustered,
+    /// Apart from each other.
+    Dispersed,
+}
+
+impl PhasePlace {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Interior,
+        Self::Boundaries,
+        Self::TripleLines,
+        Self::QuadruplePoints,
+        Self::Clustered,
+        Self::Dispersed,
+    ];
+
+    /// Its name in options and files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Interior => "interior",
+            Self::Boundaries => "boundaries",
+            Self::TripleLines => "triple-lines",
+            Self::QuadruplePoints => "quadruple-points",
+            Self::Clustered => "clustered",
+            Self::Dispersed => "dispersed",
+        }
+    }
+
+    /// Where grains are put into others; nothing where they are cells like these.
+    pub fn of_inclusions(self) -> Option<InclusionPlace> {
+        match self {
+            Self::Interior => Some(InclusionPlace::Interior),
+            Self::Boundaries => Some(InclusionPlace::Boundaries),
+            Self::TripleLines => Some(InclusionPlace::TripleLines),
+            Self::QuadruplePoints => Some(InclusionPlace::QuadruplePoints),
+            Self::Clustered | Self::Dispersed => None,
+        }
+    }
+
+    /// Whether grains are to have neighbours of their own phase; nothing where that is not asked.
+    pub(crate) fn is_clustered(self) -> Option<bool> {
+        match self {
+            Self::Clustered => Some(true),
+            Self::Dispersed => Some(false),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for PhasePlace {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(self.name())
+    }
+}
+
+impl FromStr for PhasePlace {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::ALL
+            .into_iter()
+            .find(|place| place.name() == text)
+            .ok_or_else(|| format!("'{text}' is no place; give {}", Self::ALL.map(Self::name).join(", ")))
+    }
+}
