@@ -220,3 +220,26 @@ fn bad_input_is_refused_by_the_number_of_its_grain() {
     assert!(matches!(refused(&inside, &[0.3, 0.3]), VolumesError::BadSum { .. }));
     assert!(matches!(refused(&[inside[0], DVec3::splat(2.0)], &[0.5, 0.5]), VolumesError::Voronoi(_)));
 }
+
+/// Grains whose cells fold as they are smoothed could not be given other shapes once.
+#[test]
+fn single_grains_can_be_made_rounder_at_their_volumes() {
+    let domain = periodic_cube();
+    let diagram = made(&domain, 60, [3.0, 1.0, 1.0], 1);
+    let grain = (0..60).find(|grain| diagram.contrasts()[*grain] == 1.0).expect("not all are rounder");
+    let rounder = diagram.rounder([grain]).expect("volumes are kept").expect("it is no ball");
+    assert_good(&rounder);
+    assert!(rounder.contrasts()[grain] < 1.0);
+    let ratio = |diagram: &GrainDiagram| {
+        let length = lengths(diagram, &shapes(&domain, 60, [3.0, 1.0, 1.0]))[grain];
+        length.x / (length.y * length.z).sqrt()
+    };
+    assert!(ratio(&rounder) < ratio(&diagram), "{} of {}", ratio(&rounder), ratio(&diagram));
+    let balls = GrainDiagram::with_shapes(
+        &domain,
+        &random_seeds(9, 2),
+        &volumes(&domain, 9),
+        &[GrainShape { lengths: DVec3::ONE, axes: DMat3::IDENTITY }; 9],
+    );
+    assert!(balls.expect("volumes are reached").rounder([3]).expect("nothing changes").is_none());
+}

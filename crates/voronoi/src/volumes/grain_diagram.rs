@@ -129,16 +129,18 @@ impl GrainDiagram {
     /// # Errors
     /// [`VolumesError::NotReached`].
     pub fn rounder(&self, grains: impl IntoIterator<Item = usize>) -> Result<Option<Self>, VolumesError> {
-        let mut rounder = self.clone();
-        grains.into_iter().for_each(|grain| rounder.round(grain));
-        if rounder.contrasts == self.contrasts {
+        let is_ball = |grain: &usize| self.spheres(*grain).len() == 1;
+        let grains: Vec<usize> = grains.into_iter().filter(|grain| !is_ball(grain)).collect();
+        if grains.is_empty() {
             return Ok(None);
         }
+        let mut rounder = self.clone();
+        grains.into_iter().for_each(|grain| rounder.round(grain));
         rounder.solve()?;
         Ok(Some(rounder))
     }
 
-    /// Gives a grain a rounder shape, unless it is a ball.
+    /// Gives a grain a rounder shape.
     fn round(&mut self, grain: usize) {
         self.fineness[grain] = 0;
         let contrast = LESS_CONTRAST * self.contrasts[grain];
