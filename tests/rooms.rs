@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crates whose rooms stand in an order.
-const CRATES: [&str; 5] = ["polycrystal", "sizes", "subzero", "texture", "voronoi"];
+const CRATES: [&str; 6] = ["campaign", "polycrystal", "sizes", "subzero", "texture", "voronoi"];
 
 /// Which rooms each one imports from.
 type Imports = BTreeMap<String, BTreeSet<String>>;

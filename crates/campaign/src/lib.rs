@@ -9,6 +9,7 @@ mod case;
 mod certify;
 mod domain;
 mod draw;
+mod drawn_case;
 mod mistake;
 mod options;
 mod outputs;
