@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use polycrystal::{FaceMesh, MeshSize};
+use polycrystal::{FaceMesh, MeshSize, remove_short_edges};
 use voronoi::Dimension;
 
 use crate::formats::FileSize;
@@ -39,7 +39,7 @@ impl Estimate {
         let is_flat = config.dimension == Dimension::Two;
         let control_mesh = match config.effective_regularize() {
             length if length > 0.0 && !config.lets_topology_change() => {
-                let (regular, _) = tessellation.regularized(length);
+                let (regular, _) = remove_short_edges(tessellation, length);
                 let MeshSize { points, edges, triangles } =
                     config.regular_face_mesh().control_mesh_size(&regular);
                 let size = LevelSize { points, edges, triangles };

@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use polycrystal::{
-    AngleStatistics, Attempt, Balance, Boundary, BoxCut, Certificate, HerringResidual, MeshSize, Network,
-    NetworkError, RelaxedCells,
+    AngleStatistics, Attempt, Balance, Boundary, BoxCut, Certificate, Collapsed, HerringResidual, MeshSize,
+    Network, NetworkError, RelaxedCells, remove_short_edges,
 };
 use polycrystal::{Measures, RegularCells, Side, measure_network};
 use polycrystal::{
@@ -15,7 +15,7 @@ use polycrystal::{
     angles_between_boundaries, dihedral_angles, herring_residual, regular_cells, relax_cells, relax_watched,
     validate,
 };
-use voronoi::{Collapsed, Dimension, Tessellation};
+use voronoi::{Dimension, Tessellation};
 
 use crate::failure::Growth;
 use crate::formats::LABEL_BYTES;
@@ -604,8 +604,10 @@ fn network(
             attempts.extend(given_up);
             (cells, collapsed)
         }
-        Regularization::Plain => tessellation.regularized(length),
-        Regularization::Shorter(halvings) => tessellation.regularized(0.5f64.powi(halvings.into()) * length),
+        Regularization::Plain => remove_short_edges(tessellation, length),
+        Regularization::Shorter(halvings) => {
+            remove_short_edges(tessellation, 0.5f64.powi(halvings.into()) * length)
+        }
         Regularization::None | Regularization::ByEnergy => {
             let (network, flat) = network_of(tessellation, face_mesh, 0.0)?;
             return Ok((network, flat, Collapsed::default()));

@@ -5,9 +5,10 @@ use std::time::Duration;
 
 use glam::DVec3;
 use polycrystal::{
-    AngleStatistics, Balance, Boundary, HerringResidual, Reconnections, Relaxation, Volumes, measure_network,
+    AngleStatistics, Balance, Boundary, Collapsed, HerringResidual, Reconnections, Relaxation, Volumes,
+    measure_network,
 };
-use voronoi::{Collapsed, Dimension};
+use voronoi::Dimension;
 
 use crate::grain_texture::TextureLine;
 use crate::{

@@ -12,7 +12,7 @@ pub(crate) mod tangent;
 use std::time::Instant;
 
 use glam::{DVec2, DVec3};
-use voronoi::{CellComplex, Collapsed, Corner, FaceId, Tessellation};
+use voronoi::{Corner, FaceId, Tessellation};
 
 use crate::energy::local_size::LocalSize;
 use crate::events::reconnection::Reconnections;
@@ -20,7 +20,7 @@ use crate::flow::balance::Balance;
 use crate::flow::recipe::{NetworkRecipe, RelaxedCells};
 use crate::flow::relaxation::{Moving, RelaxationStep, Relaxed};
 use crate::flow::tuning::Tuning;
-use crate::validate;
+use crate::{CellComplex, Collapsed, validate};
 use crate::{Mesh, Network, NetworkError, Side, measure_network};
 use bow::point_on_arc;
 use descent::Descent;

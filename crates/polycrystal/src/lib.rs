@@ -23,6 +23,7 @@
 mod arcs;
 mod box_cut;
 mod check;
+mod complex;
 mod energy;
 mod events;
 mod flow;
@@ -37,6 +38,9 @@ pub use check::certificate::{Certificate, Claims, Faults, certify};
 pub use check::fault::{Fault, Place};
 pub use check::folds::folded_edges;
 pub use check::orientation::outward_sides;
+pub use complex::{
+    CellComplex, Collapsed, ComplexEdge, Snapshot, Spoke, Star, remove_edges_that_shorten, remove_short_edges,
+};
 pub use energy::volumes_kept::Volumes;
 pub use events::reconnection::Reconnections;
 pub use flow::balance::Balance;

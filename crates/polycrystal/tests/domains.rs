@@ -6,7 +6,8 @@ mod common;
 use common::random_seeds;
 use glam::DVec3;
 use polycrystal::{
-    FaceMesh, Freedom, Junctions, Network, NetworkRecipe, Relaxation, relax, relax_cells, validate,
+    FaceMesh, Freedom, Junctions, Network, NetworkRecipe, Relaxation, relax, relax_cells, remove_short_edges,
+    validate,
 };
 use voronoi::{Domain, Tessellation, WallPlane};
 
@@ -48,7 +49,7 @@ fn networks_are_valid_flat_and_relaxed() {
                 .unwrap_or_else(|fault| panic!("{name}: {fault}"));
             assert!(certificate.largest_volume_error < 1e-12, "{name}");
             let volumes = cells.cell_measures().iter().map(|cell| cell.volume).collect();
-            let (regular, _) = cells.regularized(0.1);
+            let (regular, _) = remove_short_edges(&cells, 0.1);
             let (network, flat) = Network::new(&regular, Junctions::Crease, levels).expect("a network");
             let network = network.with_cell_volumes(volumes);
             let relaxed = relax(&network, &flat, &Relaxation::default(), |_, _| ())

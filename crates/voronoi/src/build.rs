@@ -2,7 +2,6 @@
 
 mod cell_edges;
 mod cell_sums;
-mod flat_cells;
 mod merge;
 mod periodic_merge;
 mod planar_cells;

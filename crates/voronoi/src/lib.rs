@@ -35,7 +35,6 @@
 mod bodies;
 mod box_tree;
 mod build;
-mod cell_complex;
 mod clip;
 mod diagram;
 mod domain;
@@ -43,13 +42,12 @@ mod error;
 mod exact;
 mod lanes;
 mod polygon_triangulation;
-mod short_edges;
+mod resolution;
 mod sites;
 pub mod volumes;
 
-pub use cell_complex::{CellComplex, Snapshot, Spoke, Star};
 pub use diagram::cell_sum::CellMeasure;
-pub use diagram::corner::{ComplexEdge, Corner};
+pub use diagram::corner::Corner;
 pub use diagram::edges::Edges;
 pub use diagram::ids::{CellId, FaceId, PeriodicPair, VertexId};
 pub use diagram::side::Side;
@@ -59,4 +57,3 @@ pub use error::VoronoiError;
 pub use exact::shift::Shift;
 pub use exact::wall::{Wall, WallPlane};
 pub use polygon_triangulation::{PolygonTriangulation, triangulate_polygon};
-pub use short_edges::regularize::Collapsed;

@@ -4,12 +4,12 @@
 
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
-use voronoi::{CellComplex, FaceId};
+use voronoi::FaceId;
 
 use crate::arcs::bow::Bow;
 use crate::energy::sides::{boundary, cell_and_offset, freedom};
 use crate::solver::dissection::Dissection;
-use crate::{Boundary, Freedom};
+use crate::{Boundary, CellComplex, Freedom};
 
 /// Variables of an arc: its start, its end, and its turning.
 pub(crate) const OWN: usize = 5;

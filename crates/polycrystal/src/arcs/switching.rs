@@ -8,13 +8,13 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use glam::DVec2;
-use voronoi::{CellComplex, CellId, FaceId, Shift, Side, Spoke};
+use voronoi::{CellId, FaceId, Shift, Side};
 
-use crate::Boundary;
 use crate::energy::local_size::LocalSize;
 use crate::energy::shape::distinct;
 use crate::energy::sides::boundary;
 use crate::events::reconnection::Reconnections;
+use crate::{Boundary, CellComplex, Spoke};
 
 /// Length, in units of the feature size, below which an edge that would vanish may go; around small grains, in units of theirs.
 const SHORT: f64 = 0.3;

@@ -6,12 +6,12 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use voronoi::{CellComplex, ComplexEdge, Corner, Domain, FaceId, Shift, Side, Wall};
+use voronoi::{Corner, Domain, FaceId, Shift, Side, Wall};
 
 use crate::energy::sides::{boundary, cell_and_offset, freedom_on};
 use crate::mesh::grouped::Grouped;
 use crate::mesh::volume::{Cone, ConeSum};
-use crate::{Boundary, Freedom};
+use crate::{Boundary, CellComplex, ComplexEdge, Freedom};
 
 /// Fans that one task works on.
 const FANS_PER_TASK: usize = 256;

@@ -4,11 +4,11 @@
 //! thousandth of it across, whatever solves it. So what is around small grains flows slower, as if in its own units of length: mass
 //! grows as one over the square of the size, and lengths that count as short shrink with it.
 
-use voronoi::{CellComplex, Dimension};
+use voronoi::Dimension;
 
 use crate::energy::patches::Patches;
 use crate::energy::sides::cell_and_offset;
-use crate::{Boundary, Network, Volumes};
+use crate::{Boundary, CellComplex, Network, Volumes};
 
 /// Sizes of grains, in units of a share of the mean, at most 1.
 #[derive(Debug, Clone, Copy)]

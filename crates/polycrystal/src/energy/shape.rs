@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
-use voronoi::{CellComplex, ComplexEdge, Corner, FaceId, Side, Tessellation};
+use voronoi::{Corner, FaceId, Side, Tessellation};
 
 use crate::energy::fans::Fans;
+use crate::{CellComplex, ComplexEdge};
 
 /// Cosine of the largest bend of a boundary that keeps its bulges (75 degrees): later levels must not reach 90.
 const LARGEST_BEND: f64 = 0.26;

@@ -1,9 +1,9 @@
 //! What lies on the sides of a cell complex's faces, in terms of a network.
 
 use glam::DVec3;
-use voronoi::{CellComplex, CellId, Domain, Side, Wall};
+use voronoi::{CellId, Domain, Side, Wall};
 
-use crate::{Boundary, Freedom, GrainId};
+use crate::{Boundary, CellComplex, Freedom, GrainId};
 
 /// What the walls at a vertex leave to it.
 pub(crate) fn freedom(complex: &CellComplex, vertex: u32) -> Freedom {

@@ -1,7 +1,9 @@
 //! Changes of the topology of a cell complex.
 
 use glam::DVec3;
-use voronoi::{CellComplex, ComplexEdge, Corner, FaceId, Shift, Side};
+use voronoi::{Corner, FaceId, Shift, Side};
+
+use crate::{CellComplex, ComplexEdge};
 
 /// Share of the length of what goes by which what comes starts off its middle.
 const OPENING: f64 = 0.3;

@@ -5,11 +5,11 @@
 //! its pressure times v; without that small cells would collapse.
 
 use glam::DVec3;
-use voronoi::{CellComplex, CellId, FaceId};
+use voronoi::{CellId, FaceId};
 
 use crate::energy::shape::Shape;
 use crate::energy::sides::{boundary, cell_and_offset, freedom};
-use crate::{Boundary, Freedom};
+use crate::{Boundary, CellComplex, Freedom};
 
 /// Most steps of descent.
 const STEPS: usize = 20;

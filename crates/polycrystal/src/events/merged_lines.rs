@@ -6,9 +6,10 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
-use voronoi::{CellComplex, Collapsed, Side, Tessellation, VertexId};
+use voronoi::{Side, Tessellation, VertexId};
 
 use crate::energy::shape::{Shape, distinct, line_of};
+use crate::{CellComplex, Collapsed, remove_short_edges};
 
 /// The cells of a complex without short lines.
 pub(crate) struct MergedLines {
@@ -19,7 +20,7 @@ pub(crate) struct MergedLines {
 }
 
 impl MergedLines {
-    /// Draws lines shorter than `length` together, as [`Tessellation::regularized`] has it; the others keep their bulges.
+    /// Draws lines shorter than `length` together, as [`remove_short_edges`] has it; the others keep their bulges.
     pub(crate) fn new(complex: &CellComplex, shape: &Shape, length: f64) -> Self {
         let (all, corners) = complex.tessellation();
         let bulges = all.edges().ends.into_iter().map(|ends| shape.bulge_of_line(line_of(&corners, ends)));
@@ -28,7 +29,7 @@ impl MergedLines {
         for ((sides, middle), bulge) in lines {
             known.entry(sides).or_default().push((middle, bulge));
         }
-        let (cells, collapsed) = all.regularized(length);
+        let (cells, collapsed) = remove_short_edges(&all, length);
         let curved = |(sides, middle): (Vec<Side>, DVec3)| {
             let before = known.get(&sides).into_iter().flatten();
             let distance = |line: &(DVec3, DVec3)| line.0.distance_squared(middle);

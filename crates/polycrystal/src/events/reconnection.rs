@@ -3,13 +3,14 @@
 use std::collections::{HashMap, HashSet};
 
 use rayon::prelude::*;
-use voronoi::{CellComplex, CellId, ComplexEdge, FaceId, Side};
+use voronoi::{CellId, FaceId, Side};
 
 use crate::energy::local_size::LocalSize;
 use crate::energy::shape::distinct;
 use crate::energy::sides::cell_and_offset;
 use crate::events::event::Event;
 use crate::events::local_area::{Conditions, Excess, LocalArea};
+use crate::{CellComplex, ComplexEdge};
 
 /// Length, in units of the feature size, below which triple lines may go; in equilibrium few are that short.
 pub(crate) const SHORT: f64 = 0.12;

@@ -3,13 +3,12 @@
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use voronoi::Collapsed;
 
 use crate::events::reconnection::Reconnections;
 use crate::flow::balance::Balance;
 use crate::flow::relaxation::Relaxed;
-use crate::validate;
 use crate::{Attempt, Boundary, Certificate, FaceMesh, Junctions, Network, NetworkError};
+use crate::{Collapsed, validate};
 
 /// How a network is made of cells.
 #[derive(Clone, Copy)]

@@ -1,6 +1,6 @@
 //! The flow of flat fans on which grains come together and part.
 
-use voronoi::{CellComplex, Tessellation};
+use voronoi::Tessellation;
 
 use crate::energy::fans::Fans;
 use crate::energy::local_size::LocalSize;
@@ -12,7 +12,7 @@ use crate::flow::recipe::NetworkRecipe;
 use crate::flow::relaxation::{Moving, Relaxation, RelaxationStep};
 use crate::flow::tuning::Tuning;
 use crate::network::{feature_size, mean_grain_size};
-use crate::{Boundary, NetworkError};
+use crate::{Boundary, CellComplex, NetworkError};
 
 /// Longest time of a step, in units of the mean grain size squared. Short lines would shrink to nothing in less: what is
 /// left of them is still there, as a step lets none turn over.

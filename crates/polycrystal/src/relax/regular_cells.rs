@@ -1,11 +1,14 @@
 //! Regularisation that knows where relaxation leads.
 
-use voronoi::{Collapsed, Dimension, Tessellation};
+use voronoi::{Dimension, Tessellation};
 
 use crate::relax::foreseen_points;
-use crate::{Attempt, FaceMesh, Junctions, Network, NetworkError, Tuning};
+use crate::{
+    Attempt, Collapsed, FaceMesh, Junctions, Network, NetworkError, Tuning, remove_edges_that_shorten,
+    remove_short_edges,
+};
 
-/// The cells without edges that are short, or will be: [`Tessellation::regularized`] with `length`, and once more, with twice
+/// The cells without edges that are short, or will be: [`remove_short_edges`] with `length`, and once more, with twice
 /// that, for the places at which a relaxation of the flat cells puts the vertices.
 ///
 /// Nothing that is left is far from its cells' own places: only what collapses is told by relaxation. In the plane the
@@ -29,7 +32,7 @@ pub fn regular_cells_tuned(
     length: f64,
     tuning: &Tuning,
 ) -> Result<RegularCells, NetworkError> {
-    let (regular, collapsed) = cells.regularized(length);
+    let (regular, collapsed) = remove_short_edges(cells, length);
     if length == 0.0 || tuning.forecast_steps == 0 || cells.domain().dimension() == Dimension::Two {
         return Ok(RegularCells { cells: regular, collapsed, given_up: Vec::new() });
     }
@@ -47,7 +50,7 @@ pub fn regular_cells_tuned(
     };
     // Control points begin with the vertices.
     let length = tuning.forecast_factor * length;
-    let (cells, more) = regular.regularized_for(length, &points[..regular.vertices().len()]);
+    let (cells, more) = remove_edges_that_shorten(&regular, length, &points[..regular.vertices().len()]);
     let collapsed = Collapsed { edges: collapsed.edges + more.edges, faces: collapsed.faces + more.faces };
     Ok(RegularCells { cells, collapsed, given_up: Vec::new() })
 }

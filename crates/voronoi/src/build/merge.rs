@@ -8,10 +8,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::build::cell_sums::{CellSums, measures};
-use crate::build::flat_cells::remove_flat_cells;
 use crate::build::tile::{Tile, for_each_tiles};
 use crate::build::vertex_numbers::{VertexNumbers, push_positions};
-use crate::diagram::cell_sum::{CellSum, KeptMeasures};
+use crate::diagram::cell_sum::CellSum;
+use crate::diagram::united_vertices::UnitedVertices;
+use crate::diagram::whole_cells::unwrapped;
 use crate::exact::generator::Generator;
 use crate::sites::search::Search;
 use crate::{CellId, Corner, Dimension, Shift, Side, Tessellation, VertexId};
@@ -34,7 +35,7 @@ pub(crate) fn merge(search: &Search, seeds: &[DVec3]) -> Tessellation {
     let places = search.places();
     let mut face_counts = None;
     if !coincident.is_empty() {
-        unite_coincident(&mut tessellation, &coincident);
+        tessellation = unite_coincident(&tessellation, &coincident);
     } else if domain.dimension() == Dimension::Three {
         let sums = sums.whole();
         tessellation.measures = measures(&sums, &places, seeds);
@@ -43,10 +44,6 @@ pub(crate) fn merge(search: &Search, seeds: &[DVec3]) -> Tessellation {
     tessellation.shrink_to_fit();
     tessellation.put_vertices_on_walls();
     tessellation.list_faces_of_cells(&places, face_counts);
-    if remove_flat_cells(&mut tessellation) {
-        tessellation.measures = KeptMeasures::default();
-        tessellation.list_faces_of_cells(&places, None);
-    }
     tessellation
 }
 
@@ -80,68 +77,14 @@ fn push_tile(
     );
 }
 
-/// Makes vertices that are one point one vertex, and leaves out edges and faces that shrink to points or lines by that.
-fn unite_coincident(tessellation: &mut Tessellation, pairs: &[[u32; 2]]) {
-    let (ids, representatives) = united_numbers(tessellation.vertices.len(), pairs);
-    tessellation.vertices = representatives.iter().map(|v| tessellation.vertices[*v as usize]).collect();
-    tessellation.face_corners.par_iter_mut().for_each(|corner| corner.0 = ids[corner.index()]);
-    let fewest_corners = tessellation.domain.dimension().fewest_corners();
-    let Tessellation { face_sides, face_starts, face_corners, .. } = tessellation;
-    // What is kept moves to the front.
-    let (mut face, mut start, mut from) = (0, 0, 0);
-    for old in 0..face_sides.len() {
-        let to = face_starts[old + 1];
-        let mut end = start;
-        for place in from..to {
-            if end == start || face_corners[end - 1] != face_corners[place] {
-                face_corners[end] = face_corners[place];
-                end += 1;
-            }
-        }
-        while end > start + 1 && face_corners[end - 1] == face_corners[start] {
-            end -= 1;
-        }
-        if end - start >= fewest_corners {
-            face_sides[face] = face_sides[old];
-            face += 1;
-            face_starts[face] = end;
-            start = end;
-        }
-        from = to;
-    }
-    face_sides.truncate(face);
-    face_starts.truncate(face + 1);
-    face_corners.truncate(start);
-}
-
-/// Unites vertices that are one point, given pairs of them. Returns the new number of every old one, and an old one for every new.
-fn united_numbers(vertex_count: usize, pairs: &[[u32; 2]]) -> (Vec<u32>, Vec<u32>) {
-    let count = u32::try_from(vertex_count).expect("vertex ids fit 32 bits");
-    let mut parents: Vec<u32> = (0..count).collect();
+/// Makes vertices that are one point one vertex, and leaves out what shrinks to points, lines or polygons by that.
+fn unite_coincident(cells: &Tessellation, pairs: &[[u32; 2]]) -> Tessellation {
+    let mut vertices = UnitedVertices::new(cells.vertices.len());
     for pair in pairs {
-        let [v, w] = pair.map(|vertex| root(&mut parents, vertex));
-        // The smaller number stays, so the result does not depend on the order of the pairs.
-        parents[v.max(w) as usize] = v.min(w);
+        let [v, w] = pair.map(|vertex| Corner { vertex, shift: Shift::NONE });
+        vertices.unite(v, w);
     }
-    let mut new = vec![0; vertex_count];
-    let mut representatives = Vec::new();
-    for v in 0..count {
-        let root = root(&mut parents, v);
-        new[v as usize] = if root == v {
-            representatives.push(v);
-            u32::try_from(representatives.len() - 1).expect("no more vertices than before")
-        } else {
-            new[root as usize]
-        };
-    }
-    (new, representatives)
-}
-
-/// The representative of a union-find tree, with path halving.
-fn root(parents: &mut [u32], mut v: u32) -> u32 {
-    while parents[v as usize] != v {
-        parents[v as usize] = parents[parents[v as usize] as usize];
-        v = parents[v as usize];
-    }
-    v
+    let mut faces = vertices.faces(cells);
+    faces.remove_flat_cells(cells.cell_count());
+    unwrapped(&cells.domain, &cells.seeds, &faces, &cells.vertices)
 }

@@ -75,7 +75,11 @@ impl TorusFaces {
         &self.corners
     }
 
-    /// Takes cells out that have two faces only, so that the cells beyond share one: see `flat_cells`.
+    /// Takes cells without volume out that have two faces only, so that the cells beyond share one.
+    ///
+    /// With the right weights the bisectors of a seed with two others, one on either side, are one and the same plane: the
+    /// seed's cell is then a polygon. Symbolically it has a thickness; once coincident vertices are united its two faces have the
+    /// same corners, and the cells beyond them touch each other. (In the plane: a segment with two edges.)
     pub(crate) fn remove_flat_cells(&mut self, cell_count: usize) {
         let mut face_counts = vec![0usize; cell_count];
         for end in self.ends.iter().flatten() {

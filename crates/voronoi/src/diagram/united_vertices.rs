@@ -1,4 +1,5 @@
-use crate::{Corner, Shift};
+use crate::diagram::torus::TorusFaces;
+use crate::{Corner, Shift, Side, Tessellation, VertexId};
 
 /// Vertices of the torus joined where exact ties made them one point: a forest in which each knows its parent and how it
 /// is moved relative to it.
@@ -33,6 +34,21 @@ impl UnitedVertices {
         if kept.vertex != joined.vertex {
             self.parents[joined.vertex as usize] = Corner { shift: kept.shift - joined.shift, ..kept };
         }
+    }
+
+    /// The faces of a complex, each once, with the vertices that now stand for theirs.
+    pub(crate) fn faces(self, cells: &Tessellation) -> TorusFaces {
+        let roots = self.roots();
+        let root = |vertex: &VertexId| {
+            let Corner { vertex, shift } = cells.primary_corner(*vertex);
+            let root = roots[vertex as usize];
+            Corner { shift: root.shift + shift, ..root }
+        };
+        let mut faces = TorusFaces::new(cells.domain().dimension());
+        for face in cells.faces().take(cells.face_count() - cells.periodic_faces().len()) {
+            faces.push(cells.face_sides(face).map(Side::end), cells.face_corners(face).iter().map(root));
+        }
+        faces
     }
 
     pub(crate) fn roots(mut self) -> Vec<Corner> {

@@ -20,6 +20,38 @@ pub(crate) fn unwrapped(
     faces: &TorusFaces,
     positions: &[DVec3],
 ) -> Tessellation {
+    with_places(domain, seeds, faces, positions).0
+}
+
+impl Tessellation {
+    /// Whole cells from a complex that has each vertex and face once, also in a periodic domain, and the vertex of that which each of
+    /// theirs is. Vertices and faces keep their order; vertices without faces are left out. Faces are as in [`Self::face_sides`], and
+    /// [`Self::face_corners`]; equal corners that follow one another are one, and faces that shrink to lines or points by that are
+    /// left out.
+    ///
+    /// Cells need not be convex, nor faces plane.
+    pub fn of_whole_cells<Corners: IntoIterator<Item = Corner>>(
+        domain: &Domain,
+        seeds: &[DVec3],
+        positions: &[DVec3],
+        faces: impl IntoIterator<Item = ([Side; 2], Corners)>,
+    ) -> (Self, Vec<Corner>) {
+        let mut of_torus = TorusFaces::new(domain.dimension());
+        for (sides, corners) in faces {
+            of_torus.push(sides.map(Side::end), corners.into_iter());
+        }
+        let (mut tessellation, places) = with_places(domain, seeds, &of_torus, positions);
+        tessellation.list_faces_of_cells_in_order();
+        (tessellation, places.all())
+    }
+}
+
+fn with_places(
+    domain: &Domain,
+    seeds: &[DVec3],
+    faces: &TorusFaces,
+    positions: &[DVec3],
+) -> (Tessellation, VertexPlaces) {
     let places = VertexPlaces::new(faces, positions.len());
     let vertices = Vec::with_capacity(places.count());
     let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);
@@ -66,7 +98,7 @@ pub(crate) fn unwrapped(
         tessellation.periodic_faces.push(PeriodicPair { secondary, primary: FaceId(face), shift: back });
     }
     tessellation.put_vertices_on_walls();
-    tessellation
+    (tessellation, places)
 }
 
 /// Numbers of all places at which the whole cells have vertices: first an original of each vertex of the torus, where it
@@ -146,6 +178,11 @@ impl VertexPlaces {
     fn copies(&self) -> impl Iterator<Item = (NumberedVertex, VertexId)> {
         let with_original = self.moved.iter().map(|at| (*at, self.original_of[at.moved.vertex as usize]));
         with_original.filter(|(at, original)| at.id != *original)
+    }
+
+    /// The vertices of the torus at all places, in order of id.
+    fn all(&self) -> Vec<Corner> {
+        self.originals.iter().copied().chain(self.copies().map(|(copy, _)| copy.moved)).collect()
     }
 
     fn id(&self, at: Corner) -> VertexId {

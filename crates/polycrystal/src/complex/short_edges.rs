@@ -10,11 +10,10 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
+use voronoi::{CellId, Corner, Dimension, FaceId, Shift, Side, Tessellation, Wall};
 
-use crate::diagram::torus::TorusFaces;
-use crate::diagram::whole_cells::unwrapped;
-use crate::short_edges::ring::{is_folded, is_star_shaped};
-use crate::{CellId, ComplexEdge, Corner, Dimension, FaceId, Shift, Side, Tessellation, Wall};
+use crate::complex::edge::ComplexEdge;
+use crate::complex::ring::{is_folded, is_star_shaped};
 
 /// Sweeps over all edges; each makes room for collapses that the one before had to refuse.
 const SWEEPS: usize = 10;
@@ -28,38 +27,40 @@ pub struct Collapsed {
     pub faces: usize,
 }
 
-impl Tessellation {
-    /// The complex without short edges: those shorter than `length` times the mean size of all cells, and than `length`
-    /// times that of the smallest cell around. A cell's size is the edge of a cube (in the plane, of a square) as large.
-    ///
-    /// The ends of such an edge become one vertex in its middle, or where a wall holds one of them. Faces that are left with
-    /// two edges vanish. Edges stay where a cell would no longer be a closed ball, or a face would fold. Cells are no longer
-    /// quite convex, nor faces quite plane.
-    #[must_use]
-    pub fn regularized(&self, length: f64) -> (Self, Collapsed) {
-        self.regularized_for(length, &self.vertices)
-    }
+/// The complex without short edges: those shorter than `length` times the mean size of all cells, and than `length`
+/// times that of the smallest cell around. A cell's size is the edge of a cube (in the plane, of a square) as large.
+///
+/// The ends of such an edge become one vertex in its middle, or where a wall holds one of them. Faces that are left with
+/// two edges vanish. Edges stay where a cell would no longer be a closed ball, or a face would fold. Cells are no longer
+/// quite convex, nor faces quite plane.
+#[must_use]
+pub fn remove_short_edges(cells: &Tessellation, length: f64) -> (Tessellation, Collapsed) {
+    remove_edges_that_shorten(cells, length, cells.vertices())
+}
 
-    /// As [`Self::regularized`], where vertices will move: an edge is short if it will be, with its ends at the `future` places
-    /// of the vertices.
-    ///
-    /// # Panics
-    /// When there is not one place for each vertex.
-    #[must_use]
-    pub fn regularized_for(&self, length: f64, future: &[DVec3]) -> (Self, Collapsed) {
-        assert_eq!(future.len(), self.vertices.len(), "one place for each vertex");
-        let mut is_strict = vec![false; self.face_count()];
-        loop {
-            let mut complex = Complex::new(self, length, future, is_strict);
-            complex.collapse_short_edges();
-            // Faces that were let fold because they would close soon, and then did not, may not do so again.
-            let folded = complex.folded_faces();
-            if folded.is_empty() {
-                return complex.finish();
-            }
-            is_strict = complex.is_strict;
-            folded.into_iter().for_each(|face| is_strict[face] = true);
+/// As [`remove_short_edges`], where vertices will move: an edge is short if it will be, with its ends at the `future` places of the
+/// vertices.
+///
+/// # Panics
+/// When there is not one place for each vertex.
+#[must_use]
+pub fn remove_edges_that_shorten(
+    cells: &Tessellation,
+    length: f64,
+    future: &[DVec3],
+) -> (Tessellation, Collapsed) {
+    assert_eq!(future.len(), cells.vertices().len(), "one place for each vertex");
+    let mut is_strict = vec![false; cells.face_count()];
+    loop {
+        let mut complex = Complex::new(cells, length, future, is_strict);
+        complex.collapse_short_edges();
+        // Faces that were let fold because they would close soon, and then did not, may not do so again.
+        let folded = complex.folded_faces();
+        if folded.is_empty() {
+            return complex.finish();
         }
+        is_strict = complex.is_strict;
+        folded.into_iter().for_each(|face| is_strict[face] = true);
     }
 }
 
@@ -417,12 +418,10 @@ impl<'a> Complex<'a> {
     /// The complex as a tessellation, with vertices and faces numbered anew in their old order.
     fn finish(self) -> (Tessellation, Collapsed) {
         let original = self.original;
-        let mut faces = TorusFaces::new(self.dimension());
-        for (face, corners) in original.faces().zip(&self.faces).filter(|(_, corners)| !corners.is_empty()) {
-            faces.push(original.face_sides(face).map(Side::end), corners.iter().copied());
-        }
-        let mut whole = unwrapped(original.domain(), original.seeds(), &faces, &self.vertices);
-        whole.list_faces_of_cells_in_order();
+        let faces = original.faces().zip(&self.faces).filter(|(_, corners)| !corners.is_empty());
+        let faces = faces.map(|(face, corners)| (original.face_sides(face), corners.iter().copied()));
+        let (whole, _) =
+            Tessellation::of_whole_cells(original.domain(), original.seeds(), &self.vertices, faces);
         (whole, self.collapsed)
     }
 }

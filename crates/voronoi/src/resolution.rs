@@ -4,10 +4,9 @@
 //! make faces 1e-16 of it wide. The cells are right, but what is made of them needs the directions of such edges, and these are
 //! rounding errors.
 
-use crate::diagram::torus::TorusFaces;
 use crate::diagram::united_vertices::UnitedVertices;
 use crate::diagram::whole_cells::unwrapped;
-use crate::{CellId, Corner, Side, Tessellation};
+use crate::{CellId, Tessellation};
 
 /// Shortest edge that has a direction, relative to the largest coordinate of the domain or its extent. Vertices are some 1e-16 of
 /// that beside their exact places, a few times more where planes meet at small angles; so this edge's direction is right to a
@@ -16,7 +15,7 @@ const RESOLUTION: f64 = 1e-13;
 
 impl Tessellation {
     /// The complex in which the ends of each edge below the resolution of double precision are one vertex: 1e-13 of the domain's
-    /// extent, or of its largest coordinate. Faces that are left with two edges vanish, as in [`Self::regularized`]. Nothing where
+    /// extent, or of its largest coordinate. Faces that are left with two edges vanish. Nothing where
     /// there is no such edge, or a cell would vanish as well.
     ///
     /// Vertices that nearly coincide so meet as those do that exactly coincide, and no cell changes its volume by more than
@@ -43,21 +42,7 @@ impl Tessellation {
         if is_resolved {
             return None;
         }
-        let roots = united.roots();
-        let mut faces = TorusFaces::new(domain.dimension());
-        let whole_faces = self.face_count() - self.periodic_faces().len();
-        for face in self.faces().take(whole_faces) {
-            let root = |vertex| {
-                let Corner { vertex, shift } = self.primary_corner(vertex);
-                let root = roots[vertex as usize];
-                Corner { shift: root.shift + shift, ..root }
-            };
-            faces.push(
-                self.face_sides(face).map(Side::end),
-                self.face_corners(face).iter().copied().map(root),
-            );
-        }
-        let mut resolved = unwrapped(domain, self.seeds(), &faces, &self.vertices()[..count]);
+        let mut resolved = unwrapped(domain, self.seeds(), &united.faces(self), &self.vertices()[..count]);
         resolved.list_faces_of_cells_in_order();
         let fewest_faces = domain.dimension().fewest_faces();
         let is_kept = |cell| resolved.cell_faces(cell).len() >= fewest_faces.min(self.cell_faces(cell).len());

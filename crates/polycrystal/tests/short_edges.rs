@@ -1,13 +1,15 @@
-//! Regularisation: every cell stays a closed ball, the box stays full, and what is short goes.
+//! Short-edge removal: every cell stays a closed ball, the box stays full, and what is short goes.
 
+#[path = "../../voronoi/tests/common/mod.rs"]
 mod common;
 
 use std::collections::HashSet;
 
 use common::{assert_closed, assert_complex, complex_counts, random_seeds, tessellate};
 use glam::{BVec3, DVec3};
+use polycrystal::{Collapsed, remove_edges_that_shorten, remove_short_edges};
 use proptest::prelude::*;
-use voronoi::{CellId, CellMeasure, Collapsed, Domain, Side, Tessellation, VertexId};
+use voronoi::{CellId, CellMeasure, Domain, Side, Tessellation, VertexId};
 
 /// A complex all of whose cells are balls: their surfaces are spheres, and around each of their vertices the faces form
 /// one ring.
@@ -64,7 +66,7 @@ fn a_jittered_lattice_becomes_the_lattice() {
             .zip(&jitter)
             .map(|(place, jitter)| (place + (*jitter - 0.5) * size) / 4.0)
             .collect();
-        let (regular, _) = tessellate(&seeds).regularized(0.1);
+        let (regular, _) = remove_short_edges(&tessellate(&seeds), 0.1);
         assert_balls(&regular);
         let counts = complex_counts(&regular);
         assert_eq!((counts.vertices, counts.edges, counts.faces), (125, 300, 240), "jitter {size}");
@@ -82,7 +84,8 @@ fn a_jittered_lattice_in_the_plane_becomes_the_lattice() {
         .zip(&jitter)
         .map(|(place, jitter)| ((place + (*jitter - 0.5) * 1e-7) / 4.0).with_z(0.0))
         .collect();
-    let (regular, _) = Tessellation::new(&Domain::unit_square(), &seeds).expect("seeds").regularized(0.1);
+    let cells = Tessellation::new(&Domain::unit_square(), &seeds).expect("seeds");
+    let (regular, _) = remove_short_edges(&cells, 0.1);
     assert_complex(&regular);
     assert_eq!((regular.vertices().len(), regular.face_count()), (25, 40));
 }
@@ -90,7 +93,7 @@ fn a_jittered_lattice_in_the_plane_becomes_the_lattice() {
 #[test]
 fn most_short_edges_go_and_what_has_gone_is_counted() {
     let cells = tessellate(&random_seeds(200, 3));
-    let (regular, collapsed) = cells.regularized(0.1);
+    let (regular, collapsed) = remove_short_edges(&cells, 0.1);
     assert_balls(&regular);
     assert_eq!(cells.vertices().len() - regular.vertices().len(), collapsed.edges);
     assert_eq!(cells.face_count() - regular.face_count(), collapsed.faces);
@@ -102,9 +105,9 @@ fn most_short_edges_go_and_what_has_gone_is_counted() {
 #[test]
 fn length_zero_changes_nothing() {
     let cells = tessellate(&random_seeds(50, 3));
-    assert_eq!(cells.regularized(0.0).0, cells);
+    assert_eq!(remove_short_edges(&cells, 0.0).0, cells);
     let cells = periodic(&random_seeds(50, 3), BVec3::TRUE);
-    assert_eq!(cells.regularized(0.0).0, cells);
+    assert_eq!(remove_short_edges(&cells, 0.0).0, cells);
 }
 
 /// What is summed while cells are cut, and what the finished complex gives.
@@ -115,7 +118,7 @@ fn measures_follow_from_the_complex() {
     let weights: Vec<f64> = (0..500).map(|k| 1e-3 * f64::from(k % 7)).collect();
     let power = Tessellation::power(&Domain::unit_cube(), &seeds, &weights).expect("seeds are good");
     for cells in [tessellate(&seeds), periodic(&seeds, BVec3::TRUE), periodic(&seeds[..20], mixed), power] {
-        let rebuilt = cells.regularized(0.0).0.cell_measures();
+        let rebuilt = remove_short_edges(&cells, 0.0).0.cell_measures();
         for (k, (kept, rebuilt)) in cells.cell_measures().iter().zip(rebuilt).enumerate() {
             let counts = |cell: &CellMeasure| [cell.face_count, cell.vertex_count, cell.edge_count];
             assert_eq!(counts(kept), counts(&rebuilt), "cell {k}");
@@ -135,7 +138,7 @@ fn periodic(seeds: &[DVec3], axes: BVec3) -> Tessellation {
 #[test]
 fn most_short_edges_of_periodic_cells_go() {
     let cells = periodic(&random_seeds(200, 3), BVec3::TRUE);
-    let (regular, collapsed) = cells.regularized(0.1);
+    let (regular, collapsed) = remove_short_edges(&cells, 0.1);
     assert_balls(&regular);
     let [before, after] = [&cells, &regular].map(complex_counts);
     assert_eq!(before.vertices - after.vertices, collapsed.edges);
@@ -149,7 +152,7 @@ fn most_short_edges_of_periodic_cells_go() {
 fn where_the_periodic_box_begins_does_not_matter() {
     let seeds = random_seeds(100, 8);
     let moved: Vec<DVec3> = seeds.iter().map(|seed| (*seed + DVec3::new(0.3, 0.6, 0.9)).fract()).collect();
-    let [here, there] = [seeds, moved].map(|seeds| periodic(&seeds, BVec3::TRUE).regularized(0.15));
+    let [here, there] = [seeds, moved].map(|seeds| remove_short_edges(&periodic(&seeds, BVec3::TRUE), 0.15));
     assert!(here.1.edges.abs_diff(there.1.edges) <= 2, "{:?} and {:?}", here.1, there.1);
     let shape = |cells: &Tessellation, cell: CellId| {
         let faces = cells.cell_faces(cell).iter();
@@ -166,8 +169,9 @@ fn where_the_periodic_box_begins_does_not_matter() {
 fn edges_collapse_where_they_will_be_short() {
     let cells = tessellate(&random_seeds(60, 2));
     let scaled = |factor: f64| cells.vertices().iter().map(|v| *v * factor).collect::<Vec<_>>();
-    assert_eq!(cells.regularized_for(0.1, &scaled(1e3)).1, Collapsed::default());
-    let (half, as_half) = (cells.regularized(0.2), cells.regularized_for(0.1, &scaled(0.5)));
+    assert_eq!(remove_edges_that_shorten(&cells, 0.1, &scaled(1e3)).1, Collapsed::default());
+    let (half, as_half) =
+        (remove_short_edges(&cells, 0.2), remove_edges_that_shorten(&cells, 0.1, &scaled(0.5)));
     assert_eq!(half.0.vertices().len(), as_half.0.vertices().len());
 }
 
@@ -183,7 +187,8 @@ proptest! {
     ) {
         let domain = Domain::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, height)).expect("a box");
         let seeds: Vec<DVec3> = random_seeds(count, random_seed).iter().map(|s| *s * domain.size()).collect();
-        let (regular, _) = Tessellation::new(&domain, &seeds).expect("seeds").regularized(length);
+        let cells = Tessellation::new(&domain, &seeds).expect("seeds");
+        let (regular, _) = remove_short_edges(&cells, length);
         assert_balls(&regular);
         for face in regular.faces() {
             if let Side::Wall(wall) = regular.face_sides(face)[1] {
@@ -202,7 +207,8 @@ proptest! {
         length in 0.0..0.6f64,
         axes in any::<[bool; 3]>(),
     ) {
-        let (regular, _) = periodic(&random_seeds(count, random_seed), BVec3::from(axes)).regularized(length);
+        let cells = periodic(&random_seeds(count, random_seed), BVec3::from(axes));
+        let (regular, _) = remove_short_edges(&cells, length);
         assert_balls(&regular);
     }
 
@@ -215,13 +221,13 @@ proptest! {
         let seeds: Vec<DVec3> = random_seeds(count, random_seed).iter().map(|seed| seed.with_z(0.0)).collect();
         let domain = Domain::unit_square().with_periods(BVec3::TRUE);
         let cells = Tessellation::new(&domain, &seeds).expect("seeds");
-        assert_closed(&cells.regularized(length).0);
+        assert_closed(&remove_short_edges(&cells, length).0);
     }
 
     #[test]
     fn cells_in_the_plane_stay_closed(random_seed in 0u64..1_000_000, count in 1usize..80, length in 0.0..0.6f64) {
         let seeds: Vec<DVec3> = random_seeds(count, random_seed).iter().map(|seed| seed.with_z(0.0)).collect();
         let cells = Tessellation::new(&Domain::unit_square(), &seeds).expect("seeds");
-        assert_complex(&cells.regularized(length).0);
+        assert_complex(&remove_short_edges(&cells, length).0);
     }
 }

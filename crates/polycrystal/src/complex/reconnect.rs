@@ -4,10 +4,11 @@
 //! of closed balls as long as what comes in is not there yet (Okuda, Inoue, Eiraku, Sasai and Adachi 2013 call them I-H and H-I).
 
 use glam::DVec3;
+use voronoi::{Corner, FaceId, Shift, Side};
 
-use super::star::{FaceAt, Star};
-use super::{CellComplex, ComplexEdge, Corner, Face, cell_of};
-use crate::{FaceId, Shift, Side};
+use crate::complex::cell_complex::{CellComplex, Face, cell_of, id};
+use crate::complex::edge::ComplexEdge;
+use crate::complex::star::{FaceAt, Star};
 
 /// Fewest corners of a face that loses one: no face may be left with two.
 const FEWEST_CORNERS: usize = 4;
@@ -87,7 +88,7 @@ impl CellComplex {
         let corners = if runs_up { corners } else { [corners[0], corners[2], corners[1]] };
         let face = self.face_between([star.ends[first], star.ends[1 - first]], corners.to_vec());
         self.add_face(face);
-        Some(FaceId(super::id(self.faces.len() - 1)))
+        Some(FaceId(id(self.faces.len() - 1)))
     }
 
     /// Puts an edge in the place of a face with three corners; it starts at `places[0]`, at the face's first side.

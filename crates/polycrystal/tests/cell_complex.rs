@@ -1,14 +1,16 @@
 //! Complexes whose topology changes: what must hold after each event.
 
+#[path = "../../voronoi/tests/common/mod.rs"]
 mod common;
 
 use std::collections::HashMap;
 
 use glam::{BVec3, DVec3};
 use proptest::prelude::*;
-use voronoi::{CellComplex, CellId, ComplexEdge, Domain, FaceId, Side, Spoke, Tessellation, VertexId};
+use voronoi::{CellId, Domain, FaceId, Side, Tessellation, VertexId};
 
 use common::{complex_counts, random_seeds};
+use polycrystal::{CellComplex, ComplexEdge, Spoke};
 
 fn random_cells(domain: &Domain, count: usize, random_seed: u64) -> Tessellation {
     Tessellation::new(domain, &random_seeds(count, random_seed)).expect("valid seeds")

@@ -1,8 +1,9 @@
 //! Going back.
 
 use glam::DVec3;
+use voronoi::CellId;
 
-use super::{CellComplex, Face, cell_of};
+use crate::complex::cell_complex::{CellComplex, Face, cell_of};
 
 /// What a [`CellComplex`] was like around some vertices.
 #[derive(Debug, Clone)]
@@ -19,7 +20,7 @@ impl CellComplex {
     pub fn snapshot(&self, vertices: &[u32]) -> Snapshot {
         let faces = self.faces_at(vertices);
         let sides = faces.iter().flat_map(|face| self.faces[face.index()].sides);
-        let mut cells: Vec<usize> = sides.filter_map(cell_of).map(crate::CellId::index).collect();
+        let mut cells: Vec<usize> = sides.filter_map(cell_of).map(CellId::index).collect();
         cells.sort_unstable();
         cells.dedup();
         let place = |vertex: &u32| {

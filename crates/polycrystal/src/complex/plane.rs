@@ -1,9 +1,10 @@
 //! How cells of the plane come together and part, where a face is an edge with two corners: an edge shrinks to a point, and a point
 //! opens to an edge. One after the other they make neighbours switch (the T1 process of foams).
 
-use super::star::FaceAt;
-use super::{CellComplex, Corner, Face, cell_of};
-use crate::{CellId, FaceId, Shift, Side};
+use voronoi::{CellId, Corner, FaceId, Shift, Side};
+
+use crate::complex::cell_complex::{CellComplex, Face, cell_of, id};
+use crate::complex::star::FaceAt;
 
 /// An end of an edge in the plane, as the vertex there sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,7 +93,7 @@ impl CellComplex {
         } else {
             self.face_between([right, left], vec![new, old])
         };
-        let number = FaceId(super::id(self.faces.len()));
+        let number = FaceId(id(self.faces.len()));
         self.add_face(face);
         number
     }

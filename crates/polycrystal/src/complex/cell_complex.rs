@@ -1,19 +1,9 @@
 //! A cell complex whose topology changes.
 
-mod plane;
-mod reconnect;
-mod snapshot;
-mod star;
-
 use glam::DVec3;
+use voronoi::{CellId, Corner, Domain, FaceId, Shift, Side, Tessellation, Wall};
 
-use crate::{
-    CellId, ComplexEdge, Corner, Domain, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId, Wall,
-};
-
-pub use plane::Spoke;
-pub use snapshot::Snapshot;
-pub use star::Star;
+use crate::complex::edge::ComplexEdge;
 
 /// The cells of a [`Tessellation`] in space in a form that can be changed: each vertex, edge and face once, also in a
 /// periodic domain.
@@ -22,23 +12,23 @@ pub use star::Star;
 /// [`Self::triangle_to_edge`]). Numbers of vertices and faces that are gone are not given to others.
 #[derive(Debug, Clone)]
 pub struct CellComplex {
-    domain: Domain,
-    seeds: Vec<DVec3>,
+    pub(super) domain: Domain,
+    pub(super) seeds: Vec<DVec3>,
     /// Where vertices are.
     pub vertices: Vec<DVec3>,
-    faces: Vec<Face>,
+    pub(super) faces: Vec<Face>,
     /// The faces at each vertex; none where it is gone.
-    faces_at: Vec<Vec<u32>>,
+    pub(super) faces_at: Vec<Vec<u32>>,
     /// The faces of each cell; one between a cell and its own image comes twice.
-    faces_of: Vec<Vec<u32>>,
+    pub(super) faces_of: Vec<Vec<u32>>,
 }
 
 /// A polygon between two sides, as its first side, a cell, sees it.
 #[derive(Debug, Clone)]
-struct Face {
-    sides: [Side; 2],
+pub(super) struct Face {
+    pub(super) sides: [Side; 2],
     /// Counter-clockwise as seen from the second side; none where the face is gone.
-    corners: Vec<Corner>,
+    pub(super) corners: Vec<Corner>,
 }
 
 impl From<&Tessellation> for CellComplex {
@@ -73,50 +63,9 @@ impl CellComplex {
     ///
     /// Vertices and faces keep their order; those that are gone are left out.
     pub fn tessellation(&self) -> (Tessellation, Vec<Corner>) {
-        let live = || self.faces.iter().filter(|face| !face.corners.is_empty());
-        let mirrored = || live().filter(|face| matches!(face.sides[1], Side::Image(..))).map(Face::mirrored);
-        let mut places: Vec<Corner> = live().flat_map(|face| face.corners.iter().copied()).collect();
-        places.extend(mirrored().flat_map(|face| face.corners));
-        places.sort_unstable();
-        places.dedup();
-        // Of each vertex, its own place stands for all others, or the first where no cell has that.
-        let mut vertices: Vec<Corner> = Vec::new();
-        let mut secondaries = Vec::new();
-        for same in places.chunk_by(|a, b| a.vertex == b.vertex) {
-            let primary = same.iter().find(|corner| corner.shift == Shift::NONE).unwrap_or(&same[0]);
-            let number = VertexId(id(vertices.len()));
-            vertices.push(*primary);
-            let others = same.iter().filter(|corner| *corner != primary);
-            secondaries.extend(others.map(|corner| (*corner, number, corner.shift - primary.shift)));
-        }
-        let mut numbers: Vec<(Corner, VertexId)> =
-            (0u32..).zip(&vertices).map(|(n, v)| (*v, VertexId(n))).collect();
-        let mut tessellation = Tessellation::without_faces(&self.domain, &self.seeds, Vec::new());
-        for (corner, primary, shift) in secondaries {
-            let secondary = VertexId(id(vertices.len()));
-            tessellation.periodic_vertices.push(PeriodicPair { secondary, primary, shift });
-            numbers.push((corner, secondary));
-            vertices.push(corner);
-        }
-        numbers.sort_unstable();
-        tessellation.vertices = vertices.iter().map(|corner| self.position(*corner)).collect();
-        let number = |corner: &Corner| {
-            let place = numbers.binary_search_by_key(corner, |(corner, _)| *corner);
-            numbers[place.expect("all corners were listed")].1
-        };
-        let mut primaries = Vec::new();
-        for face in live() {
-            let pushed = tessellation.push_face(face.sides, face.corners.iter().map(number));
-            if let Side::Image(_, shift) = face.sides[1] {
-                primaries.push((pushed, Shift::NONE - shift));
-            }
-        }
-        for (face, (primary, shift)) in mirrored().zip(primaries) {
-            let secondary = tessellation.push_face(face.sides, face.corners.iter().map(number));
-            tessellation.periodic_faces.push(PeriodicPair { secondary, primary, shift });
-        }
-        tessellation.list_faces_of_cells_in_order();
-        (tessellation, vertices)
+        let live = self.faces.iter().filter(|face| !face.corners.is_empty());
+        let faces = live.map(|face| (face.sides, face.corners.iter().copied()));
+        Tessellation::of_whole_cells(&self.domain, &self.seeds, &self.vertices, faces)
     }
 
     /// Where a corner is.
@@ -200,14 +149,14 @@ impl CellComplex {
         faces.filter(|(_, face)| !face.corners.is_empty()).map(|(number, _)| FaceId(number)).collect()
     }
 
-    fn add_face(&mut self, face: Face) {
+    pub(super) fn add_face(&mut self, face: Face) {
         let number = id(self.faces.len());
         face.corners.iter().for_each(|corner| self.faces_at[corner.vertex as usize].push(number));
         face.sides.into_iter().filter_map(cell_of).for_each(|cell| self.faces_of[cell.index()].push(number));
         self.faces.push(face);
     }
 
-    fn remove_face(&mut self, number: u32) {
+    pub(super) fn remove_face(&mut self, number: u32) {
         let face = &mut self.faces[number as usize];
         for corner in std::mem::take(&mut face.corners) {
             self.faces_at[corner.vertex as usize].retain(|other| *other != number);
@@ -217,7 +166,7 @@ impl CellComplex {
         }
     }
 
-    fn add_vertex(&mut self, position: DVec3) -> Corner {
+    pub(super) fn add_vertex(&mut self, position: DVec3) -> Corner {
         self.vertices.push(position);
         self.faces_at.push(Vec::new());
         Corner { vertex: id(self.vertices.len() - 1), shift: Shift::NONE }
@@ -225,18 +174,6 @@ impl CellComplex {
 }
 
 impl Face {
-    /// The same face as its second side sees it, an image.
-    fn mirrored(&self) -> Self {
-        let [Side::Cell(first), Side::Image(second, shift)] = self.sides else {
-            unreachable!("only faces with images come twice")
-        };
-        let moved = |corner: &Corner| Corner { shift: corner.shift - shift, ..*corner };
-        Self {
-            sides: [Side::Cell(second), Side::Image(first, Shift::NONE - shift)],
-            corners: self.corners.iter().rev().map(moved).collect(),
-        }
-    }
-
     fn edges(&self) -> impl Iterator<Item = ComplexEdge> {
         self.corners
             .iter()
@@ -245,13 +182,13 @@ impl Face {
     }
 }
 
-fn cell_of(side: Side) -> Option<CellId> {
+pub(super) fn cell_of(side: Side) -> Option<CellId> {
     match side {
         Side::Cell(cell) | Side::Image(cell, _) => Some(cell),
         Side::Wall(_) => None,
     }
 }
 
-fn id(index: usize) -> u32 {
+pub(super) fn id(index: usize) -> u32 {
     u32::try_from(index).expect("ids fit 32 bits")
 }

@@ -1,7 +1,9 @@
 //! What lies around an edge or a triangle where all is in general position.
 
-use super::{CellComplex, ComplexEdge, Corner, cell_of};
-use crate::{FaceId, Shift, Side};
+use voronoi::{Corner, FaceId, Shift, Side};
+
+use crate::complex::cell_complex::{CellComplex, cell_of};
+use crate::complex::edge::ComplexEdge;
 
 /// What lies around an edge, or a triangle that may take its place.
 ///
