@@ -2,6 +2,7 @@
 
 pub(crate) mod angles;
 pub(crate) mod boundary;
+pub(crate) mod disjoint_sets;
 pub(crate) mod grouped;
 pub(crate) mod id;
 pub(crate) mod level;

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::check::fault::Fault;
+use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::seams::{Seams, Use};
 use crate::{Elements, Side, Surface};
 
@@ -25,7 +26,7 @@ pub(crate) fn pinched_points(surface: &Surface<'_>, seams: &Seams) -> Vec<Fault>
     }
     parts.sort_unstable();
     parts.dedup();
-    let mut joined = Joined { parents: (0u32..).take(parts.len()).collect() };
+    let mut joined = DisjointSets::new(parts.len());
     let place = |part: Part| u32::try_from(parts.binary_search(&part).ok()?).ok();
     for at in seams.places() {
         let mut uses: Vec<(Side, u32, u32)> = Vec::with_capacity(2 * at.len());
@@ -219,32 +220,4 @@ fn edge_before(corner: u32) -> u32 {
 /// The edges of a triangle, each from its corner of the same place.
 fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]]
-}
-
-/// Disjoint sets, each named by its lowest member.
-struct Joined {
-    parents: Vec<u32>,
-}
-
-impl Joined {
-    fn root(&self, mut member: u32) -> u32 {
-        while self.parents[member as usize] != member {
-            member = self.parents[member as usize];
-        }
-        member
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let [a, b] = [a, b].map(|member| self.root_halving(member));
-        self.parents[a.max(b) as usize] = a.min(b);
-    }
-
-    fn root_halving(&mut self, mut member: u32) -> u32 {
-        while self.parents[member as usize] != member {
-            let grandparent = self.parents[self.parents[member as usize] as usize];
-            self.parents[member as usize] = grandparent;
-            member = grandparent;
-        }
-        member
-    }
 }

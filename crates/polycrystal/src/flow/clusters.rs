@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::energy::patches::Patches;
+use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::grouped::Grouped;
 use crate::{Freedom, Level, Mesh, NetworkError};
 
@@ -17,42 +18,24 @@ const WHOLE_ATTEMPTS: usize = 12;
 /// Under curvature flow a feature of size l lives for a time of order l^2: one much smaller than a step would turn inside
 /// out within it. Rigid groups take such features out of the flow without taking them out of the network.
 #[derive(Debug, Clone)]
-pub(crate) struct Clusters {
-    /// Union-find forest over the control points; a root is the smallest point of its cluster.
-    parents: Vec<u32>,
-}
+pub(crate) struct Clusters(DisjointSets);
 
 impl Clusters {
     /// Every point of a level on its own, but for those that are others moved by whole periods.
     pub(crate) fn new(level: &Level) -> Self {
         let mut clusters = Self::apart(level.vertex_count());
-        level.copies.vertices.iter().for_each(|pair| clusters.join(pair.secondary, pair.primary));
+        level.copies.vertices.iter().for_each(|pair| clusters.0.join(pair.secondary, pair.primary));
         clusters
     }
 
     /// So many points, each on its own.
     pub(crate) fn apart(count: usize) -> Self {
-        Self { parents: (0u32..).take(count).collect() }
-    }
-
-    fn root(&mut self, mut point: u32) -> u32 {
-        while self.parents[point as usize] != point {
-            // Halving the path keeps the forest flat.
-            self.parents[point as usize] = self.parents[self.parents[point as usize] as usize];
-            point = self.parents[point as usize];
-        }
-        point
-    }
-
-    /// Makes two control points move as one.
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parents[a.max(b) as usize] = a.min(b);
+        Self(DisjointSets::new(count))
     }
 
     /// Makes some control points move as one.
     pub(crate) fn join_all(&mut self, points: &[u32]) {
-        points.windows(2).for_each(|pair| self.join(pair[0], pair[1]));
+        points.windows(2).for_each(|pair| self.0.join(pair[0], pair[1]));
     }
 
     /// Joins the ends of all edges of a mesh that are shorter than `length` times the smaller of the sizes at their ends.
@@ -60,7 +43,7 @@ impl Clusters {
         let mut join = |[a, b]: [u32; 2]| {
             let size = sizes[a as usize].min(sizes[b as usize]);
             if points[a as usize].distance(points[b as usize]) < length * size {
-                self.join(a, b);
+                self.0.join(a, b);
             }
         };
         match mesh {
@@ -110,18 +93,7 @@ impl Clusters {
 
     /// Numbers the clusters from 0, in order of their smallest points.
     pub(crate) fn number(&self) -> Numbering {
-        let mut numbers = vec![0; self.parents.len()];
-        let mut count = 0;
-        for point in (0u32..).take(self.parents.len()) {
-            // A parent is smaller, and has its number already.
-            let parent = self.parents[point as usize];
-            numbers[point as usize] = if parent == point {
-                count += 1;
-                count - 1
-            } else {
-                numbers[parent as usize]
-            };
-        }
+        let (numbers, count) = self.0.numbers();
         let members = numbers.iter().map(|number| *number as usize).zip(0u32..);
         let members = Grouped::new(count as usize, members);
         Numbering { numbers, members }

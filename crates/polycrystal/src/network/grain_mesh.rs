@@ -4,12 +4,13 @@ use glam::DVec3;
 use subzero::{Crease, CurveMesh, Features, TriangleMesh};
 use voronoi::{CellId, PeriodicPair, Shift, Tessellation};
 
+use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
 use crate::mesh::seams::Seams;
 use crate::network::coarsening::{coarsened, coarsened_segments};
 use crate::network::control_mesh::{ControlMesh, JunctionCounts, Meetings, boundary, originals};
-use crate::network::labelled_mesh::{Lines, Pieces};
+use crate::network::labelled_mesh::Lines;
 use crate::{
     Boundary, BoundaryId, Elements, FaceMesh, GrainId, Junctions, Level, Mesh, NetworkError, PeriodicCopies,
     Twin,
@@ -103,7 +104,7 @@ impl ControlMesh {
 /// Checks that grains are numbered from 0 without gaps, and that the cells of each hang together where they stand.
 fn check_grains(tessellation: &Tessellation, grain_of_cell: &[GrainId]) -> Result<(), NetworkError> {
     assert_eq!(grain_of_cell.len(), tessellation.cell_count(), "one grain for each cell");
-    let mut pieces = Pieces::new(grain_of_cell.len());
+    let mut pieces = DisjointSets::new(grain_of_cell.len());
     for face in tessellation.faces() {
         if let [voronoi::Side::Cell(a), voronoi::Side::Cell(b)] = tessellation.face_sides(face)
             && grain_of_cell[a.index()] == grain_of_cell[b.index()]
@@ -314,7 +315,7 @@ impl KeptMesh {
 
 /// Boundaries of elements with these sides, and the boundary of each element.
 fn connected(sides: &[[voronoi::Side; 2]], seams: &Seams) -> (Vec<Boundary>, Vec<BoundaryId>) {
-    let mut pieces = Pieces::new(sides.len());
+    let mut pieces = DisjointSets::new(sides.len());
     seams.inner.iter().for_each(|[a, b]| pieces.join(*a, *b));
     let mut numbers = vec![None; sides.len()];
     let mut boundaries = Vec::new();

@@ -4,6 +4,7 @@ use glam::DVec3;
 use subzero::{Crease, CurveMesh, Features, TriangleMesh};
 use voronoi::{Domain, PeriodicPair, Wall};
 
+use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
 use crate::mesh::seams::{Seams, Use};
@@ -198,7 +199,7 @@ struct Connected {
 
 impl Connected {
     fn new(elements: &OrderedElements, seams: &Seams) -> Self {
-        let mut pieces = Pieces::new(elements.boundary_of.len());
+        let mut pieces = DisjointSets::new(elements.boundary_of.len());
         seams.inner.iter().for_each(|[a, b]| pieces.join(*a, *b));
         let mut numbers = vec![None; elements.boundary_of.len()];
         let mut boundaries = Vec::new();
@@ -212,29 +213,6 @@ impl Connected {
             boundary_of.push(number);
         }
         Self { boundaries, boundary_of }
-    }
-}
-
-/// Disjoint sets of numbers.
-pub(crate) struct Pieces(Vec<u32>);
-
-impl Pieces {
-    pub(crate) fn new(count: usize) -> Self {
-        Self((0u32..).take(count).collect())
-    }
-
-    pub(crate) fn root(&mut self, mut member: u32) -> u32 {
-        while self.0[member as usize] != member {
-            let grandparent = self.0[self.0[member as usize] as usize];
-            self.0[member as usize] = grandparent;
-            member = grandparent;
-        }
-        member
-    }
-
-    pub(crate) fn join(&mut self, a: u32, b: u32) {
-        let [a, b] = [a, b].map(|member| self.root(member));
-        self.0[a.max(b) as usize] = a.min(b);
     }
 }
 
@@ -269,7 +247,7 @@ impl<'a> Lines<'a> {
         at_edges: &[Meeting],
         copies: &[PeriodicPair<u32>],
     ) -> impl Iterator<Item = u8> {
-        let mut pieces = Pieces::new(self.ends.len());
+        let mut pieces = DisjointSets::new(self.ends.len());
         copies.iter().for_each(|pair| pieces.join(pair.secondary, pair.primary));
         for edges in self.edges_at.iter().filter(|edges| edges.len() == 2) {
             pieces.join(edges[0], edges[1]);
