@@ -480,7 +480,6 @@ impl Regularization {
                 &[Self::ByEnergy, Self::Foreseeing, Self::Plain, Self::None]
             }
             0.0 => &[Self::None],
-            // A grain of several cells may touch itself where an edge is gone, which no cell does.
             _ if config.has_grains_of_several_cells() => &[Self::Plain, Self::Shorter(1), Self::Shorter(2)],
             _ => &[Self::Foreseeing, Self::Plain, Self::None],
         }
