@@ -3,7 +3,7 @@
 
 use std::io::Write;
 
-use grainsmooth::mesh_file::{READER_THREAD, read_mesh};
+use grainsmooth::mesh::file::{READER_THREAD, read_mesh};
 use grainsmooth::read_bezier;
 use libfuzzer_sys::fuzz_target;
 

@@ -2,7 +2,7 @@
 
 use std::sync::Once;
 
-use grainsmooth::mesh_file::READER_THREAD;
+use grainsmooth::mesh::file::READER_THREAD;
 
 /// Panics of the thread in which `vtkio` reads become errors; their words would only fill the tests' output.
 pub fn keep_reader_quiet() {

@@ -141,7 +141,7 @@ fn each_grain_has_a_closed_outward_file() {
         for (grain, expected) in volumes.iter().enumerate() {
             let path = directory.path().join(format!("grain_{grain}.{}", format.extension()));
             // Reads through stl_io, ply-rs, vtkio; of STL it welds corners that are equal.
-            let mesh = grainsmooth::mesh_file::read_mesh(&path).unwrap();
+            let mesh = grainsmooth::mesh::file::read_mesh(&path).unwrap();
             let triangles = mesh.triangles().unwrap();
             let mut walks: BTreeMap<[u32; 2], i32> = BTreeMap::new();
             for [a, b, c] in &triangles {

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
 
-use grainsmooth::mesh_file::{MeshFile, read_mesh};
+use grainsmooth::mesh::file::{MeshFile, read_mesh};
 use grainsmooth::read_bezier;
 use proptest::prelude::*;
 use tempfile::TempDir;

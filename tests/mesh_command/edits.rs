@@ -1,6 +1,6 @@
 //! Flips, splits and collapses through the command.
 
-use grainsmooth::mesh_file::{MeshFile, read_mesh};
+use grainsmooth::mesh::file::{MeshFile, read_mesh};
 
 use crate::workplace::Workplace;
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::process::Command;
 
 use glam::DVec3;
-use grainsmooth::mesh_file::{MeshFile, read_mesh};
+use grainsmooth::mesh::file::{MeshFile, read_mesh};
 use predicates::str::contains;
 
 use crate::programs::run;

@@ -7,14 +7,13 @@ use grainsmooth::{Coloring, Config, PeriodicCut, read_file_domain};
 use polycrystal::{Relaxation, Volumes};
 use voronoi::Dimension;
 
-use crate::check_run::CheckArguments;
-use crate::measure_run::MeasureArguments;
-use crate::mesh_cli::MeshArguments;
-
+mod check;
 mod config_file;
 mod documents;
 mod domain;
 mod files;
+mod measure;
+pub mod mesh;
 mod phases;
 mod pictures;
 mod run;
@@ -24,11 +23,12 @@ mod smoothing;
 mod texture;
 mod values;
 
+pub use check::CheckArguments;
 pub use documents::{print_completions, print_manual};
 use domain::DomainArguments;
-pub use domain::parse_dimension;
 use files::FileArguments;
-pub use files::VtkArguments;
+pub use measure::MeasureArguments;
+use mesh::MeshArguments;
 use phases::PhaseArguments;
 use pictures::PictureArguments;
 use run::RunArguments;

@@ -61,7 +61,7 @@ pub enum Shape {
         /// Largest distance of its polygon from the circle.
         chord_error: f64,
     },
-    /// The body in a closed convex surface, see [`read_mesh`](crate::mesh_file::read_mesh). The box has no meaning.
+    /// The body in a closed convex surface, see [`read_mesh`](crate::mesh::file::read_mesh). The box has no meaning.
     Surface(PathBuf),
     /// What the half-spaces in a text file have in common. The box has no meaning.
     HalfSpaces(PathBuf),

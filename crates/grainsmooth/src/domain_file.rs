@@ -7,7 +7,7 @@ use glam::DVec3;
 use voronoi::{Dimension, Domain, VoronoiError, WallPlane};
 
 use crate::Error;
-use crate::mesh_file::read_mesh;
+use crate::mesh::file::read_mesh;
 
 /// The body in the surface of a mesh file.
 ///

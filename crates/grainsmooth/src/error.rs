@@ -7,7 +7,7 @@ use voronoi::volumes::{PlaceError, VolumesError};
 use voronoi::{Dimension, VoronoiError};
 
 use crate::memory::{self, LevelSize};
-use crate::mesh_file::MeshFileProblem;
+use crate::mesh::file::MeshFileProblem;
 use crate::{Failure, InsideError, LawError, OutputFormat, PhasesError, SeedPlace, SeedProblem};
 
 /// What can go wrong between the user's input and the files written. Each message is one line that names the

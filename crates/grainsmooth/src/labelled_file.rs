@@ -9,8 +9,8 @@ use texture::Orientation;
 use toml::{Table, Value};
 use voronoi::Dimension;
 
-use crate::mesh_file::vtk::labelled::{LabelledCells, Remarks, read_legacy, read_xml};
-use crate::mesh_file::{MeshFileProblem, check_lengths};
+use crate::mesh::file::vtk::labelled::{LabelledCells, Remarks, read_legacy, read_xml};
+use crate::mesh::file::{MeshFileProblem, check_lengths};
 use crate::{Config, Error, Names};
 
 /// A labelled surface (in the plane: lines) from a file.

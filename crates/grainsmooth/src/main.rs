@@ -1,19 +1,15 @@
 //! The `grainsmooth` program: reads the command line, runs the pipeline, reports.
 
-mod check_run;
 mod cli;
+mod commands;
 #[cfg(unix)]
 mod interruption;
-mod measure_run;
-mod mesh_cli;
-mod mesh_run;
-mod network_run;
 mod progress;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use grainsmooth::mesh_file::READER_THREAD;
+use grainsmooth::mesh::file::READER_THREAD;
 
 use cli::{Arguments, Command};
 
@@ -55,12 +51,12 @@ fn keep_reader_quiet() {
 fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     #[cfg(unix)]
     interruption::leave_nothing_when_interrupted()?;
-    let Some(command) = &arguments.command else { return network_run::run(arguments) };
+    let Some(command) = &arguments.command else { return commands::network::run(arguments) };
     keep_reader_quiet();
     match command {
-        Command::Mesh(mesh) => mesh_run::run(&mesh.command)?,
-        Command::Check(check) => return check_run::run(check),
-        Command::Measure(measure) => measure_run::run(measure)?,
+        Command::Mesh(mesh) => commands::mesh::run(&mesh.command)?,
+        Command::Check(check) => return commands::check::run(check),
+        Command::Measure(measure) => commands::measure::run(measure)?,
         Command::Completions { shell } => cli::print_completions(*shell)?,
         Command::Man => cli::print_manual()?,
     }

@@ -11,7 +11,7 @@ use texture::{CrystalSymmetry, Orientation};
 use toml::Value;
 use voronoi::Dimension;
 
-use crate::mesh_file::MeshFileProblem;
+use crate::mesh::file::MeshFileProblem;
 use crate::{Error, LabelledFile};
 
 /// The part of a grain's surface that the sum of its normals may be: single precision leaves less.

@@ -24,7 +24,7 @@ pub(super) fn read(path: &Path) -> Result<MeasuredSample, Error> {
     Ok(sample)
 }
 
-fn of_tess(tess: &Tess) -> Result<MeasuredSample, crate::mesh_file::MeshFileProblem> {
+fn of_tess(tess: &Tess) -> Result<MeasuredSample, crate::mesh::file::MeshFileProblem> {
     let ids = |count: usize| 0..u32::try_from(count).unwrap_or(u32::MAX);
     let boundary_count = match tess.dimension {
         Dimension::Two => tess.edges.len(),

@@ -8,9 +8,9 @@ use glam::DVec3;
 use serde::Serialize;
 use subzero::{BoundaryRule, VertexRule};
 
-use crate::mesh_bezier::{grid, step};
-use crate::mesh_file::MeshFile;
-use crate::{BezierFile, Connectivity, Level, Scheme, limits};
+use super::bezier::{BezierFile, grid, step};
+use super::file::MeshFile;
+use super::subdivide::{Connectivity, Level, Scheme, limits};
 
 type Point = [f64; 3];
 /// A normal, or three nulls where there is none.

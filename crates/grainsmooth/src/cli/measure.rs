@@ -1,14 +1,13 @@
-//! `grainsmooth measure`: what a sample is like, and how to make another like it.
+//! The command line of `grainsmooth measure`.
 
-use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use grainsmooth::{MeasuredSample, Output, SampleReport, TableFormat};
+use grainsmooth::TableFormat;
 use texture::{CrystalSymmetry, SymmetryError};
 use voronoi::Dimension;
 
-use crate::cli::parse_dimension;
+use super::domain::parse_dimension;
 
 /// Measure a sample: sizes, shapes, neighbours and texture of its grains, and the run that makes a twin of it
 ///
@@ -20,29 +19,29 @@ use crate::cli::parse_dimension;
 pub struct MeasureArguments {
     /// File to measure: .vtp, .vtu, .vtk, .tess, .csv, .txt or .json
     #[arg(value_name = "FILE")]
-    file: PathBuf,
+    pub file: PathBuf,
 
     /// Report as JSON
     #[arg(long)]
-    json: bool,
+    pub json: bool,
 
     /// Write the grains as a table (.csv), for --diameters and --texture
     ///
     /// Example: --table grains.csv
     #[arg(long, value_name = "PATH", value_parser = parse_table)]
-    table: Option<PathBuf>,
+    pub table: Option<PathBuf>,
 
     /// Symmetry of the crystals, where the file does not tell it; cubic where neither does
     ///
     /// Example: --crystal-symmetry hexagonal
     #[arg(long, value_name = "GROUP", value_parser = parse_symmetry, allow_hyphen_values = true)]
-    crystal_symmetry: Option<CrystalSymmetry>,
+    pub crystal_symmetry: Option<CrystalSymmetry>,
 
     /// Dimension of the grains of a table whose columns do not tell it
     ///
     /// Example: --dim 2
     #[arg(long, value_name = "2|3", value_parser = parse_dimension)]
-    dim: Option<Dimension>,
+    pub dim: Option<Dimension>,
 }
 
 const EXAMPLES: &str = "\
@@ -52,25 +51,6 @@ Examples:
   grainsmooth measure sections.csv --dim 2 --json          for programs
 
 Exit status: 0 good, 1 the file is unreadable or no sample, 2 a mistake on the command line.";
-
-/// Measures the file and reports on standard output.
-pub fn run(arguments: &MeasureArguments) -> anyhow::Result<()> {
-    let MeasureArguments { file, json, table, crystal_symmetry, dim } = arguments;
-    let output = table.as_ref().map(|path| Output::check_as(path, TableFormat::Csv)).transpose()?;
-    let sample = MeasuredSample::read(file, *dim)?;
-    if let Some(output) = &output {
-        sample.write_table(output)?;
-    }
-    let report = SampleReport::new(file, &sample, *crystal_symmetry, table.as_deref());
-    let mut out = std::io::stdout().lock();
-    if *json {
-        serde_json::to_writer(&mut out, &report)?;
-        writeln!(out)?;
-    } else {
-        writeln!(out, "{report}")?;
-    }
-    Ok(())
-}
 
 fn parse_table(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);

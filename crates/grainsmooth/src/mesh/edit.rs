@@ -3,7 +3,7 @@
 use glam::DVec3;
 use subzero::HalfEdgeMesh;
 
-use crate::mesh_file::{MeshFile, MeshFileProblem};
+use super::file::{MeshFile, MeshFileProblem};
 
 /// A change at an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::CommandFactory;
 use clap::error::ErrorKind;
 use glam::DVec3;
-use grainsmooth::mesh_file::{
+use grainsmooth::mesh::file::{
     MeshFile, MeshFileProblem, MeshFormat, MeshToWrite, read_mesh, stage_mesh, write_mesh,
 };
 use grainsmooth::vtk::Cells;
@@ -17,8 +17,8 @@ use grainsmooth::{
 };
 use subzero::{HalfEdgeMesh, MeshError};
 
+use crate::cli::mesh::{FeatureArguments, FileArguments, LimitArguments, MeshCommand, SchemeArguments, Task};
 use crate::cli::{Arguments, usage};
-use crate::mesh_cli::{FeatureArguments, FileArguments, LimitArguments, MeshCommand, SchemeArguments, Task};
 use crate::say;
 
 /// Runs a subcommand.

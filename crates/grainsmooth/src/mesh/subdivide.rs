@@ -3,9 +3,9 @@
 use glam::DVec3;
 use subzero::{DooSabinWeights, LoopWeights, MeshError, PolygonMesh, Refinement, TriangleMesh, VertexRule};
 
+use super::file::{MeshFile, MeshFileProblem};
 use crate::Error;
 use crate::memory::{LevelSize, available_memory, check_levels};
-use crate::mesh_file::{MeshFile, MeshFileProblem};
 
 /// A scheme of subdivision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

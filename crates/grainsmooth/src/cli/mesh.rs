@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
-use grainsmooth::mesh_file::MeshFormat;
+use grainsmooth::mesh::file::MeshFormat;
 use grainsmooth::{EdgeEdit, Scheme};
 use subzero::{BoundaryRule, Crease, DooSabinWeights, INFINITE_SHARPNESS, LoopWeights};
 
-use crate::cli::VtkArguments;
+use super::files::VtkArguments;
 
 /// Subdivide and edit meshes: OBJ, PLY, STL, OFF, VTK or JSON in; VTK, OBJ, PLY, STL or JSON out.
 #[derive(Debug, Args)]

@@ -1,32 +1,13 @@
 //! `grainsmooth check`: certifies networks from files.
 
 use std::io::Write;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::Args;
 use grainsmooth::{CheckReport, LabelledFile};
 use serde::Serialize;
 
+use crate::cli::CheckArguments;
 use crate::say;
-
-/// Check networks of grains: closed, wound alike, nothing folded or crossed, no point twice
-///
-/// Reads triangles (in the plane: lines) with two labels each, from the cell array FaceLabels, boundary_labels or
-/// BoundaryLabels of .vtp, .vtu and .vtk files, whichever program wrote them.
-#[derive(Debug, Args)]
-#[command(
-    after_help = "Exit status: 0 all good, 1 something is wrong or unreadable, 2 a mistake on the command line."
-)]
-pub struct CheckArguments {
-    /// Files to check: .vtp, .vtu or .vtk
-    #[arg(value_name = "FILE", required = true)]
-    files: Vec<PathBuf>,
-
-    /// Report as JSON: {"files": [...]}
-    #[arg(long)]
-    json: bool,
-}
 
 #[derive(Serialize)]
 struct Reports {

@@ -6,8 +6,8 @@ use glam::DVec3;
 use serde::Deserialize;
 use subzero::{BezierCurve, BezierSurface, MeshError};
 
+use super::file::{MeshFileProblem, check_lengths};
 use crate::Error;
-use crate::mesh_file::{MeshFileProblem, check_lengths};
 
 /// Curves and surfaces as a file gives them.
 #[derive(Debug, Clone, Default, PartialEq)]

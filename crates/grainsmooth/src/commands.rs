@@ -1,0 +1,6 @@
+//! What the program does, a file for each of its commands.
+
+pub mod check;
+pub mod measure;
+pub mod mesh;
+pub mod network;

@@ -1,0 +1,12 @@
+//! Meshes and curves of any kind, apart from grains: their files, subdivision, edits, Bezier patches.
+
+mod bezier;
+mod edit;
+pub mod file;
+mod json;
+mod subdivide;
+
+pub use bezier::{BezierFile, read_bezier};
+pub use edit::{EdgeEdit, edit_edges};
+pub use json::{bezier_json, levels_json, mesh_json};
+pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};
