@@ -65,6 +65,18 @@ fn recipes_do_what_they_say() {
     }
 }
 
+/// Every command of the page on subdivision, on the files that come with the project.
+#[test]
+fn subdivision_does_what_it_says() {
+    let folder = folder_with_data();
+    let blocks = blocks(include_str!("../docs/subdivision.md"));
+    assert!(blocks.len() > 1);
+    for (language, text) in blocks {
+        assert_eq!(language, "sh");
+        text.lines().for_each(|line| run_command(line, folder.path()));
+    }
+}
+
 /// The files that come with the project, by the commands that its README names.
 #[test]
 fn small_files_can_be_tried_as_their_readme_says() {

@@ -22,6 +22,12 @@ fn bad_meshes_are_refused_by_name() {
         ("bowtie.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 2 1\nv 3 3 3\nf 1 2 3\nf 1 4 5\n"),
         ("two.obj", "v 0 0 0\nv 1 0 0\nf 1 2\n"),
         ("two.json", r#"{"vertices": [[0, 0, 0], [1, 0, 0]], "faces": [[0, 1]]}"#),
+        ("star.off", "OFF\n5 1 0\n0 3 0\n2 -3 0\n-3 1 0\n3 1 0\n-2 -3 0\n5 0 1 2 3 4\n"),
+        ("line.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 0\n4 0 1 2 3\n"),
+        (
+            "moebius.off",
+            "OFF\n5 5 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n3 0 1 2\n3 1 2 3\n3 2 3 4\n3 3 4 0\n3 4 0 1\n",
+        ),
         ("open.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
         ("empty.obj", ""),
         ("huge.obj", "v 0 0 0\nv 1e155 0 0\nv 0 1e155 0\nf 1 2 3\n"),
@@ -54,8 +60,20 @@ fn bad_meshes_are_refused_by_name() {
         ("loop nan.json", "nan.json: line 1: expected value at line 1 column 22"),
         (
             "midpoint winding.obj",
-            "winding.obj: faces 0 and 1 both run along edge 0-1 in the same direction: turn one round, or crease the \
-             edge infinitely",
+            "winding.obj: faces 0 and 1 both run along edge 0-1 in the same direction: make their winding agree, or \
+             crease the edge infinitely; `grainsmooth mesh orient` makes it agree",
+        ),
+        (
+            "orient moebius.off",
+            "moebius.off: the winding cannot agree: the surface has one side only, which shows at edge 3-4 of faces 3 and 2; cut it open there",
+        ),
+        (
+            "triangulate star.off",
+            "star.off: face 0 crosses or touches itself, as seen along its normal: divide it there into several",
+        ),
+        (
+            "triangulate line.off",
+            "line.off: face 0 has no area: remove it, or move a corner of it off their line",
         ),
         (
             "loop --closed open.off",
@@ -87,7 +105,7 @@ fn bad_meshes_are_refused_by_name() {
         ("loop nothing.ply", "nothing.ply: ... give a complete PLY file"),
         (
             "loop cube.obj",
-            "cube.obj: face 0 has 4 corners where triangles are needed; cut it, or take catmull-clark or doo-sabin",
+            "cube.obj: face 0 has 4 corners where triangles are needed; cut it with `grainsmooth mesh triangulate`, or take catmull-clark or doo-sabin",
         ),
         (
             "doo-sabin valence.off",

@@ -7,6 +7,6 @@ mod json;
 mod subdivide;
 
 pub use bezier::{BezierFile, read_bezier};
-pub use edit::{EdgeEdit, edit_edges};
+pub use edit::{EdgeEdit, OrientedFaces, edit_edges};
 pub use json::{bezier_json, levels_json, mesh_json};
 pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};

@@ -92,7 +92,7 @@ pub enum MeshError {
     },
     /// Two faces that share an edge wind opposite ways, and nothing says that the surface breaks there.
     #[error(
-        "faces {first} and {second} both run along edge {}-{} in the same direction: turn one round, or crease the edge infinitely",
+        "faces {first} and {second} both run along edge {}-{} in the same direction: make their winding agree, or crease the edge infinitely",
         ends[0], ends[1]
     )]
     Winding {
@@ -102,6 +102,31 @@ pub enum MeshError {
         second: u32,
         /// The ends of the edge, in the direction in which both run.
         ends: [u32; 2],
+    },
+    /// The winding of faces cannot be made to agree, as on a Moebius strip.
+    #[error(
+        "the winding cannot agree: the surface has one side only, which shows at edge {}-{} of faces {first} and {second}; cut it open there",
+        ends[0], ends[1]
+    )]
+    NotOrientable {
+        /// A face at the edge.
+        first: u32,
+        /// The other face at the edge.
+        second: u32,
+        /// The ends of the edge.
+        ends: [u32; 2],
+    },
+    /// A polygon without area cannot be cut into triangles.
+    #[error("face {face} has no area: remove it, or move a corner of it off their line")]
+    FlatFace {
+        /// Which face, counted from 0.
+        face: usize,
+    },
+    /// A polygon that crosses or touches itself cannot be cut into triangles.
+    #[error("face {face} crosses or touches itself, as seen along its normal: divide it there into several")]
+    CrossedFace {
+        /// Which face, counted from 0.
+        face: usize,
     },
     /// A crease joins two vertices that share no edge.
     #[error("crease {index} joins vertices {} and {}, but the mesh has no such edge; name the ends of a face's side", ends[0], ends[1])]

@@ -42,6 +42,7 @@ mod loop_limit;
 mod loop_points;
 mod loop_scheme;
 mod mesh_checks;
+mod orient;
 mod point;
 mod polygon_mesh;
 mod prefetch;
@@ -52,6 +53,7 @@ mod teapot;
 mod triangle_build;
 mod triangle_mesh;
 mod triangle_refine;
+mod triangulate;
 mod vertex_rows;
 
 pub use bezier::{BezierCurve, BezierSurface};
@@ -67,11 +69,13 @@ pub use loop_hierarchy::LoopHierarchy;
 pub use loop_limit::{LoopLimits, Sector};
 pub use loop_scheme::LoopWeights;
 pub use mesh_checks::check_finite;
+pub use orient::{Orientation, orient};
 pub use point::Point;
 pub use polygon_mesh::PolygonMesh;
 pub use stencil::StencilTable;
 pub use teapot::teapot;
 pub use triangle_mesh::TriangleMesh;
+pub use triangulate::triangulate;
 
 /// One step of subdivision: the finer mesh, and how its points follow from the coarser mesh's.
 #[derive(Clone, Debug, PartialEq)]

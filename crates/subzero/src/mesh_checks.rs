@@ -66,3 +66,23 @@ pub(crate) fn check_duplicates<Face: Ord>(sorted_faces: impl Iterator<Item = Fac
         None => Ok(()),
     }
 }
+
+/// Whether faces have three or more corners, all different and within range, and no two of them the same.
+pub(crate) fn check_faces(vertex_count: usize, faces: &[Vec<u32>]) -> Result<(), MeshError> {
+    let mut sorted_faces = Vec::with_capacity(faces.len());
+    for (index, face) in faces.iter().enumerate() {
+        if face.len() < 3 {
+            return Err(MeshError::TooFewCorners { face: index, corners: face.len() });
+        }
+        for &vertex in face {
+            check_vertex("face", index, vertex, vertex_count)?;
+        }
+        let mut sorted = face.clone();
+        sorted.sort_unstable();
+        if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(MeshError::Degenerate { what: "face", index, vertex: pair[0] });
+        }
+        sorted_faces.push(sorted);
+    }
+    check_duplicates(sorted_faces.into_iter())
+}

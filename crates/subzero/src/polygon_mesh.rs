@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::edge_table::EdgeTable;
 use crate::features::INFINITE_SHARPNESS;
 use crate::ids::{NONE, id};
-use crate::mesh_checks::{check_corners, check_duplicates, check_size, check_vertex};
+use crate::mesh_checks::{check_corners, check_faces, check_size};
 use crate::sharpness::{Sharpness, is_infinite};
 use crate::{BoundaryRule, Features, MeshError, VertexRule};
 
@@ -264,23 +264,4 @@ fn sharpen_boundary(sharpness: &mut [f32], edges: &[[u32; 2]]) {
             *sharpness = INFINITE_SHARPNESS;
         }
     }
-}
-
-fn check_faces(vertex_count: usize, faces: &[Vec<u32>]) -> Result<(), MeshError> {
-    let mut sorted_faces = Vec::with_capacity(faces.len());
-    for (index, face) in faces.iter().enumerate() {
-        if face.len() < 3 {
-            return Err(MeshError::TooFewCorners { face: index, corners: face.len() });
-        }
-        for &vertex in face {
-            check_vertex("face", index, vertex, vertex_count)?;
-        }
-        let mut sorted = face.clone();
-        sorted.sort_unstable();
-        if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-            return Err(MeshError::Degenerate { what: "face", index, vertex: pair[0] });
-        }
-        sorted_faces.push(sorted);
-    }
-    check_duplicates(sorted_faces.into_iter())
 }

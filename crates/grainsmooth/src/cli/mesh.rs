@@ -23,6 +23,7 @@ Examples:
   grainsmooth mesh catmull-clark cage.ply -n 2 -o out.vtp --each-level    out_0.vtp, out_1.vtp, out_2.vtp
   grainsmooth mesh loop tetrahedron.off --json -o levels.json             all levels, parents and limits
   grainsmooth mesh collapse part.stl --edge 4-9 -o part.obj
+  grainsmooth mesh triangulate cage.obj -o triangles.obj
 
 Vertices and faces count from 0, in the order of the file.";
 
@@ -44,6 +45,10 @@ pub enum MeshCommand {
     Limit(LimitArguments),
     /// Normals at the points: means of those of the triangles, weighted by area
     Normals(FileArguments),
+    /// Make the winding of faces agree: in each part that hangs together, most stay as they are
+    Orient(OrientArguments),
+    /// Cut polygons into triangles, also polygons that are not convex or in no plane
+    Triangulate(FileArguments),
     /// Turn edges within the quadrilaterals of their two triangles
     Flip(EditArguments),
     /// Put points on the middles of edges
@@ -164,6 +169,16 @@ pub struct EditArguments {
 }
 
 #[derive(Debug, Args)]
+pub struct OrientArguments {
+    #[command(flatten)]
+    pub files: FileArguments,
+
+    /// Turn closed parts round whose normals point inward
+    #[arg(long)]
+    pub outward: bool,
+}
+
+#[derive(Debug, Args)]
 pub struct BezierArguments {
     #[command(flatten)]
     pub files: FileArguments,
@@ -225,6 +240,8 @@ pub enum Task<'a> {
     Subdivide(Scheme, &'a SchemeArguments),
     Limit(Scheme, &'a LimitArguments),
     Normals,
+    Orient { outward: bool },
+    Triangulate,
     Edit(EdgeEdit, &'a [[u32; 2]]),
     Bezier { samples: u32 },
 }
@@ -253,6 +270,8 @@ impl MeshCommand {
                 return (&arguments.files, Task::Limit(scheme, arguments));
             }
             Self::Normals(files) => return (files, Task::Normals),
+            Self::Orient(orient) => return (&orient.files, Task::Orient { outward: orient.outward }),
+            Self::Triangulate(files) => return (files, Task::Triangulate),
             Self::Flip(edit) => return (&edit.files, Task::Edit(EdgeEdit::Flip, &edit.edges)),
             Self::Split(edit) => return (&edit.files, Task::Edit(EdgeEdit::Split, &edit.edges)),
             Self::Collapse(edit) => return (&edit.files, Task::Edit(EdgeEdit::Collapse, &edit.edges)),

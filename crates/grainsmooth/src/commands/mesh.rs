@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::CommandFactory;
 use clap::error::ErrorKind;
 use glam::DVec3;
+use grainsmooth::mesh::OrientedFaces;
 use grainsmooth::mesh::file::{
     MeshFile, MeshFileProblem, MeshFormat, MeshToWrite, read_mesh, stage_mesh, write_mesh,
 };
@@ -57,6 +58,8 @@ impl Job<'_> {
             Task::Subdivide(scheme, arguments) => self.subdivide(scheme, arguments),
             Task::Limit(scheme, arguments) => self.limit(scheme, arguments),
             Task::Normals => self.normals(),
+            Task::Orient { outward } => self.orient(outward),
+            Task::Triangulate => self.triangulate(),
             Task::Edit(edit, edges) => self.edit(edit, edges),
             Task::Bezier { samples } => self.bezier(samples),
         }
@@ -126,17 +129,34 @@ impl Job<'_> {
         let mesh = self.read()?;
         let find = || -> Result<_, MeshFileProblem> {
             let triangles = mesh.triangles()?;
-            let normals = HalfEdgeMesh::new(mesh.points.len(), &triangles)?.vertex_normals(&mesh.points);
-            Ok((triangles, normals))
+            Ok(HalfEdgeMesh::new(mesh.points.len(), &triangles)?.vertex_normals(&mesh.points))
         };
-        let (triangles, normals) = find().map_err(|error| self.located(error))?;
+        let normals = find().map_err(|error| self.located(error))?;
         self.report(format_args!("normals     {} points", normals.iter().flatten().count()));
-        self.write_single(&output, &mesh.points, &triangles, Some(&normals))
+        self.write_single(&output, &mesh, Some(&normals))
+    }
+
+    fn orient(&self, outward: bool) -> Result<(), Error> {
+        let output = self.output(&self.files.output)?;
+        let mut mesh = self.read()?;
+        let OrientedFaces { turned, components } =
+            mesh.orient(outward).map_err(|error| self.located(error))?;
+        let faces = mesh.faces.len();
+        self.report(format_args!("oriented    {turned} of {faces} faces turned round; {components} parts"));
+        self.write_single(&output, &mesh, None)
+    }
+
+    fn triangulate(&self) -> Result<(), Error> {
+        let output = self.output(&self.files.output)?;
+        let mut mesh = self.read()?;
+        let polygons = mesh.triangulate().map_err(|error| self.located(error))?;
+        self.report(format_args!("cut         {polygons} polygons: {} triangles", mesh.faces.len()));
+        self.write_single(&output, &mesh, None)
     }
 
     fn edit(&self, edit: EdgeEdit, edges: &[[u32; 2]]) -> Result<(), Error> {
         let output = self.output(&self.files.output)?;
-        let mesh = self.read()?;
+        let mut mesh = self.read()?;
         let (points, triangles) = edit_edges(&mesh, edit, edges).map_err(|error| self.located(error))?;
         self.report(format_args!(
             "edited      {} edges: {} points, {} triangles",
@@ -144,7 +164,9 @@ impl Job<'_> {
             points.len(),
             triangles.len()
         ));
-        self.write_single(&output, &points, &triangles, None)
+        mesh.points = points;
+        mesh.faces = triangles.into_iter().map(Vec::from).collect();
+        self.write_single(&output, &mesh, None)
     }
 
     fn bezier(&self, samples: u32) -> Result<(), Error> {
@@ -212,20 +234,24 @@ impl Job<'_> {
         stage_mesh(&MeshToWrite { normals, generations, ..self.content(points, cells) }, output, files)
     }
 
-    /// Writes triangles in any format.
+    /// Writes a mesh in any format.
     fn write_single(
         &self,
         output: &Output<MeshFormat>,
-        points: &[DVec3],
-        triangles: &[[u32; 3]],
+        mesh: &MeshFile,
         normals: Option<&[Option<DVec3>]>,
     ) -> Result<(), Error> {
         if self.format == MeshFormat::Json {
-            output.write(|out| mesh_json(points, triangles, normals, out))?;
+            output.write(|out| mesh_json(mesh, normals, out))?;
         } else {
             let normals: Option<Vec<DVec3>> =
                 normals.map(|normals| normals.iter().map(|normal| normal.unwrap_or_default()).collect());
-            let content = self.content(points, Cells::Triangles(triangles));
+            let triangles = mesh.triangles();
+            let cells = match &triangles {
+                Ok(triangles) => Cells::Triangles(triangles),
+                Err(_) => Cells::Polygons(&mesh.faces),
+            };
+            let content = self.content(&mesh.points, cells);
             write_mesh(&MeshToWrite { normals: normals.as_deref(), ..content }, output)?;
         }
         self.report_written(std::slice::from_ref(output));

@@ -1,4 +1,4 @@
-//! Edge flips, splits and collapses on a mesh from a file.
+//! Edits of a mesh from a file: edges flipped, split and collapsed, winding made to agree, polygons cut.
 
 use glam::DVec3;
 use subzero::HalfEdgeMesh;
@@ -38,4 +38,41 @@ pub fn edit_edges(
         }
     }
     Ok((points, half_edges.triangles().map(|(_, triangle)| triangle).collect()))
+}
+
+/// What [`MeshFile::orient`] did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OrientedFaces {
+    /// How many faces it turned round.
+    pub turned: usize,
+    /// How many parts hang together by edges of two faces.
+    pub components: usize,
+}
+
+impl MeshFile {
+    /// Makes the winding of faces agree, component by component: most faces stay as they are. If `outward`, normals of closed
+    /// components point out of them afterwards.
+    ///
+    /// # Errors
+    /// [`MeshFileProblem::Mesh`] as of [`subzero::orient`].
+    pub fn orient(&mut self, outward: bool) -> Result<OrientedFaces, MeshFileProblem> {
+        let mut orientation = subzero::orient(self.points.len(), &self.faces)?;
+        if outward {
+            orientation.face_outward(&self.points, &self.faces);
+        }
+        orientation.apply(&mut self.faces);
+        let turned = orientation.turned.iter().filter(|turned| **turned).count();
+        Ok(OrientedFaces { turned, components: orientation.is_closed.len() })
+    }
+
+    /// Cuts polygons into triangles, and returns how many were cut.
+    ///
+    /// # Errors
+    /// [`MeshFileProblem::Mesh`] as of [`subzero::triangulate`].
+    pub fn triangulate(&mut self) -> Result<usize, MeshFileProblem> {
+        let (triangles, _) = subzero::triangulate(&self.points, &self.faces)?;
+        let polygons = self.faces.iter().filter(|face| face.len() > 3).count();
+        self.faces = triangles.into_iter().map(Vec::from).collect();
+        Ok(polygons)
+    }
 }

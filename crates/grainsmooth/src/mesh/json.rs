@@ -84,17 +84,10 @@ pub fn levels_json(mesh: &MeshFile, scheme: Scheme, levels: &[Level], out: &mut 
     let file = LevelsFile {
         scheme: name(scheme),
         source: format!("grainsmooth {}", env!("CARGO_PKG_VERSION")),
-        boundary: match mesh.boundary {
-            BoundaryRule::Edge => "edge",
-            BoundaryRule::EdgeCorner => "edge_corner",
-        },
+        boundary: boundary(mesh.boundary),
         vertices: bytemuck::cast_slice(&mesh.points),
         faces: &mesh.faces,
-        creases: mesh
-            .creases
-            .iter()
-            .map(|crease| (crease.ends[0], crease.ends[1], crease.sharpness))
-            .collect(),
+        creases: creases(mesh),
         corners: &mesh.corners,
         levels: levels
             .windows(2)
@@ -115,6 +108,17 @@ pub fn levels_json(mesh: &MeshFile, scheme: Scheme, levels: &[Level], out: &mut 
             .collect(),
     };
     serde_json::to_writer(out, &file).map_err(io::Error::from)
+}
+
+fn boundary(rule: BoundaryRule) -> &'static str {
+    match rule {
+        BoundaryRule::Edge => "edge",
+        BoundaryRule::EdgeCorner => "edge_corner",
+    }
+}
+
+fn creases(mesh: &MeshFile) -> Vec<(u32, u32, f32)> {
+    mesh.creases.iter().map(|crease| (crease.ends[0], crease.ends[1], crease.sharpness)).collect()
 }
 
 fn name(scheme: Scheme) -> &'static str {
@@ -217,8 +221,13 @@ fn nullable(normal: Option<DVec3>) -> Normal {
 #[derive(Serialize)]
 struct PlainFile<'a> {
     source: String,
+    boundary: &'static str,
     vertices: &'a [Point],
-    faces: Vec<Vec<u32>>,
+    faces: &'a [Vec<u32>],
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    creases: Vec<(u32, u32, f32)>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    corners: &'a [(u32, f32)],
     #[serde(skip_serializing_if = "Option::is_none")]
     normals: Option<Vec<Normal>>,
 }
@@ -227,16 +236,14 @@ struct PlainFile<'a> {
 ///
 /// # Errors
 /// Whatever `out` reports.
-pub fn mesh_json(
-    points: &[DVec3],
-    triangles: &[[u32; 3]],
-    normals: Option<&[Option<DVec3>]>,
-    out: &mut dyn Write,
-) -> io::Result<()> {
+pub fn mesh_json(mesh: &MeshFile, normals: Option<&[Option<DVec3>]>, out: &mut dyn Write) -> io::Result<()> {
     let file = PlainFile {
         source: format!("grainsmooth {}", env!("CARGO_PKG_VERSION")),
-        vertices: bytemuck::cast_slice(points),
-        faces: triangles.iter().map(|triangle| triangle.to_vec()).collect(),
+        boundary: boundary(mesh.boundary),
+        vertices: bytemuck::cast_slice(&mesh.points),
+        faces: &mesh.faces,
+        creases: creases(mesh),
+        corners: &mesh.corners,
         normals: normals.map(|normals| normals.iter().copied().map(nullable).collect()),
     };
     serde_json::to_writer(out, &file).map_err(io::Error::from)

@@ -89,7 +89,7 @@ pub enum MeshFileProblem {
     },
     /// A scheme for triangles was given another polygon.
     #[error(
-        "face {face} has {corners} corners where triangles are needed; cut it, or take catmull-clark or doo-sabin"
+        "face {face} has {corners} corners where triangles are needed; cut it with `grainsmooth mesh triangulate`, or take catmull-clark or doo-sabin"
     )]
     NotATriangle {
         /// The face, counted from 0.
@@ -100,9 +100,21 @@ pub enum MeshFileProblem {
     /// A file of control points has both kinds, which only JSON can hold together.
     #[error("holds curves and surfaces, which no mesh format holds together; write .json or give one kind")]
     CurvesAndSurfaces,
+    /// Two faces wind opposite ways.
+    #[error("{0}; `grainsmooth mesh orient` makes it agree")]
+    Winding(MeshError),
     /// The faces make no mesh that the scheme can work with.
     #[error("{0}")]
-    Mesh(#[from] MeshError),
+    Mesh(MeshError),
+}
+
+impl From<MeshError> for MeshFileProblem {
+    fn from(error: MeshError) -> Self {
+        match error {
+            MeshError::Winding { .. } => Self::Winding(error),
+            _ => Self::Mesh(error),
+        }
+    }
 }
 
 impl MeshFileProblem {

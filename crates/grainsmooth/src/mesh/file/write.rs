@@ -168,20 +168,24 @@ fn write_stl(mesh: &MeshToWrite<'_>, out: &mut dyn Write) -> io::Result<()> {
     refuse_polylines(mesh.cells, "STL")?;
     let mut triangles = Vec::new();
     let mut outside = None;
-    for_each_cell(mesh.cells, |cell| {
-        // A polygon as a fan around its first corner.
-        for pair in cell[1..].windows(2) {
-            let corners = [cell[0], pair[0], pair[1]].map(|id| mesh.points[id as usize]);
-            outside = outside.or(corners.into_iter().find(|point| !point.as_vec3().is_finite()));
-            let [a, b, c] = corners;
-            let normal = (b - a).cross(c - a).normalize_or_zero();
-            triangles.push(stl_io::Triangle {
-                normal: stl_io::Normal::new(normal.as_vec3().to_array()),
-                vertices: corners.map(|point| stl_io::Vertex::new(point.as_vec3().to_array())),
-            });
+    let mut add = |corners: [u32; 3]| {
+        let corners = corners.map(|id| mesh.points[id as usize]);
+        outside = outside.or(corners.into_iter().find(|point| !point.as_vec3().is_finite()));
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        triangles.push(stl_io::Triangle {
+            normal: stl_io::Normal::new(normal.as_vec3().to_array()),
+            vertices: corners.map(|point| stl_io::Vertex::new(point.as_vec3().to_array())),
+        });
+    };
+    match mesh.cells {
+        Cells::Triangles(triangles) => triangles.iter().copied().for_each(&mut add),
+        Cells::Polygons(polygons) => {
+            let cut = subzero::triangulate(mesh.points, polygons).map_err(io::Error::other)?;
+            cut.0.into_iter().for_each(&mut add);
         }
-        Ok(())
-    })?;
+        Cells::Polylines(_) | Cells::Vertices(_) => {}
+    }
     if let Some(point) = outside {
         return Err(io::Error::other(format!(
             "{point} is too far out for STL's single precision; write .vtp instead"
