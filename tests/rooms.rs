@@ -1,4 +1,5 @@
-//! Rooms, the top modules of a crate, know those below alone: no circle of imports among them.
+//! Rooms, the top modules of a crate, know those below alone: no circle of imports among them, nor, in `grainsmooth`, among the modules of
+//! a room.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -6,10 +7,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The crates whose rooms stand in an order.
-const CRATES: [&str; 6] = ["campaign", "polycrystal", "sizes", "subzero", "texture", "voronoi"];
+/// The crates whose rooms stand in an order, and by how many parts of its path a module is named.
+const CRATES: [(&str, usize); 8] = [
+    ("campaign", 1),
+    ("grainsmooth", 1),
+    ("grainsmooth", 2),
+    ("polycrystal", 1),
+    ("sizes", 1),
+    ("subzero", 1),
+    ("texture", 1),
+    ("voronoi", 1),
+];
 
-/// Which rooms each one imports from.
+/// Which modules each one imports from.
 type Imports = BTreeMap<String, BTreeSet<String>>;
 
 fn files(folder: &Path) -> Vec<PathBuf> {
@@ -54,53 +64,66 @@ fn leaves(tree: &str) -> Vec<Vec<String>> {
     }
 }
 
-/// What stands behind each `start` up to a `;` or, inside of code, up to the end of a path.
+/// The paths behind each `start`, which is no part of a longer path: of all that is imported there, or of one item inside of code.
 fn paths(code: &str, start: &str) -> Vec<Vec<String>> {
     let is_of_path = |character: char| character.is_alphanumeric() || "_:".contains(character);
-    let found = code.match_indices(start).map(|(at, _)| &code[at + start.len()..]);
+    let found = code.match_indices(start).filter(|(at, _)| !code[..*at].ends_with(is_of_path));
+    let found = found.map(|(at, _)| &code[at + start.len()..]);
     found
-        .flat_map(|rest| match rest.starts_with('{') {
-            true => leaves(&rest[..rest.find(';').unwrap()]),
-            false => leaves(&rest[..rest.find(|character| !is_of_path(character)).unwrap_or(rest.len())]),
+        .flat_map(|rest| {
+            let end = rest.find(|character| !is_of_path(character)).unwrap_or(rest.len());
+            match rest[end..].starts_with('{') {
+                true => leaves(&rest[..rest.find(';').unwrap()]),
+                false => leaves(&rest[..end]),
+            }
         })
         .collect()
 }
 
-/// The imports among the rooms of a crate; names at its root count as those of the room that they come from.
-fn imports(source: &Path) -> Imports {
-    let root = code(&source.join("lib.rs"));
-    let rooms: BTreeSet<String> = files(source).iter().map(|path| room(source, path)).collect();
-    let exported: BTreeMap<String, String> = root
+/// The imports among the modules of a crate, each named by `depth` parts of its path; names at its root count as those of the module that they
+/// come from.
+fn imports(source: &Path, depth: usize) -> Imports {
+    let modules: BTreeSet<Vec<String>> = files(source).iter().map(|path| module(source, path)).collect();
+    let exported: BTreeMap<String, Vec<String>> = code(&source.join("lib.rs"))
         .split("pub use ")
         .skip(1)
         .flat_map(|text| leaves(text.split(';').next().unwrap()))
-        .map(|path| (path[path.len() - 1].clone(), path[0].clone()))
+        .map(|path| (path[path.len() - 1].clone(), path))
         .collect();
+    let named = |module: &[String]| module[..module.len().min(depth)].join("::");
     let mut imports = Imports::new();
     for path in files(source) {
-        let own = room(source, &path);
-        if own == "lib" || own == "main" {
+        let own = module(source, &path);
+        if own == ["lib"] || own == ["main"] {
             continue;
         }
-        let code = code(&path);
-        for parts in paths(&code, "crate::") {
-            let first = &parts[0];
-            let of = if rooms.contains(first) { first } else { exported.get(first).unwrap_or(&own) };
-            if *of != own {
-                imports.entry(own.clone()).or_default().insert(of.clone());
+        let (code, around) = (code(&path), &own[..own.len() - 1]);
+        let from_root = paths(&code, "crate::").into_iter().map(|path| match exported.get(&path[0]) {
+            Some(whole) => whole.clone(),
+            None => path,
+        });
+        let from_here = paths(&code, "super::").into_iter().map(|path| {
+            let up = path.iter().take_while(|part| *part == "super").count();
+            [&around[..around.len() - up], &path[up..]].concat()
+        });
+        for path in from_root.chain(from_here) {
+            let beginnings = (1..=path.len()).rev().map(|length| &path[..length]);
+            let of = beginnings.into_iter().find(|beginning| modules.contains(*beginning)).unwrap_or(&own);
+            if named(of) != named(&own) {
+                imports.entry(named(&own)).or_default().insert(named(of));
             }
         }
     }
     imports
 }
 
-/// The top module that a file belongs to.
-fn room(source: &Path, path: &Path) -> String {
-    let first = path.strip_prefix(source).unwrap().components().next().unwrap();
-    Path::new(first.as_os_str()).file_stem().unwrap().to_str().unwrap().to_owned()
+/// The path of the module in a file.
+fn module(source: &Path, path: &Path) -> Vec<String> {
+    let path = path.strip_prefix(source).unwrap().with_extension("");
+    path.components().map(|part| part.as_os_str().to_str().unwrap().to_owned()).collect()
 }
 
-/// The rooms that are left when each that imports from none of the rest has gone, again and again.
+/// The modules that are left when each that imports from none of the rest has gone, again and again.
 fn in_circles(mut imports: Imports) -> Imports {
     loop {
         let left: BTreeSet<String> = imports.keys().cloned().collect();
@@ -117,8 +140,9 @@ fn in_circles(mut imports: Imports) -> Imports {
 
 #[test]
 fn no_room_imports_from_one_above() {
-    for name in CRATES {
-        let imports = imports(&Path::new(env!("CARGO_MANIFEST_DIR")).join("crates").join(name).join("src"));
+    for (name, depth) in CRATES {
+        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates").join(name).join("src");
+        let imports = imports(&source, depth);
         assert!(!imports.is_empty(), "{name} has no imports, or they were not found");
         assert_eq!(in_circles(imports), Imports::new(), "{name}");
     }
@@ -135,4 +159,7 @@ fn circles_are_found() {
         paths("use crate::{A, b::{C, d::E,}}; crate::f::G(1)", "crate::"),
         [vec!["A"], vec!["b", "C"], vec!["b", "d", "E"], vec!["f", "G"]]
     );
+    // Lists behind a room's name were once passed over.
+    assert_eq!(paths("use crate::a::{B, c::D};", "crate::"), [vec!["a", "B"], vec!["a", "c", "D"]]);
+    assert_eq!(paths("super::super::A::b()", "super::"), [vec!["super", "A", "b"]]);
 }

@@ -1,16 +1,33 @@
-use std::num::NonZeroU32;
+//! What a run is asked for, as data.
+
 use std::path::PathBuf;
 
 use glam::{BVec3, DVec3};
 use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
-use voronoi::{Dimension, Domain};
+use voronoi::Dimension;
 
-use crate::domain_file::{half_space_domain, surface_domain};
-use crate::vtk::VtkEncoding;
-use crate::{
-    Error, InsideOptions, InsidePattern, Lattice, LatticeFit, LawOptions, Names, PhaseOptions, ShapeSource,
-    SizeOptions, StlEncoding, TextureOptions,
-};
+pub(crate) mod check;
+pub(crate) mod files;
+pub(crate) mod gradient;
+pub(crate) mod inside;
+pub(crate) mod lattice;
+pub(crate) mod laws;
+pub(crate) mod phases;
+pub(crate) mod place;
+pub(crate) mod settings;
+pub(crate) mod shapes;
+pub(crate) mod sizes;
+pub(crate) mod table_file;
+pub(crate) mod texture;
+
+use files::FileOptions;
+use inside::{InsideOptions, InsidePattern};
+use lattice::Lattice;
+use laws::{LawKind, LawOptions};
+use phases::PhaseOptions;
+use shapes::ShapeSource;
+use sizes::{SizeOptions, SizeSource, USUAL_DIAMETERS};
+use texture::TextureOptions;
 
 /// Where seeds come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,7 +47,7 @@ pub enum SeedSource {
         /// Number of seeds, at least 1.
         count: usize,
     },
-    /// A lattice, see [`LatticeFit`].
+    /// A lattice, see [`LatticeFit`](crate::LatticeFit).
     Lattice {
         /// Its kind, of the config's dimension.
         lattice: Lattice,
@@ -147,33 +164,6 @@ pub struct Config {
     pub texture: TextureOptions,
     /// How files are written, apart from their formats.
     pub file: FileOptions,
-}
-
-/// How files are written, apart from their formats.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct FileOptions {
-    /// Whose names and numbers arrays have.
-    pub names: Names,
-    /// Number of voxels along each axis, for formats of voxels; the third is not used in 2D.
-    pub voxels: Option<[NonZeroU32; 3]>,
-    /// How STL spells its numbers.
-    pub stl: StlEncoding,
-    /// Whether VTK files have arrays of what is measured.
-    pub arrays: bool,
-    /// How VTK's XML files hold their numbers.
-    pub encoding: VtkEncoding,
-}
-
-impl Default for FileOptions {
-    fn default() -> Self {
-        Self {
-            names: Names::default(),
-            voxels: None,
-            stl: StlEncoding::Binary,
-            arrays: false,
-            encoding: VtkEncoding::Raw,
-        }
-    }
 }
 
 impl Default for Config {
@@ -305,77 +295,86 @@ impl Config {
         4 + phase + if self.has_texture() { 3 * 3 } else { 0 }
     }
 
-    /// The lattice that the seeds form, if they do.
-    ///
-    /// For a domain from a file only its sides tell.
-    pub fn lattice_fit(&self) -> Option<LatticeFit> {
-        match self.seeds {
-            SeedSource::Lattice { .. } if self.shape.is_from_file() => None,
-            SeedSource::Lattice { lattice, cells } => Some(LatticeFit::new(lattice, cells, self.box_size)),
-            _ => None,
-        }
-    }
-
-    /// What to say of the lattice that the seeds form, if they do and so many of them lie in the domain.
-    pub fn lattice_report(&self, domain: &Domain, seed_count: usize) -> Option<String> {
-        let SeedSource::Lattice { lattice, cells } = self.seeds else { return None };
-        let (all, said) = match self.lattice_fit() {
-            Some(fit) => (fit.seed_count(), fit.to_string()),
-            // No --box would make it perfect.
-            None => {
-                let fit = LatticeFit::new(lattice, cells, domain.size());
-                (fit.seed_count(), fit.name())
-            }
-        };
-        Some(match all.saturating_sub(seed_count) {
-            0 => said,
-            outside => format!("{said}; {outside} of {all} seeds lie outside the domain and are left out"),
-        })
-    }
-
-    /// The seeds of a lattice that lie in the domain.
-    pub(crate) fn lattice_seeds(&self, lattice: Lattice, cells: u32, domain: &Domain) -> Vec<DVec3> {
-        let (fit, corner) = match self.lattice_fit() {
-            Some(fit) => (fit, DVec3::ZERO),
-            None => (LatticeFit::new(lattice, cells, domain.size()), domain.lower()),
-        };
-        let seeds = fit.seeds().into_iter().map(|seed| corner + seed);
-        seeds.filter(|seed| domain.contains(*seed)).collect()
-    }
-
     /// By what coordinates are multiplied in the end: the aspect ratio, with the product 1.
     pub fn stretch(&self) -> DVec3 {
         let stretch = self.aspect_ratio / self.dimension.cube_edge(self.aspect_ratio.element_product());
         if self.dimension == Dimension::Two { stretch.with_z(1.0) } else { stretch }
     }
 
-    /// What the grains fill while they are computed, before [`Self::stretch`]; a box is that of [`LatticeFit::box_size`] for a lattice.
-    ///
-    /// # Errors
-    /// [`Error::BoxSide`] when a side is not positive and finite, or beyond what doubles can compute with;
-    /// whatever is wrong with the domain's file.
-    pub fn domain(&self) -> Result<Domain, Error> {
-        let axes = usize::from(self.dimension.axes());
-        let sides = ['x', 'y', 'z'].into_iter().zip(self.box_size.to_array());
-        if let Some((axis, length)) = sides.take(axes).find(|(_, length)| !Domain::LENGTHS.contains(length)) {
-            return Err(Error::BoxSide { axis, length });
+    /// Whether phases are put into the grains of others, which then are of several cells.
+    pub(crate) fn has_inclusions(&self) -> bool {
+        self.phases.iter().filter_map(|phase| phase.place).any(|place| place.of_inclusions().is_some())
+    }
+
+    /// Whether grains are of several cells, and need not be convex.
+    pub fn has_grains_of_several_cells(&self) -> bool {
+        self.grain_shapes.is_some() || self.has_inclusions()
+    }
+
+    /// Whether grains have given volumes: phases have exact shares, so their grains do.
+    pub fn is_sized(&self) -> bool {
+        self.sizes.source.is_some()
+            || matches!(self.seeds, SeedSource::Packed { .. })
+            || !self.phases.is_empty()
+            || self.grain_shapes.is_some()
+    }
+
+    /// Whether sizes are asked for that say how many grains there are.
+    pub fn has_sizes(&self) -> bool {
+        self.sizes.source.is_some() || self.phases_have_diameters()
+    }
+
+    /// Number of times that every seed moves to the centroid of its cell.
+    pub fn centroid_steps(&self) -> u32 {
+        let has_places = matches!(self.seeds, SeedSource::File(_));
+        let usual = if self.is_sized() && !has_places { Self::LLOYD_OF_SIZES } else { 0 };
+        self.lloyd_steps.unwrap_or(usual)
+    }
+
+    /// What is asked for in words.
+    pub(crate) fn asked_sizes(&self) -> String {
+        match &self.sizes.source {
+            None => USUAL_DIAMETERS.to_owned(),
+            Some(SizeSource::VolumeFile(path)) => format!("volumes of {}", path.display()),
+            Some(source) => source.setting().1,
         }
-        let center = 0.5 * self.box_size;
-        match &self.shape {
-            Shape::Box => {}
-            Shape::Sphere { chord_error } => return Ok(Domain::ball(center, center.x, *chord_error)?),
-            Shape::Cylinder { chord_error } => {
-                return Ok(Domain::cylinder(center, center.x, self.box_size.z, *chord_error)?);
-            }
-            Shape::Disc { chord_error } => return Ok(Domain::disc(center, center.x, *chord_error)?),
-            Shape::Surface(path) => return surface_domain(path),
-            Shape::HalfSpaces(path) => return half_space_domain(path, self.dimension),
+    }
+
+    /// What is asked for in a phase, in words.
+    pub(crate) fn asked_sizes_of_phase(&self, phase: usize) -> String {
+        match &self.phases[phase].diameters {
+            Some(source) => source.setting().1,
+            None => self.asked_sizes(),
         }
-        let upper = self.lattice_fit().map_or(self.box_size / self.stretch(), |fit| fit.box_size());
-        let domain = match self.dimension {
-            Dimension::Two => Domain::rectangle(DVec3::ZERO, upper)?,
-            Dimension::Three => Domain::cuboid(DVec3::ZERO, upper)?,
-        };
-        Ok(domain.with_periods(self.periodic))
+    }
+
+    /// The share of the volume that each phase is to have; they add up to 1. None without phases.
+    pub(crate) fn phase_fractions(&self) -> Vec<f64> {
+        let sum: f64 = self.phases.iter().map(|phase| phase.fraction).sum();
+        self.phases.iter().map(|phase| phase.fraction / sum).collect()
+    }
+
+    /// Whether phases have diameters of their own.
+    pub(crate) fn phases_have_diameters(&self) -> bool {
+        self.phases.iter().any(|phase| phase.diameters.is_some())
+    }
+
+    /// Whether grains have orientations that are asked for.
+    pub fn has_texture(&self) -> bool {
+        self.texture.source.is_some() || self.phases.iter().any(|phase| phase.texture.is_some())
+    }
+
+    /// What divides the grains of a phase, by its index; of phase 0 without phases.
+    pub(crate) fn pattern_inside(&self, phase: usize) -> Option<usize> {
+        let name = self.phases.get(phase).map(|phase| &phase.name);
+        self.inside.iter().position(|options| options.phase.is_none() || options.phase.as_ref() == name)
+    }
+
+    /// The laws of a kind that are asked for.
+    pub fn laws(&self, kind: LawKind) -> &[LawOptions] {
+        match kind {
+            LawKind::Tension => &self.tensions,
+            LawKind::Mobility => &self.mobilities,
+        }
     }
 }

@@ -6,9 +6,19 @@ use polycrystal::NetworkError;
 use voronoi::volumes::{PlaceError, VolumesError};
 use voronoi::{Dimension, VoronoiError};
 
-use crate::memory::{self, LevelSize};
-use crate::mesh::file::MeshFileProblem;
-use crate::{Failure, InsideError, LawError, OutputFormat, PhasesError, SeedPlace, SeedProblem};
+use crate::config::inside::InsideError;
+use crate::config::laws::LawError;
+use crate::config::phases::PhasesError;
+use crate::memory::{self, MemoryError};
+
+pub(crate) mod failed_grain;
+pub(crate) mod failure;
+pub(crate) mod mesh_file;
+pub(crate) mod seed_file;
+
+use failure::Failure;
+use mesh_file::MeshFileProblem;
+use seed_file::{SeedPlace, SeedProblem};
 
 /// What can go wrong between the user's input and the files written. Each message is one line that names the
 /// value, the place and the remedy.
@@ -17,10 +27,12 @@ use crate::{Failure, InsideError, LawError, OutputFormat, PhasesError, SeedPlace
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The output path has no extension, or one that names no format.
-    #[error("{}: unknown extension; name the file {}", path.display(), OutputFormat::known_extensions())]
+    #[error("{}: unknown extension; name the file {known}", path.display())]
     UnknownExtension {
         /// The path as given.
         path: PathBuf,
+        /// The extensions that name one.
+        known: String,
     },
     /// The output's format cannot hold grains of this dimension.
     #[error(
@@ -329,60 +341,9 @@ pub enum Error {
         /// Why.
         problem: MeshFileProblem,
     },
-    /// So many cells need more memory than there is.
-    #[error(
-        "{count} cells would take {} of memory and {} are available; take fewer seeds",
-        memory::in_words(*needed), memory::in_words(u128::from(*available))
-    )]
-    CellsExceedMemory {
-        /// Number of seeds asked for.
-        count: usize,
-        /// Bytes that they would take.
-        needed: u128,
-        /// Bytes that there are.
-        available: u64,
-    },
-    /// So many parts of grains need more memory than there is.
-    #[error(
-        "{count} parts of grains would take {} of memory and {} are available; take a larger width or diameter inside them",
-        memory::in_words(*needed), memory::in_words(u128::from(*available))
-    )]
-    PartsExceedMemory {
-        /// Number of parts asked for.
-        count: usize,
-        /// Bytes that they would take.
-        needed: u128,
-        /// Bytes that there are.
-        available: u64,
-    },
-    /// So many levels of subdivision need more memory than there is.
-    #[error(
-        "{levels} levels would take {} of memory and {} are available; {}",
-        memory::in_words(*needed), memory::in_words(u128::from(*available)), memory::remedy(*largest)
-    )]
-    LevelsExceedMemory {
-        /// Number of levels asked for.
-        levels: u32,
-        /// Bytes that they would take.
-        needed: u128,
-        /// Bytes that there are.
-        available: u64,
-        /// The most levels that would fit, if any.
-        largest: Option<u32>,
-    },
-    /// So many levels of subdivision make more points, edges or triangles than 32-bit ids can name.
-    #[error(
-        "{levels} levels would make {} triangles on {} points, more than ids can name; {}",
-        size.triangles, size.points, memory::remedy(*largest)
-    )]
-    LevelsExceedIds {
-        /// Number of levels asked for.
-        levels: u32,
-        /// What they would make.
-        size: LevelSize,
-        /// The most levels that would fit, if any.
-        largest: Option<u32>,
-    },
+    /// What is asked for does not fit.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
 }
 
 /// What to do about a file that cannot be written. What a format cannot hold says so itself.
@@ -398,5 +359,11 @@ fn grains_in_words(grains: &[u32]) -> String {
     match grains.len().saturating_sub(NAMED) {
         0 => format!("{noun} {}", names.join(", ")),
         more => format!("{noun} {} and {more} more", names.join(", ")),
+    }
+}
+
+impl From<Failure> for Error {
+    fn from(failure: Failure) -> Self {
+        Self::Failed(Box::new(failure))
     }
 }

@@ -5,9 +5,9 @@ use std::fmt;
 use polycrystal::{FaceMesh, MeshSize, remove_short_edges};
 use voronoi::Dimension;
 
-use crate::formats::FileSize;
+use crate::formats::format::FileSize;
 use crate::memory::{ControlMesh, LevelSize, available_memory, check_levels, in_words};
-use crate::pipeline::voxel_bytes;
+use crate::run::pipeline::voxel_bytes;
 use crate::{Config, Error, OutputFormat, Tessellated};
 
 /// The size of a run's result: counts are exact but for boundaries that `edge-length` refines, and in space where cells are
@@ -45,7 +45,7 @@ impl Estimate {
                 let size = LevelSize { points, edges, triangles };
                 ControlMesh { size, arcs: 0, besides: voxel_bytes(config) }
             }
-            _ => crate::pipeline::control_mesh(config, tessellation),
+            _ => crate::run::pipeline::control_mesh(config, tessellation),
         };
         let mesh = control_mesh.after(config.levels);
         let grains = cells.grain_count();
@@ -70,9 +70,9 @@ impl Estimate {
     /// Checks that it fits.
     ///
     /// # Errors
-    /// [`Error::LevelsExceedMemory`] and [`Error::LevelsExceedIds`].
+    /// [`LevelsExceedMemory`](crate::memory::MemoryError::LevelsExceedMemory) and [`LevelsExceedIds`](crate::memory::MemoryError::LevelsExceedIds).
     pub fn check(&self) -> Result<(), Error> {
-        check_levels(self.control_mesh, self.levels, self.available)
+        Ok(check_levels(self.control_mesh, self.levels, self.available)?)
     }
 }
 

@@ -3,8 +3,6 @@
 use std::fs;
 use std::path::Path;
 
-use crate::Error;
-
 /// Bytes that a run holds at its peak for each point, edge and triangle of its last level: the mesh with its
 /// arrays, the stencils that made the points, the level before, and the arrays being written.
 ///
@@ -25,6 +23,12 @@ const SEGMENTS_OF_ARC: u128 = 60;
 
 /// Bytes that cells without a network take for each seed: a million random ones took 1.46 GB.
 const BYTES_PER_CELL: u128 = 1600;
+
+/// Voxels that are labelled at the same time: few enough for little memory (32 MB), and many enough for all threads.
+pub(crate) const SLAB_VOXELS: usize = 1 << 22;
+
+/// Bytes that a slab takes while it is labelled and written: its labels, its crossings and what is written of them.
+pub(crate) const LABEL_BYTES: u128 = 32 * SLAB_VOXELS as u128;
 
 /// Taken to be available where the system does not tell: 8 GiB.
 const AVAILABLE_WHERE_UNKNOWN: u64 = 8 << 30;
@@ -63,6 +67,65 @@ impl LevelSize {
         let most = self.points.max(self.edges.saturating_mul(2)).max(self.triangles.saturating_mul(3));
         most <= u128::from(u32::MAX)
     }
+}
+
+/// What does not fit. Each message is one line that names the numbers and the remedy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum MemoryError {
+    /// So many cells need more memory than there is.
+    #[error(
+        "{count} cells would take {} of memory and {} are available; take fewer seeds",
+        in_words(*needed), in_words(u128::from(*available))
+    )]
+    CellsExceedMemory {
+        /// Number of seeds asked for.
+        count: usize,
+        /// Bytes that they would take.
+        needed: u128,
+        /// Bytes that there are.
+        available: u64,
+    },
+    /// So many parts of grains need more memory than there is.
+    #[error(
+        "{count} parts of grains would take {} of memory and {} are available; take a larger width or diameter inside them",
+        in_words(*needed), in_words(u128::from(*available))
+    )]
+    PartsExceedMemory {
+        /// Number of parts asked for.
+        count: usize,
+        /// Bytes that they would take.
+        needed: u128,
+        /// Bytes that there are.
+        available: u64,
+    },
+    /// So many levels of subdivision need more memory than there is.
+    #[error(
+        "{levels} levels would take {} of memory and {} are available; {}",
+        in_words(*needed), in_words(u128::from(*available)), remedy(*largest)
+    )]
+    LevelsExceedMemory {
+        /// Number of levels asked for.
+        levels: u32,
+        /// Bytes that they would take.
+        needed: u128,
+        /// Bytes that there are.
+        available: u64,
+        /// The most levels that would fit, if any.
+        largest: Option<u32>,
+    },
+    /// So many levels of subdivision make more points, edges or triangles than 32-bit ids can name.
+    #[error(
+        "{levels} levels would make {} triangles on {} points, more than ids can name; {}",
+        size.triangles, size.points, remedy(*largest)
+    )]
+    LevelsExceedIds {
+        /// Number of levels asked for.
+        levels: u32,
+        /// What they would make.
+        size: LevelSize,
+        /// The most levels that would fit, if any.
+        largest: Option<u32>,
+    },
 }
 
 /// What the last level comes from.
@@ -112,8 +175,12 @@ impl ControlMesh {
 /// named with 32-bit ids.
 ///
 /// # Errors
-/// [`Error::LevelsExceedMemory`] or [`Error::LevelsExceedIds`], with the most levels that would fit.
-pub fn check_levels(control_mesh: impl Into<ControlMesh>, levels: u32, available: u64) -> Result<(), Error> {
+/// [`MemoryError::LevelsExceedMemory`] or [`MemoryError::LevelsExceedIds`], with the most levels that would fit.
+pub fn check_levels(
+    control_mesh: impl Into<ControlMesh>,
+    levels: u32,
+    available: u64,
+) -> Result<(), MemoryError> {
     let control_mesh = control_mesh.into();
     let needed = |levels| control_mesh.bytes_after(levels);
     let fits = |levels| control_mesh.after(levels).fits_ids() && needed(levels) <= u128::from(available);
@@ -123,22 +190,22 @@ pub fn check_levels(control_mesh: impl Into<ControlMesh>, levels: u32, available
     // Sizes grow with the level, and from 128 on they stand still.
     let largest = (0..levels.min(128)).rev().find(|&level| fits(level));
     if needed(levels) > u128::from(available) {
-        Err(Error::LevelsExceedMemory { levels, needed: needed(levels), available, largest })
+        Err(MemoryError::LevelsExceedMemory { levels, needed: needed(levels), available, largest })
     } else {
-        Err(Error::LevelsExceedIds { levels, size: control_mesh.after(levels), largest })
+        Err(MemoryError::LevelsExceedIds { levels, size: control_mesh.after(levels), largest })
     }
 }
 
 /// Checks that so many cells can be held in `available` bytes.
 ///
 /// # Errors
-/// [`Error::CellsExceedMemory`].
-pub fn check_cells(count: usize, available: u64) -> Result<(), Error> {
+/// [`MemoryError::CellsExceedMemory`].
+pub fn check_cells(count: usize, available: u64) -> Result<(), MemoryError> {
     let needed = (count as u128).saturating_mul(BYTES_PER_CELL);
     if needed <= u128::from(available) {
         return Ok(());
     }
-    Err(Error::CellsExceedMemory { count, needed, available })
+    Err(MemoryError::CellsExceedMemory { count, needed, available })
 }
 
 /// Bytes of memory that the system can give without swapping: `MemAvailable` on Linux; 8 GiB where there is
@@ -179,7 +246,7 @@ pub(crate) fn in_words(bytes: u128) -> String {
 }
 
 /// What would fit instead of too many levels.
-pub(crate) fn remedy(largest: Option<u32>) -> String {
+fn remedy(largest: Option<u32>) -> String {
     match largest {
         Some(1) => "1 level would fit".to_owned(),
         Some(levels) => format!("{levels} levels would fit"),
@@ -230,7 +297,7 @@ mod tests {
             assert!(TETRAHEDRON.bytes_after(level) >= TETRAHEDRON.bytes_after(62));
             assert!(matches!(
                 check_levels(TETRAHEDRON, level, u64::MAX),
-                Err(Error::LevelsExceedMemory { .. })
+                Err(MemoryError::LevelsExceedMemory { .. })
             ));
         }
         let nothing = LevelSize { points: 0, edges: 0, triangles: 0 };
@@ -243,7 +310,12 @@ mod tests {
         assert!(check_levels(TETRAHEDRON, 5, needed(5)).is_ok());
         for (available, expected) in [(needed(5) - 1, Some(4)), (needed(0), Some(0)), (needed(0) - 1, None)] {
             match check_levels(TETRAHEDRON, 5, available) {
-                Err(Error::LevelsExceedMemory { levels: 5, needed: bytes, available: given, largest }) => {
+                Err(MemoryError::LevelsExceedMemory {
+                    levels: 5,
+                    needed: bytes,
+                    available: given,
+                    largest,
+                }) => {
                     assert_eq!((bytes, given, largest), (needed(5).into(), available, expected));
                 }
                 other => panic!("{other:?}"),
@@ -257,7 +329,7 @@ mod tests {
         assert!(check_levels(TETRAHEDRON, 14, u64::MAX).is_ok());
         assert!(matches!(
             check_levels(TETRAHEDRON, 15, u64::MAX),
-            Err(Error::LevelsExceedIds { levels: 15, largest: Some(14), .. })
+            Err(MemoryError::LevelsExceedIds { levels: 15, largest: Some(14), .. })
         ));
         let mut counts = MeshCounts { vertices: 4, edges: 6, triangles: 4 };
         let refinable = (0..20).take_while(|_| counts.refined().map(|finer| counts = finer).is_ok()).count();

@@ -14,7 +14,7 @@ use sizes::Distribution;
 use texture::{AngleHistogram, Pair, RandomDisorientations};
 use voronoi::Dimension;
 
-use crate::significant::significant;
+use crate::figures::significant::significant;
 use crate::{
     AskedAndReached, Error, GrainSizes, GrainTexture, Output, Picture, Polycrystal, StagedFiles, Summary,
 };

@@ -1,5 +1,8 @@
 //! What a run says about its result.
 
+pub(crate) mod asked;
+pub(crate) mod record;
+
 use std::fmt;
 use std::time::Duration;
 
@@ -10,7 +13,7 @@ use polycrystal::{
 };
 use voronoi::Dimension;
 
-use crate::grain_texture::TextureLine;
+use crate::grains::texture::TextureLine;
 use crate::{
     Config, EquivalentDiameters, Polycrystal, Reconnected, Regularization, SeedSource, ShapesReached,
     SizesReached, Stage, Tessellated, TriangleAngles,

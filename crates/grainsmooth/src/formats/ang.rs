@@ -9,8 +9,8 @@ use polycrystal::Side;
 use texture::{CrystalSymmetry, Orientation};
 use voronoi::Dimension;
 
-use super::OrientationMap;
 use super::format::{Content, Format, HEAD, TEXT_POINT, Writer};
+use super::orientation_map::OrientationMap;
 use crate::Config;
 
 pub(super) const FORMAT: Format = Format {

@@ -13,12 +13,14 @@ use super::grains::GrainMeasure;
 use super::lines::{JunctionLine, Junctions};
 use super::surface::Surface;
 use super::vtk::COMPRESSED;
-use crate::measured_arrays::{MeasuredArrays, NumberArrays};
+use crate::files::output::OutputPath;
+use crate::formats::measured_arrays::{MeasuredArrays, NumberArrays};
+use crate::formats::network::{boundary_polylines, triangles};
 use crate::memory::LevelSize;
-use crate::network_file::{NUMBER_OF_GRAINS, SEED_ID, boundary_polylines, triangles};
+use crate::names::{NUMBER_OF_GRAINS, SEED_ID};
 use crate::vtk::{Array, Cells, PolyData, Tuples, Values, VtkFormat, write_vtk};
 use crate::vtk::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
-use crate::{Error, Output, Polycrystal, StagedFiles};
+use crate::{Error, Polycrystal, StagedFiles};
 
 /// Stands in the arrays `Sides` where fewer sides meet than elsewhere.
 const NO_SIDE: i32 = -2;
@@ -43,7 +45,7 @@ pub(super) const FORMAT: Format = Format {
 
 impl Polycrystal {
     /// Completes the blocks, for the folder of the file's name, and the file itself.
-    fn stage_blocks(&self, output: &Output, files: &mut StagedFiles) -> Result<(), Error> {
+    fn stage_blocks(&self, output: &OutputPath<()>, files: &mut StagedFiles) -> Result<(), Error> {
         let folder = output.target().with_extension("");
         let surface = Surface::network(self);
         let space = surface.as_ref().map(|surface| (surface, Junctions::of(surface)));

@@ -3,12 +3,12 @@
 use std::io::{self, Write};
 
 use polycrystal::Side;
-use texture::CrystalSymmetry;
 use voronoi::Dimension;
 
-use super::OrientationMap;
 use super::ang::lattice_constants;
 use super::format::{Content, Format, HEAD, TEXT_POINT, Writer};
+use super::orientation_map::OrientationMap;
+use crate::input::texture_file::hkl::{LAUE_GROUPS, hkl_turn};
 
 pub(super) const FORMAT: Format = Format {
     extension: "ctf",
@@ -20,39 +20,6 @@ pub(super) const FORMAT: Format = Format {
     write: Writer::File(|polycrystal, out| OrientationMap::of(polycrystal, |map| write(map, out))),
     write_grain: None,
 };
-
-/// HKL's numbers of the Laue groups, from 1.
-const LAUE_GROUPS: [CrystalSymmetry; 11] = [
-    CrystalSymmetry::Triclinic,
-    CrystalSymmetry::Monoclinic,
-    CrystalSymmetry::Orthorhombic,
-    CrystalSymmetry::TetragonalLow,
-    CrystalSymmetry::Tetragonal,
-    CrystalSymmetry::TrigonalLow,
-    CrystalSymmetry::Trigonal,
-    CrystalSymmetry::HexagonalLow,
-    CrystalSymmetry::Hexagonal,
-    CrystalSymmetry::Tetrahedral,
-    CrystalSymmetry::Octahedral,
-];
-
-/// The symmetry by HKL's number of its Laue group.
-pub(crate) fn hkl_symmetry(number: usize) -> Option<CrystalSymmetry> {
-    LAUE_GROUPS.get(number.checked_sub(1)?).copied()
-}
-
-/// By how many degrees HKL's phi2 is larger than ours: in trigonal and hexagonal crystals its x is along the normal of (10-10), ours along
-/// a two-fold axis.
-pub(crate) fn hkl_turn(symmetry: CrystalSymmetry) -> f64 {
-    let is_turned = matches!(
-        symmetry,
-        CrystalSymmetry::TrigonalLow
-            | CrystalSymmetry::Trigonal
-            | CrystalSymmetry::HexagonalLow
-            | CrystalSymmetry::Hexagonal
-    );
-    if is_turned { 30.0 } else { 0.0 }
-}
 
 /// Writes the map: one line a pixel, x fastest; angles in degrees, coordinates in the user's unit of length.
 ///

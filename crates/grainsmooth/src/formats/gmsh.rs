@@ -18,27 +18,31 @@ use super::connected::{ConnectedParts, pieces_of_grain};
 use super::format::{Beside, Content, Format, TEXT_CORNERS, TEXT_POINT, Writer};
 use super::lines::Junctions;
 use super::surface::{Surface, side_name, write_seed_comments};
-use crate::{Error, Output, Polycrystal, StagedFiles};
+use crate::files::output::OutputPath;
+use crate::{Error, Polycrystal, StagedFiles};
 
 /// Gmsh's codes for elements.
 const LINE: u32 = 1;
 const TRIANGLE: u32 = 2;
 const POINT: u32 = 15;
 
+/// The extension of the script beside a mesh, which names what it holds.
+const SCRIPT: &str = "geo";
+
 pub(super) const FORMAT: Format = Format {
     extension: "msh",
     programs: "Gmsh",
     content: Content::Boundaries,
     dimension: Some(Dimension::Three),
-    beside: Some(Beside::File("geo")),
+    beside: Some(Beside::File(SCRIPT)),
     bytes: |size| TEXT_POINT * size.mesh.points + (TEXT_CORNERS + 8) * size.mesh.triangles,
     write: Writer::Files(stage),
     write_grain: None,
 };
 
-fn stage(polycrystal: &Polycrystal, output: &Output, files: &mut StagedFiles) -> Result<(), Error> {
+fn stage(polycrystal: &Polycrystal, output: &OutputPath<()>, files: &mut StagedFiles) -> Result<(), Error> {
     output.stage(files, |out| write(&polycrystal.surface()?, polycrystal, out))?;
-    let Some(script) = output.file_beside()? else { return Ok(()) };
+    let script = OutputPath::check_as(output.path().with_extension(SCRIPT), ())?;
     let mesh = output.path().file_name().unwrap_or_default().to_string_lossy();
     script.stage(files, |out| write_script(&polycrystal.surface()?, polycrystal, &mesh, out))
 }

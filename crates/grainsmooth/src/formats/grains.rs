@@ -3,16 +3,14 @@
 use std::f64::consts::PI;
 use std::io::{self, Write};
 
-use polycrystal::{GrainId, Side};
-use rayon::prelude::*;
+use polycrystal::Side;
 use voronoi::Dimension;
 
 use super::format::GrainSurface;
 use super::surface::Surface;
-use crate::network_file::SEED_ID;
-use crate::output::OutputDirectory;
+use crate::FileOptions;
+use crate::names::SEED_ID;
 use crate::vtk::{Array, Cells, Each, Items, PolyData, Values, VtkFormat, write_vtk};
-use crate::{Error, FileOptions, Polycrystal, StagedFiles};
 
 /// What is measured of a grain's surface, its parts on walls included.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,40 +41,6 @@ impl GrainMeasure {
         let neighbors = i32::try_from(beyond.len()).expect("fewer grains than 2^31");
         let sphericity = PI * Dimension::Three.ball_diameter(volume).powi(2) / area;
         Self { volume, area, neighbors, sphericity }
-    }
-}
-
-impl Polycrystal {
-    /// Completes a file for each grain, `grain_0.vtp` and so on: its closed surface, all normals outward.
-    ///
-    /// # Errors
-    /// [`Error::WriteOutput`]; [`Error::OutputTwice`]; [`Error::FormatDimension`] in 2D.
-    pub fn stage_grains(&self, directory: &OutputDirectory, files: &mut StagedFiles) -> Result<(), Error> {
-        directory.check_fits(&self.config)?;
-        let failed = |cause| Error::WriteOutput { path: directory.path().to_owned(), cause };
-        let network = self.surface().map_err(failed)?;
-        let parts = network.parts_of_grains(self.network.grain_count());
-        let format = directory.format();
-        let Some(write) = format.grain_writer() else {
-            return Err(failed(io::Error::other("this format is not for surfaces of single grains")));
-        };
-        let tuples = self.grain_tuples();
-        directory.stage(files, |folder| {
-            let grains = (0u32..).zip(&parts).collect::<Vec<_>>().into_par_iter();
-            grains.try_for_each(|(id, parts)| {
-                let surface = network.grain(GrainId(id), parts);
-                let name = format!("grain_{id}.{}", format.extension());
-                let mut out = io::BufWriter::new(std::fs::File::create(folder.join(name))?);
-                let file = GrainSurface {
-                    polycrystal: self,
-                    surface: &surface,
-                    grain: GrainId(id),
-                    tuples: &tuples,
-                };
-                write(&file, &mut out)?;
-                out.flush()
-            })
-        })
     }
 }
 

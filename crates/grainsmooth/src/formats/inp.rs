@@ -7,8 +7,8 @@ use std::io::{self, Write};
 use glam::DVec3;
 use voronoi::Dimension;
 
-use super::LabelGrid;
 use super::format::{Content, Format, HEAD, TEXT_CORNERS, TEXT_POINT, Writer};
+use super::label_grid::LabelGrid;
 use crate::{Config, Tessellated};
 
 /// A node and an element for each voxel, and its number in a set.

@@ -16,15 +16,10 @@ use robust::{Coord, Coord3D, orient2d, orient3d};
 use voronoi::{Dimension, Domain};
 
 use crate::Polycrystal;
-
-/// Voxels that are labelled at the same time: few enough for little memory (32 MB), and many enough for all threads.
-const SLAB_VOXELS: usize = 1 << 22;
+use crate::memory::SLAB_VOXELS;
 
 /// Voxels that a row counts for besides its own: its crossings, of which few grids have more.
 const VOXELS_OF_ROW: usize = 64;
-
-/// Bytes that a slab takes while it is labelled and written: its labels, its crossings and what is written of them.
-pub(crate) const LABEL_BYTES: u128 = 32 * SLAB_VOXELS as u128;
 
 /// A grid of voxels that fills the domain. Their labels are found slab by slab, so a grid may be larger than memory.
 pub struct LabelGrid<'a> {

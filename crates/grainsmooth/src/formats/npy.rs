@@ -7,7 +7,8 @@ use std::io::{self, Write};
 use rayon::prelude::*;
 
 use super::format::{Content, Format, HEAD, Writer};
-use super::{LabelGrid, Names};
+use super::label_grid::LabelGrid;
+use crate::names::Names;
 
 pub(super) const FORMAT: Format = Format {
     extension: "npy",

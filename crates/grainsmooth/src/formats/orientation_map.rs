@@ -2,7 +2,7 @@ use std::io;
 
 use texture::{CrystalSymmetry, Orientation};
 
-use super::LabelGrid;
+use super::label_grid::LabelGrid;
 use crate::Polycrystal;
 
 /// What maps of orientations show: pixels of a 2D grid, each of a grain.

@@ -10,8 +10,9 @@ use polycrystal::{GrainId, Side};
 
 use super::blocks::point_id;
 use crate::Polycrystal;
-use crate::measured_arrays::{MeasuredArrays, NumberArrays};
-use crate::network_file::{NUMBER_OF_GRAINS, SEED_ID, boundary_polylines};
+use crate::formats::measured_arrays::{MeasuredArrays, NumberArrays};
+use crate::formats::network::boundary_polylines;
+use crate::names::{NUMBER_OF_GRAINS, SEED_ID};
 use crate::vtk::{Array, Cells, Each, Items, PolyData, Values, VtkFormat, write_vtk};
 
 /// What is measured of a grain in the plane.

@@ -6,8 +6,8 @@ use voronoi::Dimension;
 
 use super::format::{Content, Format, GrainSurface, Writer};
 use super::surface::{Surface, unit_normal};
-use crate::Config;
-use crate::network_file::SEED_ID;
+use crate::names::SEED_ID;
+use crate::{Config, StlEncoding};
 
 /// Every boundary once.
 pub(super) const FORMAT: Format = Format {
@@ -25,15 +25,6 @@ pub(super) const FORMAT: Format = Format {
     }),
     write_grain: Some(write_grain),
 };
-
-/// How an STL file spells its numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum StlEncoding {
-    /// 50 bytes for each triangle.
-    Binary,
-    /// Text.
-    Ascii,
-}
 
 /// The first line of a text is cut by some readers (Gmsh) after 255 bytes; the rest would not be understood.
 const TITLE_BYTES: usize = 240;

@@ -8,7 +8,7 @@ use glam::DVec3;
 use polycrystal::{Boundary, BoundaryId, GrainId, Level, Mesh, Side};
 
 use crate::Polycrystal;
-use crate::network_file::SEED_ID;
+use crate::names::SEED_ID;
 
 /// Seeds named by a line of comments, which so stays below the 255 bytes that some readers know.
 const SEEDS_A_LINE: usize = 20;

@@ -6,19 +6,18 @@ use glam::DVec3;
 use subzero::{BoundaryRule, Crease, Features, PolygonMesh, TriangleMesh};
 use voronoi::Domain;
 
-use crate::Error;
+use crate::error::Error;
 
 mod json;
 mod lines;
 mod obj;
 mod off;
 mod ply;
-mod problem;
 mod stl;
 pub(crate) mod vtk;
 mod write;
 
-pub use problem::MeshFileProblem;
+pub use crate::error::mesh_file::MeshFileProblem;
 pub use vtk::READER_THREAD;
 pub use write::{MeshFormat, MeshToWrite, stage_mesh, write_mesh};
 

@@ -58,7 +58,7 @@ pub struct Limits {
 ///
 /// # Errors
 /// [`MeshFileProblem::NotATriangle`] or [`MeshFileProblem::Mesh`] where the scheme cannot work with the mesh, in
-/// [`Error::MeshFile`], which names `path`; [`Error::LevelsExceedMemory`] or [`Error::LevelsExceedIds`].
+/// [`Error::MeshFile`], which names `path`; [`LevelsExceedMemory`](crate::memory::MemoryError::LevelsExceedMemory) or [`LevelsExceedIds`](crate::memory::MemoryError::LevelsExceedIds).
 pub fn subdivide(
     mesh: &MeshFile,
     path: &std::path::Path,

@@ -2,9 +2,10 @@ use colorous::{RAINBOW, TABLEAU10, VIRIDIS};
 use glam::DVec3;
 use polycrystal::Boundary;
 
+use super::color::{Color, channels};
 use super::legend::Legend;
 use crate::Polycrystal;
-use crate::significant::significant;
+use crate::figures::significant::significant;
 
 /// What the colours of grains mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -27,9 +28,6 @@ pub enum Coloring {
     /// Of each boundary, the disorientation of its grains, from none (violet) to the largest (yellow).
     Disorientation,
 }
-
-/// Red, green and blue, from 0 to 1.
-pub(crate) type Color = [f64; 3];
 
 /// Of the outer surface where boundaries are coloured: light grey.
 const WALL: Color = [0.85; 3];
@@ -182,8 +180,4 @@ fn disorientations(polycrystal: &Polycrystal) -> Paint {
             ends: ["0\u{b0}".to_owned(), format!("{largest:.1}\u{b0}")],
         }),
     }
-}
-
-pub(super) fn channels(color: colorous::Color) -> Color {
-    [color.r, color.g, color.b].map(|channel| f64::from(channel) / 255.0)
 }

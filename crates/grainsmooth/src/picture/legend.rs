@@ -4,9 +4,9 @@ use colorous::VIRIDIS;
 use texture::{CrystalSymmetry, IpfKey};
 use tiny_skia::Pixmap;
 
-use super::coloring::{Color, channels};
+use super::color::{Color, channels};
 use super::text::Pen;
-use crate::direction_frame::{Frame, named_corners};
+use crate::figures::direction_frame::{Frame, named_corners};
 
 /// Height of letters as a share of a picture's shorter side: those of print that is read at arm's length.
 const LETTERS: f64 = 0.027;

@@ -5,7 +5,7 @@ use polycrystal::Side;
 use rayon::prelude::*;
 
 use crate::Polycrystal;
-use crate::formats::{Part, Surface};
+use crate::formats::surface::{Part, Surface};
 
 /// One side of a boundary, where its grain is moved to.
 pub(super) struct Patch {

@@ -7,7 +7,8 @@ use tiny_skia::{
 };
 
 use super::Picture;
-use super::coloring::{Color, Paint};
+use super::color::Color;
+use super::coloring::Paint;
 use crate::Polycrystal;
 
 /// Width of a coloured line, in widths of a black one: colours of thin lines cannot be told apart.

@@ -6,7 +6,8 @@ use tiny_skia::Pixmap;
 
 use super::Picture;
 use super::camera::Camera;
-use super::coloring::{Color, Paint};
+use super::color::Color;
+use super::coloring::Paint;
 use super::patch::Patch;
 
 /// Samples along each side of a pixel: nine shades smooth an edge.

@@ -10,7 +10,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use texture::{CrystalSymmetry, FiberKernel, IpfKey, Orientation, PoleFigure, Projection};
 
-use crate::direction_frame::{Frame, named_corners};
+use crate::figures::direction_frame::{Frame, named_corners};
 
 /// Halfwidth of the kernel that smooths densities, in degrees: a single grain is a spot of this size.
 const HALFWIDTH: f64 = 10.0;

@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD as BASE64;
 use glam::DVec3;
 use serde::Serialize;
 
-use crate::formats::{Surface, label};
+use crate::formats::surface::{Surface, label};
 use crate::{Coloring, Polycrystal};
 
 /// Most triangles that are shown, both sides of each counted once: browsers without a graphics card still turn them.
@@ -70,7 +70,7 @@ pub(super) fn network_json(polycrystal: &Polycrystal) -> io::Result<String> {
     )]
     let points: Vec<u8> = steps.flat_map(|steps| (steps as u16).to_le_bytes()).collect();
     let triangles: Vec<u8> = surface.triangles().flatten().flat_map(u32::to_le_bytes).collect();
-    let part = |part: &crate::formats::Part| Part {
+    let part = |part: &crate::formats::surface::Part| Part {
         count: surface.triangles_of(part).count(),
         sides: part.sides.map(label),
     };

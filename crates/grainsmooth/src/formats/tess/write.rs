@@ -8,8 +8,8 @@ use texture::CrystalSymmetry;
 use voronoi::{Dimension, Wall};
 
 use super::super::ori::write as write_ori;
-use super::{Oriented, POLYHEDRON, Tess, TessCopy, TessDomain, TessPeriodicity};
 use crate::GrainTexture;
+use crate::input::tess::{Oriented, POLYHEDRON, Tess, TessCopy, TessDomain, TessPeriodicity};
 
 /// Writes the file, with the cells' orientations if they have some.
 pub(crate) fn write(tess: &Tess, texture: Option<&GrainTexture>, out: &mut dyn Write) -> io::Result<()> {

@@ -5,8 +5,10 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use crate::error::Error;
+use crate::files::output::OutputPath;
+use crate::files::staged_files::{StagedFiles, write_together};
 use crate::vtk::{Array, Cells, FieldEntry, FieldValue, PolyData, Values, VtkEncoding, VtkFormat, write_vtk};
-use crate::{Error, Output, StagedFiles, write_together};
 
 /// A file format that meshes are written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,7 +61,7 @@ pub struct MeshToWrite<'a> {
 ///
 /// # Errors
 /// [`Error::WriteOutput`]; nothing is left behind then. Polylines have no place in PLY and STL.
-pub fn write_mesh(mesh: &MeshToWrite<'_>, output: &Output<MeshFormat>) -> Result<(), Error> {
+pub fn write_mesh(mesh: &MeshToWrite<'_>, output: &OutputPath<MeshFormat>) -> Result<(), Error> {
     write_together(|files| stage_mesh(mesh, output, files))
 }
 
@@ -69,7 +71,7 @@ pub fn write_mesh(mesh: &MeshToWrite<'_>, output: &Output<MeshFormat>) -> Result
 /// As of [`write_mesh`]; [`Error::OutputTwice`].
 pub fn stage_mesh(
     mesh: &MeshToWrite<'_>,
-    output: &Output<MeshFormat>,
+    output: &OutputPath<MeshFormat>,
     files: &mut StagedFiles,
 ) -> Result<(), Error> {
     output.stage(files, |out| match output.format() {

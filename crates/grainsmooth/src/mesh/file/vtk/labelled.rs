@@ -6,13 +6,8 @@ use vtkio::IOBuffer;
 use vtkio::model::{Attribute, CellType, DataSet, Vtk};
 
 use super::{MeshFile, MeshFileProblem, cells, in_thread, inline, legacy_parts, problem, xml_parts};
-use crate::grain_phases::PHASE;
-use crate::network_file::NUMBER_OF_GRAINS;
+use crate::names::{LABEL_ARRAYS, NUMBER_OF_GRAINS, PHASE};
 use crate::vtk::{field_numbers, field_text};
-
-/// Cell arrays that hold the two sides, in the order in which they are looked for: DREAM.3D's and this program's, then
-/// pyvista's and VTK's.
-pub(crate) const LABEL_ARRAYS: [&str; 3] = ["FaceLabels", "boundary_labels", "BoundaryLabels"];
 
 const NODE_TYPES: &str = "NodeTypes";
 

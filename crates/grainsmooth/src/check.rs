@@ -1,0 +1,3 @@
+//! What `grainsmooth check` says.
+
+pub(crate) mod report;

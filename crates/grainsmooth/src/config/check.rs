@@ -1,0 +1,200 @@
+//! Which options do not go together.
+
+use std::collections::BTreeSet;
+
+use polycrystal::Volumes;
+use voronoi::Dimension;
+
+use super::inside::{InsideError, InsideOptions, InsidePattern};
+use super::laws::{LawError, LawKind, LawOptions, LawProblem, LawSource};
+use super::phases::{PhaseOptions, PhasesError};
+use super::place::PhasePlace;
+use super::sizes::SizeSource;
+use super::{Config, SeedSource};
+
+/// How far the sum of all fractions may be from 1: rounding of decimal numbers.
+const SUM_TOLERANCE: f64 = 1e-9;
+
+impl Config {
+    /// Checks that the phases go together, and with the options for all grains.
+    ///
+    /// # Errors
+    /// What contradicts what.
+    pub fn check_phases(&self) -> Result<(), PhasesError> {
+        let phases = &self.phases;
+        if phases.is_empty() {
+            return Ok(());
+        }
+        let mut names = BTreeSet::new();
+        if let Some(phase) = phases.iter().find(|phase| !names.insert(&phase.name)) {
+            return Err(PhasesError::NameTwice { name: phase.name.clone() });
+        }
+        let sum: f64 = phases.iter().map(|phase| phase.fraction).sum();
+        if (sum - 1.0).abs() > SUM_TOLERANCE {
+            let part = |phase: &PhaseOptions| format!("{}:{}", phase.name, digits(phase.fraction / sum));
+            let remedy = phases.iter().map(part).collect::<Vec<_>>().join(" and ");
+            return Err(PhasesError::Sum { sum: digits(sum), remedy });
+        }
+        let with = phases.iter().find(|phase| phase.diameters.is_some());
+        let without = phases.iter().find(|phase| phase.diameters.is_none());
+        match (with, without, &self.sizes.source) {
+            (_, _, Some(SizeSource::VolumeFile(_))) => return Err(PhasesError::Volumes),
+            (Some(with), Some(without), None) => {
+                let [with, without] = [with, without].map(|phase| phase.name.clone());
+                return Err(PhasesError::NoDiameters { with, without });
+            }
+            (_, None, Some(_)) => {
+                return Err(PhasesError::NotUsed { option: "diameters", key: "diameters" });
+            }
+            _ => {}
+        }
+        self.check_places()?;
+        if self.texture.source.is_some() && phases.iter().all(|phase| phase.texture.is_some()) {
+            return Err(PhasesError::NotUsed { option: "texture", key: "texture" });
+        }
+        Ok(())
+    }
+
+    /// Checks that the places of phases go with each other and with other options.
+    fn check_places(&self) -> Result<(), PhasesError> {
+        let placed = self.phases.iter().filter_map(|phase| Some((phase, phase.place?)));
+        for (phase, place) in placed {
+            let is_put = place.of_inclusions().is_some();
+            if place == PhasePlace::QuadruplePoints && self.dimension == Dimension::Two {
+                return Err(PhasesError::PlaceInPlane { place });
+            }
+            let is_packed = matches!(self.seeds, SeedSource::Packed { .. });
+            let options = [
+                (is_put && !is_packed, "--seeding and --seeds-file, as its grains are between others"),
+                (self.grain_shapes.is_some(), "--grain-shapes"),
+                (self.sizes.gradient.is_some(), "--gradient"),
+                (is_put && !self.inside.is_empty(), "--inside"),
+                (is_put && place != PhasePlace::Interior && self.periodic.any(), "--periodic"),
+                (self.phases.len() == 1, "a single phase"),
+            ];
+            if let Some((_, option)) = options.into_iter().find(|(is_given, _)| *is_given) {
+                return Err(PhasesError::PlaceAnd { place, name: phase.name.clone(), option });
+            }
+        }
+        let of_inclusions =
+            |phase: &PhaseOptions| phase.place.filter(|place| place.of_inclusions().is_some());
+        match self.phases.iter().map(of_inclusions).collect::<Option<Vec<_>>>().as_deref() {
+            Some([place, ..]) => Err(PhasesError::NoMatrix { place: *place }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks that what divides grains goes with the phases.
+    ///
+    /// # Errors
+    /// What does not.
+    pub fn check_inside(&self) -> Result<(), InsideError> {
+        for (number, options) in self.inside.iter().enumerate() {
+            if let Some(name) = &options.phase
+                && !self.phases.iter().any(|phase| phase.name == *name)
+            {
+                let names: Vec<&str> = self.phases.iter().map(|phase| phase.name.as_str()).collect();
+                let known = match names[..] {
+                    [] => "there are none, so leave it out, or give some with --phase".to_owned(),
+                    _ => format!("the phases are {}", names.join(", ")),
+                };
+                return Err(InsideError::UnknownPhase { name: name.clone(), known });
+            }
+            let is_same = |other: &InsideOptions| {
+                other.phase == options.phase || other.phase.is_none() || options.phase.is_none()
+            };
+            if self.inside[..number].iter().any(is_same) {
+                let grains = options.phase.as_ref().map(|phase| format!("grains of {phase}"));
+                return Err(InsideError::Twice { grains: grains.unwrap_or_else(|| "grains".to_owned()) });
+            }
+            if let InsidePattern::Lamellae { normal: Some(normal), .. } = options.pattern
+                && self.dimension == Dimension::Two
+                && normal.z != 0.0
+            {
+                return Err(InsideError::OutOfPlane { pattern: options.pattern.to_string() });
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that the laws of boundaries go with each other, the phases and the orientations.
+    ///
+    /// # Errors
+    /// What does not.
+    pub fn check_laws(&self) -> Result<(), LawError> {
+        self.laws_of_pairs(LawKind::Tension)?;
+        self.laws_of_pairs(LawKind::Mobility)?;
+        if !self.mobilities.is_empty() && self.volumes == Volumes::Kept {
+            return Err(LawError { kind: LawKind::Mobility, problem: LawProblem::NotFree });
+        }
+        Ok(())
+    }
+
+    /// Which laws of a kind the boundaries between each two phases have, as rows of a square table: of one row without phases. Nothing
+    /// where no law is for them.
+    ///
+    /// # Errors
+    /// As of [`Self::check_laws`].
+    pub(crate) fn laws_of_pairs(&self, kind: LawKind) -> Result<Vec<Option<&LawSource>>, LawError> {
+        self.find_laws(self.laws(kind)).map_err(|problem| LawError { kind, problem })
+    }
+
+    fn find_laws<'a>(&'a self, laws: &'a [LawOptions]) -> Result<Vec<Option<&'a LawSource>>, LawProblem> {
+        let count = self.phases.len().max(1);
+        let mut table: Vec<Option<&'a LawSource>> = vec![None; count * count];
+        let known = || match self.phases.is_empty() {
+            true => "none; give some with --phase".to_owned(),
+            false => self.phases.iter().map(|phase| phase.name.as_str()).collect::<Vec<_>>().join(", "),
+        };
+        let mut of_all = None;
+        for law in laws {
+            let Some(names) = &law.phases else {
+                if of_all.replace(&law.law).is_some() {
+                    return Err(LawProblem::Twice { boundaries: "all boundaries".to_owned() });
+                }
+                continue;
+            };
+            let mut pair = [0; 2];
+            for (place, name) in pair.iter_mut().zip(names) {
+                let found = self.phases.iter().position(|phase| phase.name == *name);
+                *place =
+                    found.ok_or_else(|| LawProblem::UnknownPhase { name: name.clone(), known: known() })?;
+            }
+            let [first, second] = pair;
+            if table[first * count + second].is_some() {
+                return Err(LawProblem::Twice { boundaries: names.join("/") });
+            }
+            table[first * count + second] = Some(&law.law);
+            table[second * count + first] = Some(&law.law);
+        }
+        for (place, law) in table.iter_mut().enumerate() {
+            *law = law.or(of_all);
+            let Some(source) = law else { continue };
+            if matches!(source, LawSource::Number(_)) {
+                continue;
+            }
+            let text = || LawOptions { phases: None, law: (*source).clone() }.text();
+            if !self.has_texture() {
+                return Err(LawProblem::NoOrientations { law: text() });
+            }
+            if self.texture.misorientations.is_some() {
+                return Err(LawProblem::Swapped { law: text() });
+            }
+            let symmetry = |phase: usize| {
+                self.phases.get(phase).and_then(|phase| phase.symmetry).unwrap_or(self.texture.symmetry)
+            };
+            let (first, second) = (place / count, place % count);
+            if symmetry(first) != symmetry(second) {
+                let [first, second] = [first, second].map(|phase| self.phases[phase].name.clone());
+                return Err(LawProblem::NoDisorientation { first, second });
+            }
+        }
+        Ok(table)
+    }
+}
+
+/// A number with ten digits behind its point, without zeros at the end.
+fn digits(number: f64) -> String {
+    let text = format!("{number:.10}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

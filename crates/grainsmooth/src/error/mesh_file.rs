@@ -1,0 +1,134 @@
+use std::io;
+
+use subzero::MeshError;
+
+use crate::names::LABEL_ARRAYS;
+
+/// Why a mesh file cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum MeshFileProblem {
+    /// The file cannot be opened or read.
+    #[error("cannot be read: {0}; give the path of a readable mesh file")]
+    Unreadable(io::Error),
+    /// The extension names no format.
+    #[error("unknown extension; give a file *.obj, *.ply, *.stl, *.off, *.vtk, *.vtp, *.vtu or *.json")]
+    UnknownExtension,
+    /// A line of a text file is not what it must be.
+    #[error("line {line}: {what}")]
+    Line {
+        /// Line of the file, counted from 1.
+        line: usize,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// The file ends too early, or is none of its format.
+    #[error("{what}; give a complete {format} file")]
+    Corrupt {
+        /// Name of the format.
+        format: &'static str,
+        /// What is wrong.
+        what: String,
+    },
+    /// A coordinate's powers leave the range of numbers.
+    #[error("point {point} has the coordinate {coordinate:e}; scale the mesh, so that none is beyond 1e30")]
+    TooFar {
+        /// The point, counted from 0.
+        point: usize,
+        /// The coordinate.
+        coordinate: f64,
+    },
+    /// Powers of the mesh's size leave the range of numbers.
+    #[error("the mesh is {width:e} wide; scale it, so that it is 1e-30 or more")]
+    TooSmall {
+        /// The largest side of its bounding box.
+        width: f64,
+    },
+    /// The file has no faces.
+    #[error("holds no faces; give a surface mesh")]
+    NoFaces,
+    /// The file does not say what its cells lie between.
+    #[error("has no cell array {}; add one with two labels for each triangle", LABEL_ARRAYS.join(" or "))]
+    NoLabels,
+    /// A label is beyond all that can number a grain.
+    #[error("cell {cell} has the label {label}; number grains from 0 to 4294967295, and the exterior -1")]
+    BadLabel {
+        /// The cell, counted from 0.
+        cell: usize,
+        /// Its label.
+        label: i64,
+    },
+    /// A cell of a network is a polygon with more than three corners.
+    #[error("cell {cell} has {corners} corners; cut it into triangles")]
+    NotTriangulated {
+        /// The cell, counted from 0.
+        cell: usize,
+        /// How many corners it has.
+        corners: usize,
+    },
+    /// The extension names no format that can hold a network.
+    #[error("unknown extension; give a network as *.vtp, *.vtu or *.vtk")]
+    NotANetworkFormat,
+    /// The extension names no format that can hold measured grains.
+    #[error(
+        "unknown extension; give a network (*.vtp, *.vtu, *.vtk), a tessellation (*.tess) or a table (*.csv, *.txt, *.json)"
+    )]
+    NotASampleFormat,
+    /// The boundaries of a grain leave gaps.
+    #[error("grain {grain} is not closed; mend what `grainsmooth check` tells of the file")]
+    NotClosed {
+        /// Its number in the file.
+        grain: u32,
+    },
+    /// A grain has no volume.
+    #[error("grain {grain} has the volume {volume}; give grains of positive volumes")]
+    NoVolume {
+        /// Its number in the file.
+        grain: u32,
+        /// Its volume (in the plane: area).
+        volume: f64,
+    },
+    /// A scheme for triangles was given another polygon.
+    #[error(
+        "face {face} has {corners} corners where triangles are needed; cut it with `grainsmooth mesh triangulate`, or take catmull-clark or doo-sabin"
+    )]
+    NotATriangle {
+        /// The face, counted from 0.
+        face: usize,
+        /// How many corners it has.
+        corners: usize,
+    },
+    /// A file of control points has both kinds, which only JSON can hold together.
+    #[error("holds curves and surfaces, which no mesh format holds together; write .json or give one kind")]
+    CurvesAndSurfaces,
+    /// Two faces wind opposite ways.
+    #[error("{0}; `grainsmooth mesh orient` makes it agree")]
+    Winding(MeshError),
+    /// The faces make no mesh that the scheme can work with.
+    #[error("{0}")]
+    Mesh(MeshError),
+}
+
+impl From<MeshError> for MeshFileProblem {
+    fn from(error: MeshError) -> Self {
+        match error {
+            MeshError::Winding { .. } => Self::Winding(error),
+            _ => Self::Mesh(error),
+        }
+    }
+}
+
+impl MeshFileProblem {
+    /// A line that is wrong; `index` counts from 0.
+    pub(crate) fn line(index: usize, what: impl Into<String>) -> Self {
+        Self::Line { line: index + 1, what: what.into() }
+    }
+
+    /// A file that is none of its format, and why; of an error in many lines the first is told.
+    pub(crate) fn corrupt(format: &'static str, what: impl ToString) -> Self {
+        let what = what.to_string();
+        Self::Corrupt {
+            format,
+            what: what.lines().next().unwrap_or_default().trim_end_matches('.').to_owned(),
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! A polycrystal's network as a file of any format.
+
+use std::borrow::Cow;
+use std::io::{self, Write};
+
+use glam::DVec3;
+use polycrystal::{Boundary, BoundaryId, Level, Mesh, Side};
+use rayon::prelude::*;
+
+use super::measured_arrays::MeasuredArrays;
+use super::surface::{Surface, unit_normal};
+use crate::names::{MOBILITY, NUMBER_OF_GRAINS, SEED_ID, TENSION};
+use crate::vtk::write_vtk;
+use crate::vtk::{
+    Array, Cells, Each, FieldEntry, FieldValue, ItemTuples, Items, PolyData, Values, VtkFormat,
+};
+use crate::{GrainPhases, GrainTexture, LabelGrid, Names, Parents, Polycrystal, Tessellated};
+
+impl Polycrystal {
+    /// Behind what formats without comments hold: who reads them stops before.
+    pub(crate) fn write_settings_behind(&self, out: &mut dyn Write) -> io::Result<()> {
+        write!(out, "\n{}", self.config.to_toml())
+    }
+
+    pub(crate) fn surface(&self) -> io::Result<Surface<'_>> {
+        Surface::network(self).ok_or_else(|| io::Error::other("boundaries in the plane are no surfaces"))
+    }
+
+    pub(crate) fn texture(&self) -> io::Result<&GrainTexture> {
+        self.cells.texture.as_ref().ok_or_else(|| io::Error::other("the grains have no orientations"))
+    }
+
+    pub(crate) fn label_grid(&self) -> io::Result<LabelGrid<'_>> {
+        let voxels =
+            self.config.file.voxels.ok_or_else(|| io::Error::other("no number of voxels is given"))?;
+        Ok(LabelGrid::new(self, voxels))
+    }
+
+    pub(crate) fn write_vtk(&self, format: VtkFormat, out: &mut dyn Write) -> io::Result<()> {
+        let level = self.network.finest();
+        let names = self.config.file.names;
+        let (polylines, boundaries_of_lines) = boundary_polylines(level, self.network.boundaries(), names);
+        let (cells, boundary_of_cell) = match &level.mesh {
+            Mesh::Triangles(_) => (None, &level.boundary_of),
+            Mesh::Segments(_) => (Some(Cells::Polylines(&polylines)), &boundaries_of_lines),
+        };
+        let triangles = triangles(level, self.network.boundaries(), names);
+        let cells = cells.unwrap_or(Cells::Triangles(&triangles));
+        let count = boundary_of_cell.len();
+        let boundary = |cell: usize| &self.network.boundaries()[boundary_of_cell[cell].index()];
+        let labels: Vec<[i32; 2]> =
+            self.network.boundaries().iter().map(|boundary| names.labels(boundary)).collect();
+        let labels = |cell: usize| labels[boundary_of_cell[cell].index()];
+        // Boundaries and points are far fewer than 2^31: edges have two directions with 32-bit ids.
+        let boundary_id = |cell: usize| boundary_of_cell[cell].0.cast_signed();
+        let node_type = |point: usize| level.node_types[point].code();
+        // There are fewer than 128 levels.
+        let generation = |point: usize| level.generations[point].cast_signed();
+        let of_points = |value| Values::Int8Of(Each { count: self.points.len(), value });
+        let of_cells = |value| Values::Int32Of(Each { count, value });
+        let mut point_arrays = vec![
+            Array { name: "NodeTypes", values: of_points(&node_type) },
+            Array { name: "Generation", values: of_points(&generation) },
+            Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&level.grain_counts) },
+        ];
+        let mut cell_arrays = vec![
+            Array { name: names.sides(), values: Values::Int32PairsOf(Each { count, value: &labels }) },
+            Array { name: "BoundaryId", values: of_cells(&boundary_id) },
+        ];
+        let neighbor = |cell: usize| self.periodic_neighbor(boundary(cell));
+        let originals;
+        if self.network.domain().is_periodic() {
+            originals = self.originals();
+            cell_arrays.push(Array { name: "PeriodicNeighbor", values: of_cells(&neighbor) });
+            point_arrays.push(Array { name: "PeriodicOriginal", values: Values::Int32(&originals) });
+        }
+        let boundary_tuples = self.boundary_tuples();
+        let boundary_of = |cell: usize| Some(boundary_of_cell[cell].index());
+        cell_arrays.extend(boundary_tuples.iter().map(|tuples| Array {
+            name: tuples.name,
+            values: Values::Items(Items { tuples, count, item: &boundary_of }),
+        }));
+        let measured = self.config.file.arrays.then(|| MeasuredArrays::new(self, cells));
+        let (of_cells, of_points, normals);
+        if let Some(measured) = &measured {
+            normals = unit_normals(&self.points, &triangles);
+            if !normals.is_empty() {
+                cell_arrays.push(Array { name: "Normals", values: Values::Vectors(&normals) });
+            }
+            of_cells = measured.of_cells(boundary_of_cell);
+            of_points = measured.of_points();
+            cell_arrays.extend(of_cells.arrays());
+            point_arrays.extend(of_points.arrays());
+        }
+        // Small changes of the points are seen in these only, which validation has found the grains to have.
+        let volumes = FieldValue::Numbers(self.network.cell_volumes().to_vec());
+        let mut field = self.field();
+        field.push(FieldEntry { name: "Volumes", value: volumes });
+        field.push(self.seed_ids());
+        field.extend(self.grain_fields());
+        let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field };
+        write_vtk(&data, format, self.config.file.encoding, out)
+    }
+
+    /// What files hold of each grain's parent, phase and orientation, where it has them.
+    pub(crate) fn grain_tuples(&self) -> Vec<ItemTuples> {
+        let names = self.config.file.names;
+        let Tessellated { parents, phases, texture, .. } = &self.cells;
+        let mut tuples: Vec<ItemTuples> = parents.iter().map(Parents::array).collect();
+        tuples.extend(phases.iter().map(GrainPhases::array));
+        if let Some(texture) = texture {
+            tuples.extend(texture.orientation_arrays().into_iter().chain(texture.color_arrays(names)));
+        }
+        tuples
+    }
+
+    /// What files hold of each boundary's disorientation, where grains have orientations, and of its tension, where laws are asked for.
+    pub(crate) fn boundary_tuples(&self) -> Vec<ItemTuples> {
+        let boundaries = self.network.boundaries();
+        let sides = || boundaries.iter().map(|boundary| boundary.sides_across(boundaries));
+        let texture = self.cells.texture.as_ref();
+        let mut tuples = texture.map_or_else(Vec::new, |texture| texture.boundary_arrays(sides()));
+        if !self.config.tensions.is_empty() {
+            tuples
+                .push(ItemTuples::numbers(TENSION, self.network.tensions().iter().map(|tension| [*tension])));
+        }
+        if !self.config.mobilities.is_empty() {
+            let mobilities = self.network.mobilities().iter();
+            tuples.push(ItemTuples::numbers(MOBILITY, mobilities.map(|mobility| [*mobility])));
+        }
+        tuples
+    }
+
+    /// The number of the grain that lies beyond a boundary a period or more away; that of the exterior where there is none.
+    fn periodic_neighbor(&self, boundary: &Boundary) -> i32 {
+        let twin = boundary.twin.map(|twin| self.network.boundaries()[twin.boundary.index()].sides[0]);
+        self.config.file.names.side_number(twin.unwrap_or(Side::Exterior))
+    }
+
+    /// Of each point, the one that it is a copy of, or itself.
+    pub(crate) fn originals(&self) -> Vec<i32> {
+        self.network.finest().originals().into_iter().map(u32::cast_signed).collect()
+    }
+
+    /// The number of each grain's seed.
+    pub(crate) fn seed_ids(&self) -> FieldEntry {
+        let ids = self.cells.seed_ids.iter().map(|id| id.cast_signed()).collect();
+        FieldEntry { name: SEED_ID, value: FieldValue::Ids(ids) }
+    }
+
+    /// The parent, the phase and the orientation of each grain, where they have them.
+    pub(crate) fn grain_fields(&self) -> impl Iterator<Item = FieldEntry> {
+        let Tessellated { parents, phases, texture, .. } = &self.cells;
+        let arrays = texture.as_ref().map(GrainTexture::orientation_arrays);
+        let entry = |tuples: ItemTuples| FieldEntry { name: tuples.name, value: FieldValue::Items(tuples) };
+        let whole = parents.iter().map(Parents::array).chain(phases.iter().map(GrainPhases::array));
+        whole.chain(arrays.into_iter().flatten()).map(entry)
+    }
+
+    /// What every VTK file says about itself.
+    pub(crate) fn field(&self) -> Vec<FieldEntry> {
+        let mut field = vec![
+            text("Version", format!("grainsmooth {}", env!("CARGO_PKG_VERSION"))),
+            text("CommandLine", self.config.command_line()),
+            text("Config", self.config.to_toml()),
+            FieldEntry { name: "RandomSeed", value: FieldValue::Integer(self.config.random_seed) },
+        ];
+        if let Some(phases) = &self.cells.phases {
+            field.push(text("PhaseNames", phases.names().collect::<Vec<_>>().join(",")));
+        }
+        field
+    }
+}
+
+/// The triangles, wound as a scheme of names wants them.
+pub(crate) fn triangles<'a>(level: &'a Level, boundaries: &[Boundary], names: Names) -> Cow<'a, [[u32; 3]]> {
+    let Mesh::Triangles(mesh) = &level.mesh else { return Cow::default() };
+    if !boundaries.iter().any(|boundary| names.reverses(boundary)) {
+        return Cow::Borrowed(mesh.triangles());
+    }
+    let numbered = mesh.triangles().iter().zip(&level.boundary_of);
+    let wound =
+        numbered.map(
+            |(&[a, b, c], boundary)| {
+                if names.reverses(&boundaries[boundary.index()]) { [a, c, b] } else { [a, b, c] }
+            },
+        );
+    wound.collect()
+}
+
+/// The unit normal of each triangle. Points cannot have them: where boundaries meet, each has another one.
+fn unit_normals(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
+    let corners = |triangle: &[u32; 3]| triangle.map(|corner| points[corner as usize]);
+    triangles.par_iter().map(|triangle| unit_normal(corners(triangle))).collect()
+}
+
+/// The polylines of each boundary, with its first side in a scheme of names on the left, and the boundaries in the same order.
+///
+/// Each boundary is one, but in a periodic network that was cut at the box.
+pub(crate) fn boundary_polylines(
+    level: &Level,
+    boundaries: &[Boundary],
+    names: Names,
+) -> (Vec<Vec<u32>>, Vec<BoundaryId>) {
+    let Mesh::Segments(mesh) = &level.mesh else { return (Vec::new(), Vec::new()) };
+    let segments: Vec<(BoundaryId, [u32; 2])> =
+        level.boundary_of.iter().copied().zip(mesh.segments().iter().copied()).collect();
+    let connected = segments.chunk_by(|(a, [_, end]), (b, [start, _])| a == b && end == start);
+    let polyline = |segments: &[(BoundaryId, [u32; 2])]| {
+        let (boundary, [start, _]) = segments[0];
+        let mut polyline = vec![start];
+        polyline.extend(segments.iter().map(|(_, [_, end])| *end));
+        if names.reverses(&boundaries[boundary.index()]) {
+            polyline.reverse();
+        }
+        (polyline, boundary)
+    };
+    connected.map(polyline).unzip()
+}
+
+fn text(name: &'static str, value: String) -> FieldEntry {
+    FieldEntry { name, value: FieldValue::Text(value) }
+}

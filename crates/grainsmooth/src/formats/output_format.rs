@@ -1,0 +1,153 @@
+//! The table of all formats.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use super::format::{Beside, Content, FileSize, Format, GrainWriter, Writer};
+use super::{ang, blocks, ctf, euler, evolver, gmsh, inp, material, npy, obj, ori, ply, stl, tess, vti, vtk};
+use crate::config::Config;
+use crate::error::Error;
+
+/// A file format that results are written in.
+#[derive(Clone, Copy)]
+pub struct OutputFormat(&'static Format);
+
+impl OutputFormat {
+    /// The default: surfaces and lines as VTK's XML PolyData.
+    pub const VTP: Self = Self(&vtk::VTP);
+
+    /// Every format, the default first. A format is a file, and a line here.
+    pub const ALL: [Self; 18] = [
+        Self::VTP,
+        Self(&vtk::VTU),
+        Self(&vtk::VTK),
+        Self(&blocks::FORMAT),
+        Self(&stl::FORMAT),
+        Self(&ply::FORMAT),
+        Self(&obj::FORMAT),
+        Self(&gmsh::FORMAT),
+        Self(&evolver::FORMAT),
+        Self(&tess::FORMAT),
+        Self(&vti::FORMAT),
+        Self(&npy::FORMAT),
+        Self(&inp::FORMAT),
+        Self(&ang::FORMAT),
+        Self(&ctf::FORMAT),
+        Self(&euler::FORMAT),
+        Self(&ori::FORMAT),
+        Self(&material::FORMAT),
+    ];
+
+    /// The extension that stands for the format, without its dot.
+    pub fn extension(self) -> &'static str {
+        self.0.extension
+    }
+
+    /// The format of an extension, in upper or lower case, without its dot.
+    pub fn of_extension(extension: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|format| extension.eq_ignore_ascii_case(format.extension()))
+    }
+
+    /// The format that the path's extension names, in upper or lower case.
+    pub fn of_path(path: &Path) -> Option<Self> {
+        Self::of_extension(path.extension()?.to_str()?)
+    }
+
+    /// The extensions as a message lists them: `*.vtp, *.vtu or *.vtk`.
+    pub fn known_extensions() -> String {
+        let [others @ .., last] = Self::ALL.map(|format| format!("*.{}", format.extension()));
+        format!("{} or {last}", others.join(", "))
+    }
+
+    /// The extensions with the programs that they are for, as `--help` lists them: `.vtp, .msh (Gmsh)`.
+    pub fn described() -> String {
+        let described = Self::ALL.map(|Self(format)| match format.programs {
+            "" => format!(".{}", format.extension),
+            programs => format!(".{} ({programs})", format.extension),
+        });
+        described.join(", ")
+    }
+
+    /// The formats that a grain's own surface may have.
+    pub fn of_grains() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().filter(|format| format.0.write_grain.is_some())
+    }
+
+    /// Whether the format holds voxels.
+    pub fn has_voxels(self) -> bool {
+        matches!(self.0.content, Content::Voxels(_))
+    }
+
+    /// Whether the format is a single file, as standard output takes.
+    pub fn is_single_file(self) -> bool {
+        matches!(self.0.write, Writer::File(_))
+    }
+
+    /// What is written beside a file of this format, under its name.
+    pub(crate) fn beside(self, path: &Path) -> Option<PathBuf> {
+        self.0.beside.map(|beside| match beside {
+            Beside::File(extension) => path.with_extension(extension),
+            Beside::Folder => path.with_extension(""),
+        })
+    }
+
+    /// The same where it is a file.
+    pub(crate) fn file_beside(self, path: &Path) -> Option<PathBuf> {
+        self.beside(path).filter(|_| matches!(self.0.beside, Some(Beside::File(_))))
+    }
+
+    /// About how many bytes a file takes.
+    pub(crate) fn bytes(self, size: &FileSize<'_>) -> u128 {
+        (self.0.bytes)(size)
+    }
+
+    /// Bytes that are known to be written for each voxel.
+    pub(crate) fn bytes_of_voxel(self, config: &Config) -> u32 {
+        match self.0.content {
+            Content::Voxels(bytes) => bytes(config),
+            Content::Boundaries | Content::Orientations => 0,
+        }
+    }
+
+    pub(super) fn writer(self) -> Writer {
+        self.0.write
+    }
+
+    pub(super) fn grain_writer(self) -> Option<GrainWriter> {
+        self.0.write_grain
+    }
+
+    /// Checks that the format can hold what a config makes, for an output that messages call `path`.
+    ///
+    /// # Errors
+    /// [`Error::FormatDimension`]; [`Error::NoVoxels`] for a format of voxels when their number is not given; [`Error::NoTexture`] for one
+    /// of orientations where grains have none.
+    pub fn check_fits(self, path: &Path, config: &Config) -> Result<(), Error> {
+        let path = || path.to_owned();
+        match (self.0.dimension, self.0.content) {
+            (Some(dimension), _) if dimension != config.dimension => {
+                Err(Error::FormatDimension { path: path(), dimension })
+            }
+            (_, Content::Voxels(_)) if config.file.voxels.is_none() => Err(Error::NoVoxels { path: path() }),
+            (_, Content::Orientations) if !config.has_texture() => Err(Error::NoTexture { path: path() }),
+            _ if config.has_grains_of_several_cells() && self.extension() == "tess" => {
+                Err(Error::CellsOfGrains { path: path() })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl PartialEq for OutputFormat {
+    fn eq(&self, other: &Self) -> bool {
+        self.extension() == other.extension()
+    }
+}
+
+impl Eq for OutputFormat {}
+
+impl fmt::Debug for OutputFormat {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.debug_tuple("OutputFormat").field(&self.extension()).finish()
+    }
+}

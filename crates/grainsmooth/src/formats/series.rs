@@ -1,0 +1,143 @@
+//! A relaxation as a time series for ParaView.
+
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use polycrystal::{Moving, Network, NetworkError, RelaxationStep, Relaxed};
+use voronoi::Tessellation;
+
+use super::blocks::escaped;
+use crate::{Error, Output, OutputFormat, Polycrystal, StagedFiles};
+
+/// The steps of a relaxation, every so many of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    every: NonZeroU32,
+    frames: Vec<Frame>,
+}
+
+/// The moved points after a step.
+#[derive(Debug, Clone, PartialEq)]
+struct Frame {
+    time: f64,
+    level: usize,
+    points: Vec<DVec3>,
+    /// The cells that the points are those of, where they are not those of the polycrystal yet.
+    cells: Option<Tessellation>,
+}
+
+/// Where a series goes, found writable.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SeriesOutput {
+    collection: Output<()>,
+}
+
+impl SeriesOutput {
+    /// Checks that a series can be written at `path`, which is to end in `.pvd`, with its steps beside.
+    ///
+    /// # Errors
+    /// As of [`Output::check_as`].
+    pub fn check(path: &Path) -> Result<Self, Error> {
+        let output = Self { collection: Output::check_as(path, ())? };
+        output.step(0)?;
+        Ok(output)
+    }
+
+    /// The path as it was given.
+    pub fn path(&self) -> &Path {
+        self.collection.path()
+    }
+
+    /// The collection from the root on, or what it links to.
+    pub fn target(&self) -> &Path {
+        self.collection.target()
+    }
+
+    /// The file of a step: `a_0003.vtp` beside `a.pvd`.
+    fn step(&self, number: usize) -> Result<Output, Error> {
+        Output::check_as(step_path(self.path(), number), OutputFormat::VTP)
+    }
+}
+
+/// Where the series at `path` has this step.
+pub(crate) fn step_path(path: &Path, number: usize) -> PathBuf {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!("{name}_{number:04}.vtp"))
+}
+
+impl Series {
+    /// A series of the start, of every so many steps, and of the end.
+    pub fn new(every: NonZeroU32) -> Self {
+        Self { every, frames: Vec::new() }
+    }
+
+    /// Takes a step up, if it is one of these.
+    pub fn add(&mut self, step: &RelaxationStep<'_>) {
+        // What folded is taken back and tried again.
+        self.frames.retain(|frame| frame.time < step.time);
+        if step.done.is_multiple_of(self.every.get() as usize) {
+            let (level, points, cells) = match step.now {
+                Moving::Points { level, points } => (level, points.to_vec(), None),
+                Moving::Cells(cells) => {
+                    let (cells, points) = cells();
+                    (0, points, Some(cells))
+                }
+            };
+            self.frames.push(Frame { time: step.time, level, points, cells });
+        }
+    }
+
+    /// Completes each step as a surface file, and the collection, which ParaView opens. The times in it are in the unit of
+    /// the relaxation time: the mean grain size squared, at unit mobility and tension. The last step is the polycrystal itself.
+    ///
+    /// # Errors
+    /// [`Error::WriteOutput`]; [`Error::OutputTwice`].
+    pub fn stage(
+        &self,
+        polycrystal: &mut Polycrystal,
+        output: &SeriesOutput,
+        files: &mut StagedFiles,
+    ) -> Result<(), Error> {
+        let Relaxed { level, time, .. } = polycrystal.relaxed;
+        let finest = polycrystal.network.levels().len() - 1;
+        let is_before = |frame: &&Frame| frame.level <= level && frame.time < time;
+        let mut times = Vec::new();
+        for frame in self.frames.iter().filter(is_before) {
+            let (network, level) = match &frame.cells {
+                Some(cells) => (Some(network_of(cells, polycrystal)?), 0),
+                None => (None, frame.level),
+            };
+            let of_frame = network.as_ref().unwrap_or(&polycrystal.network);
+            let points = of_frame.subdivide_between(level, finest, &frame.points);
+            let finished = std::mem::replace(&mut polycrystal.points, points);
+            let last = network.map(|network| std::mem::replace(&mut polycrystal.network, network));
+            let written = output.step(times.len()).and_then(|step| polycrystal.stage(&step, files));
+            polycrystal.points = finished;
+            if let Some(last) = last {
+                polycrystal.network = last;
+            }
+            written?;
+            times.push(frame.time);
+        }
+        polycrystal.stage(&output.step(times.len())?, files)?;
+        times.push(time);
+        output.collection.stage(files, |out| {
+            writeln!(out, "<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>")?;
+            for (number, time) in times.iter().enumerate() {
+                let path = step_path(output.path(), number);
+                let file = escaped(&path.file_name().unwrap_or_default().to_string_lossy());
+                writeln!(out, "<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{file}\"/>")?;
+            }
+            writeln!(out, "</Collection>\n</VTKFile>")
+        })
+    }
+}
+
+/// The network of cells on their way to those of a finished one.
+fn network_of(cells: &Tessellation, polycrystal: &Polycrystal) -> Result<Network, NetworkError> {
+    let (finished, junctions) = (&polycrystal.network, polycrystal.config.junctions);
+    let (network, _) = Network::new(cells, junctions, finished.levels().len() - 1)?;
+    let network = polycrystal.cells.law.apply(network)?;
+    Ok(network.with_cell_volumes(finished.cell_volumes().to_vec()))
+}

@@ -1,0 +1,8 @@
+//! What users hand in: seeds, sizes, orientations, domains, tessellations and labelled networks from files.
+
+pub(crate) mod domain_file;
+pub(crate) mod labelled_file;
+pub(crate) mod seed_file;
+pub(crate) mod size_file;
+pub(crate) mod tess;
+pub(crate) mod texture_file;

@@ -1,0 +1,4 @@
+//! What `grainsmooth measure` reads and says.
+
+pub(crate) mod report;
+pub(crate) mod sample;

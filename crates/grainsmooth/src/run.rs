@@ -1,0 +1,8 @@
+//! The stages of a run, one after the other: cells, the network, its relaxation and validation.
+
+pub(crate) mod failing;
+pub(crate) mod misorientations;
+pub(crate) mod pipeline;
+pub(crate) mod stage;
+pub(crate) mod tessellated;
+pub(crate) mod topology;

@@ -1,0 +1,90 @@
+//! What is told of cells of which no network could be made.
+
+use polycrystal::{Attempt, FaceMesh, Junctions, NetworkError};
+
+use super::tessellated::Tessellated;
+use crate::error::failed_grain::FailedGrain;
+use crate::error::failure::Failure;
+use crate::figures::equivalent_diameters::EquivalentDiameters;
+
+impl Failure {
+    /// A failure that some cells led to.
+    pub(crate) fn new(error: NetworkError, mut attempts: Vec<Attempt>, cells: &Tessellated) -> Self {
+        let (more, cause) = error.into_attempts();
+        attempts.extend(more);
+        let grain = FailedGrain::of(&cause, cells);
+        let without_equilibrium = cells.law.without_equilibrium_in(|| {
+            cells.network(&cells.tessellation, FaceMesh::Fan, Junctions::Crease, 0.0, 0)
+        });
+        let dimension = cells.tessellation.domain().dimension();
+        let has_shapes = cells.shapes.is_some();
+        Self { dimension, cause, grain, growth: None, without_equilibrium, has_shapes, attempts }
+    }
+}
+
+impl FailedGrain {
+    /// The smallest of the grains that a failure names, of all if it names none; nothing if it is not about grains.
+    pub(crate) fn of(cause: &NetworkError, cells: &Tessellated) -> Option<Self> {
+        let named = cause.grains()?;
+        let dimension = cells.tessellation.domain().dimension();
+        let volumes = cells.volumes();
+        let diameters: Vec<f64> = volumes.iter().map(|volume| dimension.ball_diameter(*volume)).collect();
+        let is_named = |grain: &u32| named.is_empty() || named.iter().any(|other| other.0 == *grain);
+        let sized = (0u32..).zip(&diameters).filter(|(grain, _)| is_named(grain));
+        let (grain, diameter) = sized.min_by(|a, b| a.1.total_cmp(b.1))?;
+        Some(Self {
+            grain,
+            seed: cells.seed_ids[grain as usize],
+            diameter: *diameter,
+            share: diameter / EquivalentDiameters::new(dimension, &diameters).mean,
+            is_smallest: named.is_empty(),
+        })
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test may panic")]
+mod tests {
+    use polycrystal::{Fault, Faults, GrainId};
+
+    use super::*;
+    use crate::error::failure::Growth;
+    use crate::{Config, Error, Failure, SeedSource, tessellate};
+
+    /// Slabs across x, of which the fourth is thin.
+    const SLABS: &str =
+        "0.1 0.5 0.5\n0.3 0.5 0.5\n0.5 0.5 0.5\n0.5005 0.5 0.5\n0.501 0.5 0.5\n0.7 0.5 0.5\n0.9 0.5 0.5\n";
+
+    /// A run once failed over one tiny cell without saying how small it was, or what would help.
+    #[test]
+    fn failures_name_the_grain_its_size_and_a_remedy_that_takes_it_out() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("seeds.txt");
+        std::fs::write(&path, SLABS).unwrap();
+        let config = Config { seeds: SeedSource::File(path), ..Config::default() };
+        let cells = tessellate(&config, &|_, _, _| ()).unwrap();
+        let missed = |grain| NetworkError::VolumeNotRestored { grain: GrainId(grain), relative_error: 1e-3 };
+        let said = |cause: NetworkError| Error::from(Failure::new(cause, Vec::new(), &cells)).to_string();
+        // A slab of volume 5e-4.
+        let thin = "grain 3 (SeedId 3), 1.66e-1 mean equivalent diameters wide (9.847e-2)";
+        let remedy = "; merge such cells with --min-diameter 0.2";
+        assert!(said(missed(3)).ends_with(&format!("; {thin}{remedy}")), "{}", said(missed(3)));
+        let folded = said(NetworkError::Folded { count: 2, grains: Vec::new() });
+        assert!(folded.ends_with(&format!("; the smallest is {thin}{remedy}")), "{folded}");
+        assert!(!said(missed(0)).contains("--min-diameter"), "{}", said(missed(0)));
+        // The diameter was told twice where a volume is missed, and not at all in other errors.
+        let off = Fault::WrongVolume { grain: GrainId(3), diameter: 0.1, relative_error: 1e-3 };
+        for error in [missed(3), NetworkError::Invalid(Faults(vec![off]))] {
+            let said = said(error);
+            assert_eq!(said.matches("equivalent diameter").count(), 1, "{said}");
+        }
+        assert!(!said(NetworkError::BadEdgeLength(0.0)).contains("grain"));
+        // Where grains grow freely the message once named no seed.
+        let vanished = NetworkError::GrainVanished { grain: GrainId(3), time: 0.01 };
+        let grows = Failure::new(vanished, Vec::new(), &cells).with_growth(Growth::Until(0.005));
+        assert!(grows.to_string().ends_with(&format!("; {thin}; --relax 0.005 works")), "{grows}");
+        let merged = tessellate(&Config { min_diameter: 0.2, ..config }, &|_, _, _| ()).unwrap();
+        assert_eq!(merged.merged_seeds, [3]);
+        assert_eq!(merged.seed_ids, [0, 1, 2, 4, 5, 6]);
+    }
+}

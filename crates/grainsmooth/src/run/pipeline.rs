@@ -1,0 +1,563 @@
+//! From a config to a smooth, validated network.
+
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
+use polycrystal::{
+    AngleStatistics, Attempt, Balance, Boundary, BoxCut, Certificate, Collapsed, HerringResidual, MeshSize,
+    Network, NetworkError, RelaxedCells, remove_short_edges,
+};
+use polycrystal::{Measures, RegularCells, Side, measure_network};
+use polycrystal::{
+    NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, Volumes, WeightedAngle,
+};
+use polycrystal::{
+    angles_between_boundaries, dihedral_angles, herring_residual, regular_cells, relax_cells, relax_watched,
+    validate,
+};
+use voronoi::{Dimension, Tessellation};
+
+use super::stage::{Clock, Progress, Stage};
+use super::tessellated::{Tessellated, grain_volumes, tessellate};
+use super::topology::Topology;
+use crate::error::failure::Growth;
+use crate::figures::significant::two_digits_down;
+use crate::memory::{ControlMesh, LABEL_BYTES, LevelSize, available_memory, check_levels};
+use crate::seeds::count::seed_count;
+use crate::{BoundaryLaw, Config, Error, Failure, LawReached, PeriodicCut, TensionsReached};
+
+/// Factor by which each time that is tried for grains that grow too long is shorter than the last, and how many are tried.
+const SHORTER: f64 = 0.6;
+const SHORTER_TIMES: usize = 12;
+
+/// How often the grains of given shapes at which relaxation fails get rounder ones. Of 200 grains of 3:1:1 some take one round.
+const MOST_ROUNDINGS: usize = 10;
+
+/// A finished polycrystal: a valid network with the points of its finest level.
+#[derive(Debug, Clone)]
+pub struct Polycrystal {
+    /// What was asked for.
+    pub config: Config,
+    /// The flat cells that the grains come from.
+    pub cells: Tessellated,
+    /// Connectivity of all levels.
+    pub network: Network,
+    /// Points of the finest level.
+    pub points: Vec<DVec3>,
+    /// What relaxation gave, before the last subdivisions: points to move by hand, of whole grains.
+    pub relaxed: Relaxed,
+    /// How far the cells were regularised.
+    pub regularization: Regularization,
+    /// How many faces grains have and how many meet, before a periodic box is cut.
+    pub topology: Topology,
+    /// What regularisation took out, or was drawn together where the topology changed.
+    pub collapsed: Collapsed,
+    /// How relaxation changed the topology; nothing where that stayed.
+    pub reconnected: Option<Reconnected>,
+    /// What was tried before this result, and why it was given up.
+    pub attempts: Vec<Attempt>,
+    /// How far triple lines are from rest, if boundaries meet anywhere; of grains cut at a periodic box, before the cut.
+    pub residual: Option<HerringResidual>,
+    /// The tensions of boundaries, where laws of them are asked for; of grains cut at a periodic box, before the cut.
+    pub tensions: Option<TensionsReached>,
+    /// Mobilities, where laws are asked for.
+    pub mobilities: Option<LawReached>,
+    /// Angles between boundaries of the flat network, before relaxation.
+    pub flat_angles: Vec<WeightedAngle>,
+    /// Their statistics, if boundaries meet inside the domain.
+    pub angles_before: Option<AngleStatistics>,
+    /// What validation found: the angles of the finished network, volumes and how true they are.
+    pub validation: Certificate,
+    /// Time that each stage took.
+    pub times: Vec<(Stage, Duration)>,
+}
+
+impl Polycrystal {
+    /// What the network is like. Where it is cut at a periodic box, tensions are not known to be at rest beside the cut; where it is
+    /// stretched, nowhere.
+    pub(crate) fn measures(&self) -> Measures {
+        let mut measures = measure_network(&self.network, &self.points);
+        if self.is_stretched() {
+            match &mut measures {
+                Measures::Space(space) => space.triple_lines.iter_mut().for_each(|line| line.residual = None),
+                Measures::Plane(plane) => {
+                    plane.triple_points.iter_mut().for_each(|point| point.residual = None)
+                }
+            }
+        }
+        if self.config.periodic_cut == PeriodicCut::Box && self.config.periodic.any() {
+            let is_cut = |sides: &[Side]| sides.contains(&Side::Exterior);
+            match &mut measures {
+                Measures::Space(space) => {
+                    let cut = space.triple_lines.iter_mut().filter(|line| is_cut(&line.sides));
+                    cut.for_each(|line| line.residual = None);
+                }
+                Measures::Plane(plane) => {
+                    let cut = plane.triple_points.iter_mut().filter(|point| is_cut(&point.sides));
+                    cut.for_each(|point| point.residual = None);
+                }
+            }
+        }
+        measures
+    }
+
+    /// Whether grains are stretched in the end.
+    pub(crate) fn is_stretched(&self) -> bool {
+        self.config.stretch() != DVec3::ONE
+    }
+
+    /// The points of the finest level before they were stretched.
+    pub(crate) fn unstretched_points(&self) -> Vec<DVec3> {
+        let stretch = self.config.stretch();
+        self.points.iter().map(|point| point / stretch).collect()
+    }
+
+    /// The grains as [`Config::aspect_ratio`] stretches them. What was found of angles, triangles and tensions stays that of the
+    /// frame in which they were at rest.
+    #[must_use]
+    pub fn stretched_if_asked(mut self) -> Self {
+        if !self.is_stretched() {
+            return self;
+        }
+        let stretch = self.config.stretch();
+        for points in [&mut self.points, &mut self.relaxed.points] {
+            points.iter_mut().for_each(|point| *point *= stretch);
+        }
+        self.network = self.network.stretched(stretch);
+        self.cells = self.cells.stretched(&self.config);
+        self
+    }
+
+    /// The grains of a periodic box cut at its walls, as [`PeriodicCut::Box`](crate::PeriodicCut::Box) asks; others as they are.
+    ///
+    /// # Errors
+    /// As of [`Network::cut_at_box`].
+    pub fn cut_if_asked(mut self) -> Result<Self, Error> {
+        if self.config.periodic_cut == PeriodicCut::Wrap || !self.network.domain().is_periodic() {
+            return Ok(self);
+        }
+        let volumes = self.network.cell_volumes().to_vec();
+        let start = Instant::now();
+        match self.network.cut_at_box(&self.points, self.relaxed.is_flat) {
+            Ok(BoxCut { network, points, attempts }) => {
+                (self.network, self.points) = (network.with_cell_volumes(volumes), points);
+                self.attempts.extend(attempts);
+            }
+            Err(error) => return Err(Failure::new(error, self.attempts, &self.cells).into()),
+        }
+        self.network = self.cells.law.apply(self.network)?;
+        self.add_time(Stage::Subdivision, start.elapsed());
+        let start = Instant::now();
+        match validate(&self.network, &self.points) {
+            Ok(validation) => self.validation = validation,
+            Err(faults) => {
+                let error = NetworkError::Invalid(faults);
+                return Err(Failure::new(error, self.attempts, &self.cells).into());
+            }
+        }
+        self.add_time(Stage::Validation, start.elapsed());
+        Ok(self)
+    }
+}
+
+/// Computes a polycrystal: its cells, then all that [`smooth`] does.
+///
+/// # Errors
+/// Whatever is wrong with the input, or the first fault that makes the result invalid.
+pub fn make_polycrystal(config: &Config, progress: Progress) -> Result<Polycrystal, Error> {
+    check_expected_size(config)?;
+    smooth(config, tessellate(config, progress)?, progress)
+}
+
+/// Checks that the network of as many seeds as the config asks for will fit, before the first cell is cut: a count beyond all
+/// means must not eat the memory first. The count of a seed file is known only when it is read.
+///
+/// # Errors
+/// [`LevelsExceedMemory`](crate::memory::MemoryError::LevelsExceedMemory) and [`LevelsExceedIds`](crate::memory::MemoryError::LevelsExceedIds).
+pub fn check_expected_size(config: &Config) -> Result<(), Error> {
+    let Some(count) = seed_count(config) else { return Ok(()) };
+    let size = expected_control_mesh_size(count, config.dimension);
+    // Each of two segments.
+    let arcs = if bends_to_arcs(config) { size.edges / 2 } else { 0 };
+    Ok(check_levels(
+        ControlMesh { size, arcs, besides: voxel_bytes(config) },
+        config.levels,
+        available_memory(),
+    )?)
+}
+
+/// Whether boundaries become arcs with as many segments as look smooth.
+fn bends_to_arcs(config: &Config) -> bool {
+    config.dimension == Dimension::Two && config.lets_topology_change()
+}
+
+/// The control mesh of some cells, without what regularisation takes out.
+pub(crate) fn control_mesh(config: &Config, tessellation: &Tessellation) -> ControlMesh {
+    let MeshSize { points, edges, triangles } = config.face_mesh.control_mesh_size(tessellation);
+    let size = LevelSize { points, edges, triangles };
+    let besides = voxel_bytes(config);
+    if !bends_to_arcs(config) {
+        return ControlMesh { size, arcs: 0, besides };
+    }
+    let sides = tessellation.faces().map(|face| tessellation.face_sides(face));
+    let inside = sides.filter(|[_, second]| !matches!(second, voronoi::Side::Wall(_)));
+    ControlMesh { size, arcs: inside.count() as u128, besides }
+}
+
+/// Bytes that voxels take while they are labelled.
+pub(crate) fn voxel_bytes(config: &Config) -> u128 {
+    if config.file.voxels.is_some() { LABEL_BYTES } else { 0 }
+}
+
+/// Relaxes, subdivides and validates the network of some cells.
+///
+/// # Errors
+/// [`LevelsExceedMemory`](crate::memory::MemoryError::LevelsExceedMemory) and [`LevelsExceedIds`](crate::memory::MemoryError::LevelsExceedIds); [`Error::Network`] when the network cannot be relaxed, or
+/// is invalid.
+pub fn smooth(config: &Config, cells: Tessellated, progress: Progress) -> Result<Polycrystal, Error> {
+    smooth_watched(config, cells, progress, |_| ())
+}
+
+/// As [`smooth`], with the start and every step of the relaxation shown to `watch`.
+///
+/// # Errors
+/// As of [`smooth`].
+pub fn smooth_watched(
+    config: &Config,
+    mut cells: Tessellated,
+    progress: Progress,
+    mut watch: impl FnMut(RelaxationStep<'_>),
+) -> Result<Polycrystal, Error> {
+    let mut resolved = cells.tessellation.resolved();
+    let mut clock = Clock { progress, times: cells.times.clone() };
+    let mut attempts = Vec::new();
+    let mut roundings = 0..MOST_ROUNDINGS;
+    let (regularization, smoothed) = loop {
+        let tessellation = resolved.as_ref().unwrap_or(&cells.tessellation);
+        check_levels(control_mesh(config, tessellation), config.levels, available_memory())?;
+        let (regularization, error) =
+            match smooth_cells(config, &cells, tessellation, &mut attempts, &mut clock, &mut watch) {
+                Ok(smoothed) => break smoothed,
+                Err(error) => error,
+            };
+        if error.is_tangle()
+            && roundings.next().is_some()
+            && let Some(rounder) =
+                clock.time(Stage::Cells, || cells.with_rounder(&error.grains().unwrap_or_default()))?
+        {
+            error.give_up(regularization.in_words(), &mut attempts);
+            resolved = rounder.tessellation.resolved();
+            cells = rounder;
+            continue;
+        }
+        let failure = Failure::new(error, attempts, &cells);
+        if config.volumes == Volumes::Kept || !failure.cause.is_of_time() {
+            return Err(failure.into());
+        }
+        let works = time_that_works(config, &cells, tessellation, &failure.cause);
+        return Err(failure.with_growth(works.map_or(Growth::Never, Growth::Until)).into());
+    };
+    let tessellation = resolved.as_ref().unwrap_or(&cells.tessellation);
+    let Smoothed { network, points, relaxed, collapsed, reconnected, flat_angles, angles_before, validation } =
+        smoothed;
+    attempts.extend(relaxed.given_up.clone());
+    let residual = clock.time(Stage::Validation, || herring_residual(&network, &points));
+    let times = clock.times;
+    let topology = Topology::new(&cells, tessellation, &network);
+    let config = config.clone();
+    let mut polycrystal = Polycrystal {
+        config,
+        cells,
+        network,
+        points,
+        relaxed,
+        regularization,
+        topology,
+        collapsed,
+        reconnected,
+        attempts,
+        residual,
+        tensions: None,
+        mobilities: None,
+        flat_angles,
+        angles_before,
+        validation,
+        times,
+    };
+    polycrystal.fit_misorientations();
+    let law = &polycrystal.cells.law;
+    polycrystal.tensions = law.tensions_reached(&polycrystal.network, || polycrystal.measures());
+    polycrystal.mobilities = law.mobilities_reached(&polycrystal.network);
+    Ok(polycrystal)
+}
+
+/// The network of some cells, by the first way that leads to one. An error comes with the last way.
+fn smooth_cells(
+    config: &Config,
+    cells: &Tessellated,
+    tessellation: &Tessellation,
+    attempts: &mut Vec<Attempt>,
+    clock: &mut Clock<'_>,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Result<(Regularization, Smoothed), (Regularization, NetworkError)> {
+    let mut tries = Regularization::tries(config).iter();
+    loop {
+        let regularization = *tries.next().expect("there is one, and the last is the result");
+        match smooth_regularized(config, cells, tessellation, regularization, attempts, clock, watch) {
+            Err(error) if error.is_tangle() && tries.len() > 0 => {
+                error.give_up(regularization.in_words(), attempts);
+            }
+            Err(error) => return Err((regularization, error)),
+            Ok(smoothed) => return Ok((regularization, smoothed)),
+        }
+    }
+}
+
+/// A time for which grains can grow freely, where for the config's own they cannot: it is tried.
+fn time_that_works(
+    config: &Config,
+    cells: &Tessellated,
+    tessellation: &Tessellation,
+    cause: &NetworkError,
+) -> Option<f64> {
+    let Relaxation::Time(asked) = config.relaxation else { return None };
+    let mut time = match cause {
+        NetworkError::GrainVanished { time, .. } if *time > 0.0 => 0.9 * time,
+        _ => SHORTER * asked,
+    };
+    let mut clock = Clock { progress: &|_, _, _| (), times: Vec::new() };
+    for _ in 0..SHORTER_TIMES {
+        time = two_digits_down(time);
+        let shorter = Config { relaxation: Relaxation::Time(time), ..config.clone() };
+        let works = |regularization: &Regularization| {
+            let attempts = &mut Vec::new();
+            smooth_regularized(
+                &shorter,
+                cells,
+                tessellation,
+                *regularization,
+                attempts,
+                &mut clock,
+                &mut |_| (),
+            )
+            .is_ok()
+        };
+        if Regularization::tries(config).iter().any(works) {
+            return Some(time);
+        }
+        time *= SHORTER;
+    }
+    None
+}
+
+/// How relaxation changed the topology.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reconnected {
+    /// How often grains came together and parted.
+    pub reconnections: Reconnections,
+    /// How near the network came to equilibrium, where that was asked for.
+    pub balance: Option<Balance>,
+}
+
+/// What becomes of short edges of the cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Regularization {
+    /// Grains come together and part there as tension has it.
+    ByEnergy,
+    /// What is short, and what relaxation would make so: the best triangles.
+    Foreseeing,
+    /// What is short.
+    Plain,
+    /// What is shorter by some halvings.
+    Shorter(u8),
+    /// Nothing.
+    None,
+}
+
+impl Regularization {
+    /// A name for programs.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ByEnergy => "by_energy",
+            Self::Foreseeing => "full",
+            Self::Plain => "short_edges",
+            Self::Shorter(_) => "shorter_edges",
+            Self::None => "none",
+        }
+    }
+
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::ByEnergy => "letting grains switch neighbours",
+            Self::Foreseeing => "cells without edges that are or become short",
+            Self::Plain => "cells without short edges",
+            Self::Shorter(_) => "cells without still shorter edges",
+            Self::None => "cells as they are",
+        }
+    }
+
+    /// Whether less was taken out than is usual where regularisation is asked for.
+    pub(crate) fn fell_back(self, config: &Config) -> bool {
+        match self {
+            Self::ByEnergy | Self::Foreseeing => false,
+            // Where grains are of several cells, those are not what relaxation is foreseen of.
+            Self::Plain => !config.has_grains_of_several_cells(),
+            Self::Shorter(_) => true,
+            Self::None => config.effective_regularize() > 0.0,
+        }
+    }
+
+    /// What to try, one after the other: where much is taken out, in rare places relaxation makes boundaries fold or cross.
+    fn tries(config: &Config) -> &'static [Self] {
+        match config.effective_regularize() {
+            _ if config.lets_topology_change() => {
+                &[Self::ByEnergy, Self::Foreseeing, Self::Plain, Self::None]
+            }
+            0.0 => &[Self::None],
+            _ if config.has_grains_of_several_cells() => &[Self::Plain, Self::Shorter(1), Self::Shorter(2)],
+            _ => &[Self::Foreseeing, Self::Plain, Self::None],
+        }
+    }
+}
+
+/// A valid network and how it came about, as [`Polycrystal`] has it.
+struct Smoothed {
+    network: Network,
+    points: Vec<DVec3>,
+    relaxed: Relaxed,
+    collapsed: Collapsed,
+    reconnected: Option<Reconnected>,
+    flat_angles: Vec<WeightedAngle>,
+    angles_before: Option<AngleStatistics>,
+    validation: Certificate,
+}
+
+/// The network of cells regularised in one way.
+fn smooth_regularized(
+    config: &Config,
+    cells: &Tessellated,
+    tessellation: &Tessellation,
+    regularization: Regularization,
+    attempts: &mut Vec<Attempt>,
+    clock: &mut Clock<'_>,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Result<Smoothed, NetworkError> {
+    let progress = clock.progress;
+    let mut watch = |step: RelaxationStep<'_>| {
+        progress(Stage::Relaxation, step.done, step.count);
+        watch(step);
+    };
+    if regularization == Regularization::ByEnergy {
+        return smooth_by_energy(config, &cells.law, tessellation, attempts, clock, &mut watch);
+    }
+    let (mut network, flat, collapsed) =
+        clock.time(Stage::Network, || network(config, cells, tessellation, regularization, attempts))?;
+    let angles_before = dihedral_angles(&network, network.control_mesh(), &flat);
+    let flat_angles = angles_between_boundaries(&network, network.control_mesh(), &flat);
+    let relaxed = clock.time(Stage::Relaxation, || {
+        relax_watched(&network, &flat, &config.relaxation_of_kept_topology(), config.volumes, watch)
+    })?;
+    let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
+    if config.volumes == Volumes::Free {
+        let volumes = network.grain_volumes(network.finest(), &points);
+        network = network.with_cell_volumes(volumes);
+    }
+    let validation =
+        clock.time(Stage::Validation, || validate(&network, &points).map_err(NetworkError::Invalid))?;
+    let reconnected = None;
+    Ok(Smoothed { network, points, relaxed, collapsed, reconnected, flat_angles, angles_before, validation })
+}
+
+/// The network of cells that come together and part as tension has it.
+fn smooth_by_energy(
+    config: &Config,
+    law: &BoundaryLaw,
+    tessellation: &Tessellation,
+    attempts: &mut Vec<Attempt>,
+    clock: &mut Clock<'_>,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Result<Smoothed, NetworkError> {
+    let Config { face_mesh, junctions, levels, .. } = *config;
+    let (of_cells, flat) = clock.time(Stage::Network, || Network::new(tessellation, junctions, 0))?;
+    let angles_before = dihedral_angles(&of_cells, of_cells.control_mesh(), &flat);
+    let flat_angles = angles_between_boundaries(&of_cells, of_cells.control_mesh(), &flat);
+    let tension = |boundary: &Boundary| law.tension(boundary);
+    let recipe = NetworkRecipe { face_mesh, junctions, levels: levels as usize, tension: &tension };
+    let relaxed_cells =
+        clock.time(Stage::Relaxation, || relax_cells(tessellation, &recipe, &config.relaxation, watch))?;
+    let RelaxedCells {
+        network,
+        relaxed,
+        reconnections,
+        merged,
+        balance,
+        validation,
+        validated_in,
+        attempts: tried,
+    } = relaxed_cells;
+    attempts.extend(tried);
+    let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
+    clock.move_time(validated_in, Stage::Relaxation, Stage::Validation);
+    let reconnected = Some(Reconnected { reconnections, balance });
+    Ok(Smoothed {
+        network,
+        points,
+        relaxed,
+        collapsed: merged,
+        reconnected,
+        flat_angles,
+        angles_before,
+        validation,
+    })
+}
+
+/// The network of regularised cells, whose grains are to have the volumes of the cells as they were.
+fn network(
+    config: &Config,
+    cells: &Tessellated,
+    tessellation: &Tessellation,
+    regularization: Regularization,
+    attempts: &mut Vec<Attempt>,
+) -> Result<(Network, Vec<DVec3>, Collapsed), NetworkError> {
+    let Config { face_mesh, junctions, levels, .. } = *config;
+    let length = config.effective_regularize();
+    let network_of = |tessellation: &Tessellation, face_mesh, coarsening| {
+        let (network, flat) =
+            cells.network(tessellation, face_mesh, junctions, coarsening, levels as usize)?;
+        Ok::<_, NetworkError>((cells.law.apply(network)?, flat))
+    };
+    let (regular, collapsed) = match regularization {
+        Regularization::Plain | Regularization::Shorter(_) if cells.grain_cells.is_some() => {
+            let halvings = if let Regularization::Shorter(halvings) = regularization { halvings } else { 0 };
+            let (network, flat) = network_of(tessellation, face_mesh, 0.5f64.powi(halvings.into()) * length)?;
+            return Ok((network, flat, Collapsed::default()));
+        }
+        Regularization::Foreseeing => {
+            let RegularCells { cells, collapsed, given_up } = regular_cells(tessellation, length)?;
+            attempts.extend(given_up);
+            (cells, collapsed)
+        }
+        Regularization::Plain => remove_short_edges(tessellation, length),
+        Regularization::Shorter(halvings) => {
+            remove_short_edges(tessellation, 0.5f64.powi(halvings.into()) * length)
+        }
+        Regularization::None | Regularization::ByEnergy => {
+            let (network, flat) = network_of(tessellation, face_mesh, 0.0)?;
+            return Ok((network, flat, Collapsed::default()));
+        }
+    };
+    let volumes = grain_volumes(tessellation, cells.grain_cells.as_ref());
+    let (network, flat) = network_of(&regular, config.regular_face_mesh(), 0.0)?;
+    Ok((network.with_cell_volumes(volumes), flat, collapsed))
+}
+
+/// The size for so many random seeds, from the means of Poisson-Voronoi cells (walls not counted): in space 15.54 faces,
+/// 27.07 vertices and 40.61 edges a cell, 5.23 edges a face; in the plane 6 edges and 6 vertices.
+fn expected_control_mesh_size(seed_count: usize, dimension: Dimension) -> LevelSize {
+    let count = seed_count as u128;
+    match dimension {
+        Dimension::Two => LevelSize { points: 5 * count, edges: 6 * count, triangles: 0 },
+        // Each face belongs to two cells, each line to three, each vertex to four: 6.77 + 13.54 + 7.77 points.
+        Dimension::Three => LevelSize { points: 28 * count, edges: 108 * count, triangles: 81 * count },
+    }
+}

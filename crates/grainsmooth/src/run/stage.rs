@@ -1,0 +1,89 @@
+//! The parts of a run, and how far it is.
+
+use std::time::{Duration, Instant};
+
+/// A part of a run, in the order in which they follow each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Drawing or reading seeds.
+    Seeds,
+    /// Cutting the Voronoi cells.
+    Cells,
+    /// Building the network and the connectivity of all its levels.
+    Network,
+    /// Moving control points toward equilibrium.
+    Relaxation,
+    /// Placing the points of the finest level.
+    Subdivision,
+    /// Checking the result and measuring it.
+    Validation,
+    /// Writing the file.
+    Writing,
+}
+
+impl Stage {
+    /// Every stage, in the order in which they follow each other.
+    pub const ALL: [Self; 7] = [
+        Self::Seeds,
+        Self::Cells,
+        Self::Network,
+        Self::Relaxation,
+        Self::Subdivision,
+        Self::Validation,
+        Self::Writing,
+    ];
+
+    /// The stage's place among all, from 1.
+    pub fn number(self) -> usize {
+        1 + Self::ALL.iter().take_while(|other| **other != self).count()
+    }
+
+    /// The stage in one word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Seeds => "seeds",
+            Self::Cells => "cells",
+            Self::Network => "network",
+            Self::Relaxation => "relaxation",
+            Self::Subdivision => "subdivision",
+            Self::Validation => "validation",
+            Self::Writing => "writing",
+        }
+    }
+}
+
+/// Told how far a run is: the stage, the steps of it that are done, and their number.
+pub type Progress<'a> = &'a (dyn Fn(Stage, usize, usize) + Sync);
+
+/// Runs stages one after the other and remembers how long each took.
+pub(crate) struct Clock<'a> {
+    pub(crate) progress: Progress<'a>,
+    pub(crate) times: Vec<(Stage, Duration)>,
+}
+
+impl Clock<'_> {
+    pub(crate) fn time<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
+        (self.progress)(stage, 0, 1);
+        let start = Instant::now();
+        let result = work();
+        let taken = start.elapsed();
+        match self.times.iter_mut().find(|(known, _)| *known == stage) {
+            Some((_, time)) => *time += taken,
+            None => self.times.push((stage, taken)),
+        }
+        result
+    }
+
+    /// Counts some time of a stage to another.
+    pub(crate) fn move_time(&mut self, time: Duration, from: Stage, to: Stage) {
+        for (stage, taken) in &mut self.times {
+            if *stage == from {
+                *taken = taken.saturating_sub(time);
+            }
+        }
+        match self.times.iter_mut().find(|(known, _)| *known == to) {
+            Some((_, taken)) => *taken += time,
+            None => self.times.push((to, time)),
+        }
+    }
+}

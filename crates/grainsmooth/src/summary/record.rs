@@ -1,0 +1,243 @@
+//! What a run says about its result, for programs.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use polycrystal::{AngleStatistics, Boundary, HerringResidual};
+use serde::Serialize;
+
+use crate::figures::triangle_angles::TriangleAngles;
+use crate::{
+    AskedAndReached, ComponentShare, Divided, EquivalentDiameters, HistogramFit, LawReached, PhaseShare,
+    Polycrystal, Reconnected, ShapesReached, SizesFit, SizesReached, TensionsReached, Tessellated, Topology,
+};
+
+/// The numbers of [`Summary`](crate::Summary), to be written as JSON.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SummaryRecord {
+    version: &'static str,
+    command_line: String,
+    settings: BTreeMap<&'static str, toml::Value>,
+    dimension: u8,
+    grains: usize,
+    /// Seeds without a cell, and those whose cells were merged into what surrounds them.
+    dropped_seeds: Vec<u32>,
+    merged_seeds: Vec<u32>,
+    boundaries: Boundaries,
+    equivalent_diameter: EquivalentDiameters,
+    triple_lines: usize,
+    quadruple_points: usize,
+    topology: Topology,
+    /// Every figure that was asked for.
+    asked_and_reached: Vec<AskedAndReached>,
+    /// The sizes asked for and reached.
+    sizes: Option<SizesReached>,
+    /// The shapes asked for and reached.
+    shapes: Option<ShapesReached>,
+    /// None where no phases are asked for.
+    phases: Vec<PhaseRecord>,
+    /// What divides grains; none where nothing does.
+    inside: Vec<Divided>,
+    /// Of all grains; of phases each has its own.
+    texture: Option<TextureRecord>,
+    regularization: &'static str,
+    regularization_fell_back: bool,
+    collapsed_edges: usize,
+    collapsed_boundaries: usize,
+    topology_changes: Option<TopologyChanges>,
+    equilibrium: Option<Equilibrium>,
+    /// What was tried before and why it was given up, in order.
+    attempts: Vec<Attempt>,
+    residual: Option<Residual>,
+    /// Where laws of them are asked for.
+    tensions: Option<TensionsReached>,
+    mobilities: Option<LawReached>,
+    /// By what coordinates were multiplied in the end; angles and residual are those before.
+    stretch: Option<[f64; 3]>,
+    points: usize,
+    /// Triangles, in the plane segments.
+    elements: usize,
+    level: u32,
+    /// In degrees.
+    angles_before: Option<Angles>,
+    angles_after: Option<Angles>,
+    /// The same unit; none in the plane.
+    triangle_angles: Option<TriangleAngles>,
+    largest_relative_volume_error: f64,
+    seconds: BTreeMap<&'static str, f64>,
+    written: Vec<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct Boundaries {
+    between_grains: usize,
+    on_walls: usize,
+    /// Of those between grains, how many stand in the file twice, a period apart.
+    twice: usize,
+}
+
+/// The orientations of the grains.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct TextureRecord {
+    crystal_symmetry: &'static str,
+    /// Shares of the volume.
+    components: Vec<ComponentShare>,
+    index: Option<f64>,
+    /// How near the disorientations of neighbours came to a histogram.
+    misorientations: Option<HistogramFit>,
+}
+
+/// A phase, its share of the volume, and what of its own was asked for.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct PhaseRecord {
+    #[serde(flatten)]
+    share: PhaseShare,
+    /// Where phases have diameters of their own.
+    sizes: Option<SizesFit>,
+    texture: Option<TextureRecord>,
+}
+
+/// How relaxation changed the topology, where it may. In the plane, lines are points.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct TopologyChanges {
+    lines_to_boundaries: usize,
+    boundaries_to_lines: usize,
+    boundaries_swapped: usize,
+}
+
+/// How near relaxation came to equilibrium, where that was asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct Equilibrium {
+    /// Lines (in the plane: points) that are not at rest: short, of more than three boundaries, or with a large residual.
+    flagged_lines: usize,
+    /// Of the lines that are not flagged.
+    largest_residual: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Attempt {
+    tried: String,
+    said: String,
+}
+
+/// Of Herring's condition at triple lines.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct Residual {
+    rms: f64,
+    largest: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct Angles {
+    mean: f64,
+    standard_deviation: f64,
+}
+
+/// What became of a texture, if grains have orientations.
+fn texture_record(cells: &Tessellated, number: usize) -> Option<TextureRecord> {
+    let texture = cells.texture.as_ref()?;
+    let volumes = cells.volumes();
+    Some(TextureRecord {
+        crystal_symmetry: texture.members(number).0.rotation_group(),
+        components: texture.shares(number, &volumes),
+        index: texture.index(number, &volumes),
+        misorientations: texture.fit(),
+    })
+}
+
+fn phase_records(polycrystal: &Polycrystal) -> Vec<PhaseRecord> {
+    let cells = &polycrystal.cells;
+    let Some(phases) = &cells.phases else { return Vec::new() };
+    let reached = polycrystal.sizes_reached();
+    let shares = phases.shares(&cells.volumes(), polycrystal.network.cell_volumes());
+    let record = |(number, share): (usize, PhaseShare)| PhaseRecord {
+        share,
+        sizes: reached.as_ref().and_then(|reached| reached.of_phases().get(number).cloned()),
+        texture: texture_record(cells, number),
+    };
+    shares.into_iter().enumerate().map(record).collect()
+}
+
+impl SummaryRecord {
+    /// The numbers of a result and the files that it was written to.
+    pub fn new(polycrystal: &Polycrystal, written: Vec<PathBuf>) -> Self {
+        let Polycrystal { config, network, .. } = polycrystal;
+        let finest = network.finest();
+        let junctions = network.junction_counts();
+        let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
+        let twice = count(|boundary| boundary.twin.is_some()) / 2;
+        let angles = |statistics: AngleStatistics| Angles {
+            mean: statistics.mean,
+            standard_deviation: statistics.standard_deviation,
+        };
+        let seconds = polycrystal.times.iter().map(|(stage, time)| (stage.name(), time.as_secs_f64()));
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            command_line: config.command_line(),
+            settings: config.settings().into_iter().collect(),
+            dimension: config.dimension.axes(),
+            grains: network.grain_count(),
+            dropped_seeds: polycrystal.cells.dropped_seeds.clone(),
+            merged_seeds: polycrystal.cells.merged_seeds.clone(),
+            boundaries: Boundaries {
+                between_grains: count(Boundary::is_interior) + twice,
+                on_walls: count(|boundary| boundary.wall.is_some()),
+                twice,
+            },
+            equivalent_diameter: polycrystal.diameter_statistics(),
+            triple_lines: junctions.triple_lines,
+            quadruple_points: junctions.quadruple_points,
+            topology: polycrystal.topology.clone(),
+            asked_and_reached: polycrystal.asked_and_reached(),
+            sizes: polycrystal.sizes_reached(),
+            shapes: polycrystal.shapes_reached(),
+            texture: polycrystal
+                .cells
+                .phases
+                .is_none()
+                .then(|| texture_record(&polycrystal.cells, 0))
+                .flatten(),
+            phases: phase_records(polycrystal),
+            inside: polycrystal
+                .cells
+                .parents
+                .as_ref()
+                .map_or_else(Vec::new, |parents| parents.patterns().to_vec()),
+            regularization: polycrystal.regularization.name(),
+            regularization_fell_back: polycrystal.regularization.fell_back(config),
+            collapsed_edges: polycrystal.collapsed.edges,
+            collapsed_boundaries: polycrystal.collapsed.faces,
+            topology_changes: polycrystal.reconnected.map(|Reconnected { reconnections, .. }| {
+                TopologyChanges {
+                    lines_to_boundaries: reconnections.opened,
+                    boundaries_to_lines: reconnections.closed,
+                    boundaries_swapped: reconnections.swapped,
+                }
+            }),
+            equilibrium: polycrystal.reconnected.and_then(|reconnected| reconnected.balance).map(|balance| {
+                Equilibrium {
+                    flagged_lines: balance.flagged_lines,
+                    largest_residual: balance.largest_residual,
+                }
+            }),
+            attempts: polycrystal
+                .attempts
+                .iter()
+                .map(|attempt| Attempt { tried: attempt.tried.clone(), said: attempt.said.clone() })
+                .collect(),
+            residual: polycrystal.residual.map(|HerringResidual { rms, largest }| Residual { rms, largest }),
+            tensions: polycrystal.tensions.clone(),
+            mobilities: polycrystal.mobilities.clone(),
+            stretch: polycrystal.is_stretched().then(|| config.stretch().to_array()),
+            points: finest.vertex_count(),
+            elements: finest.element_count(),
+            level: config.levels,
+            angles_before: polycrystal.angles_before.map(angles),
+            angles_after: polycrystal.validation.angles.map(angles),
+            triangle_angles: polycrystal.validation.triangles.map(TriangleAngles::from),
+            largest_relative_volume_error: polycrystal.validation.largest_volume_error,
+            seconds: seconds.collect(),
+            written,
+        }
+    }
+}

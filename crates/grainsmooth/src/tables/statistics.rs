@@ -1,0 +1,508 @@
+//! Measures of a finished polycrystal as files of numbers.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::path::Path;
+
+use polycrystal::{
+    BoundaryMeasures, GrainId, GrainMeasures, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures,
+    PlaneMeasures, QuadruplePointMeasures, Side, SpaceMeasures, TripleLineMeasures, TriplePointMeasures,
+};
+use serde::Serialize;
+use voronoi::Dimension;
+
+use crate::names::PARENT;
+use crate::names::PHASE;
+use crate::names::{MOBILITY, TENSION};
+use crate::tables::table::{Table, Value};
+use crate::{Error, GrainTexture, Output, Polycrystal, StagedFiles, TableFormat, Topology};
+
+/// The tables beside that of the grains, by dimension.
+const OTHERS_IN_SPACE: [&str; 3] = ["boundaries", "triple_lines", "quadruple_points"];
+const OTHERS_IN_PLANE: [&str; 2] = ["boundaries", "triple_points"];
+
+/// Where statistics go, all files found writable: one of JSON, or a CSV file for each table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StatisticsOutput {
+    /// The file as it was given; of CSV the table of the grains.
+    main: Output<TableFormat>,
+    /// The other tables of CSV.
+    others: Vec<(&'static str, Output<TableFormat>)>,
+}
+
+impl StatisticsOutput {
+    /// Checks that statistics can be written at `path`; next to `a.csv` stand `a.boundaries.csv` and so on.
+    ///
+    /// # Errors
+    /// As of [`Output::check_as`].
+    pub fn check(path: &Path, format: TableFormat, dimension: Dimension) -> Result<Self, Error> {
+        let main = Output::check_as(path, format)?;
+        let names: &[&str] = match (format, dimension) {
+            (TableFormat::Json, _) => &[],
+            (TableFormat::Csv, Dimension::Three) => &OTHERS_IN_SPACE,
+            (TableFormat::Csv, Dimension::Two) => &OTHERS_IN_PLANE,
+        };
+        let beside = |name: &&'static str| {
+            Ok((*name, Output::check_as(path.with_extension(format!("{name}.csv")), format)?))
+        };
+        Ok(Self { main, others: names.iter().map(beside).collect::<Result<_, Error>>()? })
+    }
+
+    /// All files.
+    pub fn files(&self) -> impl Iterator<Item = &Output<TableFormat>> {
+        std::iter::once(&self.main).chain(self.others.iter().map(|(_, output)| output))
+    }
+}
+
+/// What a polycrystal is like: a table each of its grains, boundaries, and the places where these meet.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NetworkStatistics {
+    version: &'static str,
+    command_line: String,
+    random_seed: u64,
+    settings: BTreeMap<&'static str, toml::Value>,
+    /// Mean and spread of what the tables hold.
+    distributions: BTreeMap<&'static str, Distribution>,
+    topology: Topology,
+    grains: Table,
+    #[serde(flatten)]
+    others: BTreeMap<&'static str, Table>,
+}
+
+/// How a quantity is distributed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct Distribution {
+    count: usize,
+    mean: f64,
+    standard_deviation: f64,
+    minimum: f64,
+    maximum: f64,
+}
+
+impl Polycrystal {
+    /// Measures the smoothed network.
+    pub fn statistics(&self) -> NetworkStatistics {
+        let (mut grains, mut others, distributions) = match self.measures() {
+            Measures::Space(measures) => {
+                in_space(&measures, &self.cells.seed_ids, &self.network.finest().grain_counts)
+            }
+            Measures::Plane(measures) => in_plane(&measures, &self.cells.seed_ids),
+        };
+        if let Some(parents) = &self.cells.parents {
+            let parent = |grain: GrainId| i64::from(parents.number(grain.index()));
+            grains.add_column(PARENT, |row| Value::Integer(row[0].grain().map_or(-1, parent)));
+        }
+        if let Some(phases) = &self.cells.phases {
+            let phase = |grain: GrainId| i64::from(phases.number(grain.index()));
+            grains.add_column(PHASE, |row| Value::Integer(row[0].grain().map_or(0, phase)));
+        }
+        let laws = [
+            (TENSION, &self.config.tensions, self.network.tensions()),
+            (MOBILITY, &self.config.mobilities, self.network.mobilities()),
+        ];
+        for (name, _, values) in laws.into_iter().filter(|(_, laws, _)| !laws.is_empty()) {
+            if let Some(boundaries) = others.get_mut("boundaries") {
+                let value = |number: &Value| Some(values[number.grain()?.index()]);
+                boundaries.add_column(name, |row| Value::Number(value(&row[0]).unwrap_or(f64::NAN)));
+            }
+        }
+        if let Some(texture) = &self.cells.texture {
+            add_orientations(texture, &mut grains);
+            if let Some(boundaries) = others.get_mut("boundaries") {
+                add_disorientations(texture, boundaries);
+            }
+        }
+        NetworkStatistics {
+            version: env!("CARGO_PKG_VERSION"),
+            command_line: self.config.command_line(),
+            random_seed: self.config.random_seed,
+            settings: self.config.settings().into_iter().collect(),
+            distributions,
+            topology: self.topology.clone(),
+            grains,
+            others,
+        }
+    }
+}
+
+impl NetworkStatistics {
+    /// Completes the tables.
+    ///
+    /// # Errors
+    /// [`Error::WriteOutput`]; [`Error::OutputTwice`].
+    pub fn stage(&self, output: &StatisticsOutput, files: &mut StagedFiles) -> Result<(), Error> {
+        output.main.stage(files, |out| match output.main.format() {
+            TableFormat::Json => self.write_json(out),
+            TableFormat::Csv => self.grains.write_csv(out),
+        })?;
+        let tables = output.others.iter().filter_map(|(name, output)| Some((self.others.get(name)?, output)));
+        tables.into_iter().try_for_each(|(table, output)| output.stage(files, |out| table.write_csv(out)))
+    }
+
+    fn write_json(&self, out: &mut dyn Write) -> io::Result<()> {
+        serde_json::to_writer(&mut *out, self)?;
+        writeln!(out)
+    }
+}
+
+type Tables = (Table, BTreeMap<&'static str, Table>, BTreeMap<&'static str, Distribution>);
+
+/// Adds what orientation each grain has; the first column is its number.
+fn add_orientations(texture: &GrainTexture, grains: &mut Table) {
+    let orientation = |row: &[Value]| row[0].grain().map(|grain| texture.orientations()[grain.index()]);
+    grains.add_column("EulerAngles", |row| {
+        Value::Numbers(orientation(row).map_or_else(Vec::new, |one| one.euler_degrees().to_vec()))
+    });
+    grains.add_column("Quaternion", |row| {
+        Value::Numbers(orientation(row).map_or_else(Vec::new, |one| one.quaternion().to_vec()))
+    });
+}
+
+/// Adds the least rotation between the sides of each boundary; their numbers are the second and the third column.
+fn add_disorientations(texture: &GrainTexture, boundaries: &mut Table) {
+    let found = |row: &[Value]| {
+        let [first, second] = [row[1].grain()?, row[2].grain()?];
+        texture.disorientation([Side::Grain(first), Side::Grain(second)])
+    };
+    boundaries
+        .add_column("Disorientation", |row| Value::Number(found(row).map_or(f64::NAN, |found| found.angle)));
+    boundaries.add_column("DisorientationAxis", |row| {
+        Value::Numbers(found(row).map_or_else(Vec::new, |found| found.axis.to_array().to_vec()))
+    });
+}
+
+fn in_space(measures: &SpaceMeasures, seed_ids: &[u32], grain_counts: &[u8]) -> Tables {
+    let SpaceMeasures { grains, boundaries, triple_lines, quadruple_points, .. } = measures;
+    let boundaries_inside = boundaries.iter().filter(|boundary| is_inside(&boundary.sides));
+    let lines_inside = triple_lines.iter().filter(|line| is_inside(&line.sides));
+    let areas = boundaries_inside.clone().map(|boundary| boundary.area);
+    let mut distributions = distributions([
+        ("volume", grains.iter().map(|grain| grain.volume).collect()),
+        ("area", grains.iter().map(|grain| grain.area).collect()),
+        ("equivalent_diameter", grains.iter().map(|grain| grain.equivalent_diameter).collect()),
+        ("sphericity", grains.iter().map(|grain| grain.sphericity).collect()),
+        ("mean_width", grains.iter().map(|grain| grain.mean_width).collect()),
+        ("neighbors", grains.iter().map(|grain| grain.neighbors.len() as f64).collect()),
+        ("faces", grains.iter().map(|grain| grain.face_count as f64).collect()),
+        ("boundary_area", areas.collect()),
+        ("edges_per_face", boundaries_inside.map(|boundary| boundary.edge_count as f64).collect()),
+        ("triple_line_length", lines_inside.map(|line| line.length).collect()),
+    ]);
+    add_angles(&mut distributions, measures.dihedral_angles, |range| {
+        let lines = triple_lines.iter().filter(|line| is_inside(&line.sides) && line.sides.len() == 3);
+        for line in lines.clone() {
+            *range = [range[0].min(line.smallest_angle), range[1].max(line.largest_angle)];
+        }
+        3 * lines.count()
+    });
+    let others = [
+        ("boundaries", boundary_table(boundaries)),
+        ("triple_lines", triple_line_table(triple_lines)),
+        ("quadruple_points", quadruple_point_table(quadruple_points, grain_counts)),
+    ];
+    (grain_table(grains, seed_ids), BTreeMap::from(others), distributions)
+}
+
+fn in_plane(measures: &PlaneMeasures, seed_ids: &[u32]) -> Tables {
+    let PlaneMeasures { grains, boundaries, triple_points, .. } = measures;
+    let inside = boundaries.iter().filter(|boundary| is_inside(&boundary.sides));
+    let mut distributions = distributions([
+        ("area", grains.iter().map(|grain| grain.area).collect()),
+        ("perimeter", grains.iter().map(|grain| grain.perimeter).collect()),
+        ("equivalent_diameter", grains.iter().map(|grain| grain.equivalent_diameter).collect()),
+        ("circularity", grains.iter().map(|grain| grain.circularity).collect()),
+        ("neighbors", grains.iter().map(|grain| grain.neighbors.len() as f64).collect()),
+        ("sides", grains.iter().map(|grain| grain.side_count as f64).collect()),
+        ("boundary_length", inside.map(|boundary| boundary.length).collect()),
+    ]);
+    add_angles(&mut distributions, measures.dihedral_angles, |range| {
+        let inside = triple_points.iter().filter(|point| is_inside(&point.sides) && point.sides.len() == 3);
+        let angles: Vec<f64> = inside.flat_map(|point| point.angles.iter().copied()).collect();
+        *range = angles.iter().fold(*range, |range, angle| [range[0].min(*angle), range[1].max(*angle)]);
+        angles.len()
+    });
+    let others = [
+        ("boundaries", plane_boundary_table(boundaries)),
+        ("triple_points", triple_point_table(triple_points)),
+    ];
+    (plane_grain_table(grains, seed_ids), BTreeMap::from(others), distributions)
+}
+
+fn is_inside(sides: &[Side]) -> bool {
+    !sides.contains(&Side::Exterior)
+}
+
+fn distributions<const N: usize>(
+    quantities: [(&'static str, Vec<f64>); N],
+) -> BTreeMap<&'static str, Distribution> {
+    let quantities = quantities.into_iter().filter(|(_, values)| !values.is_empty());
+    quantities.map(|(name, values)| (name, Distribution::of(&values))).collect()
+}
+
+/// Adds dihedral angles, whose mean and spread are known; `add_range` widens a range by all angles and counts them.
+fn add_angles(
+    distributions: &mut BTreeMap<&'static str, Distribution>,
+    angles: Option<polycrystal::AngleStatistics>,
+    add_range: impl FnOnce(&mut [f64; 2]) -> usize,
+) {
+    let Some(angles) = angles else { return };
+    let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+    let count = add_range(&mut range);
+    let [minimum, maximum] = range;
+    let polycrystal::AngleStatistics { mean, standard_deviation } = angles;
+    let distribution = Distribution { count, mean, standard_deviation, minimum, maximum };
+    distributions.insert("dihedral_angle", distribution);
+}
+
+impl Distribution {
+    /// That of some values; the standard deviation is that of these, not an estimate for more.
+    fn of(values: &[f64]) -> Self {
+        let count = values.len();
+        let mean = values.iter().sum::<f64>() / count as f64;
+        let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count as f64;
+        Self {
+            count,
+            mean,
+            standard_deviation: variance.sqrt(),
+            minimum: values.iter().copied().fold(f64::INFINITY, f64::min),
+            maximum: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+}
+
+/// Grains by number, the exterior as -1.
+fn side(side: &Side) -> i64 {
+    side.grain().map_or(-1, |grain| i64::from(grain.0))
+}
+
+fn sides(sides: &[Side]) -> Value {
+    Value::Integers(sides.iter().map(side).collect())
+}
+
+/// How many grains are among the sides that meet somewhere.
+fn grain_count(sides: &[Side]) -> Value {
+    count(sides.iter().filter(|side| side.grain().is_some()).count())
+}
+
+fn count(count: usize) -> Value {
+    Value::Integer(i64::try_from(count).unwrap_or(i64::MAX))
+}
+
+fn id(id: u32) -> Value {
+    Value::Integer(id.into())
+}
+
+fn ids(ids: impl IntoIterator<Item = u32>) -> Value {
+    Value::Integers(ids.into_iter().map(i64::from).collect())
+}
+
+fn numbers(values: impl IntoIterator<Item = f64>) -> impl Iterator<Item = Value> {
+    values.into_iter().map(Value::Number)
+}
+
+fn grain_table(grains: &[GrainMeasures], seed_ids: &[u32]) -> Table {
+    let row = |grain: &GrainMeasures| {
+        let [x, y, z] = [grain.inertia.x_axis, grain.inertia.y_axis, grain.inertia.z_axis];
+        let mut row = vec![id(grain.grain.0)];
+        row.extend(numbers([grain.volume, grain.area]));
+        row.extend(numbers(grain.centroid.to_array()));
+        row.extend(numbers([grain.equivalent_diameter, grain.sphericity]));
+        row.extend(numbers([grain.mean_width, grain.integral_mean_curvature, grain.triple_line_length]));
+        row.extend(numbers([grain.growth_rate.unwrap_or(f64::NAN), grain.curvature_rate]));
+        row.extend([grain.face_count, grain.edge_count, grain.vertex_count].map(count));
+        row.push(Value::Number(grain.edges_per_face));
+        row.extend(numbers([x.x, y.y, z.z, x.y, x.z, y.z]));
+        row.push(Value::Flag(grain.is_at_exterior));
+        row.push(ids(grain.neighbors.iter().map(|neighbor| neighbor.0)));
+        row.push(id(seed_ids[grain.grain.index()]));
+        row
+    };
+    let columns = vec![
+        "id",
+        "volume",
+        "area",
+        "centroid_x",
+        "centroid_y",
+        "centroid_z",
+        "equivalent_diameter",
+        "sphericity",
+        "mean_width",
+        "integral_mean_curvature",
+        "triple_line_length",
+        "growth_rate",
+        "curvature_rate",
+        "faces",
+        "edges",
+        "vertices",
+        "edges_per_face",
+        "inertia_xx",
+        "inertia_yy",
+        "inertia_zz",
+        "inertia_xy",
+        "inertia_xz",
+        "inertia_yz",
+        "at_exterior",
+        "neighbors",
+        "SeedId",
+    ];
+    Table { columns, rows: grains.iter().map(row).collect() }
+}
+
+fn boundary_table(boundaries: &[BoundaryMeasures]) -> Table {
+    let row = |boundary: &BoundaryMeasures| {
+        let mut row = vec![Value::Integer(i64::from(boundary.boundary.0))];
+        row.extend(boundary.sides.map(|of| Value::Integer(side(&of))));
+        row.push(Value::Number(boundary.area));
+        row.extend(numbers(boundary.centroid.to_array()));
+        row.extend(numbers(boundary.mean_normal.to_array()));
+        row.extend([count(boundary.edge_count), Value::Number(boundary.perimeter)]);
+        row.push(Value::Number(boundary.mean_curvature));
+        row
+    };
+    let columns = vec![
+        "id",
+        "side_0",
+        "side_1",
+        "area",
+        "centroid_x",
+        "centroid_y",
+        "centroid_z",
+        "normal_x",
+        "normal_y",
+        "normal_z",
+        "edges",
+        "perimeter",
+        "mean_curvature",
+    ];
+    Table { columns, rows: boundaries.iter().map(row).collect() }
+}
+
+fn triple_line_table(lines: &[TripleLineMeasures]) -> Table {
+    let row = |(id, line): (usize, &TripleLineMeasures)| {
+        vec![
+            count(id),
+            Value::Number(line.length),
+            Value::Number(line.smallest_angle),
+            Value::Number(line.largest_angle),
+            Value::Number(line.residual.unwrap_or(f64::NAN)),
+            Value::Flag(line.is_closed),
+            grain_count(&line.sides),
+            sides(&line.sides),
+            Value::Numbers(line.mean_angles.clone()),
+            ids(line.boundaries.iter().map(|boundary| boundary.0)),
+        ]
+    };
+    let columns = vec![
+        "id",
+        "length",
+        "smallest_angle",
+        "largest_angle",
+        "residual",
+        "closed",
+        "grains",
+        "sides",
+        "mean_angles",
+        "boundaries",
+    ];
+    Table { columns, rows: lines.iter().enumerate().map(row).collect() }
+}
+
+/// `grain_counts` are those of all points.
+fn quadruple_point_table(points: &[QuadruplePointMeasures], grain_counts: &[u8]) -> Table {
+    let row = |at: &QuadruplePointMeasures| {
+        let mut row = vec![Value::Integer(i64::from(at.point))];
+        row.extend(numbers(at.position.to_array()));
+        row.extend([count(at.line_count), count(grain_counts[at.point as usize].into())]);
+        row.extend(numbers([at.mean_angle, at.smallest_angle, at.largest_angle]));
+        row.push(sides(&at.sides));
+        row
+    };
+    let columns = vec![
+        "point",
+        "x",
+        "y",
+        "z",
+        "lines",
+        "grains",
+        "mean_angle",
+        "smallest_angle",
+        "largest_angle",
+        "sides",
+    ];
+    Table { columns, rows: points.iter().map(row).collect() }
+}
+
+fn plane_grain_table(grains: &[PlaneGrainMeasures], seed_ids: &[u32]) -> Table {
+    let row = |grain: &PlaneGrainMeasures| {
+        let [x, y] = [grain.second_moment.x_axis, grain.second_moment.y_axis];
+        let mut row = vec![id(grain.grain.0)];
+        row.extend(numbers([grain.area, grain.perimeter]));
+        row.extend(numbers(grain.centroid.to_array()));
+        row.extend(numbers([grain.equivalent_diameter, grain.circularity, grain.turning]));
+        row.extend(numbers([grain.growth_rate.unwrap_or(f64::NAN), grain.curvature_rate]));
+        row.push(count(grain.side_count));
+        row.extend(numbers([x.x, y.y, x.y]));
+        row.push(Value::Flag(grain.is_at_exterior));
+        row.push(ids(grain.neighbors.iter().map(|neighbor| neighbor.0)));
+        row.push(id(seed_ids[grain.grain.index()]));
+        row
+    };
+    let columns = vec![
+        "id",
+        "area",
+        "perimeter",
+        "centroid_x",
+        "centroid_y",
+        "equivalent_diameter",
+        "circularity",
+        "turning",
+        "growth_rate",
+        "curvature_rate",
+        "sides",
+        "moment_xx",
+        "moment_yy",
+        "moment_xy",
+        "at_exterior",
+        "neighbors",
+        "SeedId",
+    ];
+    Table { columns, rows: grains.iter().map(row).collect() }
+}
+
+fn plane_boundary_table(boundaries: &[PlaneBoundaryMeasures]) -> Table {
+    let row = |boundary: &PlaneBoundaryMeasures| {
+        let mut row = vec![Value::Integer(i64::from(boundary.boundary.0))];
+        row.extend(boundary.sides.map(|of| Value::Integer(side(&of))));
+        row.push(Value::Number(boundary.length));
+        row.extend(numbers(boundary.centroid.to_array()));
+        row.extend(numbers(boundary.mean_normal.to_array()));
+        row.push(Value::Number(boundary.mean_curvature));
+        row
+    };
+    let columns = vec![
+        "id",
+        "side_0",
+        "side_1",
+        "length",
+        "centroid_x",
+        "centroid_y",
+        "normal_x",
+        "normal_y",
+        "mean_curvature",
+    ];
+    Table { columns, rows: boundaries.iter().map(row).collect() }
+}
+
+fn triple_point_table(points: &[TriplePointMeasures]) -> Table {
+    let row = |at: &TriplePointMeasures| {
+        let mut row = vec![Value::Integer(i64::from(at.point))];
+        row.extend(numbers(at.position.to_array()));
+        row.push(grain_count(&at.sides));
+        row.extend([sides(&at.sides), Value::Numbers(at.angles.clone())]);
+        row.push(Value::Number(at.residual.unwrap_or(f64::NAN)));
+        row.push(ids(at.boundaries.iter().map(|boundary| boundary.0)));
+        row
+    };
+    let columns = vec!["point", "x", "y", "grains", "sides", "angles", "residual", "boundaries"];
+    Table { columns, rows: points.iter().map(row).collect() }
+}
