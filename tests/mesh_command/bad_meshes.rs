@@ -157,7 +157,17 @@ fn mistakes_of_usage() {
         ("catmull-clark cube.obj", "the following required arguments were not provided:"),
         ("flip cube.obj -o out.obj", "the following required arguments were not provided:"),
         ("smooth cube.obj -o out.obj", "unrecognized subcommand 'smooth'"),
-        ("flip cube.obj -o out.obj --edge 4", "invalid value '4' for ... such as 4-9"),
+        (
+            "flip cube.obj -o out.obj --edge 4",
+            "invalid value '4' for ... edges are two points each, such as 4-9, or all, longest or flat",
+        ),
+        ("collapse cube.obj -o out.obj --edge all", "invalid value 'all' for ... such as 4-9"),
+        ("edit cube.obj -o out.obj", "the following required arguments were not provided:"),
+        (
+            "edit cube.obj turn -o out.obj",
+            "invalid value 'turn' for ... an edit is flip=EDGES, split=EDGES, collapse=A-B,..., orient, outward, reverse or triangulate",
+        ),
+        ("edit cube.obj flip=4 -o out.obj", "invalid value 'flip=4' for ... or all, longest or flat"),
         ("loop cube.obj -o out.obj --corners 3:x", "invalid value '3:x' for ... or 3:1.5"),
         ("loop cube.obj -o out.obj --crease 1-2:-3", "invalid value '1-2:-3' for ... or 4-9:2.5"),
         (

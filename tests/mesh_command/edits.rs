@@ -1,5 +1,6 @@
 //! Edits through the command: flips, splits and collapses, winding made to agree, polygons cut.
 
+use glam::DVec3;
 use grainsmooth::mesh::file::{MeshFile, read_mesh};
 
 use crate::shapes::CUBE_OBJ;
@@ -122,4 +123,87 @@ fn polygons_are_cut_where_they_are_notched() {
     assert!(said.contains("cut         1 polygons: 3 triangles"), "{said}");
     let mesh = read_mesh(&workplace.path("out.json")).unwrap();
     assert_eq!(triangles(&mesh), [[0, 1, 3], [0, 4, 1], [1, 2, 3]]);
+}
+
+#[test]
+fn edges_chosen_together() {
+    let workplace = Workplace::new();
+    workplace.put("cube.obj", CUBE_OBJ);
+    workplace.run("mesh triangulate cube.obj -o triangles.obj");
+    for (command, message, points, faces) in [
+        ("split --edge all", "split       18 edges", 26, 48),
+        ("split --edge flat", "split       6 edges", 14, 24),
+        ("split --edge longest", "split       6 edges", 14, 24),
+        ("flip --edge flat", "flipped     6 edges", 8, 12),
+        ("split --edge flat,0-1", "split       7 edges", 15, 26),
+    ] {
+        let said = workplace.run(&format!("mesh {command} triangles.obj -o out.obj"));
+        assert!(said.contains(message), "{said}");
+        let mesh = read_mesh(&workplace.path("out.obj")).unwrap();
+        assert_eq!((mesh.points.len(), mesh.faces.len()), (points, faces), "{command}");
+    }
+    // A boundary stays where edges are flipped together, and is told.
+    workplace.put("in.off", SQUARE);
+    let said = workplace.run("mesh flip --edge all in.off -o out.obj");
+    assert!(said.contains("flipped     1 edges; 7 stay, on the boundary or as the mesh would be no manifold"), "{said}");
+}
+
+/// A cube whose squares are cut at their middles keeps all its symmetries under Loop's scheme; cut along one diagonal each, it does not.
+#[test]
+fn presplit_cube_stays_symmetric() {
+    let workplace = Workplace::new();
+    workplace.put("cube.obj", CUBE_OBJ);
+    let said = workplace.run("mesh edit cube.obj triangulate split=flat orient -o presplit.obj");
+    for line in ["cut         6 polygons: 12 triangles", "split       6 edges", "edited      14 points, 24 faces"] {
+        assert!(said.contains(line), "{said}");
+    }
+    workplace.run("mesh triangulate cube.obj -o plain.obj");
+    let asymmetry = |name: &str| {
+        workplace.run(&format!("mesh loop {name} -n 3 -o smooth.vtp"));
+        let points = read_mesh(&workplace.path("smooth.vtp")).unwrap().points;
+        let symmetries = [|p: DVec3| DVec3::new(p.y, p.z, p.x), |p: DVec3| DVec3::new(-p.y, p.x, p.z), |p: DVec3| {
+            DVec3::new(p.y, p.x, p.z)
+        }];
+        let nearest = |place: DVec3| points.iter().map(|p| p.distance(place)).fold(f64::INFINITY, f64::min);
+        let worst = symmetries.iter().flat_map(|s| points.iter().map(|p| nearest(s(*p))));
+        worst.fold(0.0, f64::max)
+    };
+    assert!(asymmetry("presplit.obj") < 1e-12);
+    assert!(asymmetry("plain.obj") > 1e-3);
+}
+
+#[test]
+fn several_edits_in_their_order() {
+    let workplace = Workplace::new();
+    workplace.put("in.off", SQUARE);
+    workplace.run("mesh edit in.off split=0-4 flip=1-5 reverse -o out.json");
+    workplace.run("mesh split in.off --edge 0-4 -o one.json");
+    workplace.run("mesh flip one.json --edge 1-5 -o two.json");
+    let (at_once, steps) = (
+        read_mesh(&workplace.path("out.json")).unwrap(),
+        read_mesh(&workplace.path("two.json")).unwrap(),
+    );
+    let mut turned = steps.clone();
+    turned.faces.iter_mut().for_each(|face| face.reverse());
+    assert_eq!(triangles(&at_once), triangles(&turned));
+    // In another order there is no such edge yet.
+    workplace.refuses(
+        "mesh edit in.off flip=1-5 split=0-4 -o out.json",
+        1,
+        "in.off: there is no edge 1-5; name two neighbours",
+    );
+}
+
+#[test]
+fn creases_follow_their_edges() {
+    let workplace = Workplace::new();
+    let json = r#"{"vertices": [[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [1, 1, 0]],
+        "faces": [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]], "creases": [[0, 4, 2.5], [4, 2], [1, 4]], "corners": [3]}"#;
+    workplace.put("in.json", json);
+    workplace.run("mesh edit in.json split=4-0 flip=1-4 -o out.json");
+    let mesh = read_mesh(&workplace.path("out.json")).unwrap();
+    let creases: Vec<_> = mesh.creases.iter().map(|crease| (crease.ends, crease.sharpness)).collect();
+    assert_eq!(creases, [([4, 5], 2.5), ([5, 0], 2.5), ([4, 2], 10.0)]);
+    assert_eq!(mesh.corners, [(3, 10.0)]);
+    workplace.run("mesh loop out.json -o smooth.vtp");
 }

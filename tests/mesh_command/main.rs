@@ -3,6 +3,7 @@
 
 mod bad_meshes;
 mod corrupt_files;
+mod curves;
 mod edits;
 mod formats;
 #[allow(dead_code, reason = "shared with other tests")]

@@ -81,8 +81,8 @@ pub use input::texture_file::{OrientationList, read_disorientation_file, read_te
 pub use measure::report::{FittedDistribution, MeasuredPhase, MeasuredTexture, SampleReport};
 pub use measure::sample::{MeasuredGrain, MeasuredSample};
 pub use mesh::{
-    BezierFile, Connectivity, EdgeEdit, Level, Limits, Scheme, bezier_json, edit_edges, levels_json, limits,
-    mesh_json, read_bezier, subdivide,
+    BezierFile, Connectivity, Level, Limits, Scheme, bezier_json, levels_json, limits, mesh_json,
+    read_bezier, subdivide,
 };
 pub use names::Names;
 pub use picture::{Coloring, Picture, Png};

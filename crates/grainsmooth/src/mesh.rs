@@ -7,6 +7,6 @@ mod json;
 mod subdivide;
 
 pub use bezier::{BezierFile, read_bezier};
-pub use edit::{EdgeEdit, OrientedFaces, edit_edges};
+pub use edit::{EdgeChoice, Edited, MeshEdit};
 pub use json::{bezier_json, levels_json, mesh_json};
-pub use subdivide::{Connectivity, Level, Limits, Scheme, limits, subdivide};
+pub use subdivide::{Connectivity, Curves, Level, Limits, Scheme, limits, subdivide};

@@ -1,4 +1,4 @@
-//! Networks of cubic B-spline polylines.
+//! Networks of polylines, subdivided to cubic B-splines or by the four-point scheme.
 
 use rayon::prelude::*;
 
@@ -6,7 +6,8 @@ use crate::ids::id;
 use crate::mesh_checks::{check_size, check_vertex};
 use crate::{MeshError, Refinement, StencilTable, VertexRule};
 
-/// A network of polylines that subdivision turns into cubic B-spline curves; positions live beside it as slices.
+/// A network of polylines that subdivision turns into smooth curves: cubic B-splines, or curves through the points; positions live
+/// beside it as slices.
 ///
 /// Curves run through vertices with exactly two segments. Every other vertex (an open end, a triple point, an unused
 /// vertex) is a corner and stays where it is, as do the vertices marked as corners.
@@ -88,6 +89,42 @@ impl CurveMesh {
     /// # Panics
     /// If the finer network outgrows 32-bit ids.
     pub fn refine(&self) -> Refinement<Self> {
+        Refinement { mesh: self.refine_connectivity(), stencils: self.stencils() }
+    }
+
+    /// One step of the interpolating four-point scheme (Dyn, Levin and Gregory 1987): vertices stay, and a segment gets 9/16 of its ends
+    /// less 1/16 of the next vertices along the curve. Where it does not go on, the next vertex is the other end's reflection in
+    /// the corner.
+    ///
+    /// # Panics
+    /// If the finer network outgrows 32-bit ids.
+    pub fn four_point_refine(&self) -> Refinement<Self> {
+        let vertices = self.vertex_count();
+        let stencils = StencilTable::from_rows(vertices + self.segments.len(), |i, rows| {
+            let Some(segment) = (i as usize).checked_sub(vertices) else {
+                rows.add(i, 1.0);
+                return;
+            };
+            let [a, b] = self.segments[segment];
+            for (end, other) in [(a, b), (b, a)] {
+                rows.add(end, 9.0 / 16.0);
+                match self.curves[end as usize] {
+                    Some(segments) => {
+                        let [first, second] = segments;
+                        let beyond = if first as usize == segment { second } else { first };
+                        rows.add(self.other_end(beyond, end), -1.0 / 16.0);
+                    }
+                    None => {
+                        rows.add(end, -2.0 / 16.0);
+                        rows.add(other, 1.0 / 16.0);
+                    }
+                }
+            }
+        });
+        Refinement { mesh: self.refine_connectivity(), stencils }
+    }
+
+    fn refine_connectivity(&self) -> Self {
         let vertices = self.vertex_count();
         for (what, count) in
             [("vertices", vertices + self.segments.len()), ("segments", 2 * self.segments.len())]
@@ -110,8 +147,7 @@ impl CurveMesh {
             .enumerate()
             .map(|(v, curve)| curve.map(|ss| ss.map(|s| half_at(id(v), s))));
         let new = (0..self.segments.len()).into_par_iter().map(|s| Some([id(2 * s), id(2 * s + 1)]));
-        let mesh = Self { segments, curves: old.chain(new).collect() };
-        Refinement { mesh, stencils: self.stencils() }
+        Self { segments, curves: old.chain(new).collect() }
     }
 
     /// One row per vertex: its place on the limit curve, (1, 4, 1)/6 of a smooth vertex and its neighbours.

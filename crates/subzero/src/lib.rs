@@ -29,6 +29,7 @@ mod counts;
 mod curve_mesh;
 mod curve_order;
 mod doo_sabin;
+mod edge_choice;
 mod edge_table;
 mod error;
 mod features;

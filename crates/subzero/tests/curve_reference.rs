@@ -170,3 +170,27 @@ fn the_teapot_looks_outward() {
         assert!(normal.y * point.y > 0.0);
     }
 }
+
+/// The mask of Dyn, Levin and Gregory, and what it is known for: cubic polynomials come back.
+#[test]
+fn four_points_make_the_next() {
+    let cubic = |x: f64| DVec3::new(x, 2.0 - x + 0.5 * x * x * x, x * x);
+    let points: Vec<DVec3> = (0..8).map(|i| cubic(f64::from(i))).collect();
+    let open = CurveMesh::new(8, (0..7).map(|i| [i, i + 1]).collect(), &[]).unwrap();
+    let refined = open.four_point_refine();
+    let finer = refined.stencils.apply(&points);
+    assert_eq!(finer[..8], points);
+    for i in 1..6 {
+        assert_close(finer[8 + i], cubic(i as f64 + 0.5), 1e-12, "inside");
+    }
+    // At the end the next point is the reflection of the one before.
+    let beyond = 2.0 * points[0] - points[1];
+    assert_close(finer[8], (9.0 * (points[0] + points[1]) - beyond - points[2]) / 16.0, 1e-12, "end");
+
+    let closed = CurveMesh::new(8, (0..8).map(|i| [i, (i + 1) % 8]).collect(), &[2]).unwrap();
+    let finer = closed.four_point_refine().stencils.apply(&points);
+    assert_close(finer[15], (9.0 * (points[7] + points[0]) - points[6] - points[1]) / 16.0, 1e-12, "closing");
+    let beyond = 2.0 * points[2] - points[3];
+    assert_close(finer[10], (9.0 * (points[2] + points[3]) - beyond - points[4]) / 16.0, 1e-12, "corner");
+    assert_eq!(closed.refine().mesh, closed.four_point_refine().mesh);
+}

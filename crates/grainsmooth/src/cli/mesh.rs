@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
+use grainsmooth::Scheme;
 use grainsmooth::mesh::file::MeshFormat;
-use grainsmooth::{EdgeEdit, Scheme};
+use grainsmooth::mesh::{EdgeChoice, MeshEdit};
 use subzero::{BoundaryRule, Crease, DooSabinWeights, INFINITE_SHARPNESS, LoopWeights};
 
 use super::files::VtkArguments;
 
-/// Subdivide and edit meshes: OBJ, PLY, STL, OFF, VTK or JSON in; VTK, OBJ, PLY, STL or JSON out.
+/// Subdivide and edit meshes and curves: OBJ, PLY, STL, OFF, VTK or JSON in; VTK, OBJ, PLY, STL or JSON out.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct MeshArguments {
@@ -22,8 +23,9 @@ Examples:
   grainsmooth mesh loop cube.obj -n 3 -o smooth.vtp --crease 0-1,1-2:2.5 --corners 7
   grainsmooth mesh catmull-clark cage.ply -n 2 -o out.vtp --each-level    out_0.vtp, out_1.vtp, out_2.vtp
   grainsmooth mesh loop tetrahedron.off --json -o levels.json             all levels, parents and limits
+  grainsmooth mesh four-point outline.obj -n 4 -o curve.vtp
   grainsmooth mesh collapse part.stl --edge 4-9 -o part.obj
-  grainsmooth mesh triangulate cage.obj -o triangles.obj
+  grainsmooth mesh edit cube.obj triangulate split=flat flip=0-9,3-8 -o presplit.obj
 
 Vertices and faces count from 0, in the order of the file.";
 
@@ -41,7 +43,11 @@ pub enum MeshCommand {
     DooSabin(DooSabinArguments),
     /// Catmull and Clark's scheme on polygons, with creases
     CatmullClark(SchemeArguments),
-    /// Points on the limit surface, with its normals there
+    /// Cubic B-splines of polylines
+    BSpline(CurveArguments),
+    /// The four-point scheme on polylines, which keeps the points
+    FourPoint(CurveArguments),
+    /// Points on the limit surface, with its normals there, or on the limit curve
     Limit(LimitArguments),
     /// Normals at the points: means of those of the triangles, weighted by area
     Normals(FileArguments),
@@ -50,11 +56,13 @@ pub enum MeshCommand {
     /// Cut polygons into triangles, also polygons that are not convex or in no plane
     Triangulate(FileArguments),
     /// Turn edges within the quadrilaterals of their two triangles
-    Flip(EditArguments),
+    Flip(EdgeArguments),
     /// Put points on the middles of edges
-    Split(EditArguments),
+    Split(EdgeArguments),
     /// Draw the first point of an edge into the second
-    Collapse(EditArguments),
+    Collapse(CollapseArguments),
+    /// Several edits, one after the other
+    Edit(EditArguments),
     /// Points on Bezier curves and surfaces, given by control points in JSON or plain text
     Bezier(BezierArguments),
 }
@@ -104,17 +112,36 @@ pub struct SchemeArguments {
     #[command(flatten)]
     pub features: FeatureArguments,
 
+    #[command(flatten)]
+    pub steps: StepArguments,
+}
+
+#[derive(Debug, Args)]
+pub struct StepArguments {
     /// Number of subdivisions
     #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = 1, value_parser = clap::value_parser!(u32).range(0..=99))]
     pub levels: u32,
 
-    /// Refuse a mesh with a boundary
+    /// Refuse a mesh with a boundary, or a polyline with ends
     #[arg(long)]
     pub closed: bool,
 
     /// Write one file a level: OUT_0, OUT_1, ...
     #[arg(long, conflicts_with = "json")]
     pub each_level: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct CurveArguments {
+    #[command(flatten)]
+    pub files: FileArguments,
+
+    /// Points that stay where they are, and at which a curve may have an angle
+    #[arg(long, value_name = "V,...", value_delimiter = ',')]
+    pub corners: Vec<u32>,
+
+    #[command(flatten)]
+    pub steps: StepArguments,
 }
 
 #[derive(Debug, Args)]
@@ -159,13 +186,35 @@ pub struct LimitArguments {
 }
 
 #[derive(Debug, Args)]
+pub struct EdgeArguments {
+    #[command(flatten)]
+    pub files: FileArguments,
+
+    /// Edges to edit, one after the other: by their points, or all, the longest of each triangle, or those between triangles in one
+    /// plane (flat)
+    #[arg(long = "edge", value_name = "A-B|all|longest|flat,...", value_delimiter = ',', required = true, value_parser = parse_choice)]
+    pub edges: Vec<EdgeChoice>,
+}
+
+#[derive(Debug, Args)]
+pub struct CollapseArguments {
+    #[command(flatten)]
+    pub files: FileArguments,
+
+    /// Edges to collapse, one after the other
+    #[arg(long = "edge", value_name = "A-B,...", value_delimiter = ',', required = true, value_parser = parse_edge)]
+    pub edges: Vec<[u32; 2]>,
+}
+
+#[derive(Debug, Args)]
 pub struct EditArguments {
     #[command(flatten)]
     pub files: FileArguments,
 
-    /// Edges to edit, one after the other
-    #[arg(long = "edge", value_name = "A-B,...", value_delimiter = ',', required = true, value_parser = parse_edge)]
-    pub edges: Vec<[u32; 2]>,
+    /// Edits in their order: flip=EDGES, split=EDGES, collapse=A-B,..., orient, outward, reverse or triangulate; EDGES are those of
+    /// --edge, such as 4-9,7-2 or all, longest, flat
+    #[arg(value_name = "EDIT", required = true, value_parser = parse_edit)]
+    pub edits: Vec<MeshEdit>,
 }
 
 #[derive(Debug, Args)]
@@ -214,6 +263,7 @@ pub enum PolygonWeights {
 pub enum LimitScheme {
     Loop,
     CatmullClark,
+    BSpline,
 }
 
 impl From<Boundary> for BoundaryRule {
@@ -237,13 +287,18 @@ impl From<Weights> for LoopWeights {
 
 /// What a subcommand asks for, subcommands of a kind together.
 pub enum Task<'a> {
-    Subdivide(Scheme, &'a SchemeArguments),
+    Subdivide(Scheme, &'a StepArguments, Features<'a>),
     Limit(Scheme, &'a LimitArguments),
     Normals,
-    Orient { outward: bool },
-    Triangulate,
-    Edit(EdgeEdit, &'a [[u32; 2]]),
+    Edit(Vec<MeshEdit>),
     Bezier { samples: u32 },
+}
+
+/// What a subcommand says about creases and corners.
+#[derive(Clone, Copy)]
+pub enum Features<'a> {
+    OfSurface(&'a FeatureArguments),
+    OfCurves { corners: &'a [u32] },
 }
 
 impl MeshCommand {
@@ -262,22 +317,39 @@ impl MeshCommand {
                 (Scheme::DooSabin(weights), &arguments.scheme)
             }
             Self::CatmullClark(arguments) => (Scheme::CatmullClark, arguments),
+            Self::BSpline(arguments) => return arguments.task(Scheme::BSpline),
+            Self::FourPoint(arguments) => return arguments.task(Scheme::FourPoint),
             Self::Limit(arguments) => {
                 let scheme = match arguments.scheme {
                     LimitScheme::Loop => Scheme::Loop(arguments.weights.into()),
                     LimitScheme::CatmullClark => Scheme::CatmullClark,
+                    LimitScheme::BSpline => Scheme::BSpline,
                 };
                 return (&arguments.files, Task::Limit(scheme, arguments));
             }
             Self::Normals(files) => return (files, Task::Normals),
-            Self::Orient(orient) => return (&orient.files, Task::Orient { outward: orient.outward }),
-            Self::Triangulate(files) => return (files, Task::Triangulate),
-            Self::Flip(edit) => return (&edit.files, Task::Edit(EdgeEdit::Flip, &edit.edges)),
-            Self::Split(edit) => return (&edit.files, Task::Edit(EdgeEdit::Split, &edit.edges)),
-            Self::Collapse(edit) => return (&edit.files, Task::Edit(EdgeEdit::Collapse, &edit.edges)),
+            Self::Orient(orient) => {
+                let edit = MeshEdit::Orient { outward: orient.outward };
+                return (&orient.files, Task::Edit(vec![edit]));
+            }
+            Self::Triangulate(files) => return (files, Task::Edit(vec![MeshEdit::Triangulate])),
+            Self::Flip(edit) => return (&edit.files, Task::Edit(vec![MeshEdit::Flip(edit.edges.clone())])),
+            Self::Split(edit) => return (&edit.files, Task::Edit(vec![MeshEdit::Split(edit.edges.clone())])),
+            Self::Collapse(edit) => {
+                return (&edit.files, Task::Edit(vec![MeshEdit::Collapse(edit.edges.clone())]));
+            }
+            Self::Edit(edit) => return (&edit.files, Task::Edit(edit.edits.clone())),
             Self::Bezier(bezier) => return (&bezier.files, Task::Bezier { samples: bezier.samples }),
         };
-        (&arguments.files, Task::Subdivide(scheme, arguments))
+        let features = Features::OfSurface(&arguments.features);
+        (&arguments.files, Task::Subdivide(scheme, &arguments.steps, features))
+    }
+}
+
+impl CurveArguments {
+    fn task(&self, scheme: Scheme) -> (&FileArguments, Task<'_>) {
+        let features = Features::OfCurves { corners: &self.corners };
+        (&self.files, Task::Subdivide(scheme, &self.steps, features))
     }
 }
 
@@ -291,6 +363,38 @@ impl FileArguments {
 fn parse_edge(text: &str) -> Result<[u32; 2], String> {
     let ends = text.split_once('-').and_then(|(a, b)| Some([a.trim().parse().ok()?, b.trim().parse().ok()?]));
     ends.ok_or_else(|| "an edge is two points, such as 4-9".to_owned())
+}
+
+fn parse_choice(text: &str) -> Result<EdgeChoice, String> {
+    match text {
+        "all" => Ok(EdgeChoice::All),
+        "longest" => Ok(EdgeChoice::Longest),
+        "flat" => Ok(EdgeChoice::Flat),
+        _ => match parse_edge(text) {
+            Ok(ends) => Ok(EdgeChoice::Between(ends)),
+            Err(_) => Err("edges are two points each, such as 4-9, or all, longest or flat".to_owned()),
+        },
+    }
+}
+
+fn parse_edit(text: &str) -> Result<MeshEdit, String> {
+    let (name, edges) = text.split_once('=').unwrap_or((text, ""));
+    let choices = || edges.split(',').map(parse_choice).collect::<Result<_, _>>();
+    match (name, edges) {
+        ("flip", _) => Ok(MeshEdit::Flip(choices()?)),
+        ("split", _) => Ok(MeshEdit::Split(choices()?)),
+        ("collapse", _) => {
+            Ok(MeshEdit::Collapse(edges.split(',').map(parse_edge).collect::<Result<_, _>>()?))
+        }
+        ("orient", "") => Ok(MeshEdit::Orient { outward: false }),
+        ("outward", "") => Ok(MeshEdit::Orient { outward: true }),
+        ("reverse", "") => Ok(MeshEdit::Reverse),
+        ("triangulate", "") => Ok(MeshEdit::Triangulate),
+        _ => Err(
+            "an edit is flip=EDGES, split=EDGES, collapse=A-B,..., orient, outward, reverse or triangulate"
+                .to_owned(),
+        ),
+    }
 }
 
 /// What stands before the colon, and the sharpness behind it: infinite where there is none.

@@ -7,18 +7,18 @@ use std::path::{Path, PathBuf};
 use clap::CommandFactory;
 use clap::error::ErrorKind;
 use glam::DVec3;
-use grainsmooth::mesh::OrientedFaces;
+use grainsmooth::mesh::MeshEdit;
 use grainsmooth::mesh::file::{
-    MeshFile, MeshFileProblem, MeshFormat, MeshToWrite, read_mesh, stage_mesh, write_mesh,
+    MeshFile, MeshFileProblem, MeshFormat, MeshToWrite, read_mesh, read_polylines, stage_mesh, write_mesh,
 };
 use grainsmooth::vtk::Cells;
 use grainsmooth::{
-    Connectivity, EdgeEdit, Error, Level, Output, Scheme, StagedFiles, bezier_json, edit_edges, levels_json,
-    limits, mesh_json, read_bezier, subdivide, write_together,
+    Connectivity, Error, Level, Output, Scheme, StagedFiles, bezier_json, levels_json, limits, mesh_json,
+    read_bezier, subdivide, write_together,
 };
-use subzero::{HalfEdgeMesh, MeshError};
+use subzero::{HalfEdgeMesh, INFINITE_SHARPNESS, MeshError};
 
-use crate::cli::mesh::{FeatureArguments, FileArguments, LimitArguments, MeshCommand, SchemeArguments, Task};
+use crate::cli::mesh::{Features, FileArguments, LimitArguments, MeshCommand, StepArguments, Task};
 use crate::cli::{Arguments, usage};
 use crate::say;
 
@@ -55,41 +55,40 @@ struct Job<'a> {
 impl Job<'_> {
     fn run(&self, task: Task<'_>) -> Result<(), Error> {
         match task {
-            Task::Subdivide(scheme, arguments) => self.subdivide(scheme, arguments),
+            Task::Subdivide(scheme, steps, features) => self.subdivide(scheme, steps, features),
             Task::Limit(scheme, arguments) => self.limit(scheme, arguments),
             Task::Normals => self.normals(),
-            Task::Orient { outward } => self.orient(outward),
-            Task::Triangulate => self.triangulate(),
-            Task::Edit(edit, edges) => self.edit(edit, edges),
+            Task::Edit(edits) => self.edit(&edits),
             Task::Bezier { samples } => self.bezier(samples),
         }
     }
 
-    fn subdivide(&self, scheme: Scheme, arguments: &SchemeArguments) -> Result<(), Error> {
-        if arguments.each_level && self.format == MeshFormat::Json {
+    fn subdivide(&self, scheme: Scheme, steps: &StepArguments, features: Features<'_>) -> Result<(), Error> {
+        if steps.each_level && self.format == MeshFormat::Json {
             usage("--each-level is a file a level, but JSON holds all levels in one; leave it out");
         }
         // Outputs that cannot be written are found before the work.
-        let last = arguments.levels;
-        let outputs = if arguments.each_level {
+        let last = steps.levels;
+        let outputs = if steps.each_level {
             (0..=last).map(|level| self.output(&of_level(&self.files.output, level))).collect()
         } else {
             self.output(&self.files.output).map(|output| vec![output])
         }?;
-        let mesh = self.read_with(&arguments.features)?;
+        let mesh = self.read_with(features)?;
         let levels = subdivide(&mesh, &self.files.input, scheme, last)?;
-        if arguments.closed {
-            levels[0].mesh.check_closed().map_err(|error| self.located(error.into()))?;
+        if steps.closed {
+            levels[0].mesh.check_closed().map_err(|error| self.located(error))?;
         }
         for (index, level) in levels.iter().enumerate() {
             let (points, faces) = (level.points.len(), level.mesh.face_count());
-            self.report(format_args!("level {index:<5} {points} points, {faces} faces"));
+            let kind = if matches!(level.mesh, Connectivity::Curves(_)) { "segments" } else { "faces" };
+            self.report(format_args!("level {index:<5} {points} points, {faces} {kind}"));
         }
         if self.format == MeshFormat::Json {
             outputs[0].write(|out| levels_json(&mesh, scheme, &levels, out))?;
         } else {
             let births = births(scheme, &levels);
-            let first = if arguments.each_level { 0 } else { levels.len() - 1 };
+            let first = if steps.each_level { 0 } else { levels.len() - 1 };
             write_together(|files| {
                 levels[first..].iter().zip(&outputs).try_for_each(|(level, output)| {
                     let generations = births.as_ref().map(|births| &births[..level.points.len()]);
@@ -103,7 +102,18 @@ impl Job<'_> {
 
     fn limit(&self, scheme: Scheme, arguments: &LimitArguments) -> Result<(), Error> {
         let output = self.output(&self.files.output)?;
-        let mesh = self.read_with(&arguments.features)?;
+        let features = &arguments.features;
+        let mesh = match scheme {
+            Scheme::BSpline => {
+                if !features.creases.is_empty() || features.boundary.is_some() {
+                    usage("--crease and --boundary are of surfaces; give --corners to curves");
+                }
+                let mut mesh = self.read_lines()?;
+                mesh.corners.extend(&features.corners);
+                mesh
+            }
+            _ => self.read_with(Features::OfSurface(features))?,
+        };
         let levels = subdivide(&mesh, &self.files.input, scheme, arguments.levels)?;
         let level = &levels[levels.len() - 1];
         // A level without limits is an error here, where JSON of all levels leaves it out.
@@ -117,7 +127,9 @@ impl Job<'_> {
             let normals: Vec<DVec3> = found.normals.iter().map(|normal| normal.unwrap_or_default()).collect();
             write_together(|files| {
                 let births = births.as_deref();
-                self.stage_level(level, &found.positions, Some(&normals), births, &output, files)
+                // Curves have none.
+                let normals = Some(&normals[..]).filter(|_| scheme != Scheme::BSpline);
+                self.stage_level(level, &found.positions, normals, births, &output, files)
             })?;
         }
         self.report_written(&[output]);
@@ -136,36 +148,15 @@ impl Job<'_> {
         self.write_single(&output, &mesh, Some(&normals))
     }
 
-    fn orient(&self, outward: bool) -> Result<(), Error> {
+    fn edit(&self, edits: &[MeshEdit]) -> Result<(), Error> {
         let output = self.output(&self.files.output)?;
         let mut mesh = self.read()?;
-        let OrientedFaces { turned, components } =
-            mesh.orient(outward).map_err(|error| self.located(error))?;
-        let faces = mesh.faces.len();
-        self.report(format_args!("oriented    {turned} of {faces} faces turned round; {components} parts"));
-        self.write_single(&output, &mesh, None)
-    }
-
-    fn triangulate(&self) -> Result<(), Error> {
-        let output = self.output(&self.files.output)?;
-        let mut mesh = self.read()?;
-        let polygons = mesh.triangulate().map_err(|error| self.located(error))?;
-        self.report(format_args!("cut         {polygons} polygons: {} triangles", mesh.faces.len()));
-        self.write_single(&output, &mesh, None)
-    }
-
-    fn edit(&self, edit: EdgeEdit, edges: &[[u32; 2]]) -> Result<(), Error> {
-        let output = self.output(&self.files.output)?;
-        let mut mesh = self.read()?;
-        let (points, triangles) = edit_edges(&mesh, edit, edges).map_err(|error| self.located(error))?;
-        self.report(format_args!(
-            "edited      {} edges: {} points, {} triangles",
-            edges.len(),
-            points.len(),
-            triangles.len()
-        ));
-        mesh.points = points;
-        mesh.faces = triangles.into_iter().map(Vec::from).collect();
+        for edit in edits {
+            let edited = mesh.edit(edit).map_err(|error| self.located(error))?;
+            self.report(format_args!("{edited}"));
+        }
+        let (points, faces) = (mesh.points.len(), mesh.faces.len());
+        self.report(format_args!("edited      {points} points, {faces} faces"));
         self.write_single(&output, &mesh, None)
     }
 
@@ -191,10 +182,15 @@ impl Job<'_> {
         Ok(())
     }
 
+    /// The surface, without polylines that the file may have.
     fn read(&self) -> Result<MeshFile, Error> {
-        let mesh = read_mesh(&self.files.input)?;
-        let (points, faces) = (mesh.points.len(), mesh.faces.len());
+        let mut mesh = read_mesh(&self.files.input)?;
+        let (points, faces, lines) = (mesh.points.len(), mesh.faces.len(), mesh.lines.len());
         self.report(format_args!("read        {points} points, {faces} faces"));
+        if lines > 0 {
+            self.report(format_args!("dropped     {lines} polylines beside the faces"));
+            mesh.lines.clear();
+        }
         if let Some(corners) = mesh.welded_corners {
             self.report(format_args!(
                 "welded      {corners} corners with exactly equal coordinates to {points} points"
@@ -203,15 +199,36 @@ impl Job<'_> {
         Ok(mesh)
     }
 
-    /// The mesh, with the creases and corners of the command line beside those of the file.
-    fn read_with(&self, features: &FeatureArguments) -> Result<MeshFile, Error> {
-        let mut mesh = self.read()?;
-        mesh.creases.extend(&features.creases);
-        mesh.corners.extend(&features.corners);
-        if let Some(boundary) = features.boundary {
-            mesh.boundary = boundary.into();
+    /// The polylines, without faces that the file may have.
+    fn read_lines(&self) -> Result<MeshFile, Error> {
+        let mut mesh = read_polylines(&self.files.input)?;
+        let (points, faces, lines) = (mesh.points.len(), mesh.faces.len(), mesh.lines.len());
+        self.report(format_args!("read        {points} points, {lines} polylines"));
+        if faces > 0 {
+            self.report(format_args!("dropped     {faces} faces beside the polylines"));
+            mesh.faces.clear();
         }
         Ok(mesh)
+    }
+
+    /// The mesh or polylines, with the creases and corners of the command line beside those of the file.
+    fn read_with(&self, features: Features<'_>) -> Result<MeshFile, Error> {
+        match features {
+            Features::OfSurface(features) => {
+                let mut mesh = self.read()?;
+                mesh.creases.extend(&features.creases);
+                mesh.corners.extend(&features.corners);
+                if let Some(boundary) = features.boundary {
+                    mesh.boundary = boundary.into();
+                }
+                Ok(mesh)
+            }
+            Features::OfCurves { corners } => {
+                let mut mesh = self.read_lines()?;
+                mesh.corners.extend(corners.iter().map(|&corner| (corner, INFINITE_SHARPNESS)));
+                Ok(mesh)
+            }
+        }
     }
 
     fn stage_level(
@@ -230,6 +247,7 @@ impl Job<'_> {
                 polygons = level.mesh.faces();
                 Cells::Polygons(&polygons)
             }
+            Connectivity::Curves(curves) => Cells::Polylines(&curves.lines),
         };
         stage_mesh(&MeshToWrite { normals, generations, ..self.content(points, cells) }, output, files)
     }

@@ -11,7 +11,9 @@ pub enum MeshFileProblem {
     #[error("cannot be read: {0}; give the path of a readable mesh file")]
     Unreadable(io::Error),
     /// The extension names no format.
-    #[error("unknown extension; give a file *.obj, *.ply, *.stl, *.off, *.vtk, *.vtp, *.vtu or *.json")]
+    #[error(
+        "unknown extension; give a file *.obj, *.ply, *.stl, *.off, *.vtk, *.vtp, *.vtu, *.json, or of lines *.txt"
+    )]
     UnknownExtension,
     /// A line of a text file is not what it must be.
     #[error("line {line}: {what}")]
@@ -46,6 +48,34 @@ pub enum MeshFileProblem {
     /// The file has no faces.
     #[error("holds no faces; give a surface mesh")]
     NoFaces,
+    /// The file has polylines where faces are needed.
+    #[error("holds polylines and no faces; give a surface mesh, or take b-spline or four-point")]
+    OnlyPolylines,
+    /// The file has no polylines.
+    #[error(
+        "holds no polylines; give lines as .obj, .vtp, .vtu, .vtk, .json or .txt, or take a scheme of surfaces"
+    )]
+    NoPolylines,
+    /// A polyline is a single point.
+    #[error("polyline {line} has one point; two are the least")]
+    ShortPolyline {
+        /// The polyline, counted from 0.
+        line: usize,
+    },
+    /// A corner of a polyline has a sharpness that runs out, for which curves have no rule.
+    #[error("corner {vertex} of a polyline has the sharpness {sharpness}; give it none, and it stays")]
+    SoftCornerOfPolyline {
+        /// The point.
+        vertex: u32,
+        /// Its sharpness.
+        sharpness: f32,
+    },
+    /// A polyline has ends where closed ones are asked for.
+    #[error("polyline {line} is open; end it with its first point")]
+    OpenPolyline {
+        /// The polyline, counted from 0.
+        line: usize,
+    },
     /// The file does not say what its cells lie between.
     #[error("has no cell array {}; add one with two labels for each triangle", LABEL_ARRAYS.join(" or "))]
     NoLabels,

@@ -6,7 +6,8 @@ use glam::DVec3;
 use serde::Deserialize;
 use subzero::{BezierCurve, BezierSurface, MeshError};
 
-use super::file::{MeshFileProblem, check_lengths};
+use super::file::json_point::JsonPoint;
+use super::file::{MeshFileProblem, check_lengths, control_points};
 use crate::Error;
 
 /// Curves and surfaces as a file gives them.
@@ -23,8 +24,8 @@ pub struct BezierFile {
 /// Reads control points: from JSON where the extension is .json, else from plain text.
 ///
 /// JSON has `curves` (each a list of points, or an object with `control`), `surfaces` or `surface` (lists of rows of
-/// points, or objects with `control`), or one `control`. Plain text has one point per line, x y z; a blank line ends a
-/// curve. A line with two numbers `m n` begins a surface of these degrees, with (m + 1)(n + 1) points after it; that
+/// points, or objects with `control`), or one `control`. Plain text has one point per line, x y z, or x y in the plane; a blank
+/// line ends a curve. A line with two numbers `m n` begins a surface of these degrees, with (m + 1)(n + 1) points after it; that
 /// is the format of the Utah teapot's files, whose first line is the number of patches.
 ///
 /// # Errors
@@ -111,32 +112,36 @@ fn first_id(points: usize, more: usize) -> Result<u32, MeshError> {
     u32::try_from(points).map_err(|_| too_large(points))
 }
 
-type Point = [f64; 3];
-
 #[derive(Deserialize)]
 struct JsonFile {
     #[serde(default)]
-    curves: Vec<Control<Vec<Point>>>,
+    curves: Vec<Control<Vec<JsonPoint>>>,
     #[serde(default, alias = "patches")]
-    surfaces: Vec<Control<Vec<Vec<Point>>>>,
+    surfaces: Vec<Control<Vec<Vec<JsonPoint>>>>,
     #[serde(default)]
-    surface: Option<Control<Vec<Vec<Point>>>>,
+    surface: Option<Control<Vec<Vec<JsonPoint>>>>,
     #[serde(default)]
     control: Option<CurveOrSurface>,
 }
 
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "control points are [x, y, z] in lists, a list of lists for a surface")]
+#[serde(
+    untagged,
+    expecting = "control points are [x, y, z] or [x, y] in lists, a list of lists for a surface"
+)]
 enum Control<T> {
     Named { control: T },
     Bare(T),
 }
 
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "control points are [x, y, z] in a list, or in a list of lists for a surface")]
+#[serde(
+    untagged,
+    expecting = "control points are [x, y, z] or [x, y] in a list, or in a list of lists for a surface"
+)]
 enum CurveOrSurface {
-    Curve(Vec<Point>),
-    Surface(Vec<Vec<Point>>),
+    Curve(Vec<JsonPoint>),
+    Surface(Vec<Vec<JsonPoint>>),
 }
 
 impl<T> Control<T> {
@@ -155,7 +160,7 @@ fn from_json(bytes: &[u8]) -> Result<BezierFile, MeshFileProblem> {
         Some(CurveOrSurface::Surface(rows)) => json.surfaces.push(Control::Bare(rows)),
         None => {}
     }
-    let points = |row: Vec<Point>| row.into_iter().map(DVec3::from_array).collect();
+    let points = |row: Vec<JsonPoint>| row.into_iter().map(|JsonPoint(point)| point).collect();
     let mut file = BezierFile::default();
     for curve in json.curves {
         file.add_curve(points(curve.points()))?;
@@ -167,58 +172,11 @@ fn from_json(bytes: &[u8]) -> Result<BezierFile, MeshFileProblem> {
 }
 
 fn from_text(text: &str) -> Result<BezierFile, MeshFileProblem> {
+    let found = control_points::read(text)?;
     let mut file = BezierFile::default();
-    let mut points = Vec::new();
-    // Points in a row, and rows, of the surface at hand.
-    let mut surface: Option<[usize; 2]> = None;
-    for (index, line) in text.lines().chain([""]).enumerate() {
-        let problem = |what: String| MeshFileProblem::Line { line: index + 1, what };
-        let words: Vec<&str> = line
-            .split('#')
-            .next()
-            .unwrap_or_default()
-            .split([' ', '\t', ',', '\r'])
-            .filter(|w| !w.is_empty())
-            .collect();
-        let number = |word: &str| -> Result<f64, _> {
-            let number = word.parse().ok().filter(|number: &f64| number.is_finite());
-            number.ok_or_else(|| problem(format!("'{word}' is not a finite number")))
-        };
-        match words[..] {
-            [x, y, z] => points.push(DVec3::new(number(x)?, number(y)?, number(z)?)),
-            // The teapot's files begin with their number of patches.
-            [_] if file == BezierFile::default() && points.is_empty() && surface.is_none() => {}
-            [rows, columns] if points.is_empty() => {
-                let degree = |word: &str| {
-                    let degree = word.parse().ok().filter(|degree: &u8| *degree > 0);
-                    degree
-                        .ok_or_else(|| problem(format!("'{word}' is not the degree of a surface, 1 to 255")))
-                };
-                surface = Some([usize::from(degree(rows)?) + 1, usize::from(degree(columns)?) + 1]);
-            }
-            [] if surface.is_none() && !points.is_empty() => file.add_curve(std::mem::take(&mut points))?,
-            [] => {}
-            _ => {
-                return Err(problem(
-                    "not a control point x y z, nor the degrees m n of a surface".to_owned(),
-                ));
-            }
-        }
-        if let Some([rows, columns]) = surface
-            && points.len() == rows * columns
-        {
-            file.add_surface(points.chunks(columns).map(<[DVec3]>::to_vec).collect())?;
-            points.clear();
-            surface = None;
-        }
-    }
-    match surface {
-        Some([rows, columns]) => {
-            let what = format!("the last surface has {} of {} points", points.len(), rows * columns);
-            Err(MeshFileProblem::Corrupt { format: "control point", what })
-        }
-        None => Ok(file),
-    }
+    found.curves.into_iter().try_for_each(|curve| file.add_curve(curve))?;
+    found.surfaces.into_iter().try_for_each(|surface| file.add_surface(surface))?;
+    Ok(file)
 }
 
 #[cfg(test)]
@@ -226,25 +184,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn plain_text_has_curves_and_patches() {
-        let file = from_text("0 0 0\n1, 2, 0 # end\n\n0 0 1\n1 1 1\n2 0 1\n").unwrap();
-        assert_eq!(file.curves.iter().map(BezierCurve::degree).collect::<Vec<_>>(), [1, 2]);
-        let patch = "1 2\n0 0 0\n0 1 0\n0 2 0\n1 0 0\n1 1 0\n1 2 0\n";
-        let file = from_text(&format!("2\n{patch}{patch}")).unwrap();
-        assert_eq!((file.surfaces.len(), file.surface_control[0].len()), (2, 2));
-        assert_eq!(file.surfaces[0].point(0.5, 0.5), DVec3::new(0.5, 1.0, 0.0));
-    }
-
-    #[test]
     fn messages_name_the_place() {
-        for (text, message) in [
-            ("0 0 0\n0 0 x\n", "line 2: 'x' is not a finite number"),
-            ("0 0 0\n0 0 0 0\n", "line 2: not a control point x y z, nor the degrees m n of a surface"),
-            ("3 0\n", "line 1: '0' is not the degree of a surface, 1 to 255"),
-            ("1 1\n0 0 0\n", "the last surface has 1 of 4 points; give a complete control point file"),
-        ] {
-            assert_eq!(from_text(text).unwrap_err().to_string(), message);
-        }
         let ragged = r#"{"surface": [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0]]]}"#;
         let error = from_json(ragged.as_bytes()).unwrap_err().to_string();
         assert_eq!(

@@ -1,78 +1,241 @@
 //! Edits of a mesh from a file: edges flipped, split and collapsed, winding made to agree, polygons cut.
 
-use glam::DVec3;
-use subzero::HalfEdgeMesh;
+use std::fmt;
+
+use subzero::{Crease, HalfEdgeMesh, MeshError};
 
 use super::file::{MeshFile, MeshFileProblem};
 
-/// A change at an edge.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum EdgeEdit {
-    /// Turns the edge within the quadrilateral of its two triangles.
-    Flip,
-    /// Puts a vertex on the middle of the edge.
-    Split,
-    /// Draws the edge's first vertex into its second.
-    Collapse,
+/// A change of a mesh.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum MeshEdit {
+    /// Turns edges within the quadrilaterals of their two triangles.
+    Flip(Vec<EdgeChoice>),
+    /// Puts vertices on the middles of edges.
+    Split(Vec<EdgeChoice>),
+    /// Draws the first vertices of edges into the second.
+    Collapse(Vec<[u32; 2]>),
+    /// Makes the winding of faces agree, component by component: most faces stay as they are.
+    Orient {
+        /// Whether normals of closed components are to point out of them.
+        outward: bool,
+    },
+    /// Turns every face round.
+    Reverse,
+    /// Cuts polygons into triangles.
+    Triangulate,
 }
 
-/// Edits edges, given by their ends, one after the other; returns the points and triangles then.
-///
-/// Points keep their ids: a split appends points, a collapse leaves a point that no triangle uses.
-///
-/// # Errors
-/// [`MeshFileProblem::NotATriangle`]; [`MeshFileProblem::Mesh`] when the mesh is not manifold, or has no such edge
-/// by the time of its edit, or the edit would leave no manifold mesh.
-pub fn edit_edges(
-    mesh: &MeshFile,
-    edit: EdgeEdit,
-    edges: &[[u32; 2]],
-) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), MeshFileProblem> {
-    let mut points = mesh.points.clone();
-    let mut half_edges = HalfEdgeMesh::new(points.len(), &mesh.triangles()?)?;
-    for &[a, b] in edges {
-        match edit {
-            EdgeEdit::Flip => half_edges.flip(half_edges.half_edge_between(a, b)?)?,
-            EdgeEdit::Split => half_edges.split_edges(&[[a, b]], &mut points).map(drop)?,
-            EdgeEdit::Collapse => half_edges.collapse_into(a, b)?,
+/// Edges to edit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EdgeChoice {
+    /// That between two vertices.
+    Between([u32; 2]),
+    /// All that there are.
+    All,
+    /// The longest of each triangle, and those as long as it.
+    Longest,
+    /// Those between triangles in one plane, such as diagonals of polygons that were cut.
+    Flat,
+}
+
+/// What an edit did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Edited {
+    /// So many edges were flipped; so many of those chosen together could not be.
+    Flipped {
+        /// Number of edges flipped.
+        edges: usize,
+        /// Number of edges that stayed: on the boundary, or between vertices whose opposite ones share an edge already.
+        left: usize,
+    },
+    /// So many edges were split.
+    Split {
+        /// Number of edges.
+        edges: usize,
+    },
+    /// So many edges were collapsed.
+    Collapsed {
+        /// Number of edges.
+        edges: usize,
+    },
+    /// So many faces were turned round.
+    Turned {
+        /// Number of faces turned.
+        turned: usize,
+        /// Number of all faces.
+        faces: usize,
+        /// Parts that hang together by edges of two faces; as one counts what is turned as a whole.
+        parts: usize,
+    },
+    /// So many polygons were cut.
+    Cut {
+        /// Number of polygons.
+        polygons: usize,
+        /// Number of triangles then.
+        triangles: usize,
+    },
+}
+
+impl fmt::Display for Edited {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flipped { edges, left: 0 } => write!(formatter, "flipped     {edges} edges"),
+            Self::Flipped { edges, left } => {
+                write!(
+                    formatter,
+                    "flipped     {edges} edges; {left} stay, on the boundary or as the mesh would be no manifold"
+                )
+            }
+            Self::Split { edges } => write!(formatter, "split       {edges} edges"),
+            Self::Collapsed { edges } => write!(formatter, "collapsed   {edges} edges"),
+            Self::Turned { turned, faces, parts } => {
+                write!(formatter, "oriented    {turned} of {faces} faces turned round; {parts} parts")
+            }
+            Self::Cut { polygons, triangles } => {
+                write!(formatter, "cut         {polygons} polygons: {triangles} triangles")
+            }
         }
     }
-    Ok((points, half_edges.triangles().map(|(_, triangle)| triangle).collect()))
-}
-
-/// What [`MeshFile::orient`] did.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct OrientedFaces {
-    /// How many faces it turned round.
-    pub turned: usize,
-    /// How many parts hang together by edges of two faces.
-    pub components: usize,
 }
 
 impl MeshFile {
-    /// Makes the winding of faces agree, component by component: most faces stay as they are. If `outward`, normals of closed
-    /// components point out of them afterwards.
+    /// Edits the mesh. Points keep their ids: a split appends points, a collapse leaves a point that no triangle uses. Creases follow
+    /// their edges.
     ///
     /// # Errors
-    /// [`MeshFileProblem::Mesh`] as of [`subzero::orient`].
-    pub fn orient(&mut self, outward: bool) -> Result<OrientedFaces, MeshFileProblem> {
+    /// [`MeshFileProblem::NotATriangle`] where edges of triangles are edited; [`MeshFileProblem::Mesh`] when the mesh is not manifold, or
+    /// has no such edge by the time of its edit, or the edit would leave no manifold mesh; as of [`subzero::orient`] and
+    /// [`subzero::triangulate`].
+    pub fn edit(&mut self, edit: &MeshEdit) -> Result<Edited, MeshFileProblem> {
+        match edit {
+            MeshEdit::Flip(choices) => {
+                let mut edges = EdgeEditor::new(self)?;
+                let (mut flipped, mut left) = (0, 0);
+                for choice in choices {
+                    for ends in edges.chosen(*choice) {
+                        match (edges.flip(ends), choice) {
+                            (Ok(()), _) => flipped += 1,
+                            (Err(MeshError::Edit { .. }), choice) if !choice.is_single() => left += 1,
+                            (Err(error), _) => return Err(error.into()),
+                        }
+                    }
+                }
+                edges.finish();
+                Ok(Edited::Flipped { edges: flipped, left })
+            }
+            MeshEdit::Split(choices) => {
+                let mut edges = EdgeEditor::new(self)?;
+                let mut count = 0;
+                for choice in choices {
+                    for ends in edges.chosen(*choice) {
+                        edges.split(ends)?;
+                        count += 1;
+                    }
+                }
+                edges.finish();
+                Ok(Edited::Split { edges: count })
+            }
+            MeshEdit::Collapse(pairs) => {
+                let mut edges = EdgeEditor::new(self)?;
+                pairs.iter().try_for_each(|ends| edges.collapse(*ends))?;
+                edges.finish();
+                Ok(Edited::Collapsed { edges: pairs.len() })
+            }
+            MeshEdit::Orient { outward } => self.orient(*outward),
+            MeshEdit::Reverse => {
+                self.faces.iter_mut().for_each(|face| face[1..].reverse());
+                let faces = self.faces.len();
+                Ok(Edited::Turned { turned: faces, faces, parts: 1 })
+            }
+            MeshEdit::Triangulate => self.triangulate(),
+        }
+    }
+
+    fn orient(&mut self, outward: bool) -> Result<Edited, MeshFileProblem> {
         let mut orientation = subzero::orient(self.points.len(), &self.faces)?;
         if outward {
             orientation.face_outward(&self.points, &self.faces);
         }
         orientation.apply(&mut self.faces);
         let turned = orientation.turned.iter().filter(|turned| **turned).count();
-        Ok(OrientedFaces { turned, components: orientation.is_closed.len() })
+        Ok(Edited::Turned { turned, faces: self.faces.len(), parts: orientation.is_closed.len() })
     }
 
-    /// Cuts polygons into triangles, and returns how many were cut.
-    ///
-    /// # Errors
-    /// [`MeshFileProblem::Mesh`] as of [`subzero::triangulate`].
-    pub fn triangulate(&mut self) -> Result<usize, MeshFileProblem> {
+    fn triangulate(&mut self) -> Result<Edited, MeshFileProblem> {
         let (triangles, _) = subzero::triangulate(&self.points, &self.faces)?;
         let polygons = self.faces.iter().filter(|face| face.len() > 3).count();
         self.faces = triangles.into_iter().map(Vec::from).collect();
-        Ok(polygons)
+        Ok(Edited::Cut { polygons, triangles: self.faces.len() })
     }
+}
+
+impl EdgeChoice {
+    fn is_single(self) -> bool {
+        matches!(self, Self::Between(_))
+    }
+}
+
+/// A mesh whose edges are being edited.
+struct EdgeEditor<'a> {
+    mesh: &'a mut MeshFile,
+    half_edges: HalfEdgeMesh,
+}
+
+impl<'a> EdgeEditor<'a> {
+    fn new(mesh: &'a mut MeshFile) -> Result<Self, MeshFileProblem> {
+        let half_edges = HalfEdgeMesh::new(mesh.points.len(), &mesh.triangles()?)?;
+        Ok(Self { mesh, half_edges })
+    }
+
+    /// The ends of the edges chosen, as the mesh is now.
+    fn chosen(&self, choice: EdgeChoice) -> Vec<[u32; 2]> {
+        match choice {
+            EdgeChoice::Between(ends) => vec![ends],
+            EdgeChoice::All => self.half_edges.edge_ends(),
+            EdgeChoice::Longest => self.half_edges.longest_edges(&self.mesh.points),
+            EdgeChoice::Flat => self.half_edges.flat_edges(&self.mesh.points),
+        }
+    }
+
+    fn flip(&mut self, ends: [u32; 2]) -> Result<(), MeshError> {
+        self.half_edges.flip(self.half_edges.half_edge_between(ends[0], ends[1])?)?;
+        self.mesh.creases.retain(|crease| !joins(crease, ends));
+        Ok(())
+    }
+
+    fn split(&mut self, ends: [u32; 2]) -> Result<(), MeshError> {
+        let middle = self.half_edges.split(self.half_edges.half_edge_between(ends[0], ends[1])?)?;
+        let [a, b] = ends.map(|end| self.mesh.points[end as usize]);
+        self.mesh.points.push(0.5 * a + 0.5 * b);
+        let halves = |crease: Crease| match joins(&crease, ends) {
+            true => vec![
+                Crease { ends: [ends[0], middle], ..crease },
+                Crease { ends: [middle, ends[1]], ..crease },
+            ],
+            false => vec![crease],
+        };
+        self.mesh.creases = self.mesh.creases.drain(..).flat_map(halves).collect();
+        Ok(())
+    }
+
+    fn collapse(&mut self, [from, into]: [u32; 2]) -> Result<(), MeshError> {
+        self.half_edges.collapse_into(from, into)?;
+        for end in
+            self.mesh.creases.iter_mut().flat_map(|crease| &mut crease.ends).filter(|end| **end == from)
+        {
+            *end = into;
+        }
+        self.mesh.creases.retain(|crease| crease.ends[0] != crease.ends[1]);
+        self.mesh.corners.retain(|(vertex, _)| *vertex != from);
+        Ok(())
+    }
+
+    fn finish(self) {
+        self.mesh.faces = self.half_edges.triangles().map(|(_, triangle)| triangle.to_vec()).collect();
+    }
+}
+
+fn joins(crease: &Crease, [a, b]: [u32; 2]) -> bool {
+    crease.ends == [a, b] || crease.ends == [b, a]
 }

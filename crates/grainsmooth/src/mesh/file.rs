@@ -1,14 +1,16 @@
-//! Meshes from files and into files: OBJ, PLY, STL, OFF, VTK, and JSON as in the references of subdivision.
+//! Meshes and polylines from files and into files: OBJ, PLY, STL, OFF, VTK, and JSON as in the references of subdivision.
 
 use std::path::Path;
 
 use glam::DVec3;
-use subzero::{BoundaryRule, Crease, Features, PolygonMesh, TriangleMesh};
+use subzero::{BoundaryRule, Crease, CurveMesh, Features, INFINITE_SHARPNESS, PolygonMesh, TriangleMesh};
 use voronoi::Domain;
 
 use crate::error::Error;
 
+pub(super) mod control_points;
 mod json;
+pub(super) mod json_point;
 mod lines;
 mod obj;
 mod off;
@@ -21,13 +23,15 @@ pub use crate::error::mesh_file::MeshFileProblem;
 pub use vtk::READER_THREAD;
 pub use write::{MeshFormat, MeshToWrite, stage_mesh, write_mesh};
 
-/// A mesh as a file holds it: points, faces, and what a JSON file says about creases and corners.
+/// A mesh or polylines as a file holds them: points, faces, lines, and what a JSON file says about creases and corners.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MeshFile {
     /// Coordinates of each point.
     pub points: Vec<DVec3>,
     /// The points of each face, by position in `points`.
     pub faces: Vec<Vec<u32>>,
+    /// The points of each polyline, in order along it, by position in `points`; where it is closed, the first comes again at the end.
+    pub lines: Vec<Vec<u32>>,
     /// Sharp edges.
     pub creases: Vec<Crease>,
     /// Points that stay where they are until their sharpness has run out.
@@ -40,13 +44,29 @@ pub struct MeshFile {
 
 /// Reads a mesh; the extension names the format: .obj, .ply, .stl, .off, .vtk, .vtp, .vtu or .json.
 ///
-/// Polygons are kept as they are. Lines, single points, colours, texture and any other data are passed over.
+/// Polygons are kept as they are, and polylines beside them. Single points, colours, texture and any other data are passed over.
 ///
 /// # Errors
 /// [`Error::MeshFile`] when the file cannot be read, is truncated or corrupt, has no faces, a face with less than three
 /// corners or with points that do not exist, or a coordinate that is not finite or so large or small that its powers are not.
 pub fn read_mesh(path: &Path) -> Result<MeshFile, Error> {
-    read(path).map_err(|problem| Error::MeshFile { path: path.to_owned(), problem })
+    let with_faces = |mesh: MeshFile| match (mesh.faces.len(), mesh.lines.len()) {
+        (0, 0) => Err(MeshFileProblem::NoFaces),
+        (0, _) => Err(MeshFileProblem::OnlyPolylines),
+        _ => Ok(mesh),
+    };
+    read(path).and_then(with_faces).map_err(|problem| Error::MeshFile { path: path.to_owned(), problem })
+}
+
+/// Reads polylines; the extension names the format: .obj, .vtk, .vtp, .vtu, .json, or .txt with the points of a polyline on lines
+/// `x y z` or `x y`, and blank lines between polylines.
+///
+/// # Errors
+/// As of [`read_mesh`], for polylines with less than two points in place of faces.
+pub fn read_polylines(path: &Path) -> Result<MeshFile, Error> {
+    let with_lines =
+        |mesh: MeshFile| if mesh.lines.is_empty() { Err(MeshFileProblem::NoPolylines) } else { Ok(mesh) };
+    read(path).and_then(with_lines).map_err(|problem| Error::MeshFile { path: path.to_owned(), problem })
 }
 
 fn read(path: &Path) -> Result<MeshFile, MeshFileProblem> {
@@ -59,6 +79,7 @@ fn read(path: &Path) -> Result<MeshFile, MeshFileProblem> {
         Some("vtk") => vtk::read_legacy,
         Some("vtp" | "vtu") => vtk::read_xml,
         Some("json") => json::read,
+        Some("txt") => control_points::read_polylines,
         _ => return Err(MeshFileProblem::UnknownExtension),
     };
     let bytes = std::fs::read(path).map_err(MeshFileProblem::Unreadable)?;
@@ -82,7 +103,17 @@ impl MeshFile {
                 return Err(subzero::MeshError::VertexOutOfRange { what, index, vertex, vertex_count }.into());
             }
         }
-        if self.faces.is_empty() { Err(MeshFileProblem::NoFaces) } else { Ok(()) }
+        for (index, line) in self.lines.iter().enumerate() {
+            if line.len() < 2 {
+                return Err(MeshFileProblem::ShortPolyline { line: index });
+            }
+            let vertex_count = self.points.len();
+            if let Some(&vertex) = line.iter().find(|&&vertex| vertex as usize >= vertex_count) {
+                let what = "polyline";
+                return Err(subzero::MeshError::VertexOutOfRange { what, index, vertex, vertex_count }.into());
+            }
+        }
+        Ok(())
     }
 
     /// The faces, if all are triangles.
@@ -112,6 +143,20 @@ impl MeshFile {
     /// [`MeshFileProblem::Mesh`] as of [`PolygonMesh::new`].
     pub fn polygon_mesh(&self) -> Result<PolygonMesh, MeshFileProblem> {
         Ok(self.with_features(|features| PolygonMesh::new(self.points.len(), &self.faces, features))?)
+    }
+
+    /// Connectivity of the polylines, with the corners.
+    ///
+    /// # Errors
+    /// [`MeshFileProblem::SoftCornerOfPolyline`], or [`MeshFileProblem::Mesh`] as of [`CurveMesh::new`].
+    pub fn curve_mesh(&self) -> Result<CurveMesh, MeshFileProblem> {
+        let is_soft = |&&(_, sharpness): &&(u32, f32)| sharpness < INFINITE_SHARPNESS;
+        if let Some(&(vertex, sharpness)) = self.corners.iter().find(is_soft) {
+            return Err(MeshFileProblem::SoftCornerOfPolyline { vertex, sharpness });
+        }
+        let corners: Vec<u32> = self.corners.iter().map(|&(vertex, _)| vertex).collect();
+        let segments = self.lines.iter().flat_map(|line| line.windows(2).map(|ends| [ends[0], ends[1]]));
+        Ok(CurveMesh::new(self.points.len(), segments.collect(), &corners)?)
     }
 
     fn with_features<T>(&self, make: impl FnOnce(&Features<'_>) -> T) -> T {

@@ -22,7 +22,10 @@ struct LevelsFile<'a> {
     source: String,
     boundary: &'static str,
     vertices: &'a [Point],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
     faces: &'a [Vec<u32>],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    lines: &'a [Vec<u32>],
     creases: Vec<(u32, u32, f32)>,
     corners: &'a [(u32, f32)],
     levels: Vec<LevelEntry<'a>>,
@@ -42,7 +45,10 @@ struct LevelEntry<'a> {
     /// For Doo-Sabin: the face and the vertex of the level before that a vertex comes from.
     #[serde(skip_serializing_if = "Option::is_none")]
     corners: Option<Vec<[u32; 2]>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     faces: Vec<Vec<u32>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    lines: Vec<Vec<u32>>,
     #[serde(flatten)]
     face_limits: Option<FaceLimits>,
 }
@@ -80,13 +86,15 @@ pub fn levels_json(mesh: &MeshFile, scheme: Scheme, levels: &[Level], out: &mut 
         // A level that is still semi-sharp has no limits yet.
         .filter_map(|(index, level)| limits(level, scheme).ok().flatten().map(|found| (index, found)))
         .collect();
+    let is_curve = matches!(scheme, Scheme::BSpline | Scheme::FourPoint);
     let sectors = limits.iter().filter(|(level, _)| *level == 0).flat_map(|(_, found)| &found.sectors);
     let file = LevelsFile {
         scheme: name(scheme),
         source: format!("grainsmooth {}", env!("CARGO_PKG_VERSION")),
         boundary: boundary(mesh.boundary),
         vertices: bytemuck::cast_slice(&mesh.points),
-        faces: &mesh.faces,
+        faces: if is_curve { &[] } else { &mesh.faces },
+        lines: if is_curve { &mesh.lines } else { &[] },
         creases: creases(mesh),
         corners: &mesh.corners,
         levels: levels
@@ -129,6 +137,8 @@ fn name(scheme: Scheme) -> &'static str {
         Scheme::Midpoint => "midpoint",
         Scheme::DooSabin(_) => "doo-sabin",
         Scheme::CatmullClark => "catmull-clark",
+        Scheme::BSpline => "cubic b-spline",
+        Scheme::FourPoint => "four-point",
     }
 }
 
@@ -136,6 +146,7 @@ fn level_entry(scheme: Scheme, index: usize, pair: &[Level]) -> LevelEntry<'_> {
     let [coarse, fine] = [&pair[0], &pair[1]];
     // Doo and Sabin's scheme keeps no vertex: it makes one for each corner.
     let is_dual = matches!(scheme, Scheme::DooSabin(_));
+    let is_curve = matches!(fine.mesh, Connectivity::Curves(_));
     let face_limits = match &fine.mesh {
         Connectivity::Polygons(mesh) if is_dual => {
             let limits = mesh.doo_sabin_limits();
@@ -151,7 +162,8 @@ fn level_entry(scheme: Scheme, index: usize, pair: &[Level]) -> LevelEntry<'_> {
         vertices: bytemuck::cast_slice(&fine.points),
         parents: (!is_dual).then(|| parents(&coarse.mesh)),
         corners: is_dual.then(|| corners(&coarse.mesh)),
-        faces: fine.mesh.faces(),
+        faces: if is_curve { Vec::new() } else { fine.mesh.faces() },
+        lines: if is_curve { fine.mesh.faces() } else { Vec::new() },
         face_limits,
     }
 }
@@ -167,6 +179,10 @@ fn parents(mesh: &Connectivity) -> Vec<Vec<u32>> {
             let vertices = ids(mesh.vertex_count()).map(|v| vec![v, v]);
             let edges = ids(mesh.edge_count()).map(|edge| mesh.edge(edge).to_vec());
             vertices.chain(edges).chain(mesh.faces().map(<[u32]>::to_vec)).collect()
+        }
+        Connectivity::Curves(curves) => {
+            let vertices = ids(curves.mesh.vertex_count()).map(|v| vec![v, v]);
+            vertices.chain(curves.mesh.segments().iter().map(|ends| ends.to_vec())).collect()
         }
     }
 }
@@ -189,6 +205,7 @@ fn kinds(mesh: &Connectivity) -> Vec<u8> {
             let faces = |e| if mesh.is_boundary(e) { 1 } else { 2 };
             (mesh.vertex_count(), ids(mesh.edge_count()).map(|e| (mesh.edge(e), faces(e))).collect())
         }
+        Connectivity::Curves(curves) => (curves.mesh.vertex_count(), Vec::new()),
     };
     let mut on_boundary = vec![false; vertex_count];
     let mut on_junction = vec![false; vertex_count];

@@ -1,7 +1,9 @@
 //! Subdivision of a mesh by any scheme, with all its levels.
 
 use glam::DVec3;
-use subzero::{DooSabinWeights, LoopWeights, MeshError, PolygonMesh, Refinement, TriangleMesh, VertexRule};
+use subzero::{
+    CurveMesh, DooSabinWeights, LoopWeights, MeshError, PolygonMesh, Refinement, TriangleMesh, VertexRule,
+};
 
 use super::file::{MeshFile, MeshFileProblem};
 use crate::Error;
@@ -22,6 +24,10 @@ pub enum Scheme {
     DooSabin(DooSabinWeights),
     /// Catmull and Clark's, on polygons.
     CatmullClark,
+    /// Cubic B-splines, on polylines.
+    BSpline,
+    /// Dyn, Levin and Gregory's, on polylines; interpolating.
+    FourPoint,
 }
 
 /// Connectivity of one level.
@@ -31,6 +37,17 @@ pub enum Connectivity {
     Triangles(TriangleMesh),
     /// Of the polygon schemes.
     Polygons(PolygonMesh),
+    /// Of the schemes of curves.
+    Curves(Curves),
+}
+
+/// Polylines and how they join.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curves {
+    /// The segments of all polylines, one after the other.
+    pub mesh: CurveMesh,
+    /// The points of each polyline, in order along it; where it is closed, the first comes again at the end.
+    pub lines: Vec<Vec<u32>>,
 }
 
 /// A mesh after some steps of subdivision.
@@ -70,6 +87,10 @@ pub fn subdivide(
         Scheme::DooSabin(_) | Scheme::CatmullClark => {
             Connectivity::Polygons(mesh.polygon_mesh().map_err(located)?)
         }
+        Scheme::BSpline | Scheme::FourPoint => {
+            let lines = mesh.lines.clone();
+            Connectivity::Curves(Curves { mesh: mesh.curve_mesh().map_err(located)?, lines })
+        }
         _ => Connectivity::Triangles(mesh.triangle_mesh().map_err(located)?),
     };
     check_levels(connectivity.size(), levels, available_memory())?;
@@ -100,38 +121,70 @@ impl Level {
                 };
                 Ok(Self { mesh: Connectivity::Polygons(mesh), points: stencils.apply(&self.points) })
             }
+            Connectivity::Curves(curves) => {
+                let Refinement { mesh, stencils } = match scheme {
+                    Scheme::FourPoint => curves.mesh.four_point_refine(),
+                    _ => curves.mesh.refine(),
+                };
+                let curves = Curves { lines: curves.finer_lines(), mesh };
+                Ok(Self { mesh: Connectivity::Curves(curves), points: stencils.apply(&self.points) })
+            }
         }
     }
 }
 
+impl Curves {
+    /// The polylines after a refinement: between two points now stands that of their segment.
+    fn finer_lines(&self) -> Vec<Vec<u32>> {
+        let vertex_count = self.mesh.vertex_count();
+        // More than ids can count is refused before.
+        let mut middles = (0..).skip(vertex_count);
+        let mut finer = |line: &Vec<u32>| {
+            let mut points = Vec::with_capacity(2 * line.len() - 1);
+            for &end in &line[1..] {
+                points.extend(middles.next().map(|middle| [middle, end]).into_iter().flatten());
+            }
+            points.insert(0, line[0]);
+            points
+        };
+        self.lines.iter().map(&mut finer).collect()
+    }
+}
+
 impl Connectivity {
-    /// The faces as lists of vertices.
+    /// The faces as lists of vertices; of curves, the polylines.
     pub fn faces(&self) -> Vec<Vec<u32>> {
         match self {
             Self::Triangles(mesh) => mesh.triangles().iter().map(|triangle| triangle.to_vec()).collect(),
             Self::Polygons(mesh) => mesh.faces().map(<[u32]>::to_vec).collect(),
+            Self::Curves(curves) => curves.lines.clone(),
         }
     }
 
-    /// Number of faces.
+    /// Number of faces; of curves, of segments.
     pub fn face_count(&self) -> usize {
         match self {
             Self::Triangles(mesh) => mesh.triangles().len(),
             Self::Polygons(mesh) => mesh.face_count(),
+            Self::Curves(curves) => curves.mesh.segments().len(),
         }
     }
 
-    /// Checks that no edge lies on a boundary.
+    /// Checks that no edge lies on a boundary, and no polyline has ends.
     ///
     /// # Errors
-    /// [`MeshError::Open`] names the first edge with one face only.
-    pub fn check_closed(&self) -> Result<(), MeshError> {
+    /// [`MeshError::Open`] names the first edge with one face only, [`MeshFileProblem::OpenPolyline`] the first polyline.
+    pub fn check_closed(&self) -> Result<(), MeshFileProblem> {
         match self {
-            Self::Triangles(mesh) => mesh.check_closed(),
+            Self::Triangles(mesh) => Ok(mesh.check_closed()?),
             Self::Polygons(mesh) => {
                 let open = (0..).take(mesh.edge_count()).find(|&edge| mesh.is_boundary(edge));
-                open.map_or(Ok(()), |edge| Err(MeshError::Open { ends: mesh.edge(edge) }))
+                open.map_or(Ok(()), |edge| Err(MeshError::Open { ends: mesh.edge(edge) }.into()))
             }
+            Self::Curves(curves) => match curves.lines.iter().position(|line| line.first() != line.last()) {
+                Some(line) => Err(MeshFileProblem::OpenPolyline { line }),
+                None => Ok(()),
+            },
         }
     }
 
@@ -143,6 +196,7 @@ impl Connectivity {
         match self {
             Self::Triangles(mesh) => mesh.vertex_rule(vertex),
             Self::Polygons(mesh) => mesh.vertex_rule(vertex),
+            Self::Curves(curves) => curves.mesh.vertex_rule(vertex),
         }
     }
 
@@ -155,13 +209,14 @@ impl Connectivity {
                 let corners = mesh.faces().map(<[u32]>::len).sum::<usize>();
                 [mesh.vertex_count() + mesh.face_count(), mesh.edge_count() + corners, corners]
             }
+            Self::Curves(curves) => [curves.mesh.vertex_count(), curves.mesh.segments().len(), 0],
         }
         .map(|count| count as u128);
         LevelSize { points, edges, triangles }
     }
 }
 
-/// The limits of a level of Loop's scheme or Catmull and Clark's; nothing for the other schemes.
+/// The limits of a level of Loop's scheme, Catmull and Clark's or cubic B-splines; nothing for the other schemes.
 ///
 /// # Errors
 /// [`MeshError::SemiSharp`] while a sharpness has not run out.
@@ -193,6 +248,11 @@ pub fn limits(level: &Level, scheme: Scheme) -> Result<Option<Limits>, MeshFileP
                     .collect(),
             }))
         }
+        (Connectivity::Curves(curves), Scheme::BSpline) => Ok(Some(Limits {
+            positions: curves.mesh.limit_positions().apply(&level.points),
+            normals: vec![None; level.points.len()],
+            sectors: Vec::new(),
+        })),
         _ => Ok(None),
     }
 }

@@ -1,15 +1,21 @@
-//! Meshes as the reference files of subdivision write them: `vertices`, `faces`, `creases`, `corners`, `boundary`.
+//! Meshes and polylines as the reference files of subdivision write them: `vertices`, `faces`, `lines`, `creases`, `corners`, `boundary`.
 
-use glam::DVec3;
 use serde::Deserialize;
 use subzero::{BoundaryRule, Crease, INFINITE_SHARPNESS};
 
+use super::json_point::JsonPoint;
 use super::{MeshFile, MeshFileProblem};
 
 #[derive(Deserialize)]
 struct File {
-    vertices: Vec<[f64; 3]>,
+    vertices: Vec<JsonPoint>,
+    #[serde(default)]
     faces: Vec<Vec<u32>>,
+    #[serde(default)]
+    lines: Vec<Vec<u32>>,
+    /// In place of lines: one through all points in their order, and whether it is closed.
+    #[serde(default)]
+    closed: Option<bool>,
     #[serde(default)]
     creases: Vec<CreaseEntry>,
     #[serde(default)]
@@ -35,10 +41,15 @@ enum CornerEntry {
 
 /// Reads a mesh; levels and limits that the file may have are passed over.
 pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
-    let file: File = serde_json::from_slice(bytes).map_err(problem)?;
+    let mut file: File = serde_json::from_slice(bytes).map_err(problem)?;
+    if let Some(is_closed) = file.closed.filter(|_| file.faces.is_empty() && file.lines.is_empty()) {
+        let ids = (0..).take(file.vertices.len());
+        file.lines.push(ids.chain(is_closed.then_some(0)).collect());
+    }
     Ok(MeshFile {
-        points: file.vertices.into_iter().map(DVec3::from_array).collect(),
+        points: file.vertices.into_iter().map(|JsonPoint(point)| point).collect(),
         faces: file.faces,
+        lines: file.lines,
         creases: file
             .creases
             .into_iter()

@@ -55,6 +55,9 @@ fn mesh_of(data: DataSet) -> Result<MeshFile, MeshFileProblem> {
             for piece in pieces {
                 let piece = inline(piece)?;
                 let first = mesh.add_points(&piece.points)?;
+                for line in piece.lines.iter().flat_map(cells) {
+                    mesh.add_line(first, line?)?;
+                }
                 for face in piece.polys.iter().flat_map(cells) {
                     mesh.add_face(first, face?)?;
                 }
@@ -100,16 +103,33 @@ impl MeshFile {
     }
 
     fn add_face(&mut self, first: u64, face: Vec<u64>) -> Result<(), MeshFileProblem> {
+        let face = self.known(first, face, "face", self.faces.len())?;
+        self.faces.push(face);
+        Ok(())
+    }
+
+    fn add_line(&mut self, first: u64, line: Vec<u64>) -> Result<(), MeshFileProblem> {
+        let line = self.known(first, line, "line", self.lines.len())?;
+        self.lines.push(line);
+        Ok(())
+    }
+
+    /// The points of a cell, counted from the first of its piece.
+    fn known(
+        &self,
+        first: u64,
+        cell: Vec<u64>,
+        what: &str,
+        index: usize,
+    ) -> Result<Vec<u32>, MeshFileProblem> {
         let count = self.points.len();
-        let index = self.faces.len();
         let id = |id: u64| {
             let point = first.checked_add(id).and_then(|id| u32::try_from(id).ok());
             point.filter(|&id| (id as usize) < count).ok_or_else(|| {
-                problem(format!("face {index} refers to point {id}, but there are only {count} points"))
+                problem(format!("{what} {index} refers to point {id}, but there are only {count} points"))
             })
         };
-        self.faces.push(face.into_iter().map(id).collect::<Result<_, _>>()?);
-        Ok(())
+        cell.into_iter().map(id).collect()
     }
 
     /// Every other triangle of a strip winds the other way.
@@ -121,7 +141,7 @@ impl MeshFile {
         Ok(())
     }
 
-    /// Adds a cell of an unstructured grid; points and lines are passed over, and solids refused.
+    /// Adds a cell of an unstructured grid; points are passed over, and solids refused.
     fn add_cell(
         &mut self,
         first: u64,
@@ -129,7 +149,8 @@ impl MeshFile {
         mut cell: Vec<u64>,
     ) -> Result<Result<(), MeshFileProblem>, CellType> {
         Ok(match kind {
-            CellType::Vertex | CellType::PolyVertex | CellType::Line | CellType::PolyLine => Ok(()),
+            CellType::Vertex | CellType::PolyVertex => Ok(()),
+            CellType::Line | CellType::PolyLine => self.add_line(first, cell),
             CellType::Triangle | CellType::Polygon | CellType::Quad => self.add_face(first, cell),
             CellType::Pixel if cell.len() == 4 => {
                 cell.swap(2, 3);

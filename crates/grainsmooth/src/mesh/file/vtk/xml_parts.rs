@@ -9,7 +9,7 @@ use super::{MeshFileProblem, problem};
 use crate::vtk::{attribute, find, try_inlined};
 
 /// Elements that no mesh needs.
-const NOT_NEEDED: [&str; 5] = ["FieldData", "PointData", "CellData", "Verts", "Lines"];
+const NOT_NEEDED: [&str; 4] = ["FieldData", "PointData", "CellData", "Verts"];
 
 /// Kinds of cell that are left out of the file when there are none, and the attribute with their number.
 const PERHAPS_EMPTY: [(&str, &str); 4] = [
