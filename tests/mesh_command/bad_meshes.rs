@@ -124,7 +124,7 @@ fn bad_meshes_are_refused_by_name() {
             "cube.obj: vertex 0 is semi-sharp: refine until its sharpness has run out",
         ),
         ("loop missing.obj", "missing.obj: cannot be read: ... give the path of a readable mesh file"),
-        ("loop cube.blend", "cube.blend: unknown extension; give a file *.obj, ... or *.json"),
+        ("loop cube.blend", "cube.blend: unknown extension; give a file *.obj, ... or of lines *.txt"),
         ("catmull-clark cube.obj -n 60", "60 levels would take ... would fit"),
         // Their normals were none, and nothing said so.
         (

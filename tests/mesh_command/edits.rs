@@ -145,7 +145,10 @@ fn edges_chosen_together() {
     // A boundary stays where edges are flipped together, and is told.
     workplace.put("in.off", SQUARE);
     let said = workplace.run("mesh flip --edge all in.off -o out.obj");
-    assert!(said.contains("flipped     1 edges; 7 stay, on the boundary or as the mesh would be no manifold"), "{said}");
+    assert!(
+        said.contains("flipped     1 edges; 7 stay, on the boundary or as the mesh would be no manifold"),
+        "{said}"
+    );
 }
 
 /// A cube whose squares are cut at their middles keeps all its symmetries under Loop's scheme; cut along one diagonal each, it does not.
@@ -154,16 +157,20 @@ fn presplit_cube_stays_symmetric() {
     let workplace = Workplace::new();
     workplace.put("cube.obj", CUBE_OBJ);
     let said = workplace.run("mesh edit cube.obj triangulate split=flat orient -o presplit.obj");
-    for line in ["cut         6 polygons: 12 triangles", "split       6 edges", "edited      14 points, 24 faces"] {
+    for line in
+        ["cut         6 polygons: 12 triangles", "split       6 edges", "edited      14 points, 24 faces"]
+    {
         assert!(said.contains(line), "{said}");
     }
     workplace.run("mesh triangulate cube.obj -o plain.obj");
     let asymmetry = |name: &str| {
         workplace.run(&format!("mesh loop {name} -n 3 -o smooth.vtp"));
         let points = read_mesh(&workplace.path("smooth.vtp")).unwrap().points;
-        let symmetries = [|p: DVec3| DVec3::new(p.y, p.z, p.x), |p: DVec3| DVec3::new(-p.y, p.x, p.z), |p: DVec3| {
-            DVec3::new(p.y, p.x, p.z)
-        }];
+        let symmetries = [
+            |p: DVec3| DVec3::new(p.y, p.z, p.x),
+            |p: DVec3| DVec3::new(-p.y, p.x, p.z),
+            |p: DVec3| DVec3::new(p.y, p.x, p.z),
+        ];
         let nearest = |place: DVec3| points.iter().map(|p| p.distance(place)).fold(f64::INFINITY, f64::min);
         let worst = symmetries.iter().flat_map(|s| points.iter().map(|p| nearest(s(*p))));
         worst.fold(0.0, f64::max)
@@ -179,10 +186,8 @@ fn several_edits_in_their_order() {
     workplace.run("mesh edit in.off split=0-4 flip=1-5 reverse -o out.json");
     workplace.run("mesh split in.off --edge 0-4 -o one.json");
     workplace.run("mesh flip one.json --edge 1-5 -o two.json");
-    let (at_once, steps) = (
-        read_mesh(&workplace.path("out.json")).unwrap(),
-        read_mesh(&workplace.path("two.json")).unwrap(),
-    );
+    let (at_once, steps) =
+        (read_mesh(&workplace.path("out.json")).unwrap(), read_mesh(&workplace.path("two.json")).unwrap());
     let mut turned = steps.clone();
     turned.faces.iter_mut().for_each(|face| face.reverse());
     assert_eq!(triangles(&at_once), triangles(&turned));

@@ -209,6 +209,115 @@ fn bezier_curves_and_patches() {
     assert_eq!((patch.points.len(), patch.faces.len(), patch.points[4].z), (9, 8, 0.5));
 }
 
+/// The teapot as one closed mesh, which Loop's scheme smooths without holes, and what others make of it.
+#[test]
+fn the_teapot_is_merged() {
+    let workplace = Workplace::new();
+    let teapot = concat!(env!("CARGO_MANIFEST_DIR"), "/data/teapot.bpt");
+    workplace.command("mesh bezier --merge --samples 9 -o teapot.vtp").arg(teapot).assert().success();
+    let said = workplace.run("mesh loop teapot.vtp --closed -n 1 -o smooth.vtp");
+    assert!(said.contains("level 1 "), "{said}");
+    workplace.command("mesh bezier --merge=open --samples 9 -o open.ply").arg(teapot).assert().success();
+    workplace.refuses(
+        "mesh loop open.ply --closed -o out.vtp",
+        1,
+        "open.ply: the surface is open: edge ... has one face only; close the hole",
+    );
+    workplace.put("curve.txt", "0 0 0\n1 2 0\n2 0 0\n");
+    workplace.refuses(
+        "mesh bezier curve.txt --merge -o out.vtp",
+        1,
+        "curve.txt: holds no surfaces to merge; leave --merge out",
+    );
+    let script = "
+import pyvista
+for name in ['teapot.vtp', 'smooth.vtp']:
+    mesh = pyvista.read(name)
+    assert mesh.is_manifold and mesh.n_open_edges == 0, mesh
+    assert mesh.compute_cell_sizes()['Area'].min() > 1e-9
+    bodies = mesh.split_bodies()
+    assert len(bodies) == 4, len(bodies)
+teapot = pyvista.read('teapot.vtp')
+assert set(teapot.cell_data['Surface']) == set(range(-1, 32))
+assert teapot.volume > 0 and pyvista.read('open.ply').n_open_edges > 0
+";
+    let mut python = Command::new("python3");
+    python.args(["-c", script]).current_dir(workplace.path("."));
+    let Some(python) = run("the_teapot_is_merged", &mut python) else { return };
+    assert!(python.status.success(), "{}: {}", python.status, String::from_utf8_lossy(&python.stderr));
+}
+
+#[test]
+fn de_casteljaus_points_level_by_level() {
+    let workplace = Workplace::new();
+    // In the plane, by two coordinates.
+    workplace.put("curve.txt", "0 0\n1 2\n3 2\n4 0\n");
+    let said = workplace.run("mesh bezier curve.txt --t 0.25 --construction -o levels.obj");
+    assert!(said.contains("point       0.90625 1.125 0.0 after 3 levels"), "{said}");
+    let expected = [
+        [0.0, 0.0],
+        [1.0, 2.0],
+        [3.0, 2.0],
+        [4.0, 0.0],
+        [0.25, 0.5],
+        [1.5, 2.0],
+        [3.25, 1.5],
+        [0.5625, 0.875],
+        [1.9375, 1.875],
+        [0.90625, 1.125],
+    ];
+    let mesh = grainsmooth::mesh::file::read_polylines(&workplace.path("levels.obj")).unwrap();
+    assert_eq!(mesh.points, expected.map(|[x, y]| DVec3::new(x, y, 0.0)));
+    assert_eq!(mesh.lines, [vec![0, 1, 2, 3], vec![4, 5, 6], vec![7, 8]]);
+    workplace.run("mesh bezier curve.txt --t 0.25 --construction -o levels.json");
+    let curve = &json(&workplace.bytes("levels.json"))["curves"][0];
+    let levels: Vec<Vec<[f64; 3]>> = serde_json::from_value(curve["levels"].clone()).unwrap();
+    let flat: Vec<[f64; 3]> = levels.concat();
+    assert_eq!(flat, expected.map(|[x, y]| [x, y, 0.0]));
+    assert_eq!(points(&curve["left"])[3], [0.90625, 1.125, 0.0]);
+    workplace.run("mesh bezier curve.txt --t 0.25 --construction -o levels.vtp");
+    workplace.put("patch.txt", "1 1\n0 0 0\n0 1 0\n1 0 0\n1 1 2\n");
+    workplace.refuses(
+        "mesh bezier patch.txt --t 0.25 --construction -o out.vtp",
+        1,
+        "patch.txt: holds no curves, of which alone there is a construction; leave --construction and --t out",
+    );
+    for (arguments, message) in [
+        ("--t 0.4", "the following required arguments were not provided:"),
+        ("--construction", "the following required arguments were not provided:"),
+        (
+            "--t 1.5 --construction",
+            "invalid value '1.5' for '--t <T>': give a number from 0 (start) to 1 (end)",
+        ),
+    ] {
+        workplace.refuses(&format!("mesh bezier curve.txt {arguments} -o out.vtp"), 2, message);
+    }
+    let script = "
+import pyvista
+levels = pyvista.read('levels.vtp')
+assert list(levels.point_data['Level']) == [0] * 4 + [1] * 3 + [2] * 2 + [3]
+assert list(levels.cell_data['Level']) == [0, 1, 2]
+";
+    let mut python = Command::new("python3");
+    python.args(["-c", script]).current_dir(workplace.path("."));
+    let Some(python) = run("de_casteljaus_points_level_by_level", &mut python) else { return };
+    assert!(python.status.success(), "{}: {}", python.status, String::from_utf8_lossy(&python.stderr));
+}
+
+/// Means of the faces' normals by area, polygons too.
+#[test]
+fn normals_of_polygons() {
+    let workplace = Workplace::new();
+    workplace.put("cube.obj", CUBE_OBJ);
+    workplace.run("mesh normals cube.obj -o cube.json");
+    for (normal, place) in points(&json(&workplace.bytes("cube.json"))["normals"])
+        .into_iter()
+        .zip(read(&workplace, "cube.obj").points)
+    {
+        assert!((DVec3::from(normal) - place.normalize()).length() < 1e-15, "{normal:?}");
+    }
+}
+
 /// Files as ParaView's own library writes them.
 #[test]
 fn files_of_vtk_itself() {

@@ -6,7 +6,7 @@ pub mod file;
 mod json;
 mod subdivide;
 
-pub use bezier::{BezierFile, read_bezier};
+pub use bezier::{BezierFile, Construction, read_bezier};
 pub use edit::{EdgeChoice, Edited, MeshEdit};
-pub use json::{bezier_json, levels_json, mesh_json};
+pub use json::{bezier_json, construction_json, levels_json, mesh_json};
 pub use subdivide::{Connectivity, Curves, Level, Limits, Scheme, limits, subdivide};

@@ -22,6 +22,7 @@
 
 mod base_rings;
 mod bezier;
+mod bezier_merge;
 mod butterfly;
 mod catmull_clark;
 mod catmull_clark_limits;
@@ -58,6 +59,7 @@ mod triangulate;
 mod vertex_rows;
 
 pub use bezier::{BezierCurve, BezierSurface};
+pub use bezier_merge::MergedSurfaces;
 pub use catmull_clark_limits::CatmullClarkLimits;
 pub use counts::{EdgeParent, MeshCounts, VertexParent};
 pub use curve_mesh::CurveMesh;

@@ -1,5 +1,6 @@
 //! Connectivity of a polygon mesh.
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::edge_table::EdgeTable;
@@ -7,6 +8,7 @@ use crate::features::INFINITE_SHARPNESS;
 use crate::ids::{NONE, id};
 use crate::mesh_checks::{check_corners, check_faces, check_size};
 use crate::sharpness::{Sharpness, is_infinite};
+use crate::triangulate::doubled_area_vector;
 use crate::{BoundaryRule, Features, MeshError, VertexRule};
 
 /// Connectivity of a mesh of polygons with three or more corners; positions live beside it as slices.
@@ -190,6 +192,23 @@ impl PolygonMesh {
     /// If there is no such vertex.
     pub fn vertex_rule(&self, vertex: u32) -> VertexRule {
         self.vertex_rules[vertex as usize]
+    }
+
+    /// The unit normal at each vertex: the mean of those of its faces, weighted by their areas. Nothing at unused vertices, and where
+    /// the mean vanishes.
+    ///
+    /// # Panics
+    /// If `points` has fewer points than the mesh has vertices.
+    pub fn vertex_normals(&self, points: &[DVec3]) -> Vec<Option<DVec3>> {
+        let mut sums = vec![DVec3::ZERO; self.vertex_count()];
+        let mut corners = Vec::new();
+        for face in self.faces() {
+            corners.clear();
+            corners.extend(face.iter().map(|&v| points[v as usize]));
+            let normal = doubled_area_vector(&corners);
+            face.iter().for_each(|&v| sums[v as usize] += normal);
+        }
+        sums.into_iter().map(DVec3::try_normalize).collect()
     }
 
     pub(crate) fn start(&self, h: u32) -> u32 {

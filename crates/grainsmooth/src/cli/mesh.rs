@@ -49,7 +49,7 @@ pub enum MeshCommand {
     FourPoint(CurveArguments),
     /// Points on the limit surface, with its normals there, or on the limit curve
     Limit(LimitArguments),
-    /// Normals at the points: means of those of the triangles, weighted by area
+    /// Normals at the points: means of those of the faces, weighted by area
     Normals(FileArguments),
     /// Make the winding of faces agree: in each part that hangs together, most stay as they are
     Orient(OrientArguments),
@@ -235,6 +235,34 @@ pub struct BezierArguments {
     /// Points on each curve, and along each side of a surface
     #[arg(long, value_name = "N", default_value_t = 33, value_parser = clap::value_parser!(u32).range(2..=10_000))]
     pub samples: u32,
+
+    /// Make one mesh of all surfaces: seams and poles joined, and holes filled (closed) or left (open)
+    #[arg(
+        long,
+        value_enum,
+        value_name = "HOLES",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "closed",
+        conflicts_with = "t"
+    )]
+    pub merge: Option<Merge>,
+
+    /// Write de Casteljau's points of each curve at the parameter of --t, level by level
+    #[arg(long, requires = "t", conflicts_with = "samples")]
+    pub construction: bool,
+
+    /// Where on the curves, from 0 to 1
+    #[arg(long, value_name = "T", requires = "construction", value_parser = parse_parameter)]
+    pub t: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Merge {
+    /// Holes are filled
+    Closed,
+    /// Holes stay
+    Open,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -291,7 +319,8 @@ pub enum Task<'a> {
     Limit(Scheme, &'a LimitArguments),
     Normals,
     Edit(Vec<MeshEdit>),
-    Bezier { samples: u32 },
+    Bezier { samples: u32, merge: Option<Merge> },
+    Construction { t: f64 },
 }
 
 /// What a subcommand says about creases and corners.
@@ -339,7 +368,13 @@ impl MeshCommand {
                 return (&edit.files, Task::Edit(vec![MeshEdit::Collapse(edit.edges.clone())]));
             }
             Self::Edit(edit) => return (&edit.files, Task::Edit(edit.edits.clone())),
-            Self::Bezier(bezier) => return (&bezier.files, Task::Bezier { samples: bezier.samples }),
+            Self::Bezier(bezier) => {
+                let task = match bezier.t {
+                    Some(t) => Task::Construction { t },
+                    None => Task::Bezier { samples: bezier.samples, merge: bezier.merge },
+                };
+                return (&bezier.files, task);
+            }
         };
         let features = Features::OfSurface(&arguments.features);
         (&arguments.files, Task::Subdivide(scheme, &arguments.steps, features))
@@ -363,6 +398,11 @@ impl FileArguments {
 fn parse_edge(text: &str) -> Result<[u32; 2], String> {
     let ends = text.split_once('-').and_then(|(a, b)| Some([a.trim().parse().ok()?, b.trim().parse().ok()?]));
     ends.ok_or_else(|| "an edge is two points, such as 4-9".to_owned())
+}
+
+fn parse_parameter(text: &str) -> Result<f64, String> {
+    let parameter = text.parse().ok().filter(|t| (0.0..=1.0).contains(t));
+    parameter.ok_or_else(|| "give a number from 0 (start) to 1 (end)".to_owned())
 }
 
 fn parse_choice(text: &str) -> Result<EdgeChoice, String> {

@@ -7,18 +7,18 @@ use std::path::{Path, PathBuf};
 use clap::CommandFactory;
 use clap::error::ErrorKind;
 use glam::DVec3;
-use grainsmooth::mesh::MeshEdit;
 use grainsmooth::mesh::file::{
     MeshFile, MeshFileProblem, MeshFormat, MeshToWrite, read_mesh, read_polylines, stage_mesh, write_mesh,
 };
+use grainsmooth::mesh::{MeshEdit, construction_json};
 use grainsmooth::vtk::Cells;
 use grainsmooth::{
-    Connectivity, Error, Level, Output, Scheme, StagedFiles, bezier_json, levels_json, limits, mesh_json,
-    read_bezier, subdivide, write_together,
+    BezierFile, Connectivity, Error, Level, Output, Scheme, StagedFiles, bezier_json, levels_json, limits,
+    mesh_json, read_bezier, subdivide, write_together,
 };
-use subzero::{HalfEdgeMesh, INFINITE_SHARPNESS, MeshError};
+use subzero::{INFINITE_SHARPNESS, MergedSurfaces, MeshError};
 
-use crate::cli::mesh::{Features, FileArguments, LimitArguments, MeshCommand, StepArguments, Task};
+use crate::cli::mesh::{Features, FileArguments, LimitArguments, Merge, MeshCommand, StepArguments, Task};
 use crate::cli::{Arguments, usage};
 use crate::say;
 
@@ -59,7 +59,9 @@ impl Job<'_> {
             Task::Limit(scheme, arguments) => self.limit(scheme, arguments),
             Task::Normals => self.normals(),
             Task::Edit(edits) => self.edit(&edits),
-            Task::Bezier { samples } => self.bezier(samples),
+            Task::Bezier { samples, merge: None } => self.bezier(samples),
+            Task::Bezier { samples, merge: Some(merge) } => self.merged(samples, merge),
+            Task::Construction { t } => self.construction(t),
         }
     }
 
@@ -139,11 +141,8 @@ impl Job<'_> {
     fn normals(&self) -> Result<(), Error> {
         let output = self.output(&self.files.output)?;
         let mesh = self.read()?;
-        let find = || -> Result<_, MeshFileProblem> {
-            let triangles = mesh.triangles()?;
-            Ok(HalfEdgeMesh::new(mesh.points.len(), &triangles)?.vertex_normals(&mesh.points))
-        };
-        let normals = find().map_err(|error| self.located(error))?;
+        let connectivity = mesh.polygon_mesh().map_err(|error| self.located(error))?;
+        let normals = connectivity.vertex_normals(&mesh.points);
         self.report(format_args!("normals     {} points", normals.iter().flatten().count()));
         self.write_single(&output, &mesh, Some(&normals))
     }
@@ -162,9 +161,8 @@ impl Job<'_> {
 
     fn bezier(&self, samples: u32) -> Result<(), Error> {
         let output = self.output(&self.files.output)?;
-        let file = read_bezier(&self.files.input)?;
+        let file = self.read_control_points()?;
         let (curves, surfaces) = (file.curves.len(), file.surfaces.len());
-        self.report(format_args!("read        {curves} curves and {surfaces} surfaces"));
         let located = |error: MeshError| self.located(error.into());
         if self.format == MeshFormat::Json {
             output.write(|out| bezier_json(&file, samples, out))?;
@@ -180,6 +178,70 @@ impl Job<'_> {
         }
         self.report_written(&[output]);
         Ok(())
+    }
+
+    /// All surfaces of a file as one mesh.
+    fn merged(&self, samples: u32, merge: Merge) -> Result<(), Error> {
+        let output = self.output(&self.files.output)?;
+        let file = self.read_control_points()?;
+        if file.surfaces.is_empty() {
+            return Err(self.located(MeshFileProblem::NoSurfaces));
+        }
+        let merged =
+            file.merged(samples, merge == Merge::Closed).map_err(|error| self.located(error.into()))?;
+        let MergedSurfaces { seams, poles, filled, holes, .. } = merged;
+        self.report(format_args!(
+            "merged      {seams} seams and {poles} poles; {filled} holes filled, {holes} left: {} points, {} triangles",
+            merged.points.len(),
+            merged.triangles.len()
+        ));
+        let number = |surface: &Option<u32>| surface.map_or(-1, u32::cast_signed);
+        let surfaces: Vec<i32> = merged.surface_of.iter().map(number).collect();
+        let faces = merged.triangles.iter().map(|triangle| triangle.to_vec()).collect();
+        let mesh = MeshFile { points: merged.points, faces, ..MeshFile::default() };
+        let connectivity = mesh.polygon_mesh().map_err(|error| self.located(error))?;
+        let normals = connectivity.vertex_normals(&mesh.points);
+        if self.format == MeshFormat::Json {
+            output.write(|out| mesh_json(&mesh, Some(&normals), out))?;
+        } else {
+            let normals: Vec<DVec3> = normals.into_iter().map(Option::unwrap_or_default).collect();
+            let content = self.content(&mesh.points, Cells::Triangles(&merged.triangles));
+            let (normals, cell_numbers) = (Some(&normals[..]), Some(("Surface", &surfaces[..])));
+            write_mesh(&MeshToWrite { normals, cell_numbers, ..content }, &output)?;
+        }
+        self.report_written(&[output]);
+        Ok(())
+    }
+
+    /// De Casteljau's points on all curves of a file.
+    fn construction(&self, t: f64) -> Result<(), Error> {
+        let output = self.output(&self.files.output)?;
+        let file = self.read_control_points()?;
+        if file.curves.is_empty() {
+            return Err(self.located(MeshFileProblem::NoCurves));
+        }
+        let all = file.construction(t).map_err(|error| self.located(error.into()))?;
+        for curve in &file.curves {
+            let DVec3 { x, y, z } = curve.point(t);
+            self.report(format_args!("point       {x:?} {y:?} {z:?} after {} levels", curve.degree()));
+        }
+        if self.format == MeshFormat::Json {
+            output.write(|out| construction_json(&file, t, out))?;
+        } else {
+            let content = self.content(&all.points, Cells::Polylines(&all.lines));
+            let point_numbers = Some(("Level", &all.levels[..]));
+            let cell_numbers = Some(("Level", &all.line_levels[..]));
+            write_mesh(&MeshToWrite { point_numbers, cell_numbers, ..content }, &output)?;
+        }
+        self.report_written(&[output]);
+        Ok(())
+    }
+
+    fn read_control_points(&self) -> Result<BezierFile, Error> {
+        let file = read_bezier(&self.files.input)?;
+        let (curves, surfaces) = (file.curves.len(), file.surfaces.len());
+        self.report(format_args!("read        {curves} curves and {surfaces} surfaces"));
+        Ok(file)
     }
 
     /// The surface, without polylines that the file may have.
@@ -279,7 +341,16 @@ impl Job<'_> {
     fn content<'a>(&'a self, points: &'a [DVec3], cells: Cells<'a>) -> MeshToWrite<'a> {
         let command_line = &self.command_line;
         let encoding = self.files.vtk.encoding();
-        MeshToWrite { points, cells, normals: None, generations: None, command_line, encoding }
+        MeshToWrite {
+            points,
+            cells,
+            normals: None,
+            generations: None,
+            point_numbers: None,
+            cell_numbers: None,
+            command_line,
+            encoding,
+        }
     }
 
     fn output(&self, path: &Path) -> Result<Output<MeshFormat>, Error> {

@@ -133,6 +133,12 @@ pub enum MeshFileProblem {
     /// Two faces wind opposite ways.
     #[error("{0}; `grainsmooth mesh orient` makes it agree")]
     Winding(MeshError),
+    /// A file of control points has no surfaces where these are to be merged.
+    #[error("holds no surfaces to merge; leave --merge out")]
+    NoSurfaces,
+    /// A file of control points has no curves where their construction is asked for.
+    #[error("holds no curves, of which alone there is a construction; leave --construction and --t out")]
+    NoCurves,
     /// The faces make no mesh that the scheme can work with.
     #[error("{0}")]
     Mesh(MeshError),

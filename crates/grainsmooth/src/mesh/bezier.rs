@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use serde::Deserialize;
-use subzero::{BezierCurve, BezierSurface, MeshError};
+use subzero::{BezierCurve, BezierSurface, MergedSurfaces, MeshError};
 
 use super::file::json_point::JsonPoint;
 use super::file::{MeshFileProblem, check_lengths, control_points};
@@ -75,6 +75,36 @@ impl BezierFile {
         Ok((points, polylines))
     }
 
+    /// De Casteljau's points of each curve at `t`, level by level.
+    ///
+    /// # Errors
+    /// [`MeshError::TooLarge`] if there are more points than 32-bit ids can count.
+    pub fn construction(&self, t: f64) -> Result<Construction, MeshError> {
+        let mut all = Construction::default();
+        for curve in &self.curves {
+            for (level, points) in (0..).zip(curve.casteljau(t)) {
+                let first = first_id(all.points.len(), points.len())?;
+                let ids: Vec<u32> = (first..).take(points.len()).collect();
+                all.levels.extend(points.iter().map(|_| level));
+                all.points.extend(points);
+                // The last level is a point on the curve.
+                if ids.len() > 1 {
+                    all.lines.push(ids);
+                    all.line_levels.push(level);
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    /// All surfaces as one mesh over `samples` x `samples` points each, with holes filled if so asked.
+    ///
+    /// # Errors
+    /// As of [`MergedSurfaces::new`].
+    pub fn merged(&self, samples: u32, fill: bool) -> Result<MergedSurfaces, MeshError> {
+        MergedSurfaces::new(&self.surfaces, samples - 1, fill)
+    }
+
     /// Each surface as triangles over `samples` x `samples` points, with the unit normals of the points; zero where a surface
     /// has none.
     ///
@@ -92,6 +122,19 @@ impl BezierFile {
         }
         Ok((points, normals, triangles))
     }
+}
+
+/// The levels of de Casteljau's scheme on all curves of a file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Construction {
+    /// The points of all levels of all curves.
+    pub points: Vec<DVec3>,
+    /// The level of each point: 0 for control points.
+    pub levels: Vec<i32>,
+    /// The points of each level with two or more of them.
+    pub lines: Vec<Vec<u32>>,
+    /// The level of each line.
+    pub line_levels: Vec<i32>,
 }
 
 /// The parameters of a surface's points, v running fastest.

@@ -323,3 +323,50 @@ pub fn bezier_json(file: &BezierFile, samples: u32, out: &mut dyn Write) -> io::
     };
     serde_json::to_writer(out, &json).map_err(io::Error::from)
 }
+
+#[derive(Serialize)]
+struct ConstructionJson {
+    source: String,
+    t: f64,
+    curves: Vec<ConstructedCurve>,
+}
+
+#[derive(Serialize)]
+struct ConstructedCurve {
+    degree: usize,
+    control: Vec<Point>,
+    /// From the control points down to the point on the curve.
+    levels: Vec<Vec<Point>>,
+    point: Point,
+    derivative: Point,
+    /// Control points of the curve before `t`, and after it.
+    left: Vec<Point>,
+    right: Vec<Point>,
+}
+
+/// Writes de Casteljau's points of each curve at `t`, level by level, with the curve's point and derivative there and the control points
+/// of its two parts.
+///
+/// # Errors
+/// Whatever `out` reports.
+pub fn construction_json(file: &BezierFile, t: f64, out: &mut dyn Write) -> io::Result<()> {
+    let arrays = |points: &[DVec3]| points.iter().map(DVec3::to_array).collect();
+    let curve = |curve: &subzero::BezierCurve<DVec3>| {
+        let [left, right] = curve.split(t);
+        ConstructedCurve {
+            degree: curve.degree(),
+            control: arrays(curve.control()),
+            levels: curve.casteljau(t).iter().map(|level| arrays(level)).collect(),
+            point: curve.point(t).to_array(),
+            derivative: curve.derivative(t).to_array(),
+            left: arrays(left.control()),
+            right: arrays(right.control()),
+        }
+    };
+    let json = ConstructionJson {
+        source: format!("grainsmooth {}", env!("CARGO_PKG_VERSION")),
+        t,
+        curves: file.curves.iter().map(curve).collect(),
+    };
+    serde_json::to_writer(out, &json).map_err(io::Error::from)
+}

@@ -51,6 +51,10 @@ pub struct MeshToWrite<'a> {
     pub normals: Option<&'a [DVec3]>,
     /// For each point the level at which it was born. Only VTK files hold it.
     pub generations: Option<&'a [i8]>,
+    /// Numbers of points, under their name. Only VTK files hold them.
+    pub point_numbers: Option<(&'static str, &'a [i32])>,
+    /// Numbers of cells, under their name. Only VTK files hold them.
+    pub cell_numbers: Option<(&'static str, &'a [i32])>,
     /// The command line that made the mesh. Only VTK files hold it.
     pub command_line: &'a str,
     /// How XML files of VTK hold their numbers.
@@ -86,12 +90,13 @@ pub fn stage_mesh(
 fn poly_data<'a>(mesh: &MeshToWrite<'a>) -> PolyData<'a> {
     let normals = mesh.normals.map(|normals| Array { name: "Normals", values: Values::Vectors(normals) });
     let generations = mesh.generations.map(|g| Array { name: "Generation", values: Values::Int8(g) });
+    let numbers = |(name, values)| Array { name, values: Values::Int32(values) };
     let text = |name, value: String| FieldEntry { name, value: FieldValue::Text(value) };
     PolyData {
         points: mesh.points,
         cells: mesh.cells,
-        point_arrays: normals.into_iter().chain(generations).collect(),
-        cell_arrays: Vec::new(),
+        point_arrays: normals.into_iter().chain(generations).chain(mesh.point_numbers.map(numbers)).collect(),
+        cell_arrays: mesh.cell_numbers.map(numbers).into_iter().collect(),
         field: vec![
             text("Version", format!("grainsmooth {}", env!("CARGO_PKG_VERSION"))),
             text("CommandLine", mesh.command_line.to_owned()),
