@@ -4,6 +4,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use clap::ValueEnum;
+use grainsmooth::spelling::name_of;
 use grainsmooth::vtk::VtkEncoding;
 use grainsmooth::{
     Config, OutputDirectory, OutputFormat, PeriodicCut, Polycrystal, SeedSource, StlEncoding, TextureOptions,
@@ -131,18 +133,18 @@ fn vtk_meshio_and_trimesh_read_every_format() {
         let mut encoded = SPACE.clone();
         encoded.config.file.encoding = encoding;
         for extension in ["vtp", "vtu", "vti", "vtm"] {
-            let path = directory.path().join(format!("{}.{extension}", encoding.name()));
+            let path = directory.path().join(format!("{}.{extension}", name_of(&encoding)));
             encoded.write(&grainsmooth::Output::check(path).unwrap()).unwrap();
         }
     }
     let picture = grainsmooth::Output::check_as(directory.path().join("a.png"), grainsmooth::Png).unwrap();
     write_together(|files| SPACE.stage_picture(&grainsmooth::Picture::default(), &picture, files)).unwrap();
-    for names in grainsmooth::Names::ALL {
+    for names in grainsmooth::Names::value_variants() {
         for (polycrystal, dimension) in [(&*SPACE, "3d"), (&*PLANE, "2d")] {
             let mut renamed = polycrystal.clone();
-            renamed.config.file.names = names;
+            renamed.config.file.names = *names;
             for extension in ["vtp", "vtm"] {
-                let name = format!("{}_{dimension}.{extension}", names.name());
+                let name = format!("{}_{dimension}.{extension}", name_of(names));
                 renamed.write(&grainsmooth::Output::check(directory.path().join(name)).unwrap()).unwrap();
             }
         }

@@ -3,9 +3,7 @@
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
-use grainsmooth::{Coloring, Config, PeriodicCut, read_file_domain};
-use polycrystal::{Relaxation, Volumes};
-use voronoi::Dimension;
+use grainsmooth::{Coloring, Config, PeriodicCut, SizeOptions, read_file_domain};
 
 mod check;
 mod config_file;
@@ -14,14 +12,11 @@ mod domain;
 mod files;
 mod measure;
 pub mod mesh;
-mod phases;
 mod pictures;
 mod run;
 mod seeds;
 mod sizes;
 mod smoothing;
-mod texture;
-mod values;
 
 pub use check::CheckArguments;
 pub use documents::{print_completions, print_manual};
@@ -29,13 +24,11 @@ use domain::DomainArguments;
 use files::FileArguments;
 pub use measure::MeasureArguments;
 use mesh::MeshArguments;
-use phases::PhaseArguments;
 use pictures::PictureArguments;
 use run::RunArguments;
 use seeds::SeedArguments;
 use sizes::SizeArguments;
 use smoothing::SmoothingArguments;
-use texture::TextureArguments;
 
 /// Make a virtual polycrystal: smooth, closed grains of exact volume, as a VTK file for ParaView.
 ///
@@ -52,13 +45,11 @@ pub struct Arguments {
     #[command(flatten)]
     sizes: SizeArguments,
     #[command(flatten)]
-    phases: PhaseArguments,
-    #[command(flatten)]
     domain: DomainArguments,
     #[command(flatten)]
     smoothing: SmoothingArguments,
     #[command(flatten)]
-    texture: TextureArguments,
+    config: Config,
     #[command(flatten)]
     pub files: FileArguments,
     #[command(flatten)]
@@ -121,123 +112,55 @@ impl Arguments {
     /// # Errors
     /// When the file of the seeds cannot tell what they fill.
     pub fn config(&self) -> Result<Config, grainsmooth::Error> {
-        let Self { seeds, sizes, phases, domain: arguments, smoothing, texture, files, pictures, .. } = self;
+        let Self { seeds, sizes, domain: arguments, smoothing, config, files, .. } = self;
         let of_file = seeds.seeds_file.as_deref().map(read_file_domain).transpose()?.flatten();
         let domain = arguments.with_defaults_of(of_file);
-        let periodic_cut = arguments.periodic_cut(domain.periodic);
-        if periodic_cut == PeriodicCut::Box && files.has_series() {
-            usage("--series shows whole grains; leave --periodic-cut box out");
-        }
-        if smoothing.volumes() == Volumes::Free && smoothing.relax == Some(Relaxation::Equilibrium) {
-            usage(
-                "--free lets grains grow for a time, and has no equilibrium; give one, such as --relax 0.3",
-            );
-        }
-        let aspect_ratio = sizes.aspect_ratio(domain.dimension);
-        let grain_shapes = sizes.grain_shapes.clone();
-        if let Some(shapes) = &grain_shapes {
-            if domain.periodic.any() {
-                usage(
-                    "--grain-shapes makes grains between walls; leave --periodic out, or give --aspect-ratio for grains that are all long one way",
-                );
-            }
-            if let Err(message) = shapes.check(domain.dimension) {
-                usage(message);
-            }
-        }
-        let (sizes, phases, inside) = (sizes.options(), phases.options(), phases.inside());
-        let coloring = pictures.coloring();
-        if coloring == Coloring::Phase && phases.is_empty() {
-            usage("--color-by phase needs phases; give some with --phase");
-        }
         let config = Config {
             seeds: seeds.source(domain.dimension),
-            random_seed: seeds.rng_seed,
-            sizes,
-            phases,
-            inside,
-            lloyd_steps: seeds.lloyd,
+            sizes: SizeOptions { source: sizes.source(), ..config.sizes.clone() },
             dimension: domain.dimension,
             box_size: domain.box_size,
+            aspect_ratio: sizes.aspect_ratio(domain.dimension),
             shape: arguments.shape(&domain),
-            aspect_ratio,
-            grain_shapes,
-            face_mesh: smoothing.face_mesh(),
             periodic: domain.periodic,
-            periodic_cut,
-            relaxation: Relaxation::default(),
-            wall_tension: smoothing.wall_tension,
-            tensions: smoothing.tension.clone(),
-            mobilities: smoothing.mobility.clone(),
+            face_mesh: smoothing.face_mesh(),
             volumes: smoothing.volumes(),
-            regularize: smoothing.regularize,
-            levels: smoothing.levels,
-            junctions: smoothing.junctions(),
-            drop_empty: seeds.drop_empty,
-            min_diameter: seeds.min_diameter,
-            texture: texture.options(),
             file: files.options(domain.dimension),
+            ..config.clone()
         };
         let relaxation = smoothing.relax.unwrap_or_else(|| config.usual_relaxation());
-        let is_sized = config.is_sized();
-        if !config.phases.is_empty() && config.min_diameter > 0.0 {
-            usage(
-                "--min-diameter would change the shares of the phases; cut small grains off with from=, or leave it out",
-            );
+        let config = Config { relaxation, ..config };
+        if let Err(error) = config.check() {
+            usage(&error.to_string());
         }
-        if is_sized && config.min_diameter > 0.0 {
-            usage(
-                "--min-diameter would change sizes that are given; cut small ones off with from=, or give --seeding random",
-            );
+        self.check_shown(&config);
+        let is_count_open = config.has_sizes() && seeds.is_count_open();
+        if is_count_open { config.with_count_of_sizes() } else { Ok(config) }
+    }
+
+    /// Checks that what is to be written and shown is there.
+    fn check_shown(&self, config: &Config) {
+        let Self { files, pictures, run, .. } = self;
+        if config.periodic_cut == PeriodicCut::Box && files.has_series() {
+            usage("--series shows whole grains; leave --periodic-cut box out");
         }
         let is_of_cells =
-            files.cells_csv.is_some() || files.cells_json.is_some() || self.run.no_mesh || files.has_series();
-        if config.grain_shapes.is_none() && config.has_grains_of_several_cells() {
-            if is_of_cells {
-                usage(
-                    "place= puts grains into others, which then are of several cells; leave --cells-csv, --cells-json, --no-mesh and --series out",
-                );
-            }
-            if relaxation == Relaxation::Time(0.0) {
-                usage(
-                    "place= makes grains of several cells, which are sharp where these meet; leave --relax 0 out, or give --relax 0.02",
-                );
-            }
-        }
-        if relaxation == Relaxation::Time(0.0) && config.grain_shapes.is_some() {
+            files.cells_csv.is_some() || files.cells_json.is_some() || run.no_mesh || files.has_series();
+        if is_of_cells && config.grain_shapes.is_none() && config.has_grains_of_several_cells() {
             usage(
-                "--grain-shapes makes grains of several cells, which are sharp where these meet; leave --relax 0 out, or give --relax 0.02",
+                "place= puts grains into others, which then are of several cells; leave --cells-csv, --cells-json, --no-mesh and --series out",
             );
         }
-        let config = Config { relaxation, ..config };
+        let coloring = pictures.coloring();
+        if coloring == Coloring::Phase && config.phases.is_empty() {
+            usage("--color-by phase needs phases; give some with --phase");
+        }
         if coloring.needs_texture() && !config.has_texture() {
             usage(&format!(
                 "--color-by {} shows orientations; give the grains some, such as --texture random",
                 coloring.name()
             ));
         }
-        if let Some(gradient) = &config.sizes.gradient {
-            if !is_sized {
-                usage("--gradient changes given sizes; give --diameters or --seeding packed as well");
-            }
-            if gradient.axis == 2 && config.dimension == Dimension::Two {
-                usage("--gradient along z needs three dimensions; with --dim 2 give x or y");
-            }
-        }
-        if let Err(error) = config.check_phases() {
-            usage(&error.to_string());
-        }
-        if let Err(error) = config.check_inside() {
-            usage(&error.to_string());
-        }
-        if let Err(error) = config.check_laws() {
-            usage(&error.to_string());
-        }
-        if texture.has_sample_symmetry() && !config.has_texture() {
-            usage("--sample-symmetry is that of a texture; give --texture as well");
-        }
-        let is_count_open = config.has_sizes() && seeds.is_count_open();
-        if is_count_open { config.with_count_of_sizes() } else { Ok(config) }
     }
 }
 

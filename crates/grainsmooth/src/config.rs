@@ -2,11 +2,14 @@
 
 use std::path::PathBuf;
 
+use clap::{Args, ValueEnum};
 use glam::{BVec3, DVec3};
 use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
+use serde::Serialize;
 use voronoi::Dimension;
 
 pub(crate) mod check;
+mod consequences;
 pub(crate) mod files;
 pub(crate) mod gradient;
 pub(crate) mod inside;
@@ -17,17 +20,23 @@ pub(crate) mod place;
 pub(crate) mod settings;
 pub(crate) mod shapes;
 pub(crate) mod sizes;
+pub mod spelling;
 pub(crate) mod table_file;
 pub(crate) mod texture;
 
 use files::FileOptions;
-use inside::{InsideOptions, InsidePattern};
+use inside::InsideOptions;
 use lattice::Lattice;
-use laws::{LawKind, LawOptions};
+use laws::LawOptions;
 use phases::PhaseOptions;
+use settings::{as_axes, as_axis_names, as_lengths, as_rule, as_time, by_option, is_equiaxed, junctions};
 use shapes::ShapeSource;
-use sizes::{SizeOptions, SizeSource, USUAL_DIAMETERS};
+use sizes::SizeOptions;
+use spelling::{as_number, as_text_if_given, as_texts, as_true, is_usual, number, whole_number};
 use texture::TextureOptions;
+
+/// The largest length of `--regularize`: edges as long as half a grain are no small features.
+const LARGEST_REGULARIZE: f64 = 0.5;
 
 /// Where seeds come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -59,9 +68,10 @@ pub enum SeedSource {
 }
 
 /// What the grains fill.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub enum Shape {
     /// The box.
+    #[default]
     Box,
     /// The ball that touches the box's sides, which are equal.
     Sphere {
@@ -84,6 +94,12 @@ pub enum Shape {
     HalfSpaces(PathBuf),
 }
 
+impl Default for SeedSource {
+    fn default() -> Self {
+        Self::Packed { count: 200 }
+    }
+}
+
 impl Shape {
     /// The usual chord error in units of the radius: some 500 faces on a sphere, so that it looks
     /// round while the grains at its surface have a handful of flat parts each.
@@ -96,7 +112,8 @@ impl Shape {
 }
 
 /// Where grains of a periodic domain end in what is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum PeriodicCut {
     /// They are whole, and stick out of the box.
     #[default]
@@ -106,70 +123,192 @@ pub enum PeriodicCut {
 }
 
 /// Everything that decides what a run computes. The same config gives the same bytes on every machine.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// Each option stands here once: what `--help` says of it, its name on the command line and in settings, its range and its default. What more
+/// than one option tells is put together by `cli`.
+#[derive(Debug, Clone, PartialEq, Args, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub struct Config {
     /// Where seeds come from.
+    #[arg(skip)]
+    #[serde(flatten)]
     pub seeds: SeedSource,
-    /// Starts the random generator.
+
+    /// Start of the random generator: the same number gives the same grains on every machine
+    ///
+    /// Example: --rng-seed 7
+    #[arg(long = "rng-seed", help_heading = "Seeds", value_name = "S", default_value_t = Self::default().random_seed, value_parser = whole_number(0..=u64::MAX), allow_negative_numbers = true)]
+    #[serde(rename = "rng-seed", serialize_with = "as_number")]
     pub random_seed: u64,
+
     /// The sizes of the grains.
+    #[command(flatten)]
+    #[serde(flatten)]
     pub sizes: SizeOptions,
-    /// The phases of the grains, in the order of their numbers; none where all are alike.
+
+    /// Make a phase of a name, with a share of the volume that is exact (in 2D of the area); give it again for each phase
+    ///
+    /// Shares add up to 1. Behind them may stand what the grains of a phase have of their own: diameters= as of --diameters, texture= as of
+    /// --texture, symmetry= as of --crystal-symmetry; and place=, where its grains are among the others: interior, boundaries, triple-lines,
+    /// quadruple-points, clustered, dispersed.
+    ///
+    /// Example: --phase ferrite:0.8 --phase 'austenite:0.2,texture=goss(10)'
+    #[arg(long = "phase", help_heading = "Phases", value_name = "NAME:SHARE[,KEY=VALUE]", num_args = 1, conflicts_with_all = ["volumes", "lattice", "misorientations"])]
+    #[serde(rename = "phase", skip_serializing_if = "Vec::is_empty", serialize_with = "as_texts")]
     pub phases: Vec<PhaseOptions>,
-    /// What grains are divided by; nothing leaves them whole.
+
+    /// Divide the grains, or those of one phase, by a second tessellation: layers of a width, or Voronoi cells of a mean diameter, in the
+    /// unit of --box; give it again for other phases
+    ///
+    /// Each part is a grain of its own, with an orientation of its own, and Parent tells whose part it is. Grains keep their volumes. Layers lie in
+    /// a random direction in each grain, or across normal=; cells have lognormal diameters of a coefficient of variation cv= (0.35).
+    ///
+    /// Example: --inside 'lamellae(width=0.05)'; --inside 'beta:voronoi(diameter=0.1)' for one phase
+    #[arg(long, help_heading = "Phases", value_name = "[PHASE:]PATTERN(LENGTH)", num_args = 1)]
+    #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "as_texts")]
     pub inside: Vec<InsideOptions>,
-    /// Number of times that every seed moves to the centroid of its cell (Lloyd's algorithm); given volumes are kept. Where nothing is
-    /// said, [`Config::LLOYD_OF_SIZES`] for grains of given sizes whose places are not given, else none.
+
+    /// Go on without seeds whose neighbours outweigh them; else that is an error
+    ///
+    /// Example: --seeds-file spheres.csv --drop-empty
+    #[arg(long, help_heading = "Seeds", requires = "seeds_file")]
+    #[serde(skip_serializing_if = "is_usual")]
+    pub drop_empty: bool,
+
+    /// Merge cells below F mean equivalent diameters into what surrounds them; 0 keeps all
+    ///
+    /// The smallest cell below loses its seed and the cells are made again, so that its neighbours grow into its place, until none is
+    /// below. The grains have the volumes of these cells. SeedId leads from their numbers back to the seeds.
+    ///
+    /// Example: --min-diameter 0.2
+    #[arg(long, help_heading = "Seeds", value_name = "F", default_value_t = 0.0, value_parser = number(0.0..1.0, "give a share of the mean diameter, from 0 (off) to below 1"), allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "is_usual")]
+    pub min_diameter: f64,
+
+    /// Even out the grains: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 10
+    /// for packed grains, and where else --diameters or --volumes give sizes, but no --seeds-file the places; 0 for others]
+    ///
+    /// Example: --lloyd 10
+    #[arg(long = "lloyd", help_heading = "Seeds", value_name = "N", value_parser = whole_number(0..=100_000_u32), allow_negative_numbers = true)]
+    #[serde(rename = "lloyd", skip_serializing_if = "Option::is_none")]
     pub lloyd_steps: Option<u32>,
+
     /// Two or three dimensions.
+    #[arg(skip = Dimension::Three)]
+    #[serde(rename = "dim", serialize_with = "as_axes")]
     pub dimension: Dimension,
+
     /// Side lengths of the box, which has its lower corner in the origin; in 2D the last is ignored.
+    #[arg(skip = DVec3::ONE)]
+    #[serde(rename = "box", serialize_with = "as_lengths")]
     pub box_size: DVec3,
-    /// What of the box, or instead of it, the grains fill.
-    pub shape: Shape,
+
     /// How long grains are along each axis, in proportion. Everything is computed in a frame in which they are as long along all, and stretched in
     /// the end. For boxes only; in 2D the last is 1.
+    #[arg(skip = DVec3::ONE)]
+    #[serde(skip_serializing_if = "is_equiaxed", serialize_with = "as_lengths")]
     pub aspect_ratio: DVec3,
-    /// The shape of each grain, in boxes with walls, where some are asked for: grains are then several cells each, and keep their neighbours.
+
+    /// Give each grain a shape: an ellipsoid (in 2D an ellipse) with lengths in proportion, in a random direction or along x, y and z
+    ///
+    /// Grains are several cells each, which makes them as long as there is room for; volumes are as exact as without, and the summary tells the
+    /// ratio that was reached. A file (.csv, .txt) has a line for each grain: lengths a, b, c and Bunge's Euler angles phi1, Phi, phi2 in
+    /// degrees, in 2D a, b and phi1. Relaxation rounds grains: --relax tells how far.
+    ///
+    /// Example: --grain-shapes '3:1:1 aligned'
+    #[arg(long, help_heading = "Sizes", value_name = "SPEC|FILE", value_parser = ShapeSource::parse, conflicts_with_all = ["lattice", "domain", "half_spaces", "series", "aspect_ratio", "inside", "cells_json", "cells_csv", "no_mesh"])]
+    #[serde(skip_serializing_if = "Option::is_none", serialize_with = "as_text_if_given")]
     pub grain_shapes: Option<ShapeSource>,
+
+    /// What of the box, or instead of it, the grains fill.
+    #[arg(skip)]
+    #[serde(flatten)]
+    pub shape: Shape,
+
     /// Axes along which the box repeats; in 2D the last is ignored.
+    #[arg(skip)]
+    #[serde(serialize_with = "as_axis_names")]
     pub periodic: BVec3,
-    /// Where grains of a periodic domain end in what is written.
+
+    /// Grains of a periodic box whole, sticking out of it where they grow through a wall (wrap), or cut at its walls (box)
+    ///
+    /// Example: --periodic x,y,z --periodic-cut box
+    #[arg(long, help_heading = "Domain", value_name = "RULE", value_enum, default_value_t)]
+    #[serde(skip_serializing_if = "is_usual")]
     pub periodic_cut: PeriodicCut,
+
     /// Control points on boundaries.
+    #[arg(skip)]
+    #[serde(flatten, serialize_with = "by_option")]
     pub face_mesh: FaceMesh,
+
     /// How far boundaries relax; time 0 leaves them flat.
+    #[arg(skip)]
+    #[serde(rename = "relax", serialize_with = "as_time")]
     pub relaxation: Relaxation,
-    /// Tension of the walls, where that between grains is 1, or in units of the largest between grains.
+
+    /// Tension of the walls, in units of that between grains, of the largest with --tension; 0 lets boundaries meet walls at right angles
+    ///
+    /// Example: --wall-tension 0.5
+    #[arg(long, help_heading = "Smoothing", value_name = "G", default_value_t = 0.0, value_parser = number(0.0..=f64::MAX, "a tension is 0 or a positive, finite number"), allow_negative_numbers = true)]
     pub wall_tension: f64,
-    /// The tensions of boundaries between grains; 1 where there is none for them.
+
+    /// Tension of boundaries between grains, in any unit: a number, read-shockley(15) over the disorientation, that times a number, or a
+    /// table of angles and tensions; with PHASE/PHASE: before it, of boundaries between these [default: 1]
+    ///
+    /// Example: --texture 'goss(10)' --tension 'read-shockley(15)'
+    #[arg(long = "tension", help_heading = "Smoothing", value_name = "[A/B:]LAW", num_args = 1)]
+    #[serde(rename = "tension", skip_serializing_if = "Vec::is_empty", serialize_with = "as_texts")]
     pub tensions: Vec<LawOptions>,
-    /// Mobilities of boundaries, in any unit, where grains grow; empty where all are 1.
+
+    /// Mobility of boundaries between grains that grow, in any unit: a law as of --tension, such as humphreys(15) [default: 1]
+    ///
+    /// Example: --relax 0.02 --free --texture 'goss(10)' --mobility 'humphreys(15)'
+    #[arg(long = "mobility", help_heading = "Smoothing", value_name = "[A/B:]LAW", num_args = 1)]
+    #[serde(rename = "mobility", skip_serializing_if = "Vec::is_empty", serialize_with = "as_texts")]
     pub mobilities: Vec<LawOptions>,
+
     /// Whether relaxation keeps the grains' volumes.
+    #[arg(skip)]
+    #[serde(rename = "free", skip_serializing_if = "is_usual", serialize_with = "as_true")]
     pub volumes: Volumes,
-    /// Where the topology of the cells is to stay, the length, in units of the mean grain size, below which edges collapse before
-    /// relaxation all the same; 0 keeps all. Nothing lets grains come together and part as tension has it, where they can.
+
+    /// Keep the neighbours of the cells instead of letting grains switch them, but for edges shorter than L mean grain sizes, which
+    /// become points; 0 keeps all
+    ///
+    /// Example: --regularize 0.05
+    #[arg(long, help_heading = "Smoothing", value_name = "L", value_parser = number(0.0..=LARGEST_REGULARIZE, "give a length from 0 (off) to 0.5"), allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub regularize: Option<f64>,
-    /// Number of subdivisions.
+
+    /// Number of subdivisions; each makes four triangles of one (two segments in 2D)
+    ///
+    /// Example: -n 2
+    #[arg(short = 'n', long, help_heading = "Smoothing", value_name = "LEVELS", default_value_t = Self::default().levels, value_parser = whole_number(0..=99_u32), allow_negative_numbers = true)]
     pub levels: u32,
-    /// How triple lines are smoothed.
+
+    /// Triple lines as smooth curves (crease) or as polylines through all their control points (corner)
+    ///
+    /// Example: --junctions corner
+    #[arg(long, help_heading = "Smoothing", value_name = "RULE", default_value = "crease", value_parser = junctions())]
+    #[serde(serialize_with = "as_rule")]
     pub junctions: Junctions,
-    /// Whether to go on without seeds that have no cell, as their neighbours outweigh them; else that is an error.
-    pub drop_empty: bool,
-    /// Cells below this share of the mean equivalent diameter lose their seeds, the smallest first, until none is left and their
-    /// neighbours have grown into their places; 0 keeps all. Below 1.
-    pub min_diameter: f64,
+
     /// The orientations of the grains.
+    #[command(flatten)]
+    #[serde(flatten)]
     pub texture: TextureOptions,
+
     /// How files are written, apart from their formats.
+    #[arg(skip)]
+    #[serde(flatten)]
     pub file: FileOptions,
 }
 
 impl Default for Config {
     fn default() -> Self {
         Self {
-            seeds: SeedSource::Packed { count: 200 },
+            seeds: SeedSource::default(),
             random_seed: 1,
             sizes: SizeOptions::default(),
             phases: Vec::new(),
@@ -177,204 +316,24 @@ impl Default for Config {
             lloyd_steps: None,
             dimension: Dimension::Three,
             box_size: DVec3::ONE,
-            shape: Shape::Box,
+            shape: Shape::default(),
             aspect_ratio: DVec3::ONE,
             grain_shapes: None,
             periodic: BVec3::FALSE,
-            periodic_cut: PeriodicCut::Wrap,
-            face_mesh: FaceMesh::Fan,
+            periodic_cut: PeriodicCut::default(),
+            face_mesh: FaceMesh::default(),
             relaxation: Relaxation::default(),
             wall_tension: 0.0,
             tensions: Vec::new(),
             mobilities: Vec::new(),
-            volumes: Volumes::Kept,
+            volumes: Volumes::default(),
             regularize: None,
             levels: 3,
-            junctions: Junctions::Crease,
+            junctions: Junctions::default(),
             drop_empty: false,
             min_diameter: 0.0,
             texture: TextureOptions::default(),
             file: FileOptions::default(),
-        }
-    }
-}
-
-impl Config {
-    /// The length to regularise by where grains cannot come together and part, in mean grain sizes: the shortest that leaves triangles as
-    /// good as longer ones do. Of random grains, 0.15 made three times as many points of more than four grains; docs/relaxation.md has
-    /// the figures.
-    pub const REGULARIZE: f64 = 0.05;
-
-    /// The same where grains are of several cells: edges of their boundaries close that are shorter than this part of the smallest grain there.
-    pub const REGULARIZE_OF_SHAPES: f64 = 0.25;
-
-    /// The usual relaxation of grains of given shapes, which it rounds: 200 of 2:1:1 with a ratio of 2.08 have 1.97 at 0.02, 1.82 at 0.1 and 1.70
-    /// at 0.3, with angles that spread by 11.9, 12.7 and 13.9 degrees.
-    pub const RELAXATION_OF_SHAPES: Relaxation = Relaxation::Time(0.05);
-
-    /// Centroid steps of grains with given sizes: with 10 they have 13.7 faces and a sphericity of 0.855, as those of measured metals.
-    pub const LLOYD_OF_SIZES: u32 = 10;
-
-    /// The largest: edges as long as half a grain are no small features.
-    pub const LARGEST_REGULARIZE: f64 = 0.5;
-
-    /// How far boundaries relax unless something else is asked for. In the plane to equilibrium, which is quick and exact there, in
-    /// space for a time: longer where all that stands beside it lets grains switch neighbours. Not at all where grains are divided into
-    /// lamellae, which would bend and come apart.
-    pub fn usual_relaxation(&self) -> Relaxation {
-        if self.inside.iter().any(|inside| matches!(inside.pattern, InsidePattern::Lamellae { .. })) {
-            return Relaxation::Time(0.0);
-        }
-        if self.has_grains_of_several_cells() {
-            return Self::RELAXATION_OF_SHAPES;
-        }
-        let usual = match self.dimension {
-            Dimension::Two => Relaxation::Equilibrium,
-            Dimension::Three => Relaxation::USUAL,
-        };
-        let lets_change = Self { relaxation: usual, ..self.clone() }.lets_topology_change();
-        if lets_change { usual } else { Relaxation::default() }
-    }
-
-    /// How far boundaries relax where the topology stays: where it should have changed, for no longer than is usual then.
-    pub(crate) fn relaxation_of_kept_topology(&self) -> Relaxation {
-        match (self.relaxation, Relaxation::default()) {
-            (Relaxation::Time(time), Relaxation::Time(usual)) if self.lets_topology_change() => {
-                Relaxation::Time(time.min(usual))
-            }
-            _ => self.relaxation,
-        }
-    }
-
-    /// The length to regularise by, where the topology is to stay or cannot change: none without relaxation.
-    pub(crate) fn effective_regularize(&self) -> f64 {
-        if self.relaxation == Relaxation::Time(0.0) {
-            0.0
-        } else {
-            let usual = if self.has_grains_of_several_cells() {
-                Self::REGULARIZE_OF_SHAPES
-            } else {
-                Self::REGULARIZE
-            };
-            self.regularize.unwrap_or(usual)
-        }
-    }
-
-    /// Whether grains may switch neighbours: at kept volumes, unless the cells' own are asked for. In the plane they do so on the way to
-    /// equilibrium only.
-    pub(crate) fn lets_topology_change(&self) -> bool {
-        let is_on_the_way = match self.dimension {
-            // Arcs of circles are divided as they curve.
-            Dimension::Two => {
-                self.relaxation == Relaxation::Equilibrium
-                    && !matches!(self.face_mesh, FaceMesh::Refined { .. })
-            }
-            Dimension::Three => self.relaxation != Relaxation::Time(0.0),
-        };
-        is_on_the_way
-            && !self.has_grains_of_several_cells()
-            && self.regularize.is_none()
-            && self.volumes == Volumes::Kept
-    }
-
-    /// Control points on the boundaries of regularised cells: in a fan, whose triangles at short lines are thin, those stay whole.
-    pub(crate) fn regular_face_mesh(&self) -> FaceMesh {
-        if self.face_mesh == FaceMesh::Fan { FaceMesh::SparseFan } else { self.face_mesh }
-    }
-
-    /// Number of voxels that are asked for.
-    pub(crate) fn voxel_count(&self) -> u128 {
-        let axes = usize::from(self.dimension.axes());
-        let counts = self.file.voxels.iter().flat_map(|counts| &counts[..axes]);
-        counts.map(|count| u128::from(count.get())).reduce(|all, count| all * count).unwrap_or(0)
-    }
-
-    /// Bytes of a voxel in VTK's ImageData: its grain, its phase where there are some, and three colours where grains have orientations.
-    pub(crate) fn bytes_of_voxel(&self) -> u32 {
-        let phase = if self.phases.is_empty() { 0 } else { 4 };
-        4 + phase + if self.has_texture() { 3 * 3 } else { 0 }
-    }
-
-    /// By what coordinates are multiplied in the end: the aspect ratio, with the product 1.
-    pub fn stretch(&self) -> DVec3 {
-        let stretch = self.aspect_ratio / self.dimension.cube_edge(self.aspect_ratio.element_product());
-        if self.dimension == Dimension::Two { stretch.with_z(1.0) } else { stretch }
-    }
-
-    /// Whether phases are put into the grains of others, which then are of several cells.
-    pub(crate) fn has_inclusions(&self) -> bool {
-        self.phases.iter().filter_map(|phase| phase.place).any(|place| place.of_inclusions().is_some())
-    }
-
-    /// Whether grains are of several cells, and need not be convex.
-    pub fn has_grains_of_several_cells(&self) -> bool {
-        self.grain_shapes.is_some() || self.has_inclusions()
-    }
-
-    /// Whether grains have given volumes: phases have exact shares, so their grains do.
-    pub fn is_sized(&self) -> bool {
-        self.sizes.source.is_some()
-            || matches!(self.seeds, SeedSource::Packed { .. })
-            || !self.phases.is_empty()
-            || self.grain_shapes.is_some()
-    }
-
-    /// Whether sizes are asked for that say how many grains there are.
-    pub fn has_sizes(&self) -> bool {
-        self.sizes.source.is_some() || self.phases_have_diameters()
-    }
-
-    /// Number of times that every seed moves to the centroid of its cell.
-    pub fn centroid_steps(&self) -> u32 {
-        let has_places = matches!(self.seeds, SeedSource::File(_));
-        let usual = if self.is_sized() && !has_places { Self::LLOYD_OF_SIZES } else { 0 };
-        self.lloyd_steps.unwrap_or(usual)
-    }
-
-    /// What is asked for in words.
-    pub(crate) fn asked_sizes(&self) -> String {
-        match &self.sizes.source {
-            None => USUAL_DIAMETERS.to_owned(),
-            Some(SizeSource::VolumeFile(path)) => format!("volumes of {}", path.display()),
-            Some(source) => source.setting().1,
-        }
-    }
-
-    /// What is asked for in a phase, in words.
-    pub(crate) fn asked_sizes_of_phase(&self, phase: usize) -> String {
-        match &self.phases[phase].diameters {
-            Some(source) => source.setting().1,
-            None => self.asked_sizes(),
-        }
-    }
-
-    /// The share of the volume that each phase is to have; they add up to 1. None without phases.
-    pub(crate) fn phase_fractions(&self) -> Vec<f64> {
-        let sum: f64 = self.phases.iter().map(|phase| phase.fraction).sum();
-        self.phases.iter().map(|phase| phase.fraction / sum).collect()
-    }
-
-    /// Whether phases have diameters of their own.
-    pub(crate) fn phases_have_diameters(&self) -> bool {
-        self.phases.iter().any(|phase| phase.diameters.is_some())
-    }
-
-    /// Whether grains have orientations that are asked for.
-    pub fn has_texture(&self) -> bool {
-        self.texture.source.is_some() || self.phases.iter().any(|phase| phase.texture.is_some())
-    }
-
-    /// What divides the grains of a phase, by its index; of phase 0 without phases.
-    pub(crate) fn pattern_inside(&self, phase: usize) -> Option<usize> {
-        let name = self.phases.get(phase).map(|phase| &phase.name);
-        self.inside.iter().position(|options| options.phase.is_none() || options.phase.as_ref() == name)
-    }
-
-    /// The laws of a kind that are asked for.
-    pub fn laws(&self, kind: LawKind) -> &[LawOptions] {
-        match kind {
-            LawKind::Tension => &self.tensions,
-            LawKind::Mobility => &self.mobilities,
         }
     }
 }

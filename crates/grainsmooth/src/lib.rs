@@ -36,6 +36,7 @@ mod tables;
 pub mod vtk;
 
 pub use check::report::{CheckReport, Expectation, ReportedFault, SizesFound, Statistic};
+pub use config::check::ConfigError;
 pub use config::files::{FileOptions, StlEncoding};
 pub use config::gradient::GradientSource;
 pub use config::inside::{InsideError, InsideOptions, InsidePattern};
@@ -45,6 +46,8 @@ pub use config::phases::{PhaseOptions, PhasesError};
 pub use config::place::PhasePlace;
 pub use config::shapes::{ShapeSource, ShapeSpec};
 pub use config::sizes::{SizeDraw, SizeOptions, SizeSource};
+#[doc(hidden)]
+pub use config::spelling;
 pub use config::texture::{TextureFormat, TextureOptions, TextureSource};
 pub use config::{Config, PeriodicCut, SeedSource, Shape};
 pub use error::Error;

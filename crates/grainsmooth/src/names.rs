@@ -1,6 +1,8 @@
 //! What arrays are called in files, and how grains are numbered there.
 
+use clap::ValueEnum;
 use polycrystal::{Boundary, GrainId, Side};
+use serde::Serialize;
 
 /// The point array that tells how many grains meet: four at a quadruple point, unless edges collapsed there.
 pub(crate) const NUMBER_OF_GRAINS: &str = "NumberOfGrains";
@@ -25,7 +27,8 @@ pub(crate) const PHASE: &str = "Phase";
 pub(crate) const LABEL_ARRAYS: [&str; 3] = ["FaceLabels", "boundary_labels", "BoundaryLabels"];
 
 /// Whose names and numbers arrays have, for users of other tools. Points and cells stay the same, but for what is said here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Names {
     /// `FaceLabels`, `GrainId`, `material`: grains from 0, the exterior is -1 and comes second.
     #[default]
@@ -42,20 +45,6 @@ pub enum Names {
 }
 
 impl Names {
-    /// Every scheme, the default first.
-    pub const ALL: [Self; 5] = [Self::Grainsmooth, Self::Dream3d, Self::Pyvista, Self::Virmat, Self::Neper];
-
-    /// The scheme's name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Grainsmooth => "grainsmooth",
-            Self::Dream3d => "dream3d",
-            Self::Pyvista => "pyvista",
-            Self::Virmat => "virmat",
-            Self::Neper => "neper",
-        }
-    }
-
     /// The array of the two sides of a boundary.
     pub(crate) fn sides(self) -> &'static str {
         if self == Self::Pyvista { "boundary_labels" } else { "FaceLabels" }

@@ -6,7 +6,9 @@
 use std::fmt;
 use std::io::{self, Write};
 
+use clap::ValueEnum;
 use glam::DVec3;
+use serde::Serialize;
 use vtkio::xml::ScalarType;
 
 use xml::XmlFormat;
@@ -50,7 +52,8 @@ impl VtkFormat {
 }
 
 /// How XML files hold their numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum VtkEncoding {
     /// As raw bytes at the end: the fastest. VTK, ParaView, pyvista and meshio read it; `vtkio` does not.
     #[default]
@@ -59,20 +62,6 @@ pub enum VtkEncoding {
     Base64,
     /// The same compressed by zlib.
     Zlib,
-}
-
-impl VtkEncoding {
-    /// Every encoding, the default first.
-    pub const ALL: [Self; 3] = [Self::Raw, Self::Base64, Self::Zlib];
-
-    /// The encoding's name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Raw => "raw",
-            Self::Base64 => "base64",
-            Self::Zlib => "zlib",
-        }
-    }
 }
 
 /// Points, the cells between them, and what is known about both: the content of one VTK file.

@@ -11,10 +11,9 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, Command};
 use grainsmooth::embedded_config;
+use grainsmooth::spelling::nearest;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-use super::values::nearest;
 
 /// Options that a file cannot give: they would name another file, or do something else than a run.
 const NOT_IN_FILES: [&str; 3] = ["config", "help", "version"];

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use glam::{BVec3, DVec3};
-use grainsmooth::{FileDomain, PeriodicCut, Shape};
+use grainsmooth::spelling::length;
+use grainsmooth::{FileDomain, Shape};
 use voronoi::Dimension;
 
 use super::usage;
-use super::values::length;
 
 /// What the grains fill.
 #[derive(Debug, Args)]
@@ -55,19 +55,6 @@ pub struct DomainArguments {
     /// Example: --periodic x,y
     #[arg(long, value_name = "AXES", value_parser = parse_axes)]
     periodic: Option<BVec3>,
-
-    /// Grains of a periodic box whole, sticking out of it where they grow through a wall (wrap), or cut at its walls (box)
-    ///
-    /// Example: --periodic x,y,z --periodic-cut box
-    #[arg(long, value_name = "RULE", value_enum, default_value_t = CutRule::Wrap)]
-    periodic_cut: CutRule,
-}
-
-/// `--periodic-cut` as it is spelled.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum CutRule {
-    Wrap,
-    Box,
 }
 
 impl DomainArguments {
@@ -88,17 +75,6 @@ impl DomainArguments {
         }
         let box_size = self.box_size.as_deref().map_or(file.box_size, |sides| box_size(sides, dimension));
         FileDomain { dimension, box_size, periodic }
-    }
-
-    /// Where the grains of a domain with these periods end.
-    pub fn periodic_cut(&self, periodic: BVec3) -> PeriodicCut {
-        match self.periodic_cut {
-            CutRule::Wrap => PeriodicCut::Wrap,
-            CutRule::Box if periodic.any() => PeriodicCut::Box,
-            CutRule::Box => {
-                usage("--periodic-cut box needs periodic grains; give --periodic x,y,z or leave it out")
-            }
-        }
     }
 
     /// What of the box the grains fill.

@@ -3,16 +3,16 @@
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
+use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
+use grainsmooth::spelling::{nearest, whole_number};
 use grainsmooth::vtk::VtkEncoding;
 use grainsmooth::{
-    FileOptions, Names, Output, OutputFormat, SeriesOutput, StatisticsOutput, StlEncoding, TableFormat,
+    FileOptions, Output, OutputFormat, SeriesOutput, StatisticsOutput, StlEncoding, TableFormat,
 };
 use voronoi::Dimension;
 
 use super::usage;
-use super::values::{nearest, whole_number};
 
 /// What is written, where and how.
 #[derive(Debug, Args)]
@@ -51,17 +51,8 @@ pub struct FileArguments {
     #[arg(long)]
     ascii: bool,
 
-    /// Names and numbers of arrays as another tool expects them
-    ///
-    /// Example: --names dream3d
-    #[arg(long, value_name = "TOOL", value_enum, default_value_t = NameScheme::Grainsmooth)]
-    names: NameScheme,
-
-    /// Add arrays of what is measured to VTK files: curvatures, dihedral angles, areas, volumes, growth rates
-    ///
-    /// Example: --arrays -o grains.vtm
-    #[arg(long)]
-    arrays: bool,
+    #[command(flatten)]
+    options: FileOptions,
 
     #[command(flatten)]
     vtk: VtkArguments,
@@ -103,36 +94,8 @@ pub struct VtkArguments {
     /// How .vtp, .vtu, .vti and .vtm hold their numbers: raw is the fastest; base64 and zlib are read by more programs
     ///
     /// Example: --vtk-encoding zlib -o grains.vtu
-    #[arg(long, value_name = "ENCODING", value_enum, default_value_t = Encoding::Raw)]
-    vtk_encoding: Encoding,
-}
-
-impl VtkArguments {
-    pub fn encoding(&self) -> VtkEncoding {
-        match self.vtk_encoding {
-            Encoding::Raw => VtkEncoding::Raw,
-            Encoding::Base64 => VtkEncoding::Base64,
-            Encoding::Zlib => VtkEncoding::Zlib,
-        }
-    }
-}
-
-/// `--vtk-encoding` as it is spelled.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Encoding {
-    Raw,
-    Base64,
-    Zlib,
-}
-
-/// `--names` as it is spelled.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum NameScheme {
-    Grainsmooth,
-    Dream3d,
-    Pyvista,
-    Virmat,
-    Neper,
+    #[arg(long, value_name = "ENCODING", value_enum, default_value_t)]
+    pub vtk_encoding: VtkEncoding,
 }
 
 impl FileArguments {
@@ -188,17 +151,10 @@ impl FileArguments {
                 counts.len()
             )),
         };
-        let names = match self.names {
-            NameScheme::Grainsmooth => Names::Grainsmooth,
-            NameScheme::Dream3d => Names::Dream3d,
-            NameScheme::Pyvista => Names::Pyvista,
-            NameScheme::Virmat => Names::Virmat,
-            NameScheme::Neper => Names::Neper,
-        };
         let stl = if self.ascii { StlEncoding::Ascii } else { StlEncoding::Binary };
         let at_least_one = |count| NonZeroU32::new(count).unwrap_or(NonZeroU32::MIN);
         let voxels = voxels.map(|counts| counts.map(at_least_one));
-        FileOptions { names, voxels, stl, arrays: self.arrays, encoding: self.vtk.encoding() }
+        FileOptions { voxels, stl, encoding: self.vtk.vtk_encoding, ..self.options }
     }
 }
 

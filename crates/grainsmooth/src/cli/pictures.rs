@@ -7,7 +7,7 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use grainsmooth::{Coloring, Error, Html, Output, Picture, Png};
 
-use super::values::whole_number;
+use grainsmooth::spelling::whole_number;
 
 /// What is shown of the result.
 #[derive(Debug, Args)]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::values::whole_number;
+use grainsmooth::spelling::whole_number;
 
 /// How the program goes about it.
 #[derive(Debug, Args)]

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use grainsmooth::spelling::{nearest, whole_number};
 use grainsmooth::{Lattice, SeedSource};
 use voronoi::Dimension;
 
 use super::usage;
-use super::values::{nearest, whole_number};
 
 /// Grains where nothing is said.
 const USUAL_SEEDS: u32 = 200;
@@ -35,43 +35,15 @@ pub struct SeedArguments {
     /// Seeds on a lattice instead: sc, bcc, fcc or hcp (square or hex in 2D), with N unit cells along the shortest side
     ///
     /// Example: --lattice bcc 4
-    #[arg(long, value_names = ["LATTICE", "N"], num_args = 2, value_parser = parse_lattice, allow_negative_numbers = true, conflicts_with_all = ["seeds", "rng_seed", "seeding"])]
+    #[arg(long, value_names = ["LATTICE", "N"], num_args = 2, value_parser = parse_lattice, allow_negative_numbers = true, conflicts_with_all = ["seeds", "random_seed", "seeding"])]
     lattice: Option<Vec<LatticeValue>>,
 
     /// Read seeds from a file instead: text with x, y, z on each line (x, y in 2D), or with names of columns in the first line,
     /// where radius, diameter or weight makes power cells; .xyz; .json; or Neper's .tess, which tells the box as well
     ///
     /// Example: --seeds-file seeds.csv
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["seeds", "rng_seed", "seeding", "lattice"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["seeds", "random_seed", "seeding", "lattice"])]
     pub seeds_file: Option<PathBuf>,
-
-    /// Go on without seeds whose neighbours outweigh them; else that is an error
-    ///
-    /// Example: --seeds-file spheres.csv --drop-empty
-    #[arg(long, requires = "seeds_file")]
-    pub drop_empty: bool,
-
-    /// Merge cells below F mean equivalent diameters into what surrounds them; 0 keeps all
-    ///
-    /// The smallest cell below loses its seed and the cells are made again, so that its neighbours grow into its place, until none is
-    /// below. The grains have the volumes of these cells. SeedId leads from their numbers back to the seeds.
-    ///
-    /// Example: --min-diameter 0.2
-    #[arg(long, value_name = "F", default_value_t = 0.0, value_parser = parse_share, allow_negative_numbers = true)]
-    pub min_diameter: f64,
-
-    /// Even out the grains: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 10
-    /// for packed grains, and where else --diameters or --volumes give sizes, but no --seeds-file the places; 0 for others]
-    ///
-    /// Example: --lloyd 10
-    #[arg(long, value_name = "N", value_parser = whole_number(0..=100_000_u32), allow_negative_numbers = true)]
-    pub lloyd: Option<u32>,
-
-    /// Start of the random generator: the same number gives the same grains on every machine
-    ///
-    /// Example: --rng-seed 7
-    #[arg(long, value_name = "S", default_value_t = 1, value_parser = whole_number(0..=u64::MAX), allow_negative_numbers = true)]
-    pub rng_seed: u64,
 }
 
 /// `--seeding` as it is spelled.
@@ -117,11 +89,6 @@ impl SeedArguments {
             (Some(_), _) => usage("--lattice takes a lattice and the number of its cells, such as bcc 4"),
         }
     }
-}
-
-fn parse_share(text: &str) -> Result<f64, String> {
-    let share = text.parse().ok().filter(|share: &f64| (0.0..1.0).contains(share));
-    share.ok_or_else(|| "give a share of the mean diameter, from 0 (off) to below 1".to_owned())
 }
 
 fn parse_lattice(text: &str) -> Result<LatticeValue, String> {

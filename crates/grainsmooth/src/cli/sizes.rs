@@ -3,9 +3,9 @@
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use glam::DVec3;
-use grainsmooth::{GradientSource, ShapeSource, SizeDraw, SizeOptions, SizeSource};
+use grainsmooth::SizeSource;
 use voronoi::Dimension;
 
 use super::usage;
@@ -34,18 +34,6 @@ pub struct SizeArguments {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["diameters", "lattice", "seeds"])]
     volumes: Option<PathBuf>,
 
-    /// Draw diameters as the middles of equal shares of the distribution (quantiles), or each by itself (random)
-    ///
-    /// Example: --diameters 'lognormal(mean=20, cv=0.35)' --draw random
-    #[arg(long, value_name = "HOW", value_enum, default_value_t = Draw::Quantiles, conflicts_with_all = ["volumes", "lattice"])]
-    draw: Draw,
-
-    /// Change the diameters along an axis of the box: a table of positions, and what diameters are multiplied by there
-    ///
-    /// Example: --diameters 'lognormal(mean=20, cv=0.35)' --gradient z:factors.csv
-    #[arg(long, value_name = "AXIS:FILE", value_parser = parse_gradient, conflicts_with_all = ["volumes", "lattice", "domain", "half_spaces"])]
-    gradient: Option<GradientSource>,
-
     /// Grains long along some axes, in proportion: 3 1 1 for rolled, 1 1 4 for columnar ones (X Y in 2D)
     ///
     /// Cells, network and relaxation are made where grains are as long along all axes, and stretched in the end: angles at triple
@@ -54,23 +42,6 @@ pub struct SizeArguments {
     /// Example: --aspect-ratio 3 1 1
     #[arg(long, value_names = ["X", "Y", "Z"], num_args = 2.., value_parser = parse_proportion, conflicts_with_all = ["lattice", "domain", "half_spaces", "series"], allow_negative_numbers = true)]
     aspect_ratio: Option<Vec<f64>>,
-
-    /// Give each grain a shape: an ellipsoid (in 2D an ellipse) with lengths in proportion, in a random direction or along x, y and z
-    ///
-    /// Grains are several cells each, which makes them as long as there is room for; volumes are as exact as without, and the summary tells the
-    /// ratio that was reached. A file (.csv, .txt) has a line for each grain: lengths a, b, c and Bunge's Euler angles phi1, Phi, phi2 in
-    /// degrees, in 2D a, b and phi1. Relaxation rounds grains: --relax tells how far.
-    ///
-    /// Example: --grain-shapes '3:1:1 aligned'
-    #[arg(long, value_name = "SPEC|FILE", value_parser = ShapeSource::parse, conflicts_with_all = ["lattice", "domain", "half_spaces", "series", "aspect_ratio", "inside", "cells_json", "cells_csv", "no_mesh"])]
-    pub grain_shapes: Option<ShapeSource>,
-}
-
-/// `--draw` as it is spelled.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Draw {
-    Quantiles,
-    Random,
 }
 
 impl SizeArguments {
@@ -90,23 +61,9 @@ impl SizeArguments {
         if is_equal { DVec3::ONE } else { ratio }
     }
 
-    /// What is asked for.
-    pub fn options(&self) -> SizeOptions {
-        let volumes = || self.volumes.clone().map(SizeSource::VolumeFile);
-        let draw = match self.draw {
-            Draw::Quantiles => SizeDraw::Quantiles,
-            Draw::Random => SizeDraw::Random,
-        };
-        SizeOptions { source: self.diameters.clone().or_else(volumes), draw, gradient: self.gradient.clone() }
-    }
-}
-
-fn parse_gradient(text: &str) -> Result<GradientSource, String> {
-    let (axis, path) = text.split_once(':').unwrap_or((text, ""));
-    let axis = ["x", "y", "z"].iter().position(|name| *name == axis);
-    match axis {
-        Some(axis) if !path.is_empty() => Ok(GradientSource { axis, path: path.into() }),
-        _ => Err("give an axis and a file, such as z:factors.csv".to_owned()),
+    /// Where sizes come from.
+    pub fn source(&self) -> Option<SizeSource> {
+        self.diameters.clone().or_else(|| self.volumes.clone().map(SizeSource::VolumeFile))
     }
 }
 

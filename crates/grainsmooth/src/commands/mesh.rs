@@ -340,7 +340,7 @@ impl Job<'_> {
 
     fn content<'a>(&'a self, points: &'a [DVec3], cells: Cells<'a>) -> MeshToWrite<'a> {
         let command_line = &self.command_line;
-        let encoding = self.files.vtk.encoding();
+        let encoding = self.files.vtk.vtk_encoding;
         MeshToWrite {
             points,
             cells,

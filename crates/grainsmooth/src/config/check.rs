@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use polycrystal::Volumes;
+use polycrystal::{Relaxation, Volumes};
+use texture::SampleSymmetry;
 use voronoi::Dimension;
 
 use super::inside::{InsideError, InsideOptions, InsidePattern};
@@ -10,12 +11,115 @@ use super::laws::{LawError, LawKind, LawOptions, LawProblem, LawSource};
 use super::phases::{PhaseOptions, PhasesError};
 use super::place::PhasePlace;
 use super::sizes::SizeSource;
-use super::{Config, SeedSource};
+use super::{Config, PeriodicCut, SeedSource};
 
 /// How far the sum of all fractions may be from 1: rounding of decimal numbers.
 const SUM_TOLERANCE: f64 = 1e-9;
 
+/// Options that do not go together. Each message names the options and the remedy.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ConfigError {
+    /// Grains are cut at the walls of a box that does not repeat.
+    #[error("--periodic-cut box needs periodic grains; give --periodic x,y,z or leave it out")]
+    CutWithoutPeriods,
+    /// Grains that grow to equilibrium.
+    #[error("--free lets grains grow for a time, and has no equilibrium; give one, such as --relax 0.3")]
+    FreeEquilibrium,
+    /// Grains of given shapes in a box that repeats.
+    #[error(
+        "--grain-shapes makes grains between walls; leave --periodic out, or give --aspect-ratio for grains that are all long one way"
+    )]
+    ShapesAndPeriods,
+    /// Shapes of the other dimension.
+    #[error("{0}")]
+    ShapeLengths(&'static str),
+    /// Small grains are merged whose sizes are given.
+    #[error("--min-diameter would change {what}; {remedy}")]
+    MergedSizes {
+        /// What would change.
+        what: &'static str,
+        /// What to do instead.
+        remedy: &'static str,
+    },
+    /// Grains of several cells that stay as they are.
+    #[error(
+        "{what} makes grains of several cells, which are sharp where these meet; leave --relax 0 out, or give --relax 0.02"
+    )]
+    SharpGrains {
+        /// What makes them.
+        what: &'static str,
+    },
+    /// Diameters change along an axis, and there are none.
+    #[error("--gradient changes given sizes; give --diameters or --seeding packed as well")]
+    GradientWithoutSizes,
+    /// An axis that the plane has not.
+    #[error("--gradient along z needs three dimensions; with --dim 2 give x or y")]
+    GradientInPlane,
+    /// A symmetry of a sample without orientations.
+    #[error("--sample-symmetry is that of a texture; give --texture as well")]
+    SampleSymmetry,
+    /// Phases.
+    #[error(transparent)]
+    Phases(#[from] PhasesError),
+    /// Patterns inside grains.
+    #[error(transparent)]
+    Inside(#[from] InsideError),
+    /// Laws of boundaries.
+    #[error(transparent)]
+    Law(#[from] LawError),
+}
+
 impl Config {
+    /// Checks that the options go together.
+    ///
+    /// # Errors
+    /// The first that do not.
+    pub fn check(&self) -> Result<(), ConfigError> {
+        let (is_flat, is_sized) = (self.relaxation == Relaxation::Time(0.0), self.is_sized());
+        if self.periodic_cut == PeriodicCut::Box && !self.periodic.any() {
+            return Err(ConfigError::CutWithoutPeriods);
+        }
+        if self.volumes == Volumes::Free && self.relaxation == Relaxation::Equilibrium {
+            return Err(ConfigError::FreeEquilibrium);
+        }
+        if let Some(shapes) = &self.grain_shapes {
+            if self.periodic.any() {
+                return Err(ConfigError::ShapesAndPeriods);
+            }
+            shapes.check(self.dimension).map_err(ConfigError::ShapeLengths)?;
+        }
+        if self.min_diameter > 0.0 && !self.phases.is_empty() {
+            let (what, remedy) =
+                ("the shares of the phases", "cut small grains off with from=, or leave it out");
+            return Err(ConfigError::MergedSizes { what, remedy });
+        }
+        if self.min_diameter > 0.0 && is_sized {
+            let (what, remedy) =
+                ("sizes that are given", "cut small ones off with from=, or give --seeding random");
+            return Err(ConfigError::MergedSizes { what, remedy });
+        }
+        if is_flat && self.has_grains_of_several_cells() {
+            let what = if self.grain_shapes.is_some() { "--grain-shapes" } else { "place=" };
+            return Err(ConfigError::SharpGrains { what });
+        }
+        if let Some(gradient) = &self.sizes.gradient {
+            if !is_sized {
+                return Err(ConfigError::GradientWithoutSizes);
+            }
+            if gradient.axis == 2 && self.dimension == Dimension::Two {
+                return Err(ConfigError::GradientInPlane);
+            }
+        }
+        self.check_phases()?;
+        self.check_inside()?;
+        self.check_laws()?;
+        if self.texture.sample_symmetry != SampleSymmetry::default() && !self.has_texture() {
+            return Err(ConfigError::SampleSymmetry);
+        }
+        Ok(())
+    }
+
     /// Checks that the phases go together, and with the options for all grains.
     ///
     /// # Errors
@@ -173,7 +277,7 @@ impl Config {
             if matches!(source, LawSource::Number(_)) {
                 continue;
             }
-            let text = || LawOptions { phases: None, law: (*source).clone() }.text();
+            let text = || LawOptions { phases: None, law: (*source).clone() }.to_string();
             if !self.has_texture() {
                 return Err(LawProblem::NoOrientations { law: text() });
             }

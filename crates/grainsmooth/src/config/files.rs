@@ -2,40 +2,51 @@
 
 use std::num::NonZeroU32;
 
+use clap::Args;
+use serde::Serialize;
+
+use super::spelling::{as_true, is_usual};
 use crate::names::Names;
 use crate::vtk::VtkEncoding;
 
 /// How files are written, apart from their formats.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Args, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub struct FileOptions {
-    /// Whose names and numbers arrays have.
+    /// Names and numbers of arrays as another tool expects them
+    ///
+    /// Example: --names dream3d
+    #[arg(long, value_name = "TOOL", value_enum, default_value_t)]
     pub names: Names,
+
     /// Number of voxels along each axis, for formats of voxels; the third is not used in 2D.
+    #[arg(skip)]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub voxels: Option<[NonZeroU32; 3]>,
+
     /// How STL spells its numbers.
+    #[arg(skip)]
+    #[serde(rename = "ascii", skip_serializing_if = "is_usual", serialize_with = "as_true")]
     pub stl: StlEncoding,
-    /// Whether VTK files have arrays of what is measured.
+
+    /// Add arrays of what is measured to VTK files: curvatures, dihedral angles, areas, volumes, growth rates
+    ///
+    /// Example: --arrays -o grains.vtm
+    #[arg(long)]
+    #[serde(skip_serializing_if = "is_usual")]
     pub arrays: bool,
+
     /// How VTK's XML files hold their numbers.
+    #[arg(skip)]
+    #[serde(rename = "vtk-encoding", skip_serializing_if = "is_usual")]
     pub encoding: VtkEncoding,
 }
 
-impl Default for FileOptions {
-    fn default() -> Self {
-        Self {
-            names: Names::default(),
-            voxels: None,
-            stl: StlEncoding::Binary,
-            arrays: false,
-            encoding: VtkEncoding::Raw,
-        }
-    }
-}
-
 /// How an STL file spells its numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum StlEncoding {
     /// 50 bytes for each triangle.
+    #[default]
     Binary,
     /// Text.
     Ascii,

@@ -1,6 +1,8 @@
 //! Where diameters that change along an axis are told.
 
+use std::fmt;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 /// Where diameters that change along an axis are told.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -11,9 +13,24 @@ pub struct GradientSource {
     pub path: PathBuf,
 }
 
-impl GradientSource {
-    /// As it is given: `z:FILE`.
-    pub(crate) fn text(&self) -> String {
-        format!("{}:{}", ["x", "y", "z"][self.axis], self.path.display())
+/// The names of the axes.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// As it is given: `z:FILE`.
+impl fmt::Display for GradientSource {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{}:{}", AXES[self.axis], self.path.display())
+    }
+}
+
+impl FromStr for GradientSource {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, &'static str> {
+        let (axis, path) = text.split_once(':').unwrap_or((text, ""));
+        match AXES.iter().position(|name| *name == axis) {
+            Some(axis) if !path.is_empty() => Ok(Self { axis, path: path.into() }),
+            _ => Err("give an axis and a file, such as z:factors.csv"),
+        }
     }
 }

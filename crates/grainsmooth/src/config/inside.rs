@@ -121,10 +121,13 @@ fn direction(text: &str) -> Result<Option<DVec3>, String> {
     })
 }
 
-impl InsideOptions {
-    /// As it is given.
-    pub fn text(&self) -> String {
-        self.phase.as_ref().map_or_else(String::new, |phase| format!("{phase}:")) + &self.pattern.to_string()
+/// As it is given.
+impl fmt::Display for InsideOptions {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(phase) = &self.phase {
+            write!(out, "{phase}:")?;
+        }
+        self.pattern.fmt(out)
     }
 }
 
@@ -198,7 +201,7 @@ mod tests {
             "voronoi(diameter=5.0,cv=0.35)",
             "beta:voronoi(diameter=5.0,cv=0.0)",
         ] {
-            assert_eq!(text.parse::<InsideOptions>().unwrap().text(), text);
+            assert_eq!(text.parse::<InsideOptions>().unwrap().to_string(), text);
         }
         assert_eq!("voronoi( diameter = 5 )".parse::<InsidePattern>(), "voronoi(diameter=5,cv=0.35)".parse());
         let tilted: InsidePattern = "lamellae(width=1, normal=1 1 0)".parse().unwrap();

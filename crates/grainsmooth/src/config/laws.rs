@@ -1,5 +1,6 @@
 //! What tensions and mobilities are asked for, by phases and by disorientation.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -133,19 +134,18 @@ impl FromStr for LawSource {
     }
 }
 
-impl LawOptions {
-    /// As it is given.
-    pub fn text(&self) -> String {
-        let law = match &self.law {
-            LawSource::Number(number) => format!("{number:?}"),
+/// As it is given.
+impl fmt::Display for LawOptions {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some([first, second]) = &self.phases {
+            write!(out, "{first}/{second}:")?;
+        }
+        match &self.law {
+            LawSource::Number(number) => write!(out, "{number:?}"),
             LawSource::Curve { factor, curve, angle } => {
-                format!("{factor:?}*{}({angle:?})", curve.name())
+                write!(out, "{factor:?}*{}({angle:?})", curve.name())
             }
-            LawSource::File(path) => path.display().to_string(),
-        };
-        match &self.phases {
-            Some([first, second]) => format!("{first}/{second}:{law}"),
-            None => law,
+            LawSource::File(path) => path.display().fmt(out),
         }
     }
 }

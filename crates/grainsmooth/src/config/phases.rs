@@ -1,5 +1,6 @@
 //! What is asked of the phases: their shares of the volume, and what their grains are like.
 
+use std::fmt;
 use std::str::FromStr;
 
 use texture::CrystalSymmetry;
@@ -143,20 +144,20 @@ fn known_keys() -> String {
     format!("a phase may have {}", KEYS.map(|(name, _)| format!("{name}=")).join(", "))
 }
 
-impl PhaseOptions {
-    /// As it is given: `NAME:FRACTION,key=value`.
-    pub fn text(&self) -> String {
-        let mut text = format!("{}:{:?}", self.name, self.fraction);
+/// As it is given: `NAME:FRACTION,key=value`.
+impl fmt::Display for PhaseOptions {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{}:{:?}", self.name, self.fraction)?;
         let values = [
-            ("diameters", self.diameters.as_ref().map(|source| source.setting().1)),
-            ("texture", self.texture.as_ref().map(TextureSource::text)),
+            ("diameters", self.diameters.as_ref().map(ToString::to_string)),
+            ("texture", self.texture.as_ref().map(ToString::to_string)),
             ("symmetry", self.symmetry.as_ref().map(ToString::to_string)),
             ("place", self.place.as_ref().map(ToString::to_string)),
         ];
         for (key, value) in values {
-            text.extend(value.map(|value| format!(",{key}={value}")));
+            value.iter().try_for_each(|value| write!(out, ",{key}={value}"))?;
         }
-        text
+        Ok(())
     }
 }
 
@@ -245,11 +246,11 @@ mod tests {
         let phase: PhaseOptions = text.parse().unwrap();
         assert_eq!((phase.name.as_str(), phase.fraction), ("b-2", 0.25));
         assert_eq!(
-            phase.diameters.as_ref().unwrap().setting().1,
+            phase.diameters.as_ref().unwrap().to_string(),
             "0.5*lognormal(mean=20,cv=0.3)+0.5*equal(60), from=5,by=volume"
         );
         assert_eq!(phase.texture, Some(TextureSource::Words("euler(30 45 60, 10)".to_owned())));
         assert_eq!(phase.symmetry, Some(CrystalSymmetry::Hexagonal));
-        assert_eq!(phase.text().parse(), Ok(phase), "its own text");
+        assert_eq!(phase.to_string().parse(), Ok(phase), "its own text");
     }
 }

@@ -2,17 +2,14 @@
 
 use std::io::{self, Write};
 
-use glam::DVec3;
-use polycrystal::{FaceMesh, Junctions, Relaxation, Volumes};
-use texture::{CrystalSymmetry, SampleSymmetry};
-use toml::Value;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use glam::{BVec3, DVec3};
+use polycrystal::{FaceMesh, Junctions, Relaxation};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+use toml::{Table, Value};
 use voronoi::Dimension;
 
-use crate::vtk::VtkEncoding;
-use crate::{
-    Config, FileOptions, InsideOptions, LawOptions, PeriodicCut, PhaseOptions, SeedSource, Shape, SizeDraw,
-    SizeOptions, SizeSource, StlEncoding, TextureOptions,
-};
+use super::{Config, SeedSource, Shape};
 
 /// The first words of the text in a file.
 pub(crate) const BEGIN: &str = "# grainsmooth configuration";
@@ -27,128 +24,38 @@ pub(crate) const PREFIXES: [&str; 4] = ["comment ", "# ", "// ", "** "];
 const REPEATED: [&str; 3] = ["inside", "phase", "tension"];
 
 impl Config {
-    /// Every setting by the long name of its option, the default ones too.
+    /// Every setting by the long name of its option, the default ones too, in the order of the fields.
     ///
     /// What does not change the result (output path, number of threads) is left out, so files can be compared.
-    pub fn settings(&self) -> Vec<(&'static str, Value)> {
-        let mut settings = match &self.seeds {
-            SeedSource::Random { count } => self.random("random", *count),
-            SeedSource::PoissonDisc { count } => self.random("poisson-disc", *count),
-            SeedSource::Packed { count } => self.random("packed", *count),
-            SeedSource::Lattice { lattice, cells } => {
-                vec![("lattice", Value::Array(vec![lattice.name().into(), i64::from(*cells).into()]))]
-            }
-            SeedSource::File(path) => vec![("seeds-file", path.display().to_string().into())],
-        };
-        if matches!(self.sizes.source, Some(SizeSource::VolumeFile(_))) {
+    pub fn settings(&self) -> Table {
+        let resolved = Self { lloyd_steps: Some(self.centroid_steps()), ..self.clone() };
+        let mut settings = Table::try_from(resolved).expect("settings are numbers, texts and lists of them");
+        let has_random_seeds = settings.contains_key("seeding");
+        if !has_random_seeds {
+            settings.remove("rng-seed");
+        }
+        if settings.contains_key("volumes") {
             // The file tells how many.
-            settings.retain(|(name, _)| *name != "seeds");
+            settings.remove("seeds");
         }
-        settings.extend(self.sizes.settings());
-        if !self.phases.is_empty() {
-            settings.push(("phase", texts(self.phases.iter().map(PhaseOptions::text))));
+        if self.shape.is_from_file() {
+            settings.remove("box");
         }
-        if !self.inside.is_empty() {
-            settings.push(("inside", texts(self.inside.iter().map(InsideOptions::text))));
-        }
-        let mut add = |name, value: Value| settings.push((name, value));
-        if self.drop_empty {
-            add("drop-empty", true.into());
-        }
-        if self.min_diameter > 0.0 {
-            add("min-diameter", self.min_diameter.into());
-        }
-        add("lloyd", i64::from(self.centroid_steps()).into());
-        let DVec3 { x, y, z } = self.box_size;
-        let sides = match self.dimension {
-            Dimension::Two => {
-                add("dim", 2.into());
-                vec![x, y]
+        if self.dimension == Dimension::Two {
+            for along_axes in ["box", "aspect-ratio", "voxels"] {
+                if let Some(Value::Array(values)) = settings.get_mut(along_axes) {
+                    values.truncate(2);
+                }
             }
-            Dimension::Three => {
-                add("dim", 3.into());
-                vec![x, y, z]
-            }
-        };
-        if !self.shape.is_from_file() {
-            add("box", sides.into());
         }
-        if self.aspect_ratio != DVec3::ONE {
-            let axes = usize::from(self.dimension.axes());
-            add("aspect-ratio", self.aspect_ratio.to_array()[..axes].to_vec().into());
-        }
-        if let Some(shapes) = &self.grain_shapes {
-            add("grain-shapes", shapes.to_string().into());
-        }
-        match &self.shape {
-            Shape::Box => {}
-            Shape::Sphere { chord_error } => {
-                add("domain", "sphere".into());
-                add("chord-error", (*chord_error).into());
-            }
-            Shape::Cylinder { chord_error } => {
-                add("domain", "cylinder".into());
-                add("chord-error", (*chord_error).into());
-            }
-            Shape::Disc { chord_error } => {
-                add("domain", "disc".into());
-                add("chord-error", (*chord_error).into());
-            }
-            Shape::Surface(path) => add("domain", path.display().to_string().into()),
-            Shape::HalfSpaces(path) => add("half-spaces", path.display().to_string().into()),
-        }
-        let axes = ["x", "y", "z"].into_iter().zip(<[bool; 3]>::from(self.periodic));
-        let axes: Vec<&str> = axes.filter(|(_, is_periodic)| *is_periodic).map(|(axis, _)| axis).collect();
-        add("periodic", if axes.is_empty() { "none".into() } else { axes.join(",").into() });
-        if self.periodic_cut == PeriodicCut::Box {
-            add("periodic-cut", "box".into());
-        }
-        match self.face_mesh {
-            FaceMesh::Fan | FaceMesh::SparseFan => add("faces", "fan".into()),
-            FaceMesh::Plain => add("faces", "plain".into()),
-            FaceMesh::Refined { edge_length } => add("edge-length", edge_length.into()),
-        }
-        match self.relaxation {
-            Relaxation::Time(time) => add("relax", time.into()),
-            Relaxation::Equilibrium => add("relax", "equilibrium".into()),
-        }
-        add("wall-tension", self.wall_tension.into());
-        if !self.tensions.is_empty() {
-            add("tension", texts(self.tensions.iter().map(LawOptions::text)));
-        }
-        if !self.mobilities.is_empty() {
-            add("mobility", texts(self.mobilities.iter().map(LawOptions::text)));
-        }
-        if self.volumes == Volumes::Free {
-            add("free", true.into());
-        }
-        if let Some(length) = self.regularize {
-            add("regularize", length.into());
-        }
-        add("levels", i64::from(self.levels).into());
-        let junctions = match self.junctions {
-            Junctions::Crease => "crease",
-            Junctions::Corner => "corner",
-        };
-        add("junctions", junctions.into());
-        settings.extend(self.texture.settings());
-        settings.extend(self.file.settings(self.dimension));
         settings
-    }
-
-    fn random(&self, seeding: &str, count: usize) -> Vec<(&'static str, Value)> {
-        vec![
-            ("seeds", number(count as u64)),
-            ("seeding", seeding.into()),
-            ("rng-seed", number(self.random_seed)),
-        ]
     }
 
     /// The command line that makes the same result, all settings spelled out.
     pub fn command_line(&self) -> String {
         let mut line = String::from("grainsmooth");
         for (name, value) in self.settings() {
-            if let (true, Value::Array(values)) = (REPEATED.contains(&name), &value) {
+            if let (true, Value::Array(values)) = (REPEATED.contains(&name.as_str()), &value) {
                 line.extend(values.iter().map(|value| format!(" --{name} {}", word(value))));
                 continue;
             }
@@ -175,14 +82,14 @@ impl Config {
     pub(crate) fn differences(&self) -> String {
         let defaults = match self.seeds {
             // The file may give box and periods of its own, which become defaults where they are not named.
-            SeedSource::File(_) => Vec::new(),
+            SeedSource::File(_) => Table::new(),
             _ => {
                 // What the command line takes where nothing is said.
                 let relaxation = self.usual_relaxation();
                 Self { relaxation, ..Self::default() }.settings()
             }
         };
-        let settings = self.settings().into_iter().filter(|setting| !defaults.contains(setting));
+        let settings = self.settings().into_iter().filter(|(name, value)| defaults.get(name) != Some(value));
         let settings: Vec<String> = settings.map(|(name, value)| format!("{name}={value}")).collect();
         format!("{{{}}}", settings.join(","))
     }
@@ -194,71 +101,6 @@ impl Config {
     }
 }
 
-impl SizeOptions {
-    fn settings(&self) -> Vec<(&'static str, Value)> {
-        let mut settings = Vec::new();
-        if let Some(source) = &self.source {
-            let (name, text) = source.setting();
-            settings.push((name, text.into()));
-        }
-        if self.draw != SizeDraw::default() {
-            settings.push(("draw", self.draw.name().into()));
-        }
-        if let Some(gradient) = &self.gradient {
-            settings.push(("gradient", gradient.text().into()));
-        }
-        settings
-    }
-}
-
-impl TextureOptions {
-    fn settings(&self) -> Vec<(&'static str, Value)> {
-        let mut settings = Vec::new();
-        if let Some(source) = &self.source {
-            settings.push(("texture", source.text().into()));
-        }
-        if self.symmetry != CrystalSymmetry::default() {
-            settings.push(("crystal-symmetry", self.symmetry.to_string().into()));
-        }
-        if self.sample_symmetry != SampleSymmetry::default() {
-            settings.push(("sample-symmetry", self.sample_symmetry.name().into()));
-        }
-        if let Some(path) = &self.misorientations {
-            settings.push(("misorientations", path.display().to_string().into()));
-        }
-        settings
-    }
-}
-
-impl FileOptions {
-    fn settings(&self, dimension: Dimension) -> Vec<(&'static str, Value)> {
-        let mut settings = vec![("names", self.names.name().into())];
-        if let Some([x, y, z]) = self.voxels.map(|counts| counts.map(|count| i64::from(count.get()))) {
-            let counts = if dimension == Dimension::Two { vec![x, y] } else { vec![x, y, z] };
-            settings.push(("voxels", counts.into()));
-        }
-        if self.stl == StlEncoding::Ascii {
-            settings.push(("ascii", true.into()));
-        }
-        if self.arrays {
-            settings.push(("arrays", true.into()));
-        }
-        if self.encoding != VtkEncoding::Raw {
-            settings.push(("vtk-encoding", self.encoding.name().into()));
-        }
-        settings
-    }
-}
-
-/// A number of any size: TOML's own end at 2^63, from where on it is a text.
-fn number(number: u64) -> Value {
-    i64::try_from(number).map_or_else(|_| number.to_string().into(), Value::Integer)
-}
-
-fn texts(texts: impl Iterator<Item = String>) -> Value {
-    Value::Array(texts.map(Value::from).collect())
-}
-
 /// A value as a word of the command line.
 fn word(value: &Value) -> String {
     match value {
@@ -266,4 +108,95 @@ fn word(value: &Value) -> String {
         Value::Float(number) => number.to_string(),
         value => value.to_string(),
     }
+}
+
+impl Serialize for SeedSource {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (count, seeding) = match self {
+            Self::Random { count } => (*count, "random"),
+            Self::PoissonDisc { count } => (*count, "poisson-disc"),
+            Self::Packed { count } => (*count, "packed"),
+            Self::Lattice { lattice, cells } => {
+                return serializer.collect_map([("lattice", (lattice.name(), cells))]);
+            }
+            Self::File(path) => return serializer.collect_map([("seeds-file", path)]),
+        };
+        let mut settings = serializer.serialize_map(None)?;
+        settings.serialize_entry("seeds", &count)?;
+        settings.serialize_entry("seeding", seeding)?;
+        settings.end()
+    }
+}
+
+impl Serialize for Shape {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut settings = serializer.serialize_map(None)?;
+        let mut round = |name: &str, chord_error: &f64| {
+            settings.serialize_entry("domain", name)?;
+            settings.serialize_entry("chord-error", chord_error)
+        };
+        match self {
+            Self::Box => {}
+            Self::Sphere { chord_error } => round("sphere", chord_error)?,
+            Self::Cylinder { chord_error } => round("cylinder", chord_error)?,
+            Self::Disc { chord_error } => round("disc", chord_error)?,
+            Self::Surface(path) => settings.serialize_entry("domain", path)?,
+            Self::HalfSpaces(path) => settings.serialize_entry("half-spaces", path)?,
+        }
+        settings.end()
+    }
+}
+
+/// The number of axes.
+pub(super) fn as_axes<S: Serializer>(dimension: &Dimension, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_u8(dimension.axes())
+}
+
+pub(super) fn as_lengths<S: Serializer>(lengths: &DVec3, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(lengths.to_array())
+}
+
+pub(super) fn is_equiaxed(ratio: &DVec3) -> bool {
+    *ratio == DVec3::ONE
+}
+
+/// The names of some axes, or `none`.
+pub(super) fn as_axis_names<S: Serializer>(axes: &BVec3, serializer: S) -> Result<S::Ok, S::Error> {
+    let named = ["x", "y", "z"].into_iter().zip(<[bool; 3]>::from(*axes));
+    let names: Vec<&str> = named.filter(|(_, is_one)| *is_one).map(|(name, _)| name).collect();
+    match &names[..] {
+        [] => serializer.serialize_str("none"),
+        names => serializer.collect_str(&names.join(",")),
+    }
+}
+
+/// `--faces` or `--edge-length`.
+pub(super) fn by_option<S: Serializer>(mesh: &FaceMesh, serializer: S) -> Result<S::Ok, S::Error> {
+    match mesh {
+        FaceMesh::Fan | FaceMesh::SparseFan => serializer.collect_map([("faces", "fan")]),
+        FaceMesh::Plain => serializer.collect_map([("faces", "plain")]),
+        FaceMesh::Refined { edge_length } => serializer.collect_map([("edge-length", edge_length)]),
+    }
+}
+
+pub(super) fn as_time<S: Serializer>(relaxation: &Relaxation, serializer: S) -> Result<S::Ok, S::Error> {
+    match relaxation {
+        Relaxation::Time(time) => serializer.serialize_f64(*time),
+        Relaxation::Equilibrium => serializer.serialize_str("equilibrium"),
+    }
+}
+
+/// The names of `--junctions`.
+const JUNCTIONS: [(&str, Junctions); 2] = [("crease", Junctions::Crease), ("corner", Junctions::Corner)];
+
+/// Reads `--junctions`.
+pub(super) fn junctions() -> impl TypedValueParser<Value = Junctions> {
+    let named = |name: String| JUNCTIONS.into_iter().find(|(known, _)| *known == name);
+    PossibleValuesParser::new(JUNCTIONS.map(|(name, _)| name))
+        .map(move |name| named(name).map(|(_, rule)| rule).unwrap_or_default())
+}
+
+pub(super) fn as_rule<S: Serializer>(rule: &Junctions, serializer: S) -> Result<S::Ok, S::Error> {
+    let named = JUNCTIONS.into_iter().find(|(_, known)| known == rule);
+    serializer.collect_str(named.map_or("", |(name, _)| name))
 }

@@ -1,20 +1,64 @@
 //! What is asked of the grains' orientations.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 
+use clap::Args;
+use serde::{Serialize, Serializer};
 use texture::{CrystalSymmetry, SampleSymmetry, Texture};
 
+use super::spelling::{as_text, as_text_if_given, is_usual};
+
 /// What is asked of the grains' orientations.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Args, Serialize)]
+#[command(next_help_heading = "Texture")]
+#[serde(rename_all = "kebab-case")]
 pub struct TextureOptions {
-    /// Where they come from; nothing for none.
+    /// Give each grain an orientation: random, components with halfwidths in degrees, or a file
+    ///
+    /// Components are cube, goss, brass, copper, s and others; {112}<-1-11>(10); euler(30 45 60, 10); fiber(111||z, 10); gamma(10). Sums
+    /// have weights by volume: 'cube(5)*0.3 + random*0.7'. A file holds Euler angles with weights (.csv, .txt), Neper's orientations
+    /// (.ori), or a measured map (.ang, .ctf).
+    ///
+    /// Example: --texture 'goss(10)'
+    #[arg(id = "texture", long = "texture", value_name = "SPEC|FILE", value_parser = TextureSource::new)]
+    #[serde(
+        rename = "texture",
+        skip_serializing_if = "Option::is_none",
+        serialize_with = "as_text_if_given"
+    )]
     pub source: Option<TextureSource>,
-    /// The symmetry of the crystals.
+
+    /// Symmetry of the crystals: cubic, hexagonal, trigonal, tetragonal, orthorhombic, monoclinic, triclinic, or a group such as 432 or m-3m
+    ///
+    /// Example: --texture 'basal(20)' --crystal-symmetry hexagonal
+    #[arg(
+        long = "crystal-symmetry",
+        value_name = "GROUP",
+        default_value = "cubic",
+        allow_hyphen_values = true
+    )]
+    #[serde(rename = "crystal-symmetry", skip_serializing_if = "is_usual", serialize_with = "as_text")]
     pub symmetry: CrystalSymmetry,
-    /// The symmetry of the sample.
+
+    /// Symmetry of the sample: triclinic (none) or orthorhombic, as of rolled sheet, where each component comes in all its variants
+    ///
+    /// Example: --texture 'copper(8) + s(8) + brass(8)' --sample-symmetry orthorhombic
+    #[arg(long, value_name = "GROUP", default_value = "triclinic")]
+    #[serde(skip_serializing_if = "is_usual", serialize_with = "as_name")]
     pub sample_symmetry: SampleSymmetry,
-    /// The file of a histogram that the disorientations of neighbours are to have.
+
+    /// Swap orientations until the disorientations of neighbours, by area, have the histogram in a file: on each line the upper end of a
+    /// bin in degrees, and its weight
+    ///
+    /// Example: --texture random --misorientations angles.csv
+    #[arg(long, value_name = "FILE", requires = "texture", conflicts_with = "no_mesh")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub misorientations: Option<PathBuf>,
+}
+
+fn as_name<S: Serializer>(symmetry: &SampleSymmetry, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(symmetry.name())
 }
 
 /// Where orientations come from.
@@ -49,13 +93,15 @@ impl TextureSource {
         }
         text.parse::<Texture>().map(|_| Self::Words(text.to_owned()))
     }
+}
 
-    /// As it is given.
-    pub fn text(&self) -> String {
+/// As it is given.
+impl fmt::Display for TextureSource {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Words(text) => text.clone(),
-            Self::File { path, phase: None } => path.display().to_string(),
-            Self::File { path, phase: Some(phase) } => format!("{}#{phase}", path.display()),
+            Self::Words(text) => out.write_str(text),
+            Self::File { path, phase: None } => path.display().fmt(out),
+            Self::File { path, phase: Some(phase) } => write!(out, "{}#{phase}", path.display()),
         }
     }
 }

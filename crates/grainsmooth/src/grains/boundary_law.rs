@@ -89,7 +89,7 @@ impl Laws {
         if largest == 0.0 {
             return Err(LawError { kind, problem: LawProblem::AllVanish }.into());
         }
-        let asked = asked.iter().map(LawOptions::text).collect();
+        let asked = asked.iter().map(LawOptions::to_string).collect();
         Ok(Some(Self { of_pairs, phases: config.phases.len().max(1), largest, asked }))
     }
 

@@ -139,7 +139,7 @@ impl InnerGrains {
             };
             let sum: f64 = divided.iter().map(|cell| lengths[*cell]).sum();
             Divided {
-                asked: options.text(),
+                asked: options.to_string(),
                 grains: grains.count(),
                 divided: divided.len(),
                 parts,
@@ -265,7 +265,7 @@ impl crate::InsideOptions {
                 format!("diameter={}", two_digits_down(diameter * dimension.cube_edge(most / 1.5)))
             }
         };
-        InsideError::NothingDivided { pattern: self.text(), remedy }
+        InsideError::NothingDivided { pattern: self.to_string(), remedy }
     }
 }
 

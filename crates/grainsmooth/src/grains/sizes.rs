@@ -12,6 +12,7 @@ use voronoi::{Dimension, Domain};
 use super::assigned::assigned;
 use super::quantiles::{quantile_volumes, volumes_at};
 use super::wanted_sizes::{MOST_CORRECTIONS, Wanted};
+use crate::config::spelling::name_of;
 use crate::figures::asked::AskedAndReached;
 use crate::seeds::random::unit_fraction;
 use crate::{Config, Error, PhasesError, SizeDraw};
@@ -84,7 +85,7 @@ pub struct SizesFit {
     asked: String,
     /// Whether nothing was asked for: these are the usual sizes.
     is_usual: bool,
-    draw: &'static str,
+    draw: SizeDraw,
     /// By which the diameters asked for are multiplied to fill the domain.
     scale: f64,
     /// Mean of the distribution that was asked for, before it is scaled, and its coefficient of variation.
@@ -273,7 +274,7 @@ impl GrainSizes {
             SizesFit {
                 asked: group.asked.clone(),
                 is_usual: group.is_usual,
-                draw: self.draw.name(),
+                draw: self.draw,
                 scale: group.scale,
                 asked_mean: group.distribution.as_ref().map(Distribution::mean),
                 asked_cv: group.distribution.as_ref().map(Distribution::variation),
@@ -458,7 +459,7 @@ impl SizesFit {
         match (self.asked_mean, self.asked_cv) {
             _ if self.is_usual => format!("usual {}", self.asked),
             (Some(mean), Some(cv)) => {
-                format!("asked {} (mean {mean:.4}, cv {cv:.4}; {})", self.asked, self.draw)
+                format!("asked {} (mean {mean:.4}, cv {cv:.4}; {})", self.asked, name_of(&self.draw))
             }
             _ => format!("asked {}", self.asked),
         }

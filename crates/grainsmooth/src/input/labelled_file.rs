@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use clap::ValueEnum;
 use glam::DVec3;
 use polycrystal::{BoundaryId, Claims, Elements, GrainId, NodeType, Side, Surface, outward_sides};
 use texture::Orientation;
@@ -233,7 +234,8 @@ fn sticks_out_of_the_box(settings: &Table) -> bool {
 
 /// What is known of all grains with their numbers: from 0 by our own names, from 1 by those of other tools.
 fn numbered<T>(of_grains: Vec<T>, settings: &Table) -> Option<Vec<(GrainId, T)>> {
-    let first = u32::from(settings.get("names")?.as_str()? != Names::default().name());
+    let names = Names::from_str(settings.get("names")?.as_str()?, false);
+    let first = u32::from(names != Ok(Names::default()));
     (of_grains.len() < u32::MAX as usize).then(|| (first..).map(GrainId).zip(of_grains).collect())
 }
 

@@ -17,7 +17,7 @@ use crate::{
 pub struct SummaryRecord {
     version: &'static str,
     command_line: String,
-    settings: BTreeMap<&'static str, toml::Value>,
+    settings: BTreeMap<String, toml::Value>,
     dimension: u8,
     grains: usize,
     /// Seeds without a cell, and those whose cells were merged into what surrounds them.

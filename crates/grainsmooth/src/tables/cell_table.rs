@@ -34,7 +34,7 @@ impl TableFormat {
 /// One row for each cell of a tessellation: the flat cells, before any relaxation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CellTable {
-    settings: BTreeMap<&'static str, toml::Value>,
+    settings: BTreeMap<String, toml::Value>,
     cells: Vec<Cell>,
 }
 

@@ -60,7 +60,7 @@ pub struct NetworkStatistics {
     version: &'static str,
     command_line: String,
     random_seed: u64,
-    settings: BTreeMap<&'static str, toml::Value>,
+    settings: BTreeMap<String, toml::Value>,
     /// Mean and spread of what the tables hold.
     distributions: BTreeMap<&'static str, Distribution>,
     topology: Topology,
