@@ -3,7 +3,7 @@
 //! The library behind the `grainsmooth` program: seeds, Voronoi cells, relaxation, subdivision, validation and files.
 //!
 //! ```
-//! use grainsmooth::{Config, Output, SeedSource, make_polycrystal};
+//! use grainsmooth::prelude::*;
 //!
 //! let config = Config { seeds: SeedSource::Random { count: 10 }, levels: 1, ..Config::default() };
 //! let polycrystal = make_polycrystal(&config, &|_, _, _| ())?;
@@ -13,6 +13,10 @@
 //! polycrystal.write(&Output::check(directory.path().join("grains.vtp"))?)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! What a run is asked for is a [`Config`]; what comes of it a [`Polycrystal`]. Own seeds, labelled triangles, laws of boundaries and formats: see
+//! `docs/library.md`. The crates that this one is made of are handed on: [`voronoi`] makes cells, [`polycrystal`] networks of them, which [`subzero`]
+//! subdivides; [`sizes`] and [`texture`] draw diameters and orientations.
 
 mod check;
 mod config;
@@ -34,6 +38,13 @@ mod seeds;
 mod summary;
 mod tables;
 pub mod vtk;
+
+pub use glam;
+pub use polycrystal;
+pub use sizes;
+pub use subzero;
+pub use texture;
+pub use voronoi;
 
 pub use check::report::{CheckReport, Expectation, ReportedFault, SizesFound, Statistic};
 pub use config::check::ConfigError;
@@ -103,3 +114,17 @@ pub use summary::record::SummaryRecord;
 pub use summary::{CellsSummary, Summary};
 pub use tables::cell_table::{CellTable, TableFormat};
 pub use tables::statistics::{NetworkStatistics, StatisticsOutput};
+
+/// What most programs need.
+pub mod prelude {
+    pub use glam::DVec3;
+    pub use polycrystal::Relaxation;
+    pub use voronoi::Dimension;
+
+    pub use crate::{Config, Error, Output, OutputFormat, Polycrystal, SeedSource, make_polycrystal};
+}
+
+/// The examples of the page for users of the library.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/library.md")]
+struct LibraryPage;
