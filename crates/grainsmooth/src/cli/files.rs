@@ -212,5 +212,5 @@ fn parse_format(text: &str) -> Result<OutputFormat, String> {
 }
 
 fn nearest_format(text: &str) -> Option<&'static str> {
-    nearest(text, OutputFormat::ALL.map(OutputFormat::extension))
+    nearest(text, OutputFormat::ALL.iter().map(|format| format.extension()))
 }

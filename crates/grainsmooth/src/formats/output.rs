@@ -152,7 +152,7 @@ mod tests {
     fn extension_names_the_format() {
         assert_eq!(OutputFormat::of_path(Path::new("a.b.VTU")), OutputFormat::of_extension("vtu"));
         assert_eq!(OutputFormat::of_path(Path::new("vtp")), None);
-        for format in OutputFormat::ALL {
+        for &format in OutputFormat::ALL {
             assert_eq!(
                 OutputFormat::of_path(&Path::new("grains").with_extension(format.extension())),
                 Some(format)

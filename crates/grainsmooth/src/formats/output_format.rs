@@ -4,7 +4,6 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use super::format::{Beside, Content, FileSize, Format, GrainWriter, Writer};
-use super::{ang, blocks, ctf, euler, evolver, gmsh, inp, material, npy, obj, ori, ply, stl, tess, vti, vtk};
 use crate::config::Config;
 use crate::error::Error;
 
@@ -14,28 +13,28 @@ pub struct OutputFormat(&'static Format);
 
 impl OutputFormat {
     /// The default: surfaces and lines as VTK's XML PolyData.
-    pub const VTP: Self = Self(&vtk::VTP);
+    pub const VTP: Self = Self(&super::vtk::VTP);
 
-    /// Every format, the default first. A format is a file, and a line here.
-    pub const ALL: [Self; 18] = [
+    /// Every format, the default first. A format is a file, its `mod`, and a line here.
+    pub const ALL: &[Self] = &[
         Self::VTP,
-        Self(&vtk::VTU),
-        Self(&vtk::VTK),
-        Self(&blocks::FORMAT),
-        Self(&stl::FORMAT),
-        Self(&ply::FORMAT),
-        Self(&obj::FORMAT),
-        Self(&gmsh::FORMAT),
-        Self(&evolver::FORMAT),
-        Self(&tess::FORMAT),
-        Self(&vti::FORMAT),
-        Self(&npy::FORMAT),
-        Self(&inp::FORMAT),
-        Self(&ang::FORMAT),
-        Self(&ctf::FORMAT),
-        Self(&euler::FORMAT),
-        Self(&ori::FORMAT),
-        Self(&material::FORMAT),
+        Self(&super::vtk::VTU),
+        Self(&super::vtk::VTK),
+        Self(&super::blocks::FORMAT),
+        Self(&super::stl::FORMAT),
+        Self(&super::ply::FORMAT),
+        Self(&super::obj::FORMAT),
+        Self(&super::gmsh::FORMAT),
+        Self(&super::evolver::FORMAT),
+        Self(&super::tess::FORMAT),
+        Self(&super::vti::FORMAT),
+        Self(&super::npy::FORMAT),
+        Self(&super::inp::FORMAT),
+        Self(&super::ang::FORMAT),
+        Self(&super::ctf::FORMAT),
+        Self(&super::euler::FORMAT),
+        Self(&super::ori::FORMAT),
+        Self(&super::material::FORMAT),
     ];
 
     /// The extension that stands for the format, without its dot.
@@ -45,7 +44,7 @@ impl OutputFormat {
 
     /// The format of an extension, in upper or lower case, without its dot.
     pub fn of_extension(extension: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|format| extension.eq_ignore_ascii_case(format.extension()))
+        Self::ALL.iter().copied().find(|format| extension.eq_ignore_ascii_case(format.extension()))
     }
 
     /// The format that the path's extension names, in upper or lower case.
@@ -55,22 +54,23 @@ impl OutputFormat {
 
     /// The extensions as a message lists them: `*.vtp, *.vtu or *.vtk`.
     pub fn known_extensions() -> String {
-        let [others @ .., last] = Self::ALL.map(|format| format!("*.{}", format.extension()));
+        let known: Vec<String> = Self::ALL.iter().map(|format| format!("*.{}", format.extension())).collect();
+        let (last, others) = known.split_last().expect("there are formats");
         format!("{} or {last}", others.join(", "))
     }
 
     /// The extensions with the programs that they are for, as `--help` lists them: `.vtp, .msh (Gmsh)`.
     pub fn described() -> String {
-        let described = Self::ALL.map(|Self(format)| match format.programs {
+        let described = Self::ALL.iter().map(|Self(format)| match format.programs {
             "" => format!(".{}", format.extension),
             programs => format!(".{} ({programs})", format.extension),
         });
-        described.join(", ")
+        described.collect::<Vec<_>>().join(", ")
     }
 
     /// The formats that a grain's own surface may have.
     pub fn of_grains() -> impl Iterator<Item = Self> {
-        Self::ALL.into_iter().filter(|format| format.0.write_grain.is_some())
+        Self::ALL.iter().copied().filter(|format| format.0.write_grain.is_some())
     }
 
     /// Whether the format holds voxels.
