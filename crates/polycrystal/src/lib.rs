@@ -67,6 +67,7 @@ pub use network::Network;
 pub use network::control_mesh::JunctionCounts;
 pub use network::error::{Attempt, NetworkError};
 pub use network::face_mesh::{FaceMesh, MeshSize};
+pub use network::grain_complex::GrainPart;
 pub use network::junctions::Junctions;
 pub use relax::cells::relax_cells;
 #[doc(hidden)]

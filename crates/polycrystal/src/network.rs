@@ -3,9 +3,11 @@ pub(crate) mod control_mesh;
 pub(crate) mod error;
 pub(crate) mod face_mesh;
 pub(crate) mod fan;
+pub(crate) mod grain_complex;
 pub(crate) mod grain_mesh;
 pub(crate) mod junctions;
 pub(crate) mod labelled_mesh;
+pub(crate) mod line_coarsening;
 pub(crate) mod tension;
 
 use glam::DVec3;
@@ -16,7 +18,7 @@ use voronoi::{Domain, Tessellation};
 use crate::check::folds::element_normals;
 use crate::mesh::volume::{boundary_cones, volumes_of_grains};
 use crate::{
-    Boundary, FaceMesh, Freedom, GrainId, Junctions, Level, Mesh, MeshSize, NetworkError, Side, Surface,
+    Boundary, FaceMesh, Freedom, GrainPart, Junctions, Level, Mesh, MeshSize, NetworkError, Side, Surface,
     WallSet, WallSets,
 };
 use control_mesh::{ControlMesh, JunctionCounts};
@@ -71,10 +73,10 @@ impl Network {
         Self::assemble(tessellation.domain(), control_mesh, cell_volumes, level_count)
     }
 
-    /// As [`Self::with_face_mesh`] of grains of one cell or several each, by the grain of each cell. Faces between cells of one grain drop
+    /// As [`Self::with_face_mesh`] of grains of one cell or several each, by the grain that each cell is part of. Faces between cells of one grain drop
     /// out; a boundary is what faces between two grains make up where they hang together, in however many planes they lie.
     ///
-    /// Grains need not be convex, and one may lie within another. In a periodic domain, cells of a grain stand where they touch each other.
+    /// Grains need not be convex, and one may lie within another. In a periodic domain, cells of a grain touch each other once they are moved to stand with it.
     ///
     /// `coarsening` closes edges that cells leave in the boundaries and lines between grains: those shorter than this part of the size of the smallest grain
     /// there (the edge of a cube as large; in the plane, of a square). Lines between two points of four grains close where they are shorter than two fifths of that. 0 keeps all edges.
@@ -86,23 +88,22 @@ impl Network {
     /// When there is not one grain for each cell.
     pub fn of_grains(
         tessellation: &Tessellation,
-        grain_of_cell: &[GrainId],
+        parts: &[GrainPart],
         face_mesh: FaceMesh,
         junctions: Junctions,
         coarsening: f64,
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
         check_face_mesh(tessellation, face_mesh, level_count)?;
-        let grain_count = grain_of_cell.iter().map(|grain| grain.index() + 1).max().unwrap_or(0);
+        let grain_count = parts.iter().map(|part| part.grain.index() + 1).max().unwrap_or(0);
         let mut volumes = vec![0.0; grain_count];
-        for (grain, cell) in grain_of_cell.iter().zip(tessellation.cell_measures()) {
-            volumes[grain.index()] += cell.volume;
+        for (part, cell) in parts.iter().zip(tessellation.cell_measures()) {
+            volumes[part.grain.index()] += cell.volume;
         }
         let dimension = tessellation.domain().dimension();
         let lengths =
             volumes.iter().map(|volume| coarsening * dimension.cube_edge(*volume)).collect::<Vec<f64>>();
-        let control_mesh =
-            ControlMesh::of_grains(tessellation, grain_of_cell, &lengths, face_mesh, junctions)?;
+        let control_mesh = ControlMesh::of_grains(tessellation, parts, &lengths, face_mesh, junctions)?;
         Self::assemble(tessellation.domain(), control_mesh, volumes, level_count)
     }
 

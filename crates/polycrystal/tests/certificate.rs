@@ -111,7 +111,7 @@ fn a_moved_point_is_found() {
     assert!(faults.len() > 10, "{faults:?}");
     for fault in &faults {
         match fault {
-            Fault::Crossing { elements } | Fault::Folded { elements } => assert!(touches(elements)),
+            Fault::Crossing { elements, .. } | Fault::Folded { elements, .. } => assert!(touches(elements)),
             other => panic!("{other}"),
         }
     }

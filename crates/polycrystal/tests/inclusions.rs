@@ -1,9 +1,9 @@
 //! Networks of grains that are put into others, with few triangles.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use glam::DVec3;
+use glam::{BVec3, DVec3};
 use polycrystal::{
-    Elements, FaceMesh, GrainId, Junctions, Network, Relaxation, Volumes, relax_watched, validate,
+    Elements, FaceMesh, GrainId, GrainPart, Junctions, Network, Relaxation, Volumes, relax_watched, validate,
 };
 use voronoi::Domain;
 use voronoi::volumes::{
@@ -35,9 +35,10 @@ fn inserted(domain: &Domain, place: InclusionPlace) -> InsertedGrains {
 }
 
 fn network(grains: &InsertedGrains, coarsening: f64, levels: usize) -> (Network, Vec<DVec3>) {
-    let of_cell: Vec<GrainId> = grains.grain_of_cell.iter().copied().map(GrainId).collect();
+    let of_cells = grains.grain_of_cell.iter().copied().map(GrainId).zip(&grains.moves);
+    let parts: Vec<GrainPart> = of_cells.map(|(grain, moved)| GrainPart { grain, moved: *moved }).collect();
     let (mesh, junctions) = (FaceMesh::Fan, Junctions::Crease);
-    Network::of_grains(&grains.tessellation, &of_cell, mesh, junctions, coarsening, levels).unwrap()
+    Network::of_grains(&grains.tessellation, &parts, mesh, junctions, coarsening, levels).unwrap()
 }
 
 const PLACES: [InclusionPlace; 3] =
@@ -45,7 +46,9 @@ const PLACES: [InclusionPlace; 3] =
 
 #[test]
 fn grains_around_inclusions_relax_and_stay_valid_with_their_volumes() {
-    for domain in [Domain::unit_cube(), Domain::unit_square()] {
+    let walled = [Domain::unit_cube(), Domain::unit_square()];
+    let periodic = walled.clone().map(|domain| domain.with_periods(BVec3::TRUE));
+    for domain in walled.into_iter().chain(periodic) {
         for place in PLACES {
             let grains = inserted(&domain, place);
             let (network, flat) = network(&grains, 0.25, 1);

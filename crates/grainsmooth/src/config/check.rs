@@ -26,11 +26,6 @@ pub enum ConfigError {
     /// Grains that grow to equilibrium.
     #[error("--free lets grains grow for a time, and has no equilibrium; give one, such as --relax 0.3")]
     FreeEquilibrium,
-    /// Grains of given shapes in a box that repeats.
-    #[error(
-        "--grain-shapes makes grains between walls; leave --periodic out, or give --aspect-ratio for grains that are all long one way"
-    )]
-    ShapesAndPeriods,
     /// Shapes of the other dimension.
     #[error("{0}")]
     ShapeLengths(&'static str),
@@ -84,9 +79,6 @@ impl Config {
             return Err(ConfigError::FreeEquilibrium);
         }
         if let Some(shapes) = &self.grain_shapes {
-            if self.periodic.any() {
-                return Err(ConfigError::ShapesAndPeriods);
-            }
             shapes.check(self.dimension).map_err(ConfigError::ShapeLengths)?;
         }
         if self.min_diameter > 0.0 && !self.phases.is_empty() {
@@ -173,7 +165,6 @@ impl Config {
                 (self.grain_shapes.is_some(), "--grain-shapes"),
                 (self.sizes.gradient.is_some(), "--gradient"),
                 (is_put && !self.inside.is_empty(), "--inside"),
-                (is_put && place != PhasePlace::Interior && self.periodic.any(), "--periodic"),
                 (self.phases.len() == 1, "a single phase"),
             ];
             if let Some((_, option)) = options.into_iter().find(|(is_given, _)| *is_given) {

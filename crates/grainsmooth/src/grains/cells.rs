@@ -1,24 +1,32 @@
 //! The cells that make up grains.
 
-use polycrystal::GrainId;
-use voronoi::{Side, Tessellation};
+use std::collections::BTreeSet;
 
-/// The grain of each cell, where grains are of several cells.
+use polycrystal::{GrainId, GrainPart};
+use voronoi::{CellId, Shift, Side, Tessellation};
+
+/// The grain that each cell is part of, where grains are of several cells.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct GrainCells {
-    of_cell: Vec<GrainId>,
+    parts: Vec<GrainPart>,
     count: usize,
 }
 
 impl GrainCells {
-    /// So many grains, by the number of each cell's.
-    pub(crate) fn new(of_cell: &[u32], count: usize) -> Self {
-        Self { of_cell: of_cell.iter().copied().map(GrainId).collect(), count }
+    /// So many grains, by the number of each cell's and by how much the cell has to be moved to stand with it.
+    pub(crate) fn new(of_cell: &[u32], moves: &[Shift], count: usize) -> Self {
+        let part = |(grain, moved): (&u32, &Shift)| GrainPart { grain: GrainId(*grain), moved: *moved };
+        Self { parts: of_cell.iter().zip(moves).map(part).collect(), count }
     }
 
-    /// The grain of each cell.
-    pub fn of_cell(&self) -> &[GrainId] {
-        &self.of_cell
+    /// The grain that each cell is part of.
+    pub fn parts(&self) -> &[GrainPart] {
+        &self.parts
+    }
+
+    /// The grain of a cell.
+    pub(crate) fn grain(&self, cell: CellId) -> GrainId {
+        self.parts[cell.index()].grain
     }
 
     /// Number of grains.
@@ -32,26 +40,28 @@ impl GrainCells {
         of_cells: impl Iterator<Item = T>,
     ) -> Vec<T> {
         let mut sums = vec![T::default(); self.count];
-        self.of_cell.iter().zip(of_cells).for_each(|(grain, value)| sums[grain.index()] += value);
+        self.parts.iter().zip(of_cells).for_each(|(part, value)| sums[part.grain.index()] += value);
         sums
     }
 
     /// Number of faces of each grain: two grains that touch in several places have as many in the network, and one here.
     pub(crate) fn face_counts(&self, tessellation: &Tessellation) -> Vec<usize> {
-        let mut pairs = Vec::new();
+        let mut beside: Vec<BTreeSet<Side>> = vec![BTreeSet::new(); self.count];
         for face in tessellation.faces() {
-            let sides = tessellation.face_sides(face).map(|side| match side {
-                Side::Cell(cell) => Ok(self.of_cell[cell.index()]),
-                other => Err(other),
-            });
-            if sides[0] != sides[1] {
-                pairs.extend([sides, [sides[1], sides[0]]]);
+            let sides = tessellation.face_sides(face);
+            let [first, second] = sides.map(|side| GrainPart::beside(&self.parts, side));
+            if first == second {
+                continue;
+            }
+            for (own, other) in [(first, second), (second, first)] {
+                let (grain, shift) = match own {
+                    Side::Cell(grain) => (grain, Shift::NONE),
+                    Side::Image(grain, shift) => (grain, shift),
+                    Side::Wall(_) => continue,
+                };
+                beside[grain.index()].insert(other.moved(Shift::NONE - shift));
             }
         }
-        pairs.sort_unstable();
-        pairs.dedup();
-        let mut counts = vec![0; self.count];
-        pairs.iter().filter_map(|[side, _]| side.ok()).for_each(|grain| counts[grain.index()] += 1);
-        counts
+        beside.iter().map(BTreeSet::len).collect()
     }
 }

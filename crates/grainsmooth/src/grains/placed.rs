@@ -57,7 +57,7 @@ impl PlacedGrains {
         let fraction = || unit_fraction(places.next_u64());
         let placed = place_inclusions(diagram.tessellation(), diagram.weights(), &wanted, fraction)?;
         let inserted = insert_grains(diagram.tessellation(), diagram.weights(), &of_matrix, &placed);
-        let InsertedGrains { tessellation, weights, grain_of_cell } =
+        let InsertedGrains { tessellation, weights, grain_of_cell, moves } =
             inserted.map_err(Error::NoRoomAround)?;
         let numbers: Vec<u32> = matrix
             .iter()
@@ -68,7 +68,7 @@ impl PlacedGrains {
         Ok(Self {
             tessellation,
             weights,
-            grain_cells: GrainCells::new(&of_cell, volumes.len()),
+            grain_cells: GrainCells::new(&of_cell, &moves, volumes.len()),
             centroid_steps: diagram.centroid_steps(),
         })
     }
@@ -151,8 +151,7 @@ pub(crate) fn contact_areas(
     grains: Option<&GrainCells>,
     count: usize,
 ) -> Vec<Vec<(usize, f64)>> {
-    let grain_of =
-        |cell: CellId| grains.map_or(cell.index(), |grains| grains.of_cell()[cell.index()].index());
+    let grain_of = |cell: CellId| grains.map_or(cell.index(), |grains| grains.grain(cell).index());
     let mut pairs: Vec<(usize, usize, f64)> = Vec::new();
     let primaries = cells.face_count() - cells.periodic_faces().len();
     for face in cells.faces().take(primaries) {

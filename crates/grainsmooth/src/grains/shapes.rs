@@ -105,7 +105,7 @@ impl GrainShapes {
 
     /// The grain of each cell.
     pub(crate) fn grain_cells(&self) -> GrainCells {
-        GrainCells::new(self.diagram.grain_of_cell(), self.wanted.len())
+        GrainCells::new(self.diagram.grain_of_cell(), self.diagram.moves(), self.wanted.len())
     }
 
     /// What was asked for and reached, by what the finished grains are like.

@@ -31,7 +31,7 @@ const SHORTER: f64 = 0.6;
 const SHORTER_TIMES: usize = 12;
 
 /// How often the grains of given shapes at which relaxation fails get rounder ones. Of 200 grains of 3:1:1 some take one round.
-const MOST_ROUNDINGS: usize = 10;
+const MOST_ROUNDINGS: usize = 20;
 
 /// A finished polycrystal: a valid network with the points of its finest level.
 #[derive(Debug, Clone)]
@@ -414,6 +414,7 @@ impl Regularization {
                 &[Self::ByEnergy, Self::Foreseeing, Self::Plain, Self::None]
             }
             0.0 => &[Self::None],
+            _ if config.grain_shapes.is_some() => &[Self::Plain],
             _ if config.has_grains_of_several_cells() => &[Self::Plain, Self::Shorter(1), Self::Shorter(2)],
             _ => &[Self::Foreseeing, Self::Plain, Self::None],
         }

@@ -98,7 +98,10 @@ impl Tessellated {
     pub(crate) fn centroids(&self) -> Vec<DVec3> {
         let Some(grains) = &self.grain_cells else { return self.tessellation.centroids() };
         let cells = self.tessellation.cell_measures();
-        let sums = grains.sums(cells.iter().map(|cell| cell.volume * cell.centroid));
+        let domain = self.tessellation.domain();
+        let centroids = cells.iter().zip(grains.parts());
+        let sums = grains
+            .sums(centroids.map(|(cell, part)| cell.volume * (cell.centroid + part.moved.vector(domain))));
         sums.into_iter().zip(self.volumes()).map(|(sum, volume)| sum / volume).collect()
     }
 
@@ -122,7 +125,7 @@ impl Tessellated {
     ) -> Result<(Network, Vec<DVec3>), NetworkError> {
         match &self.grain_cells {
             Some(grains) => {
-                Network::of_grains(tessellation, grains.of_cell(), face_mesh, junctions, coarsening, levels)
+                Network::of_grains(tessellation, grains.parts(), face_mesh, junctions, coarsening, levels)
             }
             None => Network::with_face_mesh(tessellation, face_mesh, junctions, levels),
         }

@@ -140,8 +140,9 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>)
     faults.extend(closing);
     let has_area = |pair: &[u32; 2]| pair.iter().all(|element| normals[*element as usize] != DVec3::ZERO);
     let folded = folded_pairs(&seams.inner, &normals, FOLD_COSINE).into_iter().filter(has_area);
-    faults.extend(folded.map(|elements| Fault::Folded { elements }));
-    faults.extend(crossing.into_iter().map(|elements| Fault::Crossing { elements }));
+    faults.extend(folded.map(|elements| Fault::Folded { elements, grains: surface.grains_at(elements) }));
+    let crossing = crossing.into_iter();
+    faults.extend(crossing.map(|elements| Fault::Crossing { elements, grains: surface.grains_at(elements) }));
     if let Some(stated) = claims.node_types {
         faults.extend(wrong_node_types(stated, &meetings));
     }

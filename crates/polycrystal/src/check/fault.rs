@@ -98,12 +98,16 @@ pub enum Fault {
     Folded {
         /// The elements.
         elements: [u32; 2],
+        /// The grains beside them.
+        grains: Vec<GrainId>,
     },
     /// Two elements cross.
     #[error("elements {} and {} cross each other", elements[0], elements[1])]
     Crossing {
         /// The elements, the lower first.
         elements: [u32; 2],
+        /// The grains beside them.
+        grains: Vec<GrainId>,
     },
     /// A point's type is not that of the sides around it.
     #[error("point {point} has the node type {}, the sides around it make {}", stated.code(), derived.code())]
@@ -219,8 +223,8 @@ impl Fault {
                 (Vec::new(), vec![*element])
             }
             Self::DuplicateElements { elements }
-            | Self::Folded { elements }
-            | Self::Crossing { elements } => (Vec::new(), elements.to_vec()),
+            | Self::Folded { elements, .. }
+            | Self::Crossing { elements, .. } => (Vec::new(), elements.to_vec()),
             Self::Open { place, .. } | Self::Pinched { place, .. } => (place.points(), Vec::new()),
             Self::Winding { place, elements } => (place.points(), elements.clone()),
             Self::NoVolume { .. }
@@ -231,10 +235,12 @@ impl Fault {
         }
     }
 
-    /// The grains that the fault names.
+    /// The grains that the fault is about.
     pub fn grains(&self) -> Vec<GrainId> {
         match self {
-            Self::Open { grains, .. } => grains.clone(),
+            Self::Open { grains, .. } | Self::Folded { grains, .. } | Self::Crossing { grains, .. } => {
+                grains.clone()
+            }
             Self::Pinched { grain, .. }
             | Self::PinchedPoint { grain, .. }
             | Self::NoVolume { grain, .. }

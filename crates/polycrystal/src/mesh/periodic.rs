@@ -56,6 +56,11 @@ impl PeriodicCopies {
         }
     }
 
+    /// Adds elements that each are a copied face.
+    pub(crate) fn add_elements(&mut self, pairs: &[PeriodicPair<FaceId>]) {
+        self.elements.extend(pairs.iter().map(|pair| map_ids(*pair, |face| face.0)));
+    }
+
     /// Adds the segments of copied lines in the plane, which run the other way; those of line k begin with `firsts[k]`.
     pub(crate) fn add_lines(&mut self, pairs: &[PeriodicPair<u32>], firsts: &[u32]) {
         for &PeriodicPair { secondary, primary, shift } in pairs {

@@ -1,3 +1,5 @@
+use std::collections::BTreeSet;
+
 use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::Dimension;
@@ -100,6 +102,13 @@ impl<'a> Surface<'a> {
     /// How far double precision keeps points from where they should be: a last place of the largest coordinate.
     pub fn last_place(&self) -> f64 {
         last_place(self.points)
+    }
+
+    /// The grains beside two elements, in order.
+    pub(crate) fn grains_at(&self, elements: [u32; 2]) -> Vec<GrainId> {
+        let sides = elements.map(|element| self.sides_of(element));
+        let grains: BTreeSet<GrainId> = sides.iter().flatten().filter_map(|side| side.grain()).collect();
+        grains.into_iter().collect()
     }
 
     /// The sides of an element.

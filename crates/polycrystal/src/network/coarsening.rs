@@ -1,10 +1,9 @@
 //! Fewer and better triangles for boundaries that many small polygons make up.
 
-use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 
 use glam::DVec3;
-use voronoi::Side;
+use voronoi::{Corner, Domain, Shift, Side};
 
 /// How much a triangle may turn when one of its corners moves along an edge, or an edge of it flips, as the cosine of the angle: 60 degrees.
 const LEAST_COSINE: f64 = 0.5;
@@ -16,32 +15,38 @@ const GOOD_ANGLE: f64 = 15.0;
 /// different ones angles below 26.
 const LEAST_COSINES: [f64; 2] = [0.3, -0.9];
 
+/// By how much cosines may differ for rounding alone. Triangles with an edge of 1e-2 of others moved them by 1e-13.
+const ROUNDING: f64 = 1e-9;
+
 /// Triangles of less height, in parts of the length below which edges close, may turn as they will.
 const NARROW: f64 = 0.15;
 
 /// Lines between points of four grains close when they are shorter than this part of other edges that do.
 const SHORT_LINE: f64 = 0.4;
 
-/// How often all edges are looked at, unless there is nothing left to do before. No experiment chose it.
-const ROUNDS: usize = 4;
-
-/// Triangles between grains, which share points along the lines where three and more meet.
+/// Triangles between grains, which share points along the lines where three and more meet. Each point is there once; in a periodic domain a corner of a
+/// triangle is one moved by whole periods.
 pub(super) struct Coarsening<'a> {
+    domain: &'a Domain,
     points: &'a [DVec3],
     /// Of each point: edges at it that are shorter close; none where it is to stay as it is.
     limits: &'a [Option<f64>],
-    triangles: Vec<Option<[u32; 3]>>,
+    triangles: Vec<Option<[Corner; 3]>>,
+    /// What lies on both sides of each triangle, in the order of its winding.
     sides: &'a [[Side; 2]],
     /// The triangles at each point, in order.
     at_points: Vec<Vec<u32>>,
 }
 
+/// A triangle at an edge, and by how much it is moved from there.
+type AtEdge = (u32, Shift);
+
 /// What a point is part of, in the order of how free it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Part {
     Boundary,
-    /// With its two neighbours along the line.
-    Line([u32; 2]),
+    /// With its two neighbours along the line, as seen from it.
+    Line([Corner; 2]),
     Node,
 }
 
@@ -50,92 +55,92 @@ enum Part {
 /// No point moves from the lines and walls that it is on, and each grain stays a closed surface, which touches itself nowhere. What is left of each triangle is at
 /// its place; nothing is left of those that have closed.
 pub(super) fn coarsened(
+    domain: &Domain,
     points: &[DVec3],
     limits: &[Option<f64>],
-    triangles: &[[u32; 3]],
+    triangles: &[[Corner; 3]],
     sides: &[[Side; 2]],
-) -> Vec<Option<[u32; 3]>> {
+) -> Vec<Option<[Corner; 3]>> {
     if limits.iter().flatten().all(|limit| *limit == 0.0) {
         return triangles.iter().copied().map(Some).collect();
     }
     let mut at_points = vec![Vec::new(); points.len()];
     for (triangle, corners) in (0u32..).zip(triangles) {
-        corners.iter().for_each(|corner| at_points[*corner as usize].push(triangle));
+        corners.iter().for_each(|corner| at_points[corner.vertex as usize].push(triangle));
     }
     let triangles = triangles.iter().copied().map(Some).collect();
-    let mut coarsening = Coarsening { points, limits, triangles, sides, at_points };
-    for _ in 0..ROUNDS {
-        let closed = coarsening.close_short_edges();
-        let flipped = coarsening.flip_edges();
-        if closed + flipped == 0 {
-            break;
-        }
-    }
+    let mut coarsening = Coarsening { domain, points, limits, triangles, sides, at_points };
+    // Each round leaves fewer triangles, or larger least angles: six rounds of 60 grains of 3:3:1 leave nothing to do.
+    while coarsening.close_short_edges() + coarsening.flip_edges() > 0 {}
     coarsening.triangles
 }
 
 impl Coarsening<'_> {
-    /// Closes short edges, and returns how many.
+    /// Closes short edges, the shortest first, each at most once, and returns how many.
     fn close_short_edges(&mut self) -> usize {
-        // Lengths are positive, so their bits are in order.
-        let mut queue: BinaryHeap<Reverse<(u64, [u32; 2])>> = BinaryHeap::new();
-        let push = |queue: &mut BinaryHeap<_>, own: &Self, ends: [u32; 2]| {
-            let length = own.length(ends);
-            if own.limit(ends).is_some_and(|limit| length < limit) {
-                queue.push(Reverse((length.to_bits(), ends)));
-            }
-        };
-        for corners in self.triangles.iter().flatten() {
-            edges(*corners).for_each(|ends| push(&mut queue, self, ends));
-        }
+        let all = self.triangles.iter().flatten().flat_map(|corners| edges(*corners));
+        let mut short: Vec<(f64, [Corner; 2])> = all
+            .filter_map(|ends| {
+                let length = self.length(ends);
+                self.limit(ends).filter(|limit| length < *limit).map(|_| (length, ends))
+            })
+            .collect();
+        short.sort_unstable_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
+        short.dedup();
         let mut closed = 0;
-        while let Some(Reverse((_, ends))) = queue.pop() {
-            let [first, second] = ends;
-            let moved =
-                [[first, second], [second, first]].into_iter().find(|[from, to]| self.close(*from, *to));
-            if let Some([_, to]) = moved {
-                closed += 1;
-                for triangle in &self.at_points[to as usize] {
-                    let corners = self.triangles[*triangle as usize].expect("listed triangles are there");
-                    edges(corners)
-                        .filter(|ends| ends.contains(&to))
-                        .for_each(|ends| push(&mut queue, self, ends));
-                }
-            }
+        for (_, [first, second]) in short {
+            let back = Corner { vertex: first.vertex, shift: first.shift - second.shift };
+            let mut ways = [(first.vertex, second), (second.vertex, back)].into_iter();
+            closed += usize::from(ways.any(|(from, to)| self.close(from, to)));
         }
         closed
     }
 
-    fn length(&self, [from, to]: [u32; 2]) -> f64 {
-        self.points[from as usize].distance(self.points[to as usize])
+    fn place(&self, corner: Corner) -> DVec3 {
+        self.points[corner.vertex as usize] + corner.shift.vector(self.domain)
+    }
+
+    fn length(&self, [from, to]: [Corner; 2]) -> f64 {
+        self.place(from).distance(self.place(to))
     }
 
     /// Below what an edge is short; nothing where one of its ends stays as it is.
-    fn limit(&self, [from, to]: [u32; 2]) -> Option<f64> {
-        Some(self.limits[from as usize]?.min(self.limits[to as usize]?))
+    fn limit(&self, ends: [Corner; 2]) -> Option<f64> {
+        let [from, to] = ends.map(|end| self.limits[end.vertex as usize]);
+        Some(from?.min(to?))
+    }
+
+    /// The corners of a triangle that is there.
+    fn corners(&self, triangle: u32) -> [Corner; 3] {
+        self.triangles[triangle as usize].expect("listed triangles are there")
     }
 
     /// The triangles at an edge.
-    fn at_edge(&self, [from, to]: [u32; 2]) -> Vec<u32> {
-        let has_end = |triangle: &&u32| {
-            self.triangles[**triangle as usize].is_some_and(|corners| corners.contains(&to))
+    fn at_edge(&self, [from, to]: [Corner; 2]) -> Vec<AtEdge> {
+        let at_edge = |triangle: &u32| {
+            let corners = self.corners(*triangle);
+            let moved = shift_of(corners, from.vertex) - from.shift;
+            corners.contains(&to.moved(moved)).then_some((*triangle, moved))
         };
-        self.at_points[from as usize].iter().filter(has_end).copied().collect()
+        self.at_points[from.vertex as usize].iter().filter_map(at_edge).collect()
     }
 
     /// Whether an edge lies inside a boundary.
-    fn is_inside(&self, at_edge: &[u32]) -> bool {
+    fn is_inside(&self, at_edge: &[AtEdge]) -> bool {
         let [first, second] = at_edge[..] else { return false };
-        self.sides[first as usize] == self.sides[second as usize]
+        let [first, second] = [first, second].map(|(triangle, moved)| self.sides_from(triangle, moved));
+        first == second
+    }
+
+    /// What lies beside a triangle, as seen from where all is moved.
+    fn sides_from(&self, triangle: u32, moved: Shift) -> [Side; 2] {
+        self.sides[triangle as usize].map(|side| side.moved(Shift::NONE - moved))
     }
 
     fn part(&self, point: u32) -> Part {
-        let mut along: Vec<u32> = Vec::new();
-        for other in self.beside(point) {
-            if !self.is_inside(&self.at_edge([point, other])) {
-                along.push(other);
-            }
-        }
+        let own = Corner { vertex: point, shift: Shift::NONE };
+        let mut along = self.beside(point);
+        along.retain(|other| !self.is_inside(&self.at_edge([own, *other])));
         match along[..] {
             [] => Part::Boundary,
             [before, after] => Part::Line([before, after]),
@@ -143,81 +148,90 @@ impl Coarsening<'_> {
         }
     }
 
-    /// The points that share an edge with one, in order.
-    fn beside(&self, point: u32) -> Vec<u32> {
-        let corners =
-            self.at_points[point as usize].iter().filter_map(|triangle| self.triangles[*triangle as usize]);
-        let mut others: Vec<u32> = corners.flatten().filter(|corner| *corner != point).collect();
+    /// The points that share an edge with one, in order, as seen from there.
+    fn beside(&self, point: u32) -> Vec<Corner> {
+        let triangles = self.at_points[point as usize].iter();
+        let corners = triangles.flat_map(|triangle| seen_from(self.corners(*triangle), point));
+        let mut others: Vec<Corner> = corners.filter(|corner| corner.vertex != point).collect();
         others.sort_unstable();
         others.dedup();
         others
     }
 
-    /// Moves a point along an edge to its other end, if that is allowed and good; returns whether.
-    fn close(&mut self, from: u32, to: u32) -> bool {
-        let at_edge = self.at_edge([from, to]);
+    /// Moves a point along an edge to its other end, as seen from the point, if that is allowed and good; returns whether.
+    fn close(&mut self, from: u32, to: Corner) -> bool {
+        let ends = [Corner { vertex: from, shift: Shift::NONE }, to];
+        let at_edge = self.at_edge(ends);
         if at_edge.is_empty() {
             return false;
         }
-        let is_allowed = match self.part(from) {
-            Part::Boundary => true,
-            Part::Line(ends) => ends.contains(&to),
-            Part::Node => {
-                let limit = self.limit([from, to]).map_or(0.0, |limit| SHORT_LINE * limit);
-                self.part(to) == Part::Node
-                    && !self.is_inside(&at_edge)
-                    && self.length([from, to]) < limit
-                    && self.keeps_walls(from, to)
-            }
-        };
-        let moved: Vec<u32> = self.at_points[from as usize]
+        let closes = |triangle: &u32| at_edge.iter().any(|(own, _)| own == triangle);
+        let moved: Vec<(u32, [Corner; 3])> = self.at_points[from as usize]
             .iter()
-            .filter(|triangle| !at_edge.contains(triangle))
-            .copied()
+            .filter(|triangle| !closes(triangle))
+            .map(|triangle| (*triangle, with_corner_moved(self.corners(*triangle), from, to)))
             .collect();
-        if !is_allowed || !self.is_good(&moved, from, to) || !self.stays_closed(&moved, &at_edge, to, from) {
+        // The cheapest first.
+        let is_good = self.is_good(&moved, ends)
+            && self.may_close(ends, &at_edge)
+            && self.stays_closed(&moved, to.vertex, closes);
+        if !is_good {
             return false;
         }
-        let around: Vec<u32> =
-            [from, to].iter().flat_map(|end| self.at_points[*end as usize].clone()).collect();
-        let before = self.sharpest(&around);
-        let mut gone = Vec::new();
-        for triangle in &at_edge {
-            let corners = self.triangles[*triangle as usize].take().expect("listed triangles are there");
-            for corner in corners {
-                self.at_points[corner as usize].retain(|other| other != triangle);
+        let gone = at_edge.iter().map(|(triangle, _)| (*triangle, None));
+        let moved = moved.into_iter().map(|(triangle, corners)| (triangle, Some(corners)));
+        self.change(gone.chain(moved).collect())
+    }
+
+    /// Whether the first end of an edge may go to the other for what both are part of.
+    fn may_close(&self, ends: [Corner; 2], at_edge: &[AtEdge]) -> bool {
+        let [from, to] = ends;
+        match self.part(from.vertex) {
+            Part::Boundary => true,
+            Part::Line(along) => along.contains(&to),
+            Part::Node => {
+                let limit = self.limit(ends).map_or(0.0, |limit| SHORT_LINE * limit);
+                self.length(ends) < limit
+                    && !self.is_inside(at_edge)
+                    && self.part(to.vertex) == Part::Node
+                    && self.keeps_walls(from.vertex, to.vertex)
             }
-            gone.push(corners);
         }
-        for triangle in &moved {
-            if let Some(corners) = &mut self.triangles[*triangle as usize] {
-                corners.iter_mut().filter(|corner| **corner == from).for_each(|corner| *corner = to);
-            }
-        }
-        let kept = std::mem::take(&mut self.at_points[from as usize]);
-        self.at_points[to as usize].extend(&moved);
-        self.at_points[to as usize].sort_unstable();
-        let after = self.sharpest(&self.at_points[to as usize].clone());
-        if Self::stays_flat(before, after) {
+    }
+
+    /// Gives triangles other corners, or takes them away, unless boundaries fold by that; returns whether.
+    fn change(&mut self, changed: Vec<(u32, Option<[Corner; 3]>)>) -> bool {
+        let triangles: Vec<u32> = changed.iter().map(|(triangle, _)| *triangle).collect();
+        let set_all = |own: &mut Self, all: Vec<_>| -> Vec<_> {
+            all.into_iter().map(|(triangle, corners)| (triangle, own.set(triangle, corners))).collect()
+        };
+        let old = set_all(self, changed);
+        let after = self.sharpest(&triangles);
+        let is_above = |least: [f64; 2]| after.iter().zip(least).all(|(after, least)| *after >= least);
+        if is_above(LEAST_COSINES) {
             return true;
         }
-        // Back again.
-        self.at_points[to as usize].retain(|triangle| moved.binary_search(triangle).is_err());
-        for triangle in &moved {
-            if let Some(corners) = &mut self.triangles[*triangle as usize] {
-                corners.iter_mut().filter(|corner| **corner == to).for_each(|corner| *corner = from);
-            }
+        let new = set_all(self, old);
+        let before = self.sharpest(&triangles);
+        let least = [0, 1].map(|place| before[place].min(LEAST_COSINES[place]) - ROUNDING);
+        let stays_flat = is_above(least);
+        if stays_flat {
+            set_all(self, new);
         }
-        self.at_points[from as usize] = kept;
-        for (triangle, corners) in at_edge.iter().zip(gone) {
-            self.triangles[*triangle as usize] = Some(corners);
-            for corner in corners {
-                let list = &mut self.at_points[corner as usize];
-                list.push(*triangle);
-                list.sort_unstable();
-            }
+        stays_flat
+    }
+
+    /// Gives a triangle other corners, and returns the ones it had.
+    fn set(&mut self, triangle: u32, corners: Option<[Corner; 3]>) -> Option<[Corner; 3]> {
+        let old = std::mem::replace(&mut self.triangles[triangle as usize], corners);
+        for corner in old.iter().flatten() {
+            self.at_points[corner.vertex as usize].retain(|other| *other != triangle);
         }
-        false
+        for corner in corners.iter().flatten() {
+            let list = &mut self.at_points[corner.vertex as usize];
+            list.insert(list.partition_point(|other| *other < triangle), triangle);
+        }
+        old
     }
 
     /// How flat boundaries are at the edges of some triangles, and how far apart different ones: the least cosine of the angle between the normals of two triangles
@@ -229,9 +243,13 @@ impl Coarsening<'_> {
             for ends in edges(corners) {
                 let at_edge = self.at_edge(ends);
                 let least = &mut least[usize::from(!self.is_inside(&at_edge))];
-                let own = self.away_from(ends, *triangle);
-                for other in at_edge.iter().filter(|other| *other != triangle) {
-                    *least = least.min(-own.dot(self.away_from(ends, *other)));
+                let away =
+                    |(triangle, moved): AtEdge| self.away_from(ends.map(|end| end.moved(moved)), triangle);
+                let is_own = |other: &&AtEdge| other.0 == *triangle;
+                let Some(own) = at_edge.iter().find(is_own) else { continue };
+                let own = away(*own);
+                for other in at_edge.iter().filter(|other| !is_own(other)) {
+                    *least = least.min(-own.dot(away(*other)));
                 }
             }
         }
@@ -239,20 +257,10 @@ impl Coarsening<'_> {
     }
 
     /// The direction in the plane of a triangle that leads from an edge of it to its third corner at a right angle.
-    fn away_from(&self, ends: [u32; 2], triangle: u32) -> DVec3 {
-        let corners = self.triangles[triangle as usize].expect("listed triangles are there");
-        let tip = corners.into_iter().find(|corner| !ends.contains(corner)).unwrap_or(ends[0]);
-        let [from, to, tip] = [ends[0], ends[1], tip].map(|point| self.points[point as usize]);
+    fn away_from(&self, ends: [Corner; 2], triangle: u32) -> DVec3 {
+        let tip = self.corners(triangle).into_iter().find(|corner| !ends.contains(corner)).unwrap_or(ends[0]);
+        let [from, to, tip] = [ends[0], ends[1], tip].map(|corner| self.place(corner));
         (tip - from).reject_from(to - from).normalize_or_zero()
-    }
-
-    /// Whether boundaries are nowhere folded that were not before, nor nearer to each other.
-    fn stays_flat(before: [f64; 2], after: [f64; 2]) -> bool {
-        before
-            .into_iter()
-            .zip(after)
-            .zip(LEAST_COSINES)
-            .all(|((before, after), least)| after >= before.min(least))
     }
 
     /// Whether a point may be where another is for all that the walls ask.
@@ -269,40 +277,39 @@ impl Coarsening<'_> {
         walls(from).iter().all(|wall| there.contains(wall))
     }
 
-    /// Whether triangles stay as they lie, and are not thin, when a corner of them moves to another point.
-    fn is_good(&self, moved: &[u32], from: u32, to: u32) -> bool {
-        let before =
-            self.at_points[from as usize].iter().filter_map(|triangle| self.triangles[*triangle as usize]);
-        let thinnest = before.map(|corners| self.least_angle(corners)).fold(f64::INFINITY, f64::min);
-        let limit = self.limit([from, to]).unwrap_or(0.0);
-        moved.iter().all(|triangle| {
-            let old = self.triangles[*triangle as usize].expect("listed triangles are there");
-            let new = old.map(|corner| if corner == from { to } else { corner });
-            let is_alike = self.lies_alike(old, new) || self.is_narrow(old, limit);
-            self.least_angle(new) > thinnest.min(GOOD_ANGLE) && is_alike
+    /// Whether triangles stay as they lie, and are not thin, when a corner of them moves along an edge.
+    fn is_good(&self, moved: &[(u32, [Corner; 3])], ends: [Corner; 2]) -> bool {
+        let before = self.at_points[ends[0].vertex as usize].iter();
+        let thinnest =
+            before.map(|triangle| self.least_angle(self.corners(*triangle))).fold(f64::INFINITY, f64::min);
+        let limit = self.limit(ends).unwrap_or(0.0);
+        moved.iter().all(|(triangle, new)| {
+            let old = self.corners(*triangle);
+            let is_alike = self.lies_alike(old, *new) || self.is_narrow(old, limit);
+            self.least_angle(*new) > thinnest.min(GOOD_ANGLE) && is_alike
         })
     }
 
-    fn lies_alike(&self, one: [u32; 3], other: [u32; 3]) -> bool {
+    fn lies_alike(&self, one: [Corner; 3], other: [Corner; 3]) -> bool {
         let [one, other] = [one, other].map(|corners| self.normal(corners));
         one.dot(other) > LEAST_COSINE * one.length() * other.length()
     }
 
     /// Whether a triangle is so narrow that how it lies says nothing: part of a step between two faces.
-    fn is_narrow(&self, corners: [u32; 3], limit: f64) -> bool {
+    fn is_narrow(&self, corners: [Corner; 3], limit: f64) -> bool {
         let longest = edges(corners).map(|ends| self.length(ends)).fold(0.0, f64::max);
         self.normal(corners).length() < NARROW * limit * longest
     }
 
     /// Twice the area, along the normal.
-    fn normal(&self, corners: [u32; 3]) -> DVec3 {
-        let [a, b, c] = corners.map(|corner| self.points[corner as usize]);
+    fn normal(&self, corners: [Corner; 3]) -> DVec3 {
+        let [a, b, c] = corners.map(|corner| self.place(corner));
         (b - a).cross(c - a)
     }
 
     /// In degrees.
-    fn least_angle(&self, corners: [u32; 3]) -> f64 {
-        let places = corners.map(|corner| self.points[corner as usize]);
+    fn least_angle(&self, corners: [Corner; 3]) -> f64 {
+        let places = corners.map(|corner| self.place(corner));
         let angle = |corner: usize| {
             let [a, b] = [1, 2].map(|step| places[(corner + step) % 3] - places[corner]);
             a.cross(b).length().atan2(a.dot(b)).to_degrees()
@@ -310,42 +317,29 @@ impl Coarsening<'_> {
         angle(0).min(angle(1)).min(angle(2))
     }
 
-    /// Whether around the end of an edge that closes each grain's surface is still one closed fan.
-    fn stays_closed(&self, moved: &[u32], at_edge: &[u32], to: u32, from: u32) -> bool {
-        let mut rims: BTreeMap<Side, Vec<[u32; 2]>> = BTreeMap::new();
-        let there = self.at_points[to as usize].iter().filter(|triangle| !at_edge.contains(triangle));
-        for triangle in moved.iter().chain(there) {
-            let corners = self.triangles[*triangle as usize].expect("listed triangles are there");
-            let corners = corners.map(|corner| if corner == from { to } else { corner });
-            let place = corners.iter().position(|corner| *corner == to).unwrap_or(0);
-            let rim = [corners[(place + 1) % 3], corners[(place + 2) % 3]];
-            if rim.contains(&to) {
+    /// Whether around the end of an edge that closes each grain's surface is still one closed fan, and no two triangles have the same corners.
+    fn stays_closed(&self, moved: &[(u32, [Corner; 3])], to: u32, closes: impl Fn(&u32) -> bool) -> bool {
+        let mut rims: BTreeMap<Side, Vec<[Corner; 2]>> = BTreeMap::new();
+        let mut all: Vec<[Corner; 3]> = Vec::new();
+        let there = self.at_points[to as usize].iter().filter(|triangle| !closes(triangle));
+        let there = there.map(|triangle| (*triangle, self.corners(*triangle)));
+        for (triangle, corners) in moved.iter().copied().chain(there) {
+            let mut seen = seen_from(corners, to);
+            let place = seen.iter().position(|corner| corner.vertex == to).unwrap_or(0);
+            let rim = [seen[(place + 1) % 3], seen[(place + 2) % 3]];
+            if rim.iter().any(|corner| corner.vertex == to) {
                 return false;
             }
-            for side in
-                self.sides[*triangle as usize].into_iter().filter(|side| !matches!(side, Side::Wall(_)))
-            {
+            let sides = self.sides_from(triangle, shift_of(corners, to)).into_iter();
+            for side in sides.filter(|side| !matches!(side, Side::Wall(_))) {
                 rims.entry(side).or_default().push(rim);
             }
+            seen.sort_unstable();
+            all.push(seen);
         }
+        all.sort_unstable();
         // A boundary that closes wholly leaves its grains to meet in a line.
-        rims.values().all(|rim| is_cycle(rim)) && !self.doubles(moved, from, to)
-    }
-
-    /// Whether two triangles would have the same corners.
-    fn doubles(&self, moved: &[u32], from: u32, to: u32) -> bool {
-        let sorted = |mut corners: [u32; 3]| {
-            corners.sort_unstable();
-            corners
-        };
-        let there: Vec<[u32; 3]> = self.at_points[to as usize]
-            .iter()
-            .filter_map(|triangle| self.triangles[*triangle as usize])
-            .map(sorted)
-            .collect();
-        moved.iter().filter_map(|triangle| self.triangles[*triangle as usize]).any(|corners| {
-            there.contains(&sorted(corners.map(|corner| if corner == from { to } else { corner })))
-        })
+        all.windows(2).all(|pair| pair[0] != pair[1]) && rims.values().all(|rim| is_cycle(rim))
     }
 
     /// Flips edges inside boundaries that make the least angle of their two triangles larger, and returns how many.
@@ -359,18 +353,21 @@ impl Coarsening<'_> {
         flipped
     }
 
-    fn flip(&mut self, ends: [u32; 2]) -> bool {
+    fn flip(&mut self, ends: [Corner; 2]) -> bool {
         let at_edge = self.at_edge(ends);
         let [first, second] = at_edge[..] else { return false };
-        if !self.is_inside(&at_edge) || ends.iter().any(|end| self.limits[*end as usize].is_none()) {
+        if !self.is_inside(&at_edge) || self.limit(ends).is_none() {
             return false;
         }
-        let [one, other] =
-            [first, second].map(|triangle| self.triangles[triangle as usize].expect("it is there"));
+        // Both as seen from the first.
+        let ends = ends.map(|end| end.moved(first.1));
+        let apart = second.1 - first.1;
+        let one = self.corners(first.0);
+        let other = self.corners(second.0).map(|corner| corner.moved(Shift::NONE - apart));
         let start = one.iter().position(|corner| !ends.contains(corner)).unwrap_or(0);
         let [top, from, to] = [0, 1, 2].map(|step| one[(start + step) % 3]);
         let Some(bottom) = other.into_iter().find(|corner| !ends.contains(corner)) else { return false };
-        if top == bottom || !self.at_edge([top, bottom]).is_empty() {
+        if top.vertex == bottom.vertex || !self.at_edge([top, bottom]).is_empty() {
             return false;
         }
         let (left, right) = ([top, from, bottom], [top, bottom, to]);
@@ -382,42 +379,39 @@ impl Coarsening<'_> {
         if after < before + 0.01 || !is_alike(left) || !is_alike(right) {
             return false;
         }
-        let sharpest = self.sharpest(&at_edge);
-        self.triangles[first as usize] = Some(left);
-        self.triangles[second as usize] = Some(right);
-        self.at_points[to as usize].retain(|triangle| *triangle != first);
-        self.at_points[from as usize].retain(|triangle| *triangle != second);
-        for (point, triangle) in [(top, second), (bottom, first)] {
-            let list = &mut self.at_points[point as usize];
-            list.push(triangle);
-            list.sort_unstable();
-        }
-        if Self::stays_flat(sharpest, self.sharpest(&at_edge)) {
-            return true;
-        }
-        // Back again.
-        self.triangles[first as usize] = Some(one);
-        self.triangles[second as usize] = Some(other);
-        for (point, triangle) in [(top, second), (bottom, first)] {
-            self.at_points[point as usize].retain(|own| *own != triangle);
-        }
-        for (point, triangle) in [(to, first), (from, second)] {
-            let list = &mut self.at_points[point as usize];
-            list.push(triangle);
-            list.sort_unstable();
-        }
-        false
+        let right = right.map(|corner| corner.moved(apart));
+        self.change(vec![(first.0, Some(left)), (second.0, Some(right))])
     }
 }
 
-/// The edges of a triangle, smaller end first.
-fn edges([a, b, c]: [u32; 3]) -> impl Iterator<Item = [u32; 2]> {
-    [[a, b], [b, c], [c, a]].into_iter().map(|[from, to]| [from.min(to), from.max(to)])
+/// The edges of a triangle, the end of smaller number first, as seen from there.
+fn edges([a, b, c]: [Corner; 3]) -> impl Iterator<Item = [Corner; 2]> {
+    [[a, b], [b, c], [c, a]].into_iter().map(|[from, to]| {
+        let [first, second] = [from.min(to), from.max(to)];
+        [first, second].map(|end| end.moved(Shift::NONE - first.shift))
+    })
+}
+
+/// How far a triangle's corner at a point is moved from the point.
+fn shift_of(corners: [Corner; 3], point: u32) -> Shift {
+    let own = corners.into_iter().find(|corner| corner.vertex == point);
+    own.expect("the triangle is at this point").shift
+}
+
+/// The corners of a triangle as seen from one of its points.
+fn seen_from(corners: [Corner; 3], point: u32) -> [Corner; 3] {
+    let moved = shift_of(corners, point);
+    corners.map(|corner| corner.moved(Shift::NONE - moved))
+}
+
+/// The corners of a triangle with one point put where another is, as seen from the first.
+fn with_corner_moved(corners: [Corner; 3], from: u32, to: Corner) -> [Corner; 3] {
+    corners.map(|corner| if corner.vertex == from { to.moved(corner.shift) } else { corner })
 }
 
 /// Whether segments make up one closed line that passes no point twice.
-fn is_cycle(segments: &[[u32; 2]]) -> bool {
-    let mut ends: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+fn is_cycle(segments: &[[Corner; 2]]) -> bool {
+    let mut ends: BTreeMap<Corner, Vec<Corner>> = BTreeMap::new();
     for [from, to] in segments {
         ends.entry(*from).or_default().push(*to);
         ends.entry(*to).or_default().push(*from);
@@ -434,52 +428,4 @@ fn is_cycle(segments: &[[u32; 2]]) -> bool {
         count += 1;
     }
     count == ends.len()
-}
-
-/// The same in the plane: points inside a boundary go where a segment at them is shorter than the limits of both ends. Where boundaries meet nothing moves.
-pub(super) fn coarsened_segments(
-    points: &[DVec3],
-    limits: &[Option<f64>],
-    segments: &[[u32; 2]],
-    sides: &[[Side; 2]],
-) -> Vec<Option<[u32; 2]>> {
-    let mut at_points = vec![Vec::new(); points.len()];
-    for (segment, ends) in (0u32..).zip(segments) {
-        ends.iter().for_each(|end| at_points[*end as usize].push(segment));
-    }
-    let mut left: Vec<Option<[u32; 2]>> = segments.iter().copied().map(Some).collect();
-    let length = |[from, to]: [u32; 2]| points[from as usize].distance(points[to as usize]);
-    let mut queue: BinaryHeap<Reverse<(u64, u32)>> = BinaryHeap::new();
-    let push = |queue: &mut BinaryHeap<_>, segment: u32, ends: [u32; 2]| {
-        let [from, to] = ends.map(|end| limits[end as usize]);
-        if from.zip(to).is_some_and(|(from, to)| length(ends) < from.min(to)) {
-            queue.push(Reverse((length(ends).to_bits(), segment)));
-        }
-    };
-    (0u32..).zip(segments).for_each(|(segment, ends)| push(&mut queue, segment, *ends));
-    while let Some(Reverse((bits, segment))) = queue.pop() {
-        let Some(ends) = left[segment as usize].filter(|ends| length(*ends).to_bits() == bits) else {
-            continue;
-        };
-        let [first, second] = ends;
-        for [from, to] in [[first, second], [second, first]] {
-            let [one, other] = at_points[from as usize][..] else { continue };
-            let next = if one == segment { other } else { one };
-            let Some(beyond) = left[next as usize] else { continue };
-            let far = if beyond[0] == from { beyond[1] } else { beyond[0] };
-            let is_beside = |segment: &u32| left[*segment as usize].is_some_and(|ends| ends.contains(&to));
-            let meets = far == to || at_points[far as usize].iter().any(is_beside);
-            if sides[segment as usize] != sides[next as usize] || meets {
-                continue;
-            }
-            left[segment as usize] = None;
-            let moved = beyond.map(|end| if end == from { to } else { end });
-            left[next as usize] = Some(moved);
-            at_points[from as usize].clear();
-            at_points[to as usize].iter_mut().filter(|own| **own == segment).for_each(|own| *own = next);
-            push(&mut queue, next, moved);
-            break;
-        }
-    }
-    left
 }

@@ -1,6 +1,7 @@
+use std::collections::BTreeSet;
 use std::fmt;
 
-use crate::{Faults, GrainId, Side};
+use crate::{Fault, Faults, GrainId, Side};
 
 /// A way to a result that was tried before the one that led there, and what it said: geometry that tangles one way need not another.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -237,13 +238,10 @@ impl NetworkError {
             | Self::GrainInPieces { grain }
             | Self::VolumeNotRestored { grain, .. }
             | Self::GrainVanished { grain, .. } => Some(vec![*grain]),
-            Self::CutInvalid(faults) | Self::Invalid(faults) => Some(
-                faults
-                    .0
-                    .iter()
-                    .find_map(|fault| Some(fault.grains()).filter(|all| !all.is_empty()))
-                    .unwrap_or_default(),
-            ),
+            Self::CutInvalid(faults) | Self::Invalid(faults) => {
+                let all: BTreeSet<GrainId> = faults.0.iter().flat_map(Fault::grains).collect();
+                Some(all.into_iter().collect())
+            }
             Self::GivenUp { last, .. } => last.grains(),
             Self::Folded { grains, .. } => Some(grains.clone()),
             Self::CutCrosses { .. } => Some(Vec::new()),

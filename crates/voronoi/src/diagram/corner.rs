@@ -11,6 +11,14 @@ pub struct Corner {
     pub shift: Shift,
 }
 
+impl Corner {
+    /// The vertex moved by more periods.
+    #[must_use]
+    pub fn moved(self, shift: Shift) -> Self {
+        Self { shift: self.shift + shift, ..self }
+    }
+}
+
 impl Tessellation {
     /// The vertex of which a vertex is a copy, moved to where that is; itself where it is none.
     pub fn primary_corner(&self, vertex: VertexId) -> Corner {

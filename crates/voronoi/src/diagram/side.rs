@@ -14,6 +14,12 @@ pub enum Side {
 }
 
 impl Side {
+    /// What lies there where all is moved by whole periods.
+    #[must_use]
+    pub fn moved(self, shift: Shift) -> Self {
+        Self::of(self.end(), shift)
+    }
+
     /// What lies on a side of a face that is moved by `shift`.
     pub(crate) fn of(end: FaceEnd, shift: Shift) -> Self {
         match end {

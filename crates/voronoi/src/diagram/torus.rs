@@ -50,6 +50,18 @@ impl TorusFaces {
         self.starts.push(self.corners.len());
     }
 
+    /// Adds a face that is told from either side, and may be moved by whole periods.
+    pub(crate) fn push_in_order(&mut self, ends: [FaceEnd; 2], corners: impl Iterator<Item = Corner>) {
+        let (ends, back, is_turned) = in_order(ends);
+        let moved = corners.map(|corner| Corner { shift: corner.shift + back, ..corner });
+        if is_turned {
+            let corners: Vec<Corner> = moved.collect();
+            self.push(ends, corners.into_iter().rev());
+        } else {
+            self.push(ends, moved);
+        }
+    }
+
     pub(crate) fn par_iter(&self) -> impl IndexedParallelIterator<Item = ([FaceEnd; 2], &[Corner])> {
         let corners = self.starts.par_windows(2).map(|range| &self.corners[range[0]..range[1]]);
         self.ends.par_iter().copied().zip(corners)
@@ -121,13 +133,7 @@ impl TorusFaces {
         let mut rest = Self::new(self.dimension);
         for (face, (ends, corners)) in self.iter().enumerate() {
             if !is_dropped[face] {
-                let (ends, back, is_turned) = in_order(ends);
-                let moved = |corner: &Corner| Corner { shift: corner.shift + back, ..*corner };
-                if is_turned {
-                    rest.push(ends, corners.iter().rev().map(moved));
-                } else {
-                    rest.push(ends, corners.iter().map(moved));
-                }
+                rest.push_in_order(ends, corners.iter().copied());
             }
         }
         *self = rest;

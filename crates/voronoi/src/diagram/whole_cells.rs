@@ -25,9 +25,9 @@ pub(crate) fn unwrapped(
 
 impl Tessellation {
     /// Whole cells from a complex that has each vertex and face once, also in a periodic domain, and the vertex of that which each of
-    /// theirs is. Vertices and faces keep their order; vertices without faces are left out. Faces are as in [`Self::face_sides`], and
-    /// [`Self::face_corners`]; equal corners that follow one another are one, and faces that shrink to lines or points by that are
-    /// left out.
+    /// theirs is. Vertices and faces keep their order; vertices without faces are left out. Faces may be told from either side, and moved by
+    /// whole periods, with corners around them as in [`Self::face_corners`]; equal corners that follow one another are one, and faces that
+    /// shrink to lines or points by that are left out.
     ///
     /// Cells need not be convex, nor faces plane.
     pub fn of_whole_cells<Corners: IntoIterator<Item = Corner>>(
@@ -38,7 +38,8 @@ impl Tessellation {
     ) -> (Self, Vec<Corner>) {
         let mut of_torus = TorusFaces::new(domain.dimension());
         for (sides, corners) in faces {
-            of_torus.push(sides.map(Side::end), corners.into_iter());
+            let corners = corners.into_iter();
+            of_torus.push_in_order(sides.map(Side::end), corners);
         }
         let (mut tessellation, places) = with_places(domain, seeds, &of_torus, positions);
         tessellation.list_faces_of_cells_in_order();

@@ -10,7 +10,7 @@ use super::newton::{Clipped, MOVED_RESIDUAL, approach};
 use super::shape::{GrainShape, InscribedSphere};
 use super::spheres::{SPHERE_FRACTION, whole_periods, wrapped};
 use super::{GOAL, GOAL_BETWEEN_STEPS, MOST_HALVED_STEPS, VolumesError, check_volumes, first};
-use crate::{CellId, Domain, Tessellation};
+use crate::{CellId, Domain, Shift, Tessellation};
 
 /// By how much a grain in two pieces may get more cells before it gets a rounder shape.
 const MOST_FINENESS: u32 = 2;
@@ -43,7 +43,7 @@ pub struct GrainDiagram {
     shifts: Option<Vec<f64>>,
     grains: Arc<Grains>,
     /// By how much each cell has to be moved to stand with its grain.
-    moves: Vec<DVec3>,
+    moves: Vec<Shift>,
     centroid_steps: usize,
 }
 
@@ -53,7 +53,7 @@ struct Sites {
     /// Squared radii.
     bases: Vec<f64>,
     of_cell: Vec<u32>,
-    moves: Vec<DVec3>,
+    moves: Vec<Shift>,
 }
 
 impl GrainDiagram {
@@ -94,7 +94,7 @@ impl GrainDiagram {
             weights: vec![0.0; count],
             shifts: None,
             grains: Grains::of_single_cells(count),
-            moves: vec![DVec3::ZERO; count],
+            moves: vec![Shift::NONE; count],
             centroid_steps: 0,
         };
         diagram.solve()?;
@@ -266,12 +266,13 @@ impl GrainDiagram {
 
     /// The centroids of grains, around their centres.
     fn centroids(&self) -> Vec<DVec3> {
+        let domain = self.tessellation.domain();
         let mut sums = vec![(DVec3::ZERO, 0.0); self.centers.len()];
         let cells = self.tessellation.cell_measures();
         for ((cell, moved), grain) in cells.iter().zip(&self.moves).zip(self.grains.of_each_cell()) {
             let (sum, volume) = &mut sums[*grain as usize];
             // From the centre, so that no digits are lost far from the origin.
-            *sum += cell.volume * (cell.centroid + *moved - self.centers[*grain as usize]);
+            *sum += cell.volume * (cell.centroid + moved.vector(domain) - self.centers[*grain as usize]);
             *volume += cell.volume;
         }
         self.centers.iter().zip(sums).map(|(center, (sum, volume))| center + sum / volume).collect()
@@ -285,7 +286,8 @@ impl GrainDiagram {
         let mut moments = vec![DMat3::ZERO; self.centers.len()];
         let all = (0u32..).map(CellId).zip(&cells).zip(&self.moves).zip(self.grains.of_each_cell());
         for (((cell, measure), moved), grain) in all {
-            let way = measure.centroid + *moved - centroids[*grain as usize];
+            let way =
+                measure.centroid + moved.vector(self.tessellation.domain()) - centroids[*grain as usize];
             let of_cell = second_moment(&self.tessellation, cell, measure.centroid);
             moments[*grain as usize] += of_cell + square(way) * measure.volume;
         }
@@ -318,6 +320,11 @@ impl GrainDiagram {
     /// The grain of each cell.
     pub fn grain_of_cell(&self) -> &[u32] {
         self.grains.of_each_cell()
+    }
+
+    /// By how much each cell has to be moved to stand with its grain: in a periodic domain its seed stands in the box.
+    pub fn moves(&self) -> &[Shift] {
+        &self.moves
     }
 
     /// The target volumes, by grain.

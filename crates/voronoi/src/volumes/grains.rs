@@ -2,10 +2,8 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
-
 use crate::diagram::measures::face_area_and_centroid;
-use crate::{CellId, Side, Tessellation};
+use crate::{CellId, Shift, Side, Tessellation};
 
 /// The grains that cells make up.
 #[derive(Debug, PartialEq)]
@@ -62,27 +60,24 @@ impl Grains {
 pub(super) fn pieces_of_cells(
     tessellation: &Tessellation,
     grains: &Grains,
-    moves: &[DVec3],
+    moves: &[Shift],
     least_neck: f64,
 ) -> Vec<usize> {
     let mut roots: Vec<usize> = (0..tessellation.cell_count()).collect();
-    let domain = tessellation.domain();
-    let (period, dimension) = (domain.size(), domain.dimension());
+    let dimension = tessellation.domain().dimension();
     let measures = tessellation.cell_measures();
     for face in tessellation.faces() {
         let (a, b, image) = match tessellation.face_sides(face) {
-            [Side::Cell(a), Side::Cell(b)] => (a, b, DVec3::ZERO),
-            [Side::Cell(a), Side::Image(b, shift)] => (a, b, shift.vector(domain)),
+            [Side::Cell(a), Side::Cell(b)] => (a, b, Shift::NONE),
+            [Side::Cell(a), Side::Image(b, shift)] => (a, b, shift),
             _ => continue,
         };
-        if grains.of(a) != grains.of(b) {
+        if grains.of(a) != grains.of(b) || moves[b.index()] - moves[a.index()] != image {
             continue;
         }
-        let stands = moves[b.index()] - moves[a.index()];
-        let is_there = ((stands - image) / period).abs().max_element() < 0.5 || stands == image;
         let size = measures[a.index()].volume.min(measures[b.index()].volume);
         let least = least_neck * dimension.cube_edge(size).powi(i32::from(dimension.axes()) - 1);
-        if is_there && face_area_and_centroid(tessellation, face).0 >= least {
+        if face_area_and_centroid(tessellation, face).0 >= least {
             let [a, b] = [a, b].map(|cell| root(&mut roots, cell.index()));
             roots[a.max(b)] = a.min(b);
         }

@@ -56,6 +56,8 @@ pub struct InsertedGrains {
     pub weights: Vec<f64>,
     /// The grain of each cell: first come those that were cells before, then the inclusions.
     pub grain_of_cell: Vec<u32>,
+    /// By how much each cell has to be moved to stand with its grain: in a periodic domain its seed stands in the box.
+    pub moves: Vec<Shift>,
 }
 
 /// Puts grains where the cells of a tessellation are, each of which stays one grain. `volumes` are those that the cells are to have then; with those
@@ -83,8 +85,10 @@ pub fn insert_grains(
     let volumes = check_volumes(domain, &volumes.iter().copied().chain(own).collect::<Vec<f64>>())?;
     let mut inside: Vec<Vec<Part>> = vec![Vec::new(); tessellation.cell_count()];
     for (number, inclusion) in inclusions.iter().enumerate() {
-        for (rank, (cell, center)) in cells_around(tessellation, weights, inclusion).into_iter().enumerate() {
-            inside[cell.index()].push(Part { inclusion: number, center, rank });
+        let around = cells_around(tessellation, weights, inclusion);
+        for (rank, (cell, moved)) in around.into_iter().enumerate() {
+            let center = inclusion.center - moved.vector(domain);
+            inside[cell.index()].push(Part { inclusion: number, center, moved, rank });
         }
     }
     let measures = tessellation.cell_measures();
@@ -95,7 +99,7 @@ pub fn insert_grains(
                 seeds: vec![seed],
                 weights: vec![weight],
                 grains: vec![cell.0],
-                moves: vec![DVec3::ZERO],
+                moves: vec![Shift::NONE],
             };
             if parts.is_empty() {
                 return Ok(whole);
@@ -118,10 +122,7 @@ pub fn insert_grains(
             }
             let (seeds, weights) =
                 seeds_of_parts(tessellation, cell, middle, weight, &division.of(&points), NEARNESS);
-            let moved = |point: &usize| {
-                part_of_point[*point]
-                    .map_or(DVec3::ZERO, |part| inclusions[part.inclusion].center - part.center)
-            };
+            let moved = |point: &usize| part_of_point[*point].map_or(Shift::NONE, |part| part.moved);
             let moves = points.iter().map(moved).collect();
             Ok(Pieces { seeds, weights, grains, moves })
         });
@@ -131,7 +132,7 @@ pub fn insert_grains(
     let weights: Vec<f64> = pieces.iter().flat_map(|pieces| &pieces.weights).copied().collect();
     let grain_of_cell: Vec<u32> = pieces.iter().flat_map(|pieces| &pieces.grains).copied().collect();
     let stands = pieces.iter().flat_map(|pieces| pieces.seeds.iter().zip(&pieces.moves));
-    let mut moves: Vec<DVec3> = stands
+    let mut moves: Vec<Shift> = stands
         .zip(&seeds)
         .map(|((stands, moved), seed)| whole_periods(domain, *stands - *seed) + *moved)
         .collect();
@@ -149,13 +150,14 @@ pub fn insert_grains(
                 tessellation: state.tessellation,
                 weights: state.weights,
                 grain_of_cell,
+                moves,
             });
         }
         let mut of_cell = grains.of_each_cell().to_vec();
         for LoosePiece { cells, grain, moved, .. } in loose {
             for cell in cells {
                 of_cell[cell.index()] = grain;
-                moves[cell.index()] += moved;
+                moves[cell.index()] = moves[cell.index()] + moved;
             }
         }
         grains = Grains::of_cells(of_cell, volumes.len());
@@ -173,11 +175,11 @@ struct LoosePiece {
     /// The grain that it shares most area with.
     grain: u32,
     /// By how much it has to be moved to stand with that one.
-    moved: DVec3,
+    moved: Shift,
 }
 
 /// The pieces of grains apart from the largest one of each.
-fn loose_pieces(tessellation: &Tessellation, grains: &Grains, moves: &[DVec3]) -> Vec<LoosePiece> {
+fn loose_pieces(tessellation: &Tessellation, grains: &Grains, moves: &[Shift]) -> Vec<LoosePiece> {
     let pieces = pieces_of_cells(tessellation, grains, moves, 0.0);
     let mut volumes = vec![0.0; pieces.len()];
     tessellation.cell_measures().iter().zip(&pieces).for_each(|(cell, piece)| volumes[*piece] += cell.volume);
@@ -197,7 +199,7 @@ fn loose_pieces(tessellation: &Tessellation, grains: &Grains, moves: &[DVec3]) -
     }
     let beside = |cells: Vec<CellId>| {
         // What the piece shares with each grain beside it, and by how much it moves to the last of its cells there.
-        let mut shared: BTreeMap<u32, (f64, DVec3)> = BTreeMap::new();
+        let mut shared: BTreeMap<u32, (f64, Shift)> = BTreeMap::new();
         for cell in &cells {
             for face in tessellation.cell_faces(*cell) {
                 let (other, shift) = match across(tessellation, *cell, *face) {
@@ -206,9 +208,9 @@ fn loose_pieces(tessellation: &Tessellation, grains: &Grains, moves: &[DVec3]) -
                     Side::Wall(_) => continue,
                 };
                 if grains.of(other) != grains.of(*cell) {
-                    let (area, moved) = shared.entry(grains.of(other)).or_default();
+                    let (area, moved) = shared.entry(grains.of(other)).or_insert((0.0, Shift::NONE));
                     *area += face_area_and_centroid(tessellation, *face).0;
-                    *moved = moves[other.index()] - shift.vector(tessellation.domain()) - moves[cell.index()];
+                    *moved = moves[other.index()] - shift - moves[cell.index()];
                 }
             }
         }
@@ -227,7 +229,7 @@ struct Pieces {
     weights: Vec<f64>,
     grains: Vec<u32>,
     /// By how much each has to be moved from where the cell stands to stand with its grain.
-    moves: Vec<DVec3>,
+    moves: Vec<Shift>,
 }
 
 /// What of an inclusion is in a cell.
@@ -236,6 +238,8 @@ struct Part {
     inclusion: usize,
     /// Where the cell stands.
     center: DVec3,
+    /// By how much the cell has to be moved to stand with the inclusion.
+    moved: Shift,
     /// The number of the cell among those that the inclusion is in.
     rank: usize,
 }
@@ -248,8 +252,8 @@ pub(super) fn face_distance(dimension: Dimension, volume: f64) -> f64 {
     }
 }
 
-/// The cells that an inclusion may reach, with its centre where they stand.
-fn cells_around(tessellation: &Tessellation, weights: &[f64], inclusion: &Inclusion) -> Vec<(CellId, DVec3)> {
+/// The cells that an inclusion may reach, and by how much they are moved there.
+fn cells_around(tessellation: &Tessellation, weights: &[f64], inclusion: &Inclusion) -> Vec<(CellId, Shift)> {
     let domain = tessellation.domain();
     let radius = LARGEST_RADIUS * face_distance(domain.dimension(), inclusion.volume);
     let mut found = vec![(inclusion.cell, Shift::NONE)];
@@ -275,7 +279,7 @@ fn cells_around(tessellation: &Tessellation, weights: &[f64], inclusion: &Inclus
             }
         }
     }
-    found.into_iter().map(|(cell, moved)| (cell, inclusion.center - moved.vector(domain))).collect()
+    found
 }
 
 /// What lies across a face of a cell.
