@@ -18,7 +18,10 @@ fn shapes_are_reached_beside_exact_volumes() {
     for (options, asked, of_cells, finished) in [
         ("--seeds 60 --grain-shapes 2:1:1", 2.0, 1.9, 1.7),
         ("--seeds 60 --grain-shapes 1:1:2,aligned", 2.0, 1.9, 1.7),
+        ("--seeds 60 --periodic x,y,z --grain-shapes 2:1:1", 2.0, 1.9, 1.7),
+        ("--seeds 60 --periodic x,y --periodic-cut box --grain-shapes 2:1:1", 2.0, 1.9, 1.7),
         ("--seeds 80 --dim 2 --grain-shapes 2:1", 2.0, 1.8, 1.6),
+        ("--seeds 80 --dim 2 --periodic x,y --grain-shapes 2:1", 2.0, 1.8, 1.6),
     ] {
         let run = format!("{options} -n 1 -o a.vtp --json-summary s.json --report r.html");
         let said = workplace.run(&run);
@@ -83,10 +86,6 @@ fn mistaken_shapes_are_refused() {
         ),
         ("--grain-shapes 2:1", "--grain-shapes takes three lengths, such as 2:1:1, without --dim 2".to_owned()),
         ("--dim 2 --grain-shapes 2:1:1", "--grain-shapes takes two lengths, such as 2:1, with --dim 2".to_owned()),
-        (
-            "--periodic x --grain-shapes 2:1:1",
-            "--grain-shapes makes grains between walls; leave --periodic out, or give --aspect-ratio for grains that are all long one way".to_owned(),
-        ),
         (
             "--relax 0 --grain-shapes 2:1:1",
             "--grain-shapes makes grains of several cells, which are sharp where these meet; leave --relax 0 out, or give --relax 0.02".to_owned(),

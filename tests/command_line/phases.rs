@@ -328,10 +328,6 @@ fn phases_that_are_mistaken() {
             "place=dispersed of phase b does not go with --grain-shapes; leave one of them out",
         ),
         (
-            "--phase a:0.9 --phase b:0.1,place=boundaries --periodic x",
-            "place=boundaries of phase b does not go with --periodic; leave one of them out",
-        ),
-        (
             "--phase a:1,place=clustered",
             "place=clustered of phase a does not go with a single phase; leave one of them out",
         ),
@@ -384,9 +380,11 @@ fn grains_of_a_phase_are_where_they_were_to_be() {
         ("--seeds 40 --periodic x,y,z", "interior", 1, 0.04),
         ("--seeds 40", "boundaries", 2, 0.04),
         ("--seeds 40", "triple-lines", 3, 0.04),
+        ("--seeds 40 --periodic x,y,z", "triple-lines", 3, 0.04),
+        ("--seeds 40 --periodic x --periodic-cut box", "boundaries", 2, 0.04),
         ("--seeds 36", "quadruple-points", 4, 0.01),
         ("--seeds 60 --dim 2", "interior", 1, 0.04),
-        ("--seeds 60 --dim 2", "boundaries", 2, 0.04),
+        ("--seeds 60 --dim 2 --periodic x,y", "boundaries", 2, 0.04),
         ("--seeds 60 --dim 2 --rng-seed 2", "triple-lines", 3, 0.04),
     ] {
         let first = format!("--phase a:{},diameters=lognormal(mean=20,cv=0.3)", 1.0 - share);

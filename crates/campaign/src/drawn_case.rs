@@ -17,6 +17,9 @@ const CONFIG_FILES: f64 = 0.05;
 /// Share of runs with grains of given shapes, of those in boxes whose seeds can have sizes.
 const SHAPES: f64 = 0.1;
 
+/// Share of runs with grains inside others or between them, of those.
+const INCLUSIONS: f64 = 0.15;
+
 impl Case {
     /// Draws run `index` of a campaign.
     pub fn draw(seed: u64, index: u64, limits: Limits) -> Self {
@@ -42,6 +45,7 @@ impl Case {
         phases(draw, &mut options);
         inside(draw, &domain, count, &mut options);
         grain_shapes(draw, arrangement, dimension, &mut options, &mut promise);
+        inclusions(draw, arrangement, dimension, &mut options, &mut promise);
         let mut case = Self {
             kind: arrangement.name().to_owned(),
             keeps_volumes: !options.has("free"),
@@ -119,34 +123,12 @@ fn sizes(
     None
 }
 
-/// Draws where the grains of a second phase are; inside others and between them where all goes together.
+/// Draws whether the grains of a second phase stand together or apart.
 fn place(draw: &mut Draw, options: &Options) -> &'static str {
-    let others = [
-        "lattice",
-        "seeds-file",
-        "seeding",
-        "series",
-        "cells-json",
-        "cells-csv",
-        "no-mesh",
-        "gradient",
-        "grain-shapes",
-        "free",
-        "dry-run",
-    ];
-    let is_flat = options.value("relax") == Some("0");
-    let is_of_cells = options.values("output").iter().any(|name| name.ends_with(".tess"))
-        || options.value("format") == Some("tess");
-    if !draw.chance(0.4) || options.has("gradient") {
+    if options.has("gradient") || !draw.chance(0.3) {
         return "";
     }
-    if is_flat || is_of_cells || others.iter().any(|name| options.has(name)) {
-        return draw.one_of(&[",place=clustered", ",place=dispersed"]);
-    }
-    if options.has("periodic") {
-        return draw.one_of(&[",place=clustered", ",place=dispersed", ",place=interior"]);
-    }
-    draw.one_of(&[",place=interior", ",place=boundaries", ",place=triple-lines", ",place=clustered"])
+    draw.one_of(&[",place=clustered", ",place=dispersed"])
 }
 
 /// Draws what divides grains, after the phases: into parts of a half to a quarter of their width.
@@ -196,36 +178,21 @@ fn phases(draw: &mut Draw, options: &mut Options) {
     }
 }
 
-/// What does not go with the shapes of single grains.
-const NOT_WITH_SHAPES: [&str; 10] = [
-    "aspect-ratio",
-    "cells-csv",
-    "cells-json",
-    "inside",
-    "min-diameter",
-    "no-mesh",
-    "periodic",
-    "periodic-cut",
-    "series",
-    "every",
-];
+/// What does not go with grains of several cells.
+const NOT_WITH_SEVERAL_CELLS: [&str; 8] =
+    ["aspect-ratio", "cells-csv", "cells-json", "inside", "min-diameter", "series", "every", "gradient"];
 
-/// Draws the shapes of single grains, in boxes with seeds that can have sizes, and takes out what does not go with them.
-fn grain_shapes(
-    draw: &mut Draw,
-    arrangement: Arrangement,
-    dimension: usize,
-    options: &mut Options,
-    promise: &mut Promise,
-) {
-    let is_taken =
-        !arrangement.may_be_sized() || ["domain", "half-spaces"].iter().any(|name| options.has(name));
+/// Whether grains may become several cells: in boxes, where a network of them is asked for.
+fn may_be_several_cells(arrangement: Arrangement, options: &Options) -> bool {
+    let is_taken = ["domain", "half-spaces", "no-mesh"].iter().any(|name| options.has(name));
     let is_of_cells = options.values("output").iter().any(|name| name.ends_with(".tess"))
         || options.value("format") == Some("tess");
-    if is_taken || is_of_cells || !draw.chance(SHAPES) {
-        return;
-    }
-    NOT_WITH_SHAPES.iter().for_each(|name| options.unset(name));
+    arrangement.may_be_sized() && !is_taken && !is_of_cells
+}
+
+/// Takes out what does not go with grains of several cells.
+fn make_several_cells(options: &mut Options, promise: &mut Promise) {
+    NOT_WITH_SEVERAL_CELLS.iter().for_each(|name| options.unset(name));
     let is_gone = |file: &str| file.starts_with("cells.") || file.starts_with("series");
     promise.files.retain(|file| !is_gone(file));
     if promise.surface.is_some() && !options.has("json-summary") {
@@ -236,6 +203,52 @@ fn grain_shapes(
     if options.value("relax") == Some("0") {
         options.unset("relax");
     }
+}
+
+/// Draws a phase of small grains inside others or between them, and takes out what does not go with it.
+fn inclusions(
+    draw: &mut Draw,
+    arrangement: Arrangement,
+    dimension: usize,
+    options: &mut Options,
+    promise: &mut Promise,
+) {
+    let is_taken =
+        ["seeds-file", "volumes", "grain-shapes", "dry-run", "free"].iter().any(|name| options.has(name));
+    let count = options.value("seeds").and_then(|seeds| seeds.parse().ok()).unwrap_or(0u32);
+    if is_taken || count < 20 || !may_be_several_cells(arrangement, options) || !draw.chance(INCLUSIONS) {
+        return;
+    }
+    make_several_cells(options, promise);
+    ["diameters", "seeding"].iter().for_each(|name| options.unset(name));
+    let places: &[&str] = match dimension {
+        2 => &["interior", "boundaries", "triple-lines"],
+        _ => &["interior", "boundaries", "triple-lines", "quadruple-points"],
+    };
+    let share = draw.one_of(&[0.01, 0.03, 0.05, 0.1]);
+    let place = draw.one_of(places);
+    options.set(
+        "phase",
+        [
+            format!("first:{:?},diameters=lognormal(mean=3,cv=0.3)", 1.0 - share),
+            format!("second:{share:?},diameters=equal(1),place={place}"),
+        ],
+    );
+}
+
+/// Draws the shapes of single grains, in boxes with seeds that can have sizes, and takes out what does not go with them.
+fn grain_shapes(
+    draw: &mut Draw,
+    arrangement: Arrangement,
+    dimension: usize,
+    options: &mut Options,
+    promise: &mut Promise,
+) {
+    let is_placed = options.values("phase").iter().any(|phase| phase.contains("place="));
+    if is_placed || !may_be_several_cells(arrangement, options) || !draw.chance(SHAPES) {
+        return;
+    }
+    make_several_cells(options, promise);
     let lengths: &[&str] = match dimension {
         2 => &["2:1", "3:1", "1:1.5"],
         _ => &["2:1:1", "3:1:1", "1:1.5:1.5", "3:3:1", "3:2:1", "1:1:1"],

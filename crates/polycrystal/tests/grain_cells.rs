@@ -74,9 +74,9 @@ fn grains_of_one_cell_each_have_the_network_of_the_cells() {
     }
 }
 
-/// What lies beside each element of the finest level and where its corners are, in units of 1e-12, in order.
+/// What lies beside each element of the control mesh and where its corners are, in units of 1e-12, in order.
 fn elements(network: &Network, points: &[DVec3]) -> Vec<([polycrystal::Side; 2], Vec<[i64; 3]>)> {
-    let level = network.finest();
+    let level = network.control_mesh();
     let corners: Vec<Vec<u32>> = match &level.mesh {
         Mesh::Triangles(mesh) => mesh.triangles().iter().map(|corners| corners.to_vec()).collect(),
         Mesh::Segments(mesh) => mesh.segments().iter().map(|corners| corners.to_vec()).collect(),

@@ -54,11 +54,7 @@ impl GrainCells {
                 continue;
             }
             for (own, other) in [(first, second), (second, first)] {
-                let (grain, shift) = match own {
-                    Side::Cell(grain) => (grain, Shift::NONE),
-                    Side::Image(grain, shift) => (grain, shift),
-                    Side::Wall(_) => continue,
-                };
+                let Some((grain, shift)) = own.cell() else { continue };
                 beside[grain.index()].insert(other.moved(Shift::NONE - shift));
             }
         }

@@ -155,9 +155,7 @@ pub(crate) fn contact_areas(
     let mut pairs: Vec<(usize, usize, f64)> = Vec::new();
     let primaries = cells.face_count() - cells.periodic_faces().len();
     for face in cells.faces().take(primaries) {
-        let [Side::Cell(first), Side::Cell(second) | Side::Image(second, _)] = cells.face_sides(face) else {
-            continue;
-        };
+        let [Some((first, _)), Some((second, _))] = cells.face_sides(face).map(Side::cell) else { continue };
         let [first, second] = [first, second].map(grain_of);
         if first != second {
             let area = cells.face_area(face);

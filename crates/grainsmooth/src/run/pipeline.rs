@@ -31,7 +31,7 @@ const SHORTER: f64 = 0.6;
 const SHORTER_TIMES: usize = 12;
 
 /// How often the grains of given shapes at which relaxation fails get rounder ones. Of 200 grains of 3:1:1 some take one round.
-const MOST_ROUNDINGS: usize = 20;
+const MOST_ROUNDINGS: usize = 10;
 
 /// A finished polycrystal: a valid network with the points of its finest level.
 #[derive(Debug, Clone)]

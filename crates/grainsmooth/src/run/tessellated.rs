@@ -333,10 +333,11 @@ fn small_cells(cells: &Tessellation, share: f64) -> Vec<CellId> {
         |a: CellId, b: CellId| diameters[a.index()].total_cmp(&diameters[b.index()]).then(a.cmp(&b)).is_lt();
     let is_smallest = |cell: &CellId| {
         diameters[cell.index()] < limit
-            && cells.neighbors(*cell).into_iter().all(|side| match side {
-                Side::Cell(other) | Side::Image(other, _) => !is_smaller(other, *cell),
-                Side::Wall(_) => true,
-            })
+            && cells
+                .neighbors(*cell)
+                .into_iter()
+                .filter_map(Side::cell)
+                .all(|(other, _)| !is_smaller(other, *cell))
     };
     (0u32..).map(CellId).take(diameters.len()).filter(is_smallest).collect()
 }

@@ -183,10 +183,7 @@ impl Face {
 }
 
 pub(super) fn cell_of(side: Side) -> Option<CellId> {
-    match side {
-        Side::Cell(cell) | Side::Image(cell, _) => Some(cell),
-        Side::Wall(_) => None,
-    }
+    side.cell().map(|(cell, _)| cell)
 }
 
 pub(super) fn id(index: usize) -> u32 {

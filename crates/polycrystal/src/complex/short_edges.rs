@@ -170,11 +170,9 @@ impl<'a> Complex<'a> {
 
     /// What lies on both sides of a face.
     fn cells(&self, MovedFace { face, shift }: MovedFace) -> [MovedCell; 2] {
-        self.original.face_sides(FaceId(face)).map(|side| match side {
-            Side::Cell(cell) => Some((cell, shift)),
-            Side::Image(cell, image) => Some((cell, image + shift)),
-            Side::Wall(_) => None,
-        })
+        self.original
+            .face_sides(FaceId(face))
+            .map(|side| side.cell().map(|(cell, image)| (cell, image + shift)))
     }
 
     fn corners(&self, MovedFace { face, shift: by }: MovedFace) -> impl Iterator<Item = Corner> + Clone {

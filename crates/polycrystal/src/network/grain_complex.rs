@@ -29,11 +29,7 @@ impl From<GrainId> for GrainPart {
 impl GrainPart {
     /// The grain beside a face, where it stands for the cell that is there.
     pub fn beside(parts: &[Self], side: voronoi::Side) -> voronoi::Side {
-        let (cell, shift) = match side {
-            voronoi::Side::Cell(cell) => (cell, Shift::NONE),
-            voronoi::Side::Image(cell, shift) => (cell, shift),
-            wall @ voronoi::Side::Wall(_) => return wall,
-        };
+        let Some((cell, shift)) = side.cell() else { return side };
         let Self { grain, moved } = parts[cell.index()];
         voronoi::Side::Cell(CellId(grain.0)).moved(shift - moved)
     }
@@ -106,8 +102,9 @@ fn check_grains(tessellation: &Tessellation, parts: &[GrainPart]) -> Result<(), 
     let mut pieces = DisjointSets::new(parts.len());
     for face in tessellation.faces() {
         let sides = tessellation.face_sides(face);
-        if let [voronoi::Side::Cell(a), voronoi::Side::Cell(b) | voronoi::Side::Image(b, _)] = sides
-            && GrainPart::beside(parts, sides[0]) == GrainPart::beside(parts, sides[1])
+        let [own, other] = sides.map(|side| GrainPart::beside(parts, side));
+        if let [Some((a, _)), Some((b, _))] = sides.map(voronoi::Side::cell)
+            && own == other
         {
             pieces.join(a.0, b.0);
         }
@@ -140,14 +137,9 @@ fn centroids(tessellation: &Tessellation, parts: &[GrainPart], grain_count: usiz
     sums.into_iter().map(|(sum, volume)| sum / volume).collect()
 }
 
-/// Two sides, the one of smaller number first, and walls last. Of a grain and its image, the one that is moved less far.
+/// Two sides, the one of smaller number first, and walls last. Of a grain and its image, the one of smaller shift.
 fn in_order([first, second]: [voronoi::Side; 2]) -> [voronoi::Side; 2] {
-    let place = |side| match side {
-        voronoi::Side::Cell(cell) => Some((cell, Shift::NONE)),
-        voronoi::Side::Image(cell, shift) => Some((cell, shift)),
-        voronoi::Side::Wall(_) => None,
-    };
-    match (place(first), place(second)) {
+    match (first.cell(), second.cell()) {
         (Some(own), Some(other)) if other < own => [second, first],
         _ => [first, second],
     }
@@ -162,11 +154,8 @@ fn limits<'a>(
 ) -> Vec<Option<f64>> {
     let mut limits = vec![Some(f64::INFINITY); point_count];
     for (corners, sides) in elements {
-        let grains = sides.iter().filter_map(|side| match side {
-            voronoi::Side::Cell(grain) | voronoi::Side::Image(grain, _) => Some(grain.index()),
-            voronoi::Side::Wall(_) => None,
-        });
-        let least = grains.map(|grain| lengths[grain]).fold(f64::INFINITY, f64::min);
+        let grains = sides.iter().filter_map(|side| side.cell());
+        let least = grains.map(|(grain, _)| lengths[grain.index()]).fold(f64::INFINITY, f64::min);
         for corner in corners {
             let is_double = corners.iter().filter(|other| other.vertex == corner.vertex).count() > 1;
             let limit = &mut limits[corner.vertex as usize];

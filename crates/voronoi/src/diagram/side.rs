@@ -14,6 +14,15 @@ pub enum Side {
 }
 
 impl Side {
+    /// The cell, and by how much it is moved; nothing for a wall.
+    pub fn cell(self) -> Option<(CellId, Shift)> {
+        match self {
+            Self::Cell(cell) => Some((cell, Shift::NONE)),
+            Self::Image(cell, shift) => Some((cell, shift)),
+            Self::Wall(_) => None,
+        }
+    }
+
     /// What lies there where all is moved by whole periods.
     #[must_use]
     pub fn moved(self, shift: Shift) -> Self {

@@ -159,14 +159,16 @@ impl Tessellation {
 
     /// What lies beyond the faces of a cell, sorted: cells by number, then moved cells, then walls.
     pub fn neighbors(&self, cell: CellId) -> Vec<Side> {
-        let own = Side::Cell(cell);
-        let across = |face: &FaceId| {
-            let [first, second] = self.face_sides(*face);
-            if first == own { second } else { first }
-        };
-        let mut sides: Vec<Side> = self.cell_faces(cell).iter().map(across).collect();
+        let mut sides: Vec<Side> =
+            self.cell_faces(cell).iter().map(|face| self.across(cell, *face)).collect();
         sides.sort_unstable();
         sides
+    }
+
+    /// What lies across a face of a cell.
+    pub fn across(&self, cell: CellId, face: FaceId) -> Side {
+        let [first, second] = self.face_sides(face);
+        if first == Side::Cell(cell) { second } else { first }
     }
 
     /// The vertices that are others moved by whole periods; none unless the domain is periodic. Secondaries have the last

@@ -67,10 +67,8 @@ pub(super) fn pieces_of_cells(
     let dimension = tessellation.domain().dimension();
     let measures = tessellation.cell_measures();
     for face in tessellation.faces() {
-        let (a, b, image) = match tessellation.face_sides(face) {
-            [Side::Cell(a), Side::Cell(b)] => (a, b, Shift::NONE),
-            [Side::Cell(a), Side::Image(b, shift)] => (a, b, shift),
-            _ => continue,
+        let [Some((a, _)), Some((b, image))] = tessellation.face_sides(face).map(Side::cell) else {
+            continue;
         };
         if grains.of(a) != grains.of(b) || moves[b.index()] - moves[a.index()] != image {
             continue;

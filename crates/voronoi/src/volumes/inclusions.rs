@@ -202,11 +202,7 @@ fn loose_pieces(tessellation: &Tessellation, grains: &Grains, moves: &[Shift]) -
         let mut shared: BTreeMap<u32, (f64, Shift)> = BTreeMap::new();
         for cell in &cells {
             for face in tessellation.cell_faces(*cell) {
-                let (other, shift) = match across(tessellation, *cell, *face) {
-                    Side::Cell(other) => (other, Shift::NONE),
-                    Side::Image(other, shift) => (other, shift),
-                    Side::Wall(_) => continue,
-                };
+                let Some((other, shift)) = tessellation.across(*cell, *face).cell() else { continue };
                 if grains.of(other) != grains.of(*cell) {
                     let (area, moved) = shared.entry(grains.of(other)).or_insert((0.0, Shift::NONE));
                     *area += face_area_and_centroid(tessellation, *face).0;
@@ -261,11 +257,7 @@ fn cells_around(tessellation: &Tessellation, weights: &[f64], inclusion: &Inclus
     while let Some((cell, moved)) = next.pop_front() {
         let center = inclusion.center - moved.vector(domain);
         for face in tessellation.cell_faces(cell) {
-            let (other, shift) = match across(tessellation, cell, *face) {
-                Side::Cell(other) => (other, Shift::NONE),
-                Side::Image(other, shift) => (other, shift),
-                Side::Wall(_) => continue,
-            };
+            let Some((other, shift)) = tessellation.across(cell, *face).cell() else { continue };
             let there = (other, moved + shift);
             if !found.contains(&there) && beyond_face(tessellation, weights, cell, *face, center) < radius {
                 let is_reached = tessellation.cell_faces(other).iter().all(|own| {
@@ -282,12 +274,6 @@ fn cells_around(tessellation: &Tessellation, weights: &[f64], inclusion: &Inclus
     found
 }
 
-/// What lies across a face of a cell.
-pub(super) fn across(tessellation: &Tessellation, cell: CellId, face: FaceId) -> Side {
-    let [first, second] = tessellation.face_sides(face);
-    if first == Side::Cell(cell) { second } else { first }
-}
-
 /// How far a place inside a cell is from the plane of one of its faces; negative beyond it.
 pub(super) fn beyond_face(
     tessellation: &Tessellation,
@@ -297,7 +283,7 @@ pub(super) fn beyond_face(
     place: DVec3,
 ) -> f64 {
     let domain = tessellation.domain();
-    let (other, shift) = match across(tessellation, cell, face) {
+    let (other, shift) = match tessellation.across(cell, face) {
         Side::Cell(other) => (other, Shift::NONE),
         Side::Image(other, shift) => (other, shift),
         Side::Wall(wall) => {

@@ -5,9 +5,9 @@ use std::fmt;
 
 use glam::DVec3;
 
-use super::inclusions::{Inclusion, across, beyond_face};
+use super::inclusions::{Inclusion, beyond_face};
 use super::spheres::{SphereGrid, wrapped};
-use crate::{CellId, Dimension, Side, Tessellation};
+use crate::{CellId, Dimension, FaceId, Tessellation};
 
 /// How many places an inclusion tries before it takes that of most room.
 const MOST_PLACES: usize = 200;
@@ -191,7 +191,7 @@ fn spots(tessellation: &Tessellation, place: InclusionPlace) -> Vec<Spot> {
             };
             spots.push(Spot { cell, corners, sum });
         };
-        let places = |face: &crate::FaceId| -> Vec<DVec3> {
+        let places = |face: &FaceId| -> Vec<DVec3> {
             tessellation
                 .face_corners(*face)
                 .iter()
@@ -199,7 +199,7 @@ fn spots(tessellation: &Tessellation, place: InclusionPlace) -> Vec<Spot> {
                 .collect()
         };
         let faces = tessellation.cell_faces(cell);
-        let is_between = |face: &crate::FaceId| !matches!(across(tessellation, cell, *face), Side::Wall(_));
+        let is_between = |face: &FaceId| tessellation.across(cell, *face).cell().is_some();
         match place {
             InclusionPlace::Interior => {
                 let middle = measures[cell.index()].centroid;
