@@ -4,6 +4,7 @@
 mod bad_meshes;
 mod corrupt_files;
 mod curves;
+mod data;
 mod edits;
 mod formats;
 #[allow(dead_code, reason = "shared with other tests")]

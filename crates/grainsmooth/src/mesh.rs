@@ -1,12 +1,15 @@
 //! Meshes and curves of any kind, apart from grains: their files, subdivision, edits, Bezier patches.
 
 mod bezier;
+mod carried;
+mod data;
 mod edit;
 pub mod file;
 mod json;
 mod subdivide;
 
 pub use bezier::{BezierFile, Construction, read_bezier};
+pub use carried::CarriedData;
 pub use edit::{EdgeChoice, Edited, MeshEdit};
 pub use json::{bezier_json, construction_json, levels_json, mesh_json};
 pub use subdivide::{Connectivity, Curves, Level, Limits, Scheme, limits, subdivide};

@@ -22,6 +22,28 @@ pub(crate) const PARENT: &str = "Parent";
 /// The array of the phases of grains.
 pub(crate) const PHASE: &str = "Phase";
 
+/// The array of the numbers of boundaries.
+pub(crate) const BOUNDARY_ID: &str = "BoundaryId";
+
+/// The array of the levels at which points were born.
+pub(crate) const GENERATION: &str = "Generation";
+
+/// The volumes (in the plane: areas) of all grains.
+pub(crate) const VOLUMES: &str = "Volumes";
+
+/// What files say of themselves and of all grains beside who made them and how, and whether it is text.
+pub(crate) const FIELD_NAMES: [(&str, bool); 9] = [
+    ("Config", true),
+    ("RandomSeed", false),
+    ("PhaseNames", true),
+    (VOLUMES, false),
+    (SEED_ID, false),
+    (PARENT, false),
+    (PHASE, false),
+    ("EulerAngles", false),
+    ("Quaternion", false),
+];
+
 /// Cell arrays that hold the two sides, in the order in which they are looked for: DREAM.3D's and this program's, then
 /// pyvista's and VTK's.
 pub(crate) const LABEL_ARRAYS: [&str; 3] = ["FaceLabels", "boundary_labels", "BoundaryLabels"];

@@ -13,6 +13,7 @@ use vtkio::xml::ScalarType;
 
 use xml::XmlFormat;
 
+mod data_array;
 mod image;
 mod item_tuples;
 mod legacy;
@@ -20,10 +21,11 @@ mod pieces;
 mod raw;
 mod xml;
 
+pub use data_array::{DataArray, DataNumbers};
 pub use image::{ImageData, write_vti};
 pub use item_tuples::ItemTuples;
 pub(crate) use pieces::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
-pub(crate) use raw::{attribute, find, try_inlined};
+pub(crate) use raw::{attribute, field_entry, field_names, find, try_inlined};
 pub use raw::{field_bytes, field_numbers, field_text, inlined};
 
 /// A format of VTK files.
@@ -121,7 +123,7 @@ impl Cells<'_> {
 #[derive(Debug, Clone, Copy)]
 pub struct Array<'a> {
     /// Name under which VTK lists the array; without blanks, which the legacy format cannot hold.
-    pub name: &'static str,
+    pub name: &'a str,
     /// One tuple for each point or cell.
     pub values: Values<'a>,
 }
@@ -155,6 +157,8 @@ pub enum Values<'a> {
     Int32Blocks(Blocks<'a>),
     /// One 64-bit floating point number each, computed when it is written.
     Float64Of(Each<'a, f64>),
+    /// Those of an array that was read or made before.
+    Data(&'a DataArray),
     /// The tuple of an item for each.
     Items(Items<'a>),
     /// The same, with the items made block by block when they are written.
@@ -255,6 +259,7 @@ impl<'a> Values<'a> {
             Self::Float64Of(each) => each.count,
             Self::Int32Tuples(tuples) => tuples.values.len() / tuples.components,
             Self::Int32Blocks(blocks) => blocks.count,
+            Self::Data(array) => array.len(),
             Self::Items(items) => items.count,
             Self::ItemBlocks(blocks) => blocks.count,
         }
@@ -273,6 +278,7 @@ impl<'a> Values<'a> {
             Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Float64Pairs(_) => 2,
             Self::Vectors(_) => 3,
             Self::Int32Tuples(tuples) => tuples.components,
+            Self::Data(array) => array.components,
             Self::Items(items) => items.tuples.components,
             Self::ItemBlocks(blocks) => blocks.tuples.components,
         }
@@ -286,6 +292,7 @@ impl<'a> Values<'a> {
             Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Int32Tuples(_) => ScalarType::Int32,
             Self::Float64(_) | Self::Float64Of(_) => ScalarType::Float64,
             Self::Float64Pairs(_) | Self::Vectors(_) => ScalarType::Float64,
+            Self::Data(array) => array.kind(),
             Self::Items(items) => items.tuples.kind,
             Self::ItemBlocks(blocks) => blocks.tuples.kind,
         }
@@ -317,6 +324,18 @@ pub enum FieldValue {
     Ids(Vec<i32>),
     /// A tuple of numbers for each of some items.
     Items(ItemTuples),
+    /// Whatever another file held.
+    Data(DataArray),
+}
+
+/// The array of unit vectors that viewers shade with.
+const NORMALS: &str = "Normals";
+
+/// Whether viewers shade with an array.
+fn is_normals(array: &Array<'_>) -> bool {
+    array.name == NORMALS
+        && array.values.component_count() == 3
+        && array.values.scalar_type() == ScalarType::Float64
 }
 
 /// Writes `data` in `format`; XML files hold their numbers in `encoding`.

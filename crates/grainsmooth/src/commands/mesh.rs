@@ -1,6 +1,7 @@
 //! `grainsmooth mesh`: reads a mesh, runs what the command line asks for, writes and reports.
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -10,8 +11,8 @@ use glam::DVec3;
 use grainsmooth::mesh::file::{
     MeshFile, MeshFileProblem, MeshFormat, MeshToWrite, read_mesh, read_polylines, stage_mesh, write_mesh,
 };
-use grainsmooth::mesh::{MeshEdit, construction_json};
-use grainsmooth::vtk::Cells;
+use grainsmooth::mesh::{CarriedData, MeshEdit, construction_json};
+use grainsmooth::vtk::{Cells, DataArray};
 use grainsmooth::{
     BezierFile, Connectivity, Error, Level, Output, Scheme, StagedFiles, bezier_json, levels_json, limits,
     mesh_json, read_bezier, subdivide, write_together,
@@ -89,12 +90,11 @@ impl Job<'_> {
         if self.format == MeshFormat::Json {
             outputs[0].write(|out| levels_json(&mesh, scheme, &levels, out))?;
         } else {
-            let births = births(scheme, &levels);
             let first = if steps.each_level { 0 } else { levels.len() - 1 };
             write_together(|files| {
-                levels[first..].iter().zip(&outputs).try_for_each(|(level, output)| {
-                    let generations = births.as_ref().map(|births| &births[..level.points.len()]);
-                    self.stage_level(level, &level.points, None, generations, output, files)
+                (first..).zip(&levels[first..]).zip(&outputs).try_for_each(|((index, level), output)| {
+                    let is_changed = index > 0 && scheme != Scheme::Midpoint;
+                    self.stage_level(&mesh, level, None, is_changed, output, files)
                 })
             })?;
         }
@@ -125,14 +125,11 @@ impl Job<'_> {
         if self.format == MeshFormat::Json {
             output.write(|out| levels_json(&mesh, scheme, &levels, out))?;
         } else {
-            let births = births(scheme, &levels);
             let normals: Vec<DVec3> = found.normals.iter().map(|normal| normal.unwrap_or_default()).collect();
-            write_together(|files| {
-                let births = births.as_deref();
-                // Curves have none.
-                let normals = Some(&normals[..]).filter(|_| scheme != Scheme::BSpline);
-                self.stage_level(level, &found.positions, normals, births, &output, files)
-            })?;
+            // Curves have none.
+            let normals = Some(&normals[..]).filter(|_| scheme != Scheme::BSpline);
+            let at_limit = Level { points: found.positions, ..level.clone() };
+            write_together(|files| self.stage_level(&mesh, &at_limit, normals, true, &output, files))?;
         }
         self.report_written(&[output]);
         Ok(())
@@ -140,23 +137,26 @@ impl Job<'_> {
 
     fn normals(&self) -> Result<(), Error> {
         let output = self.output(&self.files.output)?;
-        let mesh = self.read()?;
-        let connectivity = mesh.polygon_mesh().map_err(|error| self.located(error))?;
-        let normals = connectivity.vertex_normals(&mesh.points);
+        let before = self.read()?;
+        let connectivity = before.polygon_mesh().map_err(|error| self.located(error))?;
+        let normals = connectivity.vertex_normals(&before.points);
         self.report(format_args!("normals     {} points", normals.iter().flatten().count()));
-        self.write_single(&output, &mesh, Some(&normals))
+        let mut mesh = before.clone();
+        mesh.point_data.retain(|array| array.name != "Normals");
+        self.write_single(&output, &before, &mesh, Some(&normals))
     }
 
     fn edit(&self, edits: &[MeshEdit]) -> Result<(), Error> {
         let output = self.output(&self.files.output)?;
-        let mut mesh = self.read()?;
+        let before = self.read()?;
+        let mut mesh = before.clone();
         for edit in edits {
             let edited = mesh.edit(edit).map_err(|error| self.located(error))?;
             self.report(format_args!("{edited}"));
         }
         let (points, faces) = (mesh.points.len(), mesh.faces.len());
         self.report(format_args!("edited      {points} points, {faces} faces"));
-        self.write_single(&output, &mesh, None)
+        self.write_single(&output, &before, &mesh, None)
     }
 
     fn bezier(&self, samples: u32) -> Result<(), Error> {
@@ -206,8 +206,8 @@ impl Job<'_> {
         } else {
             let normals: Vec<DVec3> = normals.into_iter().map(Option::unwrap_or_default).collect();
             let content = self.content(&mesh.points, Cells::Triangles(&merged.triangles));
-            let (normals, cell_numbers) = (Some(&normals[..]), Some(("Surface", &surfaces[..])));
-            write_mesh(&MeshToWrite { normals, cell_numbers, ..content }, &output)?;
+            let (normals, cell_data) = (Some(&normals[..]), &[DataArray::int32("Surface", surfaces)][..]);
+            write_mesh(&MeshToWrite { normals, cell_data, ..content }, &output)?;
         }
         self.report_written(&[output]);
         Ok(())
@@ -229,9 +229,9 @@ impl Job<'_> {
             output.write(|out| construction_json(&file, t, out))?;
         } else {
             let content = self.content(&all.points, Cells::Polylines(&all.lines));
-            let point_numbers = Some(("Level", &all.levels[..]));
-            let cell_numbers = Some(("Level", &all.line_levels[..]));
-            write_mesh(&MeshToWrite { point_numbers, cell_numbers, ..content }, &output)?;
+            let level = |levels: &Vec<i32>| [DataArray::int32("Level", levels.clone())];
+            let (point_data, cell_data) = (&level(&all.levels)[..], &level(&all.line_levels)[..]);
+            write_mesh(&MeshToWrite { point_data, cell_data, ..content }, &output)?;
         }
         self.report_written(&[output]);
         Ok(())
@@ -293,34 +293,49 @@ impl Job<'_> {
         }
     }
 
+    /// Completes a level as a file, with what keeps a meaning of the arrays of the mesh that it comes from.
     fn stage_level(
         &self,
+        mesh: &MeshFile,
         level: &Level,
-        points: &[DVec3],
         normals: Option<&[DVec3]>,
-        generations: Option<&[i8]>,
+        shape_changes: bool,
         output: &Output<MeshFormat>,
         files: &mut StagedFiles,
     ) -> Result<(), Error> {
         let polygons;
-        let cells = match &level.mesh {
-            Connectivity::Triangles(mesh) => Cells::Triangles(mesh.triangles()),
+        let (cells, arrays) = match &level.mesh {
+            Connectivity::Triangles(triangles) => (Cells::Triangles(triangles.triangles()), &mesh.face_data),
             Connectivity::Polygons(_) => {
                 polygons = level.mesh.faces();
-                Cells::Polygons(&polygons)
+                (Cells::Polygons(&polygons[..]), &mesh.face_data)
             }
-            Connectivity::Curves(curves) => Cells::Polylines(&curves.lines),
+            Connectivity::Curves(curves) => (Cells::Polylines(&curves.lines[..]), &mesh.line_data),
         };
-        stage_mesh(&MeshToWrite { normals, generations, ..self.content(points, cells) }, output, files)
+        let data = CarriedData::new(mesh, level, arrays, shape_changes);
+        self.report_data(mesh, &data.names(normals.is_some()));
+        let content = MeshToWrite {
+            normals,
+            generations: level.generations.as_deref(),
+            point_data: &data.of_points,
+            cell_data: &data.of_cells,
+            field: &data.field,
+            ..self.content(&level.points, cells)
+        };
+        stage_mesh(&content, output, files)
     }
 
-    /// Writes a mesh in any format.
+    /// Writes a mesh in any format; `before` is that of the file it was made of.
     fn write_single(
         &self,
         output: &Output<MeshFormat>,
+        before: &MeshFile,
         mesh: &MeshFile,
         normals: Option<&[Option<DVec3>]>,
     ) -> Result<(), Error> {
+        let mut names = mesh.data_names();
+        names.extend(normals.map(|_| "Normals".to_owned()));
+        self.report_data(before, &names);
         if self.format == MeshFormat::Json {
             output.write(|out| mesh_json(mesh, normals, out))?;
         } else {
@@ -331,11 +346,41 @@ impl Job<'_> {
                 Ok(triangles) => Cells::Triangles(triangles),
                 Err(_) => Cells::Polygons(&mesh.faces),
             };
-            let content = self.content(&mesh.points, cells);
-            write_mesh(&MeshToWrite { normals: normals.as_deref(), ..content }, output)?;
+            let content = MeshToWrite {
+                normals: normals.as_deref(),
+                point_data: &mesh.point_data,
+                cell_data: &mesh.face_data,
+                field: &mesh.field,
+                ..self.content(&mesh.points, cells)
+            };
+            write_mesh(&content, output)?;
         }
         self.report_written(std::slice::from_ref(output));
         Ok(())
+    }
+
+    /// Says once which arrays of a file are in what was made of it, and which are not, and why.
+    fn report_data(&self, mesh: &MeshFile, written: &[String]) {
+        let holds_arrays = matches!(self.format, MeshFormat::Vtk(_));
+        let (kept, dropped): (Vec<String>, Vec<String>) =
+            mesh.data_names().into_iter().partition(|name| holds_arrays && written.contains(name));
+        let mut lines = Vec::new();
+        if !kept.is_empty() {
+            lines.push(format!("kept        {}", kept.join(", ")));
+        }
+        let mut by_reason: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+        for name in dropped {
+            let why = if holds_arrays { mesh.why_dropped(&name) } else { "the format holds no arrays" };
+            by_reason.entry(why).or_default().push(name);
+        }
+        lines.extend(
+            by_reason.into_iter().map(|(why, names)| format!("dropped     {}: {why}", names.join(", "))),
+        );
+        for line in lines {
+            if !self.report.borrow().contains(&line) {
+                self.report(format_args!("{line}"));
+            }
+        }
     }
 
     fn content<'a>(&'a self, points: &'a [DVec3], cells: Cells<'a>) -> MeshToWrite<'a> {
@@ -346,8 +391,9 @@ impl Job<'_> {
             cells,
             normals: None,
             generations: None,
-            point_numbers: None,
-            cell_numbers: None,
+            point_data: &[],
+            cell_data: &[],
+            field: &[],
             command_line,
             encoding,
         }
@@ -370,19 +416,6 @@ impl Job<'_> {
     fn report(&self, line: std::fmt::Arguments<'_>) {
         self.report.borrow_mut().push(line.to_string());
     }
-}
-
-/// For each point of the last level the level at which it was born; nothing for Doo and Sabin's scheme, whose points are
-/// all new at each level.
-fn births(scheme: Scheme, levels: &[Level]) -> Option<Vec<i8>> {
-    if matches!(scheme, Scheme::DooSabin(_)) {
-        return None;
-    }
-    let mut births = Vec::new();
-    for (index, level) in levels.iter().enumerate() {
-        births.resize(level.points.len(), i8::try_from(index).unwrap_or(i8::MAX));
-    }
-    Some(births)
 }
 
 /// `out.vtp` as `out_2.vtp`.

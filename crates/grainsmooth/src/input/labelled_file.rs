@@ -99,7 +99,7 @@ impl LabelledFile {
             is_single,
             remarks,
         } = cells;
-        let Remarks { config, volumes, euler_angles, phases } = remarks;
+        let Remarks { config, volumes, euler_angles, phases, .. } = remarks;
         let settings: Option<Table> = config.and_then(|text| text.parse().ok());
         // Without an exterior the volumes of all grains would sum to nothing.
         let zero_is_exterior =

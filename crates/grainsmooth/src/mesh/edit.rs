@@ -4,7 +4,9 @@ use std::fmt;
 
 use subzero::{Crease, HalfEdgeMesh, MeshError};
 
+use super::data::extend_by_means;
 use super::file::{MeshFile, MeshFileProblem};
+use crate::names::LABEL_ARRAYS;
 
 /// A change of a mesh.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -122,6 +124,7 @@ impl MeshFile {
                     }
                 }
                 edges.finish();
+                self.drop_data_of_shape();
                 Ok(Edited::Flipped { edges: flipped, left })
             }
             MeshEdit::Split(choices) => {
@@ -140,12 +143,13 @@ impl MeshFile {
                 let mut edges = EdgeEditor::new(self)?;
                 pairs.iter().try_for_each(|ends| edges.collapse(*ends))?;
                 edges.finish();
+                self.drop_data_of_shape();
                 Ok(Edited::Collapsed { edges: pairs.len() })
             }
             MeshEdit::Orient { outward } => self.orient(*outward),
             MeshEdit::Reverse => {
-                self.faces.iter_mut().for_each(|face| face[1..].reverse());
                 let faces = self.faces.len();
+                self.turn_round(&vec![true; faces]);
                 Ok(Edited::Turned { turned: faces, faces, parts: 1 })
             }
             MeshEdit::Triangulate => self.triangulate(),
@@ -157,15 +161,30 @@ impl MeshFile {
         if outward {
             orientation.face_outward(&self.points, &self.faces);
         }
-        orientation.apply(&mut self.faces);
+        self.turn_round(&orientation.turned);
         let turned = orientation.turned.iter().filter(|turned| **turned).count();
         Ok(Edited::Turned { turned, faces: self.faces.len(), parts: orientation.is_closed.len() })
     }
 
+    /// Turns faces round; each keeps its first corner, and its two sides change places.
+    fn turn_round(&mut self, turned: &[bool]) {
+        let faces = (0..).zip(&mut self.faces).zip(turned).filter(|(_, turned)| **turned);
+        for ((number, face), _) in faces {
+            face[1..].reverse();
+            let is_pair = |name: &str, components| LABEL_ARRAYS.contains(&name) && components == 2;
+            let labels = self.face_data.iter_mut().filter(|array| is_pair(&array.name, array.components));
+            labels.for_each(|array| array.swap_pair(number));
+        }
+        self.drop_normals();
+    }
+
     fn triangulate(&mut self) -> Result<Edited, MeshFileProblem> {
-        let (triangles, _) = subzero::triangulate(&self.points, &self.faces)?;
+        let (triangles, face_of) = subzero::triangulate(&self.points, &self.faces)?;
         let polygons = self.faces.iter().filter(|face| face.len() > 3).count();
         self.faces = triangles.into_iter().map(Vec::from).collect();
+        for array in &mut self.face_data {
+            *array = array.at(face_of.iter().map(|face| *face as usize));
+        }
         Ok(Edited::Cut { polygons, triangles: self.faces.len() })
     }
 }
@@ -180,12 +199,17 @@ impl EdgeChoice {
 struct EdgeEditor<'a> {
     mesh: &'a mut MeshFile,
     half_edges: HalfEdgeMesh,
+    /// Of each triangle of the half-edges, that of the mesh in which it lies.
+    face_of: Vec<usize>,
+    /// The ends of the edges on whose middles new points lie.
+    middles: Vec<[u32; 2]>,
 }
 
 impl<'a> EdgeEditor<'a> {
     fn new(mesh: &'a mut MeshFile) -> Result<Self, MeshFileProblem> {
         let half_edges = HalfEdgeMesh::new(mesh.points.len(), &mesh.triangles()?)?;
-        Ok(Self { mesh, half_edges })
+        let face_of = (0..mesh.faces.len()).collect();
+        Ok(Self { mesh, half_edges, face_of, middles: Vec::new() })
     }
 
     /// The ends of the edges chosen, as the mesh is now.
@@ -205,7 +229,14 @@ impl<'a> EdgeEditor<'a> {
     }
 
     fn split(&mut self, ends: [u32; 2]) -> Result<(), MeshError> {
-        let middle = self.half_edges.split(self.half_edges.half_edge_between(ends[0], ends[1])?)?;
+        let half_edge = self.half_edges.half_edge_between(ends[0], ends[1])?;
+        let beside = [Some(half_edge), self.half_edges.twin(half_edge)];
+        let middle = self.half_edges.split(half_edge)?;
+        // Each of the two triangles leaves half of it to a new one, in this order.
+        for half_edge in beside.into_iter().flatten() {
+            self.face_of.push(self.face_of[half_edge as usize / 3]);
+        }
+        self.middles.push(ends);
         let [a, b] = ends.map(|end| self.mesh.points[end as usize]);
         self.mesh.points.push(0.5 * a + 0.5 * b);
         let halves = |crease: Crease| match joins(&crease, ends) {
@@ -232,7 +263,19 @@ impl<'a> EdgeEditor<'a> {
     }
 
     fn finish(self) {
-        self.mesh.faces = self.half_edges.triangles().map(|(_, triangle)| triangle.to_vec()).collect();
+        let (faces, triangles): (Vec<usize>, Vec<Vec<u32>>) = self
+            .half_edges
+            .triangles()
+            .map(|(number, triangle)| (self.face_of[number as usize], triangle.to_vec()))
+            .unzip();
+        self.mesh.faces = triangles;
+        for array in &mut self.mesh.face_data {
+            *array = array.at(faces.iter().copied());
+        }
+        if !self.middles.is_empty() {
+            self.mesh.drop_normals();
+            self.mesh.point_data.retain_mut(|array| extend_by_means(array, &self.middles));
+        }
     }
 }
 

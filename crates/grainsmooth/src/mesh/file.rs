@@ -6,6 +6,9 @@ use glam::DVec3;
 use subzero::{BoundaryRule, Crease, CurveMesh, Features, INFINITE_SHARPNESS, PolygonMesh, TriangleMesh};
 use voronoi::Domain;
 
+use crate::names::{BOUNDARY_ID, LABEL_ARRAYS};
+use crate::vtk::{DataArray, FieldEntry};
+
 use crate::error::Error;
 
 pub(super) mod control_points;
@@ -38,6 +41,16 @@ pub struct MeshFile {
     pub corners: Vec<(u32, f32)>,
     /// The rule for boundary vertices of a single face.
     pub boundary: BoundaryRule,
+    /// Arrays with a tuple for each point.
+    pub point_data: Vec<DataArray>,
+    /// Arrays with a tuple for each face.
+    pub face_data: Vec<DataArray>,
+    /// Arrays with a tuple for each polyline.
+    pub line_data: Vec<DataArray>,
+    /// What a VTK file says about itself and all its grains.
+    pub field: Vec<FieldEntry>,
+    /// The names of arrays that could not be taken over from the file.
+    pub left_behind: Vec<String>,
     /// For formats without shared points: the number of corners that were welded, by exactly equal coordinates.
     pub welded_corners: Option<usize>,
 }
@@ -154,15 +167,60 @@ impl MeshFile {
         if let Some(&(vertex, sharpness)) = self.corners.iter().find(is_soft) {
             return Err(MeshFileProblem::SoftCornerOfPolyline { vertex, sharpness });
         }
-        let corners: Vec<u32> = self.corners.iter().map(|&(vertex, _)| vertex).collect();
+        let mut corners: Vec<u32> = self.corners.iter().map(|&(vertex, _)| vertex).collect();
+        corners.extend(self.corners_of_labels());
         let segments = self.lines.iter().flat_map(|line| line.windows(2).map(|ends| [ends[0], ends[1]]));
         Ok(CurveMesh::new(self.points.len(), segments.collect(), &corners)?)
     }
 
     fn with_features<T>(&self, make: impl FnOnce(&Features<'_>) -> T) -> T {
         let (soft_corners, boundary) = (&self.corners[..], self.boundary);
-        make(&Features { creases: &self.creases, corners: &[], soft_corners, boundary })
+        let creases = [&self.creases[..], &self.creases_of_labels()].concat();
+        make(&Features { creases: &creases, corners: &[], soft_corners, boundary })
     }
+
+    /// The points in which polylines with other labels meet: boundaries of grains end there.
+    fn corners_of_labels(&self) -> Vec<u32> {
+        let labels = labels_of(&self.line_data);
+        let mut first_of = vec![None; self.points.len()];
+        let mut corners = Vec::new();
+        for (number, line) in self.lines.iter().enumerate() {
+            for &vertex in line {
+                let first = *first_of[vertex as usize].get_or_insert(number);
+                if labels.iter().any(|array| !array.are_equal(first, number)) {
+                    corners.push(vertex);
+                }
+            }
+        }
+        corners
+    }
+
+    /// The edges of two faces with other labels: boundaries of grains end there, and are sharp.
+    fn creases_of_labels(&self) -> Vec<Crease> {
+        let labels = labels_of(&self.face_data);
+        if labels.is_empty() {
+            return Vec::new();
+        }
+        let sides = |(face, corners): (usize, &Vec<u32>)| -> Vec<([u32; 2], usize)> {
+            let next = corners.iter().cycle().skip(1);
+            corners.iter().zip(next).map(|(&a, &b)| ([a.min(b), a.max(b)], face)).collect()
+        };
+        let mut sides: Vec<([u32; 2], usize)> = self.faces.iter().enumerate().flat_map(sides).collect();
+        sides.sort_unstable();
+        let pairs = sides.chunk_by(|a, b| a.0 == b.0).filter(|edge| edge.len() == 2);
+        let differs =
+            |edge: &&[([u32; 2], usize)]| labels.iter().any(|array| !array.are_equal(edge[0].1, edge[1].1));
+        pairs.filter(differs).map(|edge| Crease::infinite(edge[0].0)).collect()
+    }
+}
+
+/// The arrays that tell boundaries of grains apart, where there are any.
+fn labels_of(arrays: &[DataArray]) -> Vec<&DataArray> {
+    let is_label = |array: &&DataArray| LABEL_ARRAYS.contains(&array.name.as_str());
+    if !arrays.iter().any(|array| is_label(&array)) {
+        return Vec::new();
+    }
+    arrays.iter().filter(|array| is_label(array) || array.name == BOUNDARY_ID).collect()
 }
 
 /// Checks that areas and volumes, and what is divided by them, are numbers: [`Domain::LENGTHS`]. All points may be one.

@@ -2,12 +2,16 @@
 
 use glam::DVec3;
 use subzero::{
-    CurveMesh, DooSabinWeights, LoopWeights, MeshError, PolygonMesh, Refinement, TriangleMesh, VertexRule,
+    CurveMesh, DooSabinWeights, LoopWeights, MeshError, PolygonMesh, Refinement, StencilTable, TriangleMesh,
+    VertexRule,
 };
 
+use super::data::{NORMALS, averaged, is_of_shape};
 use super::file::{MeshFile, MeshFileProblem};
 use crate::Error;
 use crate::memory::{LevelSize, available_memory, check_levels};
+use crate::names::GENERATION;
+use crate::vtk::{DataArray, DataNumbers};
 
 /// A scheme of subdivision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,6 +61,12 @@ pub struct Level {
     pub mesh: Connectivity,
     /// Its points.
     pub points: Vec<DVec3>,
+    /// For each point the level at which it was born; nothing in Doo and Sabin's scheme, whose points are all new.
+    pub generations: Option<Vec<i8>>,
+    /// Arrays of points: of the first level those of the file, of others means.
+    pub point_data: Vec<DataArray>,
+    /// For each face (of curves, each polyline) that of the file in which it lies; nothing where faces come from several.
+    pub cell_of: Option<Vec<u32>>,
 }
 
 /// Where the vertices of a level end up on the limit surface, and its unit normals there.
@@ -94,7 +104,7 @@ pub fn subdivide(
         _ => Connectivity::Triangles(mesh.triangle_mesh().map_err(located)?),
     };
     check_levels(connectivity.size(), levels, available_memory())?;
-    let mut all = vec![Level { mesh: connectivity, points: mesh.points.clone() }];
+    let mut all = vec![Level::of_file(mesh, connectivity)];
     for _ in 0..levels {
         let finer = all[all.len() - 1].refine(scheme).map_err(|error| located(error.into()))?;
         all.push(finer);
@@ -103,7 +113,49 @@ pub fn subdivide(
 }
 
 impl Level {
+    /// The mesh of a file itself.
+    fn of_file(file: &MeshFile, mesh: Connectivity) -> Self {
+        let cells = if matches!(mesh, Connectivity::Curves(_)) { file.lines.len() } else { file.faces.len() };
+        // A file that comes from subdivision goes on from there.
+        let generations = file.point_data.iter().find_map(|array| match &array.numbers {
+            DataNumbers::Int8(levels) if array.name == GENERATION && array.components == 1 => {
+                Some(levels.clone())
+            }
+            _ => None,
+        });
+        let is_other = |array: &&DataArray| ![GENERATION, NORMALS].contains(&array.name.as_str());
+        Self {
+            generations: Some(generations.unwrap_or_else(|| vec![0; file.points.len()])),
+            point_data: file.point_data.iter().filter(is_other).cloned().collect(),
+            cell_of: Some((0..).take(cells).collect()),
+            points: file.points.clone(),
+            mesh,
+        }
+    }
+
     fn refine(&self, scheme: Scheme) -> Result<Self, MeshError> {
+        let (mesh, stencils) = self.refine_mesh(scheme)?;
+        let points = stencils.apply(&self.points);
+        let is_dual = matches!(scheme, Scheme::DooSabin(_));
+        let generations = self.generations.as_ref().filter(|_| !is_dual).map(|levels| {
+            let next = levels.iter().copied().max().unwrap_or(0).saturating_add(1);
+            let mut levels = levels.clone();
+            levels.resize(points.len(), next);
+            levels
+        });
+        let keeps_shape = scheme == Scheme::Midpoint;
+        let of_points = self.point_data.iter().filter(|array| keeps_shape || !is_of_shape(&array.name));
+        let point_data = of_points.filter_map(|array| averaged(array, &stencils)).collect();
+        let parents = self.mesh.parents_of_finer(scheme);
+        let cell_of = self
+            .cell_of
+            .as_ref()
+            .zip(parents)
+            .map(|(cells, parents)| parents.into_iter().map(|parent| cells[parent as usize]).collect());
+        Ok(Self { mesh, points, generations, point_data, cell_of })
+    }
+
+    fn refine_mesh(&self, scheme: Scheme) -> Result<(Connectivity, StencilTable), MeshError> {
         match &self.mesh {
             Connectivity::Triangles(mesh) => {
                 let Refinement { mesh, stencils } = match scheme {
@@ -112,14 +164,14 @@ impl Level {
                     Scheme::ModifiedButterfly => mesh.modified_butterfly_refine(),
                     _ => mesh.midpoint_refine(),
                 };
-                Ok(Self { mesh: Connectivity::Triangles(mesh), points: stencils.apply(&self.points) })
+                Ok((Connectivity::Triangles(mesh), stencils))
             }
             Connectivity::Polygons(mesh) => {
                 let Refinement { mesh, stencils } = match scheme {
                     Scheme::DooSabin(weights) => mesh.doo_sabin_refine(weights)?,
                     _ => mesh.catmull_clark_refine(),
                 };
-                Ok(Self { mesh: Connectivity::Polygons(mesh), points: stencils.apply(&self.points) })
+                Ok((Connectivity::Polygons(mesh), stencils))
             }
             Connectivity::Curves(curves) => {
                 let Refinement { mesh, stencils } = match scheme {
@@ -127,7 +179,7 @@ impl Level {
                     _ => curves.mesh.refine(),
                 };
                 let curves = Curves { lines: curves.finer_lines(), mesh };
-                Ok(Self { mesh: Connectivity::Curves(curves), points: stencils.apply(&self.points) })
+                Ok((Connectivity::Curves(curves), stencils))
             }
         }
     }
@@ -152,6 +204,24 @@ impl Curves {
 }
 
 impl Connectivity {
+    /// For each face (of curves, each polyline) of the next level that in which it lies; nothing in Doo and Sabin's scheme, where
+    /// faces come from edges and points too.
+    fn parents_of_finer(&self, scheme: Scheme) -> Option<Vec<u32>> {
+        match self {
+            Self::Triangles(mesh) => {
+                let counts = mesh.counts();
+                let triangles = (0..).take(4 * mesh.triangles().len());
+                Some(triangles.map(|triangle| counts.triangle_parent(triangle)).collect())
+            }
+            Self::Polygons(_) if matches!(scheme, Scheme::DooSabin(_)) => None,
+            Self::Polygons(mesh) => {
+                let faces = (0..).zip(mesh.faces());
+                Some(faces.flat_map(|(face, corners)| std::iter::repeat_n(face, corners.len())).collect())
+            }
+            Self::Curves(curves) => Some((0..).take(curves.lines.len()).collect()),
+        }
+    }
+
     /// The faces as lists of vertices; of curves, the polylines.
     pub fn faces(&self) -> Vec<Vec<u32>> {
         match self {

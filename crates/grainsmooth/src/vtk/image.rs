@@ -87,6 +87,9 @@ pub(super) fn write_field(
             FieldValue::Items(tuples) => {
                 ("DataArray", tuples.kind_name(), tuples.components, tuples.len(), tuples.all().to_vec())
             }
+            FieldValue::Data(array) => {
+                ("DataArray", array.kind_name(), array.components, array.len(), array.to_bytes())
+            }
         };
         let offset = numbers_of_file.append(Numbers::bytes(bytes));
         let components =

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use vtkio::xml::ScalarType;
 
 use super::raw::Numbers;
-use super::{Array, Cells, FieldEntry, FieldValue, PolyData};
+use super::{Array, Cells, FieldEntry, FieldValue, PolyData, is_normals};
 
 /// The last version whose cells are 32-bit; every reader knows it.
 const VERSION: &str = "4.2";
@@ -65,24 +65,39 @@ fn checked_count(count: usize) -> io::Result<u32> {
     })
 }
 
-/// The arrays as one field: of arrays written as scalars VTK reads only the first.
+/// The arrays as one field: of arrays written as scalars VTK reads only the first. Normals alone stand before it, as those to shade with.
 fn write_arrays(keyword: &str, count: usize, arrays: &[Array<'_>], out: &mut dyn Write) -> io::Result<()> {
     if arrays.is_empty() {
         return Ok(());
     }
-    write!(out, "{keyword} {count}\n\nFIELD FieldData {}\n", arrays.len())?;
+    write!(out, "{keyword} {count}\n\n")?;
+    let (normals, arrays): (Vec<&Array<'_>>, Vec<_>) = arrays.iter().partition(|array| is_normals(array));
+    for Array { name, values } in normals {
+        writeln!(out, "NORMALS {name} double")?;
+        Numbers::of(*values).write_big_endian(size_of::<f64>(), out)?;
+        writeln!(out)?;
+    }
+    if arrays.is_empty() {
+        return writeln!(out);
+    }
+    writeln!(out, "FIELD FieldData {}", arrays.len())?;
     for Array { name, values } in arrays {
-        let (kind, bytes) = match values.scalar_type() {
-            ScalarType::Int8 => ("char", size_of::<i8>()),
-            ScalarType::UInt8 => ("unsigned_char", size_of::<u8>()),
-            ScalarType::Float64 => ("double", size_of::<f64>()),
-            _ => ("int", size_of::<i32>()),
-        };
+        let (kind, bytes) = kind_and_width(values.scalar_type());
         writeln!(out, "{name} {} {count} {kind}", values.component_count())?;
         Numbers::of(*values).write_big_endian(bytes, out)?;
         writeln!(out)?;
     }
     writeln!(out)
+}
+
+/// The format's name for a kind of numbers, and the bytes of each.
+fn kind_and_width(kind: ScalarType) -> (&'static str, usize) {
+    match kind {
+        ScalarType::Int8 => ("char", size_of::<i8>()),
+        ScalarType::UInt8 => ("unsigned_char", size_of::<u8>()),
+        ScalarType::Float64 => ("double", size_of::<f64>()),
+        _ => ("int", size_of::<i32>()),
+    }
 }
 
 fn write_field(entries: &[FieldEntry], out: &mut dyn Write) -> io::Result<()> {
@@ -106,13 +121,14 @@ fn write_field(entries: &[FieldEntry], out: &mut dyn Write) -> io::Result<()> {
                 ids.iter().try_for_each(|id| out.write_all(&id.to_be_bytes()))?;
             }
             FieldValue::Items(tuples) => {
-                let (kind, width) = match tuples.kind {
-                    ScalarType::UInt8 => ("unsigned_char", size_of::<u8>()),
-                    ScalarType::Int32 => ("int", size_of::<i32>()),
-                    _ => ("double", size_of::<f64>()),
-                };
+                let (kind, width) = kind_and_width(tuples.kind);
                 writeln!(out, "{name} {} {} {kind}", tuples.components, tuples.len())?;
                 Numbers::bytes(tuples.all().to_vec()).write_big_endian(width, out)?;
+            }
+            FieldValue::Data(array) => {
+                let (kind, width) = kind_and_width(array.kind());
+                writeln!(out, "{name} {} {} {kind}", array.components, array.len())?;
+                array.written().write_big_endian(width, out)?;
             }
             FieldValue::Text(text) => {
                 writeln!(out, "{name} 1 1 string")?;

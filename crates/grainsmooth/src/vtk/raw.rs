@@ -11,7 +11,7 @@ mod coding;
 mod encode;
 mod inline;
 
-pub(crate) use inline::{attribute, find, try_inlined};
+pub(crate) use inline::{attribute, field_entry, field_names, find, try_inlined};
 pub use inline::{field_bytes, field_numbers, field_text, inlined};
 
 /// Numbers that are computed before they are written; so few that they are still in the cache then.
@@ -96,6 +96,7 @@ impl<'a> Numbers<'a> {
                 make: Box::new(|block| bytemuck::cast_slice(&make(block)).to_vec()),
             },
             Values::Float64Of(each) => Self::each(each.count, each.value),
+            Values::Data(array) => array.written(),
             Values::Items(Items { tuples, count, item }) => tuples.of_cells(count, item),
             Values::ItemBlocks(ItemBlocks { tuples, count, blocks, make }) => Self::Pieces {
                 byte_count: (count * tuples.width()) as u64,

@@ -70,7 +70,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
             Some("edge_corner" | "edge-corner") => BoundaryRule::EdgeCorner,
             _ => BoundaryRule::Edge,
         },
-        welded_corners: None,
+        ..MeshFile::default()
     })
 }
 

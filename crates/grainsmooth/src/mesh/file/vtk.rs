@@ -4,9 +4,13 @@ use std::thread;
 
 use glam::DVec3;
 use vtkio::IOBuffer;
-use vtkio::model::{CellType, DataSet, Piece, PieceData, VertexNumbers, Vtk};
+use vtkio::model::{
+    Attribute, Attributes, CellType, DataSet, FieldArray, Piece, PieceData, VertexNumbers, Vtk,
+};
 
 use super::{MeshFile, MeshFileProblem};
+use crate::vtk::DataArray;
+use labelled::Remarks;
 
 mod field;
 pub(crate) mod labelled;
@@ -21,14 +25,21 @@ pub const READER_THREAD: &str = "vtkio reader";
 
 /// Reads a legacy file.
 pub(super) fn read_legacy(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
-    let (bytes, _) = legacy_parts::readable(bytes)?;
-    in_thread(|| mesh_of(Vtk::parse_legacy_be(&bytes[..]).map_err(problem)?.data))
+    let (bytes, remarks) = legacy_parts::readable(bytes)?;
+    let mesh = in_thread(|| mesh_of(Vtk::parse_legacy_be(&bytes[..]).map_err(problem)?.data))?;
+    Ok(mesh.with_remarks(remarks))
 }
 
 /// Reads a .vtp or .vtu file.
 pub(super) fn read_xml(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
-    let bytes = xml_parts::points_and_faces(bytes)?;
-    in_thread(|| mesh_of(Vtk::parse_xml(&bytes[..]).map_err(problem)?.data))
+    let read = |parts: Vec<u8>| in_thread(|| mesh_of(Vtk::parse_xml(&parts[..]).map_err(problem)?.data));
+    // Arrays that cannot be read are no reason to refuse a mesh.
+    let with_data = xml_parts::all(bytes).and_then(read);
+    let mesh = with_data.or_else(|_| {
+        let mesh = xml_parts::points_and_faces(bytes).and_then(read)?;
+        Ok::<_, MeshFileProblem>(MeshFile { left_behind: xml_parts::array_names(bytes), ..mesh })
+    })?;
+    Ok(mesh.with_remarks(Remarks::entries_of_xml(bytes)))
 }
 
 fn problem(error: impl ToString) -> MeshFileProblem {
@@ -52,9 +63,12 @@ fn mesh_of(data: DataSet) -> Result<MeshFile, MeshFileProblem> {
     let mut mesh = MeshFile::default();
     match data {
         DataSet::PolyData { pieces, .. } => {
+            let is_whole = pieces.len() == 1;
             for piece in pieces {
                 let piece = inline(piece)?;
                 let first = mesh.add_points(&piece.points)?;
+                let has_strips = piece.strips.iter().flat_map(cells).next().is_some();
+                let data = Some(piece.data).filter(|_| is_whole);
                 for line in piece.lines.iter().flat_map(cells) {
                     mesh.add_line(first, line?)?;
                 }
@@ -64,17 +78,31 @@ fn mesh_of(data: DataSet) -> Result<MeshFile, MeshFileProblem> {
                 for strip in piece.strips.iter().flat_map(cells) {
                     mesh.add_strip(first, &strip?)?;
                 }
+                // The arrays of cells begin with those of points, then lines, then polygons.
+                let [lines, faces] = [mesh.lines.len(), mesh.faces.len()];
+                let rows = |count: usize| {
+                    let first = (!has_strips).then(|| count.checked_sub(lines + faces))??;
+                    Some([(first..first + lines).collect(), (first + lines..count).collect()])
+                };
+                mesh.add_data(data, rows);
             }
         }
         DataSet::UnstructuredGrid { pieces, .. } => {
+            let is_whole = pieces.len() == 1;
             for piece in pieces {
                 let piece = inline(piece)?;
                 let first = mesh.add_points(&piece.points)?;
+                let mut rows = [Vec::new(), Vec::new()];
                 let all = cells(&piece.cells.cell_verts);
                 for (index, (kind, cell)) in piece.cells.types.iter().zip(all).enumerate() {
                     mesh.add_cell(first, *kind, cell?)
                         .map_err(|kind| problem(format!("cell {index} is a {kind:?}, not a polygon")))??;
+                    rows[0].resize(mesh.lines.len(), index);
+                    rows[1].resize(mesh.faces.len(), index);
                 }
+                let cell_count = piece.cells.types.len();
+                let rows = |count: usize| (count == cell_count).then(|| rows.clone());
+                mesh.add_data(Some(piece.data).filter(|_| is_whole), rows);
             }
         }
         _ => return Err(problem("it is neither PolyData nor UnstructuredGrid")),
@@ -100,6 +128,36 @@ impl MeshFile {
         };
         self.points.extend(points.iter().copied().map(DVec3::from_array));
         Ok(first)
+    }
+
+    /// Takes over the arrays of a file that is in one piece. `rows` tells, of so many rows, which are those of lines and of faces.
+    fn add_data(&mut self, data: Option<Attributes>, rows: impl Fn(usize) -> Option<[Vec<usize>; 2]>) {
+        let Some(data) = data else { return };
+        for (name, array) in data.point.iter().flat_map(named) {
+            match array.filter(|array| array.len() == self.points.len()) {
+                Some(array) => self.point_data.push(array),
+                None => self.left_behind.push(name),
+            }
+        }
+        for (name, array) in data.cell.iter().flat_map(named) {
+            let found = array.and_then(|array| rows(array.len()).map(|rows| (array, rows)));
+            let Some((array, [lines, faces])) = found else {
+                self.left_behind.push(name);
+                continue;
+            };
+            if !self.lines.is_empty() {
+                self.line_data.push(array.at(lines.into_iter()));
+            }
+            self.face_data.push(array.at(faces.into_iter()));
+        }
+    }
+
+    fn with_remarks(mut self, remarks: Remarks) -> Self {
+        self.field = remarks.entries;
+        // These are said anew.
+        let is_ours = |name: &String| ["Version", "CommandLine"].contains(&name.as_str());
+        self.left_behind.extend(remarks.unknown.into_iter().filter(|name| !is_ours(name)));
+        self
     }
 
     fn add_face(&mut self, first: u64, face: Vec<u64>) -> Result<(), MeshFileProblem> {
@@ -159,6 +217,21 @@ impl MeshFile {
             CellType::TriangleStrip => self.add_strip(first, &cell),
             other => return Err(other),
         })
+    }
+}
+
+/// The arrays of an attribute, each by its name, and nothing for what is no array of numbers.
+fn named(attribute: &Attribute) -> Vec<(String, Option<DataArray>)> {
+    match attribute {
+        Attribute::DataArray(array) => {
+            vec![(array.name.clone(), DataArray::of_buffer(&array.name, array.num_comp(), &array.data))]
+        }
+        Attribute::Field { data_array, .. } => {
+            let array = |array: &FieldArray| {
+                (array.name.clone(), DataArray::of_buffer(&array.name, array.num_comp(), &array.data))
+            };
+            data_array.iter().map(array).collect()
+        }
     }
 }
 

@@ -8,7 +8,9 @@ use glam::DVec3;
 use crate::error::Error;
 use crate::files::output::OutputPath;
 use crate::files::staged_files::{StagedFiles, write_together};
-use crate::vtk::{Array, Cells, FieldEntry, FieldValue, PolyData, Values, VtkEncoding, VtkFormat, write_vtk};
+use crate::vtk::{
+    Array, Cells, DataArray, FieldEntry, FieldValue, PolyData, Values, VtkEncoding, VtkFormat, write_vtk,
+};
 
 /// A file format that meshes are written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,10 +53,12 @@ pub struct MeshToWrite<'a> {
     pub normals: Option<&'a [DVec3]>,
     /// For each point the level at which it was born. Only VTK files hold it.
     pub generations: Option<&'a [i8]>,
-    /// Numbers of points, under their name. Only VTK files hold them.
-    pub point_numbers: Option<(&'static str, &'a [i32])>,
-    /// Numbers of cells, under their name. Only VTK files hold them.
-    pub cell_numbers: Option<(&'static str, &'a [i32])>,
+    /// Arrays of points. Only VTK files hold them.
+    pub point_data: &'a [DataArray],
+    /// Arrays of cells. Only VTK files hold them.
+    pub cell_data: &'a [DataArray],
+    /// What is said about the file as a whole, beside the program and the command line. Only VTK files hold it.
+    pub field: &'a [FieldEntry],
     /// The command line that made the mesh. Only VTK files hold it.
     pub command_line: &'a str,
     /// How XML files of VTK hold their numbers.
@@ -90,17 +94,24 @@ pub fn stage_mesh(
 fn poly_data<'a>(mesh: &MeshToWrite<'a>) -> PolyData<'a> {
     let normals = mesh.normals.map(|normals| Array { name: "Normals", values: Values::Vectors(normals) });
     let generations = mesh.generations.map(|g| Array { name: "Generation", values: Values::Int8(g) });
-    let numbers = |(name, values)| Array { name, values: Values::Int32(values) };
+    let data = |array: &'a DataArray| Array { name: &array.name, values: Values::Data(array) };
     let text = |name, value: String| FieldEntry { name, value: FieldValue::Text(value) };
     PolyData {
         points: mesh.points,
         cells: mesh.cells,
-        point_arrays: normals.into_iter().chain(generations).chain(mesh.point_numbers.map(numbers)).collect(),
-        cell_arrays: mesh.cell_numbers.map(numbers).into_iter().collect(),
-        field: vec![
+        point_arrays: normals
+            .into_iter()
+            .chain(generations)
+            .chain(mesh.point_data.iter().map(data))
+            .collect(),
+        cell_arrays: mesh.cell_data.iter().map(data).collect(),
+        field: [
             text("Version", format!("grainsmooth {}", env!("CARGO_PKG_VERSION"))),
             text("CommandLine", mesh.command_line.to_owned()),
-        ],
+        ]
+        .into_iter()
+        .chain(mesh.field.iter().cloned())
+        .collect(),
     }
 }
 

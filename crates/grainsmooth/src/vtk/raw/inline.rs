@@ -3,6 +3,7 @@
 use vtkio::IOBuffer;
 use vtkio::xml::ScalarType;
 
+use super::super::{DataArray, FieldEntry, FieldValue};
 use super::coding::{Coding, Encoded};
 
 /// The document with appended arrays moved into their elements as base64, which `vtkio` knows, and with headers of compressed ones
@@ -38,6 +39,40 @@ pub fn field_bytes(file: &[u8], name: &str) -> Option<Vec<u8>> {
 /// The 64-bit floating point numbers of an entry of such a file's field data.
 pub fn field_numbers(file: &[u8], name: &str) -> Option<Vec<f64>> {
     field_values(file, name, ScalarType::Float64)?.into_vec()
+}
+
+/// The names of all entries of such a file's field data.
+pub(crate) fn field_names(file: &[u8]) -> Vec<String> {
+    let head = String::from_utf8_lossy(split(file).0);
+    let field = head.split_once("<FieldData").and_then(|(_, rest)| rest.split_once("</FieldData>"));
+    let tags = field.map_or("", |(field, _)| field).split("Array ").skip(1);
+    tags.filter_map(|tag| attribute(&format!(" {tag}"), "Name").map(str::to_owned)).collect()
+}
+
+/// An entry of such a file's field data, whatever it is. `is_text` tells a text in a .vtu file, where texts are bytes.
+pub(crate) fn field_entry(file: &[u8], name: &'static str, is_text: bool) -> Option<FieldEntry> {
+    let head = String::from_utf8_lossy(split(file).0);
+    let field = &head[head.find("<FieldData")?..];
+    let field = &field[..field.find("</FieldData>")?];
+    let start = field[..field.find(&format!(" Name=\"{name}\""))?].rfind('<')?;
+    let tag = &field[start..start + field[start..].find('>')?];
+    let components = attribute(tag, "NumberOfComponents").and_then(|count| count.parse().ok()).unwrap_or(1);
+    let data = |kind| {
+        let values = field_values(file, name, kind)?;
+        Some(FieldValue::Data(DataArray::of_buffer(name, components, &values)?))
+    };
+    let value = match attribute(tag, "type")? {
+        "String" => FieldValue::Text(field_text(file, name)?),
+        "UInt8" if is_text => FieldValue::Text(field_text(file, name)?),
+        "UInt8" => data(ScalarType::UInt8)?,
+        "Int32" => data(ScalarType::Int32)?,
+        "Float64" => data(ScalarType::Float64)?,
+        "UInt64" => FieldValue::Integer(
+            field_values(file, name, ScalarType::UInt64)?.into_vec::<u64>()?.first().copied()?,
+        ),
+        _ => return None,
+    };
+    Some(FieldEntry { name, value })
 }
 
 fn field_values(file: &[u8], name: &str, kind: ScalarType) -> Option<IOBuffer> {

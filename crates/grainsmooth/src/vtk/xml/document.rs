@@ -8,7 +8,7 @@ use vtkio::model::ByteOrder;
 use vtkio::xml::{DataArrayFormat, DataSetType, ScalarType};
 
 use super::super::raw::{Numbers, NumbersOfFile};
-use super::super::{Array, Cells, FieldEntry, FieldValue, PolyData};
+use super::super::{Array, Cells, FieldEntry, FieldValue, NORMALS, PolyData, is_normals};
 use super::XmlFormat;
 
 /// The one file version that VTK, ParaView, pyvista and meshio all read.
@@ -80,6 +80,9 @@ enum Topology {
 
 #[derive(Serialize)]
 struct Arrays {
+    /// The array that viewers shade with.
+    #[serde(rename = "@Normals", skip_serializing_if = "Option::is_none")]
+    normals: Option<&'static str>,
     #[serde(rename = "$value")]
     arrays: Vec<Element>,
 }
@@ -102,7 +105,7 @@ struct Header<Type> {
     #[serde(rename = "@type")]
     value_type: Type,
     #[serde(rename = "@Name")]
-    name: &'static str,
+    name: String,
     #[serde(rename = "@NumberOfComponents")]
     number_of_components: usize,
     /// Only field data need this: other arrays have as many tuples as there are points or cells.
@@ -114,13 +117,17 @@ struct Header<Type> {
     offset: u64,
 }
 
+impl Arrays {
+    fn new(arrays: Vec<Element>) -> Self {
+        Self { normals: None, arrays }
+    }
+}
+
 impl Document {
     /// Describes `data` and lists its arrays in `numbers`.
     pub(super) fn new<'a>(data: &PolyData<'a>, format: XmlFormat, numbers: &mut NumbersOfFile<'a>) -> Self {
         let grid = Grid {
-            field_data: Arrays {
-                arrays: data.field.iter().map(|entry| field(entry, format, numbers)).collect(),
-            },
+            field_data: Arrays::new(data.field.iter().map(|entry| field(entry, format, numbers)).collect()),
             piece: Piece::new(data, format, numbers),
         };
         let (data_set_type, data_set) = match format {
@@ -147,9 +154,9 @@ impl Piece {
             number_of_lines: None,
             number_of_polys: None,
             number_of_cells: None,
-            point_data: Arrays { arrays: attributes(&data.point_arrays, numbers) },
-            cell_data: Arrays { arrays: attributes(&data.cell_arrays, numbers) },
-            points: Arrays { arrays: vec![points] },
+            point_data: attributes(&data.point_arrays, numbers),
+            cell_data: attributes(&data.cell_arrays, numbers),
+            points: Arrays::new(vec![points]),
             topology: Topology::new(data, format, numbers),
         };
         let number_of = match piece.topology {
@@ -175,9 +182,11 @@ impl Topology {
             array("offsets", id_type, 1, numbers.append(ends)),
         ];
         match (format, data.cells) {
-            (XmlFormat::PolyData, Cells::Triangles(_) | Cells::Polygons(_)) => Self::Polys(Arrays { arrays }),
-            (XmlFormat::PolyData, Cells::Polylines(_)) => Self::Lines(Arrays { arrays }),
-            (XmlFormat::PolyData, Cells::Vertices(_)) => Self::Verts(Arrays { arrays }),
+            (XmlFormat::PolyData, Cells::Triangles(_) | Cells::Polygons(_)) => {
+                Self::Polys(Arrays::new(arrays))
+            }
+            (XmlFormat::PolyData, Cells::Polylines(_)) => Self::Lines(Arrays::new(arrays)),
+            (XmlFormat::PolyData, Cells::Vertices(_)) => Self::Verts(Arrays::new(arrays)),
             (XmlFormat::UnstructuredGrid, cells) => {
                 let kind = match cells {
                     Cells::Triangles(_) => TRIANGLE,
@@ -191,7 +200,7 @@ impl Topology {
                     1,
                     numbers.append(Numbers::each(cells.len(), move |_| kind)),
                 ));
-                Self::Cells(Arrays { arrays })
+                Self::Cells(Arrays::new(arrays))
             }
         }
     }
@@ -238,13 +247,12 @@ fn ids<'a>(count: usize, id: impl Fn(usize) -> u64 + Sync + 'a, wide: bool) -> N
     if wide { Numbers::each(count, id) } else { Numbers::each(count, move |index| id(index) as u32) }
 }
 
-fn attributes<'a>(arrays: &[Array<'a>], numbers: &mut NumbersOfFile<'a>) -> Vec<Element> {
-    arrays
-        .iter()
-        .map(|Array { name, values }| {
-            array(name, values.scalar_type(), values.component_count(), numbers.append(Numbers::of(*values)))
-        })
-        .collect()
+fn attributes<'a>(arrays: &[Array<'a>], numbers: &mut NumbersOfFile<'a>) -> Arrays {
+    let elements = arrays.iter().map(|Array { name, values }| {
+        array(name, values.scalar_type(), values.component_count(), numbers.append(Numbers::of(*values)))
+    });
+    let elements = elements.collect();
+    Arrays { normals: arrays.iter().any(is_normals).then_some(NORMALS), ..Arrays::new(elements) }
 }
 
 fn field(entry: &FieldEntry, format: XmlFormat, numbers: &mut NumbersOfFile<'_>) -> Element {
@@ -268,6 +276,11 @@ fn field(entry: &FieldEntry, format: XmlFormat, numbers: &mut NumbersOfFile<'_>)
             let header = Header::new(entry.name, tuples.kind, tuples.components, offset);
             Element::DataArray(header.with_tuples(tuples.len()))
         }
+        (FieldValue::Data(array), _) => {
+            let offset = numbers.append(Numbers::bytes(array.to_bytes()));
+            let header = Header::new(entry.name, array.kind(), array.components, offset);
+            Element::DataArray(header.with_tuples(array.len()))
+        }
         (FieldValue::Text(text), XmlFormat::UnstructuredGrid) => {
             let offset = numbers.append(Numbers::bytes(text.clone().into_bytes()));
             Element::DataArray(Header::new(entry.name, ScalarType::UInt8, 1, offset).with_tuples(text.len()))
@@ -279,14 +292,21 @@ fn field(entry: &FieldEntry, format: XmlFormat, numbers: &mut NumbersOfFile<'_>)
     }
 }
 
-fn array(name: &'static str, scalar_type: ScalarType, number_of_components: usize, offset: u64) -> Element {
+fn array(name: &str, scalar_type: ScalarType, number_of_components: usize, offset: u64) -> Element {
     Element::DataArray(Header::new(name, scalar_type, number_of_components, offset))
 }
 
 impl<Type> Header<Type> {
-    fn new(name: &'static str, value_type: Type, number_of_components: usize, offset: u64) -> Self {
+    fn new(name: &str, value_type: Type, number_of_components: usize, offset: u64) -> Self {
         let format = DataArrayFormat::Appended;
-        Self { value_type, name, number_of_components, number_of_tuples: None, format, offset }
+        Self {
+            value_type,
+            name: name.to_owned(),
+            number_of_components,
+            number_of_tuples: None,
+            format,
+            offset,
+        }
     }
 
     fn with_tuples(self, count: usize) -> Self {

@@ -5,6 +5,8 @@ use std::ops::Range;
 use std::str::FromStr;
 
 use super::labelled::Remarks;
+use crate::names::FIELD_NAMES;
+use crate::vtk::{DataArray, DataNumbers, FieldValue};
 
 /// Where the field data stand that follow the `DATASET` line, and what they say; nothing where there are none or they make no sense.
 pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Remarks)> {
@@ -26,10 +28,14 @@ pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Remarks)> {
         let words: Vec<&str> = head.split_whitespace().collect();
         let [name, components, tuples, kind] = words[..] else { return None };
         let count = components.parse::<usize>().ok()?.checked_mul(tuples.parse().ok()?)?;
+        let components = components.parse().ok().filter(|count| *count > 0)?;
+        let data = |numbers| FieldValue::Data(DataArray { name: name.to_owned(), components, numbers });
         match kind {
             "string" => {
                 for _ in 0..count {
-                    remarks.note_text(name, reader.text()?);
+                    let text = reader.text()?;
+                    remarks.note_text(name, text.clone());
+                    remarks.note(name, FieldValue::Text(text));
                 }
             }
             // A .vtu of this program has its texts as bytes, and what VTK makes of it too.
@@ -40,8 +46,37 @@ pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Remarks)> {
                     (0..count).map(|_| reader.number()).collect::<Option<_>>()?
                 };
                 remarks.note_text(name, String::from_utf8_lossy(&bytes).into_owned());
+                let is_text = FIELD_NAMES.iter().any(|(known, is_text)| known == &name && *is_text);
+                remarks.note(
+                    name,
+                    match is_text {
+                        true => FieldValue::Text(String::from_utf8_lossy(&bytes).into_owned()),
+                        false => data(DataNumbers::UInt8(bytes)),
+                    },
+                );
             }
-            "double" => remarks.note_numbers(name, reader.numbers(count)?),
+            "double" => {
+                let numbers = reader.numbers(count)?;
+                remarks.note_numbers(name, numbers.clone());
+                remarks.note(name, data(DataNumbers::Float64(numbers)));
+            }
+            "int" | "vtktypeint32" => {
+                let numbers: Option<Vec<i32>> = match reader.is_binary {
+                    true => {
+                        let bytes = reader.bytes(count.checked_mul(size_of::<i32>())?)?;
+                        Some(bytes.as_chunks().0.iter().map(|number| i32::from_be_bytes(*number)).collect())
+                    }
+                    false => (0..count).map(|_| reader.number()).collect(),
+                };
+                remarks.note(name, data(DataNumbers::Int32(numbers?)));
+            }
+            "vtktypeuint64" if count == 1 => {
+                let number = match reader.is_binary {
+                    true => u64::from_be_bytes(reader.bytes(size_of::<u64>())?.try_into().ok()?),
+                    false => reader.number()?,
+                };
+                remarks.note(name, FieldValue::Integer(number));
+            }
             _ if reader.is_binary => reader.skip(count.checked_mul(width(kind)?)?)?,
             _ => (0..count).try_for_each(|_| reader.word().map(|_| ()))?,
         }

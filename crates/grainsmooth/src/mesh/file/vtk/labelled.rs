@@ -6,8 +6,8 @@ use vtkio::IOBuffer;
 use vtkio::model::{Attribute, CellType, DataSet, Vtk};
 
 use super::{MeshFile, MeshFileProblem, cells, in_thread, inline, legacy_parts, problem, xml_parts};
-use crate::names::{LABEL_ARRAYS, NUMBER_OF_GRAINS, PHASE};
-use crate::vtk::{field_numbers, field_text};
+use crate::names::{BOUNDARY_ID, FIELD_NAMES, LABEL_ARRAYS, NUMBER_OF_GRAINS, PHASE, VOLUMES};
+use crate::vtk::{FieldEntry, FieldValue, field_entry, field_names, field_numbers, field_text};
 
 const NODE_TYPES: &str = "NodeTypes";
 
@@ -15,11 +15,7 @@ const PERIODIC_ORIGINALS: &str = "PeriodicOriginal";
 
 const POINT_ARRAYS: [&str; 3] = [NODE_TYPES, NUMBER_OF_GRAINS, PERIODIC_ORIGINALS];
 
-const BOUNDARY_IDS: &str = "BoundaryId";
-
 const CONFIG: &str = "Config";
-
-const VOLUMES: &str = "Volumes";
 
 const EULER_ANGLES: &str = "EulerAngles";
 
@@ -34,6 +30,10 @@ pub(crate) struct Remarks {
     pub(crate) euler_angles: Option<Vec<f64>>,
     /// The number of each grain's phase.
     pub(crate) phases: Option<Vec<f64>>,
+    /// All entries whose names this program knows.
+    pub(crate) entries: Vec<FieldEntry>,
+    /// The names of the others.
+    pub(crate) unknown: Vec<String>,
 }
 
 impl Remarks {
@@ -52,12 +52,35 @@ impl Remarks {
         }
     }
 
+    /// Keeps an entry as it is, where its name is known.
+    pub(super) fn note(&mut self, name: &str, value: FieldValue) {
+        match FIELD_NAMES.iter().find(|(known, _)| *known == name) {
+            Some((name, _)) => self.entries.push(FieldEntry { name, value }),
+            None => self.unknown.push(name.to_owned()),
+        }
+    }
+
+    /// All entries of a file, without those that are looked at.
+    pub(super) fn entries_of_xml(bytes: &[u8]) -> Self {
+        let mut remarks = Self::default();
+        let names = field_names(bytes);
+        for name in names {
+            let known = FIELD_NAMES.iter().find(|(known, _)| *known == name);
+            match known.and_then(|(name, is_text)| field_entry(bytes, name, *is_text)) {
+                Some(entry) => remarks.entries.push(entry),
+                None => remarks.unknown.push(name),
+            }
+        }
+        remarks
+    }
+
     fn of_xml(bytes: &[u8]) -> Self {
         Self {
             config: field_text(bytes, CONFIG),
             volumes: field_numbers(bytes, VOLUMES),
             euler_angles: field_numbers(bytes, EULER_ANGLES),
             phases: field_numbers(bytes, PHASE),
+            ..Self::default()
         }
     }
 }
@@ -95,7 +118,7 @@ pub(crate) fn read_legacy(bytes: &[u8]) -> Result<LabelledCells, MeshFileProblem
 
 /// Reads a .vtp or .vtu file.
 pub(crate) fn read_xml(bytes: &[u8]) -> Result<LabelledCells, MeshFileProblem> {
-    let wanted: Vec<&str> = LABEL_ARRAYS.into_iter().chain(POINT_ARRAYS).chain([BOUNDARY_IDS]).collect();
+    let wanted: Vec<&str> = LABEL_ARRAYS.into_iter().chain(POINT_ARRAYS).chain([BOUNDARY_ID]).collect();
     let parts = xml_parts::network(bytes, &wanted)?;
     in_thread(|| {
         let cells = of_data(Vtk::parse_xml(&parts[..]).map_err(problem)?.data)?;
@@ -164,7 +187,7 @@ fn of_data(data: DataSet) -> Result<LabelledCells, MeshFileProblem> {
     }
     found.labels = labels.as_chunks().0[skipped..].to_vec();
     found.label_array = name;
-    let ids = array(&attributes.cell, BOUNDARY_IDS).and_then(whole_numbers);
+    let ids = array(&attributes.cell, BOUNDARY_ID).and_then(whole_numbers);
     found.boundary_ids = ids.filter(|ids| ids.len() == skipped + count).map(|ids| ids[skipped..].to_vec());
     let count = found.mesh.points.len();
     let of_points = |name| match array(&attributes.point, name).and_then(whole_numbers) {

@@ -9,7 +9,14 @@ use super::{MeshFileProblem, problem};
 use crate::vtk::{attribute, find, try_inlined};
 
 /// Elements that no mesh needs.
-const NOT_NEEDED: [&str; 4] = ["FieldData", "PointData", "CellData", "Verts"];
+const NOT_NEEDED: [&str; 2] = ["FieldData", "Verts"];
+
+/// Elements that a mesh can do without.
+const DATA: [&str; 2] = ["PointData", "CellData"];
+
+/// Kinds of numbers that arrays are kept of.
+const KINDS: [&str; 10] =
+    ["Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64", "Float32", "Float64"];
 
 /// Kinds of cell that are left out of the file when there are none, and the attribute with their number.
 const PERHAPS_EMPTY: [(&str, &str); 4] = [
@@ -23,7 +30,17 @@ const PERHAPS_EMPTY: [(&str, &str); 4] = [
 ///
 /// What is no XML comes back as it is, for `vtkio` to refuse.
 pub(super) fn points_and_faces(bytes: &[u8]) -> Result<Vec<u8>, MeshFileProblem> {
-    parts(bytes, |head| NOT_NEEDED.iter().for_each(|name| remove(head, name)))
+    parts(bytes, |head| NOT_NEEDED.iter().chain(&DATA).for_each(|name| remove(head, name)))
+}
+
+/// The file with points, faces and all arrays of numbers.
+///
+/// What is no XML comes back as it is, for `vtkio` to refuse.
+pub(super) fn all(bytes: &[u8]) -> Result<Vec<u8>, MeshFileProblem> {
+    parts(bytes, |head| {
+        NOT_NEEDED.iter().for_each(|name| remove(head, name));
+        keep_arrays(head, |array| attribute(array, "type").is_some_and(|kind| KINDS.contains(&kind)));
+    })
 }
 
 /// The file with points, cells, and those of their arrays whose names are wanted.
@@ -32,19 +49,30 @@ pub(super) fn points_and_faces(bytes: &[u8]) -> Result<Vec<u8>, MeshFileProblem>
 pub(super) fn network(bytes: &[u8], wanted: &[&str]) -> Result<Vec<u8>, MeshFileProblem> {
     parts(bytes, |head| {
         remove(head, "FieldData");
-        for name in ["PointData", "CellData"] {
-            let Some(found) = element(head, name) else { continue };
-            let mut rest = &head[found.clone()];
-            let mut kept = format!("<{name}>");
-            while let Some(array) = element(rest, "DataArray") {
-                let is_wanted =
-                    attribute(&rest[array.clone()], "Name").is_some_and(|name| wanted.contains(&name));
-                kept.push_str(if is_wanted { &rest[array.clone()] } else { "" });
-                rest = &rest[array.end..];
-            }
-            head.replace_range(found, &format!("{kept}</{name}>"));
-        }
+        keep_arrays(head, |array| attribute(array, "Name").is_some_and(|name| wanted.contains(&name)));
     })
+}
+
+/// The names of the arrays of points and cells.
+pub(super) fn array_names(bytes: &[u8]) -> Vec<String> {
+    let head = String::from_utf8_lossy(&bytes[..find(bytes, b"<AppendedData").unwrap_or(bytes.len())]);
+    let of_element = |name: &&str| element(&head, name).map(|found| &head[found]);
+    let tags = DATA.iter().filter_map(of_element).flat_map(|element| element.split("<DataArray").skip(1));
+    tags.filter_map(|tag| attribute(tag, "Name").map(str::to_owned)).collect()
+}
+
+/// Keeps those arrays of points and cells that are wanted.
+fn keep_arrays(head: &mut String, is_wanted: impl Fn(&str) -> bool) {
+    for name in DATA {
+        let Some(found) = element(head, name) else { continue };
+        let mut rest = &head[found.clone()];
+        let mut kept = format!("<{name}>");
+        while let Some(array) = element(rest, "DataArray") {
+            kept.push_str(if is_wanted(&rest[array.clone()]) { &rest[array.clone()] } else { "" });
+            rest = &rest[array.end..];
+        }
+        head.replace_range(found, &format!("{kept}</{name}>"));
+    }
 }
 
 fn remove(head: &mut String, name: &str) {
