@@ -1,16 +1,14 @@
-"""Draws the pictures of subdivision.md from meshes that the program makes.
+"""Draws the pictures of subdivision.md: schemes by pyvista, from meshes that the program makes, and the rest by the program itself.
 
     cargo build --release && xvfb-run python3 docs/subdivision_pictures.py target/release/grainsmooth
 
-Needs pyvista.
+Needs pyvista; with `ours` behind the program, it draws those of the program alone, and needs nothing.
 """
 
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
-
-import pyvista
 
 DOCS = Path(__file__).parent
 PROGRAM = Path(sys.argv[1] if len(sys.argv) > 1 else "target/release/grainsmooth").resolve()
@@ -51,6 +49,8 @@ def mesh(*arguments):
 
 def draw(name, panels):
     """One panel for each (title, file, whether to draw edges)."""
+    import pyvista
+
     plotter = pyvista.Plotter(shape=(1, len(panels)), off_screen=True, border=False, window_size=(PANEL * len(panels), PANEL))
     for column, (title, path, edges) in enumerate(panels):
         plotter.subplot(0, column)
@@ -73,7 +73,33 @@ def levels(name, subcommand, source, directory, *options):
     return [(f"level {level}", directory / f"{name}_{level}.vtp", True) for level in range(4)]
 
 
+def ours(directory):
+    """The pictures that the program draws itself, of files in data/."""
+    data = DOCS.parent / "data"
+
+    def show(name, *arguments, size=(320, 240), out="out.vtp"):
+        mesh(*arguments, "-o", directory / out, "--picture", DOCS / f"subdivision_{name}.png", "--picture-size", *size)
+
+    show("teapot", "bezier", data / "teapot.bpt", "--merge", "--samples", 17, "--shading", "smooth", size=(640, 480))
+    show("casteljau", "bezier", data / "plane_curve.txt", "--construction", "--t", 0.4, size=(480, 360))
+    for shading in ["flat", "smooth"]:
+        show(shading, "catmull-clark", data / "torus.obj", "-n", 1, "--shading", shading, size=(400, 300))
+    for level in [0, 1, 2, 4]:
+        show(f"curve_{level}", "b-spline", data / "outline.obj", "-n", level, size=(240, 180))
+    show("four_point", "four-point", data / "outline.obj", "-n", 4, "--corners", 4, "--each-level", size=(480, 240))
+    for name in ["cube", "torus"]:
+        for cut, edits in [("plain", ["triangulate"]), ("presplit", ["triangulate", "split=flat"])]:
+            control = f"{name}_{cut}.obj"
+            show(f"{name}_{cut}", "edit", data / f"{name}.obj", *edits, out=control)
+            levels = 3 if name == "cube" else 2
+            show(f"{name}_{cut}_{levels}", "loop", directory / control, "-n", levels)
+
+
 def main():
+    with tempfile.TemporaryDirectory() as name:
+        ours(Path(name))
+    if "ours" in sys.argv[2:]:
+        return
     with tempfile.TemporaryDirectory() as name:
         directory = Path(name)
         triangles, squares = directory / "triangles.obj", directory / "squares.obj"

@@ -114,10 +114,11 @@ cube.field_data.clear()
 cube.point_data['temperature'] = cube.points[:, 0] + 2 * cube.points[:, 1]
 cube.point_data['single'] = cube.points.astype(numpy.float32)
 cube.point_data['id'] = numpy.arange(cube.n_points, dtype=numpy.int64)
-cube.point_data['name'] = ['a'] * cube.n_points
-cube.cell_data['side'] = numpy.arange(12, dtype=numpy.uint16) // 2
+cube.cell_data['side'] = numpy.arange(12, dtype=numpy.int32) // 2
 cube.field_data['time'] = [0.5]
-cube.save('in.vtp'); cube.save('in.vtk'); cube.cast_to_unstructured_grid().save('in.vtu')
+cube.save('in.vtk')
+cube.point_data['name'] = ['a'] * cube.n_points
+cube.save('in.vtp'); cube.cast_to_unstructured_grid().save('in.vtu')
 ";
     let python = |script: &str| {
         let mut python = Command::new("python3");

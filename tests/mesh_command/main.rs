@@ -14,6 +14,7 @@ mod programs;
 mod quiet_reader;
 mod references;
 mod shapes;
+mod shown;
 #[allow(dead_code, reason = "shared with the tests of the command line")]
 #[path = "../command_line/workplace.rs"]
 mod workplace;

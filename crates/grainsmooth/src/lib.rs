@@ -78,7 +78,7 @@ pub use formats::embedded_config::embedded_config;
 pub use formats::label_grid::LabelGrid;
 pub use formats::output::{Output, OutputDirectory};
 pub use formats::output_format::OutputFormat;
-pub use formats::series::{Series, SeriesOutput};
+pub use formats::series::{Series, SeriesOutput, write_collection};
 pub use grains::boundary_law::{BoundaryLaw, LawReached, TensionsReached};
 pub use grains::cells::GrainCells;
 pub use grains::inner::{Divided, Parents};
@@ -99,8 +99,8 @@ pub use mesh::{
     read_bezier, subdivide,
 };
 pub use names::Names;
-pub use picture::{Coloring, Picture, Png};
-pub use report::Html;
+pub use picture::{Coloring, Picture, Png, Scene, ScenePicture, Shading};
+pub use report::{Html, SceneReport};
 pub use run::pipeline::{
     Polycrystal, Reconnected, Regularization, check_expected_size, make_polycrystal, smooth, smooth_watched,
 };

@@ -7,6 +7,7 @@ mod legend;
 mod patch;
 mod plane;
 mod raster;
+mod scene;
 mod text;
 
 use std::io;
@@ -22,6 +23,8 @@ use coloring::Paint;
 use patch::Seen;
 
 pub use coloring::Coloring;
+pub(crate) use scene::FRONT;
+pub use scene::{Scene, ScenePicture, Shading};
 
 /// The format of pictures, 8 bits a channel on white.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

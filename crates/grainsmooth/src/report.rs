@@ -3,6 +3,7 @@
 mod chart;
 mod orientation_figures;
 mod poisson_voronoi;
+mod scene;
 mod view;
 
 use std::io;
@@ -20,6 +21,7 @@ use crate::{
 };
 use chart::Chart;
 use poisson_voronoi::{SIZE_BIN, angle_density, face_shares, size_shares};
+pub use scene::SceneReport;
 
 /// The format of reports: one page that needs nothing else.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

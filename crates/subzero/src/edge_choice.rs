@@ -32,7 +32,8 @@ impl HalfEdgeMesh {
         chosen.map(|h| [self.start(h), self.end(h)]).collect()
     }
 
-    /// The ends of the edges whose two triangles lie in one plane, to 1e-4 radians, such as the diagonals of polygons that were cut.
+    /// The ends of the diagonals of polygons that were cut: edges whose two triangles lie in one plane, to 1e-4 radians, and that are the
+    /// longest such edge of both (to 1e-9 of their length). Polygons that lie in one plane themselves so keep their sides.
     ///
     /// # Panics
     /// If `points` has fewer points than the mesh has vertices.
@@ -41,12 +42,18 @@ impl HalfEdgeMesh {
             let [a, b, c] = [self.start(h), self.end(h), self.start(prev(h))].map(|v| points[v as usize]);
             (b - a).cross(c - a).normalize_or_zero()
         };
-        let is_flat = |&h: &u32| {
+        let is_flat = |h: u32| {
             self.twin(h).is_some_and(|twin| {
                 let [one, other] = [normal(h), normal(twin)];
                 one.dot(other) > 0.0 && one.cross(other).length() <= FLAT_ANGLE
             })
         };
-        self.edges().filter(is_flat).map(|h| [self.start(h), self.end(h)]).collect()
+        let length = |h: u32| points[self.start(h) as usize].distance(points[self.end(h) as usize]);
+        let is_longest = |h: u32| {
+            let flat = self.face_half_edges(h).into_iter().filter(|&side| is_flat(side));
+            length(h) >= flat.map(length).fold(0.0, f64::max) * (1.0 - EQUAL_LENGTHS)
+        };
+        let is_diagonal = |&h: &u32| is_flat(h) && is_longest(h) && self.twin(h).is_some_and(is_longest);
+        self.edges().filter(is_diagonal).map(|h| [self.start(h), self.end(h)]).collect()
     }
 }

@@ -54,6 +54,14 @@ fn sides_as_long_as_the_longest_count_too() {
     assert_eq!(mesh.flat_edges(&points), [[2, 0]]);
 }
 
+/// Squares in one plane keep the sides between them.
+#[test]
+fn diagonals_alone_of_polygons_in_one_plane() {
+    let points: Vec<DVec3> = (0..6).map(|v| DVec3::new(f64::from(v % 3), f64::from(v / 3), 0.5)).collect();
+    let mesh = HalfEdgeMesh::new(6, &[[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]]).unwrap();
+    assert_eq!(sorted(mesh.flat_edges(&points)), [[0, 4], [1, 5]]);
+}
+
 #[test]
 fn what_folds_back_is_not_flat() {
     let points = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(0.3, 0.3, 0.0)];

@@ -9,6 +9,9 @@ use grainsmooth::mesh::{EdgeChoice, MeshEdit};
 use subzero::{BoundaryRule, Crease, DooSabinWeights, INFINITE_SHARPNESS, LoopWeights};
 
 use super::files::VtkArguments;
+use shown::ShownArguments;
+
+mod shown;
 
 /// Subdivide and edit meshes and curves: OBJ, PLY, STL, OFF, VTK or JSON in; VTK, OBJ, PLY, STL or JSON out.
 #[derive(Debug, Args)]
@@ -23,7 +26,7 @@ Examples:
   grainsmooth mesh loop cube.obj -n 3 -o smooth.vtp --crease 0-1,1-2:2.5 --corners 7
   grainsmooth mesh catmull-clark cage.ply -n 2 -o out.vtp --each-level    out_0.vtp, out_1.vtp, out_2.vtp
   grainsmooth mesh loop tetrahedron.off --json -o levels.json             all levels, parents and limits
-  grainsmooth mesh four-point outline.obj -n 4 -o curve.vtp
+  grainsmooth mesh four-point outline.obj -n 4 --each-level -o curve.pvd --picture curve.png
   grainsmooth mesh collapse part.stl --edge 4-9 -o part.obj
   grainsmooth mesh edit cube.obj triangulate split=flat flip=0-9,3-8 -o presplit.obj
 
@@ -84,6 +87,9 @@ pub struct FileArguments {
     #[command(flatten)]
     pub vtk: VtkArguments,
 
+    #[command(flatten)]
+    pub shown: ShownArguments,
+
     /// Say nothing unless something is wrong
     #[arg(short, long)]
     pub quiet: bool,
@@ -126,7 +132,7 @@ pub struct StepArguments {
     #[arg(long)]
     pub closed: bool,
 
-    /// Write one file a level: OUT_0, OUT_1, ...
+    /// Write one file a level, OUT_0, OUT_1, ..., and of .vtp and .vtu OUT.pvd, which names them; OUT may be OUT.pvd itself
     #[arg(long, conflicts_with = "json")]
     pub each_level: bool,
 }
@@ -392,6 +398,11 @@ impl FileArguments {
     /// The format to write, if the extension names one.
     pub fn format(&self) -> Option<MeshFormat> {
         if self.json { Some(MeshFormat::Json) } else { MeshFormat::of_path(&self.output) }
+    }
+
+    /// Whether the output is a collection of levels.
+    pub fn is_collection(&self) -> bool {
+        self.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("pvd"))
     }
 }
 

@@ -79,11 +79,11 @@ fn colorings() -> impl TypedValueParser<Value = Coloring> {
     PossibleValuesParser::new(Coloring::ALL.map(Coloring::name)).map(named)
 }
 
-fn parse_png(text: &str) -> Result<PathBuf, String> {
+pub(super) fn parse_png(text: &str) -> Result<PathBuf, String> {
     parse_named(text, "png")
 }
 
-fn parse_html(text: &str) -> Result<PathBuf, String> {
+pub(super) fn parse_html(text: &str) -> Result<PathBuf, String> {
     parse_named(text, "html")
 }
 

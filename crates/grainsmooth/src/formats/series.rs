@@ -1,5 +1,6 @@
 //! A relaxation as a time series for ParaView.
 
+use std::io::{self, Write};
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
@@ -122,16 +123,26 @@ impl Series {
         }
         polycrystal.stage(&output.step(times.len())?, files)?;
         times.push(time);
-        output.collection.stage(files, |out| {
-            writeln!(out, "<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>")?;
-            for (number, time) in times.iter().enumerate() {
-                let path = step_path(output.path(), number);
-                let file = escaped(&path.file_name().unwrap_or_default().to_string_lossy());
-                writeln!(out, "<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{file}\"/>")?;
-            }
-            writeln!(out, "</Collection>\n</VTKFile>")
-        })
+        let steps = times.into_iter().enumerate();
+        let steps = steps.map(|(number, time)| (time, step_path(output.path(), number)));
+        output.collection.stage(files, |out| write_collection(steps, out))
     }
+}
+
+/// Writes a collection for ParaView (`.pvd`): times and the files, beside it, that hold what there is then.
+///
+/// # Errors
+/// Whatever `out` reports.
+pub fn write_collection(
+    files: impl IntoIterator<Item = (f64, impl AsRef<Path>)>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    writeln!(out, "<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>")?;
+    for (time, path) in files {
+        let file = escaped(&path.as_ref().file_name().unwrap_or_default().to_string_lossy());
+        writeln!(out, "<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{file}\"/>")?;
+    }
+    writeln!(out, "</Collection>\n</VTKFile>")
 }
 
 /// The network of cells on their way to those of a finished one.

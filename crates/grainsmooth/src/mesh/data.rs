@@ -74,13 +74,12 @@ impl MeshFile {
         }
     }
 
-    /// The names of all arrays, and of those that could not be read.
+    /// The names of all arrays and entries.
     pub fn data_names(&self) -> Vec<String> {
         let arrays = self.point_data.iter().chain(&self.face_data).chain(&self.line_data);
         let names = arrays.map(|array| array.name.clone());
         let mut names: Vec<String> =
             names.chain(self.field.iter().map(|entry| entry.name.to_owned())).collect();
-        names.extend_from_slice(&self.left_behind);
         names.sort_unstable();
         names.dedup();
         names

@@ -37,7 +37,7 @@ pub enum EdgeChoice {
     All,
     /// The longest of each triangle, and those as long as it.
     Longest,
-    /// Those between triangles in one plane, such as diagonals of polygons that were cut.
+    /// The longest between triangles in one plane: diagonals of polygons that were cut.
     Flat,
 }
 

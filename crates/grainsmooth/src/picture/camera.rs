@@ -20,10 +20,29 @@ impl Camera {
     pub(super) fn new(patches: &[Patch], samples: [f64; 2]) -> Self {
         // Turned so that the two upright faces of a box show unequal parts, which tells them apart.
         let toward = DVec3::new(0.55, -0.95, 0.62).normalize();
-        let right = DVec3::Z.cross(toward).normalize();
+        Self::toward(toward, DVec3::Z, patches.iter().flat_map(|patch| &patch.points), samples)
+    }
+
+    /// Looks at points as [`new`](Self::new) does; from straight above where they lie in a plane of one z.
+    pub(super) fn of_points<'a>(points: impl Iterator<Item = &'a DVec3> + Clone, samples: [f64; 2]) -> Self {
+        let first = points.clone().next().map_or(0.0, |point| point.z);
+        if points.clone().all(|point| point.z == first) {
+            return Self::toward(DVec3::Z, DVec3::Y, points, samples);
+        }
+        let toward = DVec3::new(0.55, -0.95, 0.62).normalize();
+        Self::toward(toward, DVec3::Z, points, samples)
+    }
+
+    fn toward<'a>(
+        toward: DVec3,
+        above: DVec3,
+        points: impl Iterator<Item = &'a DVec3>,
+        samples: [f64; 2],
+    ) -> Self {
+        let right = above.cross(toward).normalize();
         let up = toward.cross(right);
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for point in patches.iter().flat_map(|patch| &patch.points) {
+        for point in points {
             for (axis, place) in [point.dot(right), point.dot(up)].into_iter().enumerate() {
                 low[axis] = low[axis].min(place);
                 high[axis] = high[axis].max(place);
@@ -35,7 +54,8 @@ impl Camera {
             right,
             up,
             toward,
-            scale: scale[0].min(scale[1]),
+            // A single point has no size.
+            scale: Some(scale[0].min(scale[1])).filter(|scale| scale.is_finite()).unwrap_or(1.0),
             middle: [0, 1].map(|axis| low[axis].midpoint(high[axis])),
             center: samples.map(|side| side / 2.0),
         }

@@ -1,5 +1,8 @@
 //! Triangles and lines with a depth buffer, in bands of rows that are drawn in parallel.
 
+use std::f64::consts::TAU;
+use std::num::NonZeroU16;
+
 use glam::DVec3;
 use rayon::prelude::*;
 use tiny_skia::Pixmap;
@@ -17,7 +20,10 @@ const SAMPLES: usize = 3;
 const BAND: usize = 32;
 
 /// What lines are drawn in: nearly black.
-const LINE: Color = [0.1; 3];
+pub(super) const LINE: Color = [0.1; 3];
+
+/// Sides of a disc, which is a polygon: a circle at the size of points.
+const DISC_SIDES: u32 = 16;
 
 /// Draws patches in the colours of their grains or boundaries, as large as the picture allows.
 pub(super) fn draw(patches: &[Patch], paint: &Paint, picture: &Picture, pixmap: &mut Pixmap) {
@@ -25,10 +31,7 @@ pub(super) fn draw(patches: &[Patch], paint: &Paint, picture: &Picture, pixmap: 
     let camera = Camera::new(patches, [width, height].map(|side| (side * SAMPLES) as f64));
     let shown: Vec<Shown> = patches.par_iter().map(|patch| Shown::new(patch, &camera)).collect();
     let half_width = picture.line_width() * SAMPLES as f64 / 2.0;
-    let pixels = pixmap.data_mut().par_chunks_mut(4 * width * BAND);
-    pixels.enumerate().for_each(|(number, pixels)| {
-        let rows = pixels.len() / (4 * width);
-        let mut band = Band::new(number * BAND * SAMPLES, rows * SAMPLES, width * SAMPLES);
+    draw_bands(width, pixmap, |band| {
         for (patch, shown) in patches.iter().zip(&shown) {
             let color = match &paint.boundaries {
                 Some(boundaries) => boundaries[patch.boundary],
@@ -38,7 +41,62 @@ pub(super) fn draw(patches: &[Patch], paint: &Paint, picture: &Picture, pixmap: 
                 band.draw_patch(patch, shown, color, half_width);
             }
         }
+    });
+}
+
+/// Draws in bands of rows of a picture of this width, in parallel.
+fn draw_bands(width: usize, pixmap: &mut Pixmap, draw: impl Fn(&mut Band) + Sync) {
+    let pixels = pixmap.data_mut().par_chunks_mut(4 * width * BAND);
+    pixels.enumerate().for_each(|(number, pixels)| {
+        let rows = pixels.len() / (4 * width);
+        let mut band = Band::new(number * BAND * SAMPLES, rows * SAMPLES, width * SAMPLES);
+        draw(&mut band);
         band.into_pixels(pixels);
+    });
+}
+
+/// What is drawn of a mesh or of curves, placed in samples.
+#[derive(Default)]
+pub(super) struct Figures {
+    /// Triangles, with a colour at each corner.
+    pub(super) triangles: Vec<([DVec3; 3], [Color; 3])>,
+    /// Lines with their colours and half widths.
+    pub(super) lines: Vec<([DVec3; 2], Color, f64)>,
+    /// Discs with their colours and radii.
+    pub(super) discs: Vec<(DVec3, Color, f64)>,
+}
+
+/// Samples along each side of a picture.
+pub(super) fn samples(size: [NonZeroU16; 2]) -> [f64; 2] {
+    size.map(|side| f64::from(side.get()) * SAMPLES as f64)
+}
+
+/// Draws figures as they are placed; of those in one place the nearest.
+pub(super) fn draw_figures(figures: &Figures, pixmap: &mut Pixmap) {
+    let width = usize::try_from(pixmap.width()).unwrap_or(usize::MAX);
+    draw_bands(width, pixmap, |band| {
+        for (corners, colors) in &figures.triangles {
+            let rows = corners.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], place| {
+                [low.min(place.y), high.max(place.y)]
+            });
+            if band.meets(rows, 0.0) {
+                let color = |weights: [f64; 3]| {
+                    [0, 1, 2].map(|channel| (0..3).map(|at| weights[at] * colors[at][channel]).sum())
+                };
+                band.draw_triangle(*corners, color);
+            }
+        }
+        for (ends, color, half_width) in &figures.lines {
+            let [low, high] = [ends[0].y.min(ends[1].y), ends[0].y.max(ends[1].y)];
+            if band.meets([low, high], 2.0 * half_width) {
+                band.draw_line(*ends, *half_width, *color);
+            }
+        }
+        for (middle, color, radius) in &figures.discs {
+            if band.meets([middle.y; 2], *radius) {
+                band.draw_disc(*middle, *radius, *color);
+            }
+        }
     });
 }
 
@@ -99,12 +157,12 @@ impl Band {
             });
         }
         for edge in &patch.rim {
-            self.draw_line(edge.map(|point| shown.places[point as usize]), half_width);
+            self.draw_line(edge.map(|point| shown.places[point as usize]), half_width, LINE);
         }
     }
 
     /// A line, as two triangles that face the viewer, a little nearer than it is lest its own surface hides it.
-    fn draw_line(&mut self, ends: [DVec3; 2], half_width: f64) {
+    fn draw_line(&mut self, ends: [DVec3; 2], half_width: f64, color: Color) {
         let along = (ends[1] - ends[0]).with_z(0.0).normalize_or_zero() * half_width;
         let across = DVec3::new(along.y, -along.x, 0.0);
         // A surface that rises by twice the line's width over that width, which is steep, still shows the line.
@@ -112,7 +170,20 @@ impl Band {
         let [start, end] = [ends[0] - along + nearer, ends[1] + along + nearer];
         let [a, b, c, d] = [start + across, start - across, end - across, end + across];
         for corners in [[a, b, c], [a, c, d]] {
-            self.draw_triangle(corners, |_| LINE);
+            self.draw_triangle(corners, |_| color);
+        }
+    }
+
+    /// A disc that faces the viewer, nearer than the lines that end there.
+    fn draw_disc(&mut self, middle: DVec3, radius: f64, color: Color) {
+        let middle = middle + DVec3::Z * (4.0 * radius);
+        let place = |step: u32| {
+            let (sine, cosine) = (f64::from(step) * TAU / f64::from(DISC_SIDES)).sin_cos();
+            // Rows count downward.
+            middle + radius * DVec3::new(cosine, -sine, 0.0)
+        };
+        for step in 0..DISC_SIDES {
+            self.draw_triangle([middle, place(step), place(step + 1)], |_| color);
         }
     }
 

@@ -73,7 +73,9 @@ impl Chart {
         } else {
             key("before", self.names[0]) + &key("after", self.names[1])
         };
-        keys += &key("exact", self.exact_name);
+        if !self.exact.is_empty() {
+            keys += &key("exact", self.exact_name);
+        }
         let svg = self.svg(&before, &after);
         format!("<figure>{svg}<figcaption>Share of {} in %. {keys}</figcaption></figure>", self.of)
     }

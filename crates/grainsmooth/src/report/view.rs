@@ -9,7 +9,8 @@ use glam::DVec3;
 use serde::Serialize;
 
 use crate::formats::surface::{Surface, label};
-use crate::{Coloring, Polycrystal};
+use crate::picture::FRONT;
+use crate::{Coloring, Polycrystal, Scene};
 
 /// Most triangles that are shown, both sides of each counted once: browsers without a graphics card still turn them.
 const MOST_TRIANGLES: usize = 120_000;
@@ -58,17 +59,11 @@ pub(super) fn network_json(polycrystal: &Polycrystal) -> io::Result<String> {
     let domain = polycrystal.network.domain();
     let middle = domain.lower().midpoint(domain.upper());
     let unit = domain.size().max_element();
-    let points: Vec<DVec3> = surface.points.iter().map(|point| (*point - middle) / unit).collect();
-    let low = points.iter().copied().reduce(DVec3::min).unwrap_or_default();
-    let high = points.iter().copied().reduce(DVec3::max).unwrap_or_default();
-    let step = (high - low) / f64::from(u16::MAX);
-    let steps = points.iter().flat_map(|point| ((*point - low) / step).round().to_array());
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "from 0 to 65535 without a remainder"
-    )]
-    let points: Vec<u8> = steps.flat_map(|steps| (steps as u16).to_le_bytes()).collect();
+    let place = |point: DVec3| (point - middle) / unit;
+    let placed = || surface.points.iter().map(|point| place(*point));
+    let low = placed().reduce(DVec3::min).unwrap_or_default();
+    let high = placed().reduce(DVec3::max).unwrap_or_default();
+    let Packed { points, low, step } = Packed::between([low, high], place, &surface.points);
     let triangles: Vec<u8> = surface.triangles().flatten().flat_map(u32::to_le_bytes).collect();
     let part = |part: &crate::formats::surface::Part| Part {
         count: surface.triangles_of(part).count(),
@@ -77,15 +72,68 @@ pub(super) fn network_json(polycrystal: &Polycrystal) -> io::Result<String> {
     let colors =
         |way: Coloring| (way.name(), way.paint(polycrystal).grains.into_iter().map(single).collect());
     let network = Network {
-        points: BASE64.encode(points),
-        low: low.to_array(),
-        step: step.to_array(),
+        points,
+        low,
+        step,
         triangles: BASE64.encode(triangles),
         parts: surface.parts.iter().map(part).collect(),
         shifts: polycrystal.shifts(1.0 / unit).into_iter().map(|shift| single(shift.to_array())).collect(),
         colors: colorings(polycrystal).map(colors).collect(),
     };
     Ok(serde_json::to_string(&network)?)
+}
+
+/// A mesh of triangles with both its sides, as a network of one grain whose boundary is all there is.
+pub(super) fn scene_json(scene: &Scene) -> io::Result<String> {
+    let (triangles, _) = scene.triangles();
+    let Packed { points, low, step } = Packed::new(&scene.points);
+    let count = triangles.len();
+    let triangles: Vec<u8> = triangles.into_iter().flatten().flat_map(u32::to_le_bytes).collect();
+    let network = Network {
+        points,
+        low,
+        step,
+        triangles: BASE64.encode(triangles),
+        parts: vec![Part { count, sides: [0, 0] }],
+        shifts: vec![[0.0; 3]],
+        colors: BTreeMap::from([("surface", vec![single(FRONT)])]),
+    };
+    Ok(serde_json::to_string(&network)?)
+}
+
+/// Points in units of their longest side, their middle at the origin, as whole steps from their low corner.
+struct Packed {
+    points: String,
+    low: [f64; 3],
+    step: [f64; 3],
+}
+
+impl Packed {
+    fn new(points: &[DVec3]) -> Self {
+        let least = points.iter().copied().reduce(DVec3::min).unwrap_or_default();
+        let most = points.iter().copied().reduce(DVec3::max).unwrap_or_default();
+        let unit = Some((most - least).max_element()).filter(|unit| *unit > 0.0).unwrap_or(1.0);
+        let middle = least.midpoint(most);
+        Self::between(
+            [least, most].map(|corner| (corner - middle) / unit),
+            |point| (point - middle) / unit,
+            points,
+        )
+    }
+
+    /// Points that `place` puts between two corners.
+    fn between([low, high]: [DVec3; 2], place: impl Fn(DVec3) -> DVec3, points: &[DVec3]) -> Self {
+        // A flat side has no step.
+        let step = ((high - low) / f64::from(u16::MAX)).max(DVec3::splat(f64::MIN_POSITIVE));
+        let steps = points.iter().flat_map(|point| ((place(*point) - low) / step).round().to_array());
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "from 0 to 65535 without a remainder"
+        )]
+        let points: Vec<u8> = steps.flat_map(|steps| (steps as u16).to_le_bytes()).collect();
+        Self { points: BASE64.encode(points), low: low.to_array(), step: step.to_array() }
+    }
 }
 
 /// Screens need no more digits than single precision has.

@@ -1,0 +1,59 @@
+//! Options about pictures and reports of meshes.
+
+use std::num::NonZeroU16;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use grainsmooth::{Error, Html, Output, Picture, Png, ScenePicture, Shading};
+
+use crate::cli::pictures::{parse_html, parse_png};
+use grainsmooth::spelling::whole_number;
+
+/// What is shown of the result.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Pictures")]
+pub struct ShownArguments {
+    /// Draw the result, needing no display; with --each-level an animation (APNG) of the levels
+    #[arg(long, value_name = "PATH.png", value_parser = parse_png)]
+    picture: Option<PathBuf>,
+
+    /// Width and height of the picture in pixels [default: 1200 900]
+    #[arg(long, value_names = ["W", "H"], num_args = 2, value_parser = whole_number(16..=16_384_u16), allow_negative_numbers = true, requires = "picture")]
+    picture_size: Option<Vec<u16>>,
+
+    /// Draw each face by itself with its edges, and curves with their points (flat), or surfaces by normals at points (smooth)
+    #[arg(long, value_enum, default_value_t = ShadingName::Flat, requires = "picture")]
+    shading: ShadingName,
+
+    /// Write a page with a view of the result to turn round, histograms and the figures of the run; it works offline
+    #[arg(long, value_name = "PATH.html", value_parser = parse_html)]
+    report: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum ShadingName {
+    Flat,
+    Smooth,
+}
+
+impl ShownArguments {
+    /// The picture asked for, its path found writable.
+    pub fn picture(&self) -> Result<Option<(ScenePicture, Output<Png>)>, Error> {
+        let Some(path) = &self.picture else { return Ok(None) };
+        let at_least_one = |side: &u16| NonZeroU16::new(*side).unwrap_or(NonZeroU16::MIN);
+        let size = match self.picture_size.as_deref() {
+            Some([width, height]) => [width, height].map(at_least_one),
+            _ => Picture::SIZE,
+        };
+        let shading = match self.shading {
+            ShadingName::Flat => Shading::Flat,
+            ShadingName::Smooth => Shading::Smooth,
+        };
+        Ok(Some((ScenePicture { size, shading }, Output::check_as(path, Png)?)))
+    }
+
+    /// The report asked for, its path found writable.
+    pub fn report(&self) -> Result<Option<Output<Html>>, Error> {
+        self.report.as_ref().map(|path| Output::check_as(path, Html)).transpose()
+    }
+}

@@ -1,0 +1,218 @@
+//! What is read and written, and what is said of it.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use glam::DVec3;
+use grainsmooth::mesh::CarriedData;
+use grainsmooth::mesh::file::{MeshFile, MeshFormat, MeshToWrite, read_mesh, read_polylines, stage_mesh};
+use grainsmooth::vtk::Cells;
+use grainsmooth::{
+    BezierFile, Connectivity, Error, Level, Output, Scene, StagedFiles, mesh_json, read_bezier,
+    write_together,
+};
+use subzero::INFINITE_SHARPNESS;
+
+use super::Job;
+use super::shown::Scenes;
+use crate::cli::mesh::Features;
+
+impl Job<'_> {
+    /// Writes the files of a run, with its picture and its page, so that all appear together.
+    pub(super) fn write(
+        &self,
+        written: Vec<PathBuf>,
+        scenes: impl FnOnce() -> Scenes,
+        stage: impl FnOnce(&mut StagedFiles) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        let scenes = self.shown.is_any().then(scenes);
+        write_together(|files| {
+            stage(files)?;
+            match &scenes {
+                Some(scenes) => self.shown.stage(scenes, &self.command_line, &self.report.borrow(), files),
+                None => Ok(()),
+            }
+        })?;
+        for path in written.iter().map(PathBuf::as_path).chain(self.shown.paths()) {
+            self.report(format_args!("written     {}", path.display()));
+        }
+        Ok(())
+    }
+
+    pub(super) fn read_control_points(&self) -> Result<BezierFile, Error> {
+        let file = read_bezier(&self.files.input)?;
+        let (curves, surfaces) = (file.curves.len(), file.surfaces.len());
+        self.report(format_args!("read        {curves} curves and {surfaces} surfaces"));
+        Ok(file)
+    }
+
+    /// The surface, without polylines that the file may have.
+    pub(super) fn read(&self) -> Result<MeshFile, Error> {
+        let mut mesh = read_mesh(&self.files.input)?;
+        let (points, faces, lines) = (mesh.points.len(), mesh.faces.len(), mesh.lines.len());
+        self.report(format_args!("read        {points} points, {faces} faces"));
+        if lines > 0 {
+            self.report(format_args!("dropped     {lines} polylines beside the faces"));
+            mesh.lines.clear();
+        }
+        if let Some(corners) = mesh.welded_corners {
+            self.report(format_args!(
+                "welded      {corners} corners with exactly equal coordinates to {points} points"
+            ));
+        }
+        Ok(mesh)
+    }
+
+    /// The polylines, without faces that the file may have.
+    pub(super) fn read_lines(&self) -> Result<MeshFile, Error> {
+        let mut mesh = read_polylines(&self.files.input)?;
+        let (points, faces, lines) = (mesh.points.len(), mesh.faces.len(), mesh.lines.len());
+        self.report(format_args!("read        {points} points, {lines} polylines"));
+        if faces > 0 {
+            self.report(format_args!("dropped     {faces} faces beside the polylines"));
+            mesh.faces.clear();
+        }
+        Ok(mesh)
+    }
+
+    /// The mesh or polylines, with the creases and corners of the command line beside those of the file.
+    pub(super) fn read_with(&self, features: Features<'_>) -> Result<MeshFile, Error> {
+        match features {
+            Features::OfSurface(features) => {
+                let mut mesh = self.read()?;
+                mesh.creases.extend(&features.creases);
+                mesh.corners.extend(&features.corners);
+                if let Some(boundary) = features.boundary {
+                    mesh.boundary = boundary.into();
+                }
+                Ok(mesh)
+            }
+            Features::OfCurves { corners } => {
+                let mut mesh = self.read_lines()?;
+                mesh.corners.extend(corners.iter().map(|&corner| (corner, INFINITE_SHARPNESS)));
+                Ok(mesh)
+            }
+        }
+    }
+
+    /// Completes a level as a file, with what keeps a meaning of the arrays of the mesh that it comes from.
+    pub(super) fn stage_level(
+        &self,
+        mesh: &MeshFile,
+        level: &Level,
+        normals: Option<&[DVec3]>,
+        shape_changes: bool,
+        output: &Output<MeshFormat>,
+        files: &mut StagedFiles,
+    ) -> Result<(), Error> {
+        let polygons;
+        let (cells, arrays) = match &level.mesh {
+            Connectivity::Triangles(triangles) => (Cells::Triangles(triangles.triangles()), &mesh.face_data),
+            Connectivity::Polygons(_) => {
+                polygons = level.mesh.faces();
+                (Cells::Polygons(&polygons[..]), &mesh.face_data)
+            }
+            Connectivity::Curves(curves) => (Cells::Polylines(&curves.lines[..]), &mesh.line_data),
+        };
+        let data = CarriedData::new(mesh, level, arrays, shape_changes);
+        self.report_data(mesh, &data.names(normals.is_some()));
+        let content = MeshToWrite {
+            normals,
+            generations: level.generations.as_deref(),
+            point_data: &data.of_points,
+            cell_data: &data.of_cells,
+            field: &data.field,
+            ..self.content(&level.points, cells)
+        };
+        stage_mesh(&content, output, files)
+    }
+
+    /// Writes a mesh in any format; `before` is that of the file it was made of.
+    pub(super) fn write_single(
+        &self,
+        output: &Output<MeshFormat>,
+        before: &MeshFile,
+        mesh: &MeshFile,
+        normals: Option<&[Option<DVec3>]>,
+    ) -> Result<(), Error> {
+        let mut names = mesh.data_names();
+        names.extend(normals.map(|_| "Normals".to_owned()));
+        self.report_data(before, &names);
+        let scenes = || Scenes { before: scene_of_file(before), levels: vec![scene_of_file(mesh)] };
+        self.write(vec![output.path().to_owned()], scenes, |files| {
+            if self.format == MeshFormat::Json {
+                return output.stage(files, |out| mesh_json(mesh, normals, out));
+            }
+            let normals: Option<Vec<DVec3>> =
+                normals.map(|normals| normals.iter().map(|normal| normal.unwrap_or_default()).collect());
+            let triangles = mesh.triangles();
+            let cells = match &triangles {
+                Ok(triangles) => Cells::Triangles(triangles),
+                Err(_) => Cells::Polygons(&mesh.faces),
+            };
+            let content = MeshToWrite {
+                normals: normals.as_deref(),
+                point_data: &mesh.point_data,
+                cell_data: &mesh.face_data,
+                field: &mesh.field,
+                ..self.content(&mesh.points, cells)
+            };
+            stage_mesh(&content, output, files)
+        })
+    }
+
+    /// Says once which arrays of a file are in what was made of it, and which are not, and why.
+    fn report_data(&self, mesh: &MeshFile, written: &[String]) {
+        let holds_arrays = matches!(self.format, MeshFormat::Vtk(_));
+        let names = mesh.data_names().into_iter().chain(mesh.left_behind.iter().cloned());
+        let (kept, dropped): (Vec<String>, Vec<String>) =
+            names.partition(|name| holds_arrays && written.contains(name));
+        let mut lines = Vec::new();
+        if !kept.is_empty() {
+            lines.push(format!("kept        {}", kept.join(", ")));
+        }
+        let mut by_reason: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+        for name in dropped {
+            let why = if holds_arrays { mesh.why_dropped(&name) } else { "the format holds no arrays" };
+            by_reason.entry(why).or_default().push(name);
+        }
+        lines.extend(
+            by_reason.into_iter().map(|(why, names)| format!("dropped     {}: {why}", names.join(", "))),
+        );
+        for line in lines {
+            if !self.report.borrow().contains(&line) {
+                self.report(format_args!("{line}"));
+            }
+        }
+    }
+
+    pub(super) fn content<'a>(&'a self, points: &'a [DVec3], cells: Cells<'a>) -> MeshToWrite<'a> {
+        let command_line = &self.command_line;
+        let encoding = self.files.vtk.vtk_encoding;
+        MeshToWrite {
+            points,
+            cells,
+            normals: None,
+            generations: None,
+            point_data: &[],
+            cell_data: &[],
+            field: &[],
+            command_line,
+            encoding,
+        }
+    }
+}
+
+/// The faces of a file, or its polylines.
+pub(super) fn scene_of_file(mesh: &MeshFile) -> Scene {
+    let lines = if mesh.faces.is_empty() { mesh.lines.clone() } else { Vec::new() };
+    Scene { points: mesh.points.clone(), faces: mesh.faces.clone(), lines, ..Scene::default() }
+}
+
+/// What a level of subdivision looks like.
+pub(super) fn scene_of_level(level: &Level) -> Scene {
+    let cells = level.mesh.faces();
+    let is_curve = matches!(level.mesh, Connectivity::Curves(_));
+    let (faces, lines) = if is_curve { (Vec::new(), cells) } else { (cells, Vec::new()) };
+    Scene { points: level.points.clone(), faces, lines, ..Scene::default() }
+}
