@@ -1,7 +1,7 @@
 //! What each mechanism of relaxation in space is worth: the table of docs/relaxation.md.
 //!
 //! ```text
-//! cargo run --release -p polycrystal --example ablation [-- [--equilibrium] [ROW...]]
+//! cargo run --release -p grainsmooth-polycrystal --example ablation [-- [--equilibrium] [ROW...]]
 //! ```
 //!
 //! Each row changes one number of the tuning and relaxes the same networks; a ROW given by the beginning of its name is

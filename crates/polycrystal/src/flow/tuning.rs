@@ -3,7 +3,7 @@
 /// What relaxation in space is tuned by. Lengths are in units of the feature size (the mean grain size, or a box's shorter side),
 /// times in units of the mean grain size squared.
 ///
-/// Each number was chosen by `cargo run --release -p polycrystal --example ablation`, which prints what becomes of forty networks
+/// Each number was chosen by `cargo run --release -p grainsmooth-polycrystal --example ablation`, which prints what becomes of forty networks
 /// with and without it; docs/relaxation.md has the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tuning {
