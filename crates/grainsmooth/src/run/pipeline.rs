@@ -322,7 +322,11 @@ fn time_that_works(
 ) -> Option<f64> {
     let Relaxation::Time(asked) = config.relaxation else { return None };
     let mut time = match cause {
-        NetworkError::GrainVanished { time, .. } if *time > 0.0 => 0.9 * time,
+        NetworkError::GrainVanished { time, .. } | NetworkError::GrowthNotFollowed { time, .. }
+            if *time > 0.0 =>
+        {
+            0.9 * time
+        }
         _ => SHORTER * asked,
     };
     let mut clock = Clock { progress: &|_, _, _| (), times: Vec::new() };

@@ -57,6 +57,7 @@ impl NetworkError {
             Self::Invalid(_)
                 | Self::Folded { .. }
                 | Self::VolumeNotRestored { .. }
+                | Self::GrowthNotFollowed { .. }
                 | Self::BoundaryTooSmall { .. }
                 | Self::GrainInPieces { .. }
                 | Self::TouchesItself { .. }
@@ -72,6 +73,7 @@ impl NetworkError {
             Self::Invalid(_)
                 | Self::Folded { .. }
                 | Self::VolumeNotRestored { .. }
+                | Self::GrowthNotFollowed { .. }
                 | Self::GrainVanished { .. }
         )
     }
@@ -216,6 +218,18 @@ pub enum NetworkError {
         /// The time by which it is gone, in units of the mean grain size squared.
         time: f64,
     },
+    /// A grain that grows or shrinks faster than the shortest step of a free flow can follow.
+    #[error(
+        "the volume of grain {} cannot be followed beyond the relaxation time {}; relax for a shorter time, or keep volumes",
+        grain.0,
+        to_three_digits(*time)
+    )]
+    GrowthNotFollowed {
+        /// The grain whose volume is known worst.
+        grain: GrainId,
+        /// The time until then, in units of the mean grain size squared.
+        time: f64,
+    },
     /// The finished network does not keep its contract.
     #[error("the network is invalid: {0}; relax for a shorter time, or move seeds or points a little")]
     Invalid(Faults),
@@ -237,6 +251,7 @@ impl NetworkError {
             Self::TouchesItself { grain }
             | Self::GrainInPieces { grain }
             | Self::VolumeNotRestored { grain, .. }
+            | Self::GrowthNotFollowed { grain, .. }
             | Self::GrainVanished { grain, .. } => Some(vec![*grain]),
             Self::CutInvalid(faults) | Self::Invalid(faults) => {
                 let all: BTreeSet<GrainId> = faults.0.iter().flat_map(Fault::grains).collect();

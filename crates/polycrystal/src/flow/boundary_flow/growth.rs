@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::{End, Flow, Folded, Wedged};
-use crate::NetworkError;
 use crate::check::folds::element_normals;
 use crate::flow::relaxation::{USUAL_TIME, check_grains_are_left};
+use crate::{GrainId, NetworkError};
 
 /// Largest difference between the volumes of a grain after a step and after two of half its time, as a share. What the two of them extrapolate
 /// to is better by far: the rate of a ball that shrinks is then right to half a hundredth.
@@ -28,6 +28,8 @@ struct Trial {
     volumes: Vec<f64>,
     /// As [`LARGEST_ERROR`] has it.
     error: f64,
+    /// The grain that has it.
+    worst: GrainId,
 }
 
 /// How far growth has come.
@@ -43,7 +45,7 @@ impl Flow<'_> {
     /// Lets grains grow for a time. Each step is taken at once and in halves, and extrapolated (Richardson), as steps are exact to first order.
     ///
     /// # Errors
-    /// [`NetworkError::GrainVanished`]; [`NetworkError::Folded`].
+    /// [`NetworkError::GrainVanished`]; [`NetworkError::GrowthNotFollowed`]; [`NetworkError::Folded`].
     pub(crate) fn grow(
         &mut self,
         start: &[DVec3],
@@ -75,11 +77,10 @@ impl Flow<'_> {
                     progress(Grown { steps, left: left as usize, passed, points: &points });
                 }
                 _ if step_time >= LEAST_STEP * square => self.clusters = kept,
-                Ok(_) => {
-                    let count = 1;
-                    return Err(self
-                        .vanishing(&points, passed, longest)
-                        .unwrap_or(NetworkError::Folded { count, grains: Vec::new() }));
+                Ok(Trial { worst, .. }) => {
+                    let time = passed / self.network.mean_grain_size().powi(2);
+                    let error = NetworkError::GrowthNotFollowed { grain: worst, time };
+                    return Err(self.vanishing(&points, passed, longest).unwrap_or(error));
                 }
                 Err(error) => return Err(self.vanishing(&points, passed, longest).unwrap_or(error)),
             }
@@ -98,19 +99,22 @@ impl Flow<'_> {
         self.step(&mut halves, 0.5 * time)?;
         self.step(&mut halves, 0.5 * time)?;
         let volumes = self.volumes_at(&halves);
-        let differences = self.volumes_at(&at_once).into_iter().zip(&volumes);
-        let error = differences.map(|(whole, halves)| (whole / halves - 1.0).abs()).fold(0.0, f64::max);
-        // A volume of nothing is no number to compare with.
-        let error = if error.is_nan() { f64::INFINITY } else { error };
+        let differences = self.volumes_at(&at_once).into_iter().zip(&volumes).map(|(whole, halves)| {
+            let error = (whole / halves - 1.0).abs();
+            // A volume of nothing is no number to compare with.
+            if error.is_nan() { f64::INFINITY } else { error }
+        });
+        let worst = (0u32..).zip(differences).max_by(|one, other| one.1.total_cmp(&other.1));
+        let (worst, error) = worst.map_or((GrainId(0), 0.0), |(grain, error)| (GrainId(grain), error));
         let extrapolated: Vec<DVec3> =
             halves.iter().zip(&at_once).map(|(halves, once)| *halves + (*halves - *once)).collect();
         let before = element_normals(self.surface(), &self.refined(points));
         let is_broken = !self.broken_elements(&before, &extrapolated).is_empty();
         if is_broken {
-            return Ok(Trial { points: halves, volumes, error });
+            return Ok(Trial { points: halves, volumes, error, worst });
         }
         let volumes = self.volumes_at(&extrapolated);
-        Ok(Trial { points: extrapolated, volumes, error })
+        Ok(Trial { points: extrapolated, volumes, error, worst })
     }
 
     fn volumes_at(&self, points: &[DVec3]) -> Vec<f64> {
