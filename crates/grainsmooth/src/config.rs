@@ -9,7 +9,7 @@ use serde::Serialize;
 use voronoi::Dimension;
 
 pub(crate) mod check;
-mod consequences;
+mod defaults;
 pub(crate) mod files;
 pub(crate) mod gradient;
 pub(crate) mod inside;

@@ -6,6 +6,7 @@ use polycrystal::NetworkError;
 use voronoi::volumes::{PlaceError, VolumesError};
 use voronoi::{Dimension, VoronoiError};
 
+use crate::config::check::ConfigError;
 use crate::config::inside::InsideError;
 use crate::config::laws::LawError;
 use crate::config::phases::PhasesError;
@@ -281,13 +282,16 @@ pub enum Error {
     /// Grains that are put into others leave no room for one.
     #[error("the phases with place= are too crowded: {0}; give them smaller shares or smaller grains")]
     NoRoomAround(#[source] VolumesError),
-    /// Phases that contradict each other or other options.
+    /// Options that do not go together.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// Phases that do not go with the number of grains, or with given volumes.
     #[error(transparent)]
     Phases(#[from] PhasesError),
-    /// Patterns inside grains that contradict each other or other options, or divide nothing.
+    /// Patterns inside grains that divide nothing.
     #[error(transparent)]
     Inside(#[from] InsideError),
-    /// Laws of boundaries that contradict each other or other options.
+    /// Laws by which all boundaries have no tension or mobility.
     #[error(transparent)]
     Law(#[from] LawError),
     /// A grain of the sizes asked for is larger than the domain.

@@ -1,4 +1,5 @@
-//! Cells, cut plane by plane or along their edges.
+//! Cells. In space each edge is followed from one end to the other (`end_search`), from a first vertex (`first_vertex`) on, which a cell cut plane by plane finds
+//! (`convex_cell`). In the plane only cells at walls are cut, edge by edge (`convex_polygon`).
 
 pub(crate) mod convex_cell;
 pub(crate) mod convex_polygon;

@@ -116,7 +116,7 @@ impl Config {
     ///
     /// # Errors
     /// What contradicts what.
-    pub fn check_phases(&self) -> Result<(), PhasesError> {
+    fn check_phases(&self) -> Result<(), PhasesError> {
         let phases = &self.phases;
         if phases.is_empty() {
             return Ok(());
@@ -183,7 +183,7 @@ impl Config {
     ///
     /// # Errors
     /// What does not.
-    pub fn check_inside(&self) -> Result<(), InsideError> {
+    fn check_inside(&self) -> Result<(), InsideError> {
         for (number, options) in self.inside.iter().enumerate() {
             if let Some(name) = &options.phase
                 && !self.phases.iter().any(|phase| phase.name == *name)
@@ -216,7 +216,7 @@ impl Config {
     ///
     /// # Errors
     /// What does not.
-    pub fn check_laws(&self) -> Result<(), LawError> {
+    fn check_laws(&self) -> Result<(), LawError> {
         self.laws_of_pairs(LawKind::Tension)?;
         self.laws_of_pairs(LawKind::Mobility)?;
         if !self.mobilities.is_empty() && self.volumes == Volumes::Kept {

@@ -106,7 +106,6 @@ impl GrainSizes {
     /// # Errors
     /// [`Error::Phases`]; [`Error::VolumeCount`] where each grain is given its own and there are more or fewer; whatever is wrong with a file.
     pub(crate) fn draw(config: &Config, domain: &Domain, count: usize) -> Result<Self, Error> {
-        config.check_phases()?;
         let (dimension, draw) = (config.dimension, config.sizes.draw);
         let mut generator = ChaCha8Rng::seed_from_u64(config.random_seed);
         generator.set_stream(STREAM);

@@ -66,7 +66,7 @@ impl Config {
     /// # Errors
     /// [`Error::GrainTooLarge`]; [`MemoryError::CellsExceedMemory`](crate::memory::MemoryError::CellsExceedMemory); whatever is wrong with the domain or a file.
     pub fn with_count_of_sizes(self) -> Result<Self, Error> {
-        self.check_phases()?;
+        self.check()?;
         let domain = self.domain()?;
         let factor = Gradient::of_config(&self)?.map_or(1.0, |gradient| gradient.mean_volume_factor());
         let draw = self.sizes.draw;

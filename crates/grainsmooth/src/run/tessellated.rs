@@ -174,8 +174,9 @@ pub(crate) fn grain_volumes(tessellation: &Tessellation, grains: Option<&GrainCe
 /// Computes the cells alone.
 ///
 /// # Errors
-/// Whatever is wrong with the seeds; [`Error::EmptyGrains`] unless the config drops them.
+/// [`Error::Config`] where options do not go together; whatever is wrong with the seeds; [`Error::EmptyGrains`] unless the config drops them.
 pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Error> {
+    config.check()?;
     let mut clock = Clock { progress, times: Vec::new() };
     let domain = config.domain()?;
     let (textures, histogram) = (config.textures()?, config.texture.histogram()?);

@@ -15,7 +15,7 @@ use crate::energy::patch::PatchTerms;
 use crate::energy::patches::Patches;
 use crate::flow::assembly::{Unknowns, assemble, gradient};
 use crate::flow::clusters::{ATTEMPTS, Clusters, Numbering};
-use crate::flow::relaxation::USUAL_TIME;
+use crate::flow::relaxation::TIME_WITHOUT_EVENTS;
 use crate::flow::system::System;
 use crate::flow::tangential::tangential_moves;
 use crate::flow::thin_triangles::Room;
@@ -65,7 +65,7 @@ pub(crate) enum End {
 
 /// What becomes of places that are folded after a stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Folded {
+enum OnFold {
     /// They go back toward where they were.
     GiveWay,
     /// They are rounded: where they were is folded too.
@@ -124,11 +124,11 @@ impl<'a> Flow<'a> {
         progress: &mut impl FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
         let clusters = self.clusters.clone();
-        match self.run_from(start, stage, Folded::GiveWay, progress) {
+        match self.run_from(start, stage, OnFold::GiveWay, progress) {
             Err(error @ NetworkError::Folded { .. }) => {
                 let Some(unfolded) = self.unfolded(start) else { return Err(error) };
                 self.clusters = clusters;
-                self.run_from(&unfolded, stage, Folded::Round, progress)
+                self.run_from(&unfolded, stage, OnFold::Round, progress)
             }
             result => result,
         }
@@ -190,7 +190,7 @@ impl<'a> Flow<'a> {
         &mut self,
         start: &[DVec3],
         stage: &Stage,
-        folded: Folded,
+        folded: OnFold,
         progress: &mut impl FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
         let mut points = start.to_vec();
@@ -222,7 +222,7 @@ impl<'a> Flow<'a> {
         mut points: Vec<DVec3>,
         start: &[DVec3],
         end: End,
-        folded: Folded,
+        folded: OnFold,
         finest: &Wedged,
     ) -> Result<Vec<DVec3>, NetworkError> {
         // Where the finest level folds though no step did, all has moved too far from where it did not.
@@ -241,7 +241,7 @@ impl<'a> Flow<'a> {
                 }
                 return Ok(points);
             }
-            if folded == Folded::Round {
+            if folded == OnFold::Round {
                 points = displaced(&points, &self.rounding(&points, &places));
                 continue;
             }
@@ -334,7 +334,8 @@ impl<'a> Flow<'a> {
     /// The share of its way to the centre of the triangles around that a point goes in a step. Where grains grow, a step of no time moves
     /// nothing: points that move within a curved boundary leave it a little, and that counts as growth.
     fn centering(&self, time: f64) -> f64 {
-        let usual = USUAL_TIME / self.tuning.coarse_steps as f64 * self.network.mean_grain_size().powi(2);
+        let usual =
+            TIME_WITHOUT_EVENTS / self.tuning.coarse_steps as f64 * self.network.mean_grain_size().powi(2);
         match self.volumes {
             Volumes::Kept => self.tuning.centering,
             Volumes::Free => self.tuning.centering * (time / usual).min(1.0),

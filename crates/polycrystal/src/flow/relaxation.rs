@@ -5,8 +5,8 @@ use voronoi::Tessellation;
 
 use crate::{Attempt, GrainId, Network, NetworkError};
 
-/// The usual relaxation time, in units of the mean grain size squared.
-pub(crate) const USUAL_TIME: f64 = 0.3;
+/// The usual relaxation time where the topology stays, in units of the mean grain size squared.
+pub(crate) const TIME_WITHOUT_EVENTS: f64 = 0.3;
 
 /// Volume of a grain as a share of the mean below which it has shrunk to nothing.
 const LEAST_GRAIN: f64 = 1e-3;
@@ -45,7 +45,7 @@ impl Relaxation {
 impl Default for Relaxation {
     /// Time 0.3, the usual where the topology stays: the angles of random Voronoi grains spread by 7 degrees instead of 24.
     fn default() -> Self {
-        Self::Time(USUAL_TIME)
+        Self::Time(TIME_WITHOUT_EVENTS)
     }
 }
 

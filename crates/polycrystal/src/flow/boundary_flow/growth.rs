@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::{End, Flow, Folded, Wedged};
+use super::{End, Flow, OnFold, Wedged};
 use crate::check::folds::element_normals;
-use crate::flow::relaxation::{USUAL_TIME, check_grains_are_left};
+use crate::flow::relaxation::{TIME_WITHOUT_EVENTS, check_grains_are_left};
 use crate::{GrainId, NetworkError};
 
 /// Largest difference between the volumes of a grain after a step and after two of half its time, as a share. What the two of them extrapolate
@@ -52,7 +52,8 @@ impl Flow<'_> {
         whole_time: f64,
         mut progress: impl FnMut(Grown<'_>),
     ) -> Result<Vec<DVec3>, NetworkError> {
-        let longest = USUAL_TIME / self.tuning.coarse_steps as f64 * self.network.mean_grain_size().powi(2);
+        let longest =
+            TIME_WITHOUT_EVENTS / self.tuning.coarse_steps as f64 * self.network.mean_grain_size().powi(2);
         let mut points = start.to_vec();
         let mut square = self.least_square(&self.volumes_at(&points));
         let mut step_time = FIRST_STEP * square;
@@ -86,7 +87,7 @@ impl Flow<'_> {
             }
         }
         let finest = Wedged::new(self.network, self.finest());
-        self.finished(points, start, End::Finished, Folded::GiveWay, &finest)
+        self.finished(points, start, End::Finished, OnFold::GiveWay, &finest)
     }
 
     /// A step at once and in halves, and where both lead together.

@@ -1,4 +1,4 @@
-//! What follows from the options of a config.
+//! What is usual beside the other options of a config, and what follows from them.
 
 use glam::DVec3;
 use polycrystal::{FaceMesh, Relaxation, Volumes};
