@@ -4,9 +4,9 @@
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 
 use glam::DVec2;
-use subzero::{BezierCurve, MeshError};
+use subzero::{BezierCurve, BezierError};
 
-fn main() -> Result<(), MeshError> {
+fn main() -> Result<(), BezierError> {
     // The inner control points are placed so that the middle lies on the circle.
     let k = 4.0 / 3.0 * (2.0_f64.sqrt() - 1.0);
     let control = [(1.0, 0.0), (1.0, k), (k, 1.0), (0.0, 1.0)].map(DVec2::from);

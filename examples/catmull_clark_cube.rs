@@ -14,7 +14,7 @@ fn main() -> Result<(), MeshError> {
         [-1.0, 1.0].iter().flat_map(|&z| circle.map(|(x, y)| DVec3::new(x, y, z))).collect();
 
     let mesh = PolygonMesh::new(cube.len(), &squares, &Features::default())?;
-    let refined = mesh.catmull_clark_refine();
+    let refined = mesh.catmull_clark_refine()?;
     println!("corner after one step: {:.6}", refined.stencils.apply(&cube)[6].x);
     println!("corner in the limit:   {:.6}", mesh.catmull_clark_limits()?.positions.apply(&cube)[6].x);
 
@@ -22,7 +22,7 @@ fn main() -> Result<(), MeshError> {
     let creases = [[4, 5], [5, 6], [6, 7], [7, 4]].map(Crease::infinite);
     let mesh =
         PolygonMesh::new(cube.len(), &squares, &Features { creases: &creases, ..Features::default() })?;
-    let corner = mesh.catmull_clark_refine().stencils.apply(&cube)[6];
+    let corner = mesh.catmull_clark_refine()?.stencils.apply(&cube)[6];
     println!("on the creased rim:    {:.6}, and z stays {}", corner.x, corner.z);
     Ok(())
 }

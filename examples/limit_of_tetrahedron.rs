@@ -22,7 +22,7 @@ fn main() -> Result<(), MeshError> {
     println!("its unit normal: {normal:.4}, which is (1, 1, 1)/sqrt(3)");
 
     for level in 1..=8 {
-        let refined = mesh.loop_refine();
+        let refined = mesh.loop_refine()?;
         points = refined.stencils.apply(&points);
         mesh = refined.mesh;
         println!("level {level}: {:.6}", points[0].x);

@@ -29,7 +29,7 @@ fn spread_of_corners(triangles: &[[u32; 3]], points: &[DVec3]) -> Result<f64, Me
     let mut mesh = TriangleMesh::new(points.len(), triangles.to_vec(), &Features::default())?;
     let mut points = points.to_vec();
     for _ in 0..3 {
-        let refined = mesh.loop_refine();
+        let refined = mesh.loop_refine()?;
         points = refined.stencils.apply(&points);
         mesh = refined.mesh;
     }

@@ -11,7 +11,7 @@ fn main() -> Result<(), MeshError> {
     let mut mesh = TriangleMesh::new(6, octahedron, &Features::default())?;
     let mut table = StencilTable::identity(6);
     for _ in 0..4 {
-        let refined = mesh.loop_refine();
+        let refined = mesh.loop_refine()?;
         table = table.then(&refined.stencils);
         mesh = refined.mesh;
     }

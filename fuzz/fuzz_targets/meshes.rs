@@ -5,7 +5,7 @@
 use libfuzzer_sys::arbitrary::{self, Arbitrary};
 use libfuzzer_sys::fuzz_target;
 use subzero::{
-    BoundaryRule, Crease, DooSabinWeights, Features, HalfEdgeMesh, LoopHierarchy, LoopWeights, MeshError, PolygonMesh,
+    BoundaryRule, Crease, DooSabinWeights, EdgeId, FaceId, Features, HalfEdgeId, HalfEdgeMesh, LoopHierarchy, LoopWeights, MeshError, PolygonMesh,
     Refinement, StencilTable, TriangleMesh,
 };
 
@@ -121,24 +121,24 @@ fuzz_target!(|input: Input| {
 /// Refines twice by every scheme, and checks what comes out.
 fn check_triangles(mesh: &TriangleMesh, weights: LoopWeights) {
     check_limits(mesh, weights);
-    let first = mesh.loop_refine_with(weights);
+    let first = mesh.loop_refine_with(weights).unwrap();
     check_refined(mesh, &first);
-    let second = first.mesh.loop_refine_with(weights);
+    let second = first.mesh.loop_refine_with(weights).unwrap();
     check_refined(&first.mesh, &second);
     check_limits(&second.mesh, weights);
-    for refinement in [mesh.butterfly_refine(), mesh.modified_butterfly_refine(), mesh.midpoint_refine()] {
+    for refinement in [mesh.butterfly_refine().unwrap(), mesh.modified_butterfly_refine().unwrap(), mesh.midpoint_refine().unwrap()] {
         check_refined(mesh, &refinement);
         assert_eq!(refinement.mesh, first.mesh);
     }
 
     // Three ways to the same points.
     let points: Vec<f64> = (0..mesh.vertex_count()).map(|v| ((v * v * 7 + 3 * v) % 31) as f64).collect();
-    let third = second.mesh.loop_refine_with(weights);
+    let third = second.mesh.loop_refine_with(weights).unwrap();
     let one_by_one = third.stencils.apply(&second.stencils.apply(&first.stencils.apply(&points)));
-    let hierarchy = LoopHierarchy::new(mesh.clone(), 3, weights);
+    let hierarchy = LoopHierarchy::new(mesh.clone(), 3, weights).unwrap();
     check_same(&one_by_one, &hierarchy.apply(&points));
     check_same(&one_by_one, &hierarchy.stencils().apply(&points));
-    let (finest, subdivided) = mesh.clone().loop_subdivide(&points, 3, weights);
+    let (finest, subdivided) = mesh.clone().loop_subdivide(&points, 3, weights).unwrap();
     check_same(&one_by_one, &subdivided);
     assert_eq!(finest, third.mesh);
 }
@@ -154,6 +154,7 @@ fn check_refined(coarse: &TriangleMesh, Refinement { mesh, stencils }: &Refineme
     check_rows(stencils, coarse.vertex_count(), Some(1.0));
     // Found anew, the edges are as many, and each is where it was said to be.
     let creases: Vec<Crease> = (0..counts.edges)
+        .map(EdgeId)
         .filter(|&edge| mesh.edge_triangles(edge).is_none())
         .map(|edge| Crease::infinite(mesh.edge(edge)))
         .collect();
@@ -162,7 +163,7 @@ fn check_refined(coarse: &TriangleMesh, Refinement { mesh, stencils }: &Refineme
         .expect("a refined mesh is a good mesh");
     assert_eq!(rebuilt.edge_count(), mesh.edge_count());
     for (t, &[a, b, c]) in (0..).zip(mesh.triangles()) {
-        for (edge, mut ends) in mesh.triangle_edges(t).into_iter().zip([[a, b], [b, c], [c, a]]) {
+        for (edge, mut ends) in mesh.triangle_edges(FaceId(t)).into_iter().zip([[a, b], [b, c], [c, a]]) {
             let mut found = mesh.edge(edge);
             found.sort_unstable();
             ends.sort_unstable();
@@ -185,11 +186,11 @@ fn check_polygons(mesh: &PolygonMesh) {
     let euler = |mesh: &PolygonMesh| {
         mesh.vertex_count() as i64 - mesh.edge_count() as i64 + mesh.face_count() as i64
     };
-    let refined = mesh.catmull_clark_refine();
+    let refined = mesh.catmull_clark_refine().unwrap();
     check_rows(&refined.stencils, mesh.vertex_count(), Some(1.0));
     assert_eq!(euler(mesh), euler(&refined.mesh));
     check_faces(&refined.mesh);
-    let again = refined.mesh.catmull_clark_refine();
+    let again = refined.mesh.catmull_clark_refine().unwrap();
     check_rows(&again.stencils, refined.mesh.vertex_count(), Some(1.0));
     check_faces(&again.mesh);
     match mesh.catmull_clark_limits() {
@@ -219,7 +220,7 @@ fn check_polygons(mesh: &PolygonMesh) {
 fn check_faces(mesh: &PolygonMesh) {
     for (f, face) in (0..).zip(mesh.faces()) {
         let after = face.iter().cycle().skip(1);
-        for (edge, (&a, &b)) in mesh.face_edges(f).zip(face.iter().zip(after)) {
+        for (edge, (&a, &b)) in mesh.face_edges(FaceId(f)).zip(face.iter().zip(after)) {
             let ends = mesh.edge(edge);
             assert!(ends == [a, b] || ends == [b, a], "face {f} runs from {a} to {b} along edge {ends:?}");
         }
@@ -229,7 +230,8 @@ fn check_faces(mesh: &PolygonMesh) {
 fn check_edits(mut mesh: HalfEdgeMesh, edits: &[(Edit, u16)]) {
     check_half_edges(&mesh);
     for (edit, pick) in edits.iter().take(64) {
-        let half_edge = u32::from(*pick) % (u32::try_from(mesh.half_edge_count()).expect("small") + 1);
+        let count = u32::try_from(mesh.half_edge_count()).expect("small") + 1;
+        let half_edge = HalfEdgeId(u32::from(*pick) % count);
         let before = mesh.clone();
         let done = match edit {
             Edit::Flip => mesh.flip(half_edge),
@@ -255,7 +257,7 @@ fn euler(mesh: &HalfEdgeMesh) -> i64 {
 
 fn check_half_edges(mesh: &HalfEdgeMesh) {
     let mut starting = vec![0; mesh.vertex_count()];
-    for h in (0..).take(mesh.half_edge_count()).filter(|&h| mesh.exists(h)) {
+    for h in (0..).take(mesh.half_edge_count()).map(HalfEdgeId).filter(|&h| mesh.exists(h)) {
         starting[mesh.start(h) as usize] += 1;
         if let Some(twin) = mesh.twin(h) {
             assert!(mesh.exists(twin) && mesh.twin(twin) == Some(h));

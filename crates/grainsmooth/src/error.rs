@@ -26,6 +26,7 @@ use seed_file::{SeedPlace, SeedProblem};
 ///
 /// The message holds the cause, so `source` names none: whoever prints the chain would print it twice.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// The output path has no extension, or one that names no format.
     #[error("{}: unknown extension; name the file {known}", path.display())]

@@ -71,6 +71,7 @@ impl LevelSize {
 
 /// What does not fit. Each message is one line that names the numbers and the remedy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MemoryError {
     /// So many cells need more memory than there is.
     #[error(

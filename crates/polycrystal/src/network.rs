@@ -12,7 +12,7 @@ pub(crate) mod tension;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use subzero::StencilTable;
+use subzero::{EdgeId, StencilTable};
 use voronoi::{Domain, Tessellation};
 
 use crate::check::folds::element_normals;
@@ -180,7 +180,7 @@ impl Network {
         let mut levels = vec![level];
         let mut stencils = Vec::new();
         for coarser in 0..level_count {
-            let (finer, table) = levels[coarser].refine(&boundaries, &wall_sets);
+            let (finer, table) = levels[coarser].refine(&boundaries, &wall_sets)?;
             levels.push(finer);
             stencils.push(table);
         }
@@ -390,8 +390,8 @@ impl Network {
             let middle = |[a, b]: [u32; 2]| points[a as usize].midpoint(points[b as usize]);
             let middles: Vec<DVec3> = match &pair[0].mesh {
                 Mesh::Triangles(mesh) => {
-                    let edges = 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits");
-                    edges.into_par_iter().map(|edge| middle(mesh.edge(edge))).collect()
+                    let edges = (0..mesh.counts().edges).into_par_iter();
+                    edges.map(|edge| middle(mesh.edge(EdgeId(edge)))).collect()
                 }
                 Mesh::Segments(mesh) => mesh.segments().par_iter().map(|ends| middle(*ends)).collect(),
             };

@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 use common::{random_seeds, relaxed};
 use glam::{BVec3, DVec3};
 use polycrystal::{FaceMesh, Junctions, Level, Mesh, Network, NetworkError, NodeType, Side, validate};
+use subzero::EdgeId;
 use voronoi::{Domain, Tessellation};
 
 const EDGE_LENGTH: f64 = 0.1;
@@ -115,9 +116,9 @@ fn boundaries_have_the_area_of_their_faces_and_end_at_their_lines() {
 
             // Creases are the lines, and nothing else is.
             let length = |[a, b]: [u32; 2]| points[a as usize].distance(points[b as usize]);
-            let edges = (0u32..).take(mesh.edge_count());
+            let edges = (0..).zip(mesh.edges());
             let along: f64 =
-                edges.filter(|edge| mesh.is_crease(*edge)).map(|edge| length(mesh.edge(edge))).sum();
+                edges.filter(|(edge, _)| mesh.is_crease(EdgeId(*edge))).map(|(_, ends)| length(ends)).sum();
             let ends = tessellation.edges().ends;
             let lines = ends.iter().map(|ends| ends.map(|end| tessellation.vertices()[end.index()]));
             let lines: f64 = lines.map(|[start, end]| start.distance(end)).sum();

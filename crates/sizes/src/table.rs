@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// Why rows are no table. Rows are counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
 pub enum TableError {
     /// There is nothing in it.
     #[error("holds no diameters; give one or more")]

@@ -11,7 +11,7 @@ use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, 
 use glam::DVec3;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use sphere::{Random, sphere_hull, sphere_hull_along_curve};
-use subzero::{Features, HalfEdgeMesh, LoopHierarchy, LoopWeights, TriangleMesh};
+use subzero::{Features, HalfEdgeId, HalfEdgeMesh, LoopHierarchy, LoopWeights, TriangleMesh};
 
 const POINTS: u32 = 10_002;
 const LEVELS: usize = 4;
@@ -41,8 +41,11 @@ fn from_scratch(c: &mut Criterion) {
         for threads in [1, 2] {
             let pool = pool(threads);
             group.bench_function(BenchmarkId::new(name, threads), |b| {
-                let run =
-                    || base_mesh(points.len(), &triangles).loop_subdivide(&points, LEVELS, LoopWeights::Loop);
+                let run = || {
+                    base_mesh(points.len(), &triangles)
+                        .loop_subdivide(&points, LEVELS, LoopWeights::Loop)
+                        .expect("a small mesh")
+                };
                 b.iter_with_large_drop(|| pool.install(run));
             });
         }
@@ -52,7 +55,8 @@ fn from_scratch(c: &mut Criterion) {
 fn new_points(c: &mut Criterion) {
     let mut group = c.benchmark_group("new points at level 4");
     for (name, (triangles, points)) in hulls() {
-        let hierarchy = LoopHierarchy::new(base_mesh(points.len(), &triangles), LEVELS, LoopWeights::Loop);
+        let hierarchy = LoopHierarchy::new(base_mesh(points.len(), &triangles), LEVELS, LoopWeights::Loop)
+            .expect("a small mesh");
         let mut levels = hierarchy.buffers();
         group.throughput(Throughput::Elements(hierarchy.finest().vertex_count() as u64));
         for threads in [1, 2] {
@@ -69,11 +73,11 @@ fn tables(c: &mut Criterion) {
     let (triangles, mut points) = sphere_hull_along_curve(POINTS);
     let mut mesh = base_mesh(points.len(), &triangles);
     for _ in 1..LEVELS {
-        let refined = mesh.loop_refine();
+        let refined = mesh.loop_refine().expect("a small mesh");
         points = refined.stencils.apply(&points);
         mesh = refined.mesh;
     }
-    let table = mesh.loop_refine().stencils;
+    let table = mesh.loop_refine().expect("a small mesh").stencils;
     let mut finest = table.apply(&points);
     group.throughput(Throughput::Elements(table.len() as u64));
     for threads in [1, 2] {
@@ -86,7 +90,9 @@ fn tables(c: &mut Criterion) {
 
 fn edits(c: &mut Criterion) {
     let (triangles, points) = sphere_hull_along_curve(POINTS);
-    let (mesh, _) = base_mesh(points.len(), &triangles).loop_subdivide(&points, 2, LoopWeights::Loop);
+    let (mesh, _) = base_mesh(points.len(), &triangles)
+        .loop_subdivide(&points, 2, LoopWeights::Loop)
+        .expect("a small mesh");
     let mesh = HalfEdgeMesh::from_triangle_mesh(&mesh).expect("the mesh is manifold");
     // One half-edge in so many, in order, and of each in turn one of its triangle's three.
     let step = mesh.half_edge_count() / EDITS;
@@ -111,9 +117,9 @@ fn edits(c: &mut Criterion) {
         }
     };
     // What an edit before made impossible is refused; that is rare among so many edges.
-    bench("flip", |mesh, h| drop(mesh.flip(h)));
-    bench("split", |mesh, h| drop(mesh.split(h)));
-    bench("collapse", |mesh, h| drop(mesh.collapse(h)));
+    bench("flip", |mesh, h| drop(mesh.flip(HalfEdgeId(h))));
+    bench("split", |mesh, h| drop(mesh.split(HalfEdgeId(h))));
+    bench("collapse", |mesh, h| drop(mesh.collapse(HalfEdgeId(h))));
 }
 
 criterion_group! {

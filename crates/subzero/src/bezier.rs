@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use crate::ids::id;
-use crate::mesh_checks::check_size;
-use crate::{MeshError, Point};
+use crate::mesh_checks::fits;
+use crate::{BezierError, Point};
 
 /// A Bezier curve of any degree.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,9 +29,9 @@ impl<P: Point> BezierCurve<P> {
     /// The curve with these control points, one more than its degree.
     ///
     /// # Errors
-    /// [`MeshError::NoControlPoints`] if there are none.
-    pub fn new(control: Vec<P>) -> Result<Self, MeshError> {
-        if control.is_empty() { Err(MeshError::NoControlPoints) } else { Ok(Self { control }) }
+    /// [`BezierError::NoControlPoints`] if there are none.
+    pub fn new(control: Vec<P>) -> Result<Self, BezierError> {
+        if control.is_empty() { Err(BezierError::NoControlPoints) } else { Ok(Self { control }) }
     }
 
     /// The control points.
@@ -102,11 +102,11 @@ impl<P: Point> BezierSurface<P> {
     /// The surface whose control point i, j is `control[i][j]`, with i along u and j along v.
     ///
     /// # Errors
-    /// [`MeshError::NoControlPoints`] if there are none, [`MeshError::RaggedControlPoints`] if rows differ in length.
-    pub fn new(control: Vec<Vec<P>>) -> Result<Self, MeshError> {
-        let length = control.first().ok_or(MeshError::NoControlPoints)?.len();
+    /// [`BezierError::NoControlPoints`] if there are none, [`BezierError::RaggedControlPoints`] if rows differ in length.
+    pub fn new(control: Vec<Vec<P>>) -> Result<Self, BezierError> {
+        let length = control.first().ok_or(BezierError::NoControlPoints)?.len();
         if let Some(row) = control.iter().position(|row| row.len() != length) {
-            return Err(MeshError::RaggedControlPoints { row, length, found: control[row].len() });
+            return Err(BezierError::RaggedControlPoints { row, length, found: control[row].len() });
         }
         Ok(Self { rows: control.into_iter().map(BezierCurve::new).collect::<Result<_, _>>()? })
     }
@@ -143,11 +143,13 @@ impl<P: Point> BezierSurface<P> {
     /// points that coincide.
     ///
     /// # Errors
-    /// [`MeshError::TooLarge`] if there are more points than 32-bit ids can count.
-    pub fn tessellate(&self, u_steps: u32, v_steps: u32) -> Result<(Vec<P>, Vec<[u32; 3]>), MeshError> {
+    /// [`BezierError::TooLarge`] if there are more points than 32-bit ids can count.
+    pub fn tessellate(&self, u_steps: u32, v_steps: u32) -> Result<(Vec<P>, Vec<[u32; 3]>), BezierError> {
         let [u_steps, v_steps] = [u_steps.max(1), v_steps.max(1)];
         let count = (u_steps as usize + 1).saturating_mul(v_steps as usize + 1);
-        check_size("grid points", count)?;
+        if !fits(count) {
+            return Err(BezierError::TooLarge { what: "grid points", count });
+        }
         let mut points = Vec::with_capacity(count);
         let mut triangles = Vec::new();
         for i in 0..=u_steps {

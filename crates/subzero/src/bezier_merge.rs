@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use crate::ids::id;
-use crate::mesh_checks::check_size;
-use crate::{BezierSurface, MeshError, orient, triangulate};
+use crate::mesh_checks::fits;
+use crate::{BezierError, BezierSurface, orient, triangulate};
 
 /// The triangles of several surfaces over points that they share.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,12 +47,15 @@ impl MergedSurfaces {
     /// control points are one becomes a point. If `fill`, every hole is filled with triangles between the points of its rim.
     ///
     /// # Errors
-    /// [`MeshError::TooLarge`] if there are more points than 32-bit ids can count.
-    pub fn new(surfaces: &[BezierSurface<DVec3>], steps: u32, fill: bool) -> Result<Self, MeshError> {
+    /// [`BezierError::TooLarge`] if there are more points than 32-bit ids can count.
+    pub fn new(surfaces: &[BezierSurface<DVec3>], steps: u32, fill: bool) -> Result<Self, BezierError> {
         let steps = steps.max(1);
         let per_side = steps as usize + 1;
         let count = surfaces.len().saturating_mul(per_side.saturating_mul(per_side));
-        check_size("half-edges", count.saturating_mul(12))?;
+        let half_edges = count.saturating_mul(12);
+        if !fits(half_edges) {
+            return Err(BezierError::TooLarge { what: "half-edges", count: half_edges });
+        }
         let mut merged = Self::default();
         let mut ids: BTreeMap<Key, u32> = BTreeMap::new();
         let sides: Vec<Sides> = surfaces.iter().map(Sides::new).collect();

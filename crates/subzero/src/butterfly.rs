@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::ids::{NONE, next, prev};
 use crate::stencil::Rows;
-use crate::{Refinement, StencilTable, TriangleMesh, VertexRule};
+use crate::{EdgeId, MeshError, Refinement, StencilTable, TriangleMesh, VertexRule};
 
 impl TriangleMesh {
     /// One step of the butterfly scheme (Dyn, Gregory and Levin 1990, w = 1/16): the 8-point rule on every edge.
@@ -12,9 +12,9 @@ impl TriangleMesh {
     /// Creases (boundaries and non-manifold edges among them) get the 4-point rule along their own curve; across them the
     /// 8-point rule reflects the points that it lacks. Semi-sharp creases count as smooth.
     ///
-    /// # Panics
-    /// If the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
-    pub fn butterfly_refine(&self) -> Refinement<Self> {
+    /// # Errors
+    /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
+    pub fn butterfly_refine(&self) -> Result<Refinement<Self>, MeshError> {
         self.interpolating_refine(|along, rows| self.eight_point(along, 1.0, rows))
     }
 
@@ -22,9 +22,9 @@ impl TriangleMesh {
     ///
     /// Creases are treated as in [`butterfly_refine`](Self::butterfly_refine), and vertices on them count as regular.
     ///
-    /// # Panics
-    /// If the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
-    pub fn modified_butterfly_refine(&self) -> Refinement<Self> {
+    /// # Errors
+    /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
+    pub fn modified_butterfly_refine(&self) -> Result<Refinement<Self>, MeshError> {
         self.interpolating_refine(|along, rows| {
             match (self.is_irregular(along), self.is_irregular(self.twin(along))) {
                 (false, false) => self.eight_point(along, 1.0, rows),
@@ -40,37 +40,40 @@ impl TriangleMesh {
 
     /// Splits each triangle into four at the midpoints of its edges, without moving the surface.
     ///
-    /// # Panics
-    /// If the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
-    pub fn midpoint_refine(&self) -> Refinement<Self> {
+    /// # Errors
+    /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
+    pub fn midpoint_refine(&self) -> Result<Refinement<Self>, MeshError> {
         let vertices = self.counts().vertices;
         let stencils = StencilTable::from_rows(self.vertex_count() + self.edge_count(), |i, rows| {
             if i < vertices {
                 rows.add(i, 1.0);
             } else {
-                self.edge(i - vertices).into_iter().for_each(|end| rows.add(end, 0.5));
+                self.edge(EdgeId(i - vertices)).into_iter().for_each(|end| rows.add(end, 0.5));
             }
         });
-        Refinement { mesh: self.refine_connectivity(), stencils }
+        Ok(Refinement { mesh: self.refine_connectivity()?, stencils })
     }
 
     /// A refinement that keeps old vertices, with `inner` as the rule of edges that are no creases.
-    fn interpolating_refine(&self, inner: impl Fn(u32, &mut Rows) + Sync) -> Refinement<Self> {
+    fn interpolating_refine(
+        &self,
+        inner: impl Fn(u32, &mut Rows) + Sync,
+    ) -> Result<Refinement<Self>, MeshError> {
         let vertices = self.counts().vertices;
         let stencils = StencilTable::from_rows(self.vertex_count() + self.edge_count(), |i, rows| {
             if i < vertices {
                 rows.add(i, 1.0);
-            } else if self.is_crease(i - vertices) {
-                self.four_point(i - vertices, rows);
+            } else if self.is_crease(EdgeId(i - vertices)) {
+                self.four_point(EdgeId(i - vertices), rows);
             } else {
                 inner(self.edges[(i - vertices) as usize][0], rows);
             }
         });
-        Refinement { mesh: self.refine_connectivity(), stencils }
+        Ok(Refinement { mesh: self.refine_connectivity()?, stencils })
     }
 
     /// 9/16 of the ends and -1/16 of the next points of the crease, reflected where the crease does not go on.
-    fn four_point(&self, edge: u32, rows: &mut Rows) {
+    fn four_point(&self, edge: EdgeId, rows: &mut Rows) {
         let [a, b] = self.edge(edge);
         for (end, other) in [(a, b), (b, a)] {
             rows.add(end, 9.0 / 16.0);
@@ -91,8 +94,7 @@ impl TriangleMesh {
             rows.add(self.start(h), 0.5 * share);
             rows.add(self.start(prev(h)), 0.125 * share);
             for wing in [next(h), prev(h)] {
-                let beyond =
-                    if self.is_crease(self.directed_edge(wing) / 2) { NONE } else { self.twin(wing) };
+                let beyond = if self.is_crease(self.edge_of(wing)) { NONE } else { self.twin(wing) };
                 if beyond == NONE {
                     // The triangle's mirror image: the ends of the wing's edge less the third corner.
                     rows.add(self.start(wing), -share / 16.0);

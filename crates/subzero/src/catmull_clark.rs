@@ -6,7 +6,7 @@ use crate::ids::{NONE, id};
 use crate::mesh_checks::check_size;
 use crate::stencil::Rows;
 use crate::vertex_rows::vertex_row;
-use crate::{PolygonMesh, Refinement, StencilTable};
+use crate::{EdgeId, FaceId, MeshError, PolygonMesh, Refinement, StencilTable};
 
 /// A count as a number to compute with; no mesh has so many edges that this would round.
 #[allow(clippy::cast_precision_loss)]
@@ -21,20 +21,14 @@ impl PolygonMesh {
     /// the vertex V + e and face f the vertex V + E + f. The face at the corner where h starts is face h, and begins there. The
     /// halves of edge e are 2 e, at its end 0, and 2 e + 1, and the edge 2 E + h joins the edge of h to the face's centre.
     ///
-    /// # Panics
-    /// If the finer mesh outgrows 32-bit ids.
-    pub fn catmull_clark_refine(&self) -> Refinement<Self> {
+    /// # Errors
+    /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids.
+    pub fn catmull_clark_refine(&self) -> Result<Refinement<Self>, MeshError> {
         let [vertices, edges, half_edges] = [self.vertex_count(), self.edge_count(), self.corners.len()];
-        for (what, count) in
-            [("vertices", vertices + edges + self.face_count()), ("half-edges", half_edges.saturating_mul(8))]
-        {
-            if let Err(error) = check_size(what, count) {
-                panic!("the finer mesh does not fit: {error}");
-            }
-        }
-        let sharpness = self
-            .sharpness
-            .refine(vertices, |vertex, edge| self.start(self.edges[edge as usize][0]) == vertex);
+        check_size("vertices", vertices + edges + self.face_count())?;
+        check_size("half-edges", half_edges.saturating_mul(8))?;
+        let sharpness =
+            self.sharpness.refine(vertices, |vertex, edge| self.start(self.edges[edge.index()][0]) == vertex);
         let edge_vertex = |h: u32| id(vertices) + self.directed_edges[h as usize] / 2;
         let face_vertex = |h: u32| id(vertices + edges) + self.faces_of[h as usize];
         let inner = |h: u32| 2 * (id(2 * edges) + h);
@@ -72,7 +66,7 @@ impl PolygonMesh {
             outgoing,
             sharpness,
         };
-        Refinement { mesh, stencils: self.catmull_clark_stencils() }
+        Ok(Refinement { mesh, stencils: self.catmull_clark_stencils() })
     }
 
     fn catmull_clark_stencils(&self) -> StencilTable {
@@ -88,21 +82,21 @@ impl PolygonMesh {
                 });
                 rows.merge();
             } else if i < vertices + edges {
-                self.catmull_clark_edge_row(i - vertices, rows);
+                self.catmull_clark_edge_row(EdgeId(i - vertices), rows);
             } else {
                 self.add_face_point(i - vertices - edges, 1.0, &mut |point, weight| rows.add(point, weight));
             }
         })
     }
 
-    fn catmull_clark_edge_row(&self, edge: u32, rows: &mut Rows) {
-        let sharp = if self.sharp_edges[edge as usize] { self.sharpness.of_edge(edge).min(1.0) } else { 0.0 };
+    fn catmull_clark_edge_row(&self, edge: EdgeId, rows: &mut Rows) {
+        let sharp = if self.sharp_edges[edge.index()] { self.sharpness.of_edge(edge).min(1.0) } else { 0.0 };
         let smooth = 1.0 - f64::from(sharp);
         for end in self.edge(edge) {
             rows.add(end, 0.5 - 0.25 * smooth);
         }
         if smooth > 0.0 {
-            for side in self.edges[edge as usize] {
+            for side in self.edges[edge.index()] {
                 self.add_face_point(self.faces_of[side as usize], 0.25 * smooth, &mut |point, weight| {
                     rows.add(point, weight)
                 });
@@ -123,7 +117,7 @@ impl PolygonMesh {
     }
 
     fn add_face_point(&self, face: u32, share: f64, add: &mut impl FnMut(u32, f64)) {
-        let corners = self.face(face);
+        let corners = self.face(FaceId(face));
         corners.iter().for_each(|&corner| add(corner, share / real(corners.len())));
     }
 }

@@ -9,7 +9,7 @@ use crate::catmull_clark::real;
 use crate::ids::id;
 use crate::loop_limit::normals_of_vertices;
 use crate::stencil::Rows;
-use crate::{MeshError, PolygonMesh, Refinement, Sector, StencilTable, VertexRule};
+use crate::{EdgeId, MeshError, PolygonMesh, Refinement, Sector, StencilTable, VertexRule};
 
 /// Limit positions and tangents of a Catmull-Clark surface at the vertices of a mesh, as averages of its points.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,11 +38,12 @@ impl PolygonMesh {
     /// Corners have a tangent plane only in sectors of a single face; more make a cone.
     ///
     /// # Errors
-    /// [`MeshError::SemiSharp`] names a vertex with a sharpness that will run out: refine until it has.
+    /// [`MeshError::SemiSharp`] names a vertex with a sharpness that will run out: refine until it has. [`MeshError::TooLarge`] if the next level
+    /// outgrows 32-bit ids.
     pub fn catmull_clark_limits(&self) -> Result<CatmullClarkLimits, MeshError> {
         self.sharpness.check_settled()?;
         // The masks are known where all faces have four corners, as they do one level on.
-        let Refinement { mesh: quads, stencils } = self.catmull_clark_refine();
+        let Refinement { mesh: quads, stencils } = self.catmull_clark_refine()?;
         let positions = StencilTable::from_rows(self.vertex_count(), |v, rows| quads.limit_position(v, rows));
         let sectors = self.sectors();
         let tangents = StencilTable::from_rows(2 * sectors.len(), |row, rows| {
@@ -57,7 +58,7 @@ impl PolygonMesh {
     }
 
     fn is_infinite_crease(&self, h: u32) -> bool {
-        self.is_crease(self.directed_edges[h as usize] / 2)
+        self.is_crease(EdgeId(self.directed_edges[h as usize] / 2))
     }
 
     fn sectors(&self) -> Vec<Sector> {

@@ -1,6 +1,6 @@
 //! The numbering of a refined triangle mesh: from a child to its parent by arithmetic.
 
-use crate::MeshError;
+use crate::{EdgeId, FaceId, MeshError};
 
 /// How many vertices, edges and triangles a mesh has, and with them who descends from whom one level on.
 ///
@@ -34,16 +34,16 @@ pub enum VertexParent {
     /// It is the image of this vertex.
     Vertex(u32),
     /// It was inserted on this edge.
-    Edge(u32),
+    Edge(EdgeId),
 }
 
 /// Where an edge of a refined mesh comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EdgeParent {
     /// It is a half of this edge.
-    Edge(u32),
+    Edge(EdgeId),
     /// It lies inside this triangle.
-    Triangle(u32),
+    Triangle(FaceId),
 }
 
 impl MeshCounts {
@@ -71,35 +71,39 @@ impl MeshCounts {
 
     /// The parent in this mesh of vertex `v` of the mesh refined from it.
     pub fn vertex_parent(self, v: u32) -> VertexParent {
-        if v < self.vertices { VertexParent::Vertex(v) } else { VertexParent::Edge(v - self.vertices) }
+        if v < self.vertices {
+            VertexParent::Vertex(v)
+        } else {
+            VertexParent::Edge(EdgeId(v - self.vertices))
+        }
     }
 
     /// The parent in this mesh of edge `e` of the mesh refined from it.
-    pub fn edge_parent(self, e: u32) -> EdgeParent {
+    pub fn edge_parent(self, EdgeId(e): EdgeId) -> EdgeParent {
         if e < 2 * self.edges {
-            EdgeParent::Edge(e / 2)
+            EdgeParent::Edge(EdgeId(e / 2))
         } else {
-            EdgeParent::Triangle((e - 2 * self.edges) / 3)
+            EdgeParent::Triangle(FaceId((e - 2 * self.edges) / 3))
         }
     }
 
     /// The parent in this mesh of triangle `t` of the mesh refined from it.
-    pub fn triangle_parent(self, t: u32) -> u32 {
-        if t < 3 * self.triangles { t / 3 } else { t - 3 * self.triangles }
+    pub fn triangle_parent(self, FaceId(t): FaceId) -> FaceId {
+        FaceId(if t < 3 * self.triangles { t / 3 } else { t - 3 * self.triangles })
     }
 
     /// The vertex of the refined mesh that lies on edge `e`.
-    pub fn edge_vertex(self, e: u32) -> u32 {
+    pub fn edge_vertex(self, EdgeId(e): EdgeId) -> u32 {
         self.vertices + e
     }
 
     /// The halves of edge `e` in the refined mesh: the one at its end 0, the one at its end 1.
-    pub fn edge_children(self, e: u32) -> [u32; 2] {
-        [2 * e, 2 * e + 1]
+    pub fn edge_children(self, EdgeId(e): EdgeId) -> [EdgeId; 2] {
+        [2 * e, 2 * e + 1].map(EdgeId)
     }
 
     /// The triangles of the refined mesh in triangle `t`: at its corners 0, 1, 2 and in its centre.
-    pub fn triangle_children(self, t: u32) -> [u32; 4] {
-        [3 * t, 3 * t + 1, 3 * t + 2, 3 * self.triangles + t]
+    pub fn triangle_children(self, FaceId(t): FaceId) -> [FaceId; 4] {
+        [3 * t, 3 * t + 1, 3 * t + 2, 3 * self.triangles + t].map(FaceId)
     }
 }

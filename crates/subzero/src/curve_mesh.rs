@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::ids::id;
 use crate::mesh_checks::{check_size, check_vertex};
-use crate::{MeshError, Refinement, StencilTable, VertexRule};
+use crate::{EdgeId, MeshError, Refinement, StencilTable, VertexRule};
 
 /// A network of polylines that subdivision turns into smooth curves: cubic B-splines, or curves through the points; positions live
 /// beside it as slices.
@@ -19,7 +19,7 @@ use crate::{MeshError, Refinement, StencilTable, VertexRule};
 pub struct CurveMesh {
     segments: Vec<[u32; 2]>,
     /// Per vertex: the two segments of a smooth vertex, nothing for a corner.
-    curves: Vec<Option<[u32; 2]>>,
+    curves: Vec<Option<[EdgeId; 2]>>,
 }
 
 impl CurveMesh {
@@ -31,18 +31,18 @@ impl CurveMesh {
     pub fn new(vertex_count: usize, segments: Vec<[u32; 2]>, corners: &[u32]) -> Result<Self, MeshError> {
         check_size("vertices", vertex_count)?;
         check_size("segments", segments.len())?;
-        let mut around: Vec<Vec<u32>> = vec![Vec::new(); vertex_count];
+        let mut around: Vec<Vec<EdgeId>> = vec![Vec::new(); vertex_count];
         for (index, &[start, end]) in segments.iter().enumerate() {
             for vertex in [start, end] {
                 check_vertex("segment", index, vertex, vertex_count)?;
-                around[vertex as usize].push(id(index));
+                around[vertex as usize].push(EdgeId(id(index)));
             }
             if start == end {
                 return Err(MeshError::Degenerate { what: "segment", index, vertex: start });
             }
         }
-        let mut curves: Vec<Option<[u32; 2]>> =
-            around.into_iter().map(|segments| <[u32; 2]>::try_from(segments).ok()).collect();
+        let mut curves: Vec<Option<[EdgeId; 2]>> =
+            around.into_iter().map(|segments| <[EdgeId; 2]>::try_from(segments).ok()).collect();
         for (index, &corner) in corners.iter().enumerate() {
             check_vertex("corner", index, corner, vertex_count)?;
             curves[corner as usize] = None;
@@ -72,7 +72,7 @@ impl CurveMesh {
     ///
     /// # Panics
     /// If there is no such vertex.
-    pub fn vertex_segments(&self, v: u32) -> Option<[u32; 2]> {
+    pub fn vertex_segments(&self, v: u32) -> Option<[EdgeId; 2]> {
         self.curves[v as usize]
     }
 
@@ -86,19 +86,19 @@ impl CurveMesh {
 
     /// One step of cubic B-spline subdivision: (1, 6, 1)/8 at smooth vertices, (1, 1)/2 on segments.
     ///
-    /// # Panics
-    /// If the finer network outgrows 32-bit ids.
-    pub fn refine(&self) -> Refinement<Self> {
-        Refinement { mesh: self.refine_connectivity(), stencils: self.stencils() }
+    /// # Errors
+    /// [`MeshError::TooLarge`] if the finer network outgrows 32-bit ids.
+    pub fn refine(&self) -> Result<Refinement<Self>, MeshError> {
+        Ok(Refinement { mesh: self.refine_connectivity()?, stencils: self.stencils() })
     }
 
     /// One step of the interpolating four-point scheme (Dyn, Levin and Gregory 1987): vertices stay, and a segment gets 9/16 of its ends
     /// less 1/16 of the next vertices along the curve. Where it does not go on, the next vertex is the other end's reflection in
     /// the corner.
     ///
-    /// # Panics
-    /// If the finer network outgrows 32-bit ids.
-    pub fn four_point_refine(&self) -> Refinement<Self> {
+    /// # Errors
+    /// [`MeshError::TooLarge`] if the finer network outgrows 32-bit ids.
+    pub fn four_point_refine(&self) -> Result<Refinement<Self>, MeshError> {
         let vertices = self.vertex_count();
         let stencils = StencilTable::from_rows(vertices + self.segments.len(), |i, rows| {
             let Some(segment) = (i as usize).checked_sub(vertices) else {
@@ -111,7 +111,7 @@ impl CurveMesh {
                 match self.curves[end as usize] {
                     Some(segments) => {
                         let [first, second] = segments;
-                        let beyond = if first as usize == segment { second } else { first };
+                        let beyond = if first.index() == segment { second } else { first };
                         rows.add(self.other_end(beyond, end), -1.0 / 16.0);
                     }
                     None => {
@@ -121,18 +121,13 @@ impl CurveMesh {
                 }
             }
         });
-        Refinement { mesh: self.refine_connectivity(), stencils }
+        Ok(Refinement { mesh: self.refine_connectivity()?, stencils })
     }
 
-    fn refine_connectivity(&self) -> Self {
+    fn refine_connectivity(&self) -> Result<Self, MeshError> {
         let vertices = self.vertex_count();
-        for (what, count) in
-            [("vertices", vertices + self.segments.len()), ("segments", 2 * self.segments.len())]
-        {
-            if let Err(error) = check_size(what, count) {
-                panic!("the finer network does not fit: {error}");
-            }
-        }
+        check_size("vertices", vertices + self.segments.len())?;
+        check_size("segments", 2 * self.segments.len())?;
         let middle = |segment: usize| id(vertices + segment);
         let segments = self
             .segments
@@ -140,14 +135,18 @@ impl CurveMesh {
             .enumerate()
             .flat_map_iter(|(s, &[start, end])| [[start, middle(s)], [middle(s), end]])
             .collect();
-        let half_at = |v: u32, segment: u32| 2 * segment + u32::from(self.segments[segment as usize][0] != v);
+        let half_at = |v: u32, segment: EdgeId| {
+            EdgeId(2 * segment.0 + u32::from(self.segments[segment.index()][0] != v))
+        };
         let old = self
             .curves
             .par_iter()
             .enumerate()
             .map(|(v, curve)| curve.map(|ss| ss.map(|s| half_at(id(v), s))));
-        let new = (0..self.segments.len()).into_par_iter().map(|s| Some([id(2 * s), id(2 * s + 1)]));
-        Self { segments, curves: old.chain(new).collect() }
+        let new = (0..self.segments.len())
+            .into_par_iter()
+            .map(|s| Some([2 * s, 2 * s + 1].map(|half| EdgeId(id(half)))));
+        Ok(Self { segments, curves: old.chain(new).collect() })
     }
 
     /// One row per vertex: its place on the limit curve, (1, 4, 1)/6 of a smooth vertex and its neighbours.
@@ -173,7 +172,7 @@ impl CurveMesh {
             let (here, there) = if at_start { (start, end) } else { (end, start) };
             let forward = if at_start { 1.0 } else { -1.0 };
             if let Some(segments) = self.curves[here as usize] {
-                let behind = if segments[0] == row / 2 { segments[1] } else { segments[0] };
+                let behind = if segments[0].0 == row / 2 { segments[1] } else { segments[0] };
                 rows.add(there, 0.5 * forward);
                 rows.add(self.other_end(behind, here), -0.5 * forward);
             } else {
@@ -183,8 +182,8 @@ impl CurveMesh {
         })
     }
 
-    fn other_end(&self, segment: u32, vertex: u32) -> u32 {
-        let [start, end] = self.segments[segment as usize];
+    fn other_end(&self, segment: EdgeId, vertex: u32) -> u32 {
+        let [start, end] = self.segments[segment.index()];
         if start == vertex { end } else { start }
     }
 

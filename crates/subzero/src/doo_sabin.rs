@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::ids::{NONE, id};
 use crate::mesh_checks::check_size;
-use crate::{MeshError, PolygonMesh, Refinement, StencilTable};
+use crate::{EdgeId, FaceId, MeshError, PolygonMesh, Refinement, StencilTable};
 
 /// How a new vertex averages the corners of its face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,7 +61,7 @@ impl PolygonMesh {
     pub fn doo_sabin_refine(&self, weights: DooSabinWeights) -> Result<Refinement<Self>, MeshError> {
         check_size("half-edges", self.corners.len().saturating_mul(8))?;
         let stencils = StencilTable::from_rows(self.corners.len(), |h, rows| {
-            let corners = self.face(self.faces_of[h as usize]);
+            let corners = self.face(FaceId(self.faces_of[h as usize]));
             let own = (h - self.face_starts[self.faces_of[h as usize] as usize]) as usize;
             for (i, &corner) in corners.iter().enumerate() {
                 rows.add(corner, weights.of_corner((i + corners.len() - own) % corners.len(), corners.len()));
@@ -73,11 +73,11 @@ impl PolygonMesh {
     /// Limit points and tangents at the centres of all faces; the same for both kinds of weights.
     pub fn doo_sabin_limits(&self) -> DooSabinLimits {
         let positions = StencilTable::from_rows(self.face_count(), |face, rows| {
-            let corners = self.face(face);
+            let corners = self.face(FaceId(face));
             corners.iter().for_each(|&corner| rows.add(corner, 1.0 / real(corners.len())));
         });
         let tangents = StencilTable::from_rows(2 * self.face_count(), |row, rows| {
-            let corners = self.face(row / 2);
+            let corners = self.face(FaceId(row / 2));
             for (i, &corner) in corners.iter().enumerate() {
                 let angle = TAU * real(i) / real(corners.len());
                 rows.add(corner, if row % 2 == 0 { angle.cos() } else { angle.sin() });
@@ -144,8 +144,8 @@ impl PolygonMesh {
         let mut edge_ranks = Vec::with_capacity(self.edge_count());
         for edge in 0..id(self.edge_count()) {
             edge_ranks.push(id(edges.len()));
-            if self.is_boundary(edge) {
-                self.edge(edge).into_iter().for_each(|end| around_vertex[end as usize] = false);
+            if self.is_boundary(EdgeId(edge)) {
+                self.edge(EdgeId(edge)).into_iter().for_each(|end| around_vertex[end as usize] = false);
             } else {
                 edges.push(edge);
             }

@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-use crate::HalfEdgeMesh;
-use crate::ids::prev;
+use crate::{HalfEdgeId, HalfEdgeMesh};
 
 /// How much shorter than the longest side of a triangle another may be that counts as longest too: equal lengths differ by rounding.
 const EQUAL_LENGTHS: f64 = 1e-9;
@@ -23,8 +22,8 @@ impl HalfEdgeMesh {
     /// # Panics
     /// If `points` has fewer points than the mesh has vertices.
     pub fn longest_edges(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
-        let length = |h: u32| points[self.start(h) as usize].distance(points[self.end(h) as usize]);
-        let is_longest = |h: u32| {
+        let length = |h: HalfEdgeId| points[self.start(h) as usize].distance(points[self.end(h) as usize]);
+        let is_longest = |h: HalfEdgeId| {
             let longest = self.face_half_edges(h).into_iter().map(length).fold(0.0, f64::max);
             length(h) >= longest * (1.0 - EQUAL_LENGTHS)
         };
@@ -38,22 +37,23 @@ impl HalfEdgeMesh {
     /// # Panics
     /// If `points` has fewer points than the mesh has vertices.
     pub fn flat_edges(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
-        let normal = |h: u32| {
-            let [a, b, c] = [self.start(h), self.end(h), self.start(prev(h))].map(|v| points[v as usize]);
+        let normal = |h: HalfEdgeId| {
+            let [a, b, c] = [self.start(h), self.end(h), self.start(h.prev())].map(|v| points[v as usize]);
             (b - a).cross(c - a).normalize_or_zero()
         };
-        let is_flat = |h: u32| {
+        let is_flat = |h: HalfEdgeId| {
             self.twin(h).is_some_and(|twin| {
                 let [one, other] = [normal(h), normal(twin)];
                 one.dot(other) > 0.0 && one.cross(other).length() <= FLAT_ANGLE
             })
         };
-        let length = |h: u32| points[self.start(h) as usize].distance(points[self.end(h) as usize]);
-        let is_longest = |h: u32| {
+        let length = |h: HalfEdgeId| points[self.start(h) as usize].distance(points[self.end(h) as usize]);
+        let is_longest = |h: HalfEdgeId| {
             let flat = self.face_half_edges(h).into_iter().filter(|&side| is_flat(side));
             length(h) >= flat.map(length).fold(0.0, f64::max) * (1.0 - EQUAL_LENGTHS)
         };
-        let is_diagonal = |&h: &u32| is_flat(h) && is_longest(h) && self.twin(h).is_some_and(is_longest);
+        let is_diagonal =
+            |&h: &HalfEdgeId| is_flat(h) && is_longest(h) && self.twin(h).is_some_and(is_longest);
         self.edges().filter(is_diagonal).map(|h| [self.start(h), self.end(h)]).collect()
     }
 }

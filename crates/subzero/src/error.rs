@@ -1,5 +1,7 @@
 //! Why a mesh cannot be made.
 
+use crate::{FaceId, HalfEdgeId};
+
 /// Why a mesh, a curve or a feature of theirs was refused; each case names the place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -53,8 +55,8 @@ pub enum MeshError {
     /// A face has fewer than three corners.
     #[error("face {face} has {corners} corners: three are the least")]
     TooFewCorners {
-        /// Which face, counted from 0.
-        face: usize,
+        /// Which face.
+        face: FaceId,
         /// How many corners it has.
         corners: usize,
     },
@@ -86,9 +88,9 @@ pub enum MeshError {
     #[error("faces {first} and {second} have the same vertices; remove one")]
     DuplicateFace {
         /// The face with the lower number.
-        first: u32,
+        first: FaceId,
         /// The face with the higher number.
-        second: u32,
+        second: FaceId,
     },
     /// Two faces that share an edge wind opposite ways, and nothing says that the surface breaks there.
     #[error(
@@ -97,9 +99,9 @@ pub enum MeshError {
     )]
     Winding {
         /// The face with the lower number.
-        first: u32,
+        first: FaceId,
         /// The face with the higher number.
-        second: u32,
+        second: FaceId,
         /// The ends of the edge, in the direction in which both run.
         ends: [u32; 2],
     },
@@ -110,23 +112,23 @@ pub enum MeshError {
     )]
     NotOrientable {
         /// A face at the edge.
-        first: u32,
+        first: FaceId,
         /// The other face at the edge.
-        second: u32,
+        second: FaceId,
         /// The ends of the edge.
         ends: [u32; 2],
     },
     /// A polygon without area cannot be cut into triangles.
     #[error("face {face} has no area: remove it, or move a corner of it off their line")]
     FlatFace {
-        /// Which face, counted from 0.
-        face: usize,
+        /// Which face.
+        face: FaceId,
     },
     /// A polygon that crosses or touches itself cannot be cut into triangles.
     #[error("face {face} crosses or touches itself, as seen along its normal: divide it there into several")]
     CrossedFace {
-        /// Which face, counted from 0.
-        face: usize,
+        /// Which face.
+        face: FaceId,
     },
     /// A crease joins two vertices that share no edge.
     #[error("crease {index} joins vertices {} and {}, but the mesh has no such edge; name the ends of a face's side", ends[0], ends[1])]
@@ -152,21 +154,6 @@ pub enum MeshError {
         /// The vertex.
         vertex: u32,
     },
-    /// A Bezier curve or surface without control points.
-    #[error("a Bezier curve or surface needs a control point at least")]
-    NoControlPoints,
-    /// The control points of a Bezier surface form no grid.
-    #[error(
-        "row {row} of the control points has {found} points, but the first row has {length}; make all rows as long"
-    )]
-    RaggedControlPoints {
-        /// The first row that differs.
-        row: usize,
-        /// Points in the first row.
-        length: usize,
-        /// Points in that row.
-        found: usize,
-    },
     /// An edit of a half-edge mesh that would not leave a manifold mesh.
     #[error("edge {}-{} cannot be {edit}: {why}", ends[0], ends[1])]
     Edit {
@@ -181,7 +168,7 @@ pub enum MeshError {
     #[error("there is no half-edge {half_edge}; it is out of range, or an edit has removed it")]
     NoHalfEdge {
         /// The half-edge.
-        half_edge: u32,
+        half_edge: HalfEdgeId,
     },
     /// Two vertices that share no edge.
     #[error("there is no edge {}-{}; name two neighbours", ends[0], ends[1])]

@@ -3,9 +3,9 @@
 use smallvec::SmallVec;
 
 use crate::half_edge_mesh::HalfEdge;
-use crate::ids::{NONE, id, next, prev};
+use crate::ids::{NONE, id};
 use crate::mesh_checks::check_size;
-use crate::{HalfEdgeMesh, MeshError, Point};
+use crate::{HalfEdgeId, HalfEdgeMesh, MeshError, Point};
 
 impl HalfEdgeMesh {
     /// Turns an edge within the quadrilateral of its two triangles, so that it joins their far corners instead.
@@ -15,22 +15,22 @@ impl HalfEdgeMesh {
     /// # Errors
     /// [`MeshError::NoHalfEdge`], or [`MeshError::Edit`] if the edge is on the boundary or the far corners share an edge
     /// already. The mesh is unchanged then.
-    pub fn flip(&mut self, half_edge: u32) -> Result<(), MeshError> {
+    pub fn flip(&mut self, half_edge: HalfEdgeId) -> Result<(), MeshError> {
         self.check_exists(half_edge)?;
         let ends = [self.start(half_edge), self.end(half_edge)];
         let refuse = |why| Err(MeshError::Edit { edit: "flipped", ends, why });
-        let [h, other] = [half_edge, self.half_edges[half_edge as usize].twin];
-        if other == NONE {
+        let [h, other] = [half_edge, self.half_edges[half_edge.index()].twin];
+        if other == HalfEdgeId::NONE {
             return refuse("it lies on the boundary");
         }
         // Around h: a b c; around its twin: b a d.
-        let [b_c, c_a, a_d, d_b] = [next(h), prev(h), next(other), prev(other)];
+        let [b_c, c_a, a_d, d_b] = [h.next(), h.prev(), other.next(), other.prev()];
         let [a, b, c, d] = [self.start(h), self.start(b_c), self.start(c_a), self.start(d_b)];
         if self.leads_to(c_a, d) {
             return refuse("its far corners share an edge already");
         }
         let [beyond_bc, beyond_ca, beyond_ad, beyond_db] =
-            [b_c, c_a, a_d, d_b].map(|h| self.half_edges[h as usize].twin);
+            [b_c, c_a, a_d, d_b].map(|h| self.half_edges[h.index()].twin);
         // The triangles become d c a and c d b.
         for (h, start, twin) in [
             (h, d, other),
@@ -40,7 +40,7 @@ impl HalfEdgeMesh {
             (a_d, d, beyond_db),
             (d_b, b, beyond_bc),
         ] {
-            self.half_edges[h as usize].start = start;
+            self.half_edges[h.index()].start = start;
             self.link(h, twin);
         }
         for (vertex, left, now) in
@@ -59,15 +59,15 @@ impl HalfEdgeMesh {
     ///
     /// # Errors
     /// [`MeshError::NoHalfEdge`], or [`MeshError::TooLarge`] if the mesh outgrows 32-bit ids.
-    pub fn split(&mut self, half_edge: u32) -> Result<u32, MeshError> {
+    pub fn split(&mut self, half_edge: HalfEdgeId) -> Result<u32, MeshError> {
         self.check_exists(half_edge)?;
         check_size("vertices", self.vertex_count() + 1)?;
         check_size("half-edges", self.half_edges.len() + 6)?;
-        let [h, other] = [half_edge, self.half_edges[half_edge as usize].twin];
+        let [h, other] = [half_edge, self.half_edges[half_edge.index()].twin];
         let middle = id(self.vertex_count());
         let far_half = self.split_triangle(h, middle);
         self.outgoing.push(far_half);
-        if other != NONE {
+        if other != HalfEdgeId::NONE {
             let near_half = self.split_triangle(other, middle);
             self.link(h, near_half);
             self.link(other, far_half);
@@ -76,17 +76,18 @@ impl HalfEdgeMesh {
     }
 
     /// Cuts the triangle of `h` at a vertex on `h`: `h` keeps the first half. Returns the second half, without twin.
-    fn split_triangle(&mut self, h: u32, middle: u32) -> u32 {
-        let [b_c, c_a] = [next(h), prev(h)];
+    fn split_triangle(&mut self, h: HalfEdgeId, middle: u32) -> HalfEdgeId {
+        let [b_c, c_a] = [h.next(), h.prev()];
         let [b, c] = [self.start(b_c), self.start(c_a)];
-        let far_half = id(self.half_edges.len());
-        let beyond_bc = self.half_edges[b_c as usize].twin;
-        self.half_edges.extend([middle, b, c].map(|start| HalfEdge { start, twin: NONE }));
-        self.link(far_half + 1, beyond_bc);
-        self.half_edges[b_c as usize].start = middle;
-        self.link(b_c, far_half + 2);
+        let far_half = HalfEdgeId(id(self.half_edges.len()));
+        let [after, before] = [far_half.next(), far_half.prev()];
+        let beyond_bc = self.half_edges[b_c.index()].twin;
+        self.half_edges.extend([middle, b, c].map(|start| HalfEdge { start, twin: HalfEdgeId::NONE }));
+        self.link(after, beyond_bc);
+        self.half_edges[b_c.index()].start = middle;
+        self.link(b_c, before);
         if self.outgoing[b as usize] == b_c {
-            self.outgoing[b as usize] = far_half + 1;
+            self.outgoing[b as usize] = after;
         }
         far_half
     }
@@ -121,31 +122,31 @@ impl HalfEdgeMesh {
     /// # Errors
     /// [`MeshError::NoHalfEdge`], or [`MeshError::Edit`] if the link condition does not hold: the mesh would be no manifold
     /// or change its topology. The mesh is unchanged then.
-    pub fn collapse(&mut self, half_edge: u32) -> Result<(), MeshError> {
+    pub fn collapse(&mut self, half_edge: HalfEdgeId) -> Result<(), MeshError> {
         self.check_exists(half_edge)?;
-        let [h, other] = [half_edge, self.half_edges[half_edge as usize].twin];
+        let [h, other] = [half_edge, self.half_edges[half_edge.index()].twin];
         let [a, b] = [self.start(h), self.end(h)];
         if let Some(why) = self.breaks_link_condition(h) {
             return Err(MeshError::Edit { edit: "collapsed", ends: [a, b], why });
         }
         // The fan of b takes in that of a. On the boundary it starts where that of the boundary vertex does.
-        let a_leads = other != NONE && self.is_boundary_vertex(a);
+        let a_leads = other != HalfEdgeId::NONE && self.is_boundary_vertex(a);
         let mut first = self.outgoing[if a_leads { a } else { b } as usize];
         let mut turning = self.outgoing[a as usize];
         loop {
-            self.half_edges[turning as usize].start = b;
-            turning = self.half_edges[prev(turning) as usize].twin;
-            if turning == NONE || turning == self.outgoing[a as usize] {
+            self.half_edges[turning.index()].start = b;
+            turning = self.half_edges[turning.prev().index()].twin;
+            if turning == HalfEdgeId::NONE || turning == self.outgoing[a as usize] {
                 break;
             }
         }
-        for side in [h, other].into_iter().filter(|&side| side != NONE) {
+        for side in [h, other].into_iter().filter(|&side| side != HalfEdgeId::NONE) {
             // The triangle's other two edges become one.
-            let [after, before] = [next(side), prev(side)];
-            let [beyond_after, beyond_before] = [after, before].map(|h| self.half_edges[h as usize].twin);
+            let [after, before] = [side.next(), side.prev()];
+            let [beyond_after, beyond_before] = [after, before].map(|h| self.half_edges[h.index()].twin);
             for (h, twin) in [(beyond_after, beyond_before), (beyond_before, beyond_after)] {
-                if h != NONE {
-                    self.half_edges[h as usize].twin = twin;
+                if h != HalfEdgeId::NONE {
+                    self.half_edges[h.index()].twin = twin;
                 }
             }
             let apex = self.start(before) as usize;
@@ -156,11 +157,11 @@ impl HalfEdgeMesh {
                 first = beyond_before;
             }
             for removed in [side, after, before] {
-                self.half_edges[removed as usize] = HalfEdge { start: NONE, twin: NONE };
+                self.half_edges[removed.index()] = HalfEdge { start: NONE, twin: HalfEdgeId::NONE };
             }
         }
         self.outgoing[b as usize] = first;
-        self.outgoing[a as usize] = NONE;
+        self.outgoing[a as usize] = HalfEdgeId::NONE;
         Ok(())
     }
 
@@ -175,28 +176,28 @@ impl HalfEdgeMesh {
         }
         // On the boundary the only half-edge may run the other way: then the vertex that is left takes the other's id.
         self.collapse(half_edge)?;
-        let around: Vec<u32> = self.outgoing_half_edges(from).collect();
+        let around: Vec<HalfEdgeId> = self.outgoing_half_edges(from).collect();
         for h in around {
-            self.half_edges[h as usize].start = into;
+            self.half_edges[h.index()].start = into;
         }
-        self.outgoing[into as usize] = std::mem::replace(&mut self.outgoing[from as usize], NONE);
+        self.outgoing[into as usize] = std::mem::replace(&mut self.outgoing[from as usize], HalfEdgeId::NONE);
         Ok(())
     }
 
     /// Whether an edge joins the start of `h` to `vertex`, which is no corner of the triangle of `h`.
-    fn leads_to(&self, h: u32, vertex: u32) -> bool {
+    fn leads_to(&self, h: HalfEdgeId, vertex: u32) -> bool {
         // Both ways round until they meet: what is read depends on what was read before, so two short chains are faster than a long
         // one.
         let [mut left, mut right] = [Some(h); 2];
         while left.is_some() || right.is_some() {
-            left = left.and_then(|h| self.twin(prev(h)));
-            if left.is_some_and(|h| self.start(prev(h)) == vertex) {
+            left = left.and_then(|h| self.twin(h.prev()));
+            if left.is_some_and(|h| self.start(h.prev()) == vertex) {
                 return true;
             }
             if left == right {
                 return false;
             }
-            right = right.and_then(|h| self.twin(h)).map(next);
+            right = right.and_then(|h| self.twin(h)).map(HalfEdgeId::next);
             if right.is_some_and(|h| self.end(h) == vertex) {
                 return true;
             }
@@ -208,7 +209,7 @@ impl HalfEdgeMesh {
     }
 
     /// What would go wrong if an edge collapsed.
-    fn breaks_link_condition(&self, h: u32) -> Option<&'static str> {
+    fn breaks_link_condition(&self, h: HalfEdgeId) -> Option<&'static str> {
         let [a, b] = [self.start(h), self.end(h)];
         let around_b: SmallVec<[u32; 16]> = self.neighbours(b).collect();
         let (valence_of_a, shared) = self.neighbours(a).fold((0, 0), |(valence, shared), neighbour| {
@@ -216,7 +217,7 @@ impl HalfEdgeMesh {
             (valence + 1, shared + around_b.iter().filter(|&&other| other == neighbour).count())
         });
         if self.twin(h).is_none() {
-            let alone = self.twin(next(h)).is_none() && self.twin(prev(h)).is_none();
+            let alone = self.twin(h.next()).is_none() && self.twin(h.prev()).is_none();
             return match (shared, alone) {
                 (1, false) => None,
                 (1, true) => Some("nothing else holds its triangle"),
@@ -234,14 +235,14 @@ impl HalfEdgeMesh {
         }
     }
 
-    fn link(&mut self, h: u32, twin: u32) {
-        self.half_edges[h as usize].twin = twin;
-        if twin != NONE {
-            self.half_edges[twin as usize].twin = h;
+    fn link(&mut self, h: HalfEdgeId, twin: HalfEdgeId) {
+        self.half_edges[h.index()].twin = twin;
+        if twin != HalfEdgeId::NONE {
+            self.half_edges[twin.index()].twin = h;
         }
     }
 
-    fn check_exists(&self, half_edge: u32) -> Result<(), MeshError> {
+    fn check_exists(&self, half_edge: HalfEdgeId) -> Result<(), MeshError> {
         if self.exists(half_edge) { Ok(()) } else { Err(MeshError::NoHalfEdge { half_edge }) }
     }
 }

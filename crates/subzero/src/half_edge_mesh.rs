@@ -3,18 +3,18 @@
 use glam::DVec3;
 
 use crate::edge_table::EdgeTable;
-use crate::ids::{NONE, id, next, prev};
+use crate::ids::{NONE, id};
 use crate::mesh_checks::check_size;
 use crate::triangle_build::check_triangles;
-use crate::{MeshError, TriangleMesh};
+use crate::{FaceId, HalfEdgeId, MeshError, TriangleMesh};
 
 /// What an edit needs to know of a half-edge, in one place in memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct HalfEdge {
     /// The vertex where it starts, [`NONE`] in triangles that are gone.
     pub start: u32,
-    /// The half-edge on the other side, [`NONE`] on the boundary.
-    pub twin: u32,
+    /// The half-edge on the other side, [`HalfEdgeId::NONE`] on the boundary.
+    pub twin: HalfEdgeId,
 }
 
 /// A manifold triangle mesh, possibly with boundary, that can be edited; positions live beside it.
@@ -24,8 +24,8 @@ pub(crate) struct HalfEdge {
 #[derive(Clone, Debug, PartialEq)]
 pub struct HalfEdgeMesh {
     pub(crate) half_edges: Vec<HalfEdge>,
-    /// Per vertex: a half-edge that starts there, on the boundary the one without twin; [`NONE`] at unused vertices.
-    pub(crate) outgoing: Vec<u32>,
+    /// Per vertex: a half-edge that starts there, on the boundary the one without twin; [`HalfEdgeId::NONE`] at unused vertices.
+    pub(crate) outgoing: Vec<HalfEdgeId>,
 }
 
 impl HalfEdgeMesh {
@@ -48,20 +48,21 @@ impl HalfEdgeMesh {
         }
         if let Some(&(_, [first, second])) = table.same_way.first() {
             let ends = half_edges[first as usize];
-            return Err(MeshError::Winding { first: first / 3, second: second / 3, ends });
+            return Err(MeshError::Winding { first: FaceId(first / 3), second: FaceId(second / 3), ends });
         }
         let starts = triangles.as_flattened().iter();
-        let mut half_edges: Vec<HalfEdge> = starts.map(|&start| HalfEdge { start, twin: NONE }).collect();
+        let mut half_edges: Vec<HalfEdge> =
+            starts.map(|&start| HalfEdge { start, twin: HalfEdgeId::NONE }).collect();
         for &[along, against] in table.edges.iter().filter(|edge| edge[1] != NONE) {
-            half_edges[along as usize].twin = against;
-            half_edges[against as usize].twin = along;
+            half_edges[along as usize].twin = HalfEdgeId(against);
+            half_edges[against as usize].twin = HalfEdgeId(along);
         }
-        let mut mesh = Self { half_edges, outgoing: vec![NONE; vertex_count] };
+        let mut mesh = Self { half_edges, outgoing: vec![HalfEdgeId::NONE; vertex_count] };
         let mut triangles_at = vec![0_usize; vertex_count];
-        for h in 0..id(mesh.half_edges.len()) {
+        for h in (0..id(mesh.half_edges.len())).map(HalfEdgeId) {
             let vertex = mesh.start(h) as usize;
             triangles_at[vertex] += 1;
-            if mesh.outgoing[vertex] == NONE || mesh.twin(h).is_none() {
+            if mesh.outgoing[vertex] == HalfEdgeId::NONE || mesh.twin(h).is_none() {
                 mesh.outgoing[vertex] = h;
             }
         }
@@ -92,62 +93,63 @@ impl HalfEdgeMesh {
     }
 
     /// The triangles that are there, with their ids.
-    pub fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3])> {
+    pub fn triangles(&self) -> impl Iterator<Item = (FaceId, [u32; 3])> {
         let (triangles, _) = self.half_edges.as_chunks::<3>();
         triangles
             .iter()
             .enumerate()
             .filter(|(_, half_edges)| half_edges[0].start != NONE)
-            .map(|(t, half_edges)| (id(t), half_edges.map(|half_edge| half_edge.start)))
+            .map(|(t, half_edges)| (FaceId(id(t)), half_edges.map(|half_edge| half_edge.start)))
     }
 
     /// One half-edge of each edge: the only one, or that with the lower id.
-    pub fn edges(&self) -> impl Iterator<Item = u32> {
-        (0..id(self.half_edges.len())).filter(|&h| self.exists(h) && self.twin(h).is_none_or(|twin| h < twin))
+    pub fn edges(&self) -> impl Iterator<Item = HalfEdgeId> {
+        (0..id(self.half_edges.len()))
+            .map(HalfEdgeId)
+            .filter(|&h| self.exists(h) && self.twin(h).is_none_or(|twin| h < twin))
     }
 
     /// Whether a half-edge is there, and not out of range or removed.
-    pub fn exists(&self, half_edge: u32) -> bool {
-        self.half_edges.get(half_edge as usize).is_some_and(|half_edge| half_edge.start != NONE)
+    pub fn exists(&self, half_edge: HalfEdgeId) -> bool {
+        self.half_edges.get(half_edge.index()).is_some_and(|half_edge| half_edge.start != NONE)
     }
 
     /// The vertex where a half-edge starts.
     ///
     /// # Panics
     /// If the half-edge is out of range.
-    pub fn start(&self, half_edge: u32) -> u32 {
-        self.half_edges[half_edge as usize].start
+    pub fn start(&self, half_edge: HalfEdgeId) -> u32 {
+        self.half_edges[half_edge.index()].start
     }
 
     /// The vertex where a half-edge ends.
     ///
     /// # Panics
     /// If the half-edge is out of range.
-    pub fn end(&self, half_edge: u32) -> u32 {
-        self.start(next(half_edge))
+    pub fn end(&self, half_edge: HalfEdgeId) -> u32 {
+        self.start(half_edge.next())
     }
 
     /// The half-edge on the other side of the edge, if it is not on the boundary.
     ///
     /// # Panics
     /// If the half-edge is out of range.
-    pub fn twin(&self, half_edge: u32) -> Option<u32> {
-        Some(self.half_edges[half_edge as usize].twin).filter(|&twin| twin != NONE)
+    pub fn twin(&self, half_edge: HalfEdgeId) -> Option<HalfEdgeId> {
+        self.half_edges[half_edge.index()].twin.some()
     }
 
     /// The three half-edges around the triangle of a half-edge, from this one on.
-    pub fn face_half_edges(&self, half_edge: u32) -> [u32; 3] {
-        [half_edge, next(half_edge), prev(half_edge)]
+    pub fn face_half_edges(&self, half_edge: HalfEdgeId) -> [HalfEdgeId; 3] {
+        [half_edge, half_edge.next(), half_edge.prev()]
     }
 
     /// The half-edges that start at a vertex, counter-clockwise; at the boundary from one side of it to the other.
     ///
     /// # Panics
     /// If there is no such vertex.
-    pub fn outgoing_half_edges(&self, vertex: u32) -> impl Iterator<Item = u32> {
+    pub fn outgoing_half_edges(&self, vertex: u32) -> impl Iterator<Item = HalfEdgeId> {
         let first = self.outgoing[vertex as usize];
-        let start = Some(first).filter(|&h| h != NONE);
-        std::iter::successors(start, move |&h| self.twin(prev(h)).filter(|&turned| turned != first))
+        std::iter::successors(first.some(), move |&h| self.twin(h.prev()).filter(|&turned| turned != first))
     }
 
     /// The vertices that share an edge with `vertex`, counter-clockwise; at the boundary from one side of it to the other.
@@ -157,7 +159,7 @@ impl HalfEdgeMesh {
     pub fn neighbours(&self, vertex: u32) -> impl Iterator<Item = u32> {
         // The fan of a boundary vertex has an edge more than triangles.
         let first = self.is_boundary_vertex(vertex).then(|| self.end(self.outgoing[vertex as usize]));
-        first.into_iter().chain(self.outgoing_half_edges(vertex).map(|h| self.start(prev(h))))
+        first.into_iter().chain(self.outgoing_half_edges(vertex).map(|h| self.start(h.prev())))
     }
 
     /// Whether a vertex lies on the boundary.
@@ -166,14 +168,14 @@ impl HalfEdgeMesh {
     /// If there is no such vertex.
     pub fn is_boundary_vertex(&self, vertex: u32) -> bool {
         let first = self.outgoing[vertex as usize];
-        first != NONE && self.twin(first).is_none()
+        first.some().is_some_and(|first| self.twin(first).is_none())
     }
 
     /// A half-edge of the edge between two vertices, from `a` to `b` if there is one.
     ///
     /// # Errors
     /// [`MeshError::NoEdge`] if they share no edge.
-    pub fn half_edge_between(&self, a: u32, b: u32) -> Result<u32, MeshError> {
+    pub fn half_edge_between(&self, a: u32, b: u32) -> Result<HalfEdgeId, MeshError> {
         let known = |v: u32| (v as usize) < self.vertex_count();
         let from_to = |a: u32, b: u32| self.outgoing_half_edges(a).find(|&h| self.end(h) == b);
         let found = if known(a) && known(b) { from_to(a, b).or_else(|| from_to(b, a)) } else { None };

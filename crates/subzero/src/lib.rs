@@ -11,7 +11,7 @@
 //! let points = [DVec3::new(1., 1., 1.), DVec3::new(-1., 1., -1.), DVec3::new(1., -1., -1.), DVec3::new(-1., -1., 1.)];
 //!
 //! let mesh = TriangleMesh::new(4, tetrahedron, &Features::default())?;
-//! let Refinement { mesh: finer, stencils } = mesh.loop_refine();
+//! let Refinement { mesh: finer, stencils } = mesh.loop_refine()?;
 //! let finer_points = stencils.apply(&points);
 //!
 //! assert_eq!(finer.triangles().len(), 16);
@@ -22,6 +22,7 @@
 
 mod base_rings;
 mod bezier;
+mod bezier_error;
 mod bezier_merge;
 mod butterfly;
 mod catmull_clark;
@@ -59,6 +60,7 @@ mod triangulate;
 mod vertex_rows;
 
 pub use bezier::{BezierCurve, BezierSurface};
+pub use bezier_error::BezierError;
 pub use bezier_merge::MergedSurfaces;
 pub use catmull_clark_limits::CatmullClarkLimits;
 pub use counts::{EdgeParent, MeshCounts, VertexParent};
@@ -68,6 +70,7 @@ pub use doo_sabin::{DooSabinLimits, DooSabinWeights};
 pub use error::MeshError;
 pub use features::{BoundaryRule, Crease, Features, INFINITE_SHARPNESS, VertexRule};
 pub use half_edge_mesh::HalfEdgeMesh;
+pub use ids::{EdgeId, FaceId, HalfEdgeId};
 pub use loop_hierarchy::LoopHierarchy;
 pub use loop_limit::{LoopLimits, Sector};
 pub use loop_scheme::LoopWeights;

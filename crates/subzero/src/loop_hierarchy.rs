@@ -2,7 +2,7 @@
 
 use crate::base_rings::BaseRings;
 use crate::large_vec;
-use crate::{LoopWeights, Point, StencilTable, TriangleMesh};
+use crate::{FaceId, LoopWeights, MeshError, Point, StencilTable, TriangleMesh};
 
 /// A mesh and what Loop's scheme makes of it over several levels: topology once, points again and again.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,15 +18,17 @@ impl TriangleMesh {
     /// The mesh refined `levels` times by Loop's scheme, and its points. Faster than a [`LoopHierarchy`] if the points will
     /// not change.
     ///
+    /// # Errors
+    /// [`MeshError::TooLarge`] if the finest mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
+    ///
     /// # Panics
-    /// If there is not one point per vertex, or if the finest mesh outgrows 32-bit ids;
-    /// [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
+    /// If there is not one point per vertex.
     pub fn loop_subdivide<P: Point>(
         self,
         points: &[P],
         levels: usize,
         weights: LoopWeights,
-    ) -> (Self, Vec<P>) {
+    ) -> Result<(Self, Vec<P>), MeshError> {
         let rings = BaseRings::new(&self, weights);
         let mut ancestors = Vec::with_capacity(levels);
         let mut mesh = self;
@@ -35,25 +37,25 @@ impl TriangleMesh {
             let mut refined = large_vec::zeros(mesh.vertex_count() + mesh.edge_count());
             mesh.loop_points(&ancestors, &rings, &points, weights, &mut refined);
             points = refined;
-            let finer = mesh.refine_connectivity();
+            let finer = mesh.refine_connectivity()?;
             ancestors.push(std::mem::replace(&mut mesh, finer));
         }
-        (mesh, points)
+        Ok((mesh, points))
     }
 }
 
 impl LoopHierarchy {
     /// Refines `mesh` so many times.
     ///
-    /// # Panics
-    /// If the finest mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
-    pub fn new(mesh: TriangleMesh, levels: usize, weights: LoopWeights) -> Self {
+    /// # Errors
+    /// [`MeshError::TooLarge`] if the finest mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
+    pub fn new(mesh: TriangleMesh, levels: usize, weights: LoopWeights) -> Result<Self, MeshError> {
         let rings = BaseRings::new(&mesh, weights);
         let mut meshes = vec![mesh];
         for level in 0..levels {
-            meshes.push(meshes[level].refine_connectivity());
+            meshes.push(meshes[level].refine_connectivity()?);
         }
-        Self { levels: meshes, rings, weights }
+        Ok(Self { levels: meshes, rings, weights })
     }
 
     /// The meshes, from the one given to the finest.
@@ -72,7 +74,7 @@ impl LoopHierarchy {
     }
 
     /// The triangle of the coarsest mesh in which a triangle of the finest lies.
-    pub fn ancestor(&self, triangle: u32) -> u32 {
+    pub fn ancestor(&self, triangle: FaceId) -> FaceId {
         let coarser = self.levels[..self.levels.len() - 1].iter().rev();
         coarser.fold(triangle, |triangle, mesh| mesh.counts().triangle_parent(triangle))
     }

@@ -40,13 +40,14 @@ impl TriangleMesh {
     /// with sectors of six and more triangles the normals given are those of the dominant eigenvectors.
     ///
     /// # Errors
-    /// [`MeshError::SemiSharp`] names a vertex with a sharpness that will run out: refine until it has.
+    /// [`MeshError::SemiSharp`] names a vertex with a sharpness that will run out: refine until it has. [`MeshError::TooLarge`] if the next level,
+    /// which the weights of Biermann, Levin and Zorin need, outgrows 32-bit ids.
     pub fn loop_limits(&self, weights: LoopWeights) -> Result<LoopLimits, MeshError> {
         self.sharpness.check_settled()?;
         let sectors = self.sectors();
         let [positions, tangents] = if weights == LoopWeights::BiermannLevinZorin {
             // An edge's weights depend on both ends here. One level on, old vertices have regular neighbours only.
-            let Refinement { mesh: finer, stencils } = self.loop_refine_with(weights);
+            let Refinement { mesh: finer, stencils } = self.loop_refine_with(weights)?;
             let children =
                 sectors.iter().map(|&Sector { vertex, first }| Sector { vertex, first: 3 * first });
             let children: Vec<Sector> = children.collect();
@@ -108,8 +109,7 @@ impl TriangleMesh {
         let at_crease = |h: u32| {
             let vertex = self.start(h);
             let between_creases = matches!(self.vertex_rule(vertex), VertexRule::Crease | VertexRule::Corner);
-            (between_creases && self.is_crease(self.directed_edge(h) / 2))
-                .then_some(Sector { vertex, first: h })
+            (between_creases && self.is_crease(self.edge_of(h))).then_some(Sector { vertex, first: h })
         };
         let all_round = |vertex: u32| match self.vertex_rule(vertex) {
             VertexRule::Smooth => Some(Sector { vertex, first: self.outgoing[vertex as usize] }),
@@ -125,7 +125,7 @@ impl TriangleMesh {
 
     /// The half-edge of a dart's sharp edge that starts at the dart.
     fn dart_start(&self, vertex: u32) -> u32 {
-        let on_crease = |&h: &u32| self.is_crease(self.directed_edge(h) / 2);
+        let on_crease = |&h: &u32| self.is_crease(self.edge_of(h));
         let first = self.outgoing[vertex as usize];
         self.ring(first).find(on_crease).unwrap_or(first)
     }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::base_rings::BaseRings;
 use crate::ids::{id, next, prev};
 use crate::prefetch::prefetch;
-use crate::{LoopWeights, Point, TriangleMesh, VertexRule};
+use crate::{EdgeId, LoopWeights, Point, TriangleMesh, VertexRule};
 
 /// Points or parents that one task takes.
 const PER_TASK: usize = 1024;
@@ -66,14 +66,14 @@ impl TriangleMesh {
         let moved = moved.par_iter_mut().with_min_len(PER_TASK).enumerate();
         moved.for_each(|(v, new)| *new = self.point_by_row(id(v), points, weights));
         let placed = placed.par_iter_mut().with_min_len(PER_TASK).enumerate();
-        placed.for_each(|(e, new)| *new = self.edge_point_by_row(id(e), points, weights));
+        placed.for_each(|(e, new)| *new = self.edge_point_by_row(EdgeId(id(e)), points, weights));
     }
 
     fn point_by_row<P: Point>(&self, vertex: u32, points: &[P], weights: LoopWeights) -> P {
         sum_row(points, |mut add| self.loop_vertex_row(vertex, weights, &mut add))
     }
 
-    fn edge_point_by_row<P: Point>(&self, edge: u32, points: &[P], weights: LoopWeights) -> P {
+    fn edge_point_by_row<P: Point>(&self, edge: EdgeId, points: &[P], weights: LoopWeights) -> P {
         sum_row(points, |mut add| self.loop_edge_row(edge, weights, &mut add))
     }
 
@@ -129,7 +129,7 @@ impl TriangleMesh {
         placed.par_iter_mut().zip(edges).with_min_len(PER_TASK).enumerate().for_each(
             |(e, (new, (&[along, against], &sharp)))| {
                 *new = if sharp {
-                    self.edge_point_by_row(id(e), points, weights)
+                    self.edge_point_by_row(EdgeId(id(e)), points, weights)
                 } else {
                     let at = |h: u32| points[self.start(h) as usize];
                     edge_point(at(along), at(next(along)), at(prev(along)), at(prev(against)))
@@ -162,7 +162,7 @@ impl TriangleMesh {
                         *new = self.point_by_row(vertex, points, weights);
                     }
                     for (quarter, new) in (4 * e..).zip(on_quarters) {
-                        *new = self.edge_point_by_row(quarter, points, weights);
+                        *new = self.edge_point_by_row(EdgeId(quarter), points, weights);
                     }
                     return;
                 }

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use crate::ids::{next, prev};
 use crate::vertex_rows::vertex_row;
-use crate::{StencilTable, TriangleMesh, VertexRule};
+use crate::{EdgeId, StencilTable, TriangleMesh, VertexRule};
 
 /// How strongly a smooth vertex is drawn to its neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,16 +45,17 @@ impl TriangleMesh {
                     rows.merge();
                 }
             } else {
-                self.loop_edge_row(i - vertices, weights, &mut |point, weight| rows.add(point, weight));
+                self.loop_edge_row(EdgeId(i - vertices), weights, &mut |point, weight| {
+                    rows.add(point, weight)
+                });
             }
         })
     }
 
-    pub(crate) fn loop_edge_row(&self, edge: u32, weights: LoopWeights, add: &mut impl FnMut(u32, f64)) {
-        let [along, against] = self.edges[edge as usize];
+    pub(crate) fn loop_edge_row(&self, edge: EdgeId, weights: LoopWeights, add: &mut impl FnMut(u32, f64)) {
+        let [along, against] = self.edges[edge.index()];
         let [a, b] = [self.start(along), self.start(next(along))];
-        let crease =
-            if self.sharp_edges[edge as usize] { self.sharpness.of_edge(edge).min(1.0) } else { 0.0 };
+        let crease = if self.sharp_edges[edge.index()] { self.sharpness.of_edge(edge).min(1.0) } else { 0.0 };
         if crease >= 1.0 {
             add(a, 0.5);
             add(b, 0.5);

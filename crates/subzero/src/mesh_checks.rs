@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::features::INFINITE_SHARPNESS;
 use crate::ids::id;
-use crate::{Features, MeshError};
+use crate::{FaceId, Features, MeshError};
 
 /// Checks that every coordinate of every point is finite.
 ///
@@ -18,8 +18,13 @@ pub fn check_finite(points: &[DVec3]) -> Result<(), MeshError> {
 }
 
 /// Whether so many elements can be counted with 32-bit ids; the last id is kept for "none".
+pub(crate) fn fits(count: usize) -> bool {
+    count < u32::MAX as usize
+}
+
+/// Checks that so many elements can be counted with 32-bit ids.
 pub(crate) fn check_size(what: &'static str, count: usize) -> Result<(), MeshError> {
-    if count < u32::MAX as usize { Ok(()) } else { Err(MeshError::TooLarge { what, count }) }
+    if fits(count) { Ok(()) } else { Err(MeshError::TooLarge { what, count }) }
 }
 
 pub(crate) fn check_vertex(
@@ -58,7 +63,8 @@ pub(crate) fn check_corners(vertex_count: usize, features: &Features) -> Result<
 
 /// Whether no two faces have the same vertices; `sorted_faces` are the vertices of each face, sorted.
 pub(crate) fn check_duplicates<Face: Ord>(sorted_faces: impl Iterator<Item = Face>) -> Result<(), MeshError> {
-    let mut faces: Vec<(Face, u32)> = sorted_faces.enumerate().map(|(f, face)| (face, id(f))).collect();
+    let mut faces: Vec<(Face, FaceId)> =
+        sorted_faces.enumerate().map(|(f, face)| (face, FaceId(id(f)))).collect();
     faces.sort_unstable();
     let equal = faces.windows(2).filter(|pair| pair[0].0 == pair[1].0);
     match equal.map(|pair| (pair[0].1, pair[1].1)).min() {
@@ -72,7 +78,7 @@ pub(crate) fn check_faces(vertex_count: usize, faces: &[Vec<u32>]) -> Result<(),
     let mut sorted_faces = Vec::with_capacity(faces.len());
     for (index, face) in faces.iter().enumerate() {
         if face.len() < 3 {
-            return Err(MeshError::TooFewCorners { face: index, corners: face.len() });
+            return Err(MeshError::TooFewCorners { face: FaceId(id(index)), corners: face.len() });
         }
         for &vertex in face {
             check_vertex("face", index, vertex, vertex_count)?;

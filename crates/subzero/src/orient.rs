@@ -2,21 +2,20 @@
 
 use glam::DVec3;
 
-use crate::MeshError;
 use crate::edge_table::EdgeTable;
 use crate::ids::{NONE, id};
 use crate::mesh_checks::{check_faces, check_size};
+use crate::{FaceId, MeshError};
 
 /// Which faces of a mesh are to be turned round, and which of them hang together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orientation {
     /// Per face: whether it is to be turned round.
-    pub turned: Vec<bool>,
-    /// Per face: its component. Components hang together by edges of exactly two faces, and count in the order of
-    /// their first faces.
-    pub component_of: Vec<u32>,
+    turned: Vec<bool>,
+    /// Per face: its component.
+    component_of: Vec<u32>,
     /// Per component: whether each of its edges has exactly two faces.
-    pub is_closed: Vec<bool>,
+    is_closed: Vec<bool>,
 }
 
 /// Finds which faces to turn round for the winding to agree: in each component the fewer ones, and of equally many those
@@ -66,7 +65,11 @@ pub fn orient(vertex_count: usize, faces: &[Vec<u32>]) -> Result<Orientation, Me
                     members.push(neighbour);
                 } else if orientation.turned[neighbour as usize] != wanted {
                     let ends = half_edges[half_edge as usize];
-                    return Err(MeshError::NotOrientable { first: face, second: neighbour, ends });
+                    return Err(MeshError::NotOrientable {
+                        first: FaceId(face),
+                        second: FaceId(neighbour),
+                        ends,
+                    });
                 }
             }
         }
@@ -82,6 +85,21 @@ pub fn orient(vertex_count: usize, faces: &[Vec<u32>]) -> Result<Orientation, Me
 }
 
 impl Orientation {
+    /// Per face: whether it is to be turned round.
+    pub fn turned(&self) -> &[bool] {
+        &self.turned
+    }
+
+    /// Per face: its component. Components hang together by edges of exactly two faces, and count in the order of their first faces.
+    pub fn component_of(&self) -> &[u32] {
+        &self.component_of
+    }
+
+    /// Per component: whether each of its edges has exactly two faces.
+    pub fn is_closed(&self) -> &[bool] {
+        &self.is_closed
+    }
+
     /// Turns closed components, too, whose normals would point inward: those of negative volume.
     ///
     /// # Panics

@@ -9,7 +9,7 @@ use crate::ids::{NONE, id};
 use crate::mesh_checks::{check_corners, check_faces, check_size};
 use crate::sharpness::{Sharpness, is_infinite};
 use crate::triangulate::doubled_area_vector;
-use crate::{BoundaryRule, Features, MeshError, VertexRule};
+use crate::{BoundaryRule, EdgeId, FaceId, Features, MeshError, VertexRule};
 
 /// Connectivity of a mesh of polygons with three or more corners; positions live beside it as slices.
 ///
@@ -75,7 +75,7 @@ impl PolygonMesh {
             return Err(MeshError::NonManifoldEdge { ends, faces: table.half_edge_counts[edge] });
         }
         if let Some(&(_, [first, second])) = table.same_way.first() {
-            let [face, other] = [first, second].map(|h| mesh.faces_of[h as usize]);
+            let [face, other] = [first, second].map(|h| FaceId(mesh.faces_of[h as usize]));
             return Err(MeshError::Winding { first: face, second: other, ends: half_edges[first as usize] });
         }
         mesh.directed_edges = table.directed_edges;
@@ -142,48 +142,54 @@ impl PolygonMesh {
     ///
     /// # Panics
     /// If there is no such face.
-    pub fn face(&self, face: u32) -> &[u32] {
-        let face = face as usize;
+    pub fn face(&self, face: FaceId) -> &[u32] {
+        let face = face.index();
         &self.corners[self.face_starts[face] as usize..self.face_starts[face + 1] as usize]
     }
 
     /// The vertices of each face, face after face.
     pub fn faces(&self) -> impl ExactSizeIterator<Item = &[u32]> {
-        (0..id(self.face_count())).map(|face| self.face(face))
+        (0..id(self.face_count())).map(|face| self.face(FaceId(face)))
     }
 
     /// The two ends of an edge.
     ///
     /// # Panics
     /// If there is no such edge.
-    pub fn edge(&self, edge: u32) -> [u32; 2] {
-        let [along, _] = self.edges[edge as usize];
+    pub fn edge(&self, edge: EdgeId) -> [u32; 2] {
+        let [along, _] = self.edges[edge.index()];
         [self.start(along), self.end(along)]
+    }
+
+    /// The two ends of each edge.
+    pub fn edges(&self) -> impl ExactSizeIterator<Item = [u32; 2]> {
+        self.edges.iter().map(|&[along, _]| [self.start(along), self.end(along)])
     }
 
     /// The edges of a face; edge k runs from corner k to corner k + 1.
     ///
     /// # Panics
     /// If there is no such face.
-    pub fn face_edges(&self, face: u32) -> impl Iterator<Item = u32> {
-        let face = face as usize;
-        (self.face_starts[face]..self.face_starts[face + 1]).map(|h| self.directed_edges[h as usize] / 2)
+    pub fn face_edges(&self, face: FaceId) -> impl Iterator<Item = EdgeId> {
+        let face = face.index();
+        let half_edges = self.face_starts[face]..self.face_starts[face + 1];
+        half_edges.map(|h| EdgeId(self.directed_edges[h as usize] / 2))
     }
 
     /// Whether an edge is infinitely sharp: marked so, or on the boundary.
     ///
     /// # Panics
     /// If there is no such edge.
-    pub fn is_crease(&self, edge: u32) -> bool {
-        self.sharp_edges[edge as usize] && is_infinite(self.sharpness.of_edge(edge))
+    pub fn is_crease(&self, edge: EdgeId) -> bool {
+        self.sharp_edges[edge.index()] && is_infinite(self.sharpness.of_edge(edge))
     }
 
     /// Whether an edge has one face only.
     ///
     /// # Panics
     /// If there is no such edge.
-    pub fn is_boundary(&self, edge: u32) -> bool {
-        self.edges[edge as usize][1] == NONE
+    pub fn is_boundary(&self, edge: EdgeId) -> bool {
+        self.edges[edge.index()][1] == NONE
     }
 
     /// The rule that moves a vertex in the next Catmull-Clark refinement; an unused vertex is a corner.
@@ -237,7 +243,7 @@ impl PolygonMesh {
     }
 
     /// The end of an edge that is not `vertex`.
-    pub(crate) fn other_end(&self, edge: u32, vertex: u32) -> u32 {
+    pub(crate) fn other_end(&self, edge: EdgeId, vertex: u32) -> u32 {
         let [start, end] = self.edge(edge);
         if start == vertex { end } else { start }
     }

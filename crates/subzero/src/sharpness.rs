@@ -5,20 +5,20 @@
 
 use crate::features::INFINITE_SHARPNESS;
 use crate::ids::id;
-use crate::{MeshError, VertexRule};
+use crate::{EdgeId, MeshError, VertexRule};
 
 /// A sharp edge as seen from one of its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Spoke {
     pub vertex: u32,
-    pub edge: u32,
+    pub edge: EdgeId,
     pub sharpness: f32,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Sharpness {
     /// Edges with a sharpness above 0, sorted by edge.
-    pub edges: Vec<(u32, f32)>,
+    pub edges: Vec<(EdgeId, f32)>,
     /// Both ends of each of them, sorted by vertex, then edge.
     pub spokes: Vec<Spoke>,
     /// Vertices with a sharpness of their own, sorted.
@@ -27,11 +27,11 @@ pub(crate) struct Sharpness {
 
 impl Sharpness {
     /// The sharp edges among all; `ends` gives the two vertices of an edge.
-    pub(crate) fn new(edge_sharpness: &[f32], ends: impl Fn(u32) -> [u32; 2]) -> Self {
+    pub(crate) fn new(edge_sharpness: &[f32], ends: impl Fn(EdgeId) -> [u32; 2]) -> Self {
         let sharp = edge_sharpness.iter().enumerate().filter(|&(_, &s)| s > 0.0);
-        let edges: Vec<(u32, f32)> = sharp.map(|(e, &s)| (id(e), s)).collect();
+        let edges: Vec<(EdgeId, f32)> = sharp.map(|(e, &s)| (EdgeId(id(e)), s)).collect();
         let spokes_of =
-            |&(edge, sharpness): &(u32, f32)| ends(edge).map(|vertex| Spoke { vertex, edge, sharpness });
+            |&(edge, sharpness): &(EdgeId, f32)| ends(edge).map(|vertex| Spoke { vertex, edge, sharpness });
         let mut spokes: Vec<Spoke> = edges.iter().flat_map(spokes_of).collect();
         spokes.sort_by_key(|spoke| (spoke.vertex, spoke.edge));
         Self { edges, spokes, corners: Vec::new() }
@@ -45,7 +45,7 @@ impl Sharpness {
     }
 
     /// The sharpness of an edge; 0 if it is smooth.
-    pub(crate) fn of_edge(&self, edge: u32) -> f32 {
+    pub(crate) fn of_edge(&self, edge: EdgeId) -> f32 {
         self.edges.binary_search_by_key(&edge, |&(e, _)| e).map_or(0.0, |found| self.edges[found].1)
     }
 
@@ -70,21 +70,21 @@ impl Sharpness {
 
     /// The features one level on, where edge e has the halves 2 e and 2 e + 1 and the vertex `vertex_count` + e;
     /// `is_start(vertex, edge)` tells which end of an edge a vertex is.
-    pub(crate) fn refine(&self, vertex_count: usize, is_start: impl Fn(u32, u32) -> bool) -> Self {
+    pub(crate) fn refine(&self, vertex_count: usize, is_start: impl Fn(u32, EdgeId) -> bool) -> Self {
         let mut refined = Self::default();
         for &Spoke { vertex, edge, sharpness } in &self.spokes {
             let sharpness = decay(sharpness);
             if sharpness > 0.0 {
-                let edge = 2 * edge + u32::from(!is_start(vertex, edge));
+                let edge = EdgeId(2 * edge.0 + u32::from(!is_start(vertex, edge)));
                 refined.spokes.push(Spoke { vertex, edge, sharpness });
             }
         }
         for &(edge, sharpness) in &self.edges {
             let sharpness = decay(sharpness);
             if sharpness > 0.0 {
-                for half in [2 * edge, 2 * edge + 1] {
+                for half in [2 * edge.0, 2 * edge.0 + 1].map(EdgeId) {
                     refined.edges.push((half, sharpness));
-                    refined.spokes.push(Spoke { vertex: id(vertex_count) + edge, edge: half, sharpness });
+                    refined.spokes.push(Spoke { vertex: id(vertex_count) + edge.0, edge: half, sharpness });
                 }
             }
         }
@@ -109,7 +109,7 @@ impl Sharpness {
     pub(crate) fn sharp_edges(&self, edge_count: usize) -> Vec<bool> {
         let mut sharp = vec![false; edge_count];
         for &(edge, _) in &self.edges {
-            sharp[edge as usize] = true;
+            sharp[edge.index()] = true;
         }
         sharp
     }

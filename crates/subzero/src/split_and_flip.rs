@@ -1,7 +1,7 @@
 //! Loop's scheme by edits of a half-edge mesh: split every edge, then flip. Slower than index arithmetic, and a check of it.
 
-use crate::ids::{id, prev};
-use crate::{HalfEdgeMesh, LoopWeights, MeshError, Point};
+use crate::ids::id;
+use crate::{HalfEdgeId, HalfEdgeMesh, LoopWeights, MeshError, Point};
 
 impl HalfEdgeMesh {
     /// One step of Loop subdivision by edge splits and flips; boundaries are creases, and there are no other features.
@@ -17,7 +17,7 @@ impl HalfEdgeMesh {
     pub fn loop_by_split_and_flip<P: Point>(&mut self, points: &mut Vec<P>) -> Result<(), MeshError> {
         assert_eq!(points.len(), self.vertex_count(), "there must be one point per vertex");
         let vertices = id(self.vertex_count());
-        let edges: Vec<u32> = self.edges().collect();
+        let edges: Vec<HalfEdgeId> = self.edges().collect();
         let ends: Vec<[u32; 2]> = edges.iter().map(|&h| [self.start(h), self.end(h)]).collect();
         let mut new_points: Vec<P> = (0..vertices).map(|v| self.loop_vertex_point(v, points)).collect();
         new_points.extend(edges.iter().map(|&h| self.loop_edge_point(h, points)));
@@ -28,11 +28,11 @@ impl HalfEdgeMesh {
         }
         // What joins an old vertex to a new one and is no half of an old edge crosses an old triangle: turned, it cuts
         // off the corner.
-        let crosses = |&h: &u32| {
+        let crosses = |&h: &HalfEdgeId| {
             let [low, high] = [self.start(h).min(self.end(h)), self.start(h).max(self.end(h))];
             low < vertices && high >= vertices && !ends[(high - vertices) as usize].contains(&low)
         };
-        let crossing: Vec<u32> = self.edges().filter(crosses).collect();
+        let crossing: Vec<HalfEdgeId> = self.edges().filter(crosses).collect();
         crossing.into_iter().try_for_each(|h| self.flip(h))
     }
 
@@ -52,13 +52,13 @@ impl HalfEdgeMesh {
         among.iter().fold(start, |sum, &neighbour| sum.add_scaled(points[neighbour as usize], each))
     }
 
-    fn loop_edge_point<P: Point>(&self, h: u32, points: &[P]) -> P {
+    fn loop_edge_point<P: Point>(&self, h: HalfEdgeId, points: &[P]) -> P {
         let at = |v: u32| points[v as usize];
         let [a, b] = [at(self.start(h)), at(self.end(h))];
         match self.twin(h) {
             None => P::zero().add_scaled(a, 0.5).add_scaled(b, 0.5),
             Some(twin) => {
-                let [c, d] = [h, twin].map(|h| at(self.start(prev(h))));
+                let [c, d] = [h, twin].map(|h| at(self.start(h.prev())));
                 P::zero().add_scaled(a, 0.375).add_scaled(b, 0.375).add_scaled(c, 0.125).add_scaled(d, 0.125)
             }
         }

@@ -5,7 +5,7 @@ use crate::features::INFINITE_SHARPNESS;
 use crate::ids::{NONE, id};
 use crate::mesh_checks::{check_corners, check_duplicates, check_size, check_vertex};
 use crate::sharpness::{Sharpness, is_infinite};
-use crate::{BoundaryRule, Features, MeshError, TriangleMesh, VertexRule};
+use crate::{BoundaryRule, FaceId, Features, MeshError, TriangleMesh, VertexRule};
 
 impl TriangleMesh {
     /// Connectivity of `triangles` over `vertex_count` vertices, with its creases and corners.
@@ -29,7 +29,7 @@ impl TriangleMesh {
         let is_soft = |&&(edge, _): &&(u32, _)| !is_infinite(edge_sharpness[edge as usize]);
         if let Some(&(_, [first, second])) = table.same_way.iter().find(is_soft) {
             let ends = half_edges[first as usize];
-            return Err(MeshError::Winding { first: first / 3, second: second / 3, ends });
+            return Err(MeshError::Winding { first: FaceId(first / 3), second: FaceId(second / 3), ends });
         }
         for (sharpness, &[_, against]) in edge_sharpness.iter_mut().zip(&table.edges) {
             if against == NONE {
@@ -69,12 +69,12 @@ impl TriangleMesh {
         }
         let mut non_manifold = vec![0_u32; self.vertex_count()];
         for spoke in &self.sharpness.spokes {
-            let count = triangle_counts[spoke.edge as usize];
+            let count = triangle_counts[spoke.edge.index()];
             non_manifold[spoke.vertex as usize] += u32::from(count > 2);
         }
         // Triangles that a turn around the vertex meets, starting at each crease, or anywhere if there is none.
         let mut met = vec![0; self.vertex_count()];
-        for h in (0..id(3 * self.triangles.len())).filter(|&h| self.is_crease(self.directed_edge(h) / 2)) {
+        for h in (0..id(3 * self.triangles.len())).filter(|&h| self.is_crease(self.edge_of(h))) {
             met[self.start(h) as usize] += self.sector(h).count();
         }
         let is_fixed = |&vertex: &u32| {

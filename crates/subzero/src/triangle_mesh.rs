@@ -2,7 +2,7 @@
 
 use crate::ids::{NONE, id, next, prev};
 use crate::sharpness::{Sharpness, is_infinite};
-use crate::{MeshCounts, MeshError, VertexRule};
+use crate::{EdgeId, FaceId, MeshCounts, MeshError, VertexRule};
 
 /// Connectivity of a triangle mesh, possibly with boundary and non-manifold edges; positions live beside it as slices.
 ///
@@ -58,33 +58,38 @@ impl TriangleMesh {
     ///
     /// # Panics
     /// If there is no such edge.
-    pub fn edge(&self, edge: u32) -> [u32; 2] {
-        let [along, _] = self.edges[edge as usize];
+    pub fn edge(&self, edge: EdgeId) -> [u32; 2] {
+        let [along, _] = self.edges[edge.index()];
         [self.start(along), self.start(next(along))]
+    }
+
+    /// The two ends of each edge.
+    pub fn edges(&self) -> impl ExactSizeIterator<Item = [u32; 2]> {
+        self.edges.iter().map(|&[along, _]| [self.start(along), self.start(next(along))])
     }
 
     /// The edges of a triangle; edge k runs from corner k to corner k + 1.
     ///
     /// # Panics
     /// If there is no such triangle.
-    pub fn triangle_edges(&self, triangle: u32) -> [u32; 3] {
-        self.directed_edges[triangle as usize].map(|directed| directed / 2)
+    pub fn triangle_edges(&self, triangle: FaceId) -> [EdgeId; 3] {
+        self.directed_edges[triangle.index()].map(|directed| EdgeId(directed / 2))
     }
 
     /// The two triangles of an edge; nothing on boundary and non-manifold edges.
     ///
     /// # Panics
     /// If there is no such edge.
-    pub fn edge_triangles(&self, edge: u32) -> Option<[u32; 2]> {
-        let [along, against] = self.edges[edge as usize];
-        (against != NONE).then_some([along / 3, against / 3])
+    pub fn edge_triangles(&self, edge: EdgeId) -> Option<[FaceId; 2]> {
+        let [along, against] = self.edges[edge.index()];
+        (against != NONE).then_some([along, against].map(|h| FaceId(h / 3)))
     }
 
     /// Whether an edge is infinitely sharp: marked so, or on the boundary, or with three or more triangles.
     ///
     /// # Panics
     /// If there is no such edge.
-    pub fn is_crease(&self, edge: u32) -> bool {
+    pub fn is_crease(&self, edge: EdgeId) -> bool {
         is_infinite(self.edge_sharpness(edge))
     }
 
@@ -92,8 +97,8 @@ impl TriangleMesh {
     ///
     /// # Panics
     /// If there is no such edge.
-    pub fn edge_sharpness(&self, edge: u32) -> f32 {
-        if self.sharp_edges[edge as usize] { self.sharpness.of_edge(edge) } else { 0.0 }
+    pub fn edge_sharpness(&self, edge: EdgeId) -> f32 {
+        if self.sharp_edges[edge.index()] { self.sharpness.of_edge(edge) } else { 0.0 }
     }
 
     /// The rule that moves a vertex in the next refinement.
@@ -122,7 +127,7 @@ impl TriangleMesh {
     /// [`MeshError::Open`] names the first edge with one triangle only.
     pub fn check_closed(&self) -> Result<(), MeshError> {
         match self.edge_triangle_counts().iter().position(|&count| count == 1) {
-            Some(edge) => Err(MeshError::Open { ends: self.edge(id(edge)) }),
+            Some(edge) => Err(MeshError::Open { ends: self.edge(EdgeId(id(edge))) }),
             None => Ok(()),
         }
     }
@@ -130,6 +135,11 @@ impl TriangleMesh {
     /// The vertex where a half-edge starts.
     pub(crate) fn start(&self, h: u32) -> u32 {
         self.triangles[(h / 3) as usize][(h % 3) as usize]
+    }
+
+    /// The edge of a half-edge.
+    pub(crate) fn edge_of(&self, h: u32) -> EdgeId {
+        EdgeId(self.directed_edge(h) / 2)
     }
 
     /// Twice the edge of a half-edge, plus 1 if the half-edge runs against the edge.
@@ -149,7 +159,7 @@ impl TriangleMesh {
     }
 
     /// The end of an edge that is not `vertex`.
-    pub(crate) fn other_end(&self, edge: u32, vertex: u32) -> u32 {
+    pub(crate) fn other_end(&self, edge: EdgeId, vertex: u32) -> u32 {
         let [start, end] = self.edge(edge);
         if start == vertex { end } else { start }
     }
@@ -167,7 +177,7 @@ impl TriangleMesh {
     pub(crate) fn sector(&self, first: u32) -> impl Iterator<Item = u32> {
         let beyond = move |&h: &u32| {
             let before = prev(h);
-            if self.is_crease(self.directed_edge(before) / 2) {
+            if self.is_crease(self.edge_of(before)) {
                 return None;
             }
             Some(self.twin(before)).filter(|&turned| turned != first)

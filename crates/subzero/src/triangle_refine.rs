@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::ids::{NONE, id, next};
 use crate::large_vec;
-use crate::{LoopWeights, MeshCounts, Refinement, TriangleMesh};
+use crate::{EdgeId, LoopWeights, MeshCounts, MeshError, Refinement, TriangleMesh};
 
 /// Parents that one task refines.
 const PARENTS_PER_TASK: usize = 2048;
@@ -12,31 +12,28 @@ const PARENTS_PER_TASK: usize = 2048;
 impl TriangleMesh {
     /// One step of Loop subdivision with Loop's weights.
     ///
-    /// # Panics
-    /// If the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`] tells beforehand.
-    pub fn loop_refine(&self) -> Refinement<Self> {
+    /// # Errors
+    /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`] tells beforehand.
+    pub fn loop_refine(&self) -> Result<Refinement<Self>, MeshError> {
         self.loop_refine_with(LoopWeights::Loop)
     }
 
     /// One step of Loop subdivision with a choice of weights.
     ///
-    /// # Panics
-    /// If the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`] tells beforehand.
-    pub fn loop_refine_with(&self, weights: LoopWeights) -> Refinement<Self> {
-        Refinement { mesh: self.refine_connectivity(), stencils: self.loop_stencils(weights) }
+    /// # Errors
+    /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`] tells beforehand.
+    pub fn loop_refine_with(&self, weights: LoopWeights) -> Result<Refinement<Self>, MeshError> {
+        Ok(Refinement { mesh: self.refine_connectivity()?, stencils: self.loop_stencils(weights) })
     }
 
     /// Splits each triangle into four, numbered as [`MeshCounts`] says.
-    pub(crate) fn refine_connectivity(&self) -> Self {
+    pub(crate) fn refine_connectivity(&self) -> Result<Self, MeshError> {
         let counts = self.counts();
-        let refined = match counts.refined() {
-            Ok(refined) => refined,
-            Err(error) => panic!("the finer mesh does not fit: {error}"),
-        };
+        let refined = counts.refined()?;
         let sharpness =
             self.sharpness.refine(self.vertex_count(), |vertex, edge| self.edge(edge)[0] == vertex);
         let (triangles, directed_edges) = self.refined_triangles(counts);
-        Self {
+        Ok(Self {
             triangles,
             directed_edges,
             edges: self.refined_edges(),
@@ -44,7 +41,7 @@ impl TriangleMesh {
             vertex_rules: sharpness.vertex_rules(refined.vertices as usize),
             sharp_edges: sharpness.sharp_edges(refined.edges as usize),
             sharpness,
-        }
+        })
     }
 
     fn refined_triangles(&self, counts: MeshCounts) -> (Vec<[u32; 3]>, Vec<[u32; 3]>) {
@@ -59,7 +56,7 @@ impl TriangleMesh {
         old.zip(corners).zip(centres).with_min_len(PARENTS_PER_TASK).enumerate().for_each(
             |(t, (((triangle, directed), (corners, corner_edges)), (centre, centre_edges)))| {
                 let inner = 2 * counts.edges + 3 * id(t);
-                let on_edge = directed.map(|d| counts.edge_vertex(d / 2));
+                let on_edge = directed.map(|d| counts.edge_vertex(EdgeId(d / 2)));
                 let [d0, d1, d2] = *directed;
                 // The halves of an edge where a half-edge starts and where it ends, in the half-edge's direction.
                 let first_half = |d: u32| 2 * d + d % 2;

@@ -3,9 +3,9 @@
 use glam::{DVec2, DVec3};
 use robust::{Coord, orient2d};
 
-use crate::ids::{id, next, prev};
+use crate::ids::id;
 use crate::mesh_checks::{check_faces, check_size};
-use crate::{HalfEdgeMesh, MeshError};
+use crate::{FaceId, HalfEdgeId, HalfEdgeMesh, MeshError};
 
 /// The least amount by which the angles opposite a diagonal must exceed two right angles, as a sum of cotangents, for it to be
 /// turned: a square's diagonals stay as they are, whatever rounding says.
@@ -21,20 +21,21 @@ const CLEARLY: f64 = 1e-9;
 /// [`MeshError::FlatFace`] for one without area, [`MeshError::CrossedFace`] for one that crosses or touches itself; a face with fewer
 /// than three corners or with a vertex twice, a vertex id out of range, two faces with the same vertices, or more elements than
 /// 32-bit ids can count.
-pub fn triangulate(points: &[DVec3], faces: &[Vec<u32>]) -> Result<(Vec<[u32; 3]>, Vec<u32>), MeshError> {
+pub fn triangulate(points: &[DVec3], faces: &[Vec<u32>]) -> Result<(Vec<[u32; 3]>, Vec<FaceId>), MeshError> {
     check_size("half-edges", faces.iter().map(Vec::len).sum::<usize>().saturating_mul(6))?;
     check_faces(points.len(), faces)?;
     let (mut triangles, mut face_of) = (Vec::new(), Vec::new());
     for (f, face) in faces.iter().enumerate() {
+        let number = FaceId(id(f));
         match <[u32; 3]>::try_from(&face[..]) {
             Ok(triangle) => triangles.push(triangle),
             Err(_) => {
                 let corners: Vec<DVec3> = face.iter().map(|&v| points[v as usize]).collect();
-                let found = cut(&corners).map_err(|why| why.of_face(f))?;
+                let found = cut(&corners).map_err(|why| why.of_face(number))?;
                 triangles.extend(found.into_iter().map(|triangle| triangle.map(|i| face[i as usize])));
             }
         }
-        face_of.resize(triangles.len(), id(f));
+        face_of.resize(triangles.len(), number);
     }
     Ok((triangles, face_of))
 }
@@ -52,7 +53,7 @@ enum Uncut {
 }
 
 impl Uncut {
-    fn of_face(self, face: usize) -> MeshError {
+    fn of_face(self, face: FaceId) -> MeshError {
         match self {
             Self::Flat => MeshError::FlatFace { face },
             Self::Crossed => MeshError::CrossedFace { face },
@@ -146,10 +147,10 @@ fn improved(triangles: Vec<[u32; 3]>, corners: &[DVec3], seen: &[DVec2]) -> Vec<
     let Ok(mut mesh) = HalfEdgeMesh::new(corners.len(), &triangles) else { return triangles };
     // Each turn lessens the same sum, so there is an end to them; rounding must not make it another.
     let mut turns_left = triangles.len() * triangles.len();
-    let mut waiting: Vec<u32> = mesh.edges().filter(|&h| mesh.twin(h).is_some()).collect();
+    let mut waiting: Vec<HalfEdgeId> = mesh.edges().filter(|&h| mesh.twin(h).is_some()).collect();
     while let Some(h) = waiting.pop() {
         let Some(twin) = mesh.twin(h) else { continue };
-        let [a, b, c, d] = [mesh.start(h), mesh.end(h), mesh.start(prev(h)), mesh.start(prev(twin))];
+        let [a, b, c, d] = [mesh.start(h), mesh.end(h), mesh.start(h.prev()), mesh.start(twin.prev())];
         let at = |v: u32| seen[v as usize];
         let stays_inside = turn([at(d), at(c), at(a)]) > 0 && turn([at(c), at(d), at(b)]) > 0;
         let [a, b, c, d] = [a, b, c, d].map(|v| corners[v as usize]);
@@ -159,7 +160,7 @@ fn improved(triangles: Vec<[u32; 3]>, corners: &[DVec3], seen: &[DVec2]) -> Vec<
             && mesh.flip(h).is_ok()
         {
             turns_left -= 1;
-            let around = [next(h), prev(h), next(twin), prev(twin)];
+            let around = [h.next(), h.prev(), twin.next(), twin.prev()];
             waiting.extend(around.into_iter().filter(|&h| mesh.twin(h).is_some()));
         }
     }

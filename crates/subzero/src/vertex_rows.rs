@@ -1,7 +1,7 @@
 //! The row of an old vertex, for every scheme that moves vertices: sharp rules, and what lies between sharp and smooth.
 
-use crate::VertexRule;
 use crate::sharpness::{Sharpness, Spoke, decay, is_infinite, rule_of_sharp_edges};
+use crate::{EdgeId, VertexRule};
 
 /// Hands the row of `vertex` to `add`, entry by entry: by its sharp rule, by `smooth`, which is given its share of the row, or
 /// by a blend of the rule and the next level's when some sharpness runs out (OpenSubdiv's rule). A blend may name
@@ -10,7 +10,7 @@ pub(crate) fn vertex_row<Add: FnMut(u32, f64)>(
     sharpness: &Sharpness,
     (vertex, rule): (u32, VertexRule),
     add: &mut Add,
-    other_end: impl Fn(u32) -> u32,
+    other_end: impl Fn(EdgeId) -> u32,
     smooth: impl Fn(f64, &mut Add),
 ) {
     if matches!(rule, VertexRule::Smooth | VertexRule::Dart) {

@@ -4,8 +4,8 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use subzero::{
-    Crease, CurveMesh, Features, HalfEdgeMesh, LoopWeights, MeshError, PolygonMesh, TriangleMesh,
-    check_finite,
+    Crease, CurveMesh, EdgeId, FaceId, Features, HalfEdgeMesh, LoopWeights, MeshError, PolygonMesh,
+    TriangleMesh, check_finite,
 };
 
 fn triangle_error(vertex_count: usize, triangles: &[[u32; 3]], features: &Features) -> MeshError {
@@ -25,13 +25,16 @@ fn triangle_meshes() {
     );
     assert_eq!(
         triangle_error(4, &[[0, 1, 2], [0, 2, 3], [2, 1, 0]], &none),
-        MeshError::DuplicateFace { first: 0, second: 2 }
+        MeshError::DuplicateFace { first: FaceId(0), second: FaceId(2) }
     );
     let turned = [[0, 1, 2], [1, 3, 2], [0, 1, 4]];
-    assert_eq!(triangle_error(5, &turned, &none), MeshError::Winding { first: 0, second: 2, ends: [0, 1] });
+    assert_eq!(
+        triangle_error(5, &turned, &none),
+        MeshError::Winding { first: FaceId(0), second: FaceId(2), ends: [0, 1] }
+    );
     let crease = [Crease::infinite([1, 0])];
     let creased = Features { creases: &crease, ..none };
-    assert!(TriangleMesh::new(5, turned.to_vec(), &creased).is_ok_and(|mesh| mesh.is_crease(0)));
+    assert!(TriangleMesh::new(5, turned.to_vec(), &creased).is_ok_and(|mesh| mesh.is_crease(EdgeId(0))));
 
     let crease = [Crease::infinite([0, 1]), Crease::infinite([0, 3])];
     assert_eq!(
@@ -67,7 +70,7 @@ fn polygon_meshes() {
         let faces: Vec<Vec<u32>> = faces.iter().map(|face| face.to_vec()).collect();
         PolygonMesh::new(vertex_count, &faces, &Features::default()).expect_err("the mesh is bad")
     };
-    assert_eq!(error_of(2, &[&[0, 1]]), MeshError::TooFewCorners { face: 0, corners: 2 });
+    assert_eq!(error_of(2, &[&[0, 1]]), MeshError::TooFewCorners { face: FaceId(0), corners: 2 });
     assert_eq!(
         error_of(4, &[&[0, 1, 2, 4]]),
         MeshError::VertexOutOfRange { what: "face", index: 0, vertex: 4, vertex_count: 4 }
@@ -75,7 +78,7 @@ fn polygon_meshes() {
     assert_eq!(error_of(4, &[&[0, 1, 2, 1]]), MeshError::Degenerate { what: "face", index: 0, vertex: 1 });
     assert_eq!(
         error_of(4, &[&[0, 1, 2, 3], &[2, 3, 0, 1]]),
-        MeshError::DuplicateFace { first: 0, second: 1 }
+        MeshError::DuplicateFace { first: FaceId(0), second: FaceId(1) }
     );
     assert_eq!(
         error_of(5, &[&[0, 1, 2], &[1, 0, 3], &[0, 1, 4]]),
@@ -83,7 +86,7 @@ fn polygon_meshes() {
     );
     assert_eq!(
         error_of(4, &[&[0, 1, 2], &[0, 1, 3]]),
-        MeshError::Winding { first: 0, second: 1, ends: [0, 1] }
+        MeshError::Winding { first: FaceId(0), second: FaceId(1), ends: [0, 1] }
     );
     assert_eq!(error_of(5, &[&[0, 1, 2], &[0, 3, 4]]), MeshError::NonManifoldVertex { vertex: 0 });
 }
@@ -117,16 +120,16 @@ proptest! {
             for triangles in [&triangles, &good] {
                 if let Ok(mesh) = TriangleMesh::new(8, triangles.clone(), &features) {
                     for weights in [LoopWeights::Loop, LoopWeights::BiermannLevinZorin] {
-                        let refined = mesh.loop_refine_with(weights);
+                        let refined = mesh.loop_refine_with(weights).unwrap();
                         prop_assert_eq!(refined.mesh.vertex_count(), refined.stencils.len());
-                        let _ = refined.mesh.loop_refine_with(weights).mesh.loop_limits(weights);
+                        let _ = refined.mesh.loop_refine_with(weights).unwrap().mesh.loop_limits(weights);
                     }
-                    mesh.modified_butterfly_refine().mesh.butterfly_refine();
+                    mesh.modified_butterfly_refine().unwrap().mesh.butterfly_refine().unwrap();
                 }
                 let faces: Vec<Vec<u32>> = triangles.iter().map(|triangle| triangle.to_vec()).collect();
                 if let Ok(mesh) = PolygonMesh::new(8, &faces, &features) {
                     prop_assert!(HalfEdgeMesh::new(8, triangles).is_ok());
-                    let _ = mesh.catmull_clark_refine().mesh.catmull_clark_limits();
+                    let _ = mesh.catmull_clark_refine().unwrap().mesh.catmull_clark_limits();
                     let _ = mesh.doo_sabin_refine(subzero::DooSabinWeights::Means);
                 }
             }

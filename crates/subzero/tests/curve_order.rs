@@ -10,7 +10,7 @@ const OCTAHEDRON: [[u32; 3]; 8] =
 fn refined(points: &[DVec3], triangles: Vec<[u32; 3]>) -> Vec<DVec3> {
     let mesh =
         TriangleMesh::new(points.len(), triangles, &Features::default()).expect("the octahedron is good");
-    let mut refined = LoopHierarchy::new(mesh, 2, LoopWeights::Loop).apply(points);
+    let mut refined = LoopHierarchy::new(mesh, 2, LoopWeights::Loop).expect("a small mesh").apply(points);
     refined.sort_by(|a, b| a.to_array().partial_cmp(&b.to_array()).expect("no point is NaN"));
     refined
 }

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{TriangleReference, load};
-use subzero::{Crease, CurveMesh, EdgeParent, Features, TriangleMesh, VertexParent};
+use subzero::{Crease, CurveMesh, EdgeId, EdgeParent, FaceId, Features, TriangleMesh, VertexParent};
 
 const MESHES: [&str; 4] =
     ["loop_open_edge_corner", "loop_crease_inf", "loop_nonmanifold_triple_line", "loop_nonmanifold_2grains"];
@@ -19,21 +19,21 @@ fn children_lie_where_the_numbering_says() {
     for name in MESHES {
         let coarse = load::<TriangleReference>(name).mesh();
         let counts = coarse.counts();
-        let fine = coarse.loop_refine().mesh;
+        let fine = coarse.loop_refine().unwrap().mesh;
         assert_eq!(fine.counts(), counts.refined().unwrap());
-        for e in 0..counts.edges {
+        for e in (0..counts.edges).map(EdgeId) {
             let [a, b] = coarse.edge(e);
             let middle = counts.edge_vertex(e);
             assert_eq!(counts.vertex_parent(middle), VertexParent::Edge(e));
-            assert_eq!(fine.edge(2 * e), [a, middle]);
-            assert_eq!(sorted(fine.edge(2 * e + 1)), sorted([middle, b]));
-            assert_eq!(counts.edge_parent(2 * e + 1), EdgeParent::Edge(e));
+            assert_eq!(fine.edge(EdgeId(2 * e.0)), [a, middle]);
+            assert_eq!(sorted(fine.edge(EdgeId(2 * e.0 + 1))), sorted([middle, b]));
+            assert_eq!(counts.edge_parent(EdgeId(2 * e.0 + 1)), EdgeParent::Edge(e));
             for child in counts.edge_children(e) {
                 assert_eq!(fine.is_crease(child), coarse.is_crease(e), "{name}: edge {e}");
             }
         }
         for t in 0..counts.triangles {
-            let edges = coarse.triangle_edges(t);
+            let edges = coarse.triangle_edges(FaceId(t));
             for k in 0..3_u32 {
                 let [here, before] =
                     [edges[k as usize], edges[(k as usize + 2) % 3]].map(|e| counts.edge_vertex(e));
@@ -41,13 +41,13 @@ fn children_lie_where_the_numbering_says() {
                 assert_eq!(counts.vertex_parent(corner), VertexParent::Vertex(corner));
                 assert_eq!(fine.triangles()[(3 * t + k) as usize], [corner, here, before]);
                 assert_eq!(fine.triangles()[(3 * counts.triangles + t) as usize][k as usize], before);
-                let inner = 2 * counts.edges + 3 * t + k;
+                let inner = EdgeId(2 * counts.edges + 3 * t + k);
                 assert_eq!(sorted(fine.edge(inner)), sorted([here, before]));
-                assert_eq!(counts.edge_parent(inner), EdgeParent::Triangle(t));
+                assert_eq!(counts.edge_parent(inner), EdgeParent::Triangle(FaceId(t)));
                 assert!(!fine.is_crease(inner));
             }
-            for child in counts.triangle_children(t) {
-                assert_eq!(counts.triangle_parent(child), t);
+            for child in counts.triangle_children(FaceId(t)) {
+                assert_eq!(counts.triangle_parent(child), FaceId(t));
             }
         }
     }
@@ -56,8 +56,10 @@ fn children_lie_where_the_numbering_says() {
 #[test]
 fn arithmetic_agrees_with_a_search() {
     for name in MESHES {
-        let fine = load::<TriangleReference>(name).mesh().loop_refine().mesh.loop_refine().mesh;
+        let fine =
+            load::<TriangleReference>(name).mesh().loop_refine().unwrap().mesh.loop_refine().unwrap().mesh;
         let creases: Vec<Crease> = (0..fine.counts().edges)
+            .map(EdgeId)
             .filter(|&e| fine.is_crease(e))
             .map(|e| Crease::infinite(fine.edge(e)))
             .collect();
@@ -74,20 +76,25 @@ fn arithmetic_agrees_with_a_search() {
             let corners = fine.triangles()[t as usize];
             for k in 0..3 {
                 let ends = sorted([corners[k], corners[(k + 1) % 3]]);
-                assert_eq!(sorted(fine.edge(fine.triangle_edges(t)[k])), ends, "{name}: triangle {t}");
-                let [ours, searched_edge] = [&fine, &searched].map(|mesh| mesh.triangle_edges(t)[k]);
+                assert_eq!(
+                    sorted(fine.edge(fine.triangle_edges(FaceId(t))[k])),
+                    ends,
+                    "{name}: triangle {t}"
+                );
+                let [ours, searched_edge] = [&fine, &searched].map(|mesh| mesh.triangle_edges(FaceId(t))[k]);
                 assert_eq!(fine.is_crease(ours), searched.is_crease(searched_edge));
             }
         }
         // The points of the next level agree too, each found through its edge.
         let positions: Vec<f64> = (0..fine.vertex_count()).map(|v| (v as f64 * 0.7).sin()).collect();
-        let [ours, theirs] = [&fine, &searched].map(|mesh| mesh.loop_refine().stencils.apply(&positions));
+        let [ours, theirs] =
+            [&fine, &searched].map(|mesh| mesh.loop_refine().unwrap().stencils.apply(&positions));
         for (v, (a, b)) in ours.iter().zip(&theirs).enumerate().take(fine.vertex_count()) {
             assert!((a - b).abs() < 1e-14, "{name}: vertex {v}");
         }
         for (t, corners) in fine.triangles().iter().enumerate() {
             let [a, b] = [&fine, &searched]
-                .map(|mesh| mesh.triangle_edges(t as u32)[0] as usize + fine.vertex_count());
+                .map(|mesh| mesh.triangle_edges(FaceId(t as u32))[0].index() + fine.vertex_count());
             assert!((ours[a] - theirs[b]).abs() < 1e-14, "{name}: edge of {corners:?}");
         }
     }
@@ -96,7 +103,7 @@ fn arithmetic_agrees_with_a_search() {
 #[test]
 fn curves_keep_direction_and_parents() {
     let curve = CurveMesh::new(5, vec![[0, 1], [1, 2], [3, 1], [3, 4]], &[]).unwrap();
-    let refined = curve.refine();
+    let refined = curve.refine().unwrap();
     assert_eq!(refined.mesh.segments(), [[0, 5], [5, 1], [1, 6], [6, 2], [3, 7], [7, 1], [3, 8], [8, 4]]);
     // Vertex 1 has three segments, 3 has two, the ends have one.
     assert_eq!(refined.stencils.row(1), (&[1][..], &[1.0][..]));

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use common::{assert_close, load};
 use glam::DVec3;
 use serde::Deserialize;
-use subzero::{Crease, CurveMesh, DooSabinWeights, Features, PolygonMesh, VertexRule};
+use subzero::{Crease, CurveMesh, DooSabinWeights, EdgeId, FaceId, Features, PolygonMesh, VertexRule};
 
 #[derive(Deserialize)]
 struct DooSabinReference {
@@ -69,7 +69,8 @@ fn doo_sabin_matches_cgal() {
                 .iter()
                 .map(|&[face, vertex]| {
                     let face = face_ids[face as usize];
-                    let corner = mesh.face(face).iter().position(|&v| v == vertex_ids[vertex as usize]);
+                    let corner =
+                        mesh.face(FaceId(face)).iter().position(|&v| v == vertex_ids[vertex as usize]);
                     starts[face as usize] + corner.expect(name) as u32
                 })
                 .collect();
@@ -104,13 +105,13 @@ fn refined_polygon_meshes_agree_with_a_search() {
             mesh = if step % 2 == 0 {
                 mesh.doo_sabin_refine(DooSabinWeights::default()).unwrap().mesh
             } else {
-                mesh.catmull_clark_refine().mesh
+                mesh.catmull_clark_refine().unwrap().mesh
             };
             let faces: Vec<Vec<u32>> = mesh.faces().map(<[u32]>::to_vec).collect();
             let searched = mesh_of(mesh.vertex_count(), &faces);
             assert_eq!(searched.edge_count(), mesh.edge_count(), "{name}");
             for (f, face) in faces.iter().enumerate() {
-                let pairs = mesh.face_edges(f as u32).zip(searched.face_edges(f as u32));
+                let pairs = mesh.face_edges(FaceId(f as u32)).zip(searched.face_edges(FaceId(f as u32)));
                 for (k, (ours, theirs)) in pairs.enumerate() {
                     let mut ends = [face[k], face[(k + 1) % face.len()]];
                     ends.sort_unstable();
@@ -148,16 +149,16 @@ fn catmull_clark_is_the_bicubic_spline_on_a_regular_grid() {
         a.iter().flat_map(|&a| b.iter().map(move |&b| a * b)).collect()
     };
     let mesh = torus(m, n);
-    let refined = mesh.catmull_clark_refine();
+    let refined = mesh.catmull_clark_refine().unwrap();
     let points = refined.stencils.apply(&product(&a, &b));
-    let [fine_a, fine_b] = [(&a, m), (&b, n)].map(|(x, n)| closed(n).refine().stencils.apply(x));
+    let [fine_a, fine_b] = [(&a, m), (&b, n)].map(|(x, n)| closed(n).refine().unwrap().stencils.apply(x));
     // Old vertices, then edges, then faces: each the product of what lies over it.
     for v in 0..m * n {
         let expected = fine_a[(v / n) as usize] * fine_b[(v % n) as usize];
         assert!((points[v as usize] - expected).abs() < 1e-12);
     }
     for e in 0..mesh.edge_count() as u32 {
-        let [start, end] = mesh.edge(e);
+        let [start, end] = mesh.edge(EdgeId(e));
         let between = |start: u32, end: u32, n: u32| if (start + 1) % n == end { n + start } else { n + end };
         let expected = if start / n == end / n {
             fine_a[(start / n) as usize] * fine_b[between(start % n, end % n, n) as usize]
@@ -193,7 +194,7 @@ fn catmull_clark_limits_stay_put() {
         let limits = mesh.catmull_clark_limits().unwrap();
         let (positions, normals) = (limits.positions.apply(&points), limits.vertex_normals(&points));
         for _ in 0..3 {
-            let refined = mesh.catmull_clark_refine();
+            let refined = mesh.catmull_clark_refine().unwrap();
             points = refined.stencils.apply(&points);
             mesh = refined.mesh;
             let limits = mesh.catmull_clark_limits().unwrap();
@@ -218,13 +219,13 @@ fn catmull_clark_limits_stay_put() {
 fn catmull_clark_of_the_cube() {
     let cube: DooSabinReference = load("doosabin_cube");
     let mesh = mesh_of(8, &cube.faces);
-    let points = mesh.catmull_clark_refine().stencils.apply(&cube.vertices);
+    let points = mesh.catmull_clark_refine().unwrap().stencils.apply(&cube.vertices);
     // Corners move to 5/9, edge points to (3/4, 3/4, 0), face points stay at 1.
     for (&point, &corner) in points.iter().zip(&cube.vertices) {
         assert_close(point, corner * 5.0 / 9.0, 1e-15, "corner");
     }
     for (e, point) in points[8..20].iter().enumerate() {
-        let [a, b] = mesh.edge(e as u32);
+        let [a, b] = mesh.edge(EdgeId(e as u32));
         assert_close(*point, (cube.vertices[a as usize] + cube.vertices[b as usize]) * 0.375, 1e-15, "edge");
     }
     assert!(points[20..].iter().all(|point| (point.length() - 1.0).abs() < 1e-15));

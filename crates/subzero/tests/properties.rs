@@ -8,8 +8,8 @@ use glam::{DMat3, DVec3};
 use proptest::prelude::*;
 use rayon::ThreadPoolBuilder;
 use subzero::{
-    BoundaryRule, Crease, CurveMesh, DooSabinWeights, Features, HalfEdgeMesh, LoopHierarchy, LoopWeights,
-    PolygonMesh, Refinement, StencilTable, TriangleMesh, VertexRule,
+    BoundaryRule, Crease, CurveMesh, DooSabinWeights, EdgeId, FaceId, Features, HalfEdgeId, HalfEdgeMesh,
+    LoopHierarchy, LoopWeights, PolygonMesh, Refinement, StencilTable, TriangleMesh, VertexRule,
 };
 
 const WEIGHTS: [LoopWeights; 3] = [LoopWeights::Loop, LoopWeights::Warren, LoopWeights::BiermannLevinZorin];
@@ -61,7 +61,7 @@ fn examples(sharpness: impl Strategy<Value = f32>) -> impl Strategy<Value = Exam
             };
             let mut mesh = HalfEdgeMesh::new(if open { 9 } else { 6 }, &triangles).unwrap();
             for (split, choice) in edits {
-                let h = choice.index(mesh.half_edge_count()) as u32;
+                let h = HalfEdgeId(choice.index(mesh.half_edge_count()) as u32);
                 // A flip may be refused; the mesh is as good without it.
                 let _ = if split { mesh.split(h).map(|_| ()) } else { mesh.flip(h) };
             }
@@ -83,8 +83,12 @@ fn examples(sharpness: impl Strategy<Value = f32>) -> impl Strategy<Value = Exam
 
 /// One step of every scheme for triangles.
 fn refinements(mesh: &TriangleMesh) -> Vec<Refinement<TriangleMesh>> {
-    let mut all = WEIGHTS.map(|weights| mesh.loop_refine_with(weights)).to_vec();
-    all.extend([mesh.butterfly_refine(), mesh.modified_butterfly_refine(), mesh.midpoint_refine()]);
+    let mut all = WEIGHTS.map(|weights| mesh.loop_refine_with(weights).unwrap()).to_vec();
+    all.extend([
+        mesh.butterfly_refine().unwrap(),
+        mesh.modified_butterfly_refine().unwrap(),
+        mesh.midpoint_refine().unwrap(),
+    ]);
     all
 }
 
@@ -114,7 +118,7 @@ proptest! {
             prop_assert_eq!(euler_characteristic(&refined.mesh), euler_characteristic(&mesh));
         }
         let polygons = example.polygon_mesh();
-        assert_rows_sum_to(&polygons.catmull_clark_refine().stencils, 1.0);
+        assert_rows_sum_to(&polygons.catmull_clark_refine().unwrap().stencils, 1.0);
         for weights in [DooSabinWeights::DooSabin, DooSabinWeights::Means] {
             assert_rows_sum_to(&polygons.doo_sabin_refine(weights).unwrap().stencils, 1.0);
         }
@@ -168,9 +172,9 @@ proptest! {
 
     #[test]
     fn composed_tables_do_what_their_parts_do(example in examples(0.0..11.0_f32)) {
-        let first = example.mesh().loop_refine();
-        let second = first.mesh.loop_refine();
-        let third = second.mesh.loop_refine();
+        let first = example.mesh().loop_refine().unwrap();
+        let second = first.mesh.loop_refine().unwrap();
+        let third = second.mesh.loop_refine().unwrap();
         let composed = first.stencils.then(&second.stencils).then(&third.stencils);
         assert_rows_sum_to(&composed, 1.0);
         let sequential =
@@ -187,15 +191,15 @@ proptest! {
     fn points_straight_from_connectivity_are_those_of_the_tables(example in examples(0.0..11.0_f32)) {
         for weights in WEIGHTS {
             let mut mesh = example.mesh();
-            let hierarchy = LoopHierarchy::new(mesh.clone(), 4, weights);
+            let hierarchy = LoopHierarchy::new(mesh.clone(), 4, weights).unwrap();
             let mut levels = hierarchy.buffers();
             hierarchy.apply_into(&example.points, &mut levels);
-            let (subdivided, points) = mesh.clone().loop_subdivide(&example.points, 4, weights);
+            let (subdivided, points) = mesh.clone().loop_subdivide(&example.points, 4, weights).unwrap();
             prop_assert_eq!(&points, &levels[3]);
             prop_assert_eq!(&points, &hierarchy.apply(&example.points));
             let mut expected = example.points.clone();
             for level in levels {
-                let refined = mesh.loop_refine_with(weights);
+                let refined = mesh.loop_refine_with(weights).unwrap();
                 expected = refined.stencils.apply(&expected);
                 mesh = refined.mesh;
                 for (ours, &theirs) in level.into_iter().zip(&expected) {
@@ -216,7 +220,7 @@ proptest! {
             assert_rows_sum_to(&limits.tangents, 0.0);
             let (positions, normals) = (limits.project(&points), limits.sector_normals(&points));
             for _ in 0..3 {
-                let refined = mesh.loop_refine_with(weights);
+                let refined = mesh.loop_refine_with(weights).unwrap();
                 points = refined.stencils.apply(&points);
                 mesh = refined.mesh;
                 let finer = mesh.loop_limits(weights).unwrap();
@@ -245,7 +249,7 @@ proptest! {
     #[test]
     fn interpolating_schemes_keep_old_points(example in examples(0.0..11.0_f32)) {
         let mesh = example.mesh();
-        for refined in [mesh.butterfly_refine(), mesh.modified_butterfly_refine(), mesh.midpoint_refine()] {
+        for refined in [mesh.butterfly_refine().unwrap(), mesh.modified_butterfly_refine().unwrap(), mesh.midpoint_refine().unwrap()] {
             let points = refined.stencils.apply(&example.points);
             prop_assert_eq!(&points[..example.points.len()], &example.points[..]);
         }
@@ -261,7 +265,7 @@ proptest! {
         let segments: Vec<[u32; 2]> =
             (0..count - u32::from(!closed)).map(|i| [i, (i + 1) % count]).collect();
         let curve = CurveMesh::new(points.len(), segments, &[corner.index(points.len()) as u32]).unwrap();
-        let refined = curve.refine();
+        let refined = curve.refine().unwrap();
         assert_rows_sum_to(&refined.stencils, 1.0);
         assert_rows_sum_to(&curve.limit_tangents(), 0.0);
         let finer = refined.stencils.apply(&points);
@@ -297,13 +301,13 @@ fn threads_do_not_change_a_bit() {
             let mut points = reference.vertices.clone();
             let mut tables = Vec::new();
             for _ in 0..4 {
-                let refined = mesh.loop_refine();
+                let refined = mesh.loop_refine().unwrap();
                 points = refined.stencils.apply(&points);
                 mesh = refined.mesh;
                 tables.push(refined.stencils);
             }
             let (direct_mesh, direct) =
-                reference.mesh().loop_subdivide(&reference.vertices, 4, LoopWeights::Loop);
+                reference.mesh().loop_subdivide(&reference.vertices, 4, LoopWeights::Loop).unwrap();
             assert!(direct_mesh == mesh);
             let limits = mesh.loop_limits(LoopWeights::Loop).unwrap();
             let normals = limits.sector_normals(&points);
@@ -323,7 +327,7 @@ fn threads_do_not_change_a_bit() {
 #[test]
 fn a_hierarchy_knows_generations_and_ancestors() {
     let reference: common::TriangleReference = common::load("loop_crease_inf");
-    let hierarchy = LoopHierarchy::new(reference.mesh(), 3, LoopWeights::Loop);
+    let hierarchy = LoopHierarchy::new(reference.mesh(), 3, LoopWeights::Loop).unwrap();
     let counts: Vec<usize> = hierarchy.meshes().iter().map(TriangleMesh::vertex_count).collect();
     for (vertex, level) in [(0, 0), (counts[0] - 1, 0), (counts[0], 1), (counts[1], 2), (counts[3] - 1, 3)] {
         assert_eq!(hierarchy.generation(vertex as u32), level);
@@ -331,11 +335,11 @@ fn a_hierarchy_knows_generations_and_ancestors() {
     // The centre of an ancestor's descendants is near its own: with midpoints they would lie in it.
     let mut points = reference.vertices.clone();
     for mesh in &hierarchy.meshes()[..3] {
-        points = mesh.midpoint_refine().stencils.apply(&points);
+        points = mesh.midpoint_refine().unwrap().stencils.apply(&points);
     }
     for (t, corners) in hierarchy.finest().triangles().iter().enumerate() {
-        let [a, b, c] =
-            reference.faces[hierarchy.ancestor(t as u32) as usize].map(|v| reference.vertices[v as usize]);
+        let [a, b, c] = reference.faces[hierarchy.ancestor(FaceId(t as u32)).index()]
+            .map(|v| reference.vertices[v as usize]);
         let centre = corners.iter().map(|&v| points[v as usize]).sum::<DVec3>() / 3.0;
         let normal = (b - a).cross(c - a);
         let inside = [[a, b], [b, c], [c, a]].map(|[p, q]| (q - p).cross(centre - p).dot(normal) > 0.0);
@@ -356,10 +360,10 @@ fn sheets_meet_without_a_gap() {
     // Of three sheets at a triple line, each refined alone has the same points there, bit by bit.
     let reference: common::TriangleReference = common::load("loop_nonmanifold_triple_line");
     let mesh = reference.mesh();
-    let together = mesh.loop_refine();
+    let together = mesh.loop_refine().unwrap();
     let counts = mesh.edge_triangle_counts();
-    for e in 0..mesh.counts().edges {
-        if counts[e as usize] > 2 {
+    for e in (0..mesh.counts().edges).map(EdgeId) {
+        if counts[e.index()] > 2 {
             let row = together.stencils.row(mesh.counts().edge_vertex(e) as usize);
             assert_eq!(row, (&mesh.edge(e)[..], &[0.5, 0.5][..]));
             for end in mesh.edge(e) {

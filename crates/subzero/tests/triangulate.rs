@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use glam::{DMat3, DVec3};
 use proptest::prelude::*;
-use subzero::{MeshError, triangulate};
+use subzero::{FaceId, MeshError, triangulate};
 
 fn area_vector(corners: &[DVec3]) -> DVec3 {
     corners.windows(2).map(|pair| pair[0].cross(pair[1])).sum::<DVec3>()
@@ -17,7 +17,7 @@ fn cut(corners: &[DVec3]) -> Vec<[u32; 3]> {
     let face: Vec<u32> = (0..).take(corners.len()).collect();
     let (triangles, face_of) = triangulate(corners, &[face]).unwrap();
     assert_eq!(triangles.len(), corners.len() - 2);
-    assert!(face_of.iter().all(|face| *face == 0));
+    assert!(face_of.iter().all(|face| *face == FaceId(0)));
     let whole = area_vector(corners);
     let normal = whole.normalize();
     let areas = triangles.iter().map(|t| area_vector(&t.map(|v| corners[v as usize])).dot(normal));
@@ -84,9 +84,9 @@ fn bad_polygons_are_named() {
         |places: &[[f64; 2]]| -> Vec<DVec3> { places.iter().map(|&[x, y]| DVec3::new(x, y, 0.0)).collect() };
     let star: Vec<[f64; 2]> =
         (0..5).map(|k| f64::from(2 * k) * TAU / 5.0).map(|angle| [angle.cos(), angle.sin()]).collect();
-    let crossed = MeshError::CrossedFace { face: 0 };
+    let crossed = MeshError::CrossedFace { face: FaceId(0) };
     for (corners, expected) in [
-        (plane(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [3.0, 3.0]]), MeshError::FlatFace { face: 0 }),
+        (plane(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [3.0, 3.0]]), MeshError::FlatFace { face: FaceId(0) }),
         (plane(&[[0.0, 0.0], [4.0, 4.0], [4.0, 0.0], [0.0, 3.0]]), crossed.clone()),
         (plane(&star), crossed),
     ] {

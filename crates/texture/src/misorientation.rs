@@ -20,6 +20,7 @@ pub struct AngleHistogram {
 
 /// What is wrong with a histogram.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
 pub enum HistogramError {
     /// There is no bin.
     #[error("holds no bin; give the upper end of each in degrees, and its weight")]
@@ -54,6 +55,16 @@ pub enum HistogramError {
         /// The largest angle in degrees.
         largest: f64,
     },
+}
+
+impl HistogramError {
+    /// The bin that is wrong, from 1; none where there is no bin.
+    pub fn bin(&self) -> Option<usize> {
+        match *self {
+            Self::NoBins => None,
+            Self::Order { bin, .. } | Self::Weight { bin, .. } | Self::Unreachable { bin, .. } => Some(bin),
+        }
+    }
 }
 
 impl AngleHistogram {

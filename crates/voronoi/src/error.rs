@@ -4,6 +4,7 @@ use crate::exact::generator::Generator;
 
 /// Why a tessellation could not be made. Seeds are named by their position in the input, counted from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum VoronoiError {
     /// There is nothing to tessellate.
     #[error("no seeds: give at least one")]

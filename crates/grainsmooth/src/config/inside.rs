@@ -157,6 +157,7 @@ impl InsidePattern {
 
 /// Patterns that do not go with each other or with other options.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum InsideError {
     /// One names a phase that there is not.
     #[error("--inside names the phase '{name}'; {known}")]

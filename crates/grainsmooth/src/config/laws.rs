@@ -162,6 +162,7 @@ pub struct LawError {
 
 /// What is wrong with a law.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum LawProblem {
     /// A law names a phase that there is not.
     #[error("names the phase '{name}'; the phases are {known}")]

@@ -163,6 +163,7 @@ impl fmt::Display for PhaseOptions {
 
 /// Phases that contradict each other or other options.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum PhasesError {
     /// Their fractions do not add up to 1.
     #[error("the phases' fractions add up to {sum}, not to 1; give {remedy}, say")]

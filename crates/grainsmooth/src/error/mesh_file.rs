@@ -1,11 +1,12 @@
 use std::io;
 
-use subzero::MeshError;
+use subzero::{BezierError, MeshError};
 
 use crate::names::LABEL_ARRAYS;
 
 /// Why a mesh file cannot be used.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeshFileProblem {
     /// The file cannot be opened or read.
     #[error("cannot be read: {0}; give the path of a readable mesh file")]
@@ -142,6 +143,9 @@ pub enum MeshFileProblem {
     /// The faces make no mesh that the scheme can work with.
     #[error("{0}")]
     Mesh(MeshError),
+    /// The control points make no curve or surface, or more points than ids can count.
+    #[error("{0}")]
+    Bezier(#[from] BezierError),
 }
 
 impl From<MeshError> for MeshFileProblem {

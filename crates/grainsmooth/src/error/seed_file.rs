@@ -24,6 +24,7 @@ impl fmt::Display for SeedPlace {
 
 /// What is wrong with a place of a seed file, and what to do about it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SeedProblem {
     /// The line is not text.
     #[error("not UTF-8 text; save the file as UTF-8")]

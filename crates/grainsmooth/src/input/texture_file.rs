@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use texture::{AngleHistogram, CrystalSymmetry, HistogramError, Orientation};
+use texture::{AngleHistogram, CrystalSymmetry, Orientation};
 
 use crate::config::texture::TextureFormat;
 use crate::error::Error;
@@ -62,13 +62,8 @@ pub fn read_disorientation_file(path: &Path, symmetry: CrystalSymmetry) -> Resul
         let numbered = histogram::read(&bytes)?;
         let (lines, bins): (Vec<usize>, Vec<(f64, f64)>) = numbered.into_iter().unzip();
         AngleHistogram::new(&bins, symmetry).map_err(|error| {
-            let bin = match error {
-                HistogramError::NoBins => 1,
-                HistogramError::Order { bin, .. }
-                | HistogramError::Weight { bin, .. }
-                | HistogramError::Unreachable { bin, .. } => bin,
-            };
-            (lines.get(bin - 1).copied().unwrap_or(1), error.to_string())
+            let line = error.bin().and_then(|bin| lines.get(bin - 1).copied());
+            (line.unwrap_or(1), error.to_string())
         })
     };
     read().map_err(|(line, problem)| Error::BadTextureFile { path: path.to_owned(), line, problem })

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use serde::Deserialize;
-use subzero::{BezierCurve, BezierSurface, MergedSurfaces, MeshError};
+use subzero::{BezierCurve, BezierError, BezierSurface, MergedSurfaces};
 
 use super::file::json_point::JsonPoint;
 use super::file::{MeshFileProblem, check_lengths, control_points};
@@ -36,7 +36,7 @@ pub fn read_bezier(path: &Path) -> Result<BezierFile, Error> {
         let is_json = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
         let file = if is_json { from_json(&bytes)? } else { from_text(&String::from_utf8_lossy(&bytes))? };
         if file.curves.is_empty() && file.surfaces.is_empty() {
-            return Err(MeshError::NoControlPoints.into());
+            return Err(BezierError::NoControlPoints.into());
         }
         for curve in file.curves.iter().chain(file.surfaces.iter().flat_map(BezierSurface::rows)) {
             check_lengths(curve.control())?;
@@ -47,13 +47,13 @@ pub fn read_bezier(path: &Path) -> Result<BezierFile, Error> {
 }
 
 impl BezierFile {
-    fn add_curve(&mut self, control: Vec<DVec3>) -> Result<(), MeshError> {
+    fn add_curve(&mut self, control: Vec<DVec3>) -> Result<(), MeshFileProblem> {
         subzero::check_finite(&control)?;
         self.curves.push(BezierCurve::new(control)?);
         Ok(())
     }
 
-    fn add_surface(&mut self, control: Vec<Vec<DVec3>>) -> Result<(), MeshError> {
+    fn add_surface(&mut self, control: Vec<Vec<DVec3>>) -> Result<(), MeshFileProblem> {
         control.iter().try_for_each(|row| subzero::check_finite(row))?;
         self.surfaces.push(BezierSurface::new(control.clone())?);
         self.surface_control.push(control);
@@ -63,8 +63,8 @@ impl BezierFile {
     /// Each curve as a polyline through `samples` points at even steps of the parameter.
     ///
     /// # Errors
-    /// [`MeshError::TooLarge`] if there are more points than 32-bit ids can count.
-    pub fn polylines(&self, samples: u32) -> Result<(Vec<DVec3>, Vec<Vec<u32>>), MeshError> {
+    /// [`BezierError::TooLarge`] if there are more points than 32-bit ids can count.
+    pub fn polylines(&self, samples: u32) -> Result<(Vec<DVec3>, Vec<Vec<u32>>), BezierError> {
         let mut points = Vec::new();
         let mut polylines = Vec::new();
         for curve in &self.curves {
@@ -78,8 +78,8 @@ impl BezierFile {
     /// De Casteljau's points of each curve at `t`, level by level.
     ///
     /// # Errors
-    /// [`MeshError::TooLarge`] if there are more points than 32-bit ids can count.
-    pub fn construction(&self, t: f64) -> Result<Construction, MeshError> {
+    /// [`BezierError::TooLarge`] if there are more points than 32-bit ids can count.
+    pub fn construction(&self, t: f64) -> Result<Construction, BezierError> {
         let mut all = Construction::default();
         for curve in &self.curves {
             for (level, points) in (0..).zip(curve.casteljau(t)) {
@@ -101,7 +101,7 @@ impl BezierFile {
     ///
     /// # Errors
     /// As of [`MergedSurfaces::new`].
-    pub fn merged(&self, samples: u32, fill: bool) -> Result<MergedSurfaces, MeshError> {
+    pub fn merged(&self, samples: u32, fill: bool) -> Result<MergedSurfaces, BezierError> {
         MergedSurfaces::new(&self.surfaces, samples - 1, fill)
     }
 
@@ -109,9 +109,9 @@ impl BezierFile {
     /// has none.
     ///
     /// # Errors
-    /// [`MeshError::TooLarge`] if there are more points than 32-bit ids can count.
+    /// [`BezierError::TooLarge`] if there are more points than 32-bit ids can count.
     #[expect(clippy::type_complexity, reason = "points, normals and triangles, used in one place")]
-    pub fn triangles(&self, samples: u32) -> Result<(Vec<DVec3>, Vec<DVec3>, Vec<[u32; 3]>), MeshError> {
+    pub fn triangles(&self, samples: u32) -> Result<(Vec<DVec3>, Vec<DVec3>, Vec<[u32; 3]>), BezierError> {
         let (mut points, mut normals, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
         for surface in &self.surfaces {
             let first = first_id(points.len(), (samples as usize).saturating_mul(samples as usize))?;
@@ -148,8 +148,8 @@ pub(crate) fn step(i: u32, samples: u32) -> f64 {
 }
 
 /// The id of the first of some points more.
-fn first_id(points: usize, more: usize) -> Result<u32, MeshError> {
-    let too_large = |count| MeshError::TooLarge { what: "points", count };
+fn first_id(points: usize, more: usize) -> Result<u32, BezierError> {
+    let too_large = |count| BezierError::TooLarge { what: "points", count };
     let count = points.saturating_add(more);
     u32::try_from(count).map_err(|_| too_large(count))?;
     u32::try_from(points).map_err(|_| too_large(points))

@@ -161,9 +161,9 @@ impl MeshFile {
         if outward {
             orientation.face_outward(&self.points, &self.faces);
         }
-        self.turn_round(&orientation.turned);
-        let turned = orientation.turned.iter().filter(|turned| **turned).count();
-        Ok(Edited::Turned { turned, faces: self.faces.len(), parts: orientation.is_closed.len() })
+        self.turn_round(orientation.turned());
+        let turned = orientation.turned().iter().filter(|turned| **turned).count();
+        Ok(Edited::Turned { turned, faces: self.faces.len(), parts: orientation.is_closed().len() })
     }
 
     /// Turns faces round; each keeps its first corner, and its two sides change places.
@@ -183,7 +183,7 @@ impl MeshFile {
         let polygons = self.faces.iter().filter(|face| face.len() > 3).count();
         self.faces = triangles.into_iter().map(Vec::from).collect();
         for array in &mut self.face_data {
-            *array = array.at(face_of.iter().map(|face| *face as usize));
+            *array = array.at(face_of.iter().map(|face| face.index()));
         }
         Ok(Edited::Cut { polygons, triangles: self.faces.len() })
     }
@@ -234,7 +234,7 @@ impl<'a> EdgeEditor<'a> {
         let middle = self.half_edges.split(half_edge)?;
         // Each of the two triangles leaves half of it to a new one, in this order.
         for half_edge in beside.into_iter().flatten() {
-            self.face_of.push(self.face_of[half_edge as usize / 3]);
+            self.face_of.push(self.face_of[half_edge.triangle().index()]);
         }
         self.middles.push(ends);
         let [a, b] = ends.map(|end| self.mesh.points[end as usize]);
@@ -266,7 +266,7 @@ impl<'a> EdgeEditor<'a> {
         let (faces, triangles): (Vec<usize>, Vec<Vec<u32>>) = self
             .half_edges
             .triangles()
-            .map(|(number, triangle)| (self.face_of[number as usize], triangle.to_vec()))
+            .map(|(number, triangle)| (self.face_of[number.index()], triangle.to_vec()))
             .unzip();
         self.mesh.faces = triangles;
         for array in &mut self.mesh.face_data {

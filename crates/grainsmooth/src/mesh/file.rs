@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use glam::DVec3;
-use subzero::{BoundaryRule, Crease, CurveMesh, Features, INFINITE_SHARPNESS, PolygonMesh, TriangleMesh};
+use subzero::{
+    BoundaryRule, Crease, CurveMesh, FaceId, Features, INFINITE_SHARPNESS, PolygonMesh, TriangleMesh,
+};
 use voronoi::Domain;
 
 use crate::names::{BOUNDARY_ID, LABEL_ARRAYS};
@@ -106,13 +108,13 @@ impl MeshFile {
     fn check(&self) -> Result<(), MeshFileProblem> {
         subzero::check_finite(&self.points)?;
         check_lengths(&self.points)?;
-        for (face, corners) in self.faces.iter().enumerate() {
+        for (face, corners) in (0..).map(FaceId).zip(&self.faces) {
             if corners.len() < 3 {
                 return Err(subzero::MeshError::TooFewCorners { face, corners: corners.len() }.into());
             }
             let vertex_count = self.points.len();
             if let Some(&vertex) = corners.iter().find(|&&vertex| vertex as usize >= vertex_count) {
-                let (what, index) = ("face", face);
+                let (what, index) = ("face", face.index());
                 return Err(subzero::MeshError::VertexOutOfRange { what, index, vertex, vertex_count }.into());
             }
         }

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 
 use glam::DVec3;
 use serde::Serialize;
-use subzero::{BoundaryRule, VertexRule};
+use subzero::{BoundaryRule, EdgeId, VertexRule};
 
 use super::bezier::{BezierFile, grid, step};
 use super::file::MeshFile;
@@ -172,12 +172,12 @@ fn level_entry(scheme: Scheme, index: usize, pair: &[Level]) -> LevelEntry<'_> {
 fn parents(mesh: &Connectivity) -> Vec<Vec<u32>> {
     match mesh {
         Connectivity::Triangles(mesh) => {
-            let edges = (0..mesh.counts().edges).map(|edge| mesh.edge(edge).to_vec());
+            let edges = mesh.edges().map(Vec::from);
             (0..mesh.counts().vertices).map(|v| vec![v, v]).chain(edges).collect()
         }
         Connectivity::Polygons(mesh) => {
             let vertices = ids(mesh.vertex_count()).map(|v| vec![v, v]);
-            let edges = ids(mesh.edge_count()).map(|edge| mesh.edge(edge).to_vec());
+            let edges = mesh.edges().map(Vec::from);
             vertices.chain(edges).chain(mesh.faces().map(<[u32]>::to_vec)).collect()
         }
         Connectivity::Curves(curves) => {
@@ -199,11 +199,11 @@ fn kinds(mesh: &Connectivity) -> Vec<u8> {
     let (vertex_count, counts): (usize, Vec<([u32; 2], u32)>) = match mesh {
         Connectivity::Triangles(mesh) => {
             let counts = mesh.edge_triangle_counts();
-            (mesh.vertex_count(), ids(counts.len()).map(|e| mesh.edge(e)).zip(counts).collect())
+            (mesh.vertex_count(), mesh.edges().zip(counts).collect())
         }
         Connectivity::Polygons(mesh) => {
-            let faces = |e| if mesh.is_boundary(e) { 1 } else { 2 };
-            (mesh.vertex_count(), ids(mesh.edge_count()).map(|e| (mesh.edge(e), faces(e))).collect())
+            let faces = |edge| if mesh.is_boundary(EdgeId(edge)) { 1 } else { 2 };
+            (mesh.vertex_count(), mesh.edges().zip((0..).map(faces)).collect())
         }
         Connectivity::Curves(curves) => (curves.mesh.vertex_count(), Vec::new()),
     };

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use subzero::{
-    CurveMesh, DooSabinWeights, LoopWeights, MeshError, PolygonMesh, Refinement, StencilTable, TriangleMesh,
-    VertexRule,
+    CurveMesh, DooSabinWeights, EdgeId, FaceId, LoopWeights, MeshError, PolygonMesh, Refinement,
+    StencilTable, TriangleMesh, VertexRule,
 };
 
 use super::data::{NORMALS, averaged, is_of_shape};
@@ -159,24 +159,24 @@ impl Level {
         match &self.mesh {
             Connectivity::Triangles(mesh) => {
                 let Refinement { mesh, stencils } = match scheme {
-                    Scheme::Loop(weights) => mesh.loop_refine_with(weights),
-                    Scheme::Butterfly => mesh.butterfly_refine(),
-                    Scheme::ModifiedButterfly => mesh.modified_butterfly_refine(),
-                    _ => mesh.midpoint_refine(),
+                    Scheme::Loop(weights) => mesh.loop_refine_with(weights)?,
+                    Scheme::Butterfly => mesh.butterfly_refine()?,
+                    Scheme::ModifiedButterfly => mesh.modified_butterfly_refine()?,
+                    _ => mesh.midpoint_refine()?,
                 };
                 Ok((Connectivity::Triangles(mesh), stencils))
             }
             Connectivity::Polygons(mesh) => {
                 let Refinement { mesh, stencils } = match scheme {
                     Scheme::DooSabin(weights) => mesh.doo_sabin_refine(weights)?,
-                    _ => mesh.catmull_clark_refine(),
+                    _ => mesh.catmull_clark_refine()?,
                 };
                 Ok((Connectivity::Polygons(mesh), stencils))
             }
             Connectivity::Curves(curves) => {
                 let Refinement { mesh, stencils } = match scheme {
-                    Scheme::FourPoint => curves.mesh.four_point_refine(),
-                    _ => curves.mesh.refine(),
+                    Scheme::FourPoint => curves.mesh.four_point_refine()?,
+                    _ => curves.mesh.refine()?,
                 };
                 let curves = Curves { lines: curves.finer_lines(), mesh };
                 Ok((Connectivity::Curves(curves), stencils))
@@ -211,7 +211,7 @@ impl Connectivity {
             Self::Triangles(mesh) => {
                 let counts = mesh.counts();
                 let triangles = (0..).take(4 * mesh.triangles().len());
-                Some(triangles.map(|triangle| counts.triangle_parent(triangle)).collect())
+                Some(triangles.map(|triangle| counts.triangle_parent(FaceId(triangle)).0).collect())
             }
             Self::Polygons(_) if matches!(scheme, Scheme::DooSabin(_)) => None,
             Self::Polygons(mesh) => {
@@ -248,8 +248,8 @@ impl Connectivity {
         match self {
             Self::Triangles(mesh) => Ok(mesh.check_closed()?),
             Self::Polygons(mesh) => {
-                let open = (0..).take(mesh.edge_count()).find(|&edge| mesh.is_boundary(edge));
-                open.map_or(Ok(()), |edge| Err(MeshError::Open { ends: mesh.edge(edge) }.into()))
+                let open = (0..).zip(mesh.edges()).find(|(edge, _)| mesh.is_boundary(EdgeId(*edge)));
+                open.map_or(Ok(()), |(_, ends)| Err(MeshError::Open { ends }.into()))
             }
             Self::Curves(curves) => match curves.lines.iter().position(|line| line.first() != line.last()) {
                 Some(line) => Err(MeshFileProblem::OpenPolyline { line }),

@@ -6,6 +6,7 @@ use std::num::NonZeroU16;
 
 use colorous::TABLEAU10;
 use glam::DVec3;
+use subzero::FaceId;
 use tiny_skia::Pixmap;
 
 use super::camera::Camera;
@@ -116,7 +117,7 @@ impl ScenePicture {
             Shading::Smooth => scene.faces_at_points(),
         };
         for (triangle, face) in triangles.iter().zip(face_of) {
-            let own = normals[face as usize].normalize_or_zero();
+            let own = normals[face.index()].normalize_or_zero();
             let is_front = own.dot(camera.toward) >= 0.0;
             let brightness = triangle.map(|point| {
                 let normal = match faces_at.get(point as usize) {
@@ -167,13 +168,14 @@ impl ScenePicture {
 
 impl Scene {
     /// The faces cut into triangles, and the face of each.
-    pub(crate) fn triangles(&self) -> (Vec<[u32; 3]>, Vec<u32>) {
+    pub(crate) fn triangles(&self) -> (Vec<[u32; 3]>, Vec<FaceId>) {
         // What cannot be cut, as it crosses itself, is drawn as a fan.
         subzero::triangulate(&self.points, &self.faces).unwrap_or_else(|_| {
             let fan = |face: &Vec<u32>| -> Vec<[u32; 3]> {
                 face[1..].windows(2).map(|pair| [face[0], pair[0], pair[1]]).collect()
             };
             let fans = (0..)
+                .map(FaceId)
                 .zip(&self.faces)
                 .flat_map(|(number, face)| fan(face).into_iter().map(move |triangle| (triangle, number)));
             fans.unzip()

@@ -5,7 +5,7 @@
 //! points, what of a grain's surface lies above hangs together, and what lies below.
 
 use glam::DVec3;
-use subzero::VertexRule;
+use subzero::{FaceId, VertexRule};
 use voronoi::{Domain, Shift};
 
 use crate::box_cut::pieces::Torus;
@@ -60,7 +60,7 @@ pub(crate) fn snap(network: &Network, torus: &mut Torus, points: &[DVec3], is_fl
                     normal.try_normalize().map(Freedom::InPlane)
                 }
                 VertexRule::Crease => {
-                    let edges = star.iter().flat_map(|triangle| mesh.triangle_edges(*triangle));
+                    let edges = star.iter().flat_map(|triangle| mesh.triangle_edges(FaceId(*triangle)));
                     let ends = edges.filter(|edge| mesh.is_crease(*edge)).map(|edge| mesh.edge(edge));
                     let others = ends.filter(|ends| ends.contains(&vertex)).flatten();
                     let others: Vec<u32> = others.filter(|other| *other != vertex).collect();

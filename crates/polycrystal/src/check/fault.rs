@@ -7,6 +7,7 @@ use crate::{GrainId, NodeType, Side, Surface};
 /// What makes a network invalid. Points, elements (triangles, in the plane segments) and grains have the numbers of the
 /// surface that was looked at.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Fault {
     /// A point has a coordinate that is NaN or infinite.
     #[error("point {point} is not finite")]

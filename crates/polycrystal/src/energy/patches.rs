@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use subzero::StencilTable;
+use subzero::{EdgeId, FaceId, StencilTable};
 
 use crate::energy::patch::{Elements, Law, LocalStencils, Patch, PatchTerms, Refinement};
 use crate::network::tension::in_unit;
@@ -160,15 +160,16 @@ fn local_edges(mesh: &Mesh, elements: &[u32], points: &[u32]) -> (Vec<[u32; 2]>,
             (elements.iter().map(|e| local(mesh.segments()[*e as usize])).collect(), Vec::new())
         }
         Mesh::Triangles(mesh) => {
-            let mut edges: Vec<u32> = elements.iter().flat_map(|e| mesh.triangle_edges(*e)).collect();
+            let edges = elements.iter().flat_map(|e| mesh.triangle_edges(FaceId(*e)));
+            let mut edges: Vec<u32> = edges.map(|edge| edge.0).collect();
             edges.sort_unstable();
             edges.dedup();
             let across = |element: &u32| {
-                let [ab, bc, ca] = mesh.triangle_edges(*element).map(|edge| place_in(&edges, edge));
+                let [ab, bc, ca] = mesh.triangle_edges(FaceId(*element)).map(|edge| place_in(&edges, edge.0));
                 [bc, ca, ab]
             };
             let across = elements.iter().map(across).collect();
-            (edges.iter().map(|edge| local(mesh.edge(*edge))).collect(), across)
+            (edges.iter().map(|edge| local(mesh.edge(EdgeId(*edge)))).collect(), across)
         }
     }
 }

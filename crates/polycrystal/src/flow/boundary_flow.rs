@@ -6,7 +6,7 @@ mod volumes;
 mod widening;
 
 use glam::DVec3;
-use subzero::VertexRule;
+use subzero::{FaceId, VertexRule};
 use voronoi::Dimension;
 
 use crate::check::folds::{element_normals, folded_pairs};
@@ -169,8 +169,8 @@ impl<'a> Flow<'a> {
         let mut is_moved = vec![false; points.len()];
         places.iter().flatten().for_each(|point| is_moved[*point as usize] = true);
         let mut counts = vec![0.0; points.len()];
-        for edge in 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits") {
-            let [a, b] = mesh.edge(edge).map(|end| end as usize);
+        for ends in mesh.edges() {
+            let [a, b] = ends.map(|end| end as usize);
             let way = points[b] - points[a];
             moves[a] += way;
             moves[b] -= way;
@@ -449,10 +449,7 @@ impl<'a> Flow<'a> {
 fn mean_edge(mesh: &Mesh, points: &[DVec3]) -> f64 {
     let length = |[a, b]: [u32; 2]| points[a as usize].distance(points[b as usize]);
     match mesh {
-        Mesh::Triangles(mesh) => {
-            let edges = 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits");
-            edges.map(|edge| length(mesh.edge(edge))).sum::<f64>() / mesh.edge_count() as f64
-        }
+        Mesh::Triangles(mesh) => mesh.edges().map(length).sum::<f64>() / mesh.edge_count() as f64,
         Mesh::Segments(mesh) => {
             let segments = mesh.segments();
             segments.iter().map(|ends| length(*ends)).sum::<f64>() / segments.len() as f64
@@ -490,7 +487,7 @@ fn displaced(points: &[DVec3], moves: &[DVec3]) -> Vec<DVec3> {
 /// The element of the first of some consecutive levels that an element of the last descends from.
 fn ancestor(levels: &[Level], element: u32) -> u32 {
     levels[..levels.len() - 1].iter().rev().fold(element, |element, parent| match &parent.mesh {
-        Mesh::Triangles(mesh) => mesh.counts().triangle_parent(element),
+        Mesh::Triangles(mesh) => mesh.counts().triangle_parent(FaceId(element)).0,
         Mesh::Segments(_) => element / 2,
     })
 }

@@ -47,10 +47,7 @@ impl Clusters {
             }
         };
         match mesh {
-            Mesh::Triangles(mesh) => {
-                let edges = 0..u32::try_from(mesh.edge_count()).expect("edge ids fit 32 bits");
-                edges.for_each(|edge| join(mesh.edge(edge)));
-            }
+            Mesh::Triangles(mesh) => mesh.edges().for_each(join),
             Mesh::Segments(mesh) => mesh.segments().iter().for_each(|segment| join(*segment)),
         }
     }

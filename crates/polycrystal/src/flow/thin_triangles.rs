@@ -6,7 +6,7 @@
 //! negative one; `(a + sqrt(a^2 + d^2 s^2)) / 2` stands in for it, which leads it back (Escobar et al. 2003).
 
 use glam::DVec3;
-use subzero::VertexRule;
+use subzero::{FaceId, VertexRule};
 
 use crate::energy::patch::{Elements, LocalStencils};
 use crate::energy::patches::{local_elements, place_in};
@@ -91,8 +91,8 @@ impl Room {
         let mut coarser = own;
         for (number, finer) in (level..).zip(&levels[1..]) {
             let Mesh::Triangles(mesh) = &network.levels()[number].mesh else { return None };
-            elements =
-                elements.iter().flat_map(|element| mesh.counts().triangle_children(*element)).collect();
+            let children = |element: &u32| mesh.counts().triangle_children(FaceId(*element));
+            elements = elements.iter().flat_map(children).map(|triangle| triangle.0).collect();
             let (points, triangles) = local_triangles(&finer.mesh, &elements)?;
             room.stencils.push(LocalStencils::new(network.stencils(number), &coarser, &points));
             (coarser, room.triangles) = (points, triangles);

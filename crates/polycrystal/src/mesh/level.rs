@@ -1,5 +1,5 @@
 use rayon::prelude::*;
-use subzero::{CurveMesh, Refinement, StencilTable, TriangleMesh};
+use subzero::{CurveMesh, EdgeId, MeshError, Refinement, StencilTable, TriangleMesh};
 
 use crate::mesh::node_type::Meeting;
 use crate::mesh::periodic::PeriodicCopies;
@@ -56,14 +56,16 @@ impl Level {
     }
 
     /// The next level, and how its points follow from this one's.
-    pub(crate) fn refine(&self, boundaries: &[Boundary], sets: &WallSets) -> (Self, StencilTable) {
+    pub(crate) fn refine(
+        &self,
+        boundaries: &[Boundary],
+        sets: &WallSets,
+    ) -> Result<(Self, StencilTable), MeshError> {
         match &self.mesh {
             Mesh::Triangles(mesh) => {
-                let Refinement { mesh: finer, stencils } = mesh.loop_refine();
-                let ends: Vec<[u32; 2]> = (0..self.at_edges.len())
-                    .into_par_iter()
-                    .map(|edge| mesh.edge(u32::try_from(edge).expect("edge ids fit 32 bits")))
-                    .collect();
+                let Refinement { mesh: finer, stencils } = mesh.loop_refine()?;
+                let edges = (0..mesh.counts().edges).into_par_iter();
+                let ends: Vec<[u32; 2]> = edges.map(|edge| mesh.edge(EdgeId(edge))).collect();
                 let triangles = self.element_count();
                 // The three corner triangles of each triangle come first, then all the centre triangles.
                 let corners = self.boundary_of.iter().flat_map(|boundary| [*boundary; 3]);
@@ -74,15 +76,15 @@ impl Level {
                 let at_edges = halves.chain(inside).collect();
                 let born = &self.at_edges;
                 let finer = Mesh::Triangles(finer);
-                (self.child(finer, boundary_of, (&ends, sets), born, at_edges), stencils)
+                Ok((self.child(finer, boundary_of, (&ends, sets), born, at_edges), stencils))
             }
             Mesh::Segments(mesh) => {
-                let Refinement { mesh: finer, stencils } = mesh.refine();
+                let Refinement { mesh: finer, stencils } = mesh.refine()?;
                 let boundary_of = self.boundary_of.iter().flat_map(|boundary| [*boundary; 2]).collect();
                 let born: Vec<Meeting> =
                     (0..self.element_count()).map(|s| self.inside(s, boundaries)).collect();
                 let ends = (mesh.segments(), sets);
-                (self.child(Mesh::Segments(finer), boundary_of, ends, &born, Vec::new()), stencils)
+                Ok((self.child(Mesh::Segments(finer), boundary_of, ends, &born, Vec::new()), stencils))
             }
         }
     }

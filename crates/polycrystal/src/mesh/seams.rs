@@ -1,5 +1,7 @@
 use rayon::prelude::*;
 
+use subzero::{EdgeId, FaceId};
+
 use crate::{BoundaryId, Elements, Level, Mesh};
 
 /// How the elements of a surface meet: of triangles in edges, of segments in points.
@@ -58,8 +60,9 @@ impl Seams {
         let inner_pair = |pair: Option<[u32; 2]>| pair.filter(is_inner);
         let (inner, mut uses): (Vec<_>, Vec<_>) = match &level.mesh {
             Mesh::Triangles(mesh) => {
+                let numbers = |pair: [FaceId; 2]| pair.map(|triangle| triangle.0);
                 let edge_count = u32::try_from(mesh.edge_count()).expect("ids fit 32 bits");
-                let pair = |edge: u32| inner_pair(mesh.edge_triangles(edge));
+                let pair = |edge: u32| inner_pair(mesh.edge_triangles(EdgeId(edge)).map(numbers));
                 // A bit for each edge: they stay in the cache while the triangles go by.
                 let words = (0..edge_count.div_ceil(64)).into_par_iter().map(|word| {
                     let edges = 64 * word..edge_count.min(64 * word + 64);
@@ -68,18 +71,19 @@ impl Seams {
                 let seams: Vec<u64> = words.collect();
                 let is_seam = |edge: u32| seams[(edge / 64) as usize] >> (edge % 64) & 1 == 1;
                 let pairs = (0..edge_count).into_par_iter().filter(|edge| !is_seam(*edge));
-                let pairs = pairs.filter_map(|edge| mesh.edge_triangles(edge));
+                let pairs = pairs.filter_map(|edge| mesh.edge_triangles(EdgeId(edge)).map(numbers));
                 let elements = 0..u32::try_from(level.element_count()).expect("ids fit 32 bits");
                 let uses = elements.into_par_iter().flat_map_iter(|element| {
-                    let edges = (0u8..).zip(mesh.triangle_edges(element));
-                    let at_seams = edges.filter(|(_, edge)| is_seam(*edge));
-                    at_seams.map(move |(corner, place)| Use { place, element, corner })
+                    let edges = (0u8..).zip(mesh.triangle_edges(FaceId(element)));
+                    let at_seams = edges.filter(|(_, edge)| is_seam(edge.0));
+                    at_seams.map(move |(corner, edge)| Use { place: edge.0, element, corner })
                 });
                 (pairs.collect(), uses.collect())
             }
             Mesh::Segments(mesh) => {
+                let numbers = |pair: [EdgeId; 2]| pair.map(|segment| segment.0);
                 let points = 0..u32::try_from(mesh.vertex_count()).expect("ids fit 32 bits");
-                let inner = points.filter_map(|point| inner_pair(mesh.vertex_segments(point)));
+                let inner = points.filter_map(|point| inner_pair(mesh.vertex_segments(point).map(numbers)));
                 let uses = uses_of_segments(mesh.segments());
                 (inner.collect(), uses.filter(|at| mesh.vertex_segments(at.place).is_none()).collect())
             }

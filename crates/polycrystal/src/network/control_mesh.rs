@@ -201,8 +201,8 @@ fn surfaces(
     let mesh = TriangleMesh::new(points.len(), triangles, &features)?;
     let mut at_edges = vec![Meeting::new(2, 2, false); mesh.edge_count()];
     for (triangle, of_triangle) in (0u32..).zip(at_triangle_edges) {
-        for (edge, at_edge) in mesh.triangle_edges(triangle).into_iter().zip(of_triangle) {
-            at_edges[edge as usize] = at_edge;
+        for (edge, at_edge) in mesh.triangle_edges(subzero::FaceId(triangle)).into_iter().zip(of_triangle) {
+            at_edges[edge.index()] = at_edge;
         }
     }
     let generations = vec![0; points.len()];

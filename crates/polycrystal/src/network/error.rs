@@ -86,6 +86,7 @@ fn to_three_digits(number: f64) -> f64 {
 
 /// Why a network could not be made or relaxed.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum NetworkError {
     /// The control mesh, or a level of its subdivision, has more parts than 32-bit ids can name.
     #[error(

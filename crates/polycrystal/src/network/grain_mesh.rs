@@ -1,6 +1,6 @@
 //! The control mesh of grains whose boundaries are made up of many elements.
 
-use subzero::{Crease, CurveMesh, Features, TriangleMesh};
+use subzero::{Crease, CurveMesh, EdgeId, FaceId, Features, TriangleMesh};
 use voronoi::{Dimension, PeriodicPair, Shift, Tessellation, VertexId};
 
 use crate::mesh::disjoint_sets::DisjointSets;
@@ -93,15 +93,17 @@ impl ControlMesh {
                 let mesh = TriangleMesh::new(points.len(), triangles, &features)?;
                 let mut at_edges = vec![None; mesh.edge_count()];
                 for (at, meeting) in seams.places().zip(&at_lines) {
-                    let edge = mesh.triangle_edges(at[0].element)[usize::from(at[0].corner)];
-                    at_edges[edge as usize] = Some(*meeting);
+                    let edge = mesh.triangle_edges(FaceId(at[0].element))[usize::from(at[0].corner)];
+                    at_edges[edge.index()] = Some(*meeting);
                 }
-                let inside = |edge: u32| {
+                let inside = |edge: EdgeId| {
                     let triangle = mesh.edge_triangles(edge).expect("an edge inside a boundary has two")[0];
-                    Meeting::inside(&boundaries[boundary_of[triangle as usize].index()])
+                    Meeting::inside(&boundaries[boundary_of[triangle.index()].index()])
                 };
-                let at_edges =
-                    (0u32..).zip(at_edges).map(|(edge, at)| at.unwrap_or_else(|| inside(edge))).collect();
+                let at_edges = (0u32..)
+                    .zip(at_edges)
+                    .map(|(edge, at)| at.unwrap_or_else(|| inside(EdgeId(edge))))
+                    .collect();
                 (Mesh::Triangles(mesh), at_edges, junctions)
             }
         };

@@ -1,7 +1,7 @@
 //! The control mesh of any labelled surface.
 
 use glam::DVec3;
-use subzero::{Crease, CurveMesh, Features, TriangleMesh};
+use subzero::{Crease, CurveMesh, EdgeId, FaceId, Features, TriangleMesh};
 use voronoi::{Domain, PeriodicPair, Wall};
 
 use crate::mesh::disjoint_sets::DisjointSets;
@@ -81,17 +81,19 @@ impl ControlMesh {
                 let corners = lines.corners(junctions);
                 let features = Features { creases: &creases, corners: &corners, ..Features::default() };
                 let mesh = TriangleMesh::new(points.len(), triangles.clone(), &features)?;
-                let inside = |edge: u32| {
+                let inside = |edge: EdgeId| {
                     let triangle = mesh.edge_triangles(edge).expect("an edge inside a boundary has two")[0];
-                    Meeting::inside(&boundaries[boundary_of[triangle as usize].index()])
+                    Meeting::inside(&boundaries[boundary_of[triangle.index()].index()])
                 };
                 let mut at_lines: Vec<Option<Meeting>> = vec![None; mesh.edge_count()];
                 for (at, meeting) in seams.places().zip(&at_places) {
-                    let edge = mesh.triangle_edges(at[0].element)[usize::from(at[0].corner)];
-                    at_lines[edge as usize] = Some(*meeting);
+                    let edge = mesh.triangle_edges(FaceId(at[0].element))[usize::from(at[0].corner)];
+                    at_lines[edge.index()] = Some(*meeting);
                 }
-                let at_edges =
-                    (0u32..).zip(at_lines).map(|(edge, at)| at.unwrap_or_else(|| inside(edge))).collect();
+                let at_edges = (0u32..)
+                    .zip(at_lines)
+                    .map(|(edge, at)| at.unwrap_or_else(|| inside(EdgeId(edge))))
+                    .collect();
                 let junctions = JunctionCounts::new(lines.sides(&at_places, &[]), at_points());
                 (Mesh::Triangles(mesh), at_edges, junctions)
             }

@@ -86,7 +86,7 @@ pub fn ball(radius: f64, center: DVec3, levels: usize) -> (Vec<DVec3>, Vec<[u32;
     assert_eq!(triangles.len(), 20);
     for _ in 0..levels {
         let mesh = subzero::TriangleMesh::new(points.len(), triangles, &subzero::Features::default());
-        let refined = mesh.expect("a sphere").midpoint_refine();
+        let refined = mesh.expect("a sphere").midpoint_refine().expect("few triangles");
         points = refined.stencils.apply(&points);
         triangles = refined.mesh.triangles().to_vec();
     }

@@ -7,7 +7,7 @@ use std::path::Path;
 use glam::DVec3;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use subzero::{BoundaryRule, Crease, Features, TriangleMesh};
+use subzero::{BoundaryRule, Crease, EdgeId, Features, TriangleMesh};
 
 #[derive(Deserialize)]
 pub struct TriangleReference {
@@ -86,7 +86,8 @@ impl TriangleReference {
 
 /// Our id on the finer level of each vertex of the reference, from those on the coarser level.
 pub fn map_vertices(coarse: &TriangleMesh, coarse_ids: &[u32], parents: &[[u32; 2]]) -> Vec<u32> {
-    let edges: HashMap<[u32; 2], u32> = (0..coarse.edge_count() as u32)
+    let edges: HashMap<[u32; 2], EdgeId> = (0..coarse.edge_count() as u32)
+        .map(EdgeId)
         .map(|e| {
             let [a, b] = coarse.edge(e);
             ([a.min(b), a.max(b)], e)

@@ -59,6 +59,7 @@ const MOST_HALVED_STEPS: i32 = 10;
 
 /// Why cells cannot have given volumes. Grains are named by their position in the input, counted from 0.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum VolumesError {
     /// The seeds make no tessellation.
     #[error(transparent)]

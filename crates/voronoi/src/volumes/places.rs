@@ -45,6 +45,7 @@ impl InclusionPlace {
 
 /// Why inclusions find no place.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlaceError {
     /// Cells nowhere meet like that.
     #[error("there is no place {place}")]

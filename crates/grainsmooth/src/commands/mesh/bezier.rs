@@ -5,7 +5,7 @@ use grainsmooth::mesh::construction_json;
 use grainsmooth::mesh::file::{MeshFile, MeshFileProblem, MeshFormat, MeshToWrite, stage_mesh};
 use grainsmooth::vtk::{Cells, DataArray};
 use grainsmooth::{Error, Scene, bezier_json, mesh_json};
-use subzero::{MergedSurfaces, MeshError};
+use subzero::{BezierError, MergedSurfaces};
 
 use super::Job;
 use super::files::scene_of_file;
@@ -20,7 +20,7 @@ impl Job<'_> {
         if self.format != MeshFormat::Json && curves > 0 && surfaces > 0 {
             return Err(self.located(MeshFileProblem::CurvesAndSurfaces));
         }
-        let located = |error: MeshError| self.located(error.into());
+        let located = |error: BezierError| self.located(error.into());
         let (mut points, lines) = file.polylines(samples).map_err(located)?;
         let (of_surfaces, normals, triangles) = file.triangles(samples).map_err(located)?;
         let first = u32::try_from(points.len()).unwrap_or(u32::MAX);
