@@ -1,2 +1,2 @@
-export { AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, OrthographicCamera, PerspectiveCamera, REVISION, Scene, Vector3, WebGLRenderer } from 'three';
+export { AmbientLight, BufferAttribute, BufferGeometry, Color, DataTexture, DirectionalLight, DoubleSide, FloatType, FrontSide, BackSide, GLSL3, Group, InstancedBufferGeometry, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, NearestFilter, OrthographicCamera, PerspectiveCamera, Points, RawShaderMaterial, REVISION, RGBAFormat, Scene, Vector3, WebGLRenderer, WebGLRenderTarget } from 'three';
 export { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';

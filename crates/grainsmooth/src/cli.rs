@@ -12,6 +12,7 @@ mod domain;
 mod files;
 mod measure;
 pub mod mesh;
+mod page;
 mod pictures;
 mod run;
 mod seeds;
@@ -24,6 +25,7 @@ use domain::DomainArguments;
 use files::FileArguments;
 pub use measure::MeasureArguments;
 use mesh::MeshArguments;
+pub use page::{ServerArguments, ViewArguments};
 use pictures::PictureArguments;
 use run::RunArguments;
 use seeds::SeedArguments;
@@ -64,6 +66,7 @@ pub enum Command {
     Mesh(MeshArguments),
     Check(CheckArguments),
     Measure(MeasureArguments),
+    View(ViewArguments),
     /// Print what completes options and values in a shell
     ///
     /// Example: grainsmooth completions bash > ~/.local/share/bash-completion/completions/grainsmooth

@@ -4,3 +4,4 @@ pub mod check;
 pub mod measure;
 pub mod mesh;
 pub mod network;
+pub mod page;

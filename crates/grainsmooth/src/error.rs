@@ -346,6 +346,34 @@ pub enum Error {
         /// Why.
         problem: MeshFileProblem,
     },
+    /// A collection of files (.pvd, .vtm) cannot be opened or read.
+    #[error("{}: cannot be read: {cause}; give the path of a readable file", path.display())]
+    CollectionUnreadable {
+        /// The path as given.
+        path: PathBuf,
+        /// Why.
+        cause: io::Error,
+    },
+    /// A collection of files (.pvd, .vtm) names none.
+    #[error("{}: names no files; give a collection as ParaView writes it, or the files themselves", path.display())]
+    EmptyCollection {
+        /// The path as given.
+        path: PathBuf,
+    },
+    /// Blocks without a network.
+    #[error("{}: has no block \"boundaries\"; give the file of the network itself, *.vtp, *.vtu or *.vtk", path.display())]
+    NoBoundariesBlock {
+        /// The path as given.
+        path: PathBuf,
+    },
+    /// A server cannot listen at a port of this machine.
+    #[error("port {port} of 127.0.0.1: {cause}; give another --port, or leave it out for one that is free")]
+    PortTaken {
+        /// The port.
+        port: u16,
+        /// Why.
+        cause: io::Error,
+    },
     /// What is asked for does not fit.
     #[error(transparent)]
     Memory(#[from] MemoryError),

@@ -31,6 +31,7 @@ mod measure;
 pub mod memory;
 pub mod mesh;
 mod names;
+mod page;
 mod picture;
 mod report;
 mod run;
@@ -99,6 +100,7 @@ pub use mesh::{
     read_bezier, subdivide,
 };
 pub use names::Names;
+pub use page::{PageDocument, PageLinks, PageServer, PageStop};
 pub use picture::{Coloring, Picture, Png, Scene, ScenePicture, Shading};
 pub use report::{Html, SceneReport};
 pub use run::pipeline::{

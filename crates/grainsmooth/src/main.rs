@@ -49,6 +49,11 @@ fn keep_reader_quiet() {
 }
 
 fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+    if let Some(Command::View(view)) = &arguments.command {
+        // Whoever interrupts these has seen enough: that is how they end.
+        keep_reader_quiet();
+        return commands::page::view(view);
+    }
     #[cfg(unix)]
     interruption::leave_nothing_when_interrupted()?;
     let Some(command) = &arguments.command else { return commands::network::run(arguments) };
@@ -57,6 +62,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         Command::Mesh(mesh) => commands::mesh::run(&mesh.command)?,
         Command::Check(check) => return commands::check::run(check),
         Command::Measure(measure) => commands::measure::run(measure)?,
+        Command::View(view) => return commands::page::view(view),
         Command::Completions { shell } => cli::print_completions(*shell)?,
         Command::Man => cli::print_manual()?,
     }

@@ -99,6 +99,11 @@ pub enum MeshFileProblem {
     /// The extension names no format that can hold a network.
     #[error("unknown extension; give a network as *.vtp, *.vtu or *.vtk")]
     NotANetworkFormat,
+    /// Grains in the plane, where grains in space are shown.
+    #[error(
+        "holds grains in the plane, which have no surfaces to turn; take grainsmooth with --picture for them"
+    )]
+    PlaneNetwork,
     /// The extension names no format that can hold measured grains.
     #[error(
         "unknown extension; give a network (*.vtp, *.vtu, *.vtk), a tessellation (*.tess) or a table (*.csv, *.txt, *.json)"

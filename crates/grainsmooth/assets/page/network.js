@@ -1,0 +1,351 @@
+// Draws a network of grains: one draw call for all boundaries. What each pixel shows follows from its boundary's two grains: where the
+// viewer stands in a grain that is shown, the pixel is a cap of a slice; else the grain beyond is seen from outside.
+
+const WIDTH = 1024; // texels in a row of a table
+
+const COMMON = `
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+uniform sampler2D sides, grains, centers;
+uniform float explode;
+uniform bool exploded;
+vec4 entry(sampler2D list, int number) { return texelFetch(list, ivec2(number % ${WIDTH}, number / ${WIDTH}), 0); }
+`;
+
+const VERTEX = COMMON + `
+uniform mat4 modelViewMatrix, projectionMatrix;
+uniform float toward;
+in vec3 position;
+in vec4 normal;
+in float boundary;
+in float value;
+flat out ivec2 pair;
+flat out int own;
+out vec3 facing, seen, place;
+out float number;
+void main() {
+  pair = ivec2(entry(sides, int(boundary)).xy);
+  own = exploded ? gl_InstanceID : -1;
+  place = position;
+  if (exploded) {
+    int grain = own == 0 ? pair.x : pair.y;
+    if (grain >= 0) place += explode * entry(centers, grain).xyz;
+  }
+  vec4 view = modelViewMatrix * vec4(place, 1.0);
+  facing = mat3(modelViewMatrix) * normal.xyz;
+  seen = view.xyz;
+  number = value;
+  // Lines stand a little before their surfaces.
+  gl_Position = projectionMatrix * vec4(view.xyz * (1.0 - toward), 1.0);
+}`;
+
+const SHOWN = COMMON + `
+uniform bool sliced;
+uniform vec4 plane;
+flat in ivec2 pair;
+flat in int own;
+in vec3 facing, seen, place;
+in float number;
+out vec4 color;
+// Colour and, as alpha, whether a grain is shown; nothing of the other side where each grain stands by itself.
+vec4 shown(int grain) {
+  int mine = own == 0 ? pair.x : pair.y;
+  return grain < 0 || (own >= 0 && grain != mine) ? vec4(0.0) : entry(grains, grain);
+}
+bool away() { return sliced && dot(plane.xyz, place) > plane.w; }
+`;
+
+const SURFACE = SHOWN + `
+uniform mat4 modelViewMatrix;
+uniform bool byValue, picking;
+uniform vec2 bounds;
+uniform sampler2D scale;
+uniform int selected;
+float lit(vec3 normal) {
+  float lamp = max(dot(normal, normalize(vec3(-0.4, 0.5, 1.0))), 0.0);
+  return 0.45 + 0.6 * lamp;
+}
+void main() {
+  if (away()) discard;
+  int viewer = gl_FrontFacing ? pair.y : pair.x;
+  int beyond = gl_FrontFacing ? pair.x : pair.y;
+  vec4 here = shown(viewer), there = shown(beyond);
+  bool cap = here.a > 0.5;
+  if (!cap && there.a <= 0.5) discard;
+  int grain = cap ? viewer : beyond;
+  if (picking) {
+    int id = grain + 1;
+    color = vec4(float(id & 255), float((id >> 8) & 255), float(id >> 16), 255.0) / 255.0;
+    return;
+  }
+  vec3 paint = cap ? here.rgb : there.rgb;
+  if (byValue) {
+    float share = bounds.y > bounds.x ? (number - bounds.x) / (bounds.y - bounds.x) : 0.5;
+    paint = isnan(number) || cap ? vec3(0.78, 0.78, 0.82) : texelFetch(scale, ivec2(int(clamp(share, 0.0, 1.0) * 255.0), 0), 0).rgb;
+  }
+  vec3 normal = normalize(gl_FrontFacing ? facing : -facing);
+  float light = cap ? (sliced ? lit(normalize(mat3(modelViewMatrix) * plane.xyz)) : 0.8) : lit(normal);
+  if (grain == selected) light *= mod(floor((gl_FragCoord.x + gl_FragCoord.y) / 4.0), 2.0) == 0.0 ? 1.0 : 0.7;
+  color = vec4(pow(pow(paint, vec3(2.2)) * light, vec3(1.0 / 2.2)), 1.0);
+}`;
+
+const LINE = SHOWN + `
+void main() {
+  if (away()) discard;
+  // Of the surface that is seen from outside, not of walls behind it.
+  bool front = dot(facing, seen) < 0.0;
+  if (shown(front ? pair.x : pair.y).a <= 0.5 || shown(front ? pair.y : pair.x).a > 0.5) discard;
+  color = vec4(0.1, 0.1, 0.1, 1.0);
+}`;
+
+// A list of tuples of four as a texture; what it holds can change.
+class Table {
+  constructor(count) {
+    const rows = Math.max(1, Math.ceil(count / WIDTH));
+    this.data = new Float32Array(4 * WIDTH * rows);
+    this.texture = new THREE.DataTexture(this.data, WIDTH, rows, THREE.RGBAFormat, THREE.FloatType);
+    this.texture.needsUpdate = true;
+  }
+
+  set(number, tuple) {
+    this.data.set(tuple, 4 * number);
+    this.texture.needsUpdate = true;
+  }
+}
+
+export class Network {
+  // `head` and `arrays` as unpacked; `scale` gives the colour of a share.
+  constructor({ head, arrays }, scale) {
+    this.head = head;
+    this.arrays = arrays;
+    const { boundaries, ids, centers } = head;
+    this.count = ids.length;
+    this.sides = new Table(boundaries.length);
+    this.grains = new Table(ids.length);
+    this.centers = new Table(ids.length);
+    this.isShown = new Uint8Array(ids.length).fill(1);
+    centers.forEach((center, grain) => this.centers.set(grain, center));
+    const number = new Float32Array(arrays.position.length / 3);
+    let vertex = 0, triangle = 0, rim = 0;
+    this.parts = boundaries.map(({ sides, vertices, triangles, rim: edges }, boundary) => {
+      this.sides.set(boundary, sides);
+      number.fill(boundary, vertex, vertex + vertices);
+      const part = { sides, vertex, vertices, corner: 3 * triangle, corners: 3 * triangles, end: 2 * rim, ends: 2 * edges };
+      vertex += vertices;
+      triangle += triangles;
+      rim += edges;
+      return part;
+    });
+    this.measureBoxes();
+    const colors = Float32Array.from({ length: 1024 }, (_, place) => (place % 4 === 3 ? 1 : scale((place >> 2) / 255)[place % 4]));
+    const scaleTexture = new THREE.DataTexture(colors, 256, 1, THREE.RGBAFormat, THREE.FloatType);
+    scaleTexture.needsUpdate = true;
+    this.uniforms = {
+      sides: { value: this.sides.texture }, grains: { value: this.grains.texture }, centers: { value: this.centers.texture },
+      explode: { value: 0 }, exploded: { value: false }, sliced: { value: false }, plane: { value: [0, 0, 1, 0] },
+      byValue: { value: false }, bounds: { value: [0, 1] }, scale: { value: scaleTexture }, selected: { value: -1 }, picking: { value: false },
+    };
+    this.value = new THREE.BufferAttribute(new Float32Array(number.length), 1);
+    const attributes = {
+      position: new THREE.BufferAttribute(arrays.position, 3),
+      normal: new THREE.BufferAttribute(arrays.normal, 4, true),
+      boundary: new THREE.BufferAttribute(number, 1),
+      value: this.value,
+    };
+    const geometry = (count) => {
+      const made = new THREE.InstancedBufferGeometry();
+      for (const [name, attribute] of Object.entries(attributes)) made.setAttribute(name, attribute);
+      made.setIndex(new THREE.BufferAttribute(new Uint32Array(count), 1));
+      return made;
+    };
+    const material = (fragmentShader, toward, more) => new THREE.RawShaderMaterial({
+      glslVersion: THREE.GLSL3, vertexShader: VERTEX, fragmentShader, uniforms: { ...this.uniforms, toward: { value: toward } }, side: THREE.DoubleSide, ...more,
+    });
+    this.surface = new THREE.Mesh(geometry(arrays.corners.length), material(SURFACE, 0));
+    this.lines = new THREE.LineSegments(geometry(arrays.rims.length), material(LINE, 0.001));
+    this.cutGeometry = new THREE.BufferGeometry();
+    this.cut = new THREE.LineSegments(this.cutGeometry, new THREE.LineBasicMaterial({ color: 0x1a1a1a }));
+    this.objects = [this.surface, this.lines, this.cut];
+    for (const object of this.objects) object.frustumCulled = false;
+    this.select();
+  }
+
+  // The box around each grain: low and high corner.
+  measureBoxes() {
+    const { position } = this.arrays;
+    this.boxes = Float32Array.from({ length: 6 * this.count }, (_, place) => (place % 6 < 3 ? Infinity : -Infinity));
+    for (const { sides, vertex, vertices } of this.parts) {
+      const box = [Infinity, Infinity, Infinity, -Infinity, -Infinity, -Infinity];
+      for (let place = 3 * vertex; place < 3 * (vertex + vertices); place++) {
+        const axis = place % 3;
+        if (position[place] < box[axis]) box[axis] = position[place];
+        if (position[place] > box[3 + axis]) box[3 + axis] = position[place];
+      }
+      for (const grain of sides) {
+        if (grain < 0) continue;
+        for (let axis = 0; axis < 3; axis++) {
+          this.boxes[6 * grain + axis] = Math.min(this.boxes[6 * grain + axis], box[axis]);
+          this.boxes[6 * grain + 3 + axis] = Math.max(this.boxes[6 * grain + 3 + axis], box[3 + axis]);
+        }
+      }
+    }
+  }
+
+  // By how far a grain is moved.
+  shift(grain, axis) {
+    return this.uniforms.explode.value * this.centers.data[4 * grain + axis];
+  }
+
+  // Whether the plane of a slice goes through the box of a grain.
+  isCut(grain) {
+    const { plane: { value: plane } } = this.uniforms;
+    let low = 0, high = 0;
+    for (let axis = 0; axis < 3; axis++) {
+      const ends = [this.boxes[6 * grain + axis], this.boxes[6 * grain + 3 + axis]].map((end) => plane[axis] * (end + this.shift(grain, axis)));
+      low += Math.min(...ends);
+      high += Math.max(...ends);
+    }
+    return low <= plane[3] && plane[3] <= high;
+  }
+
+  // Chooses what can be seen: boundaries with one side shown, and all of grains that are cut or stand by themselves.
+  select() {
+    const { sliced: { value: sliced }, exploded: { value: exploded } } = this.uniforms;
+    const isOpen = new Uint8Array(this.count);
+    if (sliced) for (let grain = 0; grain < this.count; grain++) isOpen[grain] = this.isShown[grain] && this.isCut(grain) ? 1 : 0;
+    const { index: surface } = this.surface.geometry, { index: lines } = this.lines.geometry;
+    let corners = 0, ends = 0;
+    const cut = [];
+    for (const part of this.parts) {
+      const [a, b] = part.sides;
+      const first = a >= 0 && this.isShown[a], second = b >= 0 && this.isShown[b];
+      const isCut = (a >= 0 && isOpen[a]) || (b >= 0 && isOpen[b]);
+      if (isCut) cut.push(part);
+      if (!(Boolean(first) !== Boolean(second) || isCut || (exploded && (first || second)))) continue;
+      surface.array.set(this.arrays.corners.subarray(part.corner, part.corner + part.corners), corners);
+      corners += part.corners;
+      lines.array.set(this.arrays.rims.subarray(part.end, part.end + part.ends), ends);
+      ends += part.ends;
+    }
+    for (const [object, count] of [[this.surface, corners], [this.lines, ends]]) {
+      object.geometry.instanceCount = exploded ? 2 : 1;
+      object.geometry.setDrawRange(0, count);
+      object.geometry.index.clearUpdateRanges();
+      object.geometry.index.addUpdateRange(0, count);
+      object.geometry.index.needsUpdate = true;
+    }
+    this.triangles = corners / 3;
+    this.outlineCut(cut);
+  }
+
+  // Lines where the plane goes through boundaries.
+  outlineCut(parts) {
+    const { position, corners } = this.arrays;
+    const [nx, ny, nz, offset] = this.uniforms.plane.value;
+    const { exploded: { value: exploded } } = this.uniforms;
+    const found = [];
+    for (const part of parts) {
+      for (const grain of exploded ? part.sides : [-1]) {
+        if (exploded ? grain < 0 || !this.isShown[grain] : !part.sides.some((side) => side >= 0 && this.isShown[side])) continue;
+        const shift = [0, 1, 2].map((axis) => (exploded ? this.shift(grain, axis) : 0));
+        const level = offset - (nx * shift[0] + ny * shift[1] + nz * shift[2]);
+        for (let corner = part.corner; corner < part.corner + part.corners; corner += 3) {
+          const at = [corners[corner], corners[corner + 1], corners[corner + 2]];
+          const [d, e, f] = at.map((v) => nx * position[3 * v] + ny * position[3 * v + 1] + nz * position[3 * v + 2] - level);
+          if ((d > 0) === (e > 0) && (e > 0) === (f > 0)) continue;
+          for (const [i, j, from, to] of [[0, 1, d, e], [1, 2, e, f], [2, 0, f, d]]) {
+            if ((from > 0) === (to > 0)) continue;
+            const t = from / (from - to);
+            for (let axis = 0; axis < 3; axis++) {
+              const start = position[3 * at[i] + axis];
+              found.push(start + t * (position[3 * at[j] + axis] - start) + shift[axis]);
+            }
+          }
+        }
+      }
+    }
+    this.cutGeometry.dispose();
+    this.cutGeometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(found), 3));
+    this.cut.visible = this.lines.visible && found.length > 0;
+  }
+
+  explode(share) {
+    this.uniforms.explode.value = share;
+    this.uniforms.exploded.value = share > 0;
+    this.select();
+  }
+
+  // Shows what lies on one side of a plane, where its first three numbers times a place are at most the last; nothing ends the slice.
+  slice(plane) {
+    this.uniforms.sliced.value = Boolean(plane);
+    if (plane) this.uniforms.plane.value = plane;
+    this.select();
+  }
+
+  show(isShown) {
+    for (let grain = 0; grain < this.count; grain++) {
+      this.isShown[grain] = isShown(grain) ? 1 : 0;
+      this.grains.data[4 * grain + 3] = this.isShown[grain];
+    }
+    this.grains.texture.needsUpdate = true;
+    this.select();
+  }
+
+  // Colours grains, by a function of their place.
+  paint(color) {
+    for (let grain = 0; grain < this.count; grain++) this.grains.set(grain, [...color(grain), this.isShown[grain]]);
+    this.uniforms.byValue.value = false;
+  }
+
+  // Colours surfaces, by a number at each vertex.
+  paintValues(values, bounds) {
+    this.value.array.set(values);
+    this.value.needsUpdate = true;
+    this.uniforms.bounds.value = bounds;
+    this.uniforms.byValue.value = true;
+  }
+
+  // How far from the middle the grains reach.
+  radius() {
+    return 0.87 * (1 + this.uniforms.explode.value);
+  }
+
+  dispose() {
+    for (const object of this.objects) {
+      object.geometry.dispose();
+      object.material.dispose();
+      object.removeFromParent();
+    }
+    for (const table of [this.sides, this.grains, this.centers]) table.texture.dispose();
+  }
+}
+
+// Which grain is seen at a pixel, -1 for none: that pixel alone is drawn, in numbers for colours.
+export class Picker {
+  constructor(stage) {
+    this.stage = stage;
+    this.target = new THREE.WebGLRenderTarget(1, 1);
+    this.pixel = new Uint8Array(4);
+    this.scene = new THREE.Scene();
+    this.scene.background = null;
+  }
+
+  pick(network, [x, y]) {
+    const { renderer, camera, view, scene } = this.stage;
+    camera.setViewOffset(view.clientWidth, view.clientHeight, x, y, 1, 1);
+    network.uniforms.picking.value = true;
+    this.scene.add(network.surface);
+    renderer.setRenderTarget(this.target);
+    renderer.setClearColor(0x000000, 0);
+    renderer.clear();
+    renderer.render(this.scene, camera);
+    renderer.readRenderTargetPixels(this.target, 0, 0, 1, 1, this.pixel);
+    renderer.setRenderTarget(null);
+    scene.add(network.surface);
+    network.uniforms.picking.value = false;
+    camera.clearViewOffset();
+    const [red, green, blue, alpha] = this.pixel;
+    return alpha === 0 ? -1 : red + 256 * green + 65536 * blue - 1;
+  }
+}

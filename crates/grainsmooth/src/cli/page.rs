@@ -1,0 +1,41 @@
+//! The command lines of `grainsmooth view` and `grainsmooth edit`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+/// Look at grains in the browser: turn, explode, slice, hide and isolate them, colour them by any array
+///
+/// Serves a page on this machine alone and opens it; Ctrl-C ends it. Several files are a series with a slider.
+#[derive(Debug, Args)]
+#[command(after_help = VIEW_EXAMPLES)]
+pub struct ViewArguments {
+    /// Networks of grains: .vtp, .vtu, .vtk or .vtm; or a series of them, .pvd
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+
+    #[command(flatten)]
+    pub server: ServerArguments,
+}
+
+/// Where the page is served.
+#[derive(Debug, Args)]
+pub struct ServerArguments {
+    /// Port on 127.0.0.1; one that is free where none is given
+    ///
+    /// Example: --port 8080, for ssh -L 8080:127.0.0.1:8080 HOST
+    #[arg(long, value_name = "P", value_parser = clap::value_parser!(u16).range(1..))]
+    pub port: Option<u16>,
+
+    /// Print the link and open no browser
+    #[arg(long)]
+    pub no_open: bool,
+}
+
+const VIEW_EXAMPLES: &str = "\
+Examples:
+  grainsmooth view grains.vtp
+  grainsmooth view series.pvd                     grains that grow, with a slider over time
+  grainsmooth view grains.vtm --no-open           over ssh: open the link here, through ssh -L
+
+Exit status: 0 ended by Ctrl-C, 1 the file is unreadable or no network, 2 a mistake on the command line.";

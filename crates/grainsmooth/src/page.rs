@@ -1,0 +1,13 @@
+//! The page of `view` and `edit`: a server for one user's browser. Geometry stays here; the page draws, and asks.
+
+mod answer;
+mod assets;
+mod document;
+mod grains;
+mod guard;
+mod packed;
+mod refusal;
+mod server;
+
+pub use document::PageDocument;
+pub use server::{PageLinks, PageServer, PageStop};

@@ -1,0 +1,9 @@
+//! `grainsmooth view` and `grainsmooth edit`, as a browser and as those who should not be there meet them.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod browser;
+mod grains;
+#[path = "../common/programs.rs"]
+mod programs;
+mod refusals;
+mod served;
