@@ -1,6 +1,5 @@
 //! The complex of grains that several cells make up.
 
-use glam::DVec3;
 use voronoi::{CellId, Corner, FaceId, Shift, Tessellation};
 
 use crate::mesh::disjoint_sets::DisjointSets;
@@ -67,7 +66,8 @@ pub(super) fn grain_complex(
     let sides: Vec<[voronoi::Side; 2]> = kept.iter().map(|(_, sides)| in_order(*sides)).collect();
     let is_turned = |place: usize| sides[place] != kept[place].1;
     let domain = tessellation.domain();
-    let centroids = centroids(tessellation, parts, lengths.len());
+    // A complex has a seed for each grain; nothing asks this one for them.
+    let seeds = vec![domain.center(); lengths.len()];
     Ok(match &level.mesh {
         Mesh::Triangles(mesh) => {
             let triangle = |(place, (element, _)): (usize, &(usize, _))| {
@@ -79,7 +79,7 @@ pub(super) fn grain_complex(
                 limits(lengths, triangles.iter().map(|corners| &corners[..]).zip(&sides), points.len());
             let left = coarsened(domain, points, &limits, &triangles, &sides);
             let faces = sides.into_iter().zip(left).filter_map(|(sides, corners)| Some((sides, corners?)));
-            Tessellation::of_whole_cells(domain, &centroids, points, faces).0
+            Tessellation::of_whole_cells(domain, &seeds, points, faces).0
         }
         Mesh::Segments(mesh) => {
             let segment = |(place, (element, _)): (usize, &(usize, _))| {
@@ -91,7 +91,7 @@ pub(super) fn grain_complex(
                 limits(lengths, segments.iter().map(|corners| &corners[..]).zip(&sides), points.len());
             let left = coarsened_segments(domain, points, &limits, &segments, &sides);
             let faces = sides.into_iter().zip(left).filter_map(|(sides, corners)| Some((sides, corners?)));
-            Tessellation::of_whole_cells(domain, &centroids, points, faces).0
+            Tessellation::of_whole_cells(domain, &seeds, points, faces).0
         }
     })
 }
@@ -124,17 +124,6 @@ fn check_grains(tessellation: &Tessellation, parts: &[GrainPart]) -> Result<(), 
         Some((grain, _)) => Err(NetworkError::MissingGrain { grain: GrainId(grain) }),
         None => Ok(()),
     }
-}
-
-/// The centroids of grains, where they stand.
-fn centroids(tessellation: &Tessellation, parts: &[GrainPart], grain_count: usize) -> Vec<DVec3> {
-    let mut sums = vec![(DVec3::ZERO, 0.0); grain_count];
-    for (part, cell) in parts.iter().zip(tessellation.cell_measures()) {
-        let (sum, volume) = &mut sums[part.grain.index()];
-        *sum += cell.volume * (cell.centroid + part.moved.vector(tessellation.domain()));
-        *volume += cell.volume;
-    }
-    sums.into_iter().map(|(sum, volume)| sum / volume).collect()
 }
 
 /// Two sides, the one of smaller number first, and walls last. Of a grain and its image, the one of smaller shift.

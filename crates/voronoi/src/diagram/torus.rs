@@ -53,7 +53,7 @@ impl TorusFaces {
     /// Adds a face that is told from either side, and may be moved by whole periods.
     pub(crate) fn push_in_order(&mut self, ends: [FaceEnd; 2], corners: impl Iterator<Item = Corner>) {
         let (ends, back, is_turned) = in_order(ends);
-        let moved = corners.map(|corner| Corner { shift: corner.shift + back, ..corner });
+        let moved = corners.map(|corner| corner.moved(back));
         if is_turned {
             let corners: Vec<Corner> = moved.collect();
             self.push(ends, corners.into_iter().rev());

@@ -78,7 +78,7 @@ fn with_places(
     let copied_corners: Vec<VertexId> = copied
         .par_iter()
         .flat_map_iter(|(face, back)| {
-            let moved = move |corner: &Corner| Corner { shift: corner.shift + *back, ..*corner };
+            let moved = move |corner: &Corner| corner.moved(*back);
             corners_of(*face).iter().rev().map(moved).map(|corner| places.id(corner))
         })
         .collect();
@@ -134,9 +134,8 @@ impl VertexPlaces {
                 FaceEnd::Cell(Image { shift, .. }) if shift != Shift::NONE => Some(Shift::NONE - shift),
                 _ => None,
             };
-            let copies = back.into_iter().flat_map(move |back| {
-                corners.iter().map(move |corner| Corner { shift: corner.shift + back, ..*corner })
-            });
+            let copies =
+                back.into_iter().flat_map(move |back| corners.iter().map(move |corner| corner.moved(back)));
             corners.iter().copied().chain(copies).filter_map(note)
         });
         let mut moved: Vec<Corner> = moved.collect();
