@@ -6,7 +6,7 @@ use super::workplace::{FAILED, Workplace};
 #[test]
 fn a_free_grain_that_vanishes_is_named_with_a_time_that_works() {
     let workplace = Workplace::new();
-    let grains = "--dim 2 --seeds 30 --seeding random -n 0 --free";
+    let grains = "--dim 2 --seeds 30 --seeding random -n 0 --free --regularize 0.05";
     let too_long = format!("{grains} --relax 1");
     workplace.refuses(&too_long, FAILED, "grain ... works");
     let said = workplace.command(&too_long).assert().get_output().stderr.clone();
@@ -26,7 +26,7 @@ fn tiny_free_grains_are_named_with_the_way_to_take_them_out() {
     let tiny = tiny.map(|[x, y]| format!("{} {}\n", 0.5 + 1e-4 * x, 0.5 + 1e-4 * y));
     let large = ["0.1 0.1\n", "0.9 0.2\n", "0.2 0.9\n", "0.8 0.8\n", "0.5 0.1\n"].map(str::to_owned);
     workplace.put("seeds.txt", (large.concat() + &tiny.concat()).into_bytes());
-    let arguments = "--dim 2 --seeds-file seeds.txt -n 1 --free";
+    let arguments = "--dim 2 --seeds-file seeds.txt -n 1 --free --regularize 0.05";
     let remedy =
         "no shorter time that was tried works: merge the smallest cells, such as with --min-diameter 0.5";
     workplace.refuses(

@@ -85,3 +85,41 @@ fn free_grains_change_their_sizes_and_fill_the_box() {
     assert!((free.iter().sum::<f64>() - 1.0).abs() < 1e-12);
     assert!(free.iter().zip(&kept).any(|(free, kept)| (free / kept - 1.0).abs() > 1e-3));
 }
+
+/// Grains that are left keep their numbers, whatever becomes of others.
+#[test]
+fn grains_of_the_plane_vanish_as_others_grow() {
+    let workplace = Workplace::new();
+    let arguments = "--dim 2 --seeds 60 --periodic x,y -n 1 --free --relax 2 --texture random --phase a:0.5 --phase b:0.5 --arrays";
+    let summary = workplace.run(&format!(
+        "{arguments} -o a.vtp -o a.vtm --series a.pvd --every 20 --stats a.json --json-summary s.json --picture a.png --report a.html"
+    ));
+    let json = |name: &str| -> serde_json::Value { serde_json::from_slice(&workplace.bytes(name)).unwrap() };
+    let record = json("s.json");
+    let vanished = record["vanished"].as_array().unwrap();
+    let gone: Vec<i64> = vanished.iter().map(|gone| gone["grain"].as_i64().unwrap()).collect();
+    assert!(gone.len() > 20, "{summary}");
+    let times: Vec<f64> = vanished.iter().map(|gone| gone["time"].as_f64().unwrap()).collect();
+    assert!(times.is_sorted() && times[0] > 0.0 && times[times.len() - 1] <= 2.0);
+    assert_eq!(record["grains"].as_u64().unwrap() as usize + gone.len(), 60);
+    assert!(
+        summary.contains(&format!("vanished    {} of 60 grains, the last at the time ", gone.len())),
+        "{summary}"
+    );
+    assert!(summary.contains(&format!("grains      {} in ", 60 - gone.len())), "{summary}");
+    let measured = json("a.json");
+    let left: Vec<i64> =
+        measured["grains"].as_array().unwrap().iter().map(|grain| grain["grain"].as_i64().unwrap()).collect();
+    assert!(left.len() == 60 - gone.len() && left.iter().all(|grain| !gone.contains(grain)));
+    let checked = workplace.run("check a.vtp");
+    assert!(checked.contains("120.00"), "{checked}");
+    for step in fs::read_dir(workplace.path(".")).unwrap() {
+        let name = step.unwrap().file_name().into_string().unwrap();
+        if name.starts_with("a_0") {
+            workplace.run(&format!("check {name}"));
+        }
+    }
+    workplace.run(&format!("{arguments} --periodic-cut box -o cut.vtp"));
+    workplace.run("check cut.vtp");
+    workplace.run("--dim 2 --domain disc --seeds 60 -n 1 --free --relax 2 --voxels 40 40 -o disc.vti -o disc.npy -o disc.inp");
+}

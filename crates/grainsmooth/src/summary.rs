@@ -8,11 +8,12 @@ use std::time::Duration;
 
 use glam::DVec3;
 use polycrystal::{
-    AngleStatistics, Balance, Boundary, Collapsed, HerringResidual, Reconnections, Relaxation, Volumes,
-    measure_network,
+    AngleStatistics, Balance, Boundary, Collapsed, HerringResidual, Reconnections, Relaxation, Vanished,
+    Volumes, measure_network,
 };
 use voronoi::Dimension;
 
+use crate::figures::significant::significant;
 use crate::grains::texture::TextureLine;
 use crate::{
     Config, EquivalentDiameters, Polycrystal, Reconnected, Regularization, SeedSource, ShapesReached,
@@ -29,7 +30,15 @@ impl fmt::Display for Summary<'_> {
         let finest = network.finest();
         let (points, elements) = (finest.vertex_count(), finest.element_count());
         let levels = polycrystal.config.levels;
-        writeln!(out, "grains      {} in {}", network.grain_count(), network.domain())?;
+        writeln!(out, "grains      {} in {}", network.grains_left(), network.domain())?;
+        if let Some(Vanished { time, .. }) = polycrystal.vanished.last() {
+            let (gone, all) = (polycrystal.vanished.len(), network.grain_count());
+            writeln!(
+                out,
+                "vanished    {gone} of {all} grains, the last at the time {}",
+                significant(*time, 3)
+            )?;
+        }
         writeln!(out, "diameters   {}", polycrystal.diameter_statistics())?;
         write_seeds(out, &polycrystal.config, &polycrystal.cells)?;
         if let Some(reached) = polycrystal.sizes_reached() {
@@ -315,9 +324,11 @@ impl Polycrystal {
         Some(shapes.reached(Some(&measure_network(&self.network, &self.points))))
     }
 
-    /// How large the grains are. Their volumes are those of their cells unless grains grow.
+    /// How large the grains are that are left. Their volumes are those of their cells unless grains grow.
     pub fn diameter_statistics(&self) -> EquivalentDiameters {
-        EquivalentDiameters::new(self.config.dimension, &self.equivalent_diameters())
+        let all = self.equivalent_diameters().into_iter();
+        let left: Vec<f64> = all.filter(|diameter| *diameter > 0.0).collect();
+        EquivalentDiameters::new(self.config.dimension, &left)
     }
 
     /// Adds the time that a stage took after the computation, such as writing.

@@ -191,7 +191,8 @@ impl Network {
         let sides: Vec<[Side; 2]> = boundaries.iter().map(|(sides, _)| *sides).collect();
         let surface = Surface { points: &box_points, elements, boundary_of: &boundary_of, sides: &sides };
         let walled = domain.clone().with_periods(glam::BVec3::FALSE);
-        Self::of_surface(&walled, &surface, Junctions::Crease, 0).map_err(|error| match error {
+        let left = Self::of_grains_left(&walled, &surface, self.grain_count(), Junctions::Crease, 0);
+        left.map_err(|error| match error {
             NetworkError::Invalid(faults) => match faults.pinched_grain() {
                 Some(grain) => NetworkError::TouchesItself { grain },
                 None => NetworkError::CutInvalid(faults),

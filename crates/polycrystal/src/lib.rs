@@ -27,6 +27,7 @@ mod complex;
 mod energy;
 mod events;
 mod flow;
+mod growth;
 mod measures;
 mod mesh;
 mod network;
@@ -48,6 +49,11 @@ pub use flow::recipe::{NetworkRecipe, RelaxedCells};
 pub use flow::relaxation::{Moving, Relaxation, RelaxationStep, Relaxed};
 #[doc(hidden)]
 pub use flow::tuning::Tuning;
+#[doc(hidden)]
+pub use growth::grow_cells_tuned;
+#[doc(hidden)]
+pub use growth::tuning::GrowthTuning;
+pub use growth::{GrownCells, GrowthRecipe, Vanished, grow_cells};
 pub use measures::validate::validate;
 pub use measures::{
     BoundaryMeasures, GrainMeasures, HerringResidual, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures,

@@ -153,12 +153,28 @@ impl Network {
         junctions: Junctions,
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
+        let count = surface.grains().last().map_or(0, |grain| grain.index() + 1);
+        let (network, points) = Self::of_grains_left(domain, surface, count, junctions, level_count)?;
+        match (0u32..).zip(&network.cell_volumes).find(|(_, volume)| **volume == 0.0) {
+            Some((grain, _)) => Err(NetworkError::MissingGrain { grain: crate::GrainId(grain) }),
+            None => Ok((network, points)),
+        }
+    }
+
+    /// As [`Self::of_surface`], where some of so many grains may be missing.
+    pub(crate) fn of_grains_left(
+        domain: &Domain,
+        surface: &Surface<'_>,
+        grain_count: usize,
+        junctions: Junctions,
+        level_count: usize,
+    ) -> Result<(Self, Vec<DVec3>), NetworkError> {
         let count = surface.elements.len() as u128;
         let size = MeshSize { points: surface.points.len() as u128, edges: count, triangles: count };
         check_size(domain, &size, level_count)?;
         let control_mesh = ControlMesh::of_surface(domain, surface, junctions)?;
         let (mut network, points) = Self::assemble(domain, control_mesh, Vec::new(), level_count)?;
-        network.cell_volumes = vec![0.0; surface.grains().len()];
+        network.cell_volumes = vec![0.0; grain_count];
         network.cell_volumes = network.grain_volumes(network.control_mesh(), &points);
         Ok((network, points))
     }
@@ -304,9 +320,14 @@ impl Network {
         &self.junctions
     }
 
-    /// Number of grains.
+    /// Number of grains, with those that have vanished.
     pub fn grain_count(&self) -> usize {
         self.cell_volumes.len()
+    }
+
+    /// Number of grains that have a volume: grains that grow keep their numbers, and leave the volume 0 where they vanish.
+    pub fn grains_left(&self) -> usize {
+        self.cell_volumes.iter().filter(|volume| **volume != 0.0).count()
     }
 
     /// The volume (in the plane: area) of each grain's cell, which relaxation keeps.

@@ -28,9 +28,12 @@ pub struct SmoothingArguments {
     #[arg(long, value_name = "T", value_parser = parse_relaxation, allow_negative_numbers = true)]
     pub relax: Option<Relaxation>,
 
-    /// Let grains grow and shrink by curvature instead of keeping their volumes (in 2D: areas); none may vanish
+    /// Let grains grow and shrink by curvature instead of keeping their volumes (in 2D: areas)
     ///
-    /// Example: --relax 0.02 --free
+    /// In 2D grains vanish and switch neighbours on the way. In 3D, and with --regularize or --edge-length, they cannot: a run that would
+    /// come to that is refused.
+    ///
+    /// Example: --dim 2 --relax 5 --free
     #[arg(long)]
     free: bool,
 }

@@ -194,11 +194,13 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     check_expected_size(config)?;
     let tessellated = tessellate(config, &progress)?;
     let mut series = files.series.as_ref().map(|(output, every)| (output, Series::new(*every)));
+    let mut added = Ok(());
     let mut polycrystal = smooth_watched(config, tessellated, &progress, |step| {
-        if let Some((_, series)) = &mut series {
-            series.add(&step);
+        if let (Some((_, series)), Ok(())) = (&mut series, &added) {
+            added = series.add(&step);
         }
     })?;
+    added?;
     polycrystal = polycrystal.cut_if_asked()?.stretched_if_asked();
     line.show(Stage::Writing, 0, 1);
     let start = Instant::now();

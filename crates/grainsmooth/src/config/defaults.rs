@@ -89,6 +89,15 @@ impl Config {
         if self.face_mesh == FaceMesh::Fan { FaceMesh::SparseFan } else { self.face_mesh }
     }
 
+    /// Whether grains grow, vanish and switch neighbours on the way: freely, in the plane, unless the cells' own neighbours are asked for.
+    pub(crate) fn lets_grains_vanish(&self) -> bool {
+        self.dimension == Dimension::Two
+            && self.volumes == Volumes::Free
+            && self.regularize.is_none()
+            && !self.has_grains_of_several_cells()
+            && !matches!(self.face_mesh, FaceMesh::Refined { .. })
+    }
+
     /// Number of voxels that are asked for.
     pub(crate) fn voxel_count(&self) -> u128 {
         let axes = usize::from(self.dimension.axes());

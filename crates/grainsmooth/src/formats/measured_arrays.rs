@@ -1,7 +1,7 @@
 //! What is measured of a network as arrays of a VTK file.
 
 use polycrystal::{
-    Boundary, BoundaryId, Elements, Measures, PointCurvature, QuadruplePointMeasures, Side, Surface,
+    Boundary, BoundaryId, Elements, GrainId, Measures, PointCurvature, QuadruplePointMeasures, Side, Surface,
     TripleLineMeasures, point_curvatures, point_dihedral_angles,
 };
 
@@ -213,8 +213,21 @@ impl<'a> MeasuredArrays<'a> {
     /// The places of the grains on both sides of a boundary, in the order of the file's labels.
     fn sides(&self, boundary: &Boundary) -> [Option<usize>; 2] {
         let sides = boundary.sides_across(self.polycrystal.network.boundaries());
-        let [first, second] = sides.map(|side| side.grain().map(|grain| grain.index()));
+        let [first, second] = sides.map(|side| self.place_of(side.grain()?));
         if self.polycrystal.config.file.names.reverses(boundary) { [second, first] } else { [first, second] }
+    }
+
+    /// The place of a grain among the measured ones: those that are left.
+    fn place_of(&self, grain: GrainId) -> Option<usize> {
+        match &self.measures {
+            Measures::Space(measures) => {
+                measures.grains.binary_search_by_key(&grain, |measured| measured.grain)
+            }
+            Measures::Plane(measures) => {
+                measures.grains.binary_search_by_key(&grain, |measured| measured.grain)
+            }
+        }
+        .ok()
     }
 
     /// -1 where the file has the measured boundary's sides the other way round.

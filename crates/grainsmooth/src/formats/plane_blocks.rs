@@ -81,9 +81,9 @@ impl Polycrystal {
     /// The interior of each grain as triangles with points of their own.
     pub(super) fn write_plane_grains(&self, out: &mut dyn Write) -> io::Result<()> {
         let names = self.config.file.names;
-        let (mut points, mut triangles, mut grain_of, mut measures) = (vec![], vec![], vec![], vec![]);
+        let (mut points, mut triangles, mut place_of, mut measures) = (vec![], vec![], vec![], vec![]);
         let mut earcut = Earcut::new();
-        for outline in self.outlines() {
+        for (grain, outline) in self.outlines() {
             let corners: Vec<DVec3> = outline.points.iter().map(|&id| self.points[id as usize]).collect();
             let first = point_id(points.len());
             let mut of_grain: Vec<u32> = Vec::new();
@@ -95,16 +95,17 @@ impl Polycrystal {
                 (if is_clockwise { [a, c, b] } else { [a, b, c] }).map(|corner| first + corner)
             });
             triangles.extend(wound);
-            grain_of.resize(triangles.len(), measures.len());
-            measures.push(measure(&corners, outline.neighbors));
+            place_of.resize(triangles.len(), measures.len());
+            measures.push((grain, measure(&corners, outline.neighbors)));
             points.extend(corners);
         }
         let count = triangles.len();
         let integers = |value| Values::Int32Of(Each { count, value });
         let doubles = |value| Values::Float64Of(Each { count, value });
-        let measure = |triangle: usize| -> &PlaneMeasure { &measures[grain_of[triangle]] };
-        let number = |triangle: usize| names.number(GrainId(point_id(grain_of[triangle])));
-        let seed = |triangle: usize| self.cells.seed_ids[grain_of[triangle]].cast_signed();
+        let measure = |triangle: usize| -> &PlaneMeasure { &measures[place_of[triangle]].1 };
+        let grain_of = |triangle: usize| -> usize { measures[place_of[triangle]].0 };
+        let number = |triangle: usize| names.number(GrainId(point_id(grain_of(triangle))));
+        let seed = |triangle: usize| self.cells.seed_ids[grain_of(triangle)].cast_signed();
         let area = |triangle: usize| measure(triangle).area;
         let perimeter = |triangle: usize| measure(triangle).perimeter;
         let neighbors = |triangle: usize| measure(triangle).neighbors;
@@ -124,7 +125,7 @@ impl Polycrystal {
             field: self.field(),
         };
         let tuples = self.grain_tuples();
-        let grain = |triangle: usize| Some(grain_of[triangle]);
+        let grain = |triangle: usize| Some(grain_of(triangle));
         data.cell_arrays.extend(tuples.iter().map(|tuples| {
             let items = Items { tuples, count, item: &grain };
             Array { name: tuples.name, values: Values::Items(items) }
@@ -173,8 +174,8 @@ impl Polycrystal {
         lines.into_iter().zip(ids.into_iter().map(|id| id.index())).collect()
     }
 
-    /// The closed outline of every grain, by number.
-    fn outlines(&self) -> Vec<Outline> {
+    /// The closed outline of every grain that is left, with its number.
+    fn outlines(&self) -> Vec<(usize, Outline)> {
         let mut next = vec![BTreeMap::new(); self.network.grain_count()];
         let mut neighbors = vec![Vec::new(); self.network.grain_count()];
         for (mut line, boundary) in self.polylines() {
@@ -187,9 +188,10 @@ impl Polycrystal {
                 line.reverse();
             }
         }
-        let outlines = next.into_iter().zip(neighbors);
+        let outlines = next.into_iter().zip(neighbors).enumerate();
         outlines
-            .map(|(mut next, mut neighbors)| {
+            .filter(|(_, (next, _))| !next.is_empty())
+            .map(|(grain, (mut next, mut neighbors))| {
                 neighbors.sort_unstable();
                 neighbors.dedup();
                 let mut points = Vec::with_capacity(next.len());
@@ -200,7 +202,7 @@ impl Polycrystal {
                     points.push(start);
                     point = Some(end);
                 }
-                Outline { points, neighbors: neighbors.len() }
+                (grain, Outline { points, neighbors: neighbors.len() })
             })
             .collect()
     }

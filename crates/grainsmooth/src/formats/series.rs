@@ -12,20 +12,30 @@ use super::blocks::escaped;
 use crate::{Error, Output, OutputFormat, Polycrystal, StagedFiles};
 
 /// The steps of a relaxation, every so many of them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Series {
     every: NonZeroU32,
     frames: Vec<Frame>,
 }
 
 /// The moved points after a step.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 struct Frame {
     time: f64,
     level: usize,
     points: Vec<DVec3>,
-    /// The cells that the points are those of, where they are not those of the polycrystal yet.
-    cells: Option<Tessellation>,
+    of: FrameOf,
+}
+
+/// What the points of a frame are those of.
+#[derive(Debug, Clone)]
+enum FrameOf {
+    /// A level of the finished network.
+    Finished,
+    /// The network of cells on their way.
+    Cells(Tessellation),
+    /// A network on its way, not refined.
+    Grains(Box<Network>),
 }
 
 /// Where a series goes, found writable.
@@ -74,19 +84,27 @@ impl Series {
     }
 
     /// Takes a step up, if it is one of these.
-    pub fn add(&mut self, step: &RelaxationStep<'_>) {
+    ///
+    /// # Errors
+    /// Where the network of a step cannot be made.
+    pub fn add(&mut self, step: &RelaxationStep<'_>) -> Result<(), NetworkError> {
         // What folded is taken back and tried again.
         self.frames.retain(|frame| frame.time < step.time);
         if step.done.is_multiple_of(self.every.get() as usize) {
-            let (level, points, cells) = match step.now {
-                Moving::Points { level, points } => (level, points.to_vec(), None),
+            let (level, points, of) = match step.now {
+                Moving::Points { level, points } => (level, points.to_vec(), FrameOf::Finished),
                 Moving::Cells(cells) => {
                     let (cells, points) = cells();
-                    (0, points, Some(cells))
+                    (0, points, FrameOf::Cells(cells))
+                }
+                Moving::Grains(network) => {
+                    let (network, points) = network()?;
+                    (0, points, FrameOf::Grains(Box::new(network)))
                 }
             };
-            self.frames.push(Frame { time: step.time, level, points, cells });
+            self.frames.push(Frame { time: step.time, level, points, of });
         }
+        Ok(())
     }
 
     /// Completes each step as a surface file, and the collection, which ParaView opens. The times in it are in the unit of
@@ -105,12 +123,13 @@ impl Series {
         let is_before = |frame: &&Frame| frame.level <= level && frame.time < time;
         let mut times = Vec::new();
         for frame in self.frames.iter().filter(is_before) {
-            let (network, level) = match &frame.cells {
-                Some(cells) => (Some(network_of(cells, polycrystal)?), 0),
-                None => (None, frame.level),
+            let network = match &frame.of {
+                FrameOf::Finished => None,
+                FrameOf::Cells(cells) => Some(network_of(cells, polycrystal)?),
+                FrameOf::Grains(network) => Some((**network).clone()),
             };
             let of_frame = network.as_ref().unwrap_or(&polycrystal.network);
-            let points = of_frame.subdivide_between(level, finest, &frame.points);
+            let points = of_frame.subdivide_between(frame.level, finest, &frame.points);
             let finished = std::mem::replace(&mut polycrystal.points, points);
             let last = network.map(|network| std::mem::replace(&mut polycrystal.network, network));
             let written = output.step(times.len()).and_then(|step| polycrystal.stage(&step, files));

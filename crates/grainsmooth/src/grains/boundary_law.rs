@@ -164,10 +164,15 @@ impl BoundaryLaw {
     /// As of [`Network::with_tensions`] and [`Network::with_mobilities`].
     pub(crate) fn apply(&self, network: Network) -> Result<Network, NetworkError> {
         let network = network.with_tensions(|boundary| self.tension(boundary))?;
-        match &self.mobilities {
-            Some(laws) => network.with_mobilities(|boundary| self.value(laws, boundary).max(laws.floor())),
+        match self.mobilities {
+            Some(_) => network.with_mobilities(|boundary| self.mobility(boundary)),
             None => Ok(network),
         }
+    }
+
+    /// The mobility of a boundary: 1 unless another is asked for.
+    pub(crate) fn mobility(&self, boundary: &Boundary) -> f64 {
+        self.mobilities.as_ref().map_or(1.0, |laws| self.value(laws, boundary).max(laws.floor()))
     }
 
     /// The tension of a boundary: 1 between grains unless another is asked for, and on walls what is asked for.

@@ -7,13 +7,14 @@ use polycrystal::{
     AngleStatistics, Attempt, Balance, Boundary, BoxCut, Certificate, Collapsed, HerringResidual, MeshSize,
     Network, NetworkError, RelaxedCells, remove_short_edges,
 };
+use polycrystal::{
+    GrownCells, GrowthRecipe, NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, Vanished,
+    Volumes, WeightedAngle,
+};
 use polycrystal::{Measures, RegularCells, Side, measure_network};
 use polycrystal::{
-    NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, Volumes, WeightedAngle,
-};
-use polycrystal::{
-    angles_between_boundaries, dihedral_angles, herring_residual, regular_cells, relax_cells, relax_watched,
-    validate,
+    angles_between_boundaries, dihedral_angles, grow_cells, herring_residual, regular_cells, relax_cells,
+    relax_watched, validate,
 };
 use voronoi::{Dimension, Tessellation};
 
@@ -54,6 +55,8 @@ pub struct Polycrystal {
     pub collapsed: Collapsed,
     /// How relaxation changed the topology; nothing where that stayed.
     pub reconnected: Option<Reconnected>,
+    /// The grains that vanished while grains grew. Others keep their numbers.
+    pub vanished: Vec<Vanished>,
     /// What was tried before this result, and why it was given up.
     pub attempts: Vec<Attempt>,
     /// How far triple lines are from rest, if boundaries meet anywhere; of grains cut at a periodic box, before the cut.
@@ -258,8 +261,17 @@ pub fn smooth_watched(
         return Err(failure.with_growth(works.map_or(Growth::Never, Growth::Until)).into());
     };
     let tessellation = resolved.as_ref().unwrap_or(&cells.tessellation);
-    let Smoothed { network, points, relaxed, collapsed, reconnected, flat_angles, angles_before, validation } =
-        smoothed;
+    let Smoothed {
+        network,
+        points,
+        relaxed,
+        collapsed,
+        reconnected,
+        vanished,
+        flat_angles,
+        angles_before,
+        validation,
+    } = smoothed;
     attempts.extend(relaxed.given_up.clone());
     let residual = clock.time(Stage::Validation, || herring_residual(&network, &points));
     let times = clock.times;
@@ -275,6 +287,7 @@ pub fn smooth_watched(
         topology,
         collapsed,
         reconnected,
+        vanished,
         attempts,
         residual,
         tensions: None,
@@ -414,6 +427,7 @@ impl Regularization {
     /// What to try, one after the other: where much is taken out, in rare places relaxation makes boundaries fold or cross.
     fn tries(config: &Config) -> &'static [Self] {
         match config.effective_regularize() {
+            _ if config.lets_grains_vanish() => &[Self::ByEnergy],
             _ if config.lets_topology_change() => {
                 &[Self::ByEnergy, Self::Foreseeing, Self::Plain, Self::None]
             }
@@ -432,6 +446,7 @@ struct Smoothed {
     relaxed: Relaxed,
     collapsed: Collapsed,
     reconnected: Option<Reconnected>,
+    vanished: Vec<Vanished>,
     flat_angles: Vec<WeightedAngle>,
     angles_before: Option<AngleStatistics>,
     validation: Certificate,
@@ -452,6 +467,9 @@ fn smooth_regularized(
         progress(Stage::Relaxation, step.done, step.count);
         watch(step);
     };
+    if config.lets_grains_vanish() {
+        return smooth_by_growth(config, &cells.law, tessellation, clock, &mut watch);
+    }
     if regularization == Regularization::ByEnergy {
         return smooth_by_energy(config, &cells.law, tessellation, attempts, clock, &mut watch);
     }
@@ -469,8 +487,49 @@ fn smooth_regularized(
     }
     let validation =
         clock.time(Stage::Validation, || validate(&network, &points).map_err(NetworkError::Invalid))?;
-    let reconnected = None;
-    Ok(Smoothed { network, points, relaxed, collapsed, reconnected, flat_angles, angles_before, validation })
+    let (reconnected, vanished) = (None, Vec::new());
+    Ok(Smoothed {
+        network,
+        points,
+        relaxed,
+        collapsed,
+        reconnected,
+        vanished,
+        flat_angles,
+        angles_before,
+        validation,
+    })
+}
+
+/// The network of cells of the plane that grow, whatever vanishes on the way.
+fn smooth_by_growth(
+    config: &Config,
+    law: &BoundaryLaw,
+    tessellation: &Tessellation,
+    clock: &mut Clock<'_>,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Result<Smoothed, NetworkError> {
+    let Relaxation::Time(time) = config.relaxation else { unreachable!("growth is for a time") };
+    let (of_cells, flat) = clock.time(Stage::Network, || Network::new(tessellation, config.junctions, 0))?;
+    let angles_before = dihedral_angles(&of_cells, of_cells.control_mesh(), &flat);
+    let flat_angles = angles_between_boundaries(&of_cells, of_cells.control_mesh(), &flat);
+    let (tension, mobility) =
+        (|boundary: &Boundary| law.tension(boundary), |boundary: &Boundary| law.mobility(boundary));
+    let recipe = GrowthRecipe { levels: config.levels as usize, tension: &tension, mobility: &mobility };
+    let GrownCells { network, relaxed, reconnections, vanished, validation } =
+        clock.time(Stage::Relaxation, || grow_cells(tessellation, &recipe, time, watch))?;
+    let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
+    Ok(Smoothed {
+        network,
+        points,
+        relaxed,
+        collapsed: Collapsed::default(),
+        reconnected: Some(Reconnected { reconnections, balance: None }),
+        vanished,
+        flat_angles,
+        angles_before,
+        validation,
+    })
 }
 
 /// The network of cells that come together and part as tension has it.
@@ -510,6 +569,7 @@ fn smooth_by_energy(
         relaxed,
         collapsed: merged,
         reconnected,
+        vanished: Vec::new(),
         flat_angles,
         angles_before,
         validation,

@@ -41,7 +41,7 @@ impl Topology {
         Self {
             dimension,
             faces_before: before as f64 / network.grain_count() as f64,
-            faces: after as f64 / network.grain_count() as f64,
+            faces: after as f64 / network.grains_left() as f64,
             lines_by_boundaries,
             points_by_grains,
         }

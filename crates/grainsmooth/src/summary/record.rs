@@ -19,7 +19,10 @@ pub struct SummaryRecord {
     command_line: String,
     settings: BTreeMap<String, toml::Value>,
     dimension: u8,
+    /// Those that are left.
     grains: usize,
+    /// Those that shrank to nothing, the first one first.
+    vanished: Vec<VanishedGrain>,
     /// Seeds without a cell, and those whose cells were merged into what surrounds them.
     dropped_seeds: Vec<u32>,
     merged_seeds: Vec<u32>,
@@ -120,6 +123,15 @@ struct Attempt {
     said: String,
 }
 
+/// A grain that shrank to nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct VanishedGrain {
+    /// Its number in the files.
+    grain: i32,
+    /// In units of the mean grain size squared at the start.
+    time: f64,
+}
+
 /// Of Herring's condition at triple lines.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 struct Residual {
@@ -176,7 +188,12 @@ impl SummaryRecord {
             command_line: config.command_line(),
             settings: config.settings().into_iter().collect(),
             dimension: config.dimension.axes(),
-            grains: network.grain_count(),
+            grains: network.grains_left(),
+            vanished: polycrystal
+                .vanished
+                .iter()
+                .map(|gone| VanishedGrain { grain: config.file.names.number(gone.grain), time: gone.time })
+                .collect(),
             dropped_seeds: polycrystal.cells.dropped_seeds.clone(),
             merged_seeds: polycrystal.cells.merged_seeds.clone(),
             boundaries: Boundaries {

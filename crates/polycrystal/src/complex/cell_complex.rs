@@ -68,6 +68,11 @@ impl CellComplex {
         Tessellation::of_whole_cells(&self.domain, &self.seeds, &self.vertices, faces)
     }
 
+    /// Number of cells, with those that are gone.
+    pub fn cell_count(&self) -> usize {
+        self.faces_of.len()
+    }
+
     /// Where a corner is.
     pub fn position(&self, corner: Corner) -> DVec3 {
         self.vertices[corner.vertex as usize] + corner.shift.vector(&self.domain)

@@ -1,7 +1,7 @@
 //! How cells of the plane come together and part, where a face is an edge with two corners: an edge shrinks to a point, and a point
 //! opens to an edge. One after the other they make neighbours switch (the T1 process of foams).
 
-use voronoi::{CellId, Corner, FaceId, Shift, Side};
+use voronoi::{CellId, Corner, FaceId, Shift, Side, Wall};
 
 use crate::complex::cell_complex::{CellComplex, Face, cell_of, id};
 use crate::complex::star::FaceAt;
@@ -43,6 +43,20 @@ impl CellComplex {
     /// The edges round a cell of the plane; one between a cell and its own image comes twice.
     pub fn edges_of_cell(&self, cell: CellId) -> impl ExactSizeIterator<Item = FaceId> {
         self.faces_of[cell.index()].iter().copied().map(FaceId)
+    }
+
+    /// The corners of a cell of the plane where the cell stands, and the walls that each is on.
+    pub fn corners_of_cell(&self, cell: CellId) -> Vec<(Corner, Vec<Wall>)> {
+        let mut corners: Vec<Corner> = Vec::new();
+        for edge in self.edges_of_cell(cell) {
+            let [first, second] = self.sides(edge);
+            let own = if first == Side::Cell(cell) { first } else { second };
+            let back = own.cell().map_or(Shift::NONE, |(_, shift)| Shift::NONE - shift);
+            corners.extend(self.corners(edge).iter().map(|corner| corner.moved(back)));
+        }
+        corners.sort_unstable();
+        corners.dedup();
+        corners.into_iter().map(|corner| (corner, self.walls_at(corner.vertex))).collect()
     }
 
     /// The cells on either side of an edge of the plane.
@@ -96,5 +110,88 @@ impl CellComplex {
         let number = FaceId(id(self.faces.len()));
         self.add_face(face);
         number
+    }
+
+    /// Draws all edges of a cell of the plane together into one vertex: the cell is gone (the T2 process of foams). What was an edge to it now
+    /// ends in that vertex, which stays where it is.
+    ///
+    /// Gives the vertex, the one of the cell that is on most walls. Nothing happens, and nothing is given, where the cell is not a disc with
+    /// a vertex of its own at each corner, lies on walls that its vertices are not all on, or holds a neighbour together or apart from itself
+    /// that would then meet itself.
+    pub fn cell_to_point(&mut self, cell: CellId) -> Option<u32> {
+        let edges = self.faces_of[cell.index()].clone();
+        let mut vertices: Vec<u32> = edges
+            .iter()
+            .flat_map(|edge| &self.faces[*edge as usize].corners)
+            .map(|corner| corner.vertex)
+            .collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let is_disc = edges.len() > 1 && vertices.len() == edges.len();
+        let kept = *vertices.iter().max_by_key(|vertex| self.walls_at(**vertex).len())?;
+        let walls = self.walls_at(kept);
+        let may_go = |vertex: &u32| self.walls_at(*vertex).iter().all(|wall| walls.contains(wall));
+        if !is_disc || !vertices.iter().all(may_go) {
+            return None;
+        }
+        let snapshot = self.snapshot(&vertices);
+        for edge in edges {
+            let [start, end] = [0, 1].map(|end| self.faces[edge as usize].corners[end].vertex);
+            if start == end {
+                self.remove_face(edge);
+            } else {
+                self.edge_to_point(FaceId(edge), usize::from(end == kept));
+            }
+        }
+        if self.meets_each_side_once(kept) {
+            return Some(kept);
+        }
+        self.restore(snapshot);
+        None
+    }
+
+    /// Whether each cell and each wall at a vertex of the plane is there once, between two edges.
+    fn meets_each_side_once(&self, vertex: u32) -> bool {
+        let mut sides = Vec::new();
+        for face in &self.faces_at[vertex as usize] {
+            let ends = self.faces[*face as usize].corners.iter().filter(|corner| corner.vertex == vertex);
+            let mut at_vertex = 0;
+            for corner in ends {
+                let offset = Shift::NONE - corner.shift;
+                sides.extend(self.sides_at(FaceAt { face: *face, offset }));
+                at_vertex += 1;
+            }
+            if at_vertex > 1 {
+                return false;
+            }
+        }
+        sides.sort_unstable();
+        sides.chunk_by(|one, other| one == other).all(|same| same.len() <= 2)
+    }
+
+    /// Makes one edge of the two at a vertex of the plane that lie between the same sides, and takes the vertex out.
+    ///
+    /// Gives the edge that is left, which led to the vertex before, and the one that is gone, which led on from it; nothing where there are
+    /// no such edges.
+    pub fn join_edges(&mut self, vertex: u32) -> Option<[FaceId; 2]> {
+        let &[one, other] = self.faces_at[vertex as usize].as_slice() else { return None };
+        let ends_here = |face: u32| self.faces[face as usize].corners[1].vertex == vertex;
+        let [kept, gone] = if ends_here(one) { [one, other] } else { [other, one] };
+        let [&[_, last], &[first, end]] =
+            [kept, gone].map(|face| self.faces[face as usize].corners.as_slice())
+        else {
+            return None;
+        };
+        let is_line = kept != gone
+            && [last.vertex, first.vertex] == [vertex; 2]
+            && self.faces[kept as usize].sides == self.faces[gone as usize].sides;
+        if !is_line {
+            return None;
+        }
+        self.remove_face(gone);
+        self.faces_at[vertex as usize].clear();
+        self.faces[kept as usize].corners[1] = end.moved(last.shift - first.shift);
+        self.faces_at[end.vertex as usize].push(kept);
+        Some([kept, gone].map(FaceId))
     }
 }

@@ -76,6 +76,8 @@ pub enum Moving<'a> {
     /// Cells while their topology changes. What this makes on demand are the cells, and where the control points of their network with
     /// [`FaceMesh::Fan`](crate::FaceMesh::Fan) are.
     Cells(&'a dyn Fn() -> (Tessellation, Vec<DVec3>)),
+    /// Grains that grow and vanish. What this makes on demand are their network, and its control points.
+    Grains(&'a dyn Fn() -> Result<(Network, Vec<DVec3>), NetworkError>),
 }
 
 /// What relaxation gives.

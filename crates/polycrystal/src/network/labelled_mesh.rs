@@ -32,10 +32,6 @@ impl ControlMesh {
         if !certificate.is_good() {
             return Err(NetworkError::Invalid(certificate.faults));
         }
-        let numbered = (0u32..).zip(surface.grains());
-        if let Some((expected, _)) = numbered.clone().find(|(number, grain)| *number != grain.0) {
-            return Err(NetworkError::MissingGrain { grain: crate::GrainId(expected) });
-        }
         let elements = OrderedElements::new(domain, surface)?;
         let seams = Seams::of_elements(elements.as_elements(), &elements.boundary_of);
         let Connected { boundaries, boundary_of } = Connected::new(&elements, &seams);

@@ -1,0 +1,237 @@
+//! The curved edges of a complex in the plane.
+
+use glam::{DVec2, DVec3};
+use voronoi::{Corner, FaceId, Side, Tessellation};
+
+use super::GrowthRecipe;
+use super::step::{Curve, CurveNetwork, Places};
+use crate::arcs::switching::CurvedEdges;
+use crate::energy::sides::{boundary, cell_and_offset, freedom};
+use crate::{CellComplex, Mesh, Network, NetworkError};
+
+/// Fewest segments of an edge.
+const FEWEST_SEGMENTS: usize = 4;
+
+/// Length of a segment, in units of the spacing, that counts as none.
+const LEAST_LENGTH: f64 = 1e-6;
+
+/// Factor by which the mean segment of an edge may be longer or shorter than the spacing before its points are laid anew.
+const UNEVEN: f64 = 1.6;
+
+/// Edges of a complex in the plane, with points along them.
+pub(super) struct Curves {
+    pub(super) edges: CurvedEdges,
+    /// Of each edge, by number, its points from end to end without these, where the edge's first side sees them.
+    pub(super) inner: Vec<Vec<DVec2>>,
+    /// Of each edge, its length before the last step; before the first, no end of it.
+    pub(super) lengths: Vec<f64>,
+}
+
+/// Curves that move.
+pub(super) struct MovingCurves {
+    /// The edge of each.
+    pub(super) faces: Vec<FaceId>,
+    pub(super) network: CurveNetwork,
+    pub(super) places: Places,
+}
+
+impl Curves {
+    /// The straight edges of some cells, with points so far from each other.
+    pub(super) fn new(tessellation: &Tessellation, spacing: f64) -> Self {
+        let complex = CellComplex::from(tessellation);
+        let count = complex.faces().len();
+        let edges = CurvedEdges { complex, turnings: vec![0.0; count] };
+        let mut curves = Self { edges, inner: vec![Vec::new(); count], lengths: vec![f64::INFINITY; count] };
+        curves.resample(spacing);
+        curves
+    }
+
+    pub(super) fn complex(&self) -> &CellComplex {
+        &self.edges.complex
+    }
+
+    /// The ends of an edge.
+    pub(super) fn ends(&self, face: FaceId) -> [DVec2; 2] {
+        let corners = self.complex().corners(face);
+        [0, 1].map(|end| self.complex().position(corners[end]).truncate())
+    }
+
+    /// All points of an edge, from end to end.
+    pub(super) fn line(&self, face: FaceId) -> Vec<DVec2> {
+        let [start, end] = self.ends(face);
+        let inner = self.inner[face.index()].iter().copied();
+        std::iter::once(start).chain(inner).chain([end]).collect()
+    }
+
+    pub(super) fn length(&self, face: FaceId) -> f64 {
+        self.line(face).windows(2).map(|ends| ends[0].distance(ends[1])).sum()
+    }
+
+    /// The network of these curves, refined so often.
+    pub(super) fn lay(
+        &self,
+        recipe: &GrowthRecipe<'_>,
+        levels: usize,
+    ) -> Result<(Network, Vec<DVec3>), NetworkError> {
+        let complex = self.complex();
+        let faces = complex.faces();
+        let (cells, corners) = complex.tessellation();
+        let segments = |face: &FaceId| id(self.inner[face.index()].len() + 1);
+        let own: Vec<u32> = faces.iter().map(segments).collect();
+        let copied = cells.periodic_faces().iter().map(|pair| own[pair.primary.index()]);
+        let counts: Vec<u32> = own.iter().copied().chain(copied).collect();
+        let network = Network::of_divided_lines(&cells, &counts, levels)?
+            .with_tensions(recipe.tension)?
+            .with_mobilities(recipe.mobility)?;
+        let mesh = network.control_mesh();
+        let Mesh::Segments(lines) = &mesh.mesh else { unreachable!("a network in the plane has lines") };
+        let mut points = vec![DVec3::ZERO; mesh.vertex_count()];
+        for (point, corner) in points.iter_mut().zip(&corners) {
+            *point = complex.position(*corner);
+        }
+        let mut segments = lines.segments().iter();
+        for face in &faces {
+            let inner = &self.inner[face.index()];
+            for (point, [_, end]) in inner.iter().zip(&mut segments) {
+                points[*end as usize] = point.extend(0.0);
+            }
+            segments.next();
+        }
+        let walls = points.iter_mut().zip(&mesh.walls);
+        walls.for_each(|(point, walls)| *point = network.wall_sets().put_on_walls(*walls, *point));
+        mesh.copies.place(network.domain(), &mut points);
+        Ok((network, points))
+    }
+
+    /// The curves that move, those between grains, by number of their edges, and where they are.
+    pub(super) fn moving(&self, recipe: &GrowthRecipe<'_>, spacing: f64) -> MovingCurves {
+        let complex = self.complex();
+        let between = |face: &FaceId| !matches!(complex.sides(*face)[1], Side::Wall(_));
+        let faces: Vec<FaceId> = complex.faces().into_iter().filter(between).collect();
+        let curve = |face: &FaceId| {
+            let boundary = boundary(complex.sides(*face));
+            let corners = complex.corners(*face);
+            let end = |end: usize| {
+                let Corner { vertex, shift } = corners[end];
+                (vertex as usize, shift.vector(complex.domain()).truncate())
+            };
+            let tension = (recipe.tension)(&boundary);
+            let mobility = (recipe.mobility)(&boundary);
+            Curve { ends: [end(0), end(1)], tension, mobility }
+        };
+        let curves = faces.iter().map(curve).collect();
+        let freedoms = (0..id(complex.vertices.len())).map(|vertex| freedom(complex, vertex)).collect();
+        let vertices = complex.vertices.iter().map(|place| place.truncate()).collect();
+        let inner = faces.iter().map(|face| self.inner[face.index()].clone()).collect();
+        let network = CurveNetwork { curves, freedoms, least_length: LEAST_LENGTH * spacing };
+        MovingCurves { faces, network, places: Places { vertices, inner } }
+    }
+
+    /// Takes over where curves are now.
+    pub(super) fn take(&mut self, faces: &[FaceId], places: Places) {
+        self.lengths = vec![0.0; self.inner.len()];
+        for face in self.complex().faces() {
+            self.lengths[face.index()] = self.length(face);
+        }
+        for (vertex, place) in self.edges.complex.vertices.iter_mut().zip(&places.vertices) {
+            *vertex = place.extend(0.0);
+        }
+        for (face, inner) in faces.iter().zip(places.inner) {
+            self.inner[face.index()] = inner;
+        }
+        self.straighten_walls();
+    }
+
+    /// The area of each cell with some of its edges in given places.
+    pub(super) fn areas(&self, faces: &[FaceId], places: &Places) -> Vec<f64> {
+        let complex = self.complex();
+        let mut areas = vec![0.0; complex.cell_count()];
+        let mut origins: Vec<Option<DVec2>> = vec![None; areas.len()];
+        let mut numbers = vec![None; self.inner.len()];
+        faces.iter().enumerate().for_each(|(number, face)| numbers[face.index()] = Some(number));
+        for face in complex.faces() {
+            let corners = complex.corners(face);
+            let end = |end: usize| {
+                let Corner { vertex, shift } = corners[end];
+                places.vertices[vertex as usize] + shift.vector(complex.domain()).truncate()
+            };
+            let inner = numbers[face.index()].map_or(&[][..], |number: usize| &places.inner[number]);
+            for (side, sign) in complex.sides(face).into_iter().zip([1.0, -1.0]) {
+                let Some((cell, offset)) = cell_and_offset(side, complex.domain()) else { continue };
+                let offset = offset.truncate();
+                // From a place of its own: small cells would lose digits far from the origin.
+                let origin = *origins[cell.index()].get_or_insert(end(0) - offset) + offset;
+                let line = std::iter::once(end(0)).chain(inner.iter().copied()).chain([end(1)]);
+                let (mut last, mut doubled) = (None::<DVec2>, 0.0);
+                for point in line {
+                    let point = point - origin;
+                    doubled += last.map_or(0.0, |last| last.perp_dot(point));
+                    last = Some(point);
+                }
+                areas[cell.index()] += 0.5 * sign * doubled;
+            }
+        }
+        areas
+    }
+
+    /// Puts the points of edges on walls evenly between their ends.
+    fn straighten_walls(&mut self) {
+        for face in self.complex().faces() {
+            if matches!(self.complex().sides(face)[1], Side::Wall(_)) {
+                let [start, end] = self.ends(face);
+                let place = |done: usize| start.lerp(end, done as f64 / FEWEST_SEGMENTS as f64);
+                self.inner[face.index()] = (1..FEWEST_SEGMENTS).map(place).collect();
+            }
+        }
+    }
+
+    /// Lays the points of edges anew whose segments are much longer or shorter than the spacing.
+    pub(super) fn resample(&mut self, spacing: f64) {
+        for face in self.complex().faces() {
+            let length = self.length(face);
+            let count = self.inner[face.index()].len() + 1;
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a length is no less than 0"
+            )]
+            let wanted = ((length / spacing).round() as usize).max(FEWEST_SEGMENTS);
+            let factor = wanted as f64 / count as f64;
+            if !(1.0 / UNEVEN..=UNEVEN).contains(&factor) {
+                self.inner[face.index()] = evenly(&self.line(face), wanted);
+            }
+        }
+    }
+}
+
+/// Points that divide a line into so many parts of about the same length, without its ends. Between points the line is a cubic (Catmull and
+/// Rom 1974), as chords would straighten it.
+fn evenly(line: &[DVec2], count: usize) -> Vec<DVec2> {
+    let mut along = vec![0.0];
+    for ends in line.windows(2) {
+        along.push(along[along.len() - 1] + ends[0].distance(ends[1]));
+    }
+    let last = line.len() - 1;
+    let slope = |at: usize| {
+        let (before, after) = (at.saturating_sub(1), (at + 1).min(last));
+        (line[after] - line[before]) / (along[after] - along[before]).max(f64::MIN_POSITIVE)
+    };
+    let mut segment = 0;
+    let mut point = |done: usize| {
+        let wanted = along[last] * done as f64 / count as f64;
+        while segment + 1 < last && along[segment + 1] < wanted {
+            segment += 1;
+        }
+        let length = (along[segment + 1] - along[segment]).max(f64::MIN_POSITIVE);
+        let t = (wanted - along[segment]) / length;
+        let [a, b] = [line[segment], line[segment + 1]];
+        let [u, v] = [slope(segment) * length, slope(segment + 1) * length];
+        let (t2, t3) = (t * t, t * t * t);
+        a * (2.0 * t3 - 3.0 * t2 + 1.0) + u * (t3 - 2.0 * t2 + t) + b * (3.0 * t2 - 2.0 * t3) + v * (t3 - t2)
+    };
+    (1..count).map(&mut point).collect()
+}
+
+fn id(number: usize) -> u32 {
+    u32::try_from(number).expect("ids fit 32 bits")
+}

@@ -1,0 +1,26 @@
+//! The tuned numbers of growth in the plane.
+
+/// What growth in the plane is tuned by. Lengths are in units of the mean grain size at the time, the edge of a square with the mean area of the
+/// grains that are left; times and areas in units of that area.
+///
+/// `cargo run --release -p grainsmooth-polycrystal --example growth` prints what becomes of a network with other numbers; docs/relaxation.md
+/// has the table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GrowthTuning {
+    /// Distance of points along boundaries. Half of it halves the errors of rates and doubles the work.
+    pub spacing: f64,
+    /// Largest difference of a grain's area after a step and after two of half its time. Steps are as long as this allows.
+    pub largest_error: f64,
+    /// The longest step: an edge must not go from long to nothing within one.
+    pub longest_step: f64,
+    /// Length of an edge that shrinks, below which its ends switch neighbours.
+    pub short: f64,
+    /// Area of a grain below which it vanishes: with three sides it would last for a third of that.
+    pub vanished: f64,
+}
+
+impl Default for GrowthTuning {
+    fn default() -> Self {
+        Self { spacing: 0.1, largest_error: 3e-3, longest_step: 0.03, short: 0.05, vanished: 2e-3 }
+    }
+}
