@@ -15,7 +15,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let config = Config { seeds: SeedSource::Random { count: 12 }, levels: 2, ..Config::default() };
     let mut series = Series::new(NonZeroU32::MIN);
     let cells = tessellate(&config, &|_, _, _| ())?;
-    let mut polycrystal = smooth_watched(&config, cells, &|_, _, _| (), |step| series.add(&step))?;
+    let mut added = Ok(());
+    let mut polycrystal = smooth_watched(&config, cells, &|_, _, _| (), |step| {
+        if added.is_ok() {
+            added = series.add(&step);
+        }
+    })?;
+    added?;
 
     let network = &polycrystal.network;
     let (level, finest) = (polycrystal.relaxed.level, network.levels().len() - 1);

@@ -101,7 +101,7 @@ fn grains_of_the_plane_vanish_as_others_grow() {
     assert!(gone.len() > 20, "{summary}");
     let times: Vec<f64> = vanished.iter().map(|gone| gone["time"].as_f64().unwrap()).collect();
     assert!(times.is_sorted() && times[0] > 0.0 && times[times.len() - 1] <= 2.0);
-    assert_eq!(record["grains"].as_u64().unwrap() as usize + gone.len(), 60);
+    assert_eq!(record["grains"], 60 - gone.len());
     assert!(
         summary.contains(&format!("vanished    {} of 60 grains, the last at the time ", gone.len())),
         "{summary}"
@@ -109,17 +109,15 @@ fn grains_of_the_plane_vanish_as_others_grow() {
     assert!(summary.contains(&format!("grains      {} in ", 60 - gone.len())), "{summary}");
     let measured = json("a.json");
     let left: Vec<i64> =
-        measured["grains"].as_array().unwrap().iter().map(|grain| grain["grain"].as_i64().unwrap()).collect();
+        measured["grains"].as_array().unwrap().iter().map(|grain| grain["id"].as_i64().unwrap()).collect();
     assert!(left.len() == 60 - gone.len() && left.iter().all(|grain| !gone.contains(grain)));
-    let checked = workplace.run("check a.vtp");
-    assert!(checked.contains("120.00"), "{checked}");
     for step in fs::read_dir(workplace.path(".")).unwrap() {
         let name = step.unwrap().file_name().into_string().unwrap();
-        if name.starts_with("a_0") {
-            workplace.run(&format!("check {name}"));
+        if name.ends_with(".vtp") && name.starts_with('a') {
+            workplace.command(&format!("check {name}")).assert().success();
         }
     }
     workplace.run(&format!("{arguments} --periodic-cut box -o cut.vtp"));
-    workplace.run("check cut.vtp");
+    workplace.command("check cut.vtp").assert().success();
     workplace.run("--dim 2 --domain disc --seeds 60 -n 1 --free --relax 2 --voxels 40 40 -o disc.vti -o disc.npy -o disc.inp");
 }

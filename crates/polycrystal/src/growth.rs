@@ -116,6 +116,9 @@ pub fn grow_cells_tuned(
     };
     show(&curves, 0, 1.0, 0.0);
     let (mut passed, mut steps, mut step_time) = (0.0, 0, FIRST_STEP * unit);
+    let moves = at_first.boundaries().iter().zip(at_first.tensions());
+    let moves = moves.into_iter().any(|(boundary, tension)| boundary.wall.is_none() && *tension > 0.0);
+    let whole_time = if moves { whole_time } else { 0.0 };
     if whole_time > 0.0 {
         // Points of more than three edges, and edges too short to move.
         let areas: Vec<f64> = cells.cell_measures().iter().map(|cell| cell.volume).collect();
@@ -126,7 +129,7 @@ pub fn grow_cells_tuned(
         let mean = mean_area(&vanished);
         let MovingCurves { faces, network, places } = curves.moving(&in_units, tuning.spacing * mean.sqrt());
         let (time, end, areas) = loop {
-            let time = step_time.min(tuning.longest_step * mean).min(whole_time - passed);
+            let time = step_time.min(whole_time - passed);
             let whole = network.step(&places, time);
             let halves = network.step(&network.step(&places, 0.5 * time), 0.5 * time);
             let end = halves.extrapolated(&whole);
@@ -155,7 +158,7 @@ pub fn grow_cells_tuned(
     }
     let (network, points) = curves.lay(recipe, recipe.levels)?;
     let is_flat = whole_time == 0.0;
-    let relaxed = Relaxed { level: 0, points, steps, time, given_up: Vec::new(), is_flat };
+    let relaxed = Relaxed { level: 0, points, steps, time: passed / unit, given_up: Vec::new(), is_flat };
     let finest = relaxed.finest_points(&network);
     let volumes = network.grain_volumes(network.finest(), &finest);
     let network = network.with_cell_volumes(volumes);

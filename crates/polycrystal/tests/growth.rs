@@ -31,8 +31,10 @@ fn cells(domain: &Domain, count: usize, random_seed: u64) -> Tessellation {
     Tessellation::new(domain, &seeds.collect::<Vec<_>>()).expect("valid seeds")
 }
 
-/// The sides and the area of each grain of a step, and the grains that are left.
-fn sides_and_areas(step: &RelaxationStep<'_>) -> Vec<(GrainId, usize, f64)> {
+/// Of each grain of a step that is left, its number of sides and its area.
+type Grains = Vec<(GrainId, usize, f64)>;
+
+fn sides_and_areas(step: &RelaxationStep<'_>) -> Grains {
     let Moving::Grains(network) = step.now else { panic!("grains grow") };
     let (network, points) = network().expect("a network");
     let measures = measure_network(&network, &network.subdivide(&points)).in_plane().expect("lines");
@@ -44,7 +46,7 @@ fn sides_and_areas(step: &RelaxationStep<'_>) -> Vec<(GrainId, usize, f64)> {
 fn grains_grow_by_the_law_of_von_neumann_and_mullins_while_others_vanish() {
     let count = 100;
     let mut errors = Vec::new();
-    let mut last: Option<(f64, Vec<(GrainId, usize, f64)>)> = None;
+    let mut last: Option<(f64, Grains)> = None;
     let watch = |step: RelaxationStep<'_>| {
         let now = sides_and_areas(&step);
         // Angles come to rest at first.

@@ -33,8 +33,8 @@ enum FrameOf {
     /// A level of the finished network.
     Finished,
     /// The network of cells on their way.
-    Cells(Tessellation),
-    /// A network on its way, not refined.
+    Cells(Box<Tessellation>),
+    /// Grains on their way.
     Grains(Box<Network>),
 }
 
@@ -95,7 +95,7 @@ impl Series {
                 Moving::Points { level, points } => (level, points.to_vec(), FrameOf::Finished),
                 Moving::Cells(cells) => {
                     let (cells, points) = cells();
-                    (0, points, FrameOf::Cells(cells))
+                    (0, points, FrameOf::Cells(Box::new(cells)))
                 }
                 Moving::Grains(network) => {
                     let (network, points) = network()?;

@@ -11,8 +11,6 @@ pub struct GrowthTuning {
     pub spacing: f64,
     /// Largest difference of a grain's area after a step and after two of half its time. Steps are as long as this allows.
     pub largest_error: f64,
-    /// The longest step: an edge must not go from long to nothing within one.
-    pub longest_step: f64,
     /// Length of an edge that shrinks, below which its ends switch neighbours.
     pub short: f64,
     /// Area of a grain below which it vanishes: with three sides it would last for a third of that.
@@ -21,6 +19,6 @@ pub struct GrowthTuning {
 
 impl Default for GrowthTuning {
     fn default() -> Self {
-        Self { spacing: 0.1, largest_error: 3e-3, longest_step: 0.03, short: 0.05, vanished: 2e-3 }
+        Self { spacing: 0.1, largest_error: 3e-3, short: 0.05, vanished: 2e-3 }
     }
 }
