@@ -111,6 +111,12 @@ impl Said {
         let json: Value = serde_json::from_slice(&self.body).unwrap();
         json["refused"].as_str().unwrap().to_owned()
     }
+
+    /// The head of arrays.
+    pub fn packed_head(&self) -> Value {
+        let length = u32::from_le_bytes(self.body[..4].try_into().unwrap()) as usize;
+        serde_json::from_slice(&self.body[4..4 + length]).unwrap()
+    }
 }
 
 fn said(port: u16, lines: &str, body: &[u8]) -> Said {

@@ -25,7 +25,7 @@ use domain::DomainArguments;
 use files::FileArguments;
 pub use measure::MeasureArguments;
 use mesh::MeshArguments;
-pub use page::{ServerArguments, ViewArguments};
+pub use page::{EditArguments, ServerArguments, ViewArguments};
 use pictures::PictureArguments;
 use run::RunArguments;
 use seeds::SeedArguments;
@@ -67,6 +67,7 @@ pub enum Command {
     Check(CheckArguments),
     Measure(MeasureArguments),
     View(ViewArguments),
+    Edit(EditArguments),
     /// Print what completes options and values in a shell
     ///
     /// Example: grainsmooth completions bash > ~/.local/share/bash-completion/completions/grainsmooth

@@ -100,7 +100,7 @@ pub use mesh::{
     read_bezier, subdivide,
 };
 pub use names::Names;
-pub use page::{PageDocument, PageLinks, PageServer, PageStop};
+pub use page::{EditContent, PageDocument, PageLinks, PageServer, PageStop};
 pub use picture::{Coloring, Picture, Png, Scene, ScenePicture, Shading};
 pub use report::{Html, SceneReport};
 pub use run::pipeline::{

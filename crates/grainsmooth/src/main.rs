@@ -49,13 +49,11 @@ fn keep_reader_quiet() {
 }
 
 fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
-    if let Some(Command::View(view)) = &arguments.command {
-        // Whoever interrupts these has seen enough: that is how they end.
-        keep_reader_quiet();
-        return commands::page::view(view);
-    }
+    // Whoever interrupts a page has seen enough: that is how it ends.
     #[cfg(unix)]
-    interruption::leave_nothing_when_interrupted()?;
+    if !matches!(arguments.command, Some(Command::View(_) | Command::Edit(_))) {
+        interruption::leave_nothing_when_interrupted()?;
+    }
     let Some(command) = &arguments.command else { return commands::network::run(arguments) };
     keep_reader_quiet();
     match command {
@@ -63,6 +61,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         Command::Check(check) => return commands::check::run(check),
         Command::Measure(measure) => commands::measure::run(measure)?,
         Command::View(view) => return commands::page::view(view),
+        Command::Edit(edit) => return commands::page::edit(edit),
         Command::Completions { shell } => cli::print_completions(*shell)?,
         Command::Man => cli::print_manual()?,
     }

@@ -3,11 +3,12 @@
 mod answer;
 mod assets;
 mod document;
+mod edit;
 mod grains;
 mod guard;
 mod packed;
 mod refusal;
 mod server;
 
-pub use document::PageDocument;
+pub use document::{EditContent, PageDocument};
 pub use server::{PageLinks, PageServer, PageStop};

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use grainsmooth::EditContent;
 
 /// Look at grains in the browser: turn, explode, slice, hide and isolate them, colour them by any array
 ///
@@ -13,6 +14,28 @@ pub struct ViewArguments {
     /// Networks of grains: .vtp, .vtu, .vtk or .vtm; or a series of them, .pvd
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
+
+    #[command(flatten)]
+    pub server: ServerArguments,
+}
+
+/// Edit meshes, curves and Bezier patches in the browser: click edges, drag points, step through levels
+///
+/// Serves a page on this machine alone and opens it; Ctrl-C ends it. Nothing is written but what is saved there.
+#[derive(Debug, Args)]
+#[command(after_help = EDIT_EXAMPLES)]
+pub struct EditArguments {
+    /// File to edit: .obj, .ply, .stl, .off, .vtp, .vtu, .vtk, .json, .txt or .bpt
+    #[arg(value_name = "FILE", required_unless_present = "teapot")]
+    pub file: Option<PathBuf>,
+
+    /// What the file holds, where that is not plain: .txt may be polylines or control points
+    #[arg(long = "as", value_name = "KIND")]
+    pub content: Option<EditContent>,
+
+    /// The Utah teapot, which comes with the program
+    #[arg(long, conflicts_with_all = ["file", "content"])]
+    pub teapot: bool,
 
     #[command(flatten)]
     pub server: ServerArguments,
@@ -39,3 +62,12 @@ Examples:
   grainsmooth view grains.vtm --no-open           over ssh: open the link here, through ssh -L
 
 Exit status: 0 ended by Ctrl-C, 1 the file is unreadable or no network, 2 a mistake on the command line.";
+
+const EDIT_EXAMPLES: &str = "\
+Examples:
+  grainsmooth edit cube.obj                       flip, split and collapse edges, drag points, subdivide
+  grainsmooth edit outline.obj                    polylines as B-splines, level by level
+  grainsmooth edit curve.txt --as bezier          control points, and de Casteljau's construction
+  grainsmooth edit --teapot
+
+Exit status: 0 ended by Ctrl-C, 1 the file is unreadable, 2 a mistake on the command line.";

@@ -1,4 +1,4 @@
-//! `grainsmooth view`: serves a page and opens it, until Ctrl-C.
+//! `grainsmooth view` and `grainsmooth edit`: serve a page and open it, until Ctrl-C.
 
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::process::{Command, ExitCode, Stdio};
@@ -7,12 +7,21 @@ use std::thread;
 use grainsmooth::{PageDocument, PageServer};
 use tempfile::NamedTempFile;
 
-use crate::cli::{ServerArguments, ViewArguments};
+use crate::cli::{EditArguments, ServerArguments, ViewArguments};
 use crate::say;
 
 /// Shows grains.
 pub fn view(arguments: &ViewArguments) -> anyhow::Result<ExitCode> {
     serve(PageDocument::grains(&arguments.files)?, &arguments.server)
+}
+
+/// Edits a mesh, curves or Bezier patches.
+pub fn edit(arguments: &EditArguments) -> anyhow::Result<ExitCode> {
+    let document = match &arguments.file {
+        Some(file) => PageDocument::edit(file, arguments.content)?,
+        None => PageDocument::teapot()?,
+    };
+    serve(document, &arguments.server)
 }
 
 fn serve(document: PageDocument, arguments: &ServerArguments) -> anyhow::Result<ExitCode> {

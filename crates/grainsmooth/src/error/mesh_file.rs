@@ -99,6 +99,12 @@ pub enum MeshFileProblem {
     /// The extension names no format that can hold a network.
     #[error("unknown extension; give a network as *.vtp, *.vtu or *.vtk")]
     NotANetworkFormat,
+    /// An edit that control points have no use for.
+    #[error("Bezier curves and patches have control points alone: move these")]
+    OnlyControlPoints,
+    /// A format that is read and not written.
+    #[error("this format is not written; take vtp, vtu, vtk, obj, ply, stl or json")]
+    NotWritten,
     /// Grains in the plane, where grains in space are shown.
     #[error(
         "holds grains in the plane, which have no surfaces to turn; take grainsmooth with --picture for them"

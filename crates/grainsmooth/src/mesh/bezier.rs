@@ -47,13 +47,22 @@ pub fn read_bezier(path: &Path) -> Result<BezierFile, Error> {
 }
 
 impl BezierFile {
-    fn add_curve(&mut self, control: Vec<DVec3>) -> Result<(), MeshFileProblem> {
+    /// The Utah teapot.
+    pub(crate) fn teapot() -> Self {
+        let surfaces = subzero::teapot();
+        let rows = |surface: &BezierSurface<DVec3>| {
+            surface.rows().iter().map(|row| row.control().to_vec()).collect()
+        };
+        Self { curves: Vec::new(), surface_control: surfaces.iter().map(rows).collect(), surfaces }
+    }
+
+    pub(crate) fn add_curve(&mut self, control: Vec<DVec3>) -> Result<(), MeshFileProblem> {
         subzero::check_finite(&control)?;
         self.curves.push(BezierCurve::new(control)?);
         Ok(())
     }
 
-    fn add_surface(&mut self, control: Vec<Vec<DVec3>>) -> Result<(), MeshFileProblem> {
+    pub(crate) fn add_surface(&mut self, control: Vec<Vec<DVec3>>) -> Result<(), MeshFileProblem> {
         control.iter().try_for_each(|row| subzero::check_finite(row))?;
         self.surfaces.push(BezierSurface::new(control.clone())?);
         self.surface_control.push(control);

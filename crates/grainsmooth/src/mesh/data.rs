@@ -59,7 +59,7 @@ pub(super) fn extend_by_means(array: &mut DataArray, pairs: &[[u32; 2]]) -> bool
 
 impl MeshFile {
     /// Leaves out what is measured of the shape, which changes, and normals.
-    pub(super) fn drop_data_of_shape(&mut self) {
+    pub(crate) fn drop_data_of_shape(&mut self) {
         for arrays in [&mut self.point_data, &mut self.face_data, &mut self.line_data] {
             arrays.retain(|array| !is_of_shape(&array.name));
         }

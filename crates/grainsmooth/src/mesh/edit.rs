@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use subzero::{Crease, HalfEdgeMesh, MeshError};
+use subzero::{HalfEdgeMesh, MeshError};
 
-use super::data::extend_by_means;
+use super::edited_edges::EditedEdges;
 use super::file::{MeshFile, MeshFileProblem};
 use crate::names::LABEL_ARRAYS;
 
@@ -112,37 +112,37 @@ impl MeshFile {
     pub fn edit(&mut self, edit: &MeshEdit) -> Result<Edited, MeshFileProblem> {
         match edit {
             MeshEdit::Flip(choices) => {
-                let mut edges = EdgeEditor::new(self)?;
+                let mut edges = EditedEdges::new(self)?;
                 let (mut flipped, mut left) = (0, 0);
                 for choice in choices {
-                    for ends in edges.chosen(*choice) {
-                        match (edges.flip(ends), choice) {
+                    for ends in choice.ends(self, edges.half_edges()) {
+                        match (edges.flip(self, ends), choice) {
                             (Ok(()), _) => flipped += 1,
                             (Err(MeshError::Edit { .. }), choice) if !choice.is_single() => left += 1,
                             (Err(error), _) => return Err(error.into()),
                         }
                     }
                 }
-                edges.finish();
+                edges.finish(self);
                 self.drop_data_of_shape();
                 Ok(Edited::Flipped { edges: flipped, left })
             }
             MeshEdit::Split(choices) => {
-                let mut edges = EdgeEditor::new(self)?;
+                let mut edges = EditedEdges::new(self)?;
                 let mut count = 0;
                 for choice in choices {
-                    for ends in edges.chosen(*choice) {
-                        edges.split(ends)?;
+                    for ends in choice.ends(self, edges.half_edges()) {
+                        edges.split(self, ends)?;
                         count += 1;
                     }
                 }
-                edges.finish();
+                edges.finish(self);
                 Ok(Edited::Split { edges: count })
             }
             MeshEdit::Collapse(pairs) => {
-                let mut edges = EdgeEditor::new(self)?;
-                pairs.iter().try_for_each(|ends| edges.collapse(*ends))?;
-                edges.finish();
+                let mut edges = EditedEdges::new(self)?;
+                pairs.iter().try_for_each(|ends| edges.collapse(self, *ends))?;
+                edges.finish(self);
                 self.drop_data_of_shape();
                 Ok(Edited::Collapsed { edges: pairs.len() })
             }
@@ -190,95 +190,17 @@ impl MeshFile {
 }
 
 impl EdgeChoice {
+    /// The ends of the edges chosen, as the mesh is now.
+    fn ends(self, mesh: &MeshFile, edges: &HalfEdgeMesh) -> Vec<[u32; 2]> {
+        match self {
+            Self::Between(ends) => vec![ends],
+            Self::All => edges.edge_ends(),
+            Self::Longest => edges.longest_edges(&mesh.points),
+            Self::Flat => edges.flat_edges(&mesh.points),
+        }
+    }
+
     fn is_single(self) -> bool {
         matches!(self, Self::Between(_))
     }
-}
-
-/// A mesh whose edges are being edited.
-struct EdgeEditor<'a> {
-    mesh: &'a mut MeshFile,
-    half_edges: HalfEdgeMesh,
-    /// Of each triangle of the half-edges, that of the mesh in which it lies.
-    face_of: Vec<usize>,
-    /// The ends of the edges on whose middles new points lie.
-    middles: Vec<[u32; 2]>,
-}
-
-impl<'a> EdgeEditor<'a> {
-    fn new(mesh: &'a mut MeshFile) -> Result<Self, MeshFileProblem> {
-        let half_edges = HalfEdgeMesh::new(mesh.points.len(), &mesh.triangles()?)?;
-        let face_of = (0..mesh.faces.len()).collect();
-        Ok(Self { mesh, half_edges, face_of, middles: Vec::new() })
-    }
-
-    /// The ends of the edges chosen, as the mesh is now.
-    fn chosen(&self, choice: EdgeChoice) -> Vec<[u32; 2]> {
-        match choice {
-            EdgeChoice::Between(ends) => vec![ends],
-            EdgeChoice::All => self.half_edges.edge_ends(),
-            EdgeChoice::Longest => self.half_edges.longest_edges(&self.mesh.points),
-            EdgeChoice::Flat => self.half_edges.flat_edges(&self.mesh.points),
-        }
-    }
-
-    fn flip(&mut self, ends: [u32; 2]) -> Result<(), MeshError> {
-        self.half_edges.flip(self.half_edges.half_edge_between(ends[0], ends[1])?)?;
-        self.mesh.creases.retain(|crease| !joins(crease, ends));
-        Ok(())
-    }
-
-    fn split(&mut self, ends: [u32; 2]) -> Result<(), MeshError> {
-        let half_edge = self.half_edges.half_edge_between(ends[0], ends[1])?;
-        let beside = [Some(half_edge), self.half_edges.twin(half_edge)];
-        let middle = self.half_edges.split(half_edge)?;
-        // Each of the two triangles leaves half of it to a new one, in this order.
-        for half_edge in beside.into_iter().flatten() {
-            self.face_of.push(self.face_of[half_edge.triangle().index()]);
-        }
-        self.middles.push(ends);
-        let [a, b] = ends.map(|end| self.mesh.points[end as usize]);
-        self.mesh.points.push(0.5 * a + 0.5 * b);
-        let halves = |crease: Crease| match joins(&crease, ends) {
-            true => vec![
-                Crease { ends: [ends[0], middle], ..crease },
-                Crease { ends: [middle, ends[1]], ..crease },
-            ],
-            false => vec![crease],
-        };
-        self.mesh.creases = self.mesh.creases.drain(..).flat_map(halves).collect();
-        Ok(())
-    }
-
-    fn collapse(&mut self, [from, into]: [u32; 2]) -> Result<(), MeshError> {
-        self.half_edges.collapse_into(from, into)?;
-        for end in
-            self.mesh.creases.iter_mut().flat_map(|crease| &mut crease.ends).filter(|end| **end == from)
-        {
-            *end = into;
-        }
-        self.mesh.creases.retain(|crease| crease.ends[0] != crease.ends[1]);
-        self.mesh.corners.retain(|(vertex, _)| *vertex != from);
-        Ok(())
-    }
-
-    fn finish(self) {
-        let (faces, triangles): (Vec<usize>, Vec<Vec<u32>>) = self
-            .half_edges
-            .triangles()
-            .map(|(number, triangle)| (self.face_of[number.index()], triangle.to_vec()))
-            .unzip();
-        self.mesh.faces = triangles;
-        for array in &mut self.mesh.face_data {
-            *array = array.at(faces.iter().copied());
-        }
-        if !self.middles.is_empty() {
-            self.mesh.drop_normals();
-            self.mesh.point_data.retain_mut(|array| extend_by_means(array, &self.middles));
-        }
-    }
-}
-
-fn joins(crease: &Crease, [a, b]: [u32; 2]) -> bool {
-    crease.ends == [a, b] || crease.ends == [b, a]
 }

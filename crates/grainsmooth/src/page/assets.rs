@@ -14,7 +14,7 @@ macro_rules! script {
 }
 
 /// The modules of the page, each after those that it imports.
-pub(crate) const SCRIPTS: [(&str, &str); 8] = [
+pub(crate) const SCRIPTS: [(&str, &str); 10] = [
     script!("packed.js"),
     script!("stage.js"),
     script!("panel.js"),
@@ -22,6 +22,8 @@ pub(crate) const SCRIPTS: [(&str, &str); 8] = [
     script!("network.js"),
     script!("grains.js"),
     script!("server.js"),
+    script!("shape.js"),
+    script!("edit.js"),
     script!("main.js"),
 ];
 

@@ -16,7 +16,7 @@ use crate::error::mesh_file::MeshFileProblem;
 use crate::mesh::file::{MeshFile, read_mesh};
 use crate::{FileElements, LabelledFile};
 use columns::{Column, columns, components};
-pub(crate) use shown::ShownNetwork;
+pub(crate) use shown::{Frame, ShownNetwork};
 use steps::{Step, network_of, steps};
 
 /// Networks, of which one is shown.

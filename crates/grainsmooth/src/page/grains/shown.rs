@@ -224,6 +224,24 @@ impl Frame {
 
     /// Where a point is drawn, in single precision as graphics cards have it.
     pub(crate) fn place(self, point: DVec3) -> [f32; 3] {
-        ((point - self.middle) / self.unit).as_vec3().to_array()
+        self.in_frame(point).as_vec3().to_array()
+    }
+
+    /// The same in double precision.
+    pub(crate) fn in_frame(self, point: DVec3) -> DVec3 {
+        (point - self.middle) / self.unit
+    }
+
+    /// The point that is drawn at a place.
+    pub(crate) fn point(self, place: DVec3) -> DVec3 {
+        self.middle + self.unit * place
+    }
+
+    pub(crate) fn middle(self) -> DVec3 {
+        self.middle
+    }
+
+    pub(crate) fn unit(self) -> f64 {
+        self.unit
     }
 }
