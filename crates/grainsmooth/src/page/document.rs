@@ -25,7 +25,7 @@ impl PageDocument {
     /// Networks of grains to look at: of one file, or one after the other of several, or of a collection (.pvd). The first is read.
     ///
     /// # Errors
-    /// As of [`LabelledFile::read`](crate::LabelledFile::read); [`Error::Collection`].
+    /// As of [`LabelledFile::read`](crate::LabelledFile::read); where a collection names no files that can be read.
     pub fn grains(paths: &[PathBuf]) -> Result<Self, Error> {
         Grains::open(paths).map(|grains| Self(Kind::Grains(Box::new(grains))))
     }
