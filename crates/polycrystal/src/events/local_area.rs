@@ -218,7 +218,12 @@ impl LocalArea {
         volumes
     }
 
-    /// Moves the vertices down to the least area near by, and gives that.
+    /// The area where the vertices are now.
+    pub(crate) fn area_now(&self) -> f64 {
+        self.area(&self.rings()).0
+    }
+
+    /// Moves the vertices down to the least area near by, and gives that: no more than [`Self::area_now`].
     ///
     /// Steps go along the gradient as the stiffness of the faces has it, so that they need not be small where triangles are.
     pub(crate) fn minimize(&mut self) -> f64 {

@@ -316,15 +316,18 @@ impl Reconnector {
         let (shortest, folds) = (as_it_is.shortest_edge(), as_it_is.fold_count());
         let changed = event.happen(complex, least).and_then(|new| {
             let mut changed = LocalArea::new(complex, &new, conditions, excess).with_volumes_of(&as_it_is);
-            let (is_good, shortest) = match demand {
-                Demand::LessArea => (changed.minimize() < as_it_is.minimize(), LEAST * short),
-                Demand::LongerLines => (changed.minimize().is_finite(), shortest),
-                Demand::NoFold => (true, LEAST * short),
+            let (area, shortest) = match demand {
+                Demand::LessArea => (changed.minimize(), LEAST * short),
+                Demand::LongerLines => (changed.minimize(), shortest),
+                Demand::NoFold => (0.0, LEAST * short),
             };
-            let keeps_promise = is_good
+            // What takes longest comes last: most events fail before.
+            let mut is_less = || area < as_it_is.area_now() && area < as_it_is.minimize();
+            let keeps_promise = area.is_finite()
                 && changed.shortest_edge() > shortest
                 && changed.keeps_volumes(LARGEST_CHANGE, &excesses)
-                && changed.fold_count() <= folds;
+                && changed.fold_count() <= folds
+                && (demand != Demand::LessArea || is_less());
             keeps_promise.then_some(changed)
         });
         complex.restore(snapshot);
