@@ -8,15 +8,17 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crates whose rooms stand in an order, and by how many parts of its path a module is named.
-const CRATES: [(&str, usize); 8] = [
+const CRATES: [(&str, usize); 10] = [
     ("campaign", 1),
     ("grainsmooth", 1),
     ("grainsmooth", 2),
     ("polycrystal", 1),
+    ("polycrystal", 2),
     ("sizes", 1),
     ("subzero", 1),
     ("texture", 1),
     ("voronoi", 1),
+    ("voronoi", 2),
 ];
 
 /// Which modules each one imports from.
@@ -80,62 +82,91 @@ fn paths(code: &str, start: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// The imports among the modules of a crate, each named by `depth` parts of its path; names at its root count as those of the module that they
-/// come from.
+/// What each module hands on under its own name, and the path of that from the crate's root.
+type Exports = BTreeMap<Vec<String>, BTreeMap<String, Vec<String>>>;
+
+/// The imports among the modules of a crate, each named by `depth` parts of its path. What a module hands on counts as imported from where
+/// it is defined.
 fn imports(source: &Path, depth: usize) -> Imports {
-    let modules: BTreeSet<Vec<String>> = files(source).iter().map(|path| module(source, path)).collect();
-    let exported: BTreeMap<String, Vec<String>> = code(&source.join("lib.rs"))
-        .split("pub use ")
-        .skip(1)
-        .flat_map(|text| leaves(text.split(';').next().unwrap()))
-        .map(|path| (path[path.len() - 1].clone(), path))
-        .collect();
+    let files: Vec<(Vec<String>, String)> =
+        files(source).iter().map(|path| (module(source, path), code(path))).collect();
+    let modules: BTreeSet<&[String]> = files.iter().map(|(module, _)| &module[..]).collect();
+    let exports: Exports =
+        files.iter().map(|(module, code)| (module.clone(), handed_on(module, code))).collect();
     let named = |module: &[String]| module[..module.len().min(depth)].join("::");
     let mut imports = Imports::new();
-    for path in files(source) {
-        let own = module(source, &path);
-        if own == ["lib"] || own == ["main"] {
-            continue;
-        }
-        let (code, around) = (code(&path), &own[..own.len() - 1]);
-        let from_root = paths(&code, "crate::").into_iter().map(|path| match exported.get(&path[0]) {
-            Some(whole) => whole.clone(),
-            None => path,
-        });
-        let from_here = paths(&code, "super::").into_iter().map(|path| {
-            let up = path.iter().take_while(|part| *part == "super").count();
-            [&around[..around.len() - up], &path[up..]].concat()
-        });
+    for (own, code) in files.iter().filter(|(own, _)| !own.is_empty()) {
+        let from_root = paths(code, "crate::").into_iter();
+        let from_here = paths(code, "super::").into_iter().map(|path| from_above(own, &path));
         for path in from_root.chain(from_here) {
+            let path = definition(path, &exports);
             let beginnings = (1..=path.len()).rev().map(|length| &path[..length]);
-            let of = beginnings.into_iter().find(|beginning| modules.contains(*beginning)).unwrap_or(&own);
-            if named(of) != named(&own) {
-                imports.entry(named(&own)).or_default().insert(named(of));
+            let of = beginnings.into_iter().find(|beginning| modules.contains(*beginning)).unwrap_or(own);
+            if named(of) != named(own) {
+                imports.entry(named(own)).or_default().insert(named(of));
             }
         }
     }
     imports
 }
 
-/// The path of the module in a file.
-fn module(source: &Path, path: &Path) -> Vec<String> {
-    let path = path.strip_prefix(source).unwrap().with_extension("");
-    path.components().map(|part| part.as_os_str().to_str().unwrap().to_owned()).collect()
+/// What a module hands on by `pub use` or `pub(crate) use`.
+fn handed_on(module: &[String], code: &str) -> BTreeMap<String, Vec<String>> {
+    let uses = ["pub use ", "pub(crate) use "].into_iter().flat_map(|start| code.split(start).skip(1));
+    let handed_on = uses.flat_map(|text| leaves(text.split(';').next().unwrap())).map(|path| {
+        let whole = match path[0].as_str() {
+            "crate" => path[1..].to_vec(),
+            "super" => from_above(module, &path[1..]),
+            _ => [module, &path[..]].concat(),
+        };
+        (path[path.len() - 1].clone(), whole)
+    });
+    handed_on.collect()
 }
 
-/// The modules that are left when each that imports from none of the rest has gone, again and again.
-fn in_circles(mut imports: Imports) -> Imports {
-    loop {
-        let left: BTreeSet<String> = imports.keys().cloned().collect();
-        for of in imports.values_mut() {
-            of.retain(|room| left.contains(room));
-        }
-        let count = imports.len();
-        imports.retain(|_, of| !of.is_empty());
-        if imports.len() == count {
-            return imports;
+/// The path from the crate's root of one that a module names behind `super::`.
+fn from_above(module: &[String], path: &[String]) -> Vec<String> {
+    let up = path.iter().take_while(|part| *part == "super").count();
+    [&module[..module.len() - 1 - up], &path[up..]].concat()
+}
+
+/// The path to where something is defined, from one by which it is handed on.
+fn definition(path: Vec<String>, exports: &Exports) -> Vec<String> {
+    for length in 0..path.len() {
+        let is_module_on_the_way = length + 1 < path.len() && exports.contains_key(&path[..=length]);
+        let handed_on = exports.get(&path[..length]).and_then(|names| names.get(&path[length]));
+        match handed_on.filter(|_| !is_module_on_the_way) {
+            Some(whole) if *whole != path => {
+                return definition([whole, &path[length + 1..]].concat(), exports);
+            }
+            _ => {}
         }
     }
+    path
+}
+
+/// The path of the module in a file; nothing for the crate's root.
+fn module(source: &Path, path: &Path) -> Vec<String> {
+    let path = path.strip_prefix(source).unwrap().with_extension("");
+    let parts = path.components().map(|part| part.as_os_str().to_str().unwrap().to_owned());
+    parts.filter(|part| !["lib", "main", "mod"].contains(&part.as_str())).collect()
+}
+
+/// The modules that import from each other, directly or by way of others, circle by circle.
+fn circles(imports: &Imports) -> BTreeSet<BTreeSet<String>> {
+    let reached = |from: &String| {
+        let (mut reached, mut waiting) = (BTreeSet::new(), vec![from]);
+        while let Some(of) = waiting.pop().and_then(|module| imports.get(module)) {
+            waiting.extend(of.iter().filter(|module| reached.insert((*module).clone())));
+        }
+        reached
+    };
+    let reached: Imports = imports.keys().map(|module| (module.clone(), reached(module))).collect();
+    let circle = |module: &String| -> BTreeSet<String> {
+        let others = reached[module].iter();
+        others.filter(|other| reached.get(*other).is_some_and(|of| of.contains(module))).cloned().collect()
+    };
+    imports.keys().map(circle).filter(|circle| !circle.is_empty()).collect()
 }
 
 #[test]
@@ -144,7 +175,7 @@ fn no_room_imports_from_one_above() {
         let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates").join(name).join("src");
         let imports = imports(&source, depth);
         assert!(!imports.is_empty(), "{name} has no imports, or they were not found");
-        assert_eq!(in_circles(imports), Imports::new(), "{name}");
+        assert_eq!(circles(&imports), BTreeSet::new(), "{name}");
     }
 }
 
@@ -152,9 +183,9 @@ fn no_room_imports_from_one_above() {
 fn circles_are_found() {
     let of = |rooms: &[&str]| rooms.iter().map(|room| (*room).to_owned()).collect::<BTreeSet<_>>();
     let line = Imports::from([("a".to_owned(), of(&["b", "c"])), ("b".to_owned(), of(&["c"]))]);
-    assert_eq!(in_circles(line.clone()), Imports::new());
+    assert_eq!(circles(&line), BTreeSet::new());
     let circle = [line, Imports::from([("c".to_owned(), of(&["b"]))])].into_iter().flatten().collect();
-    assert_eq!(in_circles(circle).keys().collect::<Vec<_>>(), ["a", "b", "c"]);
+    assert_eq!(circles(&circle), BTreeSet::from([of(&["b", "c"])]));
     assert_eq!(
         paths("use crate::{A, b::{C, d::E,}}; crate::f::G(1)", "crate::"),
         [vec!["A"], vec!["b", "C"], vec!["b", "d", "E"], vec!["f", "G"]]

@@ -14,6 +14,7 @@ use vtkio::xml::ScalarType;
 use xml::XmlFormat;
 
 mod data_array;
+mod field;
 mod image;
 mod item_tuples;
 mod legacy;
@@ -22,10 +23,12 @@ mod raw;
 mod xml;
 
 pub use data_array::{DataArray, DataNumbers};
+pub(crate) use field::field_entry;
+pub use field::{FieldEntry, FieldValue};
 pub use image::{ImageData, write_vti};
 pub use item_tuples::ItemTuples;
 pub(crate) use pieces::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
-pub(crate) use raw::{attribute, field_entry, field_names, find, try_inlined};
+pub(crate) use raw::{attribute, field_names, find, try_inlined};
 pub use raw::{field_bytes, field_numbers, field_text, inlined};
 
 /// A format of VTK files.
@@ -297,35 +300,6 @@ impl<'a> Values<'a> {
             Self::ItemBlocks(blocks) => blocks.tuples.kind,
         }
     }
-}
-
-/// A named remark about the file as a whole, kept in VTK's field data.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FieldEntry {
-    /// Name under which VTK lists the entry; without blanks, which the legacy format cannot hold.
-    pub name: &'static str,
-    /// What is said.
-    pub value: FieldValue,
-}
-
-/// The value of a [`FieldEntry`].
-///
-/// A text is a string array in .vtp and .vtk. In .vtu it is an array of UInt8 holding the UTF-8 bytes: the
-/// tools other than VTK that read .vtu refuse the whole file when they meet a string array.
-#[derive(Debug, Clone, PartialEq)]
-pub enum FieldValue {
-    /// Text without NUL characters.
-    Text(String),
-    /// A number such as the random seed, kept as UInt64.
-    Integer(u64),
-    /// Any number of numbers, such as volumes, kept as Float64.
-    Numbers(Vec<f64>),
-    /// Any number of ids, kept as Int32.
-    Ids(Vec<i32>),
-    /// A tuple of numbers for each of some items.
-    Items(ItemTuples),
-    /// Whatever another file held.
-    Data(DataArray),
 }
 
 /// The array of unit vectors that viewers shade with.

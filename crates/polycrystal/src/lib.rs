@@ -33,6 +33,7 @@ mod mesh;
 mod network;
 mod relax;
 mod solver;
+mod validate;
 
 pub use box_cut::BoxCut;
 pub use check::certificate::{Certificate, Claims, Faults, certify};
@@ -54,7 +55,6 @@ pub use growth::grow_cells_tuned;
 #[doc(hidden)]
 pub use growth::tuning::GrowthTuning;
 pub use growth::{GrownCells, GrowthRecipe, Vanished, grow_cells};
-pub use measures::validate::validate;
 pub use measures::{
     BoundaryMeasures, GrainMeasures, HerringResidual, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures,
     PlaneMeasures, PointCurvature, QuadruplePointMeasures, SpaceMeasures, TripleLineMeasures,
@@ -63,7 +63,8 @@ pub use measures::{
 };
 pub use mesh::angles::{AngleStatistics, WeightedAngle};
 pub use mesh::boundary::{Boundary, BoundaryId, GrainId, Side, Twin};
-pub use mesh::level::{Level, Mesh};
+pub use mesh::connectivity::Mesh;
+pub use mesh::level::Level;
 pub use mesh::node_type::NodeType;
 pub use mesh::periodic::PeriodicCopies;
 pub use mesh::surface::{Elements, Surface};
@@ -84,3 +85,4 @@ pub use relax::regular_cells::{RegularCells, regular_cells};
 #[doc(hidden)]
 pub use relax::relax_tuned;
 pub use relax::{relax, relax_watched};
+pub use validate::validate;

@@ -7,7 +7,6 @@ pub(crate) mod herring;
 pub(crate) mod lines;
 pub(crate) mod plane;
 pub(crate) mod space;
-pub(crate) mod validate;
 
 use glam::DVec3;
 

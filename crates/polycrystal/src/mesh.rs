@@ -2,12 +2,14 @@
 
 pub(crate) mod angles;
 pub(crate) mod boundary;
+pub(crate) mod connectivity;
 pub(crate) mod disjoint_sets;
 pub(crate) mod grouped;
 pub(crate) mod id;
 pub(crate) mod level;
 pub(crate) mod node_type;
 pub(crate) mod periodic;
+pub(crate) mod rounding;
 pub(crate) mod seams;
 pub(crate) mod surface;
 pub(crate) mod triangle_quality;

@@ -12,9 +12,10 @@ use crate::check::pinched_points::pinched_points;
 use crate::mesh::angles::{angles, statistics};
 use crate::mesh::grouped::Grouped;
 use crate::mesh::node_type::Meeting;
+use crate::mesh::rounding::swept_by_rounding;
 use crate::mesh::seams::Seams;
 use crate::mesh::triangle_quality::{squared_sine, triangle_quality};
-use crate::mesh::volume::{ConeSum, cones_of_boundaries, swept_by_rounding};
+use crate::mesh::volume::{ConeSum, cones_of_boundaries};
 use crate::{AngleStatistics, Elements, GrainId, NodeType, Side, Surface, TriangleQuality};
 
 /// Cosine of the angle between normals beyond which neighbours in one boundary are folded: 90 degrees, and as much more as

@@ -11,7 +11,6 @@ use glam::DVec3;
 use subzero::StencilTable;
 use voronoi::Dimension;
 
-use crate::energy::patches::place_in;
 use crate::mesh::volume::{Cone, segment_area, triangle_volume};
 use crate::solver::rows::Rows;
 
@@ -231,4 +230,10 @@ impl Variation {
         // All points that move as one sweep along the sum of normals.
         Cone::new(apex, self.volume, self.sweep.iter().sum(), dimension)
     }
+}
+
+/// The place of an id in a sorted list that holds it.
+pub(crate) fn place_in(sorted: &[u32], id: u32) -> u32 {
+    let place = sorted.binary_search(&id).expect("a patch's surface depends on its own control points alone");
+    u32::try_from(place).expect("a place in a list of ids fits an id")
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use subzero::{EdgeId, FaceId, StencilTable};
 
-use crate::energy::patch::{Elements, Law, LocalStencils, Patch, PatchTerms, Refinement};
+use crate::energy::patch::{Elements, Law, LocalStencils, Patch, PatchTerms, Refinement, place_in};
 use crate::network::tension::in_unit;
 use crate::solver::rows::Rows;
 use crate::{BoundaryId, Mesh, Network};
@@ -172,10 +172,4 @@ fn local_edges(mesh: &Mesh, elements: &[u32], points: &[u32]) -> (Vec<[u32; 2]>,
             (edges.iter().map(|edge| local(mesh.edge(EdgeId(*edge)))).collect(), across)
         }
     }
-}
-
-/// The place of an id in a sorted list that holds it.
-pub(crate) fn place_in(sorted: &[u32], id: u32) -> u32 {
-    let place = sorted.binary_search(&id).expect("a patch's surface depends on its own control points alone");
-    u32::try_from(place).expect("a place in a list of ids fits an id")
 }

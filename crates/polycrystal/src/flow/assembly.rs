@@ -8,7 +8,7 @@ use crate::energy::patches::Patches;
 use crate::flow::clusters::Numbering;
 use crate::flow::system::{CHUNK, Parts};
 use crate::flow::volume_constraint::{Sweeps, VolumeConstraint};
-use crate::mesh::volume::last_place;
+use crate::mesh::rounding::last_place;
 use crate::solver::rows::Rows;
 use crate::{Level, Network, Volumes};
 

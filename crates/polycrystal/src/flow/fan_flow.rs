@@ -11,7 +11,7 @@ use crate::flow::clusters::Clusters;
 use crate::flow::system::{CHUNK, Parts, System};
 use crate::flow::tuning::Tuning;
 use crate::flow::volume_constraint::{Sweeps, VolumeConstraint};
-use crate::mesh::volume::last_place;
+use crate::mesh::rounding::last_place;
 use crate::solver::rows::Rows;
 use crate::{Freedom, GrainId, NetworkError};
 

@@ -4,6 +4,7 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use crate::Freedom;
+use crate::flow::mobility::Mobility;
 use crate::flow::volume_constraint::{Compliance, VolumeConstraint};
 use crate::solver::rows::Rows;
 
@@ -201,21 +202,6 @@ impl System {
             image[*unknown] -= *mass * displacement[*unknown];
         }
         image
-    }
-}
-
-/// How an unknown answers to a force if there were only the diagonal of the matrix.
-pub(crate) struct Mobility {
-    /// 1 over the diagonal.
-    inverse: f64,
-    /// What the walls leave to it.
-    freedom: Freedom,
-}
-
-impl Mobility {
-    /// The displacement under a force.
-    pub(crate) fn of(&self, force: DVec3) -> DVec3 {
-        self.freedom.project(force) * self.inverse
     }
 }
 

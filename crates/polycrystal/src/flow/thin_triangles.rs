@@ -8,8 +8,8 @@
 use glam::DVec3;
 use subzero::{FaceId, VertexRule};
 
-use crate::energy::patch::{Elements, LocalStencils};
-use crate::energy::patches::{local_elements, place_in};
+use crate::energy::patch::{Elements, LocalStencils, place_in};
+use crate::energy::patches::local_elements;
 use crate::mesh::triangle_quality::squared_sine;
 use crate::{BoundaryId, Freedom, Mesh, Network};
 

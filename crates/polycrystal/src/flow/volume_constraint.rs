@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::GrainId;
-use crate::flow::system::Mobility;
+use crate::flow::mobility::Mobility;
 use crate::solver::conjugate_gradients::{Limits, solve};
 use crate::solver::multigrid::Multigrid;
 use crate::solver::rows::Rows;

@@ -1,18 +1,9 @@
 use rayon::prelude::*;
-use subzero::{CurveMesh, EdgeId, MeshError, Refinement, StencilTable, TriangleMesh};
+use subzero::{EdgeId, MeshError, Refinement, StencilTable};
 
 use crate::mesh::node_type::Meeting;
 use crate::mesh::periodic::PeriodicCopies;
-use crate::{Boundary, BoundaryId, NodeType, WallSet, WallSets};
-
-/// The elements of the network: triangles in space, segments in the plane.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Mesh {
-    /// Surfaces.
-    Triangles(TriangleMesh),
-    /// Lines in the plane z = 0.
-    Segments(CurveMesh),
-}
+use crate::{Boundary, BoundaryId, Mesh, NodeType, WallSet, WallSets};
 
 /// The network's connectivity on one level of subdivision, without positions.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use voronoi::Dimension;
 
 use crate::mesh::grouped::Grouped;
-use crate::mesh::volume::last_place;
+use crate::mesh::rounding::last_place;
 use crate::{BoundaryId, GrainId, Level, Mesh, Side};
 
 /// A labelled surface in space, or labelled lines in the plane z = 0: what a network is on one level, or what a file holds.

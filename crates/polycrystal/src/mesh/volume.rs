@@ -92,17 +92,6 @@ impl ConeSum {
     }
 }
 
-/// A last place of the largest coordinate.
-pub(crate) fn last_place(points: &[DVec3]) -> f64 {
-    let largest = points.par_iter().map(|point| point.abs().max_element()).reduce(|| 0.0, f64::max);
-    f64::EPSILON * largest
-}
-
-/// What a surface of some area sweeps where each coordinate of its points is off by so much.
-pub(crate) fn swept_by_rounding(rounding: f64, area: f64) -> f64 {
-    rounding * 3f64.sqrt() * area
-}
-
 /// The largest of what some volumes lack, as a share of them, and whose it is.
 ///
 /// # Panics

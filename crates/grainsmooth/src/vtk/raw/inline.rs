@@ -3,7 +3,6 @@
 use vtkio::IOBuffer;
 use vtkio::xml::ScalarType;
 
-use super::super::{DataArray, FieldEntry, FieldValue};
 use super::coding::{Coding, Encoded};
 
 /// The document with appended arrays moved into their elements as base64, which `vtkio` knows, and with headers of compressed ones
@@ -49,48 +48,32 @@ pub(crate) fn field_names(file: &[u8]) -> Vec<String> {
     tags.filter_map(|tag| attribute(&format!(" {tag}"), "Name").map(str::to_owned)).collect()
 }
 
-/// An entry of such a file's field data, whatever it is. `is_text` tells a text in a .vtu file, where texts are bytes.
-pub(crate) fn field_entry(file: &[u8], name: &'static str, is_text: bool) -> Option<FieldEntry> {
+/// The tag of an entry of such a file's field data.
+pub(crate) fn field_tag(file: &[u8], name: &str) -> Option<String> {
     let head = String::from_utf8_lossy(split(file).0);
-    let field = &head[head.find("<FieldData")?..];
-    let field = &field[..field.find("</FieldData>")?];
-    let start = field[..field.find(&format!(" Name=\"{name}\""))?].rfind('<')?;
-    let tag = &field[start..start + field[start..].find('>')?];
-    let components = attribute(tag, "NumberOfComponents").and_then(|count| count.parse().ok()).unwrap_or(1);
-    let data = |kind| {
-        let values = field_values(file, name, kind)?;
-        Some(FieldValue::Data(DataArray::of_buffer(name, components, &values)?))
-    };
-    let value = match attribute(tag, "type")? {
-        "String" => FieldValue::Text(field_text(file, name)?),
-        "UInt8" if is_text => FieldValue::Text(field_text(file, name)?),
-        "UInt8" => data(ScalarType::UInt8)?,
-        "Int32" => data(ScalarType::Int32)?,
-        "Float64" => data(ScalarType::Float64)?,
-        "UInt64" => FieldValue::Integer(
-            field_values(file, name, ScalarType::UInt64)?.into_vec::<u64>()?.first().copied()?,
-        ),
-        _ => return None,
-    };
-    Some(FieldEntry { name, value })
+    Some(field_element(&head, name)?.0.to_owned())
 }
 
-fn field_values(file: &[u8], name: &str, kind: ScalarType) -> Option<IOBuffer> {
+/// The numbers of an entry of such a file's field data, which are of this kind.
+pub(crate) fn field_values(file: &[u8], name: &str, kind: ScalarType) -> Option<IOBuffer> {
     let (head, appended) = split(file);
     let head = String::from_utf8_lossy(head);
     let coding = Coding::of(&head)?;
-    let field = &head[head.find("<FieldData")?..];
-    let field = &field[..field.find("</FieldData>")?];
-    let named = field.find(&format!(" Name=\"{name}\""))?;
-    let start = field[..named].rfind('<')?;
-    let end = start + field[start..].find('>')?;
-    let tag = &field[start..end];
-    let content = field[end + 1..].split('<').next()?;
+    let (tag, content) = field_element(&head, name)?;
     match attribute(tag, "format")? {
         "appended" => coding.values(Appended::of(appended).array(coding, tag)?, kind),
         "binary" => coding.values(coding.of_text(content.trim().as_bytes())?, kind),
         _ => coding.values_of_words(content, kind),
     }
+}
+
+/// The tag and the content of an entry of the field data.
+fn field_element<'a>(head: &'a str, name: &str) -> Option<(&'a str, &'a str)> {
+    let (_, field) = head.split_once("<FieldData")?;
+    let (field, _) = field.split_once("</FieldData>")?;
+    let start = field[..field.find(&format!(" Name=\"{name}\""))?].rfind('<')?;
+    let (tag, rest) = field[start..].split_once('>')?;
+    Some((tag, rest.split('<').next()?))
 }
 
 /// What stands before the appended data, and these.

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use crate::flow::boundary_flow::{Clusters, Flow, dot};
-use crate::mesh::volume::{largest_relative_error, last_place, swept_by_rounding};
+use crate::mesh::rounding::{last_place, swept_by_rounding};
+use crate::mesh::volume::largest_relative_error;
 use crate::{GrainId, NetworkError, Volumes};
 
 /// Difference of a grain's volume from its cell's, as a share of the cell's, that ends the iteration on volumes.

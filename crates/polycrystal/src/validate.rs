@@ -1,3 +1,5 @@
+//! The certificate of a network: what any surface must be, and the volumes and types that its cells give.
+
 use glam::DVec3;
 
 use crate::check::certificate::inspect;
