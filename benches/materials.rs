@@ -368,7 +368,7 @@ fn misorientations() {
         let cells = cells(config);
         timed(|| grainsmooth::smooth(config, cells, &|_, _, _| ()).unwrap())
     };
-    let flat = |config: Config| Config { relaxation: polycrystal::Relaxation::Time(0.0), ..config };
+    let flat = |config: Config| Config { relaxation: Some(polycrystal::Relaxation::Time(0.0)), ..config };
     let (polycrystal, with, _) = of_fit(&flat(textured(Some(file))));
     let (_, without, _) = of_fit(&flat(textured(None)));
     let fit = polycrystal.cells.texture.as_ref().and_then(|texture| texture.fit()).unwrap();

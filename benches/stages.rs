@@ -18,7 +18,7 @@ fn stages(criterion: &mut Criterion) {
     let tessellation = cut();
     let build = || Network::new(&tessellation, config.junctions, levels).unwrap();
     let (network, flat) = build();
-    let relax = || relax(&network, &flat, &Relaxation::default(), |_, _| ()).unwrap();
+    let relax = || relax(&network, &flat, &Relaxation::KEPT_TOPOLOGY, |_, _| ()).unwrap();
     let relaxed = relax();
     let subdivide = || relaxed.finest_points(&network);
     let points = subdivide();

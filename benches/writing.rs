@@ -14,7 +14,7 @@ fn writing(criterion: &mut Criterion) {
     for grains in [200, 2000] {
         let config = Config {
             seeds: SeedSource::Random { count: grains },
-            relaxation: Relaxation::Time(0.01),
+            relaxation: Some(Relaxation::Time(0.01)),
             ..Config::default()
         };
         let polycrystal = make_polycrystal(&config, &|_, _, _| ()).unwrap();

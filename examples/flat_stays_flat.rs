@@ -11,7 +11,7 @@ fn main() -> Result<(), grainsmooth::Error> {
     for time in [0.0, 1.2] {
         let seeds = SeedSource::Random { count: 50 };
         let relaxation = Relaxation::Time(time);
-        let config = Config { seeds, relaxation, ..Config::default() };
+        let config = Config { seeds, relaxation: Some(relaxation), ..Config::default() };
         let polycrystal = make_polycrystal(&config, &|_, _, _| ())?;
         let bulge = largest_bulge(&polycrystal);
         println!("--relax {time}: boundaries bulge by up to {bulge:.1e} of the box");

@@ -1,6 +1,7 @@
 //! What the program prints besides its summary: dry runs, summaries for programs, completions, the manual, files on standard
 //! output; and colours.
 
+use std::collections::BTreeMap;
 use std::io::Read;
 use std::process::Stdio;
 
@@ -371,6 +372,43 @@ fn completions_and_manual_know_every_option() {
     for option in options {
         assert!(manual.contains(option), "{option}");
     }
+}
+
+/// An option stands once: the page has the spelling and the default that `--help` has.
+#[test]
+fn each_option_in_the_docs_is_that_of_the_help() {
+    let help = text(&Workplace::new(), "--help");
+    let listed = help.split("\nSeeds:\n").nth(1).unwrap().split("\nExamples:\n").next().unwrap();
+    let plain = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let page = include_str!("../../docs/options.md").replace("\\|", "\u{1}");
+    let link = |(before, rest): (&str, &str)| format!("{before}{}", rest.split_once(')').unwrap().1);
+    let unlinked =
+        |cell: &str| cell.split_once("](").map_or_else(|| cell.to_owned(), link).replace(['`', '['], "");
+    let row = |row: &str| {
+        let cells: Vec<&str> = row.split('|').collect();
+        let option = cells[1].replace('`', "").replace('\u{1}', "|");
+        Some((plain(&option[option.find("--")?..]), plain(&unlinked(cells[2]))))
+    };
+    let rows: BTreeMap<String, String> =
+        page.lines().filter(|line| line.starts_with("| `")).filter_map(row).collect();
+    let (mut option, mut count) = (String::new(), 0);
+    let mut lines = listed.lines();
+    while let Some(line) = lines.next() {
+        let is_indented = line.starts_with("        ");
+        if let Some(long) = line.find("--").filter(|_| !is_indented) {
+            option = plain(&line[long..].replace(['<', '>'], ""));
+            count += 1;
+            assert!(rows.contains_key(&option), "options.md has no row {option}");
+        }
+        if let Some((_, start)) = line.split_once("[default:") {
+            let mut default = start.to_owned();
+            while !default.contains(']') {
+                default = format!("{default} {}", lines.next().unwrap().trim());
+            }
+            assert_eq!(rows[&option], plain(default.split(']').next().unwrap()), "{option}");
+        }
+    }
+    assert!(count > 40, "{count}");
 }
 
 #[test]

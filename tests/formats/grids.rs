@@ -61,7 +61,7 @@ fn voxels_outside_of_the_domain_belong_to_no_grain() {
             seeds: grainsmooth::SeedSource::Random { count: 20 },
             dimension,
             shape,
-            relaxation: polycrystal::Relaxation::Time(0.0),
+            relaxation: Some(polycrystal::Relaxation::Time(0.0)),
             levels: 1,
             ..grainsmooth::Config::default()
         };
@@ -151,7 +151,7 @@ fn centres_on_boundaries_belong_to_exactly_one_grain() {
     for levels in [0, 2] {
         let config = grainsmooth::Config {
             seeds: grainsmooth::SeedSource::File(path.clone()),
-            relaxation: polycrystal::Relaxation::Time(0.0),
+            relaxation: Some(polycrystal::Relaxation::Time(0.0)),
             levels,
             ..grainsmooth::Config::default()
         };

@@ -32,7 +32,7 @@ pub fn config(dimension: Dimension, time: f64) -> Config {
         seeds: SeedSource::Random { count: GRAINS },
         dimension,
         box_size: BOX,
-        relaxation: Relaxation::Time(time),
+        relaxation: Some(Relaxation::Time(time)),
         // What is not relaxed is to stay flat.
         regularize: None,
         levels: 2,

@@ -132,8 +132,8 @@ impl Arguments {
             file: files.options(domain.dimension),
             ..config.clone()
         };
-        let relaxation = smoothing.relax.unwrap_or_else(|| config.usual_relaxation());
-        let config = Config { relaxation, ..config };
+        // Files say what was usual when they were written.
+        let config = Config { relaxation: Some(config.effective_relaxation()), ..config };
         if let Err(error) = config.check() {
             usage(&error.to_string());
         }

@@ -29,7 +29,9 @@ use inside::InsideOptions;
 use lattice::Lattice;
 use laws::LawOptions;
 use phases::PhaseOptions;
-use settings::{as_axes, as_axis_names, as_lengths, as_rule, as_time, by_option, is_equiaxed, junctions};
+use settings::{
+    as_axes, as_axis_names, as_lengths, as_rule, as_time, by_option, is_equiaxed, junctions, parse_relaxation,
+};
 use shapes::ShapeSource;
 use sizes::SizeOptions;
 use spelling::{as_number, as_text_if_given, as_texts, as_true, is_usual, number, whole_number};
@@ -242,10 +244,13 @@ pub struct Config {
     #[serde(flatten, serialize_with = "by_option")]
     pub face_mesh: FaceMesh,
 
-    /// How far boundaries relax; time 0 leaves them flat.
-    #[arg(skip)]
-    #[serde(rename = "relax", serialize_with = "as_time")]
-    pub relaxation: Relaxation,
+    /// Relaxation time, in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat [default: 1.2, in
+    /// 2D equilibrium; 0 with lamellae, 0.05 with --grain-shapes, 0.3 with --free and --regularize, in 2D with --edge-length too]
+    ///
+    /// Example: --relax 0.1
+    #[arg(long = "relax", help_heading = "Smoothing", value_name = "T", value_parser = parse_relaxation, allow_negative_numbers = true)]
+    #[serde(rename = "relax", skip_serializing_if = "Option::is_none", serialize_with = "as_time")]
+    pub relaxation: Option<Relaxation>,
 
     /// Tension of the walls, in units of that between grains, of the largest with --tension; 0 lets boundaries meet walls at right angles
     ///
@@ -322,7 +327,7 @@ impl Default for Config {
             periodic: BVec3::FALSE,
             periodic_cut: PeriodicCut::default(),
             face_mesh: FaceMesh::default(),
-            relaxation: Relaxation::default(),
+            relaxation: None,
             wall_tension: 0.0,
             tensions: Vec::new(),
             mobilities: Vec::new(),

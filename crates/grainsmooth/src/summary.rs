@@ -125,7 +125,7 @@ impl fmt::Display for Summary<'_> {
                 out,
                 "topology    kept: letting grains switch neighbours led to no valid network{cause}; angles are not at rest where they would"
             )?;
-        } else if polycrystal.config.relaxation == Relaxation::Equilibrium {
+        } else if polycrystal.config.effective_relaxation() == Relaxation::Equilibrium {
             writeln!(out, "topology    kept: angles are not at rest where grains would switch neighbours")?;
         }
         if !polycrystal.relaxed.given_up.is_empty() {

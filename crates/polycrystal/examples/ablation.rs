@@ -43,7 +43,7 @@ fn for_a_time(name: &'static str, time: f64) -> Row {
 }
 
 fn regularized(name: &'static str, length: f64) -> Row {
-    Row { relaxation: Relaxation::default(), regularize: Some(length), ..row(name, |_| ()) }
+    Row { relaxation: Relaxation::KEPT_TOPOLOGY, regularize: Some(length), ..row(name, |_| ()) }
 }
 
 fn to_rest(name: &'static str, change: fn(&mut Tuning)) -> Row {

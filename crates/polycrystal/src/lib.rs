@@ -11,7 +11,7 @@
 //! let seeds = [DVec3::new(0.3, 0.4, 0.5), DVec3::new(0.7, 0.3, 0.2), DVec3::new(0.6, 0.8, 0.9)];
 //! let tessellation = Tessellation::new(&Domain::unit_cube(), &seeds)?;
 //! let (network, flat) = Network::new(&tessellation, Junctions::Crease, 2)?;
-//! let relaxed = relax(&network, &flat, &Relaxation::default(), |_, _| ())?;
+//! let relaxed = relax(&network, &flat, &Relaxation::KEPT_TOPOLOGY, |_, _| ())?;
 //! let smooth = relaxed.finest_points(&network);
 //!
 //! let volumes = network.grain_volumes(network.finest(), &smooth);

@@ -14,7 +14,7 @@ pub(crate) mod regular_cells;
 use glam::DVec3;
 
 use crate::flow::boundary_flow::{End, Flow, Grown, Stage};
-use crate::flow::relaxation::TIME_WITHOUT_EVENTS;
+use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::{Mesh, Moving, Network, NetworkError, Relaxation, RelaxationStep, Relaxed, Tuning, Volumes};
 
 /// Time of the flow toward equilibrium on each coarser level, in units of the mean grain size squared.
@@ -219,7 +219,7 @@ pub(crate) fn foreseen_points(
     tuning: &Tuning,
 ) -> Result<Vec<DVec3>, NetworkError> {
     let steps = tuning.forecast_steps;
-    let step_time = TIME_WITHOUT_EVENTS * network.mean_grain_size().powi(2) / steps as f64;
+    let step_time = TIME_OF_KEPT_TOPOLOGY * network.mean_grain_size().powi(2) / steps as f64;
     let stage = Stage { step_time, steps, least_gain: 0.0, end: End::Volumes };
     let mut flow = Flow::new(network, 0, Volumes::Kept, network.mean_tension(), *tuning);
     flow.run(control_points, &stage, &mut |_, _| ())

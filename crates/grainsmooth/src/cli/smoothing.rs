@@ -1,8 +1,8 @@
-//! Options about the control mesh, relaxation and subdivision.
+//! Options about the control mesh and volumes.
 
 use clap::{Args, ValueEnum};
 use grainsmooth::spelling::length;
-use polycrystal::{FaceMesh, Relaxation, Volumes};
+use polycrystal::{FaceMesh, Volumes};
 
 /// How flat cells become smooth grains.
 #[derive(Debug, Args)]
@@ -20,13 +20,6 @@ pub struct SmoothingArguments {
     /// Example: --edge-length 0.05
     #[arg(long, value_name = "H", value_parser = parse_edge_length, allow_negative_numbers = true, conflicts_with = "faces")]
     edge_length: Option<f64>,
-
-    /// Relaxation time, in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat [default: 1.2, in
-    /// 2D equilibrium; 0 with lamellae, 0.05 with --grain-shapes, 0.3 with --free and --regularize, in 2D with --edge-length too]
-    ///
-    /// Example: --relax 0.1
-    #[arg(long, value_name = "T", value_parser = parse_relaxation, allow_negative_numbers = true)]
-    pub relax: Option<Relaxation>,
 
     /// Let grains grow and shrink by curvature instead of keeping their volumes (in 2D: areas)
     ///
@@ -63,15 +56,4 @@ impl SmoothingArguments {
 
 fn parse_edge_length(text: &str) -> Result<f64, String> {
     length(text).ok_or_else(|| "an edge length is a positive number between 1e-30 and 1e30".to_owned())
-}
-
-fn parse_relaxation(text: &str) -> Result<Relaxation, String> {
-    if text == "equilibrium" {
-        return Ok(Relaxation::Equilibrium);
-    }
-    let time = text.parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0);
-    let time = time.ok_or_else(|| {
-        "the relaxation time is 0 (off), a positive, finite number, or equilibrium".to_owned()
-    });
-    time.map(Relaxation::Time)
 }

@@ -71,11 +71,11 @@ impl Config {
     /// # Errors
     /// The first that do not.
     pub fn check(&self) -> Result<(), ConfigError> {
-        let (is_flat, is_sized) = (self.relaxation == Relaxation::Time(0.0), self.is_sized());
+        let (is_flat, is_sized) = (self.effective_relaxation() == Relaxation::Time(0.0), self.is_sized());
         if self.periodic_cut == PeriodicCut::Box && !self.periodic.any() {
             return Err(ConfigError::CutWithoutPeriods);
         }
-        if self.volumes == Volumes::Free && self.relaxation == Relaxation::Equilibrium {
+        if self.volumes == Volumes::Free && self.effective_relaxation() == Relaxation::Equilibrium {
             return Err(ConfigError::FreeEquilibrium);
         }
         if let Some(shapes) = &self.grain_shapes {

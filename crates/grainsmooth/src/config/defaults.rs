@@ -28,7 +28,7 @@ impl Config {
     /// How far boundaries relax unless something else is asked for. In the plane to equilibrium, which is quick and exact there, in
     /// space for a time: longer where all that stands beside it lets grains switch neighbours. Not at all where grains are divided into
     /// lamellae, which would bend and come apart.
-    pub fn usual_relaxation(&self) -> Relaxation {
+    pub(super) fn usual_relaxation(&self) -> Relaxation {
         if self.inside.iter().any(|inside| matches!(inside.pattern, InsidePattern::Lamellae { .. })) {
             return Relaxation::Time(0.0);
         }
@@ -39,23 +39,28 @@ impl Config {
             Dimension::Two => Relaxation::Equilibrium,
             Dimension::Three => Relaxation::USUAL,
         };
-        let lets_change = Self { relaxation: usual, ..self.clone() }.lets_topology_change();
-        if lets_change { usual } else { Relaxation::default() }
+        let lets_change = Self { relaxation: Some(usual), ..self.clone() }.lets_topology_change();
+        if lets_change { usual } else { Relaxation::KEPT_TOPOLOGY }
+    }
+
+    /// How far boundaries relax.
+    pub fn effective_relaxation(&self) -> Relaxation {
+        self.relaxation.unwrap_or_else(|| self.usual_relaxation())
     }
 
     /// How far boundaries relax where the topology stays: where it should have changed, for no longer than is usual then.
     pub(crate) fn relaxation_of_kept_topology(&self) -> Relaxation {
-        match (self.relaxation, Relaxation::default()) {
+        match (self.effective_relaxation(), Relaxation::KEPT_TOPOLOGY) {
             (Relaxation::Time(time), Relaxation::Time(usual)) if self.lets_topology_change() => {
                 Relaxation::Time(time.min(usual))
             }
-            _ => self.relaxation,
+            (relaxation, _) => relaxation,
         }
     }
 
     /// The length to regularise by, where the topology is to stay or cannot change: none without relaxation.
     pub(crate) fn effective_regularize(&self) -> f64 {
-        if self.relaxation == Relaxation::Time(0.0) {
+        if self.effective_relaxation() == Relaxation::Time(0.0) {
             0.0
         } else {
             let usual = if self.has_grains_of_several_cells() {
@@ -73,10 +78,10 @@ impl Config {
         let is_on_the_way = match self.dimension {
             // Arcs of circles are divided as they curve.
             Dimension::Two => {
-                self.relaxation == Relaxation::Equilibrium
+                self.effective_relaxation() == Relaxation::Equilibrium
                     && !matches!(self.face_mesh, FaceMesh::Refined { .. })
             }
-            Dimension::Three => self.relaxation != Relaxation::Time(0.0),
+            Dimension::Three => self.effective_relaxation() != Relaxation::Time(0.0),
         };
         is_on_the_way
             && !self.has_grains_of_several_cells()

@@ -85,7 +85,7 @@ impl Config {
             SeedSource::File(_) => Table::new(),
             _ => {
                 // What the command line takes where nothing is said.
-                let relaxation = self.usual_relaxation();
+                let relaxation = Some(self.usual_relaxation());
                 Self { relaxation, ..Self::default() }.settings()
             }
         };
@@ -179,12 +179,31 @@ pub(super) fn by_option<S: Serializer>(mesh: &FaceMesh, serializer: S) -> Result
     }
 }
 
-pub(super) fn as_time<S: Serializer>(relaxation: &Relaxation, serializer: S) -> Result<S::Ok, S::Error> {
+/// Reads `--relax`.
+pub(super) fn parse_relaxation(text: &str) -> Result<Relaxation, String> {
+    if text == EQUILIBRIUM {
+        return Ok(Relaxation::Equilibrium);
+    }
+    let time = text.parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0);
+    let time = time.ok_or_else(|| {
+        "the relaxation time is 0 (off), a positive, finite number, or equilibrium".to_owned()
+    });
+    time.map(Relaxation::Time)
+}
+
+pub(super) fn as_time<S: Serializer>(
+    relaxation: &Option<Relaxation>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     match relaxation {
-        Relaxation::Time(time) => serializer.serialize_f64(*time),
-        Relaxation::Equilibrium => serializer.serialize_str("equilibrium"),
+        Some(Relaxation::Time(time)) => serializer.serialize_f64(*time),
+        Some(Relaxation::Equilibrium) => serializer.serialize_str(EQUILIBRIUM),
+        None => serializer.serialize_none(),
     }
 }
+
+/// What `--relax` calls equilibrium.
+const EQUILIBRIUM: &str = "equilibrium";
 
 /// The names of `--junctions`.
 const JUNCTIONS: [(&str, Junctions); 2] = [("crease", Junctions::Crease), ("corner", Junctions::Corner)];

@@ -38,8 +38,10 @@ pub(crate) struct Format {
 /// What a format holds.
 #[derive(Clone, Copy)]
 pub(super) enum Content {
-    /// The smooth boundaries, or the flat cells.
+    /// The smooth boundaries.
     Boundaries,
+    /// The flat cells, each of them a grain.
+    Cells,
     /// Numbers at voxels, and as many bytes for each as are known beforehand.
     Voxels(fn(&Config) -> u32),
     /// A line for each grain, with its orientation.

@@ -105,7 +105,7 @@ impl OutputFormat {
     pub(crate) fn bytes_of_voxel(self, config: &Config) -> u32 {
         match self.0.content {
             Content::Voxels(bytes) => bytes(config),
-            Content::Boundaries | Content::Orientations => 0,
+            Content::Boundaries | Content::Cells | Content::Orientations => 0,
         }
     }
 
@@ -130,7 +130,7 @@ impl OutputFormat {
             }
             (_, Content::Voxels(_)) if config.file.voxels.is_none() => Err(Error::NoVoxels { path: path() }),
             (_, Content::Orientations) if !config.has_texture() => Err(Error::NoTexture { path: path() }),
-            _ if config.has_grains_of_several_cells() && self.extension() == "tess" => {
+            (_, Content::Cells) if config.has_grains_of_several_cells() => {
                 Err(Error::CellsOfGrains { path: path() })
             }
             _ => Ok(()),

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::io::{self, Write};
 
-use earcut::Earcut;
 use glam::{DVec2, DVec3};
 use polycrystal::{GrainId, Side};
 
@@ -82,19 +81,13 @@ impl Polycrystal {
     pub(super) fn write_plane_grains(&self, out: &mut dyn Write) -> io::Result<()> {
         let names = self.config.file.names;
         let (mut points, mut triangles, mut place_of, mut measures) = (vec![], vec![], vec![], vec![]);
-        let mut earcut = Earcut::new();
         for (grain, outline) in self.outlines() {
             let corners: Vec<DVec3> = outline.points.iter().map(|&id| self.points[id as usize]).collect();
             let first = point_id(points.len());
-            let mut of_grain: Vec<u32> = Vec::new();
-            earcut.earcut(corners.iter().map(|corner| [corner.x, corner.y]), &[], &mut of_grain);
-            let wound = of_grain.chunks_exact(3).map(|triangle| {
-                let [a, b, c] = [triangle[0], triangle[1], triangle[2]];
-                let [p, q, r] = [a, b, c].map(|corner| corners[corner as usize]);
-                let is_clockwise = (q - p).cross(r - p).z < 0.0;
-                (if is_clockwise { [a, c, b] } else { [a, b, c] }).map(|corner| first + corner)
-            });
-            triangles.extend(wound);
+            let outline_of_grain = (0..point_id(corners.len())).collect();
+            let (of_grain, _) =
+                subzero::triangulate(&corners, &[outline_of_grain]).map_err(io::Error::other)?;
+            triangles.extend(of_grain.iter().map(|triangle| triangle.map(|corner| first + corner)));
             place_of.resize(triangles.len(), measures.len());
             measures.push((grain, measure(&corners, outline.neighbors)));
             points.extend(corners);

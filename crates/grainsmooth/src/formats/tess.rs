@@ -21,7 +21,7 @@ use write::write;
 pub(super) const FORMAT: Format = Format {
     extension: "tess",
     programs: "Neper",
-    content: Content::Boundaries,
+    content: Content::Cells,
     dimension: None,
     beside: None,
     bytes: |size| size.grains * (7 * TEXT_POINT + 14 * TEXT_CORNERS + 8 * 150),

@@ -333,7 +333,7 @@ fn time_that_works(
     tessellation: &Tessellation,
     cause: &NetworkError,
 ) -> Option<f64> {
-    let Relaxation::Time(asked) = config.relaxation else { return None };
+    let Relaxation::Time(asked) = config.effective_relaxation() else { return None };
     let mut time = match cause {
         NetworkError::GrainVanished { time, .. } | NetworkError::GrowthNotFollowed { time, .. }
             if *time > 0.0 =>
@@ -345,7 +345,7 @@ fn time_that_works(
     let mut clock = Clock { progress: &|_, _, _| (), times: Vec::new() };
     for _ in 0..SHORTER_TIMES {
         time = two_digits_down(time);
-        let shorter = Config { relaxation: Relaxation::Time(time), ..config.clone() };
+        let shorter = Config { relaxation: Some(Relaxation::Time(time)), ..config.clone() };
         let works = |regularization: &Regularization| {
             let attempts = &mut Vec::new();
             smooth_regularized(
@@ -509,7 +509,7 @@ fn smooth_by_growth(
     clock: &mut Clock<'_>,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<Smoothed, NetworkError> {
-    let Relaxation::Time(time) = config.relaxation else { unreachable!("growth is for a time") };
+    let Relaxation::Time(time) = config.effective_relaxation() else { unreachable!("growth is for a time") };
     let (of_cells, flat) = clock.time(Stage::Network, || Network::new(tessellation, config.junctions, 0))?;
     let angles_before = dihedral_angles(&of_cells, of_cells.control_mesh(), &flat);
     let flat_angles = angles_between_boundaries(&of_cells, of_cells.control_mesh(), &flat);
@@ -547,8 +547,9 @@ fn smooth_by_energy(
     let flat_angles = angles_between_boundaries(&of_cells, of_cells.control_mesh(), &flat);
     let tension = |boundary: &Boundary| law.tension(boundary);
     let recipe = NetworkRecipe { face_mesh, junctions, levels: levels as usize, tension: &tension };
-    let relaxed_cells =
-        clock.time(Stage::Relaxation, || relax_cells(tessellation, &recipe, &config.relaxation, watch))?;
+    let relaxed_cells = clock.time(Stage::Relaxation, || {
+        relax_cells(tessellation, &recipe, &config.effective_relaxation(), watch)
+    })?;
     let RelaxedCells {
         network,
         relaxed,

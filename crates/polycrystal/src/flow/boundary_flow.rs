@@ -15,7 +15,7 @@ use crate::energy::patch::PatchTerms;
 use crate::energy::patches::Patches;
 use crate::flow::assembly::{Unknowns, assemble, gradient};
 use crate::flow::clusters::{ATTEMPTS, Clusters, Numbering};
-use crate::flow::relaxation::TIME_WITHOUT_EVENTS;
+use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::flow::system::System;
 use crate::flow::tangential::tangential_moves;
 use crate::flow::thin_triangles::Room;
@@ -335,7 +335,7 @@ impl<'a> Flow<'a> {
     /// nothing: points that move within a curved boundary leave it a little, and that counts as growth.
     fn centering(&self, time: f64) -> f64 {
         let usual =
-            TIME_WITHOUT_EVENTS / self.tuning.coarse_steps as f64 * self.network.mean_grain_size().powi(2);
+            TIME_OF_KEPT_TOPOLOGY / self.tuning.coarse_steps as f64 * self.network.mean_grain_size().powi(2);
         match self.volumes {
             Volumes::Kept => self.tuning.centering,
             Volumes::Free => self.tuning.centering * (time / usual).min(1.0),

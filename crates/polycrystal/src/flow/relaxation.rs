@@ -6,7 +6,7 @@ use voronoi::Tessellation;
 use crate::{Attempt, GrainId, Network, NetworkError};
 
 /// The usual relaxation time where the topology stays, in units of the mean grain size squared.
-pub(crate) const TIME_WITHOUT_EVENTS: f64 = 0.3;
+pub(crate) const TIME_OF_KEPT_TOPOLOGY: f64 = 0.3;
 
 /// Volume of a grain as a share of the mean below which it has shrunk to nothing.
 const LEAST_GRAIN: f64 = 1e-3;
@@ -32,6 +32,10 @@ impl Relaxation {
     /// grains spread by 5 degrees instead of 24, and one point in two hundred joins more than four.
     pub const USUAL: Self = Self::Time(1.2);
 
+    /// The usual time where the topology stays, as of [`relax`](crate::relax()): the angles of random Voronoi grains spread by 7 degrees
+    /// instead of 24.
+    pub const KEPT_TOPOLOGY: Self = Self::Time(TIME_OF_KEPT_TOPOLOGY);
+
     pub(crate) fn check(self) -> Result<(), NetworkError> {
         match self {
             Self::Time(time) if !(time.is_finite() && time >= 0.0) => {
@@ -39,13 +43,6 @@ impl Relaxation {
             }
             Self::Time(_) | Self::Equilibrium => Ok(()),
         }
-    }
-}
-
-impl Default for Relaxation {
-    /// Time 0.3, the usual where the topology stays: the angles of random Voronoi grains spread by 7 degrees instead of 24.
-    fn default() -> Self {
-        Self::Time(TIME_WITHOUT_EVENTS)
     }
 }
 

@@ -6,7 +6,7 @@ use crate::energy::sides::boundary;
 use crate::events::merged_lines::MergedLines;
 use crate::flow::balance::Balance;
 use crate::flow::recipe::{NetworkRecipe, RelaxedCells};
-use crate::flow::relaxation::{Relaxation, RelaxationStep, Relaxed, TIME_WITHOUT_EVENTS};
+use crate::flow::relaxation::{Relaxation, RelaxationStep, Relaxed, TIME_OF_KEPT_TOPOLOGY};
 use crate::flow::settling::settle;
 use crate::flow::tuning::Tuning;
 use crate::network::tension::{checked_tension, in_unit, mean_in_flow};
@@ -103,7 +103,7 @@ fn relax_in_space(
     let settled = settle(tessellation, recipe, &volumes, relaxation, tuning, watch)?;
     // Most of a given time has passed.
     let later = match *relaxation {
-        Relaxation::Time(time) => Relaxation::Time(time.min(TIME_WITHOUT_EVENTS)),
+        Relaxation::Time(time) => Relaxation::Time(time.min(TIME_OF_KEPT_TOPOLOGY)),
         Relaxation::Equilibrium => Relaxation::Equilibrium,
     };
     let mut smooth = |merged_length: f64, rigid_length: f64| {

@@ -59,7 +59,7 @@ pub fn network_of_regular(
 
 /// The points of the finest level after relaxation of the default time.
 pub fn relaxed(network: &Network, flat: &[DVec3]) -> Vec<DVec3> {
-    relax(network, flat, &Relaxation::default(), |_, _| ()).expect("relaxes").finest_points(network)
+    relax(network, flat, &Relaxation::KEPT_TOPOLOGY, |_, _| ()).expect("relaxes").finest_points(network)
 }
 
 /// An icosahedron whose triangles are cut into four so often, pushed out to a sphere.

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{End, Flow, OnFold, Wedged};
 use crate::check::folds::element_normals;
-use crate::flow::relaxation::{TIME_WITHOUT_EVENTS, check_grains_are_left};
+use crate::flow::relaxation::{TIME_OF_KEPT_TOPOLOGY, check_grains_are_left};
 use crate::{GrainId, NetworkError};
 
 /// Largest difference between the volumes of a grain after a step and after two of half its time, as a share. What the two of them extrapolate
@@ -53,7 +53,7 @@ impl Flow<'_> {
         mut progress: impl FnMut(Grown<'_>),
     ) -> Result<Vec<DVec3>, NetworkError> {
         let longest =
-            TIME_WITHOUT_EVENTS / self.tuning.coarse_steps as f64 * self.network.mean_grain_size().powi(2);
+            TIME_OF_KEPT_TOPOLOGY / self.tuning.coarse_steps as f64 * self.network.mean_grain_size().powi(2);
         let mut points = start.to_vec();
         let mut square = self.least_square(&self.volumes_at(&points));
         let mut step_time = FIRST_STEP * square;
