@@ -119,5 +119,10 @@ fn grains_of_the_plane_vanish_as_others_grow() {
     }
     workplace.run(&format!("{arguments} --periodic-cut box -o cut.vtp"));
     workplace.command("check cut.vtp").assert().success();
+    // The last grain but one lies along a number of walls.
+    let last = workplace.run(
+        "--dim 2 --domain disc --seeds 3 --seeding random --rng-seed 750042 --free --relax 3 -o last.vtp",
+    );
+    assert!(last.contains("vanished    2 of 3 grains"), "{last}");
     workplace.run("--dim 2 --domain disc --seeds 60 -n 1 --free --relax 2 --voxels 40 40 -o disc.vti -o disc.npy -o disc.inp");
 }

@@ -150,6 +150,50 @@ impl CellComplex {
         None
     }
 
+    /// Gives all of a cell of the plane to the one beyond one of its edges. The cell and the edge are gone, and other edges of the cell are the
+    /// neighbour's.
+    ///
+    /// Gives these, and whether each now runs the other way round. Nothing happens, and nothing is given, where no cell is beyond the edge, or
+    /// the same one is beyond another edge too.
+    pub fn cell_to_neighbor(&mut self, cell: CellId, edge: FaceId) -> Option<Vec<(FaceId, bool)>> {
+        let beyond = |sides: [Side; 2]| match sides {
+            [first, second] if first == Side::Cell(cell) => (second, Shift::NONE),
+            [first, second] => {
+                let back = Shift::NONE - second.cell().map_or(Shift::NONE, |(_, shift)| shift);
+                (first.moved(back), back)
+            }
+        };
+        let neighbor = beyond(self.sides(edge)).0.cell().filter(|(id, _)| *id != cell)?;
+        let others: Vec<u32> =
+            self.faces_of[cell.index()].iter().copied().filter(|other| *other != edge.0).collect();
+        let is_taken = |other: &u32| {
+            let other = beyond(self.faces[*other as usize].sides).0.cell();
+            other.is_some_and(|(id, _)| id == cell) || other == Some(neighbor)
+        };
+        if others.iter().any(is_taken) {
+            return None;
+        }
+        self.remove_face(edge.0);
+        let image = |side: Side| side.cell().map_or(side, |(id, shift)| Side::Image(id, shift));
+        let own = Side::Image(neighbor.0, neighbor.1);
+        let mut changed = Vec::with_capacity(others.len());
+        for number in others {
+            let Face { sides, corners } = self.faces[number as usize].clone();
+            let (other, back) = beyond(sides);
+            let corners: Vec<Corner> = corners.into_iter().map(|corner| corner.moved(back)).collect();
+            let between =
+                if sides[0] == Side::Cell(cell) { [own, image(other)] } else { [image(other), own] };
+            let new = self.face_between(between, corners.clone());
+            let along = |[start, end]: [Corner; 2]| (start.vertex, end.vertex, end.shift - start.shift);
+            let is_reversed = along([corners[0], corners[1]]) != along([new.corners[0], new.corners[1]]);
+            self.faces[number as usize] = new;
+            self.faces_of[neighbor.0.index()].push(number);
+            changed.push((FaceId(number), is_reversed));
+        }
+        self.faces_of[cell.index()].clear();
+        Some(changed)
+    }
+
     /// Whether each cell and each wall at a vertex of the plane is there once, between two edges.
     fn meets_each_side_once(&self, vertex: u32) -> bool {
         let mut sides = Vec::new();

@@ -58,10 +58,13 @@ impl Curves {
         Happened { vanished, reconnections }
     }
 
-    /// Draws a grain together into a point in its middle, or on its walls; whether it could.
+    /// Draws a grain together into a point in its middle, or on its walls. One that parts a neighbour from itself, or lies along several walls,
+    /// goes to a neighbour instead. Whether it could.
     fn vanish(&mut self, cell: CellId, before: &mut [[DVec2; 2]]) -> bool {
         let corners = self.complex().corners_of_cell(cell);
-        let Some(vertex) = self.edges.complex.cell_to_point(cell) else { return false };
+        let Some(vertex) = self.edges.complex.cell_to_point(cell) else {
+            return self.give_to_neighbor(cell, before);
+        };
         let complex = &mut self.edges.complex;
         let walls = complex.walls_at(vertex);
         if walls.len() < 2 {
@@ -78,6 +81,35 @@ impl Curves {
             self.join_edges(vertex, before);
         }
         true
+    }
+
+    /// Gives a grain to the neighbour that it shares the longest edge with, of those that can have it.
+    fn give_to_neighbor(&mut self, cell: CellId, before: &mut [[DVec2; 2]]) -> bool {
+        let mut edges: Vec<FaceId> = self.complex().edges_of_cell(cell).collect();
+        edges.sort_by(|a, b| self.length(*b).total_cmp(&self.length(*a)).then(a.cmp(b)));
+        for edge in edges {
+            let ends: Vec<u32> = self.complex().corners(edge).iter().map(|corner| corner.vertex).collect();
+            let lines: Vec<(FaceId, Vec<DVec2>)> =
+                self.complex().edges_of_cell(cell).map(|edge| (edge, self.line(edge))).collect();
+            let Some(changed) = self.edges.complex.cell_to_neighbor(cell, edge) else { continue };
+            for (face, is_reversed) in changed {
+                let known = lines.iter().find(|(other, _)| *other == face);
+                let mut line = known.expect("it was the grain's").1.clone();
+                if is_reversed {
+                    line.reverse();
+                }
+                let ends = self.ends(face);
+                let offset = ends[0] - line[0];
+                self.inner[face.index()] =
+                    line[1..line.len() - 1].iter().map(|point| *point + offset).collect();
+                before[face.index()] = ends;
+            }
+            for vertex in ends {
+                self.join_edges(vertex, before);
+            }
+            return true;
+        }
+        false
     }
 
     /// Makes one edge of the two at a vertex that only they are left at.
