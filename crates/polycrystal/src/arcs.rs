@@ -3,11 +3,11 @@
 //! There, boundaries in equilibrium are arcs of circles, whose curvature is the difference of pressure over the tension. So little is
 //! unknown: where vertices are, and how far each edge turns.
 
-pub(crate) mod bow;
+pub(crate) mod arc_network;
+pub(crate) mod chordal_arc;
 pub(crate) mod descent;
-pub(crate) mod foam;
+pub(crate) mod kkt_system;
 pub(crate) mod switching;
-pub(crate) mod tangent;
 
 use std::time::Instant;
 
@@ -22,9 +22,9 @@ use crate::flow::relaxation::{Moving, RelaxationStep, Relaxed};
 use crate::flow::tuning::Tuning;
 use crate::{CellComplex, Collapsed, validate};
 use crate::{Mesh, Network, NetworkError, Side, measure_network};
-use bow::point_on_arc;
+use arc_network::ArcNetwork;
+use chordal_arc::point_on_arc;
 use descent::Descent;
-use foam::Foam;
 use switching::{CurvedEdges, Switcher};
 
 /// Chords of an arc as long as the topology changes: as good as a smooth one.
@@ -89,20 +89,20 @@ fn settle(
     let local_size = LocalSize::new(domain.dimension(), Tuning::default().small_grain * size);
     let mut switcher = Switcher::new(feature_size, local_size, areas, recipe.tension);
     let mut reconnections = switcher.start(edges);
-    let mut foam = edges.foam(areas, recipe, |_| CHORDS);
-    let mut descent = Descent::new(&foam, edges.state(&foam));
+    let mut network = edges.network(areas, recipe, |_| CHORDS);
+    let mut descent = Descent::new(&network, edges.state(&network));
     let mut states = vec![descent.state.clone()];
     for _ in 0..STEPS {
-        let step = descent.step(&foam)?;
+        let step = descent.step(&network)?;
         if step.is_at_rest {
             break;
         }
-        edges.place(&foam, &descent.state);
+        edges.place(&network, &descent.state);
         let events = switcher.pass(edges, &step.vanishing);
         if events.count() > 0 {
             reconnections.add(events);
-            foam = edges.foam(areas, recipe, |_| CHORDS);
-            descent.go_on(&foam, edges.state(&foam));
+            network = edges.network(areas, recipe, |_| CHORDS);
+            descent.go_on(&network, edges.state(&network));
             states.clear();
         }
         states.push(descent.state.clone());
@@ -111,26 +111,26 @@ fn settle(
 }
 
 impl CurvedEdges {
-    fn foam<'a>(
+    fn network<'a>(
         &self,
         areas: &'a [f64],
         recipe: &NetworkRecipe<'_>,
         chords: impl Fn(FaceId) -> u32,
-    ) -> Foam<'a> {
-        Foam::new(&self.complex, areas, recipe.tension, chords)
+    ) -> ArcNetwork<'a> {
+        ArcNetwork::new(&self.complex, areas, recipe.tension, chords)
     }
 
-    fn state(&self, foam: &Foam<'_>) -> Vec<f64> {
+    fn state(&self, network: &ArcNetwork<'_>) -> Vec<f64> {
         let places = self.complex.vertices.iter().flat_map(|place| [place.x, place.y]);
-        places.chain(foam.arcs.iter().map(|arc| self.turnings[arc.face.index()])).collect()
+        places.chain(network.arcs.iter().map(|arc| self.turnings[arc.face.index()])).collect()
     }
 
-    fn place(&mut self, foam: &Foam<'_>, state: &[f64]) {
+    fn place(&mut self, network: &ArcNetwork<'_>, state: &[f64]) {
         for (vertex, place) in self.complex.vertices.iter_mut().zip(state.chunks(2)) {
             *vertex = DVec3::new(place[0], place[1], 0.0);
         }
-        for (number, arc) in foam.arcs.iter().enumerate() {
-            self.turnings[arc.face.index()] = foam.turning(number, state);
+        for (number, arc) in network.arcs.iter().enumerate() {
+            self.turnings[arc.face.index()] = network.turning(number, state);
         }
     }
 }
@@ -173,10 +173,10 @@ impl SmoothEdges {
     ) -> Result<Relaxed, NetworkError> {
         let faces = edges.complex.faces();
         let chords = |face| self.chords[faces.binary_search(&face).expect("numbers do not change")];
-        let foam = edges.foam(self.network.cell_volumes(), recipe, chords);
+        let network = edges.network(self.network.cell_volumes(), recipe, chords);
         let level = self.network.levels().len() - 1;
         let mut show = |done: usize, state: &[f64]| {
-            let points = self.points(&foam, state);
+            let points = self.points(&network, state);
             watch(RelaxationStep {
                 done,
                 count: STEPS,
@@ -187,17 +187,17 @@ impl SmoothEdges {
         states.iter().enumerate().for_each(|(done, state)| show(done, state));
         let mut steps = states.len() - 1;
         for _ in 0..STEPS {
-            if descent.step(&foam)?.is_at_rest {
+            if descent.step(&network)?.is_at_rest {
                 break;
             }
             steps += 1;
             show(steps, &descent.state);
         }
-        let points = self.points(&foam, &descent.state);
+        let points = self.points(&network, &descent.state);
         Ok(Relaxed { level, points, steps, time: steps as f64, given_up: Vec::new(), is_flat: false })
     }
 
-    fn points(&self, foam: &Foam<'_>, state: &[f64]) -> Vec<DVec3> {
+    fn points(&self, network: &ArcNetwork<'_>, state: &[f64]) -> Vec<DVec3> {
         let finest = self.network.finest();
         let Mesh::Segments(mesh) = &finest.mesh else { unreachable!("a network in the plane has lines") };
         let mut points = vec![DVec3::ZERO; finest.vertex_count()];
@@ -208,9 +208,9 @@ impl SmoothEdges {
             *point = own + corner.shift.vector(self.network.domain());
         }
         let mut segments = mesh.segments().iter();
-        for ((number, arc), chords) in foam.arcs.iter().enumerate().zip(&self.chords) {
-            let ends: [DVec2; 2] = foam.ends(arc, state);
-            let turning = foam.turning(number, state);
+        for ((number, arc), chords) in network.arcs.iter().enumerate().zip(&self.chords) {
+            let ends: [DVec2; 2] = network.ends(arc, state);
+            let turning = network.turning(number, state);
             for (done, [_, end]) in (1..=*chords).zip(&mut segments).filter(|(done, _)| done < chords) {
                 points[*end as usize] = point_on_arc(ends, turning, done, *chords).extend(0.0);
             }

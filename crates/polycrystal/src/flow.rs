@@ -3,7 +3,7 @@
 pub(crate) mod assembly;
 pub(crate) mod balance;
 pub(crate) mod boundary_flow;
-pub(crate) mod clusters;
+pub(crate) mod dihedral_sectors;
 pub(crate) mod fan_flow;
 pub(crate) mod mobility;
 pub(crate) mod recipe;
@@ -12,6 +12,6 @@ pub(crate) mod settling;
 pub(crate) mod system;
 pub(crate) mod tangential;
 pub(crate) mod thin_triangles;
+pub(crate) mod tied_points;
 pub(crate) mod tuning;
 pub(crate) mod volume_constraint;
-pub(crate) mod wedges;

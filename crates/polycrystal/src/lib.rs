@@ -36,7 +36,7 @@ mod solver;
 mod validate;
 
 pub use box_cut::BoxCut;
-pub use check::certificate::{Certificate, Claims, Faults, certify};
+pub use check::certificate::{Certificate, Expected, Faults, certify};
 pub use check::fault::{Fault, Place};
 pub use check::folds::folded_edges;
 pub use check::orientation::outward_sides;

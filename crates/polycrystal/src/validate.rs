@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::check::certificate::inspect;
 use crate::mesh::seams::Seams;
-use crate::{Certificate, Claims, Faults, GrainId, Network, Surface, dihedral_angles};
+use crate::{Certificate, Expected, Faults, GrainId, Network, Surface, dihedral_angles};
 
 /// Checks the finest level of a network with the given points: everything that [`certify`](crate::certify) finds in any
 /// surface, grains that have the volumes of their cells, and the types of points.
@@ -22,7 +22,7 @@ pub fn validate(network: &Network, points: &[DVec3]) -> Result<Certificate, Faul
         (0u32..).map(GrainId).zip(network.cell_volumes().iter().copied()).collect();
     let node_types: Vec<_> = level.node_types.iter().copied().map(Some).collect();
     let originals = network.domain().is_periodic().then(|| level.originals());
-    let claims = Claims {
+    let expected = Expected {
         // Types in a periodic domain count the grains a period away, which the surface calls exterior.
         node_types: (!network.domain().is_periodic()).then_some(&node_types),
         grain_counts: Some(&level.grain_counts),
@@ -31,7 +31,7 @@ pub fn validate(network: &Network, points: &[DVec3]) -> Result<Certificate, Faul
         domain_volume: Some(network.domain().measure()),
         rounding: surface.last_place(),
     };
-    let mut certificate = inspect(&surface, &Seams::of_level(level), &claims);
+    let mut certificate = inspect(&surface, &Seams::of_level(level), &expected);
     // The surface does not know what it is like through the walls.
     if certificate.is_good() && network.domain().is_periodic() {
         certificate.angles = dihedral_angles(network, level, points);

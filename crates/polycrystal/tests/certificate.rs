@@ -6,7 +6,7 @@ mod common;
 use common::{random_network, relaxed};
 use glam::DVec3;
 use polycrystal::{
-    BoundaryId, Certificate, Claims, Elements, Fault, GrainId, Level, Mesh, NodeType, Place, Side, Surface,
+    BoundaryId, Certificate, Elements, Expected, Fault, GrainId, Level, Mesh, NodeType, Place, Side, Surface,
     certify,
 };
 use voronoi::Domain;
@@ -43,9 +43,9 @@ impl Parts {
     }
 
     fn certify(&self) -> Certificate {
-        let claims =
-            Claims { node_types: Some(&self.node_types), domain_volume: Some(1.0), ..Claims::default() };
-        certify(&self.surface(), &claims)
+        let expected =
+            Expected { node_types: Some(&self.node_types), domain_volume: Some(1.0), ..Expected::default() };
+        certify(&self.surface(), &expected)
     }
 
     fn faults(&self) -> Vec<Fault> {
@@ -127,9 +127,13 @@ fn rounding_that_is_stated_is_no_fault_but_a_moved_point_is() {
         ..good.clone()
     };
     let faults = |parts: &Parts, rounding: f64| {
-        let claims =
-            Claims { grain_volumes: Some(&volumes), domain_volume: Some(1.0), rounding, ..Claims::default() };
-        certify(&parts.surface(), &claims).faults.0
+        let expected = Expected {
+            grain_volumes: Some(&volumes),
+            domain_volume: Some(1.0),
+            rounding,
+            ..Expected::default()
+        };
+        certify(&parts.surface(), &expected).faults.0
     };
     let rounding = 0.5 * f64::from(f32::EPSILON);
     assert_eq!(faults(&rounded, rounding), []);
@@ -178,7 +182,9 @@ fn a_wrong_number_of_grains_is_found() {
     let (network, _) = random_network(&Domain::unit_cube(), 12, 7, 1);
     let mut grain_counts = network.finest().grain_counts.clone();
     let faults = |grain_counts: &[u8]| {
-        certify(&parts.surface(), &Claims { grain_counts: Some(grain_counts), ..Claims::default() }).faults.0
+        certify(&parts.surface(), &Expected { grain_counts: Some(grain_counts), ..Expected::default() })
+            .faults
+            .0
     };
     assert_eq!(faults(&grain_counts), []);
     let (_, point) = parts.inner_triangle();
@@ -232,7 +238,7 @@ fn crossing_is_found_where_each_grain_is_good() {
         sides: [0, 1].map(|grain| [Side::Grain(GrainId(grain)), Side::Exterior]).to_vec(),
         node_types: Vec::new(),
     };
-    let certificate = certify(&parts.surface(), &Claims::default());
+    let certificate = certify(&parts.surface(), &Expected::default());
     assert!(certificate.faults.0.len() > 4, "{}", certificate.faults);
     assert!(certificate.faults.0.iter().all(|fault| matches!(fault, Fault::Crossing { .. })));
     // Each grain has the volume 4/3, and the planes through the second grain's corner decide.
@@ -241,7 +247,7 @@ fn crossing_is_found_where_each_grain_is_good() {
     for point in &mut parts.points[6..] {
         *point += DVec3::X * 1.2;
     }
-    assert!(certify(&parts.surface(), &Claims::default()).is_good());
+    assert!(certify(&parts.surface(), &Expected::default()).is_good());
 }
 
 /// Four triangles of two grains at one edge, as voxels that touch along an edge have.
@@ -263,7 +269,7 @@ fn a_grain_that_touches_itself_is_found() {
         })
         .collect();
     let surface = Surface { sides: &sides, ..Surface::of_level(network.finest(), &flat, &sides) };
-    let certificate = certify(&surface, &Claims::default());
+    let certificate = certify(&surface, &Expected::default());
     let pinched =
         certificate.faults.0.iter().filter(|fault| matches!(fault, Fault::Pinched { elements: 4, .. }));
     // Two edges, two grains.
@@ -298,7 +304,7 @@ fn pinches_of_touching_tetrahedra(grains: [u32; 2]) -> Vec<Fault> {
     ];
     let elements = Elements::Triangles(&triangles);
     let surface = Surface { points: &points, elements, boundary_of: &boundary_of, sides: &sides };
-    let faults = certify(&surface, &Claims::default()).faults.0;
+    let faults = certify(&surface, &Expected::default()).faults.0;
     // The edges of the tetrahedra are folds within their boundaries.
     faults.into_iter().filter(|fault| fault.kind() != "folded").collect()
 }
@@ -319,7 +325,7 @@ fn points_of_many_grains_are_no_pinches() {
     let (network, flat) = common::network(&Domain::unit_cube(), &seeds, 1);
     let points = network.subdivide(&flat);
     let sides = network.sides();
-    let certificate = certify(&Surface::of_level(network.finest(), &points, &sides), &Claims::default());
+    let certificate = certify(&Surface::of_level(network.finest(), &points, &sides), &Expected::default());
     assert!(certificate.is_good(), "{}", certificate.faults);
 }
 
@@ -329,12 +335,12 @@ fn lines_in_the_plane_are_certified() {
     let mut points = relaxed(&network, &flat);
     points.iter_mut().for_each(|point| point.z = 0.0);
     let sides = network.sides();
-    let claims = Claims { domain_volume: Some(1.0), ..Claims::default() };
-    let certificate = certify(&Surface::of_level(network.finest(), &points, &sides), &claims);
+    let expected = Expected { domain_volume: Some(1.0), ..Expected::default() };
+    let certificate = certify(&Surface::of_level(network.finest(), &points, &sides), &expected);
     assert!(certificate.is_good(), "{}", certificate.faults);
 
     let inner = network.finest().node_types.iter().position(|node_type| *node_type == NodeType::INTERIOR);
     points[inner.expect("a line between grains")] += DVec3::new(0.6, 0.2, 0.0);
-    let certificate = certify(&Surface::of_level(network.finest(), &points, &sides), &claims);
+    let certificate = certify(&Surface::of_level(network.finest(), &points, &sides), &expected);
     assert!(certificate.faults.0.iter().any(|fault| matches!(fault, Fault::Crossing { .. })));
 }

@@ -1,4 +1,4 @@
-//! The spokes of the coarsest mesh's vertices, the only ones that need not have six.
+//! The outgoing edges of the coarsest mesh's vertices, the only ones that need not have six.
 
 use crate::{LoopWeights, TriangleMesh};
 
@@ -7,11 +7,11 @@ use crate::{LoopWeights, TriangleMesh};
 /// They are the same on every level: the first half of an edge leaves the vertex that the edge left.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BaseRings {
-    /// Where the spokes of each vertex start, and after the last vertex their number.
+    /// Where the outgoing edges of each vertex start, and after the last vertex their number.
     starts: Vec<u32>,
     /// Twice the edge, plus 1 if it ends at the vertex; by vertex, then by triangle.
-    spokes: Vec<u32>,
-    /// Per vertex: the weight of each neighbour. Like the spokes, it means nothing at boundaries.
+    outgoing_edges: Vec<u32>,
+    /// Per vertex: the weight of each neighbour. Like the outgoing edges, it means nothing at boundaries.
     weights: Vec<f64>,
 }
 
@@ -27,18 +27,18 @@ impl BaseRings {
             starts[vertex + 1] += starts[vertex];
         }
         let mut free = starts.clone();
-        let mut spokes = vec![0; starts[mesh.vertex_count()] as usize];
+        let mut outgoing_edges = vec![0; starts[mesh.vertex_count()] as usize];
         for (&vertex, &directed) in half_edges {
             let next = &mut free[vertex as usize];
-            spokes[*next as usize] = directed;
+            outgoing_edges[*next as usize] = directed;
             *next += 1;
         }
-        Self { starts, spokes, weights }
+        Self { starts, outgoing_edges, weights }
     }
 
-    /// The spokes of a vertex.
-    pub(crate) fn spokes(&self, vertex: usize) -> &[u32] {
-        &self.spokes[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
+    /// The outgoing edges of a vertex.
+    pub(crate) fn outgoing_edges(&self, vertex: usize) -> &[u32] {
+        &self.outgoing_edges[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
     }
 
     /// The weight of each neighbour of a vertex.

@@ -78,9 +78,13 @@ impl TriangleMesh {
         for (end, other) in [(a, b), (b, a)] {
             rows.add(end, 9.0 / 16.0);
             let goes_on = self.vertex_rule(end) == VertexRule::Crease;
-            let spoke = self.sharpness.spokes(end).iter().find(|spoke| goes_on && spoke.edge != edge);
-            if let Some(spoke) = spoke {
-                rows.add(self.other_end(spoke.edge, end), -1.0 / 16.0);
+            let outgoing_edge = self
+                .sharpness
+                .outgoing_edges(end)
+                .iter()
+                .find(|outgoing_edge| goes_on && outgoing_edge.edge != edge);
+            if let Some(outgoing_edge) = outgoing_edge {
+                rows.add(self.other_end(outgoing_edge.edge, end), -1.0 / 16.0);
             } else {
                 rows.add(end, -2.0 / 16.0);
                 rows.add(other, 1.0 / 16.0);
@@ -114,7 +118,7 @@ impl TriangleMesh {
         let n = valence as f64;
         rows.add(self.start(h), 0.75 * share);
         let mut angle = 0.0;
-        for (j, spoke) in self.ring(h).enumerate() {
+        for (j, outgoing_edge) in self.ring(h).enumerate() {
             let weight = match (valence, j) {
                 (3, 0) => 5.0 / 12.0,
                 (3, _) => -1.0 / 12.0,
@@ -124,7 +128,7 @@ impl TriangleMesh {
                 _ => (0.25 + f64::cos(angle) + 0.5 * f64::cos(2.0 * angle)) / n,
             };
             if weight != 0.0 {
-                rows.add(self.start(next(spoke)), share * weight);
+                rows.add(self.start(next(outgoing_edge)), share * weight);
             }
             angle += TAU / n;
         }

@@ -119,8 +119,8 @@ impl PolygonMesh {
             VertexRule::Corner => rows.add(vertex, 1.0),
             VertexRule::Crease => {
                 rows.add(vertex, 4.0 / 6.0);
-                for spoke in self.sharpness.spokes(vertex) {
-                    rows.add(self.other_end(spoke.edge, vertex), 1.0 / 6.0);
+                for outgoing_edge in self.sharpness.outgoing_edges(vertex) {
+                    rows.add(self.other_end(outgoing_edge.edge, vertex), 1.0 / 6.0);
                 }
             }
             VertexRule::Smooth => {

@@ -72,8 +72,8 @@ impl TriangleMesh {
                 }
                 VertexRule::Crease => {
                     rows.add(vertex, 4.0 / 6.0);
-                    for spoke in self.sharpness.spokes(vertex) {
-                        rows.add(self.other_end(spoke.edge, vertex), 1.0 / 6.0);
+                    for outgoing_edge in self.sharpness.outgoing_edges(vertex) {
+                        rows.add(self.other_end(outgoing_edge.edge, vertex), 1.0 / 6.0);
                     }
                 }
                 VertexRule::Corner => rows.add(vertex, 1.0),

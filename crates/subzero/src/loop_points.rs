@@ -37,12 +37,12 @@ impl TriangleMesh {
         let (moved, placed) = refined.split_at_mut(self.vertex_count());
         match ancestors {
             [] => {
-                self.move_oldest(points, rings, weights, moved, |spoke| self.end(spoke));
+                self.move_oldest(points, rings, weights, moved, |outgoing_edge| self.end(outgoing_edge));
                 self.place_on_all_edges(points, weights, placed);
             }
             [parent] => {
                 let (oldest, middles) = moved.split_at_mut(parent.vertex_count());
-                let middle = |spoke: u32| id(parent.vertex_count()) + spoke / 2;
+                let middle = |outgoing_edge: u32| id(parent.vertex_count()) + outgoing_edge / 2;
                 self.move_oldest(points, rings, weights, oldest, middle);
                 self.move_middles(parent, points, weights, middles);
                 self.place_on_all_edges(points, weights, placed);
@@ -82,13 +82,13 @@ impl TriangleMesh {
         !matches!(self.vertex_rules[vertex], VertexRule::Smooth | VertexRule::Dart)
     }
 
-    /// Where a spoke leads: the vertex at which it does not start.
-    fn end(&self, spoke: u32) -> u32 {
-        let [along, _] = self.edges[(spoke / 2) as usize];
-        self.start(if spoke.is_multiple_of(2) { next(along) } else { along })
+    /// Where an outgoing edge leads: the vertex at which it does not start.
+    fn end(&self, outgoing_edge: u32) -> u32 {
+        let [along, _] = self.edges[(outgoing_edge / 2) as usize];
+        self.start(if outgoing_edge.is_multiple_of(2) { next(along) } else { along })
     }
 
-    /// Moves the vertices of the coarsest mesh; `neighbour` is the vertex on a spoke.
+    /// Moves the vertices of the coarsest mesh; `neighbour` is the vertex on an outgoing edge.
     fn move_oldest<P: Point>(
         &self,
         points: &[P],
@@ -101,7 +101,10 @@ impl TriangleMesh {
             *new = if self.is_sharp(v) {
                 self.point_by_row(id(v), points, weights)
             } else {
-                let ring = rings.spokes(v).iter().map(|&spoke| points[neighbour(spoke) as usize]);
+                let ring = rings
+                    .outgoing_edges(v)
+                    .iter()
+                    .map(|&outgoing_edge| points[neighbour(outgoing_edge) as usize]);
                 smooth_point(points[v], ring, rings.weight(v))
             };
         });
@@ -223,8 +226,8 @@ impl TriangleMesh {
         );
     }
 
-    /// Moves the vertices that this mesh shares with its grandparent. A vertex has the same spokes on every level from its birth
-    /// on, and the neighbour on a spoke is the vertex that the parent's edge got: no need to turn around the vertex.
+    /// Moves the vertices that this mesh shares with its grandparent. A vertex has the same outgoing edges on every level from its birth
+    /// on, and the neighbour on an outgoing edge is the vertex that the parent's edge got: no need to turn around the vertex.
     fn move_vertices<P: Point>(
         &self,
         ancestors: &[Self],
@@ -234,13 +237,15 @@ impl TriangleMesh {
         moved: &mut [P],
     ) {
         let parent = &ancestors[ancestors.len() - 1];
-        let on_spoke = |directed: u32, levels: usize| {
+        let on_outgoing_edge = |directed: u32, levels: usize| {
             // Half after half at the vertex: twice the id, and plus 1 again if the edge ends there.
             let ones = (directed & 1) * ((1 << levels) - 1);
             id(parent.vertex_count()) + ((directed << levels) + ones) / 2
         };
         let (oldest, mut rest) = moved.split_at_mut(ancestors[0].vertex_count());
-        self.move_oldest(points, rings, weights, oldest, |spoke| on_spoke(spoke, ancestors.len() - 1));
+        self.move_oldest(points, rings, weights, oldest, |outgoing_edge| {
+            on_outgoing_edge(outgoing_edge, ancestors.len() - 1)
+        });
         for (level, born_on) in ancestors[..ancestors.len() - 2].iter().enumerate() {
             let (born, younger) = rest.split_at_mut(born_on.edge_count());
             rest = younger;
@@ -254,14 +259,14 @@ impl TriangleMesh {
                         return;
                     }
                     let [first_half, inner] = [4 * id(e), 2 * first_inner];
-                    let spoke = |directed: u32| points[on_spoke(directed, levels) as usize];
+                    let outgoing_edge = |directed: u32| points[on_outgoing_edge(directed, levels) as usize];
                     let ring = [
-                        spoke(first_half + 1),
-                        spoke(first_half + 2),
-                        spoke(inner + 2 * along),
-                        spoke(inner + 2 * next(along) + 1),
-                        spoke(inner + 2 * against),
-                        spoke(inner + 2 * next(against) + 1),
+                        outgoing_edge(first_half + 1),
+                        outgoing_edge(first_half + 2),
+                        outgoing_edge(inner + 2 * along),
+                        outgoing_edge(inner + 2 * next(along) + 1),
+                        outgoing_edge(inner + 2 * against),
+                        outgoing_edge(inner + 2 * next(against) + 1),
                     ];
                     *new = vertex_point(points[v], ring);
                 },

@@ -9,7 +9,7 @@ use crate::{EdgeId, MeshError, VertexRule};
 
 /// A sharp edge as seen from one of its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Spoke {
+pub(crate) struct OutgoingEdge {
     pub vertex: u32,
     pub edge: EdgeId,
     pub sharpness: f32,
@@ -20,7 +20,7 @@ pub(crate) struct Sharpness {
     /// Edges with a sharpness above 0, sorted by edge.
     pub edges: Vec<(EdgeId, f32)>,
     /// Both ends of each of them, sorted by vertex, then edge.
-    pub spokes: Vec<Spoke>,
+    pub outgoing_edges: Vec<OutgoingEdge>,
     /// Vertices with a sharpness of their own, sorted.
     pub corners: Vec<(u32, f32)>,
 }
@@ -30,11 +30,12 @@ impl Sharpness {
     pub(crate) fn new(edge_sharpness: &[f32], ends: impl Fn(EdgeId) -> [u32; 2]) -> Self {
         let sharp = edge_sharpness.iter().enumerate().filter(|&(_, &s)| s > 0.0);
         let edges: Vec<(EdgeId, f32)> = sharp.map(|(e, &s)| (EdgeId(id(e)), s)).collect();
-        let spokes_of =
-            |&(edge, sharpness): &(EdgeId, f32)| ends(edge).map(|vertex| Spoke { vertex, edge, sharpness });
-        let mut spokes: Vec<Spoke> = edges.iter().flat_map(spokes_of).collect();
-        spokes.sort_by_key(|spoke| (spoke.vertex, spoke.edge));
-        Self { edges, spokes, corners: Vec::new() }
+        let outgoing_edges_of = |&(edge, sharpness): &(EdgeId, f32)| {
+            ends(edge).map(|vertex| OutgoingEdge { vertex, edge, sharpness })
+        };
+        let mut outgoing_edges: Vec<OutgoingEdge> = edges.iter().flat_map(outgoing_edges_of).collect();
+        outgoing_edges.sort_by_key(|outgoing_edge| (outgoing_edge.vertex, outgoing_edge.edge));
+        Self { edges, outgoing_edges, corners: Vec::new() }
     }
 
     /// Makes these the corners, in any order; of several entries for a vertex the sharpest holds.
@@ -55,28 +56,33 @@ impl Sharpness {
     }
 
     /// The sharp edges at a vertex.
-    pub(crate) fn spokes(&self, vertex: u32) -> &[Spoke] {
-        let start = self.spokes.partition_point(|spoke| spoke.vertex < vertex);
-        let end = start + self.spokes[start..].partition_point(|spoke| spoke.vertex == vertex);
-        &self.spokes[start..end]
+    pub(crate) fn outgoing_edges(&self, vertex: u32) -> &[OutgoingEdge] {
+        let start = self.outgoing_edges.partition_point(|outgoing_edge| outgoing_edge.vertex < vertex);
+        let end = start
+            + self.outgoing_edges[start..].partition_point(|outgoing_edge| outgoing_edge.vertex == vertex);
+        &self.outgoing_edges[start..end]
     }
 
     /// Checks that all sharpness is infinite.
     pub(crate) fn check_settled(&self) -> Result<(), MeshError> {
-        let spoke = self.spokes.iter().find(|spoke| !is_infinite(spoke.sharpness)).map(|spoke| spoke.vertex);
+        let outgoing_edge = self
+            .outgoing_edges
+            .iter()
+            .find(|outgoing_edge| !is_infinite(outgoing_edge.sharpness))
+            .map(|outgoing_edge| outgoing_edge.vertex);
         let corner = self.corners.iter().find(|corner| !is_infinite(corner.1)).map(|corner| corner.0);
-        spoke.or(corner).map_or(Ok(()), |vertex| Err(MeshError::SemiSharp { vertex }))
+        outgoing_edge.or(corner).map_or(Ok(()), |vertex| Err(MeshError::SemiSharp { vertex }))
     }
 
     /// The features one level on, where edge e has the halves 2 e and 2 e + 1 and the vertex `vertex_count` + e;
     /// `is_start(vertex, edge)` tells which end of an edge a vertex is.
     pub(crate) fn refine(&self, vertex_count: usize, is_start: impl Fn(u32, EdgeId) -> bool) -> Self {
         let mut refined = Self::default();
-        for &Spoke { vertex, edge, sharpness } in &self.spokes {
+        for &OutgoingEdge { vertex, edge, sharpness } in &self.outgoing_edges {
             let sharpness = decay(sharpness);
             if sharpness > 0.0 {
                 let edge = EdgeId(2 * edge.0 + u32::from(!is_start(vertex, edge)));
-                refined.spokes.push(Spoke { vertex, edge, sharpness });
+                refined.outgoing_edges.push(OutgoingEdge { vertex, edge, sharpness });
             }
         }
         for &(edge, sharpness) in &self.edges {
@@ -84,7 +90,11 @@ impl Sharpness {
             if sharpness > 0.0 {
                 for half in [2 * edge.0, 2 * edge.0 + 1].map(EdgeId) {
                     refined.edges.push((half, sharpness));
-                    refined.spokes.push(Spoke { vertex: id(vertex_count) + edge.0, edge: half, sharpness });
+                    refined.outgoing_edges.push(OutgoingEdge {
+                        vertex: id(vertex_count) + edge.0,
+                        edge: half,
+                        sharpness,
+                    });
                 }
             }
         }
@@ -96,8 +106,8 @@ impl Sharpness {
     /// The rule of each vertex: its number of sharp edges decides, unless it is a corner by itself.
     pub(crate) fn vertex_rules(&self, vertex_count: usize) -> Vec<VertexRule> {
         let mut rules = vec![VertexRule::Smooth; vertex_count];
-        for spokes in self.spokes.chunk_by(|a, b| a.vertex == b.vertex) {
-            rules[spokes[0].vertex as usize] = rule_of_sharp_edges(spokes.len());
+        for outgoing_edges in self.outgoing_edges.chunk_by(|a, b| a.vertex == b.vertex) {
+            rules[outgoing_edges[0].vertex as usize] = rule_of_sharp_edges(outgoing_edges.len());
         }
         for &(vertex, _) in &self.corners {
             rules[vertex as usize] = VertexRule::Corner;

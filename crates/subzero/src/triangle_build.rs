@@ -68,9 +68,9 @@ impl TriangleMesh {
             triangles[vertex as usize] += 1;
         }
         let mut non_manifold = vec![0_u32; self.vertex_count()];
-        for spoke in &self.sharpness.spokes {
-            let count = triangle_counts[spoke.edge.index()];
-            non_manifold[spoke.vertex as usize] += u32::from(count > 2);
+        for outgoing_edge in &self.sharpness.outgoing_edges {
+            let count = triangle_counts[outgoing_edge.edge.index()];
+            non_manifold[outgoing_edge.vertex as usize] += u32::from(count > 2);
         }
         // Triangles that a turn around the vertex meets, starting at each crease, or anywhere if there is none.
         let mut met = vec![0; self.vertex_count()];

@@ -76,8 +76,8 @@ impl CheckReport {
     /// Examines a network.
     pub fn new(path: &Path, file: &LabelledFile) -> Self {
         let surface = file.surface();
-        let claims = file.claims();
-        let certificate = certify(&surface, &claims);
+        let expected = file.expected();
+        let certificate = certify(&surface, &expected);
         let report = |fault: &Fault| ReportedFault {
             kind: fault.kind(),
             message: in_words(fault),
@@ -105,7 +105,7 @@ impl CheckReport {
             elements: surface.elements.len(),
             element,
             volume: volumes.iter().sum(),
-            volume_error: claims.domain_volume.map(|_| certificate.total_volume_error),
+            volume_error: expected.domain_volume.map(|_| certificate.total_volume_error),
             dihedral: certificate
                 .angles
                 .map(|angles| Spread { mean: angles.mean, standard_deviation: angles.standard_deviation }),

@@ -5,12 +5,12 @@ use std::path::Path;
 
 use clap::ValueEnum;
 use glam::DVec3;
-use polycrystal::{BoundaryId, Claims, Elements, GrainId, NodeType, Side, Surface, outward_sides};
+use polycrystal::{BoundaryId, Elements, Expected, GrainId, NodeType, Side, Surface, outward_sides};
 use texture::Orientation;
 use toml::{Table, Value};
 use voronoi::Dimension;
 
-use crate::mesh::file::vtk::labelled::{LabelledCells, Remarks, read_legacy, read_xml};
+use crate::mesh::file::vtk::labelled::{LabelledCells, Notes, read_legacy, read_xml};
 use crate::mesh::file::{MeshFileProblem, check_lengths};
 use crate::{Config, Error, Names};
 
@@ -97,9 +97,9 @@ impl LabelledFile {
             grain_counts,
             originals,
             is_single,
-            remarks,
+            notes,
         } = cells;
-        let Remarks { config, volumes, euler_angles, phases, .. } = remarks;
+        let Notes { config, volumes, euler_angles, phases, .. } = notes;
         let settings: Option<Table> = config.and_then(|text| text.parse().ok());
         // Without an exterior the volumes of all grains would sum to nothing.
         let zero_is_exterior =
@@ -198,8 +198,8 @@ impl LabelledFile {
     }
 
     /// What the file says about its network.
-    pub fn claims(&self) -> Claims<'_> {
-        Claims {
+    pub fn expected(&self) -> Expected<'_> {
+        Expected {
             node_types: self.node_types.as_deref(),
             grain_counts: self.grain_counts.as_deref(),
             originals: self.originals.as_deref(),

@@ -10,24 +10,24 @@ use glam::DVec2;
 use voronoi::FaceId;
 
 use crate::NetworkError;
-use crate::arcs::foam::{Arc, Foam};
-use crate::arcs::tangent::{Answer, Tangent};
+use crate::arcs::arc_network::{Arc, ArcNetwork};
+use crate::arcs::kkt_system::{Answer, KktSystem};
 use crate::mesh::volume::largest_relative_error;
 use crate::solver::conjugate_gradients::dot;
 
 /// Share of its stiffness by which an arc is more rigid at first.
 const FIRST_RIGIDITY: f64 = 1.0;
 
-/// What the rigidity of arcs is multiplied by after a step that went as the model says ...
+/// What the damping of arcs is multiplied by after a step that went as the model says ...
 const LOOSENED: f64 = 0.1;
 
 /// ... and before another try where one did not.
 const STIFFENED: f64 = 8.0;
 
-/// Least rigidity after that.
+/// Least damping after that.
 const LEAST_STIFFENED: f64 = 0.3;
 
-/// Rigidity with which nothing moves.
+/// Damping with which nothing moves.
 const LARGEST_RIGIDITY: f64 = 1e8;
 
 /// Share of its length that a step leaves to an arc's chord.
@@ -71,7 +71,7 @@ pub(crate) struct Descent {
     pub(crate) state: Vec<f64>,
     pressures: Vec<f64>,
     /// Of each edge by number, how much more rigid it is than its stiffness, as a share of that.
-    rigidities: Vec<f64>,
+    dampings: Vec<f64>,
 }
 
 /// What a step did.
@@ -82,34 +82,34 @@ pub(crate) struct Step {
 }
 
 impl Descent {
-    pub(crate) fn new(foam: &Foam<'_>, state: Vec<f64>) -> Self {
+    pub(crate) fn new(network: &ArcNetwork<'_>, state: Vec<f64>) -> Self {
         let mut descent =
-            Self { state: Vec::new(), pressures: vec![0.0; foam.areas.len()], rigidities: Vec::new() };
-        descent.go_on(foam, state);
+            Self { state: Vec::new(), pressures: vec![0.0; network.areas.len()], dampings: Vec::new() };
+        descent.go_on(network, state);
         descent
     }
 
-    /// Goes on from another state, of a foam with other edges or segments.
-    pub(crate) fn go_on(&mut self, foam: &Foam<'_>, state: Vec<f64>) {
+    /// Goes on from another state, of a network with other edges or segments.
+    pub(crate) fn go_on(&mut self, network: &ArcNetwork<'_>, state: Vec<f64>) {
         self.state = state;
-        let last = foam.arcs.iter().map(|arc| arc.face.index()).max();
-        let count = last.map_or(0, |last| last + 1).max(self.rigidities.len());
-        self.rigidities.resize(count, FIRST_RIGIDITY);
+        let last = network.arcs.iter().map(|arc| arc.face.index()).max();
+        let count = last.map_or(0, |last| last + 1).max(self.dampings.len());
+        self.dampings.resize(count, FIRST_RIGIDITY);
     }
 
     /// One step.
     ///
     /// # Errors
     /// [`NetworkError::VolumeNotRestored`].
-    pub(crate) fn step(&mut self, foam: &Foam<'_>) -> Result<Step, NetworkError> {
-        let energy = foam.energy(&self.state);
-        let missing = foam.missing(&self.state);
-        let (grain, relative_error) = largest_relative_error(&missing, foam.areas);
+    pub(crate) fn step(&mut self, network: &ArcNetwork<'_>) -> Result<Step, NetworkError> {
+        let energy = network.energy(&self.state);
+        let missing = network.missing(&self.state);
+        let (grain, relative_error) = largest_relative_error(&missing, network.areas);
         let mut vanishing = Vec::new();
         // Share of what areas lack that is made up for: after an event, all may be too much for one step.
         let mut mended = 1.0;
-        while self.rigidities.iter().all(|rigidity| *rigidity < LARGEST_RIGIDITY) {
-            let tangent = Tangent::new(foam, &self.state, &self.pressures, &self.rigidities);
+        while self.dampings.iter().all(|damping| *damping < LARGEST_RIGIDITY) {
+            let tangent = KktSystem::new(network, &self.state, &self.pressures, &self.dampings);
             if !tangent.is_stable() {
                 self.stiffen_all();
                 continue;
@@ -121,32 +121,32 @@ impl Descent {
             let fall = dot(&pressures, &wanted) - dot(&gradient, &motion);
             if fall <= REST * energy && relative_error <= AREA_LIMIT {
                 let left = vec![0.0; missing.len()];
-                if let Some(state) = restored(foam, &tangent, self.state.clone(), &left, AREA_TOLERANCE) {
+                if let Some(state) = restored(network, &tangent, self.state.clone(), &left, AREA_TOLERANCE) {
                     self.state = state;
                 }
                 return Ok(Step { is_at_rest: true, vanishing });
             }
             let saved = fall - 0.5 * dot(&motion, &tangent.curvature(&motion));
-            vanishing = hold_chords(foam, &self.state, &mut motion);
+            vanishing = hold_chords(network, &self.state, &mut motion);
             let moved = self.state.iter().zip(&motion).map(|(x, by)| x + by).collect();
             let enough = (AREA_SHARE * saved / energy).clamp(AREA_TOLERANCE, LOOSE_AREA);
             let left: Vec<f64> = missing.iter().zip(&wanted).map(|(lack, wanted)| lack - wanted).collect();
-            let Some(state) = restored(foam, &tangent, moved, &left, enough) else {
+            let Some(state) = restored(network, &tangent, moved, &left, enough) else {
                 self.stiffen_all();
                 mended *= 0.5;
                 continue;
             };
-            let turned = turned_over(foam, &self.state, &state);
+            let turned = turned_over(network, &self.state, &state);
             if !turned.is_empty() {
                 self.stiffen(turned.into_iter().map(FaceId::index));
                 continue;
             }
             // What areas still lack, or no longer do, is worth its pressure.
-            let paid = dot(&pressures, &missing) - dot(&pressures, &foam.missing(&state));
-            let share = (energy - foam.energy(&state) + paid) / saved;
+            let paid = dot(&pressures, &missing) - dot(&pressures, &network.missing(&state));
+            let share = (energy - network.energy(&state) + paid) / saved;
             let is_hidden = saved < HIDDEN * energy;
             if share > 0.75 || is_hidden {
-                self.rigidities.iter_mut().for_each(|rigidity| *rigidity *= LOOSENED);
+                self.dampings.iter_mut().for_each(|damping| *damping *= LOOSENED);
             } else if share < 0.25 {
                 self.stiffen_all();
             }
@@ -164,12 +164,12 @@ impl Descent {
     }
 
     fn stiffen_all(&mut self) {
-        self.stiffen(0..self.rigidities.len());
+        self.stiffen(0..self.dampings.len());
     }
 
     fn stiffen(&mut self, edges: impl Iterator<Item = usize>) {
         for edge in edges {
-            self.rigidities[edge] = (STIFFENED * self.rigidities[edge]).max(LEAST_STIFFENED);
+            self.dampings[edge] = (STIFFENED * self.dampings[edge]).max(LEAST_STIFFENED);
         }
     }
 }
@@ -177,8 +177,8 @@ impl Descent {
 /// A state with its areas restored, but for what is left for later, up to an error along the gradients of another one nearby; nothing
 /// where that does not lead there.
 fn restored(
-    foam: &Foam<'_>,
-    tangent: &Tangent<'_>,
+    network: &ArcNetwork<'_>,
+    tangent: &KktSystem<'_>,
     mut state: Vec<f64>,
     left: &[f64],
     enough: f64,
@@ -186,12 +186,12 @@ fn restored(
     let mut last = f64::INFINITY;
     for _ in 0..CORRECTIONS {
         // More than a circle is no arc, and would cost time for each of its turns.
-        if (0..foam.arcs.len()).any(|arc| foam.turning(arc, &state).abs() > TAU) {
+        if (0..network.arcs.len()).any(|arc| network.turning(arc, &state).abs() > TAU) {
             return None;
         }
         let missing: Vec<f64> =
-            foam.missing(&state).iter().zip(left).map(|(lack, left)| lack - left).collect();
-        let (_, error) = largest_relative_error(&missing, foam.areas);
+            network.missing(&state).iter().zip(left).map(|(lack, left)| lack - left).collect();
+        let (_, error) = largest_relative_error(&missing, network.areas);
         if error <= enough || (error <= AREA_LIMIT && error > 0.5 * last) {
             return Some(state);
         }
@@ -205,24 +205,24 @@ fn restored(
 }
 
 /// Lets no motion take most of an arc's chord, or turn an arc too far; gives the arcs whose chords would vanish.
-fn hold_chords(foam: &Foam<'_>, state: &[f64], motion: &mut [f64]) -> Vec<FaceId> {
+fn hold_chords(network: &ArcNetwork<'_>, state: &[f64], motion: &mut [f64]) -> Vec<FaceId> {
     let mut vanishing = Vec::new();
-    for sweep in 0..SWEEPS {
-        for (number, arc) in foam.arcs.iter().enumerate() {
-            let [start, end] = foam.ends(arc, state);
+    for volume_gradient in 0..SWEEPS {
+        for (number, arc) in network.arcs.iter().enumerate() {
+            let [start, end] = network.ends(arc, state);
             let chord = start.distance(end).max(f64::MIN_POSITIVE);
             let along = (end - start) / chord;
-            let own = foam.own(number);
+            let own = network.own(number);
             let stretch = DVec2::new(motion[own[2]] - motion[own[0]], motion[own[3]] - motion[own[1]]);
             let lack = (KEPT_LENGTH - 1.0) * chord - along.dot(stretch);
             if lack <= 0.0 {
                 continue;
             }
-            if sweep == 0 {
+            if volume_gradient == 0 {
                 vanishing.push(arc.face);
             }
             // Walls may leave it to one end.
-            let free = foam.free_at_ends(arc, along);
+            let free = network.free_at_ends(arc, along);
             let share = lack / (free[0] + free[1]).dot(along).max(SMALLEST_SHARE);
             for (end, sign) in [(0, -share), (1, share)] {
                 motion[own[2 * end]] += sign * free[end].x;
@@ -230,8 +230,8 @@ fn hold_chords(foam: &Foam<'_>, state: &[f64], motion: &mut [f64]) -> Vec<FaceId
             }
         }
     }
-    for number in 0..foam.arcs.len() {
-        let place = foam.own(number)[4];
+    for number in 0..network.arcs.len() {
+        let place = network.own(number)[4];
         let turning = state[place];
         let turned = turning + motion[place].clamp(-LARGEST_TURN, LARGEST_TURN);
         motion[place] = turned.clamp(-LARGEST_TURNING, LARGEST_TURNING) - turning;
@@ -240,13 +240,13 @@ fn hold_chords(foam: &Foam<'_>, state: &[f64], motion: &mut [f64]) -> Vec<FaceId
 }
 
 /// The arcs that have turned over.
-fn turned_over(foam: &Foam<'_>, before: &[f64], after: &[f64]) -> Vec<FaceId> {
+fn turned_over(network: &ArcNetwork<'_>, before: &[f64], after: &[f64]) -> Vec<FaceId> {
     let has_turned = |arc: &&Arc| {
         let [before, after] =
-            [before, after].map(|state| foam.ends(arc, state)).map(|[start, end]| end - start);
+            [before, after].map(|state| network.ends(arc, state)).map(|[start, end]| end - start);
         before.dot(after) <= 0.0
     };
-    foam.arcs.iter().filter(has_turned).map(|arc| arc.face).collect()
+    network.arcs.iter().filter(has_turned).map(|arc| arc.face).collect()
 }
 
 fn add(to: &mut [f64], what: &[f64]) {

@@ -27,7 +27,7 @@ const VOLUME_TOLERANCE: f64 = 1e-9;
 
 /// What is said about a surface, to be compared with what it is.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Claims<'a> {
+pub struct Expected<'a> {
     /// Type of each point; nothing where a file leaves it open.
     pub node_types: Option<&'a [Option<NodeType>]>,
     /// Number of grains at each point, see [`Level::grain_counts`](crate::Level::grain_counts).
@@ -92,19 +92,19 @@ impl fmt::Display for Faults {
 }
 
 /// Looks for all that can be wrong with a network: points and elements that should not be there, grains that are not closed
-/// or wind the wrong way, folds, elements that cross (decided exactly), and claims that do not hold.
+/// or wind the wrong way, folds, elements that cross (decided exactly), and expected that do not hold.
 ///
 /// Where a point is not finite the search ends with these points, and where the grains are not closed volumes are not
-/// compared with claims.
+/// compared with expected.
 ///
 /// # Panics
-/// When elements refer to points or boundaries that there are not, or claims are not as many as points.
-pub fn certify(surface: &Surface<'_>, claims: &Claims<'_>) -> Certificate {
-    inspect(surface, &Seams::of_elements(surface.elements, surface.boundary_of), claims)
+/// When elements refer to points or boundaries that there are not, or expected are not as many as points.
+pub fn certify(surface: &Surface<'_>, expected: &Expected<'_>) -> Certificate {
+    inspect(surface, &Seams::of_elements(surface.elements, surface.boundary_of), expected)
 }
 
 /// The same with seams that are known.
-pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>) -> Certificate {
+pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, expected: &Expected<'_>) -> Certificate {
     let mut certificate = Certificate {
         faults: Faults::default(),
         grain_volumes: Vec::new(),
@@ -144,18 +144,18 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, claims: &Claims<'_>)
     faults.extend(folded.map(|elements| Fault::Folded { elements, grains: surface.grains_at(elements) }));
     let crossing = crossing.into_iter();
     faults.extend(crossing.map(|elements| Fault::Crossing { elements, grains: surface.grains_at(elements) }));
-    if let Some(stated) = claims.node_types {
+    if let Some(stated) = expected.node_types {
         faults.extend(wrong_node_types(stated, &meetings));
     }
-    if let Some(stated) = claims.grain_counts {
-        faults.extend(wrong_grain_counts(stated, &grain_counts(&meetings, claims.originals)));
+    if let Some(stated) = expected.grain_counts {
+        faults.extend(wrong_grain_counts(stated, &grain_counts(&meetings, expected.originals)));
     }
     let (volumes, angles) = rayon::join(
         || grain_volumes(surface, &by_boundary),
         || statistics(angles(surface, surface.sides, seams.places())),
     );
     certificate.grain_volumes = volumes;
-    certificate.check_volumes(surface, &normals, claims, is_closed);
+    certificate.check_volumes(surface, &normals, expected, is_closed);
     certificate.angles = angles;
     certificate
 }
@@ -193,15 +193,15 @@ impl Certificate {
         &mut self,
         surface: &Surface<'_>,
         normals: &[DVec3],
-        claims: &Claims<'_>,
+        expected: &Expected<'_>,
         is_closed: bool,
     ) {
         let faults = &mut self.faults.0;
         let empty = self.grain_volumes.iter().filter(|(_, volume)| is_closed && *volume <= 0.0);
         faults.extend(empty.map(|&(grain, volume)| Fault::NoVolume { grain, volume }));
-        let areas = if claims.rounding > 0.0 { side_areas(surface, normals) } else { BTreeMap::new() };
+        let areas = if expected.rounding > 0.0 { side_areas(surface, normals) } else { BTreeMap::new() };
         let mut wrong = Vec::new();
-        for (grain, claimed) in claims.grain_volumes.into_iter().flatten() {
+        for (grain, claimed) in expected.grain_volumes.into_iter().flatten() {
             let Ok(found) = self.grain_volumes.binary_search_by_key(grain, |(grain, _)| *grain) else {
                 // A grain without volume has vanished.
                 if *claimed != 0.0 {
@@ -212,26 +212,26 @@ impl Certificate {
             let relative_error = (self.grain_volumes[found].1 / claimed - 1.0).abs();
             self.largest_volume_error = self.largest_volume_error.max(relative_error);
             let area = areas.get(&Side::Grain(*grain)).copied().unwrap_or(0.0);
-            let tolerance = VOLUME_TOLERANCE + swept_by_rounding(claims.rounding, area) / claimed;
+            let tolerance = VOLUME_TOLERANCE + swept_by_rounding(expected.rounding, area) / claimed;
             let is_right = relative_error <= tolerance;
             if is_closed && !is_right {
                 let diameter = surface.elements.dimension().ball_diameter(*claimed);
                 wrong.push(Fault::WrongVolume { grain: *grain, diameter, relative_error });
             }
         }
-        if let Some(claimed) = claims.grain_volumes {
+        if let Some(claimed) = expected.grain_volumes {
             let mut known: Vec<GrainId> = claimed.iter().map(|(grain, _)| *grain).collect();
             known.sort_unstable();
             let unknown = self.grain_volumes.iter().filter(|(grain, _)| known.binary_search(grain).is_err());
             faults.extend(unknown.map(|(grain, _)| Fault::UnknownGrain { grain: *grain }));
         }
         faults.append(&mut wrong);
-        if let Some(whole) = claims.domain_volume {
+        if let Some(whole) = expected.domain_volume {
             let total: f64 = self.grain_volumes.iter().map(|(_, volume)| volume).sum();
             let relative_error = (total / whole - 1.0).abs();
             self.total_volume_error = relative_error;
             let outside = areas.get(&Side::Exterior).copied().unwrap_or(0.0);
-            let tolerance = VOLUME_TOLERANCE + swept_by_rounding(claims.rounding, outside) / whole;
+            let tolerance = VOLUME_TOLERANCE + swept_by_rounding(expected.rounding, outside) / whole;
             let is_right = relative_error <= tolerance;
             if is_closed && !is_right {
                 faults.push(Fault::WrongTotal { relative_error });

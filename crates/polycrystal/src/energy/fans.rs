@@ -52,7 +52,7 @@ pub(crate) struct SlotTerms {
     /// Of the area weighted by tension, by the point.
     pub(crate) gradient: DVec3,
     /// Volume swept from the first side to the second, per displacement of the point.
-    pub(crate) sweep: DVec3,
+    pub(crate) volume_gradient: DVec3,
     /// Share of the area that the point stands for.
     pub(crate) mass: f64,
     /// Stiffness of the edge to the next slot of the rim.
@@ -267,7 +267,7 @@ fn fill_terms(ring: &[DVec3], tension: f64, largest_cotangent: f64, terms: &mut 
         for (slot, across) in [(center, b - a), (k, c - b), (next, a - c)] {
             let terms = &mut terms[slot];
             terms.gradient += unit.cross(across);
-            terms.sweep += normal / 6.0;
+            terms.volume_gradient += normal / 6.0;
             if tension > 0.0 {
                 terms.mass += doubled_area / 6.0;
             }

@@ -12,7 +12,7 @@ use subzero::StencilTable;
 use voronoi::Dimension;
 
 use crate::mesh::volume::{Cone, segment_area, triangle_volume};
-use crate::solver::rows::Rows;
+use crate::solver::rows::CsrRows;
 
 /// A boundary's control mesh, and its surface in terms of the control points.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub(crate) struct Patch {
     /// Of each element of the control mesh, the edge across from each corner. In the plane, a segment is its own edge.
     pub(crate) edges_across: Vec<[u32; 3]>,
     /// Of each control point the other ends of its edges, and the edges' numbers.
-    pub(crate) links: Rows<u32>,
+    pub(crate) links: CsrRows<u32>,
     /// The surface, where it is finer than the control mesh.
     pub(crate) refinement: Option<Refinement>,
     pub(crate) law: Law,
@@ -107,7 +107,7 @@ pub(crate) struct PatchTerms {
     /// Its gradient at each control point.
     pub(crate) gradient: Vec<DVec3>,
     /// Volume swept from the first side to the second, per displacement of each control point.
-    pub(crate) sweep: Vec<DVec3>,
+    pub(crate) volume_gradient: Vec<DVec3>,
     /// Share of the area over mobility that each control point stands for.
     pub(crate) mass: Vec<f64>,
     /// Stiffness of each edge of the control mesh.
@@ -128,15 +128,15 @@ impl Patch {
         let Some(refinement) = &self.refinement else {
             let variation = Variation::new(&self.elements, &local, tension);
             let cone = variation.cone(apex, &self.elements);
-            let Variation { energy, gradient, sweep, .. } = variation;
-            return PatchTerms { energy, gradient, sweep, mass, stiffness, cone };
+            let Variation { energy, gradient, volume_gradient, .. } = variation;
+            return PatchTerms { energy, gradient, volume_gradient, mass, stiffness, cone };
         };
         let surface = refinement.stencils.apply(&local);
         let variation = Variation::new(&refinement.elements, &surface, tension);
         let cone = variation.cone(apex, &refinement.elements);
         let gradient = refinement.stencils.pull_back(&variation.gradient, count);
-        let sweep = refinement.stencils.pull_back(&variation.sweep, count);
-        PatchTerms { energy: variation.energy, gradient, sweep, mass, stiffness, cone }
+        let volume_gradient = refinement.stencils.pull_back(&variation.volume_gradient, count);
+        PatchTerms { energy: variation.energy, gradient, volume_gradient, mass, stiffness, cone }
     }
 
     /// Lumped masses, and the cotangent Laplacian times the tension as a spring constant for each edge.
@@ -180,7 +180,7 @@ impl Patch {
 struct Variation {
     energy: f64,
     gradient: Vec<DVec3>,
-    sweep: Vec<DVec3>,
+    volume_gradient: Vec<DVec3>,
     volume: f64,
 }
 
@@ -188,7 +188,7 @@ impl Variation {
     fn new(elements: &Elements, points: &[DVec3], tension: f64) -> Self {
         let (mut area, mut volume) = (0.0, 0.0);
         let mut gradient = vec![DVec3::ZERO; points.len()];
-        let mut sweep = gradient.clone();
+        let mut volume_gradient = gradient.clone();
         let at = |point: u32| points[point as usize];
         match elements {
             Elements::Triangles(triangles) => {
@@ -198,7 +198,7 @@ impl Variation {
                     let unit = normal.normalize_or_zero() * (0.5 * tension);
                     for (corner, across) in corners.iter().zip([c - b, a - c, b - a]) {
                         gradient[*corner as usize] += unit.cross(across);
-                        sweep[*corner as usize] += normal / 6.0;
+                        volume_gradient[*corner as usize] += normal / 6.0;
                     }
                     area += 0.5 * normal.length();
                     volume += triangle_volume([a, b, c]);
@@ -211,14 +211,14 @@ impl Variation {
                     let unit = along.normalize_or_zero() * tension;
                     for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
                         gradient[*end as usize] += unit * sign;
-                        sweep[*end as usize] += along.cross(DVec3::Z) / 2.0;
+                        volume_gradient[*end as usize] += along.cross(DVec3::Z) / 2.0;
                     }
                     area += along.length();
                     volume += segment_area([start, end]);
                 }
             }
         }
-        Self { energy: tension * area, gradient, sweep, volume }
+        Self { energy: tension * area, gradient, volume_gradient, volume }
     }
 
     /// The cone to the surface, for points relative to its apex.
@@ -228,7 +228,7 @@ impl Variation {
             Elements::Segments(_) => Dimension::Two,
         };
         // All points that move as one sweep along the sum of normals.
-        Cone::new(apex, self.volume, self.sweep.iter().sum(), dimension)
+        Cone::new(apex, self.volume, self.volume_gradient.iter().sum(), dimension)
     }
 }
 

@@ -6,7 +6,7 @@ use subzero::{EdgeId, FaceId, StencilTable};
 
 use crate::energy::patch::{Elements, Law, LocalStencils, Patch, PatchTerms, Refinement, place_in};
 use crate::network::tension::in_unit;
-use crate::solver::rows::Rows;
+use crate::solver::rows::CsrRows;
 use crate::{BoundaryId, Mesh, Network};
 
 /// The patches of all boundaries.
@@ -143,13 +143,13 @@ fn new_patch(
 }
 
 /// Of each point the other ends of its edges, and their numbers.
-fn links(point_count: usize, edges: &[[u32; 2]]) -> Rows<u32> {
+fn links(point_count: usize, edges: &[[u32; 2]]) -> CsrRows<u32> {
     let mut links = vec![Vec::new(); point_count];
     for (number, [a, b]) in (0u32..).zip(edges) {
         links[*a as usize].push((*b, number));
         links[*b as usize].push((*a, number));
     }
-    Rows::new(links)
+    CsrRows::new(links)
 }
 
 /// The edges of some elements, each once, between the given points, and of each triangle those across from its corners.

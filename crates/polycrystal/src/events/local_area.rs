@@ -210,7 +210,7 @@ impl LocalArea {
     fn volumes(&self, rings: &[DVec3]) -> Vec<f64> {
         let mut volumes = vec![0.0; self.cells.len()];
         for (face, fan) in self.fans(rings) {
-            let Sweep { volume, normal } = fan.sweep();
+            let VolumeGradient { volume, normal } = fan.volume_gradient();
             for Beside { cell, offset, sign } in &face.beside {
                 volumes[*cell] += sign * (volume - offset.dot(normal)) / 6.0;
             }
@@ -446,7 +446,7 @@ struct Fan<'a> {
 /// Of a fan six times the volume of the cone from the origin, and its normal, twice as long as its area.
 ///
 /// From an origin that is off by o, the cone has `o normal` less.
-struct Sweep {
+struct VolumeGradient {
     volume: f64,
     normal: DVec3,
 }
@@ -457,11 +457,11 @@ impl Fan<'_> {
         ends.map(|(a, b)| 0.5 * (*a - self.center).cross(*b - self.center).length()).sum()
     }
 
-    fn sweep(&self) -> Sweep {
+    fn volume_gradient(&self) -> VolumeGradient {
         let ends = self.ring.iter().zip(self.ring.iter().cycle().skip(1));
         let normal: DVec3 = ends.map(|(a, b)| (*a - self.center).cross(*b - self.center)).sum();
         // All triangles end at the centre.
-        Sweep { volume: self.center.dot(normal), normal }
+        VolumeGradient { volume: self.center.dot(normal), normal }
     }
 }
 
@@ -550,7 +550,7 @@ mod tests {
         });
     }
 
-    /// The energy of springs with the same constants, point by point.
+    /// The energy of stiffness with the same constants, point by point.
     #[test]
     fn the_stiffness_is_that_of_springs_along_the_edges_of_fans() {
         check_moved(|area, _| {

@@ -5,11 +5,11 @@ use rayon::prelude::*;
 
 use crate::energy::patch::{Patch, PatchTerms};
 use crate::energy::patches::Patches;
-use crate::flow::clusters::Numbering;
 use crate::flow::system::{CHUNK, Parts};
+use crate::flow::tied_points::Numbering;
 use crate::flow::volume_constraint::{Sweeps, VolumeConstraint};
 use crate::mesh::rounding::last_place;
-use crate::solver::rows::Rows;
+use crate::solver::rows::CsrRows;
 use crate::{Level, Network, Volumes};
 
 /// Share of a junction's mass that resists in all directions: without, nothing would hold points along a triple line.
@@ -52,12 +52,12 @@ pub(crate) fn assemble(
         });
         masses.sum::<f64>()
     };
-    let sweeps = |cluster: usize, sweeps: &mut Sweeps<'_>| {
+    let volume_gradients = |cluster: usize, volume_gradients: &mut Sweeps<'_>| {
         for (patch, point) in points_of(cluster) {
             let boundary = &network.boundaries()[patch];
             // Walls do not move, so what lies on them changes no volume.
             for (grain, sign) in boundary.signed_grains().filter(|_| boundary.wall.is_none()) {
-                sweeps.add(grain, terms[patch].sweep[point] * sign);
+                volume_gradients.add(grain, terms[patch].volume_gradient[point] * sign);
             }
         }
     };
@@ -66,10 +66,11 @@ pub(crate) fn assemble(
     Parts {
         masses: clusters_in_chunks().map(mass).collect(),
         gradient: gradient(patches, terms, clusters),
-        springs: Rows::made_by(count, row),
+        stiffness: CsrRows::made_by(count, row),
         freedoms: clusters_in_chunks().map(freedom).collect(),
-        volumes: (volumes == Volumes::Kept)
-            .then(|| VolumeConstraint::new(count, network.grain_count(), last_place(points), sweeps)),
+        volumes: (volumes == Volumes::Kept).then(|| {
+            VolumeConstraint::new(count, network.grain_count(), last_place(points), volume_gradients)
+        }),
         sliding: match volumes {
             Volumes::Kept => Vec::new(),
             Volumes::Free => sliding_masses(patches, terms, clusters, level),
@@ -110,7 +111,7 @@ fn sliding_masses(
             let places = clusters.places(cluster, patches);
             let sliding = places.map(|place| {
                 let (patch, point) = patches.point_of_place(place);
-                let normal = terms[patch].sweep[point].normalize_or_zero();
+                let normal = terms[patch].volume_gradient[point].normalize_or_zero();
                 (DMat3::IDENTITY - DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z))
                     * terms[patch].mass[point]
             });

@@ -14,19 +14,19 @@ use crate::energy::local_size::LocalSize;
 use crate::energy::patch::PatchTerms;
 use crate::energy::patches::Patches;
 use crate::flow::assembly::{Unknowns, assemble, gradient};
-use crate::flow::clusters::{ATTEMPTS, Clusters, Numbering};
+use crate::flow::dihedral_sectors::DihedralSectors;
 use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::flow::system::System;
 use crate::flow::tangential::tangential_moves;
 use crate::flow::thin_triangles::Room;
+use crate::flow::tied_points::{ATTEMPTS, Numbering, TiedPoints};
 use crate::flow::tuning::Tuning;
-use crate::flow::wedges::Wedges;
 use crate::measures::rms_residual;
 use crate::mesh::seams::Seams;
 use crate::mesh::volume::{Cone, volumes_of_grains};
 use crate::solver::conjugate_gradients::dot;
 use crate::{Freedom, GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
-use best::{Badness, Best};
+use best::{Best, Defects};
 pub(crate) use growth::Grown;
 
 /// Most edges of the control mesh, as long as the mean, to a feature. Fans have three.
@@ -84,7 +84,7 @@ pub(crate) struct Flow<'a> {
     surface: usize,
     /// Neighbouring elements of each boundary on that level.
     neighbors: Vec<[u32; 2]>,
-    clusters: Clusters,
+    clusters: TiedPoints,
     volumes: Volumes,
     tuning: Tuning,
 }
@@ -99,7 +99,7 @@ impl<'a> Flow<'a> {
         tuning: Tuning,
     ) -> Self {
         let surface = (network.levels().len() - 1).min(level + 1);
-        let clusters = Clusters::new(&network.levels()[level]);
+        let clusters = TiedPoints::new(&network.levels()[level]);
         let patches = Patches::new(network, level, surface, tension_unit, tuning.largest_cotangent);
         let unit = tuning.small_grain * network.mean_grain_size();
         let sizes =
@@ -138,7 +138,7 @@ impl<'a> Flow<'a> {
     /// subdivision puts triangles there over each other even in a plane, and edges inside that are sharp. The first are centred within their
     /// boundaries, and where folds remain, they go to the middle of their neighbours. Nothing where no point is to move.
     fn unfolded(&self, start: &[DVec3]) -> Option<Vec<DVec3>> {
-        let finest = Wedged::new(self.network, self.finest());
+        let finest = LevelSectors::new(self.network, self.finest());
         let mut points = start.to_vec();
         let mut places = self.folded_places(&self.finest_points(&points), &finest);
         let mut best = (places.len(), None);
@@ -194,16 +194,16 @@ impl<'a> Flow<'a> {
         progress: &mut impl FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
         let mut points = start.to_vec();
-        let finest = Wedged::new(self.network, self.finest());
+        let finest = LevelSectors::new(self.network, self.finest());
         let mut last_energy = f64::INFINITY;
         let mut best = Best::new();
         for step in 1..=stage.steps {
             let energy = self.step(&mut points, stage.step_time)?;
             progress(step, &points);
             if stage.least_gain > 0.0
-                && let Some(badness) = self.badness(&points, &finest)
+                && let Some(defects) = self.defects(&points, &finest)
             {
-                best.offer(badness, &points);
+                best.offer(defects, &points);
                 if best.is_final() {
                     break;
                 }
@@ -223,7 +223,7 @@ impl<'a> Flow<'a> {
         start: &[DVec3],
         end: End,
         folded: OnFold,
-        finest: &Wedged,
+        finest: &LevelSectors,
     ) -> Result<Vec<DVec3>, NetworkError> {
         // Where the finest level folds though no step did, all has moved too far from where it did not.
         let (mut count, mut grains) = (0, Vec::new());
@@ -317,13 +317,13 @@ impl<'a> Flow<'a> {
     }
 
     /// How far points are from rest; nothing where no boundaries meet, and in the plane.
-    fn badness(&self, points: &[DVec3], finest: &Wedged) -> Option<Badness> {
+    fn defects(&self, points: &[DVec3], finest: &LevelSectors) -> Option<Defects> {
         let Mesh::Triangles(_) = self.control_mesh() else { return None };
         let surface = self.refined(points);
         let residual = rms_residual(self.network, self.surface(), &surface)?;
         let surface = self.network.subdivide_between(self.surface, self.finest(), &surface);
         let has_folds = !finest.folds(self.network.finest(), &surface).is_empty();
-        Some(Badness { has_folds, residual })
+        Some(Defects { has_folds, residual })
     }
 
     /// How a control point can move.
@@ -391,13 +391,13 @@ impl<'a> Flow<'a> {
     }
 
     /// The points that each element depends on which is folded on the finest level, or has passed another.
-    fn folded_places(&self, surface: &[DVec3], finest: &Wedged) -> Vec<Vec<u32>> {
+    fn folded_places(&self, surface: &[DVec3], finest: &LevelSectors) -> Vec<Vec<u32>> {
         let folds = finest.folds(self.network.finest(), surface).into_iter().flatten();
         folds.map(|element| self.dependencies(self.finest(), element)).collect()
     }
 
     /// The grains beside what is folded on the finest level, in order.
-    fn folded_grains(&self, surface: &[DVec3], finest: &Wedged) -> Vec<GrainId> {
+    fn folded_grains(&self, surface: &[DVec3], finest: &LevelSectors) -> Vec<GrainId> {
         let level = self.network.finest();
         let folds = finest.folds(level, surface).into_iter().flatten();
         let sides = folds.flat_map(|element| {
@@ -458,24 +458,24 @@ fn mean_edge(mesh: &Mesh, points: &[DVec3]) -> f64 {
 }
 
 /// How the elements of a level meet.
-struct Wedged {
-    wedges: Wedges,
+struct LevelSectors {
+    dihedral_sectors: DihedralSectors,
     /// Pairs of neighbours in one boundary.
     neighbors: Vec<[u32; 2]>,
 }
 
-impl Wedged {
+impl LevelSectors {
     fn new(network: &Network, level: usize) -> Self {
         let level = &network.levels()[level];
         let seams = Seams::of_level(level);
-        let wedges = Wedges::new(&Surface::of_level(level, &[], &network.sides()), &seams);
-        Self { wedges, neighbors: seams.inner }
+        let dihedral_sectors = DihedralSectors::new(&Surface::of_level(level, &[], &network.sides()), &seams);
+        Self { dihedral_sectors, neighbors: seams.inner }
     }
 
     /// Pairs of elements that are folded, or have passed each other.
     fn folds(&self, level: &Level, points: &[DVec3]) -> Vec<[u32; 2]> {
         let mut folds = folded_pairs(&self.neighbors, &element_normals(level, points), 0.0);
-        folds.extend(self.wedges.turned(points));
+        folds.extend(self.dihedral_sectors.turned(points));
         folds
     }
 }

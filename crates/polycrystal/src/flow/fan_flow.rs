@@ -7,12 +7,12 @@ use crate::energy::fans::{FanTerms, Fans, is_bent};
 use crate::energy::local_size::LocalSize;
 use crate::energy::sides::cell_and_offset;
 use crate::flow::boundary_flow::SLIGHT_BEND;
-use crate::flow::clusters::Clusters;
 use crate::flow::system::{CHUNK, Parts, System};
+use crate::flow::tied_points::TiedPoints;
 use crate::flow::tuning::Tuning;
 use crate::flow::volume_constraint::{Sweeps, VolumeConstraint};
 use crate::mesh::rounding::last_place;
-use crate::solver::rows::Rows;
+use crate::solver::rows::CsrRows;
 use crate::{Freedom, GrainId, NetworkError};
 
 /// Fans that flow.
@@ -51,7 +51,7 @@ impl FanFlow<'_> {
             let center = fans.center_of(fan);
             moves[center] += freedoms[center].project(self.to_middle(fan, points, &before));
         }
-        let mut clusters = Clusters::apart(fans.point_count());
+        let mut clusters = TiedPoints::apart(fans.point_count());
         *points = clusters.moved_unbroken(
             points,
             moves,
@@ -69,7 +69,7 @@ impl FanFlow<'_> {
     fn parts(&self, terms: &FanTerms, freedoms: &[Freedom], rounding: f64) -> Parts {
         let fans = self.fans;
         let of_slot = |fan: usize, slot: usize| &terms.of_slot[fans.first_slot(fan) + slot];
-        let springs = |point: usize, entries: &mut Vec<(u32, f64)>| {
+        let stiffness = |point: usize, entries: &mut Vec<(u32, f64)>| {
             for (fan, slot) in fans.at_point(point) {
                 let slots = fans.slots_of(fan);
                 let count = fans.rim_len(fan);
@@ -87,11 +87,11 @@ impl FanFlow<'_> {
                 }
             }
         };
-        let sweeps = |point: usize, sweeps: &mut Sweeps<'_>| {
+        let volume_gradients = |point: usize, volume_gradients: &mut Sweeps<'_>| {
             for (fan, slot) in fans.at_point(point).filter(|(fan, _)| fans.wall(*fan).is_none()) {
                 for (side, sign) in fans.sides[fan].into_iter().zip([1.0, -1.0]) {
                     if let Some((cell, _)) = cell_and_offset(side, fans.domain()) {
-                        sweeps.add(GrainId(cell.0), of_slot(fan, slot).sweep * sign);
+                        volume_gradients.add(GrainId(cell.0), of_slot(fan, slot).volume_gradient * sign);
                     }
                 }
             }
@@ -113,9 +113,14 @@ impl FanFlow<'_> {
         Parts {
             masses: self.of_points(mass),
             gradient: self.of_points(gradient),
-            springs: Rows::made_by(fans.point_count(), springs),
+            stiffness: CsrRows::made_by(fans.point_count(), stiffness),
             freedoms: freedoms.to_vec(),
-            volumes: Some(VolumeConstraint::new(fans.point_count(), self.volumes.len(), rounding, sweeps)),
+            volumes: Some(VolumeConstraint::new(
+                fans.point_count(),
+                self.volumes.len(),
+                rounding,
+                volume_gradients,
+            )),
             sliding: Vec::new(),
         }
     }

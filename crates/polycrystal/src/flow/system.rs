@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::Freedom;
 use crate::flow::mobility::Mobility;
 use crate::flow::volume_constraint::{Compliance, VolumeConstraint};
-use crate::solver::rows::Rows;
+use crate::solver::rows::CsrRows;
 
 /// Most iterations for a step.
 const ITERATIONS: usize = 200;
@@ -29,8 +29,8 @@ pub(crate) struct Parts {
     pub(crate) masses: Vec<f64>,
     /// The gradient g of the energy.
     pub(crate) gradient: Vec<DVec3>,
-    /// The stiffness K, as springs to other unknowns; columns may come more than once.
-    pub(crate) springs: Rows<f64>,
+    /// The stiffness K, as stiffness to other unknowns; columns may come more than once.
+    pub(crate) stiffness: CsrRows<f64>,
     /// What walls leave to each unknown.
     pub(crate) freedoms: Vec<Freedom>,
     /// The gradients J of the volumes; nothing where they are free.
@@ -48,7 +48,7 @@ pub(crate) struct System {
     /// The diagonal of `M + dt K`.
     diagonal: Vec<f64>,
     sliding: Vec<(usize, DMat3)>,
-    springs: Rows<f64>,
+    stiffness: CsrRows<f64>,
     /// `-dt g`.
     forces: Vec<DVec3>,
     mobility: Vec<Mobility>,
@@ -58,9 +58,9 @@ pub(crate) struct System {
 impl System {
     /// The system of a step of the given time, which is solved up to a share of its first residual.
     pub(crate) fn new(parts: Parts, time: f64, tolerance: f64) -> Self {
-        let Parts { masses, gradient, springs, freedoms, volumes, sliding } = parts;
+        let Parts { masses, gradient, stiffness, freedoms, volumes, sliding } = parts;
         let diagonal = |(unknown, mass): (usize, &f64)| {
-            let stiffness: f64 = springs.row(unknown).iter().map(|(_, spring)| spring).sum();
+            let stiffness: f64 = stiffness.row(unknown).iter().map(|(_, spring)| spring).sum();
             mass + time * stiffness
         };
         let diagonal: Vec<f64> = masses.par_iter().with_min_len(CHUNK).enumerate().map(diagonal).collect();
@@ -76,7 +76,7 @@ impl System {
         });
         let mut forces = gradient;
         forces.par_iter_mut().with_min_len(CHUNK).for_each(|force| *force *= -time);
-        Self { time, tolerance, diagonal, sliding, springs, forces, mobility, constraint }
+        Self { time, tolerance, diagonal, sliding, stiffness, forces, mobility, constraint }
     }
 
     /// The displacements that change volumes by `changes`, to first order, and are otherwise those of the flow; and the
@@ -113,8 +113,8 @@ impl System {
     /// `dt K d`.
     fn stiff(&self, displacement: &[DVec3]) -> Vec<DVec3> {
         let row = |unknown: usize| {
-            let springs = self.springs.row(unknown).iter();
-            let pulls = springs
+            let stiffness = self.stiffness.row(unknown).iter();
+            let pulls = stiffness
                 .map(|(other, spring)| (displacement[unknown] - displacement[*other as usize]) * *spring);
             pulls.sum::<DVec3>() * self.time
         };
@@ -192,8 +192,8 @@ impl System {
     /// `(M + dt K) d`.
     fn apply(&self, displacement: &[DVec3]) -> Vec<DVec3> {
         let row = |unknown: usize| {
-            let springs = self.springs.row(unknown).iter();
-            let pull: DVec3 = springs.map(|(other, spring)| displacement[*other as usize] * *spring).sum();
+            let stiffness = self.stiffness.row(unknown).iter();
+            let pull: DVec3 = stiffness.map(|(other, spring)| displacement[*other as usize] * *spring).sum();
             displacement[unknown] * self.diagonal[unknown] - pull * self.time
         };
         let mut image: Vec<DVec3> =

@@ -7,7 +7,7 @@ use crate::GrainId;
 use crate::flow::mobility::Mobility;
 use crate::solver::conjugate_gradients::{Limits, solve};
 use crate::solver::multigrid::Multigrid;
-use crate::solver::rows::Rows;
+use crate::solver::rows::CsrRows;
 
 /// Most iterations. Without rounding as many as there are grains are enough; where rigid parts leave a grain no way to
 /// change its volume there is no solution, and going on would only blow up what rounding leaves.
@@ -23,9 +23,9 @@ const COARSE: f64 = 30.0;
 /// How the volumes of grains change when clusters move: a sparse matrix J with a vector for each cluster and grain.
 pub(crate) struct VolumeConstraint {
     /// Of each cluster, its grains and the gradients of their volumes.
-    by_cluster: Rows<DVec3>,
+    by_cluster: CsrRows<DVec3>,
     /// Of each grain, its clusters and the gradients of its volume.
-    by_grain: Rows<DVec3>,
+    by_grain: CsrRows<DVec3>,
 }
 
 impl VolumeConstraint {
@@ -37,11 +37,11 @@ impl VolumeConstraint {
         fill: impl Fn(usize, &mut Sweeps<'_>) + Sync,
     ) -> Self {
         let row = |cluster: usize, entries: &mut Vec<(u32, DVec3)>| {
-            let mut sweeps = Sweeps { start: entries.len(), entries, length: 0.0 };
-            fill(cluster, &mut sweeps);
-            sweeps.drop_rounding(rounding);
+            let mut volume_gradients = Sweeps { start: entries.len(), entries, length: 0.0 };
+            fill(cluster, &mut volume_gradients);
+            volume_gradients.drop_rounding(rounding);
         };
-        let by_cluster = Rows::made_by(cluster_count, row);
+        let by_cluster = CsrRows::made_by(cluster_count, row);
         let by_grain = by_cluster.transposed(grain_count);
         Self { by_cluster, by_grain }
     }
@@ -76,7 +76,7 @@ impl VolumeConstraint {
                 }
             }
         };
-        Compliance::new(Rows::made_by(self.by_grain.len(), row))
+        Compliance::new(CsrRows::made_by(self.by_grain.len(), row))
     }
 }
 
@@ -119,7 +119,7 @@ pub(crate) struct Compliance {
 
 impl Compliance {
     /// That of a symmetric, positive semidefinite matrix.
-    fn new(matrix: Rows<f64>) -> Self {
+    fn new(matrix: CsrRows<f64>) -> Self {
         let diagonal = matrix.diagonal();
         // Where nothing can move there is nothing to share out.
         let total = diagonal.iter().sum::<f64>().max(f64::MIN_POSITIVE);

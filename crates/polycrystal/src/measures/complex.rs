@@ -2,7 +2,7 @@ use std::borrow::Cow;
 
 use voronoi::Shift;
 
-use crate::mesh::angles::{Wedge, WeightedAngle, angles, wedges};
+use crate::mesh::angles::{DihedralSector, WeightedAngle, angles, dihedral_sectors};
 use crate::mesh::seams::{Seams, Use};
 use crate::{BoundaryId, Elements, Level, Network, Side, Surface};
 
@@ -92,8 +92,8 @@ impl<'a> Complex<'a> {
     }
 
     /// The sectors into which boundaries divide what surrounds a place, in order around it.
-    pub(crate) fn wedges(&self, at: &[Use]) -> Vec<Wedge> {
-        wedges(&self.surface, &self.sides, at)
+    pub(crate) fn dihedral_sectors(&self, at: &[Use]) -> Vec<DihedralSector> {
+        dihedral_sectors(&self.surface, &self.sides, at)
     }
 
     /// The angles between boundaries where three grains meet.

@@ -118,10 +118,10 @@ pub(crate) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeas
     }
     let mut triple_points = Vec::new();
     for place in complex.places().filter(|at| at.len() >= 3) {
-        let mut wedges = complex.wedges(place);
-        wedges.sort_by_key(|wedge| wedge.side);
-        for wedge in &wedges {
-            if let Side::Grain(grain) = wedge.side {
+        let mut dihedral_sectors = complex.dihedral_sectors(place);
+        dihedral_sectors.sort_by_key(|dihedral_sector| dihedral_sector.side);
+        for dihedral_sector in &dihedral_sectors {
+            if let Side::Grain(grain) = dihedral_sector.side {
                 grains.entry(grain).or_default().corner_count += 1;
             }
         }
@@ -129,8 +129,11 @@ pub(crate) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeas
         triple_points.push(TriplePointMeasures {
             point,
             position: at(point),
-            sides: wedges.iter().map(|wedge| wedge.side).collect(),
-            angles: wedges.iter().map(|wedge| wedge.angle.to_degrees()).collect(),
+            sides: dihedral_sectors.iter().map(|dihedral_sector| dihedral_sector.side).collect(),
+            angles: dihedral_sectors
+                .iter()
+                .map(|dihedral_sector| dihedral_sector.angle.to_degrees())
+                .collect(),
             residual: complex.residual(place),
             boundaries: complex.boundaries(place),
         });

@@ -320,22 +320,23 @@ fn measure_line(
     let mut sums: Vec<f64> = Vec::new();
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
     for at in &line.edges {
-        let mut wedges = complex.wedges(at);
-        wedges.sort_by_key(|wedge| wedge.side);
+        let mut dihedral_sectors = complex.dihedral_sectors(at);
+        dihedral_sectors.sort_by_key(|dihedral_sector| dihedral_sector.side);
         let own = place_length(&complex.surface, at);
         length += own;
         if sides.is_empty() {
-            sides = wedges.iter().map(|wedge| wedge.side).collect();
+            sides = dihedral_sectors.iter().map(|dihedral_sector| dihedral_sector.side).collect();
             sums = vec![0.0; sides.len()];
         }
-        let is_inside = wedges.len() >= 3 && wedges.iter().all(|wedge| wedge.side != Side::Exterior);
-        for (wedge, sum) in wedges.iter().zip(&mut sums) {
-            let degrees = wedge.angle.to_degrees();
+        let is_inside = dihedral_sectors.len() >= 3
+            && dihedral_sectors.iter().all(|dihedral_sector| dihedral_sector.side != Side::Exterior);
+        for (dihedral_sector, sum) in dihedral_sectors.iter().zip(&mut sums) {
+            let degrees = dihedral_sector.angle.to_degrees();
             *sum += own * degrees;
             range = [range[0].min(degrees), range[1].max(degrees)];
-            let Side::Grain(grain) = wedge.side else { continue };
+            let Side::Grain(grain) = dihedral_sector.side else { continue };
             let grain = grains.entry(grain).or_default();
-            grain.edges += own * (PI - wedge.angle);
+            grain.edges += own * (PI - dihedral_sector.angle);
             if is_inside {
                 grain.triple_line_length += own;
             }

@@ -32,15 +32,15 @@ pub(crate) fn angles<'a>(
     let triple = places.filter(move |at| at.len() == 3 && at.iter().all(is_interior));
     triple.flat_map(move |at| {
         let weight = place_length(surface, at);
-        wedges(surface, sides, at)
+        dihedral_sectors(surface, sides, at)
             .into_iter()
-            .map(move |wedge| WeightedAngle { degrees: wedge.angle.to_degrees(), weight })
+            .map(move |dihedral_sector| WeightedAngle { degrees: dihedral_sector.angle.to_degrees(), weight })
     })
 }
 
 /// A sector around a place where boundaries meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Wedge {
+pub(crate) struct DihedralSector {
     /// What fills it.
     pub(crate) side: Side,
     /// Between the boundaries that bound it, in radians.
@@ -48,7 +48,11 @@ pub(crate) struct Wedge {
 }
 
 /// The sectors into which boundaries, which have these sides, divide what surrounds a place, in order around it.
-pub(crate) fn wedges(surface: &Surface<'_>, sides: &[[Side; 2]], at: &[Use]) -> Vec<Wedge> {
+pub(crate) fn dihedral_sectors(
+    surface: &Surface<'_>,
+    sides: &[[Side; 2]],
+    at: &[Use],
+) -> Vec<DihedralSector> {
     let ends = |at: &Use| at.ends(surface.elements).map(|end| surface.points[end as usize]);
     let axis = match surface.elements {
         Elements::Triangles(_) => {
@@ -79,7 +83,7 @@ pub(crate) fn wedges(surface: &Surface<'_>, sides: &[[Side; 2]], at: &[Use]) -> 
     spokes.sort_by(|a, b| a.0.total_cmp(&b.0));
     let next = spokes[1..].iter().map(|(angle, _)| *angle);
     let ends = next.chain([spokes[0].0 + std::f64::consts::TAU]);
-    spokes.iter().zip(ends).map(|(&(start, side), end)| Wedge { side, angle: end - start }).collect()
+    spokes.iter().zip(ends).map(|(&(start, side), end)| DihedralSector { side, angle: end - start }).collect()
 }
 
 /// Mean and spread of angles; nothing where all weights are 0.

@@ -10,7 +10,7 @@ use crate::mesh::node_type::Meeting;
 use crate::mesh::seams::{Seams, Use};
 use crate::network::control_mesh::{ControlMesh, JunctionCounts};
 use crate::{
-    Boundary, BoundaryId, Claims, Elements, Junctions, Level, Mesh, NetworkError, PeriodicCopies, Side,
+    Boundary, BoundaryId, Elements, Expected, Junctions, Level, Mesh, NetworkError, PeriodicCopies, Side,
     Surface, WallSets, certify,
 };
 
@@ -27,8 +27,8 @@ impl ControlMesh {
         if domain.is_periodic() {
             return Err(NetworkError::PeriodicSurface);
         }
-        let claims = Claims { domain_volume: Some(domain.measure()), ..Claims::default() };
-        let certificate = certify(surface, &claims);
+        let expected = Expected { domain_volume: Some(domain.measure()), ..Expected::default() };
+        let certificate = certify(surface, &expected);
         if !certificate.is_good() {
             return Err(NetworkError::Invalid(certificate.faults));
         }

@@ -1,4 +1,4 @@
-//! Factors of a sparse symmetric matrix, part of the plane by part of the plane.
+//! LdlFactors of a sparse symmetric matrix, part of the plane by part of the plane.
 //!
 //! Each part eliminates its own unknowns within a dense matrix over these and the later ones that know them, and hands what is left
 //! of the latter on to the part around it (Duff and Reid 1983). No pivots are looked for: the matrix is to be quasidefinite, that is,
@@ -22,7 +22,7 @@ pub(crate) struct Element {
 }
 
 /// A unit lower triangular matrix L and a diagonal one D whose product L D L^T is the matrix.
-pub(crate) struct Factors {
+pub(crate) struct LdlFactors {
     whole: Front,
 }
 
@@ -47,7 +47,7 @@ struct Left {
     matrix: Vec<f64>,
 }
 
-impl Factors {
+impl LdlFactors {
     /// Of the sum of some elements.
     pub(crate) fn new(order: &Dissection, elements: &[Element]) -> Self {
         let first = |element: &Element| element.places.into_iter().min().expect("elements have unknowns");
@@ -321,7 +321,7 @@ mod tests {
                 Element { places: *places, matrix }
             };
             let elements: Vec<Element> = places.iter().enumerate().map(element).collect();
-            let factors = Factors::new(&order, &elements);
+            let factors = LdlFactors::new(&order, &elements);
             assert_eq!(factors.negative_count(), side * side);
             let right_side: Vec<f64> = (0..order.len()).map(noise).collect();
             let mut solution = right_side.clone();

@@ -7,7 +7,7 @@
 
 use rayon::prelude::*;
 
-use crate::solver::rows::Rows;
+use crate::solver::rows::CsrRows;
 
 /// Unknowns of the coarsest grid at most, whose dense factors are cheaper than any step of the flow.
 const COARSEST: usize = 200;
@@ -15,7 +15,7 @@ const COARSEST: usize = 200;
 /// Weight of Jacobi's method, below 2 over the largest eigenvalue of the matrix scaled to diagonal 1, which is about 2.
 const DAMPING: f64 = 0.5;
 
-/// Rows that one task multiplies.
+/// CsrRows that one task multiplies.
 const ROWS_PER_TASK: usize = 2048;
 
 /// Share of the diagonal below which a pivot counts as rounding: a constant pressure has no effect, nor has that of a
@@ -30,7 +30,7 @@ pub(crate) struct Multigrid {
 }
 
 struct Grid {
-    matrix: Rows<f64>,
+    matrix: CsrRows<f64>,
     inverse_diagonal: Vec<f64>,
     /// The unknown of the next grid that each unknown is part of.
     aggregates: Vec<u32>,
@@ -38,8 +38,8 @@ struct Grid {
 }
 
 impl Multigrid {
-    /// For a symmetric matrix that is positive semidefinite. Rows without a diagonal stay zero.
-    pub(crate) fn new(matrix: Rows<f64>) -> Self {
+    /// For a symmetric matrix that is positive semidefinite. CsrRows without a diagonal stay zero.
+    pub(crate) fn new(matrix: CsrRows<f64>) -> Self {
         let mut grids = Vec::new();
         let mut matrix = matrix;
         loop {
@@ -110,13 +110,13 @@ impl Grid {
     }
 }
 
-fn inverse_diagonal(matrix: &Rows<f64>) -> Vec<f64> {
+fn inverse_diagonal(matrix: &CsrRows<f64>) -> Vec<f64> {
     let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
     matrix.diagonal().into_iter().map(inverse).collect()
 }
 
 /// Groups each unknown whose neighbours are all free with these; what is left over joins a neighbour's group.
-fn aggregate(matrix: &Rows<f64>) -> (Vec<u32>, usize) {
+fn aggregate(matrix: &CsrRows<f64>) -> (Vec<u32>, usize) {
     const FREE: u32 = u32::MAX;
     let mut groups = vec![FREE; matrix.len()];
     let mut count = 0;
@@ -138,7 +138,7 @@ fn aggregate(matrix: &Rows<f64>) -> (Vec<u32>, usize) {
     (groups, count as usize)
 }
 
-fn coarsen(matrix: &Rows<f64>, groups: &[u32], count: usize) -> Rows<f64> {
+fn coarsen(matrix: &CsrRows<f64>, groups: &[u32], count: usize) -> CsrRows<f64> {
     let mut rows: Vec<Vec<(u32, f64)>> = vec![Vec::new(); count];
     for (row, group) in groups.iter().enumerate() {
         let entries = matrix.row(row).iter();
@@ -149,7 +149,7 @@ fn coarsen(matrix: &Rows<f64>, groups: &[u32], count: usize) -> Rows<f64> {
         let sums = row.chunk_by(|a, b| a.0 == b.0).map(|same| (same[0].0, same.iter().map(|e| e.1).sum()));
         *row = sums.collect();
     }
-    Rows::new(rows)
+    CsrRows::new(rows)
 }
 
 /// Dense factors of a small matrix.
@@ -159,7 +159,7 @@ struct Cholesky {
 }
 
 impl Cholesky {
-    fn new(matrix: &Rows<f64>) -> Self {
+    fn new(matrix: &CsrRows<f64>) -> Self {
         let count = matrix.len();
         let mut factor: Vec<Vec<f64>> = Vec::with_capacity(count);
         for i in 0..count {
@@ -202,7 +202,7 @@ mod tests {
     use crate::solver::conjugate_gradients::{Limits, solve};
 
     /// The Laplacian of a cube of points, whose rows sum to zero.
-    fn laplacian(side: u32) -> Rows<f64> {
+    fn laplacian(side: u32) -> CsrRows<f64> {
         let at = |x: u32, y: u32, z: u32| (x * side + y) * side + z;
         let mut rows = Vec::new();
         for (x, y, z) in (0..side.pow(3)).map(|i| (i / side / side, i / side % side, i % side)) {
@@ -218,7 +218,7 @@ mod tests {
             row.push((at(x, y, z), row.len() as f64));
             rows.push(row);
         }
-        Rows::new(rows)
+        CsrRows::new(rows)
     }
 
     #[test]
@@ -239,7 +239,7 @@ mod tests {
 
     #[test]
     fn unknowns_without_a_row_stay_zero() {
-        let grids = Multigrid::new(Rows::new(vec![vec![(0, 2.0)], vec![]]));
+        let grids = Multigrid::new(CsrRows::new(vec![vec![(0, 2.0)], vec![]]));
         let solution = grids.precondition(&[3.0, 0.0]);
         assert!((solution[0] - 1.5).abs() < 1e-9 && solution[1] == 0.0);
     }

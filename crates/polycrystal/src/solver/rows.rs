@@ -2,17 +2,17 @@
 
 use rayon::prelude::*;
 
-/// Rows that one task makes: enough to be worth a task, and few enough for all threads to have some.
+/// CsrRows that one task makes: enough to be worth a task, and few enough for all threads to have some.
 const ROWS_PER_TASK: usize = 1024;
 
-/// Rows of pairs of a column and a value.
+/// CsrRows of pairs of a column and a value.
 #[derive(Debug)]
-pub(crate) struct Rows<T> {
+pub(crate) struct CsrRows<T> {
     starts: Vec<usize>,
     entries: Vec<(u32, T)>,
 }
 
-impl<T: Copy> Rows<T> {
+impl<T: Copy> CsrRows<T> {
     pub(crate) fn new(rows: Vec<Vec<(u32, T)>>) -> Self {
         let mut starts = vec![0];
         for row in &rows {
@@ -21,7 +21,7 @@ impl<T: Copy> Rows<T> {
         Self { starts, entries: rows.concat() }
     }
 
-    /// Rows that are made in parallel: `fill` appends the entries of a row to those of others before it.
+    /// CsrRows that are made in parallel: `fill` appends the entries of a row to those of others before it.
     pub(crate) fn made_by(count: usize, fill: impl Fn(usize, &mut Vec<(u32, T)>) + Sync) -> Self
     where
         T: Send,
@@ -82,7 +82,7 @@ impl<T: Copy> Rows<T> {
     }
 }
 
-impl Rows<f64> {
+impl CsrRows<f64> {
     /// The entries on the diagonal, 0 where there is none.
     pub(crate) fn diagonal(&self) -> Vec<f64> {
         let own = |row: usize| self.row(row).iter().find(|(column, _)| *column as usize == row);

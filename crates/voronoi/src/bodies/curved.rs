@@ -38,7 +38,7 @@ impl Domain {
         Self::cut_out(normals.iter().map(wall).collect(), Dimension::Three, Some(name))
     }
 
-    /// A cylinder along z with as many flat faces as keep its mantle within `chord_error` of the true one; volume and centre
+    /// A cylinder along z with as many flat faces as keep its lateral surface within `chord_error` of the true one; volume and centre
     /// are those of the cylinder. Its ends are the first two walls.
     ///
     /// # Errors
@@ -46,13 +46,13 @@ impl Domain {
     pub fn cylinder(center: DVec3, radius: f64, height: f64, chord_error: f64) -> Result<Self, VoronoiError> {
         check([("radius", radius), ("chord error", chord_error)])?;
         check([("height", height)])?;
-        let mantle = regular_polygon(center, radius, chord_error)?;
+        let lateral_surface = regular_polygon(center, radius, chord_error)?;
         let ends = [-1.0, 1.0].map(|direction| WallPlane::HalfSpace {
             normal: DVec3::Z * direction,
             offset: center.z * direction + 0.5 * height,
         });
-        let name = format!("a cylinder of radius {radius} with {} faces", mantle.len() + 2);
-        Self::cut_out(ends.into_iter().chain(mantle).collect(), Dimension::Three, Some(name))
+        let name = format!("a cylinder of radius {radius} with {} faces", lateral_surface.len() + 2);
+        Self::cut_out(ends.into_iter().chain(lateral_surface).collect(), Dimension::Three, Some(name))
     }
 
     /// A disc in the plane z = 0 as a regular polygon within `chord_error` of the circle; area and centre are those of the disc.

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use crate::clip::clipping::Clipping;
 use crate::clip::convex_cell::ConvexCell;
 use crate::clip::convex_polygon::ConvexPolygon;
-use crate::clip::cutting::Cutting;
 use crate::exact::frame::{Facets, Frame};
 use crate::exact::generator::{Generator, Plane};
 use crate::exact::image::ImageTable;
@@ -50,7 +50,7 @@ impl Extent {
         }
     }
 
-    fn cut(mut cell: impl Cutting, input: ExactInput) -> Result<Self, VoronoiError> {
+    fn cut(mut cell: impl Clipping, input: ExactInput) -> Result<Self, VoronoiError> {
         for wall in (0u32..).take(input.frame.wall_planes().len()).map(Wall) {
             cell.cut(Generator::facet(wall), input);
             if cell.radius() < 0.0 {

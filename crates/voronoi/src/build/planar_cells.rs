@@ -12,8 +12,8 @@ use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 use crate::build::planar_merge::{PlanarKey, SquareCells, merge_squares};
 use crate::build::planar_squares::{Known, SEEDS_PER_SQUARE, Square, Squares};
+use crate::clip::clipping::Clipping;
 use crate::clip::convex_polygon::{ConvexPolygon, circumcentre};
-use crate::clip::cutting::Cutting;
 use crate::exact::generator::Generator;
 use crate::exact::image::ImageTable;
 use crate::exact::input::ExactInput;

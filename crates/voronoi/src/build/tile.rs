@@ -12,7 +12,7 @@ use crate::build::cell_edges::CellEdges;
 use crate::build::tile_vertex::{ALL_FACES, FACE_SLOTS, FACES_OF_FIRST, NONE, TileVertex};
 use crate::clip::convex_cell::ConvexCell;
 use crate::clip::convex_polygon::ConvexPolygon;
-use crate::clip::end_search::{EndSearch, NewVertex};
+use crate::clip::edge_tracing::{EdgeTracing, NewVertex};
 use crate::diagram::cell_sum::CellSum;
 use crate::diagram::polygon::Polygon;
 use crate::exact::generator::{Generator, PLANE, VertexKey};
@@ -101,7 +101,7 @@ const LAST_EDGE: EdgeOf = 3;
 /// Reused from tile to tile so that the buffers are allocated once.
 struct Builder<'a> {
     search: &'a Search<'a>,
-    end_search: EndSearch<'a>,
+    edge_tracing: EdgeTracing<'a>,
     seeds: Range<u32>,
     is_flat: bool,
     vertices: Vec<TileVertex>,
@@ -121,7 +121,7 @@ impl<'a> Builder<'a> {
     fn new(search: &'a Search<'a>) -> Self {
         Self {
             search,
-            end_search: EndSearch::new(search),
+            edge_tracing: EdgeTracing::new(search),
             seeds: 0..0,
             is_flat: search.domain().dimension() == Dimension::Two,
             vertices: Vec::new(),
@@ -160,14 +160,14 @@ impl<'a> Builder<'a> {
     }
 
     fn complete(&mut self, seed: u32) -> Result<(), ImagesMissing> {
-        self.end_search.start(seed);
+        self.edge_tracing.start(seed);
         self.edges.clear();
         let known = self.vertices.len();
         let own = Generator::site(seed);
         let place = self.place(seed);
         if !self.has_vertex[place] {
             let Some(planes) = self.first_vertex(seed)? else { return Ok(()) };
-            let vertex = self.end_search.vertex_of(planes)?;
+            let vertex = self.edge_tracing.vertex_of(planes)?;
             let number = self.push(seed, &vertex);
             self.join(own, 4 * number + LAST_EDGE);
         }
@@ -180,10 +180,10 @@ impl<'a> Builder<'a> {
         let open = ends.filter(|(vertex, edge)| vertex.ends[*edge as usize] == NONE);
         let radius = open.map(|(vertex, _)| self.relative_to(seed, vertex).length()).reduce(f64::max);
         if let Some(radius) = radius {
-            self.end_search.expect(radius)?;
+            self.edge_tracing.expect(radius)?;
             for edge_of in &self.current {
                 let vertex = &self.vertices[(edge_of / 4) as usize];
-                self.end_search.suggest(vertex.planes(vertex.slot(own)));
+                self.edge_tracing.suggest(vertex.planes(vertex.slot(own)));
             }
         }
         while let Some(edge_of) = self.current.pop() {
@@ -192,7 +192,7 @@ impl<'a> Builder<'a> {
                 let slot = vertex.slot(own);
                 let start = self.relative_to(seed, vertex);
                 let (along, used) = (vertex.edge_planes(slot, edge), vertex.planes(slot));
-                let found = self.end_search.other_end(along, used, start)?;
+                let found = self.edge_tracing.other_end(along, used, start)?;
                 let number = self.push(seed, &found);
                 // What the two vertices share comes first in the new one.
                 self.link(own, 4 * number + LAST_EDGE, edge_of);
@@ -218,7 +218,7 @@ impl<'a> Builder<'a> {
     /// The planes of one vertex of a cell of which none is known; none if the cell is empty.
     fn first_vertex(&mut self, seed: u32) -> Result<Option<[Generator; 3]>, ImagesMissing> {
         let (search, input) = (self.search, self.search.input());
-        let cutter = |planes| self.end_search.cutter(planes);
+        let cutter = |planes| self.edge_tracing.cutter(planes);
         match self.search.domain().dimension() {
             Dimension::Three => search.any_vertex(|| ConvexCell::new(seed, input), seed, cutter),
             Dimension::Two => search.any_vertex(|| ConvexPolygon::new(seed, input), seed, cutter),

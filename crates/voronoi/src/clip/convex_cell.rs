@@ -1,10 +1,10 @@
 //! One cell, cut plane by plane from the box.
 //!
 //! The polyhedron is kept in dual form: a vertex is the triple of planes that meet there, in general position always three
-//! (ties are broken symbolically), oriented so that the determinant of their normals is positive. Cutting with a plane
+//! (ties are broken symbolically), oriented so that the determinant of their normals is positive. Clipping with a plane
 //! removes the vertices beyond it and closes the hole with one new vertex for each polyhedron edge cut.
 
-use crate::clip::cutting::Cutting;
+use crate::clip::clipping::Clipping;
 use crate::clip::vertices::{CHUNK, farthest, find_beyond};
 use crate::exact::generator::Generator;
 use crate::exact::half_space::{EVALUATION_ERROR, HalfSpace, Intersection};
@@ -165,7 +165,7 @@ impl ConvexCell {
     }
 }
 
-impl Cutting for ConvexCell {
+impl Clipping for ConvexCell {
     fn radius(&self) -> f64 {
         if self.triples.is_empty() { -1.0 } else { self.radius }
     }

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::Wall;
-use crate::clip::cutting::Cutting;
+use crate::clip::clipping::Clipping;
 use crate::exact::generator::{Generator, PLANE};
 use crate::exact::half_space::HalfSpace;
 use crate::exact::input::ExactInput;
@@ -88,7 +88,7 @@ impl ConvexPolygon {
     }
 }
 
-impl Cutting for ConvexPolygon {
+impl Clipping for ConvexPolygon {
     fn radius(&self) -> f64 {
         let distance = |corner: &Corner| corner.position.length() + 2.0 * corner.error;
         self.corners.iter().map(distance).fold(-1.0, f64::max)

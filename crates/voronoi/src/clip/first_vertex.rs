@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::clip::cutting::Cutting;
+use crate::clip::clipping::Clipping;
 use crate::exact::generator::Generator;
 use crate::sites::deepest::Ball;
 use crate::sites::search::{ImagesMissing, Layer, RADIUS_MARGIN, Search};
@@ -20,7 +20,7 @@ const MOST_PLANES_OF_SWALLOWED: usize = 500;
 impl Search<'_> {
     /// The planes of one vertex of a cell, given what it is cut from, and what finds a plane that cuts off the vertex of some planes; none
     /// if the cell is empty.
-    pub(crate) fn any_vertex<C: Cutting>(
+    pub(crate) fn any_vertex<C: Clipping>(
         &self,
         uncut: impl Fn() -> C,
         seed: u32,
@@ -62,7 +62,7 @@ impl Search<'_> {
     }
 
     /// Cuts a cell by what a layer knows, from near to far; false if these are more planes than some number.
-    fn cut_by_near(&self, cell: &mut impl Cutting, seed: u32, layer: &Layer, most: usize) -> bool {
+    fn cut_by_near(&self, cell: &mut impl Clipping, seed: u32, layer: &Layer, most: usize) -> bool {
         let (input, known) = (self.input(), self.known(layer, seed));
         let mut near = layer.sites.near_first(input.seeds[seed as usize]);
         self.domain().for_each_facet_within(input.seeds[seed as usize], f64::INFINITY, |facet, distance| {

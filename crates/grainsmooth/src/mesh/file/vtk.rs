@@ -10,7 +10,7 @@ use vtkio::model::{
 
 use super::{MeshFile, MeshFileProblem};
 use crate::vtk::DataArray;
-use labelled::Remarks;
+use labelled::Notes;
 
 mod field;
 pub(crate) mod labelled;
@@ -25,9 +25,9 @@ pub const READER_THREAD: &str = "vtkio reader";
 
 /// Reads a legacy file.
 pub(super) fn read_legacy(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
-    let (bytes, remarks) = legacy_parts::readable(bytes)?;
+    let (bytes, notes) = legacy_parts::readable(bytes)?;
     let mesh = in_thread(|| mesh_of(Vtk::parse_legacy_be(&bytes[..]).map_err(problem)?.data))?;
-    Ok(mesh.with_remarks(remarks))
+    Ok(mesh.with_remarks(notes))
 }
 
 /// Reads a .vtp or .vtu file.
@@ -39,7 +39,7 @@ pub(super) fn read_xml(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
         let mesh = xml_parts::points_and_faces(bytes).and_then(read)?;
         Ok::<_, MeshFileProblem>(MeshFile { left_behind: xml_parts::array_names(bytes), ..mesh })
     })?;
-    Ok(mesh.with_remarks(Remarks::entries_of_xml(bytes)))
+    Ok(mesh.with_remarks(Notes::entries_of_xml(bytes)))
 }
 
 fn problem(error: impl ToString) -> MeshFileProblem {
@@ -152,11 +152,11 @@ impl MeshFile {
         }
     }
 
-    fn with_remarks(mut self, remarks: Remarks) -> Self {
-        self.field = remarks.entries;
+    fn with_remarks(mut self, notes: Notes) -> Self {
+        self.field = notes.entries;
         // These are said anew.
         let is_ours = |name: &String| ["Version", "CommandLine"].contains(&name.as_str());
-        self.left_behind.extend(remarks.unknown.into_iter().filter(|name| !is_ours(name)));
+        self.left_behind.extend(notes.unknown.into_iter().filter(|name| !is_ours(name)));
         self
     }
 

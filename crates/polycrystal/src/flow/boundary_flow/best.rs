@@ -11,7 +11,7 @@ const PATIENCE: usize = 3;
 /// How far a step is from rest: one without folds comes before all with some, then the residual of
 /// Herring's condition counts.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
-pub(crate) struct Badness {
+pub(crate) struct Defects {
     pub(crate) has_folds: bool,
     pub(crate) residual: f64,
 }
@@ -19,29 +19,29 @@ pub(crate) struct Badness {
 /// The best step so far.
 #[derive(Debug)]
 pub(crate) struct Best {
-    badness: Badness,
+    defects: Defects,
     /// Where the points were; none before the first step.
     points: Option<Vec<DVec3>>,
-    /// The badness when progress was last made.
-    milestone: Badness,
+    /// The defects when progress was last made.
+    milestone: Defects,
     steps_since: usize,
 }
 
 impl Best {
     pub(crate) fn new() -> Self {
-        let worst = Badness { has_folds: true, residual: f64::INFINITY };
-        Self { badness: worst, points: None, milestone: worst, steps_since: 0 }
+        let worst = Defects { has_folds: true, residual: f64::INFINITY };
+        Self { defects: worst, points: None, milestone: worst, steps_since: 0 }
     }
 
     /// Takes a further step into account.
-    pub(crate) fn offer(&mut self, badness: Badness, points: &[DVec3]) {
-        if badness < self.badness {
-            self.badness = badness;
+    pub(crate) fn offer(&mut self, defects: Defects, points: &[DVec3]) {
+        if defects < self.defects {
+            self.defects = defects;
             self.points = Some(points.to_vec());
         }
-        let enough = Badness { residual: (1.0 - PROGRESS) * self.milestone.residual, ..self.milestone };
-        if badness < enough {
-            self.milestone = badness;
+        let enough = Defects { residual: (1.0 - PROGRESS) * self.milestone.residual, ..self.milestone };
+        if defects < enough {
+            self.milestone = defects;
             self.steps_since = 0;
         } else {
             self.steps_since += 1;
@@ -68,7 +68,7 @@ mod tests {
         let mut best = Best::new();
         let mut taken = 0;
         for (step, (has_folds, residual)) in steps.iter().enumerate() {
-            best.offer(Badness { has_folds: *has_folds, residual: *residual }, &[DVec3::splat(step as f64)]);
+            best.offer(Defects { has_folds: *has_folds, residual: *residual }, &[DVec3::splat(step as f64)]);
             taken = step + 1;
             if best.is_final() {
                 break;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{End, Flow, OnFold, Wedged};
+use super::{End, Flow, LevelSectors, OnFold};
 use crate::check::folds::element_normals;
 use crate::flow::relaxation::{TIME_OF_KEPT_TOPOLOGY, check_grains_are_left};
 use crate::{GrainId, NetworkError};
@@ -86,7 +86,7 @@ impl Flow<'_> {
                 Err(error) => return Err(self.vanishing(&points, passed, longest).unwrap_or(error)),
             }
         }
-        let finest = Wedged::new(self.network, self.finest());
+        let finest = LevelSectors::new(self.network, self.finest());
         self.finished(points, start, End::Finished, OnFold::GiveWay, &finest)
     }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::flow::boundary_flow::{Clusters, Flow, dot};
+use crate::flow::boundary_flow::{Flow, TiedPoints, dot};
 use crate::mesh::rounding::{last_place, swept_by_rounding};
 use crate::mesh::volume::largest_relative_error;
 use crate::{GrainId, NetworkError, Volumes};
@@ -37,7 +37,7 @@ impl Flow<'_> {
     ///
     /// Gives the points of the finest level.
     fn restore_volumes(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
-        let free = Clusters::new(&self.network.levels()[self.level]);
+        let free = TiedPoints::new(&self.network.levels()[self.level]);
         let mut short = free.clone();
         short.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
         let start = points.to_vec();
@@ -76,7 +76,7 @@ impl Flow<'_> {
         })
     }
 
-    fn restore_with(&self, clusters: &Clusters, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
+    fn restore_with(&self, clusters: &TiedPoints, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
         let terms = self.patches.terms(points);
         let clusters = clusters.number();
         let system = self.system(&terms, &clusters, 0.0, points);

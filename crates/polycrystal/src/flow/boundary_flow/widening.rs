@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use subzero::VertexRule;
 
 use crate::energy::patches::by_boundary;
-use crate::flow::boundary_flow::{Flow, Room, Wedged};
+use crate::flow::boundary_flow::{Flow, LevelSectors, Room};
 use crate::flow::thin_triangles::STEPS;
 use crate::mesh::triangle_quality::squared_sine;
 use crate::{BoundaryId, Mesh, TriangleQuality, Volumes};
@@ -32,7 +32,7 @@ const TRIES: [Moving; 3] = [Moving::Inside, Moving::Lines, Moving::Lines];
 
 impl Flow<'_> {
     /// Makes thin triangles of the finest level wide, as far as nothing folds; `surface` are the points of that level.
-    pub(super) fn widen_all(&self, points: &mut Vec<DVec3>, mut surface: Vec<DVec3>, finest: &Wedged) {
+    pub(super) fn widen_all(&self, points: &mut Vec<DVec3>, mut surface: Vec<DVec3>, finest: &LevelSectors) {
         // Where grains grow, what that does to volumes would count as growth.
         let widens = self.tuning.widening > 0.0 && self.volumes == Volumes::Kept;
         let tries = if widens { TRIES.as_slice() } else { &[] };

@@ -4,12 +4,12 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::str::FromStr;
 
-use super::labelled::Remarks;
+use super::labelled::Notes;
 use crate::names::FIELD_NAMES;
 use crate::vtk::{DataArray, DataNumbers, FieldValue};
 
 /// Where the field data stand that follow the `DATASET` line, and what they say; nothing where there are none or they make no sense.
-pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Remarks)> {
+pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Notes)> {
     let mut reader = Reader { bytes, at: 0, is_binary: false };
     reader.line()?;
     reader.line()?;
@@ -22,7 +22,7 @@ pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Remarks)> {
         return None;
     }
     let array_count: usize = words.nth(1)?.parse().ok()?;
-    let mut remarks = Remarks::default();
+    let mut notes = Notes::default();
     for _ in 0..array_count {
         let head = reader.array_head()?;
         let words: Vec<&str> = head.split_whitespace().collect();
@@ -34,8 +34,8 @@ pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Remarks)> {
             "string" => {
                 for _ in 0..count {
                     let text = reader.text()?;
-                    remarks.note_text(name, text.clone());
-                    remarks.note(name, FieldValue::Text(text));
+                    notes.note_text(name, text.clone());
+                    notes.note(name, FieldValue::Text(text));
                 }
             }
             // A .vtu of this program has its texts as bytes, and what VTK makes of it too.
@@ -45,9 +45,9 @@ pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Remarks)> {
                 } else {
                     (0..count).map(|_| reader.number()).collect::<Option<_>>()?
                 };
-                remarks.note_text(name, String::from_utf8_lossy(&bytes).into_owned());
+                notes.note_text(name, String::from_utf8_lossy(&bytes).into_owned());
                 let is_text = FIELD_NAMES.iter().any(|(known, is_text)| known == &name && *is_text);
-                remarks.note(
+                notes.note(
                     name,
                     match is_text {
                         true => FieldValue::Text(String::from_utf8_lossy(&bytes).into_owned()),
@@ -57,8 +57,8 @@ pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Remarks)> {
             }
             "double" => {
                 let numbers = reader.numbers(count)?;
-                remarks.note_numbers(name, numbers.clone());
-                remarks.note(name, data(DataNumbers::Float64(numbers)));
+                notes.note_numbers(name, numbers.clone());
+                notes.note(name, data(DataNumbers::Float64(numbers)));
             }
             "int" | "vtktypeint32" => {
                 let numbers: Option<Vec<i32>> = match reader.is_binary {
@@ -68,21 +68,21 @@ pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Remarks)> {
                     }
                     false => (0..count).map(|_| reader.number()).collect(),
                 };
-                remarks.note(name, data(DataNumbers::Int32(numbers?)));
+                notes.note(name, data(DataNumbers::Int32(numbers?)));
             }
             "vtktypeuint64" if count == 1 => {
                 let number = match reader.is_binary {
                     true => u64::from_be_bytes(reader.bytes(size_of::<u64>())?.try_into().ok()?),
                     false => reader.number()?,
                 };
-                remarks.note(name, FieldValue::Integer(number));
+                notes.note(name, FieldValue::Integer(number));
             }
             _ if reader.is_binary => reader.skip(count.checked_mul(width(kind)?)?)?,
             _ => (0..count).try_for_each(|_| reader.word().map(|_| ()))?,
         }
     }
     reader.skip_metadata()?;
-    Some((start..reader.at, remarks))
+    Some((start..reader.at, notes))
 }
 
 fn width(kind: &str) -> Option<usize> {
@@ -120,7 +120,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Passes over what VTK remarks on the array before: `METADATA`, up to an empty line.
+    /// Passes over what VTK notes on the array before: `METADATA`, up to an empty line.
     fn skip_metadata(&mut self) -> Option<()> {
         let start = self.at;
         while let Some(line) = self.line() {

@@ -21,7 +21,7 @@ const EULER_ANGLES: &str = "EulerAngles";
 
 /// What the field data of a file of this program say, also after another has read and written it.
 #[derive(Debug, Default)]
-pub(crate) struct Remarks {
+pub(crate) struct Notes {
     /// The settings that made the file, as TOML.
     pub(crate) config: Option<String>,
     /// The volume of each grain, in the order of their numbers.
@@ -36,7 +36,7 @@ pub(crate) struct Remarks {
     pub(crate) unknown: Vec<String>,
 }
 
-impl Remarks {
+impl Notes {
     pub(super) fn note_text(&mut self, name: &str, text: String) {
         if name == CONFIG {
             self.config = Some(text);
@@ -62,16 +62,16 @@ impl Remarks {
 
     /// All entries of a file, without those that are looked at.
     pub(super) fn entries_of_xml(bytes: &[u8]) -> Self {
-        let mut remarks = Self::default();
+        let mut notes = Self::default();
         let names = field_names(bytes);
         for name in names {
             let known = FIELD_NAMES.iter().find(|(known, _)| *known == name);
             match known.and_then(|(name, is_text)| field_entry(bytes, name, *is_text)) {
-                Some(entry) => remarks.entries.push(entry),
-                None => remarks.unknown.push(name),
+                Some(entry) => notes.entries.push(entry),
+                None => notes.unknown.push(name),
             }
         }
-        remarks
+        notes
     }
 
     fn of_xml(bytes: &[u8]) -> Self {
@@ -106,14 +106,14 @@ pub(crate) struct LabelledCells {
     pub(crate) originals: Option<Vec<u32>>,
     /// Whether points are in single precision.
     pub(crate) is_single: bool,
-    pub(crate) remarks: Remarks,
+    pub(crate) notes: Notes,
 }
 
 /// Reads a legacy file.
 pub(crate) fn read_legacy(bytes: &[u8]) -> Result<LabelledCells, MeshFileProblem> {
-    let (bytes, remarks) = legacy_parts::readable(bytes)?;
+    let (bytes, notes) = legacy_parts::readable(bytes)?;
     let cells = in_thread(|| of_data(Vtk::parse_legacy_be(&bytes[..]).map_err(problem)?.data))?;
-    Ok(LabelledCells { remarks, ..cells })
+    Ok(LabelledCells { notes, ..cells })
 }
 
 /// Reads a .vtp or .vtu file.
@@ -122,7 +122,7 @@ pub(crate) fn read_xml(bytes: &[u8]) -> Result<LabelledCells, MeshFileProblem> {
     let parts = xml_parts::network(bytes, &wanted)?;
     in_thread(|| {
         let cells = of_data(Vtk::parse_xml(&parts[..]).map_err(problem)?.data)?;
-        Ok(LabelledCells { remarks: Remarks::of_xml(bytes), ..cells })
+        Ok(LabelledCells { notes: Notes::of_xml(bytes), ..cells })
     })
 }
 

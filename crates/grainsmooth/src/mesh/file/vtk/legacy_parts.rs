@@ -2,7 +2,7 @@
 
 use super::MeshFileProblem;
 use super::field::field_data;
-use super::labelled::Remarks;
+use super::labelled::Notes;
 use crate::vtk::find;
 
 /// Types of arrays that newer versions of VTK write, and older names of the same that `vtkio` knows.
@@ -28,8 +28,8 @@ const BEYOND: &[u8] = b"1e300 ";
 /// text, of what is no number; and what the field data say.
 ///
 /// Refuses a text with coordinates that are no numbers, by their point.
-pub(super) fn readable(bytes: &[u8]) -> Result<(Vec<u8>, Remarks), MeshFileProblem> {
-    let (field, remarks) = field_data(bytes).unwrap_or_default();
+pub(super) fn readable(bytes: &[u8]) -> Result<(Vec<u8>, Notes), MeshFileProblem> {
+    let (field, notes) = field_data(bytes).unwrap_or_default();
     let bytes = [&bytes[..field.start], &bytes[field.end..]].concat();
     let arrays = ["\nPOINT_DATA ", "\nCELL_DATA "];
     let starts = arrays.into_iter().filter_map(|head| find(&bytes, head.as_bytes()));
@@ -39,10 +39,10 @@ pub(super) fn readable(bytes: &[u8]) -> Result<(Vec<u8>, Remarks), MeshFileProbl
     let arrays = with_known_types(arrays);
     let is_text = geometry.split(|byte| *byte == b'\n').nth(2).is_some_and(|line| line.starts_with(b"ASCII"));
     if !is_text {
-        return Ok(([geometry, &arrays].concat(), remarks));
+        return Ok(([geometry, &arrays].concat(), notes));
     }
     check_coordinates(geometry)?;
-    Ok(([geometry, &with_numbers_only(&arrays)].concat(), remarks))
+    Ok(([geometry, &with_numbers_only(&arrays)].concat(), notes))
 }
 
 /// The points and cells with 64-bit numbers of points, which alone `vtkio` knows, where VTK wrote 32-bit ones: `OFFSETS int`.

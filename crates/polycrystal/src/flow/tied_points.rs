@@ -18,9 +18,9 @@ const WHOLE_ATTEMPTS: usize = 12;
 /// Under curvature flow a feature of size l lives for a time of order l^2: one much smaller than a step would turn inside
 /// out within it. Rigid groups take such features out of the flow without taking them out of the network.
 #[derive(Debug, Clone)]
-pub(crate) struct Clusters(DisjointSets);
+pub(crate) struct TiedPoints(DisjointSets);
 
-impl Clusters {
+impl TiedPoints {
     /// Every point of a level on its own, but for those that are others moved by whole periods.
     pub(crate) fn new(level: &Level) -> Self {
         let mut clusters = Self::apart(level.vertex_count());
@@ -97,7 +97,7 @@ impl Clusters {
     }
 }
 
-/// Clusters by number.
+/// TiedPoints by number.
 pub(crate) struct Numbering {
     numbers: Vec<u32>,
     /// The control points of each cluster.

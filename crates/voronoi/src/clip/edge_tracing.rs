@@ -54,7 +54,7 @@ pub(crate) struct NewVertex {
 }
 
 /// The search around one seed. Reused from seed to seed so that the buffers are allocated once.
-pub(crate) struct EndSearch<'a> {
+pub(crate) struct EdgeTracing<'a> {
     search: &'a Search<'a>,
     input: ExactInput<'a>,
     seed: u32,
@@ -69,7 +69,7 @@ pub(crate) struct EndSearch<'a> {
     maybe: Vec<Generator>,
 }
 
-impl<'a> EndSearch<'a> {
+impl<'a> EdgeTracing<'a> {
     pub(crate) fn new(search: &'a Search<'a>) -> Self {
         Self {
             search,

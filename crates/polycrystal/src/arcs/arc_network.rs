@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use voronoi::FaceId;
 
-use crate::arcs::bow::Bow;
+use crate::arcs::chordal_arc::ChordalArc;
 use crate::energy::sides::{boundary, cell_and_offset, freedom};
 use crate::solver::dissection::Dissection;
 use crate::{Boundary, CellComplex, Freedom};
@@ -15,7 +15,7 @@ use crate::{Boundary, CellComplex, Freedom};
 pub(crate) const OWN: usize = 5;
 
 /// The lengths and areas that a complex of the plane has if its edges are arcs.
-pub(crate) struct Foam<'a> {
+pub(crate) struct ArcNetwork<'a> {
     pub(crate) arcs: Vec<Arc>,
     pub(crate) areas: &'a [f64],
     /// The largest cell. Its pressure is 0, as the same pressure everywhere moves nothing; its area is what the others leave, and with that
@@ -40,7 +40,7 @@ pub(crate) struct Arc {
     pub(crate) chords: u32,
 }
 
-impl<'a> Foam<'a> {
+impl<'a> ArcNetwork<'a> {
     /// The edges of a complex with so many chords each; areas are those wanted.
     pub(crate) fn new(
         complex: &CellComplex,
@@ -98,8 +98,8 @@ impl<'a> Foam<'a> {
         state[2 * self.freedoms.len() + arc]
     }
 
-    pub(crate) fn bow(&self, arc: usize, state: &[f64]) -> Bow {
-        Bow::new(self.turning(arc, state), self.arcs[arc].chords)
+    pub(crate) fn chordal_arc(&self, arc: usize, state: &[f64]) -> ChordalArc {
+        ChordalArc::new(self.turning(arc, state), self.arcs[arc].chords)
     }
 
     /// Where an arc's own variables are in a state.
@@ -112,7 +112,7 @@ impl<'a> Foam<'a> {
     pub(crate) fn energy(&self, state: &[f64]) -> f64 {
         let of_arc = |(number, arc): (usize, &Arc)| {
             let [start, end] = self.ends(arc, state);
-            arc.tension * start.distance(end) * self.bow(number, state).length[0]
+            arc.tension * start.distance(end) * self.chordal_arc(number, state).length[0]
         };
         self.arcs.iter().enumerate().map(of_arc).sum()
     }
@@ -120,10 +120,11 @@ impl<'a> Foam<'a> {
     /// What the area of each cell lacks.
     pub(crate) fn missing(&self, state: &[f64]) -> Vec<f64> {
         let mut missing = self.areas.to_vec();
-        let bows = (0..self.arcs.len()).into_par_iter().map(|arc| self.bow(arc, state).area[0]);
-        for (arc, bow) in self.arcs.iter().zip(bows.collect::<Vec<f64>>()) {
+        let chordal_arcs =
+            (0..self.arcs.len()).into_par_iter().map(|arc| self.chordal_arc(arc, state).area[0]);
+        for (arc, chordal_arc) in self.arcs.iter().zip(chordal_arcs.collect::<Vec<f64>>()) {
             let [start, end] = self.ends(arc, state);
-            let bulge = start.distance_squared(end) * bow;
+            let bulge = start.distance_squared(end) * chordal_arc;
             for (beside, sign) in arc.beside.iter().zip([1.0, -1.0]) {
                 if let Some((cell, offset)) = beside {
                     missing[*cell] -= sign * (0.5 * (start - offset).perp_dot(end - offset) + bulge);

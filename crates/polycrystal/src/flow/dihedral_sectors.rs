@@ -13,11 +13,11 @@ const LEAST_TURNED: f64 = 0.7;
 
 /// The edges of all grains in space: two triangles of different boundaries with a grain between them. None in the plane, where
 /// short lines may well turn about.
-pub(crate) struct Wedges {
-    wedges: Vec<Wedge>,
+pub(crate) struct DihedralSectors {
+    dihedral_sectors: Vec<DihedralSector>,
 }
 
-struct Wedge {
+struct DihedralSector {
     /// The edge, as the first element runs along it.
     ends: [u32; 2],
     /// What each element has beside the edge.
@@ -27,10 +27,10 @@ struct Wedge {
     sense: f64,
 }
 
-impl Wedges {
+impl DihedralSectors {
     pub(crate) fn new(surface: &Surface<'_>, seams: &Seams) -> Self {
-        let mut wedges = Vec::new();
-        let Elements::Triangles(triangles) = surface.elements else { return Self { wedges } };
+        let mut dihedral_sectors = Vec::new();
+        let Elements::Triangles(triangles) = surface.elements else { return Self { dihedral_sectors } };
         let apex = |at: &Use| triangles[at.element as usize][usize::from((at.corner + 2) % 3)];
         let mut uses: Vec<(Side, &Use, f64)> = Vec::new();
         for place in seams.places() {
@@ -42,20 +42,23 @@ impl Wedges {
             uses.retain(|(side, ..)| *side != Side::Exterior);
             uses.sort_unstable_by_key(|(side, at, _)| (*side, **at));
             let pairs = uses.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 2);
-            wedges.extend(pairs.map(|pair| Wedge {
+            dihedral_sectors.extend(pairs.map(|pair| DihedralSector {
                 ends: pair[0].1.ends(surface.elements),
                 apexes: [pair[0].1, pair[1].1].map(apex),
                 elements: [pair[0].1, pair[1].1].map(|at| at.element),
                 sense: pair[0].2,
             }));
         }
-        Self { wedges }
+        Self { dihedral_sectors }
     }
 
     /// The elements at edges where grains are turned inside out.
     pub(crate) fn turned(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
-        let turned = self.wedges.par_iter().filter(|wedge| is_turned(wedge.opening(points)));
-        turned.map(|wedge| wedge.elements).collect()
+        let turned = self
+            .dihedral_sectors
+            .par_iter()
+            .filter(|dihedral_sector| is_turned(dihedral_sector.opening(points)));
+        turned.map(|dihedral_sector| dihedral_sector.elements).collect()
     }
 }
 
@@ -64,7 +67,7 @@ fn is_turned([cosine, sine]: [f64; 2]) -> bool {
     cosine > LEAST_TURNED && sine < 0.0
 }
 
-impl Wedge {
+impl DihedralSector {
     /// Cosine and sine of the grain's angle.
     fn opening(&self, points: &[DVec3]) -> [f64; 2] {
         let [start, end] = self.ends.map(|end| points[end as usize]);
@@ -93,8 +96,9 @@ mod tests {
         let (network, flat) = Network::new(&tessellation, Junctions::Crease, 0).expect("a network");
         let level = network.control_mesh();
         let sides = network.sides();
-        let wedges = Wedges::new(&Surface::of_level(level, &flat, &sides), &Seams::of_level(level));
-        assert!(wedges.turned(&flat).is_empty());
+        let dihedral_sectors =
+            DihedralSectors::new(&Surface::of_level(level, &flat, &sides), &Seams::of_level(level));
+        assert!(dihedral_sectors.turned(&flat).is_empty());
         // What is inside the boundary at x = 0.5, y < 0.5, goes far beyond the one at y = 0.5.
         let mut pushed = flat.clone();
         for point in &mut pushed {
@@ -102,6 +106,6 @@ mod tests {
                 *point = DVec3::new(0.95, 0.7, point.z);
             }
         }
-        assert!(!wedges.turned(&pushed).is_empty());
+        assert!(!dihedral_sectors.turned(&pushed).is_empty());
     }
 }

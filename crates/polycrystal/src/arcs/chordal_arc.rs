@@ -16,13 +16,13 @@ pub(crate) type Jet = [f64; 3];
 
 /// Length and area of an arc of chords whose ends are one unit apart, by its turning: the angle at the centre.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Bow {
+pub(crate) struct ChordalArc {
     pub(crate) length: Jet,
     /// To the right of the line from start to end, for a positive turning: the arc turns left.
     pub(crate) area: Jet,
 }
 
-impl Bow {
+impl ChordalArc {
     /// Of a turning between -2 pi and 2 pi.
     pub(crate) fn new(turning: f64, chords: u32) -> Self {
         let q = 1.0 / f64::from(chords);
@@ -103,9 +103,9 @@ mod tests {
                     (0..=chords).map(|k| point_on_arc(ends, turning, k, chords)).collect();
                 let length: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
                 let area: f64 = points.windows(2).map(|pair| 0.5 * pair[0].perp_dot(pair[1])).sum();
-                let bow = Bow::new(turning, chords);
-                assert!((bow.length[0] - length).abs() < 1e-13, "{turning} {chords}");
-                assert!((bow.area[0] - area).abs() < 1e-13, "{turning} {chords}");
+                let chordal_arc = ChordalArc::new(turning, chords);
+                assert!((chordal_arc.length[0] - length).abs() < 1e-13, "{turning} {chords}");
+                assert!((chordal_arc.area[0] - area).abs() < 1e-13, "{turning} {chords}");
             }
         }
     }
@@ -115,8 +115,8 @@ mod tests {
         let h = 1e-4;
         for turning in [-3.0, -0.4, -1e-3, 0.0, 0.02, 0.2, 1.5, 4.0] {
             for chords in [2, 16] {
-                let [before, at, after] = [-h, 0.0, h].map(|by| Bow::new(turning + by, chords));
-                let jets = |bow: &Bow| [bow.length, bow.area];
+                let [before, at, after] = [-h, 0.0, h].map(|by| ChordalArc::new(turning + by, chords));
+                let jets = |chordal_arc: &ChordalArc| [chordal_arc.length, chordal_arc.area];
                 for ((before, at), after) in jets(&before).into_iter().zip(jets(&at)).zip(jets(&after)) {
                     for order in [0, 1] {
                         let slope = (after[order] - before[order]) / (2.0 * h);

@@ -2,7 +2,7 @@ use crate::exact::generator::Generator;
 use crate::exact::input::ExactInput;
 
 /// A cell that is being cut: polyhedron or polygon.
-pub(crate) trait Cutting {
+pub(crate) trait Clipping {
     /// A radius around the seed that holds the cell; negative for an empty cell.
     fn radius(&self) -> f64;
 

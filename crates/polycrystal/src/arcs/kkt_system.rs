@@ -1,33 +1,33 @@
-//! What a foam is like near a state: slopes and curvatures, and the motions that forces and changes of area ask for.
+//! What a network is like near a state: slopes and curvatures, and the motions that forces and changes of area ask for.
 
 use glam::{DMat2, DVec2, DVec3};
 use rayon::prelude::*;
 
-use crate::arcs::bow::Bow;
-use crate::arcs::foam::{Arc, Foam, OWN};
-use crate::solver::factors::{ELEMENT, Element, Factors};
+use crate::arcs::arc_network::{Arc, ArcNetwork, OWN};
+use crate::arcs::chordal_arc::ChordalArc;
+use crate::solver::factors::{ELEMENT, Element, LdlFactors};
 
-/// Share of an arc's rigidity that holds its ends in their places, not only to each other.
+/// Share of an arc's damping that holds its ends in their places, not only to each other.
 const HELD: f64 = 0.1;
 
-/// The same where an arc has no rigidity at all: whole networks on a torus would be free to move.
+/// The same where an arc has no damping at all: whole networks on a torus would be free to move.
 const LEAST_HELD: f64 = 1e-9;
 
 /// Least stiffness of an arc against turning, as a share of that without pressure.
 const LEAST_BENDING: f64 = 0.1;
 
-/// What the foam is like near a state.
-pub(crate) struct Tangent<'a> {
-    foam: &'a Foam<'a>,
+/// What the network is like near a state.
+pub(crate) struct KktSystem<'a> {
+    network: &'a ArcNetwork<'a>,
     terms: Vec<ArcTerms>,
-    factors: Factors,
+    factors: LdlFactors,
 }
 
 /// The first derivatives of an arc's length and areas by its own variables, and what the second ones follow from.
 struct ArcTerms {
     length: [f64; OWN],
     areas: [[f64; OWN]; 2],
-    bow: Bow,
+    chordal_arc: ChordalArc,
     along: DVec2,
     chord: f64,
     /// The difference of pressure from left to right.
@@ -43,16 +43,16 @@ pub(crate) struct Answer {
 }
 
 impl ArcTerms {
-    fn new(foam: &Foam<'_>, number: usize, state: &[f64], pressures: &[f64], rigidity: f64) -> Self {
-        let arc = &foam.arcs[number];
-        let [start, end] = foam.ends(arc, state);
-        let bow = foam.bow(number, state);
+    fn new(network: &ArcNetwork<'_>, number: usize, state: &[f64], pressures: &[f64], damping: f64) -> Self {
+        let arc = &network.arcs[number];
+        let [start, end] = network.ends(arc, state);
+        let chordal_arc = network.chordal_arc(number, state);
         let chord = start.distance(end).max(f64::MIN_POSITIVE);
         let along = (end - start) / chord;
-        let pull = along * (arc.tension * bow.length[0]);
-        let length = [-pull.x, -pull.y, pull.x, pull.y, arc.tension * chord * bow.length[1]];
-        let swell = along * (2.0 * chord * bow.area[0]);
-        let bulge = [-swell.x, -swell.y, swell.x, swell.y, chord * chord * bow.area[1]];
+        let pull = along * (arc.tension * chordal_arc.length[0]);
+        let length = [-pull.x, -pull.y, pull.x, pull.y, arc.tension * chord * chordal_arc.length[1]];
+        let swell = along * (2.0 * chord * chordal_arc.area[0]);
+        let bulge = [-swell.x, -swell.y, swell.x, swell.y, chord * chord * chordal_arc.area[1]];
         let areas = [0, 1].map(|side| {
             let Some((_, offset)) = arc.beside[side] else { return [0.0; OWN] };
             let (a, b) = (0.5 * (start - offset), 0.5 * (end - offset));
@@ -62,27 +62,27 @@ impl ArcTerms {
         });
         let [left, right] = arc.beside.map(|beside| beside.map_or(0.0, |(cell, _)| pressures[cell]));
         let excess = left - right;
-        let plain = arc.tension * chord * bow.length[2];
-        let bending = plain * (1.0 + rigidity) - excess * chord * chord * bow.area[2];
+        let plain = arc.tension * chord * chordal_arc.length[2];
+        let bending = plain * (1.0 + damping) - excess * chord * chord * chordal_arc.area[2];
         let is_straight = arc.chords == 1 || plain <= 0.0;
         let flexibility = if is_straight { 0.0 } else { 1.0 / bending.max(LEAST_BENDING * plain) };
-        Self { length, areas, bow, along, chord, excess, flexibility }
+        Self { length, areas, chordal_arc, along, chord, excess, flexibility }
     }
 
     /// What the arc adds to the matrix: of its ends and of the pressures beside it, after its turning is eliminated.
-    fn element(&self, foam: &Foam<'_>, arc: &Arc, rigidity: f64) -> Element {
-        let Self { bow, along, chord, excess, flexibility, .. } = *self;
-        let pull = arc.tension * bow.length[0] / chord;
+    fn element(&self, network: &ArcNetwork<'_>, arc: &Arc, damping: f64) -> Element {
+        let Self { chordal_arc, along, chord, excess, flexibility, .. } = *self;
+        let pull = arc.tension * chordal_arc.length[0] / chord;
         // Edges without tension count, too: short ones are not to turn over with a step.
-        let stiffness = if arc.tension > 0.0 { pull } else { foam.mean_tension / chord };
+        let stiffness = if arc.tension > 0.0 { pull } else { network.mean_tension / chord };
         let normal = along.perp();
         let spring = outer(normal, normal) * pull
-            + DMat2::from_diagonal(DVec2::splat(rigidity * stiffness - 2.0 * bow.area[0] * excess));
-        let held = DMat2::from_diagonal(DVec2::splat(HELD.mul_add(rigidity, LEAST_HELD) * stiffness));
+            + DMat2::from_diagonal(DVec2::splat(damping * stiffness - 2.0 * chordal_arc.area[0] * excess));
+        let held = DMat2::from_diagonal(DVec2::splat(HELD.mul_add(damping, LEAST_HELD) * stiffness));
         // The triangle to the arc's ends has half the product of these two.
         let turned = DMat2::from_cols(DVec2::Y, DVec2::NEG_X) * (0.5 * excess);
         let free = arc.ends.map(|(vertex, _)| {
-            let [x, y] = [DVec3::X, DVec3::Y].map(|axis| foam.freedoms[vertex].project(axis).truncate());
+            let [x, y] = [DVec3::X, DVec3::Y].map(|axis| network.freedoms[vertex].project(axis).truncate());
             DMat2::from_cols(x, y)
         });
         // What turns with each end and with each pressure.
@@ -107,16 +107,16 @@ impl ArcTerms {
         }
         let mut places = [0; ELEMENT];
         for (end, (vertex, _)) in arc.ends.into_iter().enumerate() {
-            let place = foam.order.vertex(vertex).expect("the arc ends there");
+            let place = network.order.vertex(vertex).expect("the arc ends there");
             (places[2 * end], places[2 * end + 1]) = (place, place + 1);
         }
         let beside = arc.beside.map(|beside| Some(beside?.0));
         let some = beside[0].or(beside[1]).expect("there is a cell beside each edge");
         for (side, cell) in beside.into_iter().enumerate() {
-            places[4 + side] = foam.order.cell(cell.unwrap_or(some));
+            places[4 + side] = network.order.cell(cell.unwrap_or(some));
             match cell {
                 None => continue,
-                Some(cell) if cell == foam.pinned => {
+                Some(cell) if cell == network.pinned => {
                     matrix[4 + side][4 + side] = -1.0;
                     continue;
                 }
@@ -140,7 +140,9 @@ impl ArcTerms {
 
     /// The force on the end per turning; that on the start is the opposite.
     fn winding(&self, arc: &Arc) -> DVec2 {
-        self.along * (arc.tension * self.bow.length[1] - 2.0 * self.chord * self.bow.area[1] * self.excess)
+        self.along
+            * (arc.tension * self.chordal_arc.length[1]
+                - 2.0 * self.chord * self.chordal_arc.area[1] * self.excess)
     }
 }
 
@@ -148,34 +150,39 @@ fn outer(a: DVec2, b: DVec2) -> DMat2 {
     DMat2::from_cols(a * b.x, a * b.y)
 }
 
-impl<'a> Tangent<'a> {
-    /// That of a foam at a state under pressures, if each arc is so much more rigid than it is.
-    pub(crate) fn new(foam: &'a Foam<'a>, state: &[f64], pressures: &[f64], rigidities: &[f64]) -> Self {
+impl<'a> KktSystem<'a> {
+    /// That of a network at a state under pressures, if each arc is so much more rigid than it is.
+    pub(crate) fn new(
+        network: &'a ArcNetwork<'a>,
+        state: &[f64],
+        pressures: &[f64],
+        dampings: &[f64],
+    ) -> Self {
         let of_arc = |number: usize| {
-            let arc = &foam.arcs[number];
-            let rigidity = rigidities[arc.face.index()];
-            let terms = ArcTerms::new(foam, number, state, pressures, rigidity);
-            let element = terms.element(foam, arc, rigidity);
+            let arc = &network.arcs[number];
+            let damping = dampings[arc.face.index()];
+            let terms = ArcTerms::new(network, number, state, pressures, damping);
+            let element = terms.element(network, arc, damping);
             (terms, element)
         };
         let (terms, elements): (Vec<ArcTerms>, Vec<Element>) =
-            (0..foam.arcs.len()).into_par_iter().map(of_arc).unzip();
-        Self { foam, terms, factors: Factors::new(&foam.order, &elements) }
+            (0..network.arcs.len()).into_par_iter().map(of_arc).unzip();
+        Self { network, terms, factors: LdlFactors::new(&network.order, &elements) }
     }
 
     /// Whether the energy has a least value on all motions that keep areas.
     pub(crate) fn is_stable(&self) -> bool {
-        self.factors.negative_count() == self.foam.areas.len()
+        self.factors.negative_count() == self.network.areas.len()
     }
 
     /// The gradient of the energy.
     pub(crate) fn gradient(&self) -> Vec<f64> {
         let mut gradient = self.zero();
         for (number, terms) in self.terms.iter().enumerate() {
-            let own = self.foam.own(number).into_iter().zip(terms.length);
+            let own = self.network.own(number).into_iter().zip(terms.length);
             own.for_each(|(variable, slope)| gradient[variable] += slope);
         }
-        self.foam.keep_free(&mut gradient);
+        self.network.keep_free(&mut gradient);
         gradient
     }
 
@@ -185,12 +192,12 @@ impl<'a> Tangent<'a> {
     }
 
     fn zero(&self) -> Vec<f64> {
-        vec![0.0; 2 * self.foam.freedoms.len() + self.foam.arcs.len()]
+        vec![0.0; 2 * self.network.freedoms.len() + self.network.arcs.len()]
     }
 
     /// The motion that a force and changes of area lead to, to first order.
     pub(crate) fn answer(&self, force: &[f64], changes: &[f64]) -> Answer {
-        let Foam { arcs, order, freedoms, .. } = self.foam;
+        let ArcNetwork { arcs, order, freedoms, .. } = self.network;
         let (forces, torques) = force.split_at(2 * freedoms.len());
         let places = || (0..freedoms.len()).filter_map(|vertex| Some((vertex, order.vertex(vertex)?)));
         let mut values = vec![0.0; order.len()];
@@ -214,14 +221,14 @@ impl<'a> Tangent<'a> {
                 }
             }
         }
-        values[order.cell(self.foam.pinned)] = 0.0;
+        values[order.cell(self.network.pinned)] = 0.0;
         self.factors.solve(&mut values);
         let pressures: Vec<f64> = (0..changes.len()).map(|cell| -values[order.cell(cell)]).collect();
         let mut motion = self.zero();
         for (vertex, place) in places() {
             motion[2 * vertex..2 * vertex + 2].copy_from_slice(&values[place..place + 2]);
         }
-        self.foam.keep_free(&mut motion);
+        self.network.keep_free(&mut motion);
         let (places, turns) = motion.split_at_mut(2 * freedoms.len());
         for (((arc, terms), torque), turn) in arcs.iter().zip(&self.terms).zip(torques).zip(turns) {
             let [start, end] =
@@ -238,19 +245,24 @@ impl<'a> Tangent<'a> {
     /// The second derivative of the energy under the pressures, times a motion.
     pub(crate) fn curvature(&self, motion: &[f64]) -> Vec<f64> {
         let mut image = vec![0.0; motion.len()];
-        for (number, (arc, terms)) in self.foam.arcs.iter().zip(&self.terms).enumerate() {
-            let ArcTerms { bow, along, chord, excess, .. } = terms;
-            let own = self.foam.own(number);
+        for (number, (arc, terms)) in self.network.arcs.iter().zip(&self.terms).enumerate() {
+            let ArcTerms { chordal_arc, along, chord, excess, .. } = terms;
+            let own = self.network.own(number);
             let [start, end] =
                 [[own[0], own[1]], [own[2], own[3]]].map(|[x, y]| DVec2::new(motion[x], motion[y]));
             let (stretch, turn) = (end - start, motion[own[4]]);
             let longer = along.dot(stretch);
             let across = stretch - along * longer;
-            let pull = across * (arc.tension * bow.length[0] / chord)
-                + along * (arc.tension * bow.length[1] * turn)
-                - (stretch * (2.0 * bow.area[0]) + along * (2.0 * chord * bow.area[1] * turn)) * excess;
-            let wind = (arc.tension * bow.length[1] - excess * 2.0 * chord * bow.area[1]) * longer
-                + (arc.tension * chord * bow.length[2] - excess * chord * chord * bow.area[2]) * turn;
+            let pull = across * (arc.tension * chordal_arc.length[0] / chord)
+                + along * (arc.tension * chordal_arc.length[1] * turn)
+                - (stretch * (2.0 * chordal_arc.area[0])
+                    + along * (2.0 * chord * chordal_arc.area[1] * turn))
+                    * excess;
+            let wind = (arc.tension * chordal_arc.length[1] - excess * 2.0 * chord * chordal_arc.area[1])
+                * longer
+                + (arc.tension * chord * chordal_arc.length[2]
+                    - excess * chord * chord * chordal_arc.area[2])
+                    * turn;
             // The triangle to the arc's ends has half the product of these two.
             let [at_start, at_end] =
                 [-pull + end.perp() * (0.5 * excess), pull - start.perp() * (0.5 * excess)];
@@ -258,7 +270,7 @@ impl<'a> Tangent<'a> {
                 image[variable] += value;
             }
         }
-        self.foam.keep_free(&mut image);
+        self.network.keep_free(&mut image);
         image
     }
 }
