@@ -79,7 +79,7 @@ fn winding_is_made_to_agree() {
          the edge infinitely; `grainsmooth mesh orient` makes it agree",
     );
     let said = workplace.run("mesh orient typed.obj -o agreeing.obj");
-    assert!(said.contains("oriented    2 of 4 faces turned round; 1 parts"), "{said}");
+    assert!(said.contains("oriented    2 of 4 faces reversed; 1 parts"), "{said}");
     let agreeing = read_mesh(&workplace.path("agreeing.obj")).unwrap();
     assert_eq!(agreeing.faces, [[6, 5, 2], [4, 3, 2], [2, 5, 4], [6, 2, 7]]);
     workplace.run("mesh loop agreeing.obj -n 3 -o smooth.vtp");

@@ -90,8 +90,8 @@ Examples:
   grainsmooth --periodic x,y,z                    grains that fill space by repeating the cube
   grainsmooth --lattice bcc 4                     Kelvin's foam: 128 truncated octahedra, cut by the walls
   grainsmooth --seeds-file seeds.csv --relax 0    flat Voronoi grains from your own seeds
-  grainsmooth --picture grains.png --explode 0.4  a picture of the grains, moved apart
-  grainsmooth --report grains.html                a page with the grains to turn round, and their statistics
+  grainsmooth --picture grains.png --explode 0.4  a picture of the grains, exploded
+  grainsmooth --report grains.html                a page with the grains to rotate, and their statistics
   grainsmooth measure sample.tess                 what a twin of a sample takes
   grainsmooth --config grains.vtp                 the run that wrote grains.vtp once more
 

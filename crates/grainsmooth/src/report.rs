@@ -1,4 +1,4 @@
-//! A page about a run: its grains to turn round, its statistics, its figures.
+//! A page about a run: its grains to rotate, its statistics, its figures.
 
 mod chart;
 mod orientation_figures;

@@ -1,4 +1,4 @@
-//! Winding that agrees: which faces to turn round so that each edge is run through in both directions.
+//! Winding that agrees: which faces to reverse so that each edge is run through in both directions.
 
 use glam::DVec3;
 
@@ -7,18 +7,18 @@ use crate::ids::{NONE, id};
 use crate::mesh_checks::{check_faces, check_size};
 use crate::{FaceId, MeshError};
 
-/// Which faces of a mesh are to be turned round, and which of them hang together.
+/// Which faces of a mesh are to be reversed, and which of them are connected.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orientation {
-    /// Per face: whether it is to be turned round.
-    turned: Vec<bool>,
+    /// Per face: whether it is to be reversed.
+    reversed: Vec<bool>,
     /// Per face: its component.
     component_of: Vec<u32>,
     /// Per component: whether each of its edges has exactly two faces.
     is_closed: Vec<bool>,
 }
 
-/// Finds which faces to turn round for the winding to agree: in each component the fewer ones, and of equally many those
+/// Finds which faces to reverse for the winding to agree: in each component the fewer ones, and of equally many those
 /// that wind unlike its first face. Edges of three or more faces join nothing.
 ///
 /// # Errors
@@ -42,7 +42,7 @@ pub fn orient(vertex_count: usize, faces: &[Vec<u32>]) -> Result<Orientation, Me
     }
 
     let mut orientation = Orientation {
-        turned: vec![false; faces.len()],
+        reversed: vec![false; faces.len()],
         component_of: vec![NONE; faces.len()],
         is_closed: Vec::new(),
     };
@@ -56,14 +56,14 @@ pub fn orient(vertex_count: usize, faces: &[Vec<u32>]) -> Result<Orientation, Me
         let mut done = 0;
         while let Some(&face) = members.get(done) {
             done += 1;
-            let turned = orientation.turned[face as usize];
+            let reversed = orientation.reversed[face as usize];
             for &(neighbour, same_way, half_edge) in &links[face as usize] {
-                let wanted = turned != same_way;
+                let wanted = reversed != same_way;
                 if orientation.component_of[neighbour as usize] == NONE {
                     orientation.component_of[neighbour as usize] = component;
-                    orientation.turned[neighbour as usize] = wanted;
+                    orientation.reversed[neighbour as usize] = wanted;
                     members.push(neighbour);
-                } else if orientation.turned[neighbour as usize] != wanted {
+                } else if orientation.reversed[neighbour as usize] != wanted {
                     let ends = half_edges[half_edge as usize];
                     return Err(MeshError::NotOrientable {
                         first: FaceId(face),
@@ -73,9 +73,9 @@ pub fn orient(vertex_count: usize, faces: &[Vec<u32>]) -> Result<Orientation, Me
                 }
             }
         }
-        let turned = members.iter().filter(|face| orientation.turned[**face as usize]).count();
-        if 2 * turned > members.len() {
-            orientation.turn(&members);
+        let reversed = members.iter().filter(|face| orientation.reversed[**face as usize]).count();
+        if 2 * reversed > members.len() {
+            orientation.reverse(&members);
         }
         let linked: usize = members.iter().map(|face| links[*face as usize].len()).sum();
         let side_count: usize = members.iter().map(|face| faces[*face as usize].len()).sum();
@@ -85,12 +85,12 @@ pub fn orient(vertex_count: usize, faces: &[Vec<u32>]) -> Result<Orientation, Me
 }
 
 impl Orientation {
-    /// Per face: whether it is to be turned round.
-    pub fn turned(&self) -> &[bool] {
-        &self.turned
+    /// Per face: whether it is to be reversed.
+    pub fn reversed(&self) -> &[bool] {
+        &self.reversed
     }
 
-    /// Per face: its component. Components hang together by edges of exactly two faces, and count in the order of their first faces.
+    /// Per face: its component. Components are connected by edges of exactly two faces, and count in the order of their first faces.
     pub fn component_of(&self) -> &[u32] {
         &self.component_of
     }
@@ -100,7 +100,7 @@ impl Orientation {
         &self.is_closed
     }
 
-    /// Turns closed components, too, whose normals would point inward: those of negative volume.
+    /// Reverses closed components, too, whose normals would point inward: those of negative volume.
     ///
     /// # Panics
     /// If `faces` are not those that were oriented, or `points` are fewer than their vertices.
@@ -120,30 +120,30 @@ impl Orientation {
                     a.dot(b.cross(c))
                 })
                 .sum();
-            volumes[component] += if self.turned[f] { -volume } else { volume };
+            volumes[component] += if self.reversed[f] { -volume } else { volume };
         }
         for (f, component) in self.component_of.iter().enumerate() {
             let component = *component as usize;
             if self.is_closed[component] && volumes[component] < 0.0 {
-                self.turned[f] = !self.turned[f];
+                self.reversed[f] = !self.reversed[f];
             }
         }
     }
 
-    /// The faces with those turned round that are to be; each keeps its first corner.
+    /// The faces with those reversed that are to be; each keeps its first corner.
     ///
     /// # Panics
     /// If `faces` are not as many as were oriented.
     pub fn apply(&self, faces: &mut [Vec<u32>]) {
-        assert_eq!(faces.len(), self.turned.len(), "there must be the faces that were oriented");
-        for (face, _) in faces.iter_mut().zip(&self.turned).filter(|(_, turned)| **turned) {
+        assert_eq!(faces.len(), self.reversed.len(), "there must be the faces that were oriented");
+        for (face, _) in faces.iter_mut().zip(&self.reversed).filter(|(_, reversed)| **reversed) {
             face[1..].reverse();
         }
     }
 
-    fn turn(&mut self, members: &[u32]) {
+    fn reverse(&mut self, members: &[u32]) {
         for &face in members {
-            self.turned[face as usize] = !self.turned[face as usize];
+            self.reversed[face as usize] = !self.reversed[face as usize];
         }
     }
 }

@@ -33,7 +33,7 @@ fn most_faces_stay() {
     let mut typed = faces(&TETRAHEDRON);
     typed[0].swap(1, 2);
     let orientation = orient(4, &typed).unwrap();
-    assert_eq!(orientation.turned(), [true, false, false, false]);
+    assert_eq!(orientation.reversed(), [true, false, false, false]);
     assert_eq!(orientation.is_closed(), [true]);
     assert_eq!(oriented(4, &typed), faces(&TETRAHEDRON));
 }
@@ -47,7 +47,7 @@ fn components_are_turned_by_themselves_and_outward_if_closed() {
     let mut orientation = orient(11, &typed).unwrap();
     assert_eq!(orientation.component_of(), [0, 0, 0, 0, 1, 1, 1, 1, 2]);
     assert_eq!(orientation.is_closed(), [true, true, false]);
-    assert!(!orientation.turned().contains(&true), "what agrees stays as it is");
+    assert!(!orientation.reversed().contains(&true), "what agrees stays as it is");
     let corner = |v: u32| match v % 4 {
         0 => DVec3::NEG_ONE,
         1 => DVec3::new(1.0, -1.0, 1.0),
@@ -58,7 +58,7 @@ fn components_are_turned_by_themselves_and_outward_if_closed() {
     let points: Vec<DVec3> = (0..11).map(|v| corner(v) * 1e-3 + DVec3::splat(1e6)).collect();
     orientation.face_outward(&points, &typed);
     let turned: Vec<bool> = [vec![false; 4], vec![true; 4], vec![false]].concat();
-    assert_eq!(orientation.turned(), turned);
+    assert_eq!(orientation.reversed(), turned);
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn edges_of_three_faces_join_nothing() {
     let book = faces(&[[0, 1, 2], [0, 1, 3], [0, 1, 4]]);
     let orientation = orient(5, &book).unwrap();
     assert_eq!(orientation.component_of(), [0, 1, 2]);
-    assert!(!orientation.turned().contains(&true));
+    assert!(!orientation.reversed().contains(&true));
 }
 
 proptest! {
@@ -92,7 +92,7 @@ proptest! {
             face.reverse();
         }
         let orientation = orient(12, &squares).unwrap();
-        prop_assert!(2 * orientation.turned().iter().filter(|turned| **turned).count() <= 24);
+        prop_assert!(2 * orientation.reversed().iter().filter(|turned| **turned).count() <= 24);
         orientation.apply(&mut squares);
         let triangles: Vec<[u32; 3]> = squares.iter().map(|face| face[..].try_into().unwrap()).collect();
         prop_assert!(HalfEdgeMesh::new(12, &triangles).is_ok());

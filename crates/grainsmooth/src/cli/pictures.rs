@@ -40,7 +40,7 @@ pub struct PictureArguments {
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = parse_explode, allow_negative_numbers = true, requires = "picture")]
     explode: f64,
 
-    /// Write a page with a view of the grains to turn round, histograms and the figures of the run; it works offline
+    /// Write a page with a view of the grains to rotate, histograms and the figures of the run; it works offline
     ///
     /// Example: --report grains.html
     #[arg(long, value_name = "PATH.html", value_parser = parse_html, conflicts_with = "no_mesh")]

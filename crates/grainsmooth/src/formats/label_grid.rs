@@ -4,7 +4,7 @@
 //! decision, whether a row meets a triangle and on which side of it a centre lies, is made by Shewchuk's adaptive predicates.
 //! Where a row meets an edge or a point, it counts as moved by an infinitesimal in y and a yet smaller one in z; a centre on a
 //! boundary counts as moved in +x. So every centre belongs to exactly one grain. The whole grains of a periodic domain are
-//! looked at together with their images a period away.
+//! looked at together with their periodic images.
 
 use std::num::NonZeroU32;
 use std::ops::Range;

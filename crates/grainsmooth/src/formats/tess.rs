@@ -187,7 +187,7 @@ impl TessPeriodicity {
                     .collect(),
                 faces.iter().map(|pair| copy(pair.secondary.0, pair.primary.0, true, pair.shift)).collect(),
             ),
-            // The edges of the plane are its boundaries, whose copies are turned round.
+            // The edges of the plane are its boundaries, whose copies are reversed.
             Dimension::Two => (
                 faces.iter().map(|pair| copy(pair.secondary.0, pair.primary.0, true, pair.shift)).collect(),
                 Vec::new(),

@@ -25,7 +25,7 @@ pub struct LabelledFile {
     pub boundary_of: Vec<BoundaryId>,
     /// The two sides of each boundary, in the order in which normals point from first to second.
     pub sides: Vec<[Side; 2]>,
-    /// Whether each boundary comes again a period away, where the file tells it.
+    /// Whether each boundary has a periodic image, where the file tells it.
     pub comes_again: Vec<bool>,
     /// Types of points; nothing where the file has none, or a code that means nothing.
     pub node_types: Option<Vec<Option<NodeType>>>,
@@ -146,7 +146,7 @@ impl LabelledFile {
             let triangles = mesh.faces.iter().enumerate().map(triangle).collect::<Result<_, _>>()?;
             (FileElements::Triangles(triangles), of_cell)
         };
-        // In a periodic network they count grains a period away, which are not at the point.
+        // In a periodic network they count periodic images of grains, which are not at the point.
         let is_periodic = labels.iter().flatten().any(|label| *label < -1)
             || settings.as_ref().is_some_and(sticks_out_of_the_box);
         let node_types =

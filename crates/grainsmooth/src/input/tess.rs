@@ -41,7 +41,7 @@ pub struct Tess {
     pub polyhedra: Vec<Vec<Oriented>>,
     /// What the cells fill.
     pub domain: TessDomain,
-    /// What comes again a period away; nothing unless the tessellation is periodic.
+    /// What has a periodic image; nothing unless the tessellation is periodic.
     pub periodicity: Option<TessPeriodicity>,
 }
 

@@ -61,7 +61,7 @@ pub enum Edited {
         /// Number of edges.
         edges: usize,
     },
-    /// So many faces were turned round.
+    /// So many faces were reversed.
     Turned {
         /// Number of faces turned.
         turned: usize,
@@ -92,7 +92,7 @@ impl fmt::Display for Edited {
             Self::Split { edges } => write!(formatter, "split       {edges} edges"),
             Self::Collapsed { edges } => write!(formatter, "collapsed   {edges} edges"),
             Self::Turned { turned, faces, parts } => {
-                write!(formatter, "oriented    {turned} of {faces} faces turned round; {parts} parts")
+                write!(formatter, "oriented    {turned} of {faces} faces reversed; {parts} parts")
             }
             Self::Cut { polygons, triangles } => {
                 write!(formatter, "cut         {polygons} polygons: {triangles} triangles")
@@ -161,8 +161,8 @@ impl MeshFile {
         if outward {
             orientation.face_outward(&self.points, &self.faces);
         }
-        self.turn_round(orientation.turned());
-        let turned = orientation.turned().iter().filter(|turned| **turned).count();
+        self.turn_round(orientation.reversed());
+        let turned = orientation.reversed().iter().filter(|turned| **turned).count();
         Ok(Edited::Turned { turned, faces: self.faces.len(), parts: orientation.is_closed().len() })
     }
 

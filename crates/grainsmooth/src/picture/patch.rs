@@ -28,7 +28,7 @@ pub(super) enum Seen {
     Outside,
     /// The boundaries between grains, without the outer surface.
     Boundaries,
-    /// Grains that are moved apart: both sides of every boundary.
+    /// In an exploded view: both sides of every boundary.
     Grains,
 }
 

@@ -37,7 +37,7 @@ pub(super) fn draw(
     let scale = (inner * width / (high.x - low.x)).min(inner * height / (high.y - low.y));
     let middle = low.midpoint(high);
     let stroke = Stroke {
-        // Both neighbours draw the line; moved apart, each has its own.
+        // Both neighbours draw the line; in an exploded view, each has its own.
         width: single(picture.line_width()),
         line_cap: LineCap::Round,
         ..Stroke::default()

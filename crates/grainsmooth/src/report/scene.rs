@@ -1,4 +1,4 @@
-//! A page about a mesh or curves: a view to turn round, how points and angles are spread, and the run's figures.
+//! A page about a mesh or curves: a view to rotate, how points and angles are spread, and the run's figures.
 
 use std::io;
 

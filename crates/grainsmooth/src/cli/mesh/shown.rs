@@ -25,7 +25,7 @@ pub struct ShownArguments {
     #[arg(long, value_enum, default_value_t = ShadingName::Flat, requires = "picture")]
     shading: ShadingName,
 
-    /// Write a page with a view of the result to turn round, histograms and the figures of the run; it works offline
+    /// Write a page with a view of the result to rotate, histograms and the figures of the run; it works offline
     #[arg(long, value_name = "PATH.html", value_parser = parse_html)]
     report: Option<PathBuf>,
 }
