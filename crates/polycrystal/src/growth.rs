@@ -63,7 +63,21 @@ const LARGEST_CHANGE: f64 = 2.0;
 /// Lets the grains of cells of the plane grow for a time under curvature flow, in units of the mean grain size squared at the start; means of
 /// tension and mobility at the start are 1.
 ///
-/// Grains vanish and switch neighbours on the way. Grains keep their numbers. The network is valid.
+/// Grains vanish and switch neighbours on the way, and keep their numbers. The network is valid.
+///
+/// ```
+/// use glam::DVec3;
+/// use polycrystal::{GrowthRecipe, grow_cells};
+/// use voronoi::{Domain, Tessellation};
+///
+/// let seeds: Vec<DVec3> = (0..30).map(|k| DVec3::new(f64::from(k * 7 % 30) + 0.5, f64::from(k) + 0.5, 0.0) / 30.0).collect();
+/// let cells = Tessellation::new(&Domain::unit_square(), &seeds)?;
+/// let recipe = GrowthRecipe { levels: 1, tension: &|_| 1.0, mobility: &|_| 1.0 };
+/// let grown = grow_cells(&cells, &recipe, 3.0, |_| ())?;
+/// assert_eq!(grown.network.grains_left() + grown.vanished.len(), 30);
+/// assert!(grown.network.grains_left() < 20);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`NetworkError::BadRelaxationTime`], [`NetworkError::BadTension`], [`NetworkError::BadMobility`]; [`NetworkError::GrowthNotFollowed`];
