@@ -201,9 +201,24 @@ fn mistakes_about_pictures_are_named() {
 }
 
 /// The network in a report.
-fn embedded_network(page: &str) -> serde_json::Value {
-    let (_, after) = page.split_once("<script type=\"application/json\" id=\"network\">").unwrap();
-    serde_json::from_str(after.split_once("</script>").unwrap().0).unwrap()
+/// The head of the network in a page, and how many numbers each of its arrays has.
+fn embedded_network(page: &str) -> (serde_json::Value, impl Fn(&str) -> u64) {
+    let (_, after) = page.split_once("<script type=\"text/plain\" id=\"network\">").unwrap();
+    let bytes = BASE64.decode(after.split_once("</script>").unwrap().0).unwrap();
+    let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;
+    let head: serde_json::Value = serde_json::from_slice(&bytes[4..4 + length]).unwrap();
+    let arrays = head["arrays"].clone();
+    let count = move |name: &str| {
+        let found = arrays.as_array().unwrap().iter().find(|array| array["name"] == name).unwrap();
+        found["count"].as_u64().unwrap()
+    };
+    (head, count)
+}
+
+/// The number of triangles of all boundaries.
+fn triangles(head: &serde_json::Value) -> u64 {
+    let boundaries = head["boundaries"].as_array().unwrap();
+    boundaries.iter().map(|boundary| boundary["triangles"].as_u64().unwrap()).sum()
 }
 
 #[test]
@@ -221,23 +236,17 @@ fn report_holds_the_network_and_the_run() {
     }
     assert!(page.contains("<code>grainsmooth ") && page.contains("--seeds 20"));
 
-    let network = embedded_network(&page);
-    let decoded = |key: &str| BASE64.decode(network[key].as_str().unwrap()).unwrap();
-    let parts = network["parts"].as_array().unwrap();
-    let triangles: u64 = parts.iter().map(|part| part["count"].as_u64().unwrap()).sum();
-    let corners: Vec<u32> = decoded("triangles")
-        .chunks_exact(4)
-        .map(|bytes| u32::from_le_bytes(bytes.try_into().unwrap()))
-        .collect();
-    assert_eq!(corners.len() as u64, 3 * triangles);
-    let points = decoded("points").len() / 6;
-    assert_eq!(corners.iter().max().map(|point| *point as usize + 1), Some(points));
-    assert_eq!(network["shifts"].as_array().unwrap().len(), 20);
-    for colors in ["grain", "diameter", "neighbors"] {
-        assert_eq!(network["colors"][colors].as_array().unwrap().len(), 20);
-    }
+    let (head, count) = embedded_network(&page);
+    assert_eq!(count("corners"), 3 * triangles(&head));
+    let boundaries = head["boundaries"].as_array().unwrap();
+    let vertices: u64 = boundaries.iter().map(|boundary| boundary["vertices"].as_u64().unwrap()).sum();
+    assert_eq!((count("position"), count("normal")), (3 * vertices, 4 * vertices));
+    assert_eq!(head["ids"].as_array().unwrap().len(), 20);
+    let names: Vec<&str> =
+        head["columns"].as_array().unwrap().iter().map(|column| column["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["volume", "neighbors", "surface area", "equivalent diameter"]);
     // The cube, in units of its side, from its middle.
-    assert_eq!(network["low"], serde_json::json!([-0.5, -0.5, -0.5]));
+    assert_eq!((&head["middle"], &head["unit"]), (&serde_json::json!([0.5, 0.5, 0.5]), &1.0.into()));
     assert_eq!(page.matches("<svg").count(), 4);
 }
 
@@ -312,17 +321,11 @@ fn browser_shows_the_grains_of_a_report() {
     let complaints: Vec<&str> = complaints.collect();
     assert!(complaints.is_empty(), "{complaints:?}");
 
-    let network = embedded_network(&String::from_utf8(workplace.bytes("grains.html")).unwrap());
-    let sides = |part: &serde_json::Value| {
-        part["sides"].as_array().unwrap().iter().filter(|side| side.as_i64() >= Some(0)).count()
-    };
-    let triangles: u64 = network["parts"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|part| part["count"].as_u64().unwrap() * sides(part) as u64)
-        .sum();
-    let shown = format!("id=\"view\" data-triangles=\"{triangles}\"");
+    let (head, _) = embedded_network(&String::from_utf8(workplace.bytes("grains.html")).unwrap());
+    let shown = format!(
+        "id=\"view\" data-shown=\"20\" data-triangles=\"{}\" data-coloring=\"different\"",
+        triangles(&head)
+    );
     assert!(String::from_utf8_lossy(&output.stdout).contains(&shown), "{shown}");
 
     browse(&[&format!("--screenshot={}", screenshot.display())]).unwrap();

@@ -10,5 +10,7 @@ mod packed;
 mod refusal;
 mod server;
 
+pub(crate) use assets::{PAGE_STYLE, THREE, report_scripts};
 pub use document::{EditContent, PageDocument};
+pub(crate) use grains::{Column, ShownNetwork, Values, columns_of_shape, network_alone};
 pub use server::{PageLinks, PageServer, PageStop};

@@ -23,7 +23,6 @@ use coloring::Paint;
 use patch::Seen;
 
 pub use coloring::Coloring;
-pub(crate) use scene::FRONT;
 pub use scene::{Scene, ScenePicture, Shading};
 
 /// The format of pictures, 8 bits a channel on white.

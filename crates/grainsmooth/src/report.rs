@@ -56,15 +56,7 @@ impl Polycrystal {
                 let picture = BASE64.encode(self.png(&Picture::default())?);
                 format!("<img class=\"picture\" alt=\"the grains\" src=\"data:image/png;base64,{picture}\">")
             }
-            Dimension::Three => filled(
-                include_str!("../assets/view.html"),
-                &[
-                    ("colorings", &view::options(self)),
-                    ("network", &view::network_json(self)?),
-                    ("three", include_str!("../assets/three.min.js")),
-                    ("viewer", include_str!("../assets/viewer.js")),
-                ],
-            ),
+            Dimension::Three => view::view(self)?,
         };
         let mut of_sizes =
             self.cells.sizes.as_ref().map_or_else(Vec::new, |sizes| self.all_diameter_charts(sizes));
@@ -90,7 +82,13 @@ impl Polycrystal {
                 ("title", &title),
                 ("style", include_str!("../assets/report.css")),
                 ("command", &escaped(&self.config.command_line())),
-                ("settings", &escaped(&self.config.to_toml())),
+                (
+                    "settings",
+                    &format!(
+                        "<details><summary>All settings</summary><pre>{}</pre></details>",
+                        escaped(&self.config.to_toml())
+                    ),
+                ),
                 ("view", &view),
                 ("charts", &charts),
                 ("asked", &self.asked_table()),

@@ -4,6 +4,8 @@ import { Network, Picker } from "./network.js";
 import { button, check, choice, digits, element, facts, group, row, say, slider } from "./panel.js";
 import { unpack } from "./packed.js";
 
+const SURFACE_COLOR = [0.85, 0.79, 0.66]; // sand, of what is no grains
+const APART = 0.3; // by how much of their distance from the middle the grains of a report stand apart
 const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 
 // `source` gives steps and arrays of a series; reports have none. `onselect` hears of the grain that is clicked, by its number in files.
@@ -33,9 +35,21 @@ export class GrainsPage {
       slider(series, "Step", { id: "step", max: steps.length - 1, step: 1, value: head.step, say: (step) => steps[step].label }, (step) => this.load(step));
     }
     const look = group(panel, "Look");
+    this.withLines = check(look, head.columns.length > 0 ? "triple lines" : "boundaries", { id: "lines", value: true }, () => this.change(() => this.lines()));
+    if (head.columns.length > 0) this.buildGrains(panel, look);
+    const view = group(panel, "View");
+    const views = row(view);
+    for (const [axis, [x, y, z]] of Object.entries(AXES))
+      button(views, axis.toUpperCase(), { id: `along-${axis}`, key: axis.toUpperCase(), title: `look along ${axis}` }, () => this.stage.fit(this.network.radius(), [x || 0, y ? -1 : 0, z || (x || y ? 0 : 1)]));
+    button(views, "All", { id: "fit", key: "0" }, () => this.stage.fit(this.network.radius()));
+    button(row(view), "Save picture", { id: "save", key: "P" }, () => this.stage.save("grains.png"));
+    view.append(element("p", { textContent: "Drag turns, Shift or the right button moves, the wheel zooms, a double click sets the middle." }));
+  }
+
+  // What a surface that is no grains has no use for.
+  buildGrains(panel, look) {
     this.coloring = choice(look, "Colours", { id: "coloring", options: [["different", "grains"]] }, () => this.color());
-    this.explosion = slider(look, "Explode", { id: "explode", max: 1.5 }, (share) => this.change(() => this.network.explode(share)));
-    this.withLines = check(look, "triple lines", { id: "lines", value: true }, () => this.change(() => this.lines()));
+    this.explosion = slider(look, "Explode", { id: "explode", max: 1.5, value: this.source ? 0 : APART }, (share) => this.change(() => this.network.explode(share)));
     const slice = group(panel, "Slice");
     this.axis = choice(slice, "Plane", { id: "axis", options: [["", "none"], ["x", "across x"], ["y", "across y"], ["z", "across z"], ["view", "as seen now"]] }, () => this.slice(true));
     this.depth = slider(slice, "At", { id: "depth", min: -0.5, max: 0.5, step: 0.005, value: 0, say: digits }, () => this.slice(false));
@@ -48,13 +62,6 @@ export class GrainsPage {
     button(buttons, "Show all", { id: "all", key: "Shift+H" }, () => this.showAll());
     this.facts = element("dl");
     pick.append(this.facts);
-    const view = group(panel, "View");
-    const views = row(view);
-    for (const [axis, [x, y, z]] of Object.entries(AXES))
-      button(views, axis.toUpperCase(), { id: `along-${axis}`, key: axis.toUpperCase(), title: `look along ${axis}` }, () => this.stage.fit(this.network.radius(), [x || 0, y ? -1 : 0, z || (x || y ? 0 : 1)]));
-    button(views, "All", { id: "fit", key: "0" }, () => this.stage.fit(this.network.radius()));
-    button(row(view), "Save picture", { id: "save", key: "P" }, () => this.stage.save("grains.png"));
-    view.append(element("p", { textContent: "Drag turns, Shift or the right button moves, the wheel zooms, a double click sets the middle." }));
   }
 
   // Shows an unpacked step.
@@ -63,21 +70,26 @@ export class GrainsPage {
     this.head = unpacked.head;
     this.network = new Network(unpacked, scale);
     this.stage.scene.add(...this.network.objects);
+    if (this.coloring) this.offerColors();
+    const { uniforms } = this.network;
+    uniforms.explode.value = this.explosion?.value ?? 0;
+    uniforms.exploded.value = uniforms.explode.value > 0;
+    this.different = null;
+    this.applyHidden();
+    if (this.axis) this.slice(false);
+    this.color();
+    this.lines();
+    this.stage.view.dataset.triangles = this.network.triangles;
+    const counts = `${unpacked.arrays.corners.length / 3} triangles`;
+    say(this.coloring ? `${this.head.ids.length} grains, ${this.head.boundaries.length} boundaries, ${counts}` : counts);
+  }
+
+  offerColors() {
     const columns = this.head.columns.map(({ name }, number) => [`column ${number}`, name]);
     const fields = (this.source ? this.head.fields : []).map((name, number) => [`field ${number}`, `array ${name}`]);
     const chosen = this.coloring.input.value;
     this.coloring.fill([["different", "grains"], ...columns, ...fields]);
     if ([...this.coloring.input.options].some((option) => option.value === chosen)) this.coloring.input.value = chosen;
-    const { uniforms } = this.network;
-    uniforms.explode.value = this.explosion.value;
-    uniforms.exploded.value = this.explosion.value > 0;
-    this.different = null;
-    this.applyHidden();
-    this.slice(false);
-    this.color();
-    this.lines();
-    this.stage.view.dataset.triangles = this.network.triangles;
-    say(`${this.head.ids.length} grains, ${this.head.boundaries.length} boundaries, ${unpacked.arrays.corners.length / 3} triangles`);
   }
 
   change(work) {
@@ -111,6 +123,7 @@ export class GrainsPage {
 
   // The fact of a grain that is its colour, or all of them.
   async color() {
+    if (!this.coloring) return this.network.paint(() => SURFACE_COLOR);
     const [what, number] = this.coloring.input.value.split(" ");
     const { network, head } = this;
     try {
@@ -164,6 +177,7 @@ export class GrainsPage {
   }
 
   hover(event) {
+    if (!this.coloring) return;
     const grain = this.pick(event);
     this.stage.view.dataset.hovered = grain < 0 ? "" : this.head.ids[grain];
     if (grain < 0) return;
@@ -172,6 +186,7 @@ export class GrainsPage {
   }
 
   click(event) {
+    if (!this.coloring) return;
     const grain = this.pick(event);
     const mode = this.mode.input.value;
     if (mode === "hide") this.hide(grain);

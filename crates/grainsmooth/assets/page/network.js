@@ -85,7 +85,7 @@ void main() {
     paint = isnan(number) || cap ? vec3(0.78, 0.78, 0.82) : texelFetch(scale, ivec2(int(clamp(share, 0.0, 1.0) * 255.0), 0), 0).rgb;
   }
   vec3 normal = normalize(gl_FrontFacing ? facing : -facing);
-  float light = cap ? (sliced ? lit(normalize(mat3(modelViewMatrix) * plane.xyz)) : 0.8) : lit(normal);
+  float light = cap ? (sliced ? lit(normalize(mat3(modelViewMatrix) * plane.xyz)) : lit(normal)) : lit(normal);
   if (grain == selected) light *= mod(floor((gl_FragCoord.x + gl_FragCoord.y) / 4.0), 2.0) == 0.0 ? 1.0 : 0.7;
   color = vec4(pow(pow(paint, vec3(2.2)) * light, vec3(1.0 / 2.2)), 1.0);
 }`;

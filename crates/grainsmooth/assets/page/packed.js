@@ -1,5 +1,5 @@
 // What the program sends: a head of JSON, then arrays, each from a multiple of four bytes on.
-const KINDS = { f32: Float32Array, u32: Uint32Array, i8: Int8Array };
+const ARRAYS = { f32: Float32Array, u32: Uint32Array, i8: Int8Array };
 
 // The head, with its arrays by name. They are views of the buffer: nothing is copied.
 export function unpack(buffer) {
@@ -8,7 +8,7 @@ export function unpack(buffer) {
   let offset = 4 + length;
   const arrays = {};
   for (const { name, kind, count } of head.arrays) {
-    arrays[name] = new KINDS[kind](buffer, offset, count);
+    arrays[name] = new ARRAYS[kind](buffer, offset, count);
     offset += 4 * Math.ceil(arrays[name].byteLength / 4);
   }
   return { head, arrays };

@@ -33,6 +33,15 @@ pub(crate) const THREE: &str = include_str!("../../assets/three.min.js");
 /// How the page looks.
 pub(crate) const PAGE_STYLE: &str = include_str!("../../assets/page/page.css");
 
+/// The modules that draw grains, as one script for a page that stands alone: each name is of one of them only.
+pub(crate) fn report_scripts() -> String {
+    let names = ["packed.js", "stage.js", "panel.js", "colors.js", "network.js", "grains.js"];
+    let modules = SCRIPTS.iter().filter(|(name, _)| names.contains(name)).map(|(_, text)| *text);
+    let lines = modules.chain([include_str!("../../assets/page/report.js")]).flat_map(str::lines);
+    let own = lines.filter(|line| !line.starts_with("import ") && !line.starts_with("export {"));
+    own.flat_map(|line| [line.strip_prefix("export ").unwrap_or(line), "\n"]).collect()
+}
+
 /// The page itself, with the secret that its commands need.
 pub(super) fn page(secret: &str) -> Answer {
     let text = include_str!("../../assets/page/page.html").replace("{{secret}}", secret);
@@ -53,5 +62,26 @@ pub(super) fn file(path: &str) -> Option<Answer> {
         "three.js" => Some(Answer::new(SCRIPT, THREE)),
         "page.css" => Some(Answer::new(STYLE, PAGE_STYLE)),
         _ => SCRIPTS.iter().find(|(known, _)| *known == name).map(|(_, text)| Answer::new(SCRIPT, *text)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn modules_of_reports_share_no_names() {
+        let scripts = report_scripts();
+        let mut names = BTreeSet::new();
+        for line in scripts.lines() {
+            assert!(!line.starts_with("import") && !line.starts_with("export"), "{line}");
+            let words: Vec<&str> = line.trim_start_matches("async ").split([' ', '(', '=', ',']).collect();
+            if ["const", "let", "function", "class"].contains(&words[0]) {
+                assert!(names.insert(words[1]), "{line}");
+            }
+        }
+        assert!(names.contains("GrainsPage") && names.contains("markRow"), "{names:?}");
     }
 }

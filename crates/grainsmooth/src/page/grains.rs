@@ -6,6 +6,7 @@ mod steps;
 
 use std::path::PathBuf;
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::answer::Answer;
@@ -15,7 +16,8 @@ use crate::error::Error;
 use crate::error::mesh_file::MeshFileProblem;
 use crate::mesh::file::{MeshFile, read_mesh};
 use crate::{FileElements, LabelledFile};
-use columns::{Column, columns, components};
+pub(crate) use columns::{Column, Values, columns_of_shape};
+use columns::{columns, components};
 pub(crate) use shown::{Frame, ShownNetwork};
 use steps::{Step, network_of, steps};
 
@@ -34,6 +36,15 @@ struct Loaded {
     mesh: MeshFile,
     network: ShownNetwork,
     columns: Vec<Column>,
+}
+
+/// A network by itself, for a page that asks nothing.
+pub(crate) fn network_alone(
+    network: &ShownNetwork,
+    points: &[DVec3],
+    columns: &[Column],
+) -> serde_json::Result<Vec<u8>> {
+    network.packed(points, &Head { kind: "grains", step: 0, steps: &[], columns, fields: Vec::new() })
 }
 
 /// A step to show.

@@ -69,29 +69,6 @@ impl Coloring {
         }
     }
 
-    /// What it shows, in words.
-    pub(crate) fn words(self) -> &'static str {
-        match self {
-            Self::Grain => "grain",
-            Self::Diameter => "diameter",
-            Self::Neighbors => "number of boundaries",
-            Self::Phase => "phase",
-            Self::IpfX => "crystal direction along x",
-            Self::IpfY => "crystal direction along y",
-            Self::IpfZ => "crystal direction along z",
-            Self::Disorientation => "disorientation",
-        }
-    }
-
-    /// Whether grains have different colours by it, and not boundaries.
-    pub(crate) fn colors_grains_of(self, polycrystal: &Polycrystal) -> bool {
-        match self {
-            Self::Disorientation => false,
-            Self::Phase => polycrystal.cells.phases.is_some(),
-            _ => !self.needs_texture() || polycrystal.cells.texture.is_some(),
-        }
-    }
-
     /// Whether it shows orientations, which grains may not have.
     pub fn needs_texture(self) -> bool {
         self.sample_axis().is_some() || self == Self::Disorientation

@@ -16,7 +16,7 @@ use super::{Picture, Png, blank};
 use crate::{Error, Output, StagedFiles};
 
 /// The front of surfaces: sand.
-pub(crate) const FRONT: Color = [0.85, 0.79, 0.66];
+const FRONT: Color = [0.85, 0.79, 0.66];
 
 /// The back of surfaces, which shows where they are open or wind the wrong way: blue.
 const BACK: Color = [0.55, 0.66, 0.82];

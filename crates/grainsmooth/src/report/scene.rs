@@ -7,7 +7,7 @@ use base64::engine::general_purpose::STANDARD as BASE64;
 use glam::DVec3;
 
 use super::chart::{Bins, Chart};
-use super::view::scene_json;
+use super::view::view_of_scene;
 use super::{Html, escaped, filled};
 use crate::{Error, Output, Scene, ScenePicture, Shading, StagedFiles};
 
@@ -45,15 +45,7 @@ impl SceneReport<'_> {
         let shown =
             self.levels.iter().rev().find(|scene| (1..=MOST_TRIANGLES).contains(&scene.triangles().0.len()));
         let view = match shown {
-            Some(scene) => filled(
-                include_str!("../../assets/scene_view.html"),
-                &[
-                    ("colorings", "<option value=\"surface\">the surface</option>"),
-                    ("network", &scene_json(scene)?),
-                    ("three", include_str!("../../assets/three.min.js")),
-                    ("viewer", include_str!("../../assets/viewer.js")),
-                ],
-            ),
+            Some(scene) => view_of_scene(scene)?,
             None => {
                 let shading = if last.faces.is_empty() { Shading::Flat } else { Shading::Smooth };
                 let picture = ScenePicture { shading, ..ScenePicture::default() };
@@ -80,11 +72,13 @@ impl SceneReport<'_> {
         let title =
             format!("{} points, {} {kind}", last.points.len(), last.faces.len().max(last.lines.len()));
         Ok(filled(
-            include_str!("../../assets/scene_report.html"),
+            include_str!("../../assets/report.html"),
             &[
                 ("title", &title),
                 ("style", include_str!("../../assets/report.css")),
                 ("command", &escaped(self.command)),
+                ("settings", ""),
+                ("asked", ""),
                 ("view", &view),
                 ("charts", &charts),
                 ("rows", &rows),

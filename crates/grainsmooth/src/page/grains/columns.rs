@@ -3,8 +3,9 @@
 use glam::DVec3;
 use serde::Serialize;
 use texture::{CrystalSymmetry, IpfKey};
+use voronoi::Dimension;
 
-use super::shown::ShownNetwork;
+use super::shown::{GrainFacts, ShownNetwork};
 use crate::LabelledFile;
 use crate::vtk::{DataArray, DataNumbers};
 
@@ -27,20 +28,23 @@ pub(crate) enum Values {
     Colors(Vec<[u8; 3]>),
 }
 
-/// All that a file tells of its grains.
-pub(super) fn columns(file: &LabelledFile, network: &ShownNetwork) -> Vec<Column> {
-    let of_shape = |name: &str, value: fn(&super::shown::GrainFacts) -> f64| {
+/// What follows from the grains' surfaces.
+pub(crate) fn columns_of_shape(network: &ShownNetwork) -> Vec<Column> {
+    let column = |name: &str, value: fn(&GrainFacts) -> f64| {
         let numbers = network.facts.iter().map(|facts| Some(value(facts)));
         Column { name: name.to_owned(), values: Values::Numbers(numbers.collect()) }
     };
-    let mut columns = vec![
-        of_shape("volume", |facts| facts.volume),
-        of_shape("neighbors", |facts| facts.neighbors as f64),
-        of_shape("surface area", |facts| facts.area),
-        of_shape("equivalent diameter", |facts| {
-            voronoi::Dimension::Three.ball_diameter(facts.volume.max(0.0))
-        }),
-    ];
+    vec![
+        column("volume", |facts| facts.volume),
+        column("neighbors", |facts| facts.neighbors as f64),
+        column("surface area", |facts| facts.area),
+        column("equivalent diameter", |facts| Dimension::Three.ball_diameter(facts.volume.max(0.0))),
+    ]
+}
+
+/// All that a file tells of its grains.
+pub(super) fn columns(file: &LabelledFile, network: &ShownNetwork) -> Vec<Column> {
+    let mut columns = columns_of_shape(network);
     if let Some(phases) = &file.phases {
         let found = |id: &u32| phases.binary_search_by_key(id, |(grain, _)| grain.0).ok();
         let phase = |id: &u32| found(id).map(|place| phases[place].1);
