@@ -84,9 +84,9 @@ impl<'a> Switcher<'a> {
         self.switch(edges, TINY, |_| true, true)
     }
 
-    /// Lets all events happen that are due, of these edges that would vanish and of points with too many edges.
+    /// Lets all events happen that are due, of these edges that would vanish, in order, and of points with too many edges.
     pub(crate) fn pass(&mut self, edges: &mut CurvedEdges, vanishing: &[FaceId]) -> Reconnections {
-        self.switch(edges, SHORT, |face| vanishing.contains(&face), false)
+        self.switch(edges, SHORT, |face| vanishing.binary_search(&face).is_ok(), false)
     }
 
     fn switch(
