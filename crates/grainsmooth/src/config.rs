@@ -10,6 +10,7 @@ use voronoi::Dimension;
 
 pub(crate) mod check;
 mod defaults;
+pub(crate) mod elements;
 pub(crate) mod files;
 pub(crate) mod gradient;
 pub(crate) mod inside;
@@ -24,6 +25,7 @@ pub mod spelling;
 pub(crate) mod table_file;
 pub(crate) mod texture;
 
+use elements::ElementOptions;
 use files::FileOptions;
 use inside::InsideOptions;
 use lattice::Lattice;
@@ -299,6 +301,11 @@ pub struct Config {
     #[serde(serialize_with = "as_rule")]
     pub junctions: Junctions,
 
+    /// The triangles on boundaries.
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub elements: ElementOptions,
+
     /// The orientations of the grains.
     #[command(flatten)]
     #[serde(flatten)]
@@ -337,6 +344,7 @@ impl Default for Config {
             junctions: Junctions::default(),
             drop_empty: false,
             min_diameter: 0.0,
+            elements: ElementOptions::default(),
             texture: TextureOptions::default(),
             file: FileOptions::default(),
         }

@@ -332,6 +332,18 @@ pub enum Error {
         /// The grains, by number.
         grains: Vec<u32>,
     },
+    /// The smooth network has too long edges for elements of the size that is asked for.
+    #[error(
+        "elements of {length:e} need a finer surface than one whose edges have {mean:.3e} on the mean; give -n {levels}, or larger elements"
+    )]
+    CoarseReference {
+        /// Mean length of the edges of the finest level.
+        mean: f64,
+        /// Length that elements are to have.
+        length: f64,
+        /// The number of levels that is enough.
+        levels: u32,
+    },
     /// The network cannot be made, relaxed, or is invalid.
     #[error(transparent)]
     Network(#[from] NetworkError),

@@ -49,6 +49,7 @@ pub use voronoi;
 
 pub use check::report::{CheckReport, Expectation, ReportedFault, SizesFound, Statistic};
 pub use config::check::ConfigError;
+pub use config::elements::ElementOptions;
 pub use config::files::{FileOptions, StlEncoding};
 pub use config::gradient::GradientSource;
 pub use config::inside::{InsideError, InsideOptions, InsidePattern};
@@ -106,6 +107,7 @@ pub use report::{Html, SceneReport};
 pub use run::pipeline::{
     Polycrystal, Reconnected, Regularization, check_expected_size, make_polycrystal, smooth, smooth_watched,
 };
+pub use run::remeshed::ElementsReached;
 pub use run::stage::{Progress, Stage};
 pub use run::tessellated::{Tessellated, tessellate};
 pub use run::topology::Topology;

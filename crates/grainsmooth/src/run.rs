@@ -3,6 +3,7 @@
 pub(crate) mod failing;
 pub(crate) mod misorientations;
 pub(crate) mod pipeline;
+pub(crate) mod remeshed;
 pub(crate) mod stage;
 pub(crate) mod tessellated;
 pub(crate) mod topology;

@@ -79,7 +79,10 @@ impl fmt::Display for Summary<'_> {
             Dimension::Three => ("triple lines", "triangle", "volumes", "area"),
         };
         writeln!(out, "junctions   {}", polycrystal.topology)?;
-        writeln!(out, "mesh        {points} points, {elements} {element}s at level {levels}")?;
+        match &polycrystal.elements {
+            None => writeln!(out, "mesh        {points} points, {elements} {element}s at level {levels}")?,
+            Some(reached) => writeln!(out, "mesh        {points} points, {elements} {element}s; {reached}")?,
+        }
         if let Some(stretched) = StretchLine::new(&polycrystal.config) {
             writeln!(out, "{stretched}; angles, residual and triangles are those before")?;
         }

@@ -32,6 +32,7 @@ mod measures;
 mod mesh;
 mod network;
 mod relax;
+mod remesh;
 mod solver;
 mod validate;
 
@@ -85,4 +86,7 @@ pub use relax::regular_cells::{RegularCells, regular_cells};
 #[doc(hidden)]
 pub use relax::relax_tuned;
 pub use relax::{relax, relax_watched};
+#[doc(hidden)]
+pub use remesh::RemeshTuning;
+pub use remesh::{ElementSize, Remeshed};
 pub use validate::validate;

@@ -215,6 +215,21 @@ impl Network {
         Ok((network, points))
     }
 
+    /// The same boundaries on another, single level.
+    pub(crate) fn with_level(&self, level: Level) -> Self {
+        Self {
+            domain: self.domain.clone(),
+            boundaries: self.boundaries.clone(),
+            junctions: self.junctions.clone(),
+            cell_volumes: self.cell_volumes.clone(),
+            tensions: self.tensions.clone(),
+            mobilities: self.mobilities.clone(),
+            wall_sets: self.wall_sets.clone(),
+            levels: vec![level],
+            stencils: Vec::new(),
+        }
+    }
+
     /// The network with other volumes (in the plane: areas) for relaxation to give its grains: those of the cells before
     /// their tessellation was regularised.
     ///

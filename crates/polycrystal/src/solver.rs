@@ -3,5 +3,6 @@
 pub(crate) mod conjugate_gradients;
 pub(crate) mod dissection;
 pub(crate) mod factors;
+pub(crate) mod least_motion;
 pub(crate) mod multigrid;
 pub(crate) mod rows;

@@ -202,6 +202,8 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     })?;
     added?;
     polycrystal = polycrystal.cut_if_asked()?.stretched_if_asked();
+    line.show(Stage::Remeshing, 0, 1);
+    polycrystal = polycrystal.remeshed_if_asked()?;
     line.show(Stage::Writing, 0, 1);
     let start = Instant::now();
     write_together(|staged| {

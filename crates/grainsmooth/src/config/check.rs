@@ -54,6 +54,14 @@ pub enum ConfigError {
     /// A symmetry of a sample without orientations.
     #[error("--sample-symmetry is that of a texture; give --texture as well")]
     SampleSymmetry,
+    /// How sizes of elements change, without a size.
+    #[error("--{0} changes sizes of elements; give --elements-per-grain or --element-size as well")]
+    ElementsWithoutSize(&'static str),
+    /// Elements of a size in the plane.
+    #[error(
+        "elements of a size are triangles of boundaries in space; with --dim 2 leave --element-size and --elements-per-grain out"
+    )]
+    ElementsInPlane,
     /// Phases.
     #[error(transparent)]
     Phases(#[from] PhasesError),
@@ -103,6 +111,7 @@ impl Config {
                 return Err(ConfigError::GradientInPlane);
             }
         }
+        self.check_elements()?;
         self.check_phases()?;
         self.check_inside()?;
         self.check_laws()?;
@@ -110,6 +119,18 @@ impl Config {
             return Err(ConfigError::SampleSymmetry);
         }
         Ok(())
+    }
+
+    fn check_elements(&self) -> Result<(), ConfigError> {
+        let elements = &self.elements;
+        if elements.are_asked() {
+            return if self.dimension == Dimension::Two { Err(ConfigError::ElementsInPlane) } else { Ok(()) };
+        }
+        let changes = [("adapt-curvature", elements.adapt_curvature), ("size-growth", elements.size_growth)];
+        match changes.into_iter().find(|(_, value)| value.is_some()) {
+            Some((name, _)) => Err(ConfigError::ElementsWithoutSize(name)),
+            None => Ok(()),
+        }
     }
 
     /// Checks that the phases go together, and with the options for all grains.

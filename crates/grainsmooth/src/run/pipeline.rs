@@ -18,6 +18,7 @@ use polycrystal::{
 };
 use voronoi::{Dimension, Tessellation};
 
+use super::remeshed::ElementsReached;
 use super::stage::{Clock, Progress, Stage};
 use super::tessellated::{Tessellated, grain_volumes, tessellate};
 use super::topology::Topology;
@@ -71,6 +72,8 @@ pub struct Polycrystal {
     pub angles_before: Option<AngleStatistics>,
     /// What validation found: the angles of the finished network, volumes and how true they are.
     pub validation: Certificate,
+    /// What became of a wish for elements of a size.
+    pub elements: Option<ElementsReached>,
     /// Time that each stage took.
     pub times: Vec<(Stage, Duration)>,
 }
@@ -292,6 +295,7 @@ pub fn smooth_watched(
         residual,
         tensions: None,
         mobilities: None,
+        elements: None,
         flat_angles,
         angles_before,
         validation,

@@ -17,19 +17,22 @@ pub enum Stage {
     Subdivision,
     /// Checking the result and measuring it.
     Validation,
+    /// Giving boundaries triangles of a wanted size.
+    Remeshing,
     /// Writing the file.
     Writing,
 }
 
 impl Stage {
     /// Every stage, in the order in which they follow each other.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Seeds,
         Self::Cells,
         Self::Network,
         Self::Relaxation,
         Self::Subdivision,
         Self::Validation,
+        Self::Remeshing,
         Self::Writing,
     ];
 
@@ -47,6 +50,7 @@ impl Stage {
             Self::Relaxation => "relaxation",
             Self::Subdivision => "subdivision",
             Self::Validation => "validation",
+            Self::Remeshing => "remeshing",
             Self::Writing => "writing",
         }
     }

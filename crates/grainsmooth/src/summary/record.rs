@@ -8,8 +8,9 @@ use serde::Serialize;
 
 use crate::figures::triangle_angles::TriangleAngles;
 use crate::{
-    AskedAndReached, ComponentShare, Divided, EquivalentDiameters, HistogramFit, LawReached, PhaseShare,
-    Polycrystal, Reconnected, ShapesReached, SizesFit, SizesReached, TensionsReached, Tessellated, Topology,
+    AskedAndReached, ComponentShare, Divided, ElementsReached, EquivalentDiameters, HistogramFit, LawReached,
+    PhaseShare, Polycrystal, Reconnected, ShapesReached, SizesFit, SizesReached, TensionsReached,
+    Tessellated, Topology,
 };
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
@@ -61,6 +62,8 @@ pub struct SummaryRecord {
     /// Triangles, in the plane segments.
     elements: usize,
     level: u32,
+    /// Where elements of a size are asked for: the level is then that of the surface that they lie on.
+    element_size: Option<ElementsReached>,
     /// In degrees.
     angles_before: Option<Angles>,
     angles_after: Option<Angles>,
@@ -249,6 +252,7 @@ impl SummaryRecord {
             points: finest.vertex_count(),
             elements: finest.element_count(),
             level: config.levels,
+            element_size: polycrystal.elements,
             angles_before: polycrystal.angles_before.map(angles),
             angles_after: polycrystal.validation.angles.map(angles),
             triangle_angles: polycrystal.validation.triangles.map(TriangleAngles::from),

@@ -1,12 +1,10 @@
 //! Volumes after points have moved: what grains lack, they get back along their boundaries away from the planes of the box.
 
-use std::collections::BTreeMap;
-
 use glam::DVec3;
 
 use crate::box_cut::Piece;
 use crate::box_cut::pieces::Pieces;
-use crate::solver::conjugate_gradients::{Limits, solve};
+use crate::solver::least_motion::{MovingPoint, least_motion};
 use crate::{Freedom, Side};
 
 /// What a volume may lack in the end, as a share of it.
@@ -14,9 +12,6 @@ const TOLERANCE: f64 = 1e-12;
 
 /// Most corrections: each gains several digits, for points hardly move.
 const STEPS: usize = 12;
-
-/// Residual of the pressures, as a share of what volumes lack.
-const SOLVED: f64 = 1e-6;
 
 /// Moves points so that grains have the given volumes.
 pub(crate) fn restore(pieces: &mut Pieces, caps: &[Piece], volumes: &[f64]) {
@@ -53,54 +48,26 @@ fn measured(pieces: &Pieces, caps: &[Piece], count: usize) -> Vec<f64> {
 /// Moves points along the gradients of the grains' volumes, each by the pressure of its grains: a point per area less, where more
 /// surface stands on it.
 fn correct(pieces: &mut Pieces, missing: &[f64]) {
-    // Of each point, its share of the area, and the gradients of the volumes of its grains.
-    let mut points: Vec<(f64, BTreeMap<u32, DVec3>)> = vec![(0.0, BTreeMap::new()); pieces.places.len()];
+    let mut points = vec![MovingPoint::default(); pieces.places.len()];
     for piece in &pieces.pieces {
         let [a, b, c] = [0, 1, 2].map(|k| pieces.place(piece.corners[k]));
         let normal = (b - a).cross(c - a);
         for corner in &piece.corners {
-            let (area, gradients) = &mut points[corner.point as usize];
-            *area += normal.length() / 6.0;
+            let point = &mut points[corner.point as usize];
+            point.weight += normal.length() / 6.0;
             for (side, sign) in piece.sides.iter().zip([1.0, -1.0]) {
                 if let Side::Grain(grain) = side {
-                    *gradients.entry(grain.0).or_default() += normal * (sign / 6.0);
+                    *point.gradients.entry(grain.0).or_default() += normal * (sign / 6.0);
                 }
             }
         }
     }
-    for (point, (_, gradients)) in points.iter_mut().enumerate() {
-        let freedom = freedom(pieces, point);
-        gradients.values_mut().for_each(|gradient| *gradient = freedom.project(*gradient));
+    for (number, point) in points.iter_mut().enumerate() {
+        let freedom = freedom(pieces, number);
+        point.gradients.values_mut().for_each(|gradient| *gradient = freedom.project(*gradient));
     }
-    let mut matrix: Vec<BTreeMap<u32, f64>> = vec![BTreeMap::new(); missing.len()];
-    for (area, gradients) in points.iter().filter(|(area, _)| *area > 0.0) {
-        for (grain, gradient) in gradients {
-            for (other, along) in gradients {
-                *matrix[*grain as usize].entry(*other).or_default() += gradient.dot(*along) / area;
-            }
-        }
-    }
-    let apply = |pressures: &[f64]| -> Vec<f64> {
-        let row = |row: &BTreeMap<u32, f64>| {
-            row.iter().map(|(grain, value)| value * pressures[*grain as usize]).sum()
-        };
-        matrix.iter().map(row).collect()
-    };
-    let diagonal: Vec<f64> =
-        (0u32..).zip(&matrix).map(|(grain, row)| row.get(&grain).copied().unwrap_or(0.0)).collect();
-    let precondition = |residual: &[f64]| -> Vec<f64> {
-        let entry = |(value, diagonal): (&f64, &f64)| if *diagonal > 0.0 { value / diagonal } else { 0.0 };
-        residual.iter().zip(&diagonal).map(entry).collect()
-    };
-    let limits = Limits { tolerance: SOLVED, steps: 2 * missing.len() + 20 };
-    let pressures = solve(apply, precondition, missing, &limits);
-    for (place, (area, gradients)) in pieces.places.iter_mut().zip(&points) {
-        if *area > 0.0 {
-            let by: DVec3 =
-                gradients.iter().map(|(grain, gradient)| *gradient * pressures[*grain as usize]).sum();
-            *place += by / *area;
-        }
-    }
+    let motions = least_motion(&points, missing);
+    pieces.places.iter_mut().zip(motions).for_each(|(place, by)| *place += by);
 }
 
 /// Points in planes of the box stay; those on walls stay in these.

@@ -49,6 +49,12 @@ impl Bounds {
         self.upper - self.lower
     }
 
+    /// The squared distance of a point from the box; 0 within it.
+    #[inline]
+    fn squared_distance(&self, point: DVec3) -> f64 {
+        point.distance_squared(point.clamp(self.lower, self.upper))
+    }
+
     #[inline]
     fn middle(&self) -> DVec3 {
         self.lower.midpoint(self.upper)
@@ -151,6 +157,51 @@ impl BoxTree {
     ) {
         if let (Some(root), Some(other_root)) = (self.root(), other.root()) {
             self.between(root, other, other_root, &bounds, found);
+        }
+    }
+
+    /// The item nearest to a point, given its squared distance from items, and that from one of them, which stays the answer unless another is nearer.
+    pub(crate) fn nearest(
+        &self,
+        point: DVec3,
+        known: (u32, f64),
+        squared_distance: impl Fn(u32) -> f64,
+    ) -> u32 {
+        let mut best = known;
+        if let Some(root) = self.root() {
+            self.nearer(root, point, &squared_distance, &mut best);
+        }
+        best.0
+    }
+
+    fn nearer(
+        &self,
+        node: Node,
+        point: DVec3,
+        squared_distance: &impl Fn(u32) -> f64,
+        best: &mut (u32, f64),
+    ) {
+        if node.level == 0 {
+            for item in self.leaf_items(node) {
+                let distance = squared_distance(*item);
+                if distance < best.1 {
+                    *best = (*item, distance);
+                }
+            }
+            return;
+        }
+        // The nearest box first: it leaves the least to look for in the others.
+        let mut below = [(f64::INFINITY, node); BRANCHES];
+        let mut count = 0;
+        for child in self.below(node) {
+            below[count] = (self.boxes[child.place].squared_distance(point), child);
+            count += 1;
+        }
+        below[..count].sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        for (distance, child) in &below[..count] {
+            if *distance < best.1 {
+                self.nearer(*child, point, squared_distance, best);
+            }
         }
     }
 
@@ -271,6 +322,21 @@ mod tests {
         let place = |k: u32| f64::from(k * 7919 % count.max(1));
         let corner = |k: u32| DVec3::new(place(k) % 10.0, (place(k) / 10.0).floor(), 0.3 * f64::from(k % 3));
         (0..count).map(|k| Bounds::around([corner(k), corner(k) + DVec3::new(1.2, 0.9, 0.1)])).collect()
+    }
+
+    #[test]
+    fn the_nearest_item_is_found() {
+        for count in [1, 7, 33, 300] {
+            let boxes = boxes(count);
+            let tree = BoxTree::new((0..count).collect(), |item| boxes[item as usize]);
+            for k in 0..50 {
+                let point = DVec3::new(f64::from(k * 37 % 50) / 4.0, f64::from(k) / 2.0, 0.4);
+                let distance = |item: u32| boxes[item as usize].middle().distance_squared(point);
+                let nearest = tree.nearest(point, (0, distance(0)), distance);
+                let least = (0..count).map(distance).fold(f64::INFINITY, f64::min);
+                assert_eq!(distance(nearest), least);
+            }
+        }
     }
 
     #[test]

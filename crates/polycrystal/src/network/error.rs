@@ -116,6 +116,25 @@ pub enum NetworkError {
     /// A labelled surface in a periodic domain.
     #[error("a network of given triangles cannot be periodic; give a domain without periods")]
     PeriodicSurface,
+    /// A size of elements, or what it is made of, that is none.
+    #[error("element sizes, their growth and their share of the radius must be positive and finite, not {0}")]
+    BadElementSize(f64),
+    /// The remeshed network is not valid, however small elements became where it is not.
+    #[error(
+        "with elements of that size the network is invalid: {0}; give another size, or more levels of subdivision"
+    )]
+    RemeshInvalid(Faults),
+    /// Remeshing in the plane.
+    #[error("networks in the plane are not remeshed; their lines have points enough with more levels")]
+    RemeshPlane,
+    /// Opposite walls of a periodic network that was cut at its box differ.
+    #[error(
+        "point {point} on a wall has no copy on the opposite one; cut whole grains at the box, and remesh what comes out"
+    )]
+    NoCopyOnWall {
+        /// The point.
+        point: u32,
+    },
     /// An element of a labelled surface lies at the exterior, but on no wall.
     #[error(
         "element {element} lies at the exterior, but on no wall of the domain; its corners must be on a wall exactly"
@@ -254,7 +273,7 @@ impl NetworkError {
             | Self::VolumeNotRestored { grain, .. }
             | Self::GrowthNotFollowed { grain, .. }
             | Self::GrainVanished { grain, .. } => Some(vec![*grain]),
-            Self::CutInvalid(faults) | Self::Invalid(faults) => {
+            Self::CutInvalid(faults) | Self::RemeshInvalid(faults) | Self::Invalid(faults) => {
                 let all: BTreeSet<GrainId> = faults.0.iter().flat_map(Fault::grains).collect();
                 Some(all.into_iter().collect())
             }
@@ -267,6 +286,9 @@ impl NetworkError {
             | Self::NotOnWall { .. }
             | Self::MissingGrain { .. }
             | Self::BadEdgeLength(_)
+            | Self::BadElementSize(_)
+            | Self::RemeshPlane
+            | Self::NoCopyOnWall { .. }
             | Self::BadRelaxationTime(_)
             | Self::BadMobility { .. }
             | Self::BadTension { .. } => None,

@@ -1,0 +1,88 @@
+//! Boundaries with triangles of a size that is asked for.
+
+use std::fmt;
+use std::time::Instant;
+
+use glam::BVec3;
+use polycrystal::{ElementSize, Remeshed};
+use serde::Serialize;
+
+use super::pipeline::Polycrystal;
+use super::stage::Stage;
+use crate::{Error, Failure, PeriodicCut};
+
+/// Length of edges of the smooth network, in units of the size of elements, beyond which it is too coarse: with 0.8 there were four times as many
+/// bad tetrahedra as with 0.4.
+const LONGEST: f64 = 0.5;
+
+/// What became of a wish for elements of a size.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ElementsReached {
+    /// Length of edges that was asked for, in the unit of the box.
+    pub size: f64,
+    /// That of the edges on the mean.
+    pub mean_edge: f64,
+    /// How often elements became smaller somewhere, because boundaries crossed or folded there.
+    pub refinements: usize,
+}
+
+impl fmt::Display for ElementsReached {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { size, mean_edge, refinements } = self;
+        write!(out, "edges of {size:.4e} asked for, {mean_edge:.4e} on the mean")?;
+        match refinements {
+            0 => Ok(()),
+            1 => write!(out, "; smaller in a place where boundaries folded or crossed"),
+            times => write!(out, "; smaller in places where boundaries folded or crossed, {times} times"),
+        }
+    }
+}
+
+impl Polycrystal {
+    /// Remeshes boundaries where [`ElementOptions`](crate::ElementOptions) ask for it; others stay as they are.
+    ///
+    /// # Errors
+    /// [`Error::CoarseReference`] where the finest level has too long edges for elements of that size; as of [`Network::remeshed`](polycrystal::Network::remeshed).
+    pub fn remeshed_if_asked(mut self) -> Result<Self, Error> {
+        let options = self.config.elements;
+        let diameter = self.diameter_statistics().mean;
+        let per_grain = options.elements_per_grain.map(|count| diameter / count);
+        let Some(length) = options.element_size.or(per_grain) else { return Ok(self) };
+        let mean = self.network.mean_edge_length(&self.points);
+        if mean > LONGEST * length {
+            let coarser = mean / (LONGEST * length);
+            return Err(Error::CoarseReference {
+                mean,
+                length,
+                levels: more_levels(self.config.levels, coarser),
+            });
+        }
+        let growth = options.size_growth.unwrap_or(ElementSize::GROWTH);
+        let size = ElementSize { length, growth, of_radius: options.adapt_curvature };
+        let is_cut = self.config.periodic_cut == PeriodicCut::Box;
+        let cut = if is_cut { self.config.periodic } else { BVec3::FALSE };
+        let start = Instant::now();
+        match self.network.remeshed(&self.points, &size, cut) {
+            Ok(Remeshed { network, points, certificate, refinements }) => {
+                let mean_edge = network.mean_edge_length(&points);
+                self.elements = Some(ElementsReached { size: length, mean_edge, refinements });
+                // Angles stay those of the smooth boundaries, as they were before they were stretched.
+                self.validation.triangles = certificate.triangles;
+                self.validation.largest_volume_error = certificate.largest_volume_error;
+                (self.network, self.points) = (network, points);
+            }
+            Err(error) => return Err(Failure::new(error, self.attempts, &self.cells).into()),
+        }
+        self.add_time(Stage::Remeshing, start.elapsed());
+        Ok(self)
+    }
+}
+
+/// The level with edges so many times as short.
+fn more_levels(levels: u32, times: f64) -> u32 {
+    let mut more = 1;
+    while 2f64.powi(more) < times {
+        more += 1;
+    }
+    levels + more.unsigned_abs()
+}

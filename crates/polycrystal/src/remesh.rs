@@ -1,0 +1,246 @@
+//! A network with triangles of a wanted size, as finite elements need them.
+//!
+//! The reference is the finest level of a network, or a coarser one through points of it whose edges are short enough: new points lie on it, those of a boundary on that boundary. Lines are divided first, evenly in units of the size there; then
+//! each boundary, between its lines, gets triangles of its own. What lies a period away is copied, bit for bit. In the end points move a little to give grains their volumes back,
+//! and the certificate is asked; where it finds a fault, elements become half as large, and all begins anew.
+
+mod assembled;
+mod joints;
+mod lines;
+mod outline;
+mod parts;
+mod patch;
+mod reference;
+mod shaping;
+mod size_field;
+mod skeleton;
+mod torus;
+mod tuning;
+mod volumes;
+
+use glam::{BVec3, DVec3};
+use rayon::prelude::*;
+use voronoi::Shift;
+
+use crate::mesh::id::id;
+use crate::{Certificate, Fault, Level, Mesh, Network, NetworkError, Surface, validate};
+use assembled::{Assembled, NewBoundary, assemble};
+use joints::separate_joints;
+use lines::{DividedLine, divide_lines};
+use outline::{Numbering, Outlined, is_loop};
+use parts::Parts;
+use size_field::{Halved, SizeField, Surroundings};
+use skeleton::Skeleton;
+use torus::{Moved, Torus};
+pub use tuning::RemeshTuning;
+
+/// How large elements are to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ElementSize {
+    /// Length of edges, in the unit of the domain.
+    pub length: f64,
+    /// By how much edges become longer per length, away from short lines and other narrow places.
+    pub growth: f64,
+    /// Length of edges as a share of the radius of curvature, where that is less.
+    pub of_radius: Option<f64>,
+}
+
+impl ElementSize {
+    /// Growth of sizes where nothing else is asked: 0.25 and 0.7 give triangles and tetrahedra that are as good.
+    pub const GROWTH: f64 = 0.4;
+
+    /// Edges of one length.
+    pub fn new(length: f64) -> Self {
+        Self { length, growth: Self::GROWTH, of_radius: None }
+    }
+}
+
+/// A network with triangles of a wanted size.
+#[derive(Debug, Clone)]
+pub struct Remeshed {
+    /// The same boundaries, lines and points where these meet, on a single level.
+    pub network: Network,
+    /// Its points.
+    pub points: Vec<DVec3>,
+    /// What was found about it.
+    pub certificate: Certificate,
+    /// How often elements became smaller somewhere, because what came out was invalid there.
+    pub refinements: usize,
+}
+
+impl Network {
+    /// The network with triangles of the size asked for, for the points of its finest level.
+    ///
+    /// New points lie on the coarsest level whose edges, between points of the finest, have no more than 0.4 of that size on the mean. The finest should: with longer
+    /// edges tetrahedra between the triangles get worse.
+    ///
+    /// Boundaries, triple lines and quadruple points stay what they are; elements are smaller where lines are short. Grains keep the volumes of their cells. Copies are
+    /// the same, bit for bit; so are, along the axes of `cut`, the opposite walls of a periodic network that was cut at its box.
+    ///
+    /// # Errors
+    /// [`NetworkError::BadElementSize`]; [`NetworkError::RemeshPlane`] in the plane; [`NetworkError::NoCopyOnWall`] where opposite walls are not alike;
+    /// [`NetworkError::RemeshInvalid`] with what the certificate finds where smaller elements did not help.
+    ///
+    /// # Panics
+    /// When there is not one point per vertex of the finest level.
+    pub fn remeshed(
+        &self,
+        points: &[DVec3],
+        size: &ElementSize,
+        cut: BVec3,
+    ) -> Result<Remeshed, NetworkError> {
+        self.remeshed_tuned(points, size, cut, &RemeshTuning::default())
+    }
+
+    /// As [`Self::remeshed`] with other tuned numbers.
+    ///
+    /// # Errors
+    /// # Panics
+    /// As of [`Self::remeshed`].
+    #[doc(hidden)]
+    pub fn remeshed_tuned(
+        &self,
+        points: &[DVec3],
+        size: &ElementSize,
+        cut: BVec3,
+        tuning: &RemeshTuning,
+    ) -> Result<Remeshed, NetworkError> {
+        for number in [size.length, size.growth, size.of_radius.unwrap_or(1.0)] {
+            if !(number.is_finite() && number > 0.0) {
+                return Err(NetworkError::BadElementSize(number));
+            }
+        }
+        assert_eq!(points.len(), self.finest().vertex_count(), "there must be one point per vertex");
+        let level = self.reference_level(points, size.length, tuning);
+        // A finer level has the vertices of a coarser one first.
+        let points = &points[..level.vertex_count()];
+        let Mesh::Triangles(mesh) = &level.mesh else { return Err(NetworkError::RemeshPlane) };
+        let torus = Torus::new(self, level, points, cut)?;
+        let skeleton = Skeleton::new(level, mesh, self.wall_sets(), &torus);
+        let parts = Parts::new((level, mesh), &skeleton, &torus, self.boundaries())?;
+        let around = Surroundings { level, mesh, points, torus: &torus, skeleton: &skeleton, parts: &parts };
+        let mut halved = Vec::new();
+        for refinements in 0.. {
+            let sizes = SizeField::new(&around, size, &halved, tuning);
+            let assembled = remesh(self, &around, &sizes, tuning)?;
+            let (network, points) = (&assembled.network, assembled.points());
+            let faults = match validate(network, &points) {
+                Ok(certificate) => {
+                    return Ok(Remeshed { network: assembled.network, points, certificate, refinements });
+                }
+                Err(faults) => faults,
+            };
+            let sides = network.sides();
+            let surface = Surface::of_level(network.finest(), &points, &sides);
+            let is_of_size = |fault: &Fault| {
+                matches!(
+                    fault,
+                    Fault::Folded { .. }
+                        | Fault::Crossing { .. }
+                        | Fault::NoArea { .. }
+                        | Fault::DuplicateElements { .. }
+                        | Fault::DuplicatePoints { .. }
+                        | Fault::Pinched { .. }
+                )
+            };
+            if refinements == tuning.refinements || !faults.0.iter().all(is_of_size) {
+                return Err(NetworkError::RemeshInvalid(faults));
+            }
+            let places: Vec<DVec3> = faults.0.iter().filter_map(|fault| fault.position(&surface)).collect();
+            for place in places {
+                halve_at(&mut halved, place, size, tuning);
+            }
+        }
+        unreachable!("refinements end")
+    }
+
+    /// The mean length of the edges of the finest level, for its points; 0 in the plane.
+    ///
+    /// # Panics
+    /// When there is not one point per vertex.
+    pub fn mean_edge_length(&self, points: &[DVec3]) -> f64 {
+        mean_edge_length(self.finest(), points)
+    }
+
+    /// The coarsest level with edges that are short enough for elements of a size, at the points of the finest one; the finest if there is none.
+    fn reference_level(&self, points: &[DVec3], size: f64, tuning: &RemeshTuning) -> &Level {
+        let is_fine = |level: &&Level| mean_edge_length(level, points) <= tuning.longest_of_reference * size;
+        self.levels().iter().find(is_fine).unwrap_or_else(|| self.finest())
+    }
+}
+
+fn mean_edge_length(level: &Level, points: &[DVec3]) -> f64 {
+    let Mesh::Triangles(mesh) = &level.mesh else { return 0.0 };
+    let count = mesh.edge_count();
+    let length = |edge: u32| {
+        let [a, b] = mesh.edge(edge);
+        points[a as usize].distance(points[b as usize])
+    };
+    (0..id(count)).map(length).sum::<f64>() / count as f64
+}
+
+/// Makes elements around a place half as large as they were there.
+fn halve_at(halved: &mut Vec<Halved>, place: DVec3, size: &ElementSize, tuning: &RemeshTuning) {
+    let was = halved.iter().filter(|near| near.place.distance(place) < near.within).map(|near| near.factor);
+    let was = was.fold(1.0, f64::min);
+    halved.push(Halved { place, within: tuning.halving_radius * was * size.length, factor: 0.5 * was });
+}
+
+/// One way from sizes to a network; nobody has looked for faults yet.
+fn remesh(
+    network: &Network,
+    around: &Surroundings<'_>,
+    sizes: &SizeField,
+    tuning: &RemeshTuning,
+) -> Result<Assembled, NetworkError> {
+    let lines = divide_lines(&around.skeleton.lines, around.points, sizes, around.torus);
+    let numbering = Numbering::new(around, &lines);
+    let positions = positions_on_lines(around, &lines, &numbering);
+    let domain = network.domain();
+    let position = |point: Moved<u32>| {
+        let original = positions[point.original as usize];
+        if point.shift == Shift::NONE { original } else { original + point.shift.vector(domain) }
+    };
+    let originals: Vec<usize> = around.parts.originals().collect();
+    let mut shaped: Vec<_> = originals
+        .par_iter()
+        .map(|part| {
+            let triangles = around.parts.triangles.of(*part);
+            let outlined = Outlined::new(around, triangles, sizes, &lines, &numbering, position);
+            outlined.shaped(tuning)
+        })
+        .collect();
+    separate_joints(&mut shaped, around, &lines, &numbering);
+    let new = shaped.into_iter().map(|shaped| new_boundary(shaped, numbering.count)).collect();
+    let mut assembled = assemble(network, around, &lines, &numbering, positions, new)?;
+    volumes::restore(&mut assembled);
+    Ok(assembled)
+}
+
+/// Where nodes and the points of lines are.
+fn positions_on_lines(around: &Surroundings<'_>, lines: &[DividedLine], numbering: &Numbering) -> Vec<DVec3> {
+    let mut positions: Vec<DVec3> = numbering.nodes().map(|node| around.points[node as usize]).collect();
+    for (line, divided) in around.skeleton.lines.iter().zip(lines) {
+        positions.extend(&divided.points);
+        if is_loop(line.vertices[0], line.is_closed(), around) {
+            positions.push(around.points[line.vertices[0] as usize]);
+        }
+    }
+    positions
+}
+
+/// The triangles of a patch by new points; those inside count on from the points of lines.
+fn new_boundary((shaping, keys): joints::Shaped<'_>, first: usize) -> NewBoundary {
+    let patch = &shaping.patch;
+    let mut points = Vec::new();
+    let mut numbers = vec![None; patch.points.len()];
+    let mut number = |point: u32| match keys.get(&point) {
+        Some(key) => *key,
+        None => *numbers[point as usize].get_or_insert_with(|| {
+            points.push(patch.place(point));
+            Moved { original: id(first + points.len() - 1), shift: Shift::NONE }
+        }),
+    };
+    let triangles = patch.all().map(|corners| corners.map(&mut number)).collect();
+    NewBoundary { triangles, points }
+}

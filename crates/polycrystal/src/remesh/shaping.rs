@@ -1,0 +1,340 @@
+//! Triangles of the size asked for, as regular as they can be, within one boundary.
+
+use std::collections::BTreeMap;
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use glam::DVec3;
+
+use crate::remesh::outline::Outlined;
+use crate::remesh::patch::{Patch, least_angle};
+use crate::remesh::reference::{Foot, Reference};
+use crate::remesh::torus::Moved;
+use crate::remesh::tuning::RemeshTuning;
+
+/// By how much the cosine of the least angle must be better for a flip: so flips end.
+const BETTER: f64 = 1e-4;
+
+/// Sweeps over all edges within a round, each of which ends earlier where nothing happens.
+const SWEEPS: usize = 4;
+
+/// Steps in which a better place is looked for, in units of the size there, and the directions, along two axes.
+const SEARCH_STEPS: [f64; 4] = [0.24, 0.12, 0.06, 0.02];
+const SEARCH_DIRECTIONS: [[f64; 2]; 8] = [
+    [1.0, 0.0],
+    [FRAC_1_SQRT_2, FRAC_1_SQRT_2],
+    [0.0, 1.0],
+    [-FRAC_1_SQRT_2, FRAC_1_SQRT_2],
+    [-1.0, 0.0],
+    [-FRAC_1_SQRT_2, -FRAC_1_SQRT_2],
+    [0.0, -1.0],
+    [FRAC_1_SQRT_2, -FRAC_1_SQRT_2],
+];
+
+/// A boundary, its smooth surface, and at each point what that is like there.
+pub(crate) struct Shaping<'a> {
+    pub(crate) patch: Patch,
+    reference: Reference,
+    feet: Vec<Foot>,
+    tuning: &'a RemeshTuning,
+    /// Whether edges may come to be between points of the outline.
+    joins_outline: bool,
+}
+
+impl<'a> Shaping<'a> {
+    pub(crate) fn new(patch: Patch, reference: Reference, near: &[u32], tuning: &'a RemeshTuning) -> Self {
+        let feet = patch.points.iter().zip(near).map(|(point, near)| reference.foot(*point, *near)).collect();
+        Self { patch, reference, feet, tuning, joins_outline: true }
+    }
+
+    /// Makes triangles of the size asked for.
+    pub(crate) fn shape(&mut self) {
+        self.split_joints();
+        for _ in 0..self.tuning.rounds {
+            self.split_long();
+            self.close_short();
+            self.flip();
+            self.relax();
+        }
+        self.widen();
+    }
+
+    /// Halves edges between points of the outline, which lie at other boundaries too; no other such edges come to be.
+    pub(crate) fn separate(&mut self, edges: &[[u32; 2]]) {
+        self.joins_outline = false;
+        edges.iter().for_each(|edge| {
+            self.halve(*edge);
+        });
+        self.flip();
+        self.relax();
+        self.widen();
+    }
+
+    /// Gives a lone triangle a point of its own.
+    pub(crate) fn add_middle(&mut self) {
+        let Some(corners) = self.patch.all().next() else { return };
+        let middle = self.patch.places(corners).iter().sum::<DVec3>() / 3.0;
+        let foot = self.reference.foot(middle, self.feet[corners[0] as usize].triangle);
+        let triangle = self.patch.star(corners[0])[0];
+        self.patch.split_triangle(triangle, foot.place);
+        self.feet.push(foot);
+    }
+
+    /// Edges that join two points of one line.
+    fn split_joints(&mut self) {
+        for edge in self.patch.inner_edges() {
+            if !self.patch.may_join(edge) {
+                self.halve(edge);
+            }
+        }
+    }
+
+    fn size(&self, [from, to]: [u32; 2]) -> f64 {
+        0.5 * (self.feet[from as usize].size + self.feet[to as usize].size)
+    }
+
+    fn may_join(&self, ends: [u32; 2]) -> bool {
+        self.patch.may_join(ends)
+            && (self.joins_outline || ends.iter().any(|end| !self.patch.is_outline(*end)))
+    }
+
+    fn halve(&mut self, edge: [u32; 2]) {
+        let middle = self.patch.place(edge[0]).midpoint(self.patch.place(edge[1]));
+        let foot = self.reference.foot(middle, self.feet[edge[0] as usize].triangle);
+        self.patch.split(edge, foot.place, Vec::new());
+        self.feet.push(foot);
+    }
+
+    fn split_long(&mut self) {
+        for edge in self.patch.inner_edges() {
+            if self.patch.length(edge) > self.tuning.longest * self.size(edge) {
+                self.halve(edge);
+            }
+        }
+    }
+
+    fn close_short(&mut self) {
+        for _ in 0..SWEEPS {
+            let mut has_closed = false;
+            for point in (0u32..).take(self.patch.points.len()) {
+                if self.patch.is_inside(point) {
+                    has_closed |= self.close_at(point);
+                }
+            }
+            if !has_closed {
+                break;
+            }
+        }
+    }
+
+    /// Closes the shortest edge of a point that may close, if it is short.
+    fn close_at(&mut self, point: u32) -> bool {
+        let is_short = |other: &u32| {
+            let edge = [point, *other];
+            self.patch.length(edge) < self.tuning.shortest * self.size(edge)
+        };
+        let mut short: Vec<u32> = self.patch.neighbours(point).into_iter().filter(is_short).collect();
+        short.sort_by(|a, b| self.patch.length([point, *a]).total_cmp(&self.patch.length([point, *b])));
+        short.into_iter().any(|other| self.close([point, other]))
+    }
+
+    fn close(&mut self, ends: [u32; 2]) -> bool {
+        let [from, to] = ends;
+        if !self.patch.pinched(ends).is_empty() {
+            return false;
+        }
+        // An edge of a triangle that stands alone in a corner keeps it.
+        let across = self.patch.at_edge(ends);
+        if across.len() != 2 || self.patch.star(from).len() <= 3 && self.patch.all().count() <= 3 {
+            return false;
+        }
+        let theirs = self.patch.neighbours(to);
+        let new_edges = self.patch.neighbours(from).into_iter().filter(|point| *point != to);
+        let new_edges: Vec<[u32; 2]> =
+            new_edges.filter(|point| theirs.binary_search(point).is_err()).map(|point| [point, to]).collect();
+        if new_edges.iter().any(|edge| !self.may_join(*edge)) {
+            return false;
+        }
+        let moved = (!self.patch.is_outline(to)).then(|| {
+            let middle = self.patch.place(from).midpoint(self.patch.place(to));
+            self.reference.foot(middle, self.feet[to as usize].triangle)
+        });
+        let before = self.patch.star(from).iter().chain(self.patch.star(to));
+        let before: Vec<[u32; 3]> = before.map(|triangle| self.patch.corners(*triangle)).collect();
+        let mut after = self.patch.after_closing(ends);
+        let stay = self.patch.star(to).iter().map(|triangle| self.patch.corners(*triangle));
+        after.extend(stay.filter(|corners| !corners.contains(&from)));
+        let allowed = self.agreement(&before).min(self.tuning.least_cosine);
+        let old = (self.patch.place(to), self.feet[to as usize]);
+        if let Some(foot) = moved {
+            self.put(to, foot);
+        }
+        let is_long = |edge: [u32; 2]| self.patch.length(edge) > self.tuning.longest * self.size(edge);
+        let is_good = after
+            .iter()
+            .all(|corners| edges(*corners).into_iter().all(|edge| !is_long(edge) || !edge.contains(&to)))
+            && self.agreement(&after) >= allowed;
+        if is_good {
+            self.patch.close(ends);
+        } else {
+            self.patch.points[to as usize] = old.0;
+            self.feet[to as usize] = old.1;
+        }
+        is_good
+    }
+
+    /// How triangles lie to the smooth surface: the least cosine of the angle between.
+    fn agreement(&self, triangles: &[[u32; 3]]) -> f64 {
+        let cosine = |corners: &[u32; 3]| {
+            let [a, b, c] = self.patch.places(*corners);
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let smooth: DVec3 = corners.iter().map(|corner| self.feet[*corner as usize].normal).sum();
+            normal.dot(smooth.normalize_or_zero())
+        };
+        triangles.iter().map(cosine).fold(1.0, f64::min)
+    }
+
+    fn worst_angle(&self, triangles: &[[u32; 3]]) -> f64 {
+        triangles.iter().map(|corners| least_angle(self.patch.places(*corners))).fold(0.0, f64::min)
+    }
+
+    fn put(&mut self, point: u32, foot: Foot) {
+        self.patch.points[point as usize] = foot.place;
+        self.feet[point as usize] = foot;
+    }
+
+    /// Flips edges until no flip makes a least angle larger.
+    pub(crate) fn flip(&mut self) {
+        for _ in 0..SWEEPS {
+            let mut has_flipped = false;
+            for edge in self.patch.inner_edges() {
+                has_flipped |= self.flip_edge(edge);
+            }
+            if !has_flipped {
+                break;
+            }
+        }
+    }
+
+    fn flip_edge(&mut self, edge: [u32; 2]) -> bool {
+        let Some(new) = self.patch.after_flipping(edge) else { return false };
+        let [top, bottom] = [new[0][0], new[0][2]];
+        if !self.may_join([top, bottom]) {
+            return false;
+        }
+        let old: Vec<[u32; 3]> =
+            self.patch.at_edge(edge).into_iter().map(|triangle| self.patch.corners(triangle)).collect();
+        let allowed = self.agreement(&old).min(self.tuning.least_cosine);
+        let is_good =
+            self.worst_angle(&new) > self.worst_angle(&old) + BETTER && self.agreement(&new) >= allowed;
+        if is_good {
+            self.patch.flip(edge, new);
+        }
+        is_good
+    }
+
+    /// Moves points to the middle of the triangles around, those of finer places counting more, and back to the surface.
+    fn relax(&mut self) {
+        for point in (0u32..).take(self.patch.points.len()) {
+            if !self.patch.is_inside(point) {
+                continue;
+            }
+            let star = self.star(point);
+            let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
+            for corners in &star {
+                let [a, b, c] = self.patch.places(*corners);
+                let size: f64 = corners.iter().map(|corner| self.feet[*corner as usize].size).sum();
+                let weight = (b - a).cross(c - a).length() / size.powi(2);
+                sum += weight * (a + b + c) / 3.0;
+                weights += weight;
+            }
+            if weights > 0.0 {
+                let foot = self.reference.foot(sum / weights, self.feet[point as usize].triangle);
+                self.move_if(point, foot, &star, |_, _| true);
+            }
+        }
+    }
+
+    fn star(&self, point: u32) -> Vec<[u32; 3]> {
+        self.patch.star(point).iter().map(|triangle| self.patch.corners(*triangle)).collect()
+    }
+
+    /// Moves a point, if its triangles lie to the surface as they should and their worst angles, before and after, are right; returns whether.
+    fn move_if(
+        &mut self,
+        point: u32,
+        foot: Foot,
+        star: &[[u32; 3]],
+        is_right: impl Fn(f64, f64) -> bool,
+    ) -> bool {
+        let old = (self.patch.place(point), self.feet[point as usize]);
+        let allowed = self.agreement(star).min(self.tuning.least_cosine);
+        let before = self.worst_angle(star);
+        self.put(point, foot);
+        let is_good = self.agreement(star) >= allowed && is_right(before, self.worst_angle(star));
+        if !is_good {
+            self.patch.points[point as usize] = old.0;
+            self.feet[point as usize] = old.1;
+        }
+        is_good
+    }
+
+    /// Looks for places around points with narrow triangles where the least angle is larger.
+    fn widen(&mut self) {
+        let good = -self.tuning.wide;
+        for _ in 0..self.tuning.searches {
+            let mut has_moved = false;
+            for point in (0u32..).take(self.patch.points.len()) {
+                if !self.patch.is_inside(point) {
+                    continue;
+                }
+                let star = self.star(point);
+                if self.worst_angle(&star) < good {
+                    has_moved |= self.search(point, &star);
+                }
+            }
+            self.flip();
+            if !has_moved {
+                break;
+            }
+        }
+    }
+
+    fn search(&mut self, point: u32, star: &[[u32; 3]]) -> bool {
+        let Foot { normal, size, .. } = self.feet[point as usize];
+        let across = normal.any_orthonormal_vector();
+        let along = normal.cross(across);
+        for step in SEARCH_STEPS {
+            let place = self.patch.place(point);
+            let mut best = None;
+            for [x, y] in SEARCH_DIRECTIONS {
+                let by = (across * x + along * y) * (step * size);
+                let foot = self.reference.foot(place + by, self.feet[point as usize].triangle);
+                let old = (self.patch.place(point), self.feet[point as usize]);
+                let wanted = best.map_or(f64::NEG_INFINITY, |(angle, _)| angle);
+                if self.move_if(point, foot, star, |before, after| after > before.max(wanted) + BETTER) {
+                    best = Some((self.worst_angle(star), foot));
+                    self.patch.points[point as usize] = old.0;
+                    self.feet[point as usize] = old.1;
+                }
+            }
+            if let Some((_, foot)) = best {
+                self.put(point, foot);
+                return true;
+            }
+        }
+        false
+    }
+}
+
+fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
+}
+
+impl Outlined {
+    /// The boundary with triangles of the size asked for.
+    pub(crate) fn shaped(self, tuning: &RemeshTuning) -> (Shaping<'_>, BTreeMap<u32, Moved<u32>>) {
+        let mut shaping = Shaping::new(self.patch, self.reference, &self.near, tuning);
+        shaping.shape();
+        (shaping, self.keys)
+    }
+}

@@ -1,0 +1,81 @@
+//! Which vertices are others moved by whole periods.
+
+use std::collections::BTreeMap;
+
+use glam::{BVec3, DVec3};
+use voronoi::Shift;
+
+use crate::mesh::id::id;
+use crate::{Level, Network, NetworkError};
+
+/// A vertex, or a part of a boundary, and the periods that lead from it to what it stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) struct Moved<Id> {
+    pub(crate) original: Id,
+    pub(crate) shift: Shift,
+}
+
+/// The copies of a network.
+///
+/// In a periodic network they are known. Where one was cut at its box, they are what has the same coordinates, bit for bit, on opposite walls.
+#[derive(Debug)]
+pub(crate) struct Torus {
+    /// Of each vertex of the finest level.
+    pub(crate) vertices: Vec<Moved<u32>>,
+}
+
+impl Torus {
+    /// The copies of a network that repeats along some axes: its own, or those of the network that was cut at the box.
+    pub(crate) fn new(
+        network: &Network,
+        level: &Level,
+        points: &[DVec3],
+        cut: BVec3,
+    ) -> Result<Self, NetworkError> {
+        if !cut.any() || network.domain().is_periodic() {
+            return Ok(Self::of_copies(level));
+        }
+        Self::of_walls(network, points, cut)
+    }
+
+    fn of_copies(level: &Level) -> Self {
+        let mut vertices: Vec<Moved<u32>> = (0..id(level.vertex_count()))
+            .map(|vertex| Moved { original: vertex, shift: Shift::NONE })
+            .collect();
+        for pair in &level.copies.vertices {
+            vertices[pair.secondary as usize] = Moved { original: pair.primary, shift: pair.shift };
+        }
+        Self { vertices }
+    }
+
+    /// Points on upper walls are copies of those on lower ones.
+    fn of_walls(network: &Network, points: &[DVec3], cut: BVec3) -> Result<Self, NetworkError> {
+        let domain = network.domain();
+        let (lower, upper) = (domain.lower(), domain.upper());
+        let bits = |point: DVec3| point.to_array().map(|coordinate| (coordinate + 0.0).to_bits());
+        let by_place: BTreeMap<[u64; 3], u32> = (0u32..)
+            .zip(points)
+            .filter(|(_, point)| (0..3).any(|axis| cut.test(axis) && point[axis] == lower[axis]))
+            .map(|(vertex, point)| (bits(*point), vertex))
+            .collect();
+        let mut vertices = Vec::with_capacity(points.len());
+        for (vertex, point) in (0u32..).zip(points) {
+            let (mut below, mut shift) = (*point, Shift::NONE);
+            for axis in (0..3).filter(|axis| cut.test(*axis) && point[*axis] == upper[*axis]) {
+                below[axis] = lower[axis];
+                shift.0[axis] = 1;
+            }
+            let original =
+                if shift == Shift::NONE { Some(vertex) } else { by_place.get(&bits(below)).copied() };
+            let original = original.ok_or(NetworkError::NoCopyOnWall { point: vertex })?;
+            vertices.push(Moved { original, shift });
+        }
+        Ok(Self { vertices })
+    }
+
+    /// The vertex, as seen from where the shift leads.
+    pub(crate) fn seen(&self, vertex: u32, from: Shift) -> Moved<u32> {
+        let Moved { original, shift } = self.vertices[vertex as usize];
+        Moved { original, shift: shift - from }
+    }
+}
