@@ -9,6 +9,7 @@ mod check;
 mod config_files;
 mod control_meshes;
 mod domains;
+mod elements;
 mod front;
 mod good_runs;
 mod grain_shapes;

@@ -14,7 +14,7 @@ use grainsmooth::{
 use texture::CrystalSymmetry;
 use voronoi::Dimension;
 
-use crate::programs::run;
+use crate::programs::{run, skip};
 use crate::workplace::{PLANE, SPACE, config, write};
 
 pub fn text(bytes: &[u8]) -> String {
@@ -239,22 +239,25 @@ fn orix_agrees_on_orientations_colors_and_disorientations() {
     assert!(output.status.success(), "{}: {}", output.status, text(&output.stderr));
 }
 
-/// A patch test: the stress is the same everywhere, and CalculiX tells it in the axes of each grain's crystal.
-#[test]
-fn calculix_stretches_voxels_evenly() {
+/// A box of grains in one direction each, to be stretched.
+fn patch_config() -> Config {
     let mut config = Config {
         seeds: SeedSource::Random { count: 9 },
         box_size: glam::DVec3::new(2.0, 1.0, 1.0),
-        levels: 0,
+        levels: 2,
         texture: TextureOptions {
             source: Some(TextureSource::new("random").unwrap()),
             ..TextureOptions::default()
         },
         ..config(Dimension::Three, 0.3)
     };
-    config.file.voxels = Some([12, 6, 5].map(|count| std::num::NonZeroU32::new(count).unwrap()));
-    let polycrystal = make_polycrystal(&config, &|_, _, _| ()).unwrap();
-    let (folder, path) = write(&polycrystal, "grains.inp");
+    config.file.voxels = None;
+    config
+}
+
+/// A patch test: the stress is the same everywhere, and CalculiX tells it in the axes of each grain's crystal. Gives the number of integration points.
+fn check_patch(test: &str, polycrystal: &Polycrystal) -> Option<usize> {
+    let (folder, path) = write(polycrystal, "grains.inp");
     assert_eq!(fs::read_to_string(path).unwrap().matches("*SOLID SECTION").count(), 9);
     let deck = "*INCLUDE, INPUT=grains.inp
 *MATERIAL, NAME=GRAINS
@@ -275,7 +278,7 @@ S
     fs::write(folder.path().join("deck.inp"), deck).unwrap();
     let mut calculix = Command::new("ccx");
     calculix.args(["-i", "deck"]).current_dir(folder.path());
-    let Some(output) = run("calculix_stretches_voxels_evenly", &mut calculix) else { return };
+    let output = run(test, &mut calculix)?;
     assert!(output.status.success(), "{}", text(&output.stdout));
     let printed = fs::read_to_string(folder.path().join("deck.dat")).unwrap();
     let orientations = polycrystal.cells.texture.as_ref().unwrap().orientations();
@@ -291,5 +294,36 @@ S
         assert!(stress.iter().zip(exact).all(|(stress, exact)| (stress - exact).abs() < 1e-6), "{line}");
         points += 1;
     }
+    Some(points)
+}
+
+#[test]
+fn calculix_stretches_voxels_evenly() {
+    let mut config = Config { levels: 0, ..patch_config() };
+    config.file.voxels = Some([12, 6, 5].map(|count| std::num::NonZeroU32::new(count).unwrap()));
+    let polycrystal = make_polycrystal(&config, &|_, _, _| ()).unwrap();
+    let Some(points) = check_patch("calculix_stretches_voxels_evenly", &polycrystal) else { return };
     assert_eq!(points, 8 * 12 * 6 * 5);
+}
+
+/// Gmsh fills the grains, and their volumes are those of their surfaces.
+#[test]
+fn calculix_stretches_tetrahedra_evenly() {
+    let test = "calculix_stretches_tetrahedra_evenly";
+    let mut config = patch_config();
+    config.elements.elements_per_grain = Some(4.0);
+    let polycrystal = make_polycrystal(&config, &|_, _, _| ()).unwrap().remeshed_if_asked().unwrap();
+    let filled = match polycrystal.filled() {
+        Err(error @ grainsmooth::Error::NoGmsh { .. }) => return skip(test, &error.to_string()),
+        filled => filled.unwrap(),
+    };
+    let mesh = filled.volume_mesh.as_ref().unwrap();
+    let volumes = mesh.grain_volumes(9);
+    let cells = filled.network.cell_volumes();
+    assert!(volumes.iter().zip(cells).all(|(is, wanted)| (is / wanted - 1.0).abs() < 1e-9));
+    assert_eq!(mesh.points[..mesh.surface_points], filled.points);
+    let quality = mesh.quality().unwrap();
+    assert!(quality.mean > 0.6 && quality.least > 0.01, "{quality}");
+    let Some(points) = check_patch(test, &filled) else { return };
+    assert_eq!(points, mesh.tetrahedra.len());
 }

@@ -73,6 +73,9 @@ pub const REFUSALS: &[Kind] = &[
     ("LevelsExceedMemory", &["levels would take", "of memory"]),
     ("LevelsExceedIds", &["levels would make", "more than ids can name"]),
     ("TooLarge", &["more than 32-bit ids can name"]),
+    ("CoarseReference", &["elements of", "need a finer surface", "give -n"]),
+    ("ElementsWithoutSize", &["changes sizes of elements", "--elements-per-grain"]),
+    ("ElementsInPlane", &["elements of a size", "with --dim 2 leave"]),
     ("TouchesItself", &["touches its own image", "give more seeds"]),
     // A grain that vanishes while it is free to, where the message names a time that works, or how to take such grains out.
     ("GrainVanished", &["shrinks to nothing by", "; --relax ", " works"]),

@@ -344,6 +344,22 @@ pub enum Error {
         /// The number of levels that is enough.
         levels: u32,
     },
+    /// Gmsh, which fills grains, is not there or too old.
+    #[error(
+        "cannot run gmsh, which fills grains with tetrahedra: {cause}; install version 4.8 or newer, such as with `apt install gmsh` or `pip install gmsh`"
+    )]
+    NoGmsh {
+        /// What is wrong with it.
+        cause: String,
+    },
+    /// Gmsh could not fill all grains.
+    #[error(
+        "{cause}; give elements of another size with --elements-per-grain, or see the surface alone with --grains-dir grains"
+    )]
+    NotFilled {
+        /// What it said, or which grains lack tetrahedra.
+        cause: String,
+    },
     /// The network cannot be made, relaxed, or is invalid.
     #[error(transparent)]
     Network(#[from] NetworkError),

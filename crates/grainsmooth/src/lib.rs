@@ -24,6 +24,7 @@ mod error;
 mod estimate;
 mod figures;
 mod files;
+mod fill;
 mod formats;
 mod grains;
 mod input;
@@ -38,6 +39,7 @@ mod run;
 mod seeds;
 mod summary;
 mod tables;
+mod volume_mesh;
 pub mod vtk;
 
 pub use glam;
@@ -76,6 +78,7 @@ pub use figures::triangle_angles::TriangleAngles;
 pub use files::output::OutputPath;
 pub use files::staged_files::{StagedFiles, write_together};
 pub use files::unfinished::discard_unfinished;
+pub use fill::check_gmsh;
 pub use formats::embedded_config::embedded_config;
 pub use formats::label_grid::LabelGrid;
 pub use formats::output::{Output, OutputDirectory};
@@ -118,6 +121,7 @@ pub use summary::record::SummaryRecord;
 pub use summary::{CellsSummary, Summary};
 pub use tables::cell_table::{CellTable, TableFormat};
 pub use tables::statistics::{NetworkStatistics, StatisticsOutput};
+pub use volume_mesh::{TetrahedronQuality, VolumeMesh};
 
 /// What most programs need.
 pub mod prelude {

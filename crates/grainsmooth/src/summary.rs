@@ -17,7 +17,7 @@ use crate::figures::significant::significant;
 use crate::grains::texture::TextureLine;
 use crate::{
     Config, EquivalentDiameters, Polycrystal, Reconnected, Regularization, SeedSource, ShapesReached,
-    SizesReached, Stage, Tessellated, TriangleAngles,
+    SizesReached, Stage, Tessellated, TriangleAngles, VolumeMesh,
 };
 
 /// A polycrystal in a few lines of text: counts, angles, volumes, validation, times.
@@ -82,6 +82,9 @@ impl fmt::Display for Summary<'_> {
         match &polycrystal.elements {
             None => writeln!(out, "mesh        {points} points, {elements} {element}s at level {levels}")?,
             Some(reached) => writeln!(out, "mesh        {points} points, {elements} {element}s; {reached}")?,
+        }
+        if let Some(quality) = polycrystal.volume_mesh.as_ref().and_then(VolumeMesh::quality) {
+            writeln!(out, "tetrahedra  {quality}")?;
         }
         if let Some(stretched) = StretchLine::new(&polycrystal.config) {
             writeln!(out, "{stretched}; angles, residual and triangles are those before")?;

@@ -20,6 +20,7 @@ mod volumes;
 
 use glam::{BVec3, DVec3};
 use rayon::prelude::*;
+use subzero::EdgeId;
 use voronoi::Shift;
 
 use crate::mesh::id::id;
@@ -173,7 +174,7 @@ fn mean_edge_length(level: &Level, points: &[DVec3]) -> f64 {
     let Mesh::Triangles(mesh) = &level.mesh else { return 0.0 };
     let count = mesh.edge_count();
     let length = |edge: u32| {
-        let [a, b] = mesh.edge(edge);
+        let [a, b] = mesh.edge(EdgeId(edge));
         points[a as usize].distance(points[b as usize])
     };
     (0..id(count)).map(length).sum::<f64>() / count as f64

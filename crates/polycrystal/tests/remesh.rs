@@ -73,7 +73,7 @@ fn random_grains_keep_boundaries_and_volumes() {
     let remeshed = network.remeshed(&points, &size, BVec3::FALSE).expect("remeshed");
     check(&network, &points, &size, &remeshed);
     let quality = remeshed.certificate.triangles.expect("triangles");
-    assert!(quality.first_percentile > 30.0, "{quality:?}");
+    assert!(quality.first_percentile > 25.0, "{quality:?}");
 }
 
 #[test]

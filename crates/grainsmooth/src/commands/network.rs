@@ -11,7 +11,7 @@ use anyhow::anyhow;
 use grainsmooth::{
     CellTable, CellsSummary, Config, Error, Estimate, Html, Output, OutputDirectory, OutputFormat, Picture,
     Png, Polycrystal, Series, SeriesOutput, Stage, StagedFiles, StatisticsOutput, Summary, SummaryRecord,
-    TableFormat, Tessellated, check_expected_size, smooth_watched, tessellate, write_together,
+    TableFormat, Tessellated, check_expected_size, check_gmsh, smooth_watched, tessellate, write_together,
 };
 
 use crate::cli::{Arguments, usage};
@@ -125,6 +125,10 @@ impl Files {
             series,
             is_cells_only,
         };
+        // Before hours of work, not after.
+        if all.formats().into_iter().any(|format| format.needs_tetrahedra(config)) {
+            check_gmsh()?;
+        }
         let mut targets = BTreeSet::new();
         if let Some(path) = all.targets().into_iter().find(|target| !targets.insert(target.clone())) {
             // As the user calls it, who gave no path from the root.
@@ -204,6 +208,10 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     polycrystal = polycrystal.cut_if_asked()?.stretched_if_asked();
     line.show(Stage::Remeshing, 0, 1);
     polycrystal = polycrystal.remeshed_if_asked()?;
+    if files.formats().into_iter().any(|format| format.needs_tetrahedra(config)) {
+        line.show(Stage::Filling, 0, 1);
+        polycrystal = polycrystal.filled()?;
+    }
     line.show(Stage::Writing, 0, 1);
     let start = Instant::now();
     write_together(|staged| {

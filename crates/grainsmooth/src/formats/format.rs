@@ -44,6 +44,8 @@ pub(super) enum Content {
     Cells,
     /// Numbers at voxels, and as many bytes for each as are known beforehand.
     Voxels(fn(&Config) -> u32),
+    /// Hexahedra at voxels, or tetrahedra that fill grains in space.
+    Elements,
     /// A line for each grain, with its orientation.
     Orientations,
 }

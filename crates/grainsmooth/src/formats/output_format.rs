@@ -3,6 +3,8 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use voronoi::Dimension;
+
 use super::format::{Beside, Content, FileSize, Format, GrainWriter, Writer};
 use crate::config::Config;
 use crate::error::Error;
@@ -78,6 +80,11 @@ impl OutputFormat {
         matches!(self.0.content, Content::Voxels(_))
     }
 
+    /// Whether a file of the format holds tetrahedra that fill grains: where it would hold voxels, and none are asked for.
+    pub fn needs_tetrahedra(self, config: &Config) -> bool {
+        matches!(self.0.content, Content::Elements) && config.file.voxels.is_none()
+    }
+
     /// Whether the format is a single file, as standard output takes.
     pub fn is_single_file(self) -> bool {
         matches!(self.0.write, Writer::File(_))
@@ -105,7 +112,7 @@ impl OutputFormat {
     pub(crate) fn bytes_of_voxel(self, config: &Config) -> u32 {
         match self.0.content {
             Content::Voxels(bytes) => bytes(config),
-            Content::Boundaries | Content::Cells | Content::Orientations => 0,
+            Content::Boundaries | Content::Cells | Content::Elements | Content::Orientations => 0,
         }
     }
 
@@ -129,6 +136,9 @@ impl OutputFormat {
                 Err(Error::FormatDimension { path: path(), dimension })
             }
             (_, Content::Voxels(_)) if config.file.voxels.is_none() => Err(Error::NoVoxels { path: path() }),
+            (_, Content::Elements) if config.file.voxels.is_none() && config.dimension == Dimension::Two => {
+                Err(Error::NoVoxels { path: path() })
+            }
             (_, Content::Orientations) if !config.has_texture() => Err(Error::NoTexture { path: path() }),
             (_, Content::Cells) if config.has_grains_of_several_cells() => {
                 Err(Error::CellsOfGrains { path: path() })

@@ -26,6 +26,7 @@ use crate::error::failure::Growth;
 use crate::figures::significant::two_digits_down;
 use crate::memory::{ControlMesh, LABEL_BYTES, LevelSize, available_memory, check_levels};
 use crate::seeds::count::seed_count;
+use crate::volume_mesh::VolumeMesh;
 use crate::{BoundaryLaw, Config, Error, Failure, LawReached, PeriodicCut, TensionsReached};
 
 /// Factor by which each time that is tried for grains that grow too long is shorter than the last, and how many are tried.
@@ -74,6 +75,8 @@ pub struct Polycrystal {
     pub validation: Certificate,
     /// What became of a wish for elements of a size.
     pub elements: Option<ElementsReached>,
+    /// Tetrahedra that fill the grains, where these were filled.
+    pub volume_mesh: Option<VolumeMesh>,
     /// Time that each stage took.
     pub times: Vec<(Stage, Duration)>,
 }
@@ -296,6 +299,7 @@ pub fn smooth_watched(
         tensions: None,
         mobilities: None,
         elements: None,
+        volume_mesh: None,
         flat_angles,
         angles_before,
         validation,

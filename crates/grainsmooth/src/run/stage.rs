@@ -19,13 +19,15 @@ pub enum Stage {
     Validation,
     /// Giving boundaries triangles of a wanted size.
     Remeshing,
+    /// Filling grains with tetrahedra.
+    Filling,
     /// Writing the file.
     Writing,
 }
 
 impl Stage {
     /// Every stage, in the order in which they follow each other.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Seeds,
         Self::Cells,
         Self::Network,
@@ -33,6 +35,7 @@ impl Stage {
         Self::Subdivision,
         Self::Validation,
         Self::Remeshing,
+        Self::Filling,
         Self::Writing,
     ];
 
@@ -51,6 +54,7 @@ impl Stage {
             Self::Subdivision => "subdivision",
             Self::Validation => "validation",
             Self::Remeshing => "remeshing",
+            Self::Filling => "filling",
             Self::Writing => "writing",
         }
     }

@@ -10,7 +10,7 @@ use crate::figures::triangle_angles::TriangleAngles;
 use crate::{
     AskedAndReached, ComponentShare, Divided, ElementsReached, EquivalentDiameters, HistogramFit, LawReached,
     PhaseShare, Polycrystal, Reconnected, ShapesReached, SizesFit, SizesReached, TensionsReached,
-    Tessellated, Topology,
+    Tessellated, TetrahedronQuality, Topology, VolumeMesh,
 };
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
@@ -64,6 +64,8 @@ pub struct SummaryRecord {
     level: u32,
     /// Where elements of a size are asked for: the level is then that of the surface that they lie on.
     element_size: Option<ElementsReached>,
+    /// Of grains that are filled.
+    tetrahedra: Option<TetrahedronQuality>,
     /// In degrees.
     angles_before: Option<Angles>,
     angles_after: Option<Angles>,
@@ -253,6 +255,7 @@ impl SummaryRecord {
             elements: finest.element_count(),
             level: config.levels,
             element_size: polycrystal.elements,
+            tetrahedra: polycrystal.volume_mesh.as_ref().and_then(VolumeMesh::quality),
             angles_before: polycrystal.angles_before.map(angles),
             angles_after: polycrystal.validation.angles.map(angles),
             triangle_angles: polycrystal.validation.triangles.map(TriangleAngles::from),

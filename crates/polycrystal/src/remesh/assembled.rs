@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use subzero::{Crease, Features, TriangleMesh};
+use subzero::{Crease, EdgeId, Features, TriangleMesh};
 use voronoi::{PeriodicPair, Shift};
 
 use crate::mesh::id::id;
@@ -124,9 +124,12 @@ pub(crate) fn assemble(
     let features = Features { creases: &creases, corners: &corners, ..Features::default() };
     let mesh = TriangleMesh::new(point_count, triangles, &features)?;
     let at_edges = (0..id(mesh.edge_count())).map(|edge| {
-        let [a, b] = mesh.edge(edge);
+        let [a, b] = mesh.edge(EdgeId(edge));
         at_lines.get(&[a.min(b), a.max(b)]).copied().unwrap_or_else(|| {
-            let triangle = mesh.edge_triangles(edge).map_or(0, |pair| pair[0]);
+            let triangle = mesh
+                .edge_triangles(EdgeId(edge))
+                .map(|pair| pair.map(|triangle| triangle.0))
+                .map_or(0, |pair| pair[0]);
             Meeting::inside(&boundaries[boundary_of[triangle as usize].index()])
         })
     });

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use subzero::FaceId;
+
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::id::id;
 use crate::remesh::lines::DividedLine;
@@ -101,8 +103,8 @@ impl Outlined {
         for (own, triangle) in (0u32..).zip(triangles) {
             let local = corners[own as usize];
             local.iter().for_each(|corner| near[*corner as usize] = own);
-            for (k, edge) in around.mesh.triangle_edges(*triangle).into_iter().enumerate() {
-                if let Some(edge) = around.skeleton.of_edge[edge as usize] {
+            for (k, edge) in around.mesh.triangle_edges(FaceId(*triangle)).into_iter().enumerate() {
+                if let Some(edge) = around.skeleton.of_edge[edge.index()] {
                     steps.insert(local[k], Step { to: local[(k + 1) % 3], edge });
                 }
             }
@@ -197,11 +199,15 @@ fn own_corners(around: &Surroundings<'_>, triangles: &[u32]) -> (Vec<[u32; 3]>, 
         Some(id(3 * own + k))
     };
     for triangle in triangles {
-        for edge in around.mesh.triangle_edges(*triangle) {
-            if around.skeleton.of_edge[edge as usize].is_some() {
+        for edge in around.mesh.triangle_edges(FaceId(*triangle)) {
+            if around.skeleton.of_edge[edge.index()].is_some() {
                 continue;
             }
-            let Some([first, second]) = around.mesh.edge_triangles(edge) else { continue };
+            let Some([first, second]) =
+                around.mesh.edge_triangles(edge).map(|pair| pair.map(|triangle| triangle.0))
+            else {
+                continue;
+            };
             for vertex in around.mesh.edge(edge) {
                 if let (Some(one), Some(other)) = (find(first, vertex), find(second, vertex)) {
                     fans.join(one, other);

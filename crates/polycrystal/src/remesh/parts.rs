@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use subzero::TriangleMesh;
+use subzero::{EdgeId, TriangleMesh};
 use voronoi::Shift;
 
 use crate::mesh::disjoint_sets::DisjointSets;
@@ -32,7 +32,9 @@ impl Parts {
     ) -> Result<Self, NetworkError> {
         let mut pieces = DisjointSets::new(level.element_count());
         for (edge, line) in (0u32..).zip(&skeleton.of_edge) {
-            if let (None, Some([a, b])) = (line, mesh.edge_triangles(edge)) {
+            if let (None, Some([a, b])) =
+                (line, mesh.edge_triangles(EdgeId(edge)).map(|pair| pair.map(|triangle| triangle.0)))
+            {
                 pieces.join(a, b);
             }
         }

@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use subzero::TriangleMesh;
+use subzero::{EdgeId, FaceId, TriangleMesh};
 
 use crate::Level;
 use crate::mesh::id::id;
@@ -94,8 +94,8 @@ impl SizeField {
                     .triangles
                     .of(part)
                     .iter()
-                    .flat_map(|triangle| around.mesh.triangle_edges(*triangle));
-                let lines = edges.filter_map(|edge| around.skeleton.of_edge[edge as usize]);
+                    .flat_map(|triangle| around.mesh.triangle_edges(FaceId(*triangle)));
+                let lines = edges.filter_map(|edge| around.skeleton.of_edge[edge.index()]);
                 let mut lines: Vec<u32> = lines.map(|line| line.occurrence).collect();
                 lines.sort_unstable();
                 lines.dedup();
@@ -123,7 +123,11 @@ impl SizeField {
             corners.iter().sum::<DVec3>() / 3.0
         };
         for edge in 0..id(around.mesh.edge_count()) {
-            let Some([first, second]) = around.mesh.edge_triangles(edge) else { continue };
+            let Some([first, second]) =
+                around.mesh.edge_triangles(EdgeId(edge)).map(|pair| pair.map(|triangle| triangle.0))
+            else {
+                continue;
+            };
             if around.skeleton.of_edge[edge as usize].is_some() {
                 continue;
             }
@@ -131,7 +135,11 @@ impl SizeField {
             if turn > 0.0 {
                 let radius = middle(first).distance(middle(second)) / turn;
                 let limit = (share * radius).max(floor);
-                around.mesh.edge(edge).iter().for_each(|end| self.lower(around.torus, *end as usize, limit));
+                around
+                    .mesh
+                    .edge(EdgeId(edge))
+                    .iter()
+                    .for_each(|end| self.lower(around.torus, *end as usize, limit));
             }
         }
     }
@@ -149,7 +157,7 @@ impl SizeField {
             return;
         }
         let count = around.mesh.edge_count();
-        let ends = (0..id(count)).map(|edge| around.mesh.edge(edge));
+        let ends = (0..id(count)).map(|edge| around.mesh.edge(EdgeId(edge)));
         let neighbours = crate::mesh::grouped::Grouped::new(
             self.sizes.len(),
             ends.flat_map(|[a, b]| {

@@ -8,7 +8,7 @@ use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
 use crate::remesh::torus::{Moved, Torus};
 use crate::{Level, WallSet, WallSets};
-use subzero::TriangleMesh;
+use subzero::{EdgeId, TriangleMesh};
 
 /// A line on the torus, as one of its copies shows it.
 #[derive(Debug)]
@@ -61,11 +61,12 @@ type EdgeKey = (u32, Moved<u32>);
 impl Skeleton {
     pub(crate) fn new(level: &Level, mesh: &TriangleMesh, sets: &WallSets, torus: &Torus) -> Self {
         let edge_count = id(mesh.edge_count());
-        let is_seam = |edge: u32| match mesh.edge_triangles(edge) {
-            Some([a, b]) => level.boundary_of[a as usize] != level.boundary_of[b as usize],
-            None => true,
-        };
-        let key = |edge: u32| edge_key(torus, mesh.edge(edge));
+        let is_seam =
+            |edge: u32| match mesh.edge_triangles(EdgeId(edge)).map(|pair| pair.map(|triangle| triangle.0)) {
+                Some([a, b]) => level.boundary_of[a as usize] != level.boundary_of[b as usize],
+                None => true,
+            };
+        let key = |edge: u32| edge_key(torus, mesh.edge(EdgeId(edge)));
         let mut seams: Vec<u32> = (0..edge_count).filter(|edge| is_seam(*edge)).collect();
         // What is a line somewhere is one at all copies, though fewer boundaries may be seen there.
         let is_copied = torus.vertices.iter().any(|moved| moved.shift != Shift::NONE);
@@ -76,7 +77,7 @@ impl Skeleton {
         let mut at_vertices: Vec<Vec<u32>> = vec![Vec::new(); level.vertex_count()];
         let mut around: Vec<Vec<Moved<u32>>> = vec![Vec::new(); level.vertex_count()];
         for edge in &seams {
-            let [a, b] = mesh.edge(*edge);
+            let [a, b] = mesh.edge(EdgeId(*edge));
             for [own, other] in [[a, b], [b, a]] {
                 at_vertices[own as usize].push(*edge);
                 let Moved { original, shift } = torus.vertices[own as usize];
@@ -101,7 +102,7 @@ impl Skeleton {
         let starts_at_nodes = seams
             .iter()
             .copied()
-            .filter(|edge| mesh.edge(*edge).iter().any(|end| skeleton.is_node[*end as usize]));
+            .filter(|edge| mesh.edge(EdgeId(*edge)).iter().any(|end| skeleton.is_node[*end as usize]));
         let order: Vec<u32> = starts_at_nodes.chain(seams.iter().copied()).collect();
         for edge in order {
             if skeleton.of_edge[edge as usize].is_some() {
@@ -123,7 +124,7 @@ impl Skeleton {
                 .map(|(step, ends)| (sorted([ends[0], ends[1]]), step))
                 .collect();
             for edge in edges {
-                let step = steps[&sorted(mesh.edge(edge))];
+                let step = steps[&sorted(mesh.edge(EdgeId(edge)))];
                 skeleton.of_edge[edge as usize] = Some(LineEdge { occurrence, step });
             }
             skeleton.occurrences.push(Occurrence { line, shift, vertices, walls, meeting });
@@ -133,13 +134,13 @@ impl Skeleton {
 
     /// The line through an edge: its vertices and edges. It starts at the edge's end where lines end, if there is one.
     fn trace(&self, mesh: &TriangleMesh, at_vertices: &[Vec<u32>], first: u32) -> (Vec<u32>, Vec<u32>) {
-        let [a, b] = mesh.edge(first);
+        let [a, b] = mesh.edge(EdgeId(first));
         let (start, mut at) = if self.is_node[a as usize] { (a, b) } else { (b, a) };
         let (mut vertices, mut edges, mut edge) = (vec![start, at], vec![first], first);
         while at != start && !self.is_node[at as usize] {
             let Some(next) = at_vertices[at as usize].iter().find(|other| **other != edge) else { break };
             edge = *next;
-            let [a, b] = mesh.edge(edge);
+            let [a, b] = mesh.edge(EdgeId(edge));
             at = if a == at { b } else { a };
             vertices.push(at);
             edges.push(edge);

@@ -1,0 +1,105 @@
+//! Grains filled with tetrahedra by Gmsh, which is a program of its own.
+
+mod msh;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+use polycrystal::{GrainId, Mesh};
+
+use crate::volume_mesh::VolumeMesh;
+use crate::{Error, Output, Polycrystal, Stage};
+
+/// The program, as the shell finds it.
+const GMSH: &str = "gmsh";
+
+/// The first version whose options are those that are used here.
+const LEAST_VERSION: [u32; 2] = [4, 8];
+
+/// Gmsh's algorithms, the better one first: HXT, then Delaunay, which fills what the first cannot.
+const ALGORITHMS: [(&str, &str); 2] = [("10", "HXT"), ("1", "Delaunay")];
+
+/// How much of a grain's volume tetrahedra may miss: they have its very triangles.
+const VOLUME_TOLERANCE: f64 = 1e-9;
+
+/// Checks that Gmsh is there, and new enough.
+///
+/// # Errors
+/// [`Error::NoGmsh`] with what to do.
+pub fn check_gmsh() -> Result<(), Error> {
+    let refused = |cause: String| Error::NoGmsh { cause };
+    let said = Command::new(GMSH).arg("--version").output().map_err(|cause| refused(cause.to_string()))?;
+    let said = String::from_utf8_lossy(&[said.stdout, said.stderr].concat()).trim().to_owned();
+    let mut numbers = said.split('.').map(|number| number.parse::<u32>().ok());
+    match [numbers.next().flatten(), numbers.next().flatten()] {
+        [Some(major), Some(minor)] if [major, minor] >= LEAST_VERSION => Ok(()),
+        _ => Err(refused(format!("its version is `{said}`"))),
+    }
+}
+
+impl Polycrystal {
+    /// Fills the grains with tetrahedra between the triangles of their boundaries, which stay as they are.
+    ///
+    /// # Errors
+    /// [`Error::NoGmsh`]; [`Error::NotFilled`] with the grains that Gmsh could not fill.
+    pub fn filled(mut self) -> Result<Self, Error> {
+        check_gmsh()?;
+        let start = Instant::now();
+        let folder = tempfile::tempdir().map_err(|cause| Error::NoGmsh { cause: cause.to_string() })?;
+        self.write(&Output::check(folder.path().join("surface.msh"))?)?;
+        let mut last = None;
+        for (algorithm, name) in ALGORITHMS {
+            let filled = run(folder.path(), algorithm).and_then(|text| self.read_filled(&text));
+            match filled {
+                Ok(mut mesh) => {
+                    mesh.repair(&self.edges_of_boundaries());
+                    self.volume_mesh = Some(mesh);
+                    self.add_time(Stage::Filling, start.elapsed());
+                    return Ok(self);
+                }
+                Err(cause) => last = Some(Error::NotFilled { cause: format!("with {name}, {cause}") }),
+            }
+        }
+        Err(last.expect("there are algorithms"))
+    }
+
+    /// The tetrahedra in a file of Gmsh, which must fill every grain.
+    fn read_filled(&self, text: &str) -> Result<VolumeMesh, String> {
+        let mesh = msh::read(text, &self.points)?;
+        let wanted = self.network.grain_volumes(self.network.finest(), &self.points);
+        let volumes = mesh.grain_volumes(wanted.len());
+        let is_wrong = |(is, wanted): (&f64, &f64)| (is / wanted - 1.0).abs() > VOLUME_TOLERANCE;
+        let both = (0u32..).map(GrainId).zip(volumes.iter().zip(&wanted));
+        let wrong: Vec<String> =
+            both.filter(|(_, volumes)| is_wrong(*volumes)).map(|(grain, _)| grain.0.to_string()).collect();
+        if wrong.is_empty() { Ok(mesh) } else { Err(format!("grains {} are not filled", wrong.join(", "))) }
+    }
+
+    /// The edges of all triangles, the lower end first.
+    fn edges_of_boundaries(&self) -> BTreeSet<[u32; 2]> {
+        let Mesh::Triangles(mesh) = &self.network.finest().mesh else { return BTreeSet::new() };
+        let edges = mesh.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        edges.map(|[a, b]| [a.min(b), a.max(b)]).collect()
+    }
+}
+
+/// Runs Gmsh on the script of a surface; returns what it wrote. More threads make it slower, and another mesh.
+fn run(folder: &Path, algorithm: &str) -> Result<String, String> {
+    let result = folder.join("volume.msh");
+    let options = [("Mesh.Algorithm3D", algorithm), ("Mesh.Renumber", "0"), ("Mesh.Binary", "0")];
+    let output = Command::new(GMSH)
+        .current_dir(folder)
+        .args(["-3", "-nt", "1", "-v", "1", "-format", "msh41", "-o", "volume.msh", "surface.geo"])
+        .args(options.into_iter().flat_map(|(name, value)| ["-setnumber", name, value]))
+        .output()
+        .map_err(|cause| cause.to_string())?;
+    let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+    let error = said.lines().find(|line| line.contains("Error"));
+    match (std::fs::read_to_string(result), error) {
+        (Ok(text), None) => Ok(text),
+        (_, Some(error)) => Err(format!("Gmsh says `{}`", error.trim())),
+        (Err(cause), None) => Err(format!("Gmsh wrote nothing: {cause}")),
+    }
+}

@@ -1,0 +1,130 @@
+//! Tetrahedra that fill grains, and how good they are.
+
+pub(crate) mod repair;
+
+use std::fmt;
+
+use glam::DVec3;
+use polycrystal::GrainId;
+use serde::Serialize;
+
+/// Tetrahedra that fill grains.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VolumeMesh {
+    /// The points of the network, by the same numbers, then those inside grains.
+    pub points: Vec<DVec3>,
+    /// Number of points of the network.
+    pub surface_points: usize,
+    /// Grain by grain; seen from the last corner, the others go round clockwise.
+    pub tetrahedra: Vec<[u32; 4]>,
+    /// The grain of each.
+    pub grains: Vec<GrainId>,
+}
+
+impl VolumeMesh {
+    /// The corners of a tetrahedron.
+    pub(crate) fn corners(&self, tetrahedron: usize) -> [DVec3; 4] {
+        self.tetrahedra[tetrahedron].map(|corner| self.points[corner as usize])
+    }
+
+    /// Volume of each of so many grains.
+    pub fn grain_volumes(&self, count: usize) -> Vec<f64> {
+        let mut volumes = vec![0.0; count];
+        for (tetrahedron, grain) in self.grains.iter().enumerate() {
+            volumes[grain.index()] += volume(self.corners(tetrahedron));
+        }
+        volumes
+    }
+
+    /// How good the tetrahedra are; nothing where there are none.
+    pub fn quality(&self) -> Option<TetrahedronQuality> {
+        let mut all: Vec<(f64, usize)> =
+            (0..self.tetrahedra.len()).map(|t| (gamma(self.corners(t)), t)).collect();
+        all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let (least, worst) = *all.first()?;
+        let place = self.corners(worst).iter().sum::<DVec3>() / 4.0;
+        Some(TetrahedronQuality {
+            count: all.len(),
+            least,
+            first_percentile: all[all.len() / 100].0,
+            mean: all.iter().map(|(gamma, _)| gamma).sum::<f64>() / all.len() as f64,
+            below_tenth: all.partition_point(|(gamma, _)| *gamma < 0.1),
+            worst_place: place.to_array(),
+            worst_grain: self.grains[worst].0,
+        })
+    }
+}
+
+/// Six times the volume of a tetrahedron, divided by six; negative where it is turned inside out.
+pub(crate) fn volume([a, b, c, d]: [DVec3; 4]) -> f64 {
+    (b - a).cross(c - a).dot(d - a) / 6.0
+}
+
+/// Three times the radius of the ball within a tetrahedron, divided by that of the ball around it: 1 of a regular one, 0 of a flat one, negative where it is turned inside out.
+pub(crate) fn gamma([a, b, c, d]: [DVec3; 4]) -> f64 {
+    let (u, v, w) = (b - a, c - a, d - a);
+    let six_volumes = u.cross(v).dot(w);
+    let areas =
+        u.cross(v).length() + v.cross(w).length() + w.cross(u).length() + (v - u).cross(w - u).length();
+    // The edge lengths' products of opposite edges, as sides of a triangle whose area is 6 V R.
+    let products =
+        [u.length() * (w - v).length(), v.length() * (w - u).length(), w.length() * (v - u).length()];
+    let [p, q, r] = products;
+    let sixteen_squares = (p + q + r) * (-p + q + r) * (p - q + r) * (p + q - r);
+    let around = sixteen_squares.max(0.0).sqrt();
+    if areas * around == 0.0 {
+        return 0.0;
+    }
+    // r_in = six_volumes / areas, for areas are twice the faces'; R = around / (4 six_volumes).
+    12.0 * six_volumes * six_volumes.abs() / (areas * around)
+}
+
+/// How good tetrahedra are, by gamma: three times the radius of the ball within one divided by that of the ball around it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TetrahedronQuality {
+    /// Number of tetrahedra.
+    pub count: usize,
+    /// Least of all.
+    pub least: f64,
+    /// That which a hundredth is below.
+    pub first_percentile: f64,
+    /// The mean.
+    pub mean: f64,
+    /// How many are below 0.1.
+    pub below_tenth: usize,
+    /// Where the worst one is.
+    pub worst_place: [f64; 3],
+    /// Its grain.
+    pub worst_grain: u32,
+}
+
+impl fmt::Display for TetrahedronQuality {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { count, least, first_percentile, mean, below_tenth, worst_place: [x, y, z], worst_grain } =
+            self;
+        write!(
+            out,
+            "{count}, gamma {mean:.3} on the mean, a hundredth below {first_percentile:.3}, {below_tenth} below 0.1, least {least:.3} in grain {worst_grain} at {x:.4} {y:.4} {z:.4}"
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_regular_tetrahedron_has_gamma_one_and_a_flat_one_none() {
+        let regular =
+            [[1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, 1.0]].map(DVec3::from);
+        let sign = volume(regular).signum();
+        assert!((gamma(regular) * sign - 1.0).abs() < 1e-12);
+        let [a, b, c, d] = regular;
+        assert!((gamma([b, a, c, d]) * sign + 1.0).abs() < 1e-12);
+        // The corner of a cube: r = 1 / (3 + sqrt 3), R = sqrt(3) / 2.
+        let corner = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        let expected = 6.0 / (3f64.sqrt() * (3.0 + 3f64.sqrt()));
+        assert!((gamma(corner) - expected).abs() < 1e-12 && (volume(corner) - 1.0 / 6.0).abs() < 1e-15);
+        assert_eq!(gamma([DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE.with_z(0.0)]), 0.0);
+    }
+}

@@ -1,0 +1,217 @@
+//! The worst tetrahedra made better: points inside grains move, and inner edges of tetrahedra whose corners are all on boundaries are halved.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::DVec3;
+
+use super::{VolumeMesh, gamma};
+
+/// Gamma below which the points around a tetrahedron look for better places, and below which its edges may be halved.
+const POOR: f64 = 0.25;
+const BAD: f64 = 0.12;
+
+/// Rounds over all of them.
+const ROUNDS: usize = 6;
+
+/// Steps in which a better place is looked for, as shares of the mean edge around.
+const STEPS: [f64; 4] = [0.3, 0.15, 0.07, 0.03];
+
+/// Directions of the search: along axes and diagonals.
+const DIRECTIONS: [[f64; 3]; 14] = [
+    [1.0, 0.0, 0.0],
+    [-1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, -1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [0.0, 0.0, -1.0],
+    [0.6, 0.6, 0.6],
+    [-0.6, 0.6, 0.6],
+    [0.6, -0.6, 0.6],
+    [0.6, 0.6, -0.6],
+    [-0.6, -0.6, 0.6],
+    [-0.6, 0.6, -0.6],
+    [0.6, -0.6, -0.6],
+    [-0.6, -0.6, -0.6],
+];
+
+/// The tetrahedra at each point, kept as these change.
+struct Repair<'a> {
+    mesh: &'a mut VolumeMesh,
+    stars: Vec<Vec<usize>>,
+    /// The edges of triangles on boundaries.
+    fixed: &'a BTreeSet<[u32; 2]>,
+}
+
+impl VolumeMesh {
+    /// Makes the worst tetrahedra better. Points and triangles of boundaries stay; `fixed` are the edges of these, the lower end first.
+    pub(crate) fn repair(&mut self, fixed: &BTreeSet<[u32; 2]>) {
+        let mut stars = vec![Vec::new(); self.points.len()];
+        for (tetrahedron, corners) in self.tetrahedra.iter().enumerate() {
+            corners.iter().for_each(|corner| stars[*corner as usize].push(tetrahedron));
+        }
+        let mut repair = Repair { mesh: self, stars, fixed };
+        for _ in 0..ROUNDS {
+            let moved = repair.move_points();
+            let halved = repair.halve_edges();
+            if !moved && !halved {
+                break;
+            }
+        }
+        self.sort_by_grain();
+    }
+
+    /// Puts the tetrahedra of each grain together.
+    pub(crate) fn sort_by_grain(&mut self) {
+        let mut both: Vec<_> = self.grains.iter().copied().zip(self.tetrahedra.iter().copied()).collect();
+        both.sort_by_key(|(grain, _)| *grain);
+        (self.grains, self.tetrahedra) = both.into_iter().unzip();
+    }
+}
+
+impl Repair<'_> {
+    fn gamma(&self, tetrahedron: usize) -> f64 {
+        gamma(self.mesh.corners(tetrahedron))
+    }
+
+    fn worst(&self, tetrahedra: &[usize]) -> f64 {
+        tetrahedra.iter().map(|tetrahedron| self.gamma(*tetrahedron)).fold(f64::INFINITY, f64::min)
+    }
+
+    fn poor(&self, limit: f64) -> Vec<usize> {
+        (0..self.mesh.tetrahedra.len()).filter(|tetrahedron| self.gamma(*tetrahedron) < limit).collect()
+    }
+
+    fn move_points(&mut self) -> bool {
+        let corners = self.poor(POOR).into_iter().flat_map(|tetrahedron| self.mesh.tetrahedra[tetrahedron]);
+        let inside: BTreeSet<u32> =
+            corners.filter(|corner| *corner as usize >= self.mesh.surface_points).collect();
+        let mut moved = false;
+        for point in inside {
+            moved |= self.search(point);
+        }
+        moved
+    }
+
+    /// Moves a point to where the worst of its tetrahedra is better.
+    fn search(&mut self, point: u32) -> bool {
+        let (point, star) = (point as usize, self.stars[point as usize].clone());
+        let start = self.mesh.points[point];
+        let others = star.iter().flat_map(|tetrahedron| self.mesh.corners(*tetrahedron));
+        let (sum, count) =
+            others.fold((0.0, 0.0), |(sum, count), other| (sum + other.distance(start), count + 1.0));
+        let (mut best, mut place) = (self.worst(&star), start);
+        for step in STEPS {
+            for direction in DIRECTIONS {
+                let tried = place + DVec3::from(direction) * (step * sum / count);
+                self.mesh.points[point] = tried;
+                let worst = self.worst(&star);
+                if worst > best {
+                    (best, place) = (worst, tried);
+                }
+            }
+        }
+        self.mesh.points[point] = place;
+        place != start
+    }
+
+    fn halve_edges(&mut self) -> bool {
+        let mut halved = false;
+        for tetrahedron in self.poor(BAD) {
+            let [a, b, c, d] = self.mesh.tetrahedra[tetrahedron];
+            let edges = [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]]
+                .map(|[from, to]| [from.min(to), from.max(to)]);
+            if self.gamma(tetrahedron) < BAD {
+                halved |=
+                    edges.into_iter().filter(|edge| !self.fixed.contains(edge)).any(|edge| self.halve(edge));
+            }
+        }
+        halved
+    }
+
+    /// Halves an edge inside a grain at a point that then looks for its place; takes it back where that does not help.
+    fn halve(&mut self, [from, to]: [u32; 2]) -> bool {
+        let around: Vec<usize> = self.stars[from as usize]
+            .iter()
+            .copied()
+            .filter(|tetrahedron| self.mesh.tetrahedra[*tetrahedron].contains(&to))
+            .collect();
+        let before = self.worst(&around);
+        let (count, kept) = (self.mesh.tetrahedra.len(), around.iter().map(|t| self.mesh.tetrahedra[*t]));
+        let kept: BTreeMap<usize, [u32; 4]> = around.iter().copied().zip(kept).collect();
+        let middle = u32::try_from(self.mesh.points.len()).expect("ids fit 32 bits");
+        self.mesh.points.push(self.mesh.points[from as usize].midpoint(self.mesh.points[to as usize]));
+        self.stars.push(Vec::new());
+        for (tetrahedron, corners) in &kept {
+            let with = |end: u32| corners.map(|corner| if corner == end { middle } else { corner });
+            self.mesh.tetrahedra[*tetrahedron] = with(from);
+            self.mesh.tetrahedra.push(with(to));
+            self.mesh.grains.push(self.mesh.grains[*tetrahedron]);
+        }
+        let new: Vec<usize> = around.iter().copied().chain(count..self.mesh.tetrahedra.len()).collect();
+        self.stars[middle as usize] = new.clone();
+        self.search(middle);
+        if self.worst(&new) > before {
+            for tetrahedron in &around {
+                self.stars[from as usize].retain(|other| other != tetrahedron);
+            }
+            for tetrahedron in count..self.mesh.tetrahedra.len() {
+                for corner in self.mesh.tetrahedra[tetrahedron].into_iter().filter(|corner| *corner != middle)
+                {
+                    self.stars[corner as usize].push(tetrahedron);
+                }
+            }
+            return true;
+        }
+        for (tetrahedron, corners) in kept {
+            self.mesh.tetrahedra[tetrahedron] = corners;
+        }
+        self.mesh.tetrahedra.truncate(count);
+        self.mesh.grains.truncate(count);
+        self.mesh.points.pop();
+        self.stars.pop();
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use polycrystal::GrainId;
+
+    use super::*;
+
+    /// Four corners nearly in a plane, whose inner edge has four tetrahedra around.
+    #[test]
+    fn a_sliver_goes_and_volumes_stay() {
+        let points = [
+            [1.0, 0.0, 0.02],
+            [-1.0, 0.0, 0.02],
+            [0.0, 1.0, -0.02],
+            [0.0, -1.0, -0.02],
+            [0.0, 0.0, 1.5],
+            [0.0, 0.0, -1.5],
+        ];
+        let points: Vec<DVec3> = points.into_iter().map(DVec3::from).collect();
+        let positive = |mut corners: [u32; 4]| {
+            if super::super::volume(corners.map(|corner| points[corner as usize])) < 0.0 {
+                corners.swap(0, 1);
+            }
+            corners
+        };
+        let tetrahedra = [[0, 1, 2, 3], [0, 1, 2, 4], [0, 1, 3, 4], [2, 3, 0, 5], [2, 3, 1, 5]].map(positive);
+        let mut mesh = VolumeMesh {
+            surface_points: points.len(),
+            points: points.clone(),
+            tetrahedra: tetrahedra.to_vec(),
+            grains: vec![GrainId(0); 5],
+        };
+        let volume = mesh.grain_volumes(1)[0];
+        let fixed =
+            [[0, 2], [0, 3], [1, 2], [1, 3], [0, 4], [1, 4], [2, 4], [3, 4], [0, 5], [1, 5], [2, 5], [3, 5]];
+        assert!(mesh.quality().expect("tetrahedra").least < 0.1);
+        mesh.repair(&fixed.into_iter().collect());
+        let quality = mesh.quality().expect("tetrahedra");
+        assert!(quality.least > 0.3, "{quality}");
+        assert!((mesh.grain_volumes(1)[0] / volume - 1.0).abs() < 1e-12);
+        assert_eq!(mesh.points[..6], points);
+    }
+}

@@ -1,0 +1,71 @@
+//! Boundaries with triangles of a size that is asked for.
+
+use grainsmooth::embedded_config;
+
+use crate::surface_file::SurfaceFile;
+use crate::workplace::{FAILED, USAGE, Workplace};
+
+/// The lengths of all sides of all triangles, in order.
+fn sides(file: &SurfaceFile) -> Vec<f64> {
+    let triangles = (0..file.boundary_count()).flat_map(|boundary| file.corners_of(boundary));
+    let mut sides: Vec<f64> =
+        triangles.flat_map(|[a, b, c]| [a.distance(b), b.distance(c), c.distance(a)]).collect();
+    sides.sort_by(f64::total_cmp);
+    sides
+}
+
+#[test]
+fn elements_have_the_size_asked_for_and_the_result_is_good() {
+    let workplace = Workplace::new();
+    for options in ["", "--periodic x,y,z", "--periodic x,y,z --periodic-cut box", "--aspect-ratio 2 1 1"] {
+        let said = workplace.run(&format!("--seeds 12 -n 2 --element-size 0.15 {options} -o a.vtp"));
+        assert!(said.contains("triangles; edges of 1.5000e-1 asked for, "), "{said}");
+        assert!(said.contains(" remeshing "), "{said}");
+        let sides = sides(&SurfaceFile::read(&workplace.path("a.vtp")));
+        let median = sides[sides.len() / 2];
+        assert!((0.1..0.2).contains(&median), "{median} with {options}");
+        workplace.command("check a.vtp").assert().success();
+    }
+}
+
+#[test]
+fn settings_tell_the_size() {
+    let workplace = Workplace::new();
+    workplace.run("--seeds 5 -n 2 --elements-per-grain 4 --size-growth 0.3 --adapt-curvature 0.5 -o a.vtp");
+    let first = workplace.bytes("a.vtp");
+    let config = embedded_config(&workplace.path("a.vtp")).unwrap().unwrap();
+    for setting in ["elements-per-grain = 4.0", "size-growth = 0.3", "adapt-curvature = 0.5"] {
+        assert!(config.contains(setting), "{config}");
+    }
+    workplace.run("--config a.vtp -o b.vtp");
+    assert_eq!(
+        SurfaceFile::read(&workplace.path("b.vtp")).points.len(),
+        SurfaceFile::read(&workplace.path("a.vtp")).points.len()
+    );
+    assert!(!first.is_empty());
+}
+
+#[test]
+fn sizes_that_cannot_be_had_are_refused() {
+    let workplace = Workplace::new();
+    workplace.refuses(
+        "--seeds 3 --size-growth 0.3",
+        USAGE,
+        "--size-growth changes sizes of elements; give --elements-per-grain or --element-size as well",
+    );
+    workplace.refuses(
+        "--seeds 3 --dim 2 --element-size 0.1",
+        USAGE,
+        "elements of a size are triangles of boundaries in space; with --dim 2 leave --element-size and --elements-per-grain out",
+    );
+    workplace.refuses(
+        "--seeds 3 --element-size 0",
+        USAGE,
+        "invalid value '0' for '--element-size <H>': an element size is a positive number between 1e-30 and 1e30",
+    );
+    workplace.refuses(
+        "--seeds 3 -n 0 --element-size 0.1",
+        FAILED,
+        "elements of 1e-1 need a finer surface than one whose edges have ... on the mean; give -n 3, or larger elements",
+    );
+}
