@@ -52,19 +52,13 @@ const OCTAHEDRON: File =
 const PYRAMID: File = ("h.csv", "0,0,-1,0\n1,0,1,1\n-1,0,1,0\n0,1,1,1\n0,-1,1,0\n");
 
 const REMEDIES: &[Remedy] = &[
-    (
-        "CoarseReference",
-        &[],
-        "--seeds 3 -n 0 --elements-per-grain 4",
-        &[],
-        "--seeds 3 -n 3 --elements-per-grain 4",
-    ),
+    ("CoarseReference", &[], "--seeds 3 --elements-per-grain 4", &[], "--seeds 3 --elements-per-grain 0.9"),
     (
         "ElementsWithoutSize",
         &[],
         "--seeds 3 --size-growth 0.3",
         &[],
-        "--seeds 3 --size-growth 0.3 --elements-per-grain 3",
+        "--seeds 3 --size-growth 0.3 --elements-per-grain 0.9",
     ),
     ("ElementsInPlane", &[], "--seeds 3 --dim 2 --element-size 0.1", &[], "--seeds 3 --dim 2"),
     ("NoTexture", &[], "--seeds 2 -o a.ori", &[], "--seeds 2 -o a.ori --texture random"),

@@ -334,7 +334,7 @@ pub enum Error {
     },
     /// The smooth network has too long edges for elements of the size that is asked for.
     #[error(
-        "elements of {length:e} need a finer surface than one whose edges have {mean:.3e} on the mean; give -n {levels}, or larger elements"
+        "elements of {length:.3e} need a finer surface than one whose edges have {mean:.3e} on the mean; give -n {levels}, or larger elements"
     )]
     CoarseReference {
         /// Mean length of the edges of the finest level.

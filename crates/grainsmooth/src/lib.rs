@@ -107,10 +107,10 @@ pub use names::Names;
 pub use page::{EditContent, PageDocument, PageLinks, PageServer, PageStop};
 pub use picture::{Coloring, Picture, Png, Scene, ScenePicture, Shading};
 pub use report::{Html, SceneReport};
+pub use run::elements_reached::ElementsReached;
 pub use run::pipeline::{
     Polycrystal, Reconnected, Regularization, check_expected_size, make_polycrystal, smooth, smooth_watched,
 };
-pub use run::remeshed::ElementsReached;
 pub use run::stage::{Progress, Stage};
 pub use run::tessellated::{Tessellated, tessellate};
 pub use run::topology::Topology;

@@ -1,5 +1,6 @@
 //! The stages of a run, one after the other: cells, the network, its relaxation and validation.
 
+pub(crate) mod elements_reached;
 pub(crate) mod failing;
 pub(crate) mod misorientations;
 pub(crate) mod pipeline;

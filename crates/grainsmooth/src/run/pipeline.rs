@@ -18,7 +18,7 @@ use polycrystal::{
 };
 use voronoi::{Dimension, Tessellation};
 
-use super::remeshed::ElementsReached;
+use super::elements_reached::ElementsReached;
 use super::stage::{Clock, Progress, Stage};
 use super::tessellated::{Tessellated, grain_volumes, tessellate};
 use super::topology::Topology;

@@ -1,12 +1,11 @@
 //! Boundaries with triangles of a size that is asked for.
 
-use std::fmt;
 use std::time::Instant;
 
 use glam::BVec3;
 use polycrystal::{ElementSize, Remeshed};
-use serde::Serialize;
 
+use super::elements_reached::ElementsReached;
 use super::pipeline::Polycrystal;
 use super::stage::Stage;
 use crate::{Error, Failure, PeriodicCut};
@@ -14,29 +13,6 @@ use crate::{Error, Failure, PeriodicCut};
 /// Length of edges of the smooth network, in units of the size of elements, beyond which it is too coarse: with 0.8 there were four times as many
 /// bad tetrahedra as with 0.4.
 const LONGEST: f64 = 0.5;
-
-/// What became of a wish for elements of a size.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct ElementsReached {
-    /// Length of edges that was asked for, in the unit of the box.
-    pub size: f64,
-    /// That of the edges on the mean.
-    pub mean_edge: f64,
-    /// How often elements became smaller somewhere, because boundaries crossed or folded there.
-    pub refinements: usize,
-}
-
-impl fmt::Display for ElementsReached {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { size, mean_edge, refinements } = self;
-        write!(out, "edges of {size:.4e} asked for, {mean_edge:.4e} on the mean")?;
-        match refinements {
-            0 => Ok(()),
-            1 => write!(out, "; smaller in a place where boundaries folded or crossed"),
-            times => write!(out, "; smaller in places where boundaries folded or crossed, {times} times"),
-        }
-    }
-}
 
 impl Polycrystal {
     /// Remeshes boundaries where [`ElementOptions`](crate::ElementOptions) ask for it; others stay as they are.
