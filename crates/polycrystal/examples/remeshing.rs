@@ -39,7 +39,7 @@ fn smooth(domain: &Domain, grains: usize, seed: u64, levels: usize, way: &str) -
     if way == "regularized" {
         let regular = regular_cells(&cells, 0.15).unwrap();
         let (network, flat) = network_of_regular(&regular.cells, &cells, levels);
-        let relaxed = relax(&network, &flat, &Relaxation::default(), |_, _| ()).unwrap();
+        let relaxed = relax(&network, &flat, &Relaxation::KEPT_TOPOLOGY, |_, _| ()).unwrap();
         let points = relaxed.finest_points(&network);
         return (network, points);
     }
