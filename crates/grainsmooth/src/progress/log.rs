@@ -83,13 +83,13 @@ mod tests {
         let line = log.line(seconds(42)).expect("time for a line");
         assert_eq!(
             line,
-            "progress    relaxation, stage 4 of 7: 25 % done, 40 s so far, about 2 min 0 s left in stage"
+            "progress    relaxation, stage 4 of 9: 25 % done, 40 s so far, about 2 min 0 s left in stage"
         );
         log.note(seconds(4000), Stage::Relaxation, 39, 40);
         let line = log.line(seconds(4002)).expect("time for a line");
         assert_eq!(
             line,
-            "progress    relaxation, stage 4 of 7: 97 % done, 1 h 6 min so far, about 1 min 42 s left in stage"
+            "progress    relaxation, stage 4 of 9: 97 % done, 1 h 6 min so far, about 1 min 42 s left in stage"
         );
     }
 
@@ -102,7 +102,7 @@ mod tests {
         assert_eq!(said, (1..86).map(|half_minute| 30 * half_minute).collect::<Vec<_>>());
         assert_eq!(
             log.line(seconds(43 * 60)).as_deref(),
-            Some("progress    validation, stage 6 of 7, 42 min 55 s so far")
+            Some("progress    validation, stage 6 of 9, 42 min 55 s so far")
         );
     }
 
@@ -122,6 +122,6 @@ mod tests {
         log.note(seconds(50), Stage::Relaxation, 5, 10);
         log.note(seconds(60), Stage::Relaxation, 0, 10);
         let line = log.line(seconds(70)).expect("time for a line");
-        assert_eq!(line, "progress    relaxation, stage 4 of 7: 0 % done, 10 s so far");
+        assert_eq!(line, "progress    relaxation, stage 4 of 9: 0 % done, 10 s so far");
     }
 }
