@@ -51,7 +51,7 @@ pub(super) fn page(secret: &str) -> Answer {
 /// What follows a link. Its cookie is for requests of this site alone, and a redirection would count as one of whoever showed the link; a page
 /// that goes on by itself does not.
 pub(super) fn entrance(cookie: String) -> Answer {
-    let text = "<!DOCTYPE html><meta charset=utf-8><title>grainsmooth</title><meta http-equiv=refresh content=\"0;url=/\">";
+    let text = "<!DOCTYPE html><meta charset=utf-8><title>grainsmooth</title><link rel=icon href=data:,><meta http-equiv=refresh content=\"0;url=/\">";
     Answer { cookie: Some(cookie), ..Answer::new(HTML, text) }
 }
 
