@@ -35,6 +35,7 @@ mod relax;
 mod remesh;
 mod solver;
 mod validate;
+mod voxels;
 
 pub use box_cut::BoxCut;
 pub use check::certificate::{Certificate, Expected, Faults, certify};
@@ -90,3 +91,6 @@ pub use relax::{relax, relax_watched};
 pub use remesh::RemeshTuning;
 pub use remesh::{ElementSize, Remeshed};
 pub use validate::validate;
+pub use voxels::{SmoothedVoxels, VoxelLabel, Voxels, smooth_voxels};
+#[doc(hidden)]
+pub use voxels::{VoxelTuning, smooth_voxels_tuned};

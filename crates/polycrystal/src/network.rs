@@ -22,6 +22,7 @@ use crate::{
     WallSet, WallSets,
 };
 use control_mesh::{ControlMesh, JunctionCounts};
+use labelled_mesh::SurfaceKind;
 use tension::{checked_mobility, checked_tension, mean_in_flow};
 
 /// All boundaries, triple lines and quadruple points of one polycrystal, on every level of subdivision.
@@ -161,6 +162,19 @@ impl Network {
         }
     }
 
+    /// As [`Self::of_surface`], of grains with known volumes between which there may be pores, and which may be folded.
+    pub(crate) fn of_measured(
+        domain: &Domain,
+        surface: &Surface<'_>,
+        volumes: &[f64],
+        junctions: Junctions,
+    ) -> Result<(Self, Vec<DVec3>), NetworkError> {
+        check_surface_size(domain, surface, 0)?;
+        let control_mesh =
+            ControlMesh::of_surface(domain, surface, SurfaceKind::Measured { volumes }, junctions)?;
+        Self::assemble(domain, control_mesh, volumes.to_vec(), 0)
+    }
+
     /// As [`Self::of_surface`], where some of so many grains may be missing.
     pub(crate) fn of_grains_left(
         domain: &Domain,
@@ -169,10 +183,8 @@ impl Network {
         junctions: Junctions,
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
-        let count = surface.elements.len() as u128;
-        let size = MeshSize { points: surface.points.len() as u128, edges: count, triangles: count };
-        check_size(domain, &size, level_count)?;
-        let control_mesh = ControlMesh::of_surface(domain, surface, junctions)?;
+        check_surface_size(domain, surface, level_count)?;
+        let control_mesh = ControlMesh::of_surface(domain, surface, SurfaceKind::Whole, junctions)?;
         let (mut network, points) = Self::assemble(domain, control_mesh, Vec::new(), level_count)?;
         network.cell_volumes = vec![0.0; grain_count];
         network.cell_volumes = network.grain_volumes(network.control_mesh(), &points);
@@ -496,6 +508,16 @@ pub(crate) fn feature_size(domain: &Domain, grain_count: usize) -> f64 {
         voronoi::Dimension::Three => size.min_element(),
     };
     mean_grain_size(domain, grain_count).min(shortest)
+}
+
+fn check_surface_size(
+    domain: &Domain,
+    surface: &Surface<'_>,
+    level_count: usize,
+) -> Result<(), NetworkError> {
+    let count = surface.elements.len() as u128;
+    let size = MeshSize { points: surface.points.len() as u128, edges: count, triangles: count };
+    check_size(domain, &size, level_count)
 }
 
 /// Subdivision multiplies elements by four (in the plane: two); the largest ids are those of half-edges, three a triangle.

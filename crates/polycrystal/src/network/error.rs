@@ -149,6 +149,17 @@ pub enum NetworkError {
         /// The number that is left out.
         grain: GrainId,
     },
+    /// No voxel has the label of a grain.
+    #[error("no voxel has the label of a grain")]
+    NoGrain,
+    /// Grains touch themselves in points or along edges of voxels, and other labels for voxels there only move that on.
+    #[error(
+        "grains touch themselves at {places} points between voxels, and relabelling voxels there does not end; drop small grains"
+    )]
+    VoxelsTouch {
+        /// Number of points.
+        places: usize,
+    },
     /// A grain of several cells is in pieces, or its cells touch in no more than a line somewhere.
     #[error("the cells of grain {} do not hang together by faces; give its pieces numbers of their own", grain.0)]
     GrainInPieces {
@@ -285,6 +296,8 @@ impl NetworkError {
             | Self::PeriodicSurface
             | Self::NotOnWall { .. }
             | Self::MissingGrain { .. }
+            | Self::NoGrain
+            | Self::VoxelsTouch { .. }
             | Self::BadEdgeLength(_)
             | Self::BadElementSize(_)
             | Self::RemeshPlane

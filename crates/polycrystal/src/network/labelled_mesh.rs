@@ -10,29 +10,59 @@ use crate::mesh::node_type::Meeting;
 use crate::mesh::seams::{Seams, Use};
 use crate::network::control_mesh::{ControlMesh, JunctionCounts};
 use crate::{
-    Boundary, BoundaryId, Elements, Expected, Junctions, Level, Mesh, NetworkError, PeriodicCopies, Side,
-    Surface, WallSets, certify,
+    Boundary, BoundaryId, Elements, Expected, Fault, GrainId, Junctions, Level, Mesh, NetworkError,
+    PeriodicCopies, Side, Surface, WallSets, certify,
 };
 
 /// Distance from a wall that is not square to an axis, in units of the domain's diagonal, within which points lie on it.
 const ON_WALL: f64 = 1e-12;
+
+/// What a labelled surface may be like.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum SurfaceKind<'a> {
+    /// Grains fill the domain, and nothing is folded.
+    Whole,
+    /// Grains of known volumes may have pores between them, and be folded where they are thin.
+    Measured {
+        /// Of each grain.
+        volumes: &'a [f64],
+    },
+}
+
+impl SurfaceKind<'_> {
+    /// # Errors
+    /// [`NetworkError::Invalid`].
+    fn check(self, domain: &Domain, surface: &Surface<'_>) -> Result<(), NetworkError> {
+        let faults = match self {
+            Self::Whole => {
+                let expected = Expected { domain_volume: Some(domain.measure()), ..Expected::default() };
+                certify(surface, &expected).faults
+            }
+            Self::Measured { volumes } => {
+                let of_grains: Vec<_> = (0u32..).map(GrainId).zip(volumes.iter().copied()).collect();
+                let expected = Expected { grain_volumes: Some(&of_grains), ..Expected::default() };
+                let mut faults = certify(surface, &expected).faults;
+                faults.0.retain(|fault| !matches!(fault, Fault::Folded { .. }));
+                faults
+            }
+        };
+        if faults.0.is_empty() { Ok(()) } else { Err(NetworkError::Invalid(faults)) }
+    }
+}
 
 impl ControlMesh {
     /// The control mesh whose points and elements are those of a surface.
     pub(crate) fn of_surface(
         domain: &Domain,
         surface: &Surface<'_>,
+        kind: SurfaceKind<'_>,
         junctions: Junctions,
     ) -> Result<Self, NetworkError> {
         if domain.is_periodic() {
             return Err(NetworkError::PeriodicSurface);
         }
-        let expected = Expected { domain_volume: Some(domain.measure()), ..Expected::default() };
-        let certificate = certify(surface, &expected);
-        if !certificate.is_good() {
-            return Err(NetworkError::Invalid(certificate.faults));
-        }
-        let elements = OrderedElements::new(domain, surface)?;
+        kind.check(domain, surface)?;
+        let elements = OrderedElements::new(domain, surface, kind)?;
         let seams = Seams::of_elements(elements.as_elements(), &elements.boundary_of);
         let Connected { boundaries, boundary_of } = Connected::new(&elements, &seams);
         let mut walls_of = vec![Vec::new(); surface.points.len()];
@@ -123,7 +153,7 @@ enum Ordered {
 }
 
 impl OrderedElements {
-    fn new(domain: &Domain, surface: &Surface<'_>) -> Result<Self, NetworkError> {
+    fn new(domain: &Domain, surface: &Surface<'_>, kind: SurfaceKind<'_>) -> Result<Self, NetworkError> {
         let is_turned = |element: usize| {
             let [first, second] = surface.sides[surface.boundary_of[element].index()];
             second < first
@@ -150,9 +180,10 @@ impl OrderedElements {
             sides.sort_unstable();
             let wall = match sides[1] {
                 Side::Grain(_) => None,
-                Side::Exterior => {
-                    Some(wall_of(domain, surface, element).ok_or(NetworkError::NotOnWall { element })?)
-                }
+                Side::Exterior => match (wall_of(domain, surface, element), kind) {
+                    (None, SurfaceKind::Whole) => return Err(NetworkError::NotOnWall { element }),
+                    (wall, _) => wall,
+                },
             };
             keys.push((*boundary, sides, wall));
         }

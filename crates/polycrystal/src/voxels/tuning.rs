@@ -1,0 +1,40 @@
+//! The tuned numbers of networks from voxels.
+
+/// What smoothing of voxels is tuned by. Lengths are in units of the edge of a voxel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VoxelTuning {
+    /// How far a point may move from the middle of its eight voxels, along each axis: below 0.5 no voxel changes its grain.
+    pub within: f64,
+    /// How much bending counts against the distance from the staircase.
+    pub bending: f64,
+    /// Steps of the search for least bending.
+    pub bending_steps: usize,
+    /// How far points that share a place start from it, as a share of the way to the middle of their faces.
+    pub apart: f64,
+    /// Rounds in which points of elements that cross go back to where they started.
+    pub crossing_rounds: usize,
+    /// Rounds after which one more ring of points goes back too.
+    pub rounds_of_ring: usize,
+    /// Rounds of smoothing around folds, with no ring of points around them, with one, and so on.
+    pub rounds_of_smoothing: usize,
+    /// The most rings.
+    pub rings: usize,
+    /// Rounds of motions that give grains their volumes.
+    pub volume_rounds: usize,
+}
+
+impl Default for VoxelTuning {
+    fn default() -> Self {
+        Self {
+            within: 0.49,
+            bending: 300.0,
+            bending_steps: 300,
+            apart: 0.3,
+            crossing_rounds: 12,
+            rounds_of_ring: 3,
+            rounds_of_smoothing: 8,
+            rings: 4,
+            volume_rounds: 60,
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! Points that leave no element that crosses another, and fewer folds.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::Surface;
+use crate::check::folds::folded_pairs;
+use crate::check::intersections::crossing_elements;
+use crate::mesh::grouped::Grouped;
+use crate::mesh::seams::Seams;
+use crate::voxels::bending::Boxes;
+use crate::voxels::graph::Graph;
+use crate::voxels::tuning::VoxelTuning;
+use crate::voxels::volumes::VolumeSearch;
+
+/// Largest error of a volume that mended folds may leave, as a share of it.
+const VOLUME_TOLERANCE: f64 = 1e-12;
+
+/// What points are moved by.
+pub(super) struct Untangling<'a> {
+    pub(super) graph: &'a Graph,
+    pub(super) boxes: &'a Boxes<'a>,
+    /// Where points start, and cross nowhere.
+    pub(super) starts: &'a [DVec3],
+    pub(super) search: &'a VolumeSearch<'a>,
+    pub(super) tuning: &'a VoxelTuning,
+}
+
+/// Points, and what is wrong with them.
+#[derive(Debug, Clone)]
+struct Untangled {
+    points: Vec<DVec3>,
+    folds: Vec<[u32; 2]>,
+    crossings: usize,
+    /// The largest error of a volume, as a share of it.
+    volume_error: f64,
+}
+
+/// How elements meet.
+struct Neighbors {
+    seams: Seams,
+    by_boundary: Grouped<u32>,
+}
+
+impl Untangling<'_> {
+    /// Takes points of elements that cross part of the way back to where they started, then smooths points around folds; the others restore the volumes.
+    ///
+    /// Folds stay where grains are one voxel thick: a plate has a rim.
+    pub(super) fn untangle(&self, points: Vec<DVec3>, volume_error: f64) -> Vec<DVec3> {
+        let surface = self.search.surface;
+        let seams = Seams::of_elements(surface.elements, surface.boundary_of);
+        let neighbors = Neighbors { seams, by_boundary: surface.elements_by_boundary() };
+        let free = vec![false; points.len()];
+        let mut best = self.without_crossings(points, free, volume_error, &neighbors);
+        while !best.folds.is_empty() {
+            let mut points = best.points.clone();
+            let is_held = self.smooth_folds(&mut points, &neighbors.seams);
+            let volume_error = self.search.restore(&mut points, self.boxes, &is_held);
+            if volume_error > VOLUME_TOLERANCE {
+                break;
+            }
+            let tried = self.without_crossings(points, is_held, volume_error, &neighbors);
+            if tried.volume_error > VOLUME_TOLERANCE
+                || tried.crossings > best.crossings
+                || tried.folds.len() >= best.folds.len()
+            {
+                break;
+            }
+            best = tried;
+        }
+        best.points
+    }
+
+    /// Points of elements that cross go half the way home, and stay there while the others restore the volumes.
+    fn without_crossings(
+        &self,
+        mut points: Vec<DVec3>,
+        mut is_held: Vec<bool>,
+        mut volume_error: f64,
+        neighbors: &Neighbors,
+    ) -> Untangled {
+        let surface = self.search.surface;
+        let mut home = None;
+        for round in 0.. {
+            let normals = surface.elements.normals(&points);
+            let now = Surface { points: &points, ..surface };
+            let crossings = crossing_elements(&now, &neighbors.seams, &neighbors.by_boundary, &normals);
+            if crossings.is_empty() || round == self.tuning.crossing_rounds {
+                let folds = folded_pairs(&neighbors.seams.inner, &normals, 0.0);
+                return Untangled { points, folds, crossings: crossings.len(), volume_error };
+            }
+            let home = home.get_or_insert_with(|| self.home());
+            let marked = self.marked(&crossings, round / self.tuning.rounds_of_ring);
+            for point in (0..points.len()).filter(|point| marked[*point]) {
+                is_held[point] = true;
+                points[point] = points[point].midpoint(home[point]);
+            }
+            volume_error = self.search.restore(&mut points, self.boxes, &is_held);
+        }
+        unreachable!("rounds end")
+    }
+
+    /// Where points start, moved so that grains have their volumes.
+    fn home(&self) -> Vec<DVec3> {
+        let mut home = self.starts.to_vec();
+        let free = vec![false; home.len()];
+        self.search.restore(&mut home, self.boxes, &free);
+        home
+    }
+
+    /// Points at folds, and after some rounds those around, go half the way to the mean of those that they follow. Returns which moved.
+    ///
+    /// Ends when a wider ring of points mends little.
+    fn smooth_folds(&self, points: &mut [DVec3], seams: &Seams) -> Vec<bool> {
+        let mut is_moved = vec![false; points.len()];
+        let mut before = usize::MAX;
+        for ring in 0.. {
+            for _ in 0..self.tuning.rounds_of_smoothing {
+                let folds = self.folds(points, seams);
+                if folds.is_empty() {
+                    return is_moved;
+                }
+                let marked = self.marked(&folds, ring);
+                let old = points.to_vec();
+                points.par_iter_mut().enumerate().filter(|(point, _)| marked[*point]).for_each(
+                    |(point, place)| {
+                        let followed = match self.graph.followed(point) {
+                            [] => self.graph.beside(point),
+                            followed => followed,
+                        };
+                        let mean = followed.iter().map(|other| old[*other as usize]).sum::<DVec3>()
+                            / followed.len() as f64;
+                        *place = self.boxes.nearest(point, place.midpoint(mean));
+                    },
+                );
+                is_moved.iter_mut().zip(marked).for_each(|(moved, marked)| *moved |= marked);
+            }
+            let left = self.folds(points, seams).len();
+            if ring == self.tuning.rings || 2 * left > before {
+                break;
+            }
+            before = left;
+        }
+        is_moved
+    }
+
+    fn folds(&self, points: &[DVec3], seams: &Seams) -> Vec<[u32; 2]> {
+        folded_pairs(&seams.inner, &self.search.surface.elements.normals(points), 0.0)
+    }
+
+    /// The corners of elements, and all points so many edges around them.
+    fn marked(&self, pairs: &[[u32; 2]], rings: usize) -> Vec<bool> {
+        let mut marked = vec![false; self.graph.count()];
+        let corners =
+            pairs.iter().flatten().flat_map(|element| self.search.surface.elements.corners(*element));
+        let mut last: Vec<u32> = corners.copied().collect();
+        for ring in 0..=rings {
+            last.retain(|point| !std::mem::replace(&mut marked[*point as usize], true));
+            if ring < rings {
+                last = last.iter().flat_map(|point| self.graph.beside(*point as usize)).copied().collect();
+            }
+        }
+        marked
+    }
+}
+
+/// Where the points of a staircase start: several at one place stand apart, each a part of the way to the middle of its own faces. So no two elements cross.
+pub(super) fn starts<'a>(
+    places: &[DVec3],
+    faces_at: &Grouped<u32>,
+    corners: impl Fn(u32) -> &'a [u32] + Sync,
+    apart: f64,
+) -> Vec<DVec3> {
+    let is_alone = |point: usize| {
+        let near = [point.checked_sub(1), Some(point + 1)];
+        near.into_iter().flatten().filter_map(|other| places.get(other)).all(|other| *other != places[point])
+    };
+    let mean = |of: &mut dyn Iterator<Item = DVec3>| {
+        let (sum, count) = of.fold((DVec3::ZERO, 0.0), |(sum, count), place| (sum + place, count + 1.0));
+        sum / count
+    };
+    let start = |point: usize| {
+        let place = places[point];
+        if is_alone(point) {
+            return place;
+        }
+        let middle = |face: &u32| mean(&mut corners(*face).iter().map(|corner| places[*corner as usize]));
+        place.lerp(mean(&mut faces_at.of(point).iter().map(middle)), apart)
+    };
+    (0..places.len()).into_par_iter().map(start).collect()
+}

@@ -1,0 +1,166 @@
+//! Points that give grains the volumes of their voxels.
+
+use std::collections::BTreeMap;
+
+use glam::{BVec3, DVec3};
+use rayon::prelude::*;
+
+use crate::mesh::grouped::Grouped;
+use crate::mesh::volume::{ConeSum, boundary_cones};
+use crate::solver::conjugate_gradients::{Limits, solve};
+use crate::voxels::bending::Boxes;
+use crate::{Elements, Side, Surface};
+
+/// Residual of the multipliers, as a share of what volumes lack.
+const SOLVED: f64 = 1e-6;
+
+/// What volumes may lack in the end, as a share of each.
+const TOLERANCE: f64 = 1e-13;
+
+/// Elements, and how they meet in points.
+pub(super) struct VolumeSearch<'a> {
+    pub(super) surface: Surface<'a>,
+    pub(super) at_points: &'a Grouped<u32>,
+    /// Volume of each grain, in the unit of the points.
+    pub(super) wanted: &'a [f64],
+    /// Whether some boundary at the outside is free to move.
+    pub(super) is_open: bool,
+    pub(super) rounds: usize,
+}
+
+/// How the volumes of grains grow with a point.
+struct Slopes {
+    /// Of each point, where its slopes start.
+    starts: Vec<usize>,
+    of_grains: Vec<(u32, DVec3)>,
+    /// How far each point goes along its slopes: the inverse of the area that stands on it.
+    mobilities: Vec<f64>,
+}
+
+impl Slopes {
+    fn of(&self, point: usize) -> &[(u32, DVec3)] {
+        &self.of_grains[self.starts[point]..self.starts[point + 1]]
+    }
+}
+
+impl VolumeSearch<'_> {
+    /// Moves points within their boxes, but for some that stay, until grains have their volumes, and returns the largest error that is left, as a share of a volume.
+    ///
+    /// Newton's method: all points move along the slopes of the volumes, by one multiplier for each grain. What the bound of a box takes from that, the other points make
+    /// up for in the next round.
+    pub(super) fn restore(&self, points: &mut [DVec3], boxes: &Boxes<'_>, stays: &[bool]) -> f64 {
+        let mut is_held = vec![BVec3::FALSE; points.len()];
+        let mut largest = f64::INFINITY;
+        for _ in 0..self.rounds {
+            let mut missing = self.missing(points);
+            largest = missing
+                .iter()
+                .zip(self.wanted)
+                .map(|(lack, wanted)| (lack / wanted).abs())
+                .fold(0.0, f64::max);
+            if largest <= TOLERANCE {
+                break;
+            }
+            if !self.is_open {
+                // No motion changes the sum, so what rounding leaves of it has no answer.
+                let rest = missing.iter().sum::<f64>() / missing.len() as f64;
+                missing.iter_mut().for_each(|missing| *missing -= rest);
+            }
+            let slopes = self.slopes(points);
+            let is_bound = |point: usize| boxes.is_fixed[point] | is_held[point] | BVec3::splat(stays[point]);
+            let multipliers = multipliers(&slopes, is_bound, &missing);
+            points.par_iter_mut().zip(&mut is_held).enumerate().filter(|(point, _)| !stays[*point]).for_each(
+                |(point, (place, is_held))| {
+                    let along = slopes.of(point).iter();
+                    let sum: DVec3 = along.map(|(grain, slope)| *slope * multipliers[*grain as usize]).sum();
+                    let wanted = *place + sum * slopes.mobilities[point];
+                    let inside = boxes.nearest(point, wanted);
+                    *place = DVec3::select(*is_held, *place, inside);
+                    // Held until it would go back inside.
+                    *is_held = inside.cmpne(wanted);
+                },
+            );
+        }
+        largest
+    }
+
+    fn missing(&self, points: &[DVec3]) -> Vec<f64> {
+        let cones = boundary_cones(&Surface { points, ..self.surface });
+        let mut sums = vec![ConeSum::default(); self.wanted.len()];
+        for (sides, cone) in self.surface.sides.iter().zip(&cones) {
+            for (side, sign) in sides.iter().zip([1.0, -1.0]) {
+                if let Side::Grain(grain) = side {
+                    sums[grain.index()].add(cone, sign);
+                }
+            }
+        }
+        self.wanted.iter().zip(sums).map(|(wanted, sum)| wanted - sum.volume).collect()
+    }
+
+    fn slopes(&self, points: &[DVec3]) -> Slopes {
+        let at = |corner: u32| points[corner as usize];
+        // A third of each triangle's area, and half of each segment's length, belongs to each corner.
+        let normal = |element: u32| match self.surface.elements {
+            Elements::Triangles(triangles) => {
+                let [a, b, c] = triangles[element as usize].map(at);
+                (b - a).cross(c - a) / 6.0
+            }
+            Elements::Segments(segments) => {
+                let [a, b] = segments[element as usize].map(at);
+                (b - a).cross(DVec3::Z) / 2.0
+            }
+        };
+        let of_point = |point: usize| {
+            let mut slopes: Vec<(u32, DVec3)> = Vec::new();
+            let mut area = 0.0;
+            for element in self.at_points.of(point) {
+                let normal = normal(*element);
+                area += normal.length();
+                for (side, sign) in self.surface.sides_of(*element).into_iter().zip([1.0, -1.0]) {
+                    let Side::Grain(grain) = side else { continue };
+                    match slopes.iter_mut().find(|(known, _)| *known == grain.0) {
+                        Some((_, slope)) => *slope += normal * sign,
+                        None => slopes.push((grain.0, normal * sign)),
+                    }
+                }
+            }
+            (slopes, if area > 0.0 { 1.0 / area } else { 0.0 })
+        };
+        let all: Vec<_> = (0..points.len()).into_par_iter().map(of_point).collect();
+        let mut slopes =
+            Slopes { starts: vec![0], of_grains: Vec::new(), mobilities: Vec::with_capacity(all.len()) };
+        for (own, mobility) in all {
+            slopes.of_grains.extend(own);
+            slopes.starts.push(slopes.of_grains.len());
+            slopes.mobilities.push(mobility);
+        }
+        slopes
+    }
+}
+
+/// By how much points go along the slopes of each grain, so that volumes grow by what they lack, to first order.
+fn multipliers(slopes: &Slopes, is_bound: impl Fn(usize) -> BVec3, missing: &[f64]) -> Vec<f64> {
+    let mut matrix: Vec<BTreeMap<u32, f64>> = vec![BTreeMap::new(); missing.len()];
+    for (point, mobility) in slopes.mobilities.iter().enumerate() {
+        let is_bound = is_bound(point);
+        for (grain, slope) in slopes.of(point) {
+            let free = DVec3::select(is_bound, DVec3::ZERO, *slope * *mobility);
+            for (other, along) in slopes.of(point) {
+                *matrix[*grain as usize].entry(*other).or_default() += free.dot(*along);
+            }
+        }
+    }
+    let apply = |multipliers: &[f64]| -> Vec<f64> {
+        let row = |row: &BTreeMap<u32, f64>| {
+            row.iter().map(|(other, value)| value * multipliers[*other as usize]).sum()
+        };
+        matrix.par_iter().map(row).collect()
+    };
+    let diagonal: Vec<f64> =
+        (0u32..).zip(&matrix).map(|(grain, row)| row.get(&grain).copied().unwrap_or(0.0)).collect();
+    let precondition = |residual: &[f64]| -> Vec<f64> {
+        let entry = |(value, diagonal): (&f64, &f64)| if *diagonal > 0.0 { value / diagonal } else { 0.0 };
+        residual.iter().zip(&diagonal).map(entry).collect()
+    };
+    solve(apply, precondition, missing, &Limits { tolerance: SOLVED, steps: 2 * missing.len() + 20 })
+}

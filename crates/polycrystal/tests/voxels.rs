@@ -1,0 +1,245 @@
+//! Networks of labelled voxels: each voxel in its grain, volumes of its voxels, nothing open and nothing crossed, whatever the labels.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use polycrystal::{
+    Elements, Expected, Fault, GrainId, Junctions, NetworkError, Side, SmoothedVoxels, Surface, VoxelLabel,
+    Voxels, certify, smooth_voxels,
+};
+use proptest::prelude::*;
+use voronoi::Domain;
+
+fn voxels(spacing: DVec3, shape: [usize; 3], label: impl Fn([usize; 3]) -> Option<u32>) -> Voxels {
+    let size = DVec3::from_array(shape.map(|count| count as f64)) * spacing;
+    let lower = DVec3::new(-1.0, 2.0, 0.5);
+    let domain = match shape[2] {
+        1 => Domain::rectangle(lower.with_z(0.0), (lower + size).with_z(0.0)),
+        _ => Domain::cuboid(lower, lower + size),
+    };
+    let [width, height, depth] = shape;
+    let all = (0..depth).flat_map(|z| (0..height).flat_map(move |y| (0..width).map(move |x| [x, y, z])));
+    let labels =
+        all.map(|voxel| label(voxel).map_or(VoxelLabel::EXTERIOR, |grain| VoxelLabel::of(GrainId(grain))));
+    Voxels::new(domain.expect("a box"), shape, labels.collect())
+}
+
+fn smoothed(voxels: &Voxels) -> SmoothedVoxels {
+    smooth_voxels(voxels, Junctions::Crease, |_, _| ()).expect("a network")
+}
+
+/// The share of the full angle that a grain's elements are seen under from a point: 1 inside, 0 outside.
+fn winding(surface: &Surface<'_>, grain: GrainId, from: DVec3) -> f64 {
+    let count = u32::try_from(surface.elements.len()).expect("few elements");
+    let turns = (0..count).map(|element| {
+        let sign = match surface.sides_of(element).map(|side| side == Side::Grain(grain)) {
+            [true, false] => 1.0,
+            [false, true] => -1.0,
+            _ => return 0.0,
+        };
+        let at = |corner: u32| (surface.points[corner as usize] - from).normalize();
+        sign * match surface.elements {
+            Elements::Triangles(triangles) => {
+                // van Oosterom and Strackee, 1983.
+                let [a, b, c] = triangles[element as usize].map(at);
+                2.0 * a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a)) / (4.0 * PI)
+            }
+            Elements::Segments(segments) => {
+                let [a, b] = segments[element as usize].map(at);
+                a.cross(b).z.atan2(a.dot(b)) / (2.0 * PI)
+            }
+        }
+    });
+    turns.sum()
+}
+
+/// Closed, wound right, free of crossings, every voxel in its grain unless it was relabelled, and volumes those of the voxels then.
+fn check(voxels: &Voxels, smoothed: &SmoothedVoxels) {
+    let SmoothedVoxels { network, points, relabelled } = smoothed;
+    let sides = network.sides();
+    let surface = Surface::of_level(network.finest(), points, &sides);
+    let volumes: Vec<_> = (0..).map(GrainId).zip(network.cell_volumes().iter().copied()).collect();
+    let expected = Expected { grain_volumes: Some(&volumes), ..Expected::default() };
+    let mut faults = certify(&surface, &expected).faults;
+    faults.0.retain(|fault| !matches!(fault, Fault::Folded { .. }));
+    assert!(faults.0.is_empty(), "{faults}");
+    let domain = voxels.domain();
+    let [width, height, depth] = voxels.shape();
+    let spacing = domain.size() / DVec3::new(width as f64, height as f64, depth as f64);
+    let volume = if depth == 1 { spacing.x * spacing.y } else { spacing.element_product() };
+    let mut moved = 0;
+    let mut counts = vec![0.0; volumes.len()];
+    for (index, label) in voxels.labels().iter().enumerate() {
+        let voxel = [index % width, index / width % height, index / width / height];
+        let center = domain.lower() + (DVec3::from_array(voxel.map(|at| at as f64)) + 0.5) * spacing;
+        let center = if depth == 1 { center.with_z(0.0) } else { center };
+        let mut inside = volumes.iter().filter(|(grain, _)| winding(&surface, *grain, center) > 0.5);
+        let found = inside.next().map_or(Side::Exterior, |(grain, _)| Side::Grain(*grain));
+        assert!(inside.next().is_none(), "two grains hold voxel {voxel:?}");
+        moved += usize::from(found != label.side());
+        if let Side::Grain(grain) = found {
+            counts[grain.index()] += volume;
+        }
+    }
+    assert!(moved <= *relabelled, "{moved} voxels in other grains, {relabelled} relabelled");
+    for ((grain, found), count) in volumes.iter().zip(counts) {
+        assert!((found / count - 1.0).abs() < 1e-9, "{grain:?} has {found}, its voxels {count}");
+    }
+}
+
+/// Flat boundaries across an axis stay where they are, to the last place.
+#[test]
+fn layers_stay_flat() {
+    let spacing = DVec3::new(0.25, 0.5, 2.0);
+    for shape in [[6, 4, 3], [6, 4, 1]] {
+        let map = voxels(spacing, shape, |[x, _, _]| Some(u32::from(x > 1) + u32::from(x > 3)));
+        let smoothed = smoothed(&map);
+        check(&map, &smoothed);
+        assert_eq!(smoothed.relabelled, 0);
+        for boundary in [0.5, 1.0] {
+            let at = |point: &&DVec3| (point.x - (boundary - 1.0)).abs() < 1e-9;
+            let on_layer = smoothed.points.iter().filter(at).count();
+            assert_eq!(on_layer, if shape[2] == 1 { 5 } else { 20 });
+        }
+    }
+}
+
+/// A plane that cuts the lattice at an angle: its staircase becomes a plane again, beside walls too.
+#[test]
+fn staircase_of_a_plane_becomes_flat() {
+    let normal = DVec3::new(1.0, 0.36, 0.21).normalize();
+    let shape = [24, 24, 24];
+    let offset = normal.dot(DVec3::splat(12.0));
+    let is_above = |voxel: [usize; 3]| {
+        let center = DVec3::from_array(voxel.map(|at| at as f64)) + 0.5;
+        normal.dot(center) > offset
+    };
+    let map = voxels(DVec3::ONE, shape, |voxel| Some(u32::from(is_above(voxel))));
+    let SmoothedVoxels { network, points, .. } = smoothed(&map);
+    let level = network.finest();
+    let polycrystal::Mesh::Triangles(mesh) = &level.mesh else { panic!("a map in space") };
+    let (mut sum, mut worst, mut count) = (0.0, 0.0f64, 0);
+    for (triangle, boundary) in mesh.triangles().iter().zip(&level.boundary_of) {
+        if network.boundaries()[boundary.index()].wall.is_some() {
+            continue;
+        }
+        let [a, b, c] = triangle.map(|corner| points[corner as usize] - map.domain().lower());
+        let angle = (b - a).cross(c - a).normalize().dot(normal).abs().min(1.0).acos().to_degrees();
+        (sum, worst, count) = (sum + angle, worst.max(angle), count + 1);
+    }
+    assert!(count > 1000);
+    // The staircase itself is 41 degrees off in the mean: each axis by the angle to the normal, weighed by its share of it.
+    let mean = sum / f64::from(count);
+    assert!(mean < 1.5 && worst < 8.0, "mean {mean}, worst {worst}");
+}
+
+#[test]
+fn pores_grains_in_grains_and_bodies_in_nothing() {
+    let ball = |voxel: [usize; 3], radius: f64| {
+        (DVec3::from_array(voxel.map(|at| at as f64)) + 0.5).distance(DVec3::splat(6.0)) < radius
+    };
+    let shape = [12, 12, 12];
+    let pore = voxels(DVec3::ONE, shape, |voxel| (!ball(voxel, 3.2)).then_some(0));
+    let inclusion = voxels(DVec3::ONE, shape, |voxel| Some(u32::from(ball(voxel, 3.2))));
+    let body = voxels(DVec3::ONE, shape, |voxel| ball(voxel, 4.6).then_some(u32::from(voxel[0] > 5)));
+    for (map, counts) in [(&pore, [1, 0]), (&inclusion, [2, 0]), (&body, [2, 1])] {
+        let smoothed = smoothed(map);
+        check(map, &smoothed);
+        assert_eq!(smoothed.network.cell_volumes().len(), counts[0]);
+        assert_eq!(smoothed.network.junction_counts().triple_lines, counts[1]);
+    }
+}
+
+/// Two grains that take turns touch along every edge and in every point: voxels are relabelled until none does.
+#[test]
+fn checkerboard_is_parted() {
+    for shape in [[4, 4, 4], [5, 3, 2], [5, 4, 1]] {
+        let map = voxels(DVec3::ONE, shape, |[x, y, z]| Some(u32::from((x + y + z) % 2 == 1)));
+        check(&map, &smoothed(&map));
+    }
+}
+
+#[test]
+fn labels_without_grains_or_with_gaps_are_refused() {
+    let smooth = |map: &Voxels| smooth_voxels(map, Junctions::Crease, |_, _| ()).expect_err("no network");
+    let empty = voxels(DVec3::ONE, [3, 3, 3], |_| None);
+    assert!(matches!(smooth(&empty), NetworkError::NoGrain));
+    for largest in [2, u32::MAX - 1] {
+        let gap = voxels(DVec3::ONE, [3, 3, 3], |[x, _, _]| Some(if x == 0 { 0 } else { largest }));
+        assert!(matches!(smooth(&gap), NetworkError::MissingGrain { grain: GrainId(1) }));
+    }
+}
+
+/// The same map in another unit gives the same network in that unit, and any number of threads the same bits.
+#[test]
+fn units_and_threads_change_nothing() {
+    let label = |[x, y, z]: [usize; 3]| u32::try_from((x * x + 3 * y * z + y) / 17 % 3).ok();
+    let map = voxels(DVec3::ONE, [9, 8, 7], label);
+    let one = smoothed(&map);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    assert_eq!(pool.install(|| smoothed(&map)).points, one.points);
+    let scaled = voxels(DVec3::splat(4.0), [9, 8, 7], label);
+    let other = smoothed(&scaled);
+    for (point, other) in one.points.iter().zip(&other.points) {
+        let [point, other] =
+            [(point, &map), (other, &scaled)].map(|(point, map)| *point - map.domain().lower());
+        assert!((point * 4.0).distance(other) < 1e-12);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Noise is the worst of maps: every grain in many pieces of one voxel. One in two thousand is refused.
+    #[test]
+    fn any_labels_give_a_closed_network_or_are_refused(
+        shape in [1usize..7, 1usize..7, 1usize..7],
+        numbers in prop::collection::vec(0u32..5, 216),
+        grains in 1u32..5,
+        has_pores: bool,
+    ) {
+        let [width, height, depth] = shape;
+        let mut known = std::collections::BTreeMap::new();
+        let labels: Vec<Option<u32>> = numbers[..width * height * depth]
+            .iter()
+            .map(|number| {
+                let count = u32::try_from(known.len()).unwrap();
+                let is_pore = has_pores && *number >= grains;
+                (!is_pore).then(|| *known.entry(number % grains).or_insert(count))
+            })
+            .collect();
+        prop_assume!(!known.is_empty());
+        let map = voxels(DVec3::new(1.0, 2.0, 0.5), shape, |[x, y, z]| labels[(z * height + y) * width + x]);
+        match smooth_voxels(&map, Junctions::Crease, |_, _| ()) {
+            Ok(smoothed) => check(&map, &smoothed),
+            Err(NetworkError::VoxelsTouch { .. } | NetworkError::Invalid(_)) => (),
+            Err(other) => prop_assert!(false, "{other}"),
+        }
+    }
+
+    /// Large grains, as seeds that are not resolved leave them.
+    #[test]
+    fn nearest_seeds_give_a_closed_network(
+        seeds in prop::collection::vec([0.0..1.0f64, 0.0..1.0, 0.0..1.0], 2..12),
+        depth in prop::sample::select(vec![1usize, 9]),
+    ) {
+        let shape = [11, 10, depth];
+        let nearest = |voxel: [usize; 3]| {
+            let place = DVec3::from_array(voxel.map(|at| at as f64)) + 0.5;
+            let distance = |seed: &[f64; 3]| place.distance(DVec3::from_array(*seed) * 10.0);
+            (0..seeds.len()).min_by(|a, b| distance(&seeds[*a]).total_cmp(&distance(&seeds[*b]))).unwrap()
+        };
+        let mut known = std::collections::BTreeMap::new();
+        let [width, height, _] = shape;
+        let mut labels = Vec::new();
+        for index in 0..width * height * depth {
+            let count = u32::try_from(known.len()).unwrap();
+            let voxel = [index % width, index / width % height, index / width / height];
+            labels.push(*known.entry(nearest(voxel)).or_insert(count));
+        }
+        let map = voxels(DVec3::ONE, shape, |[x, y, z]| Some(labels[(z * height + y) * width + x]));
+        let smoothed = smoothed(&map);
+        prop_assert!(smoothed.relabelled < 10);
+        check(&map, &smoothed);
+    }
+}
