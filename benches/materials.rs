@@ -371,7 +371,7 @@ fn misorientations() {
     let flat = |config: Config| Config { relaxation: Some(polycrystal::Relaxation::Time(0.0)), ..config };
     let (polycrystal, with, _) = of_fit(&flat(textured(Some(file))));
     let (_, without, _) = of_fit(&flat(textured(None)));
-    let fit = polycrystal.cells.texture.as_ref().and_then(|texture| texture.fit()).unwrap();
+    let fit = polycrystal.grains().texture.as_ref().and_then(|texture| texture.fit()).unwrap();
     at_most("disorientations of neighbours, 20 N swaps", fit.after, 0.01);
     at_most("  s for 2000 grains", with - without, 1.0);
 }

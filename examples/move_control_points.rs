@@ -9,7 +9,7 @@ use std::num::NonZeroU32;
 
 use glam::DVec3;
 use grainsmooth::{Config, SeedSource, Series, SeriesOutput, smooth_watched, tessellate, write_together};
-use polycrystal::measure_network;
+use polycrystal::{Relaxed, measure_network};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let config = Config { seeds: SeedSource::Random { count: 12 }, levels: 2, ..Config::default() };
@@ -24,11 +24,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     added?;
 
     let network = &polycrystal.network;
-    let (level, finest) = (polycrystal.relaxed.level, network.levels().len() - 1);
+    let Relaxed { level, points: control_points, .. } =
+        &polycrystal.synthesis().expect("made from cells").relaxed;
+    let (level, finest) = (*level, network.levels().len() - 1);
     for height in [0.0, 0.5, 1.0] {
         // Everything goes up but what lies on the bottom and the top: grains become flat above and long below.
         let stretched = |point: &DVec3| *point + DVec3::Z * (height * point.z * (1.0 - point.z));
-        let moved: Vec<DVec3> = polycrystal.relaxed.points.iter().map(stretched).collect();
+        let moved: Vec<DVec3> = control_points.iter().map(stretched).collect();
         let points = network.subdivide_between(level, finest, &moved);
         let Some(measures) = measure_network(network, &points).in_space() else { continue };
         let area: f64 = measures.boundaries.iter().map(|boundary| boundary.area).sum();

@@ -38,7 +38,7 @@ fn grain(label: &Side) -> GrainId {
 fn voxels_of_flat_grains_belong_to_the_nearest_seed() {
     for dimension in [Dimension::Two, Dimension::Three] {
         let flat = make(dimension, 0.0);
-        let seeds = flat.cells.tessellation.seeds();
+        let seeds = flat.synthesis().unwrap().cells.tessellation.seeds();
         let grid = LabelGrid::new(&flat, size([23, 17, 11]));
         assert_eq!(grid.labels().len(), 23 * 17 * if dimension == Dimension::Two { 1 } else { 11 });
         for (center, label) in centers(&grid).into_iter().zip(&grid.labels()) {
@@ -66,7 +66,7 @@ fn voxels_outside_of_the_domain_belong_to_no_grain() {
             ..grainsmooth::Config::default()
         };
         let round = grainsmooth::make_polycrystal(&config, &|_, _, _| ()).unwrap();
-        let seeds = round.cells.tessellation.seeds();
+        let seeds = round.synthesis().unwrap().cells.tessellation.seeds();
         let grid = LabelGrid::new(&round, size([25, 21, 17]));
         let mut outside = 0;
         for (center, label) in centers(&grid).into_iter().zip(&grid.labels()) {
@@ -193,20 +193,23 @@ fn number_of_threads_does_not_change_the_labels() {
 
 #[test]
 fn vti_and_npy_hold_the_labels() {
-    let expected = LabelGrid::new(&SPACE, SPACE.config.file.voxels.unwrap());
+    let expected = LabelGrid::new(&SPACE, SPACE.file().voxels.unwrap());
     for (names, array_name, first) in [
         (Names::Grainsmooth, "material", 0),
         (Names::Dream3d, "FeatureIds", 1),
         (Names::Neper, "MaterialId", 1),
     ] {
         let mut polycrystal = SPACE.clone();
-        polycrystal.config.file.names = names;
+        polycrystal.file_mut().names = names;
         let labels: Vec<i32> =
             expected.labels().iter().map(|label| grain(label).0.cast_signed() + first).collect();
 
         let (_folder, path) = write(&polycrystal, "labels.vti");
         let file = fs::read(path).unwrap();
-        assert_eq!(field_text(&file, "CommandLine"), Some(polycrystal.config.command_line()));
+        assert_eq!(
+            field_text(&file, "CommandLine"),
+            Some(polycrystal.provenance().command_line().into_owned())
+        );
         let vtk = Vtk::parse_xml(&inlined(&file)[..]).unwrap();
         let DataSet::ImageData { origin, spacing, mut pieces, .. } = vtk.data else { panic!("no image") };
         assert_eq!((origin, spacing), ([0.0; 3], [0.1; 3]));
@@ -228,7 +231,7 @@ fn vti_and_npy_hold_the_labels() {
         // Behind what NumPy reads.
         assert_eq!(
             file[10 + header + 4 * count..],
-            *format!("\n{}", polycrystal.config.to_toml()).as_bytes()
+            *format!("\n{}", polycrystal.synthesis().unwrap().config.to_toml()).as_bytes()
         );
     }
 }
@@ -246,7 +249,7 @@ fn ang_gives_each_grain_one_orientation() {
         .map(|line| line.split(' ').map(|number| number.parse().unwrap()).collect())
         .collect();
     assert_eq!(pixels.len(), 20 * 15);
-    let labels = LabelGrid::new(&PLANE, PLANE.config.file.voxels.unwrap()).labels();
+    let labels = LabelGrid::new(&PLANE, PLANE.file().voxels.unwrap()).labels();
     let mut angles = vec![None; GRAINS];
     for (index, pixel) in pixels.iter().enumerate() {
         let (row, column) = (index / 20, index % 20);

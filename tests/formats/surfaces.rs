@@ -43,7 +43,7 @@ fn stl_holds_every_triangle_in_single_precision() {
     );
     for encoding in [StlEncoding::Binary, StlEncoding::Ascii] {
         let mut polycrystal = SPACE.clone();
-        polycrystal.config.file.stl = encoding;
+        polycrystal.file_mut().stl = encoding;
         let (_folder, path) = write(&polycrystal, "network.stl");
         let mut file = BufReader::new(File::open(path).unwrap());
         let read: Vec<stl_io::Triangle> =

@@ -18,7 +18,7 @@ fn written(dimension: Dimension) -> String {
 fn written_cells_come_back_bit_for_bit() {
     for (dimension, polycrystal) in [(Dimension::Two, &*PLANE), (Dimension::Three, &*SPACE)] {
         let tess = read_tess(&written(dimension)).unwrap();
-        assert_eq!(tess, Tess::new(&polycrystal.cells));
+        assert_eq!(tess, Tess::new(&polycrystal.synthesis().unwrap().cells));
         assert_eq!(tess.seeds.len(), GRAINS);
         assert_eq!(tess.domain.upper, if dimension == Dimension::Two { BOX.with_z(0.0) } else { BOX });
     }
@@ -28,7 +28,7 @@ fn written_cells_come_back_bit_for_bit() {
 fn periodic_cells_come_back_with_their_copies() {
     let (_folder, path) = write(&TORUS, "cells.tess");
     let tess = read_tess(&fs::read_to_string(path).unwrap()).unwrap();
-    assert_eq!(tess, Tess::new(&TORUS.cells));
+    assert_eq!(tess, Tess::new(&TORUS.synthesis().unwrap().cells));
     let periodicity = tess.periodicity.unwrap();
     assert_eq!((periodicity.axes, periodicity.lengths), ([true; 3], BOX));
     assert_eq!(periodicity.seeds.len(), 26 * GRAINS);
@@ -86,7 +86,8 @@ fn polyhedra_are_closed_and_outward() {
                 volume += sign * corners[0].dot(pair[0].cross(pair[1])) / 6.0;
             }
         }
-        let expected = SPACE.cells.tessellation.cell_measures()[CellId(cell).index()].volume;
+        let expected =
+            SPACE.synthesis().unwrap().cells.tessellation.cell_measures()[CellId(cell).index()].volume;
         assert!((volume / expected - 1.0).abs() < 1e-12);
     }
 }
@@ -96,7 +97,7 @@ fn volumes_of_a_file_are_those_of_its_cells() {
     for polycrystal in [&*SPACE, &*PLANE, &*TORUS] {
         let (_folder, path) = write(polycrystal, "cells.tess");
         let tess = read_tess(&fs::read_to_string(path).unwrap()).unwrap();
-        let measures = polycrystal.cells.tessellation.cell_measures();
+        let measures = polycrystal.synthesis().unwrap().cells.tessellation.cell_measures();
         assert_eq!(tess.cell_volumes().len(), GRAINS);
         for (volume, measure) in tess.cell_volumes().into_iter().zip(measures) {
             assert!((volume / measure.volume - 1.0).abs() < 1e-12);
@@ -157,7 +158,7 @@ fn polyhedra_and_polygons_come_back_with_their_walls() {
         let (_folder, path) = write(&round, "cells.tess");
         let text = fs::read_to_string(path).unwrap();
         let tess = read_tess(&text).unwrap();
-        let mut made = Tess::new(&round.cells);
+        let mut made = Tess::new(&round.synthesis().unwrap().cells);
         // Corners are rounded.
         assert!(tess.domain.lower.distance(made.domain.lower) < 1e-14);
         assert!(tess.domain.upper.distance(made.domain.upper) < 1e-14);

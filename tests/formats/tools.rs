@@ -98,7 +98,7 @@ fn gmsh_fills_all_pieces_of_grains_that_the_box_cuts() {
 fn gmsh_reads_stl() {
     for encoding in [StlEncoding::Ascii, StlEncoding::Binary] {
         let mut polycrystal = SPACE.clone();
-        polycrystal.config.file.stl = encoding;
+        polycrystal.file_mut().stl = encoding;
         let (folder, path) = write(&polycrystal, "network.stl");
         let mesh = folder.path().join("network.msh");
         let mut gmsh = Command::new("gmsh");
@@ -124,14 +124,14 @@ fn vtk_meshio_and_trimesh_read_every_format() {
         PLANE.write(&grainsmooth::Output::check(directory.path().join(name)).unwrap()).unwrap();
     }
     let mut measured = SPACE.clone();
-    measured.config.file =
-        grainsmooth::FileOptions { arrays: true, stl: StlEncoding::Ascii, ..measured.config.file };
+    *measured.file_mut() =
+        grainsmooth::FileOptions { arrays: true, stl: StlEncoding::Ascii, ..measured.file() };
     for name in ["measured.vtp", "measured.vtu", "measured.vtk", "text.stl"] {
         measured.write(&grainsmooth::Output::check(directory.path().join(name)).unwrap()).unwrap();
     }
     for encoding in [VtkEncoding::Base64, VtkEncoding::Zlib] {
         let mut encoded = SPACE.clone();
-        encoded.config.file.encoding = encoding;
+        encoded.file_mut().encoding = encoding;
         for extension in ["vtp", "vtu", "vti", "vtm"] {
             let path = directory.path().join(format!("{}.{extension}", name_of(&encoding)));
             encoded.write(&grainsmooth::Output::check(path).unwrap()).unwrap();
@@ -142,7 +142,7 @@ fn vtk_meshio_and_trimesh_read_every_format() {
     for names in grainsmooth::Names::value_variants() {
         for (polycrystal, dimension) in [(&*SPACE, "3d"), (&*PLANE, "2d")] {
             let mut renamed = polycrystal.clone();
-            renamed.config.file.names = *names;
+            renamed.file_mut().names = *names;
             for extension in ["vtp", "vtm"] {
                 let name = format!("{}_{dimension}.{extension}", name_of(names));
                 renamed.write(&grainsmooth::Output::check(directory.path().join(name)).unwrap()).unwrap();
@@ -162,7 +162,7 @@ fn vtk_meshio_and_trimesh_read_every_format() {
         "triple_lines": counts.triple_lines,
         "quadruple_points": counts.quadruple_points,
         "volumes": SPACE.network.cell_volumes(),
-        "settings": SPACE.config.to_toml(),
+        "settings": SPACE.synthesis().unwrap().config.to_toml(),
         "triple_points_2d": PLANE.network.junction_counts().triple_lines,
         "areas_2d": PLANE.network.cell_volumes(),
     });
@@ -220,7 +220,7 @@ fn orix_agrees_on_orientations_colors_and_disorientations() {
             let grains = OutputDirectory::check(folder, OutputFormat::VTP).unwrap();
             write_together(|files| space.stage_grains(&grains, files)).unwrap();
             let mut renamed = space.clone();
-            renamed.config.file.names = grainsmooth::Names::Virmat;
+            renamed.file_mut().names = grainsmooth::Names::Virmat;
             let path = directory.path().join("virmat.vtm");
             renamed.write(&grainsmooth::Output::check(path).unwrap()).unwrap();
         }
@@ -281,7 +281,7 @@ S
     let output = run(test, &mut calculix)?;
     assert!(output.status.success(), "{}", text(&output.stdout));
     let printed = fs::read_to_string(folder.path().join("deck.dat")).unwrap();
-    let orientations = polycrystal.cells.texture.as_ref().unwrap().orientations();
+    let orientations = polycrystal.grains().texture.as_ref().unwrap().orientations();
     let mut points = 0;
     for line in printed.lines() {
         let words: Vec<&str> = line.split_whitespace().collect();

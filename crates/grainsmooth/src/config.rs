@@ -18,6 +18,7 @@ pub(crate) mod lattice;
 pub(crate) mod laws;
 pub(crate) mod phases;
 pub(crate) mod place;
+pub(crate) mod provenance;
 pub(crate) mod settings;
 pub(crate) mod shapes;
 pub(crate) mod sizes;

@@ -1,6 +1,7 @@
 //! What each grain is to be, and became: sizes, phases, shapes, orientations, parts, and the law of its boundaries.
 
 pub(crate) mod assigned;
+pub(crate) mod attributes;
 pub(crate) mod boundary_law;
 pub(crate) mod cells;
 pub(crate) mod gradient;

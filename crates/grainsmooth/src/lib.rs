@@ -59,6 +59,7 @@ pub use config::lattice::Lattice;
 pub use config::laws::{LawCurve, LawError, LawKind, LawOptions, LawProblem, LawSource};
 pub use config::phases::{PhaseOptions, PhasesError};
 pub use config::place::PhasePlace;
+pub use config::provenance::Provenance;
 pub use config::shapes::{ShapeSource, ShapeSpec};
 pub use config::sizes::{SizeDraw, SizeOptions, SizeSource};
 #[doc(hidden)]
@@ -84,6 +85,7 @@ pub use formats::label_grid::LabelGrid;
 pub use formats::output::{Output, OutputDirectory};
 pub use formats::output_format::OutputFormat;
 pub use formats::series::{Series, SeriesOutput, write_collection};
+pub use grains::attributes::GrainAttributes;
 pub use grains::boundary_law::{BoundaryLaw, LawReached, TensionsReached};
 pub use grains::cells::GrainCells;
 pub use grains::inner::{Divided, Parents};
@@ -108,9 +110,10 @@ pub use page::{EditContent, PageDocument, PageLinks, PageServer, PageStop};
 pub use picture::{Coloring, Picture, Png, Scene, ScenePicture, Shading};
 pub use report::{Html, SceneReport};
 pub use run::elements_reached::ElementsReached;
-pub use run::pipeline::{
-    Polycrystal, Reconnected, Regularization, check_expected_size, make_polycrystal, smooth, smooth_watched,
-};
+pub use run::origin::{Measurement, Origin, Synthesis};
+pub use run::pipeline::{check_expected_size, make_polycrystal, smooth, smooth_watched};
+pub use run::polycrystal::Polycrystal;
+pub use run::regularization::{Reconnected, Regularization};
 pub use run::stage::{Progress, Stage};
 pub use run::tessellated::{Tessellated, tessellate};
 pub use run::topology::Topology;

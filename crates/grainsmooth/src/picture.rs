@@ -119,7 +119,7 @@ impl Polycrystal {
         encoder.set_depth(png::BitDepth::Eight);
         encoder
             .add_text_chunk("Software".to_owned(), format!("grainsmooth {}", env!("CARGO_PKG_VERSION")))?;
-        encoder.add_itxt_chunk("Config".to_owned(), self.config.to_toml())?;
+        encoder.add_itxt_chunk("Config".to_owned(), self.provenance().text())?;
         encoder.write_header()?.write_image_data(&pixmap.take_demultiplied())?;
         Ok(bytes)
     }
@@ -128,8 +128,7 @@ impl Polycrystal {
     pub(crate) fn shifts(&self, explode: f64) -> Vec<DVec3> {
         let domain = self.network.domain();
         let middle = domain.lower().midpoint(domain.upper());
-        let centroids = self.cells.centroids();
-        centroids.into_iter().map(|centroid| (centroid - middle) * explode).collect()
+        self.centroids().into_iter().map(|centroid| (centroid - middle) * explode).collect()
     }
 
     /// Number of boundaries of each grain.
@@ -146,7 +145,7 @@ impl Polycrystal {
     /// Diameter of the ball (in the plane: the disc) of each grain's volume.
     pub(crate) fn equivalent_diameters(&self) -> Vec<f64> {
         let volumes = self.network.cell_volumes().iter();
-        volumes.map(|volume| self.config.dimension.ball_diameter(*volume)).collect()
+        volumes.map(|volume| self.dimension().ball_diameter(*volume)).collect()
     }
 }
 

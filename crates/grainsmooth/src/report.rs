@@ -18,6 +18,7 @@ use voronoi::Dimension;
 use crate::figures::significant::significant;
 use crate::{
     AskedAndReached, Error, GrainSizes, GrainTexture, Output, Picture, Polycrystal, StagedFiles, Summary,
+    Synthesis,
 };
 use chart::Chart;
 use poisson_voronoi::{SIZE_BIN, angle_density, face_shares, size_shares};
@@ -51,21 +52,23 @@ impl Polycrystal {
     }
 
     fn page(&self) -> io::Result<String> {
-        let view = match self.config.dimension {
+        let view = match self.dimension() {
             Dimension::Two => {
                 let picture = BASE64.encode(self.png(&Picture::default())?);
                 format!("<img class=\"picture\" alt=\"the grains\" src=\"data:image/png;base64,{picture}\">")
             }
             Dimension::Three => view::view(self)?,
         };
-        let mut of_sizes =
-            self.cells.sizes.as_ref().map_or_else(Vec::new, |sizes| self.all_diameter_charts(sizes));
+        let mut of_sizes = self
+            .synthesis()
+            .and_then(|made| made.cells.sizes.as_ref())
+            .map_or_else(Vec::new, |sizes| self.all_diameter_charts(sizes));
         if of_sizes.is_empty() {
             of_sizes.push(self.size_chart());
         }
         of_sizes.extend([self.face_chart(), self.angle_chart()]);
         let mut charts: String = of_sizes.iter().map(Chart::figure).collect();
-        if let Some(texture) = &self.cells.texture {
+        if let Some(texture) = &self.grains().texture {
             charts += &self.disorientation_chart(texture).figure();
             for number in 0..texture.texture_count() {
                 let (symmetry, grains) = texture.members(number);
@@ -81,12 +84,12 @@ impl Polycrystal {
             &[
                 ("title", &title),
                 ("style", include_str!("../assets/report.css")),
-                ("command", &escaped(&self.config.command_line())),
+                ("command", &escaped(&self.provenance().command_line())),
                 (
                     "settings",
                     &format!(
                         "<details><summary>All settings</summary><pre>{}</pre></details>",
-                        escaped(&self.config.to_toml())
+                        escaped(&self.provenance().text())
                     ),
                 ),
                 ("view", &view),
@@ -126,7 +129,7 @@ impl Polycrystal {
 
     /// Behind the title of what shows a phase alone; nothing without phases.
     fn of_phase(&self, number: usize) -> String {
-        let name = self.cells.phases.as_ref().and_then(|phases| phases.names().nth(number));
+        let name = self.grains().phases.as_ref().and_then(|phases| phases.names().nth(number));
         name.map_or_else(String::new, |name| format!(", {name}"))
     }
 
@@ -135,9 +138,9 @@ impl Polycrystal {
         let mean = volumes.iter().sum::<f64>() / volumes.len() as f64;
         let sizes = volumes.iter().map(|volume| (volume / mean, 1.0));
         let exact = (0..)
-            .zip(size_shares(self.config.dimension))
+            .zip(size_shares(self.dimension()))
             .map(|(bin, share)| ((f64::from(bin) + 0.5) * SIZE_BIN, 2.0 * share));
-        let (title, unit) = match self.config.dimension {
+        let (title, unit) = match self.dimension() {
             Dimension::Two => ("Areas", "area / mean area"),
             Dimension::Three => ("Volumes", "volume / mean volume"),
         };
@@ -157,7 +160,7 @@ impl Polycrystal {
 
     /// Diameters of all grains, or of each phase where these have diameters of their own, beside what was asked for.
     fn all_diameter_charts(&self, sizes: &GrainSizes) -> Vec<Chart> {
-        let volumes = &self.cells.by_parents(self.network.cell_volumes())[..];
+        let volumes = &self.grains().by_parents(self.network.cell_volumes())[..];
         let has_one = sizes.groups().count() == 1;
         let mut charts = Vec::new();
         for (number, (group, grains)) in sizes.groups().enumerate() {
@@ -178,7 +181,7 @@ impl Polycrystal {
         distribution: &Distribution,
         whose: &str,
     ) -> [Chart; 2] {
-        let axes = u32::from(self.config.dimension.axes());
+        let axes = u32::from(self.dimension().axes());
         let largest = diameters.iter().copied().fold(0.0, f64::max);
         let width = largest / DIAMETER_BINS;
         // The share of a bin around each place.
@@ -226,7 +229,7 @@ impl Polycrystal {
         Chart {
             title: "Disorientations of neighbours".to_owned(),
             unit: "degrees",
-            of: match self.config.dimension {
+            of: match self.dimension() {
                 Dimension::Two => "the length of boundaries",
                 Dimension::Three => "the area of boundaries",
             },
@@ -240,10 +243,10 @@ impl Polycrystal {
     }
 
     fn face_chart(&self) -> Chart {
-        let cells = self.cells.face_counts(&self.cells.tessellation);
+        let cells = self.synthesis().map(|Synthesis { cells, .. }| cells.face_counts(&cells.tessellation));
         let count = |count: usize| (count as f64, 1.0);
-        let (least, shares) = face_shares(self.config.dimension);
-        let (title, unit) = match self.config.dimension {
+        let (least, shares) = face_shares(self.dimension());
+        let (title, unit) = match self.dimension() {
             Dimension::Two => ("Sides of a grain", "number of sides"),
             Dimension::Three => ("Faces of a grain", "number of faces"),
         };
@@ -253,7 +256,7 @@ impl Polycrystal {
             of: "grains",
             // Whole numbers in the middle of their bins.
             bins: chart::Bins { start: -0.5, width: 1.0 },
-            before: cells.into_iter().map(count).collect(),
+            before: cells.into_iter().flatten().map(count).collect(),
             names: BEFORE_AND_AFTER,
             after: self.boundary_counts().into_iter().map(count).collect(),
             exact: (least..).zip(shares).map(|(count, share)| (count as f64, *share)).collect(),
@@ -269,16 +272,16 @@ impl Polycrystal {
         let width = ANGLE_BIN.to_radians();
         let exact = (0..=90)
             .map(|step| 2.0 * f64::from(step))
-            .map(|degrees| (degrees, width * angle_density(self.config.dimension, degrees.to_radians())));
+            .map(|degrees| (degrees, width * angle_density(self.dimension(), degrees.to_radians())));
         Chart {
             title: "Angles between boundaries".to_owned(),
             unit: "degrees",
-            of: match self.config.dimension {
+            of: match self.dimension() {
                 Dimension::Two => "triple points",
                 Dimension::Three => "the length of triple lines",
             },
             bins: chart::Bins { start: 0.0, width: ANGLE_BIN },
-            before: weighted(self.flat_angles.clone()),
+            before: self.synthesis().map_or_else(Vec::new, |made| weighted(made.flat_angles.clone())),
             names: BEFORE_AND_AFTER,
             after: weighted(angles_between_boundaries(network, network.finest(), &self.unstretched_points())),
             exact: exact.collect(),

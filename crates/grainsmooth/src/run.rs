@@ -3,7 +3,10 @@
 pub(crate) mod elements_reached;
 pub(crate) mod failing;
 pub(crate) mod misorientations;
+pub(crate) mod origin;
 pub(crate) mod pipeline;
+pub(crate) mod polycrystal;
+pub(crate) mod regularization;
 pub(crate) mod remeshed;
 pub(crate) mod stage;
 pub(crate) mod tessellated;

@@ -17,7 +17,7 @@ use crate::figures::significant::significant;
 use crate::grains::texture::TextureLine;
 use crate::{
     Config, EquivalentDiameters, Polycrystal, Reconnected, Regularization, SeedSource, ShapesReached,
-    SizesReached, Stage, Tessellated, TriangleAngles, VolumeMesh,
+    SizesReached, Stage, Synthesis, Tessellated, TriangleAngles, VolumeMesh,
 };
 
 /// A polycrystal in a few lines of text: counts, angles, volumes, validation, times.
@@ -29,10 +29,13 @@ impl fmt::Display for Summary<'_> {
         let network = &polycrystal.network;
         let finest = network.finest();
         let (points, elements) = (finest.vertex_count(), finest.element_count());
-        let levels = polycrystal.config.levels;
+        let levels = polycrystal.level();
+        let synthesis = polycrystal.synthesis();
         writeln!(out, "grains      {} in {}", network.grains_left(), network.domain())?;
-        if let Some(Vanished { time, .. }) = polycrystal.vanished.last() {
-            let (gone, all) = (polycrystal.vanished.len(), network.grain_count());
+        if let Some(Synthesis { vanished, .. }) = synthesis
+            && let Some(Vanished { time, .. }) = vanished.last()
+        {
+            let (gone, all) = (vanished.len(), network.grain_count());
             writeln!(
                 out,
                 "vanished    {gone} of {all} grains, the last at the time {}",
@@ -40,16 +43,18 @@ impl fmt::Display for Summary<'_> {
             )?;
         }
         writeln!(out, "diameters   {}", polycrystal.diameter_statistics())?;
-        write_seeds(out, &polycrystal.config, &polycrystal.cells)?;
-        if let Some(reached) = polycrystal.sizes_reached() {
-            write!(out, "{reached}")?;
-            write_phases(out, &polycrystal.cells, network.cell_volumes(), &reached)?;
+        if let Some(Synthesis { config, cells, .. }) = synthesis {
+            write_seeds(out, config, cells)?;
+            if let Some(reached) = polycrystal.sizes_reached() {
+                write!(out, "{reached}")?;
+                write_phases(out, cells, network.cell_volumes(), &reached)?;
+            }
+            write_inside(out, cells)?;
+            if let Some(reached) = polycrystal.shapes_reached() {
+                write!(out, "{reached}")?;
+            }
+            write_texture(out, cells)?;
         }
-        write_inside(out, &polycrystal.cells)?;
-        if let Some(reached) = polycrystal.shapes_reached() {
-            write!(out, "{reached}")?;
-        }
-        write_texture(out, &polycrystal.cells)?;
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
         let through_walls = count(|boundary| boundary.twin.is_some()) / 2;
         let between_grains = count(Boundary::is_interior) + through_walls;
@@ -59,20 +64,8 @@ impl fmt::Display for Summary<'_> {
             write!(out, ", {through_walls} of the first twice, a period apart")?;
         }
         writeln!(out)?;
-        let collapsed = &polycrystal.collapsed;
-        if collapsed.edges > 0 {
-            let Collapsed { edges, faces } = collapsed;
-            writeln!(out, "collapsed   {edges} short edges of cells, with them {faces} small boundaries")?;
-        }
-        if polycrystal.regularization.fell_back(&polycrystal.config) {
-            let kept = match polycrystal.regularization {
-                Regularization::None => "not at all",
-                _ => "less than usual, short edges only",
-            };
-            writeln!(
-                out,
-                "regularized {kept}: with more taken out, boundaries folded or crossed when relaxed"
-            )?;
+        if let Some(synthesis) = synthesis {
+            write_regularization(out, synthesis)?;
         }
         let (places, element, measure, size) = match network.domain().dimension() {
             Dimension::Two => ("triple points", "segment", "areas", "length"),
@@ -80,31 +73,22 @@ impl fmt::Display for Summary<'_> {
         };
         writeln!(out, "junctions   {}", polycrystal.topology)?;
         match &polycrystal.elements {
+            None if synthesis.is_none() => {
+                writeln!(out, "mesh        {points} points, {elements} {element}s")?
+            }
             None => writeln!(out, "mesh        {points} points, {elements} {element}s at level {levels}")?,
             Some(reached) => writeln!(out, "mesh        {points} points, {elements} {element}s; {reached}")?,
         }
         if let Some(quality) = polycrystal.volume_mesh.as_ref().and_then(VolumeMesh::quality) {
             writeln!(out, "tetrahedra  {quality}")?;
         }
-        if let Some(stretched) = StretchLine::new(&polycrystal.config) {
+        if let Some(stretched) = synthesis.and_then(|made| StretchLine::new(&made.config)) {
             writeln!(out, "{stretched}; angles, residual and triangles are those before")?;
         }
-        // In lattices four or more grains meet, until they relax.
-        match (polycrystal.angles_before, polycrystal.validation.angles) {
-            (Some(before), Some(after)) => {
-                writeln!(out, "angles      {} before relaxation, {} after", Angle(before), Angle(after))?;
-            }
-            (None, Some(after)) => writeln!(
-                out,
-                "angles      {} after relaxation; before, nowhere three grains alone met",
-                Angle(after)
-            )?,
-            (Some(before), None) => writeln!(
-                out,
-                "angles      {} before relaxation; after, nowhere three grains alone meet",
-                Angle(before)
-            )?,
-            (None, None) => {}
+        if let Some(Synthesis { angles_before, .. }) = synthesis {
+            write_angles(out, *angles_before, polycrystal.validation.angles)?;
+        } else if let Some(angles) = polycrystal.validation.angles {
+            writeln!(out, "angles      {}", Angle(angles))?;
         }
         if let Some(tensions) = &polycrystal.tensions {
             write!(out, "{tensions}")?;
@@ -121,25 +105,8 @@ impl fmt::Display for Summary<'_> {
         if let Some(quality) = polycrystal.validation.triangles {
             writeln!(out, "triangles   {}", TriangleAngles::from(quality))?;
         }
-        if let Some(Reconnected { reconnections, balance }) = &polycrystal.reconnected {
-            write_topology(out, network.domain().dimension(), *reconnections, balance.as_ref())?;
-        } else if polycrystal.config.lets_topology_change() {
-            let without =
-                polycrystal.tensions.as_ref().map_or(0, |tensions| tensions.without_equilibrium.len());
-            let cause = if without == 0 { "" } else { ", as lines without equilibrium are never at rest" };
-            writeln!(
-                out,
-                "topology    kept: letting grains switch neighbours led to no valid network{cause}; angles are not at rest where they would"
-            )?;
-        } else if polycrystal.config.effective_relaxation() == Relaxation::Equilibrium {
-            writeln!(out, "topology    kept: angles are not at rest where grains would switch neighbours")?;
-        }
-        if !polycrystal.relaxed.given_up.is_empty() {
-            writeln!(
-                out,
-                "relaxation  of the points of level {} and coarser ones only",
-                polycrystal.relaxed.level
-            )?;
+        if let Some(synthesis) = synthesis {
+            write_relaxation(out, polycrystal, synthesis)?;
         }
         for attempt in &polycrystal.attempts {
             writeln!(out, "given up    {attempt}")?;
@@ -160,6 +127,70 @@ impl fmt::Display for Summary<'_> {
     }
 }
 
+/// What became of short edges of the cells.
+fn write_regularization(out: &mut fmt::Formatter<'_>, synthesis: &Synthesis) -> fmt::Result {
+    let Collapsed { edges, faces } = synthesis.collapsed;
+    if edges > 0 {
+        writeln!(out, "collapsed   {edges} short edges of cells, with them {faces} small boundaries")?;
+    }
+    if synthesis.regularization.fell_back(&synthesis.config) {
+        let kept = match synthesis.regularization {
+            Regularization::None => "not at all",
+            _ => "less than usual, short edges only",
+        };
+        writeln!(out, "regularized {kept}: with more taken out, boundaries folded or crossed when relaxed")?;
+    }
+    Ok(())
+}
+
+/// Angles between boundaries. In lattices four or more grains meet, until they relax.
+fn write_angles(
+    out: &mut fmt::Formatter<'_>,
+    before: Option<AngleStatistics>,
+    after: Option<AngleStatistics>,
+) -> fmt::Result {
+    match (before, after) {
+        (Some(before), Some(after)) => {
+            writeln!(out, "angles      {} before relaxation, {} after", Angle(before), Angle(after))
+        }
+        (None, Some(after)) => writeln!(
+            out,
+            "angles      {} after relaxation; before, nowhere three grains alone met",
+            Angle(after)
+        ),
+        (Some(before), None) => writeln!(
+            out,
+            "angles      {} before relaxation; after, nowhere three grains alone meet",
+            Angle(before)
+        ),
+        (None, None) => Ok(()),
+    }
+}
+
+/// How the topology changed, and what relaxation left alone.
+fn write_relaxation(
+    out: &mut fmt::Formatter<'_>,
+    polycrystal: &Polycrystal,
+    Synthesis { config, relaxed, reconnected, .. }: &Synthesis,
+) -> fmt::Result {
+    if let Some(Reconnected { reconnections, balance }) = reconnected {
+        write_topology(out, polycrystal.dimension(), *reconnections, balance.as_ref())?;
+    } else if config.lets_topology_change() {
+        let without = polycrystal.tensions.as_ref().map_or(0, |tensions| tensions.without_equilibrium.len());
+        let cause = if without == 0 { "" } else { ", as lines without equilibrium are never at rest" };
+        writeln!(
+            out,
+            "topology    kept: letting grains switch neighbours led to no valid network{cause}; angles are not at rest where they would"
+        )?;
+    } else if config.effective_relaxation() == Relaxation::Equilibrium {
+        writeln!(out, "topology    kept: angles are not at rest where grains would switch neighbours")?;
+    }
+    if !relaxed.given_up.is_empty() {
+        writeln!(out, "relaxation  of the points of level {} and coarser ones only", relaxed.level)?;
+    }
+    Ok(())
+}
+
 /// A tessellation alone in a few lines of text.
 pub struct CellsSummary<'a>(pub &'a Config, pub &'a Tessellated);
 
@@ -178,7 +209,7 @@ impl fmt::Display for CellsSummary<'_> {
         write_seeds(out, config, cells)?;
         if let Some(sizes) = &cells.sizes {
             let volumes = cells.volumes();
-            let reached = sizes.reached(&cells.by_parents(&volumes), None);
+            let reached = sizes.reached(&cells.grains.by_parents(&volumes), None);
             write!(out, "{reached}")?;
             write_phases(out, cells, &volumes, &reached)?;
         }
@@ -211,16 +242,16 @@ impl fmt::Display for StretchLine {
 
 /// What divides grains.
 fn write_inside(out: &mut fmt::Formatter<'_>, cells: &Tessellated) -> fmt::Result {
-    let patterns = cells.parents.iter().flat_map(|parents| parents.patterns());
+    let patterns = cells.grains.parents.iter().flat_map(|parents| parents.patterns());
     patterns.into_iter().try_for_each(|divided| writeln!(out, "inside      {divided}"))
 }
 
 /// What the orientations of the grains are.
 fn write_texture(out: &mut fmt::Formatter<'_>, cells: &Tessellated) -> fmt::Result {
-    let Some(texture) = &cells.texture else { return Ok(()) };
+    let Some(texture) = &cells.grains.texture else { return Ok(()) };
     let volumes = cells.volumes();
     for number in 0..texture.texture_count() {
-        let of_phase = cells.phases.as_ref().and_then(|phases| phases.names().nth(number));
+        let of_phase = cells.grains.phases.as_ref().and_then(|phases| phases.names().nth(number));
         let of_phase = of_phase.map_or_else(String::new, |name| format!("{name}: "));
         writeln!(out, "texture     {of_phase}{}", TextureLine { texture, number, volumes: &volumes })?;
     }
@@ -234,7 +265,7 @@ fn write_phases(
     volumes: &[f64],
     reached: &SizesReached,
 ) -> fmt::Result {
-    let Some(phases) = &cells.phases else { return Ok(()) };
+    let Some(phases) = &cells.grains.phases else { return Ok(()) };
     for (number, share) in phases.shares(&cells.volumes(), volumes).iter().enumerate() {
         writeln!(out, "phase {:<6}{share}", share.number)?;
         if let Some(fit) = reached.of_phases().get(number) {
@@ -316,17 +347,18 @@ fn write_topology(
 impl Polycrystal {
     /// How near the grains came to the sizes that were asked for, where some were.
     pub(crate) fn sizes_reached(&self) -> Option<SizesReached> {
-        let sizes = self.cells.sizes.as_ref()?;
+        let Synthesis { config, cells, .. } = self.synthesis()?;
+        let sizes = cells.sizes.as_ref()?;
         let found = self.validation.grain_volumes.iter();
         let grains: Vec<f64> = found.map(|(_, volume)| *volume).collect();
-        let is_kept = self.config.volumes == Volumes::Kept;
-        let (cells, grains) = (self.cells.volumes(), self.cells.by_parents(&grains));
-        Some(sizes.reached(&self.cells.by_parents(&cells), is_kept.then_some(&grains[..])))
+        let is_kept = config.volumes == Volumes::Kept;
+        let (cells, grains) = (cells.volumes(), self.grains().by_parents(&grains));
+        Some(sizes.reached(&self.grains().by_parents(&cells), is_kept.then_some(&grains[..])))
     }
 
     /// How near the grains came to the shapes that were asked for, where some were.
     pub(crate) fn shapes_reached(&self) -> Option<ShapesReached> {
-        let shapes = self.cells.shapes.as_ref()?;
+        let shapes = self.synthesis()?.cells.shapes.as_ref()?;
         Some(shapes.reached(Some(&measure_network(&self.network, &self.points))))
     }
 
@@ -334,7 +366,7 @@ impl Polycrystal {
     pub fn diameter_statistics(&self) -> EquivalentDiameters {
         let all = self.equivalent_diameters().into_iter();
         let left: Vec<f64> = all.filter(|diameter| *diameter > 0.0).collect();
-        EquivalentDiameters::new(self.config.dimension, &left)
+        EquivalentDiameters::new(self.dimension(), &left)
     }
 
     /// Adds the time that a stage took after the computation, such as writing.
@@ -366,7 +398,14 @@ impl fmt::Display for Seconds {
 #[allow(clippy::unwrap_used, reason = "a test may panic")]
 mod tests {
     use super::*;
-    use crate::{SeedSource, SummaryRecord, make_polycrystal};
+    use crate::{Origin, SeedSource, SummaryRecord, make_polycrystal};
+
+    fn synthesis(polycrystal: &mut Polycrystal) -> &mut Synthesis {
+        match &mut polycrystal.origin {
+            Origin::Synthetic(synthesis) => synthesis,
+            Origin::Measured(_) => panic!("made from cells"),
+        }
+    }
 
     #[test]
     fn weaker_regularization_is_told() {
@@ -382,7 +421,7 @@ mod tests {
             ),
             (Regularization::None, "none", Some("not at all: with more taken out, ")),
         ] {
-            polycrystal.regularization = regularization;
+            synthesis(&mut polycrystal).regularization = regularization;
             let said = Summary(&polycrystal).to_string();
             let told = said.lines().find_map(|line| line.strip_prefix("regularized "));
             assert_eq!(told.is_some(), line.is_some(), "{said}");
@@ -391,7 +430,7 @@ mod tests {
             assert_eq!(record["regularization"], name);
             assert_eq!(record["regularization_fell_back"], line.is_some());
         }
-        polycrystal.config.regularize = Some(0.0);
+        synthesis(&mut polycrystal).config.regularize = Some(0.0);
         assert!(!Summary(&polycrystal).to_string().contains("regularized"), "as asked for");
     }
 }

@@ -11,7 +11,8 @@ use anyhow::anyhow;
 use grainsmooth::{
     CellTable, CellsSummary, Config, Error, Estimate, Html, Output, OutputDirectory, OutputFormat, Picture,
     Png, Polycrystal, Series, SeriesOutput, Stage, StagedFiles, StatisticsOutput, Summary, SummaryRecord,
-    TableFormat, Tessellated, check_expected_size, check_gmsh, smooth_watched, tessellate, write_together,
+    Synthesis, TableFormat, Tessellated, check_expected_size, check_gmsh, smooth_watched, tessellate,
+    write_together,
 };
 
 use crate::cli::{Arguments, usage};
@@ -215,7 +216,9 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
     line.show(Stage::Writing, 0, 1);
     let start = Instant::now();
     write_together(|staged| {
-        files.stage_tables(config, &polycrystal.cells, staged)?;
+        if let Some(Synthesis { cells, .. }) = polycrystal.synthesis() {
+            files.stage_tables(config, cells, staged)?;
+        }
         files.outputs.iter().try_for_each(|output| polycrystal.stage(output, staged))?;
         if let Some(grains) = &files.grains {
             polycrystal.stage_grains(grains, staged)?;

@@ -1,7 +1,5 @@
 //! A config spelled out: as the options of a command line, and as the TOML text that every file carries.
 
-use std::io::{self, Write};
-
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::{BVec3, DVec3};
 use polycrystal::{FaceMesh, Junctions, Relaxation};
@@ -92,12 +90,6 @@ impl Config {
         let settings = self.settings().into_iter().filter(|(name, value)| defaults.get(name) != Some(value));
         let settings: Vec<String> = settings.map(|(name, value)| format!("{name}={value}")).collect();
         format!("{{{}}}", settings.join(","))
-    }
-
-    /// Writes [`to_toml`](Self::to_toml) with a format's sign for comments before each line.
-    pub(crate) fn write_comments(&self, sign: &str, out: &mut dyn Write) -> io::Result<()> {
-        debug_assert!(PREFIXES.contains(&sign), "embedded_config knows the sign");
-        self.to_toml().lines().try_for_each(|line| writeln!(out, "{sign}{line}"))
     }
 }
 

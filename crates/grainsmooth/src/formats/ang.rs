@@ -11,7 +11,7 @@ use voronoi::Dimension;
 
 use super::format::{Content, Format, HEAD, TEXT_POINT, Writer};
 use super::orientation_map::OrientationMap;
-use crate::Config;
+use crate::Provenance;
 
 pub(super) const FORMAT: Format = Format {
     extension: "ang",
@@ -21,7 +21,7 @@ pub(super) const FORMAT: Format = Format {
     beside: None,
     bytes: |size| HEAD + TEXT_POINT * size.voxels(),
     write: Writer::File(|polycrystal, out| {
-        OrientationMap::of(polycrystal, |map| write(map, &polycrystal.config, out))
+        OrientationMap::of(polycrystal, |map| write(map, polycrystal.provenance(), out))
     }),
     write_grain: None,
 };
@@ -33,11 +33,11 @@ const ANGLE_OF_NONE: f64 = 2.0 * TAU;
 ///
 /// The columns are the three Euler angles after Bunge, x, y, image quality 1, confidence 1, the phase from 1, detector signal 1 and
 /// fit 0; y points down, as everywhere in such maps. Pixels outside of all grains have no solution: confidence -1.
-fn write(map: &OrientationMap<'_>, config: &Config, out: &mut dyn Write) -> io::Result<()> {
+fn write(map: &OrientationMap<'_>, provenance: Provenance<'_>, out: &mut dyn Write) -> io::Result<()> {
     let OrientationMap { grid, orientations, phases, .. } = map;
     let [columns, rows, _] = grid.size;
     let (x_step, y_step) = (grid.spacing.x, grid.spacing.y);
-    config.write_comments("# ", out)?;
+    provenance.write_comments("# ", out)?;
     write!(
         out,
         "# TEM_PIXperUM          1.000000\n# x-star                0.000000\n# y-star                0.000000\n\

@@ -91,7 +91,7 @@ impl Polycrystal {
         measured: Option<&MeasuredArrays<'_>>,
         out: &mut dyn Write,
     ) -> io::Result<()> {
-        let names = self.config.file.names;
+        let names = self.file().names;
         let boundaries = self.network.boundaries();
         let boundary_of = |piece: usize| &boundaries[surface.parts[piece].boundary.index()];
         let ids = |piece: usize| {
@@ -155,7 +155,7 @@ impl Polycrystal {
             data.point_arrays.push(("MeanCurvature", PieceVectors::Float64(&mean)));
             data.point_arrays.push(("GaussianCurvature", PieceVectors::Float64(&gaussian)));
         }
-        write_pieces(&data, self.config.file.encoding, out)
+        write_pieces(&data, self.file().encoding, out)
     }
 
     /// All grains, each a closed surface with points of its own and all normals outward.
@@ -165,7 +165,7 @@ impl Polycrystal {
         measured: Option<&MeasuredArrays<'_>>,
         out: &mut dyn Write,
     ) -> io::Result<()> {
-        let names = self.config.file.names;
+        let names = self.file().names;
         let parts = surface.parts_of_grains(self.network.grain_count());
         let id = |number: usize| GrainId(point_id(number));
         // Grains are made anew for each array: all at once they take more memory than the network.
@@ -181,7 +181,7 @@ impl Polycrystal {
         let area = |number: usize| measures[number].area;
         let neighbors = |number: usize| measures[number].neighbors;
         let sphericity = |number: usize| measures[number].sphericity;
-        let seed = |number: usize| self.cells.seed_ids[number].cast_signed();
+        let seed = |number: usize| self.grains().ids[number].cast_signed();
         let numbers: Vec<usize> = (0..parts.len()).collect();
         let of_grains = measured.map_or_else(NumberArrays::default, |all| all.of_grains(&numbers));
         let mut data = PieceData {
@@ -202,7 +202,7 @@ impl Polycrystal {
         let tuples = self.grain_tuples();
         data.cell_arrays.extend(tuples.iter().map(|tuples| (tuples.name, PieceValue::Item(tuples, &Some))));
         data.cell_arrays.extend(measured_pieces(&of_grains));
-        write_pieces(&data, self.config.file.encoding, out)
+        write_pieces(&data, self.file().encoding, out)
     }
 
     /// The lines where at least three sides meet, as polylines.
@@ -234,7 +234,7 @@ impl Polycrystal {
             field: self.field(),
         };
         data.cell_arrays.extend(of_lines.arrays());
-        write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
+        write_vtk(&data, VtkFormat::Vtp, self.file().encoding, out)
     }
 
     /// The points where at least four sides meet.
@@ -259,7 +259,7 @@ impl Polycrystal {
             field: self.field(),
         };
         data.cell_arrays.extend(of_points.arrays());
-        write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
+        write_vtk(&data, VtkFormat::Vtp, self.file().encoding, out)
     }
 
     /// The sides that meet in a line.
@@ -284,14 +284,14 @@ impl Polycrystal {
     /// What is measured, wound as the files want it, if they are to have it.
     fn measured_arrays(&self) -> Option<MeasuredArrays<'_>> {
         let (level, boundaries, names) =
-            (self.network.finest(), self.network.boundaries(), self.config.file.names);
+            (self.network.finest(), self.network.boundaries(), self.file().names);
         let triangles = triangles(level, boundaries, names);
         let (polylines, _) = boundary_polylines(level, boundaries, names);
         let cells = match &level.mesh {
             Mesh::Triangles(_) => Cells::Triangles(&triangles),
             Mesh::Segments(_) => Cells::Polylines(&polylines),
         };
-        self.config.file.arrays.then(|| MeasuredArrays::new(self, cells))
+        self.file().arrays.then(|| MeasuredArrays::new(self, cells))
     }
 
     /// The most sides that meet anywhere.
@@ -314,7 +314,7 @@ impl Polycrystal {
         places: impl Iterator<Item = &'a Vec<Side>>,
         components: usize,
     ) -> SideTable {
-        let names = self.config.file.names;
+        let names = self.file().names;
         let row = |sides: &Vec<Side>| {
             let numbers = sides.iter().map(|side| names.side_number(*side));
             numbers.chain(std::iter::repeat(NO_SIDE)).take(components).collect::<Vec<i32>>()

@@ -94,7 +94,7 @@ fn unescaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Config;
+    use crate::{Config, Provenance};
 
     #[test]
     fn settings_are_found_behind_any_sign() {
@@ -104,7 +104,7 @@ mod tests {
         assert_eq!(table["box"].as_array().map(Vec::len), Some(3));
         for sign in PREFIXES {
             let mut bytes = b"ply\n".to_vec();
-            config.write_comments(sign, &mut bytes).unwrap();
+            Provenance::Config(&config).write_comments(sign, &mut bytes).unwrap();
             bytes.extend([0xff, 0, 1]);
             assert_eq!(extracted(&bytes).unwrap().parse(), Ok(table.clone()), "{sign}");
             assert_eq!(extracted(&bytes[..bytes.len() - 60]), None, "cut off");

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use texture::Orientation;
 
 use super::format::{Content, Format, HEAD, Writer};
-use crate::{Config, GrainPhases};
+use crate::{GrainPhases, Provenance};
 
 pub(super) const FORMAT: Format = Format {
     extension: "txt",
@@ -15,8 +15,8 @@ pub(super) const FORMAT: Format = Format {
     beside: None,
     bytes: |size| HEAD + OF_GRAIN * size.grains,
     write: Writer::File(|polycrystal, out| {
-        let (volumes, phases) = (polycrystal.network.cell_volumes(), polycrystal.cells.phases.as_ref());
-        write(polycrystal.texture()?.orientations(), volumes, phases, &polycrystal.config, out)
+        let (volumes, phases) = (polycrystal.network.cell_volumes(), polycrystal.grains().phases.as_ref());
+        write(polycrystal.texture()?.orientations(), volumes, phases, polycrystal.provenance(), out)
     }),
     write_grain: None,
 };
@@ -29,10 +29,10 @@ fn write(
     orientations: &[Orientation],
     volumes: &[f64],
     phases: Option<&GrainPhases>,
-    config: &Config,
+    provenance: Provenance<'_>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    config.write_comments("# ", out)?;
+    provenance.write_comments("# ", out)?;
     writeln!(out, "phi1 Phi phi2 weight{}", if phases.is_some() { " phase" } else { "" })?;
     for (grain, (orientation, volume)) in orientations.iter().zip(volumes).enumerate() {
         let [phi1, phi, phi2] = orientation.euler_degrees();

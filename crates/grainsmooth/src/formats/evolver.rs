@@ -30,8 +30,8 @@ fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let (surface, network) = (polycrystal.surface()?, &polycrystal.network);
     let (domain, sets, walls) = (network.domain(), network.wall_sets(), &network.finest().walls);
     writeln!(out, "// grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
-    polycrystal.config.write_comments("// ", out)?;
-    write_seed_comments(polycrystal.cells.renumbered(), "// ", out)?;
+    polycrystal.provenance().write_comments("// ", out)?;
+    write_seed_comments(polycrystal.grains().renumbered(), "// ", out)?;
     writeln!(out)?;
     if domain.is_periodic() {
         // Filled, so that Evolver knows that one of the volumes follows from the others.

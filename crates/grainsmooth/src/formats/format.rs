@@ -89,7 +89,7 @@ impl GrainSurface<'_> {
     /// The number of its seed, where seeds have other numbers than grains.
     pub(super) fn renumbered(&self) -> &[u32] {
         let grain = self.grain.index();
-        self.polycrystal.cells.renumbered().get(grain..=grain).unwrap_or_default()
+        self.polycrystal.grains().renumbered().get(grain..=grain).unwrap_or_default()
     }
 }
 

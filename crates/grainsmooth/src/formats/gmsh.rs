@@ -55,8 +55,8 @@ fn write_script(
     out: &mut dyn Write,
 ) -> io::Result<()> {
     writeln!(out, "// grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
-    polycrystal.config.write_comments("// ", out)?;
-    write_seed_comments(polycrystal.cells.renumbered(), "// ", out)?;
+    polycrystal.provenance().write_comments("// ", out)?;
+    write_seed_comments(polycrystal.grains().renumbered(), "// ", out)?;
     writeln!(out, "Merge \"{mesh}\";")?;
     let grain_count = polycrystal.network.grain_count();
     let ConnectedParts { surface: connected, boundaries } = ConnectedParts::of(surface);
@@ -94,8 +94,8 @@ fn write_script(
 fn write(surface: &Surface<'_>, polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let surface = &ConnectedParts::of(surface).surface;
     let junctions = Junctions::of(surface);
-    write!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n{}", polycrystal.config.to_toml())?;
-    write_seed_comments(polycrystal.cells.renumbered(), "", out)?;
+    write!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n{}", polycrystal.provenance().text())?;
+    write_seed_comments(polycrystal.grains().renumbered(), "", out)?;
     writeln!(out, "$EndComments")?;
     write_entities(surface, &junctions, out)?;
     write_nodes(surface, &junctions, out)?;

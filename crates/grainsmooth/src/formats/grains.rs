@@ -47,8 +47,8 @@ impl GrainMeasure {
 /// A grain with the arrays of the `grains` block, and what lies beyond each triangle.
 pub(super) fn write_vtk_grain(file: &GrainSurface<'_>, out: &mut dyn Write) -> io::Result<()> {
     let &GrainSurface { polycrystal, surface, grain, tuples } = file;
-    let FileOptions { names, encoding, .. } = polycrystal.config.file;
-    let seed = polycrystal.cells.seed_ids[grain.index()].cast_signed();
+    let FileOptions { names, encoding, .. } = polycrystal.file();
+    let seed = polycrystal.grains().ids[grain.index()].cast_signed();
     let triangles: Vec<[u32; 3]> = surface.triangles().collect();
     let of_triangle = surface.parts.iter().flat_map(|part| surface.triangles_of(part).map(move |_| part));
     let parts: Vec<_> = of_triangle.collect();

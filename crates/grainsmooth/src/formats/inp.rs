@@ -10,7 +10,7 @@ use std::io::{self, Write};
 use glam::DVec3;
 
 use super::format::{Content, Format, HEAD, TEXT_CORNERS, TEXT_POINT, Writer};
-use crate::{Config, Polycrystal, Tessellated};
+use crate::{GrainAttributes, Polycrystal};
 
 /// A node and an element for each voxel, and its number in a set; or some three tetrahedra for each triangle, with half a node each.
 pub(super) const FORMAT: Format = Format {
@@ -40,10 +40,9 @@ const ONE_MATERIAL: &str = "GRAINS";
 /// orientations each grain has its own, by the crystal's first two axes. Materials, named as the phases are, and steps are for the user to
 /// say.
 fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
-    let (cells, config) = (&polycrystal.cells, &polycrystal.config);
-    config.write_comments("** ", out)?;
-    if config.file.voxels.is_some() {
-        return hexahedra::write(&polycrystal.label_grid()?, cells, config, out);
+    polycrystal.provenance().write_comments("** ", out)?;
+    if polycrystal.file().voxels.is_some() {
+        return hexahedra::write(&polycrystal.label_grid()?, polycrystal, out);
     }
     let mesh = polycrystal.volume_mesh.as_ref();
     let mesh =
@@ -52,28 +51,23 @@ fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// Writes the set of each phase, and of each grain its orientation and its section.
-fn write_sections(
-    grains: &[usize],
-    cells: &Tessellated,
-    config: &Config,
-    out: &mut dyn Write,
-) -> io::Result<()> {
-    let phase_of = cells.phase_of();
-    let names: Vec<String> = match &cells.phases {
-        Some(_) => cells.named_symmetries(config).into_iter().map(|(name, _)| name).collect(),
+fn write_sections(numbers: &[usize], grains: &GrainAttributes, out: &mut dyn Write) -> io::Result<()> {
+    let phase_of = grains.phase_of();
+    let names: Vec<String> = match &grains.phases {
+        Some(_) => grains.named_symmetries().into_iter().map(|(name, _)| name).collect(),
         None => vec![ONE_MATERIAL.to_owned()],
     };
-    for (phase, name) in names.iter().enumerate().filter(|_| cells.phases.is_some()) {
-        let members: Vec<&usize> = grains.iter().filter(|grain| phase_of[**grain] == phase).collect();
+    for (phase, name) in names.iter().enumerate().filter(|_| grains.phases.is_some()) {
+        let members: Vec<&usize> = numbers.iter().filter(|grain| phase_of[**grain] == phase).collect();
         if !members.is_empty() {
             writeln!(out, "*ELSET, ELSET=PHASE_{name}")?;
             members.iter().try_for_each(|grain| writeln!(out, "GRAIN_{grain},"))?;
         }
     }
-    for grain in grains {
+    for grain in numbers {
         let name = &names[phase_of[*grain]];
         let mut orientation = String::new();
-        if let Some(texture) = &cells.texture {
+        if let Some(texture) = &grains.texture {
             let [first, second] =
                 [DVec3::X, DVec3::Y].map(|axis| texture.orientations()[*grain].to_sample(axis));
             let numbers = [first.to_array(), second.to_array()].concat();

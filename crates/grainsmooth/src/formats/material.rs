@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use texture::CrystalSymmetry;
 
 use super::format::{Content, Format, HEAD, Writer};
-use crate::{Config, GrainTexture, Tessellated};
+use crate::{GrainAttributes, GrainTexture, Provenance};
 
 pub(super) const FORMAT: Format = Format {
     extension: "yaml",
@@ -17,7 +17,7 @@ pub(super) const FORMAT: Format = Format {
     beside: None,
     bytes: |size| HEAD + 160 * size.grains,
     write: Writer::File(|polycrystal, out| {
-        write(&polycrystal.cells, polycrystal.texture()?, &polycrystal.config, out)
+        write(polycrystal.grains(), polycrystal.texture()?, polycrystal.provenance(), out)
     }),
     write_grain: None,
 };
@@ -27,23 +27,23 @@ const ONE_PHASE: &str = "A";
 
 /// Writes the file. What mechanics a phase has is for its user to say.
 fn write(
-    cells: &Tessellated,
+    grains: &GrainAttributes,
     texture: &GrainTexture,
-    config: &Config,
+    provenance: Provenance<'_>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    config.write_comments("# ", out)?;
+    provenance.write_comments("# ", out)?;
     write!(out, "homogenization:\n  SX:\n    N_constituents: 1\n    mechanical: {{type: pass}}\nphase:\n")?;
-    let has_phases = cells.phases.is_some();
+    let has_phases = grains.phases.is_some();
     // In quotes, for names such as 2 and no are something else without.
     let named = |name: String| if has_phases { format!("\"{name}\"") } else { ONE_PHASE.to_owned() };
     let phases: Vec<(String, CrystalSymmetry)> =
-        cells.named_symmetries(config).into_iter().map(|(name, symmetry)| (named(name), symmetry)).collect();
+        grains.named_symmetries().into_iter().map(|(name, symmetry)| (named(name), symmetry)).collect();
     for (name, symmetry) in &phases {
         writeln!(out, "  {name}:\n    {}", lattice(*symmetry))?;
     }
     writeln!(out, "material:")?;
-    for (orientation, phase) in texture.orientations().iter().zip(cells.phase_of()) {
+    for (orientation, phase) in texture.orientations().iter().zip(grains.phase_of()) {
         let ([w, x, y, z], (name, _)) = (orientation.quaternion(), &phases[phase]);
         writeln!(
             out,

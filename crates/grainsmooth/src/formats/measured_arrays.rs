@@ -214,7 +214,7 @@ impl<'a> MeasuredArrays<'a> {
     fn sides(&self, boundary: &Boundary) -> [Option<usize>; 2] {
         let sides = boundary.sides_across(self.polycrystal.network.boundaries());
         let [first, second] = sides.map(|side| self.place_of(side.grain()?));
-        if self.polycrystal.config.file.names.reverses(boundary) { [second, first] } else { [first, second] }
+        if self.polycrystal.file().names.reverses(boundary) { [second, first] } else { [first, second] }
     }
 
     /// The place of a grain among the measured ones: those that are left.
@@ -233,7 +233,7 @@ impl<'a> MeasuredArrays<'a> {
     /// -1 where the file has the measured boundary's sides the other way round.
     fn sign(&self, boundary: &Boundary, measured: [Side; 2]) -> f64 {
         let is_copy = boundary.sides[0] != measured[0];
-        let is_reversed = self.polycrystal.config.file.names.reverses(boundary);
+        let is_reversed = self.polycrystal.file().names.reverses(boundary);
         if is_copy == is_reversed { 1.0 } else { -1.0 }
     }
 }

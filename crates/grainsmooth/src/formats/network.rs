@@ -14,12 +14,12 @@ use crate::vtk::write_vtk;
 use crate::vtk::{
     Array, Cells, Each, FieldEntry, FieldValue, ItemTuples, Items, PolyData, Values, VtkFormat,
 };
-use crate::{GrainPhases, GrainTexture, LabelGrid, Names, Parents, Polycrystal, Tessellated};
+use crate::{GrainAttributes, GrainPhases, GrainTexture, LabelGrid, Names, Parents, Polycrystal, Provenance};
 
 impl Polycrystal {
     /// Behind what formats without comments hold: who reads them stops before.
     pub(crate) fn write_settings_behind(&self, out: &mut dyn Write) -> io::Result<()> {
-        write!(out, "\n{}", self.config.to_toml())
+        write!(out, "\n{}", self.provenance().text())
     }
 
     pub(crate) fn surface(&self) -> io::Result<Surface<'_>> {
@@ -27,18 +27,17 @@ impl Polycrystal {
     }
 
     pub(crate) fn texture(&self) -> io::Result<&GrainTexture> {
-        self.cells.texture.as_ref().ok_or_else(|| io::Error::other("the grains have no orientations"))
+        self.grains().texture.as_ref().ok_or_else(|| io::Error::other("the grains have no orientations"))
     }
 
     pub(crate) fn label_grid(&self) -> io::Result<LabelGrid<'_>> {
-        let voxels =
-            self.config.file.voxels.ok_or_else(|| io::Error::other("no number of voxels is given"))?;
+        let voxels = self.file().voxels.ok_or_else(|| io::Error::other("no number of voxels is given"))?;
         Ok(LabelGrid::new(self, voxels))
     }
 
     pub(crate) fn write_vtk(&self, format: VtkFormat, out: &mut dyn Write) -> io::Result<()> {
         let level = self.network.finest();
-        let names = self.config.file.names;
+        let names = self.file().names;
         let (polylines, boundaries_of_lines) = boundary_polylines(level, self.network.boundaries(), names);
         let (cells, boundary_of_cell) = match &level.mesh {
             Mesh::Triangles(_) => (None, &level.boundary_of),
@@ -80,7 +79,7 @@ impl Polycrystal {
             name: tuples.name,
             values: Values::Items(Items { tuples, count, item: &boundary_of }),
         }));
-        let measured = self.config.file.arrays.then(|| MeasuredArrays::new(self, cells));
+        let measured = self.file().arrays.then(|| MeasuredArrays::new(self, cells));
         let (of_cells, of_points, normals);
         if let Some(measured) = &measured {
             normals = unit_normals(&self.points, &triangles);
@@ -99,13 +98,13 @@ impl Polycrystal {
         field.push(self.seed_ids());
         field.extend(self.grain_fields());
         let data = PolyData { points: &self.points, cells, point_arrays, cell_arrays, field };
-        write_vtk(&data, format, self.config.file.encoding, out)
+        write_vtk(&data, format, self.file().encoding, out)
     }
 
     /// What files hold of each grain's parent, phase and orientation, where it has them.
     pub(crate) fn grain_tuples(&self) -> Vec<ItemTuples> {
-        let names = self.config.file.names;
-        let Tessellated { parents, phases, texture, .. } = &self.cells;
+        let names = self.file().names;
+        let GrainAttributes { parents, phases, texture, .. } = self.grains();
         let mut tuples: Vec<ItemTuples> = parents.iter().map(Parents::array).collect();
         tuples.extend(phases.iter().map(GrainPhases::array));
         if let Some(texture) = texture {
@@ -118,13 +117,13 @@ impl Polycrystal {
     pub(crate) fn boundary_tuples(&self) -> Vec<ItemTuples> {
         let boundaries = self.network.boundaries();
         let sides = || boundaries.iter().map(|boundary| boundary.sides_across(boundaries));
-        let texture = self.cells.texture.as_ref();
+        let texture = self.grains().texture.as_ref();
         let mut tuples = texture.map_or_else(Vec::new, |texture| texture.boundary_arrays(sides()));
-        if !self.config.tensions.is_empty() {
+        if self.tensions.is_some() {
             tuples
                 .push(ItemTuples::numbers(TENSION, self.network.tensions().iter().map(|tension| [*tension])));
         }
-        if !self.config.mobilities.is_empty() {
+        if self.mobilities.is_some() {
             let mobilities = self.network.mobilities().iter();
             tuples.push(ItemTuples::numbers(MOBILITY, mobilities.map(|mobility| [*mobility])));
         }
@@ -134,7 +133,7 @@ impl Polycrystal {
     /// The number of the grain that lies beyond a boundary a period or more away; that of the exterior where there is none.
     fn periodic_neighbor(&self, boundary: &Boundary) -> i32 {
         let twin = boundary.twin.map(|twin| self.network.boundaries()[twin.boundary.index()].sides[0]);
-        self.config.file.names.side_number(twin.unwrap_or(Side::Exterior))
+        self.file().names.side_number(twin.unwrap_or(Side::Exterior))
     }
 
     /// Of each point, the one that it is a copy of, or itself.
@@ -144,13 +143,13 @@ impl Polycrystal {
 
     /// The number of each grain's seed.
     pub(crate) fn seed_ids(&self) -> FieldEntry {
-        let ids = self.cells.seed_ids.iter().map(|id| id.cast_signed()).collect();
+        let ids = self.grains().ids.iter().map(|id| id.cast_signed()).collect();
         FieldEntry { name: SEED_ID, value: FieldValue::Ids(ids) }
     }
 
     /// The parent, the phase and the orientation of each grain, where they have them.
     pub(crate) fn grain_fields(&self) -> impl Iterator<Item = FieldEntry> {
-        let Tessellated { parents, phases, texture, .. } = &self.cells;
+        let GrainAttributes { parents, phases, texture, .. } = self.grains();
         let arrays = texture.as_ref().map(GrainTexture::orientation_arrays);
         let entry = |tuples: ItemTuples| FieldEntry { name: tuples.name, value: FieldValue::Items(tuples) };
         let whole = parents.iter().map(Parents::array).chain(phases.iter().map(GrainPhases::array));
@@ -159,13 +158,16 @@ impl Polycrystal {
 
     /// What every VTK file says about itself.
     pub(crate) fn field(&self) -> Vec<FieldEntry> {
+        let provenance = self.provenance();
         let mut field = vec![
             text("Version", format!("grainsmooth {}", env!("CARGO_PKG_VERSION"))),
-            text("CommandLine", self.config.command_line()),
-            text("Config", self.config.to_toml()),
-            FieldEntry { name: "RandomSeed", value: FieldValue::Integer(self.config.random_seed) },
+            text("CommandLine", provenance.command_line().into_owned()),
         ];
-        if let Some(phases) = &self.cells.phases {
+        if let Provenance::Config(config) = provenance {
+            field.push(text("Config", config.to_toml()));
+            field.push(FieldEntry { name: "RandomSeed", value: FieldValue::Integer(config.random_seed) });
+        }
+        if let Some(phases) = &self.grains().phases {
             field.push(text("PhaseNames", phases.names().collect::<Vec<_>>().join(",")));
         }
         field

@@ -18,7 +18,7 @@ pub(super) const FORMAT: Format = Format {
     beside: None,
     bytes: |size| HEAD + 4 * size.voxels(),
     write: Writer::File(|polycrystal, out| {
-        write(&polycrystal.label_grid()?, polycrystal.config.file.names, out)?;
+        write(&polycrystal.label_grid()?, polycrystal.file().names, out)?;
         polycrystal.write_settings_behind(out)
     }),
     write_grain: None,

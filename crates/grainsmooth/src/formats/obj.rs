@@ -7,7 +7,7 @@ use voronoi::Dimension;
 
 use super::format::{Content, Format, TEXT_CORNERS, TEXT_POINT, Writer};
 use super::surface::{Surface, side_name, write_seed_comments};
-use crate::Config;
+use crate::Provenance;
 
 pub(super) const FORMAT: Format = Format {
     extension: "obj",
@@ -17,15 +17,20 @@ pub(super) const FORMAT: Format = Format {
     beside: None,
     bytes: |size| TEXT_POINT * size.mesh.points + TEXT_CORNERS * size.mesh.triangles,
     write: Writer::File(|polycrystal, out| {
-        write(&polycrystal.surface()?, &polycrystal.config, polycrystal.cells.renumbered(), out)
+        write(&polycrystal.surface()?, polycrystal.provenance(), polycrystal.grains().renumbered(), out)
     }),
-    write_grain: Some(|file, out| write(file.surface, &file.polycrystal.config, file.renumbered(), out)),
+    write_grain: Some(|file, out| write(file.surface, file.polycrystal.provenance(), file.renumbered(), out)),
 };
 
 /// Writes all points, in the fewest digits that give the same number back, then the boundaries.
-fn write(surface: &Surface<'_>, config: &Config, seed_ids: &[u32], out: &mut dyn Write) -> io::Result<()> {
+fn write(
+    surface: &Surface<'_>,
+    provenance: Provenance<'_>,
+    seed_ids: &[u32],
+    out: &mut dyn Write,
+) -> io::Result<()> {
     writeln!(out, "# grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
-    config.write_comments("# ", out)?;
+    provenance.write_comments("# ", out)?;
     write_seed_comments(seed_ids, "# ", out)?;
     for DVec3 { x, y, z } in surface.points.iter() {
         writeln!(out, "v {x:?} {y:?} {z:?}")?;

@@ -25,8 +25,8 @@ impl OrientationMap<'_> {
         write(&OrientationMap {
             grid: &polycrystal.label_grid()?,
             orientations: &polycrystal.orientations().map_err(io::Error::other)?,
-            phase_of: &polycrystal.cells.phase_of(),
-            phases: &polycrystal.cells.named_symmetries(&polycrystal.config),
+            phase_of: &polycrystal.grains().phase_of(),
+            phases: &polycrystal.grains().named_symmetries(),
         })
     }
 }

@@ -102,10 +102,15 @@ impl OutputDirectory {
     /// # Errors
     /// [`Error::FormatDimension`] in 2D.
     pub fn check_fits(&self, config: &Config) -> Result<(), Error> {
-        let dimension = Dimension::Three;
-        match config.dimension {
+        self.check_dimension(config.dimension)
+    }
+
+    pub(super) fn check_dimension(&self, dimension: Dimension) -> Result<(), Error> {
+        match dimension {
             Dimension::Three => Ok(()),
-            Dimension::Two => Err(Error::FormatDimension { path: self.path.clone(), dimension }),
+            Dimension::Two => {
+                Err(Error::FormatDimension { path: self.path.clone(), dimension: Dimension::Three })
+            }
         }
     }
 

@@ -130,22 +130,45 @@ impl OutputFormat {
     /// [`Error::FormatDimension`]; [`Error::NoVoxels`] for a format of voxels when their number is not given; [`Error::NoTexture`] for one
     /// of orientations where grains have none.
     pub fn check_fits(self, path: &Path, config: &Config) -> Result<(), Error> {
+        let to_write = ToWrite {
+            dimension: config.dimension,
+            has_voxels: config.file.voxels.is_some(),
+            has_orientations: config.has_texture(),
+            has_cells: !config.has_grains_of_several_cells(),
+        };
+        self.check_holds(path, &to_write)
+    }
+
+    /// Checks that the format can hold what there is to write.
+    ///
+    /// # Errors
+    /// As of [`Self::check_fits`].
+    pub(crate) fn check_holds(self, path: &Path, to_write: &ToWrite) -> Result<(), Error> {
+        let ToWrite { dimension, has_voxels, has_orientations, has_cells } = *to_write;
         let path = || path.to_owned();
         match (self.0.dimension, self.0.content) {
-            (Some(dimension), _) if dimension != config.dimension => {
-                Err(Error::FormatDimension { path: path(), dimension })
+            (Some(only), _) if only != dimension => {
+                Err(Error::FormatDimension { path: path(), dimension: only })
             }
-            (_, Content::Voxels(_)) if config.file.voxels.is_none() => Err(Error::NoVoxels { path: path() }),
-            (_, Content::Elements) if config.file.voxels.is_none() && config.dimension == Dimension::Two => {
+            (_, Content::Voxels(_)) if !has_voxels => Err(Error::NoVoxels { path: path() }),
+            (_, Content::Elements) if !has_voxels && dimension == Dimension::Two => {
                 Err(Error::NoVoxels { path: path() })
             }
-            (_, Content::Orientations) if !config.has_texture() => Err(Error::NoTexture { path: path() }),
-            (_, Content::Cells) if config.has_grains_of_several_cells() => {
-                Err(Error::CellsOfGrains { path: path() })
-            }
+            (_, Content::Orientations) if !has_orientations => Err(Error::NoTexture { path: path() }),
+            (_, Content::Cells) if !has_cells => Err(Error::CellsOfGrains { path: path() }),
             _ => Ok(()),
         }
     }
+}
+
+/// What formats may not be able to hold.
+pub(crate) struct ToWrite {
+    pub(crate) dimension: Dimension,
+    /// Whether the number of voxels is given.
+    pub(crate) has_voxels: bool,
+    pub(crate) has_orientations: bool,
+    /// Whether each grain is a convex cell.
+    pub(crate) has_cells: bool,
 }
 
 impl PartialEq for OutputFormat {

@@ -36,7 +36,7 @@ impl Polycrystal {
         measured: Option<&MeasuredArrays<'_>>,
         out: &mut dyn Write,
     ) -> io::Result<()> {
-        let names = self.config.file.names;
+        let names = self.file().names;
         let boundaries = self.network.boundaries();
         let (polylines, boundary_of) = boundary_polylines(self.network.finest(), boundaries, names);
         let ids: Vec<u32> = polylines.concat();
@@ -74,12 +74,12 @@ impl Polycrystal {
         }));
         data.cell_arrays.extend(of_lines.arrays());
         data.point_arrays.extend(of_points.arrays());
-        write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
+        write_vtk(&data, VtkFormat::Vtp, self.file().encoding, out)
     }
 
     /// The interior of each grain as triangles with points of their own.
     pub(super) fn write_plane_grains(&self, out: &mut dyn Write) -> io::Result<()> {
-        let names = self.config.file.names;
+        let names = self.file().names;
         let (mut points, mut triangles, mut place_of, mut measures) = (vec![], vec![], vec![], vec![]);
         for (grain, outline) in self.outlines() {
             let corners: Vec<DVec3> = outline.points.iter().map(|&id| self.points[id as usize]).collect();
@@ -98,7 +98,7 @@ impl Polycrystal {
         let measure = |triangle: usize| -> &PlaneMeasure { &measures[place_of[triangle]].1 };
         let grain_of = |triangle: usize| -> usize { measures[place_of[triangle]].0 };
         let number = |triangle: usize| names.number(GrainId(point_id(grain_of(triangle))));
-        let seed = |triangle: usize| self.cells.seed_ids[grain_of(triangle)].cast_signed();
+        let seed = |triangle: usize| self.grains().ids[grain_of(triangle)].cast_signed();
         let area = |triangle: usize| measure(triangle).area;
         let perimeter = |triangle: usize| measure(triangle).perimeter;
         let neighbors = |triangle: usize| measure(triangle).neighbors;
@@ -123,7 +123,7 @@ impl Polycrystal {
             let items = Items { tuples, count, item: &grain };
             Array { name: tuples.name, values: Values::Items(items) }
         }));
-        write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
+        write_vtk(&data, VtkFormat::Vtp, self.file().encoding, out)
     }
 
     /// The points where at least so many sides meet: 3 for triple points, 4 for quadruple points.
@@ -157,7 +157,7 @@ impl Polycrystal {
             cell_arrays: vec![Array { name: "Sides", values: Values::Int32Tuples(sides.tuples()) }],
             field: self.field(),
         };
-        write_vtk(&data, VtkFormat::Vtp, self.config.file.encoding, out)
+        write_vtk(&data, VtkFormat::Vtp, self.file().encoding, out)
     }
 
     /// The boundaries' points, in order with the first side on the left, and their numbers.

@@ -6,7 +6,7 @@ use voronoi::Dimension;
 
 use super::format::{Content, Format, Writer};
 use super::surface::{Surface, label, write_seed_comments};
-use crate::Config;
+use crate::Provenance;
 
 pub(super) const FORMAT: Format = Format {
     extension: "ply",
@@ -16,15 +16,20 @@ pub(super) const FORMAT: Format = Format {
     beside: None,
     bytes: |size| 24 * size.mesh.points + 25 * size.mesh.triangles,
     write: Writer::File(|polycrystal, out| {
-        write(&polycrystal.surface()?, &polycrystal.config, polycrystal.cells.renumbered(), out)
+        write(&polycrystal.surface()?, polycrystal.provenance(), polycrystal.grains().renumbered(), out)
     }),
-    write_grain: Some(|file, out| write(file.surface, &file.polycrystal.config, file.renumbered(), out)),
+    write_grain: Some(|file, out| write(file.surface, file.polycrystal.provenance(), file.renumbered(), out)),
 };
 
 /// Writes all points and triangles.
-fn write(surface: &Surface<'_>, config: &Config, seed_ids: &[u32], out: &mut dyn Write) -> io::Result<()> {
+fn write(
+    surface: &Surface<'_>,
+    provenance: Provenance<'_>,
+    seed_ids: &[u32],
+    out: &mut dyn Write,
+) -> io::Result<()> {
     writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
-    config.write_comments("comment ", out)?;
+    provenance.write_comments("comment ", out)?;
     write_seed_comments(seed_ids, "comment ", out)?;
     write!(
         out,

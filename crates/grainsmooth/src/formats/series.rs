@@ -5,11 +5,11 @@ use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use polycrystal::{Moving, Network, NetworkError, RelaxationStep, Relaxed};
+use polycrystal::{Junctions, Moving, Network, NetworkError, RelaxationStep, Relaxed};
 use voronoi::Tessellation;
 
 use super::blocks::escaped;
-use crate::{Error, Output, OutputFormat, Polycrystal, StagedFiles};
+use crate::{Error, Output, OutputFormat, Polycrystal, StagedFiles, Synthesis};
 
 /// The steps of a relaxation, every so many of them.
 #[derive(Debug, Clone)]
@@ -118,7 +118,8 @@ impl Series {
         output: &SeriesOutput,
         files: &mut StagedFiles,
     ) -> Result<(), Error> {
-        let Relaxed { level, time, .. } = polycrystal.relaxed;
+        let Some(Synthesis { relaxed, .. }) = polycrystal.synthesis() else { return Ok(()) };
+        let Relaxed { level, time, .. } = *relaxed;
         let finest = polycrystal.network.levels().len() - 1;
         let is_before = |frame: &&Frame| frame.level <= level && frame.time < time;
         let mut times = Vec::new();
@@ -166,8 +167,11 @@ pub fn write_collection(
 
 /// The network of cells on their way to those of a finished one.
 fn network_of(cells: &Tessellation, polycrystal: &Polycrystal) -> Result<Network, NetworkError> {
-    let (finished, junctions) = (&polycrystal.network, polycrystal.config.junctions);
-    let (network, _) = Network::new(cells, junctions, finished.levels().len() - 1)?;
-    let network = polycrystal.cells.law.apply(network)?;
+    let finished = &polycrystal.network;
+    let junctions = polycrystal.synthesis().map_or_else(Junctions::default, |made| made.config.junctions);
+    let (mut network, _) = Network::new(cells, junctions, finished.levels().len() - 1)?;
+    if let Some(Synthesis { cells, .. }) = polycrystal.synthesis() {
+        network = cells.law.apply(network)?;
+    }
     Ok(network.with_cell_volumes(finished.cell_volumes().to_vec()))
 }

@@ -7,7 +7,7 @@ use voronoi::Dimension;
 use super::format::{Content, Format, GrainSurface, Writer};
 use super::surface::{Surface, unit_normal};
 use crate::names::SEED_ID;
-use crate::{Config, StlEncoding};
+use crate::{Polycrystal, Provenance, StlEncoding};
 
 /// Every boundary once.
 pub(super) const FORMAT: Format = Format {
@@ -20,9 +20,7 @@ pub(super) const FORMAT: Format = Format {
         StlEncoding::Ascii => 270 * size.mesh.triangles,
         StlEncoding::Binary => 84 + 50 * size.mesh.triangles,
     },
-    write: Writer::File(|polycrystal, out| {
-        write(&polycrystal.surface()?, "network", &polycrystal.config, out)
-    }),
+    write: Writer::File(|polycrystal, out| write(&polycrystal.surface()?, "network", polycrystal, out)),
     write_grain: Some(write_grain),
 };
 
@@ -35,26 +33,32 @@ const HEADER_BYTES: usize = 80;
 /// Writes all triangles as one solid.
 fn write_grain(file: &GrainSurface<'_>, out: &mut dyn Write) -> io::Result<()> {
     let seed = file.renumbered().first().map_or(String::new(), |seed| format!(" {SEED_ID} {seed}"));
-    write(file.surface, &format!("grain{}{seed}", file.grain.0), &file.polycrystal.config, out)
+    write(file.surface, &format!("grain{}{seed}", file.grain.0), file.polycrystal, out)
 }
 
-fn write(surface: &Surface<'_>, name: &str, config: &Config, out: &mut dyn Write) -> io::Result<()> {
+fn write(
+    surface: &Surface<'_>,
+    name: &str,
+    polycrystal: &Polycrystal,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     if let Some(point) = surface.points.iter().find(|point| !point.as_vec3().is_finite()) {
         return Err(io::Error::other(format!(
             "{point} is too far out for STL's single precision; write .vtp instead"
         )));
     }
-    match config.file.stl {
-        StlEncoding::Binary => write_binary(surface, &title(name, config, HEADER_BYTES), out),
-        StlEncoding::Ascii => write_ascii(surface, name, &title(name, config, TITLE_BYTES), out),
+    let provenance = polycrystal.provenance();
+    match polycrystal.file().stl {
+        StlEncoding::Binary => write_binary(surface, &title(name, provenance, HEADER_BYTES), out),
+        StlEncoding::Ascii => write_ascii(surface, name, &title(name, provenance, TITLE_BYTES), out),
     }
 }
 
 /// The name of a solid, and in what its settings differ from the default ones if there is room: nowhere else is any.
-fn title(name: &str, config: &Config, room: usize) -> String {
+fn title(name: &str, provenance: Provenance<'_>, room: usize) -> String {
     let title = format!("{name}, grainsmooth {}", env!("CARGO_PKG_VERSION"));
-    let with_settings = format!("{title} {}", config.differences());
-    if with_settings.len() <= room && !with_settings.contains('\n') { with_settings } else { title }
+    let with_settings = provenance.differences().map(|differences| format!("{title} {differences}"));
+    with_settings.filter(|text| text.len() <= room && !text.contains('\n')).unwrap_or(title)
 }
 
 fn write_binary(surface: &Surface<'_>, title: &str, out: &mut dyn Write) -> io::Result<()> {

@@ -3,6 +3,7 @@
 //! <https://neper.info/doc/fileformat.html>. Neper counts from 1; here everything counts from 0.
 
 use std::collections::BTreeMap;
+use std::io;
 
 use glam::DVec3;
 use voronoi::{CellId, Dimension, Shift, Side};
@@ -26,7 +27,9 @@ pub(super) const FORMAT: Format = Format {
     beside: None,
     bytes: |size| size.grains * (7 * TEXT_POINT + 14 * TEXT_CORNERS + 8 * 150),
     write: Writer::File(|polycrystal, out| {
-        write(&Tess::new(&polycrystal.cells), polycrystal.cells.texture.as_ref(), out)?;
+        let synthesis =
+            polycrystal.synthesis().ok_or_else(|| io::Error::other("the grains come from no cells"))?;
+        write(&Tess::new(&synthesis.cells), polycrystal.grains().texture.as_ref(), out)?;
         polycrystal.write_settings_behind(out)
     }),
     write_grain: None,
@@ -58,8 +61,8 @@ impl Tess {
         let seeds = tessellation.seeds().iter().zip(&cells.weights);
         let mut tess = Self {
             dimension: domain.dimension(),
-            ids: cells.renumbered().to_vec(),
-            groups: match &cells.phases {
+            ids: cells.grains.renumbered().to_vec(),
+            groups: match &cells.grains.phases {
                 Some(phases) => {
                     (0..tessellation.cell_count()).map(|cell| phases.number(cell).cast_unsigned()).collect()
                 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::format::{Content, Format, HEAD, Writer};
 use crate::vtk::{Array, Blocks, ImageData, ItemBlocks, ItemTuples, Values, VtkEncoding, write_vti};
-use crate::{FileOptions, GrainPhases, LabelGrid, Polycrystal, Tessellated};
+use crate::{FileOptions, GrainAttributes, GrainPhases, LabelGrid, Polycrystal};
 
 pub(super) const FORMAT: Format = Format {
     extension: "vti",
@@ -29,7 +29,7 @@ pub(super) const FORMAT: Format = Format {
 
 fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let grid = polycrystal.label_grid()?;
-    let FileOptions { names, encoding, .. } = polycrystal.config.file;
+    let FileOptions { names, encoding, .. } = polycrystal.file();
     let make = |slab: usize| {
         grid.slab(slab).into_par_iter().map(|label| names.voxel_number(label)).collect::<Vec<i32>>()
     };
@@ -38,7 +38,7 @@ fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let mut cell_arrays = vec![Array { name: names.voxel(), values: Values::Int32Blocks(blocks) }];
     let grain = |label: Side| label.grain().map(|grain| grain.index());
     let items = |slab: usize| grid.slab(slab).into_par_iter().map(grain).collect::<Vec<_>>();
-    let Tessellated { phases, texture, .. } = &polycrystal.cells;
+    let GrainAttributes { phases, texture, .. } = polycrystal.grains();
     let mut tuples: Vec<ItemTuples> = phases.iter().map(GrainPhases::array).collect();
     tuples.extend(texture.iter().flat_map(|texture| texture.color_arrays(names)));
     let count = blocks.count;

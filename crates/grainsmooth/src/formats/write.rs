@@ -7,12 +7,21 @@ use rayon::prelude::*;
 
 use super::format::{GrainSurface, Writer};
 use super::output::{Output, OutputDirectory};
-use super::output_format::OutputFormat;
+use super::output_format::{OutputFormat, ToWrite};
 use crate::error::Error;
 use crate::files::staged_files::{StagedFiles, write_together};
-use crate::run::pipeline::Polycrystal;
+use crate::run::polycrystal::Polycrystal;
 
 impl Polycrystal {
+    fn to_write(&self) -> ToWrite {
+        ToWrite {
+            dimension: self.dimension(),
+            has_voxels: self.file().voxels.is_some(),
+            has_orientations: self.grains().texture.is_some(),
+            has_cells: self.synthesis().is_some_and(|made| !made.config.has_grains_of_several_cells()),
+        }
+    }
+
     /// Writes the network, every boundary and every point once; its voxels; or its flat cells.
     ///
     /// In the plane each boundary is one polyline. VTK files are written with the arrays `FaceLabels`, `BoundaryId`,
@@ -33,7 +42,7 @@ impl Polycrystal {
     /// # Errors
     /// [`Error::WriteOutput`]; [`Error::OutputTwice`]; as of [`Output::check_fits`].
     pub fn stage(&self, output: &Output, files: &mut StagedFiles) -> Result<(), Error> {
-        output.check_fits(&self.config)?;
+        output.format().check_holds(output.path(), &self.to_write())?;
         match output.format().writer() {
             Writer::File(write) => output.stage(files, |out| write(self, out)),
             Writer::Files(stage) => stage(self, &output.as_format(()), files),
@@ -56,7 +65,7 @@ impl Polycrystal {
     /// # Errors
     /// [`Error::WriteOutput`]; [`Error::OutputTwice`]; [`Error::FormatDimension`] in 2D.
     pub fn stage_grains(&self, directory: &OutputDirectory, files: &mut StagedFiles) -> Result<(), Error> {
-        directory.check_fits(&self.config)?;
+        directory.check_dimension(self.dimension())?;
         let failed = |cause| Error::WriteOutput { path: directory.path().to_owned(), cause };
         let network = self.surface().map_err(failed)?;
         let parts = network.parts_of_grains(self.network.grain_count());

@@ -85,7 +85,7 @@ impl Coloring {
 
     /// The colours of a polycrystal, whose grains have orientations where the colours need them.
     pub(crate) fn paint(self, polycrystal: &Polycrystal) -> Paint {
-        if let (Some(axis), Some(texture)) = (self.sample_axis(), &polycrystal.cells.texture) {
+        if let (Some(axis), Some(texture)) = (self.sample_axis(), &polycrystal.grains().texture) {
             let grains = texture.colors(axis).map(|color| color.map(|channel| f64::from(channel) / 255.0));
             let legend =
                 Legend::Directions { title: self.name().to_owned(), symmetries: texture.symmetries() };
@@ -128,10 +128,10 @@ fn viridis(title: &str, values: Vec<f64>) -> Paint {
 fn phases(polycrystal: &Polycrystal) -> Paint {
     // After the last colour the first comes again.
     let color = |phase: usize| channels(TABLEAU10[phase % TABLEAU10.len()]);
-    let cells = &polycrystal.cells;
-    let names = cells.phases.iter().flat_map(|phases| phases.names());
+    let grains = polycrystal.grains();
+    let names = grains.phases.iter().flat_map(|phases| phases.names());
     Paint {
-        grains: cells.phase_of().into_iter().map(color).collect(),
+        grains: grains.phase_of().into_iter().map(color).collect(),
         boundaries: None,
         legend: Some(Legend::Names((0..).map(color).zip(names.map(str::to_owned)).collect())),
     }
@@ -141,7 +141,7 @@ fn phases(polycrystal: &Polycrystal) -> Paint {
 fn disorientations(polycrystal: &Polycrystal) -> Paint {
     let network = &polycrystal.network;
     let angle = |boundary: &Boundary| {
-        let found = polycrystal.cells.texture.as_ref()?.disorientation(boundary.sides)?;
+        let found = polycrystal.grains().texture.as_ref()?.disorientation(boundary.sides)?;
         Some(found.angle)
     };
     let angles: Vec<Option<f64>> = network.boundaries().iter().map(angle).collect();

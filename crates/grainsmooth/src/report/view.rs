@@ -38,13 +38,13 @@ pub(super) fn view(polycrystal: &Polycrystal) -> io::Result<String> {
 /// What is known of the grains.
 fn columns(polycrystal: &Polycrystal, network: &ShownNetwork) -> Vec<Column> {
     let mut columns = columns_of_shape(network);
-    let cells = &polycrystal.cells;
-    if cells.phases.is_some() {
-        let phases = cells.phase_of();
+    let grains = polycrystal.grains();
+    if grains.phases.is_some() {
+        let phases = grains.phase_of();
         let kinds = network.ids.iter().map(|id| u32::try_from(*phases.get(*id as usize)?).ok());
         columns.push(Column { name: "phase".to_owned(), values: Values::Kinds(kinds.collect()) });
     }
-    if let Some(texture) = &cells.texture {
+    if let Some(texture) = &grains.texture {
         for (axis, direction) in [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)] {
             let all: Vec<[u8; 3]> = texture.colors(direction).collect();
             let colors = network.ids.iter().map(|id| all[*id as usize]).collect();

@@ -34,7 +34,7 @@ impl FailedGrain {
         let (grain, diameter) = sized.min_by(|a, b| a.1.total_cmp(b.1))?;
         Some(Self {
             grain,
-            seed: cells.seed_ids[grain as usize],
+            seed: cells.grains.ids[grain as usize],
             diameter: *diameter,
             share: diameter / EquivalentDiameters::new(dimension, &diameters).mean,
             is_smallest: named.is_empty(),
@@ -85,6 +85,6 @@ mod tests {
         assert!(grows.to_string().ends_with(&format!("; {thin}; --relax 0.005 works")), "{grows}");
         let merged = tessellate(&Config { min_diameter: 0.2, ..config }, &|_, _, _| ()).unwrap();
         assert_eq!(merged.merged_seeds, [3]);
-        assert_eq!(merged.seed_ids, [0, 1, 2, 4, 5, 6]);
+        assert_eq!(merged.grains.ids, [0, 1, 2, 4, 5, 6]);
     }
 }

@@ -5,19 +5,23 @@ use std::borrow::Cow;
 use polycrystal::{Measures, Side};
 use texture::{Orientation, Pair};
 
-use super::pipeline::Polycrystal;
+use super::origin::Origin;
+use super::polycrystal::Polycrystal;
+use crate::config::Config;
 use crate::error::Error;
 use crate::grains::texture::GrainTexture;
 
 impl Polycrystal {
     /// Swaps orientations toward the histogram of disorientations that is asked for, if one is.
     pub(crate) fn fit_misorientations(&mut self) {
-        if self.cells.texture.as_ref().is_none_or(|texture| texture.target().is_none()) {
+        if self.grains().texture.as_ref().is_none_or(|texture| texture.target().is_none()) {
             return;
         }
         let pairs = self.neighbor_pairs();
-        if let Some(texture) = &mut self.cells.texture {
-            texture.swap(&pairs, self.network.cell_volumes(), self.config.random_seed);
+        if let Origin::Synthetic(synthesis) = &mut self.origin
+            && let Some(texture) = &mut synthesis.cells.grains.texture
+        {
+            texture.swap(&pairs, self.network.cell_volumes(), synthesis.config.random_seed);
         }
     }
 
@@ -41,15 +45,17 @@ impl Polycrystal {
         }
     }
 
-    /// The orientation of each grain: random by the config's seed where no texture is asked for, as maps need some.
+    /// The orientation of each grain: random where none are known, as maps need some.
     pub(crate) fn orientations(&self) -> Result<Cow<'_, [Orientation]>, Error> {
-        match &self.cells.texture {
+        match &self.grains().texture {
             Some(texture) => Ok(Cow::Borrowed(texture.orientations())),
             None => {
                 let volumes = self.network.cell_volumes();
-                let textures = self.config.textures_or_random()?;
-                let texture_of = self.cells.phase_of();
-                let drawn = GrainTexture::draw(textures, texture_of, volumes, self.config.random_seed);
+                let config =
+                    self.synthesis().map_or_else(Cow::<Config>::default, |made| Cow::Borrowed(&made.config));
+                let textures = config.textures_or_random()?;
+                let texture_of = self.grains().phase_of();
+                let drawn = GrainTexture::draw(textures, texture_of, volumes, config.random_seed);
                 Ok(Cow::Owned(drawn.orientations().to_vec()))
             }
         }

@@ -1,24 +1,17 @@
 //! From a config to a smooth, validated network.
 
-use std::time::{Duration, Instant};
-
 use glam::DVec3;
 use polycrystal::{
-    AngleStatistics, Attempt, Balance, Boundary, BoxCut, Certificate, Collapsed, HerringResidual, MeshSize,
-    Network, NetworkError, RelaxedCells, remove_short_edges,
-};
-use polycrystal::{
-    GrownCells, GrowthRecipe, NetworkRecipe, Reconnections, Relaxation, RelaxationStep, Relaxed, Vanished,
-    Volumes, WeightedAngle,
-};
-use polycrystal::{Measures, RegularCells, Side, measure_network};
-use polycrystal::{
-    angles_between_boundaries, dihedral_angles, grow_cells, herring_residual, regular_cells, relax_cells,
-    relax_watched, validate,
+    AngleStatistics, Attempt, Boundary, Certificate, Collapsed, GrownCells, GrowthRecipe, MeshSize, Network,
+    NetworkError, NetworkRecipe, RegularCells, Relaxation, RelaxationStep, Relaxed, RelaxedCells, Vanished,
+    Volumes, WeightedAngle, angles_between_boundaries, dihedral_angles, grow_cells, herring_residual,
+    regular_cells, relax_cells, relax_watched, remove_short_edges, validate,
 };
 use voronoi::{Dimension, Tessellation};
 
-use super::elements_reached::ElementsReached;
+use super::origin::{Origin, Synthesis};
+use super::polycrystal::Polycrystal;
+use super::regularization::{Reconnected, Regularization};
 use super::stage::{Clock, Progress, Stage};
 use super::tessellated::{Tessellated, grain_volumes, tessellate};
 use super::topology::Topology;
@@ -26,8 +19,7 @@ use crate::error::failure::Growth;
 use crate::figures::significant::two_digits_down;
 use crate::memory::{ControlMesh, LABEL_BYTES, LevelSize, available_memory, check_levels};
 use crate::seeds::count::seed_count;
-use crate::volume_mesh::VolumeMesh;
-use crate::{BoundaryLaw, Config, Error, Failure, LawReached, PeriodicCut, TensionsReached};
+use crate::{BoundaryLaw, Config, Error, Failure};
 
 /// Factor by which each time that is tried for grains that grow too long is shorter than the last, and how many are tried.
 const SHORTER: f64 = 0.6;
@@ -35,139 +27,6 @@ const SHORTER_TIMES: usize = 12;
 
 /// How often the grains of given shapes at which relaxation fails get rounder ones. Of 200 grains of 3:1:1 some take one round.
 const MOST_ROUNDINGS: usize = 10;
-
-/// A finished polycrystal: a valid network with the points of its finest level.
-#[derive(Debug, Clone)]
-pub struct Polycrystal {
-    /// What was asked for.
-    pub config: Config,
-    /// The flat cells that the grains come from.
-    pub cells: Tessellated,
-    /// Connectivity of all levels.
-    pub network: Network,
-    /// Points of the finest level.
-    pub points: Vec<DVec3>,
-    /// What relaxation gave, before the last subdivisions: points to move by hand, of whole grains.
-    pub relaxed: Relaxed,
-    /// How far the cells were regularised.
-    pub regularization: Regularization,
-    /// How many faces grains have and how many meet, before a periodic box is cut.
-    pub topology: Topology,
-    /// What regularisation took out, or was drawn together where the topology changed.
-    pub collapsed: Collapsed,
-    /// How relaxation changed the topology; nothing where that stayed.
-    pub reconnected: Option<Reconnected>,
-    /// The grains that vanished while grains grew. Others keep their numbers.
-    pub vanished: Vec<Vanished>,
-    /// What was tried before this result, and why it was given up.
-    pub attempts: Vec<Attempt>,
-    /// How far triple lines are from rest, if boundaries meet anywhere; of grains cut at a periodic box, before the cut.
-    pub residual: Option<HerringResidual>,
-    /// The tensions of boundaries, where laws of them are asked for; of grains cut at a periodic box, before the cut.
-    pub tensions: Option<TensionsReached>,
-    /// Mobilities, where laws are asked for.
-    pub mobilities: Option<LawReached>,
-    /// Angles between boundaries of the flat network, before relaxation.
-    pub flat_angles: Vec<WeightedAngle>,
-    /// Their statistics, if boundaries meet inside the domain.
-    pub angles_before: Option<AngleStatistics>,
-    /// What validation found: the angles of the finished network, volumes and how true they are.
-    pub validation: Certificate,
-    /// What became of a wish for elements of a size.
-    pub elements: Option<ElementsReached>,
-    /// Tetrahedra that fill the grains, where these were filled.
-    pub volume_mesh: Option<VolumeMesh>,
-    /// Time that each stage took.
-    pub times: Vec<(Stage, Duration)>,
-}
-
-impl Polycrystal {
-    /// What the network is like. Where it is cut at a periodic box, tensions are not known to be at rest beside the cut; where it is
-    /// stretched, nowhere.
-    pub(crate) fn measures(&self) -> Measures {
-        let mut measures = measure_network(&self.network, &self.points);
-        if self.is_stretched() {
-            match &mut measures {
-                Measures::Space(space) => space.triple_lines.iter_mut().for_each(|line| line.residual = None),
-                Measures::Plane(plane) => {
-                    plane.triple_points.iter_mut().for_each(|point| point.residual = None)
-                }
-            }
-        }
-        if self.config.periodic_cut == PeriodicCut::Box && self.config.periodic.any() {
-            let is_cut = |sides: &[Side]| sides.contains(&Side::Exterior);
-            match &mut measures {
-                Measures::Space(space) => {
-                    let cut = space.triple_lines.iter_mut().filter(|line| is_cut(&line.sides));
-                    cut.for_each(|line| line.residual = None);
-                }
-                Measures::Plane(plane) => {
-                    let cut = plane.triple_points.iter_mut().filter(|point| is_cut(&point.sides));
-                    cut.for_each(|point| point.residual = None);
-                }
-            }
-        }
-        measures
-    }
-
-    /// Whether grains are stretched in the end.
-    pub(crate) fn is_stretched(&self) -> bool {
-        self.config.stretch() != DVec3::ONE
-    }
-
-    /// The points of the finest level before they were stretched.
-    pub(crate) fn unstretched_points(&self) -> Vec<DVec3> {
-        let stretch = self.config.stretch();
-        self.points.iter().map(|point| point / stretch).collect()
-    }
-
-    /// The grains as [`Config::aspect_ratio`] stretches them. What was found of angles, triangles and tensions stays that of the
-    /// frame in which they were at rest.
-    #[must_use]
-    pub fn stretched_if_asked(mut self) -> Self {
-        if !self.is_stretched() {
-            return self;
-        }
-        let stretch = self.config.stretch();
-        for points in [&mut self.points, &mut self.relaxed.points] {
-            points.iter_mut().for_each(|point| *point *= stretch);
-        }
-        self.network = self.network.stretched(stretch);
-        self.cells = self.cells.stretched(&self.config);
-        self
-    }
-
-    /// The grains of a periodic box cut at its walls, as [`PeriodicCut::Box`](crate::PeriodicCut::Box) asks; others as they are.
-    ///
-    /// # Errors
-    /// As of [`Network::cut_at_box`].
-    pub fn cut_if_asked(mut self) -> Result<Self, Error> {
-        if self.config.periodic_cut == PeriodicCut::Wrap || !self.network.domain().is_periodic() {
-            return Ok(self);
-        }
-        let volumes = self.network.cell_volumes().to_vec();
-        let start = Instant::now();
-        match self.network.cut_at_box(&self.points, self.relaxed.is_flat) {
-            Ok(BoxCut { network, points, attempts }) => {
-                (self.network, self.points) = (network.with_cell_volumes(volumes), points);
-                self.attempts.extend(attempts);
-            }
-            Err(error) => return Err(Failure::new(error, self.attempts, &self.cells).into()),
-        }
-        self.network = self.cells.law.apply(self.network)?;
-        self.add_time(Stage::Subdivision, start.elapsed());
-        let start = Instant::now();
-        match validate(&self.network, &self.points) {
-            Ok(validation) => self.validation = validation,
-            Err(faults) => {
-                let error = NetworkError::Invalid(faults);
-                return Err(Failure::new(error, self.attempts, &self.cells).into());
-            }
-        }
-        self.add_time(Stage::Validation, start.elapsed());
-        Ok(self)
-    }
-}
 
 /// Computes a polycrystal: its cells, then all that [`smooth`] does.
 ///
@@ -281,34 +140,39 @@ pub fn smooth_watched(
     attempts.extend(relaxed.given_up.clone());
     let residual = clock.time(Stage::Validation, || herring_residual(&network, &points));
     let times = clock.times;
-    let topology = Topology::new(&cells, tessellation, &network);
+    let topology = Topology::new(Some(&cells.face_counts(tessellation)), &network);
     let config = config.clone();
-    let mut polycrystal = Polycrystal {
+    let synthesis = Synthesis {
         config,
         cells,
-        network,
-        points,
         relaxed,
         regularization,
-        topology,
         collapsed,
         reconnected,
         vanished,
+        flat_angles,
+        angles_before,
+    };
+    let mut polycrystal = Polycrystal {
+        origin: Origin::Synthetic(Box::new(synthesis)),
+        network,
+        points,
+        topology,
         attempts,
         residual,
         tensions: None,
         mobilities: None,
+        validation,
         elements: None,
         volume_mesh: None,
-        flat_angles,
-        angles_before,
-        validation,
         times,
     };
     polycrystal.fit_misorientations();
-    let law = &polycrystal.cells.law;
-    polycrystal.tensions = law.tensions_reached(&polycrystal.network, || polycrystal.measures());
-    polycrystal.mobilities = law.mobilities_reached(&polycrystal.network);
+    if let Some(Synthesis { cells, .. }) = polycrystal.synthesis() {
+        let tensions = cells.law.tensions_reached(&polycrystal.network, || polycrystal.measures());
+        let mobilities = cells.law.mobilities_reached(&polycrystal.network);
+        (polycrystal.tensions, polycrystal.mobilities) = (tensions, mobilities);
+    }
     Ok(polycrystal)
 }
 
@@ -375,78 +239,6 @@ fn time_that_works(
     None
 }
 
-/// How relaxation changed the topology.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reconnected {
-    /// How often grains came together and parted.
-    pub reconnections: Reconnections,
-    /// How near the network came to equilibrium, where that was asked for.
-    pub balance: Option<Balance>,
-}
-
-/// What becomes of short edges of the cells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Regularization {
-    /// Grains come together and part there as tension has it.
-    ByEnergy,
-    /// What is short, and what relaxation would make so: the best triangles.
-    Foreseeing,
-    /// What is short.
-    Plain,
-    /// What is shorter by some halvings.
-    Shorter(u8),
-    /// Nothing.
-    None,
-}
-
-impl Regularization {
-    /// A name for programs.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::ByEnergy => "by_energy",
-            Self::Foreseeing => "full",
-            Self::Plain => "short_edges",
-            Self::Shorter(_) => "shorter_edges",
-            Self::None => "none",
-        }
-    }
-
-    fn in_words(self) -> &'static str {
-        match self {
-            Self::ByEnergy => "letting grains switch neighbours",
-            Self::Foreseeing => "cells without edges that are or become short",
-            Self::Plain => "cells without short edges",
-            Self::Shorter(_) => "cells without still shorter edges",
-            Self::None => "cells as they are",
-        }
-    }
-
-    /// Whether less was taken out than is usual where regularisation is asked for.
-    pub(crate) fn fell_back(self, config: &Config) -> bool {
-        match self {
-            Self::ByEnergy | Self::Foreseeing => false,
-            // Where grains are of several cells, those are not what relaxation is foreseen of.
-            Self::Plain => !config.has_grains_of_several_cells(),
-            Self::Shorter(_) => true,
-            Self::None => config.effective_regularize() > 0.0,
-        }
-    }
-
-    /// What to try, one after the other: where much is taken out, in rare places relaxation makes boundaries fold or cross.
-    fn tries(config: &Config) -> &'static [Self] {
-        match config.effective_regularize() {
-            _ if config.lets_grains_vanish() => &[Self::ByEnergy],
-            _ if config.lets_topology_change() => {
-                &[Self::ByEnergy, Self::Foreseeing, Self::Plain, Self::None]
-            }
-            0.0 => &[Self::None],
-            _ if config.grain_shapes.is_some() => &[Self::Plain],
-            _ if config.has_grains_of_several_cells() => &[Self::Plain, Self::Shorter(1), Self::Shorter(2)],
-            _ => &[Self::Foreseeing, Self::Plain, Self::None],
-        }
-    }
-}
-
 /// A valid network and how it came about, as [`Polycrystal`] has it.
 struct Smoothed {
     network: Network,
@@ -483,8 +275,7 @@ fn smooth_regularized(
     }
     let (mut network, flat, collapsed) =
         clock.time(Stage::Network, || network(config, cells, tessellation, regularization, attempts))?;
-    let angles_before = dihedral_angles(&network, network.control_mesh(), &flat);
-    let flat_angles = angles_between_boundaries(&network, network.control_mesh(), &flat);
+    let (flat_angles, angles_before) = flat_angles(&network, &flat);
     let relaxed = clock.time(Stage::Relaxation, || {
         relax_watched(&network, &flat, &config.relaxation_of_kept_topology(), config.volumes, watch)
     })?;
@@ -509,6 +300,12 @@ fn smooth_regularized(
     })
 }
 
+/// Angles between boundaries of flat cells, and their statistics.
+fn flat_angles(of_cells: &Network, flat: &[DVec3]) -> (Vec<WeightedAngle>, Option<AngleStatistics>) {
+    let mesh = of_cells.control_mesh();
+    (angles_between_boundaries(of_cells, mesh, flat), dihedral_angles(of_cells, mesh, flat))
+}
+
 /// The network of cells of the plane that grow, whatever vanishes on the way.
 fn smooth_by_growth(
     config: &Config,
@@ -519,8 +316,7 @@ fn smooth_by_growth(
 ) -> Result<Smoothed, NetworkError> {
     let Relaxation::Time(time) = config.effective_relaxation() else { unreachable!("growth is for a time") };
     let (of_cells, flat) = clock.time(Stage::Network, || Network::new(tessellation, config.junctions, 0))?;
-    let angles_before = dihedral_angles(&of_cells, of_cells.control_mesh(), &flat);
-    let flat_angles = angles_between_boundaries(&of_cells, of_cells.control_mesh(), &flat);
+    let (flat_angles, angles_before) = flat_angles(&of_cells, &flat);
     let (tension, mobility) =
         (|boundary: &Boundary| law.tension(boundary), |boundary: &Boundary| law.mobility(boundary));
     let recipe = GrowthRecipe { levels: config.levels as usize, tension: &tension, mobility: &mobility };
@@ -551,8 +347,7 @@ fn smooth_by_energy(
 ) -> Result<Smoothed, NetworkError> {
     let Config { face_mesh, junctions, levels, .. } = *config;
     let (of_cells, flat) = clock.time(Stage::Network, || Network::new(tessellation, junctions, 0))?;
-    let angles_before = dihedral_angles(&of_cells, of_cells.control_mesh(), &flat);
-    let flat_angles = angles_between_boundaries(&of_cells, of_cells.control_mesh(), &flat);
+    let (flat_angles, angles_before) = flat_angles(&of_cells, &flat);
     let tension = |boundary: &Boundary| law.tension(boundary);
     let recipe = NetworkRecipe { face_mesh, junctions, levels: levels as usize, tension: &tension };
     let relaxed_cells = clock.time(Stage::Relaxation, || {

@@ -2,41 +2,45 @@
 
 use std::time::Instant;
 
-use glam::BVec3;
 use polycrystal::{ElementSize, Remeshed};
 
 use super::elements_reached::ElementsReached;
-use super::pipeline::Polycrystal;
+use super::polycrystal::Polycrystal;
 use super::stage::Stage;
-use crate::{Error, Failure, PeriodicCut};
+use crate::{ElementOptions, Error};
 
 /// Length of edges of the smooth network, in units of the size of elements, beyond which it is too coarse: with 0.8 there were four times as many
 /// bad tetrahedra as with 0.4.
 const LONGEST: f64 = 0.5;
 
 impl Polycrystal {
-    /// Remeshes boundaries where [`ElementOptions`](crate::ElementOptions) ask for it; others stay as they are.
+    /// Remeshes boundaries where the config's [`ElementOptions`] ask for it; others stay as they are.
     ///
     /// # Errors
     /// [`Error::CoarseReference`] where the finest level has too long edges for elements of that size; as of [`Network::remeshed`](polycrystal::Network::remeshed).
-    pub fn remeshed_if_asked(mut self) -> Result<Self, Error> {
-        let options = self.config.elements;
+    pub fn remeshed_if_asked(self) -> Result<Self, Error> {
+        match self.synthesis().map(|synthesis| synthesis.config.elements) {
+            Some(options) => self.remeshed(&options),
+            None => Ok(self),
+        }
+    }
+
+    /// Remeshes boundaries where `options` ask for it; others stay as they are.
+    ///
+    /// # Errors
+    /// As of [`Self::remeshed_if_asked`].
+    pub fn remeshed(mut self, options: &ElementOptions) -> Result<Self, Error> {
         let diameter = self.diameter_statistics().mean;
         let per_grain = options.elements_per_grain.map(|count| diameter / count);
         let Some(length) = options.element_size.or(per_grain) else { return Ok(self) };
         let mean = self.network.mean_edge_length(&self.points);
         if mean > LONGEST * length {
             let coarser = mean / (LONGEST * length);
-            return Err(Error::CoarseReference {
-                mean,
-                length,
-                levels: more_levels(self.config.levels, coarser),
-            });
+            return Err(Error::CoarseReference { mean, length, levels: more_levels(self.level(), coarser) });
         }
         let growth = options.size_growth.unwrap_or(ElementSize::GROWTH);
         let size = ElementSize { length, growth, of_radius: options.adapt_curvature };
-        let is_cut = self.config.periodic_cut == PeriodicCut::Box;
-        let cut = if is_cut { self.config.periodic } else { BVec3::FALSE };
+        let cut = self.axes_cut_at_box();
         let start = Instant::now();
         match self.network.remeshed(&self.points, &size, cut) {
             Ok(Remeshed { network, points, certificate, refinements }) => {
@@ -47,7 +51,7 @@ impl Polycrystal {
                 self.validation.largest_volume_error = certificate.largest_volume_error;
                 (self.network, self.points) = (network, points);
             }
-            Err(error) => return Err(Failure::new(error, self.attempts, &self.cells).into()),
+            Err(error) => return Err(self.failure(error)),
         }
         self.add_time(Stage::Remeshing, start.elapsed());
         Ok(self)

@@ -1,13 +1,11 @@
 //! From a config to its seeds and flat cells.
 
-use std::borrow::Cow;
 use std::time::Duration;
 
 use glam::DVec3;
 use polycrystal::{FaceMesh, GrainId, Junctions, Network, NetworkError};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use texture::CrystalSymmetry;
 use voronoi::volumes::{
     GrainDiagram, GrainShape, PowerDiagram, VolumesError, place_ellipsoids, place_spheres,
 };
@@ -21,9 +19,9 @@ use crate::memory::{available_memory, check_cells};
 use crate::seeds::count::seed_count;
 use crate::seeds::random::unit_fraction;
 use crate::{
-    BoundaryLaw, Config, EquivalentDiameters, Error, FileSeed, FileSeeds, GrainCells, GrainPhases,
-    GrainShapes, GrainSizes, GrainTexture, Parents, SeedPlace, SeedSource, poisson_disc_seeds, random_seeds,
-    read_seed_file,
+    BoundaryLaw, Config, EquivalentDiameters, Error, FileSeed, FileSeeds, GrainAttributes, GrainCells,
+    GrainPhases, GrainShapes, GrainSizes, GrainTexture, SeedPlace, SeedSource, poisson_disc_seeds,
+    random_seeds, read_seed_file,
 };
 
 /// The cells of a config's seeds.
@@ -33,21 +31,14 @@ pub struct Tessellated {
     pub tessellation: Tessellation,
     /// Power weight of each seed: 0 where there are no radii, and no grains are divided.
     pub weights: Vec<f64>,
-    /// The number of each cell's seed, as its file gives it, else in the order in which all were given, from 0: what `SeedId` holds. Where grains are
-    /// divided, seeds are those of their parts.
-    pub seed_ids: Vec<u32>,
+    /// What is known of each grain.
+    pub grains: GrainAttributes,
     /// The numbers of seeds that are left out because their neighbours outweigh them.
     pub dropped_seeds: Vec<u32>,
     /// The numbers of seeds that are left out because their cells were below [`Config::min_diameter`].
     pub merged_seeds: Vec<u32>,
-    /// The grains that these are parts of, where some are divided.
-    pub parents: Option<Parents>,
     /// The volumes that grains were to have, where these are given: of those that others are parts of.
     pub sizes: Option<GrainSizes>,
-    /// The phases of the grains, where they are asked for.
-    pub phases: Option<GrainPhases>,
-    /// The orientations of the grains, where they are asked for.
-    pub texture: Option<GrainTexture>,
     /// The grain of each cell, where grains are of several cells; without, each cell is a grain.
     pub grain_cells: Option<GrainCells>,
     /// The shapes of the grains, where some are asked for.
@@ -63,12 +54,16 @@ pub struct Tessellated {
 impl Tessellated {
     /// The cells as [`Config::aspect_ratio`] stretches them.
     #[must_use]
-    pub fn stretched(self, config: &Config) -> Self {
-        let stretch = config.stretch();
-        if stretch == DVec3::ONE {
-            return self;
+    pub fn stretched(mut self, config: &Config) -> Self {
+        self.stretch(config.stretch());
+        self
+    }
+
+    /// Makes the axes of the cells so many times as long.
+    pub(crate) fn stretch(&mut self, stretch: DVec3) {
+        if stretch != DVec3::ONE {
+            self.tessellation = self.tessellation.stretched(stretch);
         }
-        Self { tessellation: self.tessellation.stretched(stretch), ..self }
     }
 
     /// The cells with rounder shapes of the grains that led to no network, where shapes are asked for and some are no balls yet.
@@ -129,36 +124,6 @@ impl Tessellated {
             }
             None => Network::with_face_mesh(tessellation, face_mesh, junctions, levels),
         }
-    }
-
-    /// Index of each grain's phase; 0 without phases.
-    pub(crate) fn phase_of(&self) -> Vec<usize> {
-        match &self.phases {
-            Some(phases) => phases.phase_of().to_vec(),
-            None => vec![0; self.grain_count()],
-        }
-    }
-
-    /// The name of each phase and the symmetry of its crystals; one that is called `grains` without phases.
-    pub(crate) fn named_symmetries(&self, config: &Config) -> Vec<(String, CrystalSymmetry)> {
-        match &self.phases {
-            Some(phases) => phases.names().map(str::to_owned).zip(phases.symmetries()).collect(),
-            None => vec![("grains".to_owned(), config.texture.symmetry)],
-        }
-    }
-
-    /// What cells or grains have, added up by the grains that were drawn: those that are divided as wholes.
-    pub(crate) fn by_parents<'a>(&self, of_grains: &'a [f64]) -> Cow<'a, [f64]> {
-        match &self.parents {
-            Some(parents) => parents.sums(of_grains).into(),
-            None => of_grains.into(),
-        }
-    }
-
-    /// The numbers of the cells' seeds, for formats that tell them only where they are not those of the cells; else nothing.
-    pub(crate) fn renumbered(&self) -> &[u32] {
-        let is_renumbered = (0u32..).zip(&self.seed_ids).any(|(cell, seed)| cell != *seed);
-        if is_renumbered { &self.seed_ids } else { &[] }
     }
 }
 
@@ -267,25 +232,22 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
             Ok::<_, Error>((tessellation, weights, ids, Some(parents)))
         })?;
     }
-    let (tessellation, weights, seed_ids, parents) = cells;
+    let (tessellation, weights, ids, parents) = cells;
     let texture = (!textures.is_empty()).then(|| {
         let volumes = grain_volumes(&tessellation, grain_cells.as_ref());
         let texture_of =
             phases.as_ref().map_or_else(|| vec![0; volumes.len()], |phases| phases.phase_of().to_vec());
         GrainTexture::draw(textures, texture_of, &volumes, config.random_seed).with_target(histogram)
     });
-    let law = BoundaryLaw::new(config, phases.as_ref(), texture.as_ref(), seed_ids.len())?;
+    let law = BoundaryLaw::new(config, phases.as_ref(), texture.as_ref(), ids.len())?;
     let times = clock.times;
     Ok(Tessellated {
         tessellation,
         weights,
-        seed_ids,
+        grains: GrainAttributes { ids, parents, phases, symmetry: config.texture.symmetry, texture },
         dropped_seeds,
         merged_seeds,
-        parents,
         sizes,
-        phases,
-        texture,
         grain_cells,
         shapes,
         law,

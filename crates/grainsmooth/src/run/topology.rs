@@ -5,9 +5,7 @@ use std::fmt;
 
 use polycrystal::Network;
 use serde::Serialize;
-use voronoi::{Dimension, Tessellation};
-
-use crate::Tessellated;
+use voronoi::Dimension;
 
 /// Faces a grain, and junctions by what meets there.
 ///
@@ -17,8 +15,9 @@ use crate::Tessellated;
 pub struct Topology {
     #[serde(skip)]
     dimension: Dimension,
-    /// Mean number of faces of the flat cells, those on walls included; in the plane, of sides.
-    pub faces_before: f64,
+    /// Mean number of faces of the flat cells, those on walls included; in the plane, of sides. Nothing where grains come from no cells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub faces_before: Option<f64>,
     /// The same of the grains.
     pub faces: f64,
     /// Lines by the number of boundaries that meet there, from three; none in the plane.
@@ -28,9 +27,9 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// That of a network and of the cells that it came from. Of periodic copies one counts.
-    pub(crate) fn new(cells: &Tessellated, tessellation: &Tessellation, network: &Network) -> Self {
-        let before: usize = cells.face_counts(tessellation).iter().sum();
+    /// That of a network and of the faces that its grains had as cells. Of periodic copies one counts.
+    pub(crate) fn new(faces_of_cells: Option<&[usize]>, network: &Network) -> Self {
+        let before = faces_of_cells.map(|faces| faces.iter().sum::<usize>());
         let after = network.boundaries().iter().flat_map(|boundary| boundary.signed_grains()).count();
         let junctions = network.junction_counts();
         let dimension = network.domain().dimension();
@@ -40,7 +39,7 @@ impl Topology {
         };
         Self {
             dimension,
-            faces_before: before as f64 / network.grain_count() as f64,
+            faces_before: before.map(|before| before as f64 / network.grain_count() as f64),
             faces: after as f64 / network.grains_left() as f64,
             lines_by_boundaries,
             points_by_grains,
@@ -59,7 +58,10 @@ impl fmt::Display for Topology {
             }
         };
         write!(out, "{}; {faces:.2} {face} a grain", Counted(points, "grains", points_by_grains))?;
-        if faces == faces_before { Ok(()) } else { write!(out, ", {faces_before:.2} before relaxation") }
+        match faces_before {
+            Some(before) if before != faces => write!(out, ", {before:.2} before relaxation"),
+            _ => Ok(()),
+        }
     }
 }
 

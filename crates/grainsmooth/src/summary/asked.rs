@@ -1,21 +1,21 @@
 //! What was asked for, beside what came of it.
 
 use crate::figures::asked::AskedAndReached;
-use crate::{ComponentShare, PhaseShare, Polycrystal};
+use crate::{ComponentShare, PhaseShare, Polycrystal, Synthesis};
 
 impl Polycrystal {
     /// Every figure that was asked for: of sizes, phases, divided grains, shapes, tensions, textures and disorientations. Lengths are in the unit of
     /// the box.
     pub fn asked_and_reached(&self) -> Vec<AskedAndReached> {
-        let cells = &self.cells;
-        let phases: Vec<&str> = cells.phases.iter().flat_map(|phases| phases.names()).collect();
+        let Some(Synthesis { cells, .. }) = self.synthesis() else { return Vec::new() };
+        let phases: Vec<&str> = cells.grains.phases.iter().flat_map(|phases| phases.names()).collect();
         let sizes = self.sizes_reached();
         let mut rows = sizes.map_or_else(Vec::new, |sizes| sizes.asked_and_reached(&phases));
         let mut add = |what: String, asked: f64, reached: f64| {
             rows.push(AskedAndReached { what, asked, reached });
         };
         let volumes = self.network.cell_volumes();
-        if let Some(phases) = &cells.phases {
+        if let Some(phases) = &cells.grains.phases {
             for PhaseShare { name, fraction_asked, fraction, .. } in phases.shares(&cells.volumes(), volumes)
             {
                 add(format!("share of the volume, {name}"), fraction_asked, fraction);
@@ -32,11 +32,11 @@ impl Polycrystal {
                 add("residual of Herring's condition, rms".to_owned(), 0.0, residual.rms);
             }
         }
-        for divided in cells.parents.iter().flat_map(|parents| parents.patterns()) {
+        for divided in cells.grains.parents.iter().flat_map(|parents| parents.patterns()) {
             let what = format!("{}, {}", divided.length_name(), divided.asked);
             add(what, divided.length_asked, divided.length);
         }
-        let Some(texture) = &cells.texture else { return rows };
+        let Some(texture) = &cells.grains.texture else { return rows };
         for number in 0..texture.texture_count() {
             let of = phases.get(number).map_or_else(String::new, |phase| format!(", {phase}"));
             for ComponentShare { name, asked, reached } in texture.shares(number, volumes) {

@@ -10,7 +10,7 @@ use crate::figures::triangle_angles::TriangleAngles;
 use crate::{
     AskedAndReached, ComponentShare, Divided, ElementsReached, EquivalentDiameters, HistogramFit, LawReached,
     PhaseShare, Polycrystal, Reconnected, ShapesReached, SizesFit, SizesReached, TensionsReached,
-    Tessellated, TetrahedronQuality, Topology, VolumeMesh,
+    TetrahedronQuality, Topology, VolumeMesh,
 };
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
@@ -44,7 +44,7 @@ pub struct SummaryRecord {
     inside: Vec<Divided>,
     /// Of all grains; of phases each has its own.
     texture: Option<TextureRecord>,
-    regularization: &'static str,
+    regularization: Option<&'static str>,
     regularization_fell_back: bool,
     collapsed_edges: usize,
     collapsed_boundaries: usize,
@@ -151,9 +151,9 @@ struct Angles {
 }
 
 /// What became of a texture, if grains have orientations.
-fn texture_record(cells: &Tessellated, number: usize) -> Option<TextureRecord> {
-    let texture = cells.texture.as_ref()?;
-    let volumes = cells.volumes();
+fn texture_record(polycrystal: &Polycrystal, number: usize) -> Option<TextureRecord> {
+    let texture = polycrystal.grains().texture.as_ref()?;
+    let volumes = polycrystal.volumes_of_cells();
     Some(TextureRecord {
         crystal_symmetry: texture.members(number).0.rotation_group(),
         components: texture.shares(number, &volumes),
@@ -163,14 +163,13 @@ fn texture_record(cells: &Tessellated, number: usize) -> Option<TextureRecord> {
 }
 
 fn phase_records(polycrystal: &Polycrystal) -> Vec<PhaseRecord> {
-    let cells = &polycrystal.cells;
-    let Some(phases) = &cells.phases else { return Vec::new() };
+    let Some(phases) = &polycrystal.grains().phases else { return Vec::new() };
     let reached = polycrystal.sizes_reached();
-    let shares = phases.shares(&cells.volumes(), polycrystal.network.cell_volumes());
+    let shares = phases.shares(&polycrystal.volumes_of_cells(), polycrystal.network.cell_volumes());
     let record = |(number, share): (usize, PhaseShare)| PhaseRecord {
         share,
         sizes: reached.as_ref().and_then(|reached| reached.of_phases().get(number).cloned()),
-        texture: texture_record(cells, number),
+        texture: texture_record(polycrystal, number),
     };
     shares.into_iter().enumerate().map(record).collect()
 }
@@ -178,7 +177,9 @@ fn phase_records(polycrystal: &Polycrystal) -> Vec<PhaseRecord> {
 impl SummaryRecord {
     /// The numbers of a result and the files that it was written to.
     pub fn new(polycrystal: &Polycrystal, written: Vec<PathBuf>) -> Self {
-        let Polycrystal { config, network, .. } = polycrystal;
+        let (network, provenance) = (&polycrystal.network, polycrystal.provenance());
+        let synthesis = polycrystal.synthesis();
+        let reconnected = synthesis.and_then(|made| made.reconnected);
         let finest = network.finest();
         let junctions = network.junction_counts();
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
@@ -190,17 +191,20 @@ impl SummaryRecord {
         let seconds = polycrystal.times.iter().map(|(stage, time)| (stage.name(), time.as_secs_f64()));
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            command_line: config.command_line(),
-            settings: config.settings().into_iter().collect(),
-            dimension: config.dimension.axes(),
+            command_line: provenance.command_line().into_owned(),
+            settings: provenance.settings().into_iter().collect(),
+            dimension: polycrystal.dimension().axes(),
             grains: network.grains_left(),
-            vanished: polycrystal
-                .vanished
+            vanished: synthesis
                 .iter()
-                .map(|gone| VanishedGrain { grain: config.file.names.number(gone.grain), time: gone.time })
+                .flat_map(|made| &made.vanished)
+                .map(|gone| VanishedGrain {
+                    grain: polycrystal.file().names.number(gone.grain),
+                    time: gone.time,
+                })
                 .collect(),
-            dropped_seeds: polycrystal.cells.dropped_seeds.clone(),
-            merged_seeds: polycrystal.cells.merged_seeds.clone(),
+            dropped_seeds: synthesis.map_or_else(Vec::new, |made| made.cells.dropped_seeds.clone()),
+            merged_seeds: synthesis.map_or_else(Vec::new, |made| made.cells.merged_seeds.clone()),
             boundaries: Boundaries {
                 between_grains: count(Boundary::is_interior) + twice,
                 on_walls: count(|boundary| boundary.wall.is_some()),
@@ -213,34 +217,26 @@ impl SummaryRecord {
             asked_and_reached: polycrystal.asked_and_reached(),
             sizes: polycrystal.sizes_reached(),
             shapes: polycrystal.shapes_reached(),
-            texture: polycrystal
-                .cells
-                .phases
-                .is_none()
-                .then(|| texture_record(&polycrystal.cells, 0))
-                .flatten(),
+            texture: polycrystal.grains().phases.is_none().then(|| texture_record(polycrystal, 0)).flatten(),
             phases: phase_records(polycrystal),
             inside: polycrystal
-                .cells
+                .grains()
                 .parents
                 .as_ref()
                 .map_or_else(Vec::new, |parents| parents.patterns().to_vec()),
-            regularization: polycrystal.regularization.name(),
-            regularization_fell_back: polycrystal.regularization.fell_back(config),
-            collapsed_edges: polycrystal.collapsed.edges,
-            collapsed_boundaries: polycrystal.collapsed.faces,
-            topology_changes: polycrystal.reconnected.map(|Reconnected { reconnections, .. }| {
-                TopologyChanges {
-                    lines_to_boundaries: reconnections.opened,
-                    boundaries_to_lines: reconnections.closed,
-                    boundaries_swapped: reconnections.swapped,
-                }
+            regularization: synthesis.map(|made| made.regularization.name()),
+            regularization_fell_back: synthesis
+                .is_some_and(|made| made.regularization.fell_back(&made.config)),
+            collapsed_edges: synthesis.map_or(0, |made| made.collapsed.edges),
+            collapsed_boundaries: synthesis.map_or(0, |made| made.collapsed.faces),
+            topology_changes: reconnected.map(|Reconnected { reconnections, .. }| TopologyChanges {
+                lines_to_boundaries: reconnections.opened,
+                boundaries_to_lines: reconnections.closed,
+                boundaries_swapped: reconnections.swapped,
             }),
-            equilibrium: polycrystal.reconnected.and_then(|reconnected| reconnected.balance).map(|balance| {
-                Equilibrium {
-                    flagged_lines: balance.flagged_lines,
-                    largest_residual: balance.largest_residual,
-                }
+            equilibrium: reconnected.and_then(|reconnected| reconnected.balance).map(|balance| Equilibrium {
+                flagged_lines: balance.flagged_lines,
+                largest_residual: balance.largest_residual,
             }),
             attempts: polycrystal
                 .attempts
@@ -250,13 +246,13 @@ impl SummaryRecord {
             residual: polycrystal.residual.map(|HerringResidual { rms, largest }| Residual { rms, largest }),
             tensions: polycrystal.tensions.clone(),
             mobilities: polycrystal.mobilities.clone(),
-            stretch: polycrystal.is_stretched().then(|| config.stretch().to_array()),
+            stretch: polycrystal.is_stretched().then(|| polycrystal.stretch().to_array()),
             points: finest.vertex_count(),
             elements: finest.element_count(),
-            level: config.levels,
+            level: polycrystal.level(),
             element_size: polycrystal.elements,
             tetrahedra: polycrystal.volume_mesh.as_ref().and_then(VolumeMesh::quality),
-            angles_before: polycrystal.angles_before.map(angles),
+            angles_before: synthesis.and_then(|made| made.angles_before).map(angles),
             angles_after: polycrystal.validation.angles.map(angles),
             triangle_angles: polycrystal.validation.triangles.map(TriangleAngles::from),
             largest_relative_volume_error: polycrystal.validation.largest_volume_error,

@@ -125,15 +125,16 @@ impl CellTable {
                 tessellation.neighbors(CellId(id)).into_iter().map(number).collect();
             neighbors.sort_unstable();
             let seed = tessellation.seeds()[id as usize];
-            let ids = [id, cells.seed_ids[id as usize]];
+            let ids = [id, cells.grains.ids[id as usize]];
             let weight = cells.weights[id as usize];
             let row = match tessellation.domain().dimension() {
                 Dimension::Three => row_in_space(ids, seed, weight, &measure, neighbors),
                 Dimension::Two => row_in_plane(ids, seed, weight, &measure, neighbors),
             };
-            let orientation = cells.texture.as_ref().map(|texture| texture.orientations()[id as usize]);
-            let phase = cells.phases.as_ref().map(|phases| phases.number(id as usize));
-            let parent = cells.parents.as_ref().map(|parents| parents.number(id as usize));
+            let orientation =
+                cells.grains.texture.as_ref().map(|texture| texture.orientations()[id as usize]);
+            let phase = cells.grains.phases.as_ref().map(|phases| phases.number(id as usize));
+            let parent = cells.grains.parents.as_ref().map(|parents| parents.number(id as usize));
             Cell { row, parent, phase, orientation: orientation.map(CellOrientation::new) }
         });
         Self { settings: config.settings().into_iter().collect(), cells: rows.collect() }

@@ -59,7 +59,7 @@ impl StatisticsOutput {
 pub struct NetworkStatistics {
     version: &'static str,
     command_line: String,
-    random_seed: u64,
+    random_seed: Option<u64>,
     settings: BTreeMap<String, toml::Value>,
     /// Mean and spread of what the tables hold.
     distributions: BTreeMap<&'static str, Distribution>,
@@ -84,29 +84,29 @@ impl Polycrystal {
     pub fn statistics(&self) -> NetworkStatistics {
         let (mut grains, mut others, distributions) = match self.measures() {
             Measures::Space(measures) => {
-                in_space(&measures, &self.cells.seed_ids, &self.network.finest().grain_counts)
+                in_space(&measures, &self.grains().ids, &self.network.finest().grain_counts)
             }
-            Measures::Plane(measures) => in_plane(&measures, &self.cells.seed_ids),
+            Measures::Plane(measures) => in_plane(&measures, &self.grains().ids),
         };
-        if let Some(parents) = &self.cells.parents {
+        if let Some(parents) = &self.grains().parents {
             let parent = |grain: GrainId| i64::from(parents.number(grain.index()));
             grains.add_column(PARENT, |row| Value::Integer(row[0].grain().map_or(-1, parent)));
         }
-        if let Some(phases) = &self.cells.phases {
+        if let Some(phases) = &self.grains().phases {
             let phase = |grain: GrainId| i64::from(phases.number(grain.index()));
             grains.add_column(PHASE, |row| Value::Integer(row[0].grain().map_or(0, phase)));
         }
         let laws = [
-            (TENSION, &self.config.tensions, self.network.tensions()),
-            (MOBILITY, &self.config.mobilities, self.network.mobilities()),
+            (TENSION, self.tensions.is_some(), self.network.tensions()),
+            (MOBILITY, self.mobilities.is_some(), self.network.mobilities()),
         ];
-        for (name, _, values) in laws.into_iter().filter(|(_, laws, _)| !laws.is_empty()) {
+        for (name, _, values) in laws.into_iter().filter(|(_, is_asked, _)| *is_asked) {
             if let Some(boundaries) = others.get_mut("boundaries") {
                 let value = |number: &Value| Some(values[number.grain()?.index()]);
                 boundaries.add_column(name, |row| Value::Number(value(&row[0]).unwrap_or(f64::NAN)));
             }
         }
-        if let Some(texture) = &self.cells.texture {
+        if let Some(texture) = &self.grains().texture {
             add_orientations(texture, &mut grains);
             if let Some(boundaries) = others.get_mut("boundaries") {
                 add_disorientations(texture, boundaries);
@@ -114,9 +114,9 @@ impl Polycrystal {
         }
         NetworkStatistics {
             version: env!("CARGO_PKG_VERSION"),
-            command_line: self.config.command_line(),
-            random_seed: self.config.random_seed,
-            settings: self.config.settings().into_iter().collect(),
+            command_line: self.provenance().command_line().into_owned(),
+            random_seed: self.provenance().random_seed(),
+            settings: self.provenance().settings().into_iter().collect(),
             distributions,
             topology: self.topology.clone(),
             grains,

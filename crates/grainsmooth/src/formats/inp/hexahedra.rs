@@ -7,21 +7,16 @@ use voronoi::Dimension;
 
 use super::super::label_grid::LabelGrid;
 use super::{number, write_numbers, write_sections};
-use crate::{Config, Tessellated};
+use crate::{GrainAttributes, Polycrystal};
 
 /// Writes nodes, elements, and sets of them. Voxels outside the domain, and nodes that no voxel has, are left out: numbers are as of the whole grid, from 1.
-pub(super) fn write(
-    grid: &LabelGrid<'_>,
-    cells: &Tessellated,
-    config: &Config,
-    out: &mut dyn Write,
-) -> io::Result<()> {
+pub(super) fn write(grid: &LabelGrid<'_>, polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let grains: Vec<Option<u32>> =
         grid.labels().into_iter().map(|label| label.grain().map(|grain| grain.0)).collect();
-    let hexahedra = Hexahedra { grid, dimension: config.dimension, grains };
+    let hexahedra = Hexahedra { grid, dimension: polycrystal.dimension(), grains };
     hexahedra.write_nodes(out)?;
     hexahedra.write_elements(out)?;
-    hexahedra.write_grains(cells, config, out)
+    hexahedra.write_grains(polycrystal.grains(), out)
 }
 
 struct Hexahedra<'a> {
@@ -90,7 +85,7 @@ impl Hexahedra<'_> {
         Ok(())
     }
 
-    fn write_grains(&self, cells: &Tessellated, config: &Config, out: &mut dyn Write) -> io::Result<()> {
+    fn write_grains(&self, attributes: &GrainAttributes, out: &mut dyn Write) -> io::Result<()> {
         let mut voxels: Vec<Vec<usize>> = Vec::new();
         for (voxel, grain) in self.grains.iter().enumerate() {
             let Some(grain) = grain else { continue };
@@ -104,6 +99,6 @@ impl Hexahedra<'_> {
             writeln!(out, "*ELSET, ELSET=GRAIN_{grain}")?;
             write_numbers(voxels[*grain].iter().copied(), out)?;
         }
-        write_sections(&grains, cells, config, out)
+        write_sections(&grains, attributes, out)
     }
 }

@@ -36,7 +36,7 @@ pub(super) fn write(polycrystal: &Polycrystal, mesh: &VolumeMesh, out: &mut dyn 
         first = last + 1;
     }
     write_surfaces(polycrystal, mesh, out)?;
-    write_sections(&grains, &polycrystal.cells, &polycrystal.config, out)
+    write_sections(&grains, polycrystal.grains(), out)
 }
 
 /// The nodes on each side of a box, each edge and each corner of it: `X0`, `X0Y1`, `X0Y1Z0` and so on.

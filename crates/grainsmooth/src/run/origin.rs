@@ -1,0 +1,52 @@
+//! Where grains come from.
+
+use polycrystal::{AngleStatistics, Collapsed, Relaxed, Vanished, WeightedAngle};
+
+use super::regularization::{Reconnected, Regularization};
+use super::tessellated::Tessellated;
+use crate::{Config, FileOptions, GrainAttributes};
+
+/// Where a network comes from.
+#[derive(Debug, Clone)]
+pub enum Origin {
+    /// From cells that a config describes.
+    Synthetic(Box<Synthesis>),
+    /// From a file: a map of voxels.
+    Measured(Box<Measurement>),
+}
+
+/// How a network came from cells.
+#[derive(Debug, Clone)]
+pub struct Synthesis {
+    /// What was asked for.
+    pub config: Config,
+    /// The flat cells that the grains come from.
+    pub cells: Tessellated,
+    /// What relaxation gave, before the last subdivisions: points to move by hand, of whole grains.
+    pub relaxed: Relaxed,
+    /// How far the cells were regularised.
+    pub regularization: Regularization,
+    /// What regularisation took out, or was drawn together where the topology changed.
+    pub collapsed: Collapsed,
+    /// How relaxation changed the topology; nothing where that stayed.
+    pub reconnected: Option<Reconnected>,
+    /// The grains that vanished while grains grew. Others keep their numbers.
+    pub vanished: Vec<Vanished>,
+    /// Angles between boundaries of the flat network, before relaxation.
+    pub flat_angles: Vec<WeightedAngle>,
+    /// Their statistics, if boundaries meet inside the domain.
+    pub angles_before: Option<AngleStatistics>,
+}
+
+/// How a network came from a file.
+#[derive(Debug, Clone)]
+pub struct Measurement {
+    /// The command that made it.
+    pub command_line: String,
+    /// How files of it are written.
+    pub file: FileOptions,
+    /// What is known of each grain.
+    pub grains: GrainAttributes,
+    /// Number of voxels that got another label, because a grain touched itself there.
+    pub relabelled: usize,
+}
