@@ -109,7 +109,7 @@ fn mistaken_shapes_are_refused() {
         ),
         (
             "--seeds 2 --grain-shapes 2:1:1 -o a.tess",
-            "a.tess: this format holds convex cells, and --grain-shapes and place= make grains of several; choose another, such as .vtp",
+            "a.tess: this format holds convex cells, and grains of --grain-shapes, place= or a map are none; choose another, such as .vtp",
         ),
     ] {
         workplace.refuses(arguments, FAILED, message);

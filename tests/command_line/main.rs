@@ -14,6 +14,7 @@ mod front;
 mod good_runs;
 mod grain_shapes;
 mod inside;
+mod maps;
 mod measure;
 mod periodic;
 mod phases;

@@ -135,7 +135,7 @@ fn higher_order_junctions_are_told_apart() {
 fn diameters_are_told_in_the_unit_of_the_box() {
     let workplace = Workplace::new();
     let said = workplace.run("--lattice sc 2 --box 2 2 2 -n 0 --json-summary run.json");
-    let line = "diameters   1.241 +- 0.0 in the unit of --box, equivalent: (6V/pi)^(1/3)";
+    let line = "diameters   1.241 +- 0.0 in the unit of the box, equivalent: (6V/pi)^(1/3)";
     assert!(said.lines().any(|said| said == line), "{said}");
     let diameter = &json(&workplace, "run.json")["equivalent_diameter"];
     assert!((diameter["mean"].as_f64().unwrap() - (6.0 / PI).cbrt()).abs() < 1e-12);
@@ -143,7 +143,7 @@ fn diameters_are_told_in_the_unit_of_the_box() {
     let cells = json(&workplace, "c.json");
     let mean = sum(&cells, "cells", "equivalent_diameter") / 20.0;
     let line = said.lines().find(|line| line.starts_with("diameters ")).unwrap();
-    assert!(line.ends_with("in the unit of --box, equivalent: 2 sqrt(A/pi)"), "{line}");
+    assert!(line.ends_with("in the unit of the box, equivalent: 2 sqrt(A/pi)"), "{line}");
     let told: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
     assert!((told / mean - 1.0).abs() < 5e-4, "{line}");
 }

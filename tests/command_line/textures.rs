@@ -167,8 +167,9 @@ fn texture_that_is_mistaken() {
          or a Laue group (-1, 2/m, mmm, 4/m, 4/mmm, -3, -3m, 6/m, 6/mmm, m-3, m-3m)",
     );
     for file in ["a.ori", "a.txt", "a.yaml"] {
-        let message =
-            format!("{file}: this format holds orientations; give the grains some, such as --texture random");
+        let message = format!(
+            "{file}: this format holds orientations, and the grains have none; give them some, such as --texture random, or choose another"
+        );
         workplace.refuses(&format!("--seeds 100000 -n 0 -o {file}"), FAILED, &message);
     }
 }

@@ -5,6 +5,7 @@
 mod corrupt;
 mod evolver;
 mod grids;
+mod maps;
 #[path = "../common/programs.rs"]
 mod programs;
 mod quiet_reader;

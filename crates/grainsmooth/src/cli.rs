@@ -17,19 +17,23 @@ mod pictures;
 mod run;
 mod seeds;
 mod sizes;
+mod smooth;
 mod smoothing;
 
 pub use check::CheckArguments;
 pub use documents::{print_completions, print_manual};
 use domain::DomainArguments;
 use files::FileArguments;
+pub use files::OutputArguments;
 pub use measure::MeasureArguments;
 use mesh::MeshArguments;
 pub use page::{EditArguments, ServerArguments, ViewArguments};
-use pictures::PictureArguments;
+pub use pictures::PictureArguments;
 use run::RunArguments;
+pub use run::SharedArguments;
 use seeds::SeedArguments;
 use sizes::SizeArguments;
+pub use smooth::SmoothArguments;
 use smoothing::SmoothingArguments;
 
 /// Make a virtual polycrystal: smooth, closed grains of exact volume, as a VTK file for ParaView.
@@ -66,6 +70,7 @@ pub enum Command {
     Mesh(MeshArguments),
     Check(CheckArguments),
     Measure(MeasureArguments),
+    Smooth(SmoothArguments),
     View(ViewArguments),
     Edit(EditArguments),
     /// Print what completes options and values in a shell
@@ -129,7 +134,7 @@ impl Arguments {
             periodic: domain.periodic,
             face_mesh: smoothing.face_mesh(),
             volumes: smoothing.volumes(),
-            file: files.options(domain.dimension),
+            file: files.outputs.options(domain.dimension),
             ..config.clone()
         };
         // Files say what was usual when they were written.

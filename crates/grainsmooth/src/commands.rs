@@ -5,3 +5,5 @@ pub mod measure;
 pub mod mesh;
 pub mod network;
 pub mod page;
+mod result_files;
+pub mod smooth;

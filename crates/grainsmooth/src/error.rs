@@ -14,10 +14,12 @@ use crate::memory::{self, MemoryError};
 
 pub(crate) mod failed_grain;
 pub(crate) mod failure;
+pub(crate) mod map_file;
 pub(crate) mod mesh_file;
 pub(crate) mod seed_file;
 
 use failure::Failure;
+use map_file::MapProblem;
 use mesh_file::MeshFileProblem;
 use seed_file::{SeedPlace, SeedProblem};
 
@@ -246,13 +248,13 @@ pub enum Error {
         option: &'static str,
     },
     /// The output's format holds orientations, and there are none.
-    #[error("{}: this format holds orientations; give the grains some, such as --texture random", path.display())]
+    #[error("{}: this format holds orientations, and the grains have none; give them some, such as --texture random, or choose another", path.display())]
     NoTexture {
         /// The path as given.
         path: PathBuf,
     },
-    /// The output's format holds convex cells, and grains are several of them.
-    #[error("{}: this format holds convex cells, and --grain-shapes and place= make grains of several; choose another, such as .vtp", path.display())]
+    /// The output's format holds convex cells, and grains are none.
+    #[error("{}: this format holds convex cells, and grains of --grain-shapes, place= or a map are none; choose another, such as .vtp", path.display())]
     CellsOfGrains {
         /// The path as given.
         path: PathBuf,
@@ -373,6 +375,22 @@ pub enum Error {
         path: PathBuf,
         /// Why.
         problem: MeshFileProblem,
+    },
+    /// A measured map cannot be used.
+    #[error("{}: {problem}", path.display())]
+    MapFile {
+        /// The path as given.
+        path: PathBuf,
+        /// Why.
+        problem: MapProblem,
+    },
+    /// A map leads to no valid network.
+    #[error("{}: {cause}", path.display())]
+    NetworkOfMap {
+        /// The path as given.
+        path: PathBuf,
+        /// Why.
+        cause: Box<NetworkError>,
     },
     /// A collection of files (.pvd, .vtm) cannot be opened or read.
     #[error("{}: cannot be read: {cause}; give the path of a readable file", path.display())]

@@ -60,6 +60,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         Command::Mesh(mesh) => commands::mesh::run(&mesh.command)?,
         Command::Check(check) => return commands::check::run(check),
         Command::Measure(measure) => commands::measure::run(measure)?,
+        Command::Smooth(smooth) => return commands::smooth::run(smooth),
         Command::View(view) => return commands::page::view(view),
         Command::Edit(edit) => return commands::page::edit(edit),
         Command::Completions { shell } => cli::print_completions(*shell)?,

@@ -24,8 +24,8 @@ const LOOK: Duration = Duration::from_secs(1);
 
 /// Says on standard error how far the run is.
 pub enum ProgressLine {
-    /// A bar, where standard error is a terminal.
-    Bar(ProgressBar),
+    /// A bar, where standard error is a terminal, and the stages that it counts.
+    Bar(ProgressBar, Vec<Stage>),
     /// Lines of a log, few and far between, where it is not.
     Log(Logger),
     /// Nothing.
@@ -33,32 +33,32 @@ pub enum ProgressLine {
 }
 
 impl ProgressLine {
-    /// Shows nothing when `quiet`.
-    pub fn new(quiet: bool) -> Self {
+    /// Of a run of these stages. Shows nothing when `quiet`.
+    pub fn new(quiet: bool, stages: Vec<Stage>) -> Self {
         if quiet {
             return Self::Quiet;
         }
         if !std::io::stderr().is_terminal() {
-            return Self::Log(Logger::start());
+            return Self::Log(Logger::start(stages));
         }
         let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::hidden());
         // Nothing is drawn before there is a stage to name.
         bar.set_style(style(UNCOUNTED));
         bar.set_draw_target(ProgressDrawTarget::stderr());
         bar.enable_steady_tick(Duration::from_millis(100));
-        Self::Bar(bar)
+        Self::Bar(bar, stages)
     }
 
     /// Shows the stage and how many of its steps are done.
     pub fn show(&self, stage: Stage, done: usize, count: usize) {
         match self {
-            Self::Bar(bar) => {
+            Self::Bar(bar, stages) => {
                 if done == 0 {
                     bar.reset();
                 }
                 let template = if count > 1 { COUNTED } else { UNCOUNTED };
                 bar.set_style(style(template));
-                bar.set_prefix(format!("[{}/{}]", stage.number(), Stage::ALL.len()));
+                bar.set_prefix(format!("[{}/{}]", place(stage, stages), stages.len()));
                 bar.set_message(stage.name());
                 bar.set_length(count as u64);
                 bar.set_position(done as u64);
@@ -71,11 +71,16 @@ impl ProgressLine {
     /// Takes the line off the terminal, and ends the log.
     pub fn clear(&self) {
         match self {
-            Self::Bar(bar) => bar.finish_and_clear(),
+            Self::Bar(bar, _) => bar.finish_and_clear(),
             Self::Log(logger) => logger.with(|log, _| log.end()),
             Self::Quiet => {}
         }
     }
+}
+
+/// The stage's place among all of a run, from 1.
+fn place(stage: Stage, stages: &[Stage]) -> usize {
+    1 + stages.iter().take_while(|other| **other != stage).count()
 }
 
 fn style(template: &str) -> ProgressStyle {
@@ -91,8 +96,8 @@ pub struct Logger {
 }
 
 impl Logger {
-    fn start() -> Self {
-        let log = Arc::new(Mutex::new(ProgressLog::default()));
+    fn start(stages: Vec<Stage>) -> Self {
+        let log = Arc::new(Mutex::new(ProgressLog::new(stages)));
         let start = Instant::now();
         let (alive, ended) = channel();
         let of_thread = Arc::clone(&log);

@@ -16,8 +16,8 @@ use voronoi::Dimension;
 use crate::figures::significant::significant;
 use crate::grains::texture::TextureLine;
 use crate::{
-    Config, EquivalentDiameters, Polycrystal, Reconnected, Regularization, SeedSource, ShapesReached,
-    SizesReached, Stage, Synthesis, Tessellated, TriangleAngles, VolumeMesh,
+    Config, EquivalentDiameters, Measurement, Polycrystal, Reconnected, Regularization, SeedSource,
+    ShapesReached, SizesReached, Stage, Synthesis, Tessellated, TriangleAngles, VolumeMesh,
 };
 
 /// A polycrystal in a few lines of text: counts, angles, volumes, validation, times.
@@ -54,6 +54,9 @@ impl fmt::Display for Summary<'_> {
                 write!(out, "{reached}")?;
             }
             write_texture(out, cells)?;
+        }
+        if let Some(measurement) = polycrystal.measurement() {
+            write_map(out, measurement)?;
         }
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
         let through_walls = count(|boundary| boundary.twin.is_some()) / 2;
@@ -114,10 +117,17 @@ impl fmt::Display for Summary<'_> {
         let validation = &polycrystal.validation;
         let error = validation.largest_volume_error;
         writeln!(out, "{measure:12}largest relative error of a grain {error:.1e}")?;
-        writeln!(
+        let folds = polycrystal.measurement().map_or(0, |measurement| measurement.folds);
+        let turned = if folds == 0 { "crossed or folded" } else { "crossed" };
+        write!(
             out,
-            "validation  good: every grain closed, nothing crossed or folded, no point twice, no {element} without {size}"
+            "validation  good: every grain closed, nothing {turned}, no point twice, no {element} without {size}"
         )?;
+        match folds {
+            0 => writeln!(out)?,
+            1 => writeln!(out, "; 1 pair of {element}s folded, as where grains are thin")?,
+            _ => writeln!(out, "; {folds} pairs of {element}s folded, as where grains are thin")?,
+        }
         write!(out, "time       ")?;
         for (stage, time) in &polycrystal.times {
             write!(out, " {} {},", stage.name(), Seconds(*time))?;
@@ -125,6 +135,22 @@ impl fmt::Display for Summary<'_> {
         let total: Duration = polycrystal.times.iter().map(|(_, time)| *time).sum();
         write!(out, " in all {}", Seconds(total))
     }
+}
+
+/// What the map was, and what was changed of it.
+fn write_map(out: &mut fmt::Formatter<'_>, measurement: &Measurement) -> fmt::Result {
+    let Measurement { map_shape: [nx, ny, nz], dropped: [grains, voxels], relabelled, .. } = measurement;
+    match nz {
+        1 => write!(out, "map         {nx} x {ny} pixels")?,
+        _ => write!(out, "map         {nx} x {ny} x {nz} voxels")?,
+    }
+    if *grains > 0 {
+        write!(out, "; {grains} small grains with {voxels} of them went to neighbours")?;
+    }
+    if *relabelled > 0 {
+        write!(out, "; {relabelled} got another label where a grain touched itself")?;
+    }
+    writeln!(out)
 }
 
 /// What became of short edges of the cells.

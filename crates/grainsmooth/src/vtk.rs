@@ -28,7 +28,7 @@ pub use field::{FieldEntry, FieldValue};
 pub use image::{ImageData, write_vti};
 pub use item_tuples::ItemTuples;
 pub(crate) use pieces::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
-pub(crate) use raw::{attribute, field_names, find, try_inlined};
+pub(crate) use raw::{XmlFile, attribute, field_names, find, try_inlined};
 pub use raw::{field_bytes, field_numbers, field_text, inlined};
 
 /// A format of VTK files.

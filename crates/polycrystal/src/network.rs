@@ -18,8 +18,8 @@ use voronoi::{Domain, Tessellation};
 use crate::check::folds::element_normals;
 use crate::mesh::volume::{boundary_cones, volumes_of_grains};
 use crate::{
-    Boundary, FaceMesh, Freedom, GrainPart, Junctions, Level, Mesh, MeshSize, NetworkError, Side, Surface,
-    WallSet, WallSets,
+    Boundary, Certificate, FaceMesh, Freedom, GrainPart, Junctions, Level, Mesh, MeshSize, NetworkError,
+    Side, Surface, WallSet, WallSets,
 };
 use control_mesh::{ControlMesh, JunctionCounts};
 use labelled_mesh::SurfaceKind;
@@ -168,11 +168,13 @@ impl Network {
         surface: &Surface<'_>,
         volumes: &[f64],
         junctions: Junctions,
-    ) -> Result<(Self, Vec<DVec3>), NetworkError> {
+    ) -> Result<(Self, Vec<DVec3>, Certificate), NetworkError> {
         check_surface_size(domain, surface, 0)?;
-        let control_mesh =
-            ControlMesh::of_surface(domain, surface, SurfaceKind::Measured { volumes }, junctions)?;
-        Self::assemble(domain, control_mesh, volumes.to_vec(), 0)
+        let kind = SurfaceKind::Measured { volumes };
+        let certificate = kind.certify(domain, surface)?;
+        let control_mesh = ControlMesh::of_surface(domain, surface, kind, junctions)?;
+        let (network, points) = Self::assemble(domain, control_mesh, volumes.to_vec(), 0)?;
+        Ok((network, points, certificate))
     }
 
     /// As [`Self::of_surface`], where some of so many grains may be missing.
@@ -184,6 +186,7 @@ impl Network {
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
         check_surface_size(domain, surface, level_count)?;
+        SurfaceKind::Whole.certify(domain, surface)?;
         let control_mesh = ControlMesh::of_surface(domain, surface, SurfaceKind::Whole, junctions)?;
         let (mut network, points) = Self::assemble(domain, control_mesh, Vec::new(), level_count)?;
         network.cell_volumes = vec![0.0; grain_count];

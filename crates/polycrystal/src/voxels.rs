@@ -19,7 +19,7 @@ use rayon::prelude::*;
 
 use crate::mesh::grouped::Grouped;
 use crate::mesh::id::id;
-use crate::{Junctions, Network, NetworkError, Side, Surface};
+use crate::{Certificate, Junctions, Network, NetworkError, Side, Surface};
 use bending::{Boxes, least_bending};
 use elements::CutFaces;
 use graph::Graph;
@@ -38,6 +38,8 @@ pub struct SmoothedVoxels {
     pub network: Network,
     /// The points of its only level.
     pub points: Vec<DVec3>,
+    /// What the network is like. Its only faults are folds.
+    pub certificate: Certificate,
     /// Number of voxels that got another label, because a grain touched itself in a point or along an edge where it could not be parted.
     pub relabelled: usize,
 }
@@ -80,8 +82,9 @@ pub fn smooth_voxels_tuned(
     let volumes: Vec<f64> = lattice.counts.iter().map(|count| *count as f64 * volume).collect();
     let surface =
         Surface { points: &points, elements: cut.elements(), boundary_of: &cut.kind_of, sides: &sides };
-    let (network, points) = Network::of_measured(voxels.domain(), &surface, &volumes, junctions)?;
-    Ok(SmoothedVoxels { network, points, relabelled })
+    let (network, points, certificate) =
+        Network::of_measured(voxels.domain(), &surface, &volumes, junctions)?;
+    Ok(SmoothedVoxels { network, points, certificate, relabelled })
 }
 
 /// Points of a staircase, in units of voxels, and its elements.

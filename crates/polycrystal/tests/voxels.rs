@@ -55,7 +55,7 @@ fn winding(surface: &Surface<'_>, grain: GrainId, from: DVec3) -> f64 {
 
 /// Closed, wound right, free of crossings, every voxel in its grain unless it was relabelled, and volumes those of the voxels then.
 fn check(voxels: &Voxels, smoothed: &SmoothedVoxels) {
-    let SmoothedVoxels { network, points, relabelled } = smoothed;
+    let SmoothedVoxels { network, points, relabelled, .. } = smoothed;
     let sides = network.sides();
     let surface = Surface::of_level(network.finest(), points, &sides);
     let volumes: Vec<_> = (0..).map(GrainId).zip(network.cell_volumes().iter().copied()).collect();

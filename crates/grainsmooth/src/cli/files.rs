@@ -14,10 +14,10 @@ use voronoi::Dimension;
 
 use super::usage;
 
-/// What is written, where and how.
+/// What is written of a network, where and how.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Files")]
-pub struct FileArguments {
+pub struct OutputArguments {
     #[arg(short, long, help = output_help(), long_help = format!("{}\n\nExample: -o grains.vtp -o grains.msh", output_help()), value_name = "PATH", num_args = 1, default_value = "grains.vtp", value_parser = parse_output)]
     output: Vec<PathBuf>,
 
@@ -60,13 +60,21 @@ pub struct FileArguments {
     /// Write measures of the smooth network: as JSON, or as CSV of the grains with F.boundaries.csv and so on beside it
     ///
     /// Example: --stats grains.json
-    #[arg(long, value_name = "F", value_parser = parse_statistics, conflicts_with = "no_mesh")]
+    #[arg(long, value_name = "F", value_parser = parse_statistics)]
     stats: Option<PathBuf>,
+}
+
+/// What is written, where and how.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Files")]
+pub struct FileArguments {
+    #[command(flatten)]
+    pub outputs: OutputArguments,
 
     /// Write the relaxation as a time series for ParaView: F.pvd, with F_0000.vtp and so on beside it
     ///
     /// Example: --series relaxation.pvd --every 2
-    #[arg(long, value_name = "F", value_parser = parse_series, conflicts_with = "no_mesh")]
+    #[arg(long, value_name = "F", value_parser = parse_series)]
     series: Option<PathBuf>,
 
     /// Steps of the relaxation between two of the series
@@ -99,13 +107,6 @@ pub struct VtkArguments {
 }
 
 impl FileArguments {
-    /// Where statistics go, if they are asked for, found writable.
-    pub fn statistics(&self, dimension: Dimension) -> Result<Option<StatisticsOutput>, grainsmooth::Error> {
-        let formats = self.stats.iter().filter_map(|path| Some((path, TableFormat::of_path(path)?)));
-        let mut outputs = formats.map(|(path, format)| StatisticsOutput::check(path, format, dimension));
-        outputs.next().transpose()
-    }
-
     /// Whether a series is asked for.
     pub fn has_series(&self) -> bool {
         self.series.is_some()
@@ -114,6 +115,15 @@ impl FileArguments {
     /// Where a series goes, if one is asked for, found writable.
     pub fn series(&self) -> Result<Option<SeriesOutput>, grainsmooth::Error> {
         self.series.as_deref().map(SeriesOutput::check).transpose()
+    }
+}
+
+impl OutputArguments {
+    /// Where statistics go, if they are asked for, found writable.
+    pub fn statistics(&self, dimension: Dimension) -> Result<Option<StatisticsOutput>, grainsmooth::Error> {
+        let formats = self.stats.iter().filter_map(|path| Some((path, TableFormat::of_path(path)?)));
+        let mut outputs = formats.map(|(path, format)| StatisticsOutput::check(path, format, dimension));
+        outputs.next().transpose()
     }
 
     /// The files that the network goes to, found writable.

@@ -16,7 +16,7 @@ pub struct PictureArguments {
     /// Draw the network, seen from above one edge of the box; needs no display
     ///
     /// Example: --picture grains.png
-    #[arg(long, value_name = "PATH.png", value_parser = parse_png, conflicts_with = "no_mesh")]
+    #[arg(long, value_name = "PATH.png", value_parser = parse_png)]
     picture: Option<PathBuf>,
 
     /// Width and height of the picture in pixels [default: 1200 900]
@@ -43,7 +43,7 @@ pub struct PictureArguments {
     /// Write a page with a view of the grains to rotate, histograms and the figures of the run; it works offline
     ///
     /// Example: --report grains.html
-    #[arg(long, value_name = "PATH.html", value_parser = parse_html, conflicts_with = "no_mesh")]
+    #[arg(long, value_name = "PATH.html", value_parser = parse_html)]
     report: Option<PathBuf>,
 }
 

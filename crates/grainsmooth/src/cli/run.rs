@@ -21,19 +21,27 @@ pub struct RunArguments {
     /// Stop after the cells and their tables: no relaxation, no mesh
     ///
     /// Example: --no-mesh --cells-csv cells.csv
-    #[arg(long, conflicts_with = "output")]
+    #[arg(long, conflicts_with_all = ["output", "stats", "series", "picture", "report", "dry_run", "json_summary"])]
     pub no_mesh: bool,
 
     /// Say how many grains, points and triangles there would be, and what file and memory they would take; write nothing
     ///
     /// Example: --seeds 100000 -n 3 --dry-run
-    #[arg(long, conflicts_with = "no_mesh")]
+    #[arg(long)]
     pub dry_run: bool,
 
+    #[command(flatten)]
+    pub shared: SharedArguments,
+}
+
+/// What runs of every kind have.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Run")]
+pub struct SharedArguments {
     /// Write the summary as JSON, to a file or, with -, to standard output
     ///
     /// Example: --json-summary run.json
-    #[arg(long, value_name = "PATH", conflicts_with = "no_mesh")]
+    #[arg(long, value_name = "PATH")]
     pub json_summary: Option<PathBuf>,
 
     /// Number of threads [default: all processors]; the file does not depend on it

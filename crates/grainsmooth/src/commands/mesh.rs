@@ -203,7 +203,7 @@ fn of_level(path: &Path, level: u32) -> PathBuf {
 }
 
 /// The command line as it was typed, words with blanks in quotes.
-fn command_line() -> String {
+pub fn command_line() -> String {
     let quoted = |word: OsString| {
         let word = word.to_string_lossy().into_owned();
         if word.contains(char::is_whitespace) || word.is_empty() { format!("'{word}'") } else { word }

@@ -34,7 +34,7 @@ impl fmt::Display for EquivalentDiameters {
             Dimension::Three => "(6V/pi)^(1/3)",
         };
         let [mean, deviation] = [self.mean, self.standard_deviation].map(four_digits);
-        write!(out, "{mean} +- {deviation} in the unit of --box, equivalent: {formula}")
+        write!(out, "{mean} +- {deviation} in the unit of the box, equivalent: {formula}")
     }
 }
 

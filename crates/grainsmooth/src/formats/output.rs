@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use voronoi::Dimension;
 
-use super::output_format::OutputFormat;
+use super::output_format::{OutputFormat, ToWrite};
 use crate::files::output::{OutputPath, in_full};
 use crate::files::staged_files::StagedFiles;
 use crate::files::unfinished::{Unfinished, parent};
@@ -44,12 +44,12 @@ impl OutputPath<OutputFormat> {
         std::iter::once(self.target().to_owned()).chain(self.format().beside(self.target())).collect()
     }
 
-    /// Checks that the format can hold what a config makes.
+    /// Checks that the format can hold what there is to write.
     ///
     /// # Errors
-    /// As of [`OutputFormat::check_fits`].
-    pub fn check_fits(&self, config: &Config) -> Result<(), Error> {
-        self.format().check_fits(self.path(), config)
+    /// As of [`OutputFormat::check_holds`].
+    pub fn check_holds(&self, to_write: &ToWrite) -> Result<(), Error> {
+        self.format().check_holds(self.path(), to_write)
     }
 
     /// Checks that voxels, whose number of bytes is known beforehand, have room where the file is to go.
@@ -97,15 +97,11 @@ impl OutputDirectory {
         }
     }
 
-    /// Checks that a config makes grains with surfaces.
+    /// Checks that grains of a dimension have surfaces.
     ///
     /// # Errors
     /// [`Error::FormatDimension`] in 2D.
-    pub fn check_fits(&self, config: &Config) -> Result<(), Error> {
-        self.check_dimension(config.dimension)
-    }
-
-    pub(super) fn check_dimension(&self, dimension: Dimension) -> Result<(), Error> {
+    pub fn check_dimension(&self, dimension: Dimension) -> Result<(), Error> {
         match dimension {
             Dimension::Three => Ok(()),
             Dimension::Two => {

@@ -81,8 +81,8 @@ impl OutputFormat {
     }
 
     /// Whether a file of the format holds tetrahedra that fill grains: where it would hold voxels, and none are asked for.
-    pub fn needs_tetrahedra(self, config: &Config) -> bool {
-        matches!(self.0.content, Content::Elements) && config.file.voxels.is_none()
+    pub fn needs_tetrahedra(self, to_write: &ToWrite) -> bool {
+        matches!(self.0.content, Content::Elements) && !to_write.has_voxels
     }
 
     /// Whether the format is a single file, as standard output takes.
@@ -124,26 +124,12 @@ impl OutputFormat {
         self.0.write_grain
     }
 
-    /// Checks that the format can hold what a config makes, for an output that messages call `path`.
+    /// Checks that the format can hold what there is to write, for an output that messages call `path`.
     ///
     /// # Errors
     /// [`Error::FormatDimension`]; [`Error::NoVoxels`] for a format of voxels when their number is not given; [`Error::NoTexture`] for one
-    /// of orientations where grains have none.
-    pub fn check_fits(self, path: &Path, config: &Config) -> Result<(), Error> {
-        let to_write = ToWrite {
-            dimension: config.dimension,
-            has_voxels: config.file.voxels.is_some(),
-            has_orientations: config.has_texture(),
-            has_cells: !config.has_grains_of_several_cells(),
-        };
-        self.check_holds(path, &to_write)
-    }
-
-    /// Checks that the format can hold what there is to write.
-    ///
-    /// # Errors
-    /// As of [`Self::check_fits`].
-    pub(crate) fn check_holds(self, path: &Path, to_write: &ToWrite) -> Result<(), Error> {
+    /// of orientations where grains have none; [`Error::CellsOfGrains`] for one of cells where grains are none.
+    pub fn check_holds(self, path: &Path, to_write: &ToWrite) -> Result<(), Error> {
         let ToWrite { dimension, has_voxels, has_orientations, has_cells } = *to_write;
         let path = || path.to_owned();
         match (self.0.dimension, self.0.content) {
@@ -161,14 +147,29 @@ impl OutputFormat {
     }
 }
 
-/// What formats may not be able to hold.
-pub(crate) struct ToWrite {
-    pub(crate) dimension: Dimension,
+/// What there is to write, which not every format can hold.
+#[derive(Debug, Clone, Copy)]
+pub struct ToWrite {
+    /// The dimension of the grains.
+    pub dimension: Dimension,
     /// Whether the number of voxels is given.
-    pub(crate) has_voxels: bool,
-    pub(crate) has_orientations: bool,
+    pub has_voxels: bool,
+    /// Whether grains have orientations.
+    pub has_orientations: bool,
     /// Whether each grain is a convex cell.
-    pub(crate) has_cells: bool,
+    pub has_cells: bool,
+}
+
+impl Config {
+    /// What this makes.
+    pub fn to_write(&self) -> ToWrite {
+        ToWrite {
+            dimension: self.dimension,
+            has_voxels: self.file.voxels.is_some(),
+            has_orientations: self.has_texture(),
+            has_cells: !self.has_grains_of_several_cells(),
+        }
+    }
 }
 
 impl PartialEq for OutputFormat {

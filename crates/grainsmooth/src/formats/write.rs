@@ -32,7 +32,7 @@ impl Polycrystal {
     /// point array `PeriodicOriginal` the point that each is a copy of, its own number where it is none.
     ///
     /// # Errors
-    /// [`Error::WriteOutput`]; nothing is left behind then. As of [`Output::check_fits`].
+    /// [`Error::WriteOutput`]; nothing is left behind then. As of [`Output::check_holds`].
     pub fn write(&self, output: &Output) -> Result<(), Error> {
         write_together(|files| self.stage(output, files))
     }
@@ -40,9 +40,9 @@ impl Polycrystal {
     /// Completes an output, as one of several that appear together.
     ///
     /// # Errors
-    /// [`Error::WriteOutput`]; [`Error::OutputTwice`]; as of [`Output::check_fits`].
+    /// [`Error::WriteOutput`]; [`Error::OutputTwice`]; as of [`Output::check_holds`].
     pub fn stage(&self, output: &Output, files: &mut StagedFiles) -> Result<(), Error> {
-        output.format().check_holds(output.path(), &self.to_write())?;
+        output.check_holds(&self.to_write())?;
         match output.format().writer() {
             Writer::File(write) => output.stage(files, |out| write(self, out)),
             Writer::Files(stage) => stage(self, &output.as_format(()), files),

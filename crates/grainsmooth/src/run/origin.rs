@@ -47,6 +47,12 @@ pub struct Measurement {
     pub file: FileOptions,
     /// What is known of each grain.
     pub grains: GrainAttributes,
+    /// Number of voxels of the map along each axis.
+    pub map_shape: [usize; 3],
+    /// Grains that were too small, and their voxels, which went to neighbours.
+    pub dropped: [u64; 2],
     /// Number of voxels that got another label, because a grain touched itself there.
     pub relabelled: usize,
+    /// Number of pairs of elements that fold back on each other, as where a grain is thinner than three voxels.
+    pub folds: usize,
 }

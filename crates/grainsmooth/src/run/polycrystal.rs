@@ -10,7 +10,7 @@ use polycrystal::{
 use voronoi::Dimension;
 
 use super::elements_reached::ElementsReached;
-use super::origin::{Origin, Synthesis};
+use super::origin::{Measurement, Origin, Synthesis};
 use super::stage::Stage;
 use super::topology::Topology;
 use crate::volume_mesh::VolumeMesh;
@@ -78,6 +78,14 @@ impl Polycrystal {
         match &mut self.origin {
             Origin::Synthetic(synthesis) => &mut synthesis.config.file,
             Origin::Measured(measurement) => &mut measurement.file,
+        }
+    }
+
+    /// How it came from a map, where it did.
+    pub fn measurement(&self) -> Option<&Measurement> {
+        match &self.origin {
+            Origin::Synthetic(_) => None,
+            Origin::Measured(measurement) => Some(measurement),
         }
     }
 

@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 /// A part of a run, in the order in which they follow each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
+    /// Reading a measured map.
+    Map,
     /// Drawing or reading seeds.
     Seeds,
     /// Cutting the Voronoi cells.
@@ -26,27 +28,10 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// Every stage, in the order in which they follow each other.
-    pub const ALL: [Self; 9] = [
-        Self::Seeds,
-        Self::Cells,
-        Self::Network,
-        Self::Relaxation,
-        Self::Subdivision,
-        Self::Validation,
-        Self::Remeshing,
-        Self::Filling,
-        Self::Writing,
-    ];
-
-    /// The stage's place among all, from 1.
-    pub fn number(self) -> usize {
-        1 + Self::ALL.iter().take_while(|other| **other != self).count()
-    }
-
     /// The stage in one word.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Map => "map",
             Self::Seeds => "seeds",
             Self::Cells => "cells",
             Self::Network => "network",

@@ -10,8 +10,8 @@ use crate::mesh::node_type::Meeting;
 use crate::mesh::seams::{Seams, Use};
 use crate::network::control_mesh::{ControlMesh, JunctionCounts};
 use crate::{
-    Boundary, BoundaryId, Elements, Expected, Fault, GrainId, Junctions, Level, Mesh, NetworkError,
-    PeriodicCopies, Side, Surface, WallSets, certify,
+    Boundary, BoundaryId, Certificate, Elements, Expected, Fault, GrainId, Junctions, Level, Mesh,
+    NetworkError, PeriodicCopies, Side, Surface, WallSets, certify,
 };
 
 /// Distance from a wall that is not square to an axis, in units of the domain's diagonal, within which points lie on it.
@@ -30,38 +30,44 @@ pub(crate) enum SurfaceKind<'a> {
 }
 
 impl SurfaceKind<'_> {
+    /// What a surface is like. Its only faults may be folds, where these are allowed.
+    ///
     /// # Errors
-    /// [`NetworkError::Invalid`].
-    fn check(self, domain: &Domain, surface: &Surface<'_>) -> Result<(), NetworkError> {
-        let faults = match self {
+    /// [`NetworkError::PeriodicSurface`]; [`NetworkError::Invalid`].
+    pub(crate) fn certify(self, domain: &Domain, surface: &Surface<'_>) -> Result<Certificate, NetworkError> {
+        if domain.is_periodic() {
+            return Err(NetworkError::PeriodicSurface);
+        }
+        let certificate = match self {
             Self::Whole => {
                 let expected = Expected { domain_volume: Some(domain.measure()), ..Expected::default() };
-                certify(surface, &expected).faults
+                certify(surface, &expected)
             }
             Self::Measured { volumes } => {
                 let of_grains: Vec<_> = (0u32..).map(GrainId).zip(volumes.iter().copied()).collect();
                 let expected = Expected { grain_volumes: Some(&of_grains), ..Expected::default() };
-                let mut faults = certify(surface, &expected).faults;
-                faults.0.retain(|fault| !matches!(fault, Fault::Folded { .. }));
-                faults
+                certify(surface, &expected)
             }
         };
-        if faults.0.is_empty() { Ok(()) } else { Err(NetworkError::Invalid(faults)) }
+        let is_allowed =
+            |fault: &Fault| matches!((self, fault), (Self::Measured { .. }, Fault::Folded { .. }));
+        if certificate.faults.0.iter().all(is_allowed) {
+            return Ok(certificate);
+        }
+        let mut faults = certificate.faults;
+        faults.0.retain(|fault| !is_allowed(fault));
+        Err(NetworkError::Invalid(faults))
     }
 }
 
 impl ControlMesh {
-    /// The control mesh whose points and elements are those of a surface.
+    /// The control mesh whose points and elements are those of a surface, which is certified to be of this kind.
     pub(crate) fn of_surface(
         domain: &Domain,
         surface: &Surface<'_>,
         kind: SurfaceKind<'_>,
         junctions: Junctions,
     ) -> Result<Self, NetworkError> {
-        if domain.is_periodic() {
-            return Err(NetworkError::PeriodicSurface);
-        }
-        kind.check(domain, surface)?;
         let elements = OrderedElements::new(domain, surface, kind)?;
         let seams = Seams::of_elements(elements.as_elements(), &elements.boundary_of);
         let Connected { boundaries, boundary_of } = Connected::new(&elements, &seams);

@@ -1,5 +1,7 @@
 //! The arrays of an XML file put where `vtkio` reads them, and as it understands them.
 
+use std::borrow::Cow;
+
 use vtkio::IOBuffer;
 use vtkio::xml::ScalarType;
 
@@ -56,14 +58,46 @@ pub(crate) fn field_tag(file: &[u8], name: &str) -> Option<String> {
 
 /// The numbers of an entry of such a file's field data, which are of this kind.
 pub(crate) fn field_values(file: &[u8], name: &str, kind: ScalarType) -> Option<IOBuffer> {
-    let (head, appended) = split(file);
-    let head = String::from_utf8_lossy(head);
-    let coding = Coding::of(&head)?;
-    let (tag, content) = field_element(&head, name)?;
-    match attribute(tag, "format")? {
-        "appended" => coding.values(Appended::of(appended).array(coding, tag)?, kind),
-        "binary" => coding.values(coding.of_text(content.trim().as_bytes())?, kind),
-        _ => coding.values_of_words(content, kind),
+    let file = XmlFile::of(file)?;
+    let (tag, content) = field_element(&file.head, name)?;
+    file.values(tag, content, kind)
+}
+
+/// An XML file of VTK: its elements, and the numbers of its arrays wherever they stand.
+pub(crate) struct XmlFile<'a> {
+    /// All that stands before the appended data.
+    pub(crate) head: Cow<'a, str>,
+    appended: Appended<'a>,
+    coding: Coding,
+}
+
+impl<'a> XmlFile<'a> {
+    /// The file, if it is one.
+    pub(crate) fn of(file: &'a [u8]) -> Option<Self> {
+        let (head, appended) = split(file);
+        let head = String::from_utf8_lossy(head);
+        let coding = Coding::of(&head)?;
+        Some(Self { head, appended: Appended::of(appended), coding })
+    }
+
+    /// The tag and the content of each array of an element, such as `CellData`, where it stands first.
+    pub(crate) fn arrays(&self, element: &str) -> Vec<(&str, &str)> {
+        let found = self.head.split_once(&format!("<{element}"));
+        let inside = found.and_then(|(_, rest)| rest.split_once(&format!("</{element}>")));
+        let arrays = inside.map_or("", |(inside, _)| inside).split("<DataArray").skip(1);
+        arrays
+            .filter_map(|array| array.split_once('>'))
+            .map(|(tag, rest)| (tag, rest.split('<').next().unwrap_or_default()))
+            .collect()
+    }
+
+    /// The numbers of an array.
+    pub(crate) fn values(&self, tag: &str, content: &str, kind: ScalarType) -> Option<IOBuffer> {
+        match attribute(tag, "format")? {
+            "appended" => self.coding.values(self.appended.array(self.coding, tag)?, kind),
+            "binary" => self.coding.values(self.coding.of_text(content.trim().as_bytes())?, kind),
+            _ => self.coding.values_of_words(content, kind),
+        }
     }
 }
 

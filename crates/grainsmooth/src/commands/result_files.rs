@@ -1,0 +1,194 @@
+//! The files that a finished network goes to.
+
+use std::collections::BTreeSet;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::anyhow;
+use grainsmooth::{
+    Error, Html, Output, OutputDirectory, OutputFormat, Picture, Png, Polycrystal, Stage, StagedFiles,
+    StatisticsOutput, SummaryRecord, ToWrite, check_gmsh,
+};
+
+use crate::cli::{OutputArguments, PictureArguments, SharedArguments, usage};
+
+/// What is written, all found writable.
+pub struct ResultFiles {
+    /// The network and its voxels, by file.
+    pub outputs: Vec<Output>,
+    printed: Option<Printed>,
+    grains: Option<OutputDirectory>,
+    picture: Option<(Picture, Output<Png>)>,
+    report: Option<Output<Html>>,
+    summary: Option<Output<()>>,
+    statistics: Option<StatisticsOutput>,
+}
+
+/// What goes to standard output.
+#[derive(Clone, Copy)]
+enum Printed {
+    Network(OutputFormat),
+    Summary,
+}
+
+impl ResultFiles {
+    /// Checks that all can be written and can hold what there will be; without a network if there will be none.
+    ///
+    /// Ends the program with exit status 2 where standard output is to take two things.
+    pub fn check(
+        outputs: &OutputArguments,
+        pictures: &PictureArguments,
+        shared: &SharedArguments,
+        to_write: &ToWrite,
+        has_network: bool,
+    ) -> Result<Self, Error> {
+        let files = if has_network { outputs.outputs()? } else { Vec::new() };
+        files.iter().try_for_each(|output| output.check_holds(to_write))?;
+        let grains =
+            outputs.grains_dir.as_ref().map(|path| OutputDirectory::check(path, outputs.grains_format));
+        let grains = grains.transpose()?;
+        if let Some(grains) = &grains {
+            grains.check_dimension(to_write.dimension)?;
+        }
+        let network = if has_network { outputs.standard_output() } else { None };
+        let prints_summary = shared.json_summary.as_deref().is_some_and(|path| path.as_os_str() == "-");
+        let printed = match (network, prints_summary) {
+            (Some(_), true) => {
+                usage("-o - and --json-summary - both go to standard output; give one of them a path")
+            }
+            (Some(format), false) => {
+                format.check_holds(Path::new("standard output"), to_write)?;
+                Some(Printed::Network(format))
+            }
+            (None, true) => Some(Printed::Summary),
+            (None, false) => None,
+        };
+        let summary = shared.json_summary.as_deref().filter(|_| !prints_summary);
+        let all = Self {
+            outputs: files,
+            printed,
+            grains,
+            picture: pictures.picture()?,
+            report: pictures.report()?,
+            summary: summary.map(|path| Output::check_as(path, ())).transpose()?,
+            statistics: outputs.statistics(to_write.dimension)?,
+        };
+        if all.need_tetrahedra(to_write) {
+            check_gmsh()?;
+        }
+        Ok(all)
+    }
+
+    /// Whether some format holds tetrahedra.
+    pub fn need_tetrahedra(&self, to_write: &ToWrite) -> bool {
+        self.formats().into_iter().any(|format| format.needs_tetrahedra(to_write))
+    }
+
+    /// All files and directories in full.
+    pub fn targets(&self) -> Vec<PathBuf> {
+        let tables = self.statistics.iter().flat_map(StatisticsOutput::files).map(Output::target);
+        let others = tables.chain(self.grains.as_ref().map(OutputDirectory::target));
+        let others = others.chain(self.picture.as_ref().map(|(_, output)| output.target()));
+        let others = others.chain(self.report.as_ref().map(Output::target));
+        let others = others.chain(self.summary.as_ref().map(Output::target));
+        self.outputs.iter().flat_map(Output::targets).chain(others.map(Path::to_owned)).collect()
+    }
+
+    /// What the summary lists, as the user called it.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        let outputs = self.outputs.iter().map(Output::path);
+        let printed = self.printed.filter(|printed| matches!(printed, Printed::Network(_)));
+        let printed = printed.map(|_| Path::new("standard output"));
+        let grains = self.grains.as_ref().map(OutputDirectory::path);
+        let picture = self.picture.as_ref().map(|(_, output)| output.path());
+        let report = self.report.as_ref().map(Output::path);
+        let statistics = self.statistics.iter().flat_map(StatisticsOutput::files).map(Output::path);
+        let paths = outputs.chain(printed).chain(grains).chain(picture).chain(report).chain(statistics);
+        paths.map(Path::to_owned).collect()
+    }
+
+    /// The formats of the network.
+    pub fn formats(&self) -> Vec<OutputFormat> {
+        let printed = match self.printed {
+            Some(Printed::Network(format)) => Some(format),
+            _ => None,
+        };
+        self.outputs.iter().map(Output::format).chain(printed).collect()
+    }
+
+    /// Completes all files but the report and the summary, which tell how long that takes.
+    pub fn stage(&self, polycrystal: &Polycrystal, staged: &mut StagedFiles) -> Result<(), Error> {
+        self.outputs.iter().try_for_each(|output| polycrystal.stage(output, staged))?;
+        if let Some(grains) = &self.grains {
+            polycrystal.stage_grains(grains, staged)?;
+        }
+        if let Some(statistics) = &self.statistics {
+            polycrystal.statistics().stage(statistics, staged)?;
+        }
+        if let Some((picture, output)) = &self.picture {
+            polycrystal.stage_picture(picture, output, staged)?;
+        }
+        Ok(())
+    }
+
+    /// Completes the report and the summary, and writes to standard output. `paths` are those of all files.
+    pub fn finish(
+        &self,
+        polycrystal: &mut Polycrystal,
+        started: Instant,
+        paths: &[PathBuf],
+        staged: &mut StagedFiles,
+    ) -> Result<(), Error> {
+        polycrystal.add_time(Stage::Writing, started.elapsed());
+        if let Some(output) = &self.report {
+            polycrystal.stage_report(output, staged)?;
+        }
+        if let Some(output) = &self.summary {
+            output.stage(staged, |out| write_summary(polycrystal, paths, out))?;
+        }
+        // What is said cannot be taken back: all else is complete by then, and needs no more than its name.
+        self.print(polycrystal, paths)
+    }
+
+    /// Writes to standard output. A reader that stops early has enough.
+    fn print(&self, polycrystal: &Polycrystal, paths: &[PathBuf]) -> Result<(), Error> {
+        let mut out = BufWriter::new(io::stdout().lock());
+        let printed = match self.printed {
+            None => Ok(()),
+            Some(Printed::Network(format)) => polycrystal.write_to(format, &mut out),
+            Some(Printed::Summary) => write_summary(polycrystal, paths, &mut out),
+        };
+        match printed.and_then(|()| out.flush()) {
+            Err(cause) if cause.kind() != io::ErrorKind::BrokenPipe => {
+                Err(Error::WriteOutput { path: "standard output".into(), cause })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Refuses two files of one path.
+///
+/// Ends the program with exit status 2.
+pub fn check_all_differ(targets: Vec<PathBuf>) {
+    let mut known = BTreeSet::new();
+    if let Some(path) = targets.into_iter().find(|target| !known.insert(target.clone())) {
+        // As the user calls it, who gave no path from the root.
+        let here = std::env::current_dir().and_then(|here| here.canonicalize()).unwrap_or_default();
+        let path = path.strip_prefix(here).map_or(path.clone(), Path::to_owned);
+        usage(&Error::OutputTwice { path }.to_string());
+    }
+}
+
+/// Threads to compute with.
+pub fn thread_pool(shared: &SharedArguments) -> anyhow::Result<rayon::ThreadPool> {
+    let threads = shared.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|cause| anyhow!("cannot start {threads} threads: {cause}; give fewer with --threads"))
+}
+
+fn write_summary(polycrystal: &Polycrystal, paths: &[PathBuf], out: &mut dyn Write) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, &SummaryRecord::new(polycrystal, paths.to_vec()))?;
+    writeln!(out)
+}

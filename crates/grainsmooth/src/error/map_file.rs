@@ -1,0 +1,114 @@
+//! What can be wrong with a measured map.
+
+use std::io;
+
+/// Why a map of labels cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MapProblem {
+    /// The file cannot be opened or read.
+    #[error("cannot be read: {0}; give the path of a readable map")]
+    Unreadable(io::Error),
+    /// The extension names no format.
+    #[error("unknown extension; give a map {known}")]
+    UnknownExtension {
+        /// The extensions that are known.
+        known: String,
+    },
+    /// The file ends too early, or is none of its format.
+    #[error("{what}; give a complete {format} file")]
+    Damaged {
+        /// Name of the format.
+        format: &'static str,
+        /// What is wrong.
+        what: String,
+    },
+    /// The file has no array with a whole number for each voxel.
+    #[error("has no array with one whole number for each voxel; save the labels of grains as one")]
+    NoLabels,
+    /// The file lacks the array that is asked for.
+    #[error("has no array `{name}` with one number for each voxel; name one that it has: {known}")]
+    NoSuchArray {
+        /// The name asked for.
+        name: String,
+        /// Those that it has.
+        known: String,
+    },
+    /// Several arrays may be the labels.
+    #[error("has several arrays that may be labels; choose one with --label-array: {known}")]
+    SeveralArrays {
+        /// Their names.
+        known: String,
+    },
+    /// A label is no whole number of 32 bits.
+    #[error("voxel {voxel} has the label {label}; labels are whole numbers from -2147483648 to 2147483647")]
+    NotWhole {
+        /// Number of the voxel, in the order of the file, from 0.
+        voxel: usize,
+        /// Its label.
+        label: f64,
+    },
+    /// An array has not two or three indices.
+    #[error("its array has {count} indices; a map has two or three")]
+    Indices {
+        /// How many.
+        count: usize,
+    },
+    /// An option says what the file itself says.
+    #[error("files of this format tell their {what}; leave {option} out")]
+    Told {
+        /// What the file tells.
+        what: &'static str,
+        /// The option.
+        option: &'static str,
+    },
+    /// A file of numbers alone comes without their shape or type.
+    #[error("holds numbers alone; say what they are with --shape NX NY NZ and --type, such as u16")]
+    NumbersAlone,
+    /// A file of numbers alone has another length.
+    #[error("has {bytes} bytes; {voxels} voxels of {width} bytes take {expected}: mend --shape or --type")]
+    Length {
+        /// Bytes of the file.
+        bytes: usize,
+        /// Number of voxels asked for.
+        voxels: usize,
+        /// Bytes of each.
+        width: usize,
+        /// Bytes of all.
+        expected: u128,
+    },
+    /// The map has no voxels.
+    #[error("has no voxels along {axis}; give a map with at least one along each axis")]
+    Empty {
+        /// The axis.
+        axis: char,
+    },
+    /// Voxels have no size.
+    #[error("its voxels are {spacing} wide along {axis}; give their size with --spacing, such as 0.5")]
+    Spacing {
+        /// The axis.
+        axis: char,
+        /// Their width.
+        spacing: f64,
+    },
+    /// A part of the map is asked for that it does not have.
+    #[error("has {count} voxels along {axis}; --crop asks for {first}:{end}")]
+    Crop {
+        /// The axis.
+        axis: char,
+        /// Number of voxels along it.
+        count: usize,
+        /// The first voxel asked for.
+        first: usize,
+        /// The first one behind.
+        end: usize,
+    },
+    /// No grain is left.
+    #[error(
+        "has no grain of {least} or more voxels beside the exterior; lower --min-voxels, or mend --exterior-label"
+    )]
+    NoGrain {
+        /// Least number of voxels.
+        least: u64,
+    },
+}

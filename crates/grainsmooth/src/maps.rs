@@ -1,0 +1,10 @@
+//! Measured maps: labels of grains on a grid, in the files of other programs.
+
+pub(crate) mod cleaning;
+pub(crate) mod label_map;
+mod npy;
+mod number_type;
+pub(crate) mod options;
+mod raw;
+pub(crate) mod read;
+mod vti;

@@ -1,0 +1,146 @@
+//! VTK's ImageData: labels of cells, or of points in the middle of voxels.
+
+use glam::DVec3;
+use vtkio::xml::ScalarType;
+
+use super::label_map::FileMap;
+use super::number_type::labels_of_floats;
+use super::options::MapOptions;
+use crate::error::map_file::MapProblem;
+use crate::vtk::{XmlFile, attribute};
+
+/// What programs call the labels of grains: DREAM.3D, DAMASK and Neper, ParaView's filters, this program, LabDCT.
+const USUAL_NAMES: [&str; 7] =
+    ["FeatureIds", "material", "labels", "GrainId", "GrainIds", "grain_id", "MaterialId"];
+
+/// An array with a number for each voxel.
+struct Candidate<'a> {
+    name: &'a str,
+    tag: &'a str,
+    content: &'a str,
+    kind: ScalarType,
+    is_of_points: bool,
+}
+
+/// Reads the labels.
+pub(super) fn read(bytes: &[u8], options: &MapOptions) -> Result<FileMap, MapProblem> {
+    let file = XmlFile::of(bytes).ok_or_else(|| damaged("it is no XML of VTK"))?;
+    let Some((_, rest)) = file.head.split_once("<ImageData") else {
+        return Err(damaged("it holds no ImageData"));
+    };
+    let tag = rest.split('>').next().unwrap_or_default();
+    let missing = |name: &str| damaged(format!("its ImageData has no {name} that is understood"));
+    if file.head.matches("<Piece").count() != 1 {
+        return Err(damaged("it is not in one piece"));
+    }
+    let extent: [i64; 6] = numbers(tag, "WholeExtent").ok_or_else(|| missing("WholeExtent"))?;
+    let edges = |axis: usize| {
+        let count = extent[2 * axis + 1].checked_sub(extent[2 * axis])?;
+        usize::try_from(count).ok()
+    };
+    let edges = [edges(0), edges(1), edges(2)];
+    let [Some(nx), Some(ny), Some(nz)] = edges else { return Err(missing("WholeExtent")) };
+    let spacing = DVec3::from_array(numbers(tag, "Spacing").ok_or_else(|| missing("Spacing"))?);
+    let origin = DVec3::from_array(numbers(tag, "Origin").ok_or_else(|| missing("Origin"))?);
+    let direction = attribute(tag, "Direction").map(|_| numbers::<f64, 9>(tag, "Direction"));
+    if direction.is_some_and(|axes| axes != Some([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0])) {
+        return Err(damaged("its axes are turned, which maps may not be"));
+    }
+    let first = DVec3::new(extent[0] as f64, extent[2] as f64, extent[4] as f64);
+    // A grid of one layer of points has cells too.
+    let shapes = [[nx, ny, nz].map(|count| count.max(1)), [nx, ny, nz].map(|count| count.saturating_add(1))];
+    let candidate = labels_among(candidates(&file), options)?;
+    let shape = shapes[usize::from(candidate.is_of_points)];
+    let values = file.values(candidate.tag, candidate.content, candidate.kind);
+    let values = values.and_then(|buffer| buffer.cast_into::<f64>());
+    let values =
+        values.ok_or_else(|| damaged(format!("the numbers of its array {} are damaged", candidate.name)))?;
+    let count = shape.iter().try_fold(1, |all: usize, count| all.checked_mul(*count));
+    if count != Some(values.len()) {
+        let [nx, ny, nz] = shape;
+        let (name, found) = (candidate.name, values.len());
+        return Err(damaged(format!("its array {name} has {found} numbers for {nx} x {ny} x {nz} voxels")));
+    }
+    let lower = if candidate.is_of_points { first - 0.5 } else { first };
+    Ok(FileMap {
+        shape,
+        spacing: Some(spacing),
+        origin: Some(origin + lower * spacing),
+        labels: labels_of_floats(values.into_iter())?,
+    })
+}
+
+/// The arrays with one number each.
+fn candidates<'a>(file: &'a XmlFile<'_>) -> Vec<Candidate<'a>> {
+    let of_element = |(element, is_of_points): (&str, bool)| {
+        let arrays = file.arrays(element).into_iter();
+        let candidate = move |(tag, content): (&'a str, &'a str)| {
+            let is_scalar = attribute(tag, "NumberOfComponents").is_none_or(|count| count == "1");
+            let kind = scalar_type(attribute(tag, "type")?)?;
+            let name = attribute(tag, "Name")?;
+            is_scalar.then_some(Candidate { name, tag, content, kind, is_of_points })
+        };
+        arrays.filter_map(candidate).collect::<Vec<_>>()
+    };
+    [("CellData", false), ("PointData", true)].into_iter().flat_map(of_element).collect()
+}
+
+/// The array that holds the labels: the one asked for; else the only one of whole numbers, or the only one with a usual name.
+fn labels_among<'a>(
+    mut candidates: Vec<Candidate<'a>>,
+    options: &MapOptions,
+) -> Result<Candidate<'a>, MapProblem> {
+    let known = |candidates: &[Candidate<'_>]| {
+        candidates.iter().map(|candidate| candidate.name).collect::<Vec<_>>().join(", ")
+    };
+    if let Some(name) = &options.label_array {
+        let known = known(&candidates);
+        let found = candidates.into_iter().find(|candidate| candidate.name == name);
+        return found.ok_or_else(|| match known.is_empty() {
+            true => MapProblem::NoLabels,
+            false => MapProblem::NoSuchArray { name: name.clone(), known },
+        });
+    }
+    let is_whole =
+        |candidate: &Candidate<'_>| !matches!(candidate.kind, ScalarType::Float32 | ScalarType::Float64);
+    if candidates.iter().any(is_whole) {
+        candidates.retain(is_whole);
+    }
+    let is_usual =
+        |candidate: &Candidate<'_>| USUAL_NAMES.iter().any(|name| name.eq_ignore_ascii_case(candidate.name));
+    if candidates.len() > 1 && candidates.iter().any(is_usual) {
+        candidates.retain(is_usual);
+    }
+    let known = known(&candidates);
+    match (candidates.pop(), candidates.is_empty()) {
+        (None, _) => Err(MapProblem::NoLabels),
+        (Some(candidate), true) => Ok(candidate),
+        (Some(_), false) => Err(MapProblem::SeveralArrays { known }),
+    }
+}
+
+fn scalar_type(name: &str) -> Option<ScalarType> {
+    Some(match name {
+        "Int8" => ScalarType::Int8,
+        "UInt8" => ScalarType::UInt8,
+        "Int16" => ScalarType::Int16,
+        "UInt16" => ScalarType::UInt16,
+        "Int32" => ScalarType::Int32,
+        "UInt32" => ScalarType::UInt32,
+        "Int64" => ScalarType::Int64,
+        "UInt64" => ScalarType::UInt64,
+        "Float32" => ScalarType::Float32,
+        "Float64" => ScalarType::Float64,
+        _ => return None,
+    })
+}
+
+/// The numbers of an attribute.
+fn numbers<T: std::str::FromStr, const N: usize>(tag: &str, name: &str) -> Option<[T; N]> {
+    let words = attribute(tag, name)?.split_whitespace();
+    words.map(|word| word.parse().ok()).collect::<Option<Vec<T>>>()?.try_into().ok()
+}
+
+fn damaged(what: impl Into<String>) -> MapProblem {
+    MapProblem::Damaged { format: ".vti", what: what.into() }
+}

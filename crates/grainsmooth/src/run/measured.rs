@@ -1,0 +1,94 @@
+//! From a measured map to its network.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
+use polycrystal::{
+    Certificate, GrainId, Junctions, SmoothedVoxels, VoxelLabel, Voxels, herring_residual, smooth_voxels,
+};
+use texture::CrystalSymmetry;
+use voronoi::Domain;
+
+use super::origin::{Measurement, Origin};
+use super::polycrystal::Polycrystal;
+use super::stage::{Progress, Stage};
+use super::topology::Topology;
+use crate::maps::label_map::{LabelMap, MeasuredMap};
+use crate::{Error, FileOptions, GrainAttributes};
+
+/// What is said of a map that is smoothed.
+#[derive(Debug, Clone)]
+pub struct MapRun {
+    /// The command that asks for it, for files to tell.
+    pub command_line: String,
+    /// How files are written.
+    pub file: FileOptions,
+    /// Time that reading the map took.
+    pub read_in: Duration,
+}
+
+/// The smooth network of a map.
+///
+/// # Errors
+/// [`Error::NetworkOfMap`] where the map leads to none.
+pub fn smooth_map(
+    path: &Path,
+    measured: &MeasuredMap,
+    run: MapRun,
+    progress: Progress<'_>,
+) -> Result<Polycrystal, Error> {
+    let failed = |cause| Error::NetworkOfMap { path: path.to_owned(), cause: Box::new(cause) };
+    progress(Stage::Network, 0, 1);
+    let start = Instant::now();
+    let voxels = voxels(&measured.map)?;
+    let smoothed =
+        smooth_voxels(&voxels, Junctions::Crease, |done, count| progress(Stage::Network, done, count));
+    let SmoothedVoxels { network, points, certificate, relabelled } = smoothed.map_err(failed)?;
+    let times = vec![(Stage::Map, run.read_in), (Stage::Network, start.elapsed())];
+    let grains = GrainAttributes {
+        ids: measured.labels.clone(),
+        parents: None,
+        phases: None,
+        symmetry: CrystalSymmetry::default(),
+        texture: None,
+    };
+    let Certificate { faults, .. } = &certificate;
+    let measurement = Measurement {
+        command_line: run.command_line,
+        file: run.file,
+        grains,
+        map_shape: measured.map.shape,
+        dropped: measured.dropped,
+        relabelled,
+        folds: faults.0.len(),
+    };
+    Ok(Polycrystal {
+        origin: Origin::Measured(Box::new(measurement)),
+        topology: Topology::new(None, &network),
+        residual: herring_residual(&network, &points),
+        network,
+        points,
+        attempts: Vec::new(),
+        tensions: None,
+        mobilities: None,
+        validation: certificate,
+        elements: None,
+        volume_mesh: None,
+        times,
+    })
+}
+
+/// The voxels of a map in the box that they fill.
+fn voxels(map: &LabelMap) -> Result<Voxels, voronoi::VoronoiError> {
+    let upper = map.origin + map.spacing * DVec3::from_array(map.shape.map(|count| count as f64));
+    let domain = match map.is_plane() {
+        true => Domain::rectangle(map.origin, upper)?,
+        false => Domain::cuboid(map.origin, upper)?,
+    };
+    let label = |label: &i32| match u32::try_from(*label) {
+        Ok(grain) => VoxelLabel::of(GrainId(grain)),
+        Err(_) => VoxelLabel::EXTERIOR,
+    };
+    Ok(Voxels::new(domain, map.shape, map.labels.iter().map(label).collect()))
+}

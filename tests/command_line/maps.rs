@@ -1,0 +1,239 @@
+//! `grainsmooth smooth`: networks of measured maps.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::surface_file::SurfaceFile;
+use crate::workplace::{FAILED, USAGE, Workplace};
+
+/// The voxels of each grain of the maps in `tests/data/maps`, and of their pore.
+const COUNTS: [f64; 10] = [27.0, 1217.0, 901.0, 2422.0, 166.0, 70.0, 87.0, 2535.0, 251.0, 4.0];
+
+/// The forms of that map, what reads them, and the volume of a voxel as the file tells it.
+const FORMS: [(&str, &str, f64); 5] = [
+    ("volume_damask.vti", "", 0.2),
+    ("volume_points.vti", "", 0.2),
+    ("volume.npy", "", 1.0),
+    ("volume_zyx_c.npy", "--axes zyx", 1.0),
+    ("volume.raw", "--shape 24 20 16 --type u16", 1.0),
+];
+
+fn workplace() -> Workplace {
+    let workplace = Workplace::new();
+    for (name, ..) in FORMS {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/maps").join(name);
+        workplace.put(name, std::fs::read(path).unwrap());
+    }
+    workplace
+}
+
+/// An array of whole numbers as NumPy writes it, the last index fastest.
+fn npy(shape: &[usize], labels: &[u8]) -> Vec<u8> {
+    let shape: String = shape.iter().map(|count| format!("{count}, ")).collect();
+    let mut header = format!("{{'descr': '|u1', 'fortran_order': False, 'shape': ({shape}), }}");
+    header.extend(std::iter::repeat_n(' ', 117 - header.len()));
+    let mut bytes = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    bytes.extend(header.as_bytes());
+    bytes.push(b'\n');
+    bytes.extend(labels);
+    bytes
+}
+
+#[test]
+fn every_form_of_a_map_gives_grains_of_exact_volume() {
+    let workplace = workplace();
+    for (name, options, voxel) in FORMS {
+        let said =
+            workplace.run(&format!("smooth {name} {options} --exterior-label 0 -o a.vtp --stats a.json"));
+        assert!(said.contains("\nmap         24 x 20 x 16 voxels\n"), "{said}");
+        assert!(said.contains("validation  good: every grain closed, nothing crossed or folded"), "{said}");
+        workplace.command("check a.vtp").assert().success();
+        let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+        let grains = statistics["grains"].as_array().unwrap();
+        assert_eq!(grains.len(), 9);
+        for (grain, count) in grains.iter().zip(&COUNTS[1..]) {
+            let volume = grain["volume"].as_f64().unwrap();
+            assert!((volume / (voxel * count) - 1.0).abs() < 1e-12, "{name}: {grain}");
+        }
+        // The map's own labels.
+        let ids: Vec<_> = grains.iter().map(|grain| grain["SeedId"].as_u64().unwrap()).collect();
+        assert_eq!(ids, (1..10).collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn voxels_of_the_network_are_those_of_the_map() {
+    let workplace = workplace();
+    let raw = "smooth volume.raw --shape 24 20 16 --type u16";
+    workplace.run(&format!("{raw} --voxels 24 20 16 -o a.npy -o a.vti -o a.vtp"));
+    let given = workplace.bytes("volume.raw");
+    let made = workplace.bytes("a.npy")[128..].to_vec();
+    let given: Vec<i32> =
+        given.chunks_exact(2).map(|label| i32::from(u16::from_le_bytes([label[0], label[1]]))).collect();
+    let made = made.chunks_exact(4).take(given.len());
+    let made: Vec<i32> = made.map(|label| i32::from_le_bytes(label.try_into().unwrap())).collect();
+    assert!(given == made);
+    // What was written is read again.
+    workplace.run("smooth a.vti -o b.vtp");
+    let [first, second] = ["a.vtp", "b.vtp"].map(|name| SurfaceFile::read(&workplace.path(name)));
+    assert!((first.points, first.cells) == (second.points, second.cells));
+}
+
+#[test]
+fn pixels_give_lines() {
+    let workplace = Workplace::new();
+    let labels: Vec<u8> = (0..20 * 15).map(|pixel| u8::from(pixel / 15 > pixel % 15)).collect();
+    workplace.put("map.npy", npy(&[20, 15], &labels));
+    let said = workplace.run("smooth map.npy --spacing 0.5 0.25 -o a.vtp --picture a.png --report a.html");
+    assert!(said.contains("map         20 x 15 pixels\n"), "{said}");
+    assert!(said.starts_with("grains      2 in [0, 10] x [0, 3.75]\n"), "{said}");
+    workplace.command("check a.vtp").assert().success();
+    // Between the two grains, and around them.
+    assert_eq!(SurfaceFile::read(&workplace.path("a.vtp")).boundary_count(), 7);
+}
+
+#[test]
+fn every_format_takes_the_network_of_a_map() {
+    let workplace = workplace();
+    let formats = ["vtp", "vtu", "vtk", "vtm", "obj", "ply", "stl", "msh", "fe"];
+    let outputs: String = formats.map(|format| format!(" -o a.{format}")).concat();
+    workplace.run(&format!("smooth volume_damask.vti{outputs} --grains-dir grains --json-summary a.txt"));
+    let summary: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.txt")).unwrap();
+    assert_eq!(summary["grains"], 10);
+    assert_eq!(summary["regularization"], serde_json::Value::Null);
+    for format in formats {
+        assert!(!workplace.bytes(&format!("a.{format}")).is_empty(), "{format}");
+    }
+    let command =
+        format!("grainsmooth smooth volume_damask.vti{outputs} --grains-dir grains --json-summary a.txt");
+    for format in ["vtp", "obj", "ply", "fe"] {
+        let text = String::from_utf8_lossy(&workplace.bytes(&format!("a.{format}"))).into_owned();
+        assert!(text.contains(&command), "{format} does not tell how it was made");
+    }
+}
+
+#[test]
+fn small_grains_go_to_their_neighbours() {
+    let workplace = workplace();
+    let said = workplace.run("smooth volume.npy --min-voxels 80 -o a.vtp --stats a.json");
+    assert!(
+        said.contains(
+            "map         24 x 20 x 16 voxels; 3 small grains with 101 of them went to neighbours\n"
+        ),
+        "{said}"
+    );
+    let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+    let grains = statistics["grains"].as_array().unwrap();
+    let volumes: BTreeMap<u64, f64> = grains
+        .iter()
+        .map(|grain| (grain["SeedId"].as_u64().unwrap(), grain["volume"].as_f64().unwrap()))
+        .collect();
+    assert_eq!(volumes.keys().copied().collect::<Vec<_>>(), [1, 2, 3, 4, 6, 7, 8]);
+    assert!((volumes.values().sum::<f64>() / 7680.0 - 1.0).abs() < 1e-12);
+    assert!(volumes.iter().all(|(label, volume)| *volume > COUNTS[usize::try_from(*label).unwrap()] - 0.5));
+}
+
+#[test]
+fn a_part_of_a_map_stands_where_it_was() {
+    let workplace = workplace();
+    let said = workplace.run("smooth volume_damask.vti --crop 4:20,0:10,5:13 -o a.vtp");
+    assert!(said.contains(" in [3, 11] x [2, 7] x [1, 7.4]\n"), "{said}");
+    assert!(said.contains("map         16 x 10 x 8 voxels\n"), "{said}");
+}
+
+#[test]
+fn maps_that_cannot_be_used() {
+    let workplace = workplace();
+    workplace.put("map.png", "");
+    workplace.put("no.vti", "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 2 0 2 0 2\" Origin=\"0 0 0\" Spacing=\"1 1 1\"><Piece></Piece></ImageData></VTKFile>");
+    let two = "<CellData><DataArray type=\"Int32\" Name=\"a\" format=\"ascii\">1 1 1 1 1 1 1 1</DataArray><DataArray type=\"Int32\" Name=\"b\" format=\"ascii\">1 1 1 1 1 1 1 2</DataArray></CellData>";
+    let image = |data: &str, spacing: &str| {
+        format!(
+            "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\"><ImageData WholeExtent=\"0 2 0 2 0 2\" Origin=\"0 0 0\" Spacing=\"{spacing}\"><Piece>{data}</Piece></ImageData></VTKFile>"
+        )
+    };
+    workplace.put("two.vti", image(two, "1 1 1"));
+    workplace.put("thin.vti", image(two, "1 0 1"));
+    let half = "<PointData></PointData><CellData><DataArray type=\"Float32\" Name=\"a\" format=\"ascii\">1 1 1 1 1.5 1 1 1</DataArray></CellData>";
+    workplace.put("half.vti", image(half, "1 1 1"));
+    workplace.put("short.npy", &npy(&[4, 3, 2], &[1; 24])[..140]);
+    workplace.put("line.npy", npy(&[24], &[1; 24]));
+    workplace.put("none.npy", npy(&[0, 3], &[]));
+    for (arguments, message) in [
+        (
+            "missing.vti",
+            "missing.vti: cannot be read: No such file or directory (os error 2); give the path of a readable map",
+        ),
+        ("map.png", "map.png: unknown extension; give a map *.vti, *.npy or *.raw"),
+        (
+            "no.vti",
+            "no.vti: has no array with one whole number for each voxel; save the labels of grains as one",
+        ),
+        ("two.vti", "two.vti: has several arrays that may be labels; choose one with --label-array: a, b"),
+        (
+            "two.vti --label-array c",
+            "two.vti: has no array `c` with one number for each voxel; name one that it has: a, b",
+        ),
+        (
+            "thin.vti --label-array a",
+            "thin.vti: its voxels are 0 wide along y; give their size with --spacing, such as 0.5",
+        ),
+        (
+            "half.vti",
+            "half.vti: voxel 4 has the label 1.5; labels are whole numbers from -2147483648 to 2147483647",
+        ),
+        (
+            "short.npy",
+            "short.npy: it has too few bytes for [4, 3, 2] numbers of u8; give a complete NumPy file",
+        ),
+        ("line.npy", "line.npy: its array has 1 indices; a map has two or three"),
+        ("none.npy", "none.npy: has no voxels along x; give a map with at least one along each axis"),
+        (
+            "volume.raw",
+            "volume.raw: holds numbers alone; say what they are with --shape NX NY NZ and --type, such as u16",
+        ),
+        (
+            "volume.raw --shape 24 20 15 --type u16",
+            "volume.raw: has 15360 bytes; 7200 voxels of 2 bytes take 14400: mend --shape or --type",
+        ),
+        (
+            "volume.npy --type u16",
+            "volume.npy: files of this format tell their shape and type; leave --shape and --type out",
+        ),
+        (
+            "volume_damask.vti --axes zyx",
+            "volume_damask.vti: files of this format tell their order of axes; leave --axes out",
+        ),
+        ("volume.npy --crop 0:25,0:9,0:9", "volume.npy: has 24 voxels along x; --crop asks for 0:25"),
+        (
+            "volume.npy --min-voxels 3000",
+            "volume.npy: has no grain of 3000 or more voxels beside the exterior; lower --min-voxels, or mend --exterior-label",
+        ),
+        (
+            "volume.npy -o a.tess",
+            "a.tess: this format holds convex cells, and grains of --grain-shapes, place= or a map are none; choose another, such as .vtp",
+        ),
+    ] {
+        workplace.refuses(&format!("smooth {arguments}"), FAILED, message);
+    }
+    for (arguments, message) in [
+        (
+            "volume.npy --crop 5:5,0:1",
+            "invalid value '5:5,0:1' for '--crop <X0:X1,Y0:Y1,Z0:Z1>': give the first voxel and the first one behind along each axis, as in 0:64,0:64,10:40",
+        ),
+        (
+            "volume.npy --spacing 0",
+            "invalid value '0' for '--spacing <DX> [DY] [DZ]': give a positive, finite length",
+        ),
+        (
+            "volume.npy --type f16",
+            "invalid value 'f16' for '--type <TYPE>': the types are u8, i8, u16, i16, u32, i32, u64, i64, f32, f64",
+        ),
+        (
+            "volume.npy --picture a.png --color-by ipf-z",
+            "--color-by ipf-z needs what a map of labels does not tell",
+        ),
+    ] {
+        workplace.refuses(&format!("smooth {arguments}"), USAGE, message);
+    }
+}
