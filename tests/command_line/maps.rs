@@ -3,6 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use grainsmooth::{MapOptions, read_map};
+
+use crate::programs;
 use crate::surface_file::SurfaceFile;
 use crate::workplace::{FAILED, USAGE, Workplace};
 
@@ -10,12 +13,18 @@ use crate::workplace::{FAILED, USAGE, Workplace};
 const COUNTS: [f64; 10] = [27.0, 1217.0, 901.0, 2422.0, 166.0, 70.0, 87.0, 2535.0, 251.0, 4.0];
 
 /// The forms of that map, what reads them, and the volume of a voxel as the file tells it.
-const FORMS: [(&str, &str, f64); 5] = [
+const FORMS: [(&str, &str, f64); 10] = [
     ("volume_damask.vti", "", 0.2),
     ("volume_points.vti", "", 0.2),
     ("volume.npy", "", 1.0),
     ("volume_zyx_c.npy", "--axes zyx", 1.0),
     ("volume.raw", "--shape 24 20 16 --type u16", 1.0),
+    ("volume.nrrd", "", 0.2),
+    // These take their numbers from `volume.raw`.
+    ("volume.nhdr", "", 0.2),
+    ("volume.mhd", "", 0.2),
+    ("volume_raw.tesr", "", 0.2),
+    ("volume.tesr", "", 0.2),
 ];
 
 fn workplace() -> Workplace {
@@ -77,6 +86,93 @@ fn voxels_of_the_network_are_those_of_the_map() {
     workplace.run("smooth a.vti -o b.vtp");
     let [first, second] = ["a.vtp", "b.vtp"].map(|name| SurfaceFile::read(&workplace.path(name)));
     assert!((first.points, first.cells) == (second.points, second.cells));
+}
+
+#[test]
+fn a_map_stands_where_its_file_says() {
+    let workplace = workplace();
+    // Offsets of MetaImage are those of the middle of the first voxel.
+    for (name, domain) in [
+        ("volume.tesr", "[1, 13] x [2, 12] x [-3, 9.8]"),
+        ("volume.mhd", "[0.75, 12.75] x [1.75, 11.75] x [-3.4, 9.4]"),
+        ("volume.nrrd", "[0, 12] x [0, 10] x [0, 12.8]"),
+    ] {
+        let said = workplace.run(&format!("smooth {name} -o a.vtp"));
+        assert!(said.contains(&format!(" in {domain}\n")), "{name}: {said}");
+    }
+}
+
+#[test]
+fn images_of_vtk_are_read() {
+    let workplace = workplace();
+    // Offset, compressed or not, in one file or two.
+    let program = r#"
+import vtk
+reader = vtk.vtkXMLImageDataReader()
+reader.SetFileName("volume_points.vti")
+for name, compression in [("a.mha", 0), ("b.mha", 1), ("c.mhd", 0), ("d.mhd", 1)]:
+    writer = vtk.vtkMetaImageWriter()
+    writer.SetInputConnection(reader.GetOutputPort())
+    writer.SetFileName(name)
+    writer.SetCompression(compression)
+    writer.Write()
+"#;
+    let mut python = std::process::Command::new("python3");
+    python.args(["-c", program]).current_dir(workplace.path(""));
+    let Some(output) = programs::run("images_of_vtk_are_read", &mut python) else { return };
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let options = MapOptions::default();
+    let read = |name: &str| read_map(&workplace.path(name), &options).unwrap();
+    let expected = read("volume_points.vti");
+    for name in ["a.mha", "b.mha", "c.mhd", "d.mhd"] {
+        let found = read(name);
+        assert!(found.map.labels == expected.map.labels, "{name}");
+        assert_eq!(found.map.shape, expected.map.shape, "{name}");
+        assert!((found.map.origin - expected.map.origin).length() < 1e-12, "{name}: {}", found.map.origin);
+        assert!((found.map.spacing - expected.map.spacing).length() < 1e-12, "{name}");
+    }
+}
+
+#[test]
+fn damaged_maps_are_refused_or_read() {
+    let workplace = workplace();
+    let options = MapOptions::default();
+    for name in ["volume.npy", "volume.nrrd", "volume.nhdr", "volume.mhd", "volume.tesr", "volume_raw.tesr"] {
+        let good = workplace.bytes(name);
+        let damaged = format!("damaged_{name}");
+        // Knuth's generator: the same damage on each machine.
+        let mut state = 1_u64;
+        let mut below = |count: usize| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            usize::try_from(state >> 33).unwrap() % count
+        };
+        let mut refused = 0;
+        for variant in 0..200 {
+            let mut bytes = good.clone();
+            if variant % 4 == 3 {
+                bytes.truncate(below(good.len()));
+            } else {
+                // Half of them in the header.
+                let end = if variant % 2 == 0 { good.len() } else { good.len().min(400) };
+                for _ in 0..=variant % 3 {
+                    bytes[below(end)] ^= 1 << below(8);
+                }
+            }
+            workplace.put(&damaged, &bytes);
+            match read_map(&workplace.path(&damaged), &options) {
+                Ok(read) => {
+                    let [nx, ny, nz] = read.map.shape;
+                    assert_eq!(read.map.labels.len(), nx * ny * nz, "{name}, variant {variant}");
+                }
+                Err(error) => {
+                    assert!(error.to_string().contains(&damaged), "{name}, variant {variant}: {error}");
+                    refused += 1;
+                }
+            }
+        }
+        // At least those that are cut off.
+        assert!(refused >= 50, "{name}: {refused}");
+    }
 }
 
 #[test]
@@ -159,12 +255,27 @@ fn maps_that_cannot_be_used() {
     workplace.put("short.npy", &npy(&[4, 3, 2], &[1; 24])[..140]);
     workplace.put("line.npy", npy(&[24], &[1; 24]));
     workplace.put("none.npy", npy(&[0, 3], &[]));
+    let nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n";
+    workplace.put("few.nrrd", format!("{nrrd}\n1 1 1 1 2 2 2"));
+    workplace
+        .put("turned.nrrd", format!("{nrrd}space directions: (0,1,0) (1,0,0) (0,0,1)\n\n1 1 1 1 2 2 2 2"));
+    workplace.put("many.nhdr", format!("{nrrd}data file: LIST\n"));
+    let mhd = "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\n";
+    workplace.put("lost.mhd", format!("{mhd}ElementDataFile = lost.zraw\n"));
+    workplace.put("colors.mhd", format!("{mhd}ElementNumberOfChannels = 3\nElementDataFile = LOCAL\n"));
+    workplace.put("short.mha", format!("{mhd}ElementDataFile = LOCAL\n1234567"));
+    let tesr = "***tesr\n **format 2.1\n **general 2 2 2 1 1\n **cell 1 *id 7\n **data";
+    workplace.put("cells.tesr", format!("{tesr} ascii 1 1 0 2"));
+    workplace.put("kind.tesr", format!("{tesr} binary64\n"));
     for (arguments, message) in [
         (
             "missing.vti",
             "missing.vti: cannot be read: No such file or directory (os error 2); give the path of a readable map",
         ),
-        ("map.png", "map.png: unknown extension; give a map *.vti, *.npy or *.raw"),
+        (
+            "map.png",
+            "map.png: unknown extension; give a map *.vti, *.npy, *.nrrd, *.nhdr, *.mhd, *.mha, *.tesr or *.raw",
+        ),
         (
             "no.vti",
             "no.vti: has no array with one whole number for each voxel; save the labels of grains as one",
@@ -186,6 +297,23 @@ fn maps_that_cannot_be_used() {
             "short.npy",
             "short.npy: it has too few bytes for [4, 3, 2] numbers of u8; give a complete NumPy file",
         ),
+        ("few.nrrd", "few.nrrd: it has 7 numbers for 2 x 2 x 2 voxels; give a complete NRRD file"),
+        ("turned.nrrd", "turned.nrrd: its axes are turned, which maps may not be; give a complete NRRD file"),
+        (
+            "many.nhdr",
+            "many.nhdr: its numbers are in several files, which are not read; give a complete NRRD file",
+        ),
+        (
+            "lost.mhd",
+            "lost.mhd: its numbers are in `lost.zraw`, which cannot be read: No such file or directory (os error 2); put that file where the map says",
+        ),
+        ("colors.mhd", "colors.mhd: its voxels have several numbers each; give a complete MetaImage file"),
+        ("short.mha", "short.mha: it has 7 numbers for 2 x 2 x 2 voxels; give a complete MetaImage file"),
+        (
+            "cells.tesr",
+            "cells.tesr: a voxel lies in cell 2, and its list of cells has 1; give a complete .tesr file",
+        ),
+        ("kind.tesr", "kind.tesr: the kind of its **data is not known; give a complete .tesr file"),
         ("line.npy", "line.npy: its array has 1 indices; a map has two or three"),
         ("none.npy", "none.npy: has no voxels along x; give a map with at least one along each axis"),
         (

@@ -2,9 +2,13 @@
 
 pub(crate) mod cleaning;
 pub(crate) mod label_map;
+mod mhd;
 mod npy;
+mod nrrd;
 mod number_type;
 pub(crate) mod options;
 mod raw;
 pub(crate) mod read;
+mod stored_numbers;
+mod tesr;
 mod vti;

@@ -16,7 +16,7 @@ use super::run::SharedArguments;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct SmoothArguments {
-    /// Map to smooth: .vti, .npy or .raw
+    /// Map to smooth: .vti, .npy, .nrrd, .nhdr, .mhd, .mha, .tesr or .raw
     #[arg(value_name = "MAP")]
     pub map: PathBuf,
 

@@ -9,6 +9,14 @@ pub enum MapProblem {
     /// The file cannot be opened or read.
     #[error("cannot be read: {0}; give the path of a readable map")]
     Unreadable(io::Error),
+    /// Another file, which holds the numbers, cannot be read.
+    #[error("its numbers are in `{name}`, which cannot be read: {error}; put that file where the map says")]
+    DataFile {
+        /// The file as the map names it.
+        name: String,
+        /// Why not.
+        error: io::Error,
+    },
     /// The extension names no format.
     #[error("unknown extension; give a map {known}")]
     UnknownExtension {

@@ -5,11 +5,12 @@
 use super::label_map::FileMap;
 use super::number_type::{ByteOrder, NumberType};
 use super::options::{Axes, MapOptions};
+use super::stored_numbers::Source;
 use crate::error::map_file::MapProblem;
 
 /// Reads the labels; more bytes than the array takes may follow.
-pub(super) fn read(bytes: &[u8], options: &MapOptions) -> Result<FileMap, MapProblem> {
-    let (header, numbers) = split(bytes).ok_or_else(|| damaged("its header is cut off"))?;
+pub(super) fn read(source: &Source<'_>, options: &MapOptions) -> Result<FileMap, MapProblem> {
+    let (header, numbers) = split(source.bytes).ok_or_else(|| damaged("its header is cut off"))?;
     let array = Array::of_header(&header)?;
     let shape = match (&array.shape[..], options.axes.unwrap_or(Axes::Xyz)) {
         (&[x, y], Axes::Xyz) | (&[y, x], Axes::Zyx) => [x, y, 1],

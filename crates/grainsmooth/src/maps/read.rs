@@ -8,20 +8,26 @@ use glam::DVec3;
 use super::cleaning::cleaned;
 use super::label_map::{FileMap, LabelMap, MeasuredMap};
 use super::options::MapOptions;
-use super::{npy, raw, vti};
+use super::stored_numbers::Source;
+use super::{mhd, npy, nrrd, raw, tesr, vti};
 use crate::Error;
 use crate::error::map_file::MapProblem;
 
 /// A format of maps.
 struct MapFormat {
     extension: &'static str,
-    read: fn(&[u8], &MapOptions) -> Result<FileMap, MapProblem>,
+    read: fn(&Source<'_>, &MapOptions) -> Result<FileMap, MapProblem>,
 }
 
-/// Every format, a file and a line.
-const FORMATS: [MapFormat; 3] = [
+/// Every format, a line for each extension.
+const FORMATS: [MapFormat; 8] = [
     MapFormat { extension: "vti", read: vti::read },
     MapFormat { extension: "npy", read: npy::read },
+    MapFormat { extension: "nrrd", read: nrrd::read },
+    MapFormat { extension: "nhdr", read: nrrd::read },
+    MapFormat { extension: "mhd", read: mhd::read },
+    MapFormat { extension: "mha", read: mhd::read },
+    MapFormat { extension: "tesr", read: tesr::read },
     MapFormat { extension: "raw", read: raw::read },
 ];
 
@@ -44,7 +50,7 @@ fn read(path: &Path, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
         return Err(MapProblem::Told { what: "order of axes", option: "--axes" });
     }
     let bytes = fs::read(path).map_err(MapProblem::Unreadable)?;
-    let FileMap { shape, spacing, origin, labels } = (format.read)(&bytes, options)?;
+    let FileMap { shape, spacing, origin, labels } = (format.read)(&Source { path, bytes: &bytes }, options)?;
     let axes = ['x', 'y', 'z'].into_iter();
     if let Some((axis, _)) = axes.clone().zip(shape).find(|(_, count)| *count == 0) {
         return Err(MapProblem::Empty { axis });

@@ -6,6 +6,7 @@ use vtkio::xml::ScalarType;
 use super::label_map::FileMap;
 use super::number_type::labels_of_floats;
 use super::options::MapOptions;
+use super::stored_numbers::Source;
 use crate::error::map_file::MapProblem;
 use crate::vtk::{XmlFile, attribute};
 
@@ -23,8 +24,8 @@ struct Candidate<'a> {
 }
 
 /// Reads the labels.
-pub(super) fn read(bytes: &[u8], options: &MapOptions) -> Result<FileMap, MapProblem> {
-    let file = XmlFile::of(bytes).ok_or_else(|| damaged("it is no XML of VTK"))?;
+pub(super) fn read(source: &Source<'_>, options: &MapOptions) -> Result<FileMap, MapProblem> {
+    let file = XmlFile::of(source.bytes).ok_or_else(|| damaged("it is no XML of VTK"))?;
     let Some((_, rest)) = file.head.split_once("<ImageData") else {
         return Err(damaged("it holds no ImageData"));
     };
