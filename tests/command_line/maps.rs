@@ -298,16 +298,13 @@ fn maps_that_cannot_be_used() {
             "short.npy: it has too few bytes for [4, 3, 2] numbers of u8; give a complete NumPy file",
         ),
         ("few.nrrd", "few.nrrd: it has 7 numbers for 2 x 2 x 2 voxels; give a complete NRRD file"),
-        ("turned.nrrd", "turned.nrrd: its axes are turned, which maps may not be; give a complete NRRD file"),
-        (
-            "many.nhdr",
-            "many.nhdr: its numbers are in several files, which are not read; give a complete NRRD file",
-        ),
+        ("turned.nrrd", "turned.nrrd: its axes are turned; sample the map again along x, y and z"),
+        ("many.nhdr", "many.nhdr: its numbers are in several files; save them in one"),
         (
             "lost.mhd",
             "lost.mhd: its numbers are in `lost.zraw`, which cannot be read: No such file or directory (os error 2); put that file where the map says",
         ),
-        ("colors.mhd", "colors.mhd: its voxels have several numbers each; give a complete MetaImage file"),
+        ("colors.mhd", "colors.mhd: its voxels have several numbers each; save the labels of grains alone"),
         ("short.mha", "short.mha: it has 7 numbers for 2 x 2 x 2 voxels; give a complete MetaImage file"),
         (
             "cells.tesr",

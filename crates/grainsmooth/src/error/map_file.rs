@@ -31,6 +31,14 @@ pub enum MapProblem {
         /// What is wrong.
         what: String,
     },
+    /// The file is good, and what it holds is no map that can be smoothed as it is.
+    #[error("{what}; {remedy}")]
+    Unfit {
+        /// What stands against it.
+        what: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
     /// The file has no array with a whole number for each voxel.
     #[error("has no array with one whole number for each voxel; save the labels of grains as one")]
     NoLabels,

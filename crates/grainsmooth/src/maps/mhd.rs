@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::label_map::FileMap;
 use super::number_type::{ByteOrder, NumberType};
 use super::options::MapOptions;
-use super::stored_numbers::{Encoding, Source, StoredNumbers, of_axes};
+use super::stored_numbers::{Encoding, IN_SEVERAL_FILES, Source, StoredNumbers, TURNED_AXES, of_axes};
 use crate::error::map_file::MapProblem;
 
 /// Reads the labels; their first axis is x.
@@ -24,7 +24,10 @@ pub(super) fn read(source: &Source<'_>, _: &MapOptions) -> Result<FileMap, MapPr
     let shape = field(&["DimSize"]).and_then(|text| of_axes(text, 1)).ok_or_else(|| missing("DimSize"))?;
     let number_type = field(&["ElementType"]).and_then(number_type).ok_or_else(|| missing("ElementType"))?;
     if field(&["ElementNumberOfChannels"]).is_some_and(|count| count != "1") {
-        return Err(damaged("its voxels have several numbers each"));
+        return Err(MapProblem::Unfit {
+            what: "its voxels have several numbers each",
+            remedy: "save the labels of grains alone",
+        });
     }
     let is_big = is_true(&["ElementByteOrderMSB", "BinaryDataByteOrderMSB"]);
     let is_text = field(&["BinaryData"]).is_some_and(|value| value.eq_ignore_ascii_case("false"));
@@ -38,7 +41,7 @@ pub(super) fn read(source: &Source<'_>, _: &MapOptions) -> Result<FileMap, MapPr
     let data = match name {
         "LOCAL" | "Local" | "local" => Cow::Borrowed(rest),
         _ if name.starts_with("LIST") || name.contains('%') => {
-            return Err(damaged("its numbers are in several files, which are not read"));
+            return Err(IN_SEVERAL_FILES);
         }
         _ => source.beside(name)?.into(),
     };
@@ -56,7 +59,7 @@ pub(super) fn read(source: &Source<'_>, _: &MapOptions) -> Result<FileMap, MapPr
         let is_one = |place: usize| place.is_multiple_of(side + 1);
         let mut axes = axes.into_iter().enumerate();
         if !axes.all(|(place, number)| number == Some(f64::from(u8::from(is_one(place))))) {
-            return Err(damaged("its axes are turned, which maps may not be"));
+            return Err(TURNED_AXES);
         }
     }
     let spacing = match field(&["ElementSpacing", "ElementSize"]) {

@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::label_map::FileMap;
 use super::number_type::{ByteOrder, NumberType};
 use super::options::MapOptions;
-use super::stored_numbers::{Encoding, Source, StoredNumbers, of_axes};
+use super::stored_numbers::{Encoding, IN_SEVERAL_FILES, Source, StoredNumbers, TURNED_AXES, of_axes};
 use crate::error::map_file::MapProblem;
 
 /// Reads the labels; their first axis is x.
@@ -40,7 +40,7 @@ pub(super) fn read(source: &Source<'_>, _: &MapOptions) -> Result<FileMap, MapPr
     let data = match field(&["data file", "datafile"]) {
         None => Cow::Borrowed(rest),
         Some(name) if name.starts_with("LIST") || name.contains('%') => {
-            return Err(damaged("its numbers are in several files, which are not read"));
+            return Err(IN_SEVERAL_FILES);
         }
         Some(name) => source.beside(name)?.into(),
     };
@@ -133,7 +133,7 @@ fn spacing_of_directions(text: &str) -> Result<DVec3, MapProblem> {
     if is_straight && spacing.min_element() > 0.0 {
         return Ok(spacing);
     }
-    Err(damaged("its axes are turned, which maps may not be"))
+    Err(TURNED_AXES)
 }
 
 /// A vector as in `(0.5,0,0)`.

@@ -10,6 +10,12 @@ use flate2::read::{MultiGzDecoder, ZlibDecoder};
 use super::number_type::{ByteOrder, NumberType, labels_of_floats};
 use crate::error::map_file::MapProblem;
 
+pub(super) const IN_SEVERAL_FILES: MapProblem =
+    MapProblem::Unfit { what: "its numbers are in several files", remedy: "save them in one" };
+
+pub(super) const TURNED_AXES: MapProblem =
+    MapProblem::Unfit { what: "its axes are turned", remedy: "sample the map again along x, y and z" };
+
 /// A map's file as it is read.
 pub(super) struct Source<'a> {
     pub(super) path: &'a Path,

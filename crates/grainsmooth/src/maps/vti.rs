@@ -32,7 +32,7 @@ pub(super) fn read(source: &Source<'_>, options: &MapOptions) -> Result<FileMap,
     let tag = rest.split('>').next().unwrap_or_default();
     let missing = |name: &str| damaged(format!("its ImageData has no {name} that is understood"));
     if file.head.matches("<Piece").count() != 1 {
-        return Err(damaged("it is not in one piece"));
+        return Err(MapProblem::Unfit { what: "it is not in one piece", remedy: "save it as one" });
     }
     let extent: [i64; 6] = numbers(tag, "WholeExtent").ok_or_else(|| missing("WholeExtent"))?;
     let edges = |axis: usize| {
