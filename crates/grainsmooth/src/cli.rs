@@ -1,9 +1,12 @@
-//! The command line.
+//! The command line, of the program and of whoever gives its options in another way.
 
+use std::ffi::OsString;
+
+use crate::error::usage::UsageError;
+use crate::{Coloring, Config, Error, PeriodicCut, SizeOptions, read_file_domain};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
-use grainsmooth::{Coloring, Config, PeriodicCut, SizeOptions, read_file_domain};
 
 mod check;
 mod config_file;
@@ -12,6 +15,7 @@ mod domain;
 mod files;
 mod measure;
 pub mod mesh;
+mod option_value;
 mod page;
 mod pictures;
 mod run;
@@ -21,12 +25,13 @@ mod smooth;
 mod smoothing;
 
 pub use check::CheckArguments;
-pub use documents::{print_completions, print_manual};
+pub use documents::{completions, manual};
 use domain::DomainArguments;
 use files::FileArguments;
 pub use files::OutputArguments;
 pub use measure::MeasureArguments;
 use mesh::MeshArguments;
+pub use option_value::OptionValue;
 pub use page::{EditArguments, ServerArguments, ViewArguments};
 pub use pictures::PictureArguments;
 use run::RunArguments;
@@ -103,77 +108,107 @@ Examples:
 Exit status: 0 good, 1 the run failed or its result is invalid, 2 a mistake on the command line.";
 
 impl Arguments {
-    /// The program's arguments, with the options of the file that `--config` names.
+    /// The arguments of a command line, whose first word is the program's name, with the options of the file that `--config` names.
     ///
-    /// Ends the program with exit status 2 where one is mistaken.
-    pub fn read() -> Self {
-        let arguments: Vec<_> = std::env::args_os().collect();
-        match config_file::with_config_file(arguments, &Self::command()) {
-            Ok(arguments) => Self::parse_from(arguments),
-            Err(message) => Self::command().error(ErrorKind::ValueValidation, message).exit(),
-        }
+    /// # Errors
+    /// [`Error::Usage`] where one is mistaken; also where `--help` or `--version` asks for what is no run.
+    pub fn read(words: Vec<OsString>) -> Result<Self, Error> {
+        let words = config_file::with_config_file(words, &Self::command()).map_err(invalid)?;
+        Ok(Self::try_parse_from(words).map_err(UsageError::from)?)
+    }
+
+    /// The arguments that give options by their long names.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where one is mistaken.
+    pub fn of_options(options: &[(String, OptionValue)]) -> Result<Self, Error> {
+        let mut command = Self::command();
+        command.build();
+        let words = options
+            .iter()
+            .map(|(name, value)| Ok(option_value::option(name, value, &command)?.1))
+            .collect::<Result<Vec<_>, String>>();
+        Self::of_words(words)
+    }
+
+    /// The arguments that settings tell, as TOML: those of a config, or of a file that was written.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where one is mistaken.
+    pub fn of_settings(settings: &str) -> Result<Self, Error> {
+        let mut command = Self::command();
+        command.build();
+        let options = config_file::parse(settings, &command);
+        Self::of_words(options.map(|options| options.into_iter().map(|(_, words)| words).collect()))
+    }
+
+    fn of_words(words: Result<Vec<Vec<OsString>>, String>) -> Result<Self, Error> {
+        let words = words.map_err(invalid)?.concat();
+        Self::read([vec![env!("CARGO_PKG_NAME").into()], words].concat())
     }
 
     /// What the arguments ask to compute.
     ///
-    /// Ends the program with exit status 2 where they do not fit together.
-    ///
     /// # Errors
-    /// When the file of the seeds cannot tell what they fill.
-    pub fn config(&self) -> Result<Config, grainsmooth::Error> {
+    /// [`Error::Usage`] where they do not fit together; when the file of the seeds cannot tell what they fill.
+    pub fn config(&self) -> Result<Config, Error> {
         let Self { seeds, sizes, domain: arguments, smoothing, config, files, .. } = self;
         let of_file = seeds.seeds_file.as_deref().map(read_file_domain).transpose()?.flatten();
-        let domain = arguments.with_defaults_of(of_file);
+        let domain = arguments.with_defaults_of(of_file)?;
         let config = Config {
-            seeds: seeds.source(domain.dimension),
+            seeds: seeds.source(domain.dimension)?,
             sizes: SizeOptions { source: sizes.source(), ..config.sizes.clone() },
             dimension: domain.dimension,
             box_size: domain.box_size,
-            aspect_ratio: sizes.aspect_ratio(domain.dimension),
-            shape: arguments.shape(&domain),
+            aspect_ratio: sizes.aspect_ratio(domain.dimension)?,
+            shape: arguments.shape(&domain)?,
             periodic: domain.periodic,
             face_mesh: smoothing.face_mesh(),
             volumes: smoothing.volumes(),
-            file: files.outputs.options(domain.dimension),
+            file: files.outputs.options(domain.dimension)?,
             ..config.clone()
         };
         // Files say what was usual when they were written.
         let config = Config { relaxation: Some(config.effective_relaxation()), ..config };
-        if let Err(error) = config.check() {
-            usage(&error.to_string());
-        }
-        self.check_shown(&config);
+        config.check().map_err(|error| usage(&error.to_string()))?;
+        self.check_shown(&config)?;
         let is_count_open = config.has_sizes() && seeds.is_count_open();
         if is_count_open { config.with_count_of_sizes() } else { Ok(config) }
     }
 
     /// Checks that what is to be written and shown is there.
-    fn check_shown(&self, config: &Config) {
+    fn check_shown(&self, config: &Config) -> Result<(), Error> {
         let Self { files, pictures, run, .. } = self;
         if config.periodic_cut == PeriodicCut::Box && files.has_series() {
-            usage("--series shows whole grains; leave --periodic-cut box out");
+            return Err(usage("--series shows whole grains; leave --periodic-cut box out"));
         }
         let is_of_cells =
             files.cells_csv.is_some() || files.cells_json.is_some() || run.no_mesh || files.has_series();
         if is_of_cells && config.grain_shapes.is_none() && config.has_grains_of_several_cells() {
-            usage(
+            return Err(usage(
                 "place= puts grains into others, which then are of several cells; leave --cells-csv, --cells-json, --no-mesh and --series out",
-            );
+            ));
         }
         let coloring = pictures.coloring();
         if coloring == Coloring::Phase && config.phases.is_empty() {
-            usage("--color-by phase needs phases; give some with --phase");
+            return Err(usage("--color-by phase needs phases; give some with --phase"));
         }
         if coloring.needs_texture() && !config.has_texture() {
-            usage(&format!(
+            return Err(usage(&format!(
                 "--color-by {} shows orientations; give the grains some, such as --texture random",
                 coloring.name()
-            ));
+            )));
         }
+        Ok(())
     }
 }
 
-/// Ends the program as clap does on a mistake.
-pub fn usage(message: &str) -> ! {
-    Arguments::command().error(ErrorKind::WrongNumberOfValues, message).exit()
+/// The error of a value that an option cannot have.
+fn invalid(message: String) -> UsageError {
+    UsageError::from(Arguments::command().error(ErrorKind::ValueValidation, message))
+}
+
+/// The error of options that each are good, and together are not.
+pub fn usage(message: &str) -> Error {
+    UsageError::from(Arguments::command().error(ErrorKind::WrongNumberOfValues, message)).into()
 }

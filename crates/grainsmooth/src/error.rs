@@ -1,5 +1,5 @@
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use polycrystal::NetworkError;
@@ -17,11 +17,13 @@ pub(crate) mod failure;
 pub(crate) mod map_file;
 pub(crate) mod mesh_file;
 pub(crate) mod seed_file;
+pub(crate) mod usage;
 
 use failure::Failure;
 use map_file::MapProblem;
 use mesh_file::MeshFileProblem;
 use seed_file::{SeedPlace, SeedProblem};
+use usage::UsageError;
 
 /// What can go wrong between the user's input and the files written. Each message is one line that names the
 /// value, the place and the remedy.
@@ -285,6 +287,9 @@ pub enum Error {
     /// Grains that are put into others leave no room for one.
     #[error("the phases with place= are too crowded: {0}; give them smaller shares or smaller grains")]
     NoRoomAround(#[source] VolumesError),
+    /// Options as the command line gives them, one mistaken, or which do not go together.
+    #[error(transparent)]
+    Usage(#[from] UsageError),
     /// Options that do not go together.
     #[error(transparent)]
     Config(#[from] ConfigError),
@@ -423,6 +428,24 @@ pub enum Error {
     /// What is asked for does not fit.
     #[error(transparent)]
     Memory(#[from] MemoryError),
+}
+
+impl Error {
+    /// The file that cannot be read or written and what the system says of it, where that is the error.
+    pub fn file_cause(&self) -> Option<(&Path, &io::Error)> {
+        match self {
+            Self::OutputNotWritable { path, cause }
+            | Self::WriteOutput { path, cause }
+            | Self::SeedFileUnreadable { path, cause }
+            | Self::DomainFileUnreadable { path, cause }
+            | Self::TextureFileUnreadable { path, cause }
+            | Self::SizeFileUnreadable { path, cause }
+            | Self::CollectionUnreadable { path, cause }
+            | Self::MeshFile { path, problem: MeshFileProblem::Unreadable(cause) }
+            | Self::MapFile { path, problem: MapProblem::Unreadable(cause) } => Some((path, cause)),
+            _ => None,
+        }
+    }
 }
 
 /// What to do about a file that cannot be written. What a format cannot hold says so itself.

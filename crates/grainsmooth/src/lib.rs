@@ -19,6 +19,8 @@
 //! subdivides; [`sizes`] and [`texture`] draw diameters and orientations.
 
 mod check;
+#[doc(hidden)]
+pub mod cli;
 mod config;
 mod error;
 mod estimate;
@@ -73,6 +75,7 @@ pub use error::failure::{Failure, Growth};
 pub use error::map_file::MapProblem;
 pub use error::mesh_file::MeshFileProblem;
 pub use error::seed_file::{SeedPlace, SeedProblem};
+pub use error::usage::UsageError;
 pub use estimate::Estimate;
 pub use figures::asked::AskedAndReached;
 pub use figures::equivalent_diameters::EquivalentDiameters;

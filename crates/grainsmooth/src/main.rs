@@ -1,6 +1,5 @@
 //! The `grainsmooth` program: reads the command line, runs the pipeline, reports.
 
-mod cli;
 mod commands;
 #[cfg(unix)]
 mod interruption;
@@ -9,20 +8,26 @@ mod progress;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
+use grainsmooth::Error;
+use grainsmooth::cli::{self, Arguments, Command};
 use grainsmooth::mesh::file::READER_THREAD;
 
-use cli::{Arguments, Command};
-
 fn main() -> ExitCode {
-    match run(&Arguments::read()) {
+    match run() {
         Ok(code) => code,
         // Whoever reads what we print may stop when there is enough of it.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
-        Err(error) => {
-            say(&format!("error: {error}"));
-            ExitCode::FAILURE
-        }
+        Err(error) => match error.downcast() {
+            Ok(Error::Usage(mistake)) => mistake.into_inner().exit(),
+            Ok(error) => fail(&error),
+            Err(error) => fail(&error),
+        },
     }
+}
+
+fn fail(error: &dyn std::fmt::Display) -> ExitCode {
+    say(&format!("error: {error}"));
+    ExitCode::FAILURE
 }
 
 fn is_broken_pipe(error: &anyhow::Error) -> bool {
@@ -48,7 +53,8 @@ fn keep_reader_quiet() {
     }));
 }
 
-fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+fn run() -> anyhow::Result<ExitCode> {
+    let arguments = &Arguments::read(std::env::args_os().collect())?;
     // Whoever interrupts a page has seen enough: that is how it ends.
     #[cfg(unix)]
     if !matches!(arguments.command, Some(Command::View(_) | Command::Edit(_))) {
@@ -63,8 +69,8 @@ fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         Command::Smooth(smooth) => return commands::smooth::run(smooth),
         Command::View(view) => return commands::page::view(view),
         Command::Edit(edit) => return commands::page::edit(edit),
-        Command::Completions { shell } => cli::print_completions(*shell)?,
-        Command::Man => cli::print_manual()?,
+        Command::Completions { shell } => io::stdout().lock().write_all(&cli::completions(*shell))?,
+        Command::Man => io::stdout().lock().write_all(&cli::manual()?)?,
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -131,7 +131,7 @@ impl Names {
 
     /// The numbers of the sides of a boundary, in the scheme's order. Where a grain stands a period beyond, the second of
     /// ours is -2 - b with the number b of the boundary there.
-    pub(crate) fn labels(self, boundary: &Boundary) -> [i32; 2] {
+    pub fn labels(self, boundary: &Boundary) -> [i32; 2] {
         let [first, mut second] = boundary.sides.map(|side| self.side_number(side));
         if let (Self::Grainsmooth, Some(twin)) = (self, boundary.twin) {
             second = -2 - twin.boundary.0.cast_signed();

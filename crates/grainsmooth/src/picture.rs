@@ -75,8 +75,11 @@ impl Polycrystal {
         output.stage(files, |out| out.write_all(&self.png(picture)?))
     }
 
-    /// The bytes of a PNG file.
-    pub(crate) fn png(&self, picture: &Picture) -> io::Result<Vec<u8>> {
+    /// The bytes of a PNG file of the network, as [`stage_picture`](Self::stage_picture) draws it.
+    ///
+    /// # Errors
+    /// Where memory for the pixels is missing.
+    pub fn png(&self, picture: &Picture) -> io::Result<Vec<u8>> {
         let [width, height] = picture.size;
         let mut pixmap = blank([width, height])?;
         let paint = picture.coloring.paint(self);

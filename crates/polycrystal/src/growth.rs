@@ -8,6 +8,7 @@ mod events;
 mod step;
 pub(crate) mod tuning;
 
+use cancellation::check_cancelled;
 use voronoi::{Dimension, Tessellation};
 
 use crate::events::reconnection::Reconnections;
@@ -143,6 +144,7 @@ pub fn grow_cells_tuned(
         let mean = mean_area(&vanished);
         let MovingCurves { faces, network, places } = curves.moving(&in_units, tuning.spacing * mean.sqrt());
         let (time, end, areas) = loop {
+            check_cancelled();
             let time = step_time.min(whole_time - passed);
             let whole = network.step(&places, time);
             let halves = network.step(&network.step(&places, 0.5 * time), 0.5 * time);

@@ -10,6 +10,7 @@ pub(crate) mod labelled_mesh;
 pub(crate) mod line_coarsening;
 pub(crate) mod tension;
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 use subzero::{EdgeId, StencilTable};
@@ -414,6 +415,7 @@ impl Network {
         let mut points = points.to_vec();
         self.levels[from].copies.place(&self.domain, &mut points);
         for (stencils, finer) in self.stencils[from..to].iter().zip(&self.levels[from + 1..=to]) {
+            check_cancelled();
             points = stencils.apply(&points);
             let on_walls = points.par_iter_mut().zip(&finer.walls).filter(|(_, walls)| !walls.is_empty());
             on_walls.for_each(|(point, walls)| *point = self.wall_sets.put_on_walls(*walls, *point));

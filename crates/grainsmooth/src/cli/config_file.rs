@@ -7,20 +7,13 @@ use std::borrow::Cow;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use clap::error::ErrorKind;
 use clap::parser::ValueSource;
-use clap::{Arg, ArgAction, Command};
-use grainsmooth::embedded_config;
-use grainsmooth::spelling::nearest;
+use clap::{Arg, Command};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Options that a file cannot give: they would name another file, or do something else than a run.
-const NOT_IN_FILES: [&str; 3] = ["config", "help", "version"];
-
-/// What the command line has before other keys, of an option that is a table in a file.
-const NAME: &str = "name";
-const FRACTION: &str = "fraction";
+use super::option_value::{OptionValue, not_a_value, option};
+use crate::embedded_config;
 
 /// The program's arguments with those of the file named by `--config`, if there is one, before them.
 ///
@@ -70,7 +63,7 @@ fn read(path: &Path) -> Result<String, String> {
 }
 
 /// The options of a text, each with its words of a command line.
-fn parse<'a>(text: &str, command: &'a Command) -> Result<Vec<(&'a Arg, Vec<OsString>)>, String> {
+pub(super) fn parse<'a>(text: &str, command: &'a Command) -> Result<Vec<(&'a Arg, Vec<OsString>)>, String> {
     let line = |at: usize| format!("line {}", 1 + text[..at].matches('\n').count());
     let table = DeTable::parse(text).map_err(|error| {
         let place = error.span().map_or("is no TOML".to_owned(), |span| line(span.start));
@@ -79,107 +72,35 @@ fn parse<'a>(text: &str, command: &'a Command) -> Result<Vec<(&'a Arg, Vec<OsStr
     let mut settings: Vec<_> = table.get_ref().iter().collect();
     settings.sort_by_key(|(key, _)| key.span().start);
     let located = |key: &Spanned<Cow<'_, str>>, problem| format!("{}: {problem}", line(key.span().start));
-    let option = |(key, value): (&Spanned<Cow<'_, str>>, &Spanned<DeValue<'_>>)| {
-        option(key.get_ref(), value.get_ref(), command).map_err(|problem| located(key, problem))
+    let read_option = |(key, value): (&Spanned<Cow<'_, str>>, &Spanned<DeValue<'_>>)| {
+        let option = option_value(key.get_ref(), value.get_ref())
+            .and_then(|value| option(key.get_ref(), &value, command));
+        option.map_err(|problem| located(key, problem))
     };
-    settings.into_iter().map(option).collect()
+    settings.into_iter().map(read_option).collect()
 }
 
-/// The option of a setting.
-fn option<'a>(
-    key: &str,
-    value: &DeValue<'_>,
-    command: &'a Command,
-) -> Result<(&'a Arg, Vec<OsString>), String> {
-    let argument = find(key, command)?;
-    let words = words(key, value, argument)?;
-    let alone = [command.get_name().into()].into_iter().chain(words.iter().cloned());
-    match command.clone().try_get_matches_from(alone) {
-        Err(error) if error.kind() != ErrorKind::MissingRequiredArgument => {
-            let message = error.to_string();
-            // Below the message stand the usage and where to find help; a tip is about the value.
-            let message =
-                message.lines().filter(|line| line.starts_with("error: ") || line.contains("tip: "));
-            let message: Vec<&str> = message.map(|line| line.trim().trim_start_matches("error: ")).collect();
-            Err(message.join("; "))
-        }
-        _ => Ok((argument, words)),
-    }
-}
-
-/// The option of this long name.
-fn find<'a>(key: &str, command: &'a Command) -> Result<&'a Arg, String> {
-    let named = || {
-        let named = command.get_arguments().filter_map(|argument| Some((argument.get_long()?, argument)));
-        named.filter(|(name, _)| !NOT_IN_FILES.contains(name))
-    };
-    if let Some((_, argument)) = named().find(|(name, _)| *name == key) {
-        return Ok(argument);
-    }
-    Err(match nearest(key, named().map(|(name, _)| name)) {
-        Some(name) => format!("unknown key '{key}'; did you mean '{name}'?"),
-        None => format!("unknown key '{key}'; keys are the long names of the options that --help lists"),
-    })
-}
-
-/// The option as words of a command line.
-fn words(key: &str, value: &DeValue<'_>, argument: &Arg) -> Result<Vec<OsString>, String> {
-    let option = OsString::from(format!("--{key}"));
-    let is_flag = matches!(argument.get_action(), ArgAction::SetTrue);
-    match (value, is_flag) {
-        (DeValue::Boolean(true), true) => Ok(vec![option]),
-        (DeValue::Boolean(false), true) => Ok(Vec::new()),
-        (_, true) => Err(format!("'{key}' is true or false")),
-        // An option that may come several times: once for each value.
-        (DeValue::Array(values), _) if is_repeated(argument) => {
-            let options = values.iter().map(|value| {
-                let word = match value.get_ref() {
-                    DeValue::Table(table) => named_parts(key, table)?,
-                    value => word(key, value)?,
-                };
-                Ok([option.clone(), word])
-            });
-            Ok(options.collect::<Result<Vec<_>, String>>()?.concat())
-        }
-        (DeValue::Array(values), _) => {
-            let values = values.iter().map(|value| word(key, value.get_ref()));
-            std::iter::once(Ok(option)).chain(values).collect()
-        }
-        _ => Ok(vec![option, word(key, value)?]),
-    }
-}
-
-/// Whether the option takes one value each time that it comes.
-fn is_repeated(argument: &Arg) -> bool {
-    let is_single = argument.get_num_args().is_some_and(|count| count.max_values() == 1);
-    matches!(argument.get_action(), ArgAction::Append) && is_single
-}
-
-/// A table such as `[[phase]]` as the command line spells it: `NAME:FRACTION,key=value`, with a value for each other key.
-fn named_parts(key: &str, table: &DeTable<'_>) -> Result<OsString, String> {
-    let part = |part: &str| {
-        let value = table.get(part).ok_or_else(|| format!("a table '{key}' needs a {part}"))?;
-        word(part, value.get_ref())
-    };
-    let (mut text, fraction) = (part(NAME)?, part(FRACTION)?);
-    text.push(":");
-    text.push(fraction);
-    let mut others: Vec<_> = table.iter().collect();
-    others.retain(|(name, _)| ![NAME, FRACTION].contains(&name.get_ref().as_ref()));
-    others.sort_by_key(|(name, _)| name.span().start);
-    for (name, value) in others {
-        text.push(format!(",{}=", name.get_ref()));
-        text.push(word(name.get_ref(), value.get_ref())?);
-    }
-    Ok(text)
-}
-
-fn word(key: &str, value: &DeValue<'_>) -> Result<OsString, String> {
+/// A value as options take it.
+fn option_value(key: &str, value: &DeValue<'_>) -> Result<OptionValue, String> {
+    let word = |text: &str| Ok(OptionValue::Word(text.into()));
     match value {
-        DeValue::String(text) => Ok(text.as_ref().into()),
-        DeValue::Float(number) => Ok(number.as_str().into()),
-        DeValue::Integer(number) if number.radix() == 10 => Ok(number.as_str().into()),
-        _ => Err(format!("'{key}' is a decimal number, a text, or a list of them")),
+        DeValue::Boolean(is_set) => Ok(OptionValue::Flag(*is_set)),
+        DeValue::String(text) => word(text),
+        DeValue::Float(number) => word(number.as_str()),
+        DeValue::Integer(number) if number.radix() == 10 => word(number.as_str()),
+        DeValue::Array(values) => {
+            let values = values.iter().map(|item| option_value(key, item.get_ref()));
+            Ok(OptionValue::List(values.collect::<Result<_, _>>()?))
+        }
+        DeValue::Table(table) => {
+            let mut parts: Vec<_> = table.iter().collect();
+            parts.sort_by_key(|(name, _)| name.span().start);
+            let part = |(name, part): (&Spanned<Cow<'_, str>>, &Spanned<DeValue<'_>>)| {
+                Ok((name.get_ref().to_string(), option_value(name.get_ref(), part.get_ref())?))
+            };
+            Ok(OptionValue::Parts(parts.into_iter().map(part).collect::<Result<_, String>>()?))
+        }
+        _ => Err(not_a_value(key)),
     }
 }
 

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use crate::spelling::length;
+use crate::{Error, FileDomain, Shape};
 use clap::Args;
 use glam::{BVec3, DVec3};
-use grainsmooth::spelling::length;
-use grainsmooth::{FileDomain, Shape};
 use voronoi::Dimension;
 
 use super::usage;
@@ -59,7 +59,7 @@ pub struct DomainArguments {
 
 impl DomainArguments {
     /// What the grains fill: what is not given is as in the file of the seeds, if that tells.
-    pub fn with_defaults_of(&self, file: Option<FileDomain>) -> FileDomain {
+    pub(super) fn with_defaults_of(&self, file: Option<FileDomain>) -> Result<FileDomain, Error> {
         let file = file.unwrap_or(FileDomain {
             dimension: self.dim.unwrap_or(Dimension::Three),
             box_size: DVec3::ONE,
@@ -67,43 +67,49 @@ impl DomainArguments {
         });
         let dimension = self.dim.unwrap_or(file.dimension);
         if dimension != file.dimension {
-            usage("--dim is not the dimension of the seeds' file; leave it out");
+            return Err(usage("--dim is not the dimension of the seeds' file; leave it out"));
         }
         let periodic = self.periodic.unwrap_or(file.periodic);
         if periodic.z && dimension == Dimension::Two {
-            usage("--periodic z needs three dimensions; with --dim 2 give x, y or x,y");
+            return Err(usage("--periodic z needs three dimensions; with --dim 2 give x, y or x,y"));
         }
-        let box_size = self.box_size.as_deref().map_or(file.box_size, |sides| box_size(sides, dimension));
-        FileDomain { dimension, box_size, periodic }
+        let box_size =
+            self.box_size.as_deref().map_or(Ok(file.box_size), |sides| box_size(sides, dimension))?;
+        Ok(FileDomain { dimension, box_size, periodic })
     }
 
     /// What of the box the grains fill.
-    pub fn shape(&self, &FileDomain { dimension, box_size, periodic }: &FileDomain) -> Shape {
+    pub(super) fn shape(
+        &self,
+        &FileDomain { dimension, box_size, periodic }: &FileDomain,
+    ) -> Result<Shape, Error> {
         let DVec3 { x, y, z } = box_size;
         let chord_error = self.chord_error.unwrap_or(Shape::CHORD_ERROR * 0.5 * x);
         let shape = match (&self.half_spaces, &self.domain) {
             (Some(path), _) => Shape::HalfSpaces(path.clone()),
             (None, ShapeName::File(path)) => {
                 if self.box_size.is_some() {
-                    usage("--box has no meaning with a --domain from a file, which has its own size");
+                    return Err(usage(
+                        "--box has no meaning with a --domain from a file, which has its own size",
+                    ));
                 }
                 Shape::Surface(path.clone())
             }
             (None, ShapeName::Box) => Shape::Box,
             (None, ShapeName::Sphere) => {
                 if x != y || x != z {
-                    usage(&format!(
+                    return Err(usage(&format!(
                         "--domain sphere needs a --box of equal sides, its diameter; {x} {y} {z} given"
-                    ));
+                    )));
                 }
                 Shape::Sphere { chord_error }
             }
             (None, ShapeName::Cylinder | ShapeName::Disc) => {
                 if x != y {
                     let name = if self.domain == ShapeName::Disc { "disc" } else { "cylinder" };
-                    usage(&format!(
+                    return Err(usage(&format!(
                         "--domain {name} needs a --box as wide as deep, its diameter; {x} {y} given"
-                    ));
+                    )));
                 }
                 if self.domain == ShapeName::Disc {
                     Shape::Disc { chord_error }
@@ -114,34 +120,36 @@ impl DomainArguments {
         };
         match (&shape, dimension) {
             (Shape::Sphere { .. } | Shape::Cylinder { .. } | Shape::Surface(_), Dimension::Two) => {
-                usage("with --dim 2 the domain is a box, a disc, or --half-spaces")
+                return Err(usage("with --dim 2 the domain is a box, a disc, or --half-spaces"));
             }
             (Shape::Disc { .. }, Dimension::Three) => {
-                usage("--domain disc is for --dim 2; give sphere or cylinder")
+                return Err(usage("--domain disc is for --dim 2; give sphere or cylinder"));
             }
             _ => {}
         }
         let is_curved = matches!(shape, Shape::Sphere { .. } | Shape::Cylinder { .. } | Shape::Disc { .. });
         if self.chord_error.is_some() && !is_curved {
-            usage("--chord-error is for --domain sphere, cylinder or disc; others have flat faces");
+            return Err(usage(
+                "--chord-error is for --domain sphere, cylinder or disc; others have flat faces",
+            ));
         }
         if periodic.any() && shape != Shape::Box {
-            usage("--periodic is for boxes; other domains do not repeat");
+            return Err(usage("--periodic is for boxes; other domains do not repeat"));
         }
-        shape
+        Ok(shape)
     }
 }
 
 /// Side lengths of the box; the last is 1 in 2D.
-fn box_size(sides: &[f64], dimension: Dimension) -> DVec3 {
+fn box_size(sides: &[f64], dimension: Dimension) -> Result<DVec3, Error> {
     match (sides, dimension) {
-        (&[x, y], Dimension::Two) => DVec3::new(x, y, 1.0),
-        (&[x, y, z], Dimension::Three) => DVec3::new(x, y, z),
+        (&[x, y], Dimension::Two) => Ok(DVec3::new(x, y, 1.0)),
+        (&[x, y, z], Dimension::Three) => Ok(DVec3::new(x, y, z)),
         (sides, Dimension::Two) => {
-            usage(&format!("--box takes two numbers, X Y, with --dim 2; {} given", sides.len()))
+            Err(usage(&format!("--box takes two numbers, X Y, with --dim 2; {} given", sides.len())))
         }
         (sides, Dimension::Three) => {
-            usage(&format!("--box takes three numbers, X Y Z, without --dim 2; {} given", sides.len()))
+            Err(usage(&format!("--box takes three numbers, X Y Z, without --dim 2; {} given", sides.len())))
         }
     }
 }
@@ -171,7 +179,7 @@ fn parse_chord_error(text: &str) -> Result<f64, String> {
     length(text).ok_or_else(|| "a chord error is a positive length".to_owned())
 }
 
-pub fn parse_dimension(text: &str) -> Result<Dimension, String> {
+pub(crate) fn parse_dimension(text: &str) -> Result<Dimension, String> {
     match text {
         "2" => Ok(Dimension::Two),
         "3" => Ok(Dimension::Three),

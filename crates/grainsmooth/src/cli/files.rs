@@ -3,13 +3,13 @@
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
+use crate::spelling::{nearest, whole_number};
+use crate::vtk::VtkEncoding;
+use crate::{
+    Error, FileOptions, Output, OutputFormat, SeriesOutput, StatisticsOutput, StlEncoding, TableFormat,
+};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use grainsmooth::spelling::{nearest, whole_number};
-use grainsmooth::vtk::VtkEncoding;
-use grainsmooth::{
-    FileOptions, Output, OutputFormat, SeriesOutput, StatisticsOutput, StlEncoding, TableFormat,
-};
 use voronoi::Dimension;
 
 use super::usage;
@@ -113,58 +113,69 @@ impl FileArguments {
     }
 
     /// Where a series goes, if one is asked for, found writable.
-    pub fn series(&self) -> Result<Option<SeriesOutput>, grainsmooth::Error> {
+    pub fn series(&self) -> Result<Option<SeriesOutput>, Error> {
         self.series.as_deref().map(SeriesOutput::check).transpose()
     }
 }
 
 impl OutputArguments {
     /// Where statistics go, if they are asked for, found writable.
-    pub fn statistics(&self, dimension: Dimension) -> Result<Option<StatisticsOutput>, grainsmooth::Error> {
+    pub fn statistics(&self, dimension: Dimension) -> Result<Option<StatisticsOutput>, Error> {
         let formats = self.stats.iter().filter_map(|path| Some((path, TableFormat::of_path(path)?)));
         let mut outputs = formats.map(|(path, format)| StatisticsOutput::check(path, format, dimension));
         outputs.next().transpose()
     }
 
     /// The files that the network goes to, found writable.
-    pub fn outputs(&self) -> Result<Vec<Output>, grainsmooth::Error> {
+    pub fn outputs(&self) -> Result<Vec<Output>, Error> {
         self.output.iter().filter(|path| !is_standard_output(path)).map(Output::check).collect()
     }
 
     /// The format in which the network goes to standard output, if it does.
-    pub fn standard_output(&self) -> Option<OutputFormat> {
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where it cannot.
+    pub fn standard_output(&self) -> Result<Option<OutputFormat>, Error> {
         let format = self.format.unwrap_or(OutputFormat::VTP);
         match self.output.iter().filter(|path| is_standard_output(path)).count() {
             0 if self.format.is_some() => {
-                usage("--format is for -o -; the extension of a file names its format")
+                Err(usage("--format is for -o -; the extension of a file names its format"))
             }
-            0 => None,
-            1 if format.is_single_file() => Some(format),
-            1 => usage(
+            0 => Ok(None),
+            1 if format.is_single_file() => Ok(Some(format)),
+            1 => Err(usage(
                 "standard output takes a single file; choose another format, such as vtp, or give a path",
-            ),
-            _ => usage("two outputs go to standard output; give one of them a path"),
+            )),
+            _ => Err(usage("two outputs go to standard output; give one of them a path")),
         }
     }
 
     /// How files are written of grains of a dimension.
-    pub fn options(&self, dimension: Dimension) -> FileOptions {
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where the number of voxels is that of another dimension.
+    pub fn options(&self, dimension: Dimension) -> Result<FileOptions, Error> {
         let voxels = match (self.voxels.as_deref(), dimension) {
             (None, _) => None,
             (Some(&[x, y]), Dimension::Two) => Some([x, y, 1]),
             (Some(&[x, y, z]), Dimension::Three) => Some([x, y, z]),
             (Some(counts), Dimension::Two) => {
-                usage(&format!("--voxels takes two numbers, NX NY, with --dim 2; {} given", counts.len()))
+                let count = counts.len();
+                return Err(usage(&format!(
+                    "--voxels takes two numbers, NX NY, with --dim 2; {count} given"
+                )));
             }
-            (Some(counts), Dimension::Three) => usage(&format!(
-                "--voxels takes three numbers, NX NY NZ, without --dim 2; {} given",
-                counts.len()
-            )),
+            (Some(counts), Dimension::Three) => {
+                let count = counts.len();
+                return Err(usage(&format!(
+                    "--voxels takes three numbers, NX NY NZ, without --dim 2; {count} given"
+                )));
+            }
         };
         let stl = if self.ascii { StlEncoding::Ascii } else { StlEncoding::Binary };
         let at_least_one = |count| NonZeroU32::new(count).unwrap_or(NonZeroU32::MIN);
         let voxels = voxels.map(|counts| counts.map(at_least_one));
-        FileOptions { voxels, stl, encoding: self.vtk.vtk_encoding, ..self.options }
+        Ok(FileOptions { voxels, stl, encoding: self.vtk.vtk_encoding, ..self.options })
     }
 }
 

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::TableFormat;
 use clap::Args;
-use grainsmooth::TableFormat;
 use texture::{CrystalSymmetry, SymmetryError};
 use voronoi::Dimension;
 

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use crate::Scheme;
+use crate::mesh::file::MeshFormat;
+use crate::mesh::{EdgeChoice, MeshEdit};
 use clap::{Args, Subcommand, ValueEnum};
-use grainsmooth::Scheme;
-use grainsmooth::mesh::file::MeshFormat;
-use grainsmooth::mesh::{EdgeChoice, MeshEdit};
 use subzero::{BoundaryRule, Crease, DooSabinWeights, INFINITE_SHARPNESS, LoopWeights};
 
 use super::files::VtkArguments;

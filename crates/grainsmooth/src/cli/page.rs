@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::EditContent;
 use clap::Args;
-use grainsmooth::EditContent;
 
 /// Look at grains in the browser: turn, explode, slice, hide and isolate them, colour them by any array
 ///

@@ -3,11 +3,11 @@
 use std::num::NonZeroU16;
 use std::path::{Path, PathBuf};
 
+use crate::{Coloring, Error, Html, Output, Picture, Png};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use grainsmooth::{Coloring, Error, Html, Output, Picture, Png};
 
-use grainsmooth::spelling::whole_number;
+use crate::spelling::whole_number;
 
 /// What is shown of the result.
 #[derive(Debug, Args)]

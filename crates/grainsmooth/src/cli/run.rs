@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use grainsmooth::spelling::whole_number;
+use crate::spelling::whole_number;
 
 /// How the program goes about it.
 #[derive(Debug, Args)]

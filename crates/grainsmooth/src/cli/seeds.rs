@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::spelling::{nearest, whole_number};
+use crate::{Error, Lattice, SeedSource};
 use clap::{Args, ValueEnum};
-use grainsmooth::spelling::{nearest, whole_number};
-use grainsmooth::{Lattice, SeedSource};
 use voronoi::Dimension;
 
 use super::usage;
@@ -63,30 +63,34 @@ enum LatticeValue {
 
 impl SeedArguments {
     /// Whether the number of grains is left open.
-    pub fn is_count_open(&self) -> bool {
+    pub(super) fn is_count_open(&self) -> bool {
         self.seeds.is_none() && self.seeds_file.is_none() && self.lattice.is_none()
     }
 
     /// Where seeds of a dimension come from.
-    pub fn source(&self, dimension: Dimension) -> SeedSource {
+    pub(super) fn source(&self, dimension: Dimension) -> Result<SeedSource, Error> {
         if let Some(path) = &self.seeds_file {
-            return SeedSource::File(path.clone());
+            return Ok(SeedSource::File(path.clone()));
         }
         let count = self.seeds.unwrap_or(USUAL_SEEDS) as usize;
         match (self.lattice.as_deref(), self.seeding) {
-            (None, Seeding::Random) => SeedSource::Random { count },
-            (None, Seeding::PoissonDisc) => SeedSource::PoissonDisc { count },
-            (None, Seeding::Packed) => SeedSource::Packed { count },
+            (None, Seeding::Random) => Ok(SeedSource::Random { count }),
+            (None, Seeding::PoissonDisc) => Ok(SeedSource::PoissonDisc { count }),
+            (None, Seeding::Packed) => Ok(SeedSource::Packed { count }),
             (Some(&[LatticeValue::Kind(lattice), LatticeValue::Cells(cells)]), _) => {
                 match (lattice.dimension(), dimension) {
-                    (Dimension::Three, Dimension::Two) => usage("--dim 2 has the lattices square and hex"),
-                    (Dimension::Two, Dimension::Three) => {
-                        usage("the lattices square and hex are for --dim 2; give sc, bcc, fcc or hcp")
+                    (Dimension::Three, Dimension::Two) => {
+                        Err(usage("--dim 2 has the lattices square and hex"))
                     }
-                    _ => SeedSource::Lattice { lattice, cells },
+                    (Dimension::Two, Dimension::Three) => {
+                        Err(usage("the lattices square and hex are for --dim 2; give sc, bcc, fcc or hcp"))
+                    }
+                    _ => Ok(SeedSource::Lattice { lattice, cells }),
                 }
             }
-            (Some(_), _) => usage("--lattice takes a lattice and the number of its cells, such as bcc 4"),
+            (Some(_), _) => {
+                Err(usage("--lattice takes a lattice and the number of its cells, such as bcc 4"))
+            }
         }
     }
 }

@@ -3,9 +3,9 @@
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
+use crate::{Error, SizeSource};
 use clap::Args;
 use glam::DVec3;
-use grainsmooth::SizeSource;
 use voronoi::Dimension;
 
 use super::usage;
@@ -46,23 +46,25 @@ pub struct SizeArguments {
 
 impl SizeArguments {
     /// How long grains are along each axis, in proportion; 1 along z in 2D.
-    pub fn aspect_ratio(&self, dimension: Dimension) -> DVec3 {
+    pub(super) fn aspect_ratio(&self, dimension: Dimension) -> Result<DVec3, Error> {
         let ratio = match (self.aspect_ratio.as_deref(), dimension) {
             (None, _) => DVec3::ONE,
             (Some(&[x, y]), Dimension::Two) => DVec3::new(x, y, 1.0),
             (Some(&[x, y, z]), Dimension::Three) => DVec3::new(x, y, z),
-            (Some(_), Dimension::Two) => usage("--aspect-ratio takes two numbers, X Y, with --dim 2"),
+            (Some(_), Dimension::Two) => {
+                return Err(usage("--aspect-ratio takes two numbers, X Y, with --dim 2"));
+            }
             (Some(_), Dimension::Three) => {
-                usage("--aspect-ratio takes three numbers, X Y Z, without --dim 2")
+                return Err(usage("--aspect-ratio takes three numbers, X Y Z, without --dim 2"));
             }
         };
         // Equal lengths are no stretch.
         let is_equal = ratio.x == ratio.y && (dimension == Dimension::Two || ratio.x == ratio.z);
-        if is_equal { DVec3::ONE } else { ratio }
+        Ok(if is_equal { DVec3::ONE } else { ratio })
     }
 
     /// Where sizes come from.
-    pub fn source(&self) -> Option<SizeSource> {
+    pub(super) fn source(&self) -> Option<SizeSource> {
         self.diameters.clone().or_else(|| self.volumes.clone().map(SizeSource::VolumeFile))
     }
 }

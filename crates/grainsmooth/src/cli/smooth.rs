@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::MapOptions;
 use clap::Args;
-use grainsmooth::MapOptions;
 
 use super::files::OutputArguments;
 use super::pictures::PictureArguments;

@@ -1,7 +1,7 @@
 //! Options about the control mesh and volumes.
 
+use crate::spelling::length;
 use clap::{Args, ValueEnum};
-use grainsmooth::spelling::length;
 use polycrystal::{FaceMesh, Volumes};
 
 /// How flat cells become smooth grains.
@@ -40,7 +40,7 @@ enum FaceRule {
 
 impl SmoothingArguments {
     /// Control points on boundaries.
-    pub fn face_mesh(&self) -> FaceMesh {
+    pub(super) fn face_mesh(&self) -> FaceMesh {
         match (self.edge_length, self.faces) {
             (Some(edge_length), _) => FaceMesh::Refined { edge_length },
             (None, FaceRule::Fan) => FaceMesh::Fan,
@@ -49,7 +49,7 @@ impl SmoothingArguments {
     }
 
     /// Whether relaxation keeps volumes.
-    pub fn volumes(&self) -> Volumes {
+    pub(super) fn volumes(&self) -> Volumes {
         if self.free { Volumes::Free } else { Volumes::Kept }
     }
 }

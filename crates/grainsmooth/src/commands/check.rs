@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use grainsmooth::{CheckReport, LabelledFile};
 use serde::Serialize;
 
-use crate::cli::CheckArguments;
 use crate::say;
+use grainsmooth::cli::CheckArguments;
 
 #[derive(Serialize)]
 struct Reports {

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use grainsmooth::{MeasuredSample, Output, SampleReport, TableFormat};
 
-use crate::cli::MeasureArguments;
+use grainsmooth::cli::MeasureArguments;
 
 /// Measures the file and reports on standard output.
 pub fn run(arguments: &MeasureArguments) -> anyhow::Result<()> {

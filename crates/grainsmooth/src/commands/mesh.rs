@@ -18,10 +18,10 @@ use grainsmooth::{
     Connectivity, Error, Level, Output, Scheme, levels_json, limits, subdivide, write_collection,
 };
 
-use crate::cli::mesh::{Features, FileArguments, LimitArguments, MeshCommand, StepArguments, Task};
-use crate::cli::{Arguments, usage};
 use crate::say;
 use files::scene_of_level;
+use grainsmooth::cli::mesh::{Features, FileArguments, LimitArguments, MeshCommand, StepArguments, Task};
+use grainsmooth::cli::{Arguments, usage};
 use shown::{Scenes, Shown};
 
 /// Runs a subcommand.
@@ -74,7 +74,9 @@ impl Job<'_> {
 
     fn subdivide(&self, scheme: Scheme, steps: &StepArguments, features: Features<'_>) -> Result<(), Error> {
         if steps.each_level && self.format == MeshFormat::Json {
-            usage("--each-level is a file a level, but JSON holds all levels in one; leave it out");
+            return Err(usage(
+                "--each-level is a file a level, but JSON holds all levels in one; leave it out",
+            ));
         }
         // Outputs that cannot be written are found before the work.
         let last = steps.levels;
@@ -128,7 +130,7 @@ impl Job<'_> {
         let mesh = match scheme {
             Scheme::BSpline => {
                 if !features.creases.is_empty() || features.boundary.is_some() {
-                    usage("--crease and --boundary are of surfaces; give --corners to curves");
+                    return Err(usage("--crease and --boundary are of surfaces; give --corners to curves"));
                 }
                 let mut mesh = self.read_lines()?;
                 mesh.corners.extend(&features.corners);

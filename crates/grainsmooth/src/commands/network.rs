@@ -13,9 +13,9 @@ use grainsmooth::{
 };
 
 use super::result_files::{ResultFiles, check_all_differ, thread_pool};
-use crate::cli::Arguments;
 use crate::progress::ProgressLine;
 use crate::say;
+use grainsmooth::cli::Arguments;
 
 /// Runs what the command line asks for.
 pub fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
@@ -73,7 +73,7 @@ impl Files {
         let all = Self { result, tables, series, is_cells_only };
         let tables = all.tables.iter().map(Output::target);
         let others = tables.chain(all.series.as_ref().map(|(output, _)| output.target()));
-        check_all_differ(others.map(Path::to_owned).chain(all.result.targets()).collect());
+        check_all_differ(others.map(Path::to_owned).chain(all.result.targets()).collect())?;
         Ok(all)
     }
 
@@ -143,11 +143,7 @@ fn compute(config: &Config, files: &Files, line: &ProgressLine) -> Result<String
         }
     })?;
     added?;
-    polycrystal = polycrystal.cut_if_asked()?.stretched_if_asked();
-    if config.elements != ElementOptions::default() {
-        line.show(Stage::Remeshing, 0, 1);
-        polycrystal = polycrystal.remeshed_if_asked()?;
-    }
+    polycrystal = polycrystal.completed(&progress)?;
     if files.result.need_tetrahedra(&config.to_write()) {
         line.show(Stage::Filling, 0, 1);
         polycrystal = polycrystal.filled()?;

@@ -7,8 +7,8 @@ use std::thread;
 use grainsmooth::{PageDocument, PageServer};
 use tempfile::NamedTempFile;
 
-use crate::cli::{EditArguments, ServerArguments, ViewArguments};
 use crate::say;
+use grainsmooth::cli::{EditArguments, ServerArguments, ViewArguments};
 
 /// Shows grains.
 pub fn view(arguments: &ViewArguments) -> anyhow::Result<ExitCode> {

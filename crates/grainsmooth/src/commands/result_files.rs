@@ -11,7 +11,7 @@ use grainsmooth::{
     StatisticsOutput, SummaryRecord, ToWrite, check_gmsh,
 };
 
-use crate::cli::{OutputArguments, PictureArguments, SharedArguments, usage};
+use grainsmooth::cli::{OutputArguments, PictureArguments, SharedArguments, usage};
 
 /// What is written, all found writable.
 pub struct ResultFiles {
@@ -35,7 +35,8 @@ enum Printed {
 impl ResultFiles {
     /// Checks that all can be written and can hold what there will be; without a network if there will be none.
     ///
-    /// Ends the program with exit status 2 where standard output is to take two things.
+    /// # Errors
+    /// [`Error::Usage`] where standard output is to take two things; what is wrong with a path.
     pub fn check(
         outputs: &OutputArguments,
         pictures: &PictureArguments,
@@ -51,11 +52,13 @@ impl ResultFiles {
         if let Some(grains) = &grains {
             grains.check_dimension(to_write.dimension)?;
         }
-        let network = if has_network { outputs.standard_output() } else { None };
+        let network = if has_network { outputs.standard_output()? } else { None };
         let prints_summary = shared.json_summary.as_deref().is_some_and(|path| path.as_os_str() == "-");
         let printed = match (network, prints_summary) {
             (Some(_), true) => {
-                usage("-o - and --json-summary - both go to standard output; give one of them a path")
+                return Err(usage(
+                    "-o - and --json-summary - both go to standard output; give one of them a path",
+                ));
             }
             (Some(format), false) => {
                 format.check_holds(Path::new("standard output"), to_write)?;
@@ -170,15 +173,17 @@ impl ResultFiles {
 
 /// Refuses two files of one path.
 ///
-/// Ends the program with exit status 2.
-pub fn check_all_differ(targets: Vec<PathBuf>) {
+/// # Errors
+/// [`Error::Usage`].
+pub fn check_all_differ(targets: Vec<PathBuf>) -> Result<(), Error> {
     let mut known = BTreeSet::new();
     if let Some(path) = targets.into_iter().find(|target| !known.insert(target.clone())) {
         // As the user calls it, who gave no path from the root.
         let here = std::env::current_dir().and_then(|here| here.canonicalize()).unwrap_or_default();
         let path = path.strip_prefix(here).map_or(path.clone(), Path::to_owned);
-        usage(&Error::OutputTwice { path }.to_string());
+        return Err(usage(&Error::OutputTwice { path }.to_string()));
     }
+    Ok(())
 }
 
 /// Threads to compute with.

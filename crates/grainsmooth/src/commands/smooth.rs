@@ -8,15 +8,16 @@ use voronoi::Dimension;
 
 use super::mesh::command_line;
 use super::result_files::{ResultFiles, check_all_differ, thread_pool};
-use crate::cli::{SmoothArguments, usage};
 use crate::progress::ProgressLine;
 use crate::say;
+use grainsmooth::cli::{SmoothArguments, usage};
 
 /// Smooths the map, writes what is asked for and reports.
 pub fn run(arguments: &SmoothArguments) -> anyhow::Result<ExitCode> {
     let coloring = arguments.pictures.coloring();
     if coloring == Coloring::Phase || coloring.needs_texture() {
-        usage(&format!("--color-by {} needs what a map of labels does not tell", coloring.name()));
+        let name = coloring.name();
+        return Err(usage(&format!("--color-by {name} needs what a map of labels does not tell")).into());
     }
     let pool = thread_pool(&arguments.shared)?;
     let stages = vec![Stage::Map, Stage::Network, Stage::Writing];
@@ -38,11 +39,11 @@ fn smooth(arguments: &SmoothArguments, line: &ProgressLine) -> Result<String, Er
     let measured = read_map(path, options)?;
     let read_in = start.elapsed();
     let dimension = if measured.map.is_plane() { Dimension::Two } else { Dimension::Three };
-    let file = outputs.options(dimension);
+    let file = outputs.options(dimension)?;
     let to_write =
         ToWrite { dimension, has_voxels: file.voxels.is_some(), has_orientations: false, has_cells: false };
     let files = ResultFiles::check(outputs, pictures, shared, &to_write, true)?;
-    check_all_differ(files.targets());
+    check_all_differ(files.targets())?;
     let run = MapRun { command_line: command_line(), file, read_in };
     let mut polycrystal =
         smooth_map(path, &measured, run, &|stage, done, count| line.show(stage, done, count))?;

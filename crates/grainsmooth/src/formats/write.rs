@@ -13,7 +13,8 @@ use crate::files::staged_files::{StagedFiles, write_together};
 use crate::run::polycrystal::Polycrystal;
 
 impl Polycrystal {
-    fn to_write(&self) -> ToWrite {
+    /// What a format would have to hold.
+    pub fn to_write(&self) -> ToWrite {
         ToWrite {
             dimension: self.dimension(),
             has_voxels: self.file().voxels.is_some(),

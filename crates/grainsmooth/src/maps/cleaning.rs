@@ -12,6 +12,16 @@ use crate::error::map_file::MapProblem;
 /// The label of voxels that belong to no grain.
 pub(crate) const NO_GRAIN: i32 = -1;
 
+impl MeasuredMap {
+    /// The grains of labels in memory, cropped and cleaned as options say.
+    ///
+    /// # Errors
+    /// [`MapProblem`] where labels and options do not go together.
+    pub fn of_labels(map: LabelMap, options: &MapOptions) -> Result<Self, MapProblem> {
+        cleaned(map, options)
+    }
+}
+
 /// Crops a map, takes small grains out and numbers the others from 0 in the order of their labels.
 pub(super) fn cleaned(map: LabelMap, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
     let mut map = cropped(map, options)?;

@@ -104,8 +104,12 @@ fn read(path: &Path) -> Result<MeshFile, MeshFileProblem> {
 }
 
 impl MeshFile {
-    /// What any mesh must have; how faces fit together is for the scheme to judge.
-    fn check(&self) -> Result<(), MeshFileProblem> {
+    /// Checks what any mesh must have; how faces fit together is for the scheme to judge.
+    ///
+    /// # Errors
+    /// A face with less than three corners or with points that do not exist; a coordinate that is not finite, or so large or small that its powers are
+    /// not.
+    pub fn check(&self) -> Result<(), MeshFileProblem> {
         subzero::check_finite(&self.points)?;
         check_lengths(&self.points)?;
         for (face, corners) in (0..).map(FaceId).zip(&self.faces) {

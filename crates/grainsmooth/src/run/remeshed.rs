@@ -6,7 +6,7 @@ use polycrystal::{ElementSize, Remeshed};
 
 use super::elements_reached::ElementsReached;
 use super::polycrystal::Polycrystal;
-use super::stage::Stage;
+use super::stage::{Progress, Stage};
 use crate::{ElementOptions, Error};
 
 /// Length of edges of the smooth network, in units of the size of elements, beyond which it is too coarse: with 0.8 there were four times as many
@@ -14,6 +14,19 @@ use crate::{ElementOptions, Error};
 const LONGEST: f64 = 0.5;
 
 impl Polycrystal {
+    /// What the config asks for after subdivision: grains cut at a periodic box, stretched, with elements of a size.
+    ///
+    /// # Errors
+    /// As of [`Self::cut_if_asked`] and [`Self::remeshed_if_asked`].
+    pub fn completed(self, progress: Progress<'_>) -> Result<Self, Error> {
+        let polycrystal = self.cut_if_asked()?.stretched_if_asked();
+        let elements = polycrystal.synthesis().map(|synthesis| synthesis.config.elements);
+        if elements.is_some_and(|options| options != ElementOptions::default()) {
+            progress(Stage::Remeshing, 0, 1);
+        }
+        polycrystal.remeshed_if_asked()
+    }
+
     /// Remeshes boundaries where the config's [`ElementOptions`] ask for it; others stay as they are.
     ///
     /// # Errors

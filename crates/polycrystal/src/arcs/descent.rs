@@ -6,6 +6,7 @@
 
 use std::f64::consts::TAU;
 
+use cancellation::check_cancelled;
 use glam::DVec2;
 use voronoi::FaceId;
 
@@ -109,6 +110,7 @@ impl Descent {
         // Share of what areas lack that is made up for: after an event, all may be too much for one step.
         let mut mended = 1.0;
         while self.dampings.iter().all(|damping| *damping < LARGEST_RIGIDITY) {
+            check_cancelled();
             let tangent = KktSystem::new(network, &self.state, &self.pressures, &self.dampings);
             if !tangent.is_stable() {
                 self.stiffen_all();

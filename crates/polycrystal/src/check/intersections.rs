@@ -1,5 +1,6 @@
 //! Elements that cross each other.
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -20,7 +21,10 @@ pub(crate) fn crossing_elements(
     normals: &[DVec3],
 ) -> Vec<[u32; 2]> {
     let of_element = |element: u32| bounds(surface, element);
-    let tree = |boundary: usize| BoxTree::new(by_boundary.of(boundary).to_vec(), of_element);
+    let tree = |boundary: usize| {
+        check_cancelled();
+        BoxTree::new(by_boundary.of(boundary).to_vec(), of_element)
+    };
     let trees: Vec<BoxTree> = (0..by_boundary.count()).into_par_iter().map(tree).collect();
     let graphs = Graphs::new(surface, seams, normals, &trees);
     let around = |boundary: u32| trees[boundary as usize].bounds().copied();
@@ -35,6 +39,7 @@ pub(crate) fn crossing_elements(
         }
     });
     let between = near.par_iter().flat_map_iter(|&[a, b]| {
+        check_cancelled();
         let mut found = Vec::new();
         trees[a].overlaps_with(&trees[b], of_element, &mut |i, j| {
             if cross(surface, [i, j]) {
@@ -45,6 +50,7 @@ pub(crate) fn crossing_elements(
     });
     let within = trees.par_iter().zip(&graphs.is_graph).filter(|(_, is_graph)| !**is_graph);
     let within = within.flat_map_iter(|(tree, _)| {
+        check_cancelled();
         let mut found = Vec::new();
         tree.overlaps_within(of_element, &mut |i, j| {
             if cross(surface, [i, j]) {
@@ -90,6 +96,7 @@ impl Graphs {
             })
             .collect();
         let is_one = |room: &mut Room, pair: [u32; 2]| {
+            check_cancelled();
             let [a, b] = pair.map(|boundary| &pieces[boundary as usize]);
             are_one_graph(surface.points, normals, [a, b], room).then_some(pair)
         };

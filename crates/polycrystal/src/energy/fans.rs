@@ -4,6 +4,7 @@
 //! Points are those of the vertices, in their order in the complex, then those of the lines, then the centres; each once, also in
 //! a periodic domain.
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::{Corner, Domain, FaceId, Shift, Side, Wall};
@@ -242,6 +243,7 @@ impl Fans {
     pub(crate) fn terms(&self, points: &[DVec3], largest_cotangent: f64) -> FanTerms {
         let mut of_slot = vec![SlotTerms::default(); self.slots.len()];
         let fill = |(fan, terms): (usize, &mut [SlotTerms])| {
+            check_cancelled();
             fill_terms(&self.ring(fan, points), self.tensions[fan], largest_cotangent, terms)
         };
         let fans = split(&mut of_slot, &self.starts).into_par_iter().enumerate();

@@ -1,5 +1,6 @@
 //! All patches of a network, and the way from their fields to those of the network.
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 use subzero::{EdgeId, FaceId, StencilTable};
@@ -93,7 +94,11 @@ impl Patches {
     }
 
     pub(crate) fn terms(&self, points: &[DVec3]) -> Vec<PatchTerms> {
-        self.patches.par_iter().map(|patch| patch.terms(points, self.largest_cotangent)).collect()
+        let terms = |patch: &Patch| {
+            check_cancelled();
+            patch.terms(points, self.largest_cotangent)
+        };
+        self.patches.par_iter().map(terms).collect()
     }
 }
 

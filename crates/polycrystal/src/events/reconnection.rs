@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use cancellation::check_cancelled;
 use rayon::prelude::*;
 use voronoi::{CellId, FaceId, Side};
 
@@ -168,6 +169,7 @@ impl Reconnector {
         let threads = rayon::current_num_threads();
         if threads == 1 || together < FEWEST_TOGETHER || places.len() < FEWEST_TOGETHER {
             for place in places {
+                check_cancelled();
                 if let Some(decision) = self.decide(*place, complex, around, excess) {
                     done.add(self.carry_out(&decision, complex, excess));
                 }
@@ -183,6 +185,7 @@ impl Reconnector {
                 carried_out[*known..].iter().for_each(|decision| decision.carry_out(copy));
                 *known = carried_out.len();
                 let look = |place: &Place| {
+                    check_cancelled();
                     let cells = place.cells(copy);
                     (cells, self.decide(*place, copy, around, excess))
                 };

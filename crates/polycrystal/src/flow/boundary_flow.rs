@@ -5,6 +5,7 @@ mod growth;
 mod volumes;
 mod widening;
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 use subzero::{FaceId, VertexRule};
 use voronoi::Dimension;
@@ -198,6 +199,7 @@ impl<'a> Flow<'a> {
         let mut last_energy = f64::INFINITY;
         let mut best = Best::new();
         for step in 1..=stage.steps {
+            check_cancelled();
             let energy = self.step(&mut points, stage.step_time)?;
             progress(step, &points);
             if stage.least_gain > 0.0
@@ -228,6 +230,7 @@ impl<'a> Flow<'a> {
         // Where the finest level folds though no step did, all has moved too far from where it did not.
         let (mut count, mut grains) = (0, Vec::new());
         for attempt in 0..ATTEMPTS {
+            check_cancelled();
             let surface = match end {
                 End::Open => self.finest_points(&points),
                 End::Volumes | End::Finished => self.restored(&mut points)?,

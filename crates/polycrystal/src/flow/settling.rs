@@ -1,5 +1,6 @@
 //! The flow of flat fans on which grains come together and part.
 
+use cancellation::check_cancelled;
 use voronoi::Tessellation;
 
 use crate::energy::fans::Fans;
@@ -73,6 +74,7 @@ pub(crate) fn settle(
     };
     show(0, &complex, &shape);
     for steps in 1.. {
+        check_cancelled();
         let before = lengths(&complex);
         let flow = FanFlow { fans: &fans, volumes, size, tuning };
         let Taken { energy, pressures } = flow.step(&mut points, step_time * mean_size.powi(2))?;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_1_SQRT_2;
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 
 use crate::remesh::outline::Outlined;
@@ -50,6 +51,7 @@ impl<'a> Shaping<'a> {
     pub(crate) fn shape(&mut self) {
         self.split_joints();
         for _ in 0..self.tuning.rounds {
+            check_cancelled();
             self.split_long();
             self.close_short();
             self.flip();

@@ -1,5 +1,7 @@
 //! The method of conjugate gradients with a preconditioner, for the few unknowns of the grains.
 
+use cancellation::check_cancelled;
+
 /// When to stop.
 pub(crate) struct Limits {
     /// The preconditioned residual as a share of its first value.
@@ -23,6 +25,7 @@ pub(crate) fn solve(
     let mut size = dot(&residual, &direction);
     let enough = size * limits.tolerance.powi(2);
     for _ in 0..limits.steps {
+        check_cancelled();
         if size <= enough {
             break;
         }

@@ -4,6 +4,8 @@
 //! of the latter on to the part around it (Duff and Reid 1983). No pivots are looked for: the matrix is to be quasidefinite, that is,
 //! positive definite over some unknowns and negative definite over the others, and has factors in any order then (Vanderbei 1995).
 
+use cancellation::check_cancelled;
+
 use crate::solver::dissection::{Dissection, Part};
 
 /// Unknowns of an element.
@@ -71,6 +73,7 @@ impl LdlFactors {
 
 /// Eliminates the unknowns of a part; elements are sorted by their first places.
 fn eliminate(part: &Part, elements: &[(usize, &Element)]) -> Left {
+    check_cancelled();
     let start_of = |place: usize| elements.partition_point(|(first, _)| *first < place);
     let own = &elements[start_of(part.own)..];
     let task = |half: &Part| eliminate(half, &elements[start_of(half.start)..start_of(half.end)]);

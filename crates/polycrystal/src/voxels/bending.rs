@@ -1,5 +1,6 @@
 //! Points of least bending, each within its box.
 
+use cancellation::check_cancelled;
 use glam::{BVec3, DVec3};
 use rayon::prelude::*;
 
@@ -61,6 +62,7 @@ pub(super) fn least_bending(
     let mut bends = vec![DVec3::ZERO; count];
     let mut momentum = 1.0f64;
     for step in 0..tuning.bending_steps {
+        check_cancelled();
         progress(step, tuning.bending_steps);
         bends.par_iter_mut().enumerate().for_each(|(point, bend)| {
             let sum: DVec3 = graph.followed(point).iter().map(|other| ahead[*other as usize]).sum();

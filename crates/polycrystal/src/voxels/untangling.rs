@@ -1,5 +1,6 @@
 //! Points that leave no element that crosses another, and fewer folds.
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -116,6 +117,7 @@ impl Untangling<'_> {
         let mut before = usize::MAX;
         for ring in 0.. {
             for _ in 0..self.tuning.rounds_of_smoothing {
+                check_cancelled();
                 let folds = self.folds(points, seams);
                 if folds.is_empty() {
                     return is_moved;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use cancellation::check_cancelled;
 use glam::{BVec3, DVec3};
 use rayon::prelude::*;
 
@@ -52,6 +53,7 @@ impl VolumeSearch<'_> {
         let mut is_held = vec![BVec3::FALSE; points.len()];
         let mut largest = f64::INFINITY;
         for _ in 0..self.rounds {
+            check_cancelled();
             let mut missing = self.missing(points);
             largest = missing
                 .iter()

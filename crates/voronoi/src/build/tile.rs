@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -150,6 +151,7 @@ impl<'a> Builder<'a> {
         self.vertices.reserve(vertices);
         self.tile.restart(seeds.clone(), [faces, corners]);
         for seed in seeds {
+            check_cancelled();
             self.complete(seed)?;
         }
         for number in (0u32..).take(self.vertices.len()) {

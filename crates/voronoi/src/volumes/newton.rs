@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 
 use super::grains::Grains;
@@ -143,6 +144,7 @@ impl Clipped {
 pub(super) fn approach(state: &mut Clipped, targets: &[f64], goal: f64) -> Result<usize, VolumesError> {
     let mut steps = 0;
     while steps < MOST_STEPS {
+        check_cancelled();
         let (error, _) = state.largest_error(targets);
         if error <= goal {
             return Ok(steps);

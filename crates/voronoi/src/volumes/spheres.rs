@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use cancellation::check_cancelled;
 use glam::{DVec3, UVec3};
 
 use super::shape::{GrainShape, InscribedSphere};
@@ -45,6 +46,7 @@ pub fn place_spheres(
     let mut seeds = vec![DVec3::ZERO; radii.len()];
     let mut classes: Vec<SphereGrid> = Vec::new();
     for (rank, &sphere) in order.iter().enumerate() {
+        check_cancelled();
         let radius = radii[sphere];
         if classes.last().is_none_or(|class| radius < 0.5 * class.largest_radius) {
             classes.push(SphereGrid::new(domain, radius, order.len() - rank));
@@ -97,6 +99,7 @@ pub fn place_ellipsoids(
     order.sort_by(|a, b| volumes[*b].total_cmp(&volumes[*a]).then(a.cmp(b)));
     let mut centers = vec![DVec3::ZERO; bodies.len()];
     for body in order {
+        check_cancelled();
         // Spheres that reach out of the domain overlap nothing.
         let spheres = |place: DVec3| {
             let inside =

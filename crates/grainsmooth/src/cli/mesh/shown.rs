@@ -3,11 +3,11 @@
 use std::num::NonZeroU16;
 use std::path::PathBuf;
 
+use crate::{Error, Html, Output, Picture, Png, ScenePicture, Shading};
 use clap::{Args, ValueEnum};
-use grainsmooth::{Error, Html, Output, Picture, Png, ScenePicture, Shading};
 
 use crate::cli::pictures::{parse_html, parse_png};
-use grainsmooth::spelling::whole_number;
+use crate::spelling::whole_number;
 
 /// What is shown of the result.
 #[derive(Debug, Args)]

@@ -10,7 +10,7 @@ use subzero::{BezierError, MergedSurfaces};
 use super::Job;
 use super::files::scene_of_file;
 use super::shown::Scenes;
-use crate::cli::mesh::Merge;
+use grainsmooth::cli::mesh::Merge;
 
 impl Job<'_> {
     pub(super) fn bezier(&self, samples: u32) -> Result<(), Error> {

@@ -15,7 +15,7 @@ use subzero::INFINITE_SHARPNESS;
 
 use super::Job;
 use super::shown::Scenes;
-use crate::cli::mesh::Features;
+use grainsmooth::cli::mesh::Features;
 
 impl Job<'_> {
     /// Writes the files of a run, with its picture and its page, so that all appear together.

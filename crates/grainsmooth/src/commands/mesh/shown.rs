@@ -4,7 +4,7 @@ use std::path::Path;
 
 use grainsmooth::{Error, Html, Output, Png, Scene, ScenePicture, SceneReport, StagedFiles};
 
-use crate::cli::mesh::FileArguments;
+use grainsmooth::cli::mesh::FileArguments;
 
 /// Where a run shows its result, found writable.
 pub(super) struct Shown {
