@@ -1,0 +1,530 @@
+"""Finished polycrystals."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import os
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _grainsmooth, _inputs
+from ._options import Options
+from ._progress import Progress, told
+
+if TYPE_CHECKING:
+    import meshio
+    import pandas as pd
+    import pyvista as pv
+    from typing_extensions import Unpack
+
+Floats = npt.NDArray[np.float64]
+
+#: Of the state that is pickled: raised when it changes.
+_FORMAT = 1
+
+_ARRAYS = ("points", "elements", "face_labels", "boundary_id", "node_types")
+
+#: Units of the columns of tables, L being the unit of ``box``.
+_UNITS = {
+    **dict.fromkeys(("volume",), "L^3"),
+    **dict.fromkeys(("area",), "L^2"),
+    **dict.fromkeys(("x", "y", "z", "length", "perimeter", "equivalent_diameter", "mean_width"), "L"),
+    **dict.fromkeys(("centroid_x", "centroid_y", "centroid_z", "triple_line_length"), "L"),
+    "integral_mean_curvature": "L",
+    "mean_curvature": "1/L",
+    **dict.fromkeys(("inertia_xx", "inertia_yy", "inertia_zz", "inertia_xy", "inertia_xz", "inertia_yz"), "L^5"),
+    **dict.fromkeys(("moment_xx", "moment_yy", "moment_xy"), "L^4"),
+    **dict.fromkeys(("smallest_angle", "largest_angle", "mean_angle", "mean_angles", "angles", "turning"), "degree"),
+    **dict.fromkeys(("EulerAngles", "Disorientation"), "degree"),
+}
+
+
+class Polycrystal:
+    """Grains that fill a domain, and the smooth boundaries between them.
+
+    Made by :meth:`generate`, :meth:`from_settings`, :meth:`from_labels` or :func:`grainsmooth.read`.
+
+    Arrays are read-only views on the library's memory: none is copied, and each keeps that memory alive. Lengths are in the unit
+    of the option ``box``.
+    """
+
+    __slots__ = ("_arrays", "_made", "_settings", "_statistics")
+
+    _arrays: dict[str, npt.NDArray[Any]]
+    _made: _grainsmooth.Polycrystal | None
+    _settings: str | None
+    _statistics: dict[str, Any] | None
+
+    def __init__(self) -> None:
+        raise TypeError("make polycrystals with Polycrystal.generate, Polycrystal.from_labels or grainsmooth.read")
+
+    @classmethod
+    def _of(
+        cls, made: _grainsmooth.Polycrystal | None, arrays: Mapping[str, npt.NDArray[Any]], settings: str | None
+    ) -> Polycrystal:
+        polycrystal = cls.__new__(cls)
+        polycrystal._made = made
+        polycrystal._arrays = dict(arrays)
+        polycrystal._settings = settings
+        polycrystal._statistics = None
+        return polycrystal
+
+    @classmethod
+    def generate(
+        cls, *, threads: int | None = None, progress: Progress = False, **options: Unpack[Options]
+    ) -> Polycrystal:
+        """Make a polycrystal.
+
+        Parameters
+        ----------
+        threads : int, optional
+            Number of threads; one a processor where it is not given. No result depends on it.
+        progress : bool or callable, optional
+            Whether a bar of tqdm is shown; or a function that is called with the name of a stage, the steps done and their number.
+        **options
+            The program's options, see :class:`grainsmooth.Options`: names, defaults and messages are the same.
+
+        Returns
+        -------
+        Polycrystal
+            As the program writes it, with each of its promises checked.
+
+        Raises
+        ------
+        ValueError
+            A mistaken option, options that do not go together, or grains that no valid network can be made of.
+        OSError
+            A file that an option names cannot be read.
+        MemoryError
+            What is asked for does not fit.
+
+        Examples
+        --------
+        >>> grains = Polycrystal.generate(seeds=20, levels=1, rng_seed=3)
+        >>> grains.grain_count
+        20
+        """
+        with told(progress) as tell:
+            made = _grainsmooth.generate(dict(options), _inputs.thread_count(threads), tell)
+        return cls._of(made, {}, made.settings)
+
+    @classmethod
+    def from_settings(
+        cls, settings: str, *, threads: int | None = None, progress: Progress = False
+    ) -> Polycrystal:
+        """Make a polycrystal once more.
+
+        Parameters
+        ----------
+        settings : str
+            The options as TOML: :attr:`settings` of another one, or the text of a file for the program's ``--config``.
+        threads, progress
+            As of :meth:`generate`.
+
+        Returns
+        -------
+        Polycrystal
+            With the same bits, if this version is the same.
+        """
+        with told(progress) as tell:
+            made = _grainsmooth.of_settings(settings, _inputs.thread_count(threads), tell)
+        return cls._of(made, {}, made.settings)
+
+    @classmethod
+    def from_labels(
+        cls,
+        labels: npt.ArrayLike,
+        *,
+        spacing: float | tuple[float, ...] = 1.0,
+        origin: tuple[float, ...] | None = None,
+        exterior_label: int | None = None,
+        min_voxels: int = 1,
+        threads: int | None = None,
+        progress: Progress = False,
+    ) -> Polycrystal:
+        """Make the smooth network of labelled voxels, as a measured map has them.
+
+        Every grain keeps the volume of its voxels, and no point is farther than half a voxel from where it was.
+
+        Parameters
+        ----------
+        labels : array_like of int, shape (nx, ny, nz) or (nx, ny)
+            The grain of each voxel, indexed as ``labels[x, y, z]``; below 0 there is none.
+        spacing : float or tuple of float, optional
+            Edge of a voxel, or one along each axis.
+        origin : tuple of float, optional
+            Lower corner of the first voxel; 0 where it is not given.
+        exterior_label : int, optional
+            Label of what is no grain.
+        min_voxels : int, optional
+            Grains with fewer voxels go to their neighbours.
+        threads, progress
+            As of :meth:`generate`.
+
+        Returns
+        -------
+        Polycrystal
+            Its grains count from 0 in the order of their labels, which :attr:`seed_id` has.
+        """
+        array = np.asarray(labels)
+        if array.dtype.kind not in "iu":
+            raise TypeError(f"labels: give whole numbers, not {array.dtype}")
+        if array.ndim not in (2, 3) or array.size == 0:
+            raise ValueError(f"labels: give an array of shape (nx, ny, nz) or (nx, ny), not {array.shape}")
+        limits = np.iinfo(np.int32)
+        if array.min() < limits.min or array.max() > limits.max:
+            raise ValueError("labels: give numbers that 32 bits hold")
+        nx, ny, nz = (*array.shape, 1)[:3]
+        place = (0.0,) * array.ndim if origin is None else origin
+        corner = _inputs.numbers("origin", place, 1)
+        if corner.shape != (array.ndim,):
+            raise ValueError(f"origin: give {array.ndim} coordinates, not {origin!r}")
+        x, y, z = (*(float(at) for at in corner), 0.0)[:3]
+        with told(progress) as tell:
+            made = _grainsmooth.of_labels(
+                np.ascontiguousarray(array.ravel(order="F"), dtype=np.int32),
+                (nx, ny, nz),
+                _inputs.edges("spacing", spacing, array.ndim),
+                (x, y, z),
+                exterior_label,
+                min_voxels,
+                _inputs.thread_count(threads),
+                tell,
+            )
+        return cls._of(made, {}, None)
+
+    def _whole(self) -> _grainsmooth.Polycrystal:
+        """All that is known of it; where it came as arrays, it is made once more and compared."""
+        if self._made is None:
+            if self._settings is None:
+                raise ValueError("only arrays are known of this polycrystal: it came without the settings that make it")
+            made = _grainsmooth.of_settings(self._settings, 0, None)
+            if not np.array_equal(made.points, self._arrays["points"]):
+                raise ValueError("its settings make other points here: it comes from another version of grainsmooth")
+            self._made = made
+        return self._made
+
+    def _array(self, name: str) -> npt.NDArray[Any]:
+        if self._made is not None:
+            array: npt.NDArray[Any] = getattr(self._made, name)
+            return array
+        return self._arrays[name]
+
+    @property
+    def points(self) -> Floats:
+        """Points of the finest level, float64 of shape (n, 3); in the plane z is 0."""
+        return self._array("points")
+
+    @property
+    def triangles(self) -> npt.NDArray[np.uint32]:
+        """Corners of the triangles, uint32 of shape (m, 3). Normals point from the first of ``face_labels`` to the second."""
+        if self.dimension == 2:
+            raise ValueError("grains in the plane have no triangles; their boundaries are segments")
+        return self._array("elements")
+
+    @property
+    def segments(self) -> npt.NDArray[np.uint32]:
+        """Ends of the segments of boundaries in the plane, uint32 of shape (m, 2)."""
+        if self.dimension == 3:
+            raise ValueError("boundaries in space have no segments, but triangles")
+        return self._array("elements")
+
+    @property
+    def face_labels(self) -> npt.NDArray[np.int32]:
+        """The two sides of each triangle (segment), int32 of shape (m, 2): grains from 0, the exterior -1.
+
+        In a periodic box a boundary with a copy has -2 - b second, b being its copy's ``boundary_id``.
+        """
+        return self._array("face_labels")
+
+    @property
+    def boundary_id(self) -> npt.NDArray[np.int32]:
+        """The boundary of each triangle (segment), int32 of shape (m,), from 0."""
+        return self._array("boundary_id")
+
+    @property
+    def node_types(self) -> npt.NDArray[np.int8]:
+        """What each point is part of, int8 of shape (n,): 2 boundary, 3 triple line, 4 quadruple point; 10 more on the outer surface."""
+        return self._array("node_types")
+
+    @property
+    def dimension(self) -> int:
+        """2 or 3."""
+        return int(self._array("elements").shape[1])
+
+    @property
+    def grain_count(self) -> int:
+        """Number of grains."""
+        if self._made is None:
+            return int(self.face_labels.max()) + 1
+        return self._made.grain_count
+
+    @property
+    def volumes(self) -> Floats:
+        """Volume of each grain, float64 of shape (grains,), in L^3; in the plane its area in L^2."""
+        return self._whole().volumes
+
+    @property
+    def euler_angles(self) -> Floats:
+        """Bunge's angles phi1, Phi, phi2 of each grain in degrees, float64 of shape (grains, 3); a ValueError without a texture."""
+        return self._whole().euler_angles
+
+    @property
+    def seed_id(self) -> npt.NDArray[np.uint32]:
+        """The number of each grain's seed, or its label in the map, uint32 of shape (grains,)."""
+        return self._whole().seed_id
+
+    @property
+    def phases(self) -> list[str]:
+        """The name of each grain's phase; a ValueError where there are no phases."""
+        of_grains, names = self._whole().phases
+        return [names[phase] for phase in of_grains]
+
+    @property
+    def settings(self) -> str | None:
+        """The options that make it again, as TOML; None where none were given."""
+        return self._settings
+
+    def statistics(self) -> dict[str, Any]:
+        """All that is measured: what the program writes with ``--stats`` as JSON."""
+        if self._statistics is None:
+            self._statistics = json.loads(self._whole().statistics())
+        return self._statistics
+
+    def summary(self) -> dict[str, Any]:
+        """The figures of the program's summary, as it writes them with ``--json-summary``."""
+        summary: dict[str, Any] = json.loads(self._whole().summary())
+        return summary
+
+    def _table(self, name: str) -> pd.DataFrame:
+        pandas = _inputs.require("pandas", "pandas")
+        rows = self.statistics().get(name)
+        if rows is None:
+            raise ValueError(f"grains in {'the plane' if self.dimension == 2 else 'space'} have no {name.replace('_', ' ')}")
+        table: pd.DataFrame = pandas.DataFrame(rows)
+        units = {**_UNITS, "area": "L^2"}
+        table.attrs["units"] = {column: units[column] for column in table.columns if column in units}
+        return table
+
+    @property
+    def grains(self) -> pd.DataFrame:
+        """A row for each grain. ``attrs["units"]`` has the units of columns."""
+        return self._table("grains")
+
+    @property
+    def boundaries(self) -> pd.DataFrame:
+        """A row for each boundary."""
+        return self._table("boundaries")
+
+    @property
+    def triple_lines(self) -> pd.DataFrame:
+        """A row for each triple line; in space only."""
+        return self._table("triple_lines")
+
+    @property
+    def quadruple_points(self) -> pd.DataFrame:
+        """A row for each quadruple point; in space only."""
+        return self._table("quadruple_points")
+
+    @property
+    def triple_points(self) -> pd.DataFrame:
+        """A row for each triple point; in the plane only."""
+        return self._table("triple_points")
+
+    def voxelize(self, shape: int | tuple[int, ...], *, threads: int | None = None) -> npt.NDArray[np.int32]:
+        """The grain at the centre of each voxel of a regular grid over the box.
+
+        Parameters
+        ----------
+        shape : int or tuple of int
+            Number of voxels along each axis.
+        threads : int, optional
+            As of :meth:`generate`.
+
+        Returns
+        -------
+        numpy.ndarray of int32, shape (nx, ny, nz), in the plane (nx, ny)
+            Grains from 0, -1 outside; in Fortran order, as DAMASK takes it.
+        """
+        counts = np.atleast_1d(np.asarray(shape))
+        dimension = self.dimension
+        if counts.shape == (1,):
+            counts = np.repeat(counts, dimension)
+        if counts.dtype.kind not in "iu" or counts.shape != (dimension,) or (counts < 1).any() or (counts > 65_536).any():
+            raise ValueError(f"shape: give {dimension} whole numbers from 1 to 65536, not {shape!r}")
+        nx, ny, nz = (*(int(count) for count in counts), 1)[:3]
+        labels = self._whole().voxelize((nx, ny, nz), _inputs.thread_count(threads))
+        return labels[:, :, 0] if dimension == 2 else labels
+
+    def save(
+        self,
+        *paths: str | os.PathLike[str],
+        threads: int | None = None,
+        progress: Progress = False,
+        **options: Unpack[Options],
+    ) -> None:
+        """Write files, each in the format of its extension. All appear together, complete, or none.
+
+        Parameters
+        ----------
+        *paths : str or path
+            Such as ``"grains.vtp"``; the formats are those of the program.
+        threads, progress
+            As of :meth:`generate`.
+        **options
+            How files are written: ``voxels``, ``names``, ``arrays``, ``ascii``, ``vtk_encoding``; the others were those of the run.
+        """
+        with told(progress) as tell:
+            self._whole().save([os.fspath(path) for path in paths], dict(options), _inputs.thread_count(threads), tell)
+
+    def report(self, path: str | os.PathLike[str]) -> None:
+        """Write a page (.html) with a view of the grains to rotate, histograms and the figures of the run."""
+        self._whole().report(os.fspath(path))
+
+    def picture(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        size: tuple[int, int] = (1200, 900),
+        color_by: str = "grain",
+        explode: float = 0.0,
+    ) -> bytes:
+        """Draw the grains; no display is needed.
+
+        Parameters
+        ----------
+        path : str or path, optional
+            File to write as well.
+        size : tuple of int, optional
+            Width and height in pixels.
+        color_by : str, optional
+            As of the program's ``--color-by``: grain, diameter, neighbors, phase, ipf-x, ipf-y, ipf-z or disorientation.
+        explode : float, optional
+            How far each grain is moved from the middle, as a share of its distance from there.
+
+        Returns
+        -------
+        bytes
+            The picture as PNG.
+        """
+        png = self._whole().png(size, color_by, explode)
+        if path is not None:
+            with open(path, "wb") as file:
+                file.write(png)
+        return png
+
+    def to_pyvista(self) -> pv.PolyData:
+        """The network as a mesh of pyvista, with the arrays of the program's VTK files.
+
+        Points and arrays are copies, for pyvista changes meshes in place.
+        """
+        pyvista = _inputs.require("pyvista", "pyvista")
+        points, elements = np.array(self.points), np.array(self._array("elements"), dtype=np.int64)
+        if self.dimension == 3:
+            mesh = pyvista.PolyData.from_regular_faces(points, elements)
+        else:
+            lines = np.column_stack([np.full(len(elements), 2), elements])
+            mesh = pyvista.PolyData(points, lines=lines.ravel())
+        mesh.cell_data["FaceLabels"] = np.array(self.face_labels)
+        mesh.cell_data["BoundaryId"] = np.array(self.boundary_id)
+        mesh.point_data["NodeTypes"] = np.array(self.node_types)
+        result: pv.PolyData = mesh
+        return result
+
+    def to_meshio(self) -> meshio.Mesh:
+        """The network as a mesh of meshio, with the arrays of the program's VTK files."""
+        package = _inputs.require("meshio", "meshio")
+        kind = "triangle" if self.dimension == 3 else "line"
+        mesh: meshio.Mesh = package.Mesh(
+            np.array(self.points),
+            [(kind, np.array(self._array("elements")))],
+            point_data={"NodeTypes": np.array(self.node_types)},
+            cell_data={"FaceLabels": [np.array(self.face_labels)], "BoundaryId": [np.array(self.boundary_id)]},
+        )
+        return mesh
+
+    def plot(self, *, explode: float = 0.0, **options: Any) -> Any:
+        """Show the grains in a window to rotate, in a notebook below the cell.
+
+        Parameters
+        ----------
+        explode : float, optional
+            How far each grain is moved from the middle, as a share of its distance from there.
+        **options
+            Of ``pyvista.Plotter.show``, such as ``screenshot="grains.png"``; ``off_screen=True`` needs no display.
+
+        Returns
+        -------
+        Any
+            What ``pyvista.Plotter.show`` gives.
+        """
+        pyvista = _inputs.require("pyvista", "pyvista")
+        plotter = pyvista.Plotter(off_screen=options.pop("off_screen", None))
+        mesh = self.to_pyvista()
+        if self.dimension == 2:
+            plotter.add_mesh(mesh, color="black", line_width=2, lighting=False)
+            plotter.view_xy()
+            return plotter.show(**options)
+        labels = mesh.cell_data["FaceLabels"]
+        if explode > 0.0:
+            parts = [_surface(mesh, labels, grain, explode) for grain in range(self.grain_count)]
+            mesh = pyvista.merge(parts)
+        else:
+            mesh = mesh.extract_cells(np.flatnonzero(labels[:, 1] < 0).tolist())
+            mesh.cell_data["Grain"] = mesh.cell_data["FaceLabels"][:, 0]
+        colors = _colors(self.grain_count)[np.asarray(mesh.cell_data["Grain"])]
+        mesh.cell_data["Color"] = colors
+        plotter.add_mesh(mesh, scalars="Color", rgb=True, ambient=0.3)
+        return plotter.show(**options)
+
+    def _repr_png_(self) -> bytes:
+        return self.picture(size=(800, 600))
+
+    def __repr__(self) -> str:
+        where = "in the plane" if self.dimension == 2 else "in space"
+        return f"<grainsmooth.Polycrystal: {self.grain_count} grains {where}, {len(self.points)} points>"
+
+    def __str__(self) -> str:
+        return str(self._whole())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        arrays = {name: np.array(self._array(name)) for name in _ARRAYS}
+        return (_unpickled, (_FORMAT, arrays, self._settings))
+
+
+def _unpickled(version: int, arrays: dict[str, npt.NDArray[Any]], settings: str | None) -> Polycrystal:
+    if version != _FORMAT:
+        raise ValueError(f"this pickle has format {version}, and this version of grainsmooth reads {_FORMAT}")
+    for array in arrays.values():
+        array.flags.writeable = False
+    return Polycrystal._of(None, arrays, settings)
+
+
+def _surface(mesh: pv.PolyData, labels: npt.NDArray[np.int32], grain: int, explode: float) -> Any:
+    """The closed surface of a grain, moved from the middle."""
+    part: Any = mesh.extract_cells(np.flatnonzero((labels == grain).any(axis=1)).tolist())
+    part.cell_data["Grain"] = np.full(part.n_cells, grain)
+    part.points = part.points + explode * (np.mean(part.points, axis=0) - np.asarray(mesh.center))
+    return part
+
+
+def _colors(count: int) -> npt.NDArray[np.uint8]:
+    """A colour for each grain: hues a golden section apart, so that neighbours differ."""
+    hue = np.mod(np.arange(count) * 0.618033988749895, 1.0)[:, np.newaxis]
+    wheel = np.abs(np.mod(hue * 6.0 + np.array([0.0, 4.0, 2.0]), 6.0) - 3.0) - 1.0
+    return np.asarray(255.0 * (0.35 + 0.6 * np.clip(wheel, 0.0, 1.0)), dtype=np.uint8)
+
+
+def _show_options() -> None:
+    """Lets ``generate`` show its options to notebooks, which complete keywords by the signature."""
+    generate = Polycrystal.generate.__func__  # type: ignore[attr-defined]
+    own = [one for one in inspect.signature(generate).parameters.values() if one.kind is not one.VAR_KEYWORD]
+    given = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None) for name in Options.__annotations__]
+    generate.__signature__ = inspect.Signature([*own, *given])
+
+
+_show_options()

@@ -1,0 +1,88 @@
+//! The program's options as keywords.
+
+use clap::builder::ValueRange;
+use clap::{ArgAction, CommandFactory};
+use grainsmooth::cli::{Arguments, OptionValue};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+
+use crate::errors::to_python;
+
+/// The arguments that keywords give: an option's long name with `_` for `-`, and `None` where it is not given.
+pub fn arguments(keywords: &Bound<'_, PyDict>) -> PyResult<Arguments> {
+    let mut given = Vec::new();
+    for (name, value) in keywords.iter().filter(|(_, value)| !value.is_none()) {
+        let name: String = name.extract()?;
+        let value = option_value(&name, &value)?;
+        given.push((name.replace('_', "-"), value));
+    }
+    Arguments::of_options(&given).map_err(to_python)
+}
+
+fn option_value(name: &str, value: &Bound<'_, PyAny>) -> PyResult<OptionValue> {
+    if let Ok(flag) = value.cast::<PyBool>() {
+        return Ok(OptionValue::Flag(flag.is_true()));
+    }
+    // Numbers and arrays of NumPy as Python's own.
+    if let Ok(to_list) = value.getattr("tolist") {
+        return option_value(name, &to_list.call0()?);
+    }
+    if let Ok(path) = value.getattr("__fspath__") {
+        return Ok(OptionValue::Word(path.call0()?.extract()?));
+    }
+    if value.is_instance_of::<PyString>() {
+        return Ok(OptionValue::Word(value.extract()?));
+    }
+    if value.is_instance_of::<PyInt>() || value.is_instance_of::<PyFloat>() {
+        return Ok(OptionValue::Word(value.str()?.extract()?));
+    }
+    if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+        let values = value.try_iter()?.map(|item| option_value(name, &item?));
+        return Ok(OptionValue::List(values.collect::<PyResult<_>>()?));
+    }
+    if let Ok(parts) = value.cast::<PyDict>() {
+        let part = |(key, part): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+            let key: String = key.extract()?;
+            let part = option_value(&key, &part)?;
+            Ok((key, part))
+        };
+        return Ok(OptionValue::Parts(parts.iter().map(part).collect::<PyResult<_>>()?));
+    }
+    Err(PyTypeError::new_err(format!(
+        "{name}: give a number, a text, a path, True or False, or a list of them; {} given",
+        value.get_type().name()?
+    )))
+}
+
+/// Each option of the program: `name`, `heading`, `help`, `default`, `values`, `count` (least and most values) and `kind`: `flag`, `value` or `repeated`.
+#[pyfunction]
+pub fn options(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let mut command = Arguments::command();
+    command.build();
+    let mut all = Vec::new();
+    for argument in command.get_arguments() {
+        let Some(name) = argument.get_long() else { continue };
+        let count = argument.get_num_args().unwrap_or(ValueRange::SINGLE);
+        let kind = match argument.get_action() {
+            ArgAction::SetTrue | ArgAction::Help | ArgAction::Version => "flag",
+            ArgAction::Append if count.max_values() == 1 => "repeated",
+            _ => "value",
+        };
+        let help = argument.get_long_help().or_else(|| argument.get_help()).map(ToString::to_string);
+        let default: Vec<String> =
+            argument.get_default_values().iter().map(|value| value.to_string_lossy().into_owned()).collect();
+        let values: Vec<String> =
+            argument.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect();
+        let option = PyDict::new(py);
+        option.set_item("name", name.replace('-', "_"))?;
+        option.set_item("heading", argument.get_help_heading().unwrap_or_default())?;
+        option.set_item("help", help.unwrap_or_default())?;
+        option.set_item("default", if kind == "flag" { String::new() } else { default.join(" ") })?;
+        option.set_item("values", if kind == "flag" { Vec::new() } else { values })?;
+        option.set_item("count", (count.min_values(), count.max_values().min(3)))?;
+        option.set_item("kind", kind)?;
+        all.push(option);
+    }
+    Ok(all)
+}
