@@ -106,9 +106,9 @@ fn check(tessellation: &Tessellation) {
     }
     for pair in tessellation.periodic_faces() {
         let [primary, secondary] = [pair.primary, pair.secondary].map(|face| tessellation.face_sides(face));
-        let [Side::Cell(a), Side::Image(b, shift)] = primary else { panic!("{primary:?} has a copy") };
+        let [Side::Cell(a), Side::Image(b, translation)] = primary else { panic!("{primary:?} has a copy") };
         let [Side::Cell(c), Side::Image(d, back)] = secondary else { panic!("{secondary:?} is a copy") };
-        assert!(a == d && b == c && shift.0.iter().zip(back.0).all(|(there, back)| *there == -back));
+        assert!(a == d && b == c && translation.0.iter().zip(back.0).all(|(there, back)| *there == -back));
     }
 }
 

@@ -27,11 +27,11 @@ fn summaries_tell_of_changes_of_topology() {
     let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
     let number = |key: &str| run["equilibrium"][key].as_f64().unwrap();
     let changes = |key: &str| run["topology_changes"][key].as_f64().unwrap();
-    let events = ["lines_to_boundaries", "boundaries_to_lines", "boundaries_swapped"].map(changes);
+    let events = ["lines_to_boundaries", "boundaries_to_lines", "neighbor_switches"].map(changes);
     assert!(events.iter().sum::<f64>() > 0.0, "{said}");
-    let [opened, closed, swapped] = events;
+    let [to_triangles, to_edges, switched] = events;
     let line = format!(
-        "topology    {opened} triple lines became boundaries, {closed} boundaries triple lines, {swapped} boundaries changed sides"
+        "topology    {to_triangles} edge-to-triangle flips, {to_edges} triangle-to-edge flips, {switched} neighbor switches"
     );
     assert!(said.lines().any(|said| said == line), "{line}\nis not in\n{said}");
     let flagged = format!(
@@ -82,11 +82,11 @@ fn summaries_tell_of_changes_of_topology_in_the_plane() {
         let run: Value = serde_json::from_slice(&workplace.bytes("run.json")).unwrap();
         let number = |key: &str| run["equilibrium"][key].as_f64().unwrap();
         let changes = |key: &str| run["topology_changes"][key].as_f64().unwrap();
-        let events = ["boundaries_swapped", "lines_to_boundaries", "boundaries_to_lines"].map(changes);
+        let events = ["neighbor_switches", "lines_to_boundaries", "boundaries_to_lines"].map(changes);
         assert!(events.iter().sum::<f64>() > 0.0, "{said}");
-        let [swapped, opened, closed] = events;
+        let [switched, split, collapsed] = events;
         let line = format!(
-            "topology    {swapped} boundaries gave way to others, {opened} points opened to boundaries, {closed} boundaries became points"
+            "topology    {switched} neighbor switches (T1), {split} points split, {collapsed} edges collapsed"
         );
         assert!(said.lines().any(|said| said == line), "{line}\nis not in\n{said}");
         assert!(number("largest_residual") < 2.3e-3 && number("flagged_lines") == 0.0, "{said}");

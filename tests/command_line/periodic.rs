@@ -54,8 +54,8 @@ fn grains_are_whole_and_copies_match() {
 
     let originals = integers(&path, "PeriodicOriginal");
     for (point, original) in surface.points.iter().zip(&originals) {
-        let shift = *point - surface.points[usize::try_from(*original).unwrap()];
-        let periods = shift.round();
+        let translation = *point - surface.points[usize::try_from(*original).unwrap()];
+        let periods = translation.round();
         assert_eq!(surface.points[usize::try_from(*original).unwrap()] + periods, *point);
     }
     let neighbors = integers(&path, "PeriodicNeighbor");

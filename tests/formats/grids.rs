@@ -173,10 +173,10 @@ fn voxels_of_periodic_grains_lie_inside_an_image() {
     let grid = LabelGrid::new(&TORUS, size([7, 6, 5]));
     for (center, label) in centers(&grid).into_iter().zip(&grid.labels()) {
         let mut inside = 0.0;
-        for shift in
+        for translation in
             (0..27).map(|k| DVec3::new(f64::from(k % 3), f64::from(k / 3 % 3), f64::from(k / 9)) - 1.0)
         {
-            inside += winding(&TORUS, grain(label).index(), center - shift * BOX);
+            inside += winding(&TORUS, grain(label).index(), center - translation * BOX);
         }
         assert!((inside - 1.0).abs() < 1e-6, "{center} in {label:?} winds {inside}");
     }

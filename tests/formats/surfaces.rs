@@ -140,7 +140,7 @@ fn each_grain_has_a_closed_outward_file() {
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), GRAINS);
         for (grain, expected) in volumes.iter().enumerate() {
             let path = directory.path().join(format!("grain_{grain}.{}", format.extension()));
-            // Reads through stl_io, ply-rs, vtkio; of STL it welds corners that are equal.
+            // Reads through stl_io, ply-rs, vtkio; of STL it merges corners that are equal.
             let mesh = grainsmooth::mesh::file::read_mesh(&path).unwrap();
             let triangles = mesh.triangles().unwrap();
             let mut walks: BTreeMap<[u32; 2], i32> = BTreeMap::new();

@@ -33,11 +33,11 @@ fn periodic_cells_come_back_with_their_copies() {
     assert_eq!((periodicity.axes, periodicity.lengths), ([true; 3], BOX));
     assert_eq!(periodicity.seeds.len(), 26 * GRAINS);
     assert!(tess.domain.walls.iter().all(Vec::is_empty));
-    let moved = |vertex: u32, shift: [i32; 3]| {
-        tess.vertices[vertex as usize] + DVec3::from_array(shift.map(f64::from)) * BOX
+    let moved = |vertex: u32, translation: [i32; 3]| {
+        tess.vertices[vertex as usize] + DVec3::from_array(translation.map(f64::from)) * BOX
     };
     for copy in &periodicity.vertices {
-        let error = moved(copy.primary.index, copy.shift) - tess.vertices[copy.secondary as usize];
+        let error = moved(copy.primary.index, copy.translation) - tess.vertices[copy.secondary as usize];
         assert!(error.length() < 1e-12);
     }
     for copy in &periodicity.edges {
@@ -46,7 +46,7 @@ fn periodic_cells_come_back_with_their_copies() {
             ends.reverse();
         }
         for (end, of_copy) in ends.into_iter().zip(tess.edges[copy.secondary as usize]) {
-            assert!((moved(end, copy.shift) - tess.vertices[of_copy as usize]).length() < 1e-12);
+            assert!((moved(end, copy.translation) - tess.vertices[of_copy as usize]).length() < 1e-12);
         }
     }
     for copy in &periodicity.faces {

@@ -56,17 +56,17 @@ fn polygons_stay_polygons() {
 }
 
 #[test]
-fn stl_is_welded_by_equal_coordinates() {
+fn stl_is_merged_by_equal_coordinates() {
     let workplace = Workplace::new();
     workplace.put("in.off", TETRAHEDRON_OFF);
     workplace.run("mesh midpoint -n 1 in.off -o out.stl");
     assert_eq!(workplace.bytes("out.stl").len(), 84 + 50 * 16);
     let said = workplace.run("mesh loop out.stl -o out.ply");
-    assert!(said.contains("welded      48 corners with exactly equal coordinates to 10 points"), "{said}");
+    assert!(said.contains("merged      48 corners with exactly equal coordinates to 10 points"), "{said}");
     assert_eq!(read(&workplace, "out.ply").faces.len(), 64);
-    let welded = read(&workplace, "out.stl");
-    assert_eq!((welded.points.len(), welded.welded_corners), (10, Some(48)));
-    assert!((welded.points[0] - read(&workplace, "in.off").points[0]).length() < 1e-7);
+    let merged = read(&workplace, "out.stl");
+    assert_eq!((merged.points.len(), merged.merged_corners), (10, Some(48)));
+    assert!((merged.points[0] - read(&workplace, "in.off").points[0]).length() < 1e-7);
 
     workplace.put("cube.obj", CUBE_OBJ);
     workplace.run("mesh catmull-clark cube.obj -n 0 -o cube.stl");

@@ -85,7 +85,7 @@ pub enum Shape {
     },
     /// The cylinder along z that touches the box's sides, of which those along x and y are equal.
     Cylinder {
-        /// Largest distance of its polyhedron from the mantle.
+        /// Largest distance of its polyhedron from the lateral surface.
         chord_error: f64,
     },
     /// In 2D, the disc that touches the rectangle's sides, which are equal.

@@ -342,21 +342,21 @@ impl fmt::Display for Seeds<'_> {
 fn write_topology(
     out: &mut fmt::Formatter<'_>,
     dimension: Dimension,
-    Reconnections { opened, closed, swapped }: Reconnections,
+    Reconnections { lines_to_boundaries, boundaries_to_lines, neighbor_switches }: Reconnections,
     balance: Option<&Balance>,
 ) -> fmt::Result {
     let flags = match dimension {
         Dimension::Two => {
             writeln!(
                 out,
-                "topology    {swapped} boundaries gave way to others, {opened} points opened to boundaries, {closed} boundaries became points"
+                "topology    {neighbor_switches} neighbor switches (T1), {lines_to_boundaries} points split, {boundaries_to_lines} edges collapsed"
             )?;
             "points flagged (of more than three grains, or not at rest)"
         }
         Dimension::Three => {
             writeln!(
                 out,
-                "topology    {opened} triple lines became boundaries, {closed} boundaries triple lines, {swapped} boundaries changed sides"
+                "topology    {lines_to_boundaries} edge-to-triangle flips, {boundaries_to_lines} triangle-to-edge flips, {neighbor_switches} neighbor switches"
             )?;
             "triple lines flagged (short, of four boundaries, or not at rest)"
         }
@@ -439,7 +439,7 @@ mod tests {
         let mut polycrystal = make_polycrystal(&config, &|_, _, _| ()).unwrap();
         for (regularization, name, line) in [
             (Regularization::ByEnergy, "by_energy", None),
-            (Regularization::Foreseeing, "full", None),
+            (Regularization::Predicted, "full", None),
             (
                 Regularization::Plain,
                 "short_edges",

@@ -12,7 +12,7 @@ pub(crate) mod switching;
 use std::time::Instant;
 
 use glam::{DVec2, DVec3};
-use voronoi::{Corner, FaceId, Tessellation};
+use voronoi::{FaceId, PeriodicVertex, Tessellation};
 
 use crate::energy::local_size::LocalSize;
 use crate::events::reconnection::Reconnections;
@@ -139,7 +139,7 @@ impl CurvedEdges {
 struct SmoothEdges {
     network: Network,
     /// Of each vertex of the network's cells, that of the complex.
-    corners: Vec<Corner>,
+    corners: Vec<PeriodicVertex>,
     /// Segments of each edge on the finest level, in the order of the complex.
     chords: Vec<u32>,
 }
@@ -205,7 +205,7 @@ impl SmoothEdges {
         for (point, corner) in points.iter_mut().zip(&self.corners) {
             let place = 2 * corner.vertex as usize;
             let own = DVec3::new(state[place], state[place + 1], 0.0);
-            *point = own + corner.shift.vector(self.network.domain());
+            *point = own + corner.translation.vector(self.network.domain());
         }
         let mut segments = mesh.segments().iter();
         for ((number, arc), chords) in network.arcs.iter().enumerate().zip(&self.chords) {

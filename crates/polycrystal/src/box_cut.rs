@@ -4,7 +4,7 @@
 //! two copies of the box, and every piece moves into the box. Where grains were cut, flat caps close them, with the same
 //! triangles on opposite walls.
 //!
-//! All of this happens on the torus: a point is one of the box, and a shift by whole periods. What is found on one side of a
+//! All of this happens on the torus: a point is one of the box, and a translation by whole periods. What is found on one side of a
 //! plane is so found on the other, and points on opposite walls differ in that one coordinate alone, bit for bit.
 
 mod cap_points;
@@ -17,7 +17,7 @@ mod volumes;
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use voronoi::{Dimension, Domain, Shift};
+use voronoi::{Dimension, Domain, Translation};
 
 use crate::mesh::id::id;
 use crate::{Attempt, BoundaryId, Elements, GrainId, Junctions, Network, NetworkError, Side, Surface};
@@ -29,21 +29,21 @@ use volumes::restore;
 
 /// A point of the torus, moved by whole periods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-struct Corner {
+struct PeriodicPoint {
     point: u32,
-    shift: Shift,
+    translation: Translation,
 }
 
-impl Corner {
-    fn moved(self, by: Shift) -> Self {
-        Self { shift: self.shift + by, ..self }
+impl PeriodicPoint {
+    fn moved(self, by: Translation) -> Self {
+        Self { translation: self.translation + by, ..self }
     }
 }
 
 /// A convex polygon between two sides; in the plane, a segment.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Piece {
-    corners: Vec<Corner>,
+    corners: Vec<PeriodicPoint>,
     sides: [Side; 2],
     /// The boundary that it is part of; none for a cap.
     boundary: Option<BoundaryId>,
@@ -160,7 +160,7 @@ impl Network {
     /// The network that pieces and caps make up.
     fn in_box(&self, pieces: &Pieces, caps: &[Piece]) -> Result<(Self, Vec<DVec3>), NetworkError> {
         let domain = self.domain();
-        let mut numbers: BTreeMap<Corner, u32> = BTreeMap::new();
+        let mut numbers: BTreeMap<PeriodicPoint, u32> = BTreeMap::new();
         let mut box_points = Vec::new();
         let all = || pieces.pieces.iter().chain(caps);
         // Where a boundary between a grain and its own image was left out, others end that lie between the same grains.
@@ -170,7 +170,7 @@ impl Network {
         boundaries.dedup();
         let (mut triangles, mut segments, mut boundary_of) = (Vec::new(), Vec::new(), Vec::new());
         for piece in all() {
-            let mut number = |corner: &Corner| {
+            let mut number = |corner: &PeriodicPoint| {
                 *numbers.entry(*corner).or_insert_with(|| {
                     box_points.push(pieces.place(*corner));
                     id(box_points.len() - 1)
@@ -208,9 +208,9 @@ fn periodic_axes(domain: &Domain) -> impl Iterator<Item = usize> {
 }
 
 /// A place of the torus in the box: what is moved lies on the upper wall.
-fn place_in_box(domain: &Domain, mut place: DVec3, shift: Shift) -> DVec3 {
+fn place_in_box(domain: &Domain, mut place: DVec3, translation: Translation) -> DVec3 {
     for axis in 0..3 {
-        if shift.0[axis] != 0 {
+        if translation.0[axis] != 0 {
             place[axis] = domain.upper()[axis];
         }
     }

@@ -2,7 +2,7 @@
 
 pub(crate) mod box_tree;
 pub(crate) mod certificate;
-pub(crate) mod closing;
+pub(crate) mod closedness;
 pub(crate) mod contact;
 pub(crate) mod fault;
 pub(crate) mod folds;

@@ -11,7 +11,7 @@ mod star;
 
 pub use cell_complex::CellComplex;
 pub use edge::ComplexEdge;
-pub use plane::Spoke;
+pub use plane::OutgoingHalfEdge;
 pub use short_edges::{Collapsed, remove_edges_that_shorten, remove_short_edges};
 pub use snapshot::Snapshot;
 pub use star::Star;

@@ -43,7 +43,8 @@ pub use check::fault::{Fault, Place};
 pub use check::folds::folded_edges;
 pub use check::orientation::outward_sides;
 pub use complex::{
-    CellComplex, Collapsed, ComplexEdge, Snapshot, Spoke, Star, remove_edges_that_shorten, remove_short_edges,
+    CellComplex, Collapsed, ComplexEdge, OutgoingHalfEdge, Snapshot, Star, remove_edges_that_shorten,
+    remove_short_edges,
 };
 pub use energy::volumes_kept::Volumes;
 pub use events::reconnection::Reconnections;

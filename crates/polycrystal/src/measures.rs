@@ -85,12 +85,12 @@ pub fn point_dihedral_angles(network: &Network, points: &[DVec3]) -> Vec<[f64; 2
     let complex = Complex::of_level(network, level, &surface);
     // The minimum with NaN is the other number.
     let mut angles = vec![[f64::NAN; 2]; points.len()];
-    for place in complex.places().filter(|at| at.len() >= 3) {
-        let dihedral_sectors = complex.dihedral_sectors(place);
+    for edge in complex.non_manifold_edges().filter(|at| at.len() >= 3) {
+        let dihedral_sectors = complex.dihedral_sectors(edge);
         if dihedral_sectors.iter().any(|dihedral_sector| dihedral_sector.side == Side::Exterior) {
             continue;
         }
-        for end in place[0].ends(surface.elements).map(|end| complex.original(end)) {
+        for end in edge[0].ends(surface.elements).map(|end| complex.original(end)) {
             for degrees in dihedral_sectors.iter().map(|dihedral_sector| dihedral_sector.angle.to_degrees()) {
                 let [smallest, largest] = angles[end as usize];
                 angles[end as usize] = [smallest.min(degrees), largest.max(degrees)];

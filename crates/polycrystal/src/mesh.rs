@@ -1,5 +1,6 @@
 //! Boundaries between grains as meshes: elements, levels, walls, copies, and what is measured of them alone.
 
+pub(crate) mod adjacency;
 pub(crate) mod angles;
 pub(crate) mod boundary;
 pub(crate) mod connectivity;
@@ -10,7 +11,6 @@ pub(crate) mod level;
 pub(crate) mod node_type;
 pub(crate) mod periodic;
 pub(crate) mod rounding;
-pub(crate) mod seams;
 pub(crate) mod surface;
 pub(crate) mod triangle_quality;
 pub(crate) mod volume;

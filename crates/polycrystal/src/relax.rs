@@ -213,7 +213,7 @@ fn relax_levels(
 }
 
 /// Where the points of a control mesh in space go in the usual time, as a forecast: volumes are right, triangles may be thin.
-pub(crate) fn foreseen_points(
+pub(crate) fn predicted_points(
     network: &Network,
     control_points: &[DVec3],
     tuning: &Tuning,

@@ -21,7 +21,7 @@ mod volumes;
 use glam::{BVec3, DVec3};
 use rayon::prelude::*;
 use subzero::EdgeId;
-use voronoi::Shift;
+use voronoi::Translation;
 
 use crate::mesh::id::id;
 use crate::{Certificate, Fault, Level, Mesh, Network, NetworkError, Surface, validate};
@@ -200,7 +200,11 @@ fn remesh(
     let domain = network.domain();
     let position = |point: Moved<u32>| {
         let original = positions[point.original as usize];
-        if point.shift == Shift::NONE { original } else { original + point.shift.vector(domain) }
+        if point.translation == Translation::ZERO {
+            original
+        } else {
+            original + point.translation.vector(domain)
+        }
     };
     let originals: Vec<usize> = around.parts.originals().collect();
     let mut shaped: Vec<_> = originals
@@ -239,7 +243,7 @@ fn new_boundary((shaping, keys): joints::Shaped<'_>, first: usize) -> NewBoundar
         Some(key) => *key,
         None => *numbers[point as usize].get_or_insert_with(|| {
             points.push(patch.place(point));
-            Moved { original: id(first + points.len() - 1), shift: Shift::NONE }
+            Moved { original: id(first + points.len() - 1), translation: Translation::ZERO }
         }),
     };
     let triangles = patch.all().map(|corners| corners.map(&mut number)).collect();

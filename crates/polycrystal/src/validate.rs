@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::check::certificate::inspect;
-use crate::mesh::seams::Seams;
+use crate::mesh::adjacency::Adjacency;
 use crate::{Certificate, Expected, Faults, GrainId, Network, Surface, dihedral_angles};
 
 /// Checks the finest level of a network with the given points: everything that [`certify`](crate::certify) finds in any
@@ -31,7 +31,7 @@ pub fn validate(network: &Network, points: &[DVec3]) -> Result<Certificate, Faul
         domain_volume: Some(network.domain().measure()),
         rounding: surface.last_place(),
     };
-    let mut certificate = inspect(&surface, &Seams::of_level(level), &expected);
+    let mut certificate = inspect(&surface, &Adjacency::of_level(level), &expected);
     // The surface does not know what it is like through the walls.
     if certificate.is_good() && network.domain().is_periodic() {
         certificate.angles = dihedral_angles(network, level, points);

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use voronoi::{CellId, Domain, FaceId, Side, Tessellation, VertexId};
 
 use common::{complex_counts, random_seeds};
-use polycrystal::{CellComplex, ComplexEdge, Spoke};
+use polycrystal::{CellComplex, ComplexEdge, OutgoingHalfEdge};
 
 fn random_cells(domain: &Domain, count: usize, random_seed: u64) -> Tessellation {
     Tessellation::new(domain, &random_seeds(count, random_seed)).expect("valid seeds")
@@ -221,12 +221,15 @@ fn edges_of_the_plane_shrink_and_open_again() {
             if start.vertex == end.vertex || walls[1] > walls[0] || (walls[1] > 0 && walls[0] < 2) {
                 continue;
             }
-            let at_end: Vec<(FaceId, usize)> =
-                whole.spokes(end.vertex).iter().map(|spoke| (spoke.face, spoke.end)).collect();
+            let at_end: Vec<(FaceId, usize)> = whole
+                .outgoing_half_edges(end.vertex)
+                .iter()
+                .map(|half_edge| (half_edge.face, half_edge.end))
+                .collect();
             let mut complex = whole.clone();
             complex.edge_to_point(edge, 0);
-            let mut around = complex.spokes(start.vertex);
-            let is_at_end = |spoke: &Spoke| at_end.contains(&(spoke.face, spoke.end));
+            let mut around = complex.outgoing_half_edges(start.vertex);
+            let is_at_end = |half_edge: &OutgoingHalfEdge| at_end.contains(&(half_edge.face, half_edge.end));
             while !is_at_end(&around[0]) || is_at_end(&around[around.len() - 1]) {
                 around.rotate_left(1);
             }

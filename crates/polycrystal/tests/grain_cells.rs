@@ -9,7 +9,7 @@ use polycrystal::{
     BoundaryId, FaceMesh, GrainId, GrainPart, Junctions, Mesh, Network, NetworkError, Relaxation,
     measure_network, relax, remove_short_edges, validate,
 };
-use voronoi::{Dimension, Domain, Shift, Side, Tessellation};
+use voronoi::{Dimension, Domain, Side, Tessellation, Translation};
 
 fn domains() -> [Domain; 5] {
     let square = Domain::unit_square();
@@ -173,7 +173,7 @@ fn grains_in_pieces_and_numbers_left_out_are_refused() {
     let error = of_grains(&periodic, &[0, 1, 0].map(GrainId), 0).expect_err("they touch a period away");
     assert!(matches!(error, NetworkError::GrainInPieces { grain: GrainId(0) }), "{error}");
     let moved = |moved| GrainPart { grain: GrainId(0), moved };
-    let parts = [moved(Shift::NONE), GrainId(1).into(), moved(Shift([-1, 0, 0]))];
+    let parts = [moved(Translation::ZERO), GrainId(1).into(), moved(Translation([-1, 0, 0]))];
     let (network, flat) =
         Network::of_grains(&periodic, &parts, FaceMesh::Fan, Junctions::Crease, 0.0, 0).expect("two grains");
     let volumes = network.grain_volumes(network.control_mesh(), &flat);

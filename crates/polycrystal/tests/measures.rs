@@ -241,10 +241,12 @@ fn angles_of_a_periodic_network_are_those_of_all_its_lines() {
     for domain in [Domain::unit_cube(), Domain::unit_square()] {
         let domain = domain.with_periods(BVec3::TRUE);
         let seeds = random_seeds(&domain, 30, 8);
-        let angles = [0.0, 0.4].map(|shift| {
+        let angles = [0.0, 0.4].map(|translation| {
             let moved: Vec<DVec3> = seeds
                 .iter()
-                .map(|seed| DVec3::new((seed.x + shift).fract(), (seed.y + shift).fract(), seed.z))
+                .map(|seed| {
+                    DVec3::new((seed.x + translation).fract(), (seed.y + translation).fract(), seed.z)
+                })
                 .collect();
             let (network, flat) = network(&domain, &moved, 0);
             dihedral_angles(&network, network.finest(), &flat).expect("triple lines")

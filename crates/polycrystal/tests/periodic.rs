@@ -11,7 +11,7 @@ use polycrystal::{
     FaceMesh, Junctions, Level, Mesh, Network, NetworkError, NodeType, RegularCells, Relaxation, Side,
     dihedral_angles, regular_cells, relax, validate,
 };
-use voronoi::{Domain, PeriodicPair, Shift, Tessellation};
+use voronoi::{Domain, PeriodicPair, Tessellation, Translation};
 
 fn domains() -> [Domain; 5] {
     let x = BVec3::new(true, false, false);
@@ -39,11 +39,12 @@ fn elements(level: &Level) -> Vec<Vec<usize>> {
     }
 }
 
-/// Of each vertex, its original and the shift from there.
-fn originals(level: &Level) -> Vec<(usize, Shift)> {
-    let mut originals: Vec<(usize, Shift)> = (0..level.vertex_count()).map(|v| (v, Shift::NONE)).collect();
+/// Of each vertex, its original and the translation from there.
+fn originals(level: &Level) -> Vec<(usize, Translation)> {
+    let mut originals: Vec<(usize, Translation)> =
+        (0..level.vertex_count()).map(|v| (v, Translation::ZERO)).collect();
     for pair in &level.copies.vertices {
-        originals[pair.secondary as usize] = (pair.primary as usize, pair.shift);
+        originals[pair.secondary as usize] = (pair.primary as usize, pair.translation);
     }
     originals
 }
@@ -68,9 +69,9 @@ fn copies_stand_a_shift_from_their_originals_on_every_level() {
                 let (_, network, flat) = network(&domain, &seeds, level);
                 let points = network.subdivide(&flat);
                 let originals = originals(network.finest());
-                for &PeriodicPair { secondary, primary, shift } in &network.finest().copies.vertices {
-                    assert_eq!(originals[primary as usize], (primary as usize, Shift::NONE));
-                    let moved = points[primary as usize] + shift.vector(&domain);
+                for &PeriodicPair { secondary, primary, translation } in &network.finest().copies.vertices {
+                    assert_eq!(originals[primary as usize], (primary as usize, Translation::ZERO));
+                    let moved = points[primary as usize] + translation.vector(&domain);
                     assert_eq!(points[secondary as usize], moved);
                 }
             }
@@ -78,7 +79,7 @@ fn copies_stand_a_shift_from_their_originals_on_every_level() {
     }
 }
 
-/// The elements of a boundary and those of its twin have the same corners but for the shift, the other way round.
+/// The elements of a boundary and those of its twin have the same corners but for the translation, the other way round.
 #[test]
 fn twins_are_the_same_triangles_turned_round() {
     for domain in domains() {
@@ -86,15 +87,16 @@ fn twins_are_the_same_triangles_turned_round() {
             let (_, network, _) = network(&domain, &random_seeds(&domain, count, 2), 2);
             let level = network.finest();
             let originals = originals(level);
-            let corners_of = |boundary: usize, shift: Shift| -> BTreeSet<Vec<(usize, Shift)>> {
-                let of_boundary = elements(level).into_iter().zip(&level.boundary_of);
-                let of_boundary = of_boundary.filter(|(_, of)| of.index() == boundary);
-                let named = |corners: Vec<usize>| -> Vec<(usize, Shift)> {
-                    corners.iter().map(|v| (originals[*v].0, originals[*v].1 + shift)).collect()
+            let corners_of =
+                |boundary: usize, translation: Translation| -> BTreeSet<Vec<(usize, Translation)>> {
+                    let of_boundary = elements(level).into_iter().zip(&level.boundary_of);
+                    let of_boundary = of_boundary.filter(|(_, of)| of.index() == boundary);
+                    let named = |corners: Vec<usize>| -> Vec<(usize, Translation)> {
+                        corners.iter().map(|v| (originals[*v].0, originals[*v].1 + translation)).collect()
+                    };
+                    of_boundary.map(|(corners, _)| named(corners)).collect()
                 };
-                of_boundary.map(|(corners, _)| named(corners)).collect()
-            };
-            let first_smallest = |mut corners: Vec<(usize, Shift)>| {
+            let first_smallest = |mut corners: Vec<(usize, Translation)>| {
                 let smallest = (0..corners.len()).min_by_key(|k| corners[*k]).expect("corners");
                 if corners.len() == 3 {
                     corners.rotate_left(smallest);
@@ -106,14 +108,18 @@ fn twins_are_the_same_triangles_turned_round() {
                 let Some(twin) = boundary.twin else { continue };
                 assert_eq!(boundary.sides[1], Side::Exterior);
                 let back = network.boundaries()[twin.boundary.index()].twin.expect("twins know each other");
-                assert_eq!((back.boundary.index(), back.shift), (id, Shift::NONE - twin.shift));
+                assert_eq!(
+                    (back.boundary.index(), back.translation),
+                    (id, Translation::ZERO - twin.translation)
+                );
                 if twins < 6 {
-                    let turned = |mut corners: Vec<(usize, Shift)>| {
+                    let turned = |mut corners: Vec<(usize, Translation)>| {
                         corners.reverse();
                         first_smallest(corners)
                     };
-                    let here: BTreeSet<_> = corners_of(id, twin.shift).into_iter().map(turned).collect();
-                    let there = corners_of(twin.boundary.index(), Shift::NONE);
+                    let here: BTreeSet<_> =
+                        corners_of(id, twin.translation).into_iter().map(turned).collect();
+                    let there = corners_of(twin.boundary.index(), Translation::ZERO);
                     assert_eq!(here, there.into_iter().map(first_smallest).collect());
                 }
                 twins += 1;
@@ -188,7 +194,7 @@ fn periodic_grains_relax_and_stay_periodic() {
         assert!(spread(&smooth) < 0.6 * spread(&network.subdivide(&flat)));
         for pair in &network.finest().copies.vertices {
             let [copy, original] = [pair.secondary, pair.primary].map(|vertex| smooth[vertex as usize]);
-            assert_eq!(copy, original + pair.shift.vector(&domain));
+            assert_eq!(copy, original + pair.translation.vector(&domain));
         }
     }
 }
@@ -218,7 +224,7 @@ fn periodic_grains_are_regularised() {
         assert!(angles.standard_deviation < largest, "{angles:?}");
         for pair in &network.finest().copies.vertices {
             let [copy, original] = [pair.secondary, pair.primary].map(|vertex| smooth[vertex as usize]);
-            assert_eq!(copy, original + pair.shift.vector(&domain));
+            assert_eq!(copy, original + pair.translation.vector(&domain));
         }
     }
 }

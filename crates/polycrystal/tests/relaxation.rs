@@ -452,10 +452,10 @@ proptest! {
     }
 
     #[test]
-    fn a_permutation_of_the_seeds_permutes_the_grains(random_seed in 0u64..1_000_000, shift in 1usize..20) {
+    fn a_permutation_of_the_seeds_permutes_the_grains(random_seed in 0u64..1_000_000, translation in 1usize..20) {
         let seeds = random_seeds(&Domain::unit_cube(), 20, random_seed);
         let mut rotated = seeds.clone();
-        rotated.rotate_left(shift % 20);
+        rotated.rotate_left(translation % 20);
         let mean_point_and_volumes = |seeds: &[DVec3]| {
             let (network, flat) = network(&Domain::unit_cube(), seeds, 1);
             let points = relaxed(&network, &flat);
@@ -463,7 +463,7 @@ proptest! {
         };
         let (place, mut volumes) = mean_point_and_volumes(&seeds);
         let (rotated_place, rotated_volumes) = mean_point_and_volumes(&rotated);
-        volumes.rotate_left(shift % 20);
+        volumes.rotate_left(translation % 20);
         prop_assert!(place.distance(rotated_place) < 1e-8);
         for (a, b) in volumes.iter().zip(&rotated_volumes) {
             prop_assert!((a - b).abs() < 1e-12);

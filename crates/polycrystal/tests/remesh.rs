@@ -103,7 +103,7 @@ fn periodic_copies_are_the_same_bit_for_bit() {
     for pair in copies {
         let [secondary, primary] =
             [pair.secondary, pair.primary].map(|point| remeshed.points[point as usize]);
-        assert_eq!(secondary, primary + pair.shift.vector(&domain));
+        assert_eq!(secondary, primary + pair.translation.vector(&domain));
     }
 }
 

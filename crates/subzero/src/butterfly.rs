@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::ids::{NONE, next, prev};
-use crate::stencil::Rows;
+use crate::stencil::StencilWriter;
 use crate::{EdgeId, MeshError, Refinement, StencilTable, TriangleMesh, VertexRule};
 
 impl TriangleMesh {
@@ -15,7 +15,7 @@ impl TriangleMesh {
     /// # Errors
     /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
     pub fn butterfly_refine(&self) -> Result<Refinement<Self>, MeshError> {
-        self.interpolating_refine(|along, rows| self.eight_point(along, 1.0, rows))
+        self.interpolating_refine(|along, stencil| self.eight_point(along, 1.0, stencil))
     }
 
     /// One step of the modified butterfly scheme (Zorin, Schroeder and Sweldens 1996), smooth at irregular vertices too.
@@ -25,14 +25,14 @@ impl TriangleMesh {
     /// # Errors
     /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
     pub fn modified_butterfly_refine(&self) -> Result<Refinement<Self>, MeshError> {
-        self.interpolating_refine(|along, rows| {
+        self.interpolating_refine(|along, stencil| {
             match (self.is_irregular(along), self.is_irregular(self.twin(along))) {
-                (false, false) => self.eight_point(along, 1.0, rows),
-                (true, false) => self.irregular(along, 1.0, rows),
-                (false, true) => self.irregular(self.twin(along), 1.0, rows),
+                (false, false) => self.eight_point(along, 1.0, stencil),
+                (true, false) => self.irregular(along, 1.0, stencil),
+                (false, true) => self.irregular(self.twin(along), 1.0, stencil),
                 (true, true) => {
-                    self.irregular(along, 0.5, rows);
-                    self.irregular(self.twin(along), 0.5, rows);
+                    self.irregular(along, 0.5, stencil);
+                    self.irregular(self.twin(along), 0.5, stencil);
                 }
             }
         })
@@ -44,11 +44,11 @@ impl TriangleMesh {
     /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
     pub fn midpoint_refine(&self) -> Result<Refinement<Self>, MeshError> {
         let vertices = self.counts().vertices;
-        let stencils = StencilTable::from_rows(self.vertex_count() + self.edge_count(), |i, rows| {
+        let stencils = StencilTable::from_stencils(self.vertex_count() + self.edge_count(), |i, stencil| {
             if i < vertices {
-                rows.add(i, 1.0);
+                stencil.add(i, 1.0);
             } else {
-                self.edge(EdgeId(i - vertices)).into_iter().for_each(|end| rows.add(end, 0.5));
+                self.edge(EdgeId(i - vertices)).into_iter().for_each(|end| stencil.add(end, 0.5));
             }
         });
         Ok(Refinement { mesh: self.refine_connectivity()?, stencils })
@@ -57,26 +57,26 @@ impl TriangleMesh {
     /// A refinement that keeps old vertices, with `inner` as the rule of edges that are no creases.
     fn interpolating_refine(
         &self,
-        inner: impl Fn(u32, &mut Rows) + Sync,
+        inner: impl Fn(u32, &mut StencilWriter) + Sync,
     ) -> Result<Refinement<Self>, MeshError> {
         let vertices = self.counts().vertices;
-        let stencils = StencilTable::from_rows(self.vertex_count() + self.edge_count(), |i, rows| {
+        let stencils = StencilTable::from_stencils(self.vertex_count() + self.edge_count(), |i, stencil| {
             if i < vertices {
-                rows.add(i, 1.0);
+                stencil.add(i, 1.0);
             } else if self.is_crease(EdgeId(i - vertices)) {
-                self.four_point(EdgeId(i - vertices), rows);
+                self.four_point(EdgeId(i - vertices), stencil);
             } else {
-                inner(self.edges[(i - vertices) as usize][0], rows);
+                inner(self.edges[(i - vertices) as usize][0], stencil);
             }
         });
         Ok(Refinement { mesh: self.refine_connectivity()?, stencils })
     }
 
     /// 9/16 of the ends and -1/16 of the next points of the crease, reflected where the crease does not go on.
-    fn four_point(&self, edge: EdgeId, rows: &mut Rows) {
+    fn four_point(&self, edge: EdgeId, stencil: &mut StencilWriter) {
         let [a, b] = self.edge(edge);
         for (end, other) in [(a, b), (b, a)] {
-            rows.add(end, 9.0 / 16.0);
+            stencil.add(end, 9.0 / 16.0);
             let goes_on = self.vertex_rule(end) == VertexRule::Crease;
             let outgoing_edge = self
                 .sharpness
@@ -84,39 +84,39 @@ impl TriangleMesh {
                 .iter()
                 .find(|outgoing_edge| goes_on && outgoing_edge.edge != edge);
             if let Some(outgoing_edge) = outgoing_edge {
-                rows.add(self.other_end(outgoing_edge.edge, end), -1.0 / 16.0);
+                stencil.add(self.other_end(outgoing_edge.edge, end), -1.0 / 16.0);
             } else {
-                rows.add(end, -2.0 / 16.0);
-                rows.add(other, 1.0 / 16.0);
+                stencil.add(end, -2.0 / 16.0);
+                stencil.add(other, 1.0 / 16.0);
             }
         }
     }
 
     /// 1/2 of the ends, 1/8 of the apexes and -1/16 of the wings.
-    fn eight_point(&self, along: u32, share: f64, rows: &mut Rows) {
+    fn eight_point(&self, along: u32, scale: f64, stencil: &mut StencilWriter) {
         for h in [along, self.twin(along)] {
-            rows.add(self.start(h), 0.5 * share);
-            rows.add(self.start(prev(h)), 0.125 * share);
+            stencil.add(self.start(h), 0.5 * scale);
+            stencil.add(self.start(prev(h)), 0.125 * scale);
             for wing in [next(h), prev(h)] {
                 let beyond = if self.is_crease(self.edge_of(wing)) { NONE } else { self.twin(wing) };
                 if beyond == NONE {
                     // The triangle's mirror image: the ends of the wing's edge less the third corner.
-                    rows.add(self.start(wing), -share / 16.0);
-                    rows.add(self.start(next(wing)), -share / 16.0);
-                    rows.add(self.start(prev(wing)), share / 16.0);
+                    stencil.add(self.start(wing), -scale / 16.0);
+                    stencil.add(self.start(next(wing)), -scale / 16.0);
+                    stencil.add(self.start(prev(wing)), scale / 16.0);
                 } else {
-                    rows.add(self.start(prev(beyond)), -share / 16.0);
+                    stencil.add(self.start(prev(beyond)), -scale / 16.0);
                 }
             }
         }
     }
 
     /// The rule of an edge that starts at an irregular vertex, `h` running away from it.
-    fn irregular(&self, h: u32, share: f64, rows: &mut Rows) {
+    fn irregular(&self, h: u32, scale: f64, stencil: &mut StencilWriter) {
         let valence = self.ring(h).count();
         #[allow(clippy::cast_precision_loss)]
         let n = valence as f64;
-        rows.add(self.start(h), 0.75 * share);
+        stencil.add(self.start(h), 0.75 * scale);
         let mut angle = 0.0;
         for (j, outgoing_edge) in self.ring(h).enumerate() {
             let weight = match (valence, j) {
@@ -128,7 +128,7 @@ impl TriangleMesh {
                 _ => (0.25 + f64::cos(angle) + 0.5 * f64::cos(2.0 * angle)) / n,
             };
             if weight != 0.0 {
-                rows.add(self.start(next(outgoing_edge)), share * weight);
+                stencil.add(self.start(next(outgoing_edge)), scale * weight);
             }
             angle += TAU / n;
         }

@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use crate::ids::{NONE, id};
 use crate::mesh_checks::check_size;
-use crate::stencil::Rows;
-use crate::vertex_rows::vertex_row;
+use crate::stencil::StencilWriter;
+use crate::vertex_stencils::vertex_stencil;
 use crate::{EdgeId, FaceId, MeshError, PolygonMesh, Refinement, StencilTable};
 
 /// A count as a number to compute with; no mesh has so many edges that this would round.
@@ -72,52 +72,54 @@ impl PolygonMesh {
     fn catmull_clark_stencils(&self) -> StencilTable {
         let [vertices, edges] = [self.vertex_count(), self.edge_count()].map(id);
         let count = self.vertex_count() + self.edge_count() + self.face_count();
-        StencilTable::from_rows(count, |i, rows| {
+        StencilTable::from_stencils(count, |i, stencil| {
             if i < vertices {
                 let rule = (i, self.vertex_rule(i));
                 let other_end = |edge| self.other_end(edge, i);
-                let mut add = |point: u32, weight: f64| rows.add(point, weight);
-                vertex_row(&self.sharpness, rule, &mut add, other_end, |share, add| {
-                    self.smooth_vertex_row(i, share, add);
+                let mut add = |point: u32, weight: f64| stencil.add(point, weight);
+                vertex_stencil(&self.sharpness, rule, &mut add, other_end, |scale, add| {
+                    self.smooth_vertex_stencil(i, scale, add);
                 });
-                rows.merge();
+                stencil.merge();
             } else if i < vertices + edges {
-                self.catmull_clark_edge_row(EdgeId(i - vertices), rows);
+                self.catmull_clark_edge_stencil(EdgeId(i - vertices), stencil);
             } else {
-                self.add_face_point(i - vertices - edges, 1.0, &mut |point, weight| rows.add(point, weight));
+                self.add_face_point(i - vertices - edges, 1.0, &mut |point, weight| {
+                    stencil.add(point, weight)
+                });
             }
         })
     }
 
-    fn catmull_clark_edge_row(&self, edge: EdgeId, rows: &mut Rows) {
+    fn catmull_clark_edge_stencil(&self, edge: EdgeId, stencil: &mut StencilWriter) {
         let sharp = if self.sharp_edges[edge.index()] { self.sharpness.of_edge(edge).min(1.0) } else { 0.0 };
         let smooth = 1.0 - f64::from(sharp);
         for end in self.edge(edge) {
-            rows.add(end, 0.5 - 0.25 * smooth);
+            stencil.add(end, 0.5 - 0.25 * smooth);
         }
         if smooth > 0.0 {
             for side in self.edges[edge.index()] {
                 self.add_face_point(self.faces_of[side as usize], 0.25 * smooth, &mut |point, weight| {
-                    rows.add(point, weight)
+                    stencil.add(point, weight)
                 });
             }
-            rows.merge();
+            stencil.merge();
         }
     }
 
     /// (F + 2 R + (n - 3) v)/n, with F the mean of the face points and R that of the midpoints of the n edges.
-    fn smooth_vertex_row(&self, vertex: u32, share: f64, add: &mut impl FnMut(u32, f64)) {
+    fn smooth_vertex_stencil(&self, vertex: u32, scale: f64, add: &mut impl FnMut(u32, f64)) {
         let first = self.outgoing[vertex as usize];
         let n = real(self.ring(first).count());
-        add(vertex, share * (n - 2.0) / n);
+        add(vertex, scale * (n - 2.0) / n);
         for h in self.ring(first) {
-            add(self.end(h), share / (n * n));
-            self.add_face_point(self.faces_of[h as usize], share / (n * n), add);
+            add(self.end(h), scale / (n * n));
+            self.add_face_point(self.faces_of[h as usize], scale / (n * n), add);
         }
     }
 
-    fn add_face_point(&self, face: u32, share: f64, add: &mut impl FnMut(u32, f64)) {
+    fn add_face_point(&self, face: u32, scale: f64, add: &mut impl FnMut(u32, f64)) {
         let corners = self.face(FaceId(face));
-        corners.iter().for_each(|&corner| add(corner, share / real(corners.len())));
+        corners.iter().for_each(|&corner| add(corner, scale / real(corners.len())));
     }
 }

@@ -8,17 +8,17 @@ use rayon::prelude::*;
 use crate::catmull_clark::real;
 use crate::ids::id;
 use crate::loop_limit::normals_of_vertices;
-use crate::stencil::Rows;
+use crate::stencil::StencilWriter;
 use crate::{EdgeId, MeshError, PolygonMesh, Refinement, Sector, StencilTable, VertexRule};
 
 /// Limit positions and tangents of a Catmull-Clark surface at the vertices of a mesh, as averages of its points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CatmullClarkLimits {
-    /// One row per vertex: its limit position.
+    /// One stencil per vertex: its limit position.
     pub positions: StencilTable,
     /// All sectors, sorted by vertex.
     pub sectors: Vec<Sector>,
-    /// Per sector two rows, that add up to 0: limit tangents t1 and t2 with the normal along t1 x t2. The rows are empty
+    /// Per sector two stencil, that add up to 0: limit tangents t1 and t2 with the normal along t1 x t2. The stencils are empty
     /// where the surface has no tangent plane.
     pub tangents: StencilTable,
 }
@@ -44,11 +44,12 @@ impl PolygonMesh {
         self.sharpness.check_settled()?;
         // The masks are known where all faces have four corners, as they do one level on.
         let Refinement { mesh: quads, stencils } = self.catmull_clark_refine()?;
-        let positions = StencilTable::from_rows(self.vertex_count(), |v, rows| quads.limit_position(v, rows));
+        let positions =
+            StencilTable::from_stencils(self.vertex_count(), |v, stencil| quads.limit_position(v, stencil));
         let sectors = self.sectors();
-        let tangents = StencilTable::from_rows(2 * sectors.len(), |row, rows| {
-            let Sector { vertex, first } = sectors[(row / 2) as usize];
-            quads.limit_tangent(vertex, 4 * first, (row % 2) as usize, rows);
+        let tangents = StencilTable::from_stencils(2 * sectors.len(), |i, stencil| {
+            let Sector { vertex, first } = sectors[(i / 2) as usize];
+            quads.limit_tangent(vertex, 4 * first, (i % 2) as usize, stencil);
         });
         Ok(CatmullClarkLimits {
             positions: stencils.then(&positions),
@@ -113,32 +114,32 @@ impl PolygonMesh {
     }
 
     /// The limit position of a vertex among four-sided faces.
-    fn limit_position(&self, vertex: u32, rows: &mut Rows) {
+    fn limit_position(&self, vertex: u32, stencil: &mut StencilWriter) {
         let first = self.outgoing[vertex as usize];
         match self.vertex_rule(vertex) {
-            VertexRule::Corner => rows.add(vertex, 1.0),
+            VertexRule::Corner => stencil.add(vertex, 1.0),
             VertexRule::Crease => {
-                rows.add(vertex, 4.0 / 6.0);
+                stencil.add(vertex, 4.0 / 6.0);
                 for outgoing_edge in self.sharpness.outgoing_edges(vertex) {
-                    rows.add(self.other_end(outgoing_edge.edge, vertex), 1.0 / 6.0);
+                    stencil.add(self.other_end(outgoing_edge.edge, vertex), 1.0 / 6.0);
                 }
             }
             VertexRule::Smooth => {
                 let ring: Vec<u32> = self.ring(first).collect();
                 let n = real(ring.len());
-                let share = 1.0 / (n * (n + 5.0));
-                let [edges, faces] = [4.0, 1.0].map(|weight| vec![weight * share; ring.len()]);
-                self.add_mask(vertex, &ring, &QuadMask { centre: n / (n + 5.0), edges, faces }, rows);
+                let scale = 1.0 / (n * (n + 5.0));
+                let [edges, faces] = [4.0, 1.0].map(|weight| vec![weight * scale; ring.len()]);
+                self.add_mask(vertex, &ring, &QuadMask { centre: n / (n + 5.0), edges, faces }, stencil);
             }
             VertexRule::Dart => {
                 let ring: Vec<u32> = self.ring(self.dart_start(vertex)).collect();
-                self.add_mask(vertex, &ring, &dart_position(ring.len()), rows);
+                self.add_mask(vertex, &ring, &dart_position(ring.len()), stencil);
             }
         }
     }
 
     /// A limit tangent of a sector among four-sided faces.
-    fn limit_tangent(&self, vertex: u32, first: u32, which: usize, rows: &mut Rows) {
+    fn limit_tangent(&self, vertex: u32, first: u32, which: usize, stencil: &mut StencilWriter) {
         let (ring, masks) = match self.vertex_rule(vertex) {
             VertexRule::Smooth => {
                 let ring: Vec<u32> = self.ring(first).collect();
@@ -162,14 +163,14 @@ impl PolygonMesh {
                 (sector, masks)
             }
         };
-        self.add_mask(vertex, &ring, &masks[which], rows);
+        self.add_mask(vertex, &ring, &masks[which], stencil);
     }
 
     /// Adds a mask; one edge more than faces belongs to an open sector.
-    fn add_mask(&self, vertex: u32, ring: &[u32], mask: &QuadMask, rows: &mut Rows) {
+    fn add_mask(&self, vertex: u32, ring: &[u32], mask: &QuadMask, stencil: &mut StencilWriter) {
         let mut add = |point: u32, weight: f64| {
             if weight != 0.0 {
-                rows.add(point, weight);
+                stencil.add(point, weight);
             }
         };
         add(vertex, mask.centre);

@@ -100,23 +100,23 @@ impl CurveMesh {
     /// [`MeshError::TooLarge`] if the finer network outgrows 32-bit ids.
     pub fn four_point_refine(&self) -> Result<Refinement<Self>, MeshError> {
         let vertices = self.vertex_count();
-        let stencils = StencilTable::from_rows(vertices + self.segments.len(), |i, rows| {
+        let stencils = StencilTable::from_stencils(vertices + self.segments.len(), |i, stencil| {
             let Some(segment) = (i as usize).checked_sub(vertices) else {
-                rows.add(i, 1.0);
+                stencil.add(i, 1.0);
                 return;
             };
             let [a, b] = self.segments[segment];
             for (end, other) in [(a, b), (b, a)] {
-                rows.add(end, 9.0 / 16.0);
+                stencil.add(end, 9.0 / 16.0);
                 match self.curves[end as usize] {
                     Some(segments) => {
                         let [first, second] = segments;
                         let beyond = if first.index() == segment { second } else { first };
-                        rows.add(self.other_end(beyond, end), -1.0 / 16.0);
+                        stencil.add(self.other_end(beyond, end), -1.0 / 16.0);
                     }
                     None => {
-                        rows.add(end, -2.0 / 16.0);
-                        rows.add(other, 1.0 / 16.0);
+                        stencil.add(end, -2.0 / 16.0);
+                        stencil.add(other, 1.0 / 16.0);
                     }
                 }
             }
@@ -149,35 +149,35 @@ impl CurveMesh {
         Ok(Self { segments, curves: old.chain(new).collect() })
     }
 
-    /// One row per vertex: its place on the limit curve, (1, 4, 1)/6 of a smooth vertex and its neighbours.
+    /// One stencil per vertex: its place on the limit curve, (1, 4, 1)/6 of a smooth vertex and its neighbours.
     pub fn limit_positions(&self) -> StencilTable {
-        StencilTable::from_rows(self.vertex_count(), |v, rows| match self.neighbours(v) {
+        StencilTable::from_stencils(self.vertex_count(), |v, stencil| match self.neighbours(v) {
             Some(neighbours) => {
-                rows.add(v, 4.0 / 6.0);
+                stencil.add(v, 4.0 / 6.0);
                 for neighbour in neighbours {
-                    rows.add(neighbour, 1.0 / 6.0);
+                    stencil.add(neighbour, 1.0 / 6.0);
                 }
             }
-            None => rows.add(v, 1.0),
+            None => stencil.add(v, 1.0),
         })
     }
 
-    /// Two rows per segment: the derivatives of the limit curve at its start and at its end, when the curve runs
+    /// two stencils per segment: the derivatives of the limit curve at its start and at its end, when the curve runs
     /// through the segment in unit time. Half the difference of the neighbours at smooth vertices, the one-sided
     /// difference at corners.
     pub fn limit_tangents(&self) -> StencilTable {
-        StencilTable::from_rows(2 * self.segments.len(), |row, rows| {
-            let [start, end] = self.segments[(row / 2) as usize];
-            let at_start = row % 2 == 0;
+        StencilTable::from_stencils(2 * self.segments.len(), |i, stencil| {
+            let [start, end] = self.segments[(i / 2) as usize];
+            let at_start = i % 2 == 0;
             let (here, there) = if at_start { (start, end) } else { (end, start) };
             let forward = if at_start { 1.0 } else { -1.0 };
             if let Some(segments) = self.curves[here as usize] {
-                let behind = if segments[0].0 == row / 2 { segments[1] } else { segments[0] };
-                rows.add(there, 0.5 * forward);
-                rows.add(self.other_end(behind, here), -0.5 * forward);
+                let behind = if segments[0].0 == i / 2 { segments[1] } else { segments[0] };
+                stencil.add(there, 0.5 * forward);
+                stencil.add(self.other_end(behind, here), -0.5 * forward);
             } else {
-                rows.add(there, forward);
-                rows.add(here, -forward);
+                stencil.add(there, forward);
+                stencil.add(here, -forward);
             }
         })
     }
@@ -189,18 +189,18 @@ impl CurveMesh {
 
     fn stencils(&self) -> StencilTable {
         let vertices = self.vertex_count();
-        StencilTable::from_rows(vertices + self.segments.len(), |i, rows| {
+        StencilTable::from_stencils(vertices + self.segments.len(), |i, stencil| {
             if let Some(segment) = (i as usize).checked_sub(vertices) {
                 for end in self.segments[segment] {
-                    rows.add(end, 0.5);
+                    stencil.add(end, 0.5);
                 }
             } else if let Some(neighbours) = self.neighbours(i) {
-                rows.add(i, 0.75);
+                stencil.add(i, 0.75);
                 for neighbour in neighbours {
-                    rows.add(neighbour, 0.125);
+                    stencil.add(neighbour, 0.125);
                 }
             } else {
-                rows.add(i, 1.0);
+                stencil.add(i, 1.0);
             }
         })
     }

@@ -23,9 +23,9 @@ pub enum DooSabinWeights {
 /// Limit points and tangents of a Doo-Sabin surface at the centres of faces, as averages of the points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DooSabinLimits {
-    /// One row per face: its centroid, which lies on the limit surface.
+    /// One stencil per face: its centroid, which lies on the limit surface.
     pub positions: StencilTable,
-    /// Two rows per face, that add up to 0: limit tangents t1 and t2 with the normal along t1 x t2.
+    /// two stencils per face, that add up to 0: limit tangents t1 and t2 with the normal along t1 x t2.
     pub tangents: StencilTable,
 }
 
@@ -60,11 +60,12 @@ impl PolygonMesh {
     /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids.
     pub fn doo_sabin_refine(&self, weights: DooSabinWeights) -> Result<Refinement<Self>, MeshError> {
         check_size("half-edges", self.corners.len().saturating_mul(8))?;
-        let stencils = StencilTable::from_rows(self.corners.len(), |h, rows| {
+        let stencils = StencilTable::from_stencils(self.corners.len(), |h, stencil| {
             let corners = self.face(FaceId(self.faces_of[h as usize]));
             let own = (h - self.face_starts[self.faces_of[h as usize] as usize]) as usize;
             for (i, &corner) in corners.iter().enumerate() {
-                rows.add(corner, weights.of_corner((i + corners.len() - own) % corners.len(), corners.len()));
+                stencil
+                    .add(corner, weights.of_corner((i + corners.len() - own) % corners.len(), corners.len()));
             }
         });
         Ok(Refinement { mesh: self.doo_sabin_connectivity()?, stencils })
@@ -72,15 +73,15 @@ impl PolygonMesh {
 
     /// Limit points and tangents at the centres of all faces; the same for both kinds of weights.
     pub fn doo_sabin_limits(&self) -> DooSabinLimits {
-        let positions = StencilTable::from_rows(self.face_count(), |face, rows| {
+        let positions = StencilTable::from_stencils(self.face_count(), |face, stencil| {
             let corners = self.face(FaceId(face));
-            corners.iter().for_each(|&corner| rows.add(corner, 1.0 / real(corners.len())));
+            corners.iter().for_each(|&corner| stencil.add(corner, 1.0 / real(corners.len())));
         });
-        let tangents = StencilTable::from_rows(2 * self.face_count(), |row, rows| {
-            let corners = self.face(FaceId(row / 2));
+        let tangents = StencilTable::from_stencils(2 * self.face_count(), |i, stencil| {
+            let corners = self.face(FaceId(i / 2));
             for (i, &corner) in corners.iter().enumerate() {
                 let angle = TAU * real(i) / real(corners.len());
-                rows.add(corner, if row % 2 == 0 { angle.cos() } else { angle.sin() });
+                stencil.add(corner, if i % 2 == 0 { angle.cos() } else { angle.sin() });
             }
         });
         DooSabinLimits { positions, tangents }

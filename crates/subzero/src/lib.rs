@@ -57,7 +57,7 @@ mod triangle_build;
 mod triangle_mesh;
 mod triangle_refine;
 mod triangulate;
-mod vertex_rows;
+mod vertex_stencils;
 
 pub use bezier::{BezierCurve, BezierSurface};
 pub use bezier_error::BezierError;
@@ -88,6 +88,6 @@ pub use triangulate::triangulate;
 pub struct Refinement<M> {
     /// Connectivity of the finer level.
     pub mesh: M,
-    /// One row per vertex of `mesh`, over the vertices of the mesh that was refined.
+    /// One stencil per vertex of `mesh`, over the vertices of the mesh that was refined.
     pub stencils: StencilTable,
 }

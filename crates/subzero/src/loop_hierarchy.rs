@@ -108,7 +108,7 @@ impl LoopHierarchy {
         levels.pop().unwrap_or_else(|| points.to_vec())
     }
 
-    /// One table that takes points of the coarsest mesh to the finest: one row per vertex of the finest.
+    /// One table that takes points of the coarsest mesh to the finest: One stencil per vertex of the finest.
     pub fn stencils(&self) -> StencilTable {
         let identity = StencilTable::identity(self.levels[0].vertex_count());
         let coarser = &self.levels[..self.levels.len() - 1];

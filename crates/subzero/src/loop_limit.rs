@@ -8,7 +8,7 @@ use crate::limit_masks::{
     RingMask, corner_tangents, crease_tangents, dart_position, dart_tangents, smooth_position,
     smooth_tangents,
 };
-use crate::stencil::Rows;
+use crate::stencil::StencilWriter;
 use crate::{LoopWeights, MeshError, Point, Refinement, StencilTable, TriangleMesh, VertexRule};
 
 /// A piece of the surface around a vertex that has one tangent plane: all of it at a smooth vertex or a dart, and what
@@ -24,11 +24,11 @@ pub struct Sector {
 /// Limit positions and tangents of all vertices of a mesh, as averages of its points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopLimits {
-    /// One row per vertex: its limit position.
+    /// One stencil per vertex: its limit position.
     pub positions: StencilTable,
     /// All sectors, sorted by vertex.
     pub sectors: Vec<Sector>,
-    /// Per sector two rows, that add up to 0: limit tangents t1 and t2 with the normal along t1 x t2. The rows are empty where the
+    /// Per sector two stencil, that add up to 0: limit tangents t1 and t2 with the normal along t1 x t2. The stencils are empty where the
     /// surface has no tangent plane.
     pub tangents: StencilTable,
 }
@@ -51,35 +51,40 @@ impl TriangleMesh {
             let children =
                 sectors.iter().map(|&Sector { vertex, first }| Sector { vertex, first: 3 * first });
             let children: Vec<Sector> = children.collect();
-            finer.limit_rows(self.vertex_count(), &children, weights).map(|table| stencils.then(&table))
+            finer.limit_stencils(self.vertex_count(), &children, weights).map(|table| stencils.then(&table))
         } else {
-            self.limit_rows(self.vertex_count(), &sectors, weights)
+            self.limit_stencils(self.vertex_count(), &sectors, weights)
         };
         Ok(LoopLimits { positions, sectors, tangents })
     }
 
     /// The limit positions of the first vertices, and the tangents of the sectors, where edges have regular rules.
-    fn limit_rows(&self, vertex_count: usize, sectors: &[Sector], weights: LoopWeights) -> [StencilTable; 2] {
+    fn limit_stencils(
+        &self,
+        vertex_count: usize,
+        sectors: &[Sector],
+        weights: LoopWeights,
+    ) -> [StencilTable; 2] {
         let positions =
-            StencilTable::from_rows(vertex_count, |vertex, rows| match self.vertex_rule(vertex) {
+            StencilTable::from_stencils(vertex_count, |vertex, stencil| match self.vertex_rule(vertex) {
                 VertexRule::Smooth => {
                     let ring = self.closed_ring(self.outgoing[vertex as usize]);
-                    add_row(rows, vertex, &ring, &smooth_position(ring.len(), weights));
+                    add_stencil(stencil, vertex, &ring, &smooth_position(ring.len(), weights));
                 }
                 VertexRule::Dart => {
                     let ring = self.closed_ring(self.dart_start(vertex));
-                    add_row(rows, vertex, &ring, &dart_position(ring.len(), weights));
+                    add_stencil(stencil, vertex, &ring, &dart_position(ring.len(), weights));
                 }
                 VertexRule::Crease => {
-                    rows.add(vertex, 4.0 / 6.0);
+                    stencil.add(vertex, 4.0 / 6.0);
                     for outgoing_edge in self.sharpness.outgoing_edges(vertex) {
-                        rows.add(self.other_end(outgoing_edge.edge, vertex), 1.0 / 6.0);
+                        stencil.add(self.other_end(outgoing_edge.edge, vertex), 1.0 / 6.0);
                     }
                 }
-                VertexRule::Corner => rows.add(vertex, 1.0),
+                VertexRule::Corner => stencil.add(vertex, 1.0),
             });
-        let tangents = StencilTable::from_rows(2 * sectors.len(), |row, rows| {
-            let sector = sectors[(row / 2) as usize];
+        let tangents = StencilTable::from_stencils(2 * sectors.len(), |i, stencil| {
+            let sector = sectors[(i / 2) as usize];
             let ring = self.sector_ring(sector);
             let masks = match self.vertex_rule(sector.vertex) {
                 VertexRule::Smooth => smooth_tangents(ring.len()),
@@ -89,7 +94,7 @@ impl TriangleMesh {
                 VertexRule::Corner if ring.len() <= 4 => corner_tangents(ring.len()),
                 VertexRule::Corner => return,
             };
-            add_row(rows, sector.vertex, &ring, &masks[(row % 2) as usize]);
+            add_stencil(stencil, sector.vertex, &ring, &masks[(i % 2) as usize]);
         });
         [positions, tangents]
     }
@@ -187,9 +192,9 @@ pub(crate) fn normals_of_vertices(
     of_vertices
 }
 
-fn add_row(rows: &mut Rows, vertex: u32, ring: &[u32], mask: &RingMask) {
-    rows.add(vertex, mask.centre);
+fn add_stencil(stencil: &mut StencilWriter, vertex: u32, ring: &[u32], mask: &RingMask) {
+    stencil.add(vertex, mask.centre);
     for (&neighbour, &weight) in ring.iter().zip(&mask.ring).filter(|&(_, &weight)| weight != 0.0) {
-        rows.add(neighbour, weight);
+        stencil.add(neighbour, weight);
     }
 }

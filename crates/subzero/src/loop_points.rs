@@ -18,7 +18,7 @@ const PER_TASK: usize = 1024;
 const AHEAD: usize = 8;
 
 impl TriangleMesh {
-    /// Writes the points one level on: what the rows of [`loop_refine_with`](Self::loop_refine_with) make of `points`, up to
+    /// Writes the points one level on: what the stencils of [`loop_refine_with`](Self::loop_refine_with) make of `points`, up to
     /// rounding. `ancestors` are the meshes from which this one was refined, coarsest first, and `rings` the rings of the first of
     /// all these meshes.
     pub(crate) fn loop_points<P: Point>(
@@ -32,7 +32,7 @@ impl TriangleMesh {
         assert_eq!(points.len(), self.vertex_count(), "there must be one point per vertex");
         // Sector weights depend on more than ancestors' edges can tell.
         if weights == LoopWeights::BiermannLevinZorin {
-            return self.points_by_rows(points, weights, refined);
+            return self.points_by_stencils(points, weights, refined);
         }
         let (moved, placed) = refined.split_at_mut(self.vertex_count());
         match ancestors {
@@ -61,20 +61,20 @@ impl TriangleMesh {
     }
 
     /// Any points, each from its own neighbours.
-    fn points_by_rows<P: Point>(&self, points: &[P], weights: LoopWeights, refined: &mut [P]) {
+    fn points_by_stencils<P: Point>(&self, points: &[P], weights: LoopWeights, refined: &mut [P]) {
         let (moved, placed) = refined.split_at_mut(self.vertex_count());
         let moved = moved.par_iter_mut().with_min_len(PER_TASK).enumerate();
-        moved.for_each(|(v, new)| *new = self.point_by_row(id(v), points, weights));
+        moved.for_each(|(v, new)| *new = self.point_by_stencil(id(v), points, weights));
         let placed = placed.par_iter_mut().with_min_len(PER_TASK).enumerate();
-        placed.for_each(|(e, new)| *new = self.edge_point_by_row(EdgeId(id(e)), points, weights));
+        placed.for_each(|(e, new)| *new = self.edge_point_by_stencil(EdgeId(id(e)), points, weights));
     }
 
-    fn point_by_row<P: Point>(&self, vertex: u32, points: &[P], weights: LoopWeights) -> P {
-        sum_row(points, |mut add| self.loop_vertex_row(vertex, weights, &mut add))
+    fn point_by_stencil<P: Point>(&self, vertex: u32, points: &[P], weights: LoopWeights) -> P {
+        sum_stencil(points, |mut add| self.loop_vertex_stencil(vertex, weights, &mut add))
     }
 
-    fn edge_point_by_row<P: Point>(&self, edge: EdgeId, points: &[P], weights: LoopWeights) -> P {
-        sum_row(points, |mut add| self.loop_edge_row(edge, weights, &mut add))
+    fn edge_point_by_stencil<P: Point>(&self, edge: EdgeId, points: &[P], weights: LoopWeights) -> P {
+        sum_stencil(points, |mut add| self.loop_edge_stencil(edge, weights, &mut add))
     }
 
     /// Whether a vertex has a rule of its own: its ring is not enough to move it.
@@ -99,7 +99,7 @@ impl TriangleMesh {
     ) {
         oldest.par_iter_mut().with_min_len(PER_TASK).enumerate().for_each(|(v, new)| {
             *new = if self.is_sharp(v) {
-                self.point_by_row(id(v), points, weights)
+                self.point_by_stencil(id(v), points, weights)
             } else {
                 let ring = rings
                     .outgoing_edges(v)
@@ -116,7 +116,7 @@ impl TriangleMesh {
         middles.for_each(|(e, (new, &[along, against]))| {
             let v = parent.vertex_count() + e;
             *new = if self.is_sharp(v) {
-                self.point_by_row(id(v), points, weights)
+                self.point_by_stencil(id(v), points, weights)
             } else {
                 let old = |h: u32| points[parent.start(h) as usize];
                 let middle = |h: u32| points[parent.vertex_count() + (parent.directed_edge(h) / 2) as usize];
@@ -132,7 +132,7 @@ impl TriangleMesh {
         placed.par_iter_mut().zip(edges).with_min_len(PER_TASK).enumerate().for_each(
             |(e, (new, (&[along, against], &sharp)))| {
                 *new = if sharp {
-                    self.edge_point_by_row(EdgeId(id(e)), points, weights)
+                    self.edge_point_by_stencil(EdgeId(id(e)), points, weights)
                 } else {
                     let at = |h: u32| points[self.start(h) as usize];
                     edge_point(at(along), at(next(along)), at(prev(along)), at(prev(against)))
@@ -160,12 +160,12 @@ impl TriangleMesh {
                 grandparent.prefetch_beside(e, points);
                 let e = id(e);
                 if sharp {
-                    *moved_middle = self.point_by_row(counts.vertices + e, points, weights);
+                    *moved_middle = self.point_by_stencil(counts.vertices + e, points, weights);
                     for (vertex, new) in (parent_vertices + 2 * e..).zip(on_halves) {
-                        *new = self.point_by_row(vertex, points, weights);
+                        *new = self.point_by_stencil(vertex, points, weights);
                     }
                     for (quarter, new) in (4 * e..).zip(on_quarters) {
-                        *new = self.edge_point_by_row(EdgeId(quarter), points, weights);
+                        *new = self.edge_point_by_stencil(EdgeId(quarter), points, weights);
                     }
                     return;
                 }
@@ -255,7 +255,7 @@ impl TriangleMesh {
                 |(e, (new, &[along, against]))| {
                     let v = born_on.vertex_count() + e;
                     if self.is_sharp(v) {
-                        *new = self.point_by_row(id(v), points, weights);
+                        *new = self.point_by_stencil(id(v), points, weights);
                         return;
                     }
                     let [first_half, inner] = [4 * id(e), 2 * first_inner];
@@ -382,8 +382,8 @@ fn edge_point<P: Point>(a: P, b: P, c: P, d: P) -> P {
     ends.scaled(0.375).add_scaled(apexes, 0.125)
 }
 
-fn sum_row<P: Point>(points: &[P], row: impl FnOnce(&mut dyn FnMut(u32, f64))) -> P {
+fn sum_stencil<P: Point>(points: &[P], stencil: impl FnOnce(&mut dyn FnMut(u32, f64))) -> P {
     let mut sum = P::zero();
-    row(&mut |point, weight| sum = sum.add_scaled(points[point as usize], weight));
+    stencil(&mut |point, weight| sum = sum.add_scaled(points[point as usize], weight));
     sum
 }

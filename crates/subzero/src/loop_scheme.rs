@@ -1,9 +1,9 @@
-//! The rows of Loop's scheme: smooth, crease and corner rules, and the semi-sharp ones between them.
+//! The stencils of Loop's scheme: smooth, crease and corner rules, and the semi-sharp ones between them.
 
 use std::f64::consts::{PI, TAU};
 
 use crate::ids::{next, prev};
-use crate::vertex_rows::vertex_row;
+use crate::vertex_stencils::vertex_stencil;
 use crate::{EdgeId, StencilTable, TriangleMesh, VertexRule};
 
 /// How strongly a smooth vertex is drawn to its neighbours.
@@ -35,24 +35,29 @@ impl LoopWeights {
 }
 
 impl TriangleMesh {
-    /// One row per vertex of the refined mesh: first those of the old vertices, then those of the edges.
+    /// One stencil per vertex of the refined mesh: first those of the old vertices, then those of the edges.
     pub(crate) fn loop_stencils(&self, weights: LoopWeights) -> StencilTable {
         let vertices = self.counts().vertices;
-        StencilTable::from_rows(self.vertex_count() + self.edge_count(), |i, rows| {
+        StencilTable::from_stencils(self.vertex_count() + self.edge_count(), |i, stencil| {
             if i < vertices {
-                self.loop_vertex_row(i, weights, &mut |point, weight| rows.add(point, weight));
+                self.loop_vertex_stencil(i, weights, &mut |point, weight| stencil.add(point, weight));
                 if !matches!(self.vertex_rule(i), VertexRule::Smooth | VertexRule::Dart) {
-                    rows.merge();
+                    stencil.merge();
                 }
             } else {
-                self.loop_edge_row(EdgeId(i - vertices), weights, &mut |point, weight| {
-                    rows.add(point, weight)
+                self.loop_edge_stencil(EdgeId(i - vertices), weights, &mut |point, weight| {
+                    stencil.add(point, weight)
                 });
             }
         })
     }
 
-    pub(crate) fn loop_edge_row(&self, edge: EdgeId, weights: LoopWeights, add: &mut impl FnMut(u32, f64)) {
+    pub(crate) fn loop_edge_stencil(
+        &self,
+        edge: EdgeId,
+        weights: LoopWeights,
+        add: &mut impl FnMut(u32, f64),
+    ) {
         let [along, against] = self.edges[edge.index()];
         let [a, b] = [self.start(along), self.start(next(along))];
         let crease = if self.sharp_edges[edge.index()] { self.sharpness.of_edge(edge).min(1.0) } else { 0.0 };
@@ -99,21 +104,21 @@ impl TriangleMesh {
         left.chain(right).fold(0, |count, _| count + 1)
     }
 
-    pub(crate) fn loop_vertex_row<Add: FnMut(u32, f64)>(
+    pub(crate) fn loop_vertex_stencil<Add: FnMut(u32, f64)>(
         &self,
         vertex: u32,
         weights: LoopWeights,
         add: &mut Add,
     ) {
-        let smooth = |share: f64, add: &mut Add| {
+        let smooth = |scale: f64, add: &mut Add| {
             let first = self.outgoing[vertex as usize];
             let valence = self.ring(first).count();
             let neighbour = weights.neighbour(valence);
             #[allow(clippy::cast_precision_loss)]
-            add(vertex, share * (1.0 - valence as f64 * neighbour));
-            self.ring(first).for_each(|h| add(self.start(next(h)), share * neighbour));
+            add(vertex, scale * (1.0 - valence as f64 * neighbour));
+            self.ring(first).for_each(|h| add(self.start(next(h)), scale * neighbour));
         };
         let rule = self.vertex_rule(vertex);
-        vertex_row(&self.sharpness, (vertex, rule), add, |edge| self.other_end(edge, vertex), smooth);
+        vertex_stencil(&self.sharpness, (vertex, rule), add, |edge| self.other_end(edge, vertex), smooth);
     }
 }

@@ -1,86 +1,86 @@
-//! Sparse rows that average old points into new ones.
+//! Stencils that average old points into new ones.
 
 use rayon::prelude::*;
 
 use crate::Point;
 use crate::ids::id;
 
-/// Rows that one task fills or applies; fixed, so that no result depends on the number of threads.
-const ROWS_PER_TASK: usize = 2048;
+/// Stencils that one task fills or applies; fixed, so that no result depends on the number of threads.
+const STENCILS_PER_TASK: usize = 2048;
 
-/// How new points follow from old ones: row i lists the old points that make up new point i, and their weights.
+/// How new points follow from old ones: stencil i lists the old points that make up new point i, and their weights.
 ///
-/// Rows of a subdivision scheme sum to 1.
+/// Stencils of a subdivision scheme sum to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StencilTable {
-    /// Where each row starts in `ids`, and after the last row their number.
+    /// Where each stencil starts in `ids`, and after the last stencil their number.
     starts: Vec<usize>,
-    /// Old points of all rows, row after row.
+    /// Old points of all stencils, stencil after stencil.
     ids: Vec<u32>,
-    /// Weights of all rows, row after row.
+    /// Weights of all stencils, stencil after stencil.
     weights: Vec<f64>,
 }
 
-/// Rows while they are being written: old points and their weights.
+/// Stencils while they are being written: old points and their weights.
 #[derive(Default)]
-pub(crate) struct Rows {
-    /// Where each row starts, the row at hand included.
+pub(crate) struct StencilWriter {
+    /// Where each stencil starts, the stencil at hand included.
     starts: Vec<usize>,
     ids: Vec<u32>,
     weights: Vec<f64>,
 }
 
-impl Rows {
-    /// Adds an old point to the row at hand.
+impl StencilWriter {
+    /// Adds an old point to the stencil at hand.
     pub(crate) fn add(&mut self, point: u32, weight: f64) {
         self.ids.push(point);
         self.weights.push(weight);
     }
 
-    /// Sorts the row at hand, and adds up entries of the same point.
+    /// Sorts the stencil at hand, and adds up entries of the same point.
     pub(crate) fn merge(&mut self) {
         let start = self.starts.last().copied().unwrap_or(0);
-        let mut row: Vec<(u32, f64)> = self.ids.drain(start..).zip(self.weights.drain(start..)).collect();
+        let mut stencil: Vec<(u32, f64)> = self.ids.drain(start..).zip(self.weights.drain(start..)).collect();
         // Stable, so that weights of one point are summed in the order in which they were added.
-        row.sort_by_key(|&(point, _)| point);
-        for same in row.chunk_by(|a, b| a.0 == b.0) {
+        stencil.sort_by_key(|&(point, _)| point);
+        for same in stencil.chunk_by(|a, b| a.0 == b.0) {
             self.add(same[0].0, same.iter().map(|&(_, weight)| weight).sum());
         }
     }
 }
 
 impl StencilTable {
-    /// Builds `count` rows in parallel: `write(i, rows)` adds the entries of row i.
-    pub(crate) fn from_rows(count: usize, write: impl Fn(u32, &mut Rows) + Sync) -> Self {
-        let tasks: Vec<Rows> = (0..count.div_ceil(ROWS_PER_TASK))
+    /// Builds `count` stencils in parallel: `write(i, writer)` adds the entries of stencil i.
+    pub(crate) fn from_stencils(count: usize, write: impl Fn(u32, &mut StencilWriter) + Sync) -> Self {
+        let tasks: Vec<StencilWriter> = (0..count.div_ceil(STENCILS_PER_TASK))
             .into_par_iter()
             .map(|task| {
-                let mut rows = Rows::default();
-                for row in task * ROWS_PER_TASK..count.min((task + 1) * ROWS_PER_TASK) {
-                    rows.starts.push(rows.ids.len());
-                    write(id(row), &mut rows);
+                let mut writer = StencilWriter::default();
+                for stencil in task * STENCILS_PER_TASK..count.min((task + 1) * STENCILS_PER_TASK) {
+                    writer.starts.push(writer.ids.len());
+                    write(id(stencil), &mut writer);
                 }
-                rows
+                writer
             })
             .collect();
         let mut starts = Vec::with_capacity(count + 1);
         let mut end = 0;
-        for rows in &tasks {
-            starts.extend(rows.starts.iter().map(|start| end + start));
-            end += rows.ids.len();
+        for writer in &tasks {
+            starts.extend(writer.starts.iter().map(|start| end + start));
+            end += writer.ids.len();
         }
         starts.push(end);
         let (ids, weights): (Vec<&[u32]>, Vec<&[f64]>) =
-            tasks.iter().map(|rows| (rows.ids.as_slice(), rows.weights.as_slice())).unzip();
+            tasks.iter().map(|writer| (writer.ids.as_slice(), writer.weights.as_slice())).unzip();
         Self { starts, ids: ids.concat(), weights: weights.concat() }
     }
 
     /// The table that leaves `count` points as they are.
     pub fn identity(count: usize) -> Self {
-        Self::from_rows(count, |i, rows| rows.add(i, 1.0))
+        Self::from_stencils(count, |i, writer| writer.add(i, 1.0))
     }
 
-    /// Number of rows, that is of new points.
+    /// Number of stencils, that is of new points.
     pub fn len(&self) -> usize {
         self.starts.len() - 1
     }
@@ -90,11 +90,11 @@ impl StencilTable {
         self.len() == 0
     }
 
-    /// Row `i`: the old points, and the weight of each.
+    /// Stencil `i`: the old points, and the weight of each.
     ///
     /// # Panics
-    /// If there is no row `i`.
-    pub fn row(&self, i: usize) -> (&[u32], &[f64]) {
+    /// If there is no stencil `i`.
+    pub fn stencil(&self, i: usize) -> (&[u32], &[f64]) {
         let entries = self.starts[i]..self.starts[i + 1];
         (&self.ids[entries.clone()], &self.weights[entries])
     }
@@ -104,7 +104,11 @@ impl StencilTable {
     /// # Panics
     /// If `points` has fewer points than the mesh that was refined.
     pub fn apply<P: Point>(&self, points: &[P]) -> Vec<P> {
-        (0..self.len()).into_par_iter().with_min_len(ROWS_PER_TASK).map(|i| self.point(i, points)).collect()
+        (0..self.len())
+            .into_par_iter()
+            .with_min_len(STENCILS_PER_TASK)
+            .map(|i| self.point(i, points))
+            .collect()
     }
 
     /// Writes the new points to `out`, in parallel and without allocation.
@@ -112,34 +116,34 @@ impl StencilTable {
     /// # Panics
     /// If `points` has fewer points than the mesh that was refined, or if `out` is not [`len`](Self::len) points long.
     pub fn apply_into<P: Point>(&self, points: &[P], out: &mut [P]) {
-        assert_eq!(out.len(), self.len(), "the output must have one point per row");
+        assert_eq!(out.len(), self.len(), "the output must have one point per stencil");
         out.par_iter_mut()
-            .with_min_len(ROWS_PER_TASK)
+            .with_min_len(STENCILS_PER_TASK)
             .enumerate()
             .for_each(|(i, new)| *new = self.point(i, points));
     }
 
     fn point<P: Point>(&self, i: usize, points: &[P]) -> P {
-        let (ids, weights) = self.row(i);
+        let (ids, weights) = self.stencil(i);
         ids.iter()
             .zip(weights)
             .fold(P::zero(), |sum, (&old, &weight)| sum.add_scaled(points[old as usize], weight))
     }
 
-    /// This table and `next` in one: row i of the result averages the points of `self` as row i of `next` those of `next`.
+    /// This table and `next` in one: stencil i of the result averages the points of `self` as stencil i of `next` those of `next`.
     ///
-    /// Within a row, old points are sorted.
+    /// Within a stencil, old points are sorted.
     ///
     /// # Panics
     /// If `next` refers to points that `self` does not make.
     pub fn then(&self, next: &Self) -> Self {
-        Self::from_rows(next.len(), |i, rows| {
-            let (middle_ids, middle_weights) = next.row(i as usize);
+        Self::from_stencils(next.len(), |i, writer| {
+            let (middle_ids, middle_weights) = next.stencil(i as usize);
             for (&middle, &outer) in middle_ids.iter().zip(middle_weights) {
-                let (ids, weights) = self.row(middle as usize);
-                ids.iter().zip(weights).for_each(|(&old, &inner)| rows.add(old, outer * inner));
+                let (ids, weights) = self.stencil(middle as usize);
+                ids.iter().zip(weights).for_each(|(&old, &inner)| writer.add(old, outer * inner));
             }
-            rows.merge();
+            writer.merge();
         })
     }
 }

@@ -106,8 +106,8 @@ fn curves_keep_direction_and_parents() {
     let refined = curve.refine().unwrap();
     assert_eq!(refined.mesh.segments(), [[0, 5], [5, 1], [1, 6], [6, 2], [3, 7], [7, 1], [3, 8], [8, 4]]);
     // Vertex 1 has three segments, 3 has two, the ends have one.
-    assert_eq!(refined.stencils.row(1), (&[1][..], &[1.0][..]));
-    assert_eq!(refined.stencils.row(3), (&[3, 1, 4][..], &[0.75, 0.125, 0.125][..]));
-    assert_eq!(refined.stencils.row(8), (&[3, 4][..], &[0.5, 0.5][..]));
+    assert_eq!(refined.stencils.stencil(1), (&[1][..], &[1.0][..]));
+    assert_eq!(refined.stencils.stencil(3), (&[3, 1, 4][..], &[0.75, 0.125, 0.125][..]));
+    assert_eq!(refined.stencils.stencil(8), (&[3, 4][..], &[0.5, 0.5][..]));
     assert_eq!(refined.mesh.neighbours(3), Some([7, 8]));
 }

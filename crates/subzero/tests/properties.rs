@@ -94,9 +94,9 @@ fn refinements(mesh: &TriangleMesh) -> Vec<Refinement<TriangleMesh>> {
 
 fn assert_rows_sum_to(table: &StencilTable, sum: f64) {
     for i in 0..table.len() {
-        let (ids, weights) = table.row(i);
+        let (ids, weights) = table.stencil(i);
         assert_eq!(ids.len(), weights.len());
-        assert!((weights.iter().sum::<f64>() - sum).abs() < 1e-13, "row {i}: {weights:?}");
+        assert!((weights.iter().sum::<f64>() - sum).abs() < 1e-13, "stencil {i}: {weights:?}");
     }
 }
 
@@ -285,7 +285,7 @@ proptest! {
 /// Whether the tangents of sector `i` are far from parallel.
 fn tangents_are_apart(tangents: &StencilTable, i: usize, points: &[DVec3]) -> bool {
     let [t1, t2] = [2 * i, 2 * i + 1].map(|row| {
-        let (ids, weights) = tangents.row(row);
+        let (ids, weights) = tangents.stencil(row);
         ids.iter().zip(weights).fold(DVec3::ZERO, |sum, (&id, &weight)| sum + points[id as usize] * weight)
     });
     t1.cross(t2).length() > 1e-2
@@ -364,10 +364,10 @@ fn sheets_meet_without_a_gap() {
     let counts = mesh.edge_triangle_counts();
     for e in (0..mesh.counts().edges).map(EdgeId) {
         if counts[e.index()] > 2 {
-            let row = together.stencils.row(mesh.counts().edge_vertex(e) as usize);
-            assert_eq!(row, (&mesh.edge(e)[..], &[0.5, 0.5][..]));
+            let stencil = together.stencils.stencil(mesh.counts().edge_vertex(e) as usize);
+            assert_eq!(stencil, (&mesh.edge(e)[..], &[0.5, 0.5][..]));
             for end in mesh.edge(e) {
-                let (ids, _) = together.stencils.row(end as usize);
+                let (ids, _) = together.stencils.stencil(end as usize);
                 assert!(matches!(
                     (ids.len(), mesh.vertex_rule(end)),
                     (3, VertexRule::Crease) | (1, VertexRule::Corner)

@@ -2,10 +2,10 @@
 
 pub(crate) mod cell_faces;
 pub(crate) mod cell_sum;
-pub(crate) mod corner;
 pub(crate) mod edges;
 pub(crate) mod ids;
 pub(crate) mod measures;
+pub(crate) mod periodic_vertex;
 pub(crate) mod planar_measures;
 pub(crate) mod polygon;
 pub(crate) mod side;

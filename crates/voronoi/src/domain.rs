@@ -13,7 +13,7 @@ use crate::domain::polyhedron::Polyhedron;
 use crate::exact::big_integer::is_outside;
 use crate::exact::frame::Frame;
 use crate::exact::half_space::{EVALUATION_ERROR, HalfSpace};
-use crate::{Shift, VoronoiError, Wall, WallPlane};
+use crate::{Translation, VoronoiError, Wall, WallPlane};
 
 pub use dimension::Dimension;
 
@@ -270,8 +270,8 @@ impl Domain {
     }
 }
 
-impl Shift {
-    /// The shift as a length.
+impl Translation {
+    /// The translation as a length.
     pub fn vector(self, domain: &Domain) -> DVec3 {
         self.times(domain.size())
     }

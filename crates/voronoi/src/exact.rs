@@ -11,5 +11,5 @@ pub(crate) mod image;
 pub(crate) mod input;
 pub(crate) mod plane;
 pub(crate) mod predicate;
-pub(crate) mod shift;
+pub(crate) mod translation;
 pub(crate) mod wall;

@@ -20,12 +20,12 @@
 //!
 //! ```
 //! use glam::{BVec3, DVec3};
-//! use voronoi::{CellId, Domain, Shift, Side, Tessellation};
+//! use voronoi::{CellId, Domain, Translation, Side, Tessellation};
 //!
 //! let domain = Domain::unit_cube().with_periods(BVec3::new(true, false, false));
 //! let tessellation = Tessellation::new(&domain, &[DVec3::new(0.1, 0.5, 0.5)])?;
 //! let neighbors = tessellation.neighbors(CellId(0));
-//! assert_eq!(neighbors[..2], [-1, 1].map(|x| Side::Image(CellId(0), Shift([x, 0, 0]))));
+//! assert_eq!(neighbors[..2], [-1, 1].map(|x| Side::Image(CellId(0), Translation([x, 0, 0]))));
 //! assert_eq!(neighbors.len(), 6, "two images and four walls");
 //! // The face at x = -0.4 is the primary of that at x = 0.6, or the other way round.
 //! assert_eq!(tessellation.periodic_faces().len(), 1);
@@ -47,13 +47,13 @@ mod sites;
 pub mod volumes;
 
 pub use diagram::cell_sum::CellMeasure;
-pub use diagram::corner::Corner;
 pub use diagram::edges::Edges;
 pub use diagram::ids::{CellId, FaceId, PeriodicPair, VertexId};
+pub use diagram::periodic_vertex::PeriodicVertex;
 pub use diagram::side::Side;
 pub use diagram::tessellation::Tessellation;
 pub use domain::{Dimension, Domain};
 pub use error::VoronoiError;
-pub use exact::shift::Shift;
+pub use exact::translation::Translation;
 pub use exact::wall::{Wall, WallPlane};
 pub use polygon_triangulation::{PolygonTriangulation, triangulate_polygon};

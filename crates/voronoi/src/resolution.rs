@@ -34,7 +34,7 @@ impl Tessellation {
             for (start, end) in corners.iter().zip(corners.iter().cycle().skip(1)) {
                 let [at_start, at_end] = [start, end].map(|vertex| self.vertices()[vertex.index()]);
                 if at_start.distance(at_end) < resolution {
-                    united.unite(self.primary_corner(*start), self.primary_corner(*end));
+                    united.unite(self.periodic_vertex(*start), self.periodic_vertex(*end));
                     is_resolved = false;
                 }
             }

@@ -10,7 +10,7 @@ use common::{
 };
 use glam::{BVec3, DVec3};
 use proptest::prelude::*;
-use voronoi::{CellId, Domain, Shift, Side, Tessellation, VoronoiError};
+use voronoi::{CellId, Domain, Side, Tessellation, Translation, VoronoiError};
 
 const XYZ: BVec3 = BVec3::TRUE;
 const X: BVec3 = BVec3::new(true, false, false);
@@ -40,7 +40,10 @@ fn one_seed_is_its_own_neighbor() {
         assert!(cell.centroid.distance(seed) < 1e-15);
         let own = CellId(0);
         let images = [[-1, 0, 0], [0, -1, 0], [0, 0, -1], [0, 0, 1], [0, 1, 0], [1, 0, 0]];
-        assert_eq!(tessellation.neighbors(own), images.map(|shift| Side::Image(own, Shift(shift))));
+        assert_eq!(
+            tessellation.neighbors(own),
+            images.map(|translation| Side::Image(own, Translation(translation)))
+        );
         let counts = complex_counts(&tessellation);
         assert_eq!((counts.vertices, counts.edges, counts.faces), (1, 3, 3));
     }

@@ -100,20 +100,20 @@ proptest! {
     }
 
     #[test]
-    fn a_permutation_of_the_seeds_permutes_the_cells(seeds in distinct_seeds(false), shift in 0usize..60) {
+    fn a_permutation_of_the_seeds_permutes_the_cells(seeds in distinct_seeds(false), translation in 0usize..60) {
         let count = seeds.len();
-        let shift = shift % count;
-        let rotated: Vec<DVec3> = (0..count).map(|i| seeds[(i + shift) % count]).collect();
+        let translation = translation % count;
+        let rotated: Vec<DVec3> = (0..count).map(|i| seeds[(i + translation) % count]).collect();
         let (before, after) = (tessellate(&seeds), tessellate(&rotated));
         prop_assert_eq!(before.vertices().len(), after.vertices().len());
         let old = |side: Side| match side {
-            Side::Cell(CellId(id)) => Side::Cell(CellId(((id as usize + shift) % count) as u32)),
+            Side::Cell(CellId(id)) => Side::Cell(CellId(((id as usize + translation) % count) as u32)),
             wall => wall,
         };
         for id in 0..count as u32 {
             let mut renamed: Vec<Side> = after.neighbors(CellId(id)).into_iter().map(old).collect();
             renamed.sort_unstable();
-            prop_assert_eq!(renamed, before.neighbors(CellId(((id as usize + shift) % count) as u32)));
+            prop_assert_eq!(renamed, before.neighbors(CellId(((id as usize + translation) % count) as u32)));
         }
     }
 }

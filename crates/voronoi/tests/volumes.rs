@@ -175,8 +175,8 @@ fn units_and_origin_do_not_matter() {
     let domain = periodic_cube();
     let volumes = lognormal(&domain, 100, 0.35);
     let seeds = placed(&domain, &volumes);
-    let weights = |scale: f64, shift: f64| {
-        let place = |point: DVec3| (point + shift) * scale;
+    let weights = |scale: f64, translation: f64| {
+        let place = |point: DVec3| (point + translation) * scale;
         let domain = Domain::cuboid(place(DVec3::ZERO), place(DVec3::ONE))
             .expect("a good box")
             .with_periods(BVec3::TRUE);
@@ -186,9 +186,11 @@ fn units_and_origin_do_not_matter() {
         diagram.weights().iter().map(|weight| weight / (scale * scale)).collect::<Vec<f64>>()
     };
     let expected = weights(1.0, 0.0);
-    for (scale, shift) in [(1e-8, 0.0), (3e7, 0.0), (1e-25, 0.0), (1e25, 0.0), (1.0, 100.0), (1.0, -0.5)] {
-        for (weight, expected) in weights(scale, shift).iter().zip(&expected) {
-            assert!((weight - expected).abs() < 1e-11, "{weight} for {expected} at {scale}, {shift}");
+    for (scale, translation) in
+        [(1e-8, 0.0), (3e7, 0.0), (1e-25, 0.0), (1e25, 0.0), (1.0, 100.0), (1.0, -0.5)]
+    {
+        for (weight, expected) in weights(scale, translation).iter().zip(&expected) {
+            assert!((weight - expected).abs() < 1e-11, "{weight} for {expected} at {scale}, {translation}");
         }
     }
 }

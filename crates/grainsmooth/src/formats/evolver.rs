@@ -129,7 +129,7 @@ fn places(network: &Network, points: &[DVec3]) -> Vec<Place> {
     let mut places: Vec<Place> = (0..).zip(points).map(place).collect();
     for pair in &network.finest().copies.vertices {
         let original = places[pair.primary as usize];
-        let periods = [0, 1, 2].map(|axis| original.periods[axis] + i32::from(pair.shift.0[axis]));
+        let periods = [0, 1, 2].map(|axis| original.periods[axis] + i32::from(pair.translation.0[axis]));
         places[pair.secondary as usize] = Place { periods, ..original };
     }
     places

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::io;
 
 use glam::DVec3;
-use voronoi::{CellId, Dimension, Shift, Side};
+use voronoi::{CellId, Dimension, Side, Translation};
 
 use super::format::{Content, Format, TEXT_CORNERS, TEXT_POINT, Writer};
 use crate::input::tess::{
@@ -159,14 +159,16 @@ impl TessPeriodicity {
                 }
             }
         }
-        let copy = |secondary, index, is_reversed, shift: Shift| TessCopy {
+        let copy = |secondary, index, is_reversed, translation: Translation| TessCopy {
             secondary,
             primary: Oriented { index, is_reversed },
-            shift: shift.0.map(i32::from),
+            translation: translation.0.map(i32::from),
         };
         let pairs = tessellation.periodic_vertices();
-        let vertices: Vec<TessCopy> =
-            pairs.iter().map(|pair| copy(pair.secondary.0, pair.primary.0, false, pair.shift)).collect();
+        let vertices: Vec<TessCopy> = pairs
+            .iter()
+            .map(|pair| copy(pair.secondary.0, pair.primary.0, false, pair.translation))
+            .collect();
         let primary_of = |vertex: u32| {
             let place = vertices.binary_search_by_key(&vertex, |copy| copy.secondary);
             place.map_or(vertex, |place| vertices[place].primary.index)
@@ -185,14 +187,20 @@ impl TessPeriodicity {
                     .iter()
                     .map(|pair| {
                         let is_reversed = runs_back(pair.secondary, pair.primary);
-                        copy(pair.secondary, pair.primary, is_reversed, pair.shift)
+                        copy(pair.secondary, pair.primary, is_reversed, pair.translation)
                     })
                     .collect(),
-                faces.iter().map(|pair| copy(pair.secondary.0, pair.primary.0, true, pair.shift)).collect(),
+                faces
+                    .iter()
+                    .map(|pair| copy(pair.secondary.0, pair.primary.0, true, pair.translation))
+                    .collect(),
             ),
             // The edges of the plane are its boundaries, whose copies are reversed.
             Dimension::Two => (
-                faces.iter().map(|pair| copy(pair.secondary.0, pair.primary.0, true, pair.shift)).collect(),
+                faces
+                    .iter()
+                    .map(|pair| copy(pair.secondary.0, pair.primary.0, true, pair.translation))
+                    .collect(),
                 Vec::new(),
             ),
         };

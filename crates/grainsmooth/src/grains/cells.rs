@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use polycrystal::{GrainId, GrainPart};
-use voronoi::{CellId, Shift, Side, Tessellation};
+use voronoi::{CellId, Side, Tessellation, Translation};
 
 /// The grain that each cell is part of, where grains are of several cells.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -14,8 +14,8 @@ pub struct GrainCells {
 
 impl GrainCells {
     /// So many grains, by the number of each cell's and by how much the cell has to be moved to stand with it.
-    pub(crate) fn new(of_cell: &[u32], moves: &[Shift], count: usize) -> Self {
-        let part = |(grain, moved): (&u32, &Shift)| GrainPart { grain: GrainId(*grain), moved: *moved };
+    pub(crate) fn new(of_cell: &[u32], moves: &[Translation], count: usize) -> Self {
+        let part = |(grain, moved): (&u32, &Translation)| GrainPart { grain: GrainId(*grain), moved: *moved };
         Self { parts: of_cell.iter().zip(moves).map(part).collect(), count }
     }
 
@@ -54,8 +54,8 @@ impl GrainCells {
                 continue;
             }
             for (own, other) in [(first, second), (second, first)] {
-                let Some((grain, shift)) = own.cell() else { continue };
-                beside[grain.index()].insert(other.moved(Shift::NONE - shift));
+                let Some((grain, translation)) = own.cell() else { continue };
+                beside[grain.index()].insert(other.moved(Translation::ZERO - translation));
             }
         }
         beside.iter().map(BTreeSet::len).collect()

@@ -365,9 +365,9 @@ fn apportioned(
         .collect();
     let mut tried: Vec<Vec<usize>> = Vec::new();
     loop {
-        let claims: Vec<f64> =
+        let quotas: Vec<f64> =
             fractions.iter().zip(&mean_volumes).map(|(fraction, volume)| fraction / volume).collect();
-        let counts = whole_shares(count, &claims);
+        let counts = whole_shares(count, &quotas);
         // Few grains lack the largest ones of a distribution, so their mean volume is smaller than its own.
         if tried.contains(&counts) || tried.len() >= MOST_CORRECTIONS {
             return counts;
@@ -379,13 +379,13 @@ fn apportioned(
     }
 }
 
-/// A number in whole parts, one at least, as claims have it: what is left over goes where it is missed most.
-fn whole_shares(count: usize, claims: &[f64]) -> Vec<usize> {
-    let total: f64 = claims.iter().sum();
-    let mut parts = vec![1; claims.len()];
-    for _ in claims.len()..count {
-        let lack = |part: usize| claims[part] / total * count as f64 - parts[part] as f64;
-        let most = (0..claims.len()).reduce(|best, part| if lack(part) > lack(best) { part } else { best });
+/// A number in whole parts, one at least, as quotas have it: what is left over goes where it is missed most.
+fn whole_shares(count: usize, quotas: &[f64]) -> Vec<usize> {
+    let total: f64 = quotas.iter().sum();
+    let mut parts = vec![1; quotas.len()];
+    for _ in quotas.len()..count {
+        let lack = |part: usize| quotas[part] / total * count as f64 - parts[part] as f64;
+        let most = (0..quotas.len()).reduce(|best, part| if lack(part) > lack(best) { part } else { best });
         parts[most.unwrap_or(0)] += 1;
     }
     parts

@@ -66,7 +66,7 @@ impl SeedFormat {
 ///   makes the cells power (Laguerre) cells, `SeedId` or else `id` numbers the seeds, and columns of other names are passed over, so a
 ///   [table of cells](crate::CellTable) is read. Without names, a fourth column is the radius. Empty lines and lines that begin with `#` are skipped. In 2D
 ///   a third coordinate is taken when it is 0, as programs write it that know three dimensions only.
-/// - `.xyz`: the number of seeds, a remark, then lines of an element (not used), x, y, z and perhaps a radius.
+/// - `.xyz`: the number of seeds, a comment, then lines of an element (not used), x, y, z and perhaps a radius.
 /// - `.json`: a list of `[x, y, z]` or `[x, y, z, radius]`, or a [table of cells](crate::CellTable), whose seeds, weights and numbers
 ///   (`SeedId` or else `id`) are taken.
 /// - `.tess`: Neper's seeds and weights (radii), where its cells are those of its seeds to 1e-6 of their volume; what they fill is

@@ -105,7 +105,7 @@ pub struct TessPeriodicity {
     pub faces: Vec<TessCopy>,
 }
 
-/// `secondary = primary + shift`, in periods.
+/// `secondary = primary + translation`, in periods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TessCopy {
     /// The moved one.
@@ -113,7 +113,7 @@ pub struct TessCopy {
     /// The other one, and whether the two run, or their normals point, opposite ways.
     pub primary: Oriented,
     /// Periods along x, y and z.
-    pub shift: [i32; 3],
+    pub translation: [i32; 3],
 }
 
 impl Tess {

@@ -53,8 +53,8 @@ pub struct MeshFile {
     pub field: Vec<FieldEntry>,
     /// The names of arrays that could not be taken over from the file.
     pub left_behind: Vec<String>,
-    /// For formats without shared points: the number of corners that were welded, by exactly equal coordinates.
-    pub welded_corners: Option<usize>,
+    /// For formats without shared points: the number of corners that were merged, by exactly equal coordinates.
+    pub merged_corners: Option<usize>,
 }
 
 /// Reads a mesh; the extension names the format: .obj, .ply, .stl, .off, .vtk, .vtp, .vtu or .json.

@@ -401,7 +401,7 @@ fn network(
             let (network, flat) = network_of(tessellation, face_mesh, 0.5f64.powi(halvings.into()) * length)?;
             return Ok((network, flat, Collapsed::default()));
         }
-        Regularization::Foreseeing => {
+        Regularization::Predicted => {
             let RegularCells { cells, collapsed, given_up } = regular_cells(tessellation, length)?;
             attempts.extend(given_up);
             (cells, collapsed)

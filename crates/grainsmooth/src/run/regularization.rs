@@ -19,7 +19,7 @@ pub enum Regularization {
     /// Grains come together and part there as tension has it.
     ByEnergy,
     /// What is short, and what relaxation would make so: the best triangles.
-    Foreseeing,
+    Predicted,
     /// What is short.
     Plain,
     /// What is shorter by some halvings.
@@ -33,7 +33,7 @@ impl Regularization {
     pub fn name(self) -> &'static str {
         match self {
             Self::ByEnergy => "by_energy",
-            Self::Foreseeing => "full",
+            Self::Predicted => "full",
             Self::Plain => "short_edges",
             Self::Shorter(_) => "shorter_edges",
             Self::None => "none",
@@ -43,7 +43,7 @@ impl Regularization {
     pub(super) fn in_words(self) -> &'static str {
         match self {
             Self::ByEnergy => "letting grains switch neighbours",
-            Self::Foreseeing => "cells without edges that are or become short",
+            Self::Predicted => "cells without edges that are or become short",
             Self::Plain => "cells without short edges",
             Self::Shorter(_) => "cells without still shorter edges",
             Self::None => "cells as they are",
@@ -53,8 +53,8 @@ impl Regularization {
     /// Whether less was taken out than is usual where regularisation is asked for.
     pub(crate) fn fell_back(self, config: &Config) -> bool {
         match self {
-            Self::ByEnergy | Self::Foreseeing => false,
-            // Where grains are of several cells, those are not what relaxation is foreseen of.
+            Self::ByEnergy | Self::Predicted => false,
+            // Where grains are of several cells, those are not what relaxation is predicted for.
             Self::Plain => !config.has_grains_of_several_cells(),
             Self::Shorter(_) => true,
             Self::None => config.effective_regularize() > 0.0,
@@ -65,13 +65,11 @@ impl Regularization {
     pub(super) fn tries(config: &Config) -> &'static [Self] {
         match config.effective_regularize() {
             _ if config.lets_grains_vanish() => &[Self::ByEnergy],
-            _ if config.lets_topology_change() => {
-                &[Self::ByEnergy, Self::Foreseeing, Self::Plain, Self::None]
-            }
+            _ if config.lets_topology_change() => &[Self::ByEnergy, Self::Predicted, Self::Plain, Self::None],
             0.0 => &[Self::None],
             _ if config.grain_shapes.is_some() => &[Self::Plain],
             _ if config.has_grains_of_several_cells() => &[Self::Plain, Self::Shorter(1), Self::Shorter(2)],
-            _ => &[Self::Foreseeing, Self::Plain, Self::None],
+            _ => &[Self::Predicted, Self::Plain, Self::None],
         }
     }
 }

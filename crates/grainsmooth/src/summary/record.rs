@@ -110,7 +110,7 @@ struct PhaseRecord {
 struct TopologyChanges {
     lines_to_boundaries: usize,
     boundaries_to_lines: usize,
-    boundaries_swapped: usize,
+    neighbor_switches: usize,
 }
 
 /// How near relaxation came to equilibrium, where that was asked for.
@@ -230,9 +230,9 @@ impl SummaryRecord {
             collapsed_edges: synthesis.map_or(0, |made| made.collapsed.edges),
             collapsed_boundaries: synthesis.map_or(0, |made| made.collapsed.faces),
             topology_changes: reconnected.map(|Reconnected { reconnections, .. }| TopologyChanges {
-                lines_to_boundaries: reconnections.opened,
-                boundaries_to_lines: reconnections.closed,
-                boundaries_swapped: reconnections.swapped,
+                lines_to_boundaries: reconnections.lines_to_boundaries,
+                boundaries_to_lines: reconnections.boundaries_to_lines,
+                neighbor_switches: reconnections.neighbor_switches,
             }),
             equilibrium: reconnected.and_then(|reconnected| reconnected.balance).map(|balance| Equilibrium {
                 flagged_lines: balance.flagged_lines,

@@ -68,7 +68,7 @@ impl<'a> ArcNetwork<'a> {
             });
             let end = |end: usize| {
                 let corner = complex.corners(face)[end];
-                (corner.vertex as usize, corner.shift.vector(domain).truncate())
+                (corner.vertex as usize, corner.translation.vector(domain).truncate())
             };
             let is_straight = boundary.wall.is_some() || tension == 0.0;
             let chords = if is_straight { 1 } else { chords(face) };
@@ -90,7 +90,8 @@ impl<'a> ArcNetwork<'a> {
 
     /// The ends of an arc.
     pub(crate) fn ends(&self, arc: &Arc, state: &[f64]) -> [DVec2; 2] {
-        arc.ends.map(|(vertex, shift)| DVec2::new(state[2 * vertex], state[2 * vertex + 1]) + shift)
+        arc.ends
+            .map(|(vertex, translation)| DVec2::new(state[2 * vertex], state[2 * vertex + 1]) + translation)
     }
 
     /// The turning of arc number k.

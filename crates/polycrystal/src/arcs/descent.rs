@@ -1,7 +1,7 @@
 //! Steps down to the least energy at kept areas.
 //!
-//! Each is one of Newton's method on energy and areas together, with arcs more rigid than they are (Levenberg 1944, Marquardt
-//! 1963): as rigid as the energy needs to fall about as its quadratic model says, and where an arc would turn over, that one alone.
+//! Each is one of Newton's method on energy and areas together, with damping (Levenberg 1944, Marquardt
+//! 1963): as strong as the energy needs to fall about as its quadratic model says, and where an arc would turn over, that one alone.
 //! So what happens at one place takes nothing from a step elsewhere, and the number of steps does not grow with the network.
 
 use std::f64::consts::TAU;
@@ -16,8 +16,8 @@ use crate::arcs::kkt_system::{Answer, KktSystem};
 use crate::mesh::volume::largest_relative_error;
 use crate::solver::conjugate_gradients::dot;
 
-/// Share of its stiffness by which an arc is more rigid at first.
-const FIRST_RIGIDITY: f64 = 1.0;
+/// Damping of an arc at first, in units of its stiffness.
+const FIRST_DAMPING: f64 = 1.0;
 
 /// What the damping of arcs is multiplied by after a step that went as the model says ...
 const LOOSENED: f64 = 0.1;
@@ -29,7 +29,7 @@ const STIFFENED: f64 = 8.0;
 const LEAST_STIFFENED: f64 = 0.3;
 
 /// Damping with which nothing moves.
-const LARGEST_RIGIDITY: f64 = 1e8;
+const LARGEST_DAMPING: f64 = 1e8;
 
 /// Share of its length that a step leaves to an arc's chord.
 const KEPT_LENGTH: f64 = 0.25;
@@ -71,7 +71,7 @@ const CORRECTIONS: usize = 40;
 pub(crate) struct Descent {
     pub(crate) state: Vec<f64>,
     pressures: Vec<f64>,
-    /// Of each edge by number, how much more rigid it is than its stiffness, as a share of that.
+    /// The damping of each edge by number, in units of its stiffness.
     dampings: Vec<f64>,
 }
 
@@ -95,7 +95,7 @@ impl Descent {
         self.state = state;
         let last = network.arcs.iter().map(|arc| arc.face.index()).max();
         let count = last.map_or(0, |last| last + 1).max(self.dampings.len());
-        self.dampings.resize(count, FIRST_RIGIDITY);
+        self.dampings.resize(count, FIRST_DAMPING);
     }
 
     /// One step.
@@ -109,7 +109,7 @@ impl Descent {
         let mut vanishing = Vec::new();
         // Share of what areas lack that is made up for: after an event, all may be too much for one step.
         let mut mended = 1.0;
-        while self.dampings.iter().all(|damping| *damping < LARGEST_RIGIDITY) {
+        while self.dampings.iter().all(|damping| *damping < LARGEST_DAMPING) {
             check_cancelled();
             let tangent = KktSystem::new(network, &self.state, &self.pressures, &self.dampings);
             if !tangent.is_stable() {
@@ -209,7 +209,7 @@ fn restored(
 /// Lets no motion take most of an arc's chord, or turn an arc too far; gives the arcs whose chords would vanish.
 fn hold_chords(network: &ArcNetwork<'_>, state: &[f64], motion: &mut [f64]) -> Vec<FaceId> {
     let mut vanishing = Vec::new();
-    for volume_gradient in 0..SWEEPS {
+    for sweep in 0..SWEEPS {
         for (number, arc) in network.arcs.iter().enumerate() {
             let [start, end] = network.ends(arc, state);
             let chord = start.distance(end).max(f64::MIN_POSITIVE);
@@ -220,7 +220,7 @@ fn hold_chords(network: &ArcNetwork<'_>, state: &[f64], motion: &mut [f64]) -> V
             if lack <= 0.0 {
                 continue;
             }
-            if volume_gradient == 0 {
+            if sweep == 0 {
                 vanishing.push(arc.face);
             }
             // Walls may leave it to one end.

@@ -76,7 +76,7 @@ impl ArcTerms {
         // Edges without tension count, too: short ones are not to turn over with a step.
         let stiffness = if arc.tension > 0.0 { pull } else { network.mean_tension / chord };
         let normal = along.perp();
-        let spring = outer(normal, normal) * pull
+        let transverse = outer(normal, normal) * pull
             + DMat2::from_diagonal(DVec2::splat(damping * stiffness - 2.0 * chordal_arc.area[0] * excess));
         let held = DMat2::from_diagonal(DVec2::splat(HELD.mul_add(damping, LEAST_HELD) * stiffness));
         // The triangle to the arc's ends has half the product of these two.
@@ -89,9 +89,12 @@ impl ArcTerms {
         let wind = self.winding(arc);
         let mut turns = [0.0; ELEMENT];
         let mut matrix = [[0.0; ELEMENT]; ELEMENT];
-        for (row, column, block) in
-            [(0, 0, spring + held), (0, 1, turned - spring), (1, 0, -turned - spring), (1, 1, spring + held)]
-        {
+        for (row, column, block) in [
+            (0, 0, transverse + held),
+            (0, 1, turned - transverse),
+            (1, 0, -turned - transverse),
+            (1, 1, transverse + held),
+        ] {
             let mut block = free[row] * block * free[column];
             if row == column {
                 // Where walls hold, nothing else acts.
@@ -151,7 +154,7 @@ fn outer(a: DVec2, b: DVec2) -> DMat2 {
 }
 
 impl<'a> KktSystem<'a> {
-    /// That of a network at a state under pressures, if each arc is so much more rigid than it is.
+    /// That of a network at a state under pressures, with a damping for each arc.
     pub(crate) fn new(
         network: &'a ArcNetwork<'a>,
         state: &[f64],

@@ -8,13 +8,13 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use glam::DVec2;
-use voronoi::{CellId, FaceId, Shift, Side};
+use voronoi::{CellId, FaceId, Side, Translation};
 
 use crate::energy::local_size::LocalSize;
 use crate::energy::shape::distinct;
 use crate::energy::sides::boundary;
 use crate::events::reconnection::Reconnections;
-use crate::{Boundary, CellComplex, Spoke};
+use crate::{Boundary, CellComplex, OutgoingHalfEdge};
 
 /// Length, in units of the feature size, below which an edge that would vanish may go; around small grains, in units of theirs.
 const SHORT: f64 = 0.3;
@@ -52,14 +52,14 @@ pub(crate) struct Switcher<'a> {
     /// Of each cell.
     areas: &'a [f64],
     tension: &'a dyn Fn(&Boundary) -> f64,
-    /// Of points, by the cells and walls there, how often they opened.
+    /// Of points, by the cells and walls there, how often they split.
     tries: HashMap<Vec<Side>, u8>,
 }
 
 /// A way to open a point.
 struct Opening {
     /// The edges that get a vertex of their own.
-    spokes: Vec<Spoke>,
+    outgoing: Vec<OutgoingHalfEdge>,
     /// To the right and to the left of the new edge on the way there.
     sides: [Side; 2],
     /// Change of energy per length.
@@ -116,7 +116,7 @@ impl<'a> Switcher<'a> {
             for (vertex, opening) in &openings {
                 self.open(edges, *vertex, opening);
             }
-            done.opened += openings.len();
+            done.lines_to_boundaries += openings.len();
             if openings.is_empty() {
                 break;
             }
@@ -145,7 +145,7 @@ impl<'a> Switcher<'a> {
         let snapshot = edges.complex.snapshot(&ends);
         let vertex = edges.shrink(face);
         let Some(opening) = self.best_opening(edges, vertex) else {
-            return Reconnections { closed: 1, ..none };
+            return Reconnections { boundaries_to_lines: 1, ..none };
         };
         let new = self.open(edges, vertex, &opening);
         if edges.complex.sides(new) == sides {
@@ -154,15 +154,15 @@ impl<'a> Switcher<'a> {
             }
             return none;
         }
-        Reconnections { swapped: 1, ..none }
+        Reconnections { neighbor_switches: 1, ..none }
     }
 
     fn open(&mut self, edges: &mut CurvedEdges, vertex: u32, opening: &Opening) -> FaceId {
-        let spokes = edges.complex.spokes(vertex);
-        *self.tries.entry(sides_around(&spokes)).or_default() += 1;
-        let lengths = spokes.iter().map(|spoke| edges.chord(spoke.face).length());
+        let outgoing = edges.complex.outgoing_half_edges(vertex);
+        *self.tries.entry(sides_around(&outgoing)).or_default() += 1;
+        let lengths = outgoing.iter().map(|half_edge| edges.chord(half_edge.face).length());
         let length = lengths.fold(OPENING / OPENING_SHARE * self.size, f64::min) * OPENING_SHARE;
-        let face = edges.complex.point_to_edge(vertex, &opening.spokes, opening.sides);
+        let face = edges.complex.point_to_edge(vertex, &opening.outgoing, opening.sides);
         let new = edges.complex.vertices.len() - 1;
         for (vertex, by) in [new, vertex as usize].into_iter().zip(opening.moves) {
             edges.complex.vertices[vertex] += (by * length).extend(0.0);
@@ -174,23 +174,25 @@ impl<'a> Switcher<'a> {
 
     /// The opening of a point that saves most, if any does.
     fn best_opening(&self, edges: &CurvedEdges, vertex: u32) -> Option<Opening> {
-        let spokes = edges.complex.spokes(vertex);
+        let outgoing = edges.complex.outgoing_half_edges(vertex);
         let walls = edges.complex.walls_at(vertex).len();
-        if spokes.len() < [4, 4, 3][walls.min(2)] {
+        if outgoing.len() < [4, 4, 3][walls.min(2)] {
             return None;
         }
-        let pulls: Vec<DVec2> = spokes
+        let pulls: Vec<DVec2> = outgoing
             .iter()
-            .map(|spoke| edges.outward(spoke) * self.tension_between(edges.complex.sides(spoke.face)))
+            .map(|half_edge| {
+                edges.outward(half_edge) * self.tension_between(edges.complex.sides(half_edge.face))
+            })
             .collect();
-        let at = Point { spokes: &spokes, pulls: &pulls, switcher: self };
+        let at = Point { outgoing: &outgoing, pulls: &pulls, switcher: self };
         let openings = match walls {
             0 => at.openings_inside(),
-            1 => at.openings_at_wall(edges.outward(&spokes[0])),
-            _ => at.openings_at_corner([0, spokes.len() - 1].map(|end| edges.outward(&spokes[end]))),
+            1 => at.openings_at_wall(edges.outward(&outgoing[0])),
+            _ => at.openings_at_corner([0, outgoing.len() - 1].map(|end| edges.outward(&outgoing[end]))),
         };
         let best = openings.into_iter().reduce(Opening::better);
-        best.filter(|_| self.tries.get(&sides_around(&spokes)).is_none_or(|tries| *tries < MOST_TRIES))
+        best.filter(|_| self.tries.get(&sides_around(&outgoing)).is_none_or(|tries| *tries < MOST_TRIES))
     }
 
     fn tension_between(&self, sides: [Side; 2]) -> f64 {
@@ -212,7 +214,7 @@ impl Opening {
 /// A point that may open.
 struct Point<'a> {
     /// Counter-clockwise, from wall to wall if there are any.
-    spokes: &'a [Spoke],
+    outgoing: &'a [OutgoingHalfEdge],
     /// The forces with which they pull.
     pulls: &'a [DVec2],
     switcher: &'a Switcher<'a>,
@@ -221,7 +223,7 @@ struct Point<'a> {
 impl Point<'_> {
     fn openings_inside(&self) -> Vec<Opening> {
         // Each pair of groups once: by that without the first edge.
-        let count = self.spokes.len();
+        let count = self.outgoing.len();
         let groups = (1..count).flat_map(|start| (start + 2..=count).map(move |end| (start, end)));
         let groups = groups.filter(|(start, end)| count - (end - start) >= 2);
         groups
@@ -241,7 +243,7 @@ impl Point<'_> {
     }
 
     fn openings_at_wall(&self, along_first: DVec2) -> Vec<Opening> {
-        let count = self.spokes.len();
+        let count = self.outgoing.len();
         let along = (2..count - 1).filter_map(|end| {
             let [own, others] = self.sums(0, end);
             let saved = 0.5 * (own - others).dot(along_first);
@@ -252,7 +254,7 @@ impl Point<'_> {
     }
 
     fn openings_at_corner(&self, [along_first, along_last]: [DVec2; 2]) -> Vec<Opening> {
-        let count = self.spokes.len();
+        let count = self.outgoing.len();
         let along_first_wall = (2..count).filter_map(|end| {
             let [own, _] = self.sums(0, end);
             let saved = own.dot(along_first);
@@ -260,7 +262,7 @@ impl Point<'_> {
         });
         let along_last_wall = (1..count - 1).filter_map(|end| {
             let [_, others] = self.sums(0, end);
-            let sides = [self.spokes[count - 1].sides[1], self.spokes[end - 1].sides[1]];
+            let sides = [self.outgoing[count - 1].sides[1], self.outgoing[end - 1].sides[1]];
             self.opening(0, end, sides, others.dot(along_last), [DVec2::ZERO, along_last])
         });
         self.openings_inward().into_iter().chain(along_first_wall).chain(along_last_wall).collect()
@@ -268,7 +270,7 @@ impl Point<'_> {
 
     /// Those that lead from a wall inside.
     fn openings_inward(&self) -> Vec<Opening> {
-        let count = self.spokes.len();
+        let count = self.outgoing.len();
         let groups = (1..count - 2).flat_map(|start| (start + 2..count).map(move |end| (start, end)));
         groups
             .filter_map(|(start, end)| {
@@ -286,7 +288,7 @@ impl Point<'_> {
     }
 
     fn outer_sides(&self, start: usize, end: usize) -> [Side; 2] {
-        [self.spokes[start].sides[0], self.spokes[end - 1].sides[1]]
+        [self.outgoing[start].sides[0], self.outgoing[end - 1].sides[1]]
     }
 
     /// An opening that takes so much energy from the edges there, if that is more than the new one has.
@@ -304,13 +306,13 @@ impl Point<'_> {
         let tension = self.switcher.tension_between(sides);
         let rate = tension - saved;
         let is_due = saved > 0.0 && rate < -LEAST_SAVED * tension.max(saved);
-        is_due.then(|| Opening { spokes: self.spokes[start..end].to_vec(), sides, rate, moves })
+        is_due.then(|| Opening { outgoing: self.outgoing[start..end].to_vec(), sides, rate, moves })
     }
 }
 
 /// All sides around a point, a cell and its images as one.
-fn sides_around(spokes: &[Spoke]) -> Vec<Side> {
-    distinct(spokes.iter().flat_map(|spoke| spoke.sides))
+fn sides_around(outgoing: &[OutgoingHalfEdge]) -> Vec<Side> {
+    distinct(outgoing.iter().flat_map(|half_edge| half_edge.sides))
 }
 
 impl CurvedEdges {
@@ -323,10 +325,10 @@ impl CurvedEdges {
     }
 
     /// The direction of an edge at one of its ends.
-    fn outward(&self, spoke: &Spoke) -> DVec2 {
-        let chord = self.chord(spoke.face).normalize_or_zero();
-        let half = 0.5 * self.turnings[spoke.face.index()];
-        if spoke.end == 0 {
+    fn outward(&self, half_edge: &OutgoingHalfEdge) -> DVec2 {
+        let chord = self.chord(half_edge.face).normalize_or_zero();
+        let half = 0.5 * self.turnings[half_edge.face.index()];
+        if half_edge.end == 0 {
             DVec2::from_angle(-half).rotate(chord)
         } else {
             -DVec2::from_angle(half).rotate(chord)
@@ -354,13 +356,13 @@ impl CurvedEdges {
     /// Whether no cell is at both ends of an edge without being beside it: it would meet itself.
     fn ends_meet_others(&self, face: FaceId) -> bool {
         let corners = self.complex.corners(face);
-        let at_start = self.complex.spokes(corners[0].vertex);
-        let own = at_start.iter().filter(|spoke| spoke.face == face && spoke.end == 0);
-        let beside: Vec<Side> = own.flat_map(|spoke| spoke.sides).collect();
-        let by = corners[1].shift - corners[0].shift;
-        let at_end = self.complex.spokes(corners[1].vertex);
-        let beyond: Vec<Side> = at_end.iter().map(|spoke| moved(spoke.sides[0], by)).collect();
-        let here = at_start.iter().map(|spoke| spoke.sides[0]).filter(|side| !beside.contains(side));
+        let at_start = self.complex.outgoing_half_edges(corners[0].vertex);
+        let own = at_start.iter().filter(|half_edge| half_edge.face == face && half_edge.end == 0);
+        let beside: Vec<Side> = own.flat_map(|half_edge| half_edge.sides).collect();
+        let by = corners[1].translation - corners[0].translation;
+        let at_end = self.complex.outgoing_half_edges(corners[1].vertex);
+        let beyond: Vec<Side> = at_end.iter().map(|half_edge| moved(half_edge.sides[0], by)).collect();
+        let here = at_start.iter().map(|half_edge| half_edge.sides[0]).filter(|side| !beside.contains(side));
         let mut here = here.filter(|side| !matches!(side, Side::Wall(_)));
         !here.any(|side| beyond.contains(&side))
     }
@@ -380,9 +382,9 @@ impl CurvedEdges {
     }
 }
 
-fn moved(side: Side, by: Shift) -> Side {
+fn moved(side: Side, by: Translation) -> Side {
     match side {
-        Side::Image(cell, shift) => Side::Image(cell, shift + by),
+        Side::Image(cell, translation) => Side::Image(cell, translation + by),
         Side::Cell(_) | Side::Wall(_) => side,
     }
 }

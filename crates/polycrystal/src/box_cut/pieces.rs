@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
-use voronoi::{Dimension, Domain, Shift};
+use voronoi::{Dimension, Domain, Translation};
 
-use crate::box_cut::{Corner, Piece, periodic_axes, place_in_box};
+use crate::box_cut::{PeriodicPoint, Piece, periodic_axes, place_in_box};
 use crate::mesh::id::id;
 use crate::mesh::triangle_quality::squared_sine;
 use crate::{Elements, Network};
@@ -31,16 +31,16 @@ pub(crate) enum End {
 }
 
 /// Where an edge meets a plane: the axis, the edge from one of its points, and the plane as seen from there.
-type Cut = (usize, Corner, Corner, i8);
+type Cut = (usize, PeriodicPoint, PeriodicPoint, i8);
 
 /// The points of a network on the torus, and its vertices as copies of them.
 pub(crate) struct Torus {
-    /// The point that each vertex is, and the shift from there.
-    pub(crate) originals: Vec<Corner>,
+    /// The point that each vertex is, and the translation from there.
+    pub(crate) originals: Vec<PeriodicPoint>,
     /// Places of points with lower <= x < upper along periodic axes.
     pub(crate) places: Vec<DVec3>,
     /// The periods from there to the point.
-    pub(crate) moved: Vec<Shift>,
+    pub(crate) moved: Vec<Translation>,
     /// The axes on whose lower plane each point lies.
     pub(crate) planes: Vec<[bool; 3]>,
 }
@@ -50,14 +50,16 @@ impl Torus {
         let level = network.finest();
         assert_eq!(points.len(), level.vertex_count(), "there must be one point per vertex");
         let domain = network.domain();
-        let mut originals: Vec<Corner> =
-            (0..id(points.len())).map(|point| Corner { point, shift: Shift::NONE }).collect();
+        let mut originals: Vec<PeriodicPoint> = (0..id(points.len()))
+            .map(|point| PeriodicPoint { point, translation: Translation::ZERO })
+            .collect();
         for pair in &level.copies.vertices {
-            originals[pair.secondary as usize] = Corner { point: pair.primary, shift: pair.shift };
+            originals[pair.secondary as usize] =
+                PeriodicPoint { point: pair.primary, translation: pair.translation };
         }
         let mut torus = Self {
             places: points.to_vec(),
-            moved: vec![Shift::NONE; points.len()],
+            moved: vec![Translation::ZERO; points.len()],
             planes: vec![[false; 3]; points.len()],
             originals,
         };
@@ -73,9 +75,9 @@ impl Torus {
     }
 
     /// A vertex as a point moved by whole periods.
-    pub(crate) fn corner(&self, vertex: u32) -> Corner {
-        let Corner { point, shift } = self.originals[vertex as usize];
-        Corner { point, shift: shift + self.moved[point as usize] }
+    pub(crate) fn corner(&self, vertex: u32) -> PeriodicPoint {
+        let PeriodicPoint { point, translation } = self.originals[vertex as usize];
+        PeriodicPoint { point, translation: translation + self.moved[point as usize] }
     }
 }
 
@@ -128,15 +130,15 @@ impl Pieces {
     }
 
     /// Where a corner of a piece in the box is.
-    pub(crate) fn place(&self, corner: Corner) -> DVec3 {
-        place_in_box(&self.domain, self.places[corner.point as usize], corner.shift)
+    pub(crate) fn place(&self, corner: PeriodicPoint) -> DVec3 {
+        place_in_box(&self.domain, self.places[corner.point as usize], corner.translation)
     }
 
     /// Cuts all pieces at the planes across an axis.
     pub(crate) fn cut(&mut self, axis: usize) {
-        let mut cuts: HashMap<Cut, Corner> = HashMap::new();
+        let mut cuts: HashMap<Cut, PeriodicPoint> = HashMap::new();
         for mut piece in std::mem::take(&mut self.pieces) {
-            let cells = piece.corners.iter().map(|corner| corner.shift.0[axis]);
+            let cells = piece.corners.iter().map(|corner| corner.translation.0[axis]);
             let (first, last) = (cells.clone().min().expect("corners"), cells.max().expect("corners"));
             for plane in first + 1..=last {
                 let (below, above) = self.halves(&piece, axis, plane, &mut cuts);
@@ -156,12 +158,12 @@ impl Pieces {
         piece: &Piece,
         axis: usize,
         plane: i8,
-        cuts: &mut HashMap<Cut, Corner>,
+        cuts: &mut HashMap<Cut, PeriodicPoint>,
     ) -> (Piece, Piece) {
         let count = piece.corners.len();
         let is_segment = self.domain.dimension() == Dimension::Two;
         // 0 in the plane.
-        let side = |corner: Corner| match corner.shift.0[axis] - plane {
+        let side = |corner: PeriodicPoint| match corner.translation.0[axis] - plane {
             0 if self.planes[corner.point as usize][axis] => 0,
             0.. => 1,
             _ => -1,
@@ -193,74 +195,75 @@ impl Pieces {
     /// Where an edge meets a plane: the same point whichever piece asks, from whichever end, wherever its copy is.
     fn cut_edge(
         &mut self,
-        ends: [Corner; 2],
+        ends: [PeriodicPoint; 2],
         axis: usize,
         plane: i8,
-        cuts: &mut HashMap<Cut, Corner>,
-    ) -> Corner {
-        let seen = |from: Corner, to: Corner| {
-            let back = Shift::NONE - from.shift;
-            (axis, from.moved(back), to.moved(back), plane - from.shift.0[axis])
+        cuts: &mut HashMap<Cut, PeriodicPoint>,
+    ) -> PeriodicPoint {
+        let seen = |from: PeriodicPoint, to: PeriodicPoint| {
+            let back = Translation::ZERO - from.translation;
+            (axis, from.moved(back), to.moved(back), plane - from.translation.0[axis])
         };
         let [one, other] = [seen(ends[0], ends[1]), seen(ends[1], ends[0])];
-        let (cut, base) = if one <= other { (one, ends[0].shift) } else { (other, ends[1].shift) };
+        let (cut, base) =
+            if one <= other { (one, ends[0].translation) } else { (other, ends[1].translation) };
         if let Some(corner) = cuts.get(&cut) {
             return corner.moved(base);
         }
         let (_, from, to, plane) = cut;
         let [from_planes, to_planes] = [from, to].map(|end| self.planes[end.point as usize]);
-        let mut across = Shift::NONE;
+        let mut across = Translation::ZERO;
         across.0[axis] = plane;
         let lower = self.domain.lower();
         let height = lower[axis] + across.vector(&self.domain)[axis];
         let start = self.places[from.point as usize];
-        let end = self.places[to.point as usize] + to.shift.vector(&self.domain);
+        let end = self.places[to.point as usize] + to.translation.vector(&self.domain);
         let share = (height - start[axis]) / (end[axis] - start[axis]);
         // Where both ends have the same coordinate, as on a wall, so has this: a weighted mean of the two would round.
-        let (mut place, mut shift) = home(&self.domain, start + (end - start) * share);
+        let (mut place, mut translation) = home(&self.domain, start + (end - start) * share);
         place[axis] = lower[axis];
-        shift.0[axis] = plane;
+        translation.0[axis] = plane;
         let mut planes = [false; 3];
         planes[axis] = true;
         for other in periodic_axes(&self.domain).filter(|other| *other != axis) {
             // What joins two points of a plane lies in it.
-            if from_planes[other] && to_planes[other] && to.shift.0[other] == 0 {
-                (place[other], shift.0[other]) = (lower[other], 0);
+            if from_planes[other] && to_planes[other] && to.translation.0[other] == 0 {
+                (place[other], translation.0[other]) = (lower[other], 0);
             }
             planes[other] = place[other] == lower[other];
         }
-        let corner = self.add(place, planes).moved(shift);
+        let corner = self.add(place, planes).moved(translation);
         cuts.insert(cut, corner);
         corner.moved(base)
     }
 
     /// A new point of the torus.
-    pub(crate) fn add(&mut self, place: DVec3, planes: [bool; 3]) -> Corner {
+    pub(crate) fn add(&mut self, place: DVec3, planes: [bool; 3]) -> PeriodicPoint {
         self.places.push(place);
         self.planes.push(planes);
-        Corner { point: id(self.places.len() - 1), shift: Shift::NONE }
+        PeriodicPoint { point: id(self.places.len() - 1), translation: Translation::ZERO }
     }
 
     /// Moves every piece into the box, of whose upper walls corners are moved by a period.
     pub(crate) fn move_into_box(&mut self) {
         for piece in &mut self.pieces {
             let cell = [0, 1, 2].map(|axis| {
-                let shifts = piece.corners.iter().map(|corner| corner.shift.0[axis]);
-                shifts.min().expect("a piece has corners")
+                let translations = piece.corners.iter().map(|corner| corner.translation.0[axis]);
+                translations.min().expect("a piece has corners")
             });
-            let back = Shift::NONE - Shift(cell);
+            let back = Translation::ZERO - Translation(cell);
             piece.corners.iter_mut().for_each(|corner| *corner = corner.moved(back));
         }
     }
 
     /// Whether a corner lies on a wall of the box across an axis.
-    pub(crate) fn is_on(&self, corner: Corner, axis: usize, end: End) -> bool {
-        self.planes[corner.point as usize][axis] && corner.shift.0[axis] == end as i8
+    pub(crate) fn is_on(&self, corner: PeriodicPoint, axis: usize, end: End) -> bool {
+        self.planes[corner.point as usize][axis] && corner.translation.0[axis] == end as i8
     }
 
     /// The corner on the lower wall opposite of one on a wall.
-    pub(crate) fn lowered(&self, corner: Corner, axis: usize, end: End) -> Corner {
-        let mut down = Shift::NONE;
+    pub(crate) fn lowered(&self, corner: PeriodicPoint, axis: usize, end: End) -> PeriodicPoint {
+        let mut down = Translation::ZERO;
         down.0[axis] = -(end as i8);
         corner.moved(down)
     }
@@ -271,34 +274,34 @@ impl Pieces {
     }
 
     /// The point in the corner of a box that is periodic along all axes.
-    pub(crate) fn origin(&mut self) -> Corner {
+    pub(crate) fn origin(&mut self) -> PeriodicPoint {
         let planes = [0, 1, 2].map(|axis| axis < self.domain.dimension().axes());
         match self.planes.iter().position(|known| *known == planes) {
-            Some(point) => Corner { point: id(point), shift: Shift::NONE },
+            Some(point) => PeriodicPoint { point: id(point), translation: Translation::ZERO },
             None => self.add(self.domain.lower(), planes),
         }
     }
 }
 
 /// A place moved into the box along periodic axes, and the periods from there.
-fn home(domain: &Domain, mut place: DVec3) -> (DVec3, Shift) {
-    let mut shift = Shift::NONE;
+fn home(domain: &Domain, mut place: DVec3) -> (DVec3, Translation) {
+    let mut translation = Translation::ZERO;
     for axis in periodic_axes(domain) {
         let (lower, upper, period) = (domain.lower()[axis], domain.upper()[axis], domain.size()[axis]);
         while place[axis] < lower {
             place[axis] += period;
-            shift.0[axis] -= 1;
+            translation.0[axis] -= 1;
         }
         while place[axis] >= upper {
             place[axis] -= period;
-            shift.0[axis] += 1;
+            translation.0[axis] += 1;
         }
         if upper - place[axis] <= ROUNDING * period {
             place[axis] = lower;
-            shift.0[axis] += 1;
+            translation.0[axis] += 1;
         } else if place[axis] - lower <= ROUNDING * period {
             place[axis] = lower;
         }
     }
-    (place, shift)
+    (place, translation)
 }

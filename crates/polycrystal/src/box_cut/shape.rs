@@ -85,7 +85,7 @@ impl Shape<'_> {
         let corners = &self.all[piece].corners;
         [0, 1, 2].map(|k| {
             let corner = corners[k];
-            crate::box_cut::place_in_box(self.domain, self.places[corner.point as usize], corner.shift)
+            crate::box_cut::place_in_box(self.domain, self.places[corner.point as usize], corner.translation)
         })
     }
 

@@ -6,10 +6,10 @@
 
 use glam::DVec3;
 use subzero::{FaceId, VertexRule};
-use voronoi::{Domain, Shift};
+use voronoi::{Domain, Translation};
 
 use crate::box_cut::pieces::Torus;
-use crate::box_cut::{Corner, periodic_axes};
+use crate::box_cut::{PeriodicPoint, periodic_axes};
 use crate::mesh::triangle_quality::squared_sine;
 use crate::{BoundaryId, Freedom, GrainId, Mesh, Network};
 
@@ -117,7 +117,7 @@ struct Snapping<'a> {
 }
 
 /// Where a point is, to be put back there.
-type State = (DVec3, Shift, [bool; 3]);
+type State = (DVec3, Translation, [bool; 3]);
 
 impl Snapping<'_> {
     /// The points near planes and the axes across these, nearest first.
@@ -150,13 +150,13 @@ impl Snapping<'_> {
         sum / (2 * star.len()).max(1) as f64
     }
 
-    fn corner(&self, vertex: u32) -> Corner {
+    fn corner(&self, vertex: u32) -> PeriodicPoint {
         self.torus.corner(vertex)
     }
 
     fn position(&self, vertex: u32) -> DVec3 {
-        let Corner { point, shift } = self.corner(vertex);
-        self.torus.places[point as usize] + shift.vector(self.domain)
+        let PeriodicPoint { point, translation } = self.corner(vertex);
+        self.torus.places[point as usize] + translation.vector(self.domain)
     }
 
     /// Moves a point into the plane, or where it cannot lie there, to its other side. Whether it moved.
@@ -199,9 +199,9 @@ impl Snapping<'_> {
         }
         let before: State = (self.torus.places[index], self.torus.moved[index], self.torus.planes[index]);
         let least_before = self.least_sine(point);
-        let (mut place, shift, mut planes) = before;
+        let (mut place, translation, mut planes) = before;
         place += direction * (by / gain);
-        let mut step = Shift::NONE;
+        let mut step = Translation::ZERO;
         if into_plane {
             place[axis] = self.domain.lower()[axis];
             planes[axis] = true;
@@ -220,9 +220,9 @@ impl Snapping<'_> {
                 step.0[other] += 1;
             }
         }
-        let shift = shift + step;
+        let translation = translation + step;
         (self.torus.places[index], self.torus.moved[index], self.torus.planes[index]) =
-            (place, shift, planes);
+            (place, translation, planes);
         let least = self.least_sine(point);
         let is_good = least >= (LEAST_SHARE * least_before).min(GOOD_SINE) && !self.is_turned(point);
         if is_good && self.is_cut_well(point, axis, into_plane) {
@@ -260,8 +260,9 @@ impl Snapping<'_> {
             let star = &self.stars[*vertex as usize];
             let neighbors = star.iter().flat_map(|triangle| self.triangles[*triangle as usize]);
             // What is beyond the plane now must leave nothing of the star behind.
-            let own_side =
-                |other: u32| self.corner(other).shift.0[axis] == self.corner(*vertex).shift.0[axis];
+            let own_side = |other: u32| {
+                self.corner(other).translation.0[axis] == self.corner(*vertex).translation.0[axis]
+            };
             let is_behind = |other: u32| !own_side(other) && !self.is_on_plane(other, axis);
             if !into_plane && neighbors.clone().any(is_behind) {
                 return false;
@@ -279,8 +280,8 @@ impl Snapping<'_> {
 
     /// Whether, around a vertex in a plane, what of each grain's surface lies above hangs together, and what lies below, and neither is all.
     fn meets_plane_well(&self, vertex: u32, axis: usize) -> bool {
-        let plane = self.corner(vertex).shift.0[axis];
-        let side = |other: u32| match self.corner(other).shift.0[axis] - plane {
+        let plane = self.corner(vertex).translation.0[axis];
+        let side = |other: u32| match self.corner(other).translation.0[axis] - plane {
             0 if self.is_on_plane(other, axis) => 0,
             0.. => 1usize,
             _ => 2,

@@ -4,16 +4,16 @@ use std::fmt;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::check::closing::faults_of_closing;
+use crate::check::closedness::closedness_faults;
 use crate::check::fault::Fault;
 use crate::check::folds::folded_pairs;
 use crate::check::intersections::crossing_elements;
 use crate::check::pinched_points::pinched_points;
+use crate::mesh::adjacency::Adjacency;
 use crate::mesh::angles::{angles, statistics};
 use crate::mesh::grouped::Grouped;
 use crate::mesh::node_type::Meeting;
 use crate::mesh::rounding::swept_by_rounding;
-use crate::mesh::seams::Seams;
 use crate::mesh::triangle_quality::{squared_sine, triangle_quality};
 use crate::mesh::volume::{ConeSum, cones_of_boundaries};
 use crate::{AngleStatistics, Elements, GrainId, NodeType, Side, Surface, TriangleQuality};
@@ -100,11 +100,11 @@ impl fmt::Display for Faults {
 /// # Panics
 /// When elements refer to points or boundaries that there are not, or expected are not as many as points.
 pub fn certify(surface: &Surface<'_>, expected: &Expected<'_>) -> Certificate {
-    inspect(surface, &Seams::of_elements(surface.elements, surface.boundary_of), expected)
+    inspect(surface, &Adjacency::of_elements(surface.elements, surface.boundary_of), expected)
 }
 
-/// The same with seams that are known.
-pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, expected: &Expected<'_>) -> Certificate {
+/// The same with adjacency that are known.
+pub(crate) fn inspect(surface: &Surface<'_>, adjacency: &Adjacency, expected: &Expected<'_>) -> Certificate {
     let mut certificate = Certificate {
         faults: Faults::default(),
         grain_volumes: Vec::new(),
@@ -127,11 +127,11 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, expected: &Expected<
     faults.extend(flat.map(|element| Fault::NoArea { element }));
     // Each of these runs for the most part on one thread.
     let (crossing, ((meetings, duplicates), (closing, is_closed))) = rayon::join(
-        || crossing_elements(surface, seams, &by_boundary, &normals),
+        || crossing_elements(surface, adjacency, &by_boundary, &normals),
         || {
             rayon::join(
                 || (meetings(surface), duplicate_points(surface.points)),
-                || closing_and_pinches(surface, seams),
+                || closedness_and_pinches(surface, adjacency),
             )
         },
     );
@@ -140,7 +140,7 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, expected: &Expected<
     faults.extend(orphans.map(|point| Fault::Orphan { point }));
     faults.extend(closing);
     let has_area = |pair: &[u32; 2]| pair.iter().all(|element| normals[*element as usize] != DVec3::ZERO);
-    let folded = folded_pairs(&seams.inner, &normals, FOLD_COSINE).into_iter().filter(has_area);
+    let folded = folded_pairs(&adjacency.inner, &normals, FOLD_COSINE).into_iter().filter(has_area);
     faults.extend(folded.map(|elements| Fault::Folded { elements, grains: surface.grains_at(elements) }));
     let crossing = crossing.into_iter();
     faults.extend(crossing.map(|elements| Fault::Crossing { elements, grains: surface.grains_at(elements) }));
@@ -152,7 +152,7 @@ pub(crate) fn inspect(surface: &Surface<'_>, seams: &Seams, expected: &Expected<
     }
     let (volumes, angles) = rayon::join(
         || grain_volumes(surface, &by_boundary),
-        || statistics(angles(surface, surface.sides, seams.places())),
+        || statistics(angles(surface, surface.sides, adjacency.non_manifold_edges())),
     );
     certificate.grain_volumes = volumes;
     certificate.check_volumes(surface, &normals, expected, is_closed);
@@ -173,11 +173,11 @@ fn normals_and_sines(surface: &Surface<'_>) -> (Vec<DVec3>, Vec<f64>) {
 }
 
 /// Where grains are not closed, or are but touch themselves, and whether they are closed.
-fn closing_and_pinches(surface: &Surface<'_>, seams: &Seams) -> (Vec<Fault>, bool) {
-    let mut faults = faults_of_closing(surface, seams);
+fn closedness_and_pinches(surface: &Surface<'_>, adjacency: &Adjacency) -> (Vec<Fault>, bool) {
+    let mut faults = closedness_faults(surface, adjacency);
     let is_closed = faults.is_empty();
     if is_closed {
-        faults = pinched_points(surface, seams);
+        faults = pinched_points(surface, adjacency);
     }
     faults.sort_by_key(Fault::kind);
     (faults, is_closed)

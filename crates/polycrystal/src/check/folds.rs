@@ -1,7 +1,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::mesh::seams::Seams;
+use crate::mesh::adjacency::Adjacency;
 use crate::{Elements, Level};
 
 /// Normal of a triangle, or normal of a segment in the plane, as long as twice its area or as its length.
@@ -13,7 +13,7 @@ pub(crate) fn element_normals(level: &Level, points: &[DVec3]) -> Vec<DVec3> {
 ///
 /// 0 finds folds over 90 degrees. Elements without area count as folded.
 pub fn folded_edges(level: &Level, points: &[DVec3], cosine: f64) -> Vec<[u32; 2]> {
-    folded_pairs(&Seams::of_level(level).inner, &element_normals(level, points), cosine)
+    folded_pairs(&Adjacency::of_level(level).inner, &element_normals(level, points), cosine)
 }
 
 /// Those of some pairs of elements that [`folded_edges`] finds, for normals of any length.

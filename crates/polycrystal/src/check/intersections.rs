@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use crate::check::box_tree::{Bounds, BoxTree};
 use crate::check::contact::{segments_cross, triangles_cross};
 use crate::check::projection::{Piece, RimEdge, Room, are_one_graph, is_graph};
+use crate::mesh::adjacency::Adjacency;
 use crate::mesh::grouped::Grouped;
-use crate::mesh::seams::Seams;
 use crate::{Elements, Surface};
 
 /// All pairs of elements that meet other than in points and edges that they share; sorted, the lower element first.
@@ -16,7 +16,7 @@ use crate::{Elements, Surface};
 /// All points must be finite; normals are those of [`Elements::normals`].
 pub(crate) fn crossing_elements(
     surface: &Surface<'_>,
-    seams: &Seams,
+    adjacency: &Adjacency,
     by_boundary: &Grouped<u32>,
     normals: &[DVec3],
 ) -> Vec<[u32; 2]> {
@@ -26,7 +26,7 @@ pub(crate) fn crossing_elements(
         BoxTree::new(by_boundary.of(boundary).to_vec(), of_element)
     };
     let trees: Vec<BoxTree> = (0..by_boundary.count()).into_par_iter().map(tree).collect();
-    let graphs = Graphs::new(surface, seams, normals, &trees);
+    let graphs = Graphs::new(surface, adjacency, normals, &trees);
     let around = |boundary: u32| trees[boundary as usize].bounds().copied();
     let of_boundary = |boundary: u32| around(boundary).unwrap_or_default();
     let boundaries = (0u32..).take(trees.len()).filter(|boundary| around(*boundary).is_some());
@@ -73,16 +73,16 @@ struct Graphs {
 }
 
 impl Graphs {
-    fn new(surface: &Surface<'_>, seams: &Seams, normals: &[DVec3], trees: &[BoxTree]) -> Self {
+    fn new(surface: &Surface<'_>, adjacency: &Adjacency, normals: &[DVec3], trees: &[BoxTree]) -> Self {
         let count = trees.len();
         let Elements::Triangles(_) = surface.elements else {
             return Self { is_graph: vec![false; count], partners: Grouped::new(count, std::iter::empty()) };
         };
         let rims = Grouped::new(
             count,
-            seams.uses.iter().map(|at| {
+            adjacency.incidences.iter().map(|at| {
                 let boundary = surface.boundary_of[at.element as usize];
-                (boundary.index(), RimEdge { place: at.place, ends: at.ends(surface.elements) })
+                (boundary.index(), RimEdge { edge: at.edge, ends: at.ends(surface.elements) })
             }),
         );
         let pieces: Vec<Piece<'_>> = trees
@@ -100,7 +100,7 @@ impl Graphs {
             let [a, b] = pair.map(|boundary| &pieces[boundary as usize]);
             are_one_graph(surface.points, normals, [a, b], room).then_some(pair)
         };
-        let pairs: Vec<[u32; 2]> = pairs_at_lines(surface, seams)
+        let pairs: Vec<[u32; 2]> = pairs_at_lines(surface, adjacency)
             .into_par_iter()
             .map_init(Room::default, is_one)
             .flatten_iter()
@@ -121,9 +121,9 @@ impl Graphs {
 }
 
 /// The pairs of boundaries that have an edge in common; sorted, the lower first.
-fn pairs_at_lines(surface: &Surface<'_>, seams: &Seams) -> Vec<[u32; 2]> {
+fn pairs_at_lines(surface: &Surface<'_>, adjacency: &Adjacency) -> Vec<[u32; 2]> {
     let mut pairs = Vec::new();
-    for at in seams.places() {
+    for at in adjacency.non_manifold_edges() {
         for (index, first) in at.iter().enumerate() {
             for second in &at[index + 1..] {
                 let [a, b] = [first, second].map(|at| surface.boundary_of[at.element as usize].0);

@@ -1,7 +1,7 @@
 use glam::DVec3;
 
-use crate::check::closing::open_place_count;
-use crate::mesh::seams::Seams;
+use crate::check::closedness::open_edge_count;
+use crate::mesh::adjacency::Adjacency;
 use crate::mesh::volume::boundary_cones;
 use crate::{Side, Surface};
 
@@ -23,8 +23,8 @@ pub fn outward_sides(surface: &Surface<'_>) -> Vec<[Side; 2]> {
         outer.map(|(sides, volume)| if sides[0] == Side::Exterior { -volume } else { volume }).sum();
     let sides = if enclosed < 0.0 { turned(surface.sides, true) } else { surface.sides.to_vec() };
     let inner_turned = turned(&sides, false);
-    let seams = Seams::of_elements(surface.elements, surface.boundary_of);
+    let adjacency = Adjacency::of_elements(surface.elements, surface.boundary_of);
     let [as_it_is, the_other_way] =
-        [&sides, &inner_turned].map(|sides| open_place_count(&Surface { sides, ..*surface }, &seams));
+        [&sides, &inner_turned].map(|sides| open_edge_count(&Surface { sides, ..*surface }, &adjacency));
     if the_other_way < as_it_is { inner_turned } else { sides }
 }

@@ -3,17 +3,17 @@
 use rayon::prelude::*;
 
 use crate::check::fault::Fault;
+use crate::mesh::adjacency::{Adjacency, Incidence};
 use crate::mesh::disjoint_sets::DisjointSets;
-use crate::mesh::seams::{Seams, Use};
 use crate::{Elements, Side, Surface};
 
 /// The points of closed surfaces in space where the triangles of a grain are not one fan around the point but several.
 ///
-/// In the plane, where places are points, that is what closing tells.
-pub(crate) fn pinched_points(surface: &Surface<'_>, seams: &Seams) -> Vec<Fault> {
+/// In the plane, where edges are points, closedness tells that.
+pub(crate) fn pinched_points(surface: &Surface<'_>, adjacency: &Adjacency) -> Vec<Fault> {
     let Elements::Triangles(triangles) = surface.elements else { return Vec::new() };
-    let fans = Fans::within_boundaries(triangles, &seams.inner);
-    let suspects = suspects(surface, seams, &fans);
+    let fans = Fans::within_boundaries(triangles, &adjacency.inner);
+    let suspects = suspects(surface, adjacency, &fans);
     if !suspects.contains(&true) {
         return Vec::new();
     }
@@ -28,17 +28,17 @@ pub(crate) fn pinched_points(surface: &Surface<'_>, seams: &Seams) -> Vec<Fault>
     parts.dedup();
     let mut joined = DisjointSets::new(parts.len());
     let place = |part: Part| u32::try_from(parts.binary_search(&part).ok()?).ok();
-    for at in seams.places() {
-        let mut uses: Vec<(Side, u32, u32)> = Vec::with_capacity(2 * at.len());
+    for at in adjacency.non_manifold_edges() {
+        let mut incidences: Vec<(Side, u32, u32)> = Vec::with_capacity(2 * at.len());
         for at in at {
             let corner = u32::from(at.corner);
             let corners = [3 * at.element + corner, 3 * at.element + (corner + 1) % 3];
-            uses.extend(surface.sides_of(at.element).into_iter().flat_map(|side| {
+            incidences.extend(surface.sides_of(at.element).into_iter().flat_map(|side| {
                 corners.map(|corner| (side, triangles.as_flattened()[corner as usize], fans.number(corner)))
             }));
         }
-        uses.sort_unstable();
-        for pair in uses.windows(2).filter(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1)) {
+        incidences.sort_unstable();
+        for pair in incidences.windows(2).filter(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1)) {
             let [a, b] = [0, 1].map(|k| place(Part { point: pair[k].1, side: pair[k].0, fan: pair[k].2 }));
             if let (Some(a), Some(b)) = (a, b) {
                 joined.join(a, b);
@@ -59,9 +59,9 @@ pub(crate) fn pinched_points(surface: &Surface<'_>, seams: &Seams) -> Vec<Fault>
 }
 
 /// Points that more looks like than one fan on each side: a quick look that leaves few.
-fn suspects(surface: &Surface<'_>, seams: &Seams, fans: &Fans<'_>) -> Vec<bool> {
+fn suspects(surface: &Surface<'_>, adjacency: &Adjacency, fans: &Fans<'_>) -> Vec<bool> {
     let (mut suspects, counts) = fans.points_of_several(surface.points.len());
-    let mut open: Vec<OpenFan> = fans.open_fans(seams, &counts);
+    let mut open: Vec<OpenFan> = fans.open_fans(adjacency, &counts);
     open.par_sort_unstable_by_key(|fan| fan.point);
     for at in open.chunk_by(|a, b| a.point == b.point) {
         let point = at[0].point as usize;
@@ -78,7 +78,7 @@ struct OpenFan {
     /// One of its triangles.
     element: u32,
     /// The edges where it begins and ends.
-    places: [u32; 2],
+    edges: [u32; 2],
     /// How many triangles it has.
     corners: u32,
 }
@@ -89,7 +89,7 @@ fn hang_together(surface: &Surface<'_>, fans: &[OpenFan]) -> bool {
         return false;
     }
     let has_side = |fan: &OpenFan, side: Side| surface.sides_of(fan.element).contains(&side);
-    let meet = |a: &OpenFan, b: &OpenFan| a.places.iter().any(|place| b.places.contains(place));
+    let meet = |a: &OpenFan, b: &OpenFan| a.edges.iter().any(|edge| b.edges.contains(edge));
     fans.iter().enumerate().all(|(first, fan)| {
         surface.sides_of(fan.element).into_iter().filter(|side| side.grain().is_some()).all(|side| {
             // The first fan of a grain looks at all others.
@@ -137,8 +137,9 @@ impl<'a> Fans<'a> {
         for [one, other] in inner {
             let corners = triangles[*other as usize];
             for (k, [from, to]) in (0u32..).zip(edges(triangles[*one as usize])) {
-                if let Some((place, _)) = (0u32..).zip(edges(corners)).find(|(_, edge)| *edge == [to, from]) {
-                    let [edge, back] = [3 * one + k, 3 * other + place];
+                if let Some((corner, _)) = (0u32..).zip(edges(corners)).find(|(_, edge)| *edge == [to, from])
+                {
+                    let [edge, back] = [3 * one + k, 3 * other + corner];
                     beyond[edge as usize] = back;
                     beyond[back as usize] = edge;
                 }
@@ -166,13 +167,13 @@ impl<'a> Fans<'a> {
         at
     }
 
-    /// The fans that begin and end at seams; points have so many corners.
-    fn open_fans(&self, seams: &Seams, counts: &[u32]) -> Vec<OpenFan> {
+    /// The fans that begin and end at adjacency; points have so many corners.
+    fn open_fans(&self, adjacency: &Adjacency, counts: &[u32]) -> Vec<OpenFan> {
         // Most pages of it are never touched.
-        let mut places = vec![0; self.beyond.len()];
-        let edge = |at: &Use| 3 * at.element + u32::from(at.corner);
-        seams.uses.iter().for_each(|at| places[edge(at) as usize] = at.place);
-        let fan_from = |at: &Use| {
+        let mut edge_of = vec![0; self.beyond.len()];
+        let edge = |at: &Incidence| 3 * at.element + u32::from(at.corner);
+        adjacency.incidences.iter().for_each(|at| edge_of[edge(at) as usize] = at.edge);
+        let fan_from = |at: &Incidence| {
             let first = edge(at);
             let point = self.triangles.as_flattened()[first as usize];
             let mut last = first;
@@ -183,10 +184,10 @@ impl<'a> Fans<'a> {
                 last = next;
                 corners += 1;
             }
-            let places = [at.place, places[edge_before(last) as usize]];
-            OpenFan { point, element: at.element, places, corners }
+            let edges = [at.edge, edge_of[edge_before(last) as usize]];
+            OpenFan { point, element: at.element, edges, corners }
         };
-        seams.uses.par_iter().map(fan_from).collect()
+        adjacency.incidences.par_iter().map(fan_from).collect()
     }
 
     /// Whether each point has other corners than those of one fan that goes all around it, and how many it has.
@@ -217,7 +218,7 @@ fn edge_before(corner: u32) -> u32 {
     if corner.is_multiple_of(3) { corner + 2 } else { corner - 1 }
 }
 
-/// The edges of a triangle, each from its corner of the same place.
+/// The edges of a triangle, each from the corner with the same index.
 fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]]
 }

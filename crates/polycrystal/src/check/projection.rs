@@ -15,7 +15,7 @@ use crate::check::box_tree::{Bounds, BoxTree};
 #[derive(Debug)]
 pub(crate) struct Piece<'a> {
     pub(crate) elements: &'a [u32],
-    /// The edges that are not between two of the triangles, sorted by place.
+    /// The edges that are not between two of the triangles, sorted by edge.
     pub(crate) rim: &'a [RimEdge],
     /// The sum of the triangles' normals.
     pub(crate) normal: DVec3,
@@ -27,7 +27,7 @@ pub(crate) struct Piece<'a> {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct RimEdge {
     /// Number of the edge, the same for all pieces.
-    pub(crate) place: u32,
+    pub(crate) edge: u32,
     /// The edge as the piece's triangle runs along it.
     pub(crate) ends: [u32; 2],
 }
@@ -85,7 +85,7 @@ fn shared_edges<'a>(first: &Piece<'a>, second: &Piece<'a>) -> impl Iterator<Item
     let [mut rest, mut other_rest] = [first.rim, second.rim];
     std::iter::from_fn(move || {
         while let ([edge, after @ ..], [other, other_after @ ..]) = (rest, other_rest) {
-            let order = edge.place.cmp(&other.place);
+            let order = edge.edge.cmp(&other.edge);
             if order.is_le() {
                 rest = after;
             }
@@ -106,7 +106,7 @@ fn add_common_rim(first: &Piece<'_>, second: &Piece<'_>, is_turned: bool, rim: &
     let turned = |[from, to]: [u32; 2]| if is_turned { [to, from] } else { [from, to] };
     let [mut rest, mut other_rest] = [first.rim, second.rim];
     while let ([edge, after @ ..], [other, other_after @ ..]) = (rest, other_rest) {
-        let order = edge.place.cmp(&other.place);
+        let order = edge.edge.cmp(&other.edge);
         let [ends, other_ends] = [edge.ends, turned(other.ends)];
         let cancels = order.is_eq() && ends == [other_ends[1], other_ends[0]];
         if order.is_le() {
@@ -320,10 +320,10 @@ mod tests {
 
     fn rim_edges(rim: &[[u32; 2]]) -> Vec<RimEdge> {
         // Points are few: an edge's number follows from its ends.
-        let place = |[from, to]: [u32; 2]| 1000 * from.min(to) + from.max(to);
+        let edge = |[from, to]: [u32; 2]| 1000 * from.min(to) + from.max(to);
         let mut rim: Vec<RimEdge> =
-            rim.iter().map(|ends| RimEdge { place: place(*ends), ends: *ends }).collect();
-        rim.sort_unstable_by_key(|edge| edge.place);
+            rim.iter().map(|ends| RimEdge { edge: edge(*ends), ends: *ends }).collect();
+        rim.sort_unstable_by_key(|edge| edge.edge);
         rim
     }
 

@@ -1,7 +1,7 @@
 //! A cell complex whose topology changes.
 
 use glam::DVec3;
-use voronoi::{CellId, Corner, Domain, FaceId, Shift, Side, Tessellation, Wall};
+use voronoi::{CellId, Domain, FaceId, PeriodicVertex, Side, Tessellation, Translation, Wall};
 
 use crate::complex::edge::ComplexEdge;
 
@@ -28,7 +28,7 @@ pub struct CellComplex {
 pub(super) struct Face {
     pub(super) sides: [Side; 2],
     /// Counter-clockwise as seen from the second side; none where the face is gone.
-    pub(super) corners: Vec<Corner>,
+    pub(super) corners: Vec<PeriodicVertex>,
 }
 
 impl From<&Tessellation> for CellComplex {
@@ -40,7 +40,7 @@ impl From<&Tessellation> for CellComplex {
             corners: tessellation
                 .face_corners(face)
                 .iter()
-                .map(|vertex| tessellation.primary_corner(*vertex))
+                .map(|vertex| tessellation.periodic_vertex(*vertex))
                 .collect(),
         });
         let mut complex = Self {
@@ -62,7 +62,7 @@ impl CellComplex {
     /// The complex with whole cells, and the vertex that each of its vertices is.
     ///
     /// Vertices and faces keep their order; those that are gone are left out.
-    pub fn tessellation(&self) -> (Tessellation, Vec<Corner>) {
+    pub fn tessellation(&self) -> (Tessellation, Vec<PeriodicVertex>) {
         let live = self.faces.iter().filter(|face| !face.corners.is_empty());
         let faces = live.map(|face| (face.sides, face.corners.iter().copied()));
         Tessellation::of_whole_cells(&self.domain, &self.seeds, &self.vertices, faces)
@@ -74,8 +74,8 @@ impl CellComplex {
     }
 
     /// Where a corner is.
-    pub fn position(&self, corner: Corner) -> DVec3 {
-        self.vertices[corner.vertex as usize] + corner.shift.vector(&self.domain)
+    pub fn position(&self, corner: PeriodicVertex) -> DVec3 {
+        self.vertices[corner.vertex as usize] + corner.translation.vector(&self.domain)
     }
 
     /// All edges, sorted.
@@ -110,7 +110,7 @@ impl CellComplex {
     }
 
     /// The corners of a face, as its first side sees them; none where it is gone.
-    pub fn corners(&self, face: FaceId) -> &[Corner] {
+    pub fn corners(&self, face: FaceId) -> &[PeriodicVertex] {
         &self.faces[face.index()].corners
     }
 
@@ -171,10 +171,10 @@ impl CellComplex {
         }
     }
 
-    pub(super) fn add_vertex(&mut self, position: DVec3) -> Corner {
+    pub(super) fn add_vertex(&mut self, position: DVec3) -> PeriodicVertex {
         self.vertices.push(position);
         self.faces_at.push(Vec::new());
-        Corner { vertex: id(self.vertices.len() - 1), shift: Shift::NONE }
+        PeriodicVertex { vertex: id(self.vertices.len() - 1), translation: Translation::ZERO }
     }
 }
 

@@ -1,4 +1,4 @@
-use voronoi::{Corner, Shift};
+use voronoi::{PeriodicVertex, Translation};
 
 /// An edge of a complex: from a vertex in its own place to another vertex, or a moved one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -6,15 +6,15 @@ pub struct ComplexEdge {
     /// Where it starts.
     pub start: u32,
     /// Where it ends.
-    pub end: Corner,
+    pub end: PeriodicVertex,
 }
 
 impl ComplexEdge {
     /// The edge between two corners that are joined by one; the same for all its copies.
-    pub fn between([from, to]: [Corner; 2]) -> Self {
-        let seen = |a: Corner, b: Corner| Self {
+    pub fn between([from, to]: [PeriodicVertex; 2]) -> Self {
+        let seen = |a: PeriodicVertex, b: PeriodicVertex| Self {
             start: a.vertex,
-            end: Corner { vertex: b.vertex, shift: b.shift - a.shift },
+            end: PeriodicVertex { vertex: b.vertex, translation: b.translation - a.translation },
         };
         seen(from, to).min(seen(to, from))
     }
@@ -25,10 +25,11 @@ impl ComplexEdge {
     }
 
     /// Both ends as seen from one of them in its own place, which comes first: from the end, or from the start.
-    pub(crate) fn across(self, from_end: bool) -> [Corner; 2] {
-        let unmoved = |vertex| Corner { vertex, shift: Shift::NONE };
+    pub(crate) fn across(self, from_end: bool) -> [PeriodicVertex; 2] {
+        let unmoved = |vertex| PeriodicVertex { vertex, translation: Translation::ZERO };
         if from_end {
-            let back = Corner { vertex: self.start, shift: Shift::NONE - self.end.shift };
+            let back =
+                PeriodicVertex { vertex: self.start, translation: Translation::ZERO - self.end.translation };
             [unmoved(self.end.vertex), back]
         } else {
             [unmoved(self.start), self.end]

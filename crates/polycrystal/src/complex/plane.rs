@@ -1,14 +1,14 @@
 //! How cells of the plane come together and part, where a face is an edge with two corners: an edge shrinks to a point, and a point
 //! opens to an edge. One after the other they make neighbours switch (the T1 process of foams).
 
-use voronoi::{CellId, Corner, FaceId, Shift, Side, Wall};
+use voronoi::{CellId, FaceId, PeriodicVertex, Side, Translation, Wall};
 
 use crate::complex::cell_complex::{CellComplex, Face, cell_of, id};
 use crate::complex::star::FaceAt;
 
 /// An end of an edge in the plane, as the vertex there sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Spoke {
+pub struct OutgoingHalfEdge {
     /// The edge.
     pub face: FaceId,
     /// Which of the edge's two corners the vertex is.
@@ -19,25 +19,26 @@ pub struct Spoke {
 
 impl CellComplex {
     /// The edges at a vertex of the plane, counter-clockwise; where walls meet there, from wall to wall.
-    pub fn spokes(&self, vertex: u32) -> Vec<Spoke> {
+    pub fn outgoing_half_edges(&self, vertex: u32) -> Vec<OutgoingHalfEdge> {
         let ends = self.faces_at(&[vertex]).into_iter().flat_map(|face| [(face, 0), (face, 1)]);
         let at_vertex = ends.filter(|(face, end)| self.corners(*face)[*end].vertex == vertex);
-        let mut spokes: Vec<Spoke> = at_vertex
+        let mut outgoing: Vec<OutgoingHalfEdge> = at_vertex
             .map(|(face, end)| {
-                let offset = Shift::NONE - self.corners(face)[end].shift;
+                let offset = Translation::ZERO - self.corners(face)[end].translation;
                 let [left, right] = self.sides_at(FaceAt { face: face.0, offset });
-                Spoke { face, end, sides: if end == 0 { [right, left] } else { [left, right] } }
+                OutgoingHalfEdge { face, end, sides: if end == 0 { [right, left] } else { [left, right] } }
             })
             .collect();
-        if let Some(first) = spokes.iter().position(|spoke| matches!(spoke.sides[0], Side::Wall(_))) {
-            spokes.swap(0, first);
+        if let Some(first) = outgoing.iter().position(|half_edge| matches!(half_edge.sides[0], Side::Wall(_)))
+        {
+            outgoing.swap(0, first);
         }
-        for known in 1..spokes.len() {
-            let left = spokes[known - 1].sides[1];
-            let next = spokes[known..].iter().position(|spoke| spoke.sides[0] == left);
-            spokes.swap(known, known + next.expect("cells lie around a vertex without a gap"));
+        for known in 1..outgoing.len() {
+            let left = outgoing[known - 1].sides[1];
+            let next = outgoing[known..].iter().position(|half_edge| half_edge.sides[0] == left);
+            outgoing.swap(known, known + next.expect("cells lie around a vertex without a gap"));
         }
-        spokes
+        outgoing
     }
 
     /// The edges round a cell of the plane; one between a cell and its own image comes twice.
@@ -46,12 +47,13 @@ impl CellComplex {
     }
 
     /// The corners of a cell of the plane where the cell stands, and the walls that each is on.
-    pub fn corners_of_cell(&self, cell: CellId) -> Vec<(Corner, Vec<Wall>)> {
-        let mut corners: Vec<Corner> = Vec::new();
+    pub fn corners_of_cell(&self, cell: CellId) -> Vec<(PeriodicVertex, Vec<Wall>)> {
+        let mut corners: Vec<PeriodicVertex> = Vec::new();
         for edge in self.edges_of_cell(cell) {
             let [first, second] = self.sides(edge);
             let own = if first == Side::Cell(cell) { first } else { second };
-            let back = own.cell().map_or(Shift::NONE, |(_, shift)| Shift::NONE - shift);
+            let back =
+                own.cell().map_or(Translation::ZERO, |(_, translation)| Translation::ZERO - translation);
             corners.extend(self.corners(edge).iter().map(|corner| corner.moved(back)));
         }
         corners.sort_unstable();
@@ -72,12 +74,12 @@ impl CellComplex {
         let [kept, gone] = [kept_end, 1 - kept_end].map(|end| self.corners(edge)[end]);
         assert_ne!(kept.vertex, gone.vertex, "an edge from a vertex to itself is not to shrink");
         self.remove_face(edge.0);
-        let by = kept.shift - gone.shift;
+        let by = kept.translation - gone.translation;
         let faces = std::mem::take(&mut self.faces_at[gone.vertex as usize]);
         for number in &faces {
             for corner in &mut self.faces[*number as usize].corners {
                 if corner.vertex == gone.vertex {
-                    *corner = Corner { vertex: kept.vertex, shift: corner.shift + by };
+                    *corner = PeriodicVertex { vertex: kept.vertex, translation: corner.translation + by };
                 }
             }
         }
@@ -92,10 +94,15 @@ impl CellComplex {
     ///
     /// # Panics
     /// When both sides are walls.
-    pub fn point_to_edge(&mut self, vertex: u32, spokes: &[Spoke], [right, left]: [Side; 2]) -> FaceId {
-        let old = Corner { vertex, shift: Shift::NONE };
+    pub fn point_to_edge(
+        &mut self,
+        vertex: u32,
+        outgoing: &[OutgoingHalfEdge],
+        [right, left]: [Side; 2],
+    ) -> FaceId {
+        let old = PeriodicVertex { vertex, translation: Translation::ZERO };
         let new = self.add_vertex(self.vertices[vertex as usize]);
-        for Spoke { face, end, .. } in spokes {
+        for OutgoingHalfEdge { face, end, .. } in outgoing {
             self.faces[face.index()].corners[*end].vertex = new.vertex;
             let faces = &mut self.faces_at[vertex as usize];
             let place = faces.iter().position(|other| *other == face.0).expect("the edge ends here");
@@ -157,9 +164,10 @@ impl CellComplex {
     /// the same one is beyond another edge too.
     pub fn cell_to_neighbor(&mut self, cell: CellId, edge: FaceId) -> Option<Vec<(FaceId, bool)>> {
         let beyond = |sides: [Side; 2]| match sides {
-            [first, second] if first == Side::Cell(cell) => (second, Shift::NONE),
+            [first, second] if first == Side::Cell(cell) => (second, Translation::ZERO),
             [first, second] => {
-                let back = Shift::NONE - second.cell().map_or(Shift::NONE, |(_, shift)| shift);
+                let back = Translation::ZERO
+                    - second.cell().map_or(Translation::ZERO, |(_, translation)| translation);
                 (first.moved(back), back)
             }
         };
@@ -174,17 +182,19 @@ impl CellComplex {
             return None;
         }
         self.remove_face(edge.0);
-        let image = |side: Side| side.cell().map_or(side, |(id, shift)| Side::Image(id, shift));
+        let image = |side: Side| side.cell().map_or(side, |(id, translation)| Side::Image(id, translation));
         let own = Side::Image(neighbor.0, neighbor.1);
         let mut changed = Vec::with_capacity(others.len());
         for number in others {
             let Face { sides, corners } = self.faces[number as usize].clone();
             let (other, back) = beyond(sides);
-            let corners: Vec<Corner> = corners.into_iter().map(|corner| corner.moved(back)).collect();
+            let corners: Vec<PeriodicVertex> = corners.into_iter().map(|corner| corner.moved(back)).collect();
             let between =
                 if sides[0] == Side::Cell(cell) { [own, image(other)] } else { [image(other), own] };
             let new = self.face_between(between, corners.clone());
-            let along = |[start, end]: [Corner; 2]| (start.vertex, end.vertex, end.shift - start.shift);
+            let along = |[start, end]: [PeriodicVertex; 2]| {
+                (start.vertex, end.vertex, end.translation - start.translation)
+            };
             let is_reversed = along([corners[0], corners[1]]) != along([new.corners[0], new.corners[1]]);
             self.faces[number as usize] = new;
             self.faces_of[neighbor.0.index()].push(number);
@@ -201,7 +211,7 @@ impl CellComplex {
             let ends = self.faces[*face as usize].corners.iter().filter(|corner| corner.vertex == vertex);
             let mut at_vertex = 0;
             for corner in ends {
-                let offset = Shift::NONE - corner.shift;
+                let offset = Translation::ZERO - corner.translation;
                 sides.extend(self.sides_at(FaceAt { face: *face, offset }));
                 at_vertex += 1;
             }
@@ -234,7 +244,7 @@ impl CellComplex {
         }
         self.remove_face(gone);
         self.faces_at[vertex as usize].clear();
-        self.faces[kept as usize].corners[1] = end.moved(last.shift - first.shift);
+        self.faces[kept as usize].corners[1] = end.moved(last.translation - first.translation);
         self.faces_at[end.vertex as usize].push(kept);
         Some([kept, gone].map(FaceId))
     }

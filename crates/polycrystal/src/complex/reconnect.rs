@@ -4,7 +4,7 @@
 //! of closed balls as long as what comes in is not there yet (Okuda, Inoue, Eiraku, Sasai and Adachi 2013 call them I-H and H-I).
 
 use glam::DVec3;
-use voronoi::{Corner, FaceId, Shift, Side};
+use voronoi::{FaceId, PeriodicVertex, Side, Translation};
 
 use crate::complex::cell_complex::{CellComplex, Face, cell_of, id};
 use crate::complex::edge::ComplexEdge;
@@ -37,7 +37,7 @@ impl CellComplex {
     ///
     /// It cannot where the complex is not in general position, where the sides around meet in an edge already or are all walls, or
     /// where it would leave a face with two corners or a cell with three faces.
-    pub fn reconnectable_triangle(&self, face: FaceId) -> Option<(Star, [Corner; 3])> {
+    pub fn reconnectable_triangle(&self, face: FaceId) -> Option<(Star, [PeriodicVertex; 3])> {
         let (star, corners) = self.star_of_triangle(face)?;
         let has_enough = |at: &FaceAt| self.faces[at.face as usize].corners.len() >= FEWEST_CORNERS;
         let mut cells = star.ends.iter().filter_map(|side| cell_of(*side));
@@ -51,7 +51,7 @@ impl CellComplex {
     /// Whether two faces have no corner in common.
     fn are_apart(&self, faces: [Option<FaceAt>; 2]) -> bool {
         let [Some(first), Some(second)] = faces else { return true };
-        let corners: Vec<Corner> = self.corners_at(second).collect();
+        let corners: Vec<PeriodicVertex> = self.corners_at(second).collect();
         self.corners_at(first).all(|corner| !corners.contains(&corner))
     }
 
@@ -60,7 +60,7 @@ impl CellComplex {
     /// Gives the new face, or nothing where that is not possible: see [`Self::reconnectable_edge`].
     pub fn edge_to_triangle(&mut self, edge: ComplexEdge, places: [DVec3; 3]) -> Option<FaceId> {
         let star = self.reconnectable_edge(edge)?;
-        let ends = [Corner { vertex: edge.start, shift: Shift::NONE }, edge.end];
+        let ends = [PeriodicVertex { vertex: edge.start, translation: Translation::ZERO }, edge.end];
         let corners = places.map(|place| self.add_vertex(place));
         let mut loops = [Vec::new(), Vec::new()];
         for (end, place) in ends.into_iter().enumerate() {
@@ -115,15 +115,15 @@ impl CellComplex {
     }
 
     /// The corner of a face before another one.
-    fn previous_corner(&self, at: FaceAt, corner: Corner) -> Corner {
-        let corners: Vec<Corner> = self.corners_at(at).collect();
+    fn previous_corner(&self, at: FaceAt, corner: PeriodicVertex) -> PeriodicVertex {
+        let corners: Vec<PeriodicVertex> = self.corners_at(at).collect();
         let place = corners.iter().position(|other| *other == corner).expect("a face has its corners");
         corners[(place + corners.len() - 1) % corners.len()]
     }
 
     /// Replaces one or two corners of a face that follow each other, in either order.
-    fn replace(&mut self, at: FaceAt, old: &[Corner], new: &[Corner]) {
-        let mut corners: Vec<Corner> = self.corners_at(at).collect();
+    fn replace(&mut self, at: FaceAt, old: &[PeriodicVertex], new: &[PeriodicVertex]) {
+        let mut corners: Vec<PeriodicVertex> = self.corners_at(at).collect();
         // The face may begin between the two.
         while !old.contains(&corners[0]) || old.contains(&corners[corners.len() - 1]) {
             corners.rotate_left(1);
@@ -135,28 +135,29 @@ impl CellComplex {
         for corner in new {
             self.faces_at[corner.vertex as usize].push(at.face);
         }
-        let own = |corner: Corner| Corner { shift: corner.shift - at.offset, ..corner };
+        let own =
+            |corner: PeriodicVertex| PeriodicVertex { translation: corner.translation - at.offset, ..corner };
         self.faces[at.face as usize].corners = corners.into_iter().map(own).collect();
     }
 
     /// A face between a cell and another side, whose corners are in the order in which the cell sees them.
-    pub(super) fn face_between(&self, sides: [Side; 2], mut corners: Vec<Corner>) -> Face {
+    pub(super) fn face_between(&self, sides: [Side; 2], mut corners: Vec<PeriodicVertex>) -> Face {
         let [Side::Image(mut first, mut from), mut second] = sides else {
             unreachable!("a face has a cell on its first side")
         };
-        if let Side::Image(cell, shift) = second
-            && (cell, shift) < (first, from)
+        if let Side::Image(cell, translation) = second
+            && (cell, translation) < (first, from)
         {
             second = Side::Image(first, from);
-            (first, from) = (cell, shift);
+            (first, from) = (cell, translation);
             corners.reverse();
         }
         let second = match second {
-            Side::Image(cell, shift) if shift == from => Side::Cell(cell),
-            Side::Image(cell, shift) => Side::Image(cell, shift - from),
+            Side::Image(cell, translation) if translation == from => Side::Cell(cell),
+            Side::Image(cell, translation) => Side::Image(cell, translation - from),
             side => side,
         };
-        corners.iter_mut().for_each(|corner| corner.shift = corner.shift - from);
+        corners.iter_mut().for_each(|corner| corner.translation = corner.translation - from);
         Face { sides: [Side::Cell(first), second], corners }
     }
 }

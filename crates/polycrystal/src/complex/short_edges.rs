@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use voronoi::{CellId, Corner, Dimension, FaceId, Shift, Side, Tessellation, Wall};
+use voronoi::{CellId, Dimension, FaceId, PeriodicVertex, Side, Tessellation, Translation, Wall};
 
 use crate::complex::edge::ComplexEdge;
 use crate::complex::ring::{is_folded, is_star_shaped};
@@ -68,11 +68,11 @@ pub fn remove_edges_that_shorten(
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct MovedFace {
     face: u32,
-    shift: Shift,
+    translation: Translation,
 }
 
 /// A cell moved by whole periods, or nothing for the exterior.
-type MovedCell = Option<(CellId, Shift)>;
+type MovedCell = Option<(CellId, Translation)>;
 
 /// A cell complex whose vertices merge. That of a periodic domain has each vertex, edge and face once.
 struct Complex<'a> {
@@ -84,7 +84,7 @@ struct Complex<'a> {
     weights: Vec<f64>,
     walls: Vec<Vec<Wall>>,
     /// The corners of each face; empty for those that have closed.
-    faces: Vec<Vec<Corner>>,
+    faces: Vec<Vec<PeriodicVertex>>,
     /// The faces at each vertex, moved to where it has its own place; empty for those that have merged into another.
     faces_at: Vec<Vec<MovedFace>>,
     /// Number of faces that each cell has.
@@ -104,10 +104,11 @@ impl<'a> Complex<'a> {
         let mut faces_at = vec![Vec::new(); count];
         let mut faces = Vec::with_capacity(face_count);
         for face in original.faces().take(face_count) {
-            let corners: Vec<Corner> =
-                original.face_corners(face).iter().map(|vertex| original.primary_corner(*vertex)).collect();
-            for Corner { vertex, shift } in &corners {
-                faces_at[*vertex as usize].push(MovedFace { face: face.0, shift: Shift::NONE - *shift });
+            let corners: Vec<PeriodicVertex> =
+                original.face_corners(face).iter().map(|vertex| original.periodic_vertex(*vertex)).collect();
+            for PeriodicVertex { vertex, translation } in &corners {
+                faces_at[*vertex as usize]
+                    .push(MovedFace { face: face.0, translation: Translation::ZERO - *translation });
                 match original.face_sides(face)[1] {
                     Side::Wall(wall) if !walls[*vertex as usize].contains(&wall) => {
                         walls[*vertex as usize].push(wall);
@@ -160,24 +161,30 @@ impl<'a> Complex<'a> {
         self.original.domain().dimension()
     }
 
-    fn position(&self, Corner { vertex, shift }: Corner) -> DVec3 {
-        self.vertices[vertex as usize] + shift.vector(self.original.domain())
+    fn position(&self, PeriodicVertex { vertex, translation }: PeriodicVertex) -> DVec3 {
+        self.vertices[vertex as usize] + translation.vector(self.original.domain())
     }
 
-    fn future_position(&self, Corner { vertex, shift }: Corner) -> DVec3 {
-        self.future[vertex as usize] + shift.vector(self.original.domain())
+    fn future_position(&self, PeriodicVertex { vertex, translation }: PeriodicVertex) -> DVec3 {
+        self.future[vertex as usize] + translation.vector(self.original.domain())
     }
 
     /// What lies on both sides of a face.
-    fn cells(&self, MovedFace { face, shift }: MovedFace) -> [MovedCell; 2] {
+    fn cells(&self, MovedFace { face, translation }: MovedFace) -> [MovedCell; 2] {
         self.original
             .face_sides(FaceId(face))
-            .map(|side| side.cell().map(|(cell, image)| (cell, image + shift)))
+            .map(|side| side.cell().map(|(cell, image)| (cell, image + translation)))
     }
 
-    fn corners(&self, MovedFace { face, shift: by }: MovedFace) -> impl Iterator<Item = Corner> + Clone {
+    fn corners(
+        &self,
+        MovedFace { face, translation: by }: MovedFace,
+    ) -> impl Iterator<Item = PeriodicVertex> + Clone {
         let corners = self.faces[face as usize].iter();
-        corners.map(move |&Corner { vertex, shift }| Corner { vertex, shift: shift + by })
+        corners.map(move |&PeriodicVertex { vertex, translation }| PeriodicVertex {
+            vertex,
+            translation: translation + by,
+        })
     }
 
     fn length(&self, edge: ComplexEdge) -> f64 {
@@ -209,7 +216,7 @@ impl<'a> Complex<'a> {
             return false;
         }
         // Nearly all vertices show a third neighbour in their second face.
-        let vertex = Corner { vertex, shift: Shift::NONE };
+        let vertex = PeriodicVertex { vertex, translation: Translation::ZERO };
         let mut known = [None; 2];
         self.edges_at(vertex).all(|neighbor| {
             let place = known.iter_mut().find(|known| known.is_none_or(|known| known == neighbor));
@@ -227,13 +234,16 @@ impl<'a> Complex<'a> {
     }
 
     /// The faces at a vertex.
-    fn faces_at(&self, Corner { vertex, shift: by }: Corner) -> impl Iterator<Item = MovedFace> {
+    fn faces_at(
+        &self,
+        PeriodicVertex { vertex, translation: by }: PeriodicVertex,
+    ) -> impl Iterator<Item = MovedFace> {
         let faces = self.faces_at[vertex as usize].iter();
-        faces.map(move |&MovedFace { face, shift }| MovedFace { face, shift: shift + by })
+        faces.map(move |&MovedFace { face, translation }| MovedFace { face, translation: translation + by })
     }
 
     /// The cells at a vertex, and the exterior.
-    fn cells_at(&self, vertex: Corner) -> Vec<MovedCell> {
+    fn cells_at(&self, vertex: PeriodicVertex) -> Vec<MovedCell> {
         let mut cells: Vec<_> = self.faces_at(vertex).flat_map(|face| self.cells(face)).collect();
         cells.sort_unstable();
         cells.dedup();
@@ -241,15 +251,15 @@ impl<'a> Complex<'a> {
     }
 
     /// The other ends of the edges at a vertex, those of face after face.
-    fn edges_at(&self, vertex: Corner) -> impl Iterator<Item = Corner> {
+    fn edges_at(&self, vertex: PeriodicVertex) -> impl Iterator<Item = PeriodicVertex> {
         self.faces_at(vertex)
             .flat_map(|face| pairs_of(self.corners(face)))
             .filter(move |ends| ends.contains(&vertex))
             .map(move |[a, b]| if a == vertex { b } else { a })
     }
 
-    fn neighbors(&self, vertex: Corner) -> Vec<Corner> {
-        let mut neighbors: Vec<Corner> = self.edges_at(vertex).collect();
+    fn neighbors(&self, vertex: PeriodicVertex) -> Vec<PeriodicVertex> {
+        let mut neighbors: Vec<PeriodicVertex> = self.edges_at(vertex).collect();
         neighbors.sort_unstable();
         neighbors.dedup();
         neighbors
@@ -291,7 +301,7 @@ impl<'a> Complex<'a> {
     }
 
     /// The faces that a collapse closes; nothing where a cell would not stay a ball.
-    fn closing_faces(&self, kept: Corner, gone: Corner) -> Option<Vec<MovedFace>> {
+    fn closing_faces(&self, kept: PeriodicVertex, gone: PeriodicVertex) -> Option<Vec<MovedFace>> {
         if !self.is_apart_from_copies(kept, gone) {
             return None;
         }
@@ -332,12 +342,12 @@ impl<'a> Complex<'a> {
 
     /// Whether all that is around two vertices is there once, so that what happens there happens nowhere else to the same faces
     /// and cells. Only where a period is a few cells long is it not.
-    fn is_apart_from_copies(&self, kept: Corner, gone: Corner) -> bool {
+    fn is_apart_from_copies(&self, kept: PeriodicVertex, gone: PeriodicVertex) -> bool {
         if self.original.periodic_faces().is_empty() {
             return true;
         }
         let mut faces: Vec<MovedFace> = self.faces_at(kept).chain(self.faces_at(gone)).collect();
-        let mut cells: Vec<(CellId, Shift)> =
+        let mut cells: Vec<(CellId, Translation)> =
             faces.iter().flat_map(|face| self.cells(*face)).flatten().collect();
         faces.sort_unstable();
         faces.dedup();
@@ -349,7 +359,7 @@ impl<'a> Complex<'a> {
     }
 
     /// Whether the merged vertex can lie on all walls of both, and no edge from the inside comes to lie in a wall.
-    fn walls_allow(&self, kept: Corner, gone: Corner) -> bool {
+    fn walls_allow(&self, kept: PeriodicVertex, gone: PeriodicVertex) -> bool {
         let [walls, gone_walls] = [kept, gone].map(|end| &self.walls[end.vertex as usize]);
         if !gone_walls.iter().all(|wall| walls.contains(wall)) {
             return false;
@@ -362,7 +372,7 @@ impl<'a> Complex<'a> {
     }
 
     /// Whether the faces around stay star-shaped when the two vertices meet at `place`.
-    fn stays_unfolded(&self, kept: Corner, gone: Corner, place: DVec3) -> bool {
+    fn stays_unfolded(&self, kept: PeriodicVertex, gone: PeriodicVertex, place: DVec3) -> bool {
         if self.dimension() == Dimension::Two {
             return true;
         }
@@ -370,7 +380,7 @@ impl<'a> Complex<'a> {
         faces.sort_unstable();
         faces.dedup();
         faces.into_iter().all(|face| {
-            let at = |corner: Corner| {
+            let at = |corner: PeriodicVertex| {
                 if [kept, gone].contains(&corner) { place } else { self.position(corner) }
             };
             let ring: Vec<DVec3> = self.corners(face).map(at).collect();
@@ -380,7 +390,7 @@ impl<'a> Complex<'a> {
         })
     }
 
-    fn merge(&mut self, kept: Corner, gone: Corner, mut place: DVec3, closing: &[MovedFace]) {
+    fn merge(&mut self, kept: PeriodicVertex, gone: PeriodicVertex, mut place: DVec3, closing: &[MovedFace]) {
         // A mean of equal coordinates may miss them by a last place.
         for wall in &self.walls[kept.vertex as usize] {
             if let Some((axis, coordinate)) = self.original.domain().across_axis(*wall) {
@@ -389,16 +399,17 @@ impl<'a> Complex<'a> {
         }
         self.vertices[kept.vertex as usize] = place;
         self.weights[kept.vertex as usize] += self.weights[gone.vertex as usize];
-        for MovedFace { face, shift } in std::mem::take(&mut self.faces_at[gone.vertex as usize]) {
+        for MovedFace { face, translation } in std::mem::take(&mut self.faces_at[gone.vertex as usize]) {
             // In the face's own place, the two are here.
-            let at = shift + gone.shift;
-            let [kept, gone] = [kept, gone].map(|end| Corner { vertex: end.vertex, shift: end.shift - at });
+            let at = translation + gone.translation;
+            let [kept, gone] = [kept, gone]
+                .map(|end| PeriodicVertex { vertex: end.vertex, translation: end.translation - at });
             let corners = &mut self.faces[face as usize];
             if corners.contains(&kept) {
                 corners.retain(|corner| *corner != gone);
             } else {
                 corners.iter_mut().filter(|corner| **corner == gone).for_each(|corner| *corner = kept);
-                self.faces_at[kept.vertex as usize].push(MovedFace { face, shift: at });
+                self.faces_at[kept.vertex as usize].push(MovedFace { face, translation: at });
             }
         }
         for closed in closing {
@@ -425,12 +436,14 @@ impl<'a> Complex<'a> {
 }
 
 /// The ends of the edges of a face: of one in the plane, where a face has two corners.
-fn pairs_of(corners: impl Iterator<Item = Corner> + Clone) -> impl Iterator<Item = [Corner; 2]> {
+fn pairs_of(
+    corners: impl Iterator<Item = PeriodicVertex> + Clone,
+) -> impl Iterator<Item = [PeriodicVertex; 2]> {
     let count = corners.clone().count();
     let after = corners.clone().cycle().skip(1);
     corners.zip(after).take(if count == 2 { 1 } else { count }).map(|(a, b)| [a, b])
 }
 
-fn edges_of(corners: impl Iterator<Item = Corner> + Clone) -> impl Iterator<Item = ComplexEdge> {
+fn edges_of(corners: impl Iterator<Item = PeriodicVertex> + Clone) -> impl Iterator<Item = ComplexEdge> {
     pairs_of(corners).map(|[a, b]| ComplexEdge::between([a, b]))
 }

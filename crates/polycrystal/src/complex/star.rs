@@ -1,6 +1,6 @@
 //! What lies around an edge or a triangle where all is in general position.
 
-use voronoi::{Corner, FaceId, Shift, Side};
+use voronoi::{FaceId, PeriodicVertex, Side, Translation};
 
 use crate::complex::cell_complex::{CellComplex, cell_of};
 use crate::complex::edge::ComplexEdge;
@@ -17,7 +17,7 @@ pub struct Star {
     /// The sides at the start and the end of the edge.
     pub ends: [Side; 2],
     /// At each end, the other ends of the lines 0, 1 and 2.
-    pub outer: [[Corner; 3]; 2],
+    pub outer: [[PeriodicVertex; 3]; 2],
     /// The faces between two sides around: face k is not at side k. None between walls.
     pub(super) between: [Option<FaceAt>; 3],
     /// At each end, the faces between its side and those around. None between walls.
@@ -28,8 +28,8 @@ pub struct Star {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct FaceAt {
     pub(super) face: u32,
-    /// Shift from the place of the face's first side.
-    pub(super) offset: Shift,
+    /// Translation from the place of the face's first side.
+    pub(super) offset: Translation,
 }
 
 /// What lies around a vertex where four sides meet: the sides, faces by pairs and edges by triples of them.
@@ -37,7 +37,7 @@ struct VertexStar {
     sides: Vec<Side>,
     faces: Vec<(FaceAt, [Side; 2])>,
     /// Other ends of edges.
-    edges: Vec<(Corner, Vec<Side>)>,
+    edges: Vec<(PeriodicVertex, Vec<Side>)>,
 }
 
 impl VertexStar {
@@ -53,12 +53,12 @@ impl VertexStar {
         self.faces.iter().find(|(_, sides)| is_between(sides)).map(|(face, _)| *face)
     }
 
-    fn edge(&self, sides: [Side; 3]) -> Option<Corner> {
+    fn edge(&self, sides: [Side; 3]) -> Option<PeriodicVertex> {
         let found = self.edges.iter().find(|(_, at)| sides.iter().all(|side| at.contains(side)));
         found.map(|(end, _)| *end)
     }
 
-    fn sides_of_edge(&self, end: Corner) -> Option<[Side; 3]> {
+    fn sides_of_edge(&self, end: PeriodicVertex) -> Option<[Side; 3]> {
         let (_, sides) = self.edges.iter().find(|(other, _)| *other == end)?;
         sides.as_slice().try_into().ok()
     }
@@ -67,7 +67,7 @@ impl VertexStar {
 impl CellComplex {
     /// What lies around an edge; nothing where other than three sides meet at it, or other than four at its ends.
     pub fn star_of_edge(&self, edge: ComplexEdge) -> Option<Star> {
-        let places = [Corner { vertex: edge.start, shift: Shift::NONE }, edge.end];
+        let places = [PeriodicVertex { vertex: edge.start, translation: Translation::ZERO }, edge.end];
         let [start, end] = [self.vertex_star(places[0])?, self.vertex_star(places[1])?];
         let around = start.sides_of_edge(places[1])?;
         if end.edge(around)? != places[0] {
@@ -91,11 +91,11 @@ impl CellComplex {
 
     /// What lies around a face with three corners, and its corners: corner k is not at side k of those around. Nothing where
     /// other than four sides meet at one of them.
-    pub fn star_of_triangle(&self, face: FaceId) -> Option<(Star, [Corner; 3])> {
-        let corners: [Corner; 3] = self.corners(face).try_into().ok()?;
+    pub fn star_of_triangle(&self, face: FaceId) -> Option<(Star, [PeriodicVertex; 3])> {
+        let corners: [PeriodicVertex; 3] = self.corners(face).try_into().ok()?;
         let stars =
             [self.vertex_star(corners[0])?, self.vertex_star(corners[1])?, self.vertex_star(corners[2])?];
-        let ends = self.sides_at(FaceAt { face: face.0, offset: Shift::NONE });
+        let ends = self.sides_at(FaceAt { face: face.0, offset: Translation::ZERO });
         let across = [0, 1, 2].map(|k| {
             let sides = stars[(k + 1) % 3].sides_of_edge(corners[(k + 2) % 3])?;
             sides.into_iter().find(|side| !ends.contains(side))
@@ -126,18 +126,18 @@ impl CellComplex {
     pub(super) fn sides_at(&self, at: FaceAt) -> [Side; 2] {
         self.faces[at.face as usize].sides.map(|side| match side {
             Side::Cell(cell) => Side::Image(cell, at.offset),
-            Side::Image(cell, shift) => Side::Image(cell, shift + at.offset),
+            Side::Image(cell, translation) => Side::Image(cell, translation + at.offset),
             Side::Wall(_) => side,
         })
     }
 
     /// The corners of a face where a star sees it.
-    pub(super) fn corners_at(&self, at: FaceAt) -> impl Iterator<Item = Corner> {
+    pub(super) fn corners_at(&self, at: FaceAt) -> impl Iterator<Item = PeriodicVertex> {
         let corners = self.faces[at.face as usize].corners.iter();
-        corners.map(move |corner| Corner { shift: corner.shift + at.offset, ..*corner })
+        corners.map(move |corner| PeriodicVertex { translation: corner.translation + at.offset, ..*corner })
     }
 
-    fn vertex_star(&self, place: Corner) -> Option<VertexStar> {
+    fn vertex_star(&self, place: PeriodicVertex) -> Option<VertexStar> {
         let mut star = VertexStar { sides: Vec::new(), faces: Vec::new(), edges: Vec::new() };
         for &face in &self.faces_at[place.vertex as usize] {
             let corners = &self.faces[face as usize].corners;
@@ -146,13 +146,13 @@ impl CellComplex {
             if uses.next().is_some() {
                 return None;
             }
-            let at = FaceAt { face, offset: place.shift - corners[k].shift };
+            let at = FaceAt { face, offset: place.translation - corners[k].translation };
             let sides = self.sides_at(at);
             star.sides.extend(sides);
             star.faces.push((at, sides));
             for k in [k + 1, k + corners.len() - 1] {
                 let other = corners[k % corners.len()];
-                let other = Corner { shift: other.shift + at.offset, ..other };
+                let other = PeriodicVertex { translation: other.translation + at.offset, ..other };
                 let known = star.edges.iter().position(|(end, _)| *end == other).unwrap_or_else(|| {
                     star.edges.push((other, Vec::new()));
                     star.edges.len() - 1
@@ -178,14 +178,16 @@ impl CellComplex {
 
     /// Whether a face lies between two sides; never between walls.
     pub(super) fn meet(&self, first: Side, second: Side) -> bool {
-        let ([Side::Image(cell, shift), other] | [other, Side::Image(cell, shift)]) = [first, second] else {
+        let ([Side::Image(cell, translation), other] | [other, Side::Image(cell, translation)]) =
+            [first, second]
+        else {
             return false;
         };
-        let sides = [Side::Image(cell, shift), other];
+        let sides = [Side::Image(cell, translation), other];
         self.faces_of[cell.index()].iter().any(|&face| {
-            let own = self.sides_at(FaceAt { face, offset: Shift::NONE });
+            let own = self.sides_at(FaceAt { face, offset: Translation::ZERO });
             let places = own.into_iter().filter_map(|side| match side {
-                Side::Image(known, at) if known == cell => Some(shift - at),
+                Side::Image(known, at) if known == cell => Some(translation - at),
                 _ => None,
             });
             let mut seen = places.map(|offset| self.sides_at(FaceAt { face, offset }));

@@ -7,7 +7,7 @@
 use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
-use voronoi::{Corner, Domain, FaceId, Shift, Side, Wall};
+use voronoi::{Domain, FaceId, PeriodicVertex, Side, Translation, Wall};
 
 use crate::energy::sides::{boundary, cell_and_offset, freedom_on};
 use crate::mesh::grouped::Grouped;
@@ -59,7 +59,7 @@ pub(crate) struct SlotTerms {
     /// Stiffness of the edge to the next slot of the rim.
     pub(crate) rim: f64,
     /// Stiffness of the edge to the centre.
-    pub(crate) spoke: f64,
+    pub(crate) to_center: f64,
 }
 
 /// The fans where their points are.
@@ -81,16 +81,19 @@ impl Fans {
         }
         let mut slots = vec![Slot { point: 0, offset: DVec3::ZERO }; starts[faces.len()]];
         let fill = |(fan, slots): (usize, &mut [Slot])| {
-            let slot = |point: usize, shift: Shift| Slot { point: id(point), offset: shift.vector(&domain) };
+            let slot = |point: usize, translation: Translation| Slot {
+                point: id(point),
+                offset: translation.vector(&domain),
+            };
             let corners = complex.corners(faces[fan]);
             for (k, from) in corners.iter().enumerate() {
                 let to = corners[(k + 1) % corners.len()];
-                slots[2 * k] = slot(from.vertex as usize, from.shift);
-                let (line, shift) = line_between(*from, to);
+                slots[2 * k] = slot(from.vertex as usize, from.translation);
+                let (line, translation) = line_between(*from, to);
                 let number = lines.binary_search(&line).expect("lines of faces are lines of the complex");
-                slots[2 * k + 1] = slot(vertex_count + number, shift);
+                slots[2 * k + 1] = slot(vertex_count + number, translation);
             }
-            slots[2 * corners.len()] = slot(vertex_count + lines.len() + fan, Shift::NONE);
+            slots[2 * corners.len()] = slot(vertex_count + lines.len() + fan, Translation::ZERO);
         };
         split(&mut slots, &starts).into_par_iter().enumerate().with_min_len(FANS_PER_TASK).for_each(fill);
         let sides: Vec<[Side; 2]> = faces.iter().map(|face| complex.sides(*face)).collect();
@@ -178,7 +181,7 @@ impl Fans {
 
     /// Where a line is halfway between its ends.
     pub(crate) fn middle(&self, line: ComplexEdge, points: &[DVec3]) -> DVec3 {
-        let end = points[line.end.vertex as usize] + line.end.shift.vector(&self.domain);
+        let end = points[line.end.vertex as usize] + line.end.translation.vector(&self.domain);
         points[line.start as usize].midpoint(end)
     }
 
@@ -275,13 +278,13 @@ fn fill_terms(ring: &[DVec3], tension: f64, largest_cotangent: f64, terms: &mut 
             }
         }
         // A triangle without area has no cotangent: the upper limit stands in. Obtuse angles would push points apart.
-        let spring = |apex: DVec3, from: DVec3, to: DVec3| {
+        let cotangent_weight = |apex: DVec3, from: DVec3, to: DVec3| {
             let cotangent = (from - apex).dot(to - apex) / doubled_area.max(f64::MIN_POSITIVE);
             0.5 * tension * cotangent.clamp(0.0, largest_cotangent)
         };
-        terms[k].rim += spring(c, a, b);
-        terms[k].spoke += spring(b, c, a);
-        terms[next].spoke += spring(a, b, c);
+        terms[k].rim += cotangent_weight(c, a, b);
+        terms[k].to_center += cotangent_weight(b, c, a);
+        terms[next].to_center += cotangent_weight(a, b, c);
     }
     tension * area
 }
@@ -291,12 +294,12 @@ pub(crate) fn is_bent(a: DVec3, b: DVec3, cosine: f64) -> bool {
     a.dot(b) < cosine * (a.length() * b.length()) || a == DVec3::ZERO || b == DVec3::ZERO
 }
 
-/// The line between two corners in a row, and the shift of its point there.
-fn line_between(from: Corner, to: Corner) -> (ComplexEdge, Shift) {
+/// The line between two corners in a row, and the translation of its point there.
+fn line_between(from: PeriodicVertex, to: PeriodicVertex) -> (ComplexEdge, Translation) {
     let line = ComplexEdge::between([from, to]);
-    let starts_here =
-        line.start == from.vertex && line.end == Corner { vertex: to.vertex, shift: to.shift - from.shift };
-    (line, if starts_here { from.shift } else { to.shift })
+    let starts_here = line.start == from.vertex
+        && line.end == PeriodicVertex { vertex: to.vertex, translation: to.translation - from.translation };
+    (line, if starts_here { from.translation } else { to.translation })
 }
 
 /// The parts of a list that begin at the given places.

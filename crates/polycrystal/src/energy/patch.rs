@@ -71,7 +71,7 @@ impl LocalStencils {
     pub(crate) fn new(stencils: &StencilTable, coarser: &[u32], finer: &[u32]) -> Self {
         let mut local = Self { starts: vec![0], ids: Vec::new(), weights: Vec::new() };
         for point in finer {
-            let (ids, weights) = stencils.row(*point as usize);
+            let (ids, weights) = stencils.stencil(*point as usize);
             local.ids.extend(ids.iter().map(|point| place_in(coarser, *point)));
             local.weights.extend(weights);
             local.starts.push(local.ids.len());
@@ -139,7 +139,7 @@ impl Patch {
         PatchTerms { energy: variation.energy, gradient, volume_gradient, mass, stiffness, cone }
     }
 
-    /// Lumped masses, and the cotangent Laplacian times the tension as a spring constant for each edge.
+    /// Lumped masses, and the cotangent Laplacian times the tension as the stiffness of each edge.
     fn mass_and_stiffness(&self, local: &[DVec3], largest_cotangent: f64) -> (Vec<f64>, Vec<f64>) {
         let mut mass = vec![0.0; local.len()];
         let mut stiffness = vec![0.0; self.edges.len()];

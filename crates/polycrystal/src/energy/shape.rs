@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
-use voronoi::{Corner, FaceId, Side, Tessellation};
+use voronoi::{FaceId, PeriodicVertex, Side, Tessellation};
 
 use crate::energy::fans::Fans;
 use crate::{CellComplex, ComplexEdge};
@@ -115,7 +115,7 @@ impl Shape {
 }
 
 /// The line of a complex that leads from one vertex of its cells to another; `corners` has the complex's vertices of these.
-pub(crate) fn line_of(corners: &[Corner], ends: [voronoi::VertexId; 2]) -> ComplexEdge {
+pub(crate) fn line_of(corners: &[PeriodicVertex], ends: [voronoi::VertexId; 2]) -> ComplexEdge {
     ComplexEdge::between(ends.map(|end| corners[end.index()]))
 }
 

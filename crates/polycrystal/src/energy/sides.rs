@@ -18,7 +18,7 @@ pub(crate) fn freedom_on(domain: &Domain, walls: &[Wall]) -> Freedom {
 
 /// The cell on a side, and how far it is from its own place; none beyond walls.
 pub(crate) fn cell_and_offset(side: Side, domain: &Domain) -> Option<(CellId, DVec3)> {
-    side.cell().map(|(cell, shift)| (cell, shift.vector(domain)))
+    side.cell().map(|(cell, translation)| (cell, translation.vector(domain)))
 }
 
 /// The boundary between two sides, as [`Boundary::between_grains`] has it.

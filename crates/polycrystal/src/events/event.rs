@@ -1,7 +1,7 @@
 //! Changes of the topology of a cell complex.
 
 use glam::DVec3;
-use voronoi::{Corner, FaceId, Shift, Side};
+use voronoi::{FaceId, PeriodicVertex, Side, Translation};
 
 use crate::{CellComplex, ComplexEdge};
 
@@ -56,7 +56,7 @@ impl Event {
 
 fn open(complex: &mut CellComplex, edge: ComplexEdge, least: f64) -> bool {
     let Some(star) = complex.reconnectable_edge(edge) else { return false };
-    let start = Corner { vertex: edge.start, shift: Shift::NONE };
+    let start = PeriodicVertex { vertex: edge.start, translation: Translation::ZERO };
     let ends = [start, edge.end].map(|end| complex.position(end));
     let middle = ends[0].midpoint(ends[1]);
     let length = OPENING * ends[0].distance(ends[1]).max(least);
@@ -82,7 +82,7 @@ fn close(complex: &mut CellComplex, face: FaceId, least: f64) -> bool {
     complex.triangle_to_edge(face, places).is_some()
 }
 
-fn direction(complex: &CellComplex, from: DVec3, to: Corner) -> DVec3 {
+fn direction(complex: &CellComplex, from: DVec3, to: PeriodicVertex) -> DVec3 {
     (complex.position(to) - from).normalize_or_zero()
 }
 

@@ -131,7 +131,7 @@ impl LocalArea {
         let polygon = |face: FaceId| {
             let corners = complex.corners(face).iter().map(|corner| {
                 match vertices.iter().position(|vertex| *vertex == corner.vertex) {
-                    Some(moving) => Place::Moving(moving, corner.shift.vector(domain)),
+                    Some(moving) => Place::Moving(moving, corner.translation.vector(domain)),
                     None => Place::Fixed(complex.position(*corner)),
                 }
             });
@@ -189,7 +189,7 @@ impl LocalArea {
             let start = rings.len();
             rings.extend(face.corners.iter().map(|corner| match *corner {
                 Place::Fixed(point) => point,
-                Place::Moving(moving, shift) => points[moving] + shift,
+                Place::Moving(moving, translation) => points[moving] + translation,
             }));
             let sum: DVec3 = rings[start..].iter().sum();
             rings.push(sum / face.corners.len() as f64 + face.bulge);
@@ -268,22 +268,22 @@ impl LocalArea {
         let count = self.points.len();
         let mut stiffness = vec![0.0; count * count];
         let mut add = |i: usize, j: usize, value: f64| stiffness[i * count + j] += value;
-        let (mut rims, mut spokes) = (Vec::new(), Vec::new());
+        let (mut rims, mut to_center) = (Vec::new(), Vec::new());
         for (face, Fan { ring, center }) in self.fans(rings) {
             let corners = ring.len();
-            let spring = |apex: DVec3, from: DVec3, to: DVec3| {
+            let cotangent_weight = |apex: DVec3, from: DVec3, to: DVec3| {
                 let (a, b) = (from - apex, to - apex);
                 let cotangent = a.dot(b) / a.cross(b).length().max(f64::MIN_POSITIVE);
                 0.5 * face.tension * cotangent.clamp(LEAST_COTANGENT, LARGEST_COTANGENT)
             };
             rims.clear();
-            spokes.clear();
-            spokes.resize(corners, 0.0);
+            to_center.clear();
+            to_center.resize(corners, 0.0);
             for k in 0..corners {
                 let next = (k + 1) % corners;
-                rims.push(spring(center, ring[k], ring[next]));
-                spokes[k] += spring(ring[next], center, ring[k]);
-                spokes[next] += spring(ring[k], ring[next], center);
+                rims.push(cotangent_weight(center, ring[k], ring[next]));
+                to_center[k] += cotangent_weight(ring[next], center, ring[k]);
+                to_center[next] += cotangent_weight(ring[k], ring[next], center);
             }
             // The centre follows all corners alike.
             let follows = 1.0 / corners as f64;
@@ -293,18 +293,18 @@ impl LocalArea {
                     Place::Fixed(_) => None,
                 })
             };
-            let all: f64 = spokes.iter().sum();
+            let all: f64 = to_center.iter().sum();
             for (k, i) in moving() {
                 let next = (k + 1) % corners;
                 let previous = (k + corners - 1) % corners;
-                add(i, i, spokes[k] + rims[k] + rims[previous]);
+                add(i, i, to_center[k] + rims[k] + rims[previous]);
                 if let Place::Moving(j, _) = face.corners[next] {
                     add(i, j, -rims[k]);
                     add(j, i, -rims[k]);
                 }
                 for (_, j) in moving() {
-                    add(i, j, (all * follows - spokes[k]) * follows);
-                    add(j, i, -spokes[k] * follows);
+                    add(i, j, (all * follows - to_center[k]) * follows);
+                    add(j, i, -to_center[k] * follows);
                 }
             }
         }

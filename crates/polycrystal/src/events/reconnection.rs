@@ -43,29 +43,29 @@ const CELLS_PER_PLACE: usize = 200;
 /// Places that are worth looking at together.
 const FEWEST_TOGETHER: usize = 8;
 
-/// How often grains came together and parted. In the plane, a boundary is an edge, and what was a triple line is a point.
+/// How often the topology changed. In the plane, a boundary is an edge and a triple line is a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Reconnections {
-    /// Triple lines that became boundaries with three sides: two grains came to meet. In the plane, points of more than three
-    /// edges that opened to one more.
-    pub opened: usize,
-    /// Boundaries with three sides that became triple lines: two grains parted. In the plane, edges that shrank to such points.
-    pub closed: usize,
-    /// Boundaries with four sides that gave way to one between the grains at two opposite sides. In the plane, edges that gave
-    /// way to one between the grains at their ends (T1).
-    pub swapped: usize,
+    /// Edge-to-triangle (2-3) flips: a triple line became a boundary with three sides, and two grains came to meet. In the plane,
+    /// points of more than three edges that split in two, with an edge between them.
+    pub lines_to_boundaries: usize,
+    /// Triangle-to-edge (3-2) flips, the reverse: two grains parted. In the plane, edges that collapsed to such points.
+    pub boundaries_to_lines: usize,
+    /// Neighbour switches: a boundary with four sides gave way to one between the grains at two of its opposite sides. In the
+    /// plane, an edge gave way to one between the grains at its ends (T1).
+    pub neighbor_switches: usize,
 }
 
 impl Reconnections {
     /// All events.
     pub fn count(self) -> usize {
-        self.opened + self.closed + self.swapped
+        self.lines_to_boundaries + self.boundaries_to_lines + self.neighbor_switches
     }
 
     pub(crate) fn add(&mut self, other: Self) {
-        self.opened += other.opened;
-        self.closed += other.closed;
-        self.swapped += other.swapped;
+        self.lines_to_boundaries += other.lines_to_boundaries;
+        self.boundaries_to_lines += other.boundaries_to_lines;
+        self.neighbor_switches += other.neighbor_switches;
     }
 }
 
@@ -345,9 +345,9 @@ impl Reconnections {
     fn of(event: Event) -> Self {
         let none = Self::default();
         match event {
-            Event::Open(_) => Self { opened: 1, ..none },
-            Event::Close(_) => Self { closed: 1, ..none },
-            Event::Swap(..) => Self { swapped: 1, ..none },
+            Event::Open(_) => Self { lines_to_boundaries: 1, ..none },
+            Event::Close(_) => Self { boundaries_to_lines: 1, ..none },
+            Event::Swap(..) => Self { neighbor_switches: 1, ..none },
             Event::Move(_) => none,
         }
     }

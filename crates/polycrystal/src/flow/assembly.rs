@@ -7,7 +7,7 @@ use crate::energy::patch::{Patch, PatchTerms};
 use crate::energy::patches::Patches;
 use crate::flow::system::{CHUNK, Parts};
 use crate::flow::tied_points::Numbering;
-use crate::flow::volume_constraint::{Sweeps, VolumeConstraint};
+use crate::flow::volume_constraint::{VolumeConstraint, VolumeGradients};
 use crate::mesh::rounding::last_place;
 use crate::solver::rows::CsrRows;
 use crate::{Level, Network, Volumes};
@@ -15,13 +15,13 @@ use crate::{Level, Network, Volumes};
 /// Share of a junction's mass that resists in all directions: without, nothing would hold points along a triple line.
 const ALONG_LINES: f64 = 0.01;
 
-/// What moves: clusters of the points of a level.
+/// What moves: groups of the points of a level.
 pub(crate) struct Unknowns<'a> {
     pub(crate) level: &'a Level,
     pub(crate) points: &'a [DVec3],
     /// Of each point, as of [`LocalSize`](crate::energy::local_size::LocalSize).
     pub(crate) sizes: &'a [f64],
-    pub(crate) clusters: &'a Numbering,
+    pub(crate) groups: &'a Numbering,
 }
 
 /// The parts of a step of some unknowns.
@@ -29,31 +29,31 @@ pub(crate) fn assemble(
     network: &Network,
     patches: &Patches,
     terms: &[PatchTerms],
-    Unknowns { level, points, sizes, clusters }: Unknowns<'_>,
+    Unknowns { level, points, sizes, groups }: Unknowns<'_>,
     volumes: Volumes,
 ) -> Parts {
-    let count = clusters.cluster_count();
-    let points_of = |cluster| clusters.places(cluster, patches).map(|place| patches.point_of_place(place));
-    let row = |cluster: usize, entries: &mut Vec<(u32, f64)>| {
-        for (patch, point) in points_of(cluster) {
+    let count = groups.group_count();
+    let points_of = |group| groups.places(group, patches).map(|place| patches.point_of_place(place));
+    let row = |group: usize, entries: &mut Vec<(u32, f64)>| {
+        for (patch, point) in points_of(group) {
             let Patch { control_points, links, .. } = &patches.patches[patch];
             for (end, edge) in links.row(point) {
-                let other = clusters.numbers()[control_points[*end as usize] as usize];
-                if other as usize != cluster {
+                let other = groups.numbers()[control_points[*end as usize] as usize];
+                if other as usize != group {
                     entries.push((other, terms[patch].stiffness[*edge as usize]));
                 }
             }
         }
     };
-    let mass = |cluster: usize| {
-        let masses = points_of(cluster).map(|(patch, point)| {
+    let mass = |group: usize| {
+        let masses = points_of(group).map(|(patch, point)| {
             let size = sizes[patches.patches[patch].control_points[point] as usize];
             terms[patch].mass[point] / size.powi(2)
         });
         masses.sum::<f64>()
     };
-    let volume_gradients = |cluster: usize, volume_gradients: &mut Sweeps<'_>| {
-        for (patch, point) in points_of(cluster) {
+    let volume_gradients = |group: usize, volume_gradients: &mut VolumeGradients<'_>| {
+        for (patch, point) in points_of(group) {
             let boundary = &network.boundaries()[patch];
             // Walls do not move, so what lies on them changes no volume.
             for (grain, sign) in boundary.signed_grains().filter(|_| boundary.wall.is_none()) {
@@ -61,30 +61,30 @@ pub(crate) fn assemble(
             }
         }
     };
-    let freedom = |cluster| clusters.freedom(cluster, |point| network.freedom(level.walls[point as usize]));
-    let clusters_in_chunks = || (0..count).into_par_iter().with_min_len(CHUNK);
+    let freedom = |group| groups.freedom(group, |point| network.freedom(level.walls[point as usize]));
+    let groups_in_chunks = || (0..count).into_par_iter().with_min_len(CHUNK);
     Parts {
-        masses: clusters_in_chunks().map(mass).collect(),
-        gradient: gradient(patches, terms, clusters),
+        masses: groups_in_chunks().map(mass).collect(),
+        gradient: gradient(patches, terms, groups),
         stiffness: CsrRows::made_by(count, row),
-        freedoms: clusters_in_chunks().map(freedom).collect(),
+        freedoms: groups_in_chunks().map(freedom).collect(),
         volumes: (volumes == Volumes::Kept).then(|| {
             VolumeConstraint::new(count, network.grain_count(), last_place(points), volume_gradients)
         }),
         sliding: match volumes {
             Volumes::Kept => Vec::new(),
-            Volumes::Free => sliding_masses(patches, terms, clusters, level),
+            Volumes::Free => sliding_masses(patches, terms, groups, level),
         },
     }
 }
 
-/// The gradient of the energy by the displacement of each cluster.
-pub(crate) fn gradient(patches: &Patches, terms: &[PatchTerms], clusters: &Numbering) -> Vec<DVec3> {
-    let gradient = |cluster: usize| {
-        let places = clusters.places(cluster, patches).map(|place| patches.point_of_place(place));
+/// The gradient of the energy by the displacement of each group.
+pub(crate) fn gradient(patches: &Patches, terms: &[PatchTerms], groups: &Numbering) -> Vec<DVec3> {
+    let gradient = |group: usize| {
+        let places = groups.places(group, patches).map(|place| patches.point_of_place(place));
         places.map(|(patch, point)| terms[patch].gradient[point]).sum::<DVec3>()
     };
-    (0..clusters.cluster_count()).into_par_iter().with_min_len(CHUNK).map(gradient).collect()
+    (0..groups.group_count()).into_par_iter().with_min_len(CHUNK).map(gradient).collect()
 }
 
 /// The part of the mass of junctions that does not resist their motion.
@@ -99,24 +99,24 @@ pub(crate) fn gradient(patches: &Patches, terms: &[PatchTerms], clusters: &Numbe
 fn sliding_masses(
     patches: &Patches,
     terms: &[PatchTerms],
-    clusters: &Numbering,
+    groups: &Numbering,
     level: &Level,
 ) -> Vec<(usize, DMat3)> {
     let is_junction = |point: &u32| {
         let point = *point as usize;
         level.node_types[point].side_count() - i8::from(!level.walls[point].is_empty()) >= 3
     };
-    let of_cluster = |cluster: usize| {
-        clusters.members(cluster).iter().any(is_junction).then(|| {
-            let places = clusters.places(cluster, patches);
+    let of_group = |group: usize| {
+        groups.members(group).iter().any(is_junction).then(|| {
+            let places = groups.places(group, patches);
             let sliding = places.map(|place| {
                 let (patch, point) = patches.point_of_place(place);
                 let normal = terms[patch].volume_gradient[point].normalize_or_zero();
                 (DMat3::IDENTITY - DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z))
                     * terms[patch].mass[point]
             });
-            (cluster, sliding.sum::<DMat3>() * (1.0 - ALONG_LINES))
+            (group, sliding.sum::<DMat3>() * (1.0 - ALONG_LINES))
         })
     };
-    (0..clusters.cluster_count()).into_par_iter().filter_map(of_cluster).collect()
+    (0..groups.group_count()).into_par_iter().filter_map(of_group).collect()
 }

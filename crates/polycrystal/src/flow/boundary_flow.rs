@@ -23,7 +23,7 @@ use crate::flow::thin_triangles::Room;
 use crate::flow::tied_points::{ATTEMPTS, Numbering, TiedPoints};
 use crate::flow::tuning::Tuning;
 use crate::measures::rms_residual;
-use crate::mesh::seams::Seams;
+use crate::mesh::adjacency::Adjacency;
 use crate::mesh::volume::{Cone, volumes_of_grains};
 use crate::solver::conjugate_gradients::dot;
 use crate::{Freedom, GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
@@ -85,7 +85,7 @@ pub(crate) struct Flow<'a> {
     surface: usize,
     /// Neighbouring elements of each boundary on that level.
     neighbors: Vec<[u32; 2]>,
-    clusters: TiedPoints,
+    groups: TiedPoints,
     volumes: Volumes,
     tuning: Tuning,
 }
@@ -100,13 +100,13 @@ impl<'a> Flow<'a> {
         tuning: Tuning,
     ) -> Self {
         let surface = (network.levels().len() - 1).min(level + 1);
-        let clusters = TiedPoints::new(&network.levels()[level]);
+        let groups = TiedPoints::new(&network.levels()[level]);
         let patches = Patches::new(network, level, surface, tension_unit, tuning.largest_cotangent);
         let unit = tuning.small_grain * network.mean_grain_size();
         let sizes =
             LocalSize::new(network.domain().dimension(), unit).at_points(network, level, &patches, volumes);
-        let neighbors = Seams::of_level(&network.levels()[surface]).inner;
-        Self { network, patches, sizes, level, surface, neighbors, clusters, volumes, tuning }
+        let neighbors = Adjacency::of_level(&network.levels()[surface]).inner;
+        Self { network, patches, sizes, level, surface, neighbors, groups, volumes, tuning }
     }
 
     /// The flow as one until all is at rest.
@@ -124,11 +124,11 @@ impl<'a> Flow<'a> {
         stage: &Stage,
         progress: &mut impl FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
-        let clusters = self.clusters.clone();
+        let groups = self.groups.clone();
         match self.run_from(start, stage, OnFold::GiveWay, progress) {
             Err(error @ NetworkError::Folded { .. }) => {
                 let Some(unfolded) = self.unfolded(start) else { return Err(error) };
-                self.clusters = clusters;
+                self.groups = groups;
                 self.run_from(&unfolded, stage, OnFold::Round, progress)
             }
             result => result,
@@ -249,11 +249,11 @@ impl<'a> Flow<'a> {
                 continue;
             }
             for place in places {
-                self.clusters.join_all(&place);
+                self.groups.join_all(&place);
             }
             let mut moves: Vec<DVec3> =
                 points.iter().zip(start).map(|(point, start)| *point - *start).collect();
-            self.clusters.unite(&mut moves, |point| self.freedom(point), attempt);
+            self.groups.unite(&mut moves, |point| self.freedom(point), attempt);
             points = displaced(start, &moves);
         }
         Err(NetworkError::Folded { count, grains })
@@ -284,9 +284,9 @@ impl<'a> Flow<'a> {
         let cones: Vec<Cone> = terms.iter().map(|terms| terms.cone).collect();
         let volumes = volumes_of_grains(self.network.boundaries(), &cones, self.network.grain_count());
         let missing = self.missing(&volumes);
-        let mut clusters = self.clusters.clone();
-        clusters.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
-        let numbering = clusters.number();
+        let mut groups = self.groups.clone();
+        groups.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
+        let numbering = groups.number();
         let system = self.system(&terms, &numbering, time, points);
         let moves = match (self.volumes, self.control_mesh()) {
             (Volumes::Kept, _) | (_, Mesh::Triangles(_)) => system.displacement(&missing).0,
@@ -301,7 +301,7 @@ impl<'a> Flow<'a> {
         let mut moves = numbering.of_points(&moves);
         let within = tangential_moves(self.network, self.level, points, self.centering(time));
         moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
-        *points = clusters.moved_unbroken(
+        *points = groups.moved_unbroken(
             points,
             moves,
             |point| self.freedom(point),
@@ -314,7 +314,7 @@ impl<'a> Flow<'a> {
         let is_growth_in_plane =
             self.volumes == Volumes::Free && matches!(self.control_mesh(), Mesh::Segments(_));
         if self.tuning.keeps_joined && !is_growth_in_plane {
-            self.clusters = clusters;
+            self.groups = groups;
         }
         Ok(energy)
     }
@@ -345,13 +345,13 @@ impl<'a> Flow<'a> {
         }
     }
 
-    fn system(&self, terms: &[PatchTerms], clusters: &Numbering, time: f64, points: &[DVec3]) -> System {
+    fn system(&self, terms: &[PatchTerms], groups: &Numbering, time: f64, points: &[DVec3]) -> System {
         let tolerance = match self.volumes {
             Volumes::Kept => self.tuning.tolerance,
             Volumes::Free => FREE_TOLERANCE,
         };
         let level = &self.network.levels()[self.level];
-        let unknowns = Unknowns { level, points, sizes: &self.sizes, clusters };
+        let unknowns = Unknowns { level, points, sizes: &self.sizes, groups };
         let parts = assemble(self.network, &self.patches, terms, unknowns, self.volumes);
         System::new(parts, time, tolerance)
     }
@@ -444,7 +444,8 @@ impl<'a> Flow<'a> {
         if self.level == self.surface {
             return vertices.to_vec();
         }
-        let rows = vertices.iter().map(|vertex| self.network.stencils(self.level).row(*vertex as usize).0);
+        let rows =
+            vertices.iter().map(|vertex| self.network.stencils(self.level).stencil(*vertex as usize).0);
         rows.flatten().copied().collect()
     }
 }
@@ -470,9 +471,10 @@ struct LevelSectors {
 impl LevelSectors {
     fn new(network: &Network, level: usize) -> Self {
         let level = &network.levels()[level];
-        let seams = Seams::of_level(level);
-        let dihedral_sectors = DihedralSectors::new(&Surface::of_level(level, &[], &network.sides()), &seams);
-        Self { dihedral_sectors, neighbors: seams.inner }
+        let adjacency = Adjacency::of_level(level);
+        let dihedral_sectors =
+            DihedralSectors::new(&Surface::of_level(level, &[], &network.sides()), &adjacency);
+        Self { dihedral_sectors, neighbors: adjacency.inner }
     }
 
     /// Pairs of elements that are folded, or have passed each other.

@@ -5,7 +5,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::mesh::seams::{Seams, Use};
+use crate::mesh::adjacency::{Adjacency, Incidence};
 use crate::{Elements, Side, Surface};
 
 /// Cosine of the angle from which on one beyond 180 degrees is one that has closed (315 degrees, or -45).
@@ -28,20 +28,20 @@ struct DihedralSector {
 }
 
 impl DihedralSectors {
-    pub(crate) fn new(surface: &Surface<'_>, seams: &Seams) -> Self {
+    pub(crate) fn new(surface: &Surface<'_>, adjacency: &Adjacency) -> Self {
         let mut dihedral_sectors = Vec::new();
         let Elements::Triangles(triangles) = surface.elements else { return Self { dihedral_sectors } };
-        let apex = |at: &Use| triangles[at.element as usize][usize::from((at.corner + 2) % 3)];
-        let mut uses: Vec<(Side, &Use, f64)> = Vec::new();
-        for place in seams.places() {
-            uses.clear();
-            for at in place {
+        let apex = |at: &Incidence| triangles[at.element as usize][usize::from((at.corner + 2) % 3)];
+        let mut incidences: Vec<(Side, &Incidence, f64)> = Vec::new();
+        for edge in adjacency.non_manifold_edges() {
+            incidences.clear();
+            for at in edge {
                 let [first, second] = surface.sides_of(at.element);
-                uses.extend([(first, at, -1.0), (second, at, 1.0)]);
+                incidences.extend([(first, at, -1.0), (second, at, 1.0)]);
             }
-            uses.retain(|(side, ..)| *side != Side::Exterior);
-            uses.sort_unstable_by_key(|(side, at, _)| (*side, **at));
-            let pairs = uses.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 2);
+            incidences.retain(|(side, ..)| *side != Side::Exterior);
+            incidences.sort_unstable_by_key(|(side, at, _)| (*side, **at));
+            let pairs = incidences.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 2);
             dihedral_sectors.extend(pairs.map(|pair| DihedralSector {
                 ends: pair[0].1.ends(surface.elements),
                 apexes: [pair[0].1, pair[1].1].map(apex),
@@ -97,7 +97,7 @@ mod tests {
         let level = network.control_mesh();
         let sides = network.sides();
         let dihedral_sectors =
-            DihedralSectors::new(&Surface::of_level(level, &flat, &sides), &Seams::of_level(level));
+            DihedralSectors::new(&Surface::of_level(level, &flat, &sides), &Adjacency::of_level(level));
         assert!(dihedral_sectors.turned(&flat).is_empty());
         // What is inside the boundary at x = 0.5, y < 0.5, goes far beyond the one at y = 0.5.
         let mut pushed = flat.clone();

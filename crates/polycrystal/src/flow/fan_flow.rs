@@ -10,7 +10,7 @@ use crate::flow::boundary_flow::SLIGHT_BEND;
 use crate::flow::system::{CHUNK, Parts, System};
 use crate::flow::tied_points::TiedPoints;
 use crate::flow::tuning::Tuning;
-use crate::flow::volume_constraint::{Sweeps, VolumeConstraint};
+use crate::flow::volume_constraint::{VolumeConstraint, VolumeGradients};
 use crate::mesh::rounding::last_place;
 use crate::solver::rows::CsrRows;
 use crate::{Freedom, GrainId, NetworkError};
@@ -51,8 +51,8 @@ impl FanFlow<'_> {
             let center = fans.center_of(fan);
             moves[center] += freedoms[center].project(self.to_middle(fan, points, &before));
         }
-        let mut clusters = TiedPoints::apart(fans.point_count());
-        *points = clusters.moved_unbroken(
+        let mut groups = TiedPoints::apart(fans.point_count());
+        *points = groups.moved_unbroken(
             points,
             moves,
             |point| freedoms[point as usize],
@@ -74,20 +74,20 @@ impl FanFlow<'_> {
                 let slots = fans.slots_of(fan);
                 let count = fans.rim_len(fan);
                 if slot == count {
-                    entries.extend((0..count).map(|k| (slots[k].point, of_slot(fan, k).spoke)));
+                    entries.extend((0..count).map(|k| (slots[k].point, of_slot(fan, k).to_center)));
                 } else {
                     let before = (slot + count - 1) % count;
                     let neighbors = [
                         (before, of_slot(fan, before).rim),
                         ((slot + 1) % count, of_slot(fan, slot).rim),
-                        (count, of_slot(fan, slot).spoke),
+                        (count, of_slot(fan, slot).to_center),
                     ];
-                    let others = neighbors.map(|(slot, spring)| (slots[slot].point, spring));
+                    let others = neighbors.map(|(slot, entry)| (slots[slot].point, entry));
                     entries.extend(others.into_iter().filter(|(other, _)| *other as usize != point));
                 }
             }
         };
-        let volume_gradients = |point: usize, volume_gradients: &mut Sweeps<'_>| {
+        let volume_gradients = |point: usize, volume_gradients: &mut VolumeGradients<'_>| {
             for (fan, slot) in fans.at_point(point).filter(|(fan, _)| fans.wall(*fan).is_none()) {
                 for (side, sign) in fans.sides[fan].into_iter().zip([1.0, -1.0]) {
                     if let Some((cell, _)) = cell_and_offset(side, fans.domain()) {

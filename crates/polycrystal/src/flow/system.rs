@@ -60,7 +60,7 @@ impl System {
     pub(crate) fn new(parts: Parts, time: f64, tolerance: f64) -> Self {
         let Parts { masses, gradient, stiffness, freedoms, volumes, sliding } = parts;
         let diagonal = |(unknown, mass): (usize, &f64)| {
-            let stiffness: f64 = stiffness.row(unknown).iter().map(|(_, spring)| spring).sum();
+            let stiffness: f64 = stiffness.row(unknown).iter().map(|(_, entry)| entry).sum();
             mass + time * stiffness
         };
         let diagonal: Vec<f64> = masses.par_iter().with_min_len(CHUNK).enumerate().map(diagonal).collect();
@@ -115,7 +115,7 @@ impl System {
         let row = |unknown: usize| {
             let stiffness = self.stiffness.row(unknown).iter();
             let pulls = stiffness
-                .map(|(other, spring)| (displacement[unknown] - displacement[*other as usize]) * *spring);
+                .map(|(other, entry)| (displacement[unknown] - displacement[*other as usize]) * *entry);
             pulls.sum::<DVec3>() * self.time
         };
         (0..displacement.len()).into_par_iter().with_min_len(CHUNK).map(row).collect()
@@ -193,7 +193,7 @@ impl System {
     fn apply(&self, displacement: &[DVec3]) -> Vec<DVec3> {
         let row = |unknown: usize| {
             let stiffness = self.stiffness.row(unknown).iter();
-            let pull: DVec3 = stiffness.map(|(other, spring)| displacement[*other as usize] * *spring).sum();
+            let pull: DVec3 = stiffness.map(|(other, entry)| displacement[*other as usize] * *entry).sum();
             displacement[unknown] * self.diagonal[unknown] - pull * self.time
         };
         let mut image: Vec<DVec3> =

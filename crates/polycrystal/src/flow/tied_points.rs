@@ -23,9 +23,9 @@ pub(crate) struct TiedPoints(DisjointSets);
 impl TiedPoints {
     /// Every point of a level on its own, but for those that are others moved by whole periods.
     pub(crate) fn new(level: &Level) -> Self {
-        let mut clusters = Self::apart(level.vertex_count());
-        level.copies.vertices.iter().for_each(|pair| clusters.0.join(pair.secondary, pair.primary));
-        clusters
+        let mut groups = Self::apart(level.vertex_count());
+        level.copies.vertices.iter().for_each(|pair| groups.0.join(pair.secondary, pair.primary));
+        groups
     }
 
     /// So many points, each on its own.
@@ -52,7 +52,7 @@ impl TiedPoints {
         }
     }
 
-    /// Gives all points of each cluster the mean of their displacements, for an attempt that is counted from 0.
+    /// Gives all points of each group the mean of their displacements, for an attempt that is counted from 0.
     pub(crate) fn unite(&self, moves: &mut [DVec3], of_point: impl Fn(u32) -> Freedom, attempt: usize) {
         self.number().unite(moves, of_point);
         if attempt >= WHOLE_ATTEMPTS {
@@ -88,7 +88,7 @@ impl TiedPoints {
         Err(NetworkError::Folded { count, grains: Vec::new() })
     }
 
-    /// Numbers the clusters from 0, in order of their smallest points.
+    /// Numbers the groups from 0, in order of their smallest points.
     pub(crate) fn number(&self) -> Numbering {
         let (numbers, count) = self.0.numbers();
         let members = numbers.iter().map(|number| *number as usize).zip(0u32..);
@@ -100,52 +100,52 @@ impl TiedPoints {
 /// TiedPoints by number.
 pub(crate) struct Numbering {
     numbers: Vec<u32>,
-    /// The control points of each cluster.
+    /// The control points of each group.
     members: Grouped<u32>,
 }
 
 impl Numbering {
-    /// The places of all control points of a cluster in some patches.
+    /// The places of all control points of a group in some patches.
     pub(crate) fn places<'a>(
         &'a self,
-        cluster: usize,
+        group: usize,
         patches: &'a Patches,
     ) -> impl Iterator<Item = usize> + 'a {
-        let members = self.members(cluster).iter();
+        let members = self.members(group).iter();
         members.flat_map(|point| patches.places_of_point(*point as usize).iter().copied())
     }
 
-    pub(crate) fn cluster_count(&self) -> usize {
+    pub(crate) fn group_count(&self) -> usize {
         self.members.count()
     }
 
-    /// The cluster of each control point.
+    /// The group of each control point.
     pub(crate) fn numbers(&self) -> &[u32] {
         &self.numbers
     }
 
-    /// The displacement of each control point, given those of the clusters.
-    pub(crate) fn of_points(&self, of_clusters: &[DVec3]) -> Vec<DVec3> {
-        self.numbers.iter().map(|number| of_clusters[*number as usize]).collect()
+    /// The displacement of each control point, given those of the groups.
+    pub(crate) fn of_points(&self, of_groups: &[DVec3]) -> Vec<DVec3> {
+        self.numbers.iter().map(|number| of_groups[*number as usize]).collect()
     }
 
-    /// How the points of a cluster can move as one, given how each can.
-    pub(crate) fn freedom(&self, cluster: usize, of_point: impl Fn(u32) -> Freedom) -> Freedom {
-        self.members(cluster).iter().map(|point| of_point(*point)).fold(Freedom::Everywhere, Freedom::and)
+    /// How the points of a group can move as one, given how each can.
+    pub(crate) fn freedom(&self, group: usize, of_point: impl Fn(u32) -> Freedom) -> Freedom {
+        self.members(group).iter().map(|point| of_point(*point)).fold(Freedom::Everywhere, Freedom::and)
     }
 
-    /// Gives all points of each cluster the mean of their displacements.
+    /// Gives all points of each group the mean of their displacements.
     pub(crate) fn unite(&self, moves: &mut [DVec3], of_point: impl Fn(u32) -> Freedom) {
-        for cluster in (0..self.cluster_count()).filter(|cluster| self.members(*cluster).len() > 1) {
-            let members = self.members(cluster);
+        for group in (0..self.group_count()).filter(|group| self.members(*group).len() > 1) {
+            let members = self.members(group);
             let sum: DVec3 = members.iter().map(|point| moves[*point as usize]).sum();
-            let mean = self.freedom(cluster, &of_point).project(sum / members.len() as f64);
+            let mean = self.freedom(group, &of_point).project(sum / members.len() as f64);
             members.iter().for_each(|point| moves[*point as usize] = mean);
         }
     }
 
-    /// The control points of a cluster.
-    pub(crate) fn members(&self, cluster: usize) -> &[u32] {
-        self.members.of(cluster)
+    /// The control points of a group.
+    pub(crate) fn members(&self, group: usize) -> &[u32] {
+        self.members.of(group)
     }
 }

@@ -24,7 +24,7 @@ pub struct Tuning {
     /// Length below which a control edge no longer changes. 0 leaves some thin triangles, twice as much spoils angles.
     pub rigid_length: f64,
     /// Size of a grain, as a share of the mean, below which the flow around is as slow as in its own units of length. 0 lets all flow as fast;
-    /// clusters of small grains then fold.
+    /// dense crowds of small grains then fold.
     pub small_grain: f64,
     /// Share of its way to the centre of the triangles around that a point inside a boundary goes in a step. 0 makes
     /// triangles thinner.

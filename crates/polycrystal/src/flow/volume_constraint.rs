@@ -1,4 +1,4 @@
-//! Grain volumes as linear constraints on the displacement of clusters.
+//! Grain volumes as linear constraints on the displacement of groups of tied points.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -13,61 +13,61 @@ use crate::solver::rows::CsrRows;
 /// change its volume there is no solution, and going on would only blow up what rounding leaves.
 const ITERATIONS: usize = 2000;
 
-/// Length of a sum of gradients, as a share of the sum of all lengths at a cluster, that is rounding.
+/// Length of a sum of gradients, as a share of the sum of all lengths at a group, that is rounding.
 const CANCELLED: f64 = 1e-13;
 
 /// The same in units of the last place of the points times the root of that sum, which is the size of what moves: where that is small, points
 /// are coarse. Sums of some hundred gradients stay below 10.
 const COARSE: f64 = 30.0;
 
-/// How the volumes of grains change when clusters move: a sparse matrix J with a vector for each cluster and grain.
+/// How the volumes of grains change when groups move: a sparse matrix J with a vector for each group and grain.
 pub(crate) struct VolumeConstraint {
-    /// Of each cluster, its grains and the gradients of their volumes.
-    by_cluster: CsrRows<DVec3>,
-    /// Of each grain, its clusters and the gradients of its volume.
+    /// Of each group, its grains and the gradients of their volumes.
+    by_group: CsrRows<DVec3>,
+    /// Of each grain, its groups and the gradients of its volume.
     by_grain: CsrRows<DVec3>,
 }
 
 impl VolumeConstraint {
-    /// That of so many clusters and grains: `fill` adds up the gradients of a cluster. `rounding` is a last place of the points.
+    /// That of so many groups and grains: `fill` adds up the gradients of a group. `rounding` is a last place of the points.
     pub(crate) fn new(
-        cluster_count: usize,
+        group_count: usize,
         grain_count: usize,
         rounding: f64,
-        fill: impl Fn(usize, &mut Sweeps<'_>) + Sync,
+        fill: impl Fn(usize, &mut VolumeGradients<'_>) + Sync,
     ) -> Self {
-        let row = |cluster: usize, entries: &mut Vec<(u32, DVec3)>| {
-            let mut volume_gradients = Sweeps { start: entries.len(), entries, length: 0.0 };
-            fill(cluster, &mut volume_gradients);
+        let row = |group: usize, entries: &mut Vec<(u32, DVec3)>| {
+            let mut volume_gradients = VolumeGradients { start: entries.len(), entries, length: 0.0 };
+            fill(group, &mut volume_gradients);
             volume_gradients.drop_rounding(rounding);
         };
-        let by_cluster = CsrRows::made_by(cluster_count, row);
-        let by_grain = by_cluster.transposed(grain_count);
-        Self { by_cluster, by_grain }
+        let by_group = CsrRows::made_by(group_count, row);
+        let by_grain = by_group.transposed(grain_count);
+        Self { by_group, by_grain }
     }
 
     /// The change of each grain's volume under a displacement: `J d`.
     pub(crate) fn volume_change(&self, displacement: &[DVec3]) -> Vec<f64> {
         let change = |grain: usize| {
             let row = self.by_grain.row(grain).iter();
-            row.map(|(cluster, gradient)| gradient.dot(displacement[*cluster as usize])).sum()
+            row.map(|(group, gradient)| gradient.dot(displacement[*group as usize])).sum()
         };
         (0..self.by_grain.len()).into_par_iter().map(change).collect()
     }
 
-    /// The force of the grains' pressures on a cluster: a row of `J^T p`.
-    pub(crate) fn force(&self, pressures: &[f64], cluster: usize) -> DVec3 {
-        let row = self.by_cluster.row(cluster).iter();
+    /// The force of the grains' pressures on a group: a row of `J^T p`.
+    pub(crate) fn force(&self, pressures: &[f64], group: usize) -> DVec3 {
+        let row = self.by_group.row(group).iter();
         row.map(|(grain, gradient)| *gradient * pressures[*grain as usize]).sum()
     }
 
-    /// `J D J^T` for the mobility D of the clusters.
+    /// `J D J^T` for the mobility D of the groups.
     pub(crate) fn compliance(&self, mobility: &[Mobility]) -> Compliance {
         let row = |grain: usize, entries: &mut Vec<(u32, f64)>| {
             let start = entries.len();
-            for (cluster, gradient) in self.by_grain.row(grain) {
-                let moved = mobility[*cluster as usize].of(*gradient);
-                for (other, gradient) in self.by_cluster.row(*cluster as usize) {
+            for (group, gradient) in self.by_grain.row(grain) {
+                let moved = mobility[*group as usize].of(*gradient);
+                for (other, gradient) in self.by_group.row(*group as usize) {
                     let change = moved.dot(*gradient);
                     match entries[start..].iter_mut().find(|(known, _)| known == other) {
                         Some((_, sum)) => *sum += change,
@@ -80,15 +80,15 @@ impl VolumeConstraint {
     }
 }
 
-/// What a cluster sweeps, grain by grain, as it adds up.
-pub(crate) struct Sweeps<'a> {
+/// The gradients of the volumes of a group, grain by grain, as they add up.
+pub(crate) struct VolumeGradients<'a> {
     entries: &'a mut Vec<(u32, DVec3)>,
     start: usize,
     /// The sum of all lengths.
     length: f64,
 }
 
-impl Sweeps<'_> {
+impl VolumeGradients<'_> {
     /// Adds to the gradient of a grain's volume.
     pub(crate) fn add(&mut self, grain: GrainId, gradient: DVec3) {
         self.length += gradient.length();

@@ -1,7 +1,7 @@
 //! The curved edges of a complex in the plane.
 
 use glam::{DVec2, DVec3};
-use voronoi::{Corner, FaceId, Side, Tessellation};
+use voronoi::{FaceId, PeriodicVertex, Side, Tessellation};
 
 use super::GrowthRecipe;
 use super::step::{Curve, CurveNetwork, Places};
@@ -112,8 +112,8 @@ impl Curves {
             let boundary = boundary(complex.sides(*face));
             let corners = complex.corners(*face);
             let end = |end: usize| {
-                let Corner { vertex, shift } = corners[end];
-                (vertex as usize, shift.vector(complex.domain()).truncate())
+                let PeriodicVertex { vertex, translation } = corners[end];
+                (vertex as usize, translation.vector(complex.domain()).truncate())
             };
             let tension = (recipe.tension)(&boundary);
             let mobility = (recipe.mobility)(&boundary);
@@ -152,8 +152,8 @@ impl Curves {
         for face in complex.faces() {
             let corners = complex.corners(face);
             let end = |end: usize| {
-                let Corner { vertex, shift } = corners[end];
-                places.vertices[vertex as usize] + shift.vector(complex.domain()).truncate()
+                let PeriodicVertex { vertex, translation } = corners[end];
+                places.vertices[vertex as usize] + translation.vector(complex.domain()).truncate()
             };
             let inner = numbers[face.index()].map_or(&[][..], |number: usize| &places.inner[number]);
             for (side, sign) in complex.sides(face).into_iter().zip([1.0, -1.0]) {

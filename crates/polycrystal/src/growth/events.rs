@@ -72,7 +72,7 @@ impl Curves {
             let on_walls = corners.iter().filter(|(_, at)| walls.iter().all(|wall| at.contains(wall)));
             let places: Vec<DVec3> = on_walls.map(|(corner, _)| complex.position(*corner)).collect();
             let middle = places.iter().sum::<DVec3>() / places.len() as f64;
-            complex.vertices[vertex as usize] = middle - kept.0.shift.vector(complex.domain());
+            complex.vertices[vertex as usize] = middle - kept.0.translation.vector(complex.domain());
         }
         for face in self.complex().faces_at(&[vertex]) {
             self.follow_ends(face, before);

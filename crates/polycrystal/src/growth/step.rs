@@ -58,7 +58,7 @@ pub(super) struct Places {
 impl Places {
     /// All points of a curve.
     pub(super) fn line(&self, curve: &Curve, number: usize) -> Vec<DVec2> {
-        let [start, end] = curve.ends.map(|(vertex, shift)| self.vertices[vertex] + shift);
+        let [start, end] = curve.ends.map(|(vertex, translation)| self.vertices[vertex] + translation);
         let inner = self.inner[number].iter().copied();
         std::iter::once(start).chain(inner).chain([end]).collect()
     }

@@ -1,12 +1,12 @@
 use std::borrow::Cow;
 
-use voronoi::Shift;
+use voronoi::Translation;
 
+use crate::mesh::adjacency::{Adjacency, Incidence};
 use crate::mesh::angles::{DihedralSector, WeightedAngle, angles, dihedral_sectors};
-use crate::mesh::seams::{Seams, Use};
 use crate::{BoundaryId, Elements, Level, Network, Side, Surface};
 
-/// A surface with every place once: in a periodic network without what is a copy of something else, and with the grains
+/// A surface with every edge once: in a periodic network without what is a copy of something else, and with the grains
 /// beyond the period as sides.
 pub(crate) struct Complex<'a> {
     pub(crate) surface: Surface<'a>,
@@ -20,24 +20,24 @@ pub(crate) struct Complex<'a> {
     points: Vec<u32>,
     /// Places inside boundaries: two elements each.
     pub(crate) inner: Vec<[u32; 2]>,
-    /// The uses of all other places, sorted by place.
-    uses: Vec<Use>,
+    /// The incidences of all other edges, sorted by edge.
+    incidences: Vec<Incidence>,
 }
 
 impl<'a> Complex<'a> {
     /// Any surface. Tensions are 1 between grains, and 0 at the exterior.
     pub(crate) fn of_surface(surface: &Surface<'a>) -> Self {
-        let Seams { inner, uses } = Seams::of_elements(surface.elements, surface.boundary_of);
+        let Adjacency { inner, incidences } = Adjacency::of_elements(surface.elements, surface.boundary_of);
         let originals = (0u32..).take(surface.sides.len()).map(BoundaryId).collect();
         let sides = Cow::Borrowed(surface.sides);
         let tension = |sides: &[Side; 2]| if sides.contains(&Side::Exterior) { 0.0 } else { 1.0 };
         let tensions = surface.sides.iter().map(tension).collect();
-        Self { surface: *surface, sides, tensions, originals, points: Vec::new(), inner, uses }
+        Self { surface: *surface, sides, tensions, originals, points: Vec::new(), inner, incidences }
     }
 
     /// A level of a network, whose surface this is.
     pub(crate) fn of_level(network: &'a Network, level: &Level, surface: &Surface<'a>) -> Self {
-        let Seams { mut inner, mut uses } = Seams::of_level(level);
+        let Adjacency { mut inner, mut incidences } = Adjacency::of_level(level);
         let boundaries = network.boundaries();
         let originals: Vec<BoundaryId> = (0u32..)
             .map(BoundaryId)
@@ -52,16 +52,17 @@ impl<'a> Complex<'a> {
                 originals[boundary.index()] == boundary
             };
             inner.retain(|pair| is_original(pair[0]));
-            uses.retain(|at| is_original(at.element));
-            let mut places: Vec<(u32, Shift)> = ids(level.vertex_count()).map(|v| (v, Shift::NONE)).collect();
+            incidences.retain(|at| is_original(at.element));
+            let mut original_of: Vec<(u32, Translation)> =
+                ids(level.vertex_count()).map(|v| (v, Translation::ZERO)).collect();
             for pair in &level.copies.vertices {
-                places[pair.secondary as usize] = (pair.primary, pair.shift);
+                original_of[pair.secondary as usize] = (pair.primary, pair.translation);
             }
-            unite_places(&mut uses, surface.elements, &places);
-            points = places.into_iter().map(|(original, _)| original).collect();
+            unite_edges(&mut incidences, surface.elements, &original_of);
+            points = original_of.into_iter().map(|(original, _)| original).collect();
         }
         let tensions = Cow::Borrowed(network.tensions());
-        Self { surface: *surface, sides: Cow::Owned(sides), tensions, originals, points, inner, uses }
+        Self { surface: *surface, sides: Cow::Owned(sides), tensions, originals, points, inner, incidences }
     }
 
     /// The point that a point is a copy of, or itself.
@@ -75,37 +76,37 @@ impl<'a> Complex<'a> {
     }
 
     /// The boundary of an element that is no copy.
-    pub(crate) fn boundary(&self, at: &Use) -> BoundaryId {
+    pub(crate) fn boundary(&self, at: &Incidence) -> BoundaryId {
         self.surface.boundary_of[at.element as usize]
     }
 
-    /// The uses of each place where not two elements of one boundary meet.
-    pub(crate) fn places(&self) -> impl Iterator<Item = &[Use]> {
-        self.uses.chunk_by(|a, b| a.place == b.place)
+    /// The incidences of each edge that is not inside a boundary.
+    pub(crate) fn non_manifold_edges(&self) -> impl Iterator<Item = &[Incidence]> {
+        self.incidences.chunk_by(|a, b| a.edge == b.edge)
     }
 
-    /// The boundaries that meet at a place, sorted.
-    pub(crate) fn boundaries(&self, at: &[Use]) -> Vec<BoundaryId> {
+    /// The boundaries that meet at an edge, sorted.
+    pub(crate) fn boundaries(&self, at: &[Incidence]) -> Vec<BoundaryId> {
         let mut boundaries: Vec<BoundaryId> = at.iter().map(|at| self.boundary(at)).collect();
         boundaries.sort_unstable();
         boundaries
     }
 
-    /// The sectors into which boundaries divide what surrounds a place, in order around it.
-    pub(crate) fn dihedral_sectors(&self, at: &[Use]) -> Vec<DihedralSector> {
+    /// The sectors into which boundaries divide what surrounds an edge, in order around it.
+    pub(crate) fn dihedral_sectors(&self, at: &[Incidence]) -> Vec<DihedralSector> {
         dihedral_sectors(&self.surface, &self.sides, at)
     }
 
     /// The angles between boundaries where three grains meet.
     pub(crate) fn angles(&self) -> impl Iterator<Item = WeightedAngle> {
-        angles(&self.surface, &self.sides, self.places())
+        angles(&self.surface, &self.sides, self.non_manifold_edges())
     }
 }
 
-/// Numbers places anew, copies like their originals.
-fn unite_places(uses: &mut [Use], elements: Elements<'_>, places: &[(u32, Shift)]) {
-    let key = |at: &Use| {
-        let [start, end] = at.ends(elements).map(|end| places[end as usize]);
+/// Renumbers edges, copies like their originals.
+fn unite_edges(incidences: &mut [Incidence], elements: Elements<'_>, original_of: &[(u32, Translation)]) {
+    let key = |at: &Incidence| {
+        let [start, end] = at.ends(elements).map(|end| original_of[end as usize]);
         let along = end.1 - start.1;
         let against = start.1 - end.1;
         match start.0.cmp(&end.0) {
@@ -114,11 +115,12 @@ fn unite_places(uses: &mut [Use], elements: Elements<'_>, places: &[(u32, Shift)
             std::cmp::Ordering::Equal => ([start.0, end.0], along.max(against)),
         }
     };
-    let mut keyed: Vec<_> = uses.iter().map(|at| (key(at), *at)).collect();
+    let mut keyed: Vec<_> = incidences.iter().map(|at| (key(at), *at)).collect();
     keyed.sort_unstable();
     let groups = (0u32..).zip(keyed.chunk_by(|a, b| a.0 == b.0));
-    let numbered = groups.flat_map(|(place, group)| group.iter().map(move |(_, at)| Use { place, ..*at }));
-    uses.iter_mut().zip(numbered).for_each(|(at, numbered)| *at = numbered);
+    let numbered =
+        groups.flat_map(|(edge, group)| group.iter().map(move |(_, at)| Incidence { edge, ..*at }));
+    incidences.iter_mut().zip(numbered).for_each(|(at, numbered)| *at = numbered);
 }
 
 fn ids(count: usize) -> impl Iterator<Item = u32> {

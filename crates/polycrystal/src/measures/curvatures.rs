@@ -3,7 +3,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use crate::measures::plane;
-use crate::mesh::seams::Seams;
+use crate::mesh::adjacency::Adjacency;
 use crate::{Elements, Surface};
 
 /// How a boundary is curved at a point.
@@ -29,10 +29,10 @@ impl PointCurvature {
 /// # Panics
 /// When elements refer to points or boundaries that there are not.
 pub fn point_curvatures(surface: &Surface<'_>) -> Vec<PointCurvature> {
-    let seams = Seams::of_elements(surface.elements, surface.boundary_of);
+    let adjacency = Adjacency::of_elements(surface.elements, surface.boundary_of);
     match surface.elements {
-        Elements::Triangles(triangles) => in_space(surface, triangles, &seams),
-        Elements::Segments(segments) => plane::curvatures(surface.points, segments, &seams.inner)
+        Elements::Triangles(triangles) => in_space(surface, triangles, &adjacency),
+        Elements::Segments(segments) => plane::curvatures(surface.points, segments, &adjacency.inner)
             .into_iter()
             .map(|mean| PointCurvature { mean, gaussian: if mean.is_nan() { mean } else { 0.0 } })
             .collect(),
@@ -49,7 +49,7 @@ struct Ring {
     normal: DVec3,
 }
 
-fn in_space(surface: &Surface<'_>, triangles: &[[u32; 3]], seams: &Seams) -> Vec<PointCurvature> {
+fn in_space(surface: &Surface<'_>, triangles: &[[u32; 3]], adjacency: &Adjacency) -> Vec<PointCurvature> {
     let mut rings = vec![Ring::default(); surface.points.len()];
     for triangle in triangles {
         let corners = triangle.map(|corner| surface.points[corner as usize]);
@@ -58,7 +58,7 @@ fn in_space(surface: &Surface<'_>, triangles: &[[u32; 3]], seams: &Seams) -> Vec
         }
     }
     let mut is_inside: Vec<bool> = rings.iter().map(|ring| ring.area > 0.0).collect();
-    for at in &seams.uses {
+    for at in &adjacency.incidences {
         at.ends(surface.elements).iter().for_each(|end| is_inside[*end as usize] = false);
     }
     let curvature = |(ring, is_inside): (&Ring, bool)| {

@@ -5,7 +5,7 @@ use crate::mesh::angles::{AngleStatistics, WeightedAngle, statistics};
 use crate::{Level, Network, Surface};
 
 /// The angles between the three boundaries at triple lines inside the domain, weighted by length; in the plane, at triple
-/// points. Nothing when there is no such place. In a periodic network every place counts once.
+/// points. Nothing when there is no such edge. In a periodic network every edge counts once.
 ///
 /// Random Voronoi grains have 120 +- 23.8 degrees, equilibrium has 120 +- 0.
 pub fn dihedral_angles(network: &Network, level: &Level, points: &[DVec3]) -> Option<AngleStatistics> {

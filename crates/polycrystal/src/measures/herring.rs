@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use crate::measures::complex::Complex;
 use crate::measures::lines::{Line, Lines};
-use crate::mesh::angles::{leg, place_length};
-use crate::mesh::seams::Use;
+use crate::mesh::adjacency::Incidence;
+use crate::mesh::angles::{edge_length, leg};
 use crate::{Elements, Level, Network, Side, Surface};
 
 /// Cosine beyond which two walls count as one plane, across a line on it.
@@ -13,7 +13,7 @@ const ONE_PLANE: f64 = -0.999_999;
 
 /// How far a network is from Herring's condition (1951): at rest, the tensions that pull at a triple line cancel.
 ///
-/// The residual of a place is |sum of tension x direction| / sum of tensions, 0 at rest and 1 at most; a boundary pulls square to the
+/// The residual of an edge is |sum of tension x direction| / sum of tensions, 0 at rest and 1 at most; a boundary pulls square to the
 /// line. On a wall only what pulls along it counts, for the wall holds the rest. One boundary of three equal ones that is off by 10
 /// degrees makes 0.05.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,10 +61,10 @@ fn of_level(
 }
 
 impl Complex<'_> {
-    /// The residuals of all places where three sides or more meet, with the lengths over which they hold; in the plane 1.
+    /// The residuals of all edges where three sides or more meet, with the lengths over which they hold; in the plane 1.
     fn residuals(&self) -> impl Iterator<Item = (f64, f64)> {
-        let places = self.places().filter(|at| at.len() >= 3);
-        places.filter_map(|at| Some((self.residual(at)?, place_length(&self.surface, at))))
+        let edges = self.non_manifold_edges().filter(|at| at.len() >= 3);
+        edges.filter_map(|at| Some((self.residual(at)?, edge_length(&self.surface, at))))
     }
 
     /// The residual of a line, as a mean over its length.
@@ -74,15 +74,15 @@ impl Complex<'_> {
         }
         let (mut sum, mut length) = (0.0, 0.0);
         for at in &line.edges {
-            let own = place_length(&self.surface, at);
+            let own = edge_length(&self.surface, at);
             sum += own * self.residual(at)?;
             length += own;
         }
         (length > 0.0).then(|| sum / length)
     }
 
-    /// The residual of a place; nothing where no boundary there has any tension, or walls leave it no way to go.
-    pub(crate) fn residual(&self, at: &[Use]) -> Option<f64> {
+    /// The residual of an edge; nothing where no boundary there has any tension, or walls leave it no way to go.
+    pub(crate) fn residual(&self, at: &[Incidence]) -> Option<f64> {
         let (mut force, mut tensions) = (DVec3::ZERO, 0.0);
         let mut walls = Vec::new();
         for at in at {

@@ -1,6 +1,6 @@
 use crate::BoundaryId;
 use crate::measures::complex::Complex;
-use crate::mesh::seams::Use;
+use crate::mesh::adjacency::Incidence;
 
 /// The curves along which the same boundaries meet, triple lines and edges of the domain, and the points where they end.
 pub(crate) struct Lines<'a> {
@@ -12,7 +12,7 @@ pub(crate) struct Lines<'a> {
 /// A curve along which the same boundaries meet.
 pub(crate) struct Line<'a> {
     /// Its edges in order.
-    pub(crate) edges: Vec<&'a [Use]>,
+    pub(crate) edges: Vec<&'a [Incidence]>,
     /// Its points in order, no copies; the first is the last where the line closes on itself.
     pub(crate) points: Vec<u32>,
     /// Whether it closes on itself without a corner.
@@ -24,7 +24,7 @@ pub(crate) struct Line<'a> {
 impl<'a> Lines<'a> {
     /// Follows all edges between boundaries.
     pub(crate) fn of(complex: &'a Complex<'_>) -> Self {
-        let edges: Vec<&[Use]> = complex.places().collect();
+        let edges: Vec<&[Incidence]> = complex.non_manifold_edges().collect();
         let ends: Vec<[u32; 2]> = edges
             .iter()
             .map(|at| at[0].ends(complex.surface.elements).map(|end| complex.original(end)))

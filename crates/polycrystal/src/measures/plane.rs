@@ -117,15 +117,15 @@ pub(crate) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeas
         }
     }
     let mut triple_points = Vec::new();
-    for place in complex.places().filter(|at| at.len() >= 3) {
-        let mut dihedral_sectors = complex.dihedral_sectors(place);
+    for edge in complex.non_manifold_edges().filter(|at| at.len() >= 3) {
+        let mut dihedral_sectors = complex.dihedral_sectors(edge);
         dihedral_sectors.sort_by_key(|dihedral_sector| dihedral_sector.side);
         for dihedral_sector in &dihedral_sectors {
             if let Side::Grain(grain) = dihedral_sector.side {
                 grains.entry(grain).or_default().corner_count += 1;
             }
         }
-        let point = complex.original(place[0].ends(surface.elements)[0]);
+        let point = complex.original(edge[0].ends(surface.elements)[0]);
         triple_points.push(TriplePointMeasures {
             point,
             position: at(point),
@@ -134,8 +134,8 @@ pub(crate) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeas
                 .iter()
                 .map(|dihedral_sector| dihedral_sector.angle.to_degrees())
                 .collect(),
-            residual: complex.residual(place),
-            boundaries: complex.boundaries(place),
+            residual: complex.residual(edge),
+            boundaries: complex.boundaries(edge),
         });
     }
     let ids = (0u32..).map(BoundaryId);

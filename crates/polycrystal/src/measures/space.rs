@@ -6,7 +6,7 @@ use voronoi::Dimension;
 
 use crate::measures::complex::Complex;
 use crate::measures::lines::{Line, Lines};
-use crate::mesh::angles::{place_length, statistics};
+use crate::mesh::angles::{edge_length, statistics};
 use crate::mesh::volume::triangle_volume;
 use crate::{AngleStatistics, BoundaryId, GrainId, Side, Surface};
 
@@ -322,7 +322,7 @@ fn measure_line(
     for at in &line.edges {
         let mut dihedral_sectors = complex.dihedral_sectors(at);
         dihedral_sectors.sort_by_key(|dihedral_sector| dihedral_sector.side);
-        let own = place_length(&complex.surface, at);
+        let own = edge_length(&complex.surface, at);
         length += own;
         if sides.is_empty() {
             sides = dihedral_sectors.iter().map(|dihedral_sector| dihedral_sector.side).collect();
@@ -365,7 +365,7 @@ fn measure_line(
 fn end_tangents(complex: &Complex<'_>, line: &Line<'_>) -> Vec<(u32, DVec3)> {
     let [Some(first), Some(last)] = [line.edges.first(), line.edges.last()] else { return Vec::new() };
     let [start, end] = [line.points[0], line.points[line.points.len() - 1]];
-    let away = |edge: &[crate::mesh::seams::Use], corner: u32| {
+    let away = |edge: &[crate::mesh::adjacency::Incidence], corner: u32| {
         let ends = edge[0].ends(complex.surface.elements);
         let [a, b] = ends.map(|end| complex.surface.points[end as usize]);
         let direction = if complex.original(ends[0]) == corner { b - a } else { a - b };

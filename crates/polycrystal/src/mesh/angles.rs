@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-use crate::mesh::seams::Use;
+use crate::mesh::adjacency::Incidence;
 use crate::{Elements, Side, Surface};
 
 /// Mean and spread of the angles between boundaries, in degrees.
@@ -25,13 +25,13 @@ pub struct WeightedAngle {
 pub(crate) fn angles<'a>(
     surface: &Surface<'a>,
     sides: &[[Side; 2]],
-    places: impl Iterator<Item = &'a [Use]>,
+    places: impl Iterator<Item = &'a [Incidence]>,
 ) -> impl Iterator<Item = WeightedAngle> {
     let is_interior =
-        |at: &Use| !sides[surface.boundary_of[at.element as usize].index()].contains(&Side::Exterior);
+        |at: &Incidence| !sides[surface.boundary_of[at.element as usize].index()].contains(&Side::Exterior);
     let triple = places.filter(move |at| at.len() == 3 && at.iter().all(is_interior));
     triple.flat_map(move |at| {
-        let weight = place_length(surface, at);
+        let weight = edge_length(surface, at);
         dihedral_sectors(surface, sides, at)
             .into_iter()
             .map(move |dihedral_sector| WeightedAngle { degrees: dihedral_sector.angle.to_degrees(), weight })
@@ -51,9 +51,9 @@ pub(crate) struct DihedralSector {
 pub(crate) fn dihedral_sectors(
     surface: &Surface<'_>,
     sides: &[[Side; 2]],
-    at: &[Use],
+    at: &[Incidence],
 ) -> Vec<DihedralSector> {
-    let ends = |at: &Use| at.ends(surface.elements).map(|end| surface.points[end as usize]);
+    let ends = |at: &Incidence| at.ends(surface.elements).map(|end| surface.points[end as usize]);
     let axis = match surface.elements {
         Elements::Triangles(_) => {
             let [start, end] = ends(&at[0]);
@@ -63,7 +63,7 @@ pub(crate) fn dihedral_sectors(
     };
     let zero = leg(surface, &at[0]);
     let quarter = axis.cross(zero);
-    let mut spokes: Vec<(f64, Side)> = at
+    let mut directions: Vec<(f64, Side)> = at
         .iter()
         .map(|at| {
             let [first, second] = sides[surface.boundary_of[at.element as usize].index()];
@@ -80,10 +80,14 @@ pub(crate) fn dihedral_sectors(
             (leg.dot(quarter).atan2(leg.dot(zero)), if is_along { second } else { first })
         })
         .collect();
-    spokes.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let next = spokes[1..].iter().map(|(angle, _)| *angle);
-    let ends = next.chain([spokes[0].0 + std::f64::consts::TAU]);
-    spokes.iter().zip(ends).map(|(&(start, side), end)| DihedralSector { side, angle: end - start }).collect()
+    directions.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let next = directions[1..].iter().map(|(angle, _)| *angle);
+    let ends = next.chain([directions[0].0 + std::f64::consts::TAU]);
+    directions
+        .iter()
+        .zip(ends)
+        .map(|(&(start, side), end)| DihedralSector { side, angle: end - start })
+        .collect()
 }
 
 /// Mean and spread of angles; nothing where all weights are 0.
@@ -103,7 +107,7 @@ pub(crate) fn statistics(angles: impl Iterator<Item = WeightedAngle>) -> Option<
 }
 
 /// The length of an edge; in the plane every point counts alike.
-pub(crate) fn place_length(surface: &Surface<'_>, at: &[Use]) -> f64 {
+pub(crate) fn edge_length(surface: &Surface<'_>, at: &[Incidence]) -> f64 {
     match surface.elements {
         Elements::Triangles(_) => {
             let [start, end] = at[0].ends(surface.elements).map(|end| surface.points[end as usize]);
@@ -114,7 +118,7 @@ pub(crate) fn place_length(surface: &Surface<'_>, at: &[Use]) -> f64 {
 }
 
 /// The unit vector from an edge into its triangle, square to the edge; in the plane, from a point along its segment.
-pub(crate) fn leg(surface: &Surface<'_>, at: &Use) -> DVec3 {
+pub(crate) fn leg(surface: &Surface<'_>, at: &Incidence) -> DVec3 {
     let corners = surface.elements.corners(at.element);
     let [start, end] = at.ends(surface.elements).map(|end| surface.points[end as usize]);
     match surface.elements {

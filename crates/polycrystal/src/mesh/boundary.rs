@@ -1,6 +1,6 @@
 use std::fmt;
 
-use voronoi::{Shift, Wall};
+use voronoi::{Translation, Wall};
 
 /// Number of a grain: that of its seed in the input, from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -72,7 +72,7 @@ pub struct Twin {
     /// The boundary there. The greater number of the two is the copy.
     pub boundary: BoundaryId,
     /// From here to there.
-    pub shift: Shift,
+    pub translation: Translation,
 }
 
 impl Boundary {

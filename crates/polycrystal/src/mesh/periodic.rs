@@ -1,7 +1,7 @@
 //! Parts of a periodic network that are others moved by whole periods.
 
 use glam::DVec3;
-use voronoi::{Domain, FaceId, PeriodicPair, Shift, Tessellation};
+use voronoi::{Domain, FaceId, PeriodicPair, Tessellation, Translation};
 
 use crate::Mesh;
 use crate::mesh::id::id;
@@ -43,12 +43,12 @@ impl PeriodicCopies {
                 firsts
             })
             .collect();
-        for &PeriodicPair { secondary, primary, shift } in pairs {
+        for &PeriodicPair { secondary, primary, translation } in pairs {
             let [secondary_firsts, primary_firsts] = [secondary, primary].map(|face| firsts[face.index()]);
             let pair = |kind: usize, k: u32| PeriodicPair {
                 secondary: secondary_firsts[kind] + k,
                 primary: primary_firsts[kind] + k,
-                shift,
+                translation,
             };
             let [triangles, inner_points] = counts[primary.index()].map(id);
             self.elements.extend((0..triangles).map(|k| pair(0, k)));
@@ -63,10 +63,10 @@ impl PeriodicCopies {
 
     /// Adds the segments of copied lines in the plane, which run the other way; those of line k begin with `firsts[k]`.
     pub(crate) fn add_lines(&mut self, pairs: &[PeriodicPair<u32>], firsts: &[u32]) {
-        for &PeriodicPair { secondary, primary, shift } in pairs {
+        for &PeriodicPair { secondary, primary, translation } in pairs {
             let [own, other] = [secondary, primary].map(|line| firsts[line as usize]);
             let count = firsts[secondary as usize + 1] - own;
-            let pair = |k| PeriodicPair { secondary: own + k, primary: other + count - 1 - k, shift };
+            let pair = |k| PeriodicPair { secondary: own + k, primary: other + count - 1 - k, translation };
             self.elements.extend((0..count).map(pair));
         }
     }
@@ -80,36 +80,40 @@ impl PeriodicCopies {
         let mut new = NewVertices::new(vertex_count);
         match finer {
             Mesh::Triangles(finer) => {
-                let mut places: Vec<(u32, Shift)> =
-                    (0..id(vertex_count)).map(|vertex| (vertex, Shift::NONE)).collect();
+                let mut places: Vec<(u32, Translation)> =
+                    (0..id(vertex_count)).map(|vertex| (vertex, Translation::ZERO)).collect();
                 for pair in &self.vertices {
-                    places[pair.secondary as usize] = (pair.primary, pair.shift);
+                    places[pair.secondary as usize] = (pair.primary, pair.translation);
                 }
                 let corners = finer.triangles();
-                for &PeriodicPair { secondary, primary, shift } in &self.elements {
+                for &PeriodicPair { secondary, primary, translation } in &self.elements {
                     for own in (0..3).map(|k| 3 * secondary + k) {
                         let place = |child: u32| places[corners[child as usize][0] as usize];
                         let (vertex, at) = place(own);
                         let matching = (0..3)
                             .map(|k| 3 * primary + k)
-                            .find(|child| place(*child) == (vertex, at - shift));
+                            .find(|child| place(*child) == (vertex, at - translation));
                         let other = matching.expect("a copied triangle has copied corners");
                         let ([_, a, b], [_, d, c]) = (corners[own as usize], corners[other as usize]);
-                        new.unite(a, c, shift);
-                        new.unite(b, d, shift);
-                        finer_copies.elements.push(PeriodicPair { secondary: own, primary: other, shift });
+                        new.unite(a, c, translation);
+                        new.unite(b, d, translation);
+                        finer_copies.elements.push(PeriodicPair {
+                            secondary: own,
+                            primary: other,
+                            translation,
+                        });
                     }
                     let [own, other] = [secondary, primary].map(|parent| 3 * id(element_count) + parent);
-                    finer_copies.elements.push(PeriodicPair { secondary: own, primary: other, shift });
+                    finer_copies.elements.push(PeriodicPair { secondary: own, primary: other, translation });
                 }
             }
             Mesh::Segments(_) => {
-                for &PeriodicPair { secondary, primary, shift } in &self.elements {
-                    new.unite(id(vertex_count) + secondary, id(vertex_count) + primary, shift);
+                for &PeriodicPair { secondary, primary, translation } in &self.elements {
+                    new.unite(id(vertex_count) + secondary, id(vertex_count) + primary, translation);
                     let halves = [0, 1].map(|half| PeriodicPair {
                         secondary: 2 * secondary + half,
                         primary: 2 * primary + 1 - half,
-                        shift,
+                        translation,
                     });
                     finer_copies.elements.extend(halves);
                 }
@@ -119,23 +123,23 @@ impl PeriodicCopies {
         finer_copies
     }
 
-    /// Puts each moved vertex where it belongs: at its original plus the shift.
+    /// Puts each moved vertex where it belongs: at its original plus the translation.
     pub fn place(&self, domain: &Domain, points: &mut [DVec3]) {
-        for PeriodicPair { secondary, primary, shift } in &self.vertices {
-            points[*secondary as usize] = points[*primary as usize] + shift.vector(domain);
+        for PeriodicPair { secondary, primary, translation } in &self.vertices {
+            points[*secondary as usize] = points[*primary as usize] + translation.vector(domain);
         }
     }
 }
 
 fn map_ids<Id: Copy>(pair: PeriodicPair<Id>, id: impl Fn(Id) -> u32) -> PeriodicPair<u32> {
-    PeriodicPair { secondary: id(pair.secondary), primary: id(pair.primary), shift: pair.shift }
+    PeriodicPair { secondary: id(pair.secondary), primary: id(pair.primary), translation: pair.translation }
 }
 
-/// The vertices that a refinement adds, joined to those that they are copies of: a forest of numbers and shifts.
+/// The vertices that a refinement adds, joined to those that they are copies of: a forest of numbers and translations.
 struct NewVertices {
     first: usize,
-    /// Of each new vertex, one of smaller number that it is a copy of, or itself, and the shift from there.
-    parents: Vec<(u32, Shift)>,
+    /// Of each new vertex, one of smaller number that it is a copy of, or itself, and the translation from there.
+    parents: Vec<(u32, Translation)>,
 }
 
 impl NewVertices {
@@ -143,36 +147,36 @@ impl NewVertices {
         Self { first, parents: Vec::new() }
     }
 
-    fn parent(&mut self, vertex: u32) -> (u32, Shift) {
+    fn parent(&mut self, vertex: u32) -> (u32, Translation) {
         let place = vertex as usize - self.first;
         for vertex in self.first + self.parents.len()..=vertex as usize {
-            self.parents.push((u32::try_from(vertex).expect("ids fit 32 bits"), Shift::NONE));
+            self.parents.push((u32::try_from(vertex).expect("ids fit 32 bits"), Translation::ZERO));
         }
         self.parents[place]
     }
 
-    fn root(&mut self, vertex: u32) -> (u32, Shift) {
-        let (mut at, mut shift) = (vertex, Shift::NONE);
+    fn root(&mut self, vertex: u32) -> (u32, Translation) {
+        let (mut at, mut translation) = (vertex, Translation::ZERO);
         loop {
             let (parent, step) = self.parent(at);
             if parent == at {
-                return (at, shift);
+                return (at, translation);
             }
-            (at, shift) = (parent, shift + step);
+            (at, translation) = (parent, translation + step);
         }
     }
 
-    /// Notes that `secondary = primary + shift`.
-    fn unite(&mut self, secondary: u32, primary: u32, shift: Shift) {
+    /// Notes that `secondary = primary + translation`.
+    fn unite(&mut self, secondary: u32, primary: u32, translation: Translation) {
         let ((a, from_a), (b, from_b)) = (self.root(secondary), self.root(primary));
-        // secondary = a + from_a = b + from_b + shift.
+        // secondary = a + from_a = b + from_b + translation.
         let place = |vertex: u32| vertex as usize - self.first;
         if a > b {
             let place = place(a);
-            self.parents[place] = (b, from_b + shift - from_a);
+            self.parents[place] = (b, from_b + translation - from_a);
         } else if b > a {
             let place = place(b);
-            self.parents[place] = (a, from_a - shift - from_b);
+            self.parents[place] = (a, from_a - translation - from_b);
         }
     }
 
@@ -181,8 +185,8 @@ impl NewVertices {
             .map(|v| u32::try_from(v).expect("ids fit 32 bits"))
             .collect();
         let pairs = all.into_iter().map(|secondary| {
-            let (primary, shift) = self.root(secondary);
-            PeriodicPair { secondary, primary, shift }
+            let (primary, translation) = self.root(secondary);
+            PeriodicPair { secondary, primary, translation }
         });
         pairs.filter(|pair| pair.secondary != pair.primary).collect()
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use voronoi::{Corner, Domain, Shift, Side};
+use voronoi::{Domain, PeriodicVertex, Side, Translation};
 
 /// How much a triangle may turn when one of its corners moves along an edge, or an edge of it flips, as the cosine of the angle: 60 degrees.
 const LEAST_COSINE: f64 = 0.5;
@@ -31,7 +31,7 @@ pub(super) struct Coarsening<'a> {
     points: &'a [DVec3],
     /// Of each point: edges at it that are shorter close; none where it is to stay as it is.
     limits: &'a [Option<f64>],
-    triangles: Vec<Option<[Corner; 3]>>,
+    triangles: Vec<Option<[PeriodicVertex; 3]>>,
     /// What lies on both sides of each triangle, in the order of its winding.
     sides: &'a [[Side; 2]],
     /// The triangles at each point, in order.
@@ -39,14 +39,14 @@ pub(super) struct Coarsening<'a> {
 }
 
 /// A triangle at an edge, and by how much it is moved from there.
-type AtEdge = (u32, Shift);
+type AtEdge = (u32, Translation);
 
 /// What a point is part of, in the order of how free it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Part {
     Boundary,
     /// With its two neighbours along the line, as seen from it.
-    Line([Corner; 2]),
+    Line([PeriodicVertex; 2]),
     Node,
 }
 
@@ -58,9 +58,9 @@ pub(super) fn coarsened(
     domain: &Domain,
     points: &[DVec3],
     limits: &[Option<f64>],
-    triangles: &[[Corner; 3]],
+    triangles: &[[PeriodicVertex; 3]],
     sides: &[[Side; 2]],
-) -> Vec<Option<[Corner; 3]>> {
+) -> Vec<Option<[PeriodicVertex; 3]>> {
     if limits.iter().flatten().all(|limit| *limit == 0.0) {
         return triangles.iter().copied().map(Some).collect();
     }
@@ -79,7 +79,7 @@ impl Coarsening<'_> {
     /// Closes short edges, the shortest first, each at most once, and returns how many.
     fn close_short_edges(&mut self) -> usize {
         let all = self.triangles.iter().flatten().flat_map(|corners| edges(*corners));
-        let mut short: Vec<(f64, [Corner; 2])> = all
+        let mut short: Vec<(f64, [PeriodicVertex; 2])> = all
             .filter_map(|ends| {
                 let length = self.length(ends);
                 self.limit(ends).filter(|limit| length < *limit).map(|_| (length, ends))
@@ -89,37 +89,38 @@ impl Coarsening<'_> {
         short.dedup();
         let mut closed = 0;
         for (_, [first, second]) in short {
-            let back = Corner { vertex: first.vertex, shift: first.shift - second.shift };
+            let back =
+                PeriodicVertex { vertex: first.vertex, translation: first.translation - second.translation };
             let mut ways = [(first.vertex, second), (second.vertex, back)].into_iter();
             closed += usize::from(ways.any(|(from, to)| self.close(from, to)));
         }
         closed
     }
 
-    fn place(&self, corner: Corner) -> DVec3 {
-        self.points[corner.vertex as usize] + corner.shift.vector(self.domain)
+    fn place(&self, corner: PeriodicVertex) -> DVec3 {
+        self.points[corner.vertex as usize] + corner.translation.vector(self.domain)
     }
 
-    fn length(&self, [from, to]: [Corner; 2]) -> f64 {
+    fn length(&self, [from, to]: [PeriodicVertex; 2]) -> f64 {
         self.place(from).distance(self.place(to))
     }
 
     /// Below what an edge is short; nothing where one of its ends stays as it is.
-    fn limit(&self, ends: [Corner; 2]) -> Option<f64> {
+    fn limit(&self, ends: [PeriodicVertex; 2]) -> Option<f64> {
         let [from, to] = ends.map(|end| self.limits[end.vertex as usize]);
         Some(from?.min(to?))
     }
 
     /// The corners of a triangle that is there.
-    fn corners(&self, triangle: u32) -> [Corner; 3] {
+    fn corners(&self, triangle: u32) -> [PeriodicVertex; 3] {
         self.triangles[triangle as usize].expect("listed triangles are there")
     }
 
     /// The triangles at an edge.
-    fn at_edge(&self, [from, to]: [Corner; 2]) -> Vec<AtEdge> {
+    fn at_edge(&self, [from, to]: [PeriodicVertex; 2]) -> Vec<AtEdge> {
         let at_edge = |triangle: &u32| {
             let corners = self.corners(*triangle);
-            let moved = shift_of(corners, from.vertex) - from.shift;
+            let moved = translation_of(corners, from.vertex) - from.translation;
             corners.contains(&to.moved(moved)).then_some((*triangle, moved))
         };
         self.at_points[from.vertex as usize].iter().filter_map(at_edge).collect()
@@ -133,12 +134,12 @@ impl Coarsening<'_> {
     }
 
     /// What lies beside a triangle, as seen from where all is moved.
-    fn sides_from(&self, triangle: u32, moved: Shift) -> [Side; 2] {
-        self.sides[triangle as usize].map(|side| side.moved(Shift::NONE - moved))
+    fn sides_from(&self, triangle: u32, moved: Translation) -> [Side; 2] {
+        self.sides[triangle as usize].map(|side| side.moved(Translation::ZERO - moved))
     }
 
     fn part(&self, point: u32) -> Part {
-        let own = Corner { vertex: point, shift: Shift::NONE };
+        let own = PeriodicVertex { vertex: point, translation: Translation::ZERO };
         let mut along = self.beside(point);
         along.retain(|other| !self.is_inside(&self.at_edge([own, *other])));
         match along[..] {
@@ -149,24 +150,24 @@ impl Coarsening<'_> {
     }
 
     /// The points that share an edge with one, in order, as seen from there.
-    fn beside(&self, point: u32) -> Vec<Corner> {
+    fn beside(&self, point: u32) -> Vec<PeriodicVertex> {
         let triangles = self.at_points[point as usize].iter();
         let corners = triangles.flat_map(|triangle| seen_from(self.corners(*triangle), point));
-        let mut others: Vec<Corner> = corners.filter(|corner| corner.vertex != point).collect();
+        let mut others: Vec<PeriodicVertex> = corners.filter(|corner| corner.vertex != point).collect();
         others.sort_unstable();
         others.dedup();
         others
     }
 
     /// Moves a point along an edge to its other end, as seen from the point, if that is allowed and good; returns whether.
-    fn close(&mut self, from: u32, to: Corner) -> bool {
-        let ends = [Corner { vertex: from, shift: Shift::NONE }, to];
+    fn close(&mut self, from: u32, to: PeriodicVertex) -> bool {
+        let ends = [PeriodicVertex { vertex: from, translation: Translation::ZERO }, to];
         let at_edge = self.at_edge(ends);
         if at_edge.is_empty() {
             return false;
         }
         let closes = |triangle: &u32| at_edge.iter().any(|(own, _)| own == triangle);
-        let moved: Vec<(u32, [Corner; 3])> = self.at_points[from as usize]
+        let moved: Vec<(u32, [PeriodicVertex; 3])> = self.at_points[from as usize]
             .iter()
             .filter(|triangle| !closes(triangle))
             .map(|triangle| (*triangle, with_corner_moved(self.corners(*triangle), from, to)))
@@ -184,7 +185,7 @@ impl Coarsening<'_> {
     }
 
     /// Whether the first end of an edge may go to the other for what both are part of.
-    fn may_close(&self, ends: [Corner; 2], at_edge: &[AtEdge]) -> bool {
+    fn may_close(&self, ends: [PeriodicVertex; 2], at_edge: &[AtEdge]) -> bool {
         let [from, to] = ends;
         match self.part(from.vertex) {
             Part::Boundary => true,
@@ -200,7 +201,7 @@ impl Coarsening<'_> {
     }
 
     /// Gives triangles other corners, or takes them away, unless boundaries fold by that; returns whether.
-    fn change(&mut self, changed: Vec<(u32, Option<[Corner; 3]>)>) -> bool {
+    fn change(&mut self, changed: Vec<(u32, Option<[PeriodicVertex; 3]>)>) -> bool {
         let triangles: Vec<u32> = changed.iter().map(|(triangle, _)| *triangle).collect();
         let set_all = |own: &mut Self, all: Vec<_>| -> Vec<_> {
             all.into_iter().map(|(triangle, corners)| (triangle, own.set(triangle, corners))).collect()
@@ -222,7 +223,7 @@ impl Coarsening<'_> {
     }
 
     /// Gives a triangle other corners, and returns the ones it had.
-    fn set(&mut self, triangle: u32, corners: Option<[Corner; 3]>) -> Option<[Corner; 3]> {
+    fn set(&mut self, triangle: u32, corners: Option<[PeriodicVertex; 3]>) -> Option<[PeriodicVertex; 3]> {
         let old = std::mem::replace(&mut self.triangles[triangle as usize], corners);
         for corner in old.iter().flatten() {
             self.at_points[corner.vertex as usize].retain(|other| *other != triangle);
@@ -257,7 +258,7 @@ impl Coarsening<'_> {
     }
 
     /// The direction in the plane of a triangle that leads from an edge of it to its third corner at a right angle.
-    fn away_from(&self, ends: [Corner; 2], triangle: u32) -> DVec3 {
+    fn away_from(&self, ends: [PeriodicVertex; 2], triangle: u32) -> DVec3 {
         let tip = self.corners(triangle).into_iter().find(|corner| !ends.contains(corner)).unwrap_or(ends[0]);
         let [from, to, tip] = [ends[0], ends[1], tip].map(|corner| self.place(corner));
         (tip - from).reject_from(to - from).normalize_or_zero()
@@ -278,7 +279,7 @@ impl Coarsening<'_> {
     }
 
     /// Whether triangles stay as they lie, and are not thin, when a corner of them moves along an edge.
-    fn is_good(&self, moved: &[(u32, [Corner; 3])], ends: [Corner; 2]) -> bool {
+    fn is_good(&self, moved: &[(u32, [PeriodicVertex; 3])], ends: [PeriodicVertex; 2]) -> bool {
         let before = self.at_points[ends[0].vertex as usize].iter();
         let thinnest =
             before.map(|triangle| self.least_angle(self.corners(*triangle))).fold(f64::INFINITY, f64::min);
@@ -290,25 +291,25 @@ impl Coarsening<'_> {
         })
     }
 
-    fn lies_alike(&self, one: [Corner; 3], other: [Corner; 3]) -> bool {
+    fn lies_alike(&self, one: [PeriodicVertex; 3], other: [PeriodicVertex; 3]) -> bool {
         let [one, other] = [one, other].map(|corners| self.normal(corners));
         one.dot(other) > LEAST_COSINE * one.length() * other.length()
     }
 
     /// Whether a triangle is so narrow that how it lies says nothing: part of a step between two faces.
-    fn is_narrow(&self, corners: [Corner; 3], limit: f64) -> bool {
+    fn is_narrow(&self, corners: [PeriodicVertex; 3], limit: f64) -> bool {
         let longest = edges(corners).map(|ends| self.length(ends)).fold(0.0, f64::max);
         self.normal(corners).length() < NARROW * limit * longest
     }
 
     /// Twice the area, along the normal.
-    fn normal(&self, corners: [Corner; 3]) -> DVec3 {
+    fn normal(&self, corners: [PeriodicVertex; 3]) -> DVec3 {
         let [a, b, c] = corners.map(|corner| self.place(corner));
         (b - a).cross(c - a)
     }
 
     /// In degrees.
-    fn least_angle(&self, corners: [Corner; 3]) -> f64 {
+    fn least_angle(&self, corners: [PeriodicVertex; 3]) -> f64 {
         let places = corners.map(|corner| self.place(corner));
         let angle = |corner: usize| {
             let [a, b] = [1, 2].map(|step| places[(corner + step) % 3] - places[corner]);
@@ -318,9 +319,14 @@ impl Coarsening<'_> {
     }
 
     /// Whether around the end of an edge that closes each grain's surface is still one closed fan, and no two triangles have the same corners.
-    fn stays_closed(&self, moved: &[(u32, [Corner; 3])], to: u32, closes: impl Fn(&u32) -> bool) -> bool {
-        let mut rims: BTreeMap<Side, Vec<[Corner; 2]>> = BTreeMap::new();
-        let mut all: Vec<[Corner; 3]> = Vec::new();
+    fn stays_closed(
+        &self,
+        moved: &[(u32, [PeriodicVertex; 3])],
+        to: u32,
+        closes: impl Fn(&u32) -> bool,
+    ) -> bool {
+        let mut rims: BTreeMap<Side, Vec<[PeriodicVertex; 2]>> = BTreeMap::new();
+        let mut all: Vec<[PeriodicVertex; 3]> = Vec::new();
         let there = self.at_points[to as usize].iter().filter(|triangle| !closes(triangle));
         let there = there.map(|triangle| (*triangle, self.corners(*triangle)));
         for (triangle, corners) in moved.iter().copied().chain(there) {
@@ -330,7 +336,7 @@ impl Coarsening<'_> {
             if rim.iter().any(|corner| corner.vertex == to) {
                 return false;
             }
-            let sides = self.sides_from(triangle, shift_of(corners, to)).into_iter();
+            let sides = self.sides_from(triangle, translation_of(corners, to)).into_iter();
             for side in sides.filter(|side| !matches!(side, Side::Wall(_))) {
                 rims.entry(side).or_default().push(rim);
             }
@@ -353,7 +359,7 @@ impl Coarsening<'_> {
         flipped
     }
 
-    fn flip(&mut self, ends: [Corner; 2]) -> bool {
+    fn flip(&mut self, ends: [PeriodicVertex; 2]) -> bool {
         let at_edge = self.at_edge(ends);
         let [first, second] = at_edge[..] else { return false };
         if !self.is_inside(&at_edge) || self.limit(ends).is_none() {
@@ -363,7 +369,7 @@ impl Coarsening<'_> {
         let ends = ends.map(|end| end.moved(first.1));
         let apart = second.1 - first.1;
         let one = self.corners(first.0);
-        let other = self.corners(second.0).map(|corner| corner.moved(Shift::NONE - apart));
+        let other = self.corners(second.0).map(|corner| corner.moved(Translation::ZERO - apart));
         let start = one.iter().position(|corner| !ends.contains(corner)).unwrap_or(0);
         let [top, from, to] = [0, 1, 2].map(|step| one[(start + step) % 3]);
         let Some(bottom) = other.into_iter().find(|corner| !ends.contains(corner)) else { return false };
@@ -385,33 +391,33 @@ impl Coarsening<'_> {
 }
 
 /// The edges of a triangle, the end of smaller number first, as seen from there.
-fn edges([a, b, c]: [Corner; 3]) -> impl Iterator<Item = [Corner; 2]> {
+fn edges([a, b, c]: [PeriodicVertex; 3]) -> impl Iterator<Item = [PeriodicVertex; 2]> {
     [[a, b], [b, c], [c, a]].into_iter().map(|[from, to]| {
         let [first, second] = [from.min(to), from.max(to)];
-        [first, second].map(|end| end.moved(Shift::NONE - first.shift))
+        [first, second].map(|end| end.moved(Translation::ZERO - first.translation))
     })
 }
 
 /// How far a triangle's corner at a point is moved from the point.
-fn shift_of(corners: [Corner; 3], point: u32) -> Shift {
+fn translation_of(corners: [PeriodicVertex; 3], point: u32) -> Translation {
     let own = corners.into_iter().find(|corner| corner.vertex == point);
-    own.expect("the triangle is at this point").shift
+    own.expect("the triangle is at this point").translation
 }
 
 /// The corners of a triangle as seen from one of its points.
-fn seen_from(corners: [Corner; 3], point: u32) -> [Corner; 3] {
-    let moved = shift_of(corners, point);
-    corners.map(|corner| corner.moved(Shift::NONE - moved))
+fn seen_from(corners: [PeriodicVertex; 3], point: u32) -> [PeriodicVertex; 3] {
+    let moved = translation_of(corners, point);
+    corners.map(|corner| corner.moved(Translation::ZERO - moved))
 }
 
 /// The corners of a triangle with one point put where another is, as seen from the first.
-fn with_corner_moved(corners: [Corner; 3], from: u32, to: Corner) -> [Corner; 3] {
-    corners.map(|corner| if corner.vertex == from { to.moved(corner.shift) } else { corner })
+fn with_corner_moved(corners: [PeriodicVertex; 3], from: u32, to: PeriodicVertex) -> [PeriodicVertex; 3] {
+    corners.map(|corner| if corner.vertex == from { to.moved(corner.translation) } else { corner })
 }
 
 /// Whether segments make up one closed line that passes no point twice.
-fn is_cycle(segments: &[[Corner; 2]]) -> bool {
-    let mut ends: BTreeMap<Corner, Vec<Corner>> = BTreeMap::new();
+fn is_cycle(segments: &[[PeriodicVertex; 2]]) -> bool {
+    let mut ends: BTreeMap<PeriodicVertex, Vec<PeriodicVertex>> = BTreeMap::new();
     for [from, to] in segments {
         ends.entry(*from).or_default().push(*to);
         ends.entry(*to).or_default().push(*from);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use subzero::{Crease, CurveMesh, Features, TriangleMesh};
-use voronoi::{Dimension, Edges, FaceId, PeriodicPair, Shift, Tessellation};
+use voronoi::{Dimension, Edges, FaceId, PeriodicPair, Tessellation, Translation};
 
 use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
@@ -99,10 +99,10 @@ impl ControlMesh {
 fn boundaries(tessellation: &Tessellation) -> Vec<Boundary> {
     let mut boundaries: Vec<Boundary> =
         tessellation.faces().map(|face| boundary(tessellation.face_sides(face))).collect();
-    for PeriodicPair { secondary, primary, shift } in tessellation.periodic_faces() {
-        let twin = |face: &FaceId, shift| Some(Twin { boundary: BoundaryId(face.0), shift });
-        boundaries[primary.index()].twin = twin(secondary, *shift);
-        boundaries[secondary.index()].twin = twin(primary, Shift::NONE - *shift);
+    for PeriodicPair { secondary, primary, translation } in tessellation.periodic_faces() {
+        let twin = |face: &FaceId, translation| Some(Twin { boundary: BoundaryId(face.0), translation });
+        boundaries[primary.index()].twin = twin(secondary, *translation);
+        boundaries[secondary.index()].twin = twin(primary, Translation::ZERO - *translation);
     }
     boundaries
 }
@@ -232,7 +232,11 @@ fn lines(
     let copied_lines: Vec<PeriodicPair<u32>> = tessellation
         .periodic_faces()
         .iter()
-        .map(|pair| PeriodicPair { secondary: pair.secondary.0, primary: pair.primary.0, shift: pair.shift })
+        .map(|pair| PeriodicPair {
+            secondary: pair.secondary.0,
+            primary: pair.primary.0,
+            translation: pair.translation,
+        })
         .collect();
     let lines = divide(&ends, &copied_lines);
     let mut points = tessellation.vertices().to_vec();
@@ -295,7 +299,7 @@ fn junctions_of(
 }
 
 fn vertex_pair(pair: &PeriodicPair<voronoi::VertexId>) -> PeriodicPair<u32> {
-    PeriodicPair { secondary: pair.secondary.0, primary: pair.primary.0, shift: pair.shift }
+    PeriodicPair { secondary: pair.secondary.0, primary: pair.primary.0, translation: pair.translation }
 }
 
 /// The number of sides at each place, periodic copies left out.
@@ -311,30 +315,35 @@ fn copied_vertices(tessellation: &Tessellation) -> impl Iterator<Item = u32> {
 
 /// The sides that meet at places: cells, each in the place where it is seen from an original, or the exterior.
 pub(crate) struct Meetings {
-    /// Of each place, its original and the shift from there.
-    originals: Vec<(usize, Shift)>,
+    /// Of each place, its original and the translation from there.
+    originals: Vec<(usize, Translation)>,
     /// Originals and sides that touch them, with repeats.
-    sides: Vec<(usize, Side, Shift)>,
+    sides: Vec<(usize, Side, Translation)>,
     is_outer: Vec<bool>,
 }
 
 impl Meetings {
     pub(crate) fn new(count: usize, copies: impl Iterator<Item = PeriodicPair<u32>>) -> Self {
-        let mut originals: Vec<(usize, Shift)> = (0..count).map(|place| (place, Shift::NONE)).collect();
+        let mut originals: Vec<(usize, Translation)> =
+            (0..count).map(|place| (place, Translation::ZERO)).collect();
         for pair in copies {
-            originals[pair.secondary as usize] = (pair.primary as usize, pair.shift);
+            originals[pair.secondary as usize] = (pair.primary as usize, pair.translation);
         }
         Self { originals, sides: Vec::new(), is_outer: vec![false; count] }
     }
 
     /// Notes that a face with these sides touches a place.
     pub(crate) fn note(&mut self, place: usize, sides: [voronoi::Side; 2]) {
-        let (original, shift) = self.originals[place];
+        let (original, translation) = self.originals[place];
         for side in sides {
             let (side, moved, is_outside) = match side {
-                voronoi::Side::Cell(cell) => (Side::Grain(GrainId(cell.0)), Shift::NONE - shift, false),
-                voronoi::Side::Image(cell, image) => (Side::Grain(GrainId(cell.0)), image - shift, true),
-                voronoi::Side::Wall(_) => (Side::Exterior, Shift::NONE, true),
+                voronoi::Side::Cell(cell) => {
+                    (Side::Grain(GrainId(cell.0)), Translation::ZERO - translation, false)
+                }
+                voronoi::Side::Image(cell, image) => {
+                    (Side::Grain(GrainId(cell.0)), image - translation, true)
+                }
+                voronoi::Side::Wall(_) => (Side::Exterior, Translation::ZERO, true),
             };
             self.sides.push((original, side, moved));
             self.is_outer[place] |= is_outside;
@@ -352,7 +361,7 @@ impl Meetings {
             *grains += usize::from(side.grain().is_some());
         }
         let places = self.originals.iter().zip(&self.is_outer);
-        let meeting = |((original, _), is_outer): (&(usize, Shift), &bool)| {
+        let meeting = |((original, _), is_outer): (&(usize, Translation), &bool)| {
             let [sides, grains] = counts[*original];
             Meeting::new(sides, grains, *is_outer)
         };

@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use voronoi::{Dimension, Edges, FaceId, PeriodicPair, Shift, Tessellation, VertexId, triangulate_polygon};
+use voronoi::{
+    Dimension, Edges, FaceId, PeriodicPair, Tessellation, Translation, VertexId, triangulate_polygon,
+};
 
 use crate::mesh::id::id;
 use crate::network::fan::{Fan, outline_center};
@@ -190,19 +192,19 @@ impl LinePoints {
         let place = |vertex: VertexId| {
             let pairs = tessellation.periodic_vertices();
             match pairs.binary_search_by_key(&vertex, |pair| pair.secondary) {
-                Ok(found) => (pairs[found].primary, pairs[found].shift),
-                Err(_) => (vertex, Shift::NONE),
+                Ok(found) => (pairs[found].primary, pairs[found].translation),
+                Err(_) => (vertex, Translation::ZERO),
             }
         };
-        let of_pair = |&PeriodicPair { secondary, primary, shift }: &PeriodicPair<u32>| {
+        let of_pair = |&PeriodicPair { secondary, primary, translation }: &PeriodicPair<u32>| {
             let [(vertex, at), (original, original_at)] =
                 [secondary, primary].map(|line| place(lines[line as usize][0]));
-            let is_along = (vertex, at) == (original, original_at + shift);
+            let is_along = (vertex, at) == (original, original_at + translation);
             let (own, other) = (self.of_line(secondary), self.of_line(primary));
             let count = other.end - other.start;
             (0..count).map(move |k| {
                 let matching = if is_along { k } else { count - 1 - k };
-                PeriodicPair { secondary: own.start + k, primary: other.start + matching, shift }
+                PeriodicPair { secondary: own.start + k, primary: other.start + matching, translation }
             })
         };
         copied_lines.iter().flat_map(of_pair).collect()
@@ -322,8 +324,8 @@ fn copy_faces(tessellation: &Tessellation, faces: &mut [FaceTriangles]) {
     for pair in tessellation.periodic_faces() {
         let (secondary, primary) = (pair.secondary.index(), pair.primary.index());
         let last_corner = tessellation.face_corners(pair.primary).last().expect("a face has corners").0;
-        let shift = pair.shift.vector(tessellation.domain());
-        let inner_points = faces[primary].inner_points.iter().map(|point| *point + shift).collect();
+        let translation = pair.translation.vector(tessellation.domain());
+        let inner_points = faces[primary].inner_points.iter().map(|point| *point + translation).collect();
         faces[secondary].triangles = faces[primary].turned_round(last_corner);
         faces[secondary].inner_points = inner_points;
     }

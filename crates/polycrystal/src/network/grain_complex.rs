@@ -1,6 +1,6 @@
 //! The complex of grains that several cells make up.
 
-use voronoi::{CellId, Corner, FaceId, Shift, Tessellation};
+use voronoi::{CellId, FaceId, PeriodicVertex, Tessellation, Translation};
 
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::id::id;
@@ -15,22 +15,22 @@ pub struct GrainPart {
     /// The grain.
     pub grain: GrainId,
     /// By how much the cell has to be moved to stand with the grain, in a periodic domain.
-    pub moved: Shift,
+    pub moved: Translation,
 }
 
 impl From<GrainId> for GrainPart {
     /// A part that stands with its grain.
     fn from(grain: GrainId) -> Self {
-        Self { grain, moved: Shift::NONE }
+        Self { grain, moved: Translation::ZERO }
     }
 }
 
 impl GrainPart {
     /// The grain beside a face, where it stands for the cell that is there.
     pub fn beside(parts: &[Self], side: voronoi::Side) -> voronoi::Side {
-        let Some((cell, shift)) = side.cell() else { return side };
+        let Some((cell, translation)) = side.cell() else { return side };
         let Self { grain, moved } = parts[cell.index()];
-        voronoi::Side::Cell(CellId(grain.0)).moved(shift - moved)
+        voronoi::Side::Cell(CellId(grain.0)).moved(translation - moved)
     }
 }
 
@@ -49,10 +49,12 @@ pub(super) fn grain_complex(
     ControlMesh { level, points, .. }: &ControlMesh,
 ) -> Result<Tessellation, NetworkError> {
     check_grains(tessellation, parts)?;
-    let mut corner_of: Vec<Corner> =
-        (0..id(points.len())).map(|vertex| Corner { vertex, shift: Shift::NONE }).collect();
+    let mut corner_of: Vec<PeriodicVertex> = (0..id(points.len()))
+        .map(|vertex| PeriodicVertex { vertex, translation: Translation::ZERO })
+        .collect();
     for pair in &level.copies.vertices {
-        corner_of[pair.secondary as usize] = Corner { vertex: pair.primary, shift: pair.shift };
+        corner_of[pair.secondary as usize] =
+            PeriodicVertex { vertex: pair.primary, translation: pair.translation };
     }
     let mut is_copy = vec![false; level.element_count()];
     level.copies.elements.iter().for_each(|pair| is_copy[pair.secondary as usize] = true);
@@ -74,7 +76,7 @@ pub(super) fn grain_complex(
                 let [a, b, c] = mesh.triangles()[*element].map(|corner| corner_of[corner as usize]);
                 if is_turned(place) { [a, c, b] } else { [a, b, c] }
             };
-            let triangles: Vec<[Corner; 3]> = kept.iter().enumerate().map(triangle).collect();
+            let triangles: Vec<[PeriodicVertex; 3]> = kept.iter().enumerate().map(triangle).collect();
             let limits =
                 limits(lengths, triangles.iter().map(|corners| &corners[..]).zip(&sides), points.len());
             let left = coarsened(domain, points, &limits, &triangles, &sides);
@@ -86,7 +88,7 @@ pub(super) fn grain_complex(
                 let [a, b] = mesh.segments()[*element].map(|corner| corner_of[corner as usize]);
                 if is_turned(place) { [b, a] } else { [a, b] }
             };
-            let segments: Vec<[Corner; 2]> = kept.iter().enumerate().map(segment).collect();
+            let segments: Vec<[PeriodicVertex; 2]> = kept.iter().enumerate().map(segment).collect();
             let limits =
                 limits(lengths, segments.iter().map(|corners| &corners[..]).zip(&sides), points.len());
             let left = coarsened_segments(domain, points, &limits, &segments, &sides);
@@ -126,7 +128,7 @@ fn check_grains(tessellation: &Tessellation, parts: &[GrainPart]) -> Result<(), 
     }
 }
 
-/// Two sides, the one of smaller number first, and walls last. Of a grain and its image, the one of smaller shift.
+/// Two sides, the one of smaller number first, and walls last. Of a grain and its image, the one of smaller translation.
 fn in_order([first, second]: [voronoi::Side; 2]) -> [voronoi::Side; 2] {
     match (first.cell(), second.cell()) {
         (Some(own), Some(other)) if other < own => [second, first],
@@ -138,7 +140,7 @@ fn in_order([first, second]: [voronoi::Side; 2]) -> [voronoi::Side; 2] {
 /// grain.
 fn limits<'a>(
     lengths: &[f64],
-    elements: impl Iterator<Item = (&'a [Corner], &'a [voronoi::Side; 2])>,
+    elements: impl Iterator<Item = (&'a [PeriodicVertex], &'a [voronoi::Side; 2])>,
     point_count: usize,
 ) -> Vec<Option<f64>> {
     let mut limits = vec![Some(f64::INFINITY); point_count];

@@ -1,12 +1,12 @@
 //! The control mesh of grains whose boundaries are made up of many elements.
 
 use subzero::{Crease, CurveMesh, EdgeId, FaceId, Features, TriangleMesh};
-use voronoi::{Dimension, PeriodicPair, Shift, Tessellation, VertexId};
+use voronoi::{Dimension, PeriodicPair, Tessellation, Translation, VertexId};
 
+use crate::mesh::adjacency::Adjacency;
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
-use crate::mesh::seams::Seams;
 use crate::network::control_mesh::{ControlMesh, JunctionCounts, Meetings, boundary, originals};
 use crate::network::grain_complex::{GrainPart, grain_complex};
 use crate::network::labelled_mesh::Lines;
@@ -44,8 +44,8 @@ impl ControlMesh {
         groups.dedup();
         let group_of = |sides| BoundaryId(id(groups.binary_search(sides).expect("all were listed")));
         let group_of: Vec<BoundaryId> = sides.iter().map(group_of).collect();
-        let seams = Seams::of_elements(elements, &group_of);
-        let (mut boundaries, boundary_of) = connected(&sides, &seams);
+        let adjacency = Adjacency::of_elements(elements, &group_of);
+        let (mut boundaries, boundary_of) = connected(&sides, &adjacency);
         let copies = copies(complex, elements, &boundary_of);
         join_twins(&mut boundaries, &boundary_of, &copies.elements)?;
         let of_faces: Vec<Boundary> = sides.iter().map(|sides| boundary(*sides)).collect();
@@ -69,17 +69,18 @@ impl ControlMesh {
         let of_points = || originals(&meetings, copies.vertices.iter().map(|pair| pair.secondary));
         let (mesh, at_edges, junctions) = match mesh {
             ElementList::Segments(segments) => {
-                let mut corners: Vec<u32> = seams.places().map(|at| at[0].place).collect();
+                let mut corners: Vec<u32> = adjacency.non_manifold_edges().map(|at| at[0].edge).collect();
                 copies.spread(&mut corners);
                 let mesh = CurveMesh::new(points.len(), segments, &corners)?;
                 (Mesh::Segments(mesh), Vec::new(), JunctionCounts::new(of_points(), of_points()))
             }
             ElementList::Triangles(triangles) => {
                 let elements = Elements::Triangles(&triangles);
-                let ends: Vec<[u32; 2]> = seams.places().map(|at| at[0].ends(elements)).collect();
+                let ends: Vec<[u32; 2]> =
+                    adjacency.non_manifold_edges().map(|at| at[0].ends(elements)).collect();
                 let copied_edges = copies.of_edges(points.len(), &ends);
                 let mut at_lines = Meetings::new(ends.len(), copied_edges.iter().copied());
-                for (line, at) in seams.places().enumerate() {
+                for (line, at) in adjacency.non_manifold_edges().enumerate() {
                     at.iter().for_each(|at| at_lines.note(line, sides[at.element as usize]));
                 }
                 let at_lines = at_lines.all();
@@ -92,7 +93,7 @@ impl ControlMesh {
                 let junctions = JunctionCounts::new(of_lines, of_points());
                 let mesh = TriangleMesh::new(points.len(), triangles, &features)?;
                 let mut at_edges = vec![None; mesh.edge_count()];
-                for (at, meeting) in seams.places().zip(&at_lines) {
+                for (at, meeting) in adjacency.non_manifold_edges().zip(&at_lines) {
                     let edge = mesh.triangle_edges(FaceId(at[0].element))[usize::from(at[0].corner)];
                     at_edges[edge.index()] = Some(*meeting);
                 }
@@ -161,7 +162,7 @@ fn copies(complex: &Tessellation, elements: Elements<'_>, boundary_of: &[Boundar
             *pair = PeriodicPair {
                 secondary: pair.primary,
                 primary: pair.secondary,
-                shift: Shift::NONE - pair.shift,
+                translation: Translation::ZERO - pair.translation,
             };
         }
     }
@@ -170,9 +171,9 @@ fn copies(complex: &Tessellation, elements: Elements<'_>, boundary_of: &[Boundar
 }
 
 /// Boundaries of elements with these sides, and the boundary of each element.
-fn connected(sides: &[[voronoi::Side; 2]], seams: &Seams) -> (Vec<Boundary>, Vec<BoundaryId>) {
+fn connected(sides: &[[voronoi::Side; 2]], adjacency: &Adjacency) -> (Vec<Boundary>, Vec<BoundaryId>) {
     let mut pieces = DisjointSets::new(sides.len());
-    seams.inner.iter().for_each(|[a, b]| pieces.join(*a, *b));
+    adjacency.inner.iter().for_each(|[a, b]| pieces.join(*a, *b));
     let mut numbers = vec![None; sides.len()];
     let mut boundaries = Vec::new();
     let number = |(element, sides): (u32, &[voronoi::Side; 2])| {
@@ -194,10 +195,11 @@ fn join_twins(
     for pair in copies {
         let [secondary, primary] =
             [pair.secondary, pair.primary].map(|element| boundary_of[element as usize]);
-        for (own, other, shift) in
-            [(primary, secondary, pair.shift), (secondary, primary, Shift::NONE - pair.shift)]
-        {
-            let twin = Twin { boundary: other, shift };
+        for (own, other, translation) in [
+            (primary, secondary, pair.translation),
+            (secondary, primary, Translation::ZERO - pair.translation),
+        ] {
+            let twin = Twin { boundary: other, translation };
             let boundary = &mut boundaries[own.index()];
             if *boundary.twin.get_or_insert(twin) != twin {
                 // At one place more meets in a line than at another: a grain touches itself there.
@@ -234,9 +236,10 @@ impl PeriodicCopies {
         if self.vertices.is_empty() {
             return Vec::new();
         }
-        let mut places: Vec<(u32, Shift)> = (0..id(point_count)).map(|point| (point, Shift::NONE)).collect();
+        let mut places: Vec<(u32, Translation)> =
+            (0..id(point_count)).map(|point| (point, Translation::ZERO)).collect();
         for pair in &self.vertices {
-            places[pair.secondary as usize] = (pair.primary, pair.shift);
+            places[pair.secondary as usize] = (pair.primary, pair.translation);
         }
         let mut keyed: Vec<_> = (0u32..)
             .zip(edges)
@@ -249,10 +252,10 @@ impl PeriodicCopies {
         keyed.sort_unstable();
         let pairs = keyed.chunk_by(|a, b| a.0 == b.0).flat_map(|same| {
             let (_, primary, at) = same[0];
-            same[1..].iter().map(move |(_, secondary, shift)| PeriodicPair {
+            same[1..].iter().map(move |(_, secondary, translation)| PeriodicPair {
                 secondary: *secondary,
                 primary,
-                shift: *shift - at,
+                translation: *translation - at,
             })
         });
         pairs.collect()

@@ -4,10 +4,10 @@ use glam::DVec3;
 use subzero::{Crease, CurveMesh, EdgeId, FaceId, Features, TriangleMesh};
 use voronoi::{Domain, PeriodicPair, Wall};
 
+use crate::mesh::adjacency::{Adjacency, Incidence};
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
-use crate::mesh::seams::{Seams, Use};
 use crate::network::control_mesh::{ControlMesh, JunctionCounts};
 use crate::{
     Boundary, BoundaryId, Certificate, Elements, Expected, Fault, GrainId, Junctions, Level, Mesh,
@@ -69,8 +69,8 @@ impl ControlMesh {
         junctions: Junctions,
     ) -> Result<Self, NetworkError> {
         let elements = OrderedElements::new(domain, surface, kind)?;
-        let seams = Seams::of_elements(elements.as_elements(), &elements.boundary_of);
-        let Connected { boundaries, boundary_of } = Connected::new(&elements, &seams);
+        let adjacency = Adjacency::of_elements(elements.as_elements(), &elements.boundary_of);
+        let Connected { boundaries, boundary_of } = Connected::new(&elements, &adjacency);
         let mut walls_of = vec![Vec::new(); surface.points.len()];
         let mut sides_of = vec![Vec::new(); surface.points.len()];
         for (element, boundary) in (0u32..).zip(&boundary_of) {
@@ -85,16 +85,16 @@ impl ControlMesh {
             list.dedup();
         };
         walls_of.iter_mut().for_each(sorted);
-        let uses = || seams.places().map(|at| at[0].ends(elements.as_elements()));
-        let (wall_sets, walls) = WallSets::of_walls(domain, &walls_of, &boundaries, uses());
+        let ends = || adjacency.non_manifold_edges().map(|at| at[0].ends(elements.as_elements()));
+        let (wall_sets, walls) = WallSets::of_walls(domain, &walls_of, &boundaries, ends());
         let mut points = surface.points.to_vec();
         points
             .iter_mut()
             .zip(&walls)
             .for_each(|(point, walls)| *point = wall_sets.put_on_walls(*walls, *point));
         let meetings: Vec<Meeting> = sides_of.iter_mut().map(meeting).collect();
-        let at_places: Vec<Meeting> = seams
-            .places()
+        let at_places: Vec<Meeting> = adjacency
+            .non_manifold_edges()
             .map(|at| meeting(&mut at.iter().flat_map(|at| elements.sides_of(at)).collect()))
             .collect();
         let at_points = || meetings.iter().map(|at| at.sides);
@@ -102,12 +102,12 @@ impl ControlMesh {
         let copies = PeriodicCopies::default();
         let (mesh, at_edges, junctions) = match &elements.ordered {
             Ordered::Segments(segments) => {
-                let corners: Vec<u32> = seams.places().map(|at| at[0].place).collect();
+                let corners: Vec<u32> = adjacency.non_manifold_edges().map(|at| at[0].edge).collect();
                 let mesh = CurveMesh::new(points.len(), segments.clone(), &corners)?;
                 (Mesh::Segments(mesh), Vec::new(), JunctionCounts::new(at_points(), at_points()))
             }
             Ordered::Triangles(triangles) => {
-                let ends: Vec<[u32; 2]> = uses().collect();
+                let ends: Vec<[u32; 2]> = ends().collect();
                 let lines = Lines::new(points.len(), &ends);
                 let creases: Vec<Crease> = ends.iter().map(|ends| Crease::infinite(*ends)).collect();
                 let corners = lines.corners(junctions);
@@ -118,7 +118,7 @@ impl ControlMesh {
                     Meeting::inside(&boundaries[boundary_of[triangle.index()].index()])
                 };
                 let mut at_lines: Vec<Option<Meeting>> = vec![None; mesh.edge_count()];
-                for (at, meeting) in seams.places().zip(&at_places) {
+                for (at, meeting) in adjacency.non_manifold_edges().zip(&at_places) {
                     let edge = mesh.triangle_edges(FaceId(at[0].element))[usize::from(at[0].corner)];
                     at_lines[edge.index()] = Some(*meeting);
                 }
@@ -207,7 +207,7 @@ impl OrderedElements {
         }
     }
 
-    fn sides_of(&self, at: &Use) -> [Side; 2] {
+    fn sides_of(&self, at: &Incidence) -> [Side; 2] {
         self.groups[self.boundary_of[at.element as usize].index()].1
     }
 }
@@ -233,9 +233,9 @@ struct Connected {
 }
 
 impl Connected {
-    fn new(elements: &OrderedElements, seams: &Seams) -> Self {
+    fn new(elements: &OrderedElements, adjacency: &Adjacency) -> Self {
         let mut pieces = DisjointSets::new(elements.boundary_of.len());
-        seams.inner.iter().for_each(|[a, b]| pieces.join(*a, *b));
+        adjacency.inner.iter().for_each(|[a, b]| pieces.join(*a, *b));
         let mut numbers = vec![None; elements.boundary_of.len()];
         let mut boundaries = Vec::new();
         let mut boundary_of = Vec::with_capacity(numbers.len());

@@ -2,7 +2,7 @@
 
 use voronoi::{Dimension, Tessellation};
 
-use crate::relax::foreseen_points;
+use crate::relax::predicted_points;
 use crate::{
     Attempt, Collapsed, FaceMesh, Junctions, Network, NetworkError, Tuning, remove_edges_that_shorten,
     remove_short_edges,
@@ -38,12 +38,12 @@ pub fn regular_cells_tuned(
     }
     let volumes = cells.cell_measures().iter().map(|cell| cell.volume).collect();
     let relaxed = Network::with_face_mesh(&regular, FaceMesh::SparseFan, Junctions::Crease, 0)
-        .and_then(|(network, flat)| foreseen_points(&network.with_cell_volumes(volumes), &flat, tuning));
+        .and_then(|(network, flat)| predicted_points(&network.with_cell_volumes(volumes), &flat, tuning));
     let points = match relaxed {
         Ok(points) => points,
         Err(error) if error.is_tangle() => {
             let mut given_up = Vec::new();
-            error.give_up("foreseeing which edges become short", &mut given_up);
+            error.give_up("predicting which edges become short", &mut given_up);
             return Ok(RegularCells { cells: regular, collapsed, given_up });
         }
         Err(error) => return Err(error),

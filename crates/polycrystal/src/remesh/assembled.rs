@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 use rayon::prelude::*;
 use subzero::{Crease, EdgeId, Features, TriangleMesh};
-use voronoi::{PeriodicPair, Shift};
+use voronoi::{PeriodicPair, Translation};
 
 use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
@@ -61,19 +61,19 @@ pub(crate) fn assemble(
         positions.extend(new.points);
     }
     for (copy, of) in parts.copies.iter().enumerate() {
-        let Some(Moved { original, shift }) = *of else { continue };
-        let moved = |corner: Moved<u32>| Moved { shift: corner.shift + shift, ..corner };
+        let Some(Moved { original, translation }) = *of else { continue };
+        let moved = |corner: Moved<u32>| Moved { translation: corner.translation + translation, ..corner };
         let turned = of_part[original as usize].iter().map(|[a, b, c]| [*a, *c, *b].map(moved));
         of_part[copy] = turned.collect();
     }
     // Originals first, in order, so that the number of an original is its place.
     let mut copies: Vec<Moved<u32>> = of_part.iter().flatten().flatten().copied().collect();
-    copies.retain(|point| point.shift != Shift::NONE);
+    copies.retain(|point| point.translation != Translation::ZERO);
     copies.par_sort_unstable();
     copies.dedup();
     let count = positions.len();
-    let number = |point: Moved<u32>| match point.shift {
-        Shift::NONE => point.original,
+    let number = |point: Moved<u32>| match point.translation {
+        Translation::ZERO => point.original,
         _ => id(count + copies.binary_search(&point).expect("all copies were listed")),
     };
     let (mut triangles, mut boundary_of) = (Vec::new(), Vec::new());
@@ -137,7 +137,7 @@ pub(crate) fn assemble(
     let pairs = (id(count)..).zip(&copies).map(|(secondary, copy)| PeriodicPair {
         secondary,
         primary: copy.original,
-        shift: copy.shift,
+        translation: copy.translation,
     });
     let is_periodic = network.domain().is_periodic();
     let level_copies = PeriodicCopies {
@@ -154,21 +154,22 @@ pub(crate) fn assemble(
         copies: level_copies,
         at_edges,
     };
-    let originals = (0..id(count)).map(|original| Moved { original, shift: Shift::NONE }).chain(copies);
+    let originals =
+        (0..id(count)).map(|original| Moved { original, translation: Translation::ZERO }).chain(copies);
     Ok(Assembled { originals: originals.collect(), network: network.with_level(level), positions })
 }
 
 impl Assembled {
-    /// All points: originals on their walls, copies where their shifts lead.
+    /// All points: originals on their walls, copies where their translations lead.
     pub(crate) fn points(&self) -> Vec<DVec3> {
         let (domain, sets) = (self.network.domain(), self.network.wall_sets());
         let walls = &self.network.finest().walls;
         let on_walls = |(point, moved): (usize, &Moved<u32>)| {
             let place =
                 sets.put_on_walls(walls[moved.original as usize], self.positions[moved.original as usize]);
-            match moved.shift {
-                Shift::NONE => place,
-                shift => sets.put_on_walls(walls[point], place + shift.vector(domain)),
+            match moved.translation {
+                Translation::ZERO => place,
+                translation => sets.put_on_walls(walls[point], place + translation.vector(domain)),
             }
         };
         self.originals.iter().enumerate().map(on_walls).collect()

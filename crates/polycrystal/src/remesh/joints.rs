@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
-use voronoi::Shift;
+use voronoi::Translation;
 
 use crate::remesh::lines::DividedLine;
 use crate::remesh::outline::Numbering;
@@ -17,8 +17,8 @@ pub(crate) type Shaped<'a> = (Shaping<'a>, BTreeMap<u32, Moved<u32>>);
 /// Points on lines as seen from the least of them, which is no other way the same.
 fn key<const N: usize>(mut points: [Moved<u32>; N]) -> [Moved<u32>; N] {
     points.sort_unstable();
-    let from = points[0].shift;
-    points.map(|point| Moved { shift: point.shift - from, ..point })
+    let from = points[0].translation;
+    points.map(|point| Moved { translation: point.translation - from, ..point })
 }
 
 /// Gives boundaries that have an edge or a triangle between points of lines in common, on the torus, points of their own there.
@@ -30,7 +30,8 @@ pub(crate) fn separate_joints(
 ) {
     let mut edges: BTreeMap<[Moved<u32>; 2], usize> = BTreeMap::new();
     let mut triangles: BTreeMap<[Moved<u32>; 3], usize> = BTreeMap::new();
-    for occurrence in around.skeleton.occurrences.iter().filter(|occurrence| occurrence.shift == Shift::NONE)
+    for occurrence in
+        around.skeleton.occurrences.iter().filter(|occurrence| occurrence.translation == Translation::ZERO)
     {
         let along = numbering.along(around, occurrence, lines[occurrence.line as usize].points.len());
         for ends in along.windows(2) {

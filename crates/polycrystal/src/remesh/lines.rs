@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use voronoi::Shift;
+use voronoi::Translation;
 
 use crate::mesh::id::id;
 use crate::remesh::size_field::SizeField;
@@ -56,8 +56,8 @@ pub(crate) fn divide_lines(
 /// The ends of a line on the torus, in order, as seen from one of them.
 fn ends(line: &Line, torus: &Torus) -> [Moved<u32>; 2] {
     let from = |own: u32, other: u32| {
-        let Moved { original, shift } = torus.vertices[own as usize];
-        [Moved { original, shift: Shift::NONE }, torus.seen(other, shift)]
+        let Moved { original, translation } = torus.vertices[own as usize];
+        [Moved { original, translation: Translation::ZERO }, torus.seen(other, translation)]
     };
     let (start, end) = (line.vertices[0], line.vertices[line.vertices.len() - 1]);
     from(start, end).min(from(end, start))

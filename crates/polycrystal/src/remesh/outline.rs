@@ -51,13 +51,14 @@ impl Numbering {
         count: usize,
     ) -> Vec<Moved<u32>> {
         let first = self.first_of_line[occurrence.line as usize];
-        let inner = (0..id(count)).map(|k| Moved { original: first + k, shift: occurrence.shift });
+        let inner =
+            (0..id(count)).map(|k| Moved { original: first + k, translation: occurrence.translation });
         let (start, end) = (occurrence.vertices[0], occurrence.vertices[occurrence.vertices.len() - 1]);
         // The start of a closed line is numbered after its other points.
-        let start_of_loop = Moved { original: first + id(count), shift: occurrence.shift };
+        let start_of_loop = Moved { original: first + id(count), translation: occurrence.translation };
         let end_point = |vertex: u32| {
-            let Moved { original, shift } = around.torus.vertices[vertex as usize];
-            self.nodes.get(&original).map_or(start_of_loop, |node| Moved { original: *node, shift })
+            let Moved { original, translation } = around.torus.vertices[vertex as usize];
+            self.nodes.get(&original).map_or(start_of_loop, |node| Moved { original: *node, translation })
         };
         std::iter::once(end_point(start)).chain(inner).chain([end_point(end)]).collect()
     }

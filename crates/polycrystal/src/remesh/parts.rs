@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use subzero::{EdgeId, TriangleMesh};
-use voronoi::Shift;
+use voronoi::Translation;
 
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::grouped::Grouped;
@@ -71,10 +71,10 @@ fn copies(
     let seen = |triangle: u32| {
         let mut corners = mesh.triangles()[triangle as usize].map(|corner| torus.vertices[corner as usize]);
         corners.sort_unstable();
-        let from = corners[0].shift;
-        (corners.map(|corner| Moved { shift: corner.shift - from, ..corner }), from)
+        let from = corners[0].translation;
+        (corners.map(|corner| Moved { translation: corner.translation - from, ..corner }), from)
     };
-    let mut known: BTreeMap<[Moved<u32>; 3], (u32, Shift)> = BTreeMap::new();
+    let mut known: BTreeMap<[Moved<u32>; 3], (u32, Translation)> = BTreeMap::new();
     let mut copies = vec![None; of_parts.len()];
     for part in 0..of_parts.len() {
         if boundaries[of_parts[part].index()].sides[1] != Side::Exterior {
@@ -95,7 +95,7 @@ fn copies(
         if !is_alike {
             return Err(NetworkError::NoCopyOnWall { point: mesh.triangles()[own[0] as usize][0] });
         }
-        copies[part] = Some(Moved { original, shift: at - there });
+        copies[part] = Some(Moved { original, translation: at - there });
     }
     Ok(copies)
 }

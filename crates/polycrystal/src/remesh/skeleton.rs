@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use voronoi::Shift;
+use voronoi::Translation;
 
 use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
@@ -28,7 +28,7 @@ impl Line {
 pub(crate) struct Occurrence {
     pub(crate) line: u32,
     /// From the place of [`Line::vertices`] to here.
-    pub(crate) shift: Shift,
+    pub(crate) translation: Translation,
     /// In the order of [`Line::vertices`].
     pub(crate) vertices: Vec<u32>,
     /// The walls that points inside the line lie on.
@@ -61,27 +61,29 @@ type EdgeKey = (u32, Moved<u32>);
 impl Skeleton {
     pub(crate) fn new(level: &Level, mesh: &TriangleMesh, sets: &WallSets, torus: &Torus) -> Self {
         let edge_count = id(mesh.edge_count());
-        let is_seam =
+        let is_non_manifold =
             |edge: u32| match mesh.edge_triangles(EdgeId(edge)).map(|pair| pair.map(|triangle| triangle.0)) {
                 Some([a, b]) => level.boundary_of[a as usize] != level.boundary_of[b as usize],
                 None => true,
             };
         let key = |edge: u32| edge_key(torus, mesh.edge(EdgeId(edge)));
-        let mut seams: Vec<u32> = (0..edge_count).filter(|edge| is_seam(*edge)).collect();
+        let mut non_manifold_edges: Vec<u32> =
+            (0..edge_count).filter(|edge| is_non_manifold(*edge)).collect();
         // What is a line somewhere is one at all copies, though fewer boundaries may be seen there.
-        let is_copied = torus.vertices.iter().any(|moved| moved.shift != Shift::NONE);
+        let is_copied = torus.vertices.iter().any(|moved| moved.translation != Translation::ZERO);
         if is_copied {
-            let keys: BTreeSet<EdgeKey> = seams.iter().map(|edge| key(*edge)).collect();
-            seams = (0..edge_count).filter(|edge| is_seam(*edge) || keys.contains(&key(*edge))).collect();
+            let keys: BTreeSet<EdgeKey> = non_manifold_edges.iter().map(|edge| key(*edge)).collect();
+            non_manifold_edges =
+                (0..edge_count).filter(|edge| is_non_manifold(*edge) || keys.contains(&key(*edge))).collect();
         }
         let mut at_vertices: Vec<Vec<u32>> = vec![Vec::new(); level.vertex_count()];
         let mut around: Vec<Vec<Moved<u32>>> = vec![Vec::new(); level.vertex_count()];
-        for edge in &seams {
+        for edge in &non_manifold_edges {
             let [a, b] = mesh.edge(EdgeId(*edge));
             for [own, other] in [[a, b], [b, a]] {
                 at_vertices[own as usize].push(*edge);
-                let Moved { original, shift } = torus.vertices[own as usize];
-                around[original as usize].push(torus.seen(other, shift));
+                let Moved { original, translation } = torus.vertices[own as usize];
+                around[original as usize].push(torus.seen(other, translation));
             }
         }
         let count = |vertex: usize| {
@@ -99,11 +101,11 @@ impl Skeleton {
             is_node,
         };
         let mut known: BTreeMap<EdgeKey, u32> = BTreeMap::new();
-        let starts_at_nodes = seams
+        let starts_at_nodes = non_manifold_edges
             .iter()
             .copied()
             .filter(|edge| mesh.edge(EdgeId(*edge)).iter().any(|end| skeleton.is_node[*end as usize]));
-        let order: Vec<u32> = starts_at_nodes.chain(seams.iter().copied()).collect();
+        let order: Vec<u32> = starts_at_nodes.chain(non_manifold_edges.iter().copied()).collect();
         for edge in order {
             if skeleton.of_edge[edge as usize].is_some() {
                 continue;
@@ -116,7 +118,7 @@ impl Skeleton {
             });
             let walls =
                 sets.intersection(level.walls[vertices[0] as usize], level.walls[vertices[1] as usize]);
-            let (vertices, shift) = aligned(torus, &skeleton.lines[line as usize].vertices, vertices);
+            let (vertices, translation) = aligned(torus, &skeleton.lines[line as usize].vertices, vertices);
             let occurrence = id(skeleton.occurrences.len());
             let meeting = level.at_edges[edges[0] as usize];
             let steps: BTreeMap<[u32; 2], u32> = (0u32..)
@@ -127,7 +129,7 @@ impl Skeleton {
                 let step = steps[&sorted(mesh.edge(EdgeId(edge)))];
                 skeleton.of_edge[edge as usize] = Some(LineEdge { occurrence, step });
             }
-            skeleton.occurrences.push(Occurrence { line, shift, vertices, walls, meeting });
+            skeleton.occurrences.push(Occurrence { line, translation, vertices, walls, meeting });
         }
         skeleton
     }
@@ -155,19 +157,21 @@ fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
 
 fn edge_key(torus: &Torus, ends: [u32; 2]) -> EdgeKey {
     let from = |[own, other]: [u32; 2]| {
-        let Moved { original, shift } = torus.vertices[own as usize];
-        (original, torus.seen(other, shift))
+        let Moved { original, translation } = torus.vertices[own as usize];
+        (original, torus.seen(other, translation))
     };
     from(ends).min(from([ends[1], ends[0]]))
 }
 
-/// The vertices of a copy of a line in the line's order, and the shift from the line.
-fn aligned(torus: &Torus, line: &[u32], copy: Vec<u32>) -> (Vec<u32>, Shift) {
+/// The vertices of a copy of a line in the line's order, and the translation from the line.
+fn aligned(torus: &Torus, line: &[u32], copy: Vec<u32>) -> (Vec<u32>, Translation) {
     let fits = |copy: &[u32]| {
-        let shift = torus.vertices[copy[0] as usize].shift - torus.vertices[line[0] as usize].shift;
-        let is_alike =
-            |(own, other): (&u32, &u32)| torus.seen(*other, shift) == torus.seen(*own, Shift::NONE);
-        line.iter().zip(copy).all(is_alike).then_some(shift)
+        let translation =
+            torus.vertices[copy[0] as usize].translation - torus.vertices[line[0] as usize].translation;
+        let is_alike = |(own, other): (&u32, &u32)| {
+            torus.seen(*other, translation) == torus.seen(*own, Translation::ZERO)
+        };
+        line.iter().zip(copy).all(is_alike).then_some(translation)
     };
     let is_closed = copy[0] == copy[copy.len() - 1];
     let turns = if is_closed { copy.len() - 1 } else { 1 };
@@ -179,8 +183,8 @@ fn aligned(torus: &Torus, line: &[u32], copy: Vec<u32>) -> (Vec<u32>, Shift) {
             turned.push(turned[0]);
         }
         for _ in 0..2 {
-            if let Some(shift) = fits(&turned) {
-                return (turned, shift);
+            if let Some(translation) = fits(&turned) {
+                return (turned, translation);
             }
             turned.reverse();
         }

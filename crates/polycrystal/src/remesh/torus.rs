@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::{BVec3, DVec3};
-use voronoi::Shift;
+use voronoi::Translation;
 
 use crate::mesh::id::id;
 use crate::{Level, Network, NetworkError};
@@ -12,7 +12,7 @@ use crate::{Level, Network, NetworkError};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Moved<Id> {
     pub(crate) original: Id,
-    pub(crate) shift: Shift,
+    pub(crate) translation: Translation,
 }
 
 /// The copies of a network.
@@ -40,10 +40,11 @@ impl Torus {
 
     fn of_copies(level: &Level) -> Self {
         let mut vertices: Vec<Moved<u32>> = (0..id(level.vertex_count()))
-            .map(|vertex| Moved { original: vertex, shift: Shift::NONE })
+            .map(|vertex| Moved { original: vertex, translation: Translation::ZERO })
             .collect();
         for pair in &level.copies.vertices {
-            vertices[pair.secondary as usize] = Moved { original: pair.primary, shift: pair.shift };
+            vertices[pair.secondary as usize] =
+                Moved { original: pair.primary, translation: pair.translation };
         }
         Self { vertices }
     }
@@ -60,22 +61,25 @@ impl Torus {
             .collect();
         let mut vertices = Vec::with_capacity(points.len());
         for (vertex, point) in (0u32..).zip(points) {
-            let (mut below, mut shift) = (*point, Shift::NONE);
+            let (mut below, mut translation) = (*point, Translation::ZERO);
             for axis in (0..3).filter(|axis| cut.test(*axis) && point[*axis] == upper[*axis]) {
                 below[axis] = lower[axis];
-                shift.0[axis] = 1;
+                translation.0[axis] = 1;
             }
-            let original =
-                if shift == Shift::NONE { Some(vertex) } else { by_place.get(&bits(below)).copied() };
+            let original = if translation == Translation::ZERO {
+                Some(vertex)
+            } else {
+                by_place.get(&bits(below)).copied()
+            };
             let original = original.ok_or(NetworkError::NoCopyOnWall { point: vertex })?;
-            vertices.push(Moved { original, shift });
+            vertices.push(Moved { original, translation });
         }
         Ok(Self { vertices })
     }
 
-    /// The vertex, as seen from where the shift leads.
-    pub(crate) fn seen(&self, vertex: u32, from: Shift) -> Moved<u32> {
-        let Moved { original, shift } = self.vertices[vertex as usize];
-        Moved { original, shift: shift - from }
+    /// The vertex, as seen from where the translation leads.
+    pub(crate) fn seen(&self, vertex: u32, from: Translation) -> Moved<u32> {
+        let Moved { original, translation } = self.vertices[vertex as usize];
+        Moved { original, translation: translation - from }
     }
 }

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use crate::Surface;
 use crate::check::folds::folded_pairs;
 use crate::check::intersections::crossing_elements;
+use crate::mesh::adjacency::Adjacency;
 use crate::mesh::grouped::Grouped;
-use crate::mesh::seams::Seams;
 use crate::voxels::bending::Boxes;
 use crate::voxels::graph::Graph;
 use crate::voxels::tuning::VoxelTuning;
@@ -39,7 +39,7 @@ struct Untangled {
 
 /// How elements meet.
 struct Neighbors {
-    seams: Seams,
+    adjacency: Adjacency,
     by_boundary: Grouped<u32>,
 }
 
@@ -49,13 +49,13 @@ impl Untangling<'_> {
     /// Folds stay where grains are one voxel thick: a plate has a rim.
     pub(super) fn untangle(&self, points: Vec<DVec3>, volume_error: f64) -> Vec<DVec3> {
         let surface = self.search.surface;
-        let seams = Seams::of_elements(surface.elements, surface.boundary_of);
-        let neighbors = Neighbors { seams, by_boundary: surface.elements_by_boundary() };
+        let adjacency = Adjacency::of_elements(surface.elements, surface.boundary_of);
+        let neighbors = Neighbors { adjacency, by_boundary: surface.elements_by_boundary() };
         let free = vec![false; points.len()];
         let mut best = self.without_crossings(points, free, volume_error, &neighbors);
         while !best.folds.is_empty() {
             let mut points = best.points.clone();
-            let is_held = self.smooth_folds(&mut points, &neighbors.seams);
+            let is_held = self.smooth_folds(&mut points, &neighbors.adjacency);
             let volume_error = self.search.restore(&mut points, self.boxes, &is_held);
             if volume_error > VOLUME_TOLERANCE {
                 break;
@@ -85,9 +85,9 @@ impl Untangling<'_> {
         for round in 0.. {
             let normals = surface.elements.normals(&points);
             let now = Surface { points: &points, ..surface };
-            let crossings = crossing_elements(&now, &neighbors.seams, &neighbors.by_boundary, &normals);
+            let crossings = crossing_elements(&now, &neighbors.adjacency, &neighbors.by_boundary, &normals);
             if crossings.is_empty() || round == self.tuning.crossing_rounds {
-                let folds = folded_pairs(&neighbors.seams.inner, &normals, 0.0);
+                let folds = folded_pairs(&neighbors.adjacency.inner, &normals, 0.0);
                 return Untangled { points, folds, crossings: crossings.len(), volume_error };
             }
             let home = home.get_or_insert_with(|| self.home());
@@ -112,13 +112,13 @@ impl Untangling<'_> {
     /// Points at folds, and after some rounds those around, go half the way to the mean of those that they follow. Returns which moved.
     ///
     /// Ends when a wider ring of points mends little.
-    fn smooth_folds(&self, points: &mut [DVec3], seams: &Seams) -> Vec<bool> {
+    fn smooth_folds(&self, points: &mut [DVec3], adjacency: &Adjacency) -> Vec<bool> {
         let mut is_moved = vec![false; points.len()];
         let mut before = usize::MAX;
         for ring in 0.. {
             for _ in 0..self.tuning.rounds_of_smoothing {
                 check_cancelled();
-                let folds = self.folds(points, seams);
+                let folds = self.folds(points, adjacency);
                 if folds.is_empty() {
                     return is_moved;
                 }
@@ -137,7 +137,7 @@ impl Untangling<'_> {
                 );
                 is_moved.iter_mut().zip(marked).for_each(|(moved, marked)| *moved |= marked);
             }
-            let left = self.folds(points, seams).len();
+            let left = self.folds(points, adjacency).len();
             if ring == self.tuning.rings || 2 * left > before {
                 break;
             }
@@ -146,8 +146,8 @@ impl Untangling<'_> {
         is_moved
     }
 
-    fn folds(&self, points: &[DVec3], seams: &Seams) -> Vec<[u32; 2]> {
-        folded_pairs(&seams.inner, &self.search.surface.elements.normals(points), 0.0)
+    fn folds(&self, points: &[DVec3], adjacency: &Adjacency) -> Vec<[u32; 2]> {
+        folded_pairs(&adjacency.inner, &self.search.surface.elements.normals(points), 0.0)
     }
 
     /// The corners of elements, and all points so many edges around them.

@@ -15,7 +15,7 @@ use crate::diagram::united_vertices::UnitedVertices;
 use crate::diagram::whole_cells::unwrapped;
 use crate::exact::generator::Generator;
 use crate::sites::search::Search;
-use crate::{CellId, Corner, Dimension, Shift, Side, Tessellation, VertexId};
+use crate::{CellId, Dimension, PeriodicVertex, Side, Tessellation, Translation, VertexId};
 
 /// Cuts all cells and makes one complex of them; `seeds` and the result's cells are in the order of the input.
 pub(crate) fn merge(search: &Search, seeds: &[DVec3]) -> Tessellation {
@@ -53,7 +53,7 @@ fn push_tile(
     sums: &mut CellSums,
     search: &Search,
     tile: &Tile,
-    numbers: &[Corner],
+    numbers: &[PeriodicVertex],
 ) {
     let Tessellation { vertices, face_sides, face_starts, face_corners, .. } = tessellation;
     let before = face_corners.len();
@@ -61,7 +61,7 @@ fn push_tile(
     let sides = |sides: &[Generator; 2]| {
         sides.map(|generator| match search.ids().get(generator.0 as usize) {
             Some(id) => Side::Cell(CellId(*id)),
-            None => Side::of(search.end(generator), Shift::NONE),
+            None => Side::of(search.end(generator), Translation::ZERO),
         })
     };
     rayon::join(
@@ -81,7 +81,7 @@ fn push_tile(
 fn unite_coincident(cells: &Tessellation, pairs: &[[u32; 2]]) -> Tessellation {
     let mut vertices = UnitedVertices::new(cells.vertices.len());
     for pair in pairs {
-        let [v, w] = pair.map(|vertex| Corner { vertex, shift: Shift::NONE });
+        let [v, w] = pair.map(|vertex| PeriodicVertex { vertex, translation: Translation::ZERO });
         vertices.unite(v, w);
     }
     let mut faces = vertices.faces(cells);

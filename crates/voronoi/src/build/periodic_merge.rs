@@ -1,9 +1,9 @@
 //! From the cells of a periodic domain to one complex of whole cells.
 //!
-//! Cells that differ by whole periods are one. A vertex of one cell may so be a vertex of another one moved by a shift:
-//! each vertex is first named by its generators moved to where the cell with the smallest number owns it, and by the shift
+//! Cells that differ by whole periods are one. A vertex of one cell may so be a vertex of another one moved by a translation:
+//! each vertex is first named by its generators moved to where the cell with the smallest number owns it, and by the translation
 //! back. What comes out first is the complex of the torus, every face once. Then each face that joins a cell to a moved one
-//! gets its copy at the other cell, so that all cells are whole, and copies are told by their originals and a shift.
+//! gets its copy at the other cell, so that all cells are whole, and copies are told by their originals and a translation.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ use crate::diagram::torus::TorusFaces;
 use crate::diagram::united_vertices::UnitedVertices;
 use crate::diagram::whole_cells::unwrapped;
 use crate::sites::search::Search;
-use crate::{Corner, Dimension, Tessellation};
+use crate::{Dimension, PeriodicVertex, Tessellation};
 
 pub(crate) fn merge_periodic(search: &Search, seeds: &[DVec3], mut tiles: Vec<Tile>) -> Tessellation {
     let dimension = search.domain().dimension();
@@ -29,7 +29,7 @@ pub(crate) fn merge_periodic(search: &Search, seeds: &[DVec3], mut tiles: Vec<Ti
         tiles.par_iter_mut().zip(&mut numbers).for_each(|(tile, numbers)| {
             for corner in &mut *numbers {
                 let root = roots[corner.vertex as usize];
-                *corner = Corner { shift: corner.shift + root.shift, ..root };
+                *corner = PeriodicVertex { translation: corner.translation + root.translation, ..root };
             }
             tile.drop_repeated_corners(|corner| numbers[corner as usize], dimension.fewest_corners());
         });
@@ -54,7 +54,7 @@ pub(crate) fn merge_periodic(search: &Search, seeds: &[DVec3], mut tiles: Vec<Ti
 }
 
 /// Unites vertices that are one point: of each, the one that stands for it.
-fn unite_coincident(count: usize, tiles: &[Tile], numbers: &[Vec<Corner>]) -> Vec<Corner> {
+fn unite_coincident(count: usize, tiles: &[Tile], numbers: &[Vec<PeriodicVertex>]) -> Vec<PeriodicVertex> {
     let mut vertices = UnitedVertices::new(count);
     for (tile, numbers) in tiles.iter().zip(numbers) {
         for [v, w] in &tile.coincident {
@@ -65,7 +65,7 @@ fn unite_coincident(count: usize, tiles: &[Tile], numbers: &[Vec<Corner>]) -> Ve
 }
 
 /// The faces of all tiles, in the user's numbers of cells, with corners by number.
-fn faces_of_tiles(search: &Search, tiles: &[Tile], numbers: &[Vec<Corner>]) -> TorusFaces {
+fn faces_of_tiles(search: &Search, tiles: &[Tile], numbers: &[Vec<PeriodicVertex>]) -> TorusFaces {
     let (face_count, corner_count) =
         tiles.iter().map(Tile::counts).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
     let mut ends = Vec::with_capacity(face_count);

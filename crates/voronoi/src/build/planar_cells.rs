@@ -127,15 +127,15 @@ impl<'a> Finder<'a> {
                 *edge = vertex.out_edge();
             }
         }
-        let (mut spokes, mut corners) = (Vec::new(), Vec::new());
+        let (mut outgoing, mut corners) = (Vec::new(), Vec::new());
         for (place, first) in first_edges.into_iter().enumerate() {
             let first: Edge = first.ok_or(Failure::Special)?;
-            spokes.clear();
-            spokes.push(first);
+            outgoing.clear();
+            outgoing.push(first);
             let turned = std::iter::successors(Some(first.ccw()), |edge| Some(edge.ccw()));
-            spokes.extend(turned.take_while(|edge| *edge != first));
+            outgoing.extend(turned.take_while(|edge| *edge != first));
             let (seed, before) = (self.known.seeds[place], self.cells.cell_edges.len());
-            self.add_cell(seed, &spokes, &mut corners)?;
+            self.add_cell(seed, &outgoing, &mut corners)?;
             let count = self.cells.cell_edges.len() - before;
             self.cells.edge_counts.push((seed, u32::try_from(count).expect("edges fit 32 bits")));
         }
@@ -143,38 +143,37 @@ impl<'a> Finder<'a> {
     }
 
     /// Adds the cell of a seed, given the edges that leave it, counter-clockwise.
-    fn add_cell(&mut self, seed: u32, spokes: &[Edge], corners: &mut Vec<u32>) -> Result<(), Failure> {
+    fn add_cell(&mut self, seed: u32, outgoing: &[Edge], corners: &mut Vec<u32>) -> Result<(), Failure> {
         corners.clear();
-        for (spoke, next) in spokes.iter().zip(spokes.iter().cycle().skip(1)) {
-            match self.vertex(seed, *spoke, *next)? {
+        for (edge, next) in outgoing.iter().zip(outgoing.iter().cycle().skip(1)) {
+            match self.vertex(seed, *edge, *next)? {
                 Some(number) => corners.push(number),
-                None => return self.add_cell_at_wall(seed, spokes),
+                None => return self.add_cell_at_wall(seed, outgoing),
             }
         }
         let mut start = corners[corners.len() - 1];
-        for (spoke, end) in spokes.iter().zip(corners) {
-            self.push_edge_across(seed, *spoke, [start, *end])?;
+        for (edge, end) in outgoing.iter().zip(corners) {
+            self.push_edge_across(seed, *edge, [start, *end])?;
             start = *end;
         }
         Ok(())
     }
 
     /// Adds the cell of a seed that touches a wall, or may.
-    fn add_cell_at_wall(&mut self, seed: u32, spokes: &[Edge]) -> Result<(), Failure> {
+    fn add_cell_at_wall(&mut self, seed: u32, outgoing: &[Edge]) -> Result<(), Failure> {
         let mut polygon = ConvexPolygon::new(seed, self.input);
-        for spoke in spokes {
-            polygon.cut(Generator::site(self.id(*spoke)), self.input);
+        for edge in outgoing {
+            polygon.cut(Generator::site(self.id(*edge)), self.input);
         }
         let mut corners = Vec::new();
         for ([before, after], position) in polygon.corners() {
             corners.push(match (before.as_site(), after.as_site()) {
                 (Some(before), Some(after)) => {
-                    let mut pairs = spokes.iter().zip(spokes.iter().cycle().skip(1));
-                    let is_there = |(spoke, next): &(&Edge, &Edge)| {
-                        [self.id(**spoke), self.id(**next)] == [before, after]
-                    };
-                    let (spoke, next) = pairs.find(is_there).ok_or(Failure::Special)?;
-                    self.vertex(seed, *spoke, *next)?.ok_or(Failure::Special)?
+                    let mut pairs = outgoing.iter().zip(outgoing.iter().cycle().skip(1));
+                    let is_there =
+                        |(edge, next): &(&Edge, &Edge)| [self.id(**edge), self.id(**next)] == [before, after];
+                    let (edge, next) = pairs.find(is_there).ok_or(Failure::Special)?;
+                    self.vertex(seed, *edge, *next)?.ok_or(Failure::Special)?
                 }
                 _ => {
                     let corner = self.position(seed) + position;
@@ -186,8 +185,8 @@ impl<'a> Finder<'a> {
         for (k, ([_, beyond], _)) in polygon.corners().enumerate() {
             let ends = [corners[k], corners[(k + 1) % corners.len()]];
             if let Some(other) = beyond.as_site() {
-                let spoke = spokes.iter().find(|spoke| self.id(**spoke) == other);
-                self.push_edge_across(seed, *spoke.ok_or(Failure::Special)?, ends)?;
+                let edge = outgoing.iter().find(|edge| self.id(**edge) == other);
+                self.push_edge_across(seed, *edge.ok_or(Failure::Special)?, ends)?;
             } else {
                 self.push_edge(seed, beyond, ends)?;
             }
@@ -196,11 +195,11 @@ impl<'a> Finder<'a> {
     }
 
     /// The number of the vertex of the triangle between two edges that leave a seed, if it certainly lies in the domain.
-    fn vertex(&mut self, seed: u32, spoke: Edge, next: Edge) -> Result<Option<u32>, Failure> {
-        let Some(triangle) = spoke.face().as_inner() else { return Ok(None) };
+    fn vertex(&mut self, seed: u32, edge: Edge, next: Edge) -> Result<Option<u32>, Failure> {
+        let Some(triangle) = edge.face().as_inner() else { return Ok(None) };
         let triangle = triangle.index();
         if self.numbers[triangle] == Number::Unasked {
-            let others = [spoke, next].map(|spoke| self.id(spoke));
+            let others = [edge, next].map(|edge| self.id(edge));
             let from_seed = circumcentre(seed, others, self.input);
             let (centre, radius) = (self.position(seed) + from_seed, from_seed.length());
             let margin = uncertainty(centre, radius);
@@ -208,8 +207,8 @@ impl<'a> Finder<'a> {
             self.numbers[triangle] =
                 if (centre - margin).cmpgt(lower).all() && (centre + margin).cmplt(upper).all() {
                     self.check_known(centre, radius)?;
-                    let is_own = |spoke: Edge| (spoke.to().data().place as usize) < self.known.own;
-                    let is_shared = !(is_own(spoke) && is_own(next));
+                    let is_own = |edge: Edge| (edge.to().data().place as usize) < self.known.own;
+                    let is_shared = !(is_own(edge) && is_own(next));
                     let generators = [seed, others[0], others[1]].map(Generator::site);
                     Number::Inside(self.push_vertex(centre, generators, is_shared))
                 } else {
@@ -225,8 +224,8 @@ impl<'a> Finder<'a> {
     /// Checks that all seeds are known that may lie in a circle.
     fn check_known(&self, centre: DVec2, radius: f64) -> Result<(), Failure> {
         let [lower, upper] = self.known.bounds;
-        let reach = DVec2::splat(radius * (1.0 + POSSIBLY_COINCIDENT));
-        let is_known = (centre - reach).cmpge(lower).all() && (centre + reach).cmple(upper).all();
+        let extent = DVec2::splat(radius * (1.0 + POSSIBLY_COINCIDENT));
+        let is_known = (centre - extent).cmpge(lower).all() && (centre + extent).cmple(upper).all();
         if is_known { Ok(()) } else { Err(Failure::Unknown) }
     }
 
@@ -241,16 +240,16 @@ impl<'a> Finder<'a> {
     }
 
     /// Adds the edge of a cell across an edge of the triangulation.
-    fn push_edge_across(&mut self, seed: u32, spoke: Edge, ends: [u32; 2]) -> Result<(), Failure> {
-        let across = spoke.as_undirected().index();
+    fn push_edge_across(&mut self, seed: u32, edge: Edge, ends: [u32; 2]) -> Result<(), Failure> {
+        let across = edge.as_undirected().index();
         if self.edge_numbers[across] != NONE {
             self.cells.cell_edges.push(self.edge_numbers[across]);
             return Ok(());
         }
-        let other = self.id(spoke);
+        let other = self.id(edge);
         let number = self.push_edge(seed, Generator::site(other), ends)?;
         self.edge_numbers[across] = number;
-        if spoke.to().data().place as usize >= self.known.own {
+        if edge.to().data().place as usize >= self.known.own {
             let key = [seed.min(other), seed.max(other)].map(Generator::site);
             self.cells.shared_edges.push((key, number));
         }
@@ -274,8 +273,8 @@ impl<'a> Finder<'a> {
     }
 
     /// The seed to which an edge leads.
-    fn id(&self, spoke: Edge) -> u32 {
-        self.known.seeds[spoke.to().data().place as usize]
+    fn id(&self, edge: Edge) -> u32 {
+        self.known.seeds[edge.to().data().place as usize]
     }
 }
 

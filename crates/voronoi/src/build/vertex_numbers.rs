@@ -11,7 +11,7 @@ use crate::build::tile_vertex::NONE;
 use crate::exact::generator::{Generator, Plane, VertexKey};
 use crate::exact::image::Image;
 use crate::exact::input::ExactInput;
-use crate::{Corner, Shift};
+use crate::{PeriodicVertex, Translation};
 
 /// The vertices that a tile owns.
 struct Owned {
@@ -24,8 +24,9 @@ struct Owned {
 
 impl Owned {
     fn new(input: ExactInput, tile: &Tile) -> Self {
-        let is_owned =
-            |key: &VertexKey| key[0].0 >= tile.seeds.start && canonical(input, key) == (*key, Shift::NONE);
+        let is_owned = |key: &VertexKey| {
+            key[0].0 >= tile.seeds.start && canonical(input, key) == (*key, Translation::ZERO)
+        };
         let mut ranks = vec![0; tile.positions.len()];
         for shared in tile.shared.iter().filter(|shared| !is_owned(&shared.key)) {
             ranks[shared.vertex as usize] = NONE;
@@ -57,9 +58,9 @@ impl<'a> VertexNumbers<'a> {
         Self { input, first_seeds: Vec::new(), starts: Vec::new(), shared: Vec::new(), count: 0 }
     }
 
-    /// The number of every vertex of further tiles, with the shift to where it is from there. Who owns a vertex must be numbered
+    /// The number of every vertex of further tiles, with the translation to where it is from there. Who owns a vertex must be numbered
     /// before, or among them: between walls that holds for tiles in order.
-    pub(crate) fn of_tiles(&mut self, tiles: &[Tile]) -> Vec<Vec<Corner>> {
+    pub(crate) fn of_tiles(&mut self, tiles: &[Tile]) -> Vec<Vec<PeriodicVertex>> {
         let input = self.input;
         let owned: Vec<Owned> = tiles.par_iter().map(|tile| Owned::new(input, tile)).collect();
         let first = self.starts.len();
@@ -74,14 +75,18 @@ impl<'a> VertexNumbers<'a> {
         let numbers =
             tiles.par_iter().zip(&ranks).zip(&self.starts[first..]).map(|((tile, ranks), start)| {
                 // Those of vertices that others own come out wrong here, and right below.
-                let number = |rank: &u32| Corner { vertex: start.wrapping_add(*rank), shift: Shift::NONE };
-                let mut numbers: Vec<Corner> = ranks.iter().map(number).collect();
+                let number = |rank: &u32| PeriodicVertex {
+                    vertex: start.wrapping_add(*rank),
+                    translation: Translation::ZERO,
+                };
+                let mut numbers: Vec<PeriodicVertex> = ranks.iter().map(number).collect();
                 for shared in tile.shared.iter().filter(|shared| ranks[shared.vertex as usize] == NONE) {
-                    let (key, shift) = canonical(input, &shared.key);
+                    let (key, translation) = canonical(input, &shared.key);
                     let owner = self.first_seeds.partition_point(|first| *first <= key[0].0) - 1;
                     let rank = self.shared[owner].get(&key);
                     let rank = rank.expect("exact decisions give every tile the same vertices");
-                    numbers[shared.vertex as usize] = Corner { vertex: self.starts[owner] + rank, shift };
+                    numbers[shared.vertex as usize] =
+                        PeriodicVertex { vertex: self.starts[owner] + rank, translation };
                 }
                 numbers
             });
@@ -90,13 +95,13 @@ impl<'a> VertexNumbers<'a> {
 }
 
 /// The generators of a vertex, all moved by whole periods to where the cell of the smallest number among them owns it, and
-/// the shift from there back. Where that cell meets the vertex in several places, the smallest list of generators tells.
-pub(crate) fn canonical(input: ExactInput, key: &VertexKey) -> (VertexKey, Shift) {
+/// the translation from there back. Where that cell meets the vertex in several places, the smallest list of generators tells.
+pub(crate) fn canonical(input: ExactInput, key: &VertexKey) -> (VertexKey, Translation) {
     let first_image =
         Generator::site(u32::try_from(input.seeds.len()).expect("site ids were checked to fit"));
     let is_image = |generator: &Generator| *generator >= first_image && generator.as_site().is_some();
     if !key.iter().any(is_image) {
-        return (*key, Shift::NONE);
+        return (*key, Translation::ZERO);
     }
     let planes = key.map(Generator::plane);
     let images = planes.map(|plane| match plane {
@@ -106,12 +111,16 @@ pub(crate) fn canonical(input: ExactInput, key: &VertexKey) -> (VertexKey, Shift
     let smallest = images.iter().flatten().map(|image| image.seed).min();
     let candidates = images.iter().flatten().filter(|image| Some(image.seed) == smallest);
     let moved = candidates.map(|owner| {
-        let mut moved =
-            images.map(|image| image.map(|Image { seed, shift }| Image { seed, shift: shift - owner.shift }));
+        let mut moved = images.map(|image| {
+            image.map(|Image { seed, translation }| Image {
+                seed,
+                translation: translation - owner.translation,
+            })
+        });
         moved.sort_unstable();
-        (moved, owner.shift)
+        (moved, owner.translation)
     });
-    let (moved, shift) = moved.min().expect("every vertex belongs to a cell");
+    let (moved, translation) = moved.min().expect("every vertex belongs to a cell");
     let mut sites =
         moved.iter().flatten().map(|image| input.site(*image).expect("the owner was cut by these sites"));
     let mut owned = planes.map(|plane| match plane {
@@ -120,14 +129,14 @@ pub(crate) fn canonical(input: ExactInput, key: &VertexKey) -> (VertexKey, Shift
         Plane::Facet(wall) => Generator::facet(wall),
     });
     owned.sort_unstable();
-    (owned, shift)
+    (owned, translation)
 }
 
 /// Adds the positions of a tile's own vertices to those of the tiles before.
-pub(crate) fn push_positions(positions: &mut Vec<DVec3>, tile: &Tile, numbers: &[Corner]) {
+pub(crate) fn push_positions(positions: &mut Vec<DVec3>, tile: &Tile, numbers: &[PeriodicVertex]) {
     for (position, number) in tile.positions.iter().zip(numbers) {
         // Each tile's own vertices come in order.
-        if number.shift == Shift::NONE && number.vertex as usize == positions.len() {
+        if number.translation == Translation::ZERO && number.vertex as usize == positions.len() {
             positions.push(*position);
         }
     }

@@ -285,9 +285,9 @@ impl<'a> EdgeTracing<'a> {
         let (seed, search) = (self.seed, self.search);
         let from = (self.radius > LEAST_SHARE * radius).then_some(self.radius);
         if from.is_none() {
-            let reach = search.reach(seed, radius);
+            let security_radius = search.security_radius(seed, radius);
             self.radius = -1.0;
-            self.candidates.restart(reach, search.first_image(), search.position_error());
+            self.candidates.restart(security_radius, search.first_image(), search.position_error());
         }
         if !search.gather(&mut self.candidates, seed, from, radius, MOST_CANDIDATES)? {
             self.is_crowded = true;

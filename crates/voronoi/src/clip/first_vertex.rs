@@ -54,7 +54,7 @@ impl Search<'_> {
                 }
                 return Ok(None);
             }
-            if cell.radius() < 0.0 || self.reach(seed, cell.radius()) <= self.known(layer, seed) {
+            if cell.radius() < 0.0 || self.security_radius(seed, cell.radius()) <= self.known(layer, seed) {
                 return Ok(cell.vertices().first().copied());
             }
         }
@@ -69,15 +69,15 @@ impl Search<'_> {
             near.push(facet.generator, (2.0 * distance).powi(2));
         });
         let own_weight = input.weight(seed);
-        // As for the reach, with the weight of a site or of those in a box; where there is no root, they are too light.
+        // As for the security radius, with the weight of a site or of those in a box; where there is no root, they are too light.
         let is_wanted = |radius: f64, squared: f64, weight: f64| {
             let distance = squared.sqrt();
             let root_of = radius * radius + (weight - own_weight);
-            let reach = radius + root_of.max(0.0).sqrt();
+            let security_radius = radius + root_of.max(0.0).sqrt();
             radius >= 0.0
                 && root_of >= 0.0
                 && distance <= known
-                && distance <= reach * RADIUS_MARGIN + self.position_error()
+                && distance <= security_radius * RADIUS_MARGIN + self.position_error()
         };
         let mut count = 0;
         while let Some((plane, squared)) =

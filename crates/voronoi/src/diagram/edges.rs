@@ -1,6 +1,6 @@
 //! Edges of a tessellation, which it does not store.
 
-use crate::{PeriodicPair, Shift, Tessellation, VertexId};
+use crate::{PeriodicPair, Tessellation, Translation, VertexId};
 
 /// The edges of a tessellation, each once.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,16 +37,16 @@ impl Edges {
     fn periodic_pairs(&self, vertices: &[PeriodicPair<VertexId>]) -> Vec<PeriodicPair<u32>> {
         let Some(first_secondary) = vertices.first().map(|pair| pair.secondary) else { return Vec::new() };
         let primary = |vertex: VertexId| match vertex.0.checked_sub(first_secondary.0) {
-            None => (vertex, Shift::NONE),
-            Some(place) => (vertices[place as usize].primary, vertices[place as usize].shift),
+            None => (vertex, Translation::ZERO),
+            Some(place) => (vertices[place as usize].primary, vertices[place as usize].translation),
         };
-        // An edge of the torus is a primary vertex, another one, and the shift of the other as seen from the first.
+        // An edge of the torus is a primary vertex, another one, and the translation of the other as seen from the first.
         let mut places: Vec<_> = (0u32..)
             .zip(&self.ends)
             .map(|(edge, ends)| {
                 let [(a, at_a), (b, at_b)] = ends.map(primary);
-                let (name, shift) = ((a, b, at_b - at_a), at_a).min(((b, a, at_a - at_b), at_b));
-                (name, edge, shift)
+                let (name, translation) = ((a, b, at_b - at_a), at_a).min(((b, a, at_a - at_b), at_b));
+                (name, edge, translation)
             })
             .collect();
         places.sort_unstable();
@@ -54,10 +54,10 @@ impl Edges {
         let mut pairs: Vec<PeriodicPair<u32>> = same
             .flat_map(|same| {
                 let (_, primary, at_primary) = same[0];
-                let pair = move |&(_, secondary, shift): &_| PeriodicPair {
+                let pair = move |&(_, secondary, translation): &_| PeriodicPair {
                     secondary,
                     primary,
-                    shift: shift - at_primary,
+                    translation: translation - at_primary,
                 };
                 same[1..].iter().map(pair)
             })

@@ -1,6 +1,6 @@
 //! Numbers of what a tessellation has.
 
-use crate::Shift;
+use crate::Translation;
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
@@ -30,7 +30,7 @@ id!(
     FaceId
 );
 
-/// A vertex, edge or face that is another one moved by whole periods: `secondary = primary + shift`.
+/// A vertex, edge or face that is another one moved by whole periods: `secondary = primary + translation`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PeriodicPair<Id> {
     /// The moved one.
@@ -38,5 +38,5 @@ pub struct PeriodicPair<Id> {
     /// The one that stands for all of its kind.
     pub primary: Id,
     /// How far the secondary is from the primary.
-    pub shift: Shift,
+    pub translation: Translation,
 }

@@ -13,7 +13,7 @@ use crate::{CellId, Dimension, Domain, FaceId, PeriodicPair, Side, VertexId};
 ///
 /// In a periodic domain every cell is whole: it stands around its seed and may stick out of the domain. A face between a
 /// cell and a moved one then comes twice, once at each of the two cells, and so do vertices and edges, once at each place
-/// where cells meet there. One of them is the primary, the others are its secondaries and listed with the shift between
+/// where cells meet there. One of them is the primary, the others are its secondaries and listed with the translation between
 /// them ([`Self::periodic_faces`], [`Self::periodic_vertices`], [`Self::periodic_edges`]). Primaries alone are the complex
 /// of the periodic domain.
 #[derive(Debug, Clone, PartialEq)]
@@ -172,7 +172,7 @@ impl Tessellation {
     }
 
     /// The vertices that are others moved by whole periods; none unless the domain is periodic. Secondaries have the last
-    /// ids, in order, and stand at the primary's position plus [`Shift::vector`](crate::Shift::vector).
+    /// ids, in order, and stand at the primary's position plus [`Translation::vector`](crate::Translation::vector).
     pub fn periodic_vertices(&self) -> &[PeriodicPair<VertexId>] {
         &self.periodic_vertices
     }

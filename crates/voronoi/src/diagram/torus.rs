@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 
 use crate::exact::face_end::FaceEnd;
-use crate::{Corner, Dimension, Shift};
+use crate::{Dimension, PeriodicVertex, Translation};
 
 /// Faces in flat arrays. The first end is a cell that is not moved; the second is a greater cell, moved or not, the same
 /// cell moved, or a wall.
@@ -13,7 +13,7 @@ pub(crate) struct TorusFaces {
     dimension: Dimension,
     ends: Vec<[FaceEnd; 2]>,
     starts: Vec<usize>,
-    corners: Vec<Corner>,
+    corners: Vec<PeriodicVertex>,
 }
 
 impl TorusFaces {
@@ -26,13 +26,13 @@ impl TorusFaces {
         dimension: Dimension,
         ends: Vec<[FaceEnd; 2]>,
         starts: Vec<usize>,
-        corners: Vec<Corner>,
+        corners: Vec<PeriodicVertex>,
     ) -> Self {
         Self { dimension, ends, starts, corners }
     }
 
     /// Adds a face, unless it has shrunk to a line or a point.
-    pub(crate) fn push(&mut self, ends: [FaceEnd; 2], corners: impl Iterator<Item = Corner>) {
+    pub(crate) fn push(&mut self, ends: [FaceEnd; 2], corners: impl Iterator<Item = PeriodicVertex>) {
         let first = self.corners.len();
         for corner in corners {
             if self.corners.len() == first || self.corners[self.corners.len() - 1] != corner {
@@ -51,23 +51,27 @@ impl TorusFaces {
     }
 
     /// Adds a face that is told from either side, and may be moved by whole periods.
-    pub(crate) fn push_in_order(&mut self, ends: [FaceEnd; 2], corners: impl Iterator<Item = Corner>) {
+    pub(crate) fn push_in_order(
+        &mut self,
+        ends: [FaceEnd; 2],
+        corners: impl Iterator<Item = PeriodicVertex>,
+    ) {
         let (ends, back, is_turned) = in_order(ends);
         let moved = corners.map(|corner| corner.moved(back));
         if is_turned {
-            let corners: Vec<Corner> = moved.collect();
+            let corners: Vec<PeriodicVertex> = moved.collect();
             self.push(ends, corners.into_iter().rev());
         } else {
             self.push(ends, moved);
         }
     }
 
-    pub(crate) fn par_iter(&self) -> impl IndexedParallelIterator<Item = ([FaceEnd; 2], &[Corner])> {
+    pub(crate) fn par_iter(&self) -> impl IndexedParallelIterator<Item = ([FaceEnd; 2], &[PeriodicVertex])> {
         let corners = self.starts.par_windows(2).map(|range| &self.corners[range[0]..range[1]]);
         self.ends.par_iter().copied().zip(corners)
     }
 
-    fn iter(&self) -> impl Iterator<Item = ([FaceEnd; 2], &[Corner])> {
+    fn iter(&self) -> impl Iterator<Item = ([FaceEnd; 2], &[PeriodicVertex])> {
         let corners = self.starts.windows(2).map(|range| &self.corners[range[0]..range[1]]);
         self.ends.iter().copied().zip(corners)
     }
@@ -83,7 +87,7 @@ impl TorusFaces {
     }
 
     /// The corners of one face after the other.
-    pub(crate) fn corners(&self) -> &[Corner] {
+    pub(crate) fn corners(&self) -> &[PeriodicVertex] {
         &self.corners
     }
 
@@ -117,9 +121,9 @@ impl TorusFaces {
                 unreachable!("what a flat cell has beside its two faces has shrunk to lines")
             };
             let [here, there] = [kept, dropped].map(|face| usize::from(self.ends[face][1].is(cell)));
-            let shift = self.ends[kept][here].shift() - self.ends[dropped][there].shift();
+            let translation = self.ends[kept][here].translation() - self.ends[dropped][there].translation();
             let beyond = self.ends[dropped][1 - there];
-            self.ends[kept][here] = beyond.moved(shift);
+            self.ends[kept][here] = beyond.moved(translation);
             is_dropped[dropped] = true;
             if let FaceEnd::Cell(image) = beyond
                 && let Some(faces) = faces_of.get_mut(&image.seed)
@@ -141,9 +145,9 @@ impl TorusFaces {
 }
 
 /// The ends of a face in the order of [`TorusFaces`], by how much they were moved, and whether they changed places.
-fn in_order(ends: [FaceEnd; 2]) -> ([FaceEnd; 2], Shift, bool) {
+fn in_order(ends: [FaceEnd; 2]) -> ([FaceEnd; 2], Translation, bool) {
     let [straight, turned] = [ends, [ends[1], ends[0]]].map(|ends| {
-        let back = Shift::NONE - ends[0].shift();
+        let back = Translation::ZERO - ends[0].translation();
         (ends.map(|end| end.moved(back)), back)
     });
     let is_turned =

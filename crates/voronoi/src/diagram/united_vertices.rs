@@ -1,19 +1,20 @@
 use crate::diagram::torus::TorusFaces;
-use crate::{Corner, Shift, Side, Tessellation, VertexId};
+use crate::{PeriodicVertex, Side, Tessellation, Translation, VertexId};
 
 /// Vertices of the torus joined where exact ties made them one point: a forest in which each knows its parent and how it
 /// is moved relative to it.
 pub(crate) struct UnitedVertices {
-    parents: Vec<Corner>,
+    parents: Vec<PeriodicVertex>,
 }
 
 impl UnitedVertices {
     pub(crate) fn new(count: usize) -> Self {
-        let parents = (0u32..).take(count).map(|vertex| Corner { vertex, shift: Shift::NONE });
+        let parents =
+            (0u32..).take(count).map(|vertex| PeriodicVertex { vertex, translation: Translation::ZERO });
         Self { parents: parents.collect() }
     }
 
-    fn root(&mut self, of: Corner) -> Corner {
+    fn root(&mut self, of: PeriodicVertex) -> PeriodicVertex {
         let mut at = of;
         loop {
             let parent = self.parents[at.vertex as usize];
@@ -21,18 +22,20 @@ impl UnitedVertices {
                 return at;
             }
             let grandparent = self.parents[parent.vertex as usize];
-            let skipped = Corner { shift: parent.shift + grandparent.shift, ..grandparent };
+            let skipped =
+                PeriodicVertex { translation: parent.translation + grandparent.translation, ..grandparent };
             self.parents[at.vertex as usize] = skipped;
-            at = Corner { shift: at.shift + skipped.shift, ..skipped };
+            at = PeriodicVertex { translation: at.translation + skipped.translation, ..skipped };
         }
     }
 
-    pub(crate) fn unite(&mut self, v: Corner, w: Corner) {
+    pub(crate) fn unite(&mut self, v: PeriodicVertex, w: PeriodicVertex) {
         let (v, w) = (self.root(v), self.root(w));
         // The smaller number stays, so the result does not depend on the order of the pairs.
         let (kept, joined) = if v.vertex < w.vertex { (v, w) } else { (w, v) };
         if kept.vertex != joined.vertex {
-            self.parents[joined.vertex as usize] = Corner { shift: kept.shift - joined.shift, ..kept };
+            self.parents[joined.vertex as usize] =
+                PeriodicVertex { translation: kept.translation - joined.translation, ..kept };
         }
     }
 
@@ -40,9 +43,9 @@ impl UnitedVertices {
     pub(crate) fn faces(self, cells: &Tessellation) -> TorusFaces {
         let roots = self.roots();
         let root = |vertex: &VertexId| {
-            let Corner { vertex, shift } = cells.primary_corner(*vertex);
+            let PeriodicVertex { vertex, translation } = cells.periodic_vertex(*vertex);
             let root = roots[vertex as usize];
-            Corner { shift: root.shift + shift, ..root }
+            PeriodicVertex { translation: root.translation + translation, ..root }
         };
         let mut faces = TorusFaces::new(cells.domain().dimension());
         for face in cells.faces().take(cells.face_count() - cells.periodic_faces().len()) {
@@ -51,8 +54,8 @@ impl UnitedVertices {
         faces
     }
 
-    pub(crate) fn roots(mut self) -> Vec<Corner> {
+    pub(crate) fn roots(mut self) -> Vec<PeriodicVertex> {
         let vertices = (0u32..).take(self.parents.len());
-        vertices.map(|vertex| self.root(Corner { vertex, shift: Shift::NONE })).collect()
+        vertices.map(|vertex| self.root(PeriodicVertex { vertex, translation: Translation::ZERO })).collect()
     }
 }

@@ -1,7 +1,7 @@
 //! Whole cells from the complex of the torus.
 //!
 //! Each face that joins a cell to a moved one gets its copy at the other cell, so that all cells are whole, and copies are told by
-//! their originals and a shift.
+//! their originals and a translation.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use crate::diagram::torus::TorusFaces;
 use crate::exact::face_end::FaceEnd;
 use crate::exact::image::Image;
-use crate::{Corner, Domain, FaceId, PeriodicPair, Shift, Side, Tessellation, VertexId};
+use crate::{Domain, FaceId, PeriodicPair, PeriodicVertex, Side, Tessellation, Translation, VertexId};
 
 /// The tessellation with whole cells, their faces not listed yet: of a face between a cell and a moved one, a copy at each.
 pub(crate) fn unwrapped(
@@ -30,12 +30,12 @@ impl Tessellation {
     /// shrink to lines or points by that are left out.
     ///
     /// Cells need not be convex, nor faces plane.
-    pub fn of_whole_cells<Corners: IntoIterator<Item = Corner>>(
+    pub fn of_whole_cells<Corners: IntoIterator<Item = PeriodicVertex>>(
         domain: &Domain,
         seeds: &[DVec3],
         positions: &[DVec3],
         faces: impl IntoIterator<Item = ([Side; 2], Corners)>,
-    ) -> (Self, Vec<Corner>) {
+    ) -> (Self, Vec<PeriodicVertex>) {
         let mut of_torus = TorusFaces::new(domain.dimension());
         for (sides, corners) in faces {
             let corners = corners.into_iter();
@@ -56,20 +56,27 @@ fn with_places(
     let places = VertexPlaces::new(faces, positions.len());
     let vertices = Vec::with_capacity(places.count());
     let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);
-    let period = |shift: Shift| shift.vector(domain);
-    let moved = |original: &Corner| positions[original.vertex as usize] + period(original.shift);
+    let period = |translation: Translation| translation.vector(domain);
+    let moved =
+        |original: &PeriodicVertex| positions[original.vertex as usize] + period(original.translation);
     tessellation.vertices.par_extend(places.originals.par_iter().map(moved));
     for (copy, original) in places.copies() {
-        let shift = copy.moved.shift - places.originals[original.index()].shift;
-        let position = tessellation.vertices[original.index()] + period(shift);
+        let translation = copy.moved.translation - places.originals[original.index()].translation;
+        let position = tessellation.vertices[original.index()] + period(translation);
         tessellation.vertices.push(position);
-        tessellation.periodic_vertices.push(PeriodicPair { secondary: copy.id, primary: original, shift });
+        tessellation.periodic_vertices.push(PeriodicPair {
+            secondary: copy.id,
+            primary: original,
+            translation,
+        });
     }
-    // Faces that join a cell to a moved one, by the shift back.
-    let copied: Vec<(u32, Shift)> = (0u32..)
+    // Faces that join a cell to a moved one, by the translation back.
+    let copied: Vec<(u32, Translation)> = (0u32..)
         .zip(faces.ends())
         .filter_map(|(face, ends)| match ends[1] {
-            FaceEnd::Cell(Image { shift, .. }) if shift != Shift::NONE => Some((face, Shift::NONE - shift)),
+            FaceEnd::Cell(Image { translation, .. }) if translation != Translation::ZERO => {
+                Some((face, Translation::ZERO - translation))
+            }
             _ => None,
         })
         .collect();
@@ -78,7 +85,7 @@ fn with_places(
     let copied_corners: Vec<VertexId> = copied
         .par_iter()
         .flat_map_iter(|(face, back)| {
-            let moved = move |corner: &Corner| corner.moved(*back);
+            let moved = move |corner: &PeriodicVertex| corner.moved(*back);
             corners_of(*face).iter().rev().map(moved).map(|corner| places.id(corner))
         })
         .collect();
@@ -86,8 +93,8 @@ fn with_places(
     tessellation.face_sides.reserve_exact(face_count);
     tessellation.face_starts.reserve_exact(face_count);
     tessellation.face_corners.reserve_exact(faces.corners().len() + copied_corners.len());
-    let sides = |ends: [FaceEnd; 2], shift: Shift| ends.map(|end| Side::of(end, shift));
-    tessellation.face_sides.par_extend(faces.ends().par_iter().map(|ends| sides(*ends, Shift::NONE)));
+    let sides = |ends: [FaceEnd; 2], translation: Translation| ends.map(|end| Side::of(end, translation));
+    tessellation.face_sides.par_extend(faces.ends().par_iter().map(|ends| sides(*ends, Translation::ZERO)));
     tessellation.face_starts.par_extend(&faces.starts()[1..]);
     tessellation.face_corners.par_extend(faces.corners().par_iter().map(|corner| places.id(*corner)));
     let mut copied_corners = &copied_corners[..];
@@ -96,7 +103,11 @@ fn with_places(
         let (corners, rest) = copied_corners.split_at(corners_of(face).len());
         copied_corners = rest;
         let secondary = tessellation.push_face(sides([second, first], back), corners.iter().copied());
-        tessellation.periodic_faces.push(PeriodicPair { secondary, primary: FaceId(face), shift: back });
+        tessellation.periodic_faces.push(PeriodicPair {
+            secondary,
+            primary: FaceId(face),
+            translation: back,
+        });
     }
     tessellation.put_vertices_on_walls();
     (tessellation, places)
@@ -105,7 +116,7 @@ fn with_places(
 /// Numbers of all places at which the whole cells have vertices: first an original of each vertex of the torus, where it
 /// is not moved if there is a cell there, then the copies.
 struct VertexPlaces {
-    originals: Vec<Corner>,
+    originals: Vec<PeriodicVertex>,
     /// Of each vertex of the torus, its original.
     original_of: Vec<VertexId>,
     /// All places but those of unmoved originals, sorted, with their ids.
@@ -114,7 +125,7 @@ struct VertexPlaces {
 
 #[derive(Clone, Copy)]
 struct NumberedVertex {
-    moved: Corner,
+    moved: PeriodicVertex,
     id: VertexId,
 }
 
@@ -122,8 +133,8 @@ impl VertexPlaces {
     fn new(faces: &TorusFaces, vertex_count: usize) -> Self {
         let is_used: Vec<AtomicBool> = (0..vertex_count).map(|_| AtomicBool::new(false)).collect();
         // Of a corner, what there is to note: where it is not moved, that it is used.
-        let note = |corner: Corner| match corner.shift {
-            Shift::NONE => {
+        let note = |corner: PeriodicVertex| match corner.translation {
+            Translation::ZERO => {
                 is_used[corner.vertex as usize].store(true, Ordering::Relaxed);
                 None
             }
@@ -131,14 +142,16 @@ impl VertexPlaces {
         };
         let moved = faces.par_iter().flat_map_iter(|(ends, corners)| {
             let back = match ends[1] {
-                FaceEnd::Cell(Image { shift, .. }) if shift != Shift::NONE => Some(Shift::NONE - shift),
+                FaceEnd::Cell(Image { translation, .. }) if translation != Translation::ZERO => {
+                    Some(Translation::ZERO - translation)
+                }
                 _ => None,
             };
             let copies =
                 back.into_iter().flat_map(move |back| corners.iter().map(move |corner| corner.moved(back)));
             corners.iter().copied().chain(copies).filter_map(note)
         });
-        let mut moved: Vec<Corner> = moved.collect();
+        let mut moved: Vec<PeriodicVertex> = moved.collect();
         moved.par_sort_unstable();
         moved.dedup();
         let mut places = Self {
@@ -149,7 +162,7 @@ impl VertexPlaces {
         let id = |count: usize| VertexId(u32::try_from(count).expect("vertex ids fit 32 bits"));
         for (vertex, is_used) in (0u32..).zip(is_used) {
             let original = if is_used.into_inner() {
-                Some(Corner { vertex, shift: Shift::NONE })
+                Some(PeriodicVertex { vertex, translation: Translation::ZERO })
             } else {
                 let first = moved.partition_point(|at| at.vertex < vertex);
                 moved.get(first).copied().filter(|at| at.vertex == vertex)
@@ -181,12 +194,12 @@ impl VertexPlaces {
     }
 
     /// The vertices of the torus at all places, in order of id.
-    fn all(&self) -> Vec<Corner> {
+    fn all(&self) -> Vec<PeriodicVertex> {
         self.originals.iter().copied().chain(self.copies().map(|(copy, _)| copy.moved)).collect()
     }
 
-    fn id(&self, at: Corner) -> VertexId {
-        if at.shift == Shift::NONE {
+    fn id(&self, at: PeriodicVertex) -> VertexId {
+        if at.translation == Translation::ZERO {
             return self.original_of[at.vertex as usize];
         }
         let place = self.moved.binary_search_by_key(&at, |known| known.moved);

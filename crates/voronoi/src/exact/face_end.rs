@@ -1,5 +1,5 @@
 use crate::exact::image::Image;
-use crate::{Shift, Wall};
+use crate::{Translation, Wall};
 
 /// What lies on one side of a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -9,17 +9,17 @@ pub(crate) enum FaceEnd {
 }
 
 impl FaceEnd {
-    pub(crate) fn moved(self, shift: Shift) -> Self {
+    pub(crate) fn moved(self, translation: Translation) -> Self {
         match self {
-            Self::Cell(image) => Self::Cell(Image { shift: image.shift + shift, ..image }),
+            Self::Cell(image) => Self::Cell(Image { translation: image.translation + translation, ..image }),
             Self::Wall(wall) => Self::Wall(wall),
         }
     }
 
-    pub(crate) fn shift(self) -> Shift {
+    pub(crate) fn translation(self) -> Translation {
         match self {
-            Self::Cell(image) => image.shift,
-            Self::Wall(_) => Shift::NONE,
+            Self::Cell(image) => image.translation,
+            Self::Wall(_) => Translation::ZERO,
         }
     }
 

@@ -2,14 +2,14 @@
 
 use glam::DVec3;
 
-use crate::Shift;
+use crate::Translation;
 use crate::exact::frame::Frame;
 
 /// A seed moved by whole periods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Image {
     pub(crate) seed: u32,
-    pub(crate) shift: Shift,
+    pub(crate) translation: Translation,
 }
 
 /// Images of seeds by number, and their numbers by image.
@@ -47,20 +47,20 @@ impl ImageTable {
         let (lower, upper) = (frame.lower - thickness - margin, frame.upper + thickness + margin);
         let mut list = self.list.clone();
         for (seed, position) in (0u32..).zip(seeds) {
-            let shifts = |axis: usize| {
-                let reaches = move |shift: &i8| {
-                    let moved = position[axis] + f64::from(*shift) * size[axis];
-                    *shift == 0 || (moved >= lower[axis] && moved <= upper[axis])
+            let translations = |axis: usize| {
+                let reaches = move |translation: &i8| {
+                    let moved = position[axis] + f64::from(*translation) * size[axis];
+                    *translation == 0 || (moved >= lower[axis] && moved <= upper[axis])
                 };
                 // A seed on the upper wall is two periods away from where it comes to lie one period below the lower.
                 let farthest = if frame.periodic.test(axis) { 2i8 } else { 0 };
                 (-farthest..=farthest).filter(reaches)
             };
-            for x in shifts(0) {
-                for y in shifts(1) {
-                    for z in shifts(2) {
-                        let image = Image { seed, shift: Shift([x, y, z]) };
-                        if image.shift != Shift::NONE && self.find(image).is_none() {
+            for x in translations(0) {
+                for y in translations(1) {
+                    for z in translations(2) {
+                        let image = Image { seed, translation: Translation([x, y, z]) };
+                        if image.translation != Translation::ZERO && self.find(image).is_none() {
                             list.push(image);
                         }
                     }

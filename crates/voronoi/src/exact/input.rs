@@ -6,7 +6,7 @@ use crate::exact::accurate_sum::{accurate_sum, sum_and_rest};
 use crate::exact::frame::Frame;
 use crate::exact::generator::Generator;
 use crate::exact::image::{Image, ImageTable};
-use crate::{Shift, Wall};
+use crate::{Translation, Wall};
 
 /// The input that exact decisions are made from. Sites are the seeds, then the periodic images of seeds.
 #[derive(Clone, Copy)]
@@ -22,14 +22,14 @@ impl<'a> ExactInput<'a> {
     /// The seed, and by how many periods it is moved, that a site is the image of.
     pub(crate) fn image(self, site: u32) -> Image {
         match (site as usize).checked_sub(self.seeds.len()) {
-            None => Image { seed: site, shift: Shift::NONE },
+            None => Image { seed: site, translation: Translation::ZERO },
             Some(image) => self.images.list()[image],
         }
     }
 
     /// The site that is an image of a seed, if there is one.
     pub(crate) fn site(self, image: Image) -> Option<u32> {
-        if image.shift == Shift::NONE {
+        if image.translation == Translation::ZERO {
             return Some(image.seed);
         }
         let place = self.images.find(image)?;
@@ -44,8 +44,8 @@ impl<'a> ExactInput<'a> {
 
     /// Where a site lies, rounded.
     pub(crate) fn position(self, site: u32) -> DVec3 {
-        let Image { seed, shift } = self.image(site);
-        self.seeds[seed as usize] + shift.times(self.frame.size())
+        let Image { seed, translation } = self.image(site);
+        self.seeds[seed as usize] + translation.times(self.frame.size())
     }
 
     /// What bounds the cell of a seed across an axis before any other seed does: a wall, or its own image one period away.
@@ -53,9 +53,10 @@ impl<'a> ExactInput<'a> {
         if !self.frame.periodic.test(wall.axis()) {
             return Generator::side(wall);
         }
-        let mut shift = [0; 3];
-        shift[wall.axis()] = if wall.is_upper() { 1 } else { -1 };
-        self.site(Image { seed, shift: Shift(shift) }).map_or(Generator::side(wall), Generator::site)
+        let mut translation = [0; 3];
+        translation[wall.axis()] = if wall.is_upper() { 1 } else { -1 };
+        self.site(Image { seed, translation: Translation(translation) })
+            .map_or(Generator::side(wall), Generator::site)
     }
 
     /// The planes that bound the cell of a seed before any other seed does, two for each axis.
@@ -76,7 +77,8 @@ impl<'a> ExactInput<'a> {
     /// Whether a site is one of those that a cell begins with: the seed itself or one of its nearest images.
     pub(crate) fn bounds_from_start(self, seed: u32, site: u32) -> bool {
         let image = self.image(site);
-        image.seed == seed && image.shift.0.iter().map(|shift| shift.unsigned_abs()).sum::<u8>() <= 1
+        image.seed == seed
+            && image.translation.0.iter().map(|translation| translation.unsigned_abs()).sum::<u8>() <= 1
     }
 
     /// Power weight of a site.
@@ -99,20 +101,20 @@ impl<'a> ExactInput<'a> {
         let image = self.image(site);
         let other = self.seeds[image.seed as usize];
         DVec3::from_array([0, 1, 2].map(|axis| {
-            if image.shift.0[axis] == 0 {
+            if image.translation.0[axis] == 0 {
                 return other[axis] - own[axis];
             }
             // Shifts of at most two periods keep the products exact.
-            let shift = f64::from(image.shift.0[axis]);
+            let translation = f64::from(image.translation.0[axis]);
             let (lower, upper) = (self.frame.lower[axis], self.frame.upper[axis]);
             let (period, period_rest) = sum_and_rest(upper, -lower);
             if period_rest == 0.0 {
                 // Either the second sum is exact, or it cancels too little for the rests to count.
                 let (difference, rest) = sum_and_rest(other[axis], -own[axis]);
-                let (sum, second_rest) = sum_and_rest(difference, shift * period);
+                let (sum, second_rest) = sum_and_rest(difference, translation * period);
                 return sum + (rest + second_rest);
             }
-            accurate_sum([other[axis], -own[axis], shift * upper, -shift * lower])
+            accurate_sum([other[axis], -own[axis], translation * upper, -translation * lower])
         }))
     }
 }

@@ -12,7 +12,7 @@
 //! infinitesimal weight e_j, and e_j >> e_k where j comes before k in the lexicographic order of positions. D changes by
 //! e_i - e_j, the expression is linear in the D, and the first seed whose coefficient is not zero decides. One always
 //! exists: that of the fourth seed is the determinant. Only the order among the seeds involved counts, which neither their
-//! numbering nor a shift changes, so all periodic copies of a decision come out the same (as in CGAL's periodic
+//! numbering nor a translation changes, so all periodic copies of a decision come out the same (as in CGAL's periodic
 //! triangulations, Caroli and Teillaud 2009).
 //!
 //! Walls move, too: the D of wall k grows by an infinitesimal d_k far below all e_j, with d_k >> d_l where k < l. It only
@@ -68,9 +68,9 @@ where
             let other = input.seeds[image.seed as usize];
             for (axis, coordinate) in normal.iter_mut().enumerate() {
                 let difference = difference(other[axis], own[axis])?;
-                *coordinate = match image.shift.0[axis] {
+                *coordinate = match image.translation.0[axis] {
                     0 => difference,
-                    shift => difference + period(axis)? * N::from(shift),
+                    translation => difference + period(axis)? * N::from(translation),
                 };
             }
             let weight = |site: u32| integer(input.weight(site), 2 * exponent);
@@ -149,7 +149,7 @@ pub(crate) fn common_exponent(input: ExactInput, seed: u32, generators: &[Genera
     let of_point = |point: DVec3| point.to_array().into_iter().filter_map(exponent_of).min();
     let of_site = |site: u32| {
         let image = input.image(site);
-        let of_period = (0..3).filter(|axis| image.shift.0[*axis] != 0).flat_map(|axis| {
+        let of_period = (0..3).filter(|axis| image.translation.0[*axis] != 0).flat_map(|axis| {
             [input.frame.lower[axis], input.frame.upper[axis]].into_iter().filter_map(exponent_of)
         });
         let of_weight = exponent_of(input.weight(site)).map(|exponent| exponent.div_euclid(2));

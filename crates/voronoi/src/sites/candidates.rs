@@ -92,19 +92,19 @@ impl Candidates {
     }
 
     /// Adds the bisectors of a seed with the sites of a tree that are farther away than a radius, if there is one, and within that of
-    /// `within`; the sites are within a reach. False if too many would have to be looked at: then none is added.
+    /// `within`; the sites are within a security radius. False if too many would have to be looked at: then none is added.
     #[inline]
     pub(crate) fn push_within(
         &mut self,
         seed: u32,
         tree: &SiteTree,
         within: &Within,
-        reach: f64,
+        security_radius: f64,
         from: Option<f64>,
         most: usize,
     ) -> bool {
         let mut runs = std::mem::take(&mut self.runs);
-        let is_found = tree.find_runs(within, reach, most, &mut runs);
+        let is_found = tree.find_runs(within, security_radius, most, &mut runs);
         if is_found {
             self.make_room(LANES + runs.iter().map(|run| run.len()).sum::<usize>());
             let first = self.count;

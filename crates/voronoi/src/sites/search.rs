@@ -189,11 +189,11 @@ impl<'a> Search<'a> {
     }
 
     /// The distance from a seed within which all sites lie that can touch or cut the part of its cell within `radius`.
-    pub(crate) fn reach(&self, seed: u32, radius: f64) -> f64 {
+    pub(crate) fn security_radius(&self, seed: u32, radius: f64) -> f64 {
         // The bisector with a site at distance d lies (d^2 - excess) / (2 d) away.
         let excess = self.largest_weight - self.input().weight(seed);
-        let reach = radius + (radius * radius + excess).sqrt();
-        reach * RADIUS_MARGIN + self.position_error()
+        let security_radius = radius + (radius * radius + excess).sqrt();
+        security_radius * RADIUS_MARGIN + self.position_error()
     }
 
     /// The number of the first image.
@@ -217,9 +217,9 @@ impl<'a> Search<'a> {
         (to_outside + layer.thickness).min_element()
     }
 
-    /// The first layer that knows all sites at most a reach from a seed.
-    fn layer(&self, seed: u32, reach: f64) -> Result<&Layer, ImagesMissing> {
-        self.layers.iter().find(|layer| reach <= self.known(layer, seed)).ok_or(ImagesMissing)
+    /// The first layer that knows all sites at most a security radius from a seed.
+    fn layer(&self, seed: u32, security_radius: f64) -> Result<&Layer, ImagesMissing> {
+        self.layers.iter().find(|layer| security_radius <= self.known(layer, seed)).ok_or(ImagesMissing)
     }
 
     /// Adds the bisectors of a seed with sites that come nearer than the second of two radii, but not nearer than the first if there
@@ -232,15 +232,15 @@ impl<'a> Search<'a> {
         to: f64,
         most: usize,
     ) -> Result<bool, ImagesMissing> {
-        let reach = self.reach(seed, to);
-        let layer = self.layer(seed, reach)?;
+        let security_radius = self.security_radius(seed, to);
+        let layer = self.layer(seed, security_radius)?;
         let with_margin = |radius: f64| radius * RADIUS_MARGIN + self.position_error();
         let within = Within {
             center: self.seeds[seed as usize],
             own_weight: self.input().weight(seed),
             radius: with_margin(to),
         };
-        Ok(candidates.push_within(seed, &layer.sites, &within, reach, from.map(with_margin), most))
+        Ok(candidates.push_within(seed, &layer.sites, &within, security_radius, from.map(with_margin), most))
     }
 
     /// Of the sites that certainly cut off a vertex of some planes of a seed's cell, the one that does so farthest; else none, and
@@ -252,7 +252,7 @@ impl<'a> Search<'a> {
         at: &Intersection,
         maybe: &mut Vec<Generator>,
     ) -> Result<Option<InBox<'_>>, ImagesMissing> {
-        let layer = self.layer(seed, self.reach(seed, at.distance()))?;
+        let layer = self.layer(seed, self.security_radius(seed, at.distance()))?;
         let ball = Ball {
             center: self.seeds[seed as usize],
             own_weight: self.input().weight(seed),

@@ -65,20 +65,20 @@ impl SiteTree {
         Columns { sites: &self.sites, x, y, z, weights: self.weights.as_deref() }
     }
 
-    /// Finds runs of places that hold all sites with which a seed has bisectors within a radius, and so up to some reach; false if
+    /// Finds runs of places that hold all sites with which a seed has bisectors within a radius, and so up to some security_radius; false if
     /// these are more than some number of places.
     #[inline]
     pub(crate) fn find_runs(
         &self,
         within: &Within,
-        reach: f64,
+        security_radius: f64,
         most: usize,
         runs: &mut Vec<Range<u32>>,
     ) -> bool {
         runs.clear();
         // Where seeds are spread evenly, and weights differ little, rows of blocks are quicker than boxes.
         if let Some(grid) = &self.grid
-            && grid.find_runs(within.center, reach, MOST_IN_ROWS, runs)
+            && grid.find_runs(within.center, security_radius, MOST_IN_ROWS, runs)
         {
             return true;
         }
@@ -211,9 +211,9 @@ mod tests {
                     let (center, own_weight) = (seeds[seed], weight(seed));
                     let within = Within { center, own_weight, radius };
                     let mut found = vec![false; seeds.len()];
-                    let reach = radius + (radius * radius + 0.01).sqrt();
+                    let security_radius = radius + (radius * radius + 0.01).sqrt();
                     let mut runs = Vec::new();
-                    assert!(tree.find_runs(&within, reach, usize::MAX, &mut runs));
+                    assert!(tree.find_runs(&within, security_radius, usize::MAX, &mut runs));
                     for place in runs.into_iter().flatten() {
                         found[tree.sites[place as usize] as usize] = true;
                     }

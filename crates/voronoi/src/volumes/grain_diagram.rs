@@ -10,7 +10,7 @@ use super::newton::{Clipped, MOVED_RESIDUAL, approach};
 use super::shape::{GrainShape, InscribedSphere};
 use super::spheres::{SPHERE_FRACTION, whole_periods, wrapped};
 use super::{GOAL, GOAL_BETWEEN_STEPS, MOST_HALVED_STEPS, VolumesError, check_volumes, first};
-use crate::{CellId, Domain, Shift, Tessellation};
+use crate::{CellId, Domain, Tessellation, Translation};
 
 /// By how much a grain in two pieces may get more cells before it gets a rounder shape.
 const MOST_FINENESS: u32 = 2;
@@ -43,7 +43,7 @@ pub struct GrainDiagram {
     shifts: Option<Vec<f64>>,
     grains: Arc<Grains>,
     /// By how much each cell has to be moved to stand with its grain.
-    moves: Vec<Shift>,
+    moves: Vec<Translation>,
     centroid_steps: usize,
 }
 
@@ -53,7 +53,7 @@ struct Sites {
     /// Squared radii.
     bases: Vec<f64>,
     of_cell: Vec<u32>,
-    moves: Vec<Shift>,
+    moves: Vec<Translation>,
 }
 
 impl GrainDiagram {
@@ -94,7 +94,7 @@ impl GrainDiagram {
             weights: vec![0.0; count],
             shifts: None,
             grains: Grains::of_single_cells(count),
-            moves: vec![Shift::NONE; count],
+            moves: vec![Translation::ZERO; count],
             centroid_steps: 0,
         };
         diagram.solve()?;
@@ -323,7 +323,7 @@ impl GrainDiagram {
     }
 
     /// By how much each cell has to be moved to stand with its grain: in a periodic domain its seed stands in the box.
-    pub fn moves(&self) -> &[Shift] {
+    pub fn moves(&self) -> &[Translation] {
         &self.moves
     }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::diagram::measures::face_area_and_centroid;
-use crate::{CellId, Shift, Side, Tessellation};
+use crate::{CellId, Side, Tessellation, Translation};
 
 /// The grains that cells make up.
 #[derive(Debug, PartialEq)]
@@ -60,7 +60,7 @@ impl Grains {
 pub(super) fn pieces_of_cells(
     tessellation: &Tessellation,
     grains: &Grains,
-    moves: &[Shift],
+    moves: &[Translation],
     least_neck: f64,
 ) -> Vec<usize> {
     let mut roots: Vec<usize> = (0..tessellation.cell_count()).collect();

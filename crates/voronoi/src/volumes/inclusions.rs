@@ -12,7 +12,7 @@ use super::newton::{Clipped, approach};
 use super::spheres::whole_periods;
 use super::{GOAL, VolumesError, check_volumes};
 use crate::diagram::measures::face_area_and_centroid;
-use crate::{CellId, Dimension, FaceId, Shift, Side, Tessellation};
+use crate::{CellId, Dimension, FaceId, Side, Tessellation, Translation};
 
 /// How far the points around an inclusion stand from its centre at first, in distances of its faces; nearer where another inclusion is in the way.
 const REACHES: [f64; 3] = [1.5, 1.25, 1.1];
@@ -57,7 +57,7 @@ pub struct InsertedGrains {
     /// The grain of each cell: first come those that were cells before, then the inclusions.
     pub grain_of_cell: Vec<u32>,
     /// By how much each cell has to be moved to stand with its grain: in a periodic domain its seed stands in the box.
-    pub moves: Vec<Shift>,
+    pub moves: Vec<Translation>,
 }
 
 /// Puts grains where the cells of a tessellation are, each of which stays one grain. `volumes` are those that the cells are to have then; with those
@@ -99,7 +99,7 @@ pub fn insert_grains(
                 seeds: vec![seed],
                 weights: vec![weight],
                 grains: vec![cell.0],
-                moves: vec![Shift::NONE],
+                moves: vec![Translation::ZERO],
             };
             if parts.is_empty() {
                 return Ok(whole);
@@ -122,7 +122,7 @@ pub fn insert_grains(
             }
             let (seeds, weights) =
                 seeds_of_parts(tessellation, cell, middle, weight, &division.of(&points), NEARNESS);
-            let moved = |point: &usize| part_of_point[*point].map_or(Shift::NONE, |part| part.moved);
+            let moved = |point: &usize| part_of_point[*point].map_or(Translation::ZERO, |part| part.moved);
             let moves = points.iter().map(moved).collect();
             Ok(Pieces { seeds, weights, grains, moves })
         });
@@ -132,7 +132,7 @@ pub fn insert_grains(
     let weights: Vec<f64> = pieces.iter().flat_map(|pieces| &pieces.weights).copied().collect();
     let grain_of_cell: Vec<u32> = pieces.iter().flat_map(|pieces| &pieces.grains).copied().collect();
     let stands = pieces.iter().flat_map(|pieces| pieces.seeds.iter().zip(&pieces.moves));
-    let mut moves: Vec<Shift> = stands
+    let mut moves: Vec<Translation> = stands
         .zip(&seeds)
         .map(|((stands, moved), seed)| whole_periods(domain, *stands - *seed) + *moved)
         .collect();
@@ -175,11 +175,11 @@ struct LoosePiece {
     /// The grain that it shares most area with.
     grain: u32,
     /// By how much it has to be moved to stand with that one.
-    moved: Shift,
+    moved: Translation,
 }
 
 /// The pieces of grains apart from the largest one of each.
-fn loose_pieces(tessellation: &Tessellation, grains: &Grains, moves: &[Shift]) -> Vec<LoosePiece> {
+fn loose_pieces(tessellation: &Tessellation, grains: &Grains, moves: &[Translation]) -> Vec<LoosePiece> {
     let pieces = pieces_of_cells(tessellation, grains, moves, 0.0);
     let mut volumes = vec![0.0; pieces.len()];
     tessellation.cell_measures().iter().zip(&pieces).for_each(|(cell, piece)| volumes[*piece] += cell.volume);
@@ -199,14 +199,14 @@ fn loose_pieces(tessellation: &Tessellation, grains: &Grains, moves: &[Shift]) -
     }
     let beside = |cells: Vec<CellId>| {
         // What the piece shares with each grain beside it, and by how much it moves to the last of its cells there.
-        let mut shared: BTreeMap<u32, (f64, Shift)> = BTreeMap::new();
+        let mut shared: BTreeMap<u32, (f64, Translation)> = BTreeMap::new();
         for cell in &cells {
             for face in tessellation.cell_faces(*cell) {
-                let Some((other, shift)) = tessellation.across(*cell, *face).cell() else { continue };
+                let Some((other, translation)) = tessellation.across(*cell, *face).cell() else { continue };
                 if grains.of(other) != grains.of(*cell) {
-                    let (area, moved) = shared.entry(grains.of(other)).or_insert((0.0, Shift::NONE));
+                    let (area, moved) = shared.entry(grains.of(other)).or_insert((0.0, Translation::ZERO));
                     *area += face_area_and_centroid(tessellation, *face).0;
-                    *moved = moves[other.index()] - shift - moves[cell.index()];
+                    *moved = moves[other.index()] - translation - moves[cell.index()];
                 }
             }
         }
@@ -225,7 +225,7 @@ struct Pieces {
     weights: Vec<f64>,
     grains: Vec<u32>,
     /// By how much each has to be moved from where the cell stands to stand with its grain.
-    moves: Vec<Shift>,
+    moves: Vec<Translation>,
 }
 
 /// What of an inclusion is in a cell.
@@ -235,7 +235,7 @@ struct Part {
     /// Where the cell stands.
     center: DVec3,
     /// By how much the cell has to be moved to stand with the inclusion.
-    moved: Shift,
+    moved: Translation,
     /// The number of the cell among those that the inclusion is in.
     rank: usize,
 }
@@ -249,19 +249,23 @@ pub(super) fn face_distance(dimension: Dimension, volume: f64) -> f64 {
 }
 
 /// The cells that an inclusion may reach, and by how much they are moved there.
-fn cells_around(tessellation: &Tessellation, weights: &[f64], inclusion: &Inclusion) -> Vec<(CellId, Shift)> {
+fn cells_around(
+    tessellation: &Tessellation,
+    weights: &[f64],
+    inclusion: &Inclusion,
+) -> Vec<(CellId, Translation)> {
     let domain = tessellation.domain();
     let radius = LARGEST_RADIUS * face_distance(domain.dimension(), inclusion.volume);
-    let mut found = vec![(inclusion.cell, Shift::NONE)];
+    let mut found = vec![(inclusion.cell, Translation::ZERO)];
     let mut next = VecDeque::from(found.clone());
     while let Some((cell, moved)) = next.pop_front() {
         let center = inclusion.center - moved.vector(domain);
         for face in tessellation.cell_faces(cell) {
-            let Some((other, shift)) = tessellation.across(cell, *face).cell() else { continue };
-            let there = (other, moved + shift);
+            let Some((other, translation)) = tessellation.across(cell, *face).cell() else { continue };
+            let there = (other, moved + translation);
             if !found.contains(&there) && beyond_face(tessellation, weights, cell, *face, center) < radius {
                 let is_reached = tessellation.cell_faces(other).iter().all(|own| {
-                    let center = center - shift.vector(domain);
+                    let center = center - translation.vector(domain);
                     beyond_face(tessellation, weights, other, *own, center) > -radius
                 });
                 if is_reached {
@@ -283,16 +287,18 @@ pub(super) fn beyond_face(
     place: DVec3,
 ) -> f64 {
     let domain = tessellation.domain();
-    let (other, shift) = match tessellation.across(cell, face) {
-        Side::Cell(other) => (other, Shift::NONE),
-        Side::Image(other, shift) => (other, shift),
+    let (other, translation) = match tessellation.across(cell, face) {
+        Side::Cell(other) => (other, Translation::ZERO),
+        Side::Image(other, translation) => (other, translation),
         Side::Wall(wall) => {
             let (normal, distance) = domain.wall_equation(wall);
             return distance - normal.dot(place);
         }
     };
-    let [own, beyond] =
-        [tessellation.seeds()[cell.index()], tessellation.seeds()[other.index()] + shift.vector(domain)];
+    let [own, beyond] = [
+        tessellation.seeds()[cell.index()],
+        tessellation.seeds()[other.index()] + translation.vector(domain),
+    ];
     let power = |seed: DVec3, of: CellId| place.distance_squared(seed) - weights[of.index()];
     (power(beyond, other) - power(own, cell)) / (2.0 * own.distance(beyond))
 }

@@ -121,11 +121,11 @@ impl Laplacian {
 }
 
 fn contact(tessellation: &Tessellation, grains: &Grains, face: FaceId) -> Option<Contact> {
-    let [(first, _), (second, shift)] = {
+    let [(first, _), (second, translation)] = {
         let [first, second] = tessellation.face_sides(face).map(Side::cell);
         [first?, second?]
     };
-    let (cells, image) = ([first, second], shift.vector(tessellation.domain()));
+    let (cells, image) = ([first, second], translation.vector(tessellation.domain()));
     let of_cells = cells.map(|cell| grains.of(cell));
     if of_cells[0] == of_cells[1] {
         return None;

@@ -7,7 +7,7 @@ use glam::{DVec3, UVec3};
 
 use super::shape::{GrainShape, InscribedSphere};
 use super::{VolumesError, check_volumes};
-use crate::{Dimension, Domain, Shift};
+use crate::{Dimension, Domain, Translation};
 
 /// The part of a cell's volume that its sphere takes up at first. Random places for equal spheres run out at 0.38 in space and
 /// 0.55 in the plane; with 0.35 ten centroid steps give 13.7 faces a grain, as metals have.
@@ -139,9 +139,9 @@ pub(super) fn wrapped(domain: &Domain, place: DVec3) -> DVec3 {
 }
 
 /// The whole periods nearest to a way.
-pub(super) fn whole_periods(domain: &Domain, way: DVec3) -> Shift {
+pub(super) fn whole_periods(domain: &Domain, way: DVec3) -> Translation {
     let periods = DVec3::select(domain.periodic(), (way / domain.size()).round(), DVec3::ZERO);
-    Shift(periods.as_i8vec3().to_array())
+    Translation(periods.as_i8vec3().to_array())
 }
 
 fn random_point(domain: &Domain, fraction: &mut impl FnMut() -> f64) -> DVec3 {

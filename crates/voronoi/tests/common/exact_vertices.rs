@@ -99,9 +99,9 @@ enum Meeting {
 
 fn meeting(tessellation: &Tessellation, weights: Option<&[f64]>, side: Side) -> Meeting {
     let domain = tessellation.domain();
-    let (cell, shift) = match side {
+    let (cell, translation) = match side {
         Side::Cell(cell) => (cell, [0; 3]),
-        Side::Image(cell, shift) => (cell, shift.0),
+        Side::Image(cell, translation) => (cell, translation.0),
         Side::Wall(wall) => {
             return Meeting::Wall(match domain.wall_planes().get(wall.index()) {
                 None => across(wall.axis(), integer(domain.wall_coordinate(wall))),
@@ -119,7 +119,7 @@ fn meeting(tessellation: &Tessellation, weights: Option<&[f64]>, side: Side) -> 
     };
     let period = |axis: usize| integer(domain.upper()[axis]) - integer(domain.lower()[axis]);
     let seed = integers(tessellation.seeds()[cell.index()]);
-    let position = [0, 1, 2].map(|axis| &seed[axis] + period(axis) * shift[axis]);
+    let position = [0, 1, 2].map(|axis| &seed[axis] + period(axis) * translation[axis]);
     let weight = weights.map_or(0.0, |weights| weights[cell.index()]);
     let power = dot(&position, &position) - (integer(weight) << FRACTION_BITS);
     Meeting::Site(position, power)

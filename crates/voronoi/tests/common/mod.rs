@@ -10,7 +10,7 @@ use exact_vertices::assert_vertices_differ;
 use glam::DVec3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use voronoi::{CellMeasure, Dimension, Domain, PeriodicPair, Shift, Side, Tessellation, VertexId};
+use voronoi::{CellMeasure, Dimension, Domain, PeriodicPair, Side, Tessellation, Translation, VertexId};
 
 /// Uniform random seeds in the unit cube.
 pub fn random_seeds(count: usize, random_seed: u64) -> Vec<DVec3> {
@@ -92,16 +92,18 @@ pub fn complex_counts(tessellation: &Tessellation) -> ComplexCounts {
     }
 }
 
-/// Secondaries stand at their primaries plus the shift, bit for bit, and are named by both of their cells.
+/// Secondaries stand at their primaries plus the translation, bit for bit, and are named by both of their cells.
 fn assert_copies_match(tessellation: &Tessellation) {
     let domain = tessellation.domain();
-    let mut place: Vec<(VertexId, Shift)> =
-        (0u32..).take(tessellation.vertices().len()).map(|vertex| (VertexId(vertex), Shift::NONE)).collect();
-    for &PeriodicPair { secondary, primary, shift } in tessellation.periodic_vertices() {
-        let moved = tessellation.vertices()[primary.index()] + shift.vector(domain);
-        assert_eq!(place[primary.index()], (primary, Shift::NONE), "a primary is no secondary");
-        assert!(shift != Shift::NONE);
-        place[secondary.index()] = (primary, shift);
+    let mut place: Vec<(VertexId, Translation)> = (0u32..)
+        .take(tessellation.vertices().len())
+        .map(|vertex| (VertexId(vertex), Translation::ZERO))
+        .collect();
+    for &PeriodicPair { secondary, primary, translation } in tessellation.periodic_vertices() {
+        let moved = tessellation.vertices()[primary.index()] + translation.vector(domain);
+        assert_eq!(place[primary.index()], (primary, Translation::ZERO), "a primary is no secondary");
+        assert!(translation != Translation::ZERO);
+        place[secondary.index()] = (primary, translation);
         for axis in 0..3 {
             let on_wall = !domain.periodic().test(axis);
             assert!(on_wall || tessellation.vertices()[secondary.index()][axis] == moved[axis]);
@@ -110,24 +112,24 @@ fn assert_copies_match(tessellation: &Tessellation) {
     let images =
         tessellation.faces().filter(|face| matches!(tessellation.face_sides(*face)[1], Side::Image(..)));
     assert_eq!(images.count(), 2 * tessellation.periodic_faces().len());
-    for &PeriodicPair { secondary, primary, shift } in tessellation.periodic_faces() {
+    for &PeriodicPair { secondary, primary, translation } in tessellation.periodic_faces() {
         let [Side::Cell(first), Side::Image(second, to_second)] = tessellation.face_sides(primary) else {
             panic!("a primary face with a copy has a moved cell beyond it")
         };
-        let back = Shift::NONE - to_second;
-        assert_eq!(shift, back);
+        let back = Translation::ZERO - to_second;
+        assert_eq!(translation, back);
         assert_eq!(tessellation.face_sides(secondary), [Side::Cell(second), Side::Image(first, back)]);
         let moved = tessellation.face_corners(primary).iter().rev().map(|corner| {
             let (vertex, at) = place[corner.index()];
-            (vertex, at + shift)
+            (vertex, at + translation)
         });
         let corners = tessellation.face_corners(secondary).iter().map(|corner| place[corner.index()]);
         assert!(corners.eq(moved), "{secondary:?} is not the moved {primary:?}");
     }
     let edges = tessellation.edges();
-    for PeriodicPair { secondary, primary, shift } in tessellation.periodic_edges(&edges) {
+    for PeriodicPair { secondary, primary, translation } in tessellation.periodic_edges(&edges) {
         let ends = |edge: u32| edges.ends[edge as usize].map(|end| place[end.index()]);
-        let moved = ends(primary).map(|(vertex, at)| (vertex, at + shift));
+        let moved = ends(primary).map(|(vertex, at)| (vertex, at + translation));
         let [a, b] = ends(secondary);
         assert!(moved == [a, b] || moved == [b, a], "edge {secondary} is not the moved {primary}");
     }

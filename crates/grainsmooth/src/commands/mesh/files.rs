@@ -55,9 +55,9 @@ impl Job<'_> {
             self.report(format_args!("dropped     {lines} polylines beside the faces"));
             mesh.lines.clear();
         }
-        if let Some(corners) = mesh.welded_corners {
+        if let Some(corners) = mesh.merged_corners {
             self.report(format_args!(
-                "welded      {corners} corners with exactly equal coordinates to {points} points"
+                "merged      {corners} corners with exactly equal coordinates to {points} points"
             ));
         }
         Ok(mesh)

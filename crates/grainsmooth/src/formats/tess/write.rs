@@ -88,7 +88,7 @@ fn write_periodicity(periodicity: &TessPeriodicity, tess: &Tess, out: &mut dyn W
     }
     let mut part = |name: &str, copies: &[TessCopy], has_sense: bool| {
         writeln!(out, "  *{name}\n   {}", copies.len())?;
-        for TessCopy { secondary, primary, shift: [x, y, z] } in copies {
+        for TessCopy { secondary, primary, translation: [x, y, z] } in copies {
             let sense = match (has_sense, primary.is_reversed) {
                 (false, _) => "",
                 (true, false) => " 1",

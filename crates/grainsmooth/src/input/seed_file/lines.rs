@@ -126,7 +126,7 @@ pub(super) fn csv(content: &[u8], dimension: Dimension) -> Located<Vec<FileSeed>
     Ok(seeds)
 }
 
-/// Seeds of an XYZ file: their number, a remark, and in each further line the name of an element, which is not used, then
+/// Seeds of an XYZ file: their number, a comment, and in each further line the name of an element, which is not used, then
 /// x, y, z and perhaps a radius. In 2D, z is 0.
 pub(super) fn xyz(content: &[u8], dimension: Dimension) -> Located<Vec<FileSeed>> {
     let mut lines = text_table::lines(content)

@@ -175,14 +175,14 @@ impl<'a> Words<'a> {
         }
     }
 
-    fn shift(&mut self) -> Result<[i32; 3], TessProblem> {
-        let mut shift = [0; 3];
-        for periods in &mut shift {
+    fn translation(&mut self) -> Result<[i32; 3], TessProblem> {
+        let mut translation = [0; 3];
+        for periods in &mut translation {
             let word = self.next("a number of periods")?;
             *periods =
                 word.parse().map_err(|_| self.problem(format!("{word:?} is not a number of periods")))?;
         }
-        Ok(shift)
+        Ok(translation)
     }
 
     /// A part of the periodicity; edges and faces say last whether they run the same way.
@@ -192,9 +192,9 @@ impl<'a> Words<'a> {
         self.list(length, |words, _| {
             let secondary = words.index(what, count)?;
             let index = words.index(what, count)?;
-            let shift = words.shift()?;
+            let translation = words.translation()?;
             let is_reversed = has_sense && words.next("1 or -1")? == "-1";
-            Ok(TessCopy { secondary, primary: Oriented { index, is_reversed }, shift })
+            Ok(TessCopy { secondary, primary: Oriented { index, is_reversed }, translation })
         })
     }
 
@@ -396,7 +396,7 @@ impl Reader<'_> {
         let count = words.count("the number of seeds")?;
         let seeds = words.list(count, |words, index| {
             words.id("seed", cell_count + index)?;
-            Ok((words.index("seed", cell_count)?, words.shift()?))
+            Ok((words.index("seed", cell_count)?, words.translation()?))
         })?;
         let vertices = words.copies("vertex", tess.vertices.len(), false)?;
         let edges = words.copies("edge", tess.edges.len(), true)?;

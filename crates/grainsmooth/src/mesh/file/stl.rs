@@ -11,7 +11,7 @@ use super::{MeshFile, MeshFileProblem};
 const HEADER_BYTES: usize = 84;
 const TRIANGLE_BYTES: usize = 50;
 
-/// Reads triangles and welds corners whose coordinates are exactly equal, in the order in which they first occur.
+/// Reads triangles and merges corners whose coordinates are exactly equal, in the order in which they first occur.
 pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
     let mut file = Cursor::new(for_stl_io(bytes));
     let problem = |error| MeshFileProblem::corrupt("STL", error);
@@ -36,7 +36,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
         }
         mesh.faces.push(face);
     }
-    mesh.welded_corners = Some(3 * mesh.faces.len());
+    mesh.merged_corners = Some(3 * mesh.faces.len());
     Ok(mesh)
 }
 
@@ -85,7 +85,7 @@ mod tests {
         for head in ["solid", "solid a name", "solid "] {
             let mesh = read(format!("{head}\n{FACET}{FACET}endsolid\n").as_bytes()).unwrap();
             assert_eq!(mesh.faces, [vec![0, 1, 2], vec![0, 1, 2]]);
-            assert_eq!((mesh.points.len(), mesh.welded_corners), (3, Some(6)));
+            assert_eq!((mesh.points.len(), mesh.merged_corners), (3, Some(6)));
         }
     }
 

@@ -62,7 +62,7 @@ impl Flow<'_> {
             let left = whole_time - passed;
             let is_last = step_time.min(longest) >= left;
             let time = if is_last { left } else { step_time.min(longest) };
-            let kept = self.clusters.clone();
+            let kept = self.groups.clone();
             let trial = self.try_step(&points, time);
             let error = trial.as_ref().map_or(f64::INFINITY, |trial| trial.error);
             step_time = time * (SAFETY * LARGEST_ERROR / error).sqrt().clamp(LEAST_CHANGE, LARGEST_CHANGE);
@@ -77,7 +77,7 @@ impl Flow<'_> {
                     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "far fewer")]
                     progress(Grown { steps, left: left as usize, passed, points: &points });
                 }
-                _ if step_time >= LEAST_STEP * square => self.clusters = kept,
+                _ if step_time >= LEAST_STEP * square => self.groups = kept,
                 Ok(Trial { worst, .. }) => {
                     let time = passed / self.network.mean_grain_size().powi(2);
                     let error = NetworkError::GrowthNotFollowed { grain: worst, time };
@@ -92,10 +92,10 @@ impl Flow<'_> {
 
     /// A step at once and in halves, and where both lead together.
     fn try_step(&mut self, points: &[DVec3], time: f64) -> Result<Trial, NetworkError> {
-        let clusters = self.clusters.clone();
+        let groups = self.groups.clone();
         let mut at_once = points.to_vec();
         self.step(&mut at_once, time)?;
-        self.clusters = clusters;
+        self.groups = groups;
         let mut halves = points.to_vec();
         self.step(&mut halves, 0.5 * time)?;
         self.step(&mut halves, 0.5 * time)?;

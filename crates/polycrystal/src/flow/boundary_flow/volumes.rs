@@ -43,11 +43,11 @@ impl Flow<'_> {
         let start = points.to_vec();
         let mut attempts = Vec::new();
         let ways = [
-            ("restoring volumes, what folded moving as one", &self.clusters),
+            ("restoring volumes, what folded moving as one", &self.groups),
             ("restoring volumes, short edges rigid", &short),
         ];
-        for (tried, clusters) in ways {
-            match self.restore_with(clusters, points) {
+        for (tried, groups) in ways {
+            match self.restore_with(groups, points) {
                 Err(error) if error.is_tangle() => error.give_up(tried, &mut attempts),
                 result => return result,
             }
@@ -76,10 +76,10 @@ impl Flow<'_> {
         })
     }
 
-    fn restore_with(&self, clusters: &TiedPoints, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
+    fn restore_with(&self, groups: &TiedPoints, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
         let terms = self.patches.terms(points);
-        let clusters = clusters.number();
-        let system = self.system(&terms, &clusters, 0.0, points);
+        let groups = groups.number();
+        let system = self.system(&terms, &groups, 0.0, points);
         let mut last: Option<Vec<f64>> = None;
         // The gradient is that of a coarser level: what is too small or large in it is measured and made up for.
         let mut gain = 1.0;
@@ -102,7 +102,7 @@ impl Flow<'_> {
                 return Err(NetworkError::volume_not_restored(grain, relative_error));
             }
             let wanted: Vec<f64> = missing.iter().map(|lack| gain * lack).collect();
-            let moves = clusters.of_points(&system.push(&wanted));
+            let moves = groups.of_points(&system.push(&wanted));
             points.iter_mut().zip(&moves).for_each(|(point, by)| *point += *by);
             last = Some(missing);
             step += 1;

@@ -1,12 +1,12 @@
-//! The row of an old vertex, for every scheme that moves vertices: sharp rules, and what lies between sharp and smooth.
+//! The stencil of an old vertex, for every scheme that moves vertices: sharp rules, and what lies between sharp and smooth.
 
 use crate::sharpness::{OutgoingEdge, Sharpness, decay, is_infinite, rule_of_sharp_edges};
 use crate::{EdgeId, VertexRule};
 
-/// Hands the row of `vertex` to `add`, entry by entry: by its sharp rule, by `smooth`, which is given its share of the row, or
+/// Hands the stencil of `vertex` to `add`, entry by entry: by its sharp rule, by `smooth`, which is given its scale of the row, or
 /// by a blend of the rule and the next level's when some sharpness runs out (OpenSubdiv's rule). A blend may name
 /// a vertex more than once.
-pub(crate) fn vertex_row<Add: FnMut(u32, f64)>(
+pub(crate) fn vertex_stencil<Add: FnMut(u32, f64)>(
     sharpness: &Sharpness,
     (vertex, rule): (u32, VertexRule),
     add: &mut Add,
@@ -22,13 +22,13 @@ pub(crate) fn vertex_row<Add: FnMut(u32, f64)>(
     let sharp_share = if next_rule == rule { 1.0 } else { share_before_run_out(outgoing_edges, corner) };
     let sharp_row = |rule: VertexRule,
                      outgoing_edges: &mut dyn Iterator<Item = &OutgoingEdge>,
-                     share: f64,
+                     scale: f64,
                      add: &mut Add| {
         if rule == VertexRule::Crease {
-            add(vertex, 0.75 * share);
-            outgoing_edges.for_each(|outgoing_edge| add(other_end(outgoing_edge.edge), 0.125 * share));
+            add(vertex, 0.75 * scale);
+            outgoing_edges.for_each(|outgoing_edge| add(other_end(outgoing_edge.edge), 0.125 * scale));
         } else {
-            add(vertex, share);
+            add(vertex, scale);
         }
     };
     sharp_row(rule, &mut outgoing_edges.iter(), sharp_share, add);
@@ -55,7 +55,7 @@ fn rule_after(outgoing_edges: &[OutgoingEdge], corner: f32) -> VertexRule {
     }
 }
 
-/// The mean of the sharpnesses that run out in this step, at most 1: the share of the rule that held until now. In single
+/// The mean of the sharpnesses that run out in this step, at most 1: the scale of the rule that held until now. In single
 /// precision and the vertex's own first, as in OpenSubdiv, so that numbers agree to the last digits.
 fn share_before_run_out(outgoing_edges: &[OutgoingEdge], corner: f32) -> f64 {
     let ending = |&sharpness: &f32| sharpness > 0.0 && !is_infinite(sharpness) && decay(sharpness) == 0.0;

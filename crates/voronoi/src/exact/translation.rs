@@ -2,21 +2,21 @@ use std::ops::{Add, Sub};
 
 use glam::DVec3;
 
-/// Whole periods of the domain along x, y and z.
+/// A translation by whole periods of the domain along x, y and z.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Shift(pub [i8; 3]);
+pub struct Translation(pub [i8; 3]);
 
-impl Shift {
-    /// No period at all.
-    pub const NONE: Self = Self([0; 3]);
+impl Translation {
+    /// No translation.
+    pub const ZERO: Self = Self([0; 3]);
 
-    /// The shift as a length, given the periods.
+    /// The translation as a length, given the periods.
     pub(crate) fn times(self, periods: DVec3) -> DVec3 {
         DVec3::from_array(self.0.map(f64::from)) * periods
     }
 }
 
-impl Add for Shift {
+impl Add for Translation {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -24,7 +24,7 @@ impl Add for Shift {
     }
 }
 
-impl Sub for Shift {
+impl Sub for Translation {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
