@@ -172,7 +172,7 @@ impl Network {
         for piece in all() {
             let mut number = |corner: &PeriodicPoint| {
                 *numbers.entry(*corner).or_insert_with(|| {
-                    box_points.push(pieces.place(*corner));
+                    box_points.push(pieces.position(*corner));
                     id(box_points.len() - 1)
                 })
             };
@@ -208,11 +208,11 @@ fn periodic_axes(domain: &Domain) -> impl Iterator<Item = usize> {
 }
 
 /// A place of the torus in the box: what is moved lies on the upper wall.
-fn place_in_box(domain: &Domain, mut place: DVec3, translation: Translation) -> DVec3 {
+fn position_in_box(domain: &Domain, mut position: DVec3, translation: Translation) -> DVec3 {
     for axis in 0..3 {
         if translation.0[axis] != 0 {
-            place[axis] = domain.upper()[axis];
+            position[axis] = domain.upper()[axis];
         }
     }
-    place
+    position
 }

@@ -80,8 +80,8 @@ impl Network {
     ///
     /// Grains need not be convex, and one may lie within another. In a periodic domain, cells of a grain touch each other once they are moved to stand with it.
     ///
-    /// `coarsening` closes edges that cells leave in the boundaries and lines between grains: those shorter than this part of the size of the smallest grain
-    /// there (the edge of a cube as large; in the plane, of a square). Lines between two points of four grains close where they are shorter than two fifths of that. 0 keeps all edges.
+    /// `coarsening` collapses edges that cells leave in the boundaries and lines between grains: those shorter than this part of the size of the smallest grain
+    /// there (the edge of a cube as large; in the plane, of a square). Lines between two points of four grains collapse where they are shorter than two fifths of that. 0 keeps all edges.
     ///
     /// # Errors
     /// As [`Self::with_face_mesh`]; [`NetworkError::GrainInPieces`], [`NetworkError::MissingGrain`].

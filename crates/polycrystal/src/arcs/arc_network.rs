@@ -50,12 +50,12 @@ impl<'a> ArcNetwork<'a> {
     ) -> Self {
         let domain = complex.domain();
         // From a corner of its own: small cells would lose digits far from the origin.
-        let mut places = vec![DVec2::ZERO; areas.len()];
+        let mut positions = vec![DVec2::ZERO; areas.len()];
         for face in complex.faces() {
             let corner = complex.position(complex.corners(face)[0]).truncate();
             for side in complex.sides(face) {
                 if let Some((cell, offset)) = cell_and_offset(side, domain) {
-                    places[cell.index()] = corner - offset.truncate();
+                    positions[cell.index()] = corner - offset.truncate();
                 }
             }
         }
@@ -64,7 +64,7 @@ impl<'a> ArcNetwork<'a> {
             let tension = tension(&boundary);
             let beside = complex.sides(face).map(|side| {
                 let (cell, offset) = cell_and_offset(side, domain)?;
-                Some((cell.index(), places[cell.index()] + offset.truncate()))
+                Some((cell.index(), positions[cell.index()] + offset.truncate()))
             });
             let end = |end: usize| {
                 let corner = complex.corners(face)[end];
@@ -77,9 +77,9 @@ impl<'a> ArcNetwork<'a> {
         let arcs: Vec<Arc> = complex.faces().into_iter().map(arc).collect();
         let tensions = || arcs.iter().map(|arc| arc.tension).filter(|tension| *tension > 0.0);
         let around = |arc: &Arc| (arc.ends.map(|(vertex, _)| vertex), arc.beside.map(|cell| Some(cell?.0)));
-        let places = complex.vertices.iter().map(|place| place.truncate()).collect();
+        let positions = complex.vertices.iter().map(|position| position.truncate()).collect();
         Self {
-            order: Dissection::new(places, areas.len(), arcs.iter().map(around)),
+            order: Dissection::new(positions, areas.len(), arcs.iter().map(around)),
             mean_tension: tensions().sum::<f64>() / tensions().count().max(1) as f64,
             arcs,
             pinned: (0..areas.len()).max_by(|a, b| areas[*a].total_cmp(&areas[*b])).unwrap_or(0),

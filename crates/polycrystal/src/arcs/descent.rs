@@ -233,10 +233,10 @@ fn hold_chords(network: &ArcNetwork<'_>, state: &[f64], motion: &mut [f64]) -> V
         }
     }
     for number in 0..network.arcs.len() {
-        let place = network.own(number)[4];
-        let turning = state[place];
-        let turned = turning + motion[place].clamp(-LARGEST_TURN, LARGEST_TURN);
-        motion[place] = turned.clamp(-LARGEST_TURNING, LARGEST_TURNING) - turning;
+        let index = network.own(number)[4];
+        let turning = state[index];
+        let turned = turning + motion[index].clamp(-LARGEST_TURN, LARGEST_TURN);
+        motion[index] = turned.clamp(-LARGEST_TURNING, LARGEST_TURNING) - turning;
     }
     vanishing
 }

@@ -110,8 +110,8 @@ impl ArcTerms {
         }
         let mut places = [0; ELEMENT];
         for (end, (vertex, _)) in arc.ends.into_iter().enumerate() {
-            let place = network.order.vertex(vertex).expect("the arc ends there");
-            (places[2 * end], places[2 * end + 1]) = (place, place + 1);
+            let index = network.order.vertex(vertex).expect("the arc ends there");
+            (places[2 * end], places[2 * end + 1]) = (index, index + 1);
         }
         let beside = arc.beside.map(|beside| Some(beside?.0));
         let some = beside[0].or(beside[1]).expect("there is a cell beside each edge");
@@ -204,8 +204,8 @@ impl<'a> KktSystem<'a> {
         let (forces, torques) = force.split_at(2 * freedoms.len());
         let places = || (0..freedoms.len()).filter_map(|vertex| Some((vertex, order.vertex(vertex)?)));
         let mut values = vec![0.0; order.len()];
-        for (vertex, place) in places() {
-            values[place..place + 2].copy_from_slice(&forces[2 * vertex..2 * vertex + 2]);
+        for (vertex, index) in places() {
+            values[index..index + 2].copy_from_slice(&forces[2 * vertex..2 * vertex + 2]);
         }
         for (cell, change) in changes.iter().enumerate() {
             values[order.cell(cell)] += change;
@@ -213,10 +213,10 @@ impl<'a> KktSystem<'a> {
         for ((arc, terms), torque) in arcs.iter().zip(&self.terms).zip(torques) {
             let wound = terms.winding(arc) * (torque * terms.flexibility);
             for ((vertex, _), wound) in arc.ends.iter().zip([-wound, wound]) {
-                let place = order.vertex(*vertex).expect("the arc ends there");
+                let index = order.vertex(*vertex).expect("the arc ends there");
                 let free = freedoms[*vertex].project(wound.extend(0.0));
-                values[place] -= free.x;
-                values[place + 1] -= free.y;
+                values[index] -= free.x;
+                values[index + 1] -= free.y;
             }
             for (beside, area) in arc.beside.iter().zip(&terms.areas) {
                 if let Some((cell, _)) = beside {
@@ -228,8 +228,8 @@ impl<'a> KktSystem<'a> {
         self.factors.solve(&mut values);
         let pressures: Vec<f64> = (0..changes.len()).map(|cell| -values[order.cell(cell)]).collect();
         let mut motion = self.zero();
-        for (vertex, place) in places() {
-            motion[2 * vertex..2 * vertex + 2].copy_from_slice(&values[place..place + 2]);
+        for (vertex, index) in places() {
+            motion[2 * vertex..2 * vertex + 2].copy_from_slice(&values[index..index + 2]);
         }
         self.network.keep_free(&mut motion);
         let (places, turns) = motion.split_at_mut(2 * freedoms.len());

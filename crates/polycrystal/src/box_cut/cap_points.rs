@@ -42,9 +42,10 @@ pub(crate) fn add_points(delaunay: &mut Delaunay) {
                 return;
             }
             if has_face(delaunay, corners) {
-                let places = corners.map(|corner| delaunay.vertex(corner).position());
-                is_changed |=
-                    candidates(places).into_iter().any(|place| widens(delaunay, places, place, squared));
+                let positions = corners.map(|corner| delaunay.vertex(corner).position());
+                is_changed |= candidates(positions)
+                    .into_iter()
+                    .any(|position| widens(delaunay, positions, position, squared));
             }
         }
         if !is_changed {
@@ -77,24 +78,24 @@ fn candidates(corners: [Point2<f64>; 3]) -> Vec<Point2<f64>> {
     let center = middle + toward * height;
     [off_center, center, (a + b + c) / 3.0]
         .into_iter()
-        .filter(|place| place.is_finite())
-        .map(|place| Point2::new(place.x, place.y))
+        .filter(|position| position.is_finite())
+        .map(|position| Point2::new(position.x, position.y))
         .collect()
 }
 
 /// Adds a point if that widens the smallest angle; whether it did.
-fn widens(delaunay: &mut Delaunay, corners: [Point2<f64>; 3], place: Point2<f64>, squared: f64) -> bool {
+fn widens(delaunay: &mut Delaunay, corners: [Point2<f64>; 3], position: Point2<f64>, squared: f64) -> bool {
     let middle = corners.map(in_space).iter().sum::<DVec3>() / 3.0;
-    let is_inside = match delaunay.locate(place) {
+    let is_inside = match delaunay.locate(position) {
         PositionInTriangulation::OnFace(_) => true,
         PositionInTriangulation::OnEdge(edge) => !delaunay.directed_edge(edge).is_constraint_edge(),
         _ => false,
     };
     let middle = Point2::new(middle.x, middle.y);
-    if !is_inside || delaunay.get_conflicting_edges_between_points(middle, place).next().is_some() {
+    if !is_inside || delaunay.get_conflicting_edges_between_points(middle, position).next().is_some() {
         return false;
     }
-    let Ok(vertex) = delaunay.insert(place) else { return false };
+    let Ok(vertex) = delaunay.insert(position) else { return false };
     let least = delaunay
         .vertex(vertex)
         .out_edges()

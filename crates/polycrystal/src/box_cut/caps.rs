@@ -9,7 +9,7 @@ use voronoi::{Dimension, Translation};
 
 use crate::box_cut::cap_points::add_points;
 use crate::box_cut::pieces::{End, Pieces};
-use crate::box_cut::{PeriodicPoint, Piece, periodic_axes, place_in_box};
+use crate::box_cut::{PeriodicPoint, Piece, periodic_axes, position_in_box};
 use crate::{NetworkError, Side};
 
 type Delaunay = ConstrainedDelaunayTriangulation<Point2<f64>>;
@@ -62,8 +62,8 @@ fn caps_of_line(
     caps: &mut Vec<Piece>,
 ) -> Result<(), NetworkError> {
     let along = 1 - axis;
-    let place = |corner: PeriodicPoint| {
-        place_in_box(&pieces.domain, pieces.places[corner.point as usize], corner.translation)
+    let position = |corner: PeriodicPoint| {
+        position_in_box(&pieces.domain, pieces.positions[corner.point as usize], corner.translation)
     };
     let mut far = Translation::ZERO;
     far.0[along] = 1;
@@ -73,7 +73,7 @@ fn caps_of_line(
         let end = [End::Lower, End::Upper].into_iter().find(|end| pieces.is_on(*corner, axis, *end));
         line.extend(end.map(|end| pieces.lowered(*corner, axis, end)));
     }
-    line.sort_by(|a, b| place(*a)[along].total_cmp(&place(*b)[along]).then(a.cmp(b)));
+    line.sort_by(|a, b| position(*a)[along].total_cmp(&position(*b)[along]).then(a.cmp(b)));
     line.dedup();
     for end in [End::Lower, End::Upper] {
         // The sides after and before each point, each with the slope along the wall of the boundary that bounds it.
@@ -84,7 +84,7 @@ fn caps_of_line(
             for (at, other, [left, right]) in
                 [(ends[0], ends[1], piece.sides), (ends[1], ends[0], [piece.sides[1], piece.sides[0]])]
             {
-                let away = (place(other) - place(at)).normalize_or_zero();
+                let away = (position(other) - position(at)).normalize_or_zero();
                 if is_within {
                     // Along x the left is above, along y it is below.
                     let is_left = (axis == 1) == ((away[along] > 0.0) == (end == End::Lower));
@@ -140,9 +140,9 @@ fn caps_of_plane(
     caps: &mut Vec<Piece>,
 ) -> Result<(), NetworkError> {
     let [b, c] = [(axis + 1) % 3, (axis + 2) % 3];
-    let place = |corner: PeriodicPoint| {
-        let place = pieces.place(corner);
-        Point2::new(place[b], place[c])
+    let position = |corner: PeriodicPoint| {
+        let position = pieces.position(corner);
+        Point2::new(position[b], position[c])
     };
     // What lies on the left of each edge, seen from above: at the lower wall and at the upper one.
     let mut left_of = [Lefts::default(), Lefts::default()];
@@ -150,7 +150,7 @@ fn caps_of_plane(
     for piece @ Piece { corners, sides: [first, second], .. } in &pieces.pieces {
         let along = corners.iter().zip(corners.iter().cycle().skip(1)).map(|(from, to)| [*from, *to]);
         if pieces.is_within(piece, axis) {
-            let crossed = along.clone().map(|ends| ends.map(place)).map(|[p, q]| p.x * q.y - q.x * p.y);
+            let crossed = along.clone().map(|ends| ends.map(position)).map(|[p, q]| p.x * q.y - q.x * p.y);
             let is_upward = crossed.sum::<f64>() > 0.0;
             for [from, to] in along {
                 let (ends, above, below) =
@@ -183,7 +183,7 @@ fn caps_of_plane(
     corners.dedup();
     let mut delaunay = Delaunay::new();
     for (number, corner) in corners.iter().enumerate() {
-        let vertex = delaunay.insert(place(*corner)).map_err(|_| crosses(axis))?;
+        let vertex = delaunay.insert(position(*corner)).map_err(|_| crosses(axis))?;
         // An earlier point at the same place comes back as itself.
         if vertex.index() != number {
             return Err(crosses(axis));
@@ -199,9 +199,9 @@ fn caps_of_plane(
     }
     add_points(&mut delaunay);
     for vertex in delaunay.vertices().skip(corners.len()) {
-        let mut place = pieces.domain.lower();
-        (place[b], place[c]) = (vertex.position().x, vertex.position().y);
-        corners.push(pieces.add(place, [0, 1, 2].map(|other| other == axis)));
+        let mut position = pieces.domain.lower();
+        (position[b], position[c]) = (vertex.position().x, vertex.position().y);
+        corners.push(pieces.add(position, [0, 1, 2].map(|other| other == axis)));
     }
     for (end, left_of) in [End::Lower, End::Upper].into_iter().zip(&left_of) {
         let side_at = |ends: [FixedVertexHandle; 2]| left_of.side(ends.map(|end| corners[end.index()]));
@@ -241,14 +241,14 @@ impl Lefts {
 
 /// How far a piece leans to the left of its edge in a wall across an axis, seen from above: from -1 to 1.
 fn leaning(pieces: &Pieces, piece: &Piece, ends: [PeriodicPoint; 2], axis: usize) -> f64 {
-    let place = |corner: PeriodicPoint| {
-        place_in_box(&pieces.domain, pieces.places[corner.point as usize], corner.translation)
+    let position = |corner: PeriodicPoint| {
+        position_in_box(&pieces.domain, pieces.positions[corner.point as usize], corner.translation)
     };
-    let [start, end] = ends.map(place);
+    let [start, end] = ends.map(position);
     let along = (end - start).normalize_or_zero();
     let left = DVec3::AXES[axis].cross(along);
     // The farthest corner tells best how a thin piece leans.
-    let legs = piece.corners.iter().map(|corner| (place(*corner) - start).reject_from_normalized(along));
+    let legs = piece.corners.iter().map(|corner| (position(*corner) - start).reject_from_normalized(along));
     let leg = legs.max_by(|a, b| a.length_squared().total_cmp(&b.length_squared())).unwrap_or_default();
     leg.normalize_or_zero().dot(left)
 }
@@ -256,7 +256,7 @@ fn leaning(pieces: &Pieces, piece: &Piece, ends: [PeriodicPoint; 2], axis: usize
 /// The edges of the lower wall across the first of two axes that lie on walls across the second, below and above.
 fn rims(pieces: &Pieces, [axis, across]: [usize; 2], along: usize) -> Vec<[PeriodicPoint; 2]> {
     let on_edge = (0u32..).zip(&pieces.planes).filter(|(_, planes)| planes[axis] && planes[across]);
-    let height = |point: &u32| pieces.places[*point as usize][along];
+    let height = |point: &u32| pieces.positions[*point as usize][along];
     let mut points: Vec<u32> = on_edge.map(|(point, _)| point).collect();
     points.sort_by(|a, b| height(a).total_cmp(&height(b)));
     let mut line: Vec<PeriodicPoint> =
@@ -278,7 +278,7 @@ fn rims(pieces: &Pieces, [axis, across]: [usize; 2], along: usize) -> Vec<[Perio
 fn seen_from_wall(pieces: &Pieces, axis: usize, end: End, at: DVec3) -> Option<Side> {
     let others = [(axis + 1) % 3, (axis + 2) % 3];
     let height_and_side = |piece: &Piece| {
-        let corners: Vec<DVec3> = piece.corners.iter().map(|corner| pieces.place(*corner) - at).collect();
+        let corners: Vec<DVec3> = piece.corners.iter().map(|corner| pieces.position(*corner) - at).collect();
         let normal = match corners.as_slice() {
             [start, end] => (*end - *start).cross(DVec3::Z),
             corners => (corners[1] - corners[0]).cross(corners[2] - corners[0]),

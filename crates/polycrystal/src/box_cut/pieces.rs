@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 use voronoi::{Dimension, Domain, Translation};
 
-use crate::box_cut::{PeriodicPoint, Piece, periodic_axes, place_in_box};
+use crate::box_cut::{PeriodicPoint, Piece, periodic_axes, position_in_box};
 use crate::mesh::id::id;
 use crate::mesh::triangle_quality::squared_sine;
 use crate::{Elements, Network};
@@ -14,8 +14,8 @@ use crate::{Elements, Network};
 pub(crate) struct Pieces {
     pub(crate) domain: Domain,
     pub(crate) pieces: Vec<Piece>,
-    /// Places with lower <= x < upper along periodic axes.
-    pub(crate) places: Vec<DVec3>,
+    /// Positions with lower <= x < upper along periodic axes.
+    pub(crate) positions: Vec<DVec3>,
     /// The axes on whose lower plane each point lies.
     pub(crate) planes: Vec<[bool; 3]>,
 }
@@ -37,8 +37,8 @@ type Cut = (usize, PeriodicPoint, PeriodicPoint, i8);
 pub(crate) struct Torus {
     /// The point that each vertex is, and the translation from there.
     pub(crate) originals: Vec<PeriodicPoint>,
-    /// Places of points with lower <= x < upper along periodic axes.
-    pub(crate) places: Vec<DVec3>,
+    /// Positions of points with lower <= x < upper along periodic axes.
+    pub(crate) positions: Vec<DVec3>,
     /// The periods from there to the point.
     pub(crate) moved: Vec<Translation>,
     /// The axes on whose lower plane each point lies.
@@ -58,16 +58,16 @@ impl Torus {
                 PeriodicPoint { point: pair.primary, translation: pair.translation };
         }
         let mut torus = Self {
-            places: points.to_vec(),
+            positions: points.to_vec(),
             moved: vec![Translation::ZERO; points.len()],
             planes: vec![[false; 3]; points.len()],
             originals,
         };
-        for (point, place) in points.iter().enumerate() {
+        for (point, position) in points.iter().enumerate() {
             if torus.originals[point].point == id(point) {
-                (torus.places[point], torus.moved[point]) = home(domain, *place);
+                (torus.positions[point], torus.moved[point]) = home(domain, *position);
                 for axis in periodic_axes(domain) {
-                    torus.planes[point][axis] = torus.places[point][axis] == domain.lower()[axis];
+                    torus.planes[point][axis] = torus.positions[point][axis] == domain.lower()[axis];
                 }
             }
         }
@@ -88,7 +88,7 @@ impl Pieces {
         let mut pieces = Self {
             pieces: Vec::new(),
             domain: network.domain().clone(),
-            places: Vec::new(),
+            positions: Vec::new(),
             planes: Vec::new(),
         };
         let elements = Elements::from(&level.mesh);
@@ -105,7 +105,7 @@ impl Pieces {
             let corners = elements.corners(element).iter().map(|vertex| torus.corner(*vertex)).collect();
             pieces.pieces.push(Piece { corners, sides, boundary: Some(*boundary) });
         }
-        Self { places: torus.places, planes: torus.planes, ..pieces }
+        Self { positions: torus.positions, planes: torus.planes, ..pieces }
     }
 
     /// Divides polygons into triangles, each so that the smallest angle is as large as it can be.
@@ -116,9 +116,9 @@ impl Pieces {
                 let at = move |k: usize| (apex + k) % count;
                 (2..count).map(move |k| [apex, at(k - 1), at(k)])
             };
-            let place = |k: usize| self.place(piece.corners[k]);
+            let position = |k: usize| self.position(piece.corners[k]);
             let least = |apex: usize| {
-                fan(apex).map(|ends| squared_sine(ends.map(place))).fold(f64::INFINITY, f64::min)
+                fan(apex).map(|ends| squared_sine(ends.map(position))).fold(f64::INFINITY, f64::min)
             };
             let apexes = (0..count).map(|apex| (least(apex), apex));
             let best = apexes.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
@@ -130,8 +130,8 @@ impl Pieces {
     }
 
     /// Where a corner of a piece in the box is.
-    pub(crate) fn place(&self, corner: PeriodicPoint) -> DVec3 {
-        place_in_box(&self.domain, self.places[corner.point as usize], corner.translation)
+    pub(crate) fn position(&self, corner: PeriodicPoint) -> DVec3 {
+        position_in_box(&self.domain, self.positions[corner.point as usize], corner.translation)
     }
 
     /// Cuts all pieces at the planes across an axis.
@@ -216,32 +216,32 @@ impl Pieces {
         across.0[axis] = plane;
         let lower = self.domain.lower();
         let height = lower[axis] + across.vector(&self.domain)[axis];
-        let start = self.places[from.point as usize];
-        let end = self.places[to.point as usize] + to.translation.vector(&self.domain);
+        let start = self.positions[from.point as usize];
+        let end = self.positions[to.point as usize] + to.translation.vector(&self.domain);
         let share = (height - start[axis]) / (end[axis] - start[axis]);
         // Where both ends have the same coordinate, as on a wall, so has this: a weighted mean of the two would round.
-        let (mut place, mut translation) = home(&self.domain, start + (end - start) * share);
-        place[axis] = lower[axis];
+        let (mut position, mut translation) = home(&self.domain, start + (end - start) * share);
+        position[axis] = lower[axis];
         translation.0[axis] = plane;
         let mut planes = [false; 3];
         planes[axis] = true;
         for other in periodic_axes(&self.domain).filter(|other| *other != axis) {
             // What joins two points of a plane lies in it.
             if from_planes[other] && to_planes[other] && to.translation.0[other] == 0 {
-                (place[other], translation.0[other]) = (lower[other], 0);
+                (position[other], translation.0[other]) = (lower[other], 0);
             }
-            planes[other] = place[other] == lower[other];
+            planes[other] = position[other] == lower[other];
         }
-        let corner = self.add(place, planes).moved(translation);
+        let corner = self.add(position, planes).moved(translation);
         cuts.insert(cut, corner);
         corner.moved(base)
     }
 
     /// A new point of the torus.
-    pub(crate) fn add(&mut self, place: DVec3, planes: [bool; 3]) -> PeriodicPoint {
-        self.places.push(place);
+    pub(crate) fn add(&mut self, position: DVec3, planes: [bool; 3]) -> PeriodicPoint {
+        self.positions.push(position);
         self.planes.push(planes);
-        PeriodicPoint { point: id(self.places.len() - 1), translation: Translation::ZERO }
+        PeriodicPoint { point: id(self.positions.len() - 1), translation: Translation::ZERO }
     }
 
     /// Moves every piece into the box, of whose upper walls corners are moved by a period.
@@ -283,25 +283,25 @@ impl Pieces {
     }
 }
 
-/// A place moved into the box along periodic axes, and the periods from there.
-fn home(domain: &Domain, mut place: DVec3) -> (DVec3, Translation) {
+/// A position moved into the box along periodic axes, and the periods from there.
+fn home(domain: &Domain, mut position: DVec3) -> (DVec3, Translation) {
     let mut translation = Translation::ZERO;
     for axis in periodic_axes(domain) {
         let (lower, upper, period) = (domain.lower()[axis], domain.upper()[axis], domain.size()[axis]);
-        while place[axis] < lower {
-            place[axis] += period;
+        while position[axis] < lower {
+            position[axis] += period;
             translation.0[axis] -= 1;
         }
-        while place[axis] >= upper {
-            place[axis] -= period;
+        while position[axis] >= upper {
+            position[axis] -= period;
             translation.0[axis] += 1;
         }
-        if upper - place[axis] <= ROUNDING * period {
-            place[axis] = lower;
+        if upper - position[axis] <= ROUNDING * period {
+            position[axis] = lower;
             translation.0[axis] += 1;
-        } else if place[axis] - lower <= ROUNDING * period {
-            place[axis] = lower;
+        } else if position[axis] - lower <= ROUNDING * period {
+            position[axis] = lower;
         }
     }
-    (place, translation)
+    (position, translation)
 }

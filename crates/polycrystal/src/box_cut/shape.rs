@@ -31,14 +31,14 @@ const LARGEST_TURN: f64 = 0.85;
 /// Moves points around thin triangles, in flat networks only those inside caps.
 pub(crate) fn widen(pieces: &mut Pieces, caps: &[Piece], is_flat: bool) {
     let all: Vec<&Piece> = pieces.pieces.iter().chain(caps).collect();
-    let mut stars = vec![Vec::new(); pieces.places.len()];
+    let mut stars = vec![Vec::new(); pieces.positions.len()];
     for (number, piece) in all.iter().enumerate() {
         piece.corners.iter().for_each(|corner| stars[corner.point as usize].push(number));
     }
     let mut shape = Shape {
         domain: &pieces.domain,
         planes: &pieces.planes,
-        places: pieces.places.clone(),
+        positions: pieces.positions.clone(),
         facing: Vec::new(),
         is_free: stars
             .iter()
@@ -64,13 +64,13 @@ pub(crate) fn widen(pieces: &mut Pieces, caps: &[Piece], is_flat: bool) {
             break;
         }
     }
-    pieces.places = shape.places;
+    pieces.positions = shape.positions;
 }
 
 struct Shape<'a> {
     domain: &'a Domain,
     planes: &'a [[bool; 3]],
-    places: Vec<DVec3>,
+    positions: Vec<DVec3>,
     all: Vec<&'a Piece>,
     /// The pieces at each point.
     stars: Vec<Vec<usize>>,
@@ -85,7 +85,11 @@ impl Shape<'_> {
         let corners = &self.all[piece].corners;
         [0, 1, 2].map(|k| {
             let corner = corners[k];
-            crate::box_cut::place_in_box(self.domain, self.places[corner.point as usize], corner.translation)
+            crate::box_cut::position_in_box(
+                self.domain,
+                self.positions[corner.point as usize],
+                corner.translation,
+            )
         })
     }
 
@@ -119,10 +123,10 @@ impl Shape<'_> {
         if !self.is_free[point] {
             return Freedom::Nowhere;
         }
-        let place = self.places[point];
+        let position = self.positions[point];
         let held = (0..3).filter(|axis| {
             let is_wall = !self.domain.periodic().test(*axis)
-                && [self.domain.lower()[*axis], self.domain.upper()[*axis]].contains(&place[*axis]);
+                && [self.domain.lower()[*axis], self.domain.upper()[*axis]].contains(&position[*axis]);
             self.planes[point][*axis] || is_wall
         });
         held.fold(Freedom::Everywhere, |freedom, axis| freedom.and(Freedom::InPlane(DVec3::AXES[axis])))
@@ -147,40 +151,41 @@ impl Shape<'_> {
         if freedom == Freedom::Nowhere {
             return false;
         }
-        let start = self.places[point];
+        let start = self.positions[point];
         let mut best = (start, self.least(point).unwrap_or(0.0));
         let least_gain = GAIN * best.1;
         let length = self.mean_edge(point);
-        let is_inside = |place: DVec3| {
+        let is_inside = |position: DVec3| {
             (0..3).all(|axis| {
                 self.planes[point][axis]
                     || !self.domain.periodic().test(axis)
-                    || (place[axis] > self.domain.lower()[axis] && place[axis] < self.domain.upper()[axis])
+                    || (position[axis] > self.domain.lower()[axis]
+                        && position[axis] < self.domain.upper()[axis])
             })
         };
         let steps = || [-1.0, 0.0, 1.0].into_iter();
-        let mut places = Vec::new();
+        let mut positions = Vec::new();
         for direction in
             steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| DVec3::new(x, y, z))))
         {
             let Some(direction) = freedom.project(direction).try_normalize() else { continue };
-            places.extend(
+            positions.extend(
                 STEPS
                     .map(|step| start + direction * (step * length))
                     .into_iter()
-                    .filter(|place| is_inside(*place)),
+                    .filter(|position| is_inside(*position)),
             );
         }
-        for place in places {
-            self.places[point] = place;
+        for position in positions {
+            self.positions[point] = position;
             if let Some(least) = self.least(point)
                 && least > best.1
             {
-                best = (place, least);
+                best = (position, least);
             }
         }
         let is_better = best.1 > least_gain;
-        self.places[point] = if is_better { best.0 } else { start };
+        self.positions[point] = if is_better { best.0 } else { start };
         is_better
     }
 

@@ -128,8 +128,9 @@ impl Snapping<'_> {
                 continue;
             }
             for axis in periodic_axes(self.domain).filter(|axis| !self.torus.planes[point as usize][*axis]) {
-                let place = self.torus.places[point as usize][axis];
-                let distance = (place - self.domain.lower()[axis]).min(self.domain.upper()[axis] - place);
+                let position = self.torus.positions[point as usize][axis];
+                let distance =
+                    (position - self.domain.lower()[axis]).min(self.domain.upper()[axis] - position);
                 // Most points are far from all planes, whatever their edges.
                 let length = self.mean_edge(vertices[0]);
                 if distance < NEAR * length {
@@ -156,14 +157,14 @@ impl Snapping<'_> {
 
     fn position(&self, vertex: u32) -> DVec3 {
         let PeriodicPoint { point, translation } = self.corner(vertex);
-        self.torus.places[point as usize] + translation.vector(self.domain)
+        self.torus.positions[point as usize] + translation.vector(self.domain)
     }
 
     /// Moves a point into the plane, or where it cannot lie there, to its other side. Whether it moved.
     fn try_to_move(&mut self, point: u32, axis: usize) -> bool {
-        let place = self.torus.places[point as usize];
+        let position = self.torus.positions[point as usize];
         let [below, above] =
-            [place[axis] - self.domain.lower()[axis], self.domain.upper()[axis] - place[axis]];
+            [position[axis] - self.domain.lower()[axis], self.domain.upper()[axis] - position[axis]];
         let is_above = below < above;
         let to_plane = if is_above { -below } else { above };
         let beyond = BEYOND * self.mean_edge(self.vertices_of[point as usize][0]) * to_plane.signum();
@@ -197,38 +198,38 @@ impl Snapping<'_> {
         if gain < LEAST_GAIN {
             return false;
         }
-        let before: State = (self.torus.places[index], self.torus.moved[index], self.torus.planes[index]);
+        let before: State = (self.torus.positions[index], self.torus.moved[index], self.torus.planes[index]);
         let least_before = self.least_sine(point);
-        let (mut place, translation, mut planes) = before;
-        place += direction * (by / gain);
+        let (mut position, translation, mut planes) = before;
+        position += direction * (by / gain);
         let mut step = Translation::ZERO;
         if into_plane {
-            place[axis] = self.domain.lower()[axis];
+            position[axis] = self.domain.lower()[axis];
             planes[axis] = true;
             step.0[axis] = i8::from(!was_above);
         }
         for held in (0..3).filter(|held| planes[*held]) {
-            place[held] = self.domain.lower()[held];
+            position[held] = self.domain.lower()[held];
         }
         // Beyond a plane, the place is at the opposite wall.
         for other in periodic_axes(self.domain).filter(|other| !planes[*other]) {
-            if place[other] <= self.domain.lower()[other] {
-                place[other] += self.domain.size()[other];
+            if position[other] <= self.domain.lower()[other] {
+                position[other] += self.domain.size()[other];
                 step.0[other] -= 1;
-            } else if place[other] >= self.domain.upper()[other] {
-                place[other] -= self.domain.size()[other];
+            } else if position[other] >= self.domain.upper()[other] {
+                position[other] -= self.domain.size()[other];
                 step.0[other] += 1;
             }
         }
         let translation = translation + step;
-        (self.torus.places[index], self.torus.moved[index], self.torus.planes[index]) =
-            (place, translation, planes);
+        (self.torus.positions[index], self.torus.moved[index], self.torus.planes[index]) =
+            (position, translation, planes);
         let least = self.least_sine(point);
         let is_good = least >= (LEAST_SHARE * least_before).min(GOOD_SINE) && !self.is_turned(point);
         if is_good && self.is_cut_well(point, axis, into_plane) {
             return true;
         }
-        (self.torus.places[index], self.torus.moved[index], self.torus.planes[index]) = before;
+        (self.torus.positions[index], self.torus.moved[index], self.torus.planes[index]) = before;
         false
     }
 
@@ -300,9 +301,9 @@ impl Snapping<'_> {
                     continue;
                 }
                 let corners = self.triangles[*triangle as usize];
-                let place =
+                let position =
                     corners.iter().position(|corner| *corner == vertex).expect("a star has its centre");
-                let mut ends = [corners[(place + 1) % 3], corners[(place + 2) % 3]];
+                let mut ends = [corners[(position + 1) % 3], corners[(position + 2) % 3]];
                 if sides[0] != Some(grain) {
                     ends.reverse();
                 }

@@ -33,7 +33,7 @@ fn measured(pieces: &Pieces, caps: &[Piece], count: usize) -> Vec<f64> {
     let mut volumes = vec![0.0; count];
     let mut apexes = vec![None; count];
     for piece in pieces.pieces.iter().chain(caps) {
-        let corners = [0, 1, 2].map(|k| pieces.place(piece.corners[k]));
+        let corners = [0, 1, 2].map(|k| pieces.position(piece.corners[k]));
         for (side, sign) in piece.sides.iter().zip([1.0, -1.0]) {
             if let Side::Grain(grain) = side {
                 let apex = *apexes[grain.index()].get_or_insert(corners[0]);
@@ -48,9 +48,9 @@ fn measured(pieces: &Pieces, caps: &[Piece], count: usize) -> Vec<f64> {
 /// Moves points along the gradients of the grains' volumes, each by the pressure of its grains: a point per area less, where more
 /// surface stands on it.
 fn correct(pieces: &mut Pieces, missing: &[f64]) {
-    let mut points = vec![MovingPoint::default(); pieces.places.len()];
+    let mut points = vec![MovingPoint::default(); pieces.positions.len()];
     for piece in &pieces.pieces {
-        let [a, b, c] = [0, 1, 2].map(|k| pieces.place(piece.corners[k]));
+        let [a, b, c] = [0, 1, 2].map(|k| pieces.position(piece.corners[k]));
         let normal = (b - a).cross(c - a);
         for corner in &piece.corners {
             let point = &mut points[corner.point as usize];
@@ -67,7 +67,7 @@ fn correct(pieces: &mut Pieces, missing: &[f64]) {
         point.gradients.values_mut().for_each(|gradient| *gradient = freedom.project(*gradient));
     }
     let motions = least_motion(&points, missing);
-    pieces.places.iter_mut().zip(motions).for_each(|(place, by)| *place += by);
+    pieces.positions.iter_mut().zip(motions).for_each(|(position, by)| *position += by);
 }
 
 /// Points in planes of the box stay; those on walls stay in these.
@@ -75,10 +75,10 @@ fn freedom(pieces: &Pieces, point: usize) -> Freedom {
     if pieces.planes[point].contains(&true) {
         return Freedom::Nowhere;
     }
-    let (domain, place) = (&pieces.domain, pieces.places[point]);
+    let (domain, position) = (&pieces.domain, pieces.positions[point]);
     let walls = (0..3).filter(|axis| {
         !domain.periodic().test(*axis)
-            && [domain.lower()[*axis], domain.upper()[*axis]].contains(&place[*axis])
+            && [domain.lower()[*axis], domain.upper()[*axis]].contains(&position[*axis])
     });
     walls.fold(Freedom::Everywhere, |freedom, axis| freedom.and(Freedom::InPlane(DVec3::AXES[axis])))
 }

@@ -58,10 +58,10 @@ impl CellComplex {
     /// Puts a triangle between the sides at the ends of an edge in its place, with corner k, not at side k around, in `places[k]`.
     ///
     /// Gives the new face, or nothing where that is not possible: see [`Self::reconnectable_edge`].
-    pub fn edge_to_triangle(&mut self, edge: ComplexEdge, places: [DVec3; 3]) -> Option<FaceId> {
+    pub fn edge_to_triangle(&mut self, edge: ComplexEdge, positions: [DVec3; 3]) -> Option<FaceId> {
         let star = self.reconnectable_edge(edge)?;
         let ends = [PeriodicVertex { vertex: edge.start, translation: Translation::ZERO }, edge.end];
-        let corners = places.map(|place| self.add_vertex(place));
+        let corners = positions.map(|position| self.add_vertex(position));
         let mut loops = [Vec::new(), Vec::new()];
         for (end, place) in ends.into_iter().enumerate() {
             for (k, at) in star.beyond[end].iter().enumerate() {
@@ -91,12 +91,12 @@ impl CellComplex {
         Some(FaceId(id(self.faces.len() - 1)))
     }
 
-    /// Puts an edge in the place of a face with three corners; it starts at `places[0]`, at the face's first side.
+    /// Puts an edge in the place of a face with three corners; it starts at `positions[0]`, at the face's first side.
     ///
     /// Gives the new edge, or nothing where that is not possible: see [`Self::reconnectable_triangle`].
-    pub fn triangle_to_edge(&mut self, face: FaceId, places: [DVec3; 2]) -> Option<ComplexEdge> {
+    pub fn triangle_to_edge(&mut self, face: FaceId, positions: [DVec3; 2]) -> Option<ComplexEdge> {
         let (star, corners) = self.reconnectable_triangle(face)?;
-        let ends = places.map(|place| self.add_vertex(place));
+        let ends = positions.map(|position| self.add_vertex(position));
         for (k, at) in star.between.iter().enumerate() {
             let Some(at) = at else { continue };
             let [start, end] = ends;

@@ -1,7 +1,7 @@
 //! Collapse of short edges and small faces.
 //!
 //! Random cells have edges and faces of any size down to nothing. Merging the two ends of a short edge makes a vertex of
-//! higher order: one where the cells of both meet. A triangle that loses an edge closes like a book, and so a small face
+//! higher order: one where the cells of both meet. A triangle that loses an edge collapses to one, and so a small face
 //! shrinks to an edge or a vertex. Every cell stays a closed ball as long as the ends have nothing in common but what
 //! lies around their edge (the link condition of Dey, Edelsbrunner, Guha and Nekhayev 1999, for cells instead of simplices).
 //!
@@ -23,7 +23,7 @@ const SWEEPS: usize = 10;
 pub struct Collapsed {
     /// Edges whose ends became one vertex.
     pub edges: usize,
-    /// Faces that closed.
+    /// Faces that collapsed.
     pub faces: usize,
 }
 
@@ -54,7 +54,7 @@ pub fn remove_edges_that_shorten(
     loop {
         let mut complex = Complex::new(cells, length, future, is_strict);
         complex.collapse_short_edges();
-        // Faces that were let fold because they would close soon, and then did not, may not do so again.
+        // Faces that were let fold because they would collapse soon, and then did not, may not do so again.
         let folded = complex.folded_faces();
         if folded.is_empty() {
             return complex.finish();
@@ -83,7 +83,7 @@ struct Complex<'a> {
     /// Original vertices that each stands for.
     weights: Vec<f64>,
     walls: Vec<Vec<Wall>>,
-    /// The corners of each face; empty for those that have closed.
+    /// The corners of each face; empty for those that have collapsed.
     faces: Vec<Vec<PeriodicVertex>>,
     /// The faces at each vertex, moved to where it has its own place; empty for those that have merged into another.
     faces_at: Vec<Vec<MovedFace>>,
@@ -210,7 +210,7 @@ impl<'a> Complex<'a> {
         edges.into_iter().map(|(_, edge)| edge).collect()
     }
 
-    /// Whether a vertex is left with two edges: a mere bend in a line, where two long, thin faces have closed that crossed.
+    /// Whether a vertex is left with two edges: a mere bend in a line, where two long, thin faces have collapsed that crossed.
     fn is_bend(&self, vertex: u32) -> bool {
         if self.dimension() == Dimension::Two || self.faces_at[vertex as usize].is_empty() {
             return false;
@@ -282,7 +282,7 @@ impl<'a> Complex<'a> {
             None => second_walls > first_walls,
         };
         let [kept, gone] = edge.across(first_goes);
-        let Some(closing) = self.closing_faces(kept, gone) else { return };
+        let Some(collapsing) = self.collapsing_faces(kept, gone) else { return };
         if !self.walls_allow(kept, gone) {
             return;
         }
@@ -297,11 +297,11 @@ impl<'a> Complex<'a> {
             return;
         }
         self.future[kept.vertex as usize] = future;
-        self.merge(kept, gone, place, &closing);
+        self.merge(kept, gone, place, &collapsing);
     }
 
-    /// The faces that a collapse closes; nothing where a cell would not stay a ball.
-    fn closing_faces(&self, kept: PeriodicVertex, gone: PeriodicVertex) -> Option<Vec<MovedFace>> {
+    /// The faces that collapse with an edge; nothing where a cell would not stay a ball.
+    fn collapsing_faces(&self, kept: PeriodicVertex, gone: PeriodicVertex) -> Option<Vec<MovedFace>> {
         if !self.is_apart_from_copies(kept, gone) {
             return None;
         }
@@ -323,21 +323,21 @@ impl<'a> Complex<'a> {
             Dimension::Two => (3, 3),
             Dimension::Three => (4, 4),
         };
-        let is_closing = |face: &MovedFace| self.faces[face.face as usize].len() < least_corners;
-        let closing: Vec<MovedFace> = common.into_iter().filter(is_closing).collect();
+        let collapses = |face: &MovedFace| self.faces[face.face as usize].len() < least_corners;
+        let collapsing: Vec<MovedFace> = common.into_iter().filter(collapses).collect();
         if self.dimension() == Dimension::Three {
             let at_gone = self.neighbors(gone);
             let common = self.neighbors(kept).into_iter().filter(|vertex| at_gone.contains(vertex)).count();
-            if common != closing.len() {
+            if common != collapsing.len() {
                 return None;
             }
         }
         let losing =
-            |cell: &MovedCell| closing.iter().filter(|face| self.cells(**face).contains(cell)).count();
+            |cell: &MovedCell| collapsing.iter().filter(|face| self.cells(**face).contains(cell)).count();
         let keeps_enough = |cell: MovedCell| {
             cell.is_none_or(|(id, _)| self.face_counts[id.index()] >= least_faces + losing(&cell))
         };
-        closing.iter().flat_map(|face| self.cells(*face)).all(keeps_enough).then_some(closing)
+        collapsing.iter().flat_map(|face| self.cells(*face)).all(keeps_enough).then_some(collapsing)
     }
 
     /// Whether all that is around two vertices is there once, so that what happens there happens nowhere else to the same faces
@@ -390,7 +390,13 @@ impl<'a> Complex<'a> {
         })
     }
 
-    fn merge(&mut self, kept: PeriodicVertex, gone: PeriodicVertex, mut place: DVec3, closing: &[MovedFace]) {
+    fn merge(
+        &mut self,
+        kept: PeriodicVertex,
+        gone: PeriodicVertex,
+        mut place: DVec3,
+        collapsing: &[MovedFace],
+    ) {
         // A mean of equal coordinates may miss them by a last place.
         for wall in &self.walls[kept.vertex as usize] {
             if let Some((axis, coordinate)) = self.original.domain().across_axis(*wall) {
@@ -412,16 +418,16 @@ impl<'a> Complex<'a> {
                 self.faces_at[kept.vertex as usize].push(MovedFace { face, translation: at });
             }
         }
-        for closed in closing {
-            for corner in std::mem::take(&mut self.faces[closed.face as usize]) {
-                self.faces_at[corner.vertex as usize].retain(|other| other.face != closed.face);
+        for gone_face in collapsing {
+            for corner in std::mem::take(&mut self.faces[gone_face.face as usize]) {
+                self.faces_at[corner.vertex as usize].retain(|other| other.face != gone_face.face);
             }
-            for (cell, _) in self.cells(*closed).into_iter().flatten() {
+            for (cell, _) in self.cells(*gone_face).into_iter().flatten() {
                 self.face_counts[cell.index()] -= 1;
             }
         }
         self.collapsed.edges += 1;
-        self.collapsed.faces += closing.len();
+        self.collapsed.faces += collapsing.len();
     }
 
     /// The complex as a tessellation, with vertices and faces numbered anew in their old order.

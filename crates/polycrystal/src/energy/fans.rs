@@ -42,7 +42,7 @@ pub(crate) struct Slot {
 
 impl Slot {
     /// Where the fan has the point.
-    pub(crate) fn place(self, points: &[DVec3]) -> DVec3 {
+    pub(crate) fn position(self, points: &[DVec3]) -> DVec3 {
         points[self.point as usize] + self.offset
     }
 }
@@ -188,7 +188,7 @@ impl Fans {
     /// The mean of the vertices of a fan.
     pub(crate) fn mean_of_corners(&self, fan: usize, points: &[DVec3]) -> DVec3 {
         let corners = self.slots_of(fan)[..self.rim_len(fan)].iter().step_by(2);
-        corners.map(|slot| slot.place(points)).sum::<DVec3>() / (self.rim_len(fan) / 2) as f64
+        corners.map(|slot| slot.position(points)).sum::<DVec3>() / (self.rim_len(fan) / 2) as f64
     }
 
     /// The fans with neighbouring triangles that are further apart than the angle whose cosine is given.
@@ -204,7 +204,7 @@ impl Fans {
 
     /// The rim of a fan, and its centre last.
     fn ring(&self, fan: usize, points: &[DVec3]) -> Vec<DVec3> {
-        self.slots_of(fan).iter().map(|slot| slot.place(points)).collect()
+        self.slots_of(fan).iter().map(|slot| slot.position(points)).collect()
     }
 
     /// Of each slot of a rim the normal of the triangle that begins there, twice as long as its area; of centres nothing.

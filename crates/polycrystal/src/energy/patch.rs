@@ -72,7 +72,7 @@ impl LocalStencils {
         let mut local = Self { starts: vec![0], ids: Vec::new(), weights: Vec::new() };
         for point in finer {
             let (ids, weights) = stencils.stencil(*point as usize);
-            local.ids.extend(ids.iter().map(|point| place_in(coarser, *point)));
+            local.ids.extend(ids.iter().map(|point| index_in(coarser, *point)));
             local.weights.extend(weights);
             local.starts.push(local.ids.len());
         }
@@ -233,7 +233,7 @@ impl Variation {
 }
 
 /// The place of an id in a sorted list that holds it.
-pub(crate) fn place_in(sorted: &[u32], id: u32) -> u32 {
-    let place = sorted.binary_search(&id).expect("a patch's surface depends on its own control points alone");
-    u32::try_from(place).expect("a place in a list of ids fits an id")
+pub(crate) fn index_in(sorted: &[u32], id: u32) -> u32 {
+    let index = sorted.binary_search(&id).expect("a patch's surface depends on its own control points alone");
+    u32::try_from(index).expect("an index in a list of ids fits an id")
 }

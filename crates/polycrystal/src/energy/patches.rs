@@ -5,7 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use subzero::{EdgeId, FaceId, StencilTable};
 
-use crate::energy::patch::{Elements, Law, LocalStencils, Patch, PatchTerms, Refinement, place_in};
+use crate::energy::patch::{Elements, Law, LocalStencils, Patch, PatchTerms, Refinement, index_in};
 use crate::network::tension::in_unit;
 use crate::solver::rows::CsrRows;
 use crate::{BoundaryId, Mesh, Network};
@@ -119,7 +119,7 @@ pub(crate) fn local_elements(mesh: &Mesh, elements: &[u32]) -> (Vec<u32>, Elemen
     };
     points.sort_unstable();
     points.dedup();
-    let local = |point: u32| place_in(&points, point);
+    let local = |point: u32| index_in(&points, point);
     let elements = match mesh {
         Mesh::Triangles(mesh) => {
             Elements::Triangles(elements.iter().map(|e| mesh.triangles()[*e as usize].map(local)).collect())
@@ -159,7 +159,7 @@ fn links(point_count: usize, edges: &[[u32; 2]]) -> CsrRows<u32> {
 
 /// The edges of some elements, each once, between the given points, and of each triangle those across from its corners.
 fn local_edges(mesh: &Mesh, elements: &[u32], points: &[u32]) -> (Vec<[u32; 2]>, Vec<[u32; 3]>) {
-    let local = |ends: [u32; 2]| ends.map(|end| place_in(points, end));
+    let local = |ends: [u32; 2]| ends.map(|end| index_in(points, end));
     match mesh {
         Mesh::Segments(mesh) => {
             (elements.iter().map(|e| local(mesh.segments()[*e as usize])).collect(), Vec::new())
@@ -170,7 +170,7 @@ fn local_edges(mesh: &Mesh, elements: &[u32], points: &[u32]) -> (Vec<[u32; 2]>,
             edges.sort_unstable();
             edges.dedup();
             let across = |element: &u32| {
-                let [ab, bc, ca] = mesh.triangle_edges(FaceId(*element)).map(|edge| place_in(&edges, edge.0));
+                let [ab, bc, ca] = mesh.triangle_edges(FaceId(*element)).map(|edge| index_in(&edges, edge.0));
                 [bc, ca, ab]
             };
             let across = elements.iter().map(across).collect();

@@ -15,10 +15,10 @@ const SAME_WALL: f64 = 1e-4;
 /// A change of topology.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Event {
-    Open(ComplexEdge),
-    Close(FaceId),
+    EdgeToTriangle(ComplexEdge),
+    TriangleToEdge(FaceId),
     /// The face has four sides, one of which is the edge.
-    Swap(ComplexEdge, FaceId),
+    NeighborSwitch(ComplexEdge, FaceId),
     /// The line stays, and its ends move.
     Move(ComplexEdge),
 }
@@ -27,8 +27,8 @@ impl Event {
     /// The vertices that it takes away or moves.
     pub(crate) fn vertices(self, complex: &CellComplex) -> Vec<u32> {
         match self {
-            Self::Open(edge) | Self::Move(edge) => edge.vertices().to_vec(),
-            Self::Close(face) | Self::Swap(_, face) => {
+            Self::EdgeToTriangle(edge) | Self::Move(edge) => edge.vertices().to_vec(),
+            Self::TriangleToEdge(face) | Self::NeighborSwitch(_, face) => {
                 complex.corners(face).iter().map(|corner| corner.vertex).collect()
             }
         }
@@ -42,9 +42,11 @@ impl Event {
         let old = self.vertices(complex);
         let first_new = complex.vertices.len();
         let has_happened = match self {
-            Self::Open(edge) => open(complex, edge, least),
-            Self::Close(face) => close(complex, face, least),
-            Self::Swap(edge, face) => open(complex, edge, least) && close(complex, face, least),
+            Self::EdgeToTriangle(edge) => edge_to_triangle(complex, edge, least),
+            Self::TriangleToEdge(face) => triangle_to_edge(complex, face, least),
+            Self::NeighborSwitch(edge, face) => {
+                edge_to_triangle(complex, edge, least) && triangle_to_edge(complex, face, least)
+            }
             Self::Move(_) => true,
         };
         let added =
@@ -54,32 +56,32 @@ impl Event {
     }
 }
 
-fn open(complex: &mut CellComplex, edge: ComplexEdge, least: f64) -> bool {
+fn edge_to_triangle(complex: &mut CellComplex, edge: ComplexEdge, least: f64) -> bool {
     let Some(star) = complex.reconnectable_edge(edge) else { return false };
     let start = PeriodicVertex { vertex: edge.start, translation: Translation::ZERO };
     let ends = [start, edge.end].map(|end| complex.position(end));
     let middle = ends[0].midpoint(ends[1]);
     let length = OPENING * ends[0].distance(ends[1]).max(least);
     let [first, second] = star.ends;
-    let places = [0, 1, 2].map(|k| {
+    let positions = [0, 1, 2].map(|k| {
         let along: DVec3 = star.outer.iter().map(|outer| direction(complex, middle, outer[k])).sum();
         let sides = [first, second, star.around[(k + 1) % 3], star.around[(k + 2) % 3]];
         on_walls(complex, &sides, middle + along.normalize_or_zero() * length)
     });
-    complex.edge_to_triangle(edge, places).is_some()
+    complex.edge_to_triangle(edge, positions).is_some()
 }
 
-fn close(complex: &mut CellComplex, face: FaceId, least: f64) -> bool {
+fn triangle_to_edge(complex: &mut CellComplex, face: FaceId, least: f64) -> bool {
     let Some((star, corners)) = complex.reconnectable_triangle(face) else { return false };
     let corners = corners.map(|corner| complex.position(corner));
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     let length = OPENING * corners[0].distance(middle).max(least);
     let [a, b, c] = star.around;
-    let places = [0, 1].map(|end: usize| {
+    let positions = [0, 1].map(|end: usize| {
         let along: DVec3 = star.outer[end].iter().map(|outer| direction(complex, middle, *outer)).sum();
         on_walls(complex, &[a, b, c, star.ends[end]], middle + along.normalize_or_zero() * length)
     });
-    complex.triangle_to_edge(face, places).is_some()
+    complex.triangle_to_edge(face, positions).is_some()
 }
 
 fn direction(complex: &CellComplex, from: DVec3, to: PeriodicVertex) -> DVec3 {

@@ -225,7 +225,7 @@ impl Reconnector {
     /// Whether a boundary with three sides is thin.
     fn is_thin(&self, face: FaceId, complex: &CellComplex, conditions: &Conditions<'_>) -> bool {
         let height = least_height(complex, face);
-        let short = || self.short_at(complex, &Event::Close(face).vertices(complex), conditions);
+        let short = || self.short_at(complex, &Event::TriangleToEdge(face).vertices(complex), conditions);
         height < THIN * self.short && height < THIN * short()
     }
 
@@ -252,7 +252,8 @@ impl Reconnector {
             Place::Triangle(face) => {
                 let is_due =
                     complex.corners(face).len() == 3 && self.is_thin(face, complex, around.conditions);
-                let close = || self.consider(Event::Close(face), complex, around, Demand::LessArea, excess);
+                let close =
+                    || self.consider(Event::TriangleToEdge(face), complex, around, Demand::LessArea, excess);
                 is_due.then(close).flatten()
             }
             Place::Line(edge) if complex.has_edge(edge) => {
@@ -273,10 +274,10 @@ impl Reconnector {
         let with_corners = |count: usize| -> Vec<FaceId> {
             faces.iter().copied().filter(|face| complex.corners(*face).len() == count).collect()
         };
-        let mut events = vec![Event::Open(edge)];
-        events.extend(with_corners(3).into_iter().map(Event::Close));
+        let mut events = vec![Event::EdgeToTriangle(edge)];
+        events.extend(with_corners(3).into_iter().map(Event::TriangleToEdge));
         let count = events.len();
-        events.extend(with_corners(4).into_iter().map(|face| Event::Swap(edge, face)));
+        events.extend(with_corners(4).into_iter().map(|face| Event::NeighborSwitch(edge, face)));
         for event in &events {
             let decision = self.consider(*event, complex, around, Demand::LessArea, excess);
             if decision.is_some() {
@@ -345,9 +346,9 @@ impl Reconnections {
     fn of(event: Event) -> Self {
         let none = Self::default();
         match event {
-            Event::Open(_) => Self { lines_to_boundaries: 1, ..none },
-            Event::Close(_) => Self { boundaries_to_lines: 1, ..none },
-            Event::Swap(..) => Self { neighbor_switches: 1, ..none },
+            Event::EdgeToTriangle(_) => Self { lines_to_boundaries: 1, ..none },
+            Event::TriangleToEdge(_) => Self { boundaries_to_lines: 1, ..none },
+            Event::NeighborSwitch(..) => Self { neighbor_switches: 1, ..none },
             Event::Move(_) => none,
         }
     }

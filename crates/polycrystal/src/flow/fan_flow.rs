@@ -129,13 +129,13 @@ impl FanFlow<'_> {
     fn to_middle(&self, fan: usize, points: &[DVec3], normals: &[DVec3]) -> DVec3 {
         let slots = self.fans.slots_of(fan);
         let count = slots.len() - 1;
-        let center = slots[count].place(points);
+        let center = slots[count].position(points);
         let (mut way, mut normal, mut weights) = (DVec3::ZERO, DVec3::ZERO, 0.0);
         for k in 0..count {
             // Triangles count by area: no line that comes near catches up with the middle, however many points it has.
             let of_triangle = normals[self.fans.first_slot(fan) + k];
             let weight = of_triangle.length();
-            let ends = [k, (k + 1) % count].map(|slot| slots[slot].place(points) - center);
+            let ends = [k, (k + 1) % count].map(|slot| slots[slot].position(points) - center);
             way += (ends[0] + ends[1]) * weight;
             normal += of_triangle;
             weights += 2.0 * weight;

@@ -8,7 +8,7 @@
 use glam::DVec3;
 use subzero::{FaceId, VertexRule};
 
-use crate::energy::patch::{Elements, LocalStencils, place_in};
+use crate::energy::patch::{Elements, LocalStencils, index_in};
 use crate::energy::patches::local_elements;
 use crate::mesh::triangle_quality::squared_sine;
 use crate::{BoundaryId, Freedom, Mesh, Network};
@@ -77,7 +77,7 @@ impl Room {
         let normals = vertex_normals(&triangles, &start);
         let movable = movable.iter().map(|point| {
             let walls = network.freedom(levels[0].walls[*point as usize]);
-            let place = place_in(&own, *point);
+            let place = index_in(&own, *point);
             let (freedom, ease) = if mesh.vertex_rule(*point) == VertexRule::Smooth {
                 (walls.and(Freedom::InPlane(normals[place as usize])), 1.0)
             } else {

@@ -18,10 +18,10 @@ const LEAST_COSINES: [f64; 2] = [0.3, -0.9];
 /// By how much cosines may differ for rounding alone. Triangles with an edge of 1e-2 of others moved them by 1e-13.
 const ROUNDING: f64 = 1e-9;
 
-/// Triangles of less height, in parts of the length below which edges close, may turn as they will.
+/// Triangles of less height, in parts of the length below which edges collapse, may turn as they will.
 const NARROW: f64 = 0.15;
 
-/// Lines between points of four grains close when they are shorter than this part of other edges that do.
+/// Lines between points of four grains collapse when they are shorter than this part of other edges that do.
 const SHORT_LINE: f64 = 0.4;
 
 /// Triangles between grains, which share points along the lines where three and more meet. Each point is there once; in a periodic domain a corner of a
@@ -29,7 +29,7 @@ const SHORT_LINE: f64 = 0.4;
 pub(super) struct Coarsening<'a> {
     domain: &'a Domain,
     points: &'a [DVec3],
-    /// Of each point: edges at it that are shorter close; none where it is to stay as it is.
+    /// Of each point: edges at it that are shorter collapse; none where it is to stay as it is.
     limits: &'a [Option<f64>],
     triangles: Vec<Option<[PeriodicVertex; 3]>>,
     /// What lies on both sides of each triangle, in the order of its winding.
@@ -50,10 +50,10 @@ enum Part {
     Node,
 }
 
-/// Closes edges shorter than the limits of both ends, the shortest first: one end moves to the other. Then edges inside boundaries flip where that makes angles larger.
+/// Collapses edges shorter than the limits of both ends, the shortest first: one end moves to the other. Then edges inside boundaries flip where that makes angles larger.
 ///
 /// No point moves from the lines and walls that it is on, and each grain stays a closed surface, which touches itself nowhere. What is left of each triangle is at
-/// its place; nothing is left of those that have closed.
+/// its place; nothing is left of those that have collapsed.
 pub(super) fn coarsened(
     domain: &Domain,
     points: &[DVec3],
@@ -76,7 +76,7 @@ pub(super) fn coarsened(
 }
 
 impl Coarsening<'_> {
-    /// Closes short edges, the shortest first, each at most once, and returns how many.
+    /// Collapses short edges, the shortest first, each at most once, and returns how many.
     fn close_short_edges(&mut self) -> usize {
         let all = self.triangles.iter().flatten().flat_map(|corners| edges(*corners));
         let mut short: Vec<(f64, [PeriodicVertex; 2])> = all
@@ -87,14 +87,14 @@ impl Coarsening<'_> {
             .collect();
         short.sort_unstable_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
         short.dedup();
-        let mut closed = 0;
+        let mut collapsed = 0;
         for (_, [first, second]) in short {
             let back =
                 PeriodicVertex { vertex: first.vertex, translation: first.translation - second.translation };
             let mut ways = [(first.vertex, second), (second.vertex, back)].into_iter();
-            closed += usize::from(ways.any(|(from, to)| self.close(from, to)));
+            collapsed += usize::from(ways.any(|(from, to)| self.collapse(from, to)));
         }
-        closed
+        collapsed
     }
 
     fn place(&self, corner: PeriodicVertex) -> DVec3 {
@@ -160,22 +160,22 @@ impl Coarsening<'_> {
     }
 
     /// Moves a point along an edge to its other end, as seen from the point, if that is allowed and good; returns whether.
-    fn close(&mut self, from: u32, to: PeriodicVertex) -> bool {
+    fn collapse(&mut self, from: u32, to: PeriodicVertex) -> bool {
         let ends = [PeriodicVertex { vertex: from, translation: Translation::ZERO }, to];
         let at_edge = self.at_edge(ends);
         if at_edge.is_empty() {
             return false;
         }
-        let closes = |triangle: &u32| at_edge.iter().any(|(own, _)| own == triangle);
+        let collapses = |triangle: &u32| at_edge.iter().any(|(own, _)| own == triangle);
         let moved: Vec<(u32, [PeriodicVertex; 3])> = self.at_points[from as usize]
             .iter()
-            .filter(|triangle| !closes(triangle))
+            .filter(|triangle| !collapses(triangle))
             .map(|triangle| (*triangle, with_corner_moved(self.corners(*triangle), from, to)))
             .collect();
         // The cheapest first.
         let is_good = self.is_good(&moved, ends)
-            && self.may_close(ends, &at_edge)
-            && self.stays_closed(&moved, to.vertex, closes);
+            && self.may_collapse(ends, &at_edge)
+            && self.stays_closed(&moved, to.vertex, collapses);
         if !is_good {
             return false;
         }
@@ -185,7 +185,7 @@ impl Coarsening<'_> {
     }
 
     /// Whether the first end of an edge may go to the other for what both are part of.
-    fn may_close(&self, ends: [PeriodicVertex; 2], at_edge: &[AtEdge]) -> bool {
+    fn may_collapse(&self, ends: [PeriodicVertex; 2], at_edge: &[AtEdge]) -> bool {
         let [from, to] = ends;
         match self.part(from.vertex) {
             Part::Boundary => true,
@@ -318,16 +318,16 @@ impl Coarsening<'_> {
         angle(0).min(angle(1)).min(angle(2))
     }
 
-    /// Whether around the end of an edge that closes each grain's surface is still one closed fan, and no two triangles have the same corners.
+    /// Whether around the end of an edge that collapses each grain's surface is still one closed fan, and no two triangles have the same corners.
     fn stays_closed(
         &self,
         moved: &[(u32, [PeriodicVertex; 3])],
         to: u32,
-        closes: impl Fn(&u32) -> bool,
+        collapses: impl Fn(&u32) -> bool,
     ) -> bool {
         let mut rims: BTreeMap<Side, Vec<[PeriodicVertex; 2]>> = BTreeMap::new();
         let mut all: Vec<[PeriodicVertex; 3]> = Vec::new();
-        let there = self.at_points[to as usize].iter().filter(|triangle| !closes(triangle));
+        let there = self.at_points[to as usize].iter().filter(|triangle| !collapses(triangle));
         let there = there.map(|triangle| (*triangle, self.corners(*triangle)));
         for (triangle, corners) in moved.iter().copied().chain(there) {
             let mut seen = seen_from(corners, to);
@@ -344,7 +344,7 @@ impl Coarsening<'_> {
             all.push(seen);
         }
         all.sort_unstable();
-        // A boundary that closes wholly leaves its grains to meet in a line.
+        // A boundary that collapses wholly leaves its grains to meet in a line.
         all.windows(2).all(|pair| pair[0] != pair[1]) && rims.values().all(|rim| is_cycle(rim))
     }
 

@@ -17,7 +17,7 @@ use crate::{
 
 impl ControlMesh {
     /// That of grains instead of cells: what lies between cells of one grain is left out, and boundaries are made up of what hangs together
-    /// between two grains. In space, edges close that are shorter than the `lengths` of all grains there.
+    /// between two grains. In space, edges collapse that are shorter than the `lengths` of all grains there.
     pub(crate) fn of_grains(
         tessellation: &Tessellation,
         parts: &[GrainPart],

@@ -6,7 +6,7 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 use voronoi::{Domain, PeriodicVertex, Side, Translation};
 
-/// Closes segments shorter than the limits of both ends, as [`coarsened`](super::coarsening::coarsened) does with edges: points inside a boundary go. Where boundaries
+/// Collapses segments shorter than the limits of both ends, as [`coarsened`](super::coarsening::coarsened) does with edges: points inside a boundary go. Where boundaries
 /// meet nothing moves.
 pub(super) fn coarsened_segments(
     domain: &Domain,

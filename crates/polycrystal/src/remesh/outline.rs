@@ -177,7 +177,7 @@ impl Outlined {
         }
     }
 
-    /// Closes an edge of the outline, after what it would pinch is halved.
+    /// Collapses an edge of the outline, after what it would pinch is halved.
     fn close_into(&mut self, ends: [u32; 2]) {
         for between in self.patch.pinched(ends) {
             let is_inner = |end: &u32| self.patch.at_edge([*end, between]).len() == 2;
@@ -186,7 +186,7 @@ impl Outlined {
             self.patch.split([end, between], place, Vec::new());
             self.near.push(self.near[between as usize]);
         }
-        self.patch.close(ends);
+        self.patch.collapse(ends);
     }
 }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::mesh::id::id;
 
-/// The triangles of one boundary, and what they may do: edges are halved, close, and flip. Points of its outline stay as they are.
+/// The triangles of one boundary, and what they may do: edges are halved, collapse, and flip. Points of its outline stay as they are.
 #[derive(Debug, Default)]
 pub(crate) struct Patch {
     pub(crate) points: Vec<DVec3>,
@@ -137,7 +137,7 @@ impl Patch {
         middle
     }
 
-    /// The points that both ends of an edge share edges with, but no triangle: nothing may be between them when the edge closes.
+    /// The points that both ends of an edge share edges with, but no triangle: nothing may be between them when the edge collapses.
     pub(crate) fn pinched(&self, [from, to]: [u32; 2]) -> Vec<u32> {
         let across: Vec<u32> =
             self.at_edge([from, to]).into_iter().flat_map(|triangle| self.corners(triangle)).collect();
@@ -147,16 +147,16 @@ impl Patch {
         pinched
     }
 
-    /// The triangles at an edge's first end that stay when it closes, with the corners that they then have.
-    pub(crate) fn after_closing(&self, [from, to]: [u32; 2]) -> Vec<[u32; 3]> {
+    /// The triangles at an edge's first end that stay when it collapses, with the corners that they then have.
+    pub(crate) fn after_collapse(&self, [from, to]: [u32; 2]) -> Vec<[u32; 3]> {
         let all = self.star(from).iter().map(|triangle| self.corners(*triangle));
         let stay = all.filter(|corners| !corners.contains(&to));
         stay.map(|corners| corners.map(|corner| if corner == from { to } else { corner })).collect()
     }
 
     /// Moves the first end of an edge into the other.
-    pub(crate) fn close(&mut self, ends: [u32; 2]) {
-        let new = self.after_closing(ends);
+    pub(crate) fn collapse(&mut self, ends: [u32; 2]) {
+        let new = self.after_collapse(ends);
         for triangle in self.star(ends[0]).to_vec() {
             self.remove(triangle);
         }
@@ -212,7 +212,7 @@ mod tests {
         let middle = patch.split([0, 4], DVec3::new(0.25, 0.25, 0.0), Vec::new());
         assert_eq!(patch.all().count(), 6);
         assert_eq!(patch.neighbours(middle), [0, 1, 3, 4]);
-        patch.close([middle, 4]);
+        patch.collapse([middle, 4]);
         assert_eq!(patch.all().count(), 4);
         assert_eq!(patch.neighbours(4), [0, 1, 2, 3]);
         assert_eq!(patch.inner_edges(), [[0, 4], [1, 4], [2, 4], [3, 4]]);
@@ -225,7 +225,7 @@ mod tests {
         let new = patch.after_flipping([0, 4]).expect("two triangles");
         patch.flip([0, 4], new);
         assert!(patch.is_edge([1, 3]) && !patch.is_edge([0, 4]));
-        // Closing the new edge would leave nothing of the triangles at 2 but one on the other.
+        // Collapsing the new edge would leave nothing of the triangles at 2 but one on the other.
         assert_eq!(patch.pinched([1, 3]), [2]);
     }
 

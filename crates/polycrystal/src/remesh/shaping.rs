@@ -116,30 +116,30 @@ impl<'a> Shaping<'a> {
 
     fn close_short(&mut self) {
         for _ in 0..SWEEPS {
-            let mut has_closed = false;
+            let mut has_collapsed = false;
             for point in (0u32..).take(self.patch.points.len()) {
                 if self.patch.is_inside(point) {
-                    has_closed |= self.close_at(point);
+                    has_collapsed |= self.collapse_at(point);
                 }
             }
-            if !has_closed {
+            if !has_collapsed {
                 break;
             }
         }
     }
 
-    /// Closes the shortest edge of a point that may close, if it is short.
-    fn close_at(&mut self, point: u32) -> bool {
+    /// Collapses the shortest edge of a point that may collapse, if it is short.
+    fn collapse_at(&mut self, point: u32) -> bool {
         let is_short = |other: &u32| {
             let edge = [point, *other];
             self.patch.length(edge) < self.tuning.shortest * self.size(edge)
         };
         let mut short: Vec<u32> = self.patch.neighbours(point).into_iter().filter(is_short).collect();
         short.sort_by(|a, b| self.patch.length([point, *a]).total_cmp(&self.patch.length([point, *b])));
-        short.into_iter().any(|other| self.close([point, other]))
+        short.into_iter().any(|other| self.collapse([point, other]))
     }
 
-    fn close(&mut self, ends: [u32; 2]) -> bool {
+    fn collapse(&mut self, ends: [u32; 2]) -> bool {
         let [from, to] = ends;
         if !self.patch.pinched(ends).is_empty() {
             return false;
@@ -162,7 +162,7 @@ impl<'a> Shaping<'a> {
         });
         let before = self.patch.star(from).iter().chain(self.patch.star(to));
         let before: Vec<[u32; 3]> = before.map(|triangle| self.patch.corners(*triangle)).collect();
-        let mut after = self.patch.after_closing(ends);
+        let mut after = self.patch.after_collapse(ends);
         let stay = self.patch.star(to).iter().map(|triangle| self.patch.corners(*triangle));
         after.extend(stay.filter(|corners| !corners.contains(&from)));
         let allowed = self.agreement(&before).min(self.tuning.least_cosine);
@@ -176,7 +176,7 @@ impl<'a> Shaping<'a> {
             .all(|corners| edges(*corners).into_iter().all(|edge| !is_long(edge) || !edge.contains(&to)))
             && self.agreement(&after) >= allowed;
         if is_good {
-            self.patch.close(ends);
+            self.patch.collapse(ends);
         } else {
             self.patch.points[to as usize] = old.0;
             self.feet[to as usize] = old.1;

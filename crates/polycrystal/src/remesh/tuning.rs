@@ -14,9 +14,9 @@ pub struct RemeshTuning {
     pub smallest_share: f64,
     /// Length of an edge, in units of the size there, beyond which it is halved.
     pub longest: f64,
-    /// The same below which it closes.
+    /// The same below which it collapses.
     pub shortest: f64,
-    /// Rounds of halving, closing, flipping and moving within boundaries.
+    /// Rounds of halving, collapsing, flipping and moving within boundaries.
     pub rounds: usize,
     /// Cosine of the angle between a triangle and the smooth surface there, and between a triangle before and after a change (60 degrees).
     pub least_cosine: f64,
