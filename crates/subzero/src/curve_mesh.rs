@@ -162,7 +162,7 @@ impl CurveMesh {
         })
     }
 
-    /// two stencils per segment: the derivatives of the limit curve at its start and at its end, when the curve runs
+    /// Two stencils per segment: the derivatives of the limit curve at its start and at its end, when the curve runs
     /// through the segment in unit time. Half the difference of the neighbours at smooth vertices, the one-sided
     /// difference at corners.
     pub fn limit_tangents(&self) -> StencilTable {

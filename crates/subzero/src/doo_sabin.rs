@@ -25,7 +25,7 @@ pub enum DooSabinWeights {
 pub struct DooSabinLimits {
     /// One stencil per face: its centroid, which lies on the limit surface.
     pub positions: StencilTable,
-    /// two stencils per face, that add up to 0: limit tangents t1 and t2 with the normal along t1 x t2.
+    /// Two stencils per face, that add up to 0: limit tangents t1 and t2 with the normal along t1 x t2.
     pub tangents: StencilTable,
 }
 
@@ -77,11 +77,11 @@ impl PolygonMesh {
             let corners = self.face(FaceId(face));
             corners.iter().for_each(|&corner| stencil.add(corner, 1.0 / real(corners.len())));
         });
-        let tangents = StencilTable::from_stencils(2 * self.face_count(), |i, stencil| {
-            let corners = self.face(FaceId(i / 2));
+        let tangents = StencilTable::from_stencils(2 * self.face_count(), |tangent, stencil| {
+            let corners = self.face(FaceId(tangent / 2));
             for (i, &corner) in corners.iter().enumerate() {
                 let angle = TAU * real(i) / real(corners.len());
-                stencil.add(corner, if i % 2 == 0 { angle.cos() } else { angle.sin() });
+                stencil.add(corner, if tangent % 2 == 0 { angle.cos() } else { angle.sin() });
             }
         });
         DooSabinLimits { positions, tangents }

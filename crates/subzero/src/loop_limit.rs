@@ -28,7 +28,7 @@ pub struct LoopLimits {
     pub positions: StencilTable,
     /// All sectors, sorted by vertex.
     pub sectors: Vec<Sector>,
-    /// Per sector two stencil, that add up to 0: limit tangents t1 and t2 with the normal along t1 x t2. The stencils are empty where the
+    /// Per sector two stencils, that add up to 0: limit tangents t1 and t2 with the normal along t1 x t2. The stencils are empty where the
     /// surface has no tangent plane.
     pub tangents: StencilTable,
 }
