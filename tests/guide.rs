@@ -27,9 +27,9 @@ fn words(line: &str) -> Vec<String> {
 
 fn run_command(line: &str, folder: &Path) {
     let words = words(line);
-    if words[0] == "gmsh" {
-        let mut gmsh = Command::new("gmsh");
-        if let Some(output) = run(line, gmsh.args(&words[1..]).current_dir(folder)) {
+    if ["gmsh", "ccx"].contains(&&*words[0]) {
+        let mut program = Command::new(&words[0]);
+        if let Some(output) = run(line, program.args(&words[1..]).current_dir(folder)) {
             assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stdout));
         }
         return;
@@ -62,6 +62,29 @@ fn recipes_do_what_they_say() {
     assert!(blocks.len() > 20 && blocks.iter().all(|(language, _)| *language == "sh"));
     for (_, text) in blocks {
         text.lines().for_each(|line| run_command(line, folder.path()));
+    }
+}
+
+/// Every command of the page on finite elements, and its Python, where Gmsh is there to fill grains.
+#[test]
+fn finite_elements_do_what_they_say() {
+    if let Err(error) = grainsmooth::check_gmsh() {
+        return skip("the page on finite elements", &error.to_string());
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let blocks = blocks(include_str!("../docs/finite-elements.md"));
+    assert!(blocks.len() > 4);
+    for (language, text) in blocks {
+        if language == "python" {
+            let mut python = Command::new("python3");
+            let Some(output) = run(text, python.args(["-c", text]).current_dir(folder.path())) else {
+                return;
+            };
+            assert!(output.status.success(), "{text}: {}", String::from_utf8_lossy(&output.stderr));
+        } else {
+            assert_eq!(language, "sh");
+            text.lines().for_each(|line| run_command(line, folder.path()));
+        }
     }
 }
 

@@ -48,6 +48,49 @@ fn settings_tell_the_size() {
 }
 
 #[test]
+fn what_solvers_need_is_refused_where_it_has_no_meaning() {
+    let workplace = Workplace::new();
+    for (options, message) in [
+        (
+            "--volume-mesh",
+            "--volume-mesh writes tetrahedra, and no file can hold them; give one of .vtu, .msh, .inp and .bdf, such as -o grains.vtu",
+        ),
+        (
+            "--periodic x --periodic-equations",
+            "--periodic-equations goes with tetrahedra in .inp; give -o grains.inp without --voxels, or leave it out",
+        ),
+        (
+            "--solver-deck tension-x -o a.inp --voxels 4 4 4",
+            "--solver-deck goes with tetrahedra in .inp; give -o grains.inp without --voxels, or leave it out",
+        ),
+        (
+            "--solver-deck tension-x --format inp -o -",
+            "--solver-deck stands beside a file of elements; give -o grains.inp",
+        ),
+        (
+            "--periodic-equations -o a.inp",
+            "--periodic-equations ties nodes that stand a period apart; give --periodic x,y,z or leave it out",
+        ),
+        (
+            "--solver-deck tension-x -o a.inp --periodic x",
+            "--solver-deck pulls a box that repeats along all axes or along none; leave --domain and --half-spaces out, and give --periodic x,y,z or no --periodic",
+        ),
+        (
+            "--cohesive --solver-deck tension-x -o a.inp",
+            "--cohesive makes elements COH3D6, which CalculiX does not know, and --solver-deck writes a job for it; leave one of them out",
+        ),
+        ("--dim 2 --volume-mesh", "tetrahedra fill grains in space; with --dim 2 leave --volume-mesh out"),
+    ] {
+        workplace.refuses(&format!("--seeds 3 {options}"), USAGE, message);
+    }
+    workplace.refuses(
+        "--seeds 3 --dim 2 -o a.bdf",
+        FAILED,
+        "a.bdf: this format holds 3D grains only; choose another, such as .vtp",
+    );
+}
+
+#[test]
 fn sizes_that_cannot_be_had_are_refused() {
     let workplace = Workplace::new();
     workplace.refuses(

@@ -11,5 +11,6 @@ mod programs;
 mod quiet_reader;
 mod surfaces;
 mod tess;
+mod tetrahedra;
 mod tools;
 mod workplace;

@@ -22,7 +22,7 @@ pub fn text(bytes: &[u8]) -> String {
 }
 
 /// Volumes of the tetrahedra of each physical volume in a Gmsh file of version 2.2.
-fn tetrahedra(path: &Path, grain_count: usize) -> Vec<f64> {
+pub fn tetrahedra(path: &Path, grain_count: usize) -> Vec<f64> {
     let file = fs::read_to_string(path).unwrap();
     let section = |name: &str| {
         let after = file.split_once(&format!("${name}\n")).unwrap().1;

@@ -75,6 +75,10 @@ pub const REFUSALS: &[Kind] = &[
     ("TooLarge", &["more than 32-bit ids can name"]),
     ("CoarseReference", &["elements of", "need a finer surface", "give -n"]),
     ("ElementsWithoutSize", &["changes sizes of elements", "--elements-per-grain"]),
+    ("VolumesInPlane", &["tetrahedra fill grains in space", "with --dim 2 leave"]),
+    ("EquationsWithoutPeriods", &["--periodic-equations ties nodes", "give --periodic"]),
+    ("CohesiveDeck", &["--cohesive makes elements", "leave one of them out"]),
+    ("DeckDomain", &["--solver-deck pulls a box", "leave --domain"]),
     ("ElementsInPlane", &["elements of a size", "with --dim 2 leave"]),
     ("TouchesItself", &["touches its own image", "give more seeds"]),
     // A grain that vanishes while it is free to, where the message names a time that works, or how to take such grains out.

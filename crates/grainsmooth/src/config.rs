@@ -25,6 +25,7 @@ pub(crate) mod sizes;
 pub mod spelling;
 pub(crate) mod table_file;
 pub(crate) mod texture;
+pub(crate) mod volume_mesh;
 
 use elements::ElementOptions;
 use files::FileOptions;

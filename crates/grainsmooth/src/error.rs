@@ -359,6 +359,14 @@ pub enum Error {
         /// What is wrong with it.
         cause: String,
     },
+    /// A job pulls at sides of a box that no node is on.
+    #[error(
+        "{}: a job pulls at the sides of the box, and some have no node; leave --solver-deck out, or let the grains fill the box", path.display()
+    )]
+    NoSides {
+        /// The path of the job.
+        path: PathBuf,
+    },
     /// Gmsh could not fill all grains.
     #[error(
         "{cause}; give elements of another size with --elements-per-grain, or see the surface alone with --grains-dir grains"

@@ -1,6 +1,7 @@
 //! What is written of a polycrystal: a file for each format, and what they share.
 
 mod ang;
+mod bdf;
 mod blocks;
 mod connected;
 mod ctf;
@@ -10,7 +11,7 @@ mod evolver;
 pub(crate) mod format;
 mod gmsh;
 mod grains;
-mod inp;
+pub(crate) mod inp;
 pub(crate) mod label_grid;
 mod lines;
 mod material;
@@ -28,6 +29,7 @@ pub(crate) mod series;
 mod stl;
 pub(crate) mod surface;
 mod tess;
+mod volume_vtu;
 mod vti;
 mod vtk;
 mod write;

@@ -68,6 +68,7 @@ pub use config::sizes::{SizeDraw, SizeOptions, SizeSource};
 #[doc(hidden)]
 pub use config::spelling;
 pub use config::texture::{TextureFormat, TextureOptions, TextureSource};
+pub use config::volume_mesh::{SolverDeck, VolumeMeshOptions};
 pub use config::{Config, PeriodicCut, SeedSource, Shape};
 pub use error::Error;
 pub use error::failed_grain::FailedGrain;
@@ -86,6 +87,7 @@ pub use files::staged_files::{StagedFiles, write_together};
 pub use files::unfinished::discard_unfinished;
 pub use fill::check_gmsh;
 pub use formats::embedded_config::embedded_config;
+pub use formats::inp::deck::DeckOutput;
 pub use formats::label_grid::LabelGrid;
 pub use formats::output::{Output, OutputDirectory};
 pub use formats::output_format::{OutputFormat, ToWrite};

@@ -3,6 +3,7 @@
 use clap::ValueEnum;
 use polycrystal::{Boundary, GrainId, Side};
 use serde::Serialize;
+use voronoi::{Domain, Wall};
 
 /// The point array that tells how many grains meet: four at a quadruple point, unless edges collapsed there.
 pub(crate) const NUMBER_OF_GRAINS: &str = "NumberOfGrains";
@@ -47,6 +48,15 @@ pub(crate) const FIELD_NAMES: [(&str, bool); 9] = [
 /// Cell arrays that hold the two sides, in the order in which they are looked for: DREAM.3D's and this program's, then
 /// pyvista's and VTK's.
 pub(crate) const LABEL_ARRAYS: [&str; 3] = ["FaceLabels", "boundary_labels", "BoundaryLabels"];
+
+/// The axes, as sides of a box are named after them.
+pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The name of a side of a box, as Neper has it: `x0`, `x1` and so on. Nothing for walls of other domains.
+pub(crate) fn side_of_box(domain: &Domain, wall: Wall) -> Option<String> {
+    let (axis, coordinate) = domain.across_axis(wall).filter(|_| domain.is_box())?;
+    Some(format!("{}{}", AXES[axis], u8::from(coordinate == domain.upper()[axis])))
+}
 
 /// Whose names and numbers arrays have, for users of other tools. Points and cells stay the same, but for what is said here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum, Serialize)]

@@ -1,5 +1,7 @@
 //! Tetrahedra that fill grains, and how good they are.
 
+pub(crate) mod cohesive;
+pub(crate) mod element_faces;
 pub(crate) mod repair;
 
 use std::fmt;

@@ -95,6 +95,8 @@ pub enum Cells<'a> {
     Polylines(&'a [Vec<u32>]),
     /// So many first points, each a cell.
     Vertices(usize),
+    /// Four points each; for unstructured grids alone.
+    Tetrahedra(&'a [[u32; 4]]),
 }
 
 impl Cells<'_> {
@@ -104,6 +106,7 @@ impl Cells<'_> {
             Self::Triangles(triangles) => triangles.len(),
             Self::Polygons(cells) | Self::Polylines(cells) => cells.len(),
             Self::Vertices(count) => *count,
+            Self::Tetrahedra(tetrahedra) => tetrahedra.len(),
         }
     }
 
@@ -118,6 +121,7 @@ impl Cells<'_> {
             Self::Triangles(triangles) => 3 * triangles.len(),
             Self::Polygons(cells) | Self::Polylines(cells) => cells.iter().map(Vec::len).sum(),
             Self::Vertices(count) => *count,
+            Self::Tetrahedra(tetrahedra) => 4 * tetrahedra.len(),
         }
     }
 }

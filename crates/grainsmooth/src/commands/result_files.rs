@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use anyhow::anyhow;
 use grainsmooth::{
-    Error, Html, Output, OutputDirectory, OutputFormat, Picture, Png, Polycrystal, Stage, StagedFiles,
-    StatisticsOutput, SummaryRecord, ToWrite, check_gmsh,
+    DeckOutput, Error, Html, Output, OutputDirectory, OutputFormat, Picture, Png, Polycrystal, Stage,
+    StagedFiles, StatisticsOutput, SummaryRecord, ToWrite, check_gmsh,
 };
 
 use grainsmooth::cli::{OutputArguments, PictureArguments, SharedArguments, usage};
@@ -23,6 +23,7 @@ pub struct ResultFiles {
     report: Option<Output<Html>>,
     summary: Option<Output<()>>,
     statistics: Option<StatisticsOutput>,
+    deck: Option<DeckOutput>,
 }
 
 /// What goes to standard output.
@@ -76,11 +77,47 @@ impl ResultFiles {
             report: pictures.report()?,
             summary: summary.map(|path| Output::check_as(path, ())).transpose()?,
             statistics: outputs.statistics(to_write.dimension)?,
+            deck: None,
         };
+        all.check_tetrahedra(to_write)?;
+        let deck = all.deck(to_write)?;
+        let all = Self { deck, ..all };
         if all.need_tetrahedra(to_write) {
             check_gmsh()?;
         }
         Ok(all)
+    }
+
+    /// Checks that what is asked of tetrahedra goes into some file.
+    fn check_tetrahedra(&self, to_write: &ToWrite) -> Result<(), Error> {
+        let volume = &to_write.volume;
+        if volume.volume_mesh && !self.need_tetrahedra(to_write) {
+            return Err(usage(
+                "--volume-mesh writes tetrahedra, and no file can hold them; give one of .vtu, .msh, .inp and .bdf, such as -o grains.vtu",
+            ));
+        }
+        let has_inp = self.formats().contains(&OutputFormat::INP);
+        for (name, is_asked) in [
+            ("periodic-equations", volume.periodic_equations),
+            ("cohesive", volume.cohesive),
+            ("solver-deck", volume.solver_deck.is_some()),
+        ] {
+            if is_asked && (!has_inp || to_write.has_voxels) {
+                return Err(usage(&format!(
+                    "--{name} goes with tetrahedra in .inp; give -o grains.inp without --voxels, or leave it out"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// The job for a solver, found writable; nothing where none is asked for.
+    fn deck(&self, to_write: &ToWrite) -> Result<Option<DeckOutput>, Error> {
+        let Some(deck) = to_write.volume.solver_deck else { return Ok(None) };
+        let Some(elements) = self.outputs.iter().find(|output| output.format() == OutputFormat::INP) else {
+            return Err(usage("--solver-deck stands beside a file of elements; give -o grains.inp"));
+        };
+        DeckOutput::check(elements.path(), deck).map(Some)
     }
 
     /// Whether some format holds tetrahedra.
@@ -95,6 +132,7 @@ impl ResultFiles {
         let others = others.chain(self.picture.as_ref().map(|(_, output)| output.target()));
         let others = others.chain(self.report.as_ref().map(Output::target));
         let others = others.chain(self.summary.as_ref().map(Output::target));
+        let others = others.chain(self.deck.as_ref().map(|deck| deck.output().target()));
         self.outputs.iter().flat_map(Output::targets).chain(others.map(Path::to_owned)).collect()
     }
 
@@ -107,7 +145,9 @@ impl ResultFiles {
         let picture = self.picture.as_ref().map(|(_, output)| output.path());
         let report = self.report.as_ref().map(Output::path);
         let statistics = self.statistics.iter().flat_map(StatisticsOutput::files).map(Output::path);
-        let paths = outputs.chain(printed).chain(grains).chain(picture).chain(report).chain(statistics);
+        let deck = self.deck.as_ref().map(|deck| deck.output().path());
+        let paths = outputs.chain(deck).chain(printed).chain(grains).chain(picture).chain(report);
+        let paths = paths.chain(statistics);
         paths.map(Path::to_owned).collect()
     }
 
@@ -131,6 +171,9 @@ impl ResultFiles {
         }
         if let Some((picture, output)) = &self.picture {
             polycrystal.stage_picture(picture, output, staged)?;
+        }
+        if let Some(deck) = &self.deck {
+            polycrystal.stage_solver_deck(deck, staged)?;
         }
         Ok(())
     }

@@ -40,8 +40,13 @@ fn smooth(arguments: &SmoothArguments, line: &ProgressLine) -> Result<String, Er
     let read_in = start.elapsed();
     let dimension = if measured.map.is_plane() { Dimension::Two } else { Dimension::Three };
     let file = outputs.options(dimension)?;
-    let to_write =
-        ToWrite { dimension, has_voxels: file.voxels.is_some(), has_orientations: false, has_cells: false };
+    let to_write = ToWrite {
+        dimension,
+        has_voxels: file.voxels.is_some(),
+        has_orientations: false,
+        has_cells: false,
+        volume: file.volume,
+    };
     let files = ResultFiles::check(outputs, pictures, shared, &to_write, true)?;
     check_all_differ(files.targets())?;
     let run = MapRun { command_line: command_line(), file, read_in };

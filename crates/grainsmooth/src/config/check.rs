@@ -11,7 +11,7 @@ use super::laws::{LawError, LawKind, LawOptions, LawProblem, LawSource};
 use super::phases::{PhaseOptions, PhasesError};
 use super::place::PhasePlace;
 use super::sizes::SizeSource;
-use super::{Config, PeriodicCut, SeedSource};
+use super::{Config, PeriodicCut, SeedSource, Shape};
 
 /// How far the sum of all fractions may be from 1: rounding of decimal numbers.
 const SUM_TOLERANCE: f64 = 1e-9;
@@ -62,6 +62,24 @@ pub enum ConfigError {
         "elements of a size are triangles of boundaries in space; with --dim 2 leave --element-size and --elements-per-grain out"
     )]
     ElementsInPlane,
+    /// Tetrahedra in the plane.
+    #[error("tetrahedra fill grains in space; with --dim 2 leave --{0} out")]
+    VolumesInPlane(&'static str),
+    /// Nodes are tied where no period lies between any.
+    #[error(
+        "--periodic-equations ties nodes that stand a period apart; give --periodic x,y,z or leave it out"
+    )]
+    EquationsWithoutPeriods,
+    /// Cohesive elements in a job for CalculiX.
+    #[error(
+        "--cohesive makes elements COH3D6, which CalculiX does not know, and --solver-deck writes a job for it; leave one of them out"
+    )]
+    CohesiveDeck,
+    /// A job for a domain whose sides are not alike.
+    #[error(
+        "--solver-deck pulls a box that repeats along all axes or along none; leave --domain and --half-spaces out, and give --periodic x,y,z or no --periodic"
+    )]
+    DeckDomain,
     /// Phases.
     #[error(transparent)]
     Phases(#[from] PhasesError),
@@ -112,6 +130,7 @@ impl Config {
             }
         }
         self.check_elements()?;
+        self.check_volume_mesh()?;
         self.check_phases()?;
         self.check_inside()?;
         self.check_laws()?;
@@ -131,6 +150,31 @@ impl Config {
             Some((name, _)) => Err(ConfigError::ElementsWithoutSize(name)),
             None => Ok(()),
         }
+    }
+
+    fn check_volume_mesh(&self) -> Result<(), ConfigError> {
+        let volume = &self.file.volume;
+        let options = [
+            ("volume-mesh", volume.volume_mesh),
+            ("periodic-equations", volume.periodic_equations),
+            ("cohesive", volume.cohesive),
+            ("solver-deck", volume.solver_deck.is_some()),
+        ];
+        let first = options.into_iter().find(|(_, is_given)| *is_given);
+        if let Some((name, _)) = first.filter(|_| self.dimension == Dimension::Two) {
+            return Err(ConfigError::VolumesInPlane(name));
+        }
+        if volume.periodic_equations && !self.periodic.any() {
+            return Err(ConfigError::EquationsWithoutPeriods);
+        }
+        let is_alike = self.shape == Shape::Box && self.periodic.any() == self.periodic.all();
+        if volume.cohesive && volume.solver_deck.is_some() {
+            return Err(ConfigError::CohesiveDeck);
+        }
+        if volume.solver_deck.is_some() && !is_alike {
+            return Err(ConfigError::DeckDomain);
+        }
+        Ok(())
     }
 
     /// Checks that the phases go together, and with the options for all grains.

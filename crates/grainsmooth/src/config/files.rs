@@ -6,6 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::spelling::{as_true, is_usual};
+use super::volume_mesh::VolumeMeshOptions;
 use crate::names::Names;
 use crate::vtk::VtkEncoding;
 
@@ -40,6 +41,11 @@ pub struct FileOptions {
     #[arg(skip)]
     #[serde(rename = "vtk-encoding", skip_serializing_if = "is_usual")]
     pub encoding: VtkEncoding,
+
+    /// The tetrahedra that fill grains.
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub volume: VolumeMeshOptions,
 }
 
 /// How an STL file spells its numbers.

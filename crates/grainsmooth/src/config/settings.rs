@@ -16,7 +16,7 @@ pub(crate) const BEGIN: &str = "# grainsmooth configuration";
 pub(crate) const END: &str = "# end of configuration";
 
 /// What stands before each line of the text where a format has its own sign for comments.
-pub(crate) const PREFIXES: [&str; 4] = ["comment ", "# ", "// ", "** "];
+pub(crate) const PREFIXES: [&str; 5] = ["comment ", "# ", "// ", "** ", "$ "];
 
 /// Options that come once for each of their values.
 const REPEATED: [&str; 3] = ["inside", "phase", "tension"];

@@ -40,6 +40,10 @@ pub(crate) struct Format {
 pub(super) enum Content {
     /// The smooth boundaries.
     Boundaries,
+    /// The same, or tetrahedra that fill grains where these are asked for.
+    BoundariesOrTetrahedra,
+    /// Tetrahedra that fill grains.
+    Tetrahedra,
     /// The flat cells, each of them a grain.
     Cells,
     /// Numbers at voxels, and as many bytes for each as are known beforehand.

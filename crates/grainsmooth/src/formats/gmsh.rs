@@ -5,7 +5,11 @@
 //! points are its points, triple lines and the edges of the domain its curves.
 //!
 //! A volume of Gmsh is connected. Where the box cuts a periodic network, a grain in several pieces is several volumes, which
-//! are one physical volume; and a boundary several surfaces, which are one physical surface.
+//! are one physical volume; and a boundary several surfaces, which are one physical surface. Where the file holds tetrahedra, they stand on one volume for
+//! each grain, and there is no script.
+
+mod periodic;
+mod volumes;
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -32,7 +36,7 @@ const SCRIPT: &str = "geo";
 pub(super) const FORMAT: Format = Format {
     extension: "msh",
     programs: "Gmsh",
-    content: Content::Boundaries,
+    content: Content::BoundariesOrTetrahedra,
     dimension: Some(Dimension::Three),
     beside: Some(Beside::File(SCRIPT)),
     bytes: |size| TEXT_POINT * size.mesh.points + (TEXT_CORNERS + 8) * size.mesh.triangles,
@@ -41,6 +45,9 @@ pub(super) const FORMAT: Format = Format {
 };
 
 fn stage(polycrystal: &Polycrystal, output: &OutputPath<()>, files: &mut StagedFiles) -> Result<(), Error> {
+    if let Some(mesh) = polycrystal.tetrahedra_instead_of_boundaries() {
+        return output.stage(files, |out| volumes::write(&polycrystal.surface()?, mesh, polycrystal, out));
+    }
     output.stage(files, |out| write(&polycrystal.surface()?, polycrystal, out))?;
     let script = OutputPath::check_as(output.path().with_extension(SCRIPT), ())?;
     let mesh = output.path().file_name().unwrap_or_default().to_string_lossy();
@@ -94,24 +101,48 @@ fn write_script(
 fn write(surface: &Surface<'_>, polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let surface = &ConnectedParts::of(surface).surface;
     let junctions = Junctions::of(surface);
-    write!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n{}", polycrystal.provenance().text())?;
-    write_seed_comments(polycrystal.grains().renumbered(), "", out)?;
-    writeln!(out, "$EndComments")?;
-    write_entities(surface, &junctions, out)?;
+    write_head(polycrystal, out)?;
+    writeln!(out, "$Entities\n{} 0", entity_counts(surface, &junctions))?;
+    write_entities(surface, &junctions, |_| None, out)?;
+    writeln!(out, "$EndEntities")?;
+    let count = surface.points.len();
+    writeln!(out, "$Nodes\n{} {count} 1 {count}", block_count(surface, &junctions))?;
     write_nodes(surface, &junctions, out)?;
+    writeln!(out, "$EndNodes")?;
     write_elements(surface, &junctions, out)
 }
 
-fn write_entities(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Write) -> io::Result<()> {
+fn write_head(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
+    write!(out, "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n{}", polycrystal.provenance().text())?;
+    write_seed_comments(polycrystal.grains().renumbered(), "", out)?;
+    writeln!(out, "$EndComments")
+}
+
+/// Numbers of points, curves and surfaces.
+fn entity_counts(surface: &Surface<'_>, Junctions { lines, corners }: &Junctions) -> String {
+    format!("{} {} {}", corners.len(), lines.len(), surface.parts.len())
+}
+
+/// The sum of them.
+fn block_count(surface: &Surface<'_>, Junctions { lines, corners }: &Junctions) -> usize {
+    corners.len() + lines.len() + surface.parts.len()
+}
+
+/// Writes points, curves, and surfaces with the physical groups that they may be in.
+fn write_entities(
+    surface: &Surface<'_>,
+    junctions: &Junctions,
+    group_of: impl Fn(BoundaryId) -> Option<usize>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     let Junctions { lines, corners } = junctions;
     let mut curves_of: BTreeMap<BoundaryId, Vec<usize>> = BTreeMap::new();
-    writeln!(out, "$Entities\n{} {} {} 0", corners.len(), lines.len(), surface.parts.len())?;
     for (tag, corner) in (1..).zip(corners) {
         let DVec3 { x, y, z } = surface.points[*corner as usize];
         writeln!(out, "{tag} {x:?} {y:?} {z:?} 0")?;
     }
     for (tag, line) in (1..).zip(lines) {
-        write!(out, "{tag} {} 0", bounds(surface, line.points.iter().copied()))?;
+        write!(out, "{tag} {} 0", bounds(&surface.points, line.points.iter().copied()))?;
         let [start, end] =
             [line.points[0], line.points[line.points.len() - 1]].map(|end| corners.binary_search(&end));
         match (start, end) {
@@ -125,31 +156,31 @@ fn write_entities(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Wr
     for part in &surface.parts {
         let tag = tag(part.boundary);
         let curves = curves_of.get(&part.boundary).map(Vec::as_slice).unwrap_or_default();
-        write!(out, "{tag} {} 0 {}", bounds(surface, surface.triangles_of(part).flatten()), curves.len())?;
+        let group = group_of(part.boundary).map_or("0".to_owned(), |group| format!("1 {group}"));
+        let bounds = bounds(&surface.points, surface.triangles_of(part).flatten());
+        write!(out, "{tag} {bounds} {group} {}", curves.len())?;
         for curve in curves {
             write!(out, " {curve}")?;
         }
         writeln!(out)?;
     }
-    writeln!(out, "$EndEntities")
+    Ok(())
 }
 
 /// The box around some points, as the format spells it.
-fn bounds(surface: &Surface<'_>, points: impl Iterator<Item = u32>) -> String {
+fn bounds(all: &[DVec3], points: impl Iterator<Item = u32>) -> String {
     let (mut lower, mut upper) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for point in points.map(|point| surface.points[point as usize]) {
+    for point in points.map(|point| all[point as usize]) {
         lower = lower.min(point);
         upper = upper.max(point);
     }
     format!("{:?} {:?} {:?} {:?} {:?} {:?}", lower.x, lower.y, lower.z, upper.x, upper.y, upper.z)
 }
 
+/// Writes a block of nodes for each point, curve and surface, each node with the first that it is on.
 fn write_nodes(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Write) -> io::Result<()> {
     let Junctions { lines, corners } = junctions;
-    let count = surface.points.len();
-    let block_count = corners.len() + lines.len() + surface.parts.len();
-    writeln!(out, "$Nodes\n{block_count} {count} 1 {count}")?;
-    let mut is_written = vec![false; count];
+    let mut is_written = vec![false; surface.points.len()];
     let mut block = |dimension: u32, tag: usize, points: &mut dyn Iterator<Item = u32>| {
         let mut new: Vec<u32> = Vec::new();
         for point in points {
@@ -175,15 +206,14 @@ fn write_nodes(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Write
     for part in &surface.parts {
         block(2, tag(part.boundary), &mut surface.triangles_of(part).flatten())?;
     }
-    writeln!(out, "$EndNodes")
+    Ok(())
 }
 
 fn write_elements(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Write) -> io::Result<()> {
     let Junctions { lines, corners } = junctions;
     let segments: usize = lines.iter().map(|line| line.points.len() - 1).sum();
     let count = corners.len() + segments + surface.triangle_count();
-    let block_count = corners.len() + lines.len() + surface.parts.len();
-    writeln!(out, "$Elements\n{block_count} {count} 1 {count}")?;
+    writeln!(out, "$Elements\n{} {count} 1 {count}", block_count(surface, junctions))?;
     let mut element = 1u64..;
     let mut next = move || element.next().unwrap_or_default();
     for (tag, corner) in (1..).zip(corners) {
@@ -195,6 +225,16 @@ fn write_elements(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Wr
             writeln!(out, "{} {} {}", next(), u64::from(ends[0]) + 1, u64::from(ends[1]) + 1)?;
         }
     }
+    write_triangles(surface, next, out)?;
+    writeln!(out, "$EndElements")
+}
+
+/// Writes a block of triangles for each surface.
+fn write_triangles(
+    surface: &Surface<'_>,
+    mut next: impl FnMut() -> u64,
+    out: &mut dyn Write,
+) -> io::Result<()> {
     for part in &surface.parts {
         let triangles = surface.triangles_of(part);
         writeln!(out, "2 {} {TRIANGLE} {}", tag(part.boundary), surface.triangles_of(part).count())?;
@@ -202,7 +242,7 @@ fn write_elements(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Wr
             writeln!(out, "{} {a} {b} {c}", next())?;
         }
     }
-    writeln!(out, "$EndElements")
+    Ok(())
 }
 
 /// Number of a boundary's surface.

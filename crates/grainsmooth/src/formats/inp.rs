@@ -2,12 +2,15 @@
 //!
 //! Abaqus Analysis User's Guide, "Input syntax rules", "Solid (continuum) elements"; CalculiX CrunchiX User's Manual.
 
+pub(crate) mod deck;
+mod equations;
 mod hexahedra;
 mod tetrahedra;
 
 use std::io::{self, Write};
 
 use glam::DVec3;
+use texture::CrystalSymmetry;
 
 use super::format::{Content, Format, HEAD, TEXT_CORNERS, TEXT_POINT, Writer};
 use crate::{GrainAttributes, Polycrystal};
@@ -44,20 +47,22 @@ fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     if polycrystal.file().voxels.is_some() {
         return hexahedra::write(&polycrystal.label_grid()?, polycrystal, out);
     }
-    let mesh = polycrystal.volume_mesh.as_ref();
-    let mesh =
-        mesh.ok_or_else(|| io::Error::other("the grains are not filled; call `Polycrystal::filled` first"))?;
-    tetrahedra::write(polycrystal, mesh, out)
+    tetrahedra::write(polycrystal, polycrystal.tetrahedra()?, out)
+}
+
+/// The material of each phase, and the symmetry of its crystals.
+fn materials(grains: &GrainAttributes) -> Vec<(String, CrystalSymmetry)> {
+    match &grains.phases {
+        Some(_) => grains.named_symmetries(),
+        None => vec![(ONE_MATERIAL.to_owned(), grains.symmetry)],
+    }
 }
 
 /// Writes the set of each phase, and of each grain its orientation and its section.
 fn write_sections(numbers: &[usize], grains: &GrainAttributes, out: &mut dyn Write) -> io::Result<()> {
     let phase_of = grains.phase_of();
-    let names: Vec<String> = match &grains.phases {
-        Some(_) => grains.named_symmetries().into_iter().map(|(name, _)| name).collect(),
-        None => vec![ONE_MATERIAL.to_owned()],
-    };
-    for (phase, name) in names.iter().enumerate().filter(|_| grains.phases.is_some()) {
+    let names = materials(grains);
+    for (phase, (name, _)) in names.iter().enumerate().filter(|_| grains.phases.is_some()) {
         let members: Vec<&usize> = numbers.iter().filter(|grain| phase_of[**grain] == phase).collect();
         if !members.is_empty() {
             writeln!(out, "*ELSET, ELSET=PHASE_{name}")?;
@@ -65,7 +70,7 @@ fn write_sections(numbers: &[usize], grains: &GrainAttributes, out: &mut dyn Wri
         }
     }
     for grain in numbers {
-        let name = &names[phase_of[*grain]];
+        let (name, _) = &names[phase_of[*grain]];
         let mut orientation = String::new();
         if let Some(texture) = &grains.texture {
             let [first, second] =

@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use glam::DVec3;
 use polycrystal::{Boundary, BoundaryId, Level, Mesh, Side};
 use rayon::prelude::*;
+use voronoi::PeriodicPair;
 
 use super::measured_arrays::MeasuredArrays;
 use super::surface::{Surface, unit_normal};
@@ -14,7 +15,10 @@ use crate::vtk::write_vtk;
 use crate::vtk::{
     Array, Cells, Each, FieldEntry, FieldValue, ItemTuples, Items, PolyData, Values, VtkFormat,
 };
-use crate::{GrainAttributes, GrainPhases, GrainTexture, LabelGrid, Names, Parents, Polycrystal, Provenance};
+use crate::{
+    GrainAttributes, GrainPhases, GrainTexture, LabelGrid, Names, Parents, Polycrystal, Provenance,
+    VolumeMesh,
+};
 
 impl Polycrystal {
     /// Behind what formats without comments hold: who reads them stops before.
@@ -24,6 +28,22 @@ impl Polycrystal {
 
     pub(crate) fn surface(&self) -> io::Result<Surface<'_>> {
         Surface::network(self).ok_or_else(|| io::Error::other("boundaries in the plane are no surfaces"))
+    }
+
+    /// The tetrahedra that fill the grains.
+    pub(crate) fn tetrahedra(&self) -> io::Result<&VolumeMesh> {
+        let unfilled = || io::Error::other("the grains are not filled; call `Polycrystal::filled` first");
+        self.volume_mesh.as_ref().ok_or_else(unfilled)
+    }
+
+    /// The same where formats that else hold boundaries are to hold them.
+    pub(crate) fn tetrahedra_instead_of_boundaries(&self) -> Option<&VolumeMesh> {
+        self.volume_mesh.as_ref().filter(|_| self.file().volume.volume_mesh)
+    }
+
+    /// The points that are others moved by whole periods: those of a periodic network, or, where it was cut at its box, those on the upper sides.
+    pub(crate) fn periodic_points(&self) -> io::Result<Vec<PeriodicPair<u32>>> {
+        self.network.periodic_vertices(&self.points, self.axes_cut_at_box()).map_err(io::Error::other)
     }
 
     pub(crate) fn texture(&self) -> io::Result<&GrainTexture> {

@@ -7,6 +7,7 @@ use voronoi::Dimension;
 
 use super::format::{Beside, Content, FileSize, Format, GrainWriter, Writer};
 use crate::config::Config;
+use crate::config::volume_mesh::VolumeMeshOptions;
 use crate::error::Error;
 
 /// A file format that results are written in.
@@ -16,6 +17,9 @@ pub struct OutputFormat(&'static Format);
 impl OutputFormat {
     /// The default: surfaces and lines as VTK's XML PolyData.
     pub const VTP: Self = Self(&super::vtk::VTP);
+
+    /// Input of Abaqus and CalculiX.
+    pub const INP: Self = Self(&super::inp::FORMAT);
 
     /// Every format, the default first. A format is a file, its `mod`, and a line here.
     pub const ALL: &[Self] = &[
@@ -31,7 +35,8 @@ impl OutputFormat {
         Self(&super::tess::FORMAT),
         Self(&super::vti::FORMAT),
         Self(&super::npy::FORMAT),
-        Self(&super::inp::FORMAT),
+        Self::INP,
+        Self(&super::bdf::FORMAT),
         Self(&super::ang::FORMAT),
         Self(&super::ctf::FORMAT),
         Self(&super::euler::FORMAT),
@@ -80,9 +85,14 @@ impl OutputFormat {
         matches!(self.0.content, Content::Voxels(_))
     }
 
-    /// Whether a file of the format holds tetrahedra that fill grains: where it would hold voxels, and none are asked for.
+    /// Whether a file of the format holds tetrahedra that fill grains: always, or where they are asked for, or where no voxels are.
     pub fn needs_tetrahedra(self, to_write: &ToWrite) -> bool {
-        matches!(self.0.content, Content::Elements) && !to_write.has_voxels
+        match self.0.content {
+            Content::Tetrahedra => true,
+            Content::Elements => !to_write.has_voxels,
+            Content::BoundariesOrTetrahedra => to_write.volume.volume_mesh,
+            Content::Boundaries | Content::Cells | Content::Voxels(_) | Content::Orientations => false,
+        }
     }
 
     /// Whether the format is a single file, as standard output takes.
@@ -112,7 +122,12 @@ impl OutputFormat {
     pub(crate) fn bytes_of_voxel(self, config: &Config) -> u32 {
         match self.0.content {
             Content::Voxels(bytes) => bytes(config),
-            Content::Boundaries | Content::Cells | Content::Elements | Content::Orientations => 0,
+            Content::Boundaries
+            | Content::BoundariesOrTetrahedra
+            | Content::Tetrahedra
+            | Content::Cells
+            | Content::Elements
+            | Content::Orientations => 0,
         }
     }
 
@@ -130,7 +145,7 @@ impl OutputFormat {
     /// [`Error::FormatDimension`]; [`Error::NoVoxels`] for a format of voxels when their number is not given; [`Error::NoTexture`] for one
     /// of orientations where grains have none; [`Error::CellsOfGrains`] for one of cells where grains are none.
     pub fn check_holds(self, path: &Path, to_write: &ToWrite) -> Result<(), Error> {
-        let ToWrite { dimension, has_voxels, has_orientations, has_cells } = *to_write;
+        let ToWrite { dimension, has_voxels, has_orientations, has_cells, volume: _ } = *to_write;
         let path = || path.to_owned();
         match (self.0.dimension, self.0.content) {
             (Some(only), _) if only != dimension => {
@@ -158,6 +173,8 @@ pub struct ToWrite {
     pub has_orientations: bool,
     /// Whether each grain is a convex cell.
     pub has_cells: bool,
+    /// What is asked of tetrahedra.
+    pub volume: VolumeMeshOptions,
 }
 
 impl Config {
@@ -168,6 +185,7 @@ impl Config {
             has_voxels: self.file.voxels.is_some(),
             has_orientations: self.has_texture(),
             has_cells: !self.has_grains_of_several_cells(),
+            volume: self.file.volume,
         }
     }
 }

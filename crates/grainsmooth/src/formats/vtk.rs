@@ -2,6 +2,7 @@
 
 use super::format::{Content, Format, Writer};
 use super::grains::write_vtk_grain;
+use super::volume_vtu;
 use crate::vtk::VtkFormat;
 
 /// The share of their bytes that compressed networks take: coordinates hardly repeat. 200 random grains took 0.55 at level 3.
@@ -21,11 +22,14 @@ pub(super) const VTP: Format = Format {
 pub(super) const VTU: Format = Format {
     extension: "vtu",
     programs: "",
-    content: Content::Boundaries,
+    content: Content::BoundariesOrTetrahedra,
     dimension: None,
     beside: None,
     bytes: |size| size.encoded(size.of_network() + size.mesh.triangles, COMPRESSED),
-    write: Writer::File(|polycrystal, out| polycrystal.write_vtk(VtkFormat::Vtu, out)),
+    write: Writer::File(|polycrystal, out| match polycrystal.tetrahedra_instead_of_boundaries() {
+        Some(mesh) => volume_vtu::write(polycrystal, mesh, out),
+        None => polycrystal.write_vtk(VtkFormat::Vtu, out),
+    }),
     write_grain: None,
 };
 

@@ -20,6 +20,7 @@ impl Polycrystal {
             has_voxels: self.file().voxels.is_some(),
             has_orientations: self.grains().texture.is_some(),
             has_cells: self.synthesis().is_some_and(|made| !made.config.has_grains_of_several_cells()),
+            volume: self.file().volume,
         }
     }
 

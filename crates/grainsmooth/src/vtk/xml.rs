@@ -6,7 +6,7 @@
 use std::io::{self, Write};
 
 use super::raw::NumbersOfFile;
-use super::{PolyData, VtkEncoding};
+use super::{Cells, PolyData, VtkEncoding};
 use document::Document;
 
 mod document;
@@ -27,6 +27,9 @@ pub(super) fn write(
     encoding: VtkEncoding,
     out: &mut dyn Write,
 ) -> io::Result<()> {
+    if format == XmlFormat::PolyData && matches!(data.cells, Cells::Tetrahedra(_)) {
+        return Err(io::Error::other("PolyData holds no tetrahedra; write an unstructured grid"));
+    }
     let mut numbers = NumbersOfFile::new(encoding);
     let document = Document::new(data, format, &mut numbers);
     let document = vtkio::xml::se::to_string(&document).map_err(io::Error::other)?;

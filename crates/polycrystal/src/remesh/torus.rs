@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::{BVec3, DVec3};
-use voronoi::Translation;
+use voronoi::{PeriodicPair, Translation};
 
 use crate::mesh::id::id;
 use crate::{Level, Network, NetworkError};
@@ -81,5 +81,31 @@ impl Torus {
     pub(crate) fn seen(&self, vertex: u32, from: Translation) -> Moved<u32> {
         let Moved { original, translation } = self.vertices[vertex as usize];
         Moved { original, translation: translation - from }
+    }
+}
+
+impl Network {
+    /// The vertices of the finest level that stand for others, whole periods away, for its points: known copies of a periodic network, or, along the axes of `cut`, the
+    /// points on the upper walls of one that was cut at its box. No original is a copy itself.
+    ///
+    /// # Errors
+    /// [`NetworkError::NoCopyOnWall`] where opposite walls are not alike.
+    ///
+    /// # Panics
+    /// When there is not one point per vertex.
+    pub fn periodic_vertices(
+        &self,
+        points: &[DVec3],
+        cut: BVec3,
+    ) -> Result<Vec<PeriodicPair<u32>>, NetworkError> {
+        assert_eq!(points.len(), self.finest().vertex_count(), "there must be one point per vertex");
+        let torus = Torus::new(self, self.finest(), points, cut)?;
+        let vertices = (0u32..).zip(torus.vertices).filter(|(_, moved)| moved.translation != Translation::NONE);
+        let pair = |(secondary, Moved { original, translation }): (u32, Moved<u32>)| PeriodicPair {
+            secondary,
+            primary: original,
+            translation,
+        };
+        Ok(vertices.map(pair).collect())
     }
 }

@@ -1,42 +1,81 @@
 //! Tetrahedra that fill smooth grains, as elements C3D4.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 
 use glam::DVec3;
-use polycrystal::{GrainId, Mesh};
 
-use super::{number, write_numbers, write_sections};
+use super::{equations, number, write_numbers, write_sections};
 use crate::Polycrystal;
+use crate::names::{AXES, side_of_box};
 use crate::volume_mesh::VolumeMesh;
+use crate::volume_mesh::cohesive::{CohesiveMesh, Prism};
+use crate::volume_mesh::element_faces::{ElementFace, FACES};
 
-/// The corners of a tetrahedron's faces S1 to S4. Abaqus Analysis User's Guide, "Three-dimensional solid element library".
-const FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
-
-/// The sides of the box along each axis.
-const AXES: [&str; 3] = ["X", "Y", "Z"];
-
-/// Writes nodes, those of the network first; elements grain by grain; sets of both; and as surfaces each boundary, by the elements of its first side, and the sides of the box.
-pub(super) fn write(polycrystal: &Polycrystal, mesh: &VolumeMesh, out: &mut dyn Write) -> io::Result<()> {
+/// Writes nodes, those of the network first; elements grain by grain; sets of both; as surfaces each boundary, by the elements of its first side, and the sides of the box;
+/// and, where they are asked for, cohesive elements and equations.
+pub(super) fn write(polycrystal: &Polycrystal, filling: &VolumeMesh, out: &mut dyn Write) -> io::Result<()> {
+    let network = &polycrystal.network;
+    let pairs = polycrystal.periodic_points()?;
+    let is_cohesive = polycrystal.file().volume.cohesive;
+    let cohesive = is_cohesive.then(|| CohesiveMesh::new(filling, network, &pairs));
+    let (mesh, pairs) = match &cohesive {
+        Some(cohesive) => (&cohesive.mesh, &cohesive.ties),
+        None => (filling, &pairs),
+    };
     writeln!(out, "*NODE, NSET=NODES")?;
-    for (node, DVec3 { x, y, z }) in (1..).zip(&mesh.points) {
-        writeln!(out, "{node}, {}, {}, {}", number(*x), number(*y), number(*z))?;
-    }
+    (1..).zip(&mesh.points).try_for_each(|(node, point)| write_node(node, *point, out))?;
     write_sides(polycrystal, mesh, out)?;
     writeln!(out, "*ELEMENT, TYPE=C3D4, ELSET=ELEMENTS")?;
-    for (element, [a, b, c, d]) in (1..).zip(&mesh.tetrahedra) {
-        writeln!(out, "{element}, {}, {}, {}, {}", a + 1, b + 1, c + 1, d + 1)?;
-    }
+    (1..).zip(&mesh.tetrahedra).try_for_each(|(element, nodes)| write_element(element, nodes, out))?;
     let mut first = 1;
     let mut grains = Vec::new();
     for of_grain in mesh.grains.chunk_by(|a, b| a == b) {
-        let (grain, last) = (of_grain[0].index(), first + of_grain.len() - 1);
-        writeln!(out, "*ELSET, ELSET=GRAIN_{grain}, GENERATE\n{first}, {last}, 1")?;
+        let grain = of_grain[0].index();
+        first = write_element_set(&format!("GRAIN_{grain}"), first, of_grain.len(), out)?;
         grains.push(grain);
-        first = last + 1;
     }
-    write_surfaces(polycrystal, mesh, out)?;
-    write_sections(&grains, polycrystal.grains(), out)
+    if let Some(cohesive) = &cohesive {
+        write_prisms(&cohesive.prisms, first, out)?;
+    }
+    // The nodes of faces are those of a grain that may have its own.
+    write_surfaces(polycrystal, &filling.faces_at_triangles(network), mesh, out)?;
+    write_sections(&grains, polycrystal.grains(), out)?;
+    if equations::are_asked(polycrystal) {
+        equations::write(polycrystal, mesh, pairs, out)?;
+    }
+    Ok(())
+}
+
+/// Writes cohesive elements from a number on, their sets, and their section: separations are strains, for a thickness of 1.
+fn write_prisms(prisms: &[Prism], mut first: usize, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "*ELEMENT, TYPE=COH3D6, ELSET=COHESIVE")?;
+    (first..).zip(prisms).try_for_each(|(element, prism)| write_element(element, &prism.nodes, out))?;
+    for of_boundary in prisms.chunk_by(|a, b| a.boundary == b.boundary) {
+        let name = format!("BOUNDARY_{}", of_boundary[0].boundary.0);
+        first = write_element_set(&name, first, of_boundary.len(), out)?;
+    }
+    writeln!(
+        out,
+        "*COHESIVE SECTION, ELSET=COHESIVE, MATERIAL=COHESIVE, RESPONSE=TRACTION SEPARATION, THICKNESS=SPECIFIED\n1.0"
+    )
+}
+
+fn write_element(element: usize, nodes: &[u32], out: &mut dyn Write) -> io::Result<()> {
+    write!(out, "{element}")?;
+    nodes.iter().try_for_each(|node| write!(out, ", {}", node + 1))?;
+    writeln!(out)
+}
+
+/// Writes a set of so many elements; returns the number of the first behind it.
+fn write_element_set(name: &str, first: usize, count: usize, out: &mut dyn Write) -> io::Result<usize> {
+    writeln!(out, "*ELSET, ELSET={name}, GENERATE\n{first}, {}, 1", first + count - 1)?;
+    Ok(first + count)
+}
+
+pub(super) fn write_node(node: usize, point: DVec3, out: &mut dyn Write) -> io::Result<()> {
+    let [x, y, z] = point.to_array().map(number);
+    writeln!(out, "{node}, {x}, {y}, {z}")
 }
 
 /// The nodes on each side of a box, each edge and each corner of it: `X0`, `X0Y1`, `X0Y1Z0` and so on.
@@ -48,7 +87,7 @@ fn write_sides(polycrystal: &Polycrystal, mesh: &VolumeMesh, out: &mut dyn Write
     let ends = [domain.lower(), domain.upper()];
     // Of each axis: not at a side, at the lower, at the upper one.
     let mut sets: BTreeMap<[Option<usize>; 3], Vec<usize>> = BTreeMap::new();
-    for (node, point) in mesh.points[..mesh.surface_points].iter().enumerate() {
+    for (node, point) in mesh.points.iter().enumerate() {
         let at = [0, 1, 2].map(|axis| {
             let is_wall = !domain.periodic().test(axis);
             (0..2).find(|end| is_wall && point[axis] == ends[*end][axis])
@@ -64,48 +103,44 @@ fn write_sides(polycrystal: &Polycrystal, mesh: &VolumeMesh, out: &mut dyn Write
     for (at, nodes) in sets {
         let name = |(axis, end): (&str, Option<usize>)| end.map(|end| format!("{axis}{end}"));
         let name: String = AXES.into_iter().zip(at).filter_map(name).collect();
-        writeln!(out, "*NSET, NSET={name}")?;
+        writeln!(out, "*NSET, NSET={}", name.to_uppercase())?;
         write_numbers(nodes.into_iter(), out)?;
     }
     Ok(())
 }
 
-/// Each boundary, `BOUNDARY_0` and so on, as the faces of the elements on its first side, and the sides of the box, `X0` and so on.
-fn write_surfaces(polycrystal: &Polycrystal, mesh: &VolumeMesh, out: &mut dyn Write) -> io::Result<()> {
-    let level = polycrystal.network.finest();
-    let Mesh::Triangles(triangles) = &level.mesh else { return Ok(()) };
-    let sorted = |mut corners: [u32; 3]| {
-        corners.sort_unstable();
-        corners
-    };
-    let is_on_surface = |corner: &u32| (*corner as usize) < mesh.surface_points;
-    let mut faces: BTreeMap<(GrainId, [u32; 3]), (usize, usize)> = BTreeMap::new();
-    for (element, (corners, grain)) in mesh.tetrahedra.iter().zip(&mesh.grains).enumerate() {
-        for (face, of_face) in FACES.iter().enumerate() {
-            let face_corners = of_face.map(|corner| corners[corner]);
-            if face_corners.iter().all(is_on_surface) {
-                faces.insert((*grain, sorted(face_corners)), (element + 1, face + 1));
-            }
+/// Each boundary, `BOUNDARY_0` and so on, as a set of nodes and as the faces of the elements on its first side; the sides of the box, `X0` and so on, as faces too.
+fn write_surfaces(
+    polycrystal: &Polycrystal,
+    faces: &[[Option<ElementFace>; 2]],
+    mesh: &VolumeMesh,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let network = &polycrystal.network;
+    let boundaries = network.boundaries();
+    let mut of_boundaries = vec![(BTreeSet::new(), Vec::new()); boundaries.len()];
+    let mut of_sides: BTreeMap<String, Vec<ElementFace>> = BTreeMap::new();
+    for (both, boundary) in faces.iter().zip(&network.finest().boundary_of) {
+        let (nodes, faces) = &mut of_boundaries[boundary.index()];
+        for ElementFace { element, face } in both.iter().flatten() {
+            nodes.extend(FACES[*face].map(|corner| mesh.tetrahedra[*element][corner] as usize));
+        }
+        let Some(face) = both[0] else { continue };
+        faces.push(face);
+        let wall = boundaries[boundary.index()].wall;
+        if let Some(side) = wall.and_then(|wall| side_of_box(network.domain(), wall)) {
+            of_sides.entry(side.to_uppercase()).or_default().push(face);
         }
     }
-    let boundaries = polycrystal.network.boundaries();
-    let domain = polycrystal.network.domain();
-    let mut surfaces: BTreeMap<String, Vec<(usize, usize)>> = BTreeMap::new();
-    let mut order = vec![Vec::new(); boundaries.len()];
-    for (corners, boundary) in triangles.triangles().iter().zip(&level.boundary_of) {
-        let Some((grain, _)) = boundaries[boundary.index()].signed_grains().next() else { continue };
-        let Some(face) = faces.get(&(grain, sorted(*corners))) else { continue };
-        order[boundary.index()].push(*face);
-        let wall = boundaries[boundary.index()].wall.and_then(|wall| domain.across_axis(wall));
-        if let Some((axis, coordinate)) = wall.filter(|_| domain.is_box()) {
-            let end = usize::from(coordinate == domain.upper()[axis]);
-            surfaces.entry(format!("{}{end}", AXES[axis])).or_default().push(*face);
-        }
+    for (boundary, (nodes, faces)) in of_boundaries.into_iter().enumerate() {
+        writeln!(out, "*NSET, NSET=BOUNDARY_{boundary}")?;
+        write_numbers(nodes.into_iter(), out)?;
+        write_surface(&format!("BOUNDARY_{boundary}"), &faces, out)?;
     }
-    let named = order.into_iter().enumerate().map(|(number, faces)| (format!("BOUNDARY_{number}"), faces));
-    for (name, faces) in named.chain(surfaces) {
-        writeln!(out, "*SURFACE, TYPE=ELEMENT, NAME={name}")?;
-        faces.iter().try_for_each(|(element, face)| writeln!(out, "{element}, S{face}"))?;
-    }
-    Ok(())
+    of_sides.iter().try_for_each(|(name, faces)| write_surface(name, faces, out))
+}
+
+fn write_surface(name: &str, faces: &[ElementFace], out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "*SURFACE, TYPE=ELEMENT, NAME={name}")?;
+    faces.iter().try_for_each(|ElementFace { element, face }| writeln!(out, "{}, S{}", element + 1, face + 1))
 }

@@ -19,6 +19,7 @@ const VERTEX: u8 = 1;
 const POLY_LINE: u8 = 4;
 const TRIANGLE: u8 = 5;
 const POLYGON: u8 = 7;
+const TETRAHEDRON: u8 = 10;
 
 #[derive(Serialize)]
 #[serde(rename = "VTKFile")]
@@ -182,7 +183,8 @@ impl Topology {
             array("offsets", id_type, 1, numbers.append(ends)),
         ];
         match (format, data.cells) {
-            (XmlFormat::PolyData, Cells::Triangles(_) | Cells::Polygons(_)) => {
+            // Tetrahedra do not come here: `write` refuses them.
+            (XmlFormat::PolyData, Cells::Triangles(_) | Cells::Polygons(_) | Cells::Tetrahedra(_)) => {
                 Self::Polys(Arrays::new(arrays))
             }
             (XmlFormat::PolyData, Cells::Polylines(_)) => Self::Lines(Arrays::new(arrays)),
@@ -193,6 +195,7 @@ impl Topology {
                     Cells::Polygons(_) => POLYGON,
                     Cells::Polylines(_) => POLY_LINE,
                     Cells::Vertices(_) => VERTEX,
+                    Cells::Tetrahedra(_) => TETRAHEDRON,
                 };
                 arrays.push(array(
                     "types",
@@ -209,17 +212,8 @@ impl Topology {
 /// The point ids of all cells in a row, and where in that row each cell ends.
 fn cell_ids(cells: Cells<'_>, wide: bool) -> (Numbers<'_>, Numbers<'_>) {
     match cells {
-        Cells::Triangles(triangles) => {
-            let connectivity = match wide {
-                false => Numbers::slice(triangles),
-                true => {
-                    let ids = triangles.as_flattened();
-                    Numbers::each(ids.len(), |corner| i64::from(ids[corner]))
-                }
-            };
-            let end = |cell: usize| 3 * (cell as u64 + 1);
-            (connectivity, ids(triangles.len(), end, wide))
-        }
+        Cells::Triangles(triangles) => ids_of_alike(triangles, wide),
+        Cells::Tetrahedra(tetrahedra) => ids_of_alike(tetrahedra, wide),
         Cells::Polygons(cells) | Cells::Polylines(cells) => {
             let corners: Vec<u32> = cells.iter().flatten().copied().collect();
             let ends: Vec<u64> = cells
@@ -237,6 +231,16 @@ fn cell_ids(cells: Cells<'_>, wide: bool) -> (Numbers<'_>, Numbers<'_>) {
             (ids(count, |cell| cell as u64, wide), ids(count, |cell| cell as u64 + 1, wide))
         }
     }
+}
+
+/// The same of cells with so many points each.
+fn ids_of_alike<const N: usize>(cells: &[[u32; N]], wide: bool) -> (Numbers<'_>, Numbers<'_>) {
+    let corners = cells.as_flattened();
+    let connectivity = match wide {
+        false => Numbers::slice(corners),
+        true => Numbers::each(corners.len(), |corner| i64::from(corners[corner])),
+    };
+    (connectivity, ids(cells.len(), |cell| N as u64 * (cell as u64 + 1), wide))
 }
 
 #[expect(

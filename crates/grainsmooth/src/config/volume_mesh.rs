@@ -1,0 +1,48 @@
+//! What is asked of the tetrahedra that fill grains, and of what solvers need beside them.
+
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+
+use super::spelling::is_usual;
+
+/// What is asked of the tetrahedra that fill grains, and of what solvers need beside them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Args, Serialize)]
+#[command(next_help_heading = "Finite elements")]
+#[serde(rename_all = "kebab-case")]
+pub struct VolumeMeshOptions {
+    /// Write tetrahedra that fill the grains to .msh and .vtu, which else hold boundaries; .inp and .bdf always have them
+    ///
+    /// Example: --elements-per-grain 5 --volume-mesh -o grains.vtu
+    #[arg(long)]
+    #[serde(skip_serializing_if = "is_usual")]
+    pub volume_mesh: bool,
+
+    /// Tie the nodes of .inp that stand a period apart by equations, with a node for each axis that moves as the box is to be stretched
+    ///
+    /// Example: --periodic x,y,z --elements-per-grain 4 --periodic-equations -o grains.inp
+    #[arg(long)]
+    #[serde(skip_serializing_if = "is_usual")]
+    pub periodic_equations: bool,
+
+    /// Give each grain of .inp nodes of its own, and put cohesive elements (COH3D6 of Abaqus) between the grains, which may part
+    ///
+    /// Example: --elements-per-grain 4 --cohesive -o grains.inp
+    #[arg(long)]
+    #[serde(skip_serializing_if = "is_usual")]
+    pub cohesive: bool,
+
+    /// Write a job for CalculiX and Abaqus beside .inp: the box pulled along x, with the elasticity of a crystal for each phase
+    ///
+    /// Example: --texture random --elements-per-grain 4 --solver-deck tension-x -o grains.inp
+    #[arg(long, value_name = "JOB", value_enum)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solver_deck: Option<SolverDeck>,
+}
+
+/// A job for a solver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SolverDeck {
+    /// The box is pulled along x; its other sides are free.
+    TensionX,
+}

@@ -1,0 +1,76 @@
+//! Bulk data of Nastran: tetrahedra that fill grains, each grain with a property of its own.
+//!
+//! MSC Nastran Quick Reference Guide, "Bulk data entries": GRID, CTETRA, PSOLID.
+
+use std::io::{self, Write};
+
+use voronoi::Dimension;
+
+use super::format::{Content, Format, HEAD, TEXT_CORNERS, TEXT_POINT, Writer};
+use crate::Polycrystal;
+
+/// Characters of a number in an entry's wide fields.
+const WIDE: usize = 16;
+
+/// Some three tetrahedra for each triangle, with half a node each.
+pub(super) const FORMAT: Format = Format {
+    extension: "bdf",
+    programs: "Nastran",
+    content: Content::Tetrahedra,
+    dimension: Some(Dimension::Three),
+    beside: None,
+    bytes: |size| HEAD + (2 * TEXT_POINT + 6 * TEXT_CORNERS) * size.mesh.triangles,
+    write: Writer::File(write),
+    write_grain: None,
+};
+
+/// Writes grid points, tetrahedra, and properties: grain 0 is property 1. Their materials count phases from 1, and are for the user to say.
+fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
+    let mesh = polycrystal.tetrahedra()?;
+    polycrystal.provenance().write_comments("$ ", out)?;
+    writeln!(out, "BEGIN BULK")?;
+    let phase_of = polycrystal.grains().phase_of();
+    for grain in mesh.grains.chunk_by(|a, b| a == b).map(|of_grain| of_grain[0].index()) {
+        writeln!(out, "PSOLID  {:8}{:8}", grain + 1, phase_of[grain] + 1)?;
+    }
+    for (node, point) in (1..).zip(&mesh.points) {
+        let [x, y, z] = point.to_array().map(number);
+        writeln!(out, "GRID*   {node:16}{:16}{x:>16}{y:>16}*\n*       {z:>16}", "")?;
+    }
+    for (element, (corners, grain)) in (1..).zip(mesh.tetrahedra.iter().zip(&mesh.grains)) {
+        write!(out, "CTETRA  {element:8}{:8}", grain.0 + 1)?;
+        corners.iter().try_for_each(|corner| write!(out, "{:8}", corner + 1))?;
+        writeln!(out)?;
+    }
+    writeln!(out, "ENDDATA")
+}
+
+/// A number with as many digits as a wide field has room for.
+fn number(number: f64) -> String {
+    let all = format!("{number:?}");
+    if all.len() <= WIDE && all.contains('.') {
+        return all.replace('e', "E");
+    }
+    let is_plain = (1e-3..1e6).contains(&number.abs());
+    let fitting = (0..WIDE).rev().map(|digits| match is_plain {
+        true => format!("{number:.digits$}"),
+        false => format!("{number:.digits$E}"),
+    });
+    fitting.into_iter().find(|text| text.len() <= WIDE && text.contains('.')).unwrap_or(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_fill_a_wide_field_and_have_a_point() {
+        for value in [0.0, -0.5, 1.0, -1.0 / 3.0, 1e-7 / 3.0, -2e-300 / 3.0, 123_456.789_012_345_6, 2e20] {
+            let text = number(value);
+            assert!(text.len() <= WIDE && text.contains('.'), "{text}");
+            let error = (text.parse::<f64>().expect("a number") - value).abs();
+            assert!(error <= 1e-8 * value.abs(), "{text}");
+        }
+        assert_eq!(number(-1.0 / 3.0), "-0.3333333333333");
+    }
+}

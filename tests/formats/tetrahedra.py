@@ -1,0 +1,86 @@
+"""Tetrahedra in a folder, as meshio and scikit-fem read them, against `expected.json`."""
+
+import json
+import os
+import sys
+
+import meshio
+import numpy
+import skfem
+from skfem.helpers import dot, grad
+
+os.chdir(sys.argv[1])
+expected = json.load(open("expected.json"))
+points = numpy.array(expected["points"])
+tetrahedra = numpy.array(expected["tetrahedra"])
+grains = numpy.array(expected["grains"])
+volumes = numpy.array(expected["volumes"])
+
+
+def volumes_of(points, tetrahedra, grains):
+    a, b, c, d = (points[tetrahedra[:, corner]] for corner in range(4))
+    each = numpy.einsum("ij,ij->i", numpy.cross(b - a, c - a), d - a) / 6
+    assert (each > 0).all()
+    return numpy.bincount(grains, weights=each)
+
+
+def check_volumes(mesh, grains, tolerance):
+    found = volumes_of(mesh.points, mesh.cells_dict["tetra"], grains)
+    assert numpy.allclose(found, volumes, rtol=tolerance, atol=0), found / volumes - 1
+
+
+vtu = meshio.read("grains.vtu")
+assert (vtu.points == points).all()
+assert (vtu.cells_dict["tetra"] == tetrahedra).all()
+assert (vtu.cell_data_dict["GrainId"]["tetra"].ravel() == grains).all()
+check_volumes(vtu, grains, 1e-9)
+if expected["periodic"]:
+    originals = vtu.point_data["PeriodicOriginal"].ravel()
+    copies = numpy.flatnonzero(originals != numpy.arange(len(points)))
+    assert len(copies) > 100 and (copies < expected["surface_points"]).all()
+    periods = (points[copies] - points[originals[copies]]) / expected["box"]
+    assert numpy.abs(periods - periods.round()).max() < 4e-16 * numpy.abs(points).max()
+    assert numpy.abs(periods.round()).sum(axis=1).min() > 0
+else:
+    assert "PeriodicOriginal" not in vtu.point_data
+
+bdf = meshio.read("grains.bdf")
+assert numpy.abs(bdf.points - points).max() < 1e-12
+assert (bdf.cells_dict["tetra"] == tetrahedra).all()
+assert (bdf.cell_data_dict["nastran:ref"]["tetra"] == grains + 1).all()
+check_volumes(bdf, grains, 1e-9)
+
+msh = meshio.read("grains.msh")
+assert sum(len(block.data) for block in msh.cells if block.type == "triangle") == expected["triangles"]
+assert {block.type for block in msh.cells} == {"triangle", "tetra"}
+groups = msh.cell_data_dict["gmsh:physical"]
+check_volumes(msh, groups["tetra"] - 1, 1e-9)
+assert (groups["triangle"] > 0).all(), "every triangle is in a physical group"
+names = {name: tuple(group) for name, group in msh.field_data.items()}
+assert names["grain0"] == (1, 3)
+sides = {"x0", "x1", "y0", "y1", "z0", "z1"}
+assert sides & names.keys() == (sides if expected["has_sides"] else set())
+if expected["periodic"]:
+    for dimension, (copy, original), _, pairs in msh.gmsh_periodic:
+        assert dimension == 2 and copy != original
+        copies, originals = numpy.array(pairs).T
+        assert len(copies) > 2
+        periods = (msh.points[copies] - msh.points[originals]) / expected["box"]
+        assert numpy.abs(periods - periods[0].round()).max() < 1e-15 and periods[0].round().any()
+    at_exterior = sum(len(pairs) for _, _, _, pairs in msh.gmsh_periodic)
+    assert at_exterior > 100
+
+# Poisson's equation with u = x on the outer surface: u = x everywhere.
+mesh = skfem.MeshTet.load("grains.msh")
+basis = skfem.Basis(mesh, skfem.ElementTetP1())
+stiffness = skfem.BilinearForm(lambda u, v, _: dot(grad(u), grad(v))).assemble(basis)
+x = basis.doflocs[0]
+outer = basis.get_dofs().flatten()
+assert 0 < len(outer) < len(x)
+solution = skfem.solve(*skfem.condense(stiffness, x=numpy.where(numpy.isin(numpy.arange(len(x)), outer), x, 0), D=outer))
+assert numpy.abs(solution - x).max() < 1e-10
+if expected["has_sides"]:
+    assert sides <= mesh.boundaries.keys()
+    held = {side: basis.get_dofs(side).flatten() for side in ["x0", "x1"]}
+    assert (x[held["x0"]] == 0).all() and (x[held["x1"]] == expected["box"][0]).all()
+assert numpy.isclose(sum(len(mesh.subdomains[f"grain{grain}"]) for grain in range(len(volumes))), len(tetrahedra))
