@@ -1,5 +1,6 @@
 """Cohesive elements in `cohesive.inp`, against the same grains in one piece in `plain.inp`."""
 
+import functools
 import os
 import sys
 from collections import Counter, defaultdict
@@ -52,8 +53,9 @@ class Deck:
             for element in elements
         }
 
-    def stiffness(self, cohesion):
-        """Of tetrahedra with one isotropic material, and springs between the corners of prisms."""
+    @functools.cached_property
+    def tetrahedra(self):
+        """The stiffness of tetrahedra with one isotropic material."""
         young, ratio = 1000.0, 0.3
         lame, shear = young * ratio / ((1 + ratio) * (1 - 2 * ratio)), young / (2 * (1 + ratio))
         elasticity = numpy.diag([2 * shear] * 3 + [shear] * 3)
@@ -75,6 +77,11 @@ class Deck:
             rows += numpy.repeat(freedoms, 12).tolist()
             columns += freedoms * 12
             values += (volume * strains.T @ elasticity @ strains).ravel().tolist()
+        return self.assembled(rows, columns, values)
+
+    def springs(self, cohesion):
+        """Between the corners of prisms."""
+        rows, columns, values = [], [], []
         for nodes in self.elements["COH3D6"].values():
             nodes = [self.index[node] for node in nodes]
             a, b, c = self.points[nodes[:3]]
@@ -85,6 +92,9 @@ class Deck:
                     rows += [i, j, i, j]
                     columns += [i, j, j, i]
                     values += [spring, spring, -spring, -spring]
+        return self.assembled(rows, columns, values)
+
+    def assembled(self, rows, columns, values):
         count = 3 * len(self.points)
         return scipy.sparse.csr_matrix((values, (rows, columns)), shape=(count, count))
 
@@ -113,7 +123,7 @@ class Deck:
             for other, factor in terms:
                 rows.append(f), columns.append(place[other]), values.append(factor)
         ties = scipy.sparse.csr_matrix((values, (rows, columns)), shape=(count, len(independent)))
-        stiffness = (ties.T @ self.stiffness(cohesion) @ ties).tocsr()
+        stiffness = (ties.T @ (self.tetrahedra + self.springs(cohesion)) @ ties).tocsr()
         fixed = numpy.zeros(len(independent))
         for f, displacement in held.items():
             fixed[place[f]] = displacement

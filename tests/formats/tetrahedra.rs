@@ -248,7 +248,7 @@ fn cohesive_elements_hold_grains_together_and_let_them_part() {
         (BVec3::TRUE, PeriodicCut::Box),
     ];
     for (periodic, periodic_cut) in cases {
-        let mut config = Config { periodic, periodic_cut, ..coarse(6) };
+        let mut config = Config { periodic, periodic_cut, ..coarse(4) };
         config.file.volume.periodic_equations = periodic.any();
         let Some(mut polycrystal) = filled(test, &config) else { return };
         let folder = tempfile::tempdir().unwrap();
