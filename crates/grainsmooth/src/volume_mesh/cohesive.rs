@@ -88,7 +88,11 @@ impl CohesiveMesh {
                         let Side::Grain(second) = boundaries[twin.boundary.index()].sides[0] else {
                             continue;
                         };
-                        (second, corners.map(|corner| stand_ins.node(&mut nodes, corner, second, twin.translation)))
+                        (
+                            second,
+                            corners
+                                .map(|corner| stand_ins.node(&mut nodes, corner, second, twin.translation)),
+                        )
                     }
                     _ => continue,
                 };
@@ -132,7 +136,8 @@ struct StandIns {
 
 impl StandIns {
     fn new(count: usize, pairs: &[PeriodicPair<u32>]) -> Self {
-        let mut places: Vec<(u32, Translation)> = (0u32..).take(count).map(|point| (point, Translation::NONE)).collect();
+        let mut places: Vec<(u32, Translation)> =
+            (0u32..).take(count).map(|point| (point, Translation::ZERO)).collect();
         for PeriodicPair { secondary, primary, translation } in pairs {
             places[*secondary as usize] = (*primary, *translation);
         }
@@ -144,7 +149,7 @@ impl StandIns {
     fn node(&mut self, nodes: &mut Nodes, point: u32, grain: GrainId, translation: Translation) -> u32 {
         let (original, from) = self.places[point as usize];
         let node = nodes.at(self.points[&(original, from + translation)], grain);
-        *self.nodes.entry((node, Translation::NONE - translation)).or_insert_with(|| {
+        *self.nodes.entry((node, Translation::ZERO - translation)).or_insert_with(|| {
             nodes.mesh.points.push(nodes.mesh.points[point as usize]);
             number(nodes.mesh.points.len() - 1)
         })

@@ -100,7 +100,8 @@ impl Network {
     ) -> Result<Vec<PeriodicPair<u32>>, NetworkError> {
         assert_eq!(points.len(), self.finest().vertex_count(), "there must be one point per vertex");
         let torus = Torus::new(self, self.finest(), points, cut)?;
-        let vertices = (0u32..).zip(torus.vertices).filter(|(_, moved)| moved.translation != Translation::NONE);
+        let vertices =
+            (0u32..).zip(torus.vertices).filter(|(_, moved)| moved.translation != Translation::ZERO);
         let pair = |(secondary, Moved { original, translation }): (u32, Moved<u32>)| PeriodicPair {
             secondary,
             primary: original,

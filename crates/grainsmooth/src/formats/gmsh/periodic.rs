@@ -23,7 +23,7 @@ struct Copy {
 /// Writes the section `$Periodic`; nothing where nothing is periodic.
 pub(super) fn write(surface: &Surface<'_>, polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let mut places: Vec<Place> =
-        (0u32..).take(surface.points.len()).map(|point| (point, Translation::NONE)).collect();
+        (0u32..).take(surface.points.len()).map(|point| (point, Translation::ZERO)).collect();
     for pair in polycrystal.periodic_points()? {
         places[pair.secondary as usize] = (pair.primary, pair.translation);
     }
@@ -58,7 +58,7 @@ fn twins(polycrystal: &Polycrystal) -> Vec<Copy> {
     let numbered = (0u32..).map(BoundaryId).zip(polycrystal.network.boundaries());
     let copy = |(boundary, of): (BoundaryId, &polycrystal::Boundary)| {
         let twin = of.twin.filter(|twin| twin.boundary < boundary)?;
-        Some(Copy { boundary, original: twin.boundary, translation: Translation::NONE - twin.translation })
+        Some(Copy { boundary, original: twin.boundary, translation: Translation::ZERO - twin.translation })
     };
     numbered.filter_map(copy).collect()
 }
@@ -83,16 +83,22 @@ fn opposite(surface: &Surface<'_>, polycrystal: &Polycrystal, places: &[Place]) 
     for part in &surface.parts {
         if across(part).is_some_and(|(axis, coordinate)| coordinate == domain.lower()[axis]) {
             lower.extend(
-                surface.triangles_of(part).map(|triangle| (corners(triangle, Translation::NONE), part.boundary)),
+                surface
+                    .triangles_of(part)
+                    .map(|triangle| (corners(triangle, Translation::ZERO), part.boundary)),
             );
         }
     }
     let copy = |part: &Part| {
         let (axis, _) = across(part).filter(|(axis, coordinate)| *coordinate == domain.upper()[*axis])?;
-        let mut translation = Translation::NONE;
+        let mut translation = Translation::ZERO;
         translation.0[axis] = 1;
         let first = surface.triangles_of(part).next()?;
-        Some(Copy { boundary: part.boundary, original: *lower.get(&corners(first, translation))?, translation })
+        Some(Copy {
+            boundary: part.boundary,
+            original: *lower.get(&corners(first, translation))?,
+            translation,
+        })
     };
     surface.parts.iter().filter_map(copy).collect()
 }
