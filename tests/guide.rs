@@ -4,8 +4,9 @@
 #[path = "common/programs.rs"]
 mod programs;
 
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use programs::{run, skip};
 
@@ -35,8 +36,28 @@ fn run_command(line: &str, folder: &Path) {
         return;
     }
     assert_eq!(words[0], "grainsmooth", "{line}");
+    if ["view", "edit"].contains(&&words[1][..]) {
+        return run_page(&words[1..], folder);
+    }
     let mut program = assert_cmd::cargo::cargo_bin_cmd!("grainsmooth");
     program.args(&words[1..]).current_dir(folder).assert().success();
+}
+
+/// Serves a page until its link is told.
+fn run_page(words: &[String], folder: &Path) {
+    let program = Command::new(env!("CARGO_BIN_EXE_grainsmooth"))
+        .args(words)
+        .arg("--no-open")
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .spawn();
+    let mut program = program.unwrap();
+    let mut link = String::new();
+    BufReader::new(program.stdout.take().unwrap()).read_line(&mut link).unwrap();
+    program.kill().unwrap();
+    program.wait().unwrap();
+    assert!(link.starts_with("http://127.0.0.1:"), "{words:?}: {link}");
 }
 
 /// A folder with the files that come with the project.

@@ -10,7 +10,7 @@ use base64::engine::general_purpose::STANDARD as BASE64;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use super::programs;
+use crate::programs;
 
 /// For how long a page may take to become what is waited for.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -60,7 +60,8 @@ impl Browser {
         Some(browser)
     }
 
-    fn call(&mut self, method: &str, parameters: Value) -> Value {
+    /// What the browser answers to a command of the protocol.
+    pub fn call(&mut self, method: &str, parameters: Value) -> Value {
         self.messages += 1;
         let mut message = json!({ "id": self.messages, "method": method, "params": parameters });
         if let Some(session) = &self.session {

@@ -23,7 +23,7 @@ fn plain() -> Value {
 }
 
 fn change(visitor: &Visitor, revision: u64, command: Value) -> super::served::Said {
-    visitor.ask("/edit", &json!({ "revision": revision, "command": command, "view": plain() }))
+    visitor.ask("/edit", &json!({ "revision": revision, "command": command, "look": { "view": plain() } }))
 }
 
 /// The mesh as OBJ.
@@ -144,6 +144,7 @@ fn a_drag_moves_a_point_and_what_cannot_be_done_says_why() {
     }
     // Up on the screen is up.
     assert!(points(&after)[12][2] > points(&before)[12][2] + 0.2, "{after}");
+    assert_known_is_true(&mut browser);
     browser.set("level", "0");
     browser.wait(&format!("Number({DATASET}.triangles) === 32"));
     browser.set("act", "flip");
@@ -156,6 +157,79 @@ fn a_drag_moves_a_point_and_what_cannot_be_done_says_why() {
     assert_eq!(browser.value(&format!("{DATASET}.undo")), json!("2"));
     // The browser notes each answer that refuses.
     assert!(browser.console.iter().all(|said| said.to_string().contains("422")), "{:?}", browser.console);
+}
+
+/// Checks that what the page has after all changes is what it would be told anew.
+fn assert_known_is_true(browser: &mut Browser) {
+    let difference = browser.value(
+        "Promise.all([import('/server.js'), import('/packed.js')]).then(async ([server, packed]) => {
+           const known = page.unpacked;
+           const { arrays } = packed.unpack(await server.askBytes('/draw', { view: page.view }));
+           page.redraw();
+           if (Object.keys(arrays).join() !== Object.keys(known.arrays).join()) return Infinity;
+           let most = 0;
+           for (const [name, array] of Object.entries(arrays)) {
+             if (array.length !== known.arrays[name].length) return Infinity;
+             array.forEach((number, place) => { most = Math.max(most, Math.abs(number - known.arrays[name][place])); });
+           }
+           return most;
+         })",
+    );
+    // Points that followed another are written by other sums.
+    assert!(difference.as_f64().is_some_and(|difference| difference < 1e-6), "{difference}");
+}
+
+/// Only what has changed is sent, and it adds up; the triangles of levels are found by the page as they are in files.
+#[test]
+fn pages_hear_of_changes_alone() {
+    let Some(mut browser) = Browser::new("changes in the browser") else { return };
+    let served = served("torus.obj", "");
+    browser.open(&served.link);
+    browser.press("triangulate");
+    browser.wait(&format!("{DATASET}.undo === '1'"));
+    let edge = browser.value("[...page.shape.arrays.triangles.subarray(0, 2)]");
+    let mut change = |command: Value, undo: u32| {
+        browser.value(&format!("page.change({command})"));
+        assert_eq!(browser.value("page.head.undo"), json!(undo));
+        assert_known_is_true(&mut browser);
+    };
+    change(json!({ "flip": { "edge": edge } }), 2);
+    change(json!({ "move": { "point": 3, "to": [0.1, 0.2, 0.3] } }), 3);
+    browser.value(
+        "page.update('/edit', () => ({ revision: page.revision, command: 'undo', look: page.asked() }))",
+    );
+    let changed = browser.value("page.unpacked.changes");
+    assert_eq!(changed["triangles"], json!([]), "a point was moved back");
+    assert_eq!(changed["points"], json!([[9, 3]]));
+    browser.value("page.change('undo')");
+    let changed = browser.value("page.unpacked.changes.triangles.reduce((sum, run) => sum + run[1], 0)");
+    assert!(changed.as_u64().unwrap() <= 12, "two triangles were turned back: {changed}");
+    browser.set("scheme", "loop");
+    browser.set("level", "2");
+    browser.wait("page.head.steps === 2");
+    let before = browser.value("page.shape.index.version");
+    browser.value("page.change({ move: { point: 3, to: [0.1, 0.2, 0.3] } })");
+    assert_eq!(browser.value("page.shape.index.version"), before, "connectivity stays");
+    let runs = browser.value("page.unpacked.changes.surface_points.reduce((sum, run) => sum + run[1], 0)");
+    let all = browser.value("page.shape.arrays.surface_points.length");
+    assert!(runs.as_f64().unwrap() < 0.4 * all.as_f64().unwrap(), "{runs} of {all}");
+    assert_known_is_true(&mut browser);
+    browser.set("scheme", "butterfly");
+    browser.wait(&format!("JSON.parse({DATASET}.shown).scheme === 'butterfly'"));
+    assert_known_is_true(&mut browser);
+    for scheme in ["loop", "butterfly"] {
+        let fine = browser.value(&format!(
+            "import('/server.js').then((server) => server.askBytes('/file', {{ format: 'obj', view: {{ ...page.view, scheme: '{scheme}' }}, anyway: false }}))
+             .then((bytes) => new TextDecoder().decode(bytes))"
+        ));
+        let faces: Vec<f64> =
+            numbers(fine.as_str().unwrap(), "f").flatten().map(|corner| corner - 1.0).collect();
+        let found = browser.value("[...page.shape.index.array]");
+        let found: Vec<f64> =
+            found.as_array().unwrap().iter().map(|corner| corner.as_f64().unwrap()).collect();
+        assert!(found == faces, "{scheme}");
+    }
+    browser.assert_quiet();
 }
 
 #[test]
@@ -268,9 +342,9 @@ fn commands_that_make_no_sense_change_nothing() {
         assert_eq!(change(&visitor, 0, command.clone()).status, status, "{command}");
     }
     let lines = visitor.lines("/edit");
-    let nan = br#"{"revision": 0, "command": {"move": {"point": 0, "to": [NaN, 0, 0]}}, "view": {}}"#;
+    let nan = br#"{"revision": 0, "command": {"move": {"point": 0, "to": [NaN, 0, 0]}}, "look": {}}"#;
     assert_eq!(served.said(&lines, nan).status, 400);
-    let deep = visitor.ask("/draw", &json!({ "scheme": "loop", "level": 40 }));
+    let deep = visitor.ask("/draw", &json!({ "view": { "scheme": "loop", "level": 40 } }));
     assert_eq!(deep.status, 422);
     assert!(deep.why().contains("levels would"), "{}", deep.why());
     assert_eq!(obj(&visitor, Value::Null), before);

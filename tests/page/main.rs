@@ -7,4 +7,5 @@ mod grains;
 #[path = "../common/programs.rs"]
 mod programs;
 mod refusals;
+#[allow(dead_code, reason = "the bench uses the rest")]
 mod served;

@@ -151,18 +151,6 @@ fn what_cannot_be_shown_is_told() {
         refuses("view a.vtm", put("a.vtm", "<DataSet index=\"0\" name=\"grains\" file=\"b.vtp\"/>")),
         "error: a.vtm: has no block \"boundaries\"; give the file of the network itself, *.vtp, *.vtu or *.vtk\n"
     );
-    let plane = refuses("view a.vtp", |directory| {
-        let made = std::process::Command::new(env!("CARGO_BIN_EXE_grainsmooth"))
-            .args(["--seeds", "5", "--dim", "2", "-o", "a.vtp", "--quiet"])
-            .current_dir(directory)
-            .status()
-            .unwrap();
-        assert!(made.success());
-    });
-    assert_eq!(
-        plane,
-        "error: a.vtp: holds grains in the plane, which have no surfaces to turn; take grainsmooth with --picture for them\n"
-    );
     let (served, _) = served();
     let said = refuses(&format!("view a.vtp --port {}", served.port), network);
     assert!(said.starts_with(&format!("error: port {} of 127.0.0.1: ", served.port)), "{said}");

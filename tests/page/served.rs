@@ -56,6 +56,13 @@ impl Served {
         self.directory.path().join(name)
     }
 
+    /// How much memory it takes, as Linux tells.
+    pub fn megabytes(&self) -> f64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
+        line.split_whitespace().next().unwrap().parse::<f64>().unwrap() / 1024.0
+    }
+
     /// What is served to one who asks with these lines and this body.
     pub fn said(&self, lines: &str, body: &[u8]) -> Said {
         said(self.port, lines, body)

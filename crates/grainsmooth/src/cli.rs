@@ -3,7 +3,8 @@
 use std::ffi::OsString;
 
 use crate::error::usage::UsageError;
-use crate::{Coloring, Config, Error, PeriodicCut, SizeOptions, read_file_domain};
+use crate::prelude::Dimension;
+use crate::{Coloring, Config, Error, PeriodicCut, SizeOptions, Slice, read_file_domain};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use clap_complete::Shell;
@@ -75,7 +76,7 @@ pub enum Command {
     Mesh(MeshArguments),
     Check(CheckArguments),
     Measure(MeasureArguments),
-    Smooth(SmoothArguments),
+    Smooth(Box<SmoothArguments>),
     View(ViewArguments),
     Edit(EditArguments),
     /// Print what completes options and values in a shell
@@ -199,7 +200,22 @@ impl Arguments {
                 coloring.name()
             )));
         }
-        Ok(())
+        self.check_slice(config)
+    }
+
+    /// Checks that a picture's slice meets the box.
+    fn check_slice(&self, config: &Config) -> Result<(), Error> {
+        let Some(Slice { axis, at }) = self.pictures.slice() else { return Ok(()) };
+        if config.dimension == Dimension::Two {
+            return Err(usage("--slice cuts grains in space; leave it out with --dim 2"));
+        }
+        let (name, end) = (["x", "y", "z"][axis], config.box_size[axis] * config.stretch()[axis]);
+        if (0.0..end).contains(&at) {
+            return Ok(());
+        }
+        Err(usage(&format!(
+            "--slice {name}={at} does not meet the box, which goes from 0 to {end} along {name}"
+        )))
     }
 }
 

@@ -14,4 +14,5 @@ pub use carried::CarriedData;
 pub use edit::{EdgeChoice, Edited, MeshEdit};
 pub(crate) use edited_edges::EditedEdges;
 pub use json::{bezier_json, construction_json, levels_json, mesh_json};
+pub(crate) use subdivide::grown_generations;
 pub use subdivide::{Connectivity, Curves, Level, Limits, Scheme, limits, subdivide};

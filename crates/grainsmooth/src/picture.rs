@@ -4,6 +4,7 @@ mod camera;
 mod color;
 mod coloring;
 mod legend;
+mod parts;
 mod patch;
 mod plane;
 mod raster;
@@ -13,7 +14,6 @@ mod text;
 use std::io;
 use std::num::NonZeroU16;
 
-use glam::DVec3;
 use polycrystal::Mesh;
 use tiny_skia::{Pixmap, PixmapPaint, Transform};
 
@@ -22,7 +22,9 @@ use crate::{Error, Output, Polycrystal, StagedFiles};
 use coloring::Paint;
 use patch::Seen;
 
+pub(crate) use color::differing;
 pub use coloring::Coloring;
+pub(crate) use parts::{Parts, Pieces};
 pub use scene::{Scene, ScenePicture, Shading};
 
 /// The format of pictures, 8 bits a channel on white.
@@ -36,13 +38,27 @@ pub struct Picture {
     pub size: [NonZeroU16; 2],
     /// What the colours mean.
     pub coloring: Coloring,
-    /// How far every grain is moved away from the middle, as a share of its distance from there; 0 draws the whole.
+    /// How far every grain is moved away from the middle, as a share of its distance from there; 0 draws the whole. What the box cut of a
+    /// grain moves by itself.
     pub explode: f64,
+    /// A plane that cuts what is shown, in space; the part before it is left out.
+    pub slice: Option<Slice>,
+    /// What is behind: nothing, or white.
+    pub is_transparent: bool,
+}
+
+/// A plane across an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slice {
+    /// The axis: x, y or z from 0.
+    pub axis: usize,
+    /// The coordinate along it.
+    pub at: f64,
 }
 
 impl Default for Picture {
     fn default() -> Self {
-        Self { size: Self::SIZE, coloring: Coloring::Grain, explode: 0.0 }
+        Self { size: Self::SIZE, coloring: Coloring::Grain, explode: 0.0, slice: None, is_transparent: false }
     }
 }
 
@@ -81,7 +97,7 @@ impl Polycrystal {
     /// Where memory for the pixels is missing.
     pub fn png(&self, picture: &Picture) -> io::Result<Vec<u8>> {
         let [width, height] = picture.size;
-        let mut pixmap = blank([width, height])?;
+        let mut pixmap = blank([width, height], picture.is_transparent)?;
         let paint = picture.coloring.paint(self);
         let Some(legend) = &paint.legend else {
             self.draw(picture, &paint, &mut pixmap)?;
@@ -90,7 +106,7 @@ impl Polycrystal {
         let taken = legend.width([width, height].map(|side| usize::from(side.get())));
         let left = u16::try_from(usize::from(width.get()) - taken).ok().and_then(NonZeroU16::new);
         let inner = Picture { size: [left.unwrap_or(width), height], ..*picture };
-        let mut scene = blank(inner.size)?;
+        let mut scene = blank(inner.size, picture.is_transparent)?;
         self.draw(&inner, &paint, &mut scene)?;
         let whole = PixmapPaint::default();
         pixmap.draw_pixmap(0, 0, scene.as_ref(), &whole, Transform::identity(), None);
@@ -99,22 +115,25 @@ impl Polycrystal {
     }
 
     fn draw(&self, picture: &Picture, paint: &Paint, pixmap: &mut Pixmap) -> io::Result<()> {
-        let shifts = self.shifts(picture.explode);
+        let domain = self.network.domain();
+        let middle = domain.lower().midpoint(domain.upper());
         match &self.network.finest().mesh {
             Mesh::Triangles(_) => {
-                let seen = match (picture.explode > 0.0, &paint.boundaries) {
-                    (true, _) => Seen::Grains,
-                    (false, None) => Seen::Outside,
-                    (false, Some(_)) => Seen::Boundaries,
+                let is_whole = picture.explode == 0.0 && picture.slice.is_none();
+                let seen = match (is_whole, &paint.boundaries) {
+                    (false, _) => Seen::Grains,
+                    (true, None) => Seen::Outside,
+                    (true, Some(_)) => Seen::Boundaries,
                 };
-                raster::draw(&patch::patches(self, &shifts, seen)?, paint, picture, pixmap);
+                let patches = patch::patches(self, (middle, picture.explode), seen)?;
+                raster::draw(&patches, paint, picture, pixmap);
             }
-            Mesh::Segments(lines) => plane::draw(self, lines, &shifts, paint, picture, pixmap),
+            Mesh::Segments(lines) => plane::draw(self, lines, middle, paint, picture, pixmap),
         }
         Ok(())
     }
 
-    /// A picture without transparency as PNG, with the settings of the run.
+    /// A picture as PNG, with the settings of the run.
     fn encoded(&self, pixmap: Pixmap) -> Result<Vec<u8>, png::EncodingError> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, pixmap.width(), pixmap.height());
@@ -125,13 +144,6 @@ impl Polycrystal {
         encoder.add_itxt_chunk("Config".to_owned(), self.provenance().text())?;
         encoder.write_header()?.write_image_data(&pixmap.take_demultiplied())?;
         Ok(bytes)
-    }
-
-    /// How far each grain is moved.
-    pub(crate) fn shifts(&self, explode: f64) -> Vec<DVec3> {
-        let domain = self.network.domain();
-        let middle = domain.lower().midpoint(domain.upper());
-        self.centroids().into_iter().map(|centroid| (centroid - middle) * explode).collect()
     }
 
     /// Number of boundaries of each grain.
@@ -152,11 +164,13 @@ impl Polycrystal {
     }
 }
 
-/// A white picture.
-fn blank(size: [NonZeroU16; 2]) -> io::Result<Pixmap> {
+/// An empty picture, white or transparent.
+fn blank(size: [NonZeroU16; 2], is_transparent: bool) -> io::Result<Pixmap> {
     let [width, height] = size.map(|side| u32::from(side.get()));
     let mut pixmap = Pixmap::new(width, height)
         .ok_or_else(|| io::Error::other("the picture is too large; give a smaller --picture-size"))?;
-    pixmap.fill(tiny_skia::Color::WHITE);
+    if !is_transparent {
+        pixmap.fill(tiny_skia::Color::WHITE);
+    }
     Ok(pixmap)
 }

@@ -84,18 +84,51 @@ impl LoopHierarchy {
         self.levels[1..].iter().map(|mesh| large_vec::zeros(mesh.vertex_count())).collect()
     }
 
-    /// Writes the points of each level, from those of the coarsest, in parallel and without allocation. The result does
-    /// not depend on the number of threads.
+    /// Room for the points of one level more: points of a level need the connectivity of the one before alone, which saves most of the
+    /// memory and the time.
+    pub fn buffers_beyond<P: Point>(&self) -> Vec<Vec<P>> {
+        let mut buffers = self.buffers();
+        let finest = self.finest();
+        buffers.push(large_vec::zeros(finest.vertex_count() + finest.edge_count()));
+        buffers
+    }
+
+    /// Writes the points of each level that there is room for, from those of the coarsest, in parallel and without allocation. The result
+    /// does not depend on the number of threads.
     ///
     /// # Panics
-    /// If `points` or an element of `levels` does not have one point per vertex of its level.
+    /// If there are more buffers than [`buffers_beyond`](Self::buffers_beyond) has, or if `points` or one of them does not have one point per
+    /// vertex of its level.
     pub fn apply_into<P: Point>(&self, points: &[P], levels: &mut [Vec<P>]) {
-        assert_eq!(levels.len() + 1, self.levels.len(), "there must be one buffer per refinement");
-        for (level, mesh) in self.levels[..levels.len()].iter().enumerate() {
+        for (level, mesh) in self.levels_of(levels).iter().enumerate() {
             let (coarser, finer) = levels.split_at_mut(level);
             let points = coarser.last().map_or(points, Vec::as_slice);
             mesh.loop_points(&self.levels[..level], &self.rings, points, self.weights, &mut finer[0]);
         }
+    }
+
+    /// The meshes whose refinements have room in some buffers.
+    fn levels_of<P>(&self, buffers: &[Vec<P>]) -> &[TriangleMesh] {
+        assert!(buffers.len() <= self.levels.len(), "there must be one buffer per refinement at most");
+        &self.levels[..buffers.len()]
+    }
+
+    /// Writes again what depends on one control point, in levels that [`apply_into`](Self::apply_into) wrote: the points within two rings of
+    /// triangles around it, as is the support of its basis function. Returns the vertices of the last level that lie there, in order.
+    ///
+    /// # Panics
+    /// As of [`apply_into`](Self::apply_into).
+    pub fn apply_around<P: Point>(&self, vertex: u32, points: &[P], levels: &mut [Vec<P>]) -> Vec<u32> {
+        let mut written = vec![vertex];
+        let mut region = self.levels[0].triangles_at(&self.levels[0].neighbourhood(vertex));
+        for (level, mesh) in self.levels_of(levels).iter().enumerate() {
+            let (coarser, finer) = levels.split_at_mut(level);
+            let points = coarser.last().map_or(points, Vec::as_slice);
+            written = mesh.points_of_triangles(&region, vertex, points, self.weights, &mut finer[0]);
+            region =
+                region.into_iter().flat_map(|triangle| mesh.counts().triangle_children(triangle)).collect();
+        }
+        written
     }
 
     /// The points of the finest level.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::base_rings::BaseRings;
 use crate::ids::{id, next, prev};
 use crate::prefetch::prefetch;
-use crate::{EdgeId, LoopWeights, Point, TriangleMesh, VertexRule};
+use crate::{EdgeId, FaceId, LoopWeights, Point, TriangleMesh, VertexParent, VertexRule};
 
 /// Points or parents that one task takes.
 const PER_TASK: usize = 1024;
@@ -67,6 +67,32 @@ impl TriangleMesh {
         moved.for_each(|(v, new)| *new = self.point_by_stencil(id(v), points, weights));
         let placed = placed.par_iter_mut().with_min_len(PER_TASK).enumerate();
         placed.for_each(|(e, new)| *new = self.edge_point_by_stencil(EdgeId(id(e)), points, weights));
+    }
+
+    /// Points at the corners of some triangles, on their edges, and at a vertex, one level on; returns the vertices there, in order.
+    pub(crate) fn points_of_triangles<P: Point>(
+        &self,
+        triangles: &[FaceId],
+        vertex: u32,
+        points: &[P],
+        weights: LoopWeights,
+        refined: &mut [P],
+    ) -> Vec<u32> {
+        let counts = self.counts();
+        let of_triangle = |triangle: &FaceId| {
+            let on_edges = self.triangle_edges(*triangle).map(|edge| counts.edge_vertex(edge));
+            self.triangles[triangle.index()].into_iter().chain(on_edges)
+        };
+        let mut vertices: Vec<u32> = triangles.iter().flat_map(of_triangle).chain([vertex]).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        for vertex in &vertices {
+            refined[*vertex as usize] = match counts.vertex_parent(*vertex) {
+                VertexParent::Vertex(old) => self.point_by_stencil(old, points, weights),
+                VertexParent::Edge(edge) => self.edge_point_by_stencil(edge, points, weights),
+            };
+        }
+        vertices
     }
 
     fn point_by_stencil<P: Point>(&self, vertex: u32, points: &[P], weights: LoopWeights) -> P {

@@ -76,6 +76,28 @@ impl TriangleMesh {
         self.directed_edges[triangle.index()].map(|directed| EdgeId(directed / 2))
     }
 
+    /// For each half-edge of each triangle, twice its edge, plus 1 if it runs against the edge. With the numbering of [`MeshCounts`] the
+    /// triangles of all refinements follow from these and the triangles alone.
+    pub fn directed_edges(&self) -> &[[u32; 3]] {
+        &self.directed_edges
+    }
+
+    /// A vertex and those that share a triangle with it, in order.
+    pub(crate) fn neighbourhood(&self, vertex: u32) -> Vec<u32> {
+        let around = self.triangles.iter().filter(|triangle| triangle.contains(&vertex));
+        let mut vertices: Vec<u32> = around.flatten().copied().chain([vertex]).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        vertices
+    }
+
+    /// The triangles at some vertices, which are in order.
+    pub(crate) fn triangles_at(&self, vertices: &[u32]) -> Vec<FaceId> {
+        let is_there = |corner: &u32| vertices.binary_search(corner).is_ok();
+        let triangles = (0..).map(FaceId).zip(&self.triangles);
+        triangles.filter(|(_, corners)| corners.iter().any(is_there)).map(|(triangle, _)| triangle).collect()
+    }
+
     /// The two triangles of an edge; nothing on boundary and non-manifold edges.
     ///
     /// # Panics

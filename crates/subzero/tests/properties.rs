@@ -211,6 +211,34 @@ proptest! {
     }
 
     #[test]
+    fn what_depends_on_a_point_is_written_again(
+        example in examples(0.0..11.0_f32),
+        moved in any::<prop::sample::Index>(),
+        by in prop::array::uniform3(-1.0..1.0_f64),
+    ) {
+        for weights in WEIGHTS {
+            let hierarchy = LoopHierarchy::new(example.mesh(), 2, weights).unwrap();
+            let mut points = example.points.clone();
+            let mut levels = hierarchy.buffers_beyond();
+            hierarchy.apply_into(&points, &mut levels);
+            let before = levels[2].clone();
+            prop_assert_eq!(&before, &LoopHierarchy::new(example.mesh(), 3, weights).unwrap().apply(&points));
+            let vertex = moved.index(points.len());
+            points[vertex] += DVec3::from_array(by);
+            let written = hierarchy.apply_around(vertex as u32, &points, &mut levels);
+            let mut expected = hierarchy.buffers_beyond();
+            hierarchy.apply_into(&points, &mut expected);
+            for (ours, theirs) in levels.iter().flatten().zip(expected.iter().flatten()) {
+                assert_close(*ours, *theirs, 1e-13, "point");
+            }
+            prop_assert!(written.is_sorted());
+            for (v, (before, after)) in before.iter().zip(&expected[2]).enumerate() {
+                prop_assert!(before == after || written.binary_search(&(v as u32)).is_ok(), "{}", v);
+            }
+        }
+    }
+
+    #[test]
     fn limits_stay_put(example in examples(prop_oneof![Just(10.0_f32), Just(f32::INFINITY)])) {
         for weights in WEIGHTS {
             let mut mesh = example.mesh();

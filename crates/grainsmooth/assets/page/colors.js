@@ -45,32 +45,3 @@ export function range(values) {
 export function share(value, [low, high]) {
   return value === null || Number.isNaN(value) ? NaN : high > low ? (value - low) / (high - low) : 0.5;
 }
-
-// Numbers of colours such that no two of a pair are alike: those with most colours around them come first (Brelaz 1979).
-export function differing(count, pairs) {
-  const beside = Array.from({ length: count }, () => new Set());
-  for (const [a, b] of pairs) {
-    if (a < 0 || b < 0 || a === b) continue;
-    beside[a].add(b);
-    beside[b].add(a);
-  }
-  const colors = new Array(count).fill(-1);
-  const around = Array.from({ length: count }, () => new Set());
-  // Those with so many colours around them, in buckets.
-  const buckets = [new Set(beside.keys())];
-  for (let done = 0; done < count; done++) {
-    while (buckets.at(-1).size === 0) buckets.pop();
-    const [one] = buckets.at(-1);
-    buckets.at(-1).delete(one);
-    let color = 0;
-    while (around[one].has(color)) color++;
-    colors[one] = color;
-    for (const other of beside[one]) {
-      if (colors[other] >= 0 || around[other].has(color)) continue;
-      buckets[around[other].size].delete(other);
-      around[other].add(color);
-      (buckets[around[other].size] ??= new Set()).add(other);
-    }
-  }
-  return colors;
-}

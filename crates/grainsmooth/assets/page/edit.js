@@ -18,15 +18,16 @@ export class EditPage {
   constructor(stage, panel, buffer) {
     this.stage = stage;
     this.shape = new Shape(stage);
-    const unpacked = unpack(buffer);
-    this.model = unpacked.head.model;
+    this.turn = Promise.resolve();
+    this.unpacked = unpack(buffer);
+    this.model = this.unpacked.head.model;
     this.view = { scheme: this.model === "curves" ? "b-spline" : "", level: 0, color: "", t: 0.4, v: 0.5, patch: 0, samples: 17 };
     this.legend = element("div", { className: "legend" });
     this.bubble = element("div", { className: "bubble", role: "alert" });
     stage.view.append(this.legend, this.bubble);
-    this.build(panel, unpacked.head);
+    this.build(panel, this.unpacked.head);
     this.saved = 0;
-    this.show(unpacked);
+    this.show(this.unpacked);
     this.fit();
     stage.onhover = newest((event) => this.hover(event));
     stage.onclick = (event) => this.click(event);
@@ -122,9 +123,24 @@ export class EditPage {
     slider(bezier, "Points", { id: "samples", min: 2, max: 40, step: 1, value: this.view.samples }, (samples) => this.look({ samples }));
   }
 
-  show(unpacked, isHeld = false) {
+  // What is asked for with each command: what is to be seen, and the number of what is known.
+  asked(view = this.view) {
+    return { view, known: this.unpacked.head.told };
+  }
+
+  // Asks for a drawing, and shows it; of what is known the program sends changes alone, so one is asked for after the other.
+  update(path, words, isHeld = false) {
+    const run = async () => {
+      this.unpacked = unpack(await askBytes(path, words()), this.unpacked);
+      this.show(this.unpacked, isHeld);
+    };
+    this.turn = this.turn.then(run, run);
+    return this.turn;
+  }
+
+  show(unpacked, isHeld) {
     this.head = unpacked.head;
-    this.shape.show(unpacked);
+    this.shape.show(unpacked, isHeld);
     const { undo, redo, triangle_count: triangles, revision } = this.head;
     this.undo.disabled = undo === 0;
     this.redo.disabled = redo === 0;
@@ -159,9 +175,9 @@ export class EditPage {
   }
 
   counts() {
-    const { points, edges } = this.shape.arrays;
-    const above = this.head.has_surface ? `; shown ${this.head.triangle_count} triangles` : "";
-    return `${points.length / 3} points, ${edges.length / 2} edges${above}`;
+    const { edge_count: edges, has_surface: isAbove, triangle_count: triangles } = this.head;
+    const above = isAbove ? `; shown ${triangles} triangles` : "";
+    return `${this.shape.arrays.points.length / 3} points, ${edges} edges${above}`;
   }
 
   // Another view of the same.
@@ -173,14 +189,13 @@ export class EditPage {
   // Another look of the same view.
   appear(change) {
     Object.assign(this.shape.look, change);
-    this.shape.showNormals();
     this.shape.apply();
     this.stage.draw();
   }
 
   async draw() {
     try {
-      this.show(unpack(await askBytes("/draw", this.view)));
+      await this.update("/draw", () => this.asked());
       say(this.counts());
       this.stage.view.dataset.shown = JSON.stringify(this.view);
     } catch (error) {
@@ -197,12 +212,13 @@ export class EditPage {
   // Changes what is edited.
   async change(command) {
     try {
-      this.show(unpack(await askBytes("/edit", { revision: this.revision, command, view: this.view })));
+      await this.update("/edit", () => ({ revision: this.revision, command, look: this.asked() }));
       say(`${this.head.said} · ${this.counts()}`);
       this.selected = null;
     } catch (error) {
       this.refuse(error);
-      if (error instanceof Refused && error.status === 409) this.redraw();
+      // Another page changed it, or a point was held that does not stay.
+      if ((error instanceof Refused && error.status === 409) || command.move) this.redraw();
       else this.shape.mark(this.selected);
       this.stage.draw();
     }
@@ -305,11 +321,11 @@ export class EditPage {
   async held(place) {
     if (this.grabbed === undefined) return;
     try {
-      const view = this.head.triangle_count > MOST_HELD ? { ...this.view, level: 0 } : this.view;
-      const buffer = await askBytes("/hold", { point: this.grabbed, to: place, view });
-      if (this.grabbed === undefined) return;
-      this.show(unpack(buffer), true);
-      this.shape.mark({ point: this.grabbed });
+      const isSlow = this.head.triangle_count > MOST_HELD && this.view.scheme !== "loop";
+      const point = this.grabbed;
+      const look = () => this.asked(isSlow ? { ...this.view, level: 0 } : this.view);
+      await this.update("/hold", () => ({ point, to: place, look: look() }), true);
+      if (this.grabbed !== undefined) this.shape.mark({ point: this.grabbed });
     } catch (error) {
       this.refuse(error);
     }

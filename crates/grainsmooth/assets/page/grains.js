@@ -1,10 +1,11 @@
 // The page of grains: what the controls do, in `grainsmooth view` and in reports.
-import { css, differing, kind, NOTHING, range, scale, share } from "./colors.js";
+import { css, kind, NOTHING, range, scale, share } from "./colors.js";
 import { Network, Picker } from "./network.js";
 import { button, check, choice, digits, element, facts, group, row, say, slider } from "./panel.js";
 import { unpack } from "./packed.js";
 
 const SURFACE_COLOR = [0.85, 0.79, 0.66]; // sand, of what is no grains
+const PALE = [0.94, 0.94, 0.94]; // of grains between lines that are coloured
 const APART = 0.3; // by how much of their distance from the middle the grains of a report stand apart
 const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 
@@ -20,9 +21,11 @@ export class GrainsPage {
     this.legend = element("div", { className: "legend" });
     stage.view.append(this.legend);
     const unpacked = unpack(buffer);
+    this.isPlane = unpacked.head.is_plane;
+    if (this.isPlane) stage.lookFromAbove();
     this.build(panel, unpacked.head);
     this.show(unpacked);
-    stage.fit(this.network.radius());
+    this.fit();
     stage.onhover = (event) => this.hover(event);
     stage.onclick = (event) => this.click(event);
     stage.ondoubleclick = (event) => this.center(event);
@@ -39,21 +42,41 @@ export class GrainsPage {
     if (head.columns.length > 0) this.buildGrains(panel, look);
     const view = group(panel, "View");
     const views = row(view);
-    for (const [axis, [x, y, z]] of Object.entries(AXES))
-      button(views, axis.toUpperCase(), { id: `along-${axis}`, key: axis.toUpperCase(), title: `look along ${axis}` }, () => this.stage.fit(this.network.radius(), [x || 0, y ? -1 : 0, z || (x || y ? 0 : 1)]));
-    button(views, "All", { id: "fit", key: "0" }, () => this.stage.fit(this.network.radius()));
+    const directions = this.isPlane ? [] : [["X", [1, 0, 0]], ["Y", [0, -1, 0]], ["Z", [0, 0, 1]]];
+    for (const [axis, direction] of directions)
+      button(views, axis, { id: `along-${axis.toLowerCase()}`, key: axis, title: `look along ${axis.toLowerCase()}` }, () => this.fit(direction));
+    button(views, "All", { id: "fit", key: "0" }, () => this.fit());
     button(row(view), "Save picture", { id: "save", key: "P" }, () => this.stage.save("grains.png"));
-    view.append(element("p", { textContent: "Drag turns, Shift or the right button moves, the wheel zooms, a double click sets the middle." }));
+    const drag = this.isPlane ? "Drag moves" : "Drag turns, Shift or the right button moves";
+    view.append(element("p", { textContent: `${drag}, the wheel zooms, a double click sets the middle.` }));
+  }
+
+  // Looks at all of it.
+  fit(direction = this.isPlane ? [0, 0, 1] : undefined) {
+    this.stage.fit(this.network.radius(), direction);
   }
 
   // What a surface that is no grains has no use for.
   buildGrains(panel, look) {
     this.coloring = choice(look, "Colours", { id: "coloring", options: [["different", "grains"]] }, () => this.color());
-    this.explosion = slider(look, "Explode", { id: "explode", max: 1.5, value: this.source ? 0 : APART }, (share) => this.change(() => this.network.explode(share)));
+    this.explosion = slider(look, "Explode", { id: "explode", max: 1.5, value: this.source ? 0 : APART }, (share) => this.change(() => this.explode(share)));
+    if (!this.isPlane) this.buildSlice(panel);
+    this.buildPicking(panel);
+  }
+
+  explode(share) {
+    this.network.explode(share);
+    this.stage.reach = 1.1 * this.network.radius();
+  }
+
+  buildSlice(panel) {
     const slice = group(panel, "Slice");
     this.axis = choice(slice, "Plane", { id: "axis", options: [["", "none"], ["x", "across x"], ["y", "across y"], ["z", "across z"], ["view", "as seen now"]] }, () => this.slice(true));
     this.depth = slider(slice, "At", { id: "depth", min: -0.5, max: 0.5, step: 0.005, value: 0, say: digits }, () => this.slice(false));
     this.turned = check(slice, "the other side", { id: "turned" }, () => this.slice(false));
+  }
+
+  buildPicking(panel) {
     const pick = group(panel, "Grains");
     this.mode = choice(pick, "A click", { id: "mode", options: [["select", "selects"], ["hide", "hides"], ["isolate", "isolates"]] }, () => {});
     const buttons = row(pick);
@@ -74,7 +97,7 @@ export class GrainsPage {
     const { uniforms } = this.network;
     uniforms.explode.value = this.explosion?.value ?? 0;
     uniforms.exploded.value = uniforms.explode.value > 0;
-    this.different = null;
+    this.stage.reach = 1.1 * this.network.radius();
     this.applyHidden();
     if (this.axis) this.slice(false);
     this.color();
@@ -130,13 +153,14 @@ export class GrainsPage {
       if (what === "field") {
         const { arrays: { values } } = unpack(await this.source.array(head.step, Number(number)));
         const bounds = range(values);
-        network.paintValues(values, bounds);
+        const onLines = this.isPlane && Number(number) >= head.point_fields;
+        if (onLines) network.paint(() => PALE);
+        network.paintValues(values, bounds, onLines);
         this.bar(head.fields[number], bounds);
       } else if (what === "column") {
         this.paintColumn(head.columns[number]);
       } else {
-        this.different ??= differing(network.count, head.boundaries.map(({ sides }) => sides));
-        network.paint((grain) => kind(this.different[grain]));
+        network.paint((grain) => kind(head.different[grain]));
         this.legend.replaceChildren();
       }
     } catch (error) {
@@ -182,7 +206,7 @@ export class GrainsPage {
     this.stage.view.dataset.hovered = grain < 0 ? "" : this.head.ids[grain];
     if (grain < 0) return;
     const { volume, neighbors } = this.head.facts[grain];
-    say(`grain ${this.head.ids[grain]} · volume ${digits(volume)} · ${neighbors} neighbours`);
+    say(`grain ${this.head.ids[grain]} · ${this.isPlane ? "area" : "volume"} ${digits(volume)} · ${neighbors} neighbours`);
   }
 
   click(event) {
@@ -239,7 +263,8 @@ export class GrainsPage {
   center(event) {
     const grain = this.pick(event);
     if (grain < 0) return;
-    const center = this.head.centers[grain].map((place, axis) => place + this.network.shift(grain, axis));
+    const piece = this.network.pieceOf[grain];
+    const center = this.head.centers[piece].map((place, axis) => place + this.network.shift(piece, axis));
     this.stage.center(new THREE.Vector3(...center));
   }
 }

@@ -25,24 +25,32 @@ flat out int own;
 out vec3 facing, seen, place;
 out float number;
 void main() {
-  pair = ivec2(entry(sides, int(boundary)).xy);
+  vec4 beside = entry(sides, int(boundary));
+  pair = ivec2(beside.xy);
   own = exploded ? gl_InstanceID : -1;
   place = position;
   if (exploded) {
-    int grain = own == 0 ? pair.x : pair.y;
-    if (grain >= 0) place += explode * entry(centers, grain).xyz;
+    int piece = int(own == 0 ? beside.z : beside.w);
+    if (piece >= 0) place += explode * entry(centers, piece).xyz;
   }
   vec4 view = modelViewMatrix * vec4(place, 1.0);
   facing = mat3(modelViewMatrix) * normal.xyz;
   seen = view.xyz;
   number = value;
-  // Lines stand a little before their surfaces.
-  gl_Position = projectionMatrix * vec4(view.xyz * (1.0 - toward), 1.0);
+  // Lines stand a little before their surfaces, and walls between grains before outer walls that they meet, which else shine through.
+  float nearer = toward + (pair.y >= 0 ? 0.0002 : 0.0);
+  gl_Position = projectionMatrix * vec4(view.xyz * (1.0 - nearer), 1.0);
 }`;
 
 const SHOWN = COMMON + `
 uniform bool sliced;
 uniform vec4 plane;
+uniform sampler2D scale;
+uniform vec2 bounds;
+vec3 painted(float number) {
+  float share = bounds.y > bounds.x ? (number - bounds.x) / (bounds.y - bounds.x) : 0.5;
+  return isnan(number) ? vec3(0.78, 0.78, 0.82) : texelFetch(scale, ivec2(int(clamp(share, 0.0, 1.0) * 255.0), 0), 0).rgb;
+}
 flat in ivec2 pair;
 flat in int own;
 in vec3 facing, seen, place;
@@ -59,8 +67,6 @@ bool away() { return sliced && dot(plane.xyz, place) > plane.w; }
 const SURFACE = SHOWN + `
 uniform mat4 modelViewMatrix;
 uniform bool byValue, picking;
-uniform vec2 bounds;
-uniform sampler2D scale;
 uniform int selected;
 float lit(vec3 normal) {
   float lamp = max(dot(normal, normalize(vec3(-0.4, 0.5, 1.0))), 0.0);
@@ -80,10 +86,7 @@ void main() {
     return;
   }
   vec3 paint = cap ? here.rgb : there.rgb;
-  if (byValue) {
-    float share = bounds.y > bounds.x ? (number - bounds.x) / (bounds.y - bounds.x) : 0.5;
-    paint = isnan(number) || cap ? vec3(0.78, 0.78, 0.82) : texelFetch(scale, ivec2(int(clamp(share, 0.0, 1.0) * 255.0), 0), 0).rgb;
-  }
+  if (byValue) paint = cap ? vec3(0.78, 0.78, 0.82) : painted(number);
   vec3 normal = normalize(gl_FrontFacing ? facing : -facing);
   float light = cap ? (sliced ? lit(normalize(mat3(modelViewMatrix) * plane.xyz)) : lit(normal)) : lit(normal);
   if (grain == selected) light *= mod(floor((gl_FragCoord.x + gl_FragCoord.y) / 4.0), 2.0) == 0.0 ? 1.0 : 0.7;
@@ -91,12 +94,13 @@ void main() {
 }`;
 
 const LINE = SHOWN + `
+uniform bool linesByValue;
 void main() {
   if (away()) discard;
   // Of the surface that is seen from outside, not of walls behind it.
   bool front = dot(facing, seen) < 0.0;
   if (shown(front ? pair.x : pair.y).a <= 0.5 || shown(front ? pair.y : pair.x).a > 0.5) discard;
-  color = vec4(0.1, 0.1, 0.1, 1.0);
+  color = vec4(linesByValue ? painted(number) : vec3(0.1), 1.0);
 }`;
 
 // A list of tuples of four as a texture; what it holds can change.
@@ -123,15 +127,17 @@ export class Network {
     this.count = ids.length;
     this.sides = new Table(boundaries.length);
     this.grains = new Table(ids.length);
-    this.centers = new Table(ids.length);
+    this.centers = new Table(centers.length);
     this.isShown = new Uint8Array(ids.length).fill(1);
-    centers.forEach((center, grain) => this.centers.set(grain, center));
+    centers.forEach((center, piece) => this.centers.set(piece, center));
+    this.pieceOf = new Int32Array(ids.length);
     const number = new Float32Array(arrays.position.length / 3);
     let vertex = 0, triangle = 0, rim = 0;
-    this.parts = boundaries.map(({ sides, vertices, triangles, rim: edges }, boundary) => {
-      this.sides.set(boundary, sides);
+    this.parts = boundaries.map(({ sides, pieces, vertices, triangles, rim: edges }, boundary) => {
+      this.sides.set(boundary, [...sides, ...pieces]);
+      sides.forEach((grain, side) => { this.pieceOf[grain] = pieces[side]; });
       number.fill(boundary, vertex, vertex + vertices);
-      const part = { sides, vertex, vertices, corner: 3 * triangle, corners: 3 * triangles, end: 2 * rim, ends: 2 * edges };
+      const part = { sides, pieces, vertex, vertices, corner: 3 * triangle, corners: 3 * triangles, end: 2 * rim, ends: 2 * edges };
       vertex += vertices;
       triangle += triangles;
       rim += edges;
@@ -144,7 +150,7 @@ export class Network {
     this.uniforms = {
       sides: { value: this.sides.texture }, grains: { value: this.grains.texture }, centers: { value: this.centers.texture },
       explode: { value: 0 }, exploded: { value: false }, sliced: { value: false }, plane: { value: [0, 0, 1, 0] },
-      byValue: { value: false }, bounds: { value: [0, 1] }, scale: { value: scaleTexture }, selected: { value: -1 }, picking: { value: false },
+      byValue: { value: false }, linesByValue: { value: false }, bounds: { value: [0, 1] }, scale: { value: scaleTexture }, selected: { value: -1 }, picking: { value: false },
     };
     this.value = new THREE.BufferAttribute(new Float32Array(number.length), 1);
     const attributes = {
@@ -171,38 +177,38 @@ export class Network {
     this.select();
   }
 
-  // The box around each grain: low and high corner.
+  // The box around each piece of a grain: low and high corner.
   measureBoxes() {
     const { position } = this.arrays;
-    this.boxes = Float32Array.from({ length: 6 * this.count }, (_, place) => (place % 6 < 3 ? Infinity : -Infinity));
-    for (const { sides, vertex, vertices } of this.parts) {
+    this.boxes = Float32Array.from({ length: 6 * this.head.centers.length }, (_, place) => (place % 6 < 3 ? Infinity : -Infinity));
+    for (const { pieces, vertex, vertices } of this.parts) {
       const box = [Infinity, Infinity, Infinity, -Infinity, -Infinity, -Infinity];
       for (let place = 3 * vertex; place < 3 * (vertex + vertices); place++) {
         const axis = place % 3;
         if (position[place] < box[axis]) box[axis] = position[place];
         if (position[place] > box[3 + axis]) box[3 + axis] = position[place];
       }
-      for (const grain of sides) {
-        if (grain < 0) continue;
+      for (const piece of pieces) {
+        if (piece < 0) continue;
         for (let axis = 0; axis < 3; axis++) {
-          this.boxes[6 * grain + axis] = Math.min(this.boxes[6 * grain + axis], box[axis]);
-          this.boxes[6 * grain + 3 + axis] = Math.max(this.boxes[6 * grain + 3 + axis], box[3 + axis]);
+          this.boxes[6 * piece + axis] = Math.min(this.boxes[6 * piece + axis], box[axis]);
+          this.boxes[6 * piece + 3 + axis] = Math.max(this.boxes[6 * piece + 3 + axis], box[3 + axis]);
         }
       }
     }
   }
 
-  // By how far a grain is moved.
-  shift(grain, axis) {
-    return this.uniforms.explode.value * this.centers.data[4 * grain + axis];
+  // By how far a piece of a grain is moved.
+  shift(piece, axis) {
+    return this.uniforms.explode.value * this.centers.data[4 * piece + axis];
   }
 
-  // Whether the plane of a slice goes through the box of a grain.
-  isCut(grain) {
+  // Whether the plane of a slice goes through the box of a piece.
+  isCut(piece) {
     const { plane: { value: plane } } = this.uniforms;
     let low = 0, high = 0;
     for (let axis = 0; axis < 3; axis++) {
-      const ends = [this.boxes[6 * grain + axis], this.boxes[6 * grain + 3 + axis]].map((end) => plane[axis] * (end + this.shift(grain, axis)));
+      const ends = [this.boxes[6 * piece + axis], this.boxes[6 * piece + 3 + axis]].map((end) => plane[axis] * (end + this.shift(piece, axis)));
       low += Math.min(...ends);
       high += Math.max(...ends);
     }
@@ -212,15 +218,14 @@ export class Network {
   // Chooses what can be seen: boundaries with one side shown, and all of grains that are cut or stand by themselves.
   select() {
     const { sliced: { value: sliced }, exploded: { value: exploded } } = this.uniforms;
-    const isOpen = new Uint8Array(this.count);
-    if (sliced) for (let grain = 0; grain < this.count; grain++) isOpen[grain] = this.isShown[grain] && this.isCut(grain) ? 1 : 0;
+    const isOpen = Uint8Array.from(this.head.centers, (_, piece) => (sliced && this.isCut(piece) ? 1 : 0));
     const { index: surface } = this.surface.geometry, { index: lines } = this.lines.geometry;
     let corners = 0, ends = 0;
     const cut = [];
     for (const part of this.parts) {
       const [a, b] = part.sides;
       const first = a >= 0 && this.isShown[a], second = b >= 0 && this.isShown[b];
-      const isCut = (a >= 0 && isOpen[a]) || (b >= 0 && isOpen[b]);
+      const isCut = (first && isOpen[part.pieces[0]]) || (second && isOpen[part.pieces[1]]);
       if (isCut) cut.push(part);
       if (!(Boolean(first) !== Boolean(second) || isCut || (exploded && (first || second)))) continue;
       surface.array.set(this.arrays.corners.subarray(part.corner, part.corner + part.corners), corners);
@@ -246,9 +251,10 @@ export class Network {
     const { exploded: { value: exploded } } = this.uniforms;
     const found = [];
     for (const part of parts) {
-      for (const grain of exploded ? part.sides : [-1]) {
-        if (exploded ? grain < 0 || !this.isShown[grain] : !part.sides.some((side) => side >= 0 && this.isShown[side])) continue;
-        const shift = [0, 1, 2].map((axis) => (exploded ? this.shift(grain, axis) : 0));
+      for (const side of exploded ? [0, 1] : [-1]) {
+        const isSeen = (grain) => grain >= 0 && this.isShown[grain];
+        if (exploded ? !isSeen(part.sides[side]) : !part.sides.some(isSeen)) continue;
+        const shift = [0, 1, 2].map((axis) => (exploded ? this.shift(part.pieces[side], axis) : 0));
         const level = offset - (nx * shift[0] + ny * shift[1] + nz * shift[2]);
         for (let corner = part.corner; corner < part.corner + part.corners; corner += 3) {
           const at = [corners[corner], corners[corner + 1], corners[corner + 2]];
@@ -295,20 +301,21 @@ export class Network {
   // Colours grains, by a function of their place.
   paint(color) {
     for (let grain = 0; grain < this.count; grain++) this.grains.set(grain, [...color(grain), this.isShown[grain]]);
-    this.uniforms.byValue.value = false;
+    this.uniforms.byValue.value = this.uniforms.linesByValue.value = false;
   }
 
-  // Colours surfaces, by a number at each vertex.
-  paintValues(values, bounds) {
+  // Colours surfaces, or lines, by a number at each vertex.
+  paintValues(values, bounds, onLines) {
     this.value.array.set(values);
     this.value.needsUpdate = true;
     this.uniforms.bounds.value = bounds;
-    this.uniforms.byValue.value = true;
+    this.uniforms.byValue.value = !onLines;
+    this.uniforms.linesByValue.value = onLines;
   }
 
   // How far from the middle the grains reach.
   radius() {
-    return 0.87 * (1 + this.uniforms.explode.value);
+    return (this.head.is_plane ? 0.55 : 0.87) * (1 + this.uniforms.explode.value);
   }
 
   dispose() {

@@ -18,6 +18,7 @@ export class Stage {
     this.controls.addEventListener("change", () => this.draw());
     this.controls.addEventListener("start", () => { this.isTurning = true; });
     this.controls.addEventListener("end", () => this.rest());
+    this.reach = 3; // how far what is drawn may lie from the origin
     this.isAsked = false;
     this.frame = () => this.render();
     this.frames = 0;
@@ -37,6 +38,7 @@ export class Stage {
   render() {
     this.isAsked = false;
     const start = performance.now();
+    this.setDepths();
     this.renderer.render(this.scene, this.camera);
     this.script = performance.now() - start;
     this.frames++;
@@ -47,6 +49,15 @@ export class Stage {
       this.renderer.setPixelRatio(window.devicePixelRatio / 2);
     }
     this.last = now;
+  }
+
+  // Depths are as exact as they can be: where walls of grains meet they differ by little.
+  setDepths() {
+    const { camera } = this;
+    const distance = camera.position.length();
+    camera.near = Math.max(0.01 * distance, distance - this.reach);
+    camera.far = distance + this.reach;
+    camera.updateProjectionMatrix();
   }
 
   rest() {
@@ -63,8 +74,7 @@ export class Stage {
     if (!clientWidth || !clientHeight) return;
     this.renderer.setSize(clientWidth, clientHeight);
     this.camera.aspect = clientWidth / clientHeight;
-    this.camera.updateProjectionMatrix();
-    this.renderer.render(this.scene, this.camera);
+    this.render();
   }
 
   // Looks at a ball round the origin from a corner, or along an axis.
@@ -74,6 +84,13 @@ export class Stage {
     this.camera.position.set(...direction).setLength(radius / Math.sin(angle));
     this.controls.update();
     this.draw();
+  }
+
+  // What lies in the plane is moved, not turned.
+  lookFromAbove() {
+    this.controls.enableRotate = false;
+    this.controls.mouseButtons.LEFT = this.controls.mouseButtons.RIGHT;
+    this.controls.touches.ONE = 1;
   }
 
   // Makes a place the middle of all turning.
@@ -130,7 +147,7 @@ export class Stage {
 
   // Saves what is drawn as PNG. Later than in the same task the canvas is empty.
   save(name) {
-    this.renderer.render(this.scene, this.camera);
+    this.render();
     this.renderer.domElement.toBlob((blob) => download(blob, name));
   }
 }

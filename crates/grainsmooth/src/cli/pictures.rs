@@ -3,7 +3,7 @@
 use std::num::NonZeroU16;
 use std::path::{Path, PathBuf};
 
-use crate::{Coloring, Error, Html, Output, Picture, Png};
+use crate::{Coloring, Error, Html, Output, Picture, Png, Slice};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
@@ -40,6 +40,18 @@ pub struct PictureArguments {
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = parse_explode, allow_negative_numbers = true, requires = "picture")]
     explode: f64,
 
+    /// Cut the grains of the picture by a plane across an axis, and leave out the part before it
+    ///
+    /// Example: --picture inside.png --slice z=0.5
+    #[arg(long, value_name = "AXIS=X", value_parser = parse_slice, requires = "picture")]
+    slice: Option<Slice>,
+
+    /// Leave the background of the picture transparent
+    ///
+    /// Example: --picture grains.png --transparent
+    #[arg(long, requires = "picture")]
+    transparent: bool,
+
     /// Write a page with a view of the grains to rotate, histograms and the figures of the run; it works offline
     ///
     /// Example: --report grains.html
@@ -53,6 +65,11 @@ impl PictureArguments {
         self.color_by
     }
 
+    /// The plane that cuts the picture.
+    pub fn slice(&self) -> Option<Slice> {
+        self.slice
+    }
+
     /// The picture asked for, its path found writable.
     pub fn picture(&self) -> Result<Option<(Picture, Output<Png>)>, Error> {
         let Some(path) = &self.picture else { return Ok(None) };
@@ -62,7 +79,13 @@ impl PictureArguments {
             _ => Picture::SIZE,
         };
         Ok(Some((
-            Picture { size, coloring: self.color_by, explode: self.explode },
+            Picture {
+                size,
+                coloring: self.color_by,
+                explode: self.explode,
+                slice: self.slice,
+                is_transparent: self.transparent,
+            },
             Output::check_as(path, Png)?,
         )))
     }
@@ -94,6 +117,15 @@ fn parse_named(text: &str, extension: &str) -> Result<PathBuf, String> {
         return Ok(path.to_owned());
     }
     Err(format!("unknown extension; name the file *.{extension}"))
+}
+
+fn parse_slice(text: &str) -> Result<Slice, String> {
+    let found = text.split_once('=').and_then(|(axis, at)| {
+        let axis = ["x", "y", "z"].into_iter().position(|known| known == axis)?;
+        let at = at.parse().ok().filter(|at: &f64| at.is_finite())?;
+        Some(Slice { axis, at })
+    });
+    found.ok_or_else(|| "give an axis and a coordinate, as z=0.5".to_owned())
 }
 
 fn parse_explode(text: &str) -> Result<f64, String> {

@@ -105,11 +105,6 @@ pub enum MeshFileProblem {
     /// A format that is read and not written.
     #[error("this format is not written; take vtp, vtu, vtk, obj, ply, stl or json")]
     NotWritten,
-    /// Grains in the plane, where grains in space are shown.
-    #[error(
-        "holds grains in the plane, which have no surfaces to turn; take grainsmooth with --picture for them"
-    )]
-    PlaneNetwork,
     /// The extension names no format that can hold measured grains.
     #[error(
         "unknown extension; give a network (*.vtp, *.vtu, *.vtk), a tessellation (*.tess) or a table (*.csv, *.txt, *.json)"

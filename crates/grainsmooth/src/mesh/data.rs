@@ -3,7 +3,7 @@
 use subzero::StencilTable;
 
 use super::file::MeshFile;
-use crate::names::VOLUMES;
+use crate::names::{GENERATION, VOLUMES};
 use crate::vtk::{DataArray, DataNumbers};
 
 /// Unit normals of points or faces, which change with them.
@@ -65,6 +65,16 @@ impl MeshFile {
         }
         self.field.retain(|entry| !is_of_shape(entry.name));
         self.drop_normals();
+    }
+
+    /// The level of subdivision at which each point was born, where the file tells.
+    pub(crate) fn generations(&self) -> Option<Vec<i8>> {
+        self.point_data.iter().find_map(|array| match &array.numbers {
+            DataNumbers::Int8(levels) if array.name == GENERATION && array.components == 1 => {
+                Some(levels.clone())
+            }
+            _ => None,
+        })
     }
 
     /// Leaves normals out.

@@ -1,6 +1,6 @@
 //! Edges of a mesh that are edited one after the other.
 
-use subzero::{Crease, HalfEdgeMesh, MeshError};
+use subzero::{Crease, HalfEdgeId, HalfEdgeMesh, MeshError};
 
 use super::data::extend_by_means;
 use super::file::{MeshFile, MeshFileProblem};
@@ -23,9 +23,25 @@ impl EditedEdges {
         Ok(Self { half_edges, face_of: (0..mesh.faces.len()).collect(), middles: Vec::new() })
     }
 
-    /// The triangles as they are now.
-    pub(crate) fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
-        self.half_edges.triangles().map(|(_, triangle)| triangle)
+    /// The triangles as they are now, by the places of their half-edges; nothing where one has gone.
+    pub(crate) fn triangle_places(&self) -> impl Iterator<Item = Option<[u32; 3]>> {
+        self.half_edge_numbers().step_by(3).map(|first| {
+            let is_there = self.half_edges.exists(first);
+            is_there.then(|| self.half_edges.face_half_edges(first).map(|half| self.half_edges.start(half)))
+        })
+    }
+
+    /// The ends of each edge in the place of its first half-edge; nothing in those of others.
+    pub(crate) fn edge_places(&self) -> impl Iterator<Item = Option<[u32; 2]>> {
+        let mesh = &self.half_edges;
+        self.half_edge_numbers().map(|half| {
+            let is_first = mesh.exists(half) && mesh.twin(half).is_none_or(|twin| half < twin);
+            is_first.then(|| [mesh.start(half), mesh.end(half)])
+        })
+    }
+
+    fn half_edge_numbers(&self) -> impl Iterator<Item = HalfEdgeId> {
+        (0..).map(HalfEdgeId).take(self.half_edges.half_edge_count())
     }
 
     /// The half-edges as they are now.

@@ -11,7 +11,7 @@ use super::file::{MeshFile, MeshFileProblem};
 use crate::Error;
 use crate::memory::{LevelSize, available_memory, check_levels};
 use crate::names::GENERATION;
-use crate::vtk::{DataArray, DataNumbers};
+use crate::vtk::DataArray;
 
 /// A scheme of subdivision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -112,20 +112,21 @@ pub fn subdivide(
     Ok(all)
 }
 
+/// The levels at which the points of a finer mesh were born, of which there are so many: the old ones first.
+pub(crate) fn grown_generations(generations: &[i8], points: usize) -> Vec<i8> {
+    let next = generations.iter().copied().max().unwrap_or(0).saturating_add(1);
+    let mut grown = generations.to_vec();
+    grown.resize(points, next);
+    grown
+}
+
 impl Level {
     /// The mesh of a file itself.
     fn of_file(file: &MeshFile, mesh: Connectivity) -> Self {
         let cells = if matches!(mesh, Connectivity::Curves(_)) { file.lines.len() } else { file.faces.len() };
-        // A file that comes from subdivision goes on from there.
-        let generations = file.point_data.iter().find_map(|array| match &array.numbers {
-            DataNumbers::Int8(levels) if array.name == GENERATION && array.components == 1 => {
-                Some(levels.clone())
-            }
-            _ => None,
-        });
         let is_other = |array: &&DataArray| ![GENERATION, NORMALS].contains(&array.name.as_str());
         Self {
-            generations: Some(generations.unwrap_or_else(|| vec![0; file.points.len()])),
+            generations: Some(file.generations().unwrap_or_else(|| vec![0; file.points.len()])),
             point_data: file.point_data.iter().filter(is_other).cloned().collect(),
             cell_of: Some((0..).take(cells).collect()),
             points: file.points.clone(),
@@ -137,12 +138,8 @@ impl Level {
         let (mesh, stencils) = self.refine_mesh(scheme)?;
         let points = stencils.apply(&self.points);
         let is_dual = matches!(scheme, Scheme::DooSabin(_));
-        let generations = self.generations.as_ref().filter(|_| !is_dual).map(|levels| {
-            let next = levels.iter().copied().max().unwrap_or(0).saturating_add(1);
-            let mut levels = levels.clone();
-            levels.resize(points.len(), next);
-            levels
-        });
+        let generations = self.generations.as_ref().filter(|_| !is_dual);
+        let generations = generations.map(|levels| grown_generations(levels, points.len()));
         let keeps_shape = scheme == Scheme::Midpoint;
         let of_points = self.point_data.iter().filter(|array| keeps_shape || !is_of_shape(&array.name));
         let point_data = of_points.filter_map(|array| averaged(array, &stencils)).collect();
@@ -272,7 +269,7 @@ impl Connectivity {
 
     /// The size for an estimate of memory; polygons count as if cut into triangles from their middles, which grow as
     /// fast under the triangle schemes as polygons do under theirs.
-    fn size(&self) -> LevelSize {
+    pub(crate) fn size(&self) -> LevelSize {
         let [points, edges, triangles] = match self {
             Self::Triangles(mesh) => [mesh.vertex_count(), mesh.edge_count(), mesh.triangles().len()],
             Self::Polygons(mesh) => {

@@ -14,7 +14,7 @@ macro_rules! script {
 }
 
 /// The modules of the page, each after those that it imports.
-pub(crate) const SCRIPTS: [(&str, &str); 10] = [
+pub(crate) const SCRIPTS: [(&str, &str); 11] = [
     script!("packed.js"),
     script!("stage.js"),
     script!("panel.js"),
@@ -22,6 +22,7 @@ pub(crate) const SCRIPTS: [(&str, &str); 10] = [
     script!("network.js"),
     script!("grains.js"),
     script!("server.js"),
+    script!("refine.js"),
     script!("shape.js"),
     script!("edit.js"),
     script!("main.js"),

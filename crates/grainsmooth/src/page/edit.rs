@@ -1,11 +1,13 @@
 //! Meshes, curves and Bezier patches to edit. Each command is kept; undoing one does those before it again.
 
 mod bezier;
+mod cage;
 mod coloring;
 mod command;
 mod drawing;
 mod pick;
 mod saving;
+mod subdivided;
 mod surface;
 
 use std::path::Path;
@@ -17,14 +19,16 @@ use subzero::MeshError;
 
 use super::answer::Answer;
 use super::grains::Frame;
+use super::packed::Packed;
 use super::refusal::{Refusal, name, words};
 use crate::error::Error;
 use crate::error::mesh_file::MeshFileProblem;
 use crate::mesh::file::MeshFile;
 use crate::mesh::{BezierFile, read_bezier};
 use bezier::EditedBezier;
+use cage::Cage;
 use command::Command;
-use drawing::{Asked, Drawing};
+use drawing::{Asked, Drawing, DrawingHead};
 use pick::{Ray, pick};
 use saving::{Opened, Wanted};
 use surface::EditedMesh;
@@ -38,6 +42,10 @@ pub(super) struct Editor {
     file: Opened,
     frame: Frame,
     model: Model,
+    /// Of the model as it is.
+    cage: Cage,
+    /// What a page was told last.
+    told: Option<Told>,
     /// All commands; those behind the first `done` are undone.
     log: Vec<Command>,
     done: usize,
@@ -47,6 +55,16 @@ pub(super) struct Editor {
     revision: u64,
     /// What was last told, for pages that ask what there is.
     said: String,
+}
+
+/// What a page was told, so that it hears of changes alone.
+#[derive(Debug)]
+struct Told {
+    number: u64,
+    revision: u64,
+    view: Asked,
+    drawing: Drawing,
+    packed: Packed,
 }
 
 #[derive(Debug, Clone)]
@@ -61,7 +79,16 @@ enum Model {
 struct Change {
     revision: u64,
     command: Asking,
+    look: Look,
+}
+
+/// What a page wants to see.
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Look {
     view: Asked,
+    /// The number of what it was told last, so that it hears of changes alone.
+    known: Option<u64>,
 }
 
 #[derive(Deserialize)]
@@ -79,7 +106,7 @@ enum Asking {
 struct Held {
     point: u32,
     to: [f64; 3],
-    view: Asked,
+    look: Look,
 }
 
 #[derive(Deserialize)]
@@ -96,17 +123,23 @@ struct Head<'a> {
     /// `mesh`, `curves` or `bezier`.
     model: &'static str,
     name: String,
+    /// Of what is told here.
+    told: u64,
     revision: u64,
     /// Commands that can be undone and done again.
     undo: usize,
     redo: usize,
     said: &'a str,
     /// Why edges cannot be edited.
-    why_no_edges: Option<String>,
+    why_no_edges: Option<&'a str>,
     /// Number of Bezier curves and patches.
     patches: usize,
     /// Whether the file that was opened can be written.
     can_overwrite: bool,
+    middle: [f64; 3],
+    unit: f64,
+    #[serde(flatten)]
+    drawing: DrawingHead,
 }
 
 impl Editor {
@@ -133,9 +166,12 @@ impl Editor {
     }
 
     fn new(path: &Path, model: Model) -> Self {
+        let frame = Frame::around(model.points());
         Self {
             file: Opened::new(path),
-            frame: Frame::around(model.points()),
+            frame,
+            cage: model.cage(frame),
+            told: None,
             states: vec![(0, model.clone())],
             model,
             log: Vec::new(),
@@ -151,17 +187,13 @@ impl Editor {
 
     pub(super) fn answer(&mut self, path: &str, body: &[u8]) -> Result<Answer, Refusal> {
         match path {
-            "/open" => self.draw(&Asked::default()),
-            "/draw" => {
-                let asked: Asked = words(body)?;
-                self.draw(&asked)
-            }
+            "/open" => self.draw(Look::default()),
+            "/draw" => self.draw(words(body)?),
             "/edit" => self.change(words(body)?),
             "/hold" => self.hold(words(body)?),
             "/pick" => {
                 let ray: Ray = words(body)?;
-                let (points, edges, triangles) = self.targets();
-                Ok(Answer::json(&pick(ray, &points, &edges, &triangles)))
+                Ok(Answer::json(&pick(ray, &self.cage)))
             }
             "/file" => {
                 let wanted: Wanted = words(body)?;
@@ -173,11 +205,12 @@ impl Editor {
         }
     }
 
-    fn change(&mut self, Change { revision, command, view }: Change) -> Result<Answer, Refusal> {
+    fn change(&mut self, Change { revision, command, look }: Change) -> Result<Answer, Refusal> {
         if revision != self.revision {
             let why = "another page changed this in the meantime: look, and do it again";
             return Err(Refusal::new(StatusCode::CONFLICT, why));
         }
+        let mut moved = None;
         self.said = match command {
             Asking::Undo if self.done == 0 => return Err(Refusal::impossible(&"there is nothing to undo")),
             Asking::Undo => {
@@ -193,6 +226,9 @@ impl Editor {
             Asking::Do(command) => {
                 let command = self.in_coordinates(command);
                 let said = self.apply(&command)?;
+                if let Command::Move { point, .. } = command {
+                    moved = Some(point);
+                }
                 // What was undone and not done again is replaced.
                 self.log.truncate(self.done - 1);
                 self.states.retain(|(done, _)| *done < self.done);
@@ -201,7 +237,14 @@ impl Editor {
             }
         };
         self.revision += 1;
-        self.draw(&view)
+        let Some(point) = moved else {
+            self.cage = self.model.cage(self.frame);
+            return self.draw(look);
+        };
+        self.cage.points[point as usize] = self.frame.in_frame(self.model.points()[point as usize]);
+        // Curvatures are of the whole surface.
+        let is_local = look.view.color != "curvature" && self.follow(point, &look, revision);
+        if is_local { self.answer_told() } else { self.draw(look) }
     }
 
     /// Places of the page as coordinates.
@@ -242,39 +285,78 @@ impl Editor {
     }
 
     /// What is seen while a point is held at a place; nothing is changed.
-    fn hold(&mut self, Held { point, to, view }: Held) -> Result<Answer, Refusal> {
-        let command = self.in_coordinates(Command::Move { point, to });
-        let mut model = self.model.clone();
-        model.apply(&command).map_err(|problem| Refusal::impossible(&problem))?;
-        self.packed(&model, &view)
+    fn hold(&mut self, Held { point, to, look }: Held) -> Result<Answer, Refusal> {
+        let place = self.frame.point(DVec3::from_array(to));
+        let from = self.model.hold(point, place).map_err(|problem| Refusal::impossible(&problem))?;
+        let answer = match self.follow(point, &look, self.revision) {
+            true => self.answer_told(),
+            false => {
+                let place = std::mem::replace(&mut self.cage.points[point as usize], DVec3::from_array(to));
+                let answer = self.draw(look);
+                self.cage.points[point as usize] = place;
+                answer
+            }
+        };
+        // It was there before.
+        let back = self.model.hold(point, from);
+        debug_assert!(back.is_ok(), "{from}");
+        answer
     }
 
-    fn draw(&self, asked: &Asked) -> Result<Answer, Refusal> {
-        self.packed(&self.model, asked)
+    /// Moves a point, and what follows from it, in what a page was told of a revision; whether that can be done.
+    fn follow(&mut self, point: u32, Look { view, known }: &Look, revision: u64) -> bool {
+        let (Model::Mesh(mesh), Some(told)) = (&self.model, &mut self.told) else { return false };
+        if mesh.is_of_curves()
+            || *known != Some(told.number)
+            || (&told.view, told.revision) != (view, revision)
+        {
+            return false;
+        }
+        let place = self.frame.place(mesh.points()[point as usize]);
+        if let Some(surface) = &mut told.drawing.surface {
+            let Some(written) = surface.follow(point, mesh.points()) else { return false };
+            let points = surface.points();
+            let places = written.iter().map(|vertex| (*vertex, self.frame.place(points[*vertex as usize])));
+            told.packed.place(&[("points", vec![(point, place)]), ("surface_points", places.collect())]);
+        } else {
+            told.packed.place(&[("points", vec![(point, place)])]);
+        }
+        told.number += 1;
+        told.revision = self.revision;
+        true
     }
 
-    fn packed(&self, model: &Model, asked: &Asked) -> Result<Answer, Refusal> {
-        let drawing = model.draw(&self.file.path, asked).map_err(|error| Refusal::impossible(&error))?;
+    fn draw(&mut self, Look { view, known }: Look) -> Result<Answer, Refusal> {
+        let drawing = self.model.draw(&self.file.path, &view, &self.cage);
+        let drawing = drawing.map_err(|error| Refusal::impossible(&error))?;
+        let mut packed = drawing.packed(self.frame, &self.cage);
+        if let Some(told) = self.told.as_ref().filter(|told| Some(told.number) == known) {
+            packed.leave_out(&told.packed);
+        }
+        let number = self.told.as_ref().map_or(0, |told| told.number) + 1;
+        self.told = Some(Told { number, revision: self.revision, view, drawing, packed });
+        self.answer_told()
+    }
+
+    fn answer_told(&self) -> Result<Answer, Refusal> {
+        let Some(told) = &self.told else { return Err(Refusal::impossible(&"nothing is shown")) };
         let head = Head {
             kind: "edit",
-            model: model.kind(),
+            model: self.model.kind(),
             name: name(&self.file.path),
+            told: told.number,
             revision: self.revision,
             undo: self.done,
             redo: self.log.len() - self.done,
             said: &self.said,
-            why_no_edges: model.why_no_edges(),
-            patches: model.patches(),
-            can_overwrite: self.file.path.is_file() && model.can_write(&self.file.path),
+            why_no_edges: self.model.why_no_edges(),
+            patches: self.model.patches(),
+            can_overwrite: self.file.path.is_file() && self.model.can_write(&self.file.path),
+            middle: self.frame.middle().to_array(),
+            unit: self.frame.unit(),
+            drawing: told.drawing.head(&self.cage),
         };
-        Ok(Answer::packed(drawing.packed(self.frame, &head)?))
-    }
-
-    /// Points, edges and triangles that a pointer may be at, in the page's frame.
-    fn targets(&self) -> (Vec<DVec3>, Vec<[u32; 2]>, Vec<[u32; 3]>) {
-        let drawing = self.model.targets();
-        let points = drawing.points.iter().map(|point| self.frame.in_frame(*point)).collect();
-        (points, drawing.edges, drawing.triangles)
+        Ok(Answer::packed(told.packed.bytes(&head)?))
     }
 
     fn save(&mut self, Saving { wanted, revision }: Saving) -> Result<Answer, Refusal> {
@@ -321,23 +403,30 @@ impl Model {
         }
     }
 
-    fn draw(&self, path: &Path, asked: &Asked) -> Result<Drawing, Error> {
+    /// Puts a point elsewhere; returns where it was.
+    fn hold(&mut self, point: u32, place: DVec3) -> Result<DVec3, MeshFileProblem> {
+        match self {
+            Self::Mesh(mesh) => mesh.hold(point, place),
+            Self::Bezier(bezier) => bezier.hold(point, place),
+        }
+    }
+
+    fn cage(&self, frame: Frame) -> Cage {
+        match self {
+            Self::Mesh(mesh) => mesh.cage(frame),
+            Self::Bezier(bezier) => bezier.cage(frame),
+        }
+    }
+
+    fn draw(&self, path: &Path, asked: &Asked, cage: &Cage) -> Result<Drawing, Error> {
         let located = |problem| Error::MeshFile { path: path.to_owned(), problem };
         match self {
-            Self::Mesh(mesh) => mesh.draw(path, asked),
-            Self::Bezier(bezier) => bezier.draw(asked).map_err(located),
+            Self::Mesh(mesh) => mesh.draw(path, asked, cage),
+            Self::Bezier(bezier) => bezier.draw(asked, cage).map_err(located),
         }
     }
 
-    fn targets(&self) -> Drawing {
-        match self {
-            Self::Mesh(mesh) => mesh.targets(),
-            // Nothing hides control points.
-            Self::Bezier(bezier) => Drawing::of_points(bezier.points().to_vec()),
-        }
-    }
-
-    fn why_no_edges(&self) -> Option<String> {
+    fn why_no_edges(&self) -> Option<&str> {
         match self {
             Self::Mesh(mesh) => mesh.why_no_edges(),
             Self::Bezier(_) => None,

@@ -1,6 +1,7 @@
 //! Grains to look at.
 
 mod columns;
+mod plane;
 mod shown;
 mod steps;
 
@@ -13,11 +14,12 @@ use super::answer::Answer;
 use super::packed::Packed;
 use super::refusal::{Refusal, words};
 use crate::error::Error;
-use crate::error::mesh_file::MeshFileProblem;
-use crate::mesh::file::{MeshFile, read_mesh};
+use crate::mesh::file::{MeshFile, read_mesh, read_polylines};
+use crate::vtk::DataArray;
 use crate::{FileElements, LabelledFile};
 pub(crate) use columns::{Column, Values, columns_of_shape};
 use columns::{columns, components};
+use plane::PlaneLines;
 pub(crate) use shown::{Frame, ShownNetwork};
 use steps::{Step, network_of, steps};
 
@@ -32,8 +34,10 @@ pub(super) struct Grains {
 #[derive(Debug)]
 struct Loaded {
     step: usize,
-    /// The points, and the arrays of points and triangles.
+    /// The points, and the arrays of points and of triangles or polylines.
     mesh: MeshFile,
+    /// Of grains in the plane.
+    lines: Option<PlaneLines>,
     network: ShownNetwork,
     columns: Vec<Column>,
 }
@@ -44,7 +48,11 @@ pub(crate) fn network_alone(
     points: &[DVec3],
     columns: &[Column],
 ) -> serde_json::Result<Vec<u8>> {
-    network.packed(points, &Head { kind: "grains", step: 0, steps: &[], columns, fields: Vec::new() })
+    let (kind, fields) = ("grains", Vec::new());
+    network.packed(
+        points,
+        &Head { kind, is_plane: false, step: 0, steps: &[], columns, fields, point_fields: 0 },
+    )
 }
 
 /// A step to show.
@@ -67,11 +75,14 @@ struct Wanted {
 #[derive(Serialize)]
 struct Head<'a> {
     kind: &'static str,
+    is_plane: bool,
     step: usize,
     steps: &'a [Step],
     columns: &'a [Column],
     /// Names of the arrays of points and triangles, component by component.
     fields: Vec<String>,
+    /// How many of them are of points.
+    point_fields: usize,
 }
 
 impl Grains {
@@ -95,7 +106,7 @@ impl Grains {
                 let mut packed = Packed::default();
                 #[expect(clippy::cast_possible_truncation, reason = "colours need no more digits")]
                 packed.floats("values", values.into_iter().map(|value| value as f32));
-                Ok(Answer::packed(packed.finish(&())?))
+                Ok(Answer::packed(packed.bytes(&())?))
             }
             _ => Err(Refusal::no_such_command(path)),
         }
@@ -116,13 +127,15 @@ impl Grains {
 
     fn show(&mut self, step: usize) -> Result<Answer, Refusal> {
         self.load(step)?;
-        let Loaded { step, mesh, network, columns } = &self.loaded;
+        let Loaded { step, mesh, lines, network, columns } = &self.loaded;
         let head = Head {
             kind: "grains",
+            is_plane: lines.is_some(),
             step: *step,
             steps: &self.steps,
             columns,
             fields: self.loaded.field_names(),
+            point_fields: mesh.point_data.iter().map(|array| array.components).sum(),
         };
         Ok(Answer::packed(network.packed(&mesh.points, &head)?))
     }
@@ -132,37 +145,56 @@ impl Loaded {
     fn read(steps: &[Step], step: usize) -> Result<Self, Error> {
         let path = network_of(&steps[step].path)?;
         let file = LabelledFile::read(&path)?;
-        let FileElements::Triangles(triangles) = &file.elements else {
-            return Err(Error::MeshFile { path, problem: MeshFileProblem::PlaneNetwork });
-        };
-        let boundary_of: Vec<u32> = file.boundary_of.iter().map(|boundary| boundary.0).collect();
         let sides: Vec<[Option<u32>; 2]> =
             file.sides.iter().map(|sides| sides.map(|side| side.grain().map(|grain| grain.0))).collect();
         let points: Vec<_> = file.points.iter().map(|point| *point * file.stretch).collect();
-        let network = ShownNetwork::new(&points, triangles, &boundary_of, &sides);
+        let (lines, network, mesh) = match &file.elements {
+            FileElements::Triangles(triangles) => {
+                let boundary_of: Vec<u32> = file.boundary_of.iter().map(|boundary| boundary.0).collect();
+                (None, ShownNetwork::new(&points, triangles, &boundary_of, &sides), read_mesh(&path)?)
+            }
+            FileElements::Segments(segments) => {
+                let sides = file.boundary_of.iter().map(|boundary| sides[boundary.index()]).collect();
+                let lines = PlaneLines::new(segments, sides);
+                let network = lines.network(&points);
+                (Some(lines), network, read_polylines(&path)?)
+            }
+        };
         let columns = columns(&file, &network);
         // The arrays; what else there is was looked at already.
-        let mesh = MeshFile { points, faces: Vec::new(), ..read_mesh(&path)? };
-        Ok(Self { step, mesh, network, columns })
+        Ok(Self { step, mesh: MeshFile { points, faces: Vec::new(), ..mesh }, lines, network, columns })
+    }
+
+    /// The arrays of triangles, in the plane of polylines.
+    fn cell_data(&self) -> &[DataArray] {
+        if self.lines.is_some() { &self.mesh.line_data } else { &self.mesh.face_data }
     }
 
     fn field_names(&self) -> Vec<String> {
-        let arrays = self.mesh.point_data.iter().chain(&self.mesh.face_data);
+        let arrays = self.mesh.point_data.iter().chain(self.cell_data());
         arrays.flat_map(components).collect()
     }
 
     /// The numbers of a component of an array at each vertex.
     fn field(&self, number: usize) -> Option<Vec<f64>> {
         let of_points = self.mesh.point_data.iter().map(|array| (array, true));
-        let of_triangles = self.mesh.face_data.iter().map(|array| (array, false));
-        let mut parts = of_points.chain(of_triangles).flat_map(|(array, is_of_points)| {
+        let of_cells = self.cell_data().iter().map(|array| (array, false));
+        let mut parts = of_points.chain(of_cells).flat_map(|(array, is_of_points)| {
             (0..array.components).map(move |part| (array, is_of_points, part))
         });
         let (array, is_of_points, part) = parts.nth(number)?;
         let numbers = columns::numbers(array);
-        Some(match is_of_points {
-            true => self.network.of_points(&numbers, array.components, part),
-            false => self.network.of_triangles(&numbers, array.components, part),
+        Some(match (is_of_points, &self.lines) {
+            (true, _) => self.network.of_points(&numbers, array.components, part),
+            (false, None) => self.network.of_triangles(&numbers, array.components, part),
+            (false, Some(lines)) => {
+                // Polylines were cut into their segments in order.
+                let counts = self.mesh.lines.iter().map(|line| line.len() - 1);
+                let cells: Vec<usize> =
+                    counts.enumerate().flat_map(|(cell, count)| std::iter::repeat_n(cell, count)).collect();
+                let number = |segment: u32| numbers[array.components * cells[segment as usize] + part];
+                lines.at_vertices(&self.network, number)
+            }
         })
     }
 }

@@ -1,8 +1,8 @@
-use colorous::{RAINBOW, TABLEAU10, VIRIDIS};
+use colorous::VIRIDIS;
 use glam::DVec3;
 use polycrystal::Boundary;
 
-use super::color::{Color, channels};
+use super::color::{Color, channels, differing, kind};
 use super::legend::Legend;
 use crate::Polycrystal;
 use crate::figures::significant::significant;
@@ -10,14 +10,14 @@ use crate::figures::significant::significant;
 /// What the colours of grains mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Coloring {
-    /// Nothing, but that grains of consecutive numbers look different.
+    /// Nothing, but that no neighbours are alike.
     #[default]
     Grain,
     /// The equivalent diameter, from the smallest (violet) to the largest grain (yellow).
     Diameter,
     /// The number of boundaries, from the fewest (violet) to the most (yellow).
     Neighbors,
-    /// The phase: blue, orange, red, cyan, green and on, in the order of their numbers.
+    /// The phase: orange, sky blue, green, yellow, blue and on, in the order of their numbers.
     Phase,
     /// The crystal's direction along the sample's x, in inverse pole figure colours.
     IpfX,
@@ -100,12 +100,10 @@ impl Coloring {
             Self::Phase => phases(polycrystal),
             Self::Disorientation => disorientations(polycrystal),
             Self::Grain | Self::IpfX | Self::IpfY | Self::IpfZ => {
-                // Multiples of the golden ratio stay far from each other round the circle of hues.
-                let turn = (5_f64.sqrt() - 1.0) / 2.0;
-                let hue = |grain: u32| RAINBOW.eval_continuous((f64::from(grain) * turn).fract());
-                let grains = (0..).take(polycrystal.network.grain_count());
-                let grains = grains.map(|grain| channels(hue(grain))).collect();
-                Paint { grains, boundaries: None, legend: None }
+                let sides = polycrystal.network.boundaries().iter().map(|boundary| boundary.sides);
+                let pairs = sides.filter_map(|[a, b]| Some([a.grain()?.index(), b.grain()?.index()]));
+                let kinds = differing(polycrystal.network.grain_count(), pairs);
+                Paint { grains: kinds.into_iter().map(kind).collect(), boundaries: None, legend: None }
             }
         }
     }
@@ -126,14 +124,12 @@ fn viridis(title: &str, values: Vec<f64>) -> Paint {
 }
 
 fn phases(polycrystal: &Polycrystal) -> Paint {
-    // After the last colour the first comes again.
-    let color = |phase: usize| channels(TABLEAU10[phase % TABLEAU10.len()]);
     let grains = polycrystal.grains();
     let names = grains.phases.iter().flat_map(|phases| phases.names());
     Paint {
-        grains: grains.phase_of().into_iter().map(color).collect(),
+        grains: grains.phase_of().into_iter().map(kind).collect(),
         boundaries: None,
-        legend: Some(Legend::Names((0..).map(color).zip(names.map(str::to_owned)).collect())),
+        legend: Some(Legend::Names((0..).map(kind).zip(names.map(str::to_owned)).collect())),
     }
 }
 

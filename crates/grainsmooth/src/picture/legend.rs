@@ -143,7 +143,7 @@ fn set(pixmap: &mut Pixmap, [x, y]: [usize; 2], color: Color) {
     let [width, height] = [pixmap.width() as usize, pixmap.height() as usize];
     if x < width && y < height {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 255")]
-        let bytes = color.map(|channel| (255.0 * channel).round() as u8);
-        pixmap.data_mut()[4 * (y * width + x)..][..3].copy_from_slice(&bytes);
+        let [red, green, blue] = color.map(|channel| (255.0 * channel).round() as u8);
+        pixmap.data_mut()[4 * (y * width + x)..][..4].copy_from_slice(&[red, green, blue, u8::MAX]);
     }
 }

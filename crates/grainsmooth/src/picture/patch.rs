@@ -4,6 +4,7 @@ use glam::DVec3;
 use polycrystal::Side;
 use rayon::prelude::*;
 
+use super::parts::Parts;
 use crate::Polycrystal;
 use crate::formats::surface::{Part, Surface};
 
@@ -32,27 +33,52 @@ pub(super) enum Seen {
     Grains,
 }
 
-/// What can be seen, with each grain moved by a shift.
-pub(super) fn patches(polycrystal: &Polycrystal, shifts: &[DVec3], seen: Seen) -> io::Result<Vec<Patch>> {
+/// What can be seen, with each piece of a grain moved away from a middle by a share of its distance from there.
+pub(super) fn patches(
+    polycrystal: &Polycrystal,
+    (middle, explode): (DVec3, f64),
+    seen: Seen,
+) -> io::Result<Vec<Patch>> {
     let surface = polycrystal.surface()?;
-    let is_seen = |part: &&Part| match seen {
+    let sides: Vec<[Option<u32>; 2]> =
+        surface.parts.iter().map(|part| part.sides.map(|side| side.grain().map(|grain| grain.0))).collect();
+    let parts = Parts {
+        points: &surface.points,
+        sides: &sides,
+        triangles_of: |part: usize| surface.triangles_of(&surface.parts[part]),
+    };
+    let facets = parts.facet_edges();
+    let pieces = parts.pieces();
+    let is_seen = |part: &Part| match seen {
         Seen::Outside => part.sides[1] == Side::Exterior,
         Seen::Boundaries => part.sides[1] != Side::Exterior,
         Seen::Grains => true,
     };
-    let sides = surface.parts.iter().filter(is_seen);
-    let sides: Vec<(&Part, usize)> = sides.flat_map(|part| [(part, 0), (part, 1)]).collect();
-    let patch = |(part, side): (&Part, usize)| {
-        let grain = part.sides[side].grain()?.index();
-        Some(Patch::new(&surface, part, side == 1, grain, shifts[grain]))
+    let both_sides: Vec<(usize, usize)> = (0..surface.parts.len())
+        .filter(|part| is_seen(&surface.parts[*part]))
+        .flat_map(|part| [(part, 0), (part, 1)])
+        .collect();
+    let patch = |(part, side): (usize, usize)| {
+        let grain = sides[part][side]?;
+        let shift = explode * (pieces.centers[pieces.of_sides[part][side]?] - middle);
+        let is_facet = |ends: [u32; 2]| facets.binary_search(&(grain, ends)).is_ok();
+        Some(Patch::new(&surface, &surface.parts[part], side == 1, (grain as usize, shift), is_facet))
     };
-    Ok(sides.into_par_iter().filter_map(patch).collect())
+    Ok(both_sides.into_par_iter().filter_map(patch).collect())
 }
 
 impl Patch {
-    fn new(surface: &Surface<'_>, part: &Part, is_second: bool, grain: usize, shift: DVec3) -> Self {
+    fn new(
+        surface: &Surface<'_>,
+        part: &Part,
+        is_second: bool,
+        (grain, shift): (usize, DVec3),
+        is_facet: impl Fn([u32; 2]) -> bool,
+    ) -> Self {
         let turned = |[a, b, c]: [u32; 3]| if is_second { [a, c, b] } else { [a, b, c] };
         let mut triangles: Vec<[u32; 3]> = surface.triangles_of(part).map(turned).collect();
+        let mut rim = rim(&triangles);
+        rim.retain(|ends| !is_facet(*ends));
         let mut ids: Vec<u32> = triangles.iter().flatten().copied().collect();
         ids.sort_unstable();
         ids.dedup();
@@ -61,7 +87,7 @@ impl Patch {
             let place = ids.partition_point(|other| *other < id);
             u32::try_from(place).expect("a boundary has no more points than the network")
         };
-        triangles.iter_mut().flatten().for_each(|id| *id = local(*id));
+        triangles.iter_mut().flatten().chain(rim.iter_mut().flatten()).for_each(|id| *id = local(*id));
         let mut normals = vec![DVec3::ZERO; points.len()];
         for triangle in &triangles {
             let [a, b, c] = triangle.map(|point| points[point as usize]);
@@ -70,7 +96,6 @@ impl Patch {
             triangle.iter().for_each(|point| normals[*point as usize] += normal);
         }
         normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
-        let rim = rim(&triangles);
         Self { grain, boundary: part.boundary.index(), points, normals, triangles, rim }
     }
 }

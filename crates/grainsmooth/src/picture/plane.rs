@@ -18,12 +18,14 @@ const COLORED_LINE: f32 = 3.0;
 pub(super) fn draw(
     polycrystal: &Polycrystal,
     lines: &CurveMesh,
-    shifts: &[DVec3],
+    middle: DVec3,
     paint: &Paint,
     picture: &Picture,
     pixmap: &mut Pixmap,
 ) {
     let outlines = outlines(polycrystal, lines);
+    let shifts: Vec<DVec3> =
+        polycrystal.centroids().into_iter().map(|centroid| (centroid - middle) * picture.explode).collect();
     let place = |grain: usize, point: u32| polycrystal.points[point as usize] + shifts[grain];
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     for (grain, outline) in outlines.iter().enumerate() {
@@ -35,7 +37,7 @@ pub(super) fn draw(
     let [width, height] = picture.size.map(|side| f64::from(side.get()));
     let inner = 1.0 - 2.0 * Picture::MARGIN;
     let scale = (inner * width / (high.x - low.x)).min(inner * height / (high.y - low.y));
-    let middle = low.midpoint(high);
+    let center = low.midpoint(high);
     let stroke = Stroke {
         // Both neighbours draw the line; in an exploded view, each has its own.
         width: single(picture.line_width()),
@@ -43,7 +45,7 @@ pub(super) fn draw(
         ..Stroke::default()
     };
     let on_picture = |grain: usize, point: u32| {
-        let from_middle = (place(grain, point) - middle) * scale;
+        let from_middle = (place(grain, point) - center) * scale;
         [single(width / 2.0 + from_middle.x), single(height / 2.0 - from_middle.y)]
     };
     let path = |grain: usize, outline: &[Vec<u32>]| {

@@ -97,7 +97,7 @@ impl ScenePicture {
     }
 
     fn frame(self, scene: &Scene, camera: &Camera) -> io::Result<Pixmap> {
-        let mut pixmap = blank(self.size)?;
+        let mut pixmap = blank(self.size, false)?;
         let width = Picture { size: self.size, ..Picture::default() }.line_width();
         // Samples are three to a pixel.
         let half_width = 1.5 * width;

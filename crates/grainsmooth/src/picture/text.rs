@@ -45,12 +45,14 @@ impl Pen {
             for y in top..(top + self.height()).min(height) {
                 for x in left..(left + advance).min(width) {
                     let ink = letter.pixel((x - left) / self.factor, (y - top) / self.factor).unwrap_or(0);
-                    let pixel = &mut data[4 * (y * width + x)..][..3];
-                    // The picture has no transparency.
-                    pixel.iter_mut().for_each(|channel| {
-                        let light = u16::from(*channel) * u16::from(u8::MAX - ink) / u16::from(u8::MAX);
-                        *channel = u8::try_from(light).unwrap_or(u8::MAX);
-                    });
+                    let pixel = &mut data[4 * (y * width + x)..][..4];
+                    // Colours are multiplied by opacity, and black has none.
+                    let left =
+                        |channel: u8| u16::from(channel) * u16::from(u8::MAX - ink) / u16::from(u8::MAX);
+                    let added = [0, 0, 0, u16::from(ink)];
+                    for (channel, added) in pixel.iter_mut().zip(added) {
+                        *channel = u8::try_from(left(*channel) + added).unwrap_or(u8::MAX);
+                    }
                 }
             }
         }

@@ -5,6 +5,7 @@ use std::io;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use glam::DVec3;
+use voronoi::Dimension;
 
 use super::filled;
 use crate::formats::surface::Surface;
@@ -37,7 +38,7 @@ pub(super) fn view(polycrystal: &Polycrystal) -> io::Result<String> {
 
 /// What is known of the grains.
 fn columns(polycrystal: &Polycrystal, network: &ShownNetwork) -> Vec<Column> {
-    let mut columns = columns_of_shape(network);
+    let mut columns = columns_of_shape(network, Dimension::Three);
     let grains = polycrystal.grains();
     if grains.phases.is_some() {
         let phases = grains.phase_of();

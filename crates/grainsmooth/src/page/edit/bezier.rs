@@ -3,8 +3,11 @@
 use glam::DVec3;
 use subzero::{BezierCurve, BezierError, MeshError};
 
+use super::super::grains::Frame;
+use super::cage::{Cage, edges};
 use super::command::Command;
 use super::drawing::{Asked, Drawing};
+use super::subdivided::{Subdivided, Surface};
 use crate::error::mesh_file::MeshFileProblem;
 use crate::mesh::BezierFile;
 use crate::mesh::file::check_lengths;
@@ -55,18 +58,21 @@ impl EditedBezier {
 
     pub(super) fn apply(&mut self, command: &Command) -> Result<String, MeshFileProblem> {
         match command {
-            Command::Move { point, to } if (*point as usize) < self.points.len() => {
-                let to = DVec3::from_array(*to);
-                check_lengths(&[to])?;
-                self.points[*point as usize] = to;
+            Command::Move { point, to } => {
+                self.hold(*point, DVec3::from_array(*to))?;
                 Ok(format!("moved control point {point}"))
-            }
-            Command::Move { point, .. } => {
-                let (what, index, vertex_count) = ("command", 0, self.points.len());
-                Err(MeshError::VertexOutOfRange { what, index, vertex: *point, vertex_count }.into())
             }
             _ => Err(MeshFileProblem::OnlyControlPoints),
         }
+    }
+
+    /// Puts a point elsewhere; returns where it was.
+    pub(super) fn hold(&mut self, point: u32, place: DVec3) -> Result<DVec3, MeshFileProblem> {
+        let (what, index, vertex_count) = ("command", 0, self.points.len());
+        let held = self.points.get_mut(point as usize);
+        let held = held.ok_or(MeshError::VertexOutOfRange { what, index, vertex: point, vertex_count })?;
+        check_lengths(&[place])?;
+        Ok(std::mem::replace(held, place))
     }
 
     fn at(&self, numbers: &[u32]) -> Vec<DVec3> {
@@ -89,9 +95,9 @@ impl EditedBezier {
         Ok(file)
     }
 
-    /// All curves, all patches as one mesh, and de Casteljau's points of one of them.
-    pub(super) fn draw(&self, asked: &Asked) -> Result<Drawing, MeshFileProblem> {
-        let mut drawing = Drawing::of_points(self.points.clone());
+    /// The control points, and the lines between those that are neighbours.
+    pub(super) fn cage(&self, frame: Frame) -> Cage {
+        let mut cage = Cage::of_points(&self.points, frame);
         let along = |lines: &mut dyn Iterator<Item = Vec<u32>>| -> Vec<[u32; 2]> {
             lines
                 .flat_map(|line| line.windows(2).map(|ends| [ends[0], ends[1]]).collect::<Vec<_>>())
@@ -107,7 +113,13 @@ impl EditedBezier {
         edges.iter_mut().for_each(|ends| ends.sort_unstable());
         edges.sort_unstable();
         edges.dedup();
-        drawing.edges = edges;
+        cage.edges = edges;
+        cage
+    }
+
+    /// All curves, all patches as one mesh, and de Casteljau's points of one of them.
+    pub(super) fn draw(&self, asked: &Asked, cage: &Cage) -> Result<Drawing, MeshFileProblem> {
+        let mut drawing = Drawing::default();
         let segments = asked.samples.clamp(2, 200) - 1;
         for curve in &self.curves {
             drawing.add_line(self.curve(curve)?.sample(4 * segments), 0);
@@ -115,7 +127,14 @@ impl EditedBezier {
         if !self.patches.is_empty() {
             let merged = self.file()?.merged(segments + 1, true)?;
             let faces: Vec<Vec<u32>> = merged.triangles.iter().map(|triangle| triangle.to_vec()).collect();
-            drawing.add_level(merged.points, &faces, None, &asked.color);
+            let surface = Surface {
+                edges: edges(&faces),
+                points: merged.points,
+                triangles: merged.triangles,
+                generations: None,
+            };
+            drawing.surface = Some(Subdivided::Surface(surface));
+            drawing.color(&asked.color, cage, &self.points, None);
         }
         for (level, points) in (1..).zip(self.construction(asked)?) {
             drawing.add_line(points, level);

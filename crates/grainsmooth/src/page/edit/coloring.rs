@@ -17,7 +17,8 @@ pub(super) fn values(
         },
         "valence" => {
             let mut valences = vec![0.0; points.len()];
-            edges.iter().flatten().for_each(|point| valences[*point as usize] += 1.0);
+            let there = edges.iter().filter(|[start, end]| start != end);
+            there.flatten().for_each(|point| valences[*point as usize] += 1.0);
             Some(valences)
         }
         "curvature" => Some(mean_curvatures(points, triangles)),
@@ -31,7 +32,7 @@ fn mean_curvatures(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<f64> {
     let mut laplacians = vec![DVec3::ZERO; points.len()];
     let mut areas = vec![DVec3::ZERO; points.len()];
     let mut turns = vec![0_i64; points.len()];
-    for triangle in triangles {
+    for triangle in triangles.iter().filter(|[first, second, _]| first != second) {
         let [a, b, c] = triangle.map(|point| points[point as usize]);
         let area = (b - a).cross(c - a);
         for corner in 0..3 {

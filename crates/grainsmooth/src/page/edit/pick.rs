@@ -3,6 +3,8 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::cage::Cage;
+
 /// How near a point or an edge counts as pointed at, in pixels.
 const NEAR: f64 = 8.0;
 
@@ -41,8 +43,8 @@ pub(super) enum Picked {
     Nothing,
 }
 
-/// Finds what a ray meets of points, edges and triangles.
-pub(super) fn pick(ray: Ray, points: &[DVec3], edges: &[[u32; 2]], triangles: &[[u32; 3]]) -> Picked {
+/// Finds what a ray meets.
+pub(super) fn pick(ray: Ray, Cage { points, edges, triangles }: &Cage) -> Picked {
     let [origin, direction] = [ray.origin, ray.direction].map(DVec3::from_array);
     let at = |point: u32| points[point as usize];
     // Where the nearest triangle is, which hides what is behind.
@@ -66,7 +68,8 @@ pub(super) fn pick(ray: Ray, points: &[DVec3], edges: &[[u32; 2]], triangles: &[
                 let beside = (origin + along * direction).distance(place) / (along * ray.pixel);
                 (along > 0.0 && along < wall && beside < NEAR).then_some((beside, *ends))
             };
-            let found = edges.iter().filter_map(near).min_by(|a, b| a.0.total_cmp(&b.0));
+            let there = edges.iter().filter(|[start, end]| start != end);
+            let found = there.filter_map(near).min_by(|a, b| a.0.total_cmp(&b.0));
             found.map_or(Picked::Nothing, |(_, ends)| Picked::Edge(ends))
         }
     }
@@ -110,9 +113,10 @@ mod tests {
         let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
         let points: Vec<DVec3> =
             [1.0, 0.0].iter().flat_map(|z| corners.map(|[x, y]| DVec3::new(x, y, *z))).collect();
-        let triangles = [[3, 4, 5], [0, 1, 2]];
-        let edges = [[3, 4], [4, 5], [0, 1], [1, 2]];
-        let picked = |ray| pick(ray, &points, &edges, &triangles);
+        let triangles = vec![[3, 4, 5], [0, 1, 2], [0; 3]];
+        let edges = vec![[3, 4], [4, 5], [0, 0], [0, 1], [1, 2]];
+        let cage = Cage { points, edges, triangles };
+        let picked = |ray| pick(ray, &cage);
         assert_eq!(picked(ray(0.2, 0.2, Wanted::Face)), Picked::Face([0, 1, 2]));
         assert_eq!(picked(ray(0.5, 0.001, Wanted::Edge)), Picked::Edge([0, 1]));
         assert_eq!(picked(ray(0.999, 0.0, Wanted::Point)), Picked::Point(1));

@@ -4,30 +4,47 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use glam::DVec3;
-use subzero::{Crease, DooSabinWeights, HalfEdgeMesh, INFINITE_SHARPNESS, LoopWeights, MeshError};
+use subzero::{Crease, DooSabinWeights, INFINITE_SHARPNESS, LoopWeights, MeshError};
 
+use super::super::grains::Frame;
+use super::cage::{Cage, edges};
 use super::command::{Command, Sharpness};
 use super::drawing::{Asked, Drawing};
+use super::subdivided::Subdivided;
 use crate::error::Error;
 use crate::error::mesh_file::MeshFileProblem;
 use crate::mesh::file::{MeshFile, check_lengths};
-use crate::mesh::{EditedEdges, Level, MeshEdit, Scheme, subdivide};
+use crate::mesh::{EditedEdges, MeshEdit, Scheme, subdivide};
 
-/// A mesh on which edits follow each other: half-edges, once made, stay until something else than edges is changed.
+/// A mesh on which edits follow each other.
 #[derive(Debug, Clone)]
 pub(super) struct EditedMesh {
     /// Points, creases and arrays; its faces are those of the half-edges, where there are any.
     mesh: MeshFile,
     edges: Option<EditedEdges>,
+    /// Why there are none.
+    why_no_edges: Option<String>,
 }
 
 impl EditedMesh {
     pub(super) fn new(mesh: MeshFile) -> Self {
-        Self { mesh, edges: None }
+        let (edges, why_no_edges) = match (mesh.faces.is_empty(), EditedEdges::new(&mesh)) {
+            (true, _) => (None, None),
+            (false, Ok(edges)) => (Some(edges), None),
+            (false, Err(problem)) => (None, Some(problem.to_string())),
+        };
+        Self { mesh, edges, why_no_edges }
     }
 
     pub(super) fn points(&self) -> &[DVec3] {
         &self.mesh.points
+    }
+
+    /// Puts a point elsewhere, for as long as something is looked at; returns where it was.
+    pub(super) fn hold(&mut self, point: u32, place: DVec3) -> Result<DVec3, MeshFileProblem> {
+        self.check_point(point)?;
+        check_lengths(&[place])?;
+        Ok(std::mem::replace(&mut self.mesh.points[point as usize], place))
     }
 
     pub(super) fn is_of_curves(&self) -> bool {
@@ -43,15 +60,6 @@ impl EditedMesh {
                 edges.clone().finish(&mut mesh);
                 Cow::Owned(mesh)
             }
-        }
-    }
-
-    /// The points of each face as they are now; of curves, of each polyline.
-    pub(super) fn cells(&self) -> Vec<Vec<u32>> {
-        match &self.edges {
-            Some(edges) => edges.triangles().map(|triangle| triangle.to_vec()).collect(),
-            None if self.is_of_curves() => self.mesh.lines.clone(),
-            None => self.mesh.faces.clone(),
         }
     }
 
@@ -83,13 +91,10 @@ impl EditedMesh {
         edit: impl FnOnce(&mut EditedEdges, &mut MeshFile) -> Result<(), MeshError>,
     ) -> Result<(), MeshFileProblem> {
         self.refuse_curves()?;
-        let mut edges = match self.edges.take() {
-            Some(edges) => edges,
-            None => EditedEdges::new(&self.mesh)?,
-        };
-        let edited = edit(&mut edges, &mut self.mesh);
-        self.edges = Some(edges);
-        edited?;
+        match &mut self.edges {
+            Some(edges) => edit(edges, &mut self.mesh)?,
+            None => edit(&mut EditedEdges::new(&self.mesh)?, &mut self.mesh)?,
+        }
         self.mesh.drop_data_of_shape();
         Ok(())
     }
@@ -98,7 +103,7 @@ impl EditedMesh {
         self.refuse_curves()?;
         let mut mesh = self.current().into_owned();
         let edited = mesh.edit(edit)?;
-        (self.mesh, self.edges) = (mesh, None);
+        *self = Self::new(mesh);
         let words = edited.to_string();
         // The first column is the command's name.
         Ok(words.split_once("  ").map_or("", |(_, rest)| rest.trim()).to_owned())
@@ -109,21 +114,19 @@ impl EditedMesh {
     }
 
     fn move_point(&mut self, point: u32, to: DVec3) -> Result<String, MeshFileProblem> {
-        self.check_point(point)?;
-        check_lengths(&[to])?;
-        self.mesh.points[point as usize] = to;
+        self.hold(point, to)?;
         self.mesh.drop_data_of_shape();
         Ok(format!("moved point {point}"))
     }
 
     fn crease(&mut self, edge: [u32; 2], sharpness: Option<Sharpness>) -> Result<String, MeshFileProblem> {
         self.refuse_curves()?;
-        let cells = self.cells();
-        let sides = |face: &Vec<u32>| {
-            let next = face.iter().cycle().skip(1);
-            face.iter().zip(next).any(|(&a, &b)| [a, b] == edge || [b, a] == edge)
+        let is_this = |ends: [u32; 2]| ends == edge || ends == [edge[1], edge[0]];
+        let is_there = match &self.edges {
+            Some(edges) => edges.edge_places().flatten().any(is_this),
+            None => edges(&self.mesh.faces).into_iter().any(is_this),
         };
-        if !cells.iter().any(sides) {
+        if !is_there {
             return Err(MeshError::NoEdge { ends: edge }.into());
         }
         self.mesh.creases.retain(|crease| crease.ends != edge && crease.ends != [edge[1], edge[0]]);
@@ -154,64 +157,46 @@ impl EditedMesh {
         Err(MeshError::VertexOutOfRange { what: "command", index: 0, vertex, vertex_count }.into())
     }
 
-    /// The mesh after some steps of a scheme, if one is named.
-    pub(super) fn level(&self, path: &Path, asked: &Asked) -> Result<Option<Level>, Error> {
-        let Some(scheme) = scheme(&asked.scheme).filter(|_| asked.level > 0) else { return Ok(None) };
-        let mut levels = subdivide(&self.current(), path, scheme, asked.level)?;
-        Ok(levels.pop())
+    /// What a pointer may be at.
+    pub(super) fn cage(&self, frame: Frame) -> Cage {
+        let mut cage = Cage::of_points(&self.mesh.points, frame);
+        match &self.edges {
+            Some(edges) => cage.add_half_edges(edges),
+            None if self.is_of_curves() => cage.add_polylines(&self.mesh.lines),
+            None => cage.add_faces(&self.mesh.faces),
+        }
+        cage
     }
 
-    /// What there is to draw.
-    pub(super) fn draw(&self, path: &Path, asked: &Asked) -> Result<Drawing, Error> {
-        let mut drawing = Drawing::of_points(self.mesh.points.clone());
-        let cells = self.cells();
-        drawing.creases =
-            self.mesh.creases.iter().map(|crease| (crease.ends, shown_sharpness(crease.sharpness))).collect();
-        drawing.corners =
-            self.mesh.corners.iter().map(|&(point, sharpness)| (point, shown_sharpness(sharpness))).collect();
-        let level = self.level(path, asked)?;
+    /// What there is to draw beside that.
+    pub(super) fn draw(&self, path: &Path, asked: &Asked, cage: &Cage) -> Result<Drawing, Error> {
+        let mut drawing = Drawing {
+            creases: self.mesh.creases.iter().map(|crease| (crease.ends, shown(crease.sharpness))).collect(),
+            corners: self.mesh.corners.iter().map(|&(point, sharpness)| (point, shown(sharpness))).collect(),
+            ..Drawing::default()
+        };
         if self.is_of_curves() {
-            drawing.add_polylines(&cells);
-            if let Some(level) = level {
+            if let Some(scheme) = scheme(&asked.scheme).filter(|_| asked.level > 0)
+                && let Some(level) = subdivide(&self.mesh, path, scheme, asked.level)?.pop()
+            {
                 drawing.add_curves(&level.points, &level.mesh.faces());
             }
-        } else {
-            drawing.add_faces(&cells);
-            match level {
-                Some(level) => {
-                    drawing.add_level(level.points, &level.mesh.faces(), level.generations, &asked.color)
-                }
-                None => drawing.color_cage(&asked.color),
-            }
+            return Ok(drawing);
         }
+        drawing.surface = Subdivided::new(&self.current(), path, asked)?;
+        let generations = self.mesh.generations();
+        drawing.color(&asked.color, cage, &self.mesh.points, generations.as_deref());
         Ok(drawing)
     }
 
-    /// What a pointer may be at.
-    pub(super) fn targets(&self) -> Drawing {
-        let mut drawing = Drawing::of_points(self.mesh.points.clone());
-        match self.is_of_curves() {
-            true => drawing.add_polylines(&self.cells()),
-            false => drawing.add_faces(&self.cells()),
-        }
-        drawing
-    }
-
-    /// Checks what an edit of edges needs, so that a page knows what to offer.
-    pub(super) fn why_no_edges(&self) -> Option<String> {
-        if self.is_of_curves() || self.edges.is_some() {
-            return None;
-        }
-        let triangles = match self.mesh.triangles() {
-            Ok(triangles) => triangles,
-            Err(problem) => return Some(problem.to_string()),
-        };
-        HalfEdgeMesh::new(self.mesh.points.len(), &triangles).err().map(|error| error.to_string())
+    /// Why edges cannot be edited, so that a page knows what to offer.
+    pub(super) fn why_no_edges(&self) -> Option<&str> {
+        self.why_no_edges.as_deref()
     }
 }
 
 /// Infinite sharpness has no number in JSON.
-fn shown_sharpness(sharpness: f32) -> Option<f32> {
+fn shown(sharpness: f32) -> Option<f32> {
     (sharpness < INFINITE_SHARPNESS).then_some(sharpness)
 }
 

@@ -28,23 +28,32 @@ pub(crate) enum Values {
     Colors(Vec<[u8; 3]>),
 }
 
-/// What follows from the grains' surfaces.
-pub(crate) fn columns_of_shape(network: &ShownNetwork) -> Vec<Column> {
+/// What follows from the grains' surfaces, in the plane from their lines.
+pub(crate) fn columns_of_shape(network: &ShownNetwork, dimension: Dimension) -> Vec<Column> {
     let column = |name: &str, value: fn(&GrainFacts) -> f64| {
         let numbers = network.facts.iter().map(|facts| Some(value(facts)));
         Column { name: name.to_owned(), values: Values::Numbers(numbers.collect()) }
     };
-    vec![
-        column("volume", |facts| facts.volume),
-        column("neighbors", |facts| facts.neighbors as f64),
-        column("surface area", |facts| facts.area),
-        column("equivalent diameter", |facts| Dimension::Three.ball_diameter(facts.volume.max(0.0))),
-    ]
+    let neighbors = |facts: &GrainFacts| facts.neighbors as f64;
+    match dimension {
+        Dimension::Three => vec![
+            column("volume", |facts| facts.volume),
+            column("neighbors", neighbors),
+            column("surface area", |facts| facts.area),
+            column("equivalent diameter", |facts| Dimension::Three.ball_diameter(facts.volume)),
+        ],
+        Dimension::Two => vec![
+            column("area", |facts| facts.volume),
+            column("neighbors", neighbors),
+            column("perimeter", |facts| facts.area),
+            column("equivalent diameter", |facts| Dimension::Two.ball_diameter(facts.volume)),
+        ],
+    }
 }
 
 /// All that a file tells of its grains.
 pub(super) fn columns(file: &LabelledFile, network: &ShownNetwork) -> Vec<Column> {
-    let mut columns = columns_of_shape(network);
+    let mut columns = columns_of_shape(network, file.surface().elements.dimension());
     if let Some(phases) = &file.phases {
         let found = |id: &u32| phases.binary_search_by_key(id, |(grain, _)| grain.0).ok();
         let phase = |id: &u32| found(id).map(|place| phases[place].1);

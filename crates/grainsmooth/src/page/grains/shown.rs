@@ -4,6 +4,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::super::packed::Packed;
+use crate::picture::{Parts, Pieces, differing};
 
 /// A network on its way to the page.
 #[derive(Debug)]
@@ -22,24 +23,29 @@ pub(crate) struct ShownNetwork {
     rims: Vec<u32>,
     boundaries: Vec<ShownBoundary>,
     normals: Vec<DVec3>,
+    /// Of each piece of a grain, the middle.
+    centers: Vec<DVec3>,
+    /// Of each grain a number, such that no neighbours have the same.
+    different: Vec<usize>,
 }
 
-/// What is known of a grain by its surface.
+/// What is known of a grain by its surface, in the plane by its lines.
 #[derive(Debug, Clone, Default, Serialize)]
 pub(crate) struct GrainFacts {
+    /// In the plane, the area.
     pub(crate) volume: f64,
+    /// Of the surface; in the plane, the length of its lines.
     pub(crate) area: f64,
     /// Number of grains beyond its boundaries.
     pub(crate) neighbors: usize,
-    /// Mean of its triangles' middles, by area.
-    #[serde(skip)]
-    pub(crate) center: DVec3,
 }
 
 #[derive(Debug, Serialize)]
 struct ShownBoundary {
     /// Places of the grains, -1 for the exterior. Normals point from the first to the second.
     sides: [i64; 2],
+    /// Pieces of these grains, which the box may have cut.
+    pieces: [i64; 2],
     vertices: usize,
     triangles: usize,
     rim: usize,
@@ -61,6 +67,7 @@ struct Head<'a, T> {
     ids: &'a [u32],
     facts: &'a [GrainFacts],
     centers: Vec<[f32; 3]>,
+    different: &'a [usize],
     boundaries: &'a [ShownBoundary],
 }
 
@@ -79,6 +86,16 @@ impl ShownNetwork {
             sides.iter().map(|sides| sides.map(|grain| ids.binary_search(&grain?).ok())).collect();
         let mut order: Vec<u32> = (0..).take(triangles.len()).collect();
         order.sort_by_key(|triangle| boundary_of[*triangle as usize]);
+        let groups: Vec<&[u32]> =
+            order.chunk_by(|a, b| boundary_of[*a as usize] == boundary_of[*b as usize]).collect();
+        let boundary = |group: &[u32]| boundary_of[group[0] as usize] as usize;
+        let group_sides: Vec<[Option<u32>; 2]> = groups.iter().map(|group| sides[boundary(group)]).collect();
+        let parts = Parts {
+            points,
+            sides: &group_sides,
+            triangles_of: |part: usize| groups[part].iter().map(|number| triangles[*number as usize]),
+        };
+        let Pieces { of_sides, centers } = parts.pieces();
         let mut network = Self {
             facts: vec![GrainFacts::default(); ids.len()],
             ids,
@@ -87,20 +104,22 @@ impl ShownNetwork {
             rims: Vec::new(),
             boundaries: Vec::new(),
             normals: Vec::new(),
-            order,
+            centers,
+            different: Vec::new(),
+            order: Vec::new(),
         };
+        let facets = parts.facet_edges();
         let mut vertex_of = vec![u32::MAX; points.len()];
-        let order = std::mem::take(&mut network.order);
-        for members in order.chunk_by(|a, b| boundary_of[*a as usize] == boundary_of[*b as usize]) {
-            let members: Vec<[u32; 3]> = members.iter().map(|one| triangles[*one as usize]).collect();
-            let boundary = boundary_of[order[network.corners.len() / 3] as usize] as usize;
-            network.add_boundary(points, &members, places[boundary], &mut vertex_of);
+        for (part, pieces) in of_sides.into_iter().enumerate() {
+            let members: Vec<[u32; 3]> = (parts.triangles_of)(part).collect();
+            let grains = places[boundary(groups[part])];
+            let outer = group_sides[part][0].filter(|_| group_sides[part][1].is_none());
+            let is_facet =
+                |ends: [u32; 2]| outer.is_some_and(|grain| facets.binary_search(&(grain, ends)).is_ok());
+            network.add_boundary(points, &members, (grains, pieces), is_facet, &mut vertex_of);
         }
         network.order = order;
-        for facts in &mut network.facts {
-            facts.center /= facts.area.max(f64::MIN_POSITIVE);
-        }
-        network.count_neighbors(&places);
+        network.set_neighbors(&places);
         network
     }
 
@@ -108,7 +127,8 @@ impl ShownNetwork {
         &mut self,
         points: &[DVec3],
         triangles: &[[u32; 3]],
-        sides: [Option<usize>; 2],
+        (sides, pieces): ([Option<usize>; 2], [Option<usize>; 2]),
+        is_facet: impl Fn([u32; 2]) -> bool,
         vertex_of: &mut [u32],
     ) {
         let (first_vertex, first_rim) = (self.point_of.len(), self.rims.len());
@@ -134,7 +154,6 @@ impl ShownNetwork {
             for (side, sign) in sides.into_iter().zip([1.0, -1.0]) {
                 let Some(facts) = side.map(|side| &mut self.facts[side]) else { continue };
                 facts.area += area;
-                facts.center += area * (a + b + c) / 3.0;
                 facts.volume += sign * a.dot(b.cross(c)) / 6.0;
             }
         }
@@ -142,27 +161,42 @@ impl ShownNetwork {
             vertex_of[*point as usize] = u32::MAX;
         }
         edges.sort_unstable();
-        self.rims
-            .extend(edges.chunk_by(|a, b| a == b).filter(|edge| edge.len() == 1).flat_map(|edge| edge[0]));
+        let rim = edges.chunk_by(|a, b| a == b).filter(|edge| edge.len() == 1).map(|edge| edge[0]);
+        let is_drawn = |ends: &[u32; 2]| {
+            let [a, b] = ends.map(|vertex| self.point_of[vertex as usize]);
+            !is_facet([a.min(b), a.max(b)])
+        };
+        self.rims.extend(rim.filter(is_drawn).flatten());
         // Places in a list of numbers of 32 bits.
         let place = |side: Option<usize>| side.map_or(-1, |side| i64::try_from(side).unwrap_or(-1));
         self.boundaries.push(ShownBoundary {
             sides: sides.map(place),
+            pieces: pieces.map(place),
             vertices: self.point_of.len() - first_vertex,
             triangles: triangles.len(),
             rim: (self.rims.len() - first_rim) / 2,
         });
     }
 
-    fn count_neighbors(&mut self, places: &[[Option<usize>; 2]]) {
+    /// Tells who are neighbours, by the places of the grains on both sides of each boundary.
+    pub(super) fn set_neighbors(&mut self, places: &[[Option<usize>; 2]]) {
         let pairs = places.iter().filter_map(|[first, second]| Some([(*first)?, (*second)?]));
-        let mut pairs: Vec<[usize; 2]> =
-            pairs.flat_map(|[a, b]| [[a, b], [b, a]]).filter(|[a, b]| a != b).collect();
+        let mut pairs: Vec<[usize; 2]> = pairs.filter(|[a, b]| a != b).collect();
+        pairs.iter_mut().for_each(|pair| pair.sort_unstable());
         pairs.sort_unstable();
         pairs.dedup();
-        for [grain, _] in pairs {
-            self.facts[grain].neighbors += 1;
-        }
+        self.facts.iter_mut().for_each(|facts| facts.neighbors = 0);
+        pairs.iter().flatten().for_each(|grain| self.facts[*grain].neighbors += 1);
+        self.different = differing(self.ids.len(), pairs);
+    }
+
+    /// Of each vertex, the number of the grain on the first side of its boundary.
+    pub(super) fn grain_of_vertices(&self) -> impl Iterator<Item = u32> {
+        let grain = |boundary: &ShownBoundary| {
+            let place = usize::try_from(boundary.sides[0]).ok();
+            place.map_or(u32::MAX, |place| self.ids[place])
+        };
+        self.boundaries.iter().flat_map(move |one| std::iter::repeat_n(grain(one), one.vertices))
     }
 
     /// The numbers of an array with `width` numbers for each point, at each vertex.
@@ -194,20 +228,21 @@ impl ShownNetwork {
         let steps = |cosine: f64| (127.0 * cosine).round() as i8;
         packed.small(
             "normal",
-            self.normals.iter().flat_map(|normal| {
+            self.normals.iter().map(|normal| {
                 let [x, y, z] = unit(normal);
                 [steps(x), steps(y), steps(z), 0]
             }),
         );
         packed.ids("corners", self.corners.iter().copied());
         packed.ids("rims", self.rims.iter().copied());
-        packed.finish(&Head {
+        packed.bytes(&Head {
             more,
             middle: frame.middle.to_array(),
             unit: frame.unit,
             ids: &self.ids,
             facts: &self.facts,
-            centers: self.facts.iter().map(|facts| frame.place(facts.center)).collect(),
+            centers: self.centers.iter().map(|center| frame.place(*center)).collect(),
+            different: &self.different,
             boundaries: &self.boundaries,
         })
     }
