@@ -291,5 +291,5 @@ fn picture([width, height]: [u16; 2], color_by: &str, explode: f64) -> PyResult<
     if !(0.0..=10.0).contains(&explode) {
         return Err(PyValueError::new_err("explode: give a number from 0 (whole) to 10"));
     }
-    Ok(Picture { size: [side(width)?, side(height)?], coloring, explode })
+    Ok(Picture { size: [side(width)?, side(height)?], coloring, explode, ..Picture::default() })
 }
