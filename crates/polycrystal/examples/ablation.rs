@@ -42,8 +42,8 @@ fn for_a_time(name: &'static str, time: f64) -> Row {
     Row { relaxation: Relaxation::Time(time), ..row(name, |_| ()) }
 }
 
-fn regularized(name: &'static str, length: f64) -> Row {
-    Row { relaxation: Relaxation::KEPT_TOPOLOGY, regularize: Some(length), ..row(name, |_| ()) }
+fn regularized(name: &'static str, length: f64, change: fn(&mut Tuning)) -> Row {
+    Row { relaxation: Relaxation::KEPT_TOPOLOGY, regularize: Some(length), ..row(name, change) }
 }
 
 fn to_rest(name: &'static str, change: fn(&mut Tuning)) -> Row {
@@ -71,11 +71,15 @@ fn rows() -> Vec<Row> {
         row("fine steps 3", |tuning| tuning.fine_steps = 3),
         row("fine steps 12", |tuning| tuning.fine_steps = 12),
         row("tolerance 1e-3", |tuning| tuning.tolerance = 1e-3),
+        row("tolerance 3e-2", |tuning| tuning.tolerance = 3e-2),
         row("tolerance 1e-1", |tuning| tuning.tolerance = 1e-1),
         row("cotangent 50", |tuning| tuning.largest_cotangent = 50.0),
-        regularized("regularize 0", 0.0),
-        regularized("regularize 0.05", 0.05),
-        regularized("regularize 0.15", 0.15),
+        regularized("regularize 0", 0.0, |_| ()),
+        regularized("regularize 0.05", 0.05, |_| ()),
+        regularized("regularize 0.15", 0.15, |_| ()),
+        regularized("kept, no rigid edges", 0.15, |tuning| tuning.rigid_length = 0.0),
+        regularized("kept, no centering", 0.15, |tuning| tuning.centering = 0.0),
+        regularized("kept, tolerance 1e-1", 0.15, |tuning| tuning.tolerance = 1e-1),
     ]
 }
 
@@ -90,6 +94,8 @@ fn rows_of_equilibrium() -> Vec<Row> {
         to_rest("levels 0 and 1 only", |tuning| tuning.finest_balanced = 1),
         to_rest("cotangent 5", |tuning| tuning.largest_cotangent_to_rest = 5.0),
         to_rest("tolerance 1e-3", |tuning| tuning.tolerance = 1e-3),
+        to_rest("tolerance 3e-2", |tuning| tuning.tolerance = 3e-2),
+        to_rest("tolerance 1e-1", |tuning| tuning.tolerance = 1e-1),
     ]
 }
 

@@ -1,6 +1,7 @@
 //! A cell complex whose topology changes.
 
 use glam::DVec3;
+use rayon::prelude::*;
 use voronoi::{CellId, Domain, FaceId, PeriodicVertex, Side, Tessellation, Translation, Wall};
 
 use crate::complex::edge::ComplexEdge;
@@ -81,9 +82,14 @@ impl CellComplex {
     /// All edges, sorted.
     pub fn edges(&self) -> Vec<ComplexEdge> {
         let mut edges: Vec<ComplexEdge> = self.faces.iter().flat_map(Face::edges).collect();
-        edges.sort_unstable();
+        edges.par_sort_unstable();
         edges.dedup();
         edges
+    }
+
+    /// The edges of a face, in order.
+    pub fn edges_of(&self, face: FaceId) -> impl Iterator<Item = ComplexEdge> {
+        self.faces[face.index()].edges()
     }
 
     /// Whether an edge is still there.
@@ -95,7 +101,7 @@ impl CellComplex {
 
     /// Whether an edge is one of a face's.
     pub fn is_edge_of(&self, edge: ComplexEdge, face: FaceId) -> bool {
-        self.faces[face.index()].edges().any(|other| other == edge)
+        self.edges_of(face).any(|other| other == edge)
     }
 
     /// The domain that the cells fill.

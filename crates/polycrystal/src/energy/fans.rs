@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use voronoi::{Domain, FaceId, PeriodicVertex, Side, Translation, Wall};
 
 use crate::energy::sides::{boundary, cell_and_offset, freedom_on};
-use crate::mesh::grouped::Grouped;
+use crate::mesh::grouped::{Grouped, split};
 use crate::mesh::volume::{Cone, ConeSum};
 use crate::{Boundary, CellComplex, ComplexEdge, Freedom};
 
@@ -195,11 +195,11 @@ impl Fans {
     pub(crate) fn folded(&self, points: &[DVec3], cosine: f64) -> Vec<usize> {
         let normals = self.normals(points);
         let is_folded = |fan: &usize| {
-            let normals = &normals[self.starts[*fan]..self.starts[fan + 1] - 1];
+            let normals = &normals[self.starts[*fan]..self.starts[*fan + 1] - 1];
             let pairs = normals.iter().zip(normals.iter().cycle().skip(1));
             pairs.into_iter().any(|(a, b)| is_bent(*a, *b, cosine))
         };
-        (0..self.faces.len()).filter(is_folded).collect()
+        (0..self.faces.len()).into_par_iter().with_min_len(FANS_PER_TASK).filter(is_folded).collect()
     }
 
     /// The rim of a fan, and its centre last.
@@ -228,10 +228,14 @@ impl Fans {
 
     /// The volume of each cell, given [`Self::normals`] too.
     pub(crate) fn volumes(&self, cell_count: usize, points: &[DVec3], normals: &[DVec3]) -> Vec<f64> {
+        let area = |fan: usize| -> DVec3 {
+            0.5 * normals[self.starts[fan]..self.starts[fan + 1] - 1].iter().sum::<DVec3>()
+        };
+        let areas = (0..self.faces.len()).into_par_iter().with_min_len(FANS_PER_TASK).map(area);
+        let areas: Vec<DVec3> = areas.collect();
         let mut sums = vec![ConeSum::default(); cell_count];
-        for (fan, sides) in self.sides.iter().enumerate() {
+        for (fan, (sides, area)) in self.sides.iter().zip(areas).enumerate() {
             let center = points[self.center_of(fan)];
-            let area = 0.5 * normals[self.starts[fan]..self.starts[fan + 1] - 1].iter().sum::<DVec3>();
             for (side, sign) in sides.iter().zip([1.0, -1.0]) {
                 let Some((cell, offset)) = cell_and_offset(*side, &self.domain) else { continue };
                 // All triangles end at the centre, so that the cone from there has no volume.
@@ -300,17 +304,6 @@ fn line_between(from: PeriodicVertex, to: PeriodicVertex) -> (ComplexEdge, Trans
     let starts_here = line.start == from.vertex
         && line.end == PeriodicVertex { vertex: to.vertex, translation: to.translation - from.translation };
     (line, if starts_here { from.translation } else { to.translation })
-}
-
-/// The parts of a list that begin at the given places.
-fn split<'a, T>(mut list: &'a mut [T], starts: &[usize]) -> Vec<&'a mut [T]> {
-    let mut parts = Vec::with_capacity(starts.len() - 1);
-    for ends in starts.windows(2) {
-        let (part, rest) = list.split_at_mut(ends[1] - ends[0]);
-        parts.push(part);
-        list = rest;
-    }
-    parts
 }
 
 fn id(number: usize) -> u32 {

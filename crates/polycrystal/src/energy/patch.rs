@@ -12,7 +12,6 @@ use subzero::StencilTable;
 use voronoi::Dimension;
 
 use crate::mesh::volume::{Cone, segment_area, triangle_volume};
-use crate::solver::rows::CsrRows;
 
 /// A boundary's control mesh, and its surface in terms of the control points.
 #[derive(Debug)]
@@ -25,8 +24,6 @@ pub(crate) struct Patch {
     pub(crate) edges: Vec<[u32; 2]>,
     /// Of each element of the control mesh, the edge across from each corner. In the plane, a segment is its own edge.
     pub(crate) edges_across: Vec<[u32; 3]>,
-    /// Of each control point the other ends of its edges, and the edges' numbers.
-    pub(crate) links: CsrRows<u32>,
     /// The surface, where it is finer than the control mesh.
     pub(crate) refinement: Option<Refinement>,
     pub(crate) law: Law,
@@ -89,63 +86,61 @@ impl LocalStencils {
         (0..self.starts.len() - 1).map(point).collect()
     }
 
-    /// From forces on the finer points to forces on so many coarser ones.
-    pub(crate) fn pull_back(&self, forces: &[DVec3], count: usize) -> Vec<DVec3> {
-        let mut pulled = vec![DVec3::ZERO; count];
+    /// Adds forces on the finer points to those on the coarser ones.
+    pub(crate) fn pull_back(&self, forces: &[DVec3], pulled: &mut [DVec3]) {
         for (f, force) in forces.iter().enumerate() {
             self.row(f).for_each(|(c, weight)| pulled[c] += *force * weight);
         }
-        pulled
     }
 }
 
-/// What a patch brings to a step.
-#[derive(Debug)]
-pub(crate) struct PatchTerms {
-    /// Area times tension.
-    pub(crate) energy: f64,
-    /// Its gradient at each control point.
-    pub(crate) gradient: Vec<DVec3>,
-    /// Volume swept from the first side to the second, per displacement of each control point.
-    pub(crate) volume_gradient: Vec<DVec3>,
-    /// Share of the area over mobility that each control point stands for.
-    pub(crate) mass: Vec<f64>,
-    /// Stiffness of each edge of the control mesh.
-    pub(crate) stiffness: Vec<f64>,
-    /// The cone to the surface.
-    pub(crate) cone: Cone,
+/// Where what a patch brings to a step goes: as of [`Terms`](crate::energy::patches::Terms), 0 at first.
+pub(crate) struct PatchTerms<'a> {
+    pub(crate) gradient: &'a mut [DVec3],
+    pub(crate) volume_gradient: &'a mut [DVec3],
+    pub(crate) mass: &'a mut [f64],
+    pub(crate) stiffness: &'a mut [f64],
 }
 
 impl Patch {
-    /// The terms at the given control points.
-    pub(crate) fn terms(&self, points: &[DVec3], largest_cotangent: f64) -> PatchTerms {
+    /// Adds the terms at the given control points, and gives area times tension, and the cone to the surface.
+    pub(crate) fn add_terms(
+        &self,
+        points: &[DVec3],
+        largest_cotangent: f64,
+        terms: PatchTerms<'_>,
+    ) -> (f64, Cone) {
         // From a point of the patch, for far from the origin volumes lose digits.
         let apex = points[self.control_points[0] as usize];
         let local: Vec<DVec3> = self.control_points.iter().map(|p| points[*p as usize] - apex).collect();
-        let (mass, stiffness) = self.mass_and_stiffness(&local, largest_cotangent);
-        let count = local.len();
+        let PatchTerms { gradient, volume_gradient, mass, stiffness } = terms;
+        self.add_mass_and_stiffness(&local, largest_cotangent, mass, stiffness);
         let tension = self.law.share * self.law.tension;
-        let Some(refinement) = &self.refinement else {
-            let variation = Variation::new(&self.elements, &local, tension);
-            let cone = variation.cone(apex, &self.elements);
-            let Variation { energy, gradient, volume_gradient, .. } = variation;
-            return PatchTerms { energy, gradient, volume_gradient, mass, stiffness, cone };
+        let Some(Refinement { stencils, elements }) = &self.refinement else {
+            let [energy, volume] =
+                add_variation(&self.elements, &local, tension, [&mut *gradient, &mut *volume_gradient]);
+            return (energy, cone(apex, volume, volume_gradient, &self.elements));
         };
-        let surface = refinement.stencils.apply(&local);
-        let variation = Variation::new(&refinement.elements, &surface, tension);
-        let cone = variation.cone(apex, &refinement.elements);
-        let gradient = refinement.stencils.pull_back(&variation.gradient, count);
-        let volume_gradient = refinement.stencils.pull_back(&variation.volume_gradient, count);
-        PatchTerms { energy: variation.energy, gradient, volume_gradient, mass, stiffness, cone }
+        let surface = stencils.apply(&local);
+        let mut gradients = [vec![DVec3::ZERO; surface.len()], vec![DVec3::ZERO; surface.len()]];
+        let [energy, volume] =
+            add_variation(elements, &surface, tension, gradients.each_mut().map(Vec::as_mut_slice));
+        stencils.pull_back(&gradients[0], gradient);
+        stencils.pull_back(&gradients[1], volume_gradient);
+        (energy, cone(apex, volume, &gradients[1], elements))
     }
 
-    /// Lumped masses, and the cotangent Laplacian times the tension as the stiffness of each edge.
-    fn mass_and_stiffness(&self, local: &[DVec3], largest_cotangent: f64) -> (Vec<f64>, Vec<f64>) {
-        let mut mass = vec![0.0; local.len()];
-        let mut stiffness = vec![0.0; self.edges.len()];
+    /// Adds lumped masses, and the cotangent Laplacian times the tension as the stiffness of each edge.
+    fn add_mass_and_stiffness(
+        &self,
+        local: &[DVec3],
+        largest_cotangent: f64,
+        mass: &mut [f64],
+        stiffness: &mut [f64],
+    ) {
         let Law { tension, mobility, share } = self.law;
         if tension == 0.0 {
-            return (mass, stiffness);
+            return;
         }
         let (stiffness_share, mass_share) = (share * tension, share / mobility);
         let at = |point: u32| local[point as usize];
@@ -165,71 +160,66 @@ impl Patch {
                 }
             }
             Elements::Segments(segments) => {
-                for (ends, stiffness) in segments.iter().zip(&mut stiffness) {
+                for (ends, stiffness) in segments.iter().zip(stiffness) {
                     let length = at(ends[0]).distance(at(ends[1])).max(f64::MIN_POSITIVE);
                     *stiffness += stiffness_share / length;
                     ends.iter().for_each(|end| mass[*end as usize] += 0.5 * mass_share * length);
                 }
             }
         }
-        (mass, stiffness)
     }
 }
 
-/// Energy and volume of a surface, and how they change with its points.
-struct Variation {
-    energy: f64,
-    gradient: Vec<DVec3>,
-    volume_gradient: Vec<DVec3>,
-    volume: f64,
-}
-
-impl Variation {
-    fn new(elements: &Elements, points: &[DVec3], tension: f64) -> Self {
-        let (mut area, mut volume) = (0.0, 0.0);
-        let mut gradient = vec![DVec3::ZERO; points.len()];
-        let mut volume_gradient = gradient.clone();
-        let at = |point: u32| points[point as usize];
-        match elements {
-            Elements::Triangles(triangles) => {
-                for corners in triangles {
-                    let [a, b, c] = corners.map(at);
-                    let normal = (b - a).cross(c - a);
-                    let unit = normal.normalize_or_zero() * (0.5 * tension);
-                    for (corner, across) in corners.iter().zip([c - b, a - c, b - a]) {
-                        gradient[*corner as usize] += unit.cross(across);
-                        volume_gradient[*corner as usize] += normal / 6.0;
-                    }
-                    area += 0.5 * normal.length();
-                    volume += triangle_volume([a, b, c]);
+/// Adds how the energy and the volume of a surface change with its points to two fields, and gives both.
+fn add_variation(
+    elements: &Elements,
+    points: &[DVec3],
+    tension: f64,
+    [gradient, volume_gradient]: [&mut [DVec3]; 2],
+) -> [f64; 2] {
+    let (mut area, mut volume) = (0.0, 0.0);
+    let at = |point: u32| points[point as usize];
+    match elements {
+        Elements::Triangles(triangles) => {
+            for corners in triangles {
+                let [a, b, c] = corners.map(at);
+                let normal = (b - a).cross(c - a);
+                let doubled_area = normal.length();
+                let unit =
+                    if doubled_area > 0.0 { normal * (0.5 * tension / doubled_area) } else { DVec3::ZERO };
+                for (corner, across) in corners.iter().zip([c - b, a - c, b - a]) {
+                    gradient[*corner as usize] += unit.cross(across);
+                    volume_gradient[*corner as usize] += normal / 6.0;
                 }
-            }
-            Elements::Segments(segments) => {
-                for ends in segments {
-                    let [start, end] = ends.map(at);
-                    let along = end - start;
-                    let unit = along.normalize_or_zero() * tension;
-                    for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
-                        gradient[*end as usize] += unit * sign;
-                        volume_gradient[*end as usize] += along.cross(DVec3::Z) / 2.0;
-                    }
-                    area += along.length();
-                    volume += segment_area([start, end]);
-                }
+                area += 0.5 * doubled_area;
+                volume += triangle_volume([a, b, c]);
             }
         }
-        Self { energy: tension * area, gradient, volume_gradient, volume }
+        Elements::Segments(segments) => {
+            for ends in segments {
+                let [start, end] = ends.map(at);
+                let along = end - start;
+                let unit = along.normalize_or_zero() * tension;
+                for (end, sign) in ends.iter().zip([-1.0, 1.0]) {
+                    gradient[*end as usize] += unit * sign;
+                    volume_gradient[*end as usize] += along.cross(DVec3::Z) / 2.0;
+                }
+                area += along.length();
+                volume += segment_area([start, end]);
+            }
+        }
     }
+    [tension * area, volume]
+}
 
-    /// The cone to the surface, for points relative to its apex.
-    fn cone(&self, apex: DVec3, elements: &Elements) -> Cone {
-        let dimension = match elements {
-            Elements::Triangles(_) => Dimension::Three,
-            Elements::Segments(_) => Dimension::Two,
-        };
-        // All points that move as one sweep along the sum of normals.
-        Cone::new(apex, self.volume, self.volume_gradient.iter().sum(), dimension)
-    }
+/// The cone to a surface whose volume and its gradient are those from the apex.
+fn cone(apex: DVec3, volume: f64, volume_gradient: &[DVec3], elements: &Elements) -> Cone {
+    let dimension = match elements {
+        Elements::Triangles(_) => Dimension::Three,
+        Elements::Segments(_) => Dimension::Two,
+    };
+    // All points that move as one sweep along the sum of normals.
+    Cone::new(apex, volume, volume_gradient.iter().sum(), dimension)
 }
 
 /// The place of an id in a sorted list that holds it.

@@ -6,25 +6,45 @@ use rayon::prelude::*;
 use subzero::{EdgeId, FaceId, StencilTable};
 
 use crate::energy::patch::{Elements, Law, LocalStencils, Patch, PatchTerms, Refinement, index_in};
+use crate::mesh::grouped::{Grouped, split};
+use crate::mesh::volume::Cone;
 use crate::network::tension::in_unit;
-use crate::solver::rows::CsrRows;
 use crate::{BoundaryId, Mesh, Network};
 
 /// The patches of all boundaries.
 ///
 /// Fields over the patches list the control points of the first patch, then those of the second, and so on; a
-/// network's control point has a place in each of its patches.
+/// network's control point has a place in each of its patches. Fields over edges list these in the same order.
 pub(crate) struct Patches {
     pub(crate) patches: Vec<Patch>,
-    /// The places of control point v are `places[place_starts[v]..place_starts[v + 1]]`.
-    place_starts: Vec<usize>,
-    places: Vec<usize>,
+    /// The places of each control point, patch after patch.
+    places: Grouped<u32>,
     /// The patch of each place.
     patch_of_place: Vec<u32>,
-    /// The first place of each patch.
+    /// The first place of each patch, and the end.
     first_places: Vec<usize>,
+    /// The first edge of each patch, and the end.
+    first_edges: Vec<usize>,
+    /// Of each control point the other ends of its edges, and the edges.
+    links: Grouped<[u32; 2]>,
     /// The largest cotangent that an angle counts with.
     pub(crate) largest_cotangent: f64,
+}
+
+/// What all patches bring to a step.
+pub(crate) struct Terms {
+    /// Area times tension.
+    pub(crate) energy: f64,
+    /// The cone to each patch's surface.
+    pub(crate) cones: Vec<Cone>,
+    /// The gradient of the energy at each place.
+    pub(crate) gradient: Vec<DVec3>,
+    /// Volume swept from the first side to the second, per displacement of each place.
+    pub(crate) volume_gradient: Vec<DVec3>,
+    /// Share of the area over mobility that each place stands for.
+    pub(crate) mass: Vec<f64>,
+    /// Stiffness of each edge.
+    pub(crate) stiffness: Vec<f64>,
 }
 
 impl Patches {
@@ -56,49 +76,67 @@ impl Patches {
                 new_patch(&control_level.mesh, &control_elements[boundary], surface, law)
             })
             .collect();
-        let mut place_starts = vec![0; control_level.vertex_count() + 1];
-        for patch in &patches {
-            for point in &patch.control_points {
-                place_starts[*point as usize + 1] += 1;
-            }
-        }
-        for point in 1..place_starts.len() {
-            place_starts[point] += place_starts[point - 1];
-        }
-        let mut next = place_starts.clone();
-        let mut places = vec![0; place_starts[place_starts.len() - 1]];
-        for (place, point) in patches.iter().flat_map(|patch| &patch.control_points).enumerate() {
-            places[next[*point as usize]] = place;
-            next[*point as usize] += 1;
-        }
-        let first_places = patches
-            .iter()
-            .scan(0, |next, patch| Some(std::mem::replace(next, *next + patch.control_points.len())))
-            .collect();
+        let starts = |length: fn(&Patch) -> usize| {
+            let ends = patches.iter().scan(0, |end, patch| {
+                *end += length(patch);
+                Some(*end)
+            });
+            std::iter::once(0).chain(ends).collect::<Vec<usize>>()
+        };
+        let first_places = starts(|patch| patch.control_points.len());
+        let first_edges = starts(|patch| patch.edges.len());
+        let point_count = control_level.vertex_count();
+        let points = patches.iter().flat_map(|patch| &patch.control_points);
+        let places =
+            Grouped::new(point_count, points.zip(0u32..).map(|(point, place)| (*point as usize, place)));
+        let links = patches.iter().flat_map(|patch| {
+            patch.edges.iter().map(|ends| ends.map(|end| patch.control_points[end as usize]))
+        });
+        let links =
+            links.zip(0u32..).flat_map(|([a, b], edge)| [(a as usize, [b, edge]), (b as usize, [a, edge])]);
+        let links = Grouped::new(point_count, links);
         let patch_of_place = (0u32..)
             .zip(&patches)
             .flat_map(|(number, patch)| std::iter::repeat_n(number, patch.control_points.len()))
             .collect();
-        Self { patches, place_starts, places, patch_of_place, first_places, largest_cotangent }
+        Self { patches, places, patch_of_place, first_places, first_edges, links, largest_cotangent }
     }
 
     /// The places of a control point, patch after patch.
-    pub(crate) fn places_of_point(&self, point: usize) -> &[usize] {
-        &self.places[self.place_starts[point]..self.place_starts[point + 1]]
+    pub(crate) fn places_of_point(&self, point: u32) -> &[u32] {
+        self.places.of(point as usize)
     }
 
-    /// The patch that a place belongs to, and which of its control points it is.
-    pub(crate) fn point_of_place(&self, place: usize) -> (usize, usize) {
-        let patch = self.patch_of_place[place] as usize;
-        (patch, place - self.first_places[patch])
+    /// The patch that a place belongs to.
+    pub(crate) fn patch_of_place(&self, place: u32) -> usize {
+        self.patch_of_place[place as usize] as usize
     }
 
-    pub(crate) fn terms(&self, points: &[DVec3]) -> Vec<PatchTerms> {
-        let terms = |patch: &Patch| {
+    /// Of a control point the other ends of its edges, and the edges; one in several patches comes as often.
+    pub(crate) fn links(&self, point: u32) -> &[[u32; 2]] {
+        self.links.of(point as usize)
+    }
+
+    /// What the patches bring to a step where control points are.
+    pub(crate) fn terms(&self, points: &[DVec3]) -> Terms {
+        let place_count = self.patch_of_place.len();
+        let mut gradient = vec![DVec3::ZERO; place_count];
+        let mut volume_gradient = gradient.clone();
+        let mut mass = vec![0.0; place_count];
+        let mut stiffness = vec![0.0; self.first_edges[self.patches.len()]];
+        let of_places = split(&mut gradient, &self.first_places)
+            .into_par_iter()
+            .zip(split(&mut volume_gradient, &self.first_places))
+            .zip(split(&mut mass, &self.first_places));
+        let of_edges = split(&mut stiffness, &self.first_edges);
+        let of_patch = |(patch, (((gradient, volume_gradient), mass), stiffness)): (&Patch, _)| {
             check_cancelled();
-            patch.terms(points, self.largest_cotangent)
+            let terms = PatchTerms { gradient, volume_gradient, mass, stiffness };
+            patch.add_terms(points, self.largest_cotangent, terms)
         };
-        self.patches.par_iter().map(terms).collect()
+        let patches = self.patches.par_iter().zip(of_places.zip(of_edges));
+        let (energies, cones): (Vec<f64>, Vec<Cone>) = patches.map(of_patch).unzip();
+        Terms { energy: energies.iter().sum(), cones, gradient, volume_gradient, mass, stiffness }
     }
 }
 
@@ -143,18 +181,7 @@ fn new_patch(
         let (points, elements) = local_elements(mesh, numbers);
         Refinement { stencils: LocalStencils::new(stencils, &control_points, &points), elements }
     });
-    let links = links(control_points.len(), &edges);
-    Patch { control_points, elements, edges, edges_across, links, refinement, law }
-}
-
-/// Of each point the other ends of its edges, and their numbers.
-fn links(point_count: usize, edges: &[[u32; 2]]) -> CsrRows<u32> {
-    let mut links = vec![Vec::new(); point_count];
-    for (number, [a, b]) in (0u32..).zip(edges) {
-        links[*a as usize].push((*b, number));
-        links[*b as usize].push((*a, number));
-    }
-    CsrRows::new(links)
+    Patch { control_points, elements, edges, edges_across, refinement, law }
 }
 
 /// The edges of some elements, each once, between the given points, and of each triangle those across from its corners.

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
+use rayon::prelude::*;
 use voronoi::{FaceId, PeriodicVertex, Side, Tessellation};
 
 use crate::energy::fans::Fans;
@@ -29,10 +30,9 @@ impl Shape {
     /// That of fans with the given points.
     pub(crate) fn new(fans: &Fans, points: &[DVec3]) -> Self {
         let of_line = |(number, line): (usize, &ComplexEdge)| {
-            points[fans.point_of_line(number)] - fans.middle(*line, points)
+            (*line, points[fans.point_of_line(number)] - fans.middle(*line, points))
         };
-        let lines = fans.lines.iter().enumerate();
-        let lines = lines.map(|(number, line)| (*line, of_line((number, line)))).collect();
+        let lines = fans.lines.par_iter().enumerate().map(of_line).collect();
         let mut faces = vec![DVec3::ZERO; fans.faces.last().map_or(0, |face| face.index() + 1)];
         for (fan, face) in fans.faces.iter().enumerate().filter(|(fan, _)| fans.wall(*fan).is_none()) {
             faces[face.index()] = points[fans.center_of(fan)] - fans.mean_of_corners(fan, points);
@@ -72,12 +72,11 @@ impl Shape {
     /// The points of fans in this shape, with the vertices where the complex has them. What would be folded is flat.
     pub(crate) fn points(&self, complex: &CellComplex, fans: &Fans) -> Vec<DVec3> {
         let mut points = complex.vertices[..fans.vertex_count()].to_vec();
-        for line in &fans.lines {
-            points.push(fans.middle(*line, &points) + self.bulge_of_line(*line));
-        }
-        for (fan, face) in fans.faces.iter().enumerate() {
-            points.push(fans.mean_of_corners(fan, &points) + self.bulge(*face));
-        }
+        let of_line = |line: &ComplexEdge| fans.middle(*line, &complex.vertices) + self.bulge_of_line(*line);
+        points.par_extend(fans.lines.par_iter().map(of_line));
+        let of_face =
+            |(fan, face): (usize, &FaceId)| fans.mean_of_corners(fan, &complex.vertices) + self.bulge(*face);
+        points.par_extend(fans.faces.par_iter().enumerate().map(of_face));
         for _ in 0..TURNS {
             let folded = fans.folded(&points, LARGEST_BEND);
             for fan in &folded {

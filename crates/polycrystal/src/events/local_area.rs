@@ -223,10 +223,11 @@ impl LocalArea {
         self.area(&self.rings()).0
     }
 
-    /// Moves the vertices down to the least area near by, and gives that: no more than [`Self::area_now`].
+    /// Moves the vertices down to the least area near by, or to one that is no more than `enough`, and gives that: no more than
+    /// [`Self::area_now`].
     ///
     /// Steps go along the gradient as the stiffness of the faces has it, so that they need not be small where triangles are.
-    pub(crate) fn minimize(&mut self) -> f64 {
+    pub(crate) fn minimize(&mut self, enough: f64) -> f64 {
         // What cells resist may well make the whole negative: the faces alone tell how large the place is.
         let mut rings = self.rings();
         let faces: f64 = self.fans(&rings).map(|(_, fan)| fan.area()).sum();
@@ -255,10 +256,10 @@ impl LocalArea {
             step *= if bent > SMALL * square { (square / bent).min(LARGEST_GROWTH) } else { 2.0 };
             let is_slow = area - moved_area < PROGRESS * faces;
             (self.points, area, slope) = (moved, moved_area, moved_slope);
-            direction = self.solve(&stiffness, &slope);
-            if is_slow {
+            if is_slow || area <= enough {
                 break;
             }
+            direction = self.solve(&stiffness, &slope);
         }
         area
     }
@@ -531,7 +532,7 @@ mod tests {
                 cell.volume -= 0.02 * cell.pressure.signum();
             }
             let (before, _) = pressed.area(&pressed.rings());
-            let after = pressed.minimize();
+            let after = pressed.minimize(f64::NEG_INFINITY);
             assert!(after.is_finite() && after < before - 1e-3, "{before} {after}");
             searched += usize::from(before < 0.0);
         });

@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use cancellation::check_cancelled;
+use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::{CellId, FaceId, Side};
 
@@ -83,7 +84,7 @@ struct Decision {
     /// Length that what goes counts with at least.
     least: f64,
     /// Where the vertices are to be that the event gives.
-    points: Vec<glam::DVec3>,
+    points: Vec<DVec3>,
     /// The excess of cells after that.
     excess: Vec<(CellId, f64)>,
     done: Reconnections,
@@ -104,8 +105,8 @@ impl Decision {
 #[derive(Clone, Copy)]
 struct Surroundings<'a> {
     conditions: &'a Conditions<'a>,
-    /// The lengths of lines a while ago.
-    lengths: &'a HashMap<ComplexEdge, f64>,
+    /// Where vertices were a while ago.
+    before: &'a [DVec3],
 }
 
 /// What an event has to be good for.
@@ -126,11 +127,43 @@ pub(crate) struct Reconnector {
     size: LocalSize,
     /// Of lines, by all sides that touch them, how often they went without lessening the area.
     tries: HashMap<Vec<Side>, u8>,
+    copies: Copies,
+}
+
+/// Complexes of the threads' own, which follow what is carried out.
+#[derive(Default)]
+struct Copies {
+    /// Each with how much of the following it knows.
+    complexes: Vec<(CellComplex, usize)>,
+    carried_out: Vec<Decision>,
+}
+
+impl Copies {
+    /// Makes all copies as the complex is, for so many threads.
+    fn catch_up(&mut self, complex: &CellComplex, threads: usize) {
+        if self.complexes.len() != threads {
+            self.complexes = (0..threads).into_par_iter().map(|_| (complex.clone(), 0)).collect();
+        } else {
+            let carried_out = &self.carried_out;
+            self.complexes.par_iter_mut().for_each(|(copy, known)| {
+                follow(copy, known, carried_out);
+                *known = 0;
+                copy.vertices.copy_from_slice(&complex.vertices);
+            });
+        }
+        self.carried_out.clear();
+    }
+}
+
+/// Carries out what a copy does not know of yet.
+fn follow(copy: &mut CellComplex, known: &mut usize, carried_out: &[Decision]) {
+    carried_out[*known..].iter().for_each(|decision| decision.carry_out(copy));
+    *known = carried_out.len();
 }
 
 impl Reconnector {
     pub(crate) fn new(short: f64, size: LocalSize) -> Self {
-        Self { short, size, tries: HashMap::new() }
+        Self { short, size, tries: HashMap::new(), copies: Copies::default() }
     }
 
     /// Length below which lines are short at some vertices.
@@ -138,16 +171,16 @@ impl Reconnector {
         self.short * self.size.at_vertices(complex, vertices, conditions.volumes)
     }
 
-    /// Lets all events happen that are due where lines are short, or boundaries with three sides thin; `lengths` has the lengths
-    /// of lines a while ago, `excess` is kept up to date.
+    /// Lets all events happen that are due where lines are short, or boundaries with three sides thin; `before` is where vertices were a
+    /// while ago, `excess` is kept up to date.
     pub(crate) fn pass(
         &mut self,
         complex: &mut CellComplex,
         conditions: &Conditions<'_>,
-        lengths: &HashMap<ComplexEdge, f64>,
+        before: &[DVec3],
         excess: &mut Excess,
     ) -> Reconnections {
-        let around = Surroundings { conditions, lengths };
+        let around = Surroundings { conditions, before };
         let triangles: Vec<Place> = complex.faces_with_corners(3).into_iter().map(Place::Triangle).collect();
         let mut done = self.pass_places(&triangles, complex, around, excess);
         let lines: Vec<Place> = self.short_lines(complex, conditions).into_iter().map(Place::Line).collect();
@@ -167,7 +200,7 @@ impl Reconnector {
         let mut done = Reconnections::default();
         let together = around.conditions.volumes.len() / CELLS_PER_PLACE;
         let threads = rayon::current_num_threads();
-        if threads == 1 || together < FEWEST_TOGETHER || places.len() < FEWEST_TOGETHER {
+        if threads == 1 || together < FEWEST_TOGETHER {
             for place in places {
                 check_cancelled();
                 if let Some(decision) = self.decide(*place, complex, around, excess) {
@@ -176,14 +209,12 @@ impl Reconnector {
             }
             return done;
         }
-        let mut copies: Vec<(CellComplex, usize)> =
-            (0..threads).into_par_iter().map(|_| (complex.clone(), 0)).collect();
-        let mut carried_out: Vec<Decision> = Vec::new();
+        let mut copies = std::mem::take(&mut self.copies);
+        copies.catch_up(complex, threads);
         for places in places.chunks(together) {
             let share = places.len().div_ceil(threads);
             let look_ahead = |((copy, known), places): (&mut (CellComplex, usize), &[Place])| {
-                carried_out[*known..].iter().for_each(|decision| decision.carry_out(copy));
-                *known = carried_out.len();
+                follow(copy, known, &copies.carried_out);
                 let look = |place: &Place| {
                     check_cancelled();
                     let cells = place.cells(copy);
@@ -191,7 +222,8 @@ impl Reconnector {
                 };
                 places.iter().map(look).collect::<Vec<_>>()
             };
-            let ahead: Vec<_> = copies.par_iter_mut().zip(places.par_chunks(share)).map(look_ahead).collect();
+            let shares = copies.complexes.par_iter_mut().zip(places.par_chunks(share));
+            let ahead: Vec<_> = shares.map(look_ahead).collect();
             let mut changed: HashSet<CellId> = HashSet::new();
             for (place, (mut cells, mut decision)) in places.iter().zip(ahead.into_iter().flatten()) {
                 if cells.iter().any(|cell| changed.contains(cell)) {
@@ -201,10 +233,11 @@ impl Reconnector {
                 if let Some(decision) = decision {
                     done.add(self.carry_out(&decision, complex, excess));
                     changed.extend(cells);
-                    carried_out.push(decision);
+                    copies.carried_out.push(decision);
                 }
             }
         }
+        self.copies = copies;
         done
     }
 
@@ -231,12 +264,13 @@ impl Reconnector {
 
     /// The short lines, shortest first.
     fn short_lines(&self, complex: &CellComplex, conditions: &Conditions<'_>) -> Vec<ComplexEdge> {
-        let lengths = complex.edges().into_iter().map(|edge| (length(complex, edge), edge));
-        let is_short = |(length, edge): &(f64, ComplexEdge)| {
-            *length < self.short && *length < self.short_at(complex, &edge.vertices(), conditions)
-        };
-        let mut short: Vec<(f64, ComplexEdge)> = lengths.filter(is_short).collect();
+        let edges = complex.faces().into_par_iter().flat_map_iter(|face| complex.edges_of(face));
+        let lengths = edges.map(|edge| (length(complex, edge), edge));
+        let mut short: Vec<(f64, ComplexEdge)> = lengths.filter(|(length, _)| *length < self.short).collect();
         short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        // Each face of a line has it.
+        short.dedup();
+        short.retain(|(length, edge)| *length < self.short_at(complex, &edge.vertices(), conditions));
         short.into_iter().map(|(_, edge)| edge).collect()
     }
 
@@ -286,7 +320,7 @@ impl Reconnector {
         }
         let now = length(complex, edge);
         let short = self.short_at(complex, &edge.vertices(), around.conditions);
-        let is_shrinking = around.lengths.get(&edge).is_some_and(|before| now < *before);
+        let is_shrinking = length_before(complex, edge, around.before).is_some_and(|before| now < before);
         if now < short && is_shrinking {
             let sides = sides_at(complex, edge);
             let tries = self.tries.get(&sides).copied().unwrap_or(0);
@@ -321,12 +355,12 @@ impl Reconnector {
         let changed = event.happen(complex, least).and_then(|new| {
             let mut changed = LocalArea::new(complex, &new, conditions, excess).with_volumes_of(&as_it_is);
             let (area, shortest) = match demand {
-                Demand::LessArea => (changed.minimize(), LEAST * short),
-                Demand::LongerLines => (changed.minimize(), shortest),
+                Demand::LessArea => (changed.minimize(f64::NEG_INFINITY), LEAST * short),
+                Demand::LongerLines => (changed.minimize(f64::NEG_INFINITY), shortest),
                 Demand::NoFold => (0.0, LEAST * short),
             };
             // What takes longest comes last: most events fail before.
-            let mut is_less = || area < as_it_is.area_now() && area < as_it_is.minimize();
+            let mut is_less = || area < as_it_is.area_now() && area < as_it_is.minimize(area);
             let keeps_promise = area.is_finite()
                 && changed.shortest_edge() > shortest
                 && changed.keeps_volumes(LARGEST_CHANGE, &excesses)
@@ -384,13 +418,14 @@ fn sides_at(complex: &CellComplex, edge: ComplexEdge) -> Vec<Side> {
     distinct(faces.into_iter().flat_map(|face| complex.sides(face)))
 }
 
-/// The lengths of all lines.
-pub(crate) fn lengths(complex: &CellComplex) -> HashMap<ComplexEdge, f64> {
-    complex.edges().into_iter().map(|edge| (edge, length(complex, edge))).collect()
-}
-
 fn length(complex: &CellComplex, edge: ComplexEdge) -> f64 {
     complex.vertices[edge.start as usize].distance(complex.position(edge.end))
+}
+
+/// The length that a line had, if there was one; vertices that are new have higher numbers.
+fn length_before(complex: &CellComplex, edge: ComplexEdge, before: &[DVec3]) -> Option<f64> {
+    let [start, end] = edge.vertices().map(|vertex| before.get(vertex as usize));
+    Some(start?.distance(*end? + edge.end.translation.vector(complex.domain())))
 }
 
 /// The distance from the longest side of a boundary with three sides to the corner opposite.

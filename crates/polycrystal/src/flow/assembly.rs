@@ -3,14 +3,13 @@
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
-use crate::energy::patch::{Patch, PatchTerms};
-use crate::energy::patches::Patches;
-use crate::flow::system::{CHUNK, Parts};
+use crate::energy::patches::{Patches, Terms};
+use crate::flow::system::{CHUNK, Parts, single};
 use crate::flow::tied_points::Numbering;
 use crate::flow::volume_constraint::{VolumeConstraint, VolumeGradients};
 use crate::mesh::rounding::last_place;
-use crate::solver::rows::CsrRows;
-use crate::{Level, Network, Volumes};
+use crate::solver::rows::{CsrRows, NewRow};
+use crate::{Freedom, Level, Network, Volumes};
 
 /// Share of a junction's mass that resists in all directions: without, nothing would hold points along a triple line.
 const ALONG_LINES: f64 = 0.01;
@@ -28,49 +27,53 @@ pub(crate) struct Unknowns<'a> {
 pub(crate) fn assemble(
     network: &Network,
     patches: &Patches,
-    terms: &[PatchTerms],
+    terms: &Terms,
     Unknowns { level, points, sizes, groups }: Unknowns<'_>,
     volumes: Volumes,
 ) -> Parts {
     let count = groups.group_count();
-    let points_of = |group| groups.places(group, patches).map(|place| patches.point_of_place(place));
-    let row = |group: usize, entries: &mut Vec<(u32, f64)>| {
-        for (patch, point) in points_of(group) {
-            let Patch { control_points, links, .. } = &patches.patches[patch];
-            for (end, edge) in links.row(point) {
-                let other = groups.numbers()[control_points[*end as usize] as usize];
-                if other as usize != group {
-                    entries.push((other, terms[patch].stiffness[*edge as usize]));
-                }
+    let row = |group: usize, row: &mut NewRow<'_, f32>| {
+        let links = groups.members(group).iter().flat_map(|point| patches.links(*point));
+        for [end, edge] in links {
+            let other = groups.numbers()[*end as usize];
+            if other as usize != group {
+                row.add(other, single(terms.stiffness[*edge as usize]));
             }
         }
     };
     let mass = |group: usize| {
-        let masses = points_of(group).map(|(patch, point)| {
-            let size = sizes[patches.patches[patch].control_points[point] as usize];
-            terms[patch].mass[point] / size.powi(2)
+        let masses = groups.members(group).iter().map(|point| {
+            let places = patches.places_of_point(*point).iter();
+            let mass: f64 = places.map(|place| terms.mass[*place as usize]).sum();
+            mass / sizes[*point as usize].powi(2)
         });
         masses.sum::<f64>()
     };
-    let volume_gradients = |group: usize, volume_gradients: &mut VolumeGradients<'_>| {
-        for (patch, point) in points_of(group) {
-            let boundary = &network.boundaries()[patch];
+    let volume_gradients = |group: usize, volume_gradients: &mut VolumeGradients<'_, '_>| {
+        for place in groups.places(group, patches) {
+            let boundary = &network.boundaries()[patches.patch_of_place(place)];
             // Walls do not move, so what lies on them changes no volume.
-            for (grain, sign) in boundary.signed_grains().filter(|_| boundary.wall.is_none()) {
-                volume_gradients.add(grain, terms[patch].volume_gradient[point] * sign);
+            if boundary.wall.is_none() {
+                let gradient = terms.volume_gradient[place as usize];
+                boundary
+                    .signed_grains()
+                    .for_each(|(grain, sign)| volume_gradients.add(grain, gradient * sign));
             }
         }
     };
     let freedom = |group| groups.freedom(group, |point| network.freedom(level.walls[point as usize]));
     let groups_in_chunks = || (0..count).into_par_iter().with_min_len(CHUNK);
+    let freedoms: Vec<Freedom> = groups_in_chunks().map(freedom).collect();
+    let constraint =
+        || VolumeConstraint::new(&freedoms, network.grain_count(), last_place(points), volume_gradients);
+    let (stiffness, volumes_of_grains) =
+        rayon::join(|| CsrRows::made_by(count, row), || (volumes == Volumes::Kept).then(constraint));
     Parts {
         masses: groups_in_chunks().map(mass).collect(),
         gradient: gradient(patches, terms, groups),
-        stiffness: CsrRows::made_by(count, row),
-        freedoms: groups_in_chunks().map(freedom).collect(),
-        volumes: (volumes == Volumes::Kept).then(|| {
-            VolumeConstraint::new(count, network.grain_count(), last_place(points), volume_gradients)
-        }),
+        stiffness,
+        volumes: volumes_of_grains,
+        freedoms,
         sliding: match volumes {
             Volumes::Kept => Vec::new(),
             Volumes::Free => sliding_masses(patches, terms, groups, level),
@@ -79,10 +82,9 @@ pub(crate) fn assemble(
 }
 
 /// The gradient of the energy by the displacement of each group.
-pub(crate) fn gradient(patches: &Patches, terms: &[PatchTerms], groups: &Numbering) -> Vec<DVec3> {
+pub(crate) fn gradient(patches: &Patches, terms: &Terms, groups: &Numbering) -> Vec<DVec3> {
     let gradient = |group: usize| {
-        let places = groups.places(group, patches).map(|place| patches.point_of_place(place));
-        places.map(|(patch, point)| terms[patch].gradient[point]).sum::<DVec3>()
+        groups.places(group, patches).map(|place| terms.gradient[place as usize]).sum::<DVec3>()
     };
     (0..groups.group_count()).into_par_iter().with_min_len(CHUNK).map(gradient).collect()
 }
@@ -98,7 +100,7 @@ pub(crate) fn gradient(patches: &Patches, terms: &[PatchTerms], groups: &Numberi
 /// Curvature flow of kept volumes leads to equilibrium with any masses.
 fn sliding_masses(
     patches: &Patches,
-    terms: &[PatchTerms],
+    terms: &Terms,
     groups: &Numbering,
     level: &Level,
 ) -> Vec<(usize, DMat3)> {
@@ -110,10 +112,10 @@ fn sliding_masses(
         groups.members(group).iter().any(is_junction).then(|| {
             let places = groups.places(group, patches);
             let sliding = places.map(|place| {
-                let (patch, point) = patches.point_of_place(place);
-                let normal = terms[patch].volume_gradient[point].normalize_or_zero();
+                let place = place as usize;
+                let normal = terms.volume_gradient[place].normalize_or_zero();
                 (DMat3::IDENTITY - DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z))
-                    * terms[patch].mass[point]
+                    * terms.mass[place]
             });
             (group, sliding.sum::<DMat3>() * (1.0 - ALONG_LINES))
         })

@@ -12,8 +12,7 @@ use voronoi::Dimension;
 
 use crate::check::folds::{element_normals, folded_pairs};
 use crate::energy::local_size::LocalSize;
-use crate::energy::patch::PatchTerms;
-use crate::energy::patches::Patches;
+use crate::energy::patches::{Patches, Terms};
 use crate::flow::assembly::{Unknowns, assemble, gradient};
 use crate::flow::dihedral_sectors::DihedralSectors;
 use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
@@ -24,7 +23,7 @@ use crate::flow::tied_points::{ATTEMPTS, Numbering, TiedPoints};
 use crate::flow::tuning::Tuning;
 use crate::measures::rms_residual;
 use crate::mesh::adjacency::Adjacency;
-use crate::mesh::volume::{Cone, volumes_of_grains};
+use crate::mesh::volume::volumes_of_grains;
 use crate::solver::conjugate_gradients::dot;
 use crate::{Freedom, GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
 use best::{Best, Defects};
@@ -71,6 +70,12 @@ enum OnFold {
     GiveWay,
     /// They are rounded: where they were is folded too.
     Round,
+}
+
+/// The surface that carries a flow, where its points are, and the normals of its elements.
+struct Placed {
+    points: Vec<DVec3>,
+    normals: Vec<DVec3>,
 }
 
 /// A network whose points of one level move.
@@ -198,12 +203,13 @@ impl<'a> Flow<'a> {
         let finest = LevelSectors::new(self.network, self.finest());
         let mut last_energy = f64::INFINITY;
         let mut best = Best::new();
+        let mut surface = self.placed(&points);
         for step in 1..=stage.steps {
             check_cancelled();
-            let energy = self.step(&mut points, stage.step_time)?;
+            let energy = self.step(&mut points, &mut surface, stage.step_time)?;
             progress(step, &points);
             if stage.least_gain > 0.0
-                && let Some(defects) = self.defects(&points, &finest)
+                && let Some(defects) = self.defects(&surface, &finest)
             {
                 best.offer(defects, &points);
                 if best.is_final() {
@@ -225,7 +231,7 @@ impl<'a> Flow<'a> {
         start: &[DVec3],
         end: End,
         folded: OnFold,
-        finest: &LevelSectors,
+        finest: &LevelSectors<'_>,
     ) -> Result<Vec<DVec3>, NetworkError> {
         // Where the finest level folds though no step did, all has moved too far from where it did not.
         let (mut count, mut grains) = (0, Vec::new());
@@ -272,17 +278,18 @@ impl<'a> Flow<'a> {
         is_vanishing.then_some(NetworkError::GrainVanished { grain: GrainId(grain), time })
     }
 
-    /// One step of curvature flow; gives the energy before.
+    /// One step of curvature flow of points, and of the surface with them; gives the energy before.
     ///
     /// What the step folds moves by its mean displacement instead, and as one from then on: it could not live. That is local: to solve the
     /// step anew for all grains would take as many attempts as the worst place of all.
-    pub(crate) fn step(&mut self, points: &mut Vec<DVec3>, time: f64) -> Result<f64, NetworkError> {
+    fn step(
+        &mut self,
+        points: &mut Vec<DVec3>,
+        surface: &mut Placed,
+        time: f64,
+    ) -> Result<f64, NetworkError> {
         let terms = self.patches.terms(points);
-        let energy = terms.iter().map(|terms| terms.energy).sum();
-        let refined = self.refined(points);
-        let before = element_normals(self.surface(), &refined);
-        let cones: Vec<Cone> = terms.iter().map(|terms| terms.cone).collect();
-        let volumes = volumes_of_grains(self.network.boundaries(), &cones, self.network.grain_count());
+        let volumes = volumes_of_grains(self.network.boundaries(), &terms.cones, self.network.grain_count());
         let missing = self.missing(&volumes);
         let mut groups = self.groups.clone();
         groups.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
@@ -301,32 +308,37 @@ impl<'a> Flow<'a> {
         let mut moves = numbering.of_points(&moves);
         let within = tangential_moves(self.network, self.level, points, self.centering(time));
         moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
+        let mut after = None;
         *points = groups.moved_unbroken(
             points,
             moves,
             |point| self.freedom(point),
             |moved| {
-                let broken = self.broken_elements(&before, moved).into_iter();
+                let moved = after.insert(self.placed(moved));
+                let broken = self.broken_elements(&surface.normals, &moved.normals).into_iter();
                 broken.map(|element| self.dependencies(self.surface, element)).collect()
             },
         )?;
+        *surface = after.expect("what is moved was looked at");
         // What turns over in the plane as grains grow may be going on to vanish.
         let is_growth_in_plane =
             self.volumes == Volumes::Free && matches!(self.control_mesh(), Mesh::Segments(_));
         if self.tuning.keeps_joined && !is_growth_in_plane {
             self.groups = groups;
         }
-        Ok(energy)
+        Ok(terms.energy)
     }
 
     /// How far points are from rest; nothing where no boundaries meet, and in the plane.
-    fn defects(&self, points: &[DVec3], finest: &LevelSectors) -> Option<Defects> {
+    fn defects(&self, surface: &Placed, finest: &LevelSectors<'_>) -> Option<Defects> {
         let Mesh::Triangles(_) = self.control_mesh() else { return None };
-        let surface = self.refined(points);
-        let residual = rms_residual(self.network, self.surface(), &surface)?;
-        let surface = self.network.subdivide_between(self.surface, self.finest(), &surface);
-        let has_folds = !finest.folds(self.network.finest(), &surface).is_empty();
-        Some(Defects { has_folds, residual })
+        let residual = rms_residual(self.network, self.surface(), &surface.points)?;
+        let folds = if self.surface == self.finest() {
+            finest.folds(&surface.points, &surface.normals)
+        } else {
+            finest.folds_of(&self.network.subdivide_between(self.surface, self.finest(), &surface.points))
+        };
+        Some(Defects { has_folds: !folds.is_empty(), residual })
     }
 
     /// How a control point can move.
@@ -345,7 +357,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    fn system(&self, terms: &[PatchTerms], groups: &Numbering, time: f64, points: &[DVec3]) -> System {
+    fn system(&self, terms: &Terms, groups: &Numbering, time: f64, points: &[DVec3]) -> System {
         let tolerance = match self.volumes {
             Volumes::Kept => self.tuning.tolerance,
             Volumes::Free => FREE_TOLERANCE,
@@ -383,6 +395,13 @@ impl<'a> Flow<'a> {
         &self.network.levels()[self.level].mesh
     }
 
+    /// The level that carries the flow, for some points of the level that moves.
+    fn placed(&self, points: &[DVec3]) -> Placed {
+        let points = self.refined(points);
+        let normals = element_normals(self.surface(), &points);
+        Placed { points, normals }
+    }
+
     /// The points of the level that carries the flow.
     fn refined(&self, points: &[DVec3]) -> Vec<DVec3> {
         self.network.subdivide_between(self.level, self.surface, points)
@@ -394,15 +413,15 @@ impl<'a> Flow<'a> {
     }
 
     /// The points that each element depends on which is folded on the finest level, or has passed another.
-    fn folded_places(&self, surface: &[DVec3], finest: &LevelSectors) -> Vec<Vec<u32>> {
-        let folds = finest.folds(self.network.finest(), surface).into_iter().flatten();
+    fn folded_places(&self, surface: &[DVec3], finest: &LevelSectors<'_>) -> Vec<Vec<u32>> {
+        let folds = finest.folds_of(surface).into_iter().flatten();
         folds.map(|element| self.dependencies(self.finest(), element)).collect()
     }
 
     /// The grains beside what is folded on the finest level, in order.
-    fn folded_grains(&self, surface: &[DVec3], finest: &LevelSectors) -> Vec<GrainId> {
+    fn folded_grains(&self, surface: &[DVec3], finest: &LevelSectors<'_>) -> Vec<GrainId> {
         let level = self.network.finest();
-        let folds = finest.folds(level, surface).into_iter().flatten();
+        let folds = finest.folds_of(surface).into_iter().flatten();
         let sides = folds.flat_map(|element| {
             let boundary = level.boundary_of[element as usize];
             self.network.boundaries()[boundary.index()].sides
@@ -413,9 +432,8 @@ impl<'a> Flow<'a> {
         grains
     }
 
-    /// Elements that a step has turned too far, or bent too far and more than they were; given the normals before.
-    fn broken_elements(&self, before: &[DVec3], moved: &[DVec3]) -> Vec<u32> {
-        let after = element_normals(self.surface(), &self.refined(moved));
+    /// Elements that a step has turned too far, or bent too far and more than they were; given the normals before and after.
+    fn broken_elements(&self, before: &[DVec3], after: &[DVec3]) -> Vec<u32> {
         let cosine = |normals: &[DVec3], [a, b]: [u32; 2]| {
             normals[a as usize].normalize_or_zero().dot(normals[b as usize].normalize_or_zero())
         };
@@ -424,10 +442,9 @@ impl<'a> Flow<'a> {
             Volumes::Kept => self.tuning.largest_bend,
             Volumes::Free => -1.0,
         };
-        let bent = folded_pairs(&self.neighbors, &after, largest_bend);
-        let bent =
-            bent.into_iter().filter(|pair| cosine(&after, *pair) < cosine(before, *pair) - SLIGHT_BEND);
-        let turned = (0u32..).zip(before.iter().zip(&after)).filter(|(_, (before, after))| {
+        let bent = folded_pairs(&self.neighbors, after, largest_bend);
+        let bent = bent.into_iter().filter(|pair| cosine(after, *pair) < cosine(before, *pair) - SLIGHT_BEND);
+        let turned = (0u32..).zip(before.iter().zip(after)).filter(|(_, (before, after))| {
             let turn = before.dot(**after) - self.tuning.largest_turn * before.length() * after.length();
             turn.is_nan() || turn < 0.0
         });
@@ -462,24 +479,30 @@ fn mean_edge(mesh: &Mesh, points: &[DVec3]) -> f64 {
 }
 
 /// How the elements of a level meet.
-struct LevelSectors {
+struct LevelSectors<'a> {
+    level: &'a Level,
     dihedral_sectors: DihedralSectors,
     /// Pairs of neighbours in one boundary.
     neighbors: Vec<[u32; 2]>,
 }
 
-impl LevelSectors {
-    fn new(network: &Network, level: usize) -> Self {
+impl<'a> LevelSectors<'a> {
+    fn new(network: &'a Network, level: usize) -> Self {
         let level = &network.levels()[level];
         let adjacency = Adjacency::of_level(level);
         let dihedral_sectors =
             DihedralSectors::new(&Surface::of_level(level, &[], &network.sides()), &adjacency);
-        Self { dihedral_sectors, neighbors: adjacency.inner }
+        Self { level, dihedral_sectors, neighbors: adjacency.inner }
     }
 
     /// Pairs of elements that are folded, or have passed each other.
-    fn folds(&self, level: &Level, points: &[DVec3]) -> Vec<[u32; 2]> {
-        let mut folds = folded_pairs(&self.neighbors, &element_normals(level, points), 0.0);
+    fn folds_of(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
+        self.folds(points, &element_normals(self.level, points))
+    }
+
+    /// The same, given the normals of the elements.
+    fn folds(&self, points: &[DVec3], normals: &[DVec3]) -> Vec<[u32; 2]> {
+        let mut folds = folded_pairs(&self.neighbors, normals, 0.0);
         folds.extend(self.dihedral_sectors.turned(points));
         folds
     }

@@ -7,12 +7,12 @@ use crate::energy::fans::{FanTerms, Fans, is_bent};
 use crate::energy::local_size::LocalSize;
 use crate::energy::sides::cell_and_offset;
 use crate::flow::boundary_flow::SLIGHT_BEND;
-use crate::flow::system::{CHUNK, Parts, System};
+use crate::flow::system::{CHUNK, Parts, System, single};
 use crate::flow::tied_points::TiedPoints;
 use crate::flow::tuning::Tuning;
 use crate::flow::volume_constraint::{VolumeConstraint, VolumeGradients};
 use crate::mesh::rounding::last_place;
-use crate::solver::rows::CsrRows;
+use crate::solver::rows::{CsrRows, NewRow};
 use crate::{Freedom, GrainId, NetworkError};
 
 /// Fans that flow.
@@ -47,10 +47,11 @@ impl FanFlow<'_> {
         let freedoms: Vec<Freedom> = self.of_points(|point| fans.freedom(point));
         let system = System::new(self.parts(&terms, &freedoms, last_place(points)), time, tuning.tolerance);
         let (mut moves, pressures) = system.displacement(&missing);
-        for fan in 0..fans.faces.len() {
-            let center = fans.center_of(fan);
-            moves[center] += freedoms[center].project(self.to_middle(fan, points, &before));
-        }
+        // The centres come last among the points, fan by fan.
+        let (_, centers) = moves.split_at_mut(fans.center_of(0));
+        centers.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(fan, by)| {
+            *by += freedoms[fans.center_of(fan)].project(self.to_middle(fan, points, &before));
+        });
         let mut groups = TiedPoints::apart(fans.point_count());
         *points = groups.moved_unbroken(
             points,
@@ -69,25 +70,27 @@ impl FanFlow<'_> {
     fn parts(&self, terms: &FanTerms, freedoms: &[Freedom], rounding: f64) -> Parts {
         let fans = self.fans;
         let of_slot = |fan: usize, slot: usize| &terms.of_slot[fans.first_slot(fan) + slot];
-        let stiffness = |point: usize, entries: &mut Vec<(u32, f64)>| {
+        let stiffness = |point: usize, row: &mut NewRow<'_, f32>| {
             for (fan, slot) in fans.at_point(point) {
                 let slots = fans.slots_of(fan);
                 let count = fans.rim_len(fan);
+                let mut add = |slot: usize, stiffness: f64| {
+                    let other = slots[slot].point;
+                    if other as usize != point {
+                        row.add(other, single(stiffness));
+                    }
+                };
                 if slot == count {
-                    entries.extend((0..count).map(|k| (slots[k].point, of_slot(fan, k).to_center)));
+                    (0..count).for_each(|k| add(k, of_slot(fan, k).to_center));
                 } else {
                     let before = (slot + count - 1) % count;
-                    let neighbors = [
-                        (before, of_slot(fan, before).rim),
-                        ((slot + 1) % count, of_slot(fan, slot).rim),
-                        (count, of_slot(fan, slot).to_center),
-                    ];
-                    let others = neighbors.map(|(slot, entry)| (slots[slot].point, entry));
-                    entries.extend(others.into_iter().filter(|(other, _)| *other as usize != point));
+                    add(before, of_slot(fan, before).rim);
+                    add((slot + 1) % count, of_slot(fan, slot).rim);
+                    add(count, of_slot(fan, slot).to_center);
                 }
             }
         };
-        let volume_gradients = |point: usize, volume_gradients: &mut VolumeGradients<'_>| {
+        let volume_gradients = |point: usize, volume_gradients: &mut VolumeGradients<'_, '_>| {
             for (fan, slot) in fans.at_point(point).filter(|(fan, _)| fans.wall(*fan).is_none()) {
                 for (side, sign) in fans.sides[fan].into_iter().zip([1.0, -1.0]) {
                     if let Some((cell, _)) = cell_and_offset(side, fans.domain()) {
@@ -110,17 +113,16 @@ impl FanFlow<'_> {
         let gradient = |point: usize| -> DVec3 {
             fans.at_point(point).map(|(fan, slot)| of_slot(fan, slot).gradient).sum()
         };
+        let (stiffness, constraint) = rayon::join(
+            || CsrRows::made_by(fans.point_count(), stiffness),
+            || VolumeConstraint::new(freedoms, self.volumes.len(), rounding, volume_gradients),
+        );
         Parts {
             masses: self.of_points(mass),
             gradient: self.of_points(gradient),
-            stiffness: CsrRows::made_by(fans.point_count(), stiffness),
+            stiffness,
             freedoms: freedoms.to_vec(),
-            volumes: Some(VolumeConstraint::new(
-                fans.point_count(),
-                self.volumes.len(),
-                rounding,
-                volume_gradients,
-            )),
+            volumes: Some(constraint),
             sliding: Vec::new(),
         }
     }

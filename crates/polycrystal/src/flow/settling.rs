@@ -7,7 +7,7 @@ use crate::energy::fans::Fans;
 use crate::energy::local_size::LocalSize;
 use crate::energy::shape::Shape;
 use crate::events::local_area::Conditions;
-use crate::events::reconnection::{Reconnections, Reconnector, SHORT, lengths};
+use crate::events::reconnection::{Reconnections, Reconnector, SHORT};
 use crate::flow::fan_flow::{FanFlow, Taken};
 use crate::flow::recipe::NetworkRecipe;
 use crate::flow::relaxation::{Moving, Relaxation, RelaxationStep};
@@ -75,7 +75,7 @@ pub(crate) fn settle(
     show(0, &complex, &shape);
     for steps in 1.. {
         check_cancelled();
-        let before = lengths(&complex);
+        let before = complex.vertices.clone();
         let flow = FanFlow { fans: &fans, volumes, size, tuning };
         let Taken { energy, pressures } = flow.step(&mut points, step_time * mean_size.powi(2))?;
         complex.vertices.copy_from_slice(&points[..fans.vertex_count()]);

@@ -4,7 +4,6 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use crate::Freedom;
-use crate::flow::mobility::Mobility;
 use crate::flow::volume_constraint::{Compliance, VolumeConstraint};
 use crate::solver::rows::CsrRows;
 
@@ -29,14 +28,21 @@ pub(crate) struct Parts {
     pub(crate) masses: Vec<f64>,
     /// The gradient g of the energy.
     pub(crate) gradient: Vec<DVec3>,
-    /// The stiffness K, as stiffness to other unknowns; columns may come more than once.
-    pub(crate) stiffness: CsrRows<f64>,
+    /// The stiffness K, as stiffness to other unknowns.
+    pub(crate) stiffness: CsrRows<f32>,
     /// What walls leave to each unknown.
     pub(crate) freedoms: Vec<Freedom>,
     /// The gradients J of the volumes; nothing where they are free.
     pub(crate) volumes: Option<VolumeConstraint>,
     /// What the mass of some unknowns is less than isotropic.
     pub(crate) sliding: Vec<(usize, DMat3)>,
+}
+
+/// A stiffness in single precision: what comes of a step is sought to a hundredth, and its matrix has to come through the memory again and
+/// again.
+#[expect(clippy::cast_possible_truncation, reason = "rounding")]
+pub(crate) fn single(stiffness: f64) -> f32 {
+    stiffness as f32
 }
 
 /// `(M + dt K) d = -dt g + J^T p` for displacements d, with pressures p such that `J d` is given.
@@ -47,11 +53,14 @@ pub(crate) struct System {
     tolerance: f64,
     /// The diagonal of `M + dt K`.
     diagonal: Vec<f64>,
+    /// One over that, and 0 where it is 0: the displacement under a force of one if there were only the diagonal.
+    mobility: Vec<f64>,
     sliding: Vec<(usize, DMat3)>,
-    stiffness: CsrRows<f64>,
+    stiffness: CsrRows<f32>,
     /// `-dt g`.
     forces: Vec<DVec3>,
-    mobility: Vec<Mobility>,
+    /// The unknowns that walls hold, and what they leave to them.
+    held: Vec<(usize, Freedom)>,
     constraint: Option<(VolumeConstraint, Compliance)>,
 }
 
@@ -60,23 +69,21 @@ impl System {
     pub(crate) fn new(parts: Parts, time: f64, tolerance: f64) -> Self {
         let Parts { masses, gradient, stiffness, freedoms, volumes, sliding } = parts;
         let diagonal = |(unknown, mass): (usize, &f64)| {
-            let stiffness: f64 = stiffness.row(unknown).iter().map(|(_, entry)| entry).sum();
+            let stiffness: f64 = stiffness.row(unknown).iter().map(|(_, entry)| f64::from(*entry)).sum();
             mass + time * stiffness
         };
         let diagonal: Vec<f64> = masses.par_iter().with_min_len(CHUNK).enumerate().map(diagonal).collect();
-        let mobility = |(diagonal, freedom): (&f64, Freedom)| {
-            let inverse = if *diagonal > 0.0 { 1.0 / diagonal } else { 0.0 };
-            Mobility { inverse, freedom }
-        };
-        let mobility: Vec<Mobility> =
-            diagonal.par_iter().with_min_len(CHUNK).zip(freedoms).map(mobility).collect();
+        let mobility: Vec<f64> =
+            diagonal.iter().map(|diagonal| if *diagonal > 0.0 { 1.0 / diagonal } else { 0.0 }).collect();
+        let held = freedoms.into_iter().enumerate().filter(|(_, freedom)| *freedom != Freedom::Everywhere);
         let constraint = volumes.map(|constraint| {
             let compliance = constraint.compliance(&mobility);
             (constraint, compliance)
         });
         let mut forces = gradient;
         forces.par_iter_mut().with_min_len(CHUNK).for_each(|force| *force *= -time);
-        Self { time, tolerance, diagonal, sliding, stiffness, forces, mobility, constraint }
+        let held = held.collect();
+        Self { time, tolerance, diagonal, mobility, sliding, stiffness, forces, held, constraint }
     }
 
     /// The displacements that change volumes by `changes`, to first order, and are otherwise those of the flow; and the
@@ -102,7 +109,9 @@ impl System {
             let gradient = gradient_after(&displacement);
             let mut left: Vec<DVec3> = gradient.iter().map(|gradient| *gradient * -self.time).collect();
             // Of the matrix the mass alone counts: the gradient after the displacement has all of the stiffness.
-            add(&mut left, -1.0, &self.apply(&displacement));
+            let mut image = vec![DVec3::ZERO; left.len()];
+            self.apply(&displacement, &mut image);
+            add(&mut left, -1.0, &image);
             add(&mut left, 1.0, &self.stiff(&displacement));
             let (correction, _) = self.solve(&left, &[]);
             add(&mut displacement, 1.0, &correction);
@@ -114,8 +123,9 @@ impl System {
     fn stiff(&self, displacement: &[DVec3]) -> Vec<DVec3> {
         let row = |unknown: usize| {
             let stiffness = self.stiffness.row(unknown).iter();
-            let pulls = stiffness
-                .map(|(other, entry)| (displacement[unknown] - displacement[*other as usize]) * *entry);
+            let pulls = stiffness.map(|(other, entry)| {
+                (displacement[unknown] - displacement[*other as usize]) * f64::from(*entry)
+            });
             pulls.sum::<DVec3>() * self.time
         };
         (0..displacement.len()).into_par_iter().with_min_len(CHUNK).map(row).collect()
@@ -126,30 +136,37 @@ impl System {
         let mut pressures = vec![0.0; changes.len()];
         let mut displacement = self.push(changes);
         let mut residual = forces.to_vec();
-        add(&mut residual, -1.0, &self.apply(&displacement));
-        let mut direction = self.project(&mut residual, &mut pressures);
-        let mut size = dot(&residual, &direction);
+        self.hold(&mut residual);
+        let mut image = vec![DVec3::ZERO; residual.len()];
+        self.apply(&displacement, &mut image);
+        add(&mut residual, -1.0, &image);
+        let mut projected = vec![DVec3::ZERO; residual.len()];
+        let mut size = self.project(&mut residual, &mut projected, &mut pressures);
+        let mut direction = projected.clone();
         let enough = size * self.tolerance * self.tolerance;
         for _ in 0..ITERATIONS {
             if size <= enough || size <= 0.0 {
                 break;
             }
-            let image = self.apply(&direction);
-            let stiffness = dot(&direction, &image);
+            let stiffness = self.apply(&direction, &mut image);
             if stiffness.is_nan() || stiffness <= 0.0 {
                 break;
             }
             let step = size / stiffness;
-            add(&mut displacement, step, &direction);
-            add(&mut residual, -step, &image);
-            let mut projected = self.project(&mut residual, &mut pressures);
-            let next = dot(&residual, &projected);
-            add(&mut projected, next / size, &direction);
-            direction = projected;
+            let moved = displacement.par_iter_mut().zip(&direction).with_min_len(CHUNK);
+            let left = residual.par_iter_mut().zip(&image);
+            moved.zip(left).for_each(|((displacement, direction), (residual, image))| {
+                *displacement += *direction * step;
+                *residual -= *image * step;
+            });
+            let next = self.project(&mut residual, &mut projected, &mut pressures);
+            let growth = next / size;
+            let directions = direction.par_iter_mut().with_min_len(CHUNK).zip(&projected);
+            directions.for_each(|(direction, projected)| *direction = *projected + *direction * growth);
             size = next;
         }
         if let Some((constraint, _)) = &self.constraint {
-            let change = constraint.volume_change(&displacement);
+            let change = constraint.volume_change(|unknown| displacement[unknown]);
             let left: Vec<f64> =
                 changes.iter().zip(&change).map(|(wanted, change)| wanted - change).collect();
             add(&mut displacement, 1.0, &self.push(&left));
@@ -157,25 +174,23 @@ impl System {
         (displacement, pressures)
     }
 
-    /// Takes out of a residual what walls and pressures balance, takes the pressures from `sum`, and gives the displacement under the rest if
-    /// there were only the diagonal of the matrix.
-    ///
-    /// What walls hold is large at rest, where the rest is rounding: left in, it would grow from one iteration to the next.
-    fn project(&self, residual: &mut [DVec3], sum: &mut [f64]) -> Vec<DVec3> {
-        let free = |(residual, mobility): (&mut DVec3, &Mobility)| {
-            *residual = mobility.freedom.project(*residual);
-            *residual * mobility.inverse
+    /// Takes out of a residual what pressures balance, and the pressures from `sum`; `projected` becomes the displacement under the rest if
+    /// there were only the diagonal of the matrix. Gives the product of the two.
+    fn project(&self, residual: &mut [DVec3], projected: &mut [DVec3], sum: &mut [f64]) -> f64 {
+        let pressures = self.constraint.as_ref().map(|(constraint, compliance)| {
+            let moved = constraint.volume_change(|unknown| residual[unknown] * self.mobility[unknown]);
+            let pressures = compliance.pressures(&moved, LOOSE);
+            sum.iter_mut().zip(&pressures).for_each(|(sum, pressure)| *sum -= *pressure);
+            (constraint, pressures)
+        });
+        let project = |(unknown, (residual, projected)): (usize, (&mut DVec3, &mut DVec3))| {
+            if let Some((constraint, pressures)) = &pressures {
+                *residual -= constraint.force(pressures, unknown);
+            }
+            *projected = *residual * self.mobility[unknown];
+            residual.dot(*projected)
         };
-        let moved: Vec<DVec3> =
-            residual.par_iter_mut().with_min_len(CHUNK).zip(&self.mobility).map(free).collect();
-        let Some((constraint, compliance)) = &self.constraint else { return moved };
-        let pressures = compliance.pressures(&constraint.volume_change(&moved), LOOSE);
-        sum.iter_mut().zip(&pressures).for_each(|(sum, pressure)| *sum -= *pressure);
-        let project = |(unknown, residual): (usize, &mut DVec3)| {
-            *residual -= constraint.force(&pressures, unknown);
-            free((residual, &self.mobility[unknown]))
-        };
-        residual.par_iter_mut().with_min_len(CHUNK).enumerate().map(project).collect()
+        sum_by_chunks(residual.par_iter_mut().zip(projected).enumerate().map(project))
     }
 
     /// The displacement under the pressures that change volumes by `changes`, if there were only the diagonal of the matrix: for a time of 0
@@ -185,23 +200,34 @@ impl System {
             return vec![DVec3::ZERO; self.mobility.len()];
         };
         let pressures = compliance.pressures(changes, TIGHT);
-        let force = |unknown: usize| self.mobility[unknown].of(constraint.force(&pressures, unknown));
+        let force = |unknown: usize| constraint.force(&pressures, unknown) * self.mobility[unknown];
         (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect()
     }
 
-    /// `(M + dt K) d`.
-    fn apply(&self, displacement: &[DVec3]) -> Vec<DVec3> {
-        let row = |unknown: usize| {
+    /// `image` becomes `(M + dt K) d`, as far as walls leave it; gives its product with the displacement d.
+    ///
+    /// What walls hold is large at rest, where the rest is rounding: left in, it would grow from one iteration to the next.
+    fn apply(&self, displacement: &[DVec3], image: &mut [DVec3]) -> f64 {
+        let row = |(unknown, image): (usize, &mut DVec3)| {
             let stiffness = self.stiffness.row(unknown).iter();
-            let pull: DVec3 = stiffness.map(|(other, entry)| displacement[*other as usize] * *entry).sum();
-            displacement[unknown] * self.diagonal[unknown] - pull * self.time
+            let pull: DVec3 =
+                stiffness.map(|(other, entry)| displacement[*other as usize] * f64::from(*entry)).sum();
+            *image = displacement[unknown] * self.diagonal[unknown] - pull * self.time;
+            image.dot(displacement[unknown])
         };
-        let mut image: Vec<DVec3> =
-            (0..displacement.len()).into_par_iter().with_min_len(CHUNK).map(row).collect();
+        let mut product = sum_by_chunks(image.par_iter_mut().enumerate().map(row));
         for (unknown, mass) in &self.sliding {
-            image[*unknown] -= *mass * displacement[*unknown];
+            let by = *mass * displacement[*unknown];
+            image[*unknown] -= by;
+            product -= by.dot(displacement[*unknown]);
         }
-        image
+        self.hold(image);
+        product
+    }
+
+    /// Takes out what walls hold.
+    fn hold(&self, vector: &mut [DVec3]) {
+        self.held.iter().for_each(|(unknown, freedom)| vector[*unknown] = freedom.project(vector[*unknown]));
     }
 }
 
@@ -212,8 +238,7 @@ fn add(to: &mut [DVec3], factor: f64, what: &[DVec3]) {
 }
 
 /// A sum whose order is that of the chunks, whichever thread adds them up.
-fn dot(a: &[DVec3], b: &[DVec3]) -> f64 {
-    let chunks = a.par_chunks(CHUNK).zip(b.par_chunks(CHUNK));
-    let sums: Vec<f64> = chunks.map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()).collect();
+fn sum_by_chunks(values: impl IndexedParallelIterator<Item = f64>) -> f64 {
+    let sums: Vec<f64> = values.fold_chunks(CHUNK, || 0.0, |sum, value| sum + value).collect();
     sums.iter().sum()
 }

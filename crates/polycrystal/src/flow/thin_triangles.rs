@@ -202,8 +202,11 @@ impl Room {
             }
         }
         for (stencils, coarser) in self.stencils.iter().zip(&surfaces).rev() {
-            descent = stencils.pull_back(&descent, coarser.len());
-            stiffness = stencils.pull_back(&stiffness, coarser.len());
+            for field in [&mut descent, &mut stiffness] {
+                let mut pulled = vec![DVec3::ZERO; coarser.len()];
+                stencils.pull_back(field, &mut pulled);
+                *field = pulled;
+            }
         }
         let eased = |point: &Movable| point.freedom.project(descent[point.place as usize]) * point.ease;
         let descent: Vec<DVec3> = self.movable.iter().map(eased).collect();

@@ -71,7 +71,7 @@ impl TiedPoints {
         points: &[DVec3],
         mut moves: Vec<DVec3>,
         freedom: impl Fn(u32) -> Freedom,
-        broken: impl Fn(&[DVec3]) -> Vec<P>,
+        mut broken: impl FnMut(&[DVec3]) -> Vec<P>,
     ) -> Result<Vec<DVec3>, NetworkError> {
         self.unite(&mut moves, &freedom, 0);
         let mut count = 0;
@@ -106,13 +106,10 @@ pub(crate) struct Numbering {
 
 impl Numbering {
     /// The places of all control points of a group in some patches.
-    pub(crate) fn places<'a>(
-        &'a self,
-        group: usize,
-        patches: &'a Patches,
-    ) -> impl Iterator<Item = usize> + 'a {
+    #[inline]
+    pub(crate) fn places<'a>(&'a self, group: usize, patches: &'a Patches) -> impl Iterator<Item = u32> + 'a {
         let members = self.members(group).iter();
-        members.flat_map(|point| patches.places_of_point(*point as usize).iter().copied())
+        members.flat_map(|point| patches.places_of_point(*point).iter().copied())
     }
 
     pub(crate) fn group_count(&self) -> usize {

@@ -3,11 +3,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::GrainId;
-use crate::flow::mobility::Mobility;
 use crate::solver::conjugate_gradients::{Limits, solve};
 use crate::solver::multigrid::Multigrid;
-use crate::solver::rows::CsrRows;
+use crate::solver::rows::{CsrRows, NewRow};
+use crate::{Freedom, GrainId};
 
 /// Most iterations. Without rounding as many as there are grains are enough; where rigid parts leave a grain no way to
 /// change its volume there is no solution, and going on would only blow up what rounding leaves.
@@ -20,6 +19,9 @@ const CANCELLED: f64 = 1e-13;
 /// are coarse. Sums of some hundred gradients stay below 10.
 const COARSE: f64 = 30.0;
 
+/// Grains whose volumes one task sums up.
+const GRAINS_PER_TASK: usize = 64;
+
 /// How the volumes of grains change when groups move: a sparse matrix J with a vector for each group and grain.
 pub(crate) struct VolumeConstraint {
     /// Of each group, its grains and the gradients of their volumes.
@@ -29,50 +31,47 @@ pub(crate) struct VolumeConstraint {
 }
 
 impl VolumeConstraint {
-    /// That of so many groups and grains: `fill` adds up the gradients of a group. `rounding` is a last place of the points.
+    /// That of so many grains and of groups with these freedoms: `fill` adds up the gradients of a group. `rounding` is a last place of
+    /// the points.
     pub(crate) fn new(
-        group_count: usize,
+        freedoms: &[Freedom],
         grain_count: usize,
         rounding: f64,
-        fill: impl Fn(usize, &mut VolumeGradients<'_>) + Sync,
+        fill: impl Fn(usize, &mut VolumeGradients<'_, '_>) + Sync,
     ) -> Self {
-        let row = |group: usize, entries: &mut Vec<(u32, DVec3)>| {
-            let mut volume_gradients = VolumeGradients { start: entries.len(), entries, length: 0.0 };
+        let row = |group: usize, row: &mut NewRow<'_, DVec3>| {
+            let mut volume_gradients = VolumeGradients { row, length: 0.0 };
             fill(group, &mut volume_gradients);
-            volume_gradients.drop_rounding(rounding);
+            volume_gradients.finish(rounding, freedoms[group]);
         };
-        let by_group = CsrRows::made_by(group_count, row);
+        let by_group = CsrRows::made_by(freedoms.len(), row);
         let by_grain = by_group.transposed(grain_count);
         Self { by_group, by_grain }
     }
 
-    /// The change of each grain's volume under a displacement: `J d`.
-    pub(crate) fn volume_change(&self, displacement: &[DVec3]) -> Vec<f64> {
+    /// The change of each grain's volume under displacements, given group by group: `J d`.
+    pub(crate) fn volume_change(&self, displacement: impl Fn(usize) -> DVec3 + Sync) -> Vec<f64> {
         let change = |grain: usize| {
             let row = self.by_grain.row(grain).iter();
-            row.map(|(group, gradient)| gradient.dot(displacement[*group as usize])).sum()
+            row.map(|(group, gradient)| gradient.dot(displacement(*group as usize))).sum()
         };
-        (0..self.by_grain.len()).into_par_iter().map(change).collect()
+        (0..self.by_grain.len()).into_par_iter().with_min_len(GRAINS_PER_TASK).map(change).collect()
     }
 
     /// The force of the grains' pressures on a group: a row of `J^T p`.
+    #[inline]
     pub(crate) fn force(&self, pressures: &[f64], group: usize) -> DVec3 {
         let row = self.by_group.row(group).iter();
         row.map(|(grain, gradient)| *gradient * pressures[*grain as usize]).sum()
     }
 
-    /// `J D J^T` for the mobility D of the groups.
-    pub(crate) fn compliance(&self, mobility: &[Mobility]) -> Compliance {
-        let row = |grain: usize, entries: &mut Vec<(u32, f64)>| {
-            let start = entries.len();
+    /// `J D J^T` for groups that move by D under a force of one.
+    pub(crate) fn compliance(&self, mobility: &[f64]) -> Compliance {
+        let row = |grain: usize, row: &mut NewRow<'_, f64>| {
             for (group, gradient) in self.by_grain.row(grain) {
-                let moved = mobility[*group as usize].of(*gradient);
+                let moved = *gradient * mobility[*group as usize];
                 for (other, gradient) in self.by_group.row(*group as usize) {
-                    let change = moved.dot(*gradient);
-                    match entries[start..].iter_mut().find(|(known, _)| known == other) {
-                        Some((_, sum)) => *sum += change,
-                        None => entries.push((*other, change)),
-                    }
+                    row.add(*other, moved.dot(*gradient));
                 }
             }
         };
@@ -81,31 +80,25 @@ impl VolumeConstraint {
 }
 
 /// The gradients of the volumes of a group, grain by grain, as they add up.
-pub(crate) struct VolumeGradients<'a> {
-    entries: &'a mut Vec<(u32, DVec3)>,
-    start: usize,
+pub(crate) struct VolumeGradients<'a, 'b> {
+    row: &'a mut NewRow<'b, DVec3>,
     /// The sum of all lengths.
     length: f64,
 }
 
-impl VolumeGradients<'_> {
+impl VolumeGradients<'_, '_> {
     /// Adds to the gradient of a grain's volume.
+    #[inline]
     pub(crate) fn add(&mut self, grain: GrainId, gradient: DVec3) {
         self.length += gradient.length();
-        match self.entries[self.start..].iter_mut().find(|(known, _)| *known == grain.0) {
-            Some((_, sum)) => *sum += gradient,
-            None => self.entries.push((grain.0, gradient)),
-        }
+        self.row.add(grain.0, gradient);
     }
 
-    /// A grain that moves as a whole keeps its volume: no pressure may push against what rounding leaves.
-    fn drop_rounding(self, rounding: f64) {
+    /// Leaves what counts where the group can move. A grain that moves as a whole keeps its volume: no pressure may push against what
+    /// rounding leaves.
+    fn finish(self, rounding: f64, freedom: Freedom) {
         let cancelled = CANCELLED * self.length + COARSE * rounding * self.length.sqrt();
-        for at in (self.start..self.entries.len()).rev() {
-            if self.entries[at].1.length() <= cancelled {
-                self.entries.remove(at);
-            }
-        }
+        self.row.filter_map(|gradient| (gradient.length() > cancelled).then(|| freedom.project(*gradient)));
     }
 }
 

@@ -35,6 +35,17 @@ impl<T: Copy + Default> Grouped<T> {
     }
 }
 
+/// The parts of a list that begin at the given places, of which the last is its end.
+pub(crate) fn split<'a, T>(mut list: &'a mut [T], starts: &[usize]) -> Vec<&'a mut [T]> {
+    let mut parts = Vec::with_capacity(starts.len() - 1);
+    for ends in starts.windows(2) {
+        let (part, rest) = list.split_at_mut(ends[1] - ends[0]);
+        parts.push(part);
+        list = rest;
+    }
+    parts
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

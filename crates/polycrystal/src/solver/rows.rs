@@ -1,11 +1,13 @@
 //! Sparse matrices.
 
+use std::ops::AddAssign;
+
 use rayon::prelude::*;
 
-/// CsrRows that one task makes: enough to be worth a task, and few enough for all threads to have some.
+/// Rows that one task makes: enough to be worth a task, and few enough for all threads to have some.
 const ROWS_PER_TASK: usize = 1024;
 
-/// CsrRows of pairs of a column and a value.
+/// Rows of pairs of a column and a value.
 #[derive(Debug)]
 pub(crate) struct CsrRows<T> {
     starts: Vec<usize>,
@@ -21,8 +23,8 @@ impl<T: Copy> CsrRows<T> {
         Self { starts, entries: rows.concat() }
     }
 
-    /// CsrRows that are made in parallel: `fill` appends the entries of a row to those of others before it.
-    pub(crate) fn made_by(count: usize, fill: impl Fn(usize, &mut Vec<(u32, T)>) + Sync) -> Self
+    /// Rows that are made in parallel, each by `fill`.
+    pub(crate) fn made_by(count: usize, fill: impl Fn(usize, &mut NewRow<'_, T>) + Sync) -> Self
     where
         T: Send,
     {
@@ -31,7 +33,7 @@ impl<T: Copy> CsrRows<T> {
             let rows = task * ROWS_PER_TASK..count.min((task + 1) * ROWS_PER_TASK);
             let ends: Vec<usize> = rows
                 .map(|row| {
-                    fill(row, &mut entries);
+                    fill(row, &mut NewRow { start: entries.len(), entries: &mut entries });
                     entries.len()
                 })
                 .collect();
@@ -79,6 +81,36 @@ impl<T: Copy> CsrRows<T> {
 
     pub(crate) fn len(&self) -> usize {
         self.starts.len() - 1
+    }
+}
+
+/// A row as it is made: each column once.
+pub(crate) struct NewRow<'a, T> {
+    /// Those of rows before it come first.
+    entries: &'a mut Vec<(u32, T)>,
+    start: usize,
+}
+
+impl<T: AddAssign> NewRow<'_, T> {
+    /// Adds to the value of a column.
+    #[inline]
+    pub(crate) fn add(&mut self, column: u32, value: T) {
+        match self.entries[self.start..].iter_mut().find(|(known, _)| *known == column) {
+            Some((_, sum)) => *sum += value,
+            None => self.entries.push((column, value)),
+        }
+    }
+
+    /// Makes other values of those that there are, or takes them out.
+    pub(crate) fn filter_map(&mut self, value: impl Fn(&T) -> Option<T>) {
+        let mut kept = self.start;
+        for at in self.start..self.entries.len() {
+            if let Some(value) = value(&self.entries[at].1) {
+                self.entries[kept] = (self.entries[at].0, value);
+                kept += 1;
+            }
+        }
+        self.entries.truncate(kept);
     }
 }
 

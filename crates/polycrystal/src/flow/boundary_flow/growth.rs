@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use super::{End, Flow, LevelSectors, OnFold};
-use crate::check::folds::element_normals;
 use crate::flow::relaxation::{TIME_OF_KEPT_TOPOLOGY, check_grains_are_left};
 use crate::{GrainId, NetworkError};
 
@@ -94,11 +93,12 @@ impl Flow<'_> {
     fn try_step(&mut self, points: &[DVec3], time: f64) -> Result<Trial, NetworkError> {
         let groups = self.groups.clone();
         let mut at_once = points.to_vec();
-        self.step(&mut at_once, time)?;
+        self.step(&mut at_once, &mut self.placed(points), time)?;
         self.groups = groups;
         let mut halves = points.to_vec();
-        self.step(&mut halves, 0.5 * time)?;
-        self.step(&mut halves, 0.5 * time)?;
+        let mut surface = self.placed(points);
+        self.step(&mut halves, &mut surface, 0.5 * time)?;
+        self.step(&mut halves, &mut surface, 0.5 * time)?;
         let volumes = self.volumes_at(&halves);
         let differences = self.volumes_at(&at_once).into_iter().zip(&volumes).map(|(whole, halves)| {
             let error = (whole / halves - 1.0).abs();
@@ -109,8 +109,8 @@ impl Flow<'_> {
         let (worst, error) = worst.map_or((GrainId(0), 0.0), |(grain, error)| (GrainId(grain), error));
         let extrapolated: Vec<DVec3> =
             halves.iter().zip(&at_once).map(|(halves, once)| *halves + (*halves - *once)).collect();
-        let before = element_normals(self.surface(), &self.refined(points));
-        let is_broken = !self.broken_elements(&before, &extrapolated).is_empty();
+        let [before, after] = [points, &extrapolated].map(|points| self.placed(points).normals);
+        let is_broken = !self.broken_elements(&before, &after).is_empty();
         if is_broken {
             return Ok(Trial { points: halves, volumes, error, worst });
         }

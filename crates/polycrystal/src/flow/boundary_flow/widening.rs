@@ -32,7 +32,12 @@ const TRIES: [Moving; 3] = [Moving::Inside, Moving::Lines, Moving::Lines];
 
 impl Flow<'_> {
     /// Makes thin triangles of the finest level wide, as far as nothing folds; `surface` are the points of that level.
-    pub(super) fn widen_all(&self, points: &mut Vec<DVec3>, mut surface: Vec<DVec3>, finest: &LevelSectors) {
+    pub(super) fn widen_all(
+        &self,
+        points: &mut Vec<DVec3>,
+        mut surface: Vec<DVec3>,
+        finest: &LevelSectors<'_>,
+    ) {
         // Where grains grow, what that does to volumes would count as growth.
         let widens = self.tuning.widening > 0.0 && self.volumes == Volumes::Kept;
         let tries = if widens { TRIES.as_slice() } else { &[] };
@@ -114,9 +119,9 @@ impl Flow<'_> {
         let level = &self.network.levels()[self.level];
         let elements = by_boundary(self.network.boundaries().len(), &level.boundary_of);
         let around = |movable: &Vec<u32>| {
-            let places = movable.iter().flat_map(|point| self.patches.places_of_point(*point as usize));
+            let places = movable.iter().flat_map(|point| self.patches.places_of_point(*point));
             let mut boundaries: Vec<usize> =
-                places.map(|place| self.patches.point_of_place(*place).0).collect();
+                places.map(|place| self.patches.patch_of_place(*place)).collect();
             boundaries.sort_unstable();
             boundaries.dedup();
             boundaries.into_iter().flat_map(|boundary| &elements[boundary]).copied().collect()
