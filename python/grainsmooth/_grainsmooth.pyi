@@ -15,6 +15,7 @@ __all__ = [
     "generate",
     "measure",
     "of_labels",
+    "of_map",
     "of_settings",
     "options",
     "read",
@@ -120,6 +121,12 @@ def of_labels(
     origin: Sequence[float],
     exterior_label: int | None,
     min_voxels: int,
+    threads: int,
+    progress: Callable[[str, int, int], object] | None,
+) -> Polycrystal: ...
+def of_map(
+    path: str | os.PathLike[str],
+    options: Mapping[str, Any],
     threads: int,
     progress: Callable[[str, int, int], object] | None,
 ) -> Polycrystal: ...

@@ -197,6 +197,31 @@ class Polycrystal:
             )
         return cls._of(made, {}, None)
 
+    @classmethod
+    def from_map(
+        cls, path: str | os.PathLike[str], *, threads: int | None = None, progress: Progress = False, **options: Any
+    ) -> Polycrystal:
+        """Make the smooth network of a measured map from a file, as the program's command ``smooth`` does.
+
+        Parameters
+        ----------
+        path : str or path
+            A map: .vti, .npy, .nrrd, .mhd, .tesr or .raw.
+        threads, progress
+            As of :meth:`generate`.
+        **options
+            How the map is read, by the names of that command's options: such as ``label_array``, ``spacing``, ``axes``, ``crop``,
+            ``exterior_label``, ``min_voxels``, and for .raw ``shape`` and ``type``.
+
+        Returns
+        -------
+        Polycrystal
+            Its grains count from 0 in the order of their labels, which :attr:`seed_id` has.
+        """
+        with told(progress) as tell:
+            made = _grainsmooth.of_map(os.fspath(path), options, _inputs.thread_count(threads), tell)
+        return cls._of(made, {}, None)
+
     def _whole(self) -> _grainsmooth.Polycrystal:
         """All that is known of it; where it came as arrays, it is made once more and compared."""
         if self._made is None:

@@ -21,7 +21,7 @@ mod _grainsmooth {
     #[pymodule_export]
     use crate::errors::InternalError;
     #[pymodule_export]
-    use crate::maps::of_labels;
+    use crate::maps::{of_labels, of_map};
     #[pymodule_export]
     use crate::network::Network;
     #[pymodule_export]

@@ -1,20 +1,46 @@
 //! Networks of labelled voxels in memory.
 
-use std::path::Path;
-use std::time::Duration;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use grainsmooth::{FileOptions, LabelMap, MapOptions, MapRun, MeasuredMap, smooth_map};
+use grainsmooth::cli::Arguments;
+use grainsmooth::{FileOptions, LabelMap, MapOptions, MapRun, MeasuredMap, Stage, read_map, smooth_map};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::arrays::list;
-use crate::errors::invalid;
+use crate::errors::{invalid, to_python};
+use crate::options::given;
 use crate::polycrystal::Polycrystal;
 use crate::run::run;
 
 /// What errors and files name as the source.
 const SOURCE: &str = "labels";
+
+/// The smooth network of a map from a file, by the options of the program's `smooth`.
+#[pyfunction]
+pub fn of_map(
+    py: Python<'_>,
+    path: PathBuf,
+    options: &Bound<'_, PyDict>,
+    threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Polycrystal> {
+    let arguments = Arguments::of_smooth(&path, &given(options)?).map_err(to_python)?;
+    run(py, threads, progress, move |tell| {
+        tell(Stage::Map, 0, 1);
+        let start = Instant::now();
+        let measured = read_map(&path, &arguments.options)?;
+        let run_of = MapRun {
+            command_line: format!("grainsmooth.Polycrystal.from_map({:?})", path.display().to_string()),
+            file: FileOptions::default(),
+            read_in: start.elapsed(),
+        };
+        smooth_map(&path, &measured, run_of, tell).map(Polycrystal::new)
+    })
+}
 
 /// The smooth network of labels, x fastest.
 #[pyfunction]

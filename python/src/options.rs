@@ -9,15 +9,20 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 
 use crate::errors::to_python;
 
-/// The arguments that keywords give: an option's long name with `_` for `-`, and `None` where it is not given.
+/// The arguments that keywords give.
 pub fn arguments(keywords: &Bound<'_, PyDict>) -> PyResult<Arguments> {
+    Arguments::of_options(&given(keywords)?).map_err(to_python)
+}
+
+/// Keywords as options: a long name has `_` for `-`, and `None` is not given.
+pub fn given(keywords: &Bound<'_, PyDict>) -> PyResult<Vec<(String, OptionValue)>> {
     let mut given = Vec::new();
     for (name, value) in keywords.iter().filter(|(_, value)| !value.is_none()) {
         let name: String = name.extract()?;
         let value = option_value(&name, &value)?;
         given.push((name.replace('_', "-"), value));
     }
-    Arguments::of_options(&given).map_err(to_python)
+    Ok(given)
 }
 
 fn option_value(name: &str, value: &Bound<'_, PyAny>) -> PyResult<OptionValue> {

@@ -73,6 +73,7 @@ def test_normals_point_from_the_first_side_to_the_second(grains: grainsmooth.Pol
 
 
 def test_grains_of_the_plane_have_segments() -> None:
+    needed("pandas")
     grains = grainsmooth.Polycrystal.generate(seeds=12, dim=2, levels=2)
     assert grains.segments.shape[1] == 2
     with pytest.raises(ValueError, match="no triangles"):

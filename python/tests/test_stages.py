@@ -81,6 +81,18 @@ def test_networks_of_labels_keep_the_volumes_of_their_voxels() -> None:
     np.testing.assert_array_equal(same.points, grains.points)
 
 
+def test_maps_are_read_as_arrays_are(tmp_path: pathlib.Path) -> None:
+    labels = np.zeros((6, 5, 4), dtype=np.uint16)
+    labels[3:] = 7
+    np.save(tmp_path / "map.npy", labels)
+    of_file = grainsmooth.Polycrystal.from_map(tmp_path / "map.npy", spacing=0.25, min_voxels=2)
+    np.testing.assert_array_equal(of_file.points, grainsmooth.Polycrystal.from_labels(labels, spacing=0.25).points)
+    with pytest.raises(ValueError, match="unknown key 'spacin'; did you mean 'spacing'?"):
+        grainsmooth.Polycrystal.from_map(tmp_path / "map.npy", spacin=1)
+    with pytest.raises(FileNotFoundError):
+        grainsmooth.Polycrystal.from_map(tmp_path / "none.npy")
+
+
 WRONG = [
     (lambda: grainsmooth.Tessellation([[0.5, np.nan, 0.5]]), ValueError, r"seeds\[0, 1\] is nan"),
     (lambda: grainsmooth.Tessellation([["a", "b", "c"]]), TypeError, "seeds: give numbers"),

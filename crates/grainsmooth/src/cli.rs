@@ -1,12 +1,13 @@
 //! The command line, of the program and of whoever gives its options in another way.
 
 use std::ffi::OsString;
+use std::path::Path;
 
 use crate::error::usage::UsageError;
 use crate::prelude::Dimension;
 use crate::{Coloring, Config, Error, PeriodicCut, SizeOptions, Slice, read_file_domain};
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
 
 mod check;
@@ -125,11 +126,20 @@ impl Arguments {
     pub fn of_options(options: &[(String, OptionValue)]) -> Result<Self, Error> {
         let mut command = Self::command();
         command.build();
-        let words = options
-            .iter()
-            .map(|(name, value)| Ok(option_value::option(name, value, &command)?.1))
-            .collect::<Result<Vec<_>, String>>();
-        Self::of_words(words)
+        Self::of_words(option_value::all_words(options, &command))
+    }
+
+    /// The arguments of `smooth` for a map, with its options by their long names.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where one is mistaken.
+    pub fn of_smooth(map: &Path, options: &[(String, OptionValue)]) -> Result<SmoothArguments, Error> {
+        let mut command = SmoothArguments::augment_args(clap::Command::new("smooth"));
+        command.build();
+        let words = option_value::all_words(options, &command).map_err(invalid)?.concat();
+        let words = [vec!["smooth".into()], words, vec!["--".into(), map.into()]].concat();
+        let matches = command.try_get_matches_from(words).map_err(UsageError::from)?;
+        Ok(SmoothArguments::from_arg_matches(&matches).map_err(UsageError::from)?)
     }
 
     /// The arguments that settings tell, as TOML: those of a config, or of a file that was written.

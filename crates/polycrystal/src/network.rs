@@ -212,6 +212,7 @@ impl Network {
         let mut levels = vec![level];
         let mut stencils = Vec::new();
         for coarser in 0..level_count {
+            check_cancelled();
             let (finer, table) = levels[coarser].refine(&boundaries, &wall_sets)?;
             levels.push(finer);
             stencils.push(table);

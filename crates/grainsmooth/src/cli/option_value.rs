@@ -28,6 +28,17 @@ pub enum OptionValue {
     Parts(Vec<(String, OptionValue)>),
 }
 
+/// The words of all options, each with its own.
+///
+/// # Errors
+/// What is wrong with one, in one line.
+pub(super) fn all_words(
+    options: &[(String, OptionValue)],
+    command: &Command,
+) -> Result<Vec<Vec<OsString>>, String> {
+    options.iter().map(|(name, value)| Ok(option(name, value, command)?.1)).collect()
+}
+
 /// The option of a long name with its value: as words, which are found good by themselves.
 ///
 /// # Errors

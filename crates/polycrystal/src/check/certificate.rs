@@ -1,6 +1,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -119,6 +120,7 @@ pub(crate) fn inspect(surface: &Surface<'_>, adjacency: &Adjacency, expected: &E
     if !certificate.faults.0.is_empty() {
         return certificate;
     }
+    check_cancelled();
     let (normals, sines) = normals_and_sines(surface);
     certificate.triangles = triangle_quality(sines);
     let by_boundary = surface.elements_by_boundary();
@@ -140,6 +142,7 @@ pub(crate) fn inspect(surface: &Surface<'_>, adjacency: &Adjacency, expected: &E
     faults.extend(orphans.map(|point| Fault::Orphan { point }));
     faults.extend(closing);
     let has_area = |pair: &[u32; 2]| pair.iter().all(|element| normals[*element as usize] != DVec3::ZERO);
+    check_cancelled();
     let folded = folded_pairs(&adjacency.inner, &normals, FOLD_COSINE).into_iter().filter(has_area);
     faults.extend(folded.map(|elements| Fault::Folded { elements, grains: surface.grains_at(elements) }));
     let crossing = crossing.into_iter();

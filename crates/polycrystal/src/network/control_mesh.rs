@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 use subzero::{Crease, CurveMesh, Features, TriangleMesh};
 use voronoi::{Dimension, Edges, FaceId, PeriodicPair, Tessellation, Translation};
@@ -164,6 +165,7 @@ fn surfaces(
     copies.add_faces(tessellation.periodic_faces(), &of_faces, points.len());
     let (mut triangles, mut boundary_of, mut at_triangle_edges) = (Vec::new(), Vec::new(), Vec::new());
     for ((face, boundary), mesh) in (0u32..).zip(&boundaries).zip(faces) {
+        check_cancelled();
         let outline_count = id(mesh.outline.len());
         let first_inner = id(points.len());
         let inside = Meeting::inside(boundary);
@@ -245,6 +247,7 @@ fn lines(
     let mut first_segments = vec![0];
     let mut vertices = Meetings::new(vertex_count, tessellation.periodic_vertices().iter().map(vertex_pair));
     for (face, ends) in tessellation.faces().zip(&ends) {
+        check_cancelled();
         segments.extend(lines.whole_line(face.0, *ends).windows(2).map(|ends| [ends[0], ends[1]]));
         boundary_of.resize(segments.len(), BoundaryId(face.0));
         first_segments.push(id(segments.len()));
@@ -289,6 +292,7 @@ fn junctions_of(
     let mut at_edges = Meetings::new(edges.ends.len(), copied_lines.iter().copied());
     let mut next_corner = edges.of_corner.iter();
     for face in tessellation.faces() {
+        check_cancelled();
         let sides = tessellation.face_sides(face);
         for (corner, edge) in tessellation.face_corners(face).iter().zip(&mut next_corner) {
             at_vertices.note(corner.index(), sides);
