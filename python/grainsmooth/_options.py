@@ -325,6 +325,28 @@ class Options(TypedDict, total=False):
 
     Example of the command line: ``--arrays -o grains.vtm``"""
 
+    volume_mesh: bool
+    """Write tetrahedra that fill the grains to .msh and .vtu, which else hold boundaries; .inp and .bdf always have them
+
+    Example of the command line: ``--elements-per-grain 5 --volume-mesh -o grains.vtu``"""
+
+    periodic_equations: bool
+    """Tie the nodes of .inp that stand a period apart by equations, with a node for each axis that moves as the box is to be
+    stretched
+
+    Example of the command line: ``--periodic x,y,z --elements-per-grain 4 --periodic-equations -o grains.inp``"""
+
+    cohesive: bool
+    """Give each grain of .inp nodes of its own, and put cohesive elements (COH3D6 of Abaqus) between the grains, which may
+    part
+
+    Example of the command line: ``--elements-per-grain 4 --cohesive -o grains.inp``"""
+
+    solver_deck: Literal["tension-x"]
+    """Write a job for CalculiX and Abaqus beside .inp: the box pulled along x, with the elasticity of a crystal for each phase
+
+    Example of the command line: ``--texture random --elements-per-grain 4 --solver-deck tension-x -o grains.inp``"""
+
     vtk_encoding: Literal["raw", "base64", "zlib"]
     """How .vtp, .vtu, .vti and .vtm hold their numbers: raw is the fastest; base64 and zlib are read by more programs
 
