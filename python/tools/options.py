@@ -33,6 +33,8 @@ LEFT_OUT = {
     "picture_size": "an argument of Polycrystal.picture",
     "color_by": "an argument of Polycrystal.picture",
     "explode": "an argument of Polycrystal.picture",
+    "slice": "pyvista's clip, or the program",
+    "transparent": "an argument of pyvista's add_mesh, or the program",
     "report": "Polycrystal.report",
     "dry_run": "nothing is written unless it is saved",
     "json_summary": "Polycrystal.summary",
