@@ -101,10 +101,8 @@ class Ensemble:
 
     @property
     def runs(self) -> pd.DataFrame:
-        """A row for each run: index, rng_seed, what varies, its figures, seconds, and error (None where it is good)."""
-        pandas = _inputs.require("pandas", "pandas")
-        table: pd.DataFrame = pandas.DataFrame(self._rows)
-        return table
+        """A row for each run: index, rng_seed, what varies (lists as JSON), its figures, seconds, and error (None where it is good)."""
+        return _table(self._rows)
 
     def summary(self, confidence: float = 0.95) -> pd.DataFrame:
         """Means with confidence intervals, by Student's t over the good runs of each combination of what varies.
@@ -306,16 +304,20 @@ class _Study:
         if self._folder is None:
             return
         self._unsaved = 0
-        pandas = _inputs.require("pandas", "ensemble")
         _inputs.require("pyarrow", "ensemble")
-        rows = sorted(self.rows(False), key=lambda row: int(row["index"]))
-        table = pandas.DataFrame([{name: _cell(value) for name, value in row.items()} for row in rows])
+        table = _table(sorted(self.rows(False), key=lambda row: int(row["index"])))
         # A column without any value would change its type with the first one.
         if "error" in table:
             table["error"] = table["error"].astype("string")
         unfinished = self._folder / (TABLE + ".unfinished")
         table.to_parquet(unfinished)
         os.replace(unfinished, self._folder / TABLE)
+
+
+def _table(rows: list[dict[str, Any]]) -> pd.DataFrame:
+    pandas = _inputs.require("pandas", "ensemble")
+    table: pd.DataFrame = pandas.DataFrame([{name: _cell(value) for name, value in row.items()} for row in rows])
+    return table
 
 
 def _cell(value: Any) -> Any:

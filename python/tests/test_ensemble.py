@@ -61,6 +61,14 @@ def test_confidence_intervals_hold_the_mean() -> None:
     assert (summary["low"], summary["high"]) == (pytest.approx(0.4457, abs=1e-3), pytest.approx(4.5543, abs=1e-3))
 
 
+def test_lists_may_vary() -> None:
+    needed("pandas")
+    study = grainsmooth.ensemble({**BASE, "seeds": 5}, {"box": [[1, 1, 1], [2, 1, 1]]}, 2, workers=1)
+    summary = study.summary()
+    volumes = summary[summary["figure"] == "volume_mean"].set_index("box")["mean"]
+    assert volumes.to_dict() == {"[1, 1, 1]": pytest.approx(0.2), "[2, 1, 1]": pytest.approx(0.4)}
+
+
 def test_an_interrupted_study_goes_on(tmp_path: pathlib.Path) -> None:
     needed("pyarrow")
     whole = grainsmooth.ensemble(BASE, {"seeds": [5, 6]}, 3, workers=1)
