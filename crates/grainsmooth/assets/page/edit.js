@@ -25,6 +25,8 @@ export class EditPage {
     this.legend = element("div", { className: "legend" });
     this.bubble = element("div", { className: "bubble", role: "alert" });
     stage.view.append(this.legend, this.bubble);
+    // Patches are smooth: their triangles are no part of them.
+    this.shape.look.wires = this.model !== "bezier";
     this.build(panel, this.unpacked.head);
     this.saved = 0;
     this.show(this.unpacked);
@@ -63,7 +65,7 @@ export class EditPage {
     if (this.model !== "curves") {
       choice(look, "Shading", { id: "shading", options: [["flat", "flat"], ["smooth", "smooth"]] }, (shading) => this.appear({ smooth: shading === "smooth" }));
       choice(look, "Colours", { id: "coloring", options: [["", "none"], ["generation", "generation"], ["curvature", "mean curvature"], ["valence", "valence"]] }, (color) => this.look({ color }));
-      check(look, "edges of the surface", { id: "wires", value: true, key: "W" }, (wires) => this.appear({ wires }));
+      check(look, "edges of the surface", { id: "wires", value: isMesh, key: "W" }, (wires) => this.appear({ wires }));
       check(look, "normals", { id: "normals", key: "N" }, (normals) => this.appear({ normals }));
     }
     check(look, "control points", { id: "points", value: true }, (points) => this.appear({ points }));

@@ -37,9 +37,8 @@ void main() {
   facing = mat3(modelViewMatrix) * normal.xyz;
   seen = view.xyz;
   number = value;
-  // Lines stand a little before their surfaces, and walls between grains before outer walls that they meet, which else shine through.
-  float nearer = toward + (pair.y >= 0 ? 0.0002 : 0.0);
-  gl_Position = projectionMatrix * vec4(view.xyz * (1.0 - nearer), 1.0);
+  // Lines stand a little before their surfaces.
+  gl_Position = projectionMatrix * vec4(view.xyz * (1.0 - toward), 1.0);
 }`;
 
 const SHOWN = COMMON + `
