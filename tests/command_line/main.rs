@@ -16,6 +16,7 @@ mod grain_shapes;
 mod inside;
 mod maps;
 mod measure;
+mod orientation_maps;
 mod periodic;
 mod phases;
 mod pictures;

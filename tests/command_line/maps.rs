@@ -274,7 +274,7 @@ fn maps_that_cannot_be_used() {
         ),
         (
             "map.png",
-            "map.png: unknown extension; give a map *.vti, *.npy, *.nrrd, *.nhdr, *.mhd, *.mha, *.tesr or *.raw",
+            "map.png: unknown extension; give a map *.vti, *.npy, *.nrrd, *.nhdr, *.mhd, *.mha, *.tesr, *.raw, *.ang or *.ctf",
         ),
         (
             "no.vti",

@@ -92,7 +92,7 @@ pub use formats::label_grid::LabelGrid;
 pub use formats::output::{Output, OutputDirectory};
 pub use formats::output_format::{OutputFormat, ToWrite};
 pub use formats::series::{Series, SeriesOutput, write_collection};
-pub use grains::attributes::GrainAttributes;
+pub use grains::attributes::{GrainAttributes, MeasuredAttributes};
 pub use grains::boundary_law::{BoundaryLaw, LawReached, TensionsReached};
 pub use grains::cells::GrainCells;
 pub use grains::inner::{Divided, Parents};
@@ -106,7 +106,8 @@ pub use input::tess::{
     Oriented, Tess, TessCopy, TessDomain, TessFace, TessPeriodicity, TessProblem, TessSeed, read_tess,
 };
 pub use input::texture_file::{OrientationList, read_disorientation_file, read_texture_file};
-pub use maps::label_map::{LabelMap, MeasuredMap};
+pub use maps::ebsd_options::{AxisAngle, EbsdOptions};
+pub use maps::label_map::{LabelMap, MeasuredCrystals, MeasuredMap, PointCounts};
 pub use maps::options::{Axes, Crop, MapOptions};
 pub use maps::read::read_map;
 pub use measure::report::{FittedDistribution, MeasuredPhase, MeasuredTexture, SampleReport};

@@ -1,8 +1,11 @@
 //! Measured maps: labels of grains on a grid, in the files of other programs.
 
 pub(crate) mod cleaning;
+mod ebsd;
+pub(crate) mod ebsd_options;
 pub(crate) mod label_map;
 mod mhd;
+mod neighbors;
 mod npy;
 mod nrrd;
 mod number_type;

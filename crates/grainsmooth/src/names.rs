@@ -23,6 +23,12 @@ pub(crate) const PARENT: &str = "Parent";
 /// The array of the phases of grains.
 pub(crate) const PHASE: &str = "Phase";
 
+/// The array of the numbers of voxels, pixels or points of grains.
+pub(crate) const VOXEL_COUNT: &str = "VoxelCount";
+
+/// The array of the grain orientation spreads.
+pub(crate) const SPREAD: &str = "GOS";
+
 /// The array of the numbers of boundaries.
 pub(crate) const BOUNDARY_ID: &str = "BoundaryId";
 

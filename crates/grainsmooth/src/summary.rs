@@ -20,6 +20,9 @@ use crate::{
     ShapesReached, SizesReached, Stage, Synthesis, Tessellated, TriangleAngles, VolumeMesh,
 };
 
+/// Degrees of spread above which the points of a grain have hardly one orientation.
+const LARGE_SPREAD: f64 = 5.0;
+
 /// A polycrystal in a few lines of text: counts, angles, volumes, validation, times.
 pub struct Summary<'a>(pub &'a Polycrystal);
 
@@ -139,10 +142,12 @@ impl fmt::Display for Summary<'_> {
 
 /// What the map was, and what was changed of it.
 fn write_map(out: &mut fmt::Formatter<'_>, measurement: &Measurement) -> fmt::Result {
-    let Measurement { map_shape: [nx, ny, nz], dropped: [grains, voxels], relabelled, .. } = measurement;
-    match nz {
-        1 => write!(out, "map         {nx} x {ny} pixels")?,
-        _ => write!(out, "map         {nx} x {ny} x {nz} voxels")?,
+    let Measurement { map_shape: [nx, ny, nz], dropped: [grains, voxels], relabelled, points, .. } =
+        measurement;
+    match (points, nz) {
+        (Some(points), _) => write!(out, "map         {points}")?,
+        (None, 1) => write!(out, "map         {nx} x {ny} pixels")?,
+        (None, _) => write!(out, "map         {nx} x {ny} x {nz} voxels")?,
     }
     if *grains > 0 {
         write!(out, "; {grains} small grains with {voxels} of them went to neighbours")?;
@@ -150,7 +155,32 @@ fn write_map(out: &mut fmt::Formatter<'_>, measurement: &Measurement) -> fmt::Re
     if *relabelled > 0 {
         write!(out, "; {relabelled} got another label where a grain touched itself")?;
     }
-    writeln!(out)
+    writeln!(out)?;
+    write_crystals(out, measurement)
+}
+
+/// The phases of measured grains, and how far their points are spread around their mean orientations.
+fn write_crystals(out: &mut fmt::Formatter<'_>, Measurement { grains, .. }: &Measurement) -> fmt::Result {
+    let Some((phases, measured)) = grains.phases.as_ref().zip(grains.measured.as_ref()) else {
+        return Ok(());
+    };
+    let volumes: Vec<f64> = measured.voxel_counts.iter().map(|count| *count as f64).collect();
+    for share in phases.shares(&volumes, &volumes).iter().filter(|share| share.grains > 0) {
+        writeln!(out, "phase {:<6}{share}", share.number)?;
+    }
+    let Some(spreads) = &measured.spreads else { return Ok(()) };
+    let mean = spreads.iter().zip(&volumes).map(|(spread, volume)| spread * volume).sum::<f64>()
+        / volumes.iter().sum::<f64>();
+    let largest = spreads.iter().copied().fold(0.0, f64::max);
+    let drifting = spreads.iter().filter(|spread| **spread > LARGE_SPREAD).count();
+    write!(out, "spread      {mean:.2} degrees from the mean orientation (GOS), at most {largest:.2}")?;
+    match drifting {
+        0 => writeln!(out),
+        _ => writeln!(
+            out,
+            "; {drifting} grains above {LARGE_SPREAD}: there small steps add up, and a lower --threshold may part them"
+        ),
+    }
 }
 
 /// What became of short edges of the cells.

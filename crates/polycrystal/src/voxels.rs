@@ -119,6 +119,7 @@ fn smoothed_points(
         wanted: &wanted,
         is_open: staircase.kinds.iter().any(|kind| kind.wall.is_none() && kind.labels[1] == OUTSIDE),
         rounds: tuning.volume_rounds,
+        longest: tuning.longest_motion,
     };
     let volume_error = search.restore(&mut points, &boxes, &vec![false; middles.len()]);
     let untangling = Untangling { graph: &graph, boxes: &boxes, starts: &starts, search: &search, tuning };

@@ -243,3 +243,27 @@ proptest! {
         check(&map, &smoothed);
     }
 }
+
+#[test]
+fn grains_of_one_voxel_leave_other_boundaries_smooth() {
+    // A slanted boundary, with single voxels of noise far from it, side by side, corner to corner and alone.
+    for (shape, noise) in [
+        ([40, 40, 1], &[[4, 30, 0], [5, 31, 0], [9, 35, 0], [10, 35, 0], [30, 6, 0]][..]),
+        ([20, 20, 8], &[[3, 15, 4], [4, 16, 4], [3, 15, 5], [16, 3, 2]][..]),
+    ] {
+        let slanted = |[x, y, _]: [usize; 3]| u32::from(3 * x > 2 * y + 5);
+        let clean = smoothed(&voxels(DVec3::ONE, shape, |voxel| Some(slanted(voxel))));
+        let noisy = voxels(DVec3::ONE, shape, |voxel| {
+            let speck = noise.iter().position(|speck| *speck == voxel);
+            Some(speck.map_or(slanted(voxel), |speck| 2 + u32::try_from(speck).expect("a few")))
+        });
+        let found = smoothed(&noisy);
+        check(&noisy, &found);
+        assert_eq!(found.relabelled, 0);
+        for point in &clean.points {
+            let nearest =
+                found.points.iter().map(|other| other.distance(*point)).fold(f64::INFINITY, f64::min);
+            assert!(nearest < 0.02, "{shape:?}: {point} is {nearest} away");
+        }
+    }
+}

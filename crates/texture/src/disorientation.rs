@@ -49,4 +49,12 @@ impl CrystalSymmetry {
         let least = rotation.conjugate() * between;
         2.0 * least.xyz().length().atan2(least.w.abs()).to_degrees()
     }
+
+    /// How far two crystals are from being twins, in degrees: turned against each other by an angle in degrees about an axis, which has components along the orthogonal axes of
+    /// the crystal, and any length above 0.
+    pub fn twin_deviation(self, first: Orientation, second: Orientation, degrees: f64, axis: DVec3) -> f64 {
+        let twin = glam::DQuat::from_axis_angle(axis.normalize(), degrees.to_radians());
+        let twins = self.rotations().iter().map(|rotation| Orientation::new(first.raw() * *rotation * twin));
+        twins.map(|twin| self.disorientation_angle(twin, second)).fold(f64::INFINITY, f64::min)
+    }
 }

@@ -64,6 +64,12 @@ impl Orientation {
         Some(Self::from_matrix(DMat3::from_cols(x, z.cross(x), z)))
     }
 
+    /// The orientation of the crystal after it was turned with its sample by an angle in degrees about an axis of the sample, of any length above 0.
+    #[must_use]
+    pub fn turned(self, axis: DVec3, degrees: f64) -> Self {
+        Self::new(DQuat::from_axis_angle(axis.normalize(), degrees.to_radians()) * self.0)
+    }
+
     /// The unit quaternion, scalar first and not negative.
     pub fn quaternion(self) -> [f64; 4] {
         [self.0.w, self.0.x, self.0.y, self.0.z]

@@ -1,8 +1,11 @@
 //! Swaps toward a histogram of disorientations.
 
+use glam::DVec3;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use texture::{AngleHistogram, CrystalSymmetry, HistogramError, Pair, RandomDisorientations, Texture};
+use texture::{
+    AngleHistogram, CrystalSymmetry, HistogramError, Orientation, Pair, RandomDisorientations, Texture,
+};
 
 const CUBIC: CrystalSymmetry = CrystalSymmetry::Octahedral;
 
@@ -97,4 +100,40 @@ fn histograms_that_no_crystals_have_are_refused() {
             .starts_with("bin 2 begins at 63 degrees, where no two cubic crystals are: they differ by 62.")
     );
     assert!(AngleHistogram::new(&[(63.0, 1.0), (65.0, 0.0)], CUBIC).is_ok(), "the remedy works");
+}
+
+#[test]
+fn twins_are_found_in_each_of_their_forms() {
+    let [x, diagonal] = [DVec3::X, DVec3::new(1.0, 1.0, 1.0)];
+    let start = Orientation::from_euler_degrees([33.0, 71.0, 12.0]);
+    // 60 degrees about any of the four <111>, and the same twin as 180 degrees about <112> and 109.47 degrees about <110>.
+    for (angle, axis) in [
+        (60.0, diagonal),
+        (60.0, DVec3::new(-1.0, 1.0, 1.0)),
+        (180.0, DVec3::new(1.0, 1.0, 2.0)),
+        (109.471_220_634_490_69, DVec3::new(1.0, -1.0, 0.0)),
+    ] {
+        let twin = start.turned(start.to_sample(axis), angle);
+        assert!(CUBIC.twin_deviation(start, twin, 60.0, diagonal) < 1e-6, "{angle} about {axis}");
+        assert!(CUBIC.twin_deviation(twin, start, 60.0, diagonal) < 1e-6);
+        let off = twin.turned(DVec3::Y, 2.0);
+        assert!((CUBIC.twin_deviation(start, off, 60.0, diagonal) - 2.0).abs() < 1e-6);
+    }
+    assert!(CUBIC.twin_deviation(start, start, 60.0, diagonal) > 50.0);
+    // Magnesium's {10-12} twins: 86.3 degrees about a.
+    let hexagonal = CrystalSymmetry::Hexagonal;
+    let third = DVec3::new(-0.5, 0.75_f64.sqrt(), 0.0);
+    let twin = start.turned(start.to_sample(third), 86.3);
+    assert!(hexagonal.twin_deviation(start, twin, 86.3, x) < 1e-6);
+}
+
+#[test]
+fn turns_of_the_sample_carry_crystals_along() {
+    let start = Orientation::from_euler_degrees([20.0, 30.0, 40.0]);
+    let turned = start.turned(DVec3::Z, 25.0).euler_degrees();
+    assert!(turned.iter().zip([45.0, 30.0, 40.0]).all(|(found, expected)| (found - expected).abs() < 1e-9));
+    let direction = DVec3::new(1.0, 2.0, 3.0);
+    let tilted = start.turned(DVec3::X * 2.0, 90.0).to_sample(direction);
+    let before = start.to_sample(direction);
+    assert!(tilted.distance(DVec3::new(before.x, -before.z, before.y)) < 1e-12);
 }

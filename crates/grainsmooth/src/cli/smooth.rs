@@ -9,14 +9,15 @@ use super::files::OutputArguments;
 use super::pictures::PictureArguments;
 use super::run::SharedArguments;
 
-/// Make a smooth network of a measured map: labels of grains on a grid
+/// Make a smooth network of a measured map: labels of grains on a grid, or orientations (EBSD)
 ///
 /// Boundaries bend as little as they can while every voxel stays in its grain, and every grain has the volume of its voxels. Where grains are at least
-/// three voxels thick no triangle folds back on its neighbour; how many do elsewhere is told.
+/// three voxels thick no triangle folds back on its neighbour; how many do elsewhere is told. In maps of orientations grains are neighbouring points that are turned little
+/// against each other.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct SmoothArguments {
-    /// Map to smooth: .vti, .npy, .nrrd, .nhdr, .mhd, .mha, .tesr or .raw
+    /// Map to smooth: .vti, .npy, .nrrd, .nhdr, .mhd, .mha, .tesr, .raw, .ang or .ctf
     #[arg(value_name = "MAP")]
     pub map: PathBuf,
 
@@ -38,5 +39,7 @@ Examples:
   grainsmooth smooth labels.vti                                         to grains.vtp
   grainsmooth smooth labels.npy --axes zyx --spacing 0.5 -o grains.vtu  an array of skimage, its unit told
   grainsmooth smooth ct.raw --shape 200 200 150 --type u16 --exterior-label 0
+  grainsmooth smooth map.ctf --min-voxels 3 -o map.vtp --stats map.csv  grains of an EBSD map, with a table
+  grainsmooth smooth map.ang --min-ci 0.1 --min-iq 120 --threshold 5 --min-voxels 5
 
 Exit status: 0 good, 1 the map is unreadable or gave no valid network, 2 a mistake on the command line.";

@@ -14,11 +14,6 @@ use grainsmooth::cli::{SmoothArguments, usage};
 
 /// Smooths the map, writes what is asked for and reports.
 pub fn run(arguments: &SmoothArguments) -> anyhow::Result<ExitCode> {
-    let coloring = arguments.pictures.coloring();
-    if coloring == Coloring::Phase || coloring.needs_texture() {
-        let name = coloring.name();
-        return Err(usage(&format!("--color-by {name} needs what a map of labels does not tell")).into());
-    }
     let pool = thread_pool(&arguments.shared)?;
     let stages = vec![Stage::Map, Stage::Network, Stage::Writing];
     let line = ProgressLine::new(arguments.shared.quiet, stages);
@@ -38,12 +33,18 @@ fn smooth(arguments: &SmoothArguments, line: &ProgressLine) -> Result<String, Er
     line.show(Stage::Map, 0, 1);
     let measured = read_map(path, options)?;
     let read_in = start.elapsed();
+    let coloring = pictures.coloring();
+    let has_orientations = measured.crystals.is_some();
+    if !has_orientations && (coloring == Coloring::Phase || coloring.needs_texture()) {
+        let name = coloring.name();
+        return Err(usage(&format!("--color-by {name} needs what a map of labels does not tell")));
+    }
     let dimension = if measured.map.is_plane() { Dimension::Two } else { Dimension::Three };
     let file = outputs.options(dimension)?;
     let to_write = ToWrite {
         dimension,
         has_voxels: file.voxels.is_some(),
-        has_orientations: false,
+        has_orientations,
         has_cells: false,
         volume: file.volume,
     };

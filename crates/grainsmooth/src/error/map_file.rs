@@ -107,6 +107,36 @@ pub enum MapProblem {
         /// Their width.
         spacing: f64,
     },
+    /// The points of a map of orientations stand on no square or hexagonal grid.
+    #[error("line {line}: the point {what}; give a map whose points stand on one square or hexagonal grid")]
+    NoGrid {
+        /// The line, from 1.
+        line: usize,
+        /// What of its point is wrong.
+        what: String,
+    },
+    /// A line of a text file is not understood.
+    #[error("line {line}: {what}")]
+    Line {
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong, and the remedy.
+        what: String,
+    },
+    /// The symmetry of crystals is not known.
+    #[error("tells no symmetry of {phase}; give it with --crystal-symmetry, such as cubic")]
+    NoSymmetry {
+        /// Name of the phase.
+        phase: String,
+    },
+    /// An option is for another kind of map.
+    #[error("is {kind}; leave {option} out")]
+    OtherKind {
+        /// What the map is.
+        kind: &'static str,
+        /// The option.
+        option: &'static str,
+    },
     /// A part of the map is asked for that it does not have.
     #[error("has {count} voxels along {axis}; --crop asks for {first}:{end}")]
     Crop {

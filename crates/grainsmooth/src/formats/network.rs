@@ -16,8 +16,8 @@ use crate::vtk::{
     Array, Cells, Each, FieldEntry, FieldValue, ItemTuples, Items, PolyData, Values, VtkFormat,
 };
 use crate::{
-    GrainAttributes, GrainPhases, GrainTexture, LabelGrid, Names, Parents, Polycrystal, Provenance,
-    VolumeMesh,
+    GrainAttributes, GrainPhases, GrainTexture, LabelGrid, MeasuredAttributes, Names, Parents, Polycrystal,
+    Provenance, VolumeMesh,
 };
 
 impl Polycrystal {
@@ -121,12 +121,13 @@ impl Polycrystal {
         write_vtk(&data, format, self.file().encoding, out)
     }
 
-    /// What files hold of each grain's parent, phase and orientation, where it has them.
+    /// What files hold of each grain's parent, phase, measured attributes and orientation, where it has them.
     pub(crate) fn grain_tuples(&self) -> Vec<ItemTuples> {
         let names = self.file().names;
-        let GrainAttributes { parents, phases, texture, .. } = self.grains();
+        let GrainAttributes { parents, phases, texture, measured, .. } = self.grains();
         let mut tuples: Vec<ItemTuples> = parents.iter().map(Parents::array).collect();
         tuples.extend(phases.iter().map(GrainPhases::array));
+        tuples.extend(measured.iter().flat_map(MeasuredAttributes::arrays));
         if let Some(texture) = texture {
             tuples.extend(texture.orientation_arrays().into_iter().chain(texture.color_arrays(names)));
         }
@@ -167,13 +168,14 @@ impl Polycrystal {
         FieldEntry { name: SEED_ID, value: FieldValue::Ids(ids) }
     }
 
-    /// The parent, the phase and the orientation of each grain, where they have them.
+    /// The parent, the phase, measured attributes and the orientation of each grain, where they have them.
     pub(crate) fn grain_fields(&self) -> impl Iterator<Item = FieldEntry> {
-        let GrainAttributes { parents, phases, texture, .. } = self.grains();
+        let GrainAttributes { parents, phases, texture, measured, .. } = self.grains();
         let arrays = texture.as_ref().map(GrainTexture::orientation_arrays);
         let entry = |tuples: ItemTuples| FieldEntry { name: tuples.name, value: FieldValue::Items(tuples) };
         let whole = parents.iter().map(Parents::array).chain(phases.iter().map(GrainPhases::array));
-        whole.chain(arrays.into_iter().flatten()).map(entry)
+        let measured = measured.iter().flat_map(MeasuredAttributes::arrays);
+        whole.chain(measured).chain(arrays.into_iter().flatten()).map(entry)
     }
 
     /// What every VTK file says about itself.

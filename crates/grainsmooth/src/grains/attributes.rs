@@ -7,6 +7,8 @@ use texture::CrystalSymmetry;
 use super::inner::Parents;
 use super::phases::GrainPhases;
 use super::texture::GrainTexture;
+use crate::names::{SPREAD, VOXEL_COUNT};
+use crate::vtk::ItemTuples;
 
 /// What grains are besides their shapes. All lists are in the order of the grains.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +24,27 @@ pub struct GrainAttributes {
     pub symmetry: CrystalSymmetry,
     /// The orientations of the grains, where they are known.
     pub texture: Option<GrainTexture>,
+    /// What a map tells of the grains, where they come from one.
+    pub measured: Option<MeasuredAttributes>,
+}
+
+/// What a map tells of each grain beside phase and orientation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredAttributes {
+    /// Number of voxels, pixels or points.
+    pub voxel_counts: Vec<u64>,
+    /// Grain orientation spread: the mean angle between the points of a grain and its mean orientation, in degrees.
+    pub spreads: Option<Vec<f64>>,
+}
+
+impl MeasuredAttributes {
+    /// What files hold of each grain.
+    pub(crate) fn arrays(&self) -> impl Iterator<Item = ItemTuples> {
+        let counts = self.voxel_counts.iter().map(|count| [i32::try_from(*count).unwrap_or(i32::MAX)]);
+        let spreads = self.spreads.iter();
+        let spreads = spreads.map(|all| ItemTuples::numbers(SPREAD, all.iter().map(|spread| [*spread])));
+        std::iter::once(ItemTuples::integers(VOXEL_COUNT, counts)).chain(spreads)
+    }
 }
 
 impl GrainAttributes {

@@ -34,8 +34,8 @@ struct PhaseNeighbors {
 #[derive(Debug, Clone, PartialEq)]
 struct Phase {
     name: String,
-    /// The share of the volume that was asked for.
-    fraction: f64,
+    /// The share of the volume that was asked for, where it was.
+    fraction: Option<f64>,
     symmetry: CrystalSymmetry,
     /// By which diameters that all phases share are multiplied beside their common factor, so that the phase has its volume.
     scale: f64,
@@ -53,8 +53,8 @@ pub struct PhaseShare {
     pub grains: usize,
     /// The symmetry of its crystals, as a group of rotations.
     pub crystal_symmetry: &'static str,
-    /// The share of the volume that was asked for (in the plane: of the area).
-    pub fraction_asked: f64,
+    /// The share of the volume that was asked for (in the plane: of the area), where it was.
+    pub fraction_asked: Option<f64>,
     /// The share that its cells have.
     pub fraction_of_cells: f64,
     /// The share that its finished grains have.
@@ -77,7 +77,7 @@ impl GrainPhases {
     pub(crate) fn new(config: &Config, sizes: &GrainSizes) -> Option<Self> {
         let phase = |((options, fraction), scale): ((&crate::PhaseOptions, f64), &f64)| Phase {
             name: options.name.clone(),
-            fraction,
+            fraction: Some(fraction),
             symmetry: options.symmetry.unwrap_or(config.texture.symmetry),
             scale: *scale,
             place: options.place,
@@ -86,6 +86,13 @@ impl GrainPhases {
         let phases: Vec<Phase> = asked.zip(sizes.phase_scales()).map(phase).collect();
         let neighbors = vec![PhaseNeighbors::default(); phases.len()];
         (!phases.is_empty()).then(|| Self { phases, phase_of: sizes.phase_of().to_vec(), neighbors })
+    }
+
+    /// Measured phases by name and symmetry, and the index of each grain's phase.
+    pub(crate) fn measured(phases: Vec<(String, CrystalSymmetry)>, phase_of: Vec<usize>) -> Self {
+        let phase = |(name, symmetry)| Phase { name, fraction: None, symmetry, scale: 1.0, place: None };
+        let neighbors = vec![PhaseNeighbors::default(); phases.len()];
+        Self { phases: phases.into_iter().map(phase).collect(), phase_of, neighbors }
     }
 
     /// The same with what is beside the grains.
@@ -169,12 +176,11 @@ impl GrainPhases {
 impl fmt::Display for PhaseShare {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, grains, crystal_symmetry, fraction, fraction_asked, scale, place, .. } = self;
-        write!(
-            out,
-            "{name} {:.6} % of the volume (asked {:.6} %) in {grains} grains, {crystal_symmetry}",
-            100.0 * fraction,
-            100.0 * fraction_asked
-        )?;
+        write!(out, "{name} {:.6} % of the volume", 100.0 * fraction)?;
+        if let Some(asked) = fraction_asked {
+            write!(out, " (asked {:.6} %)", 100.0 * asked)?;
+        }
+        write!(out, " in {grains} grains, {crystal_symmetry}")?;
         if (scale - 1.0).abs() > 5e-7 {
             write!(out, ", diameters times {scale:.6}")?;
         }

@@ -7,7 +7,7 @@ use polycrystal::Side;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use serde::Serialize;
-use texture::{AngleHistogram, CrystalSymmetry, Disorientation, IpfKey, Orientation, Pair};
+use texture::{AngleHistogram, CrystalSymmetry, Disorientation, IpfKey, Orientation, Pair, Texture};
 
 use super::wanted_textures::PhaseTexture;
 use crate::names::Names;
@@ -22,14 +22,23 @@ const SWAP_STREAM: u64 = 2;
 /// Swaps that are tried for each grain: of 1728 grains, 20 bring the sum of all bins' differences below a hundredth (a test).
 const TRIES: usize = 20;
 
-/// The orientations of all grains, and the textures that they were drawn from.
+/// The orientations of all grains, and the textures that they were drawn from where they were not measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GrainTexture {
-    /// One of each phase; one of all grains without phases.
-    textures: Vec<PhaseTexture>,
-    /// Index of each grain's texture.
-    texture_of: Vec<usize>,
+    /// The symmetry of each phase's crystals; one of all grains without phases.
+    symmetries: Vec<CrystalSymmetry>,
+    /// Index of each grain's phase.
+    phase_of: Vec<usize>,
     orientations: Vec<Orientation>,
+    /// What they were drawn from; nothing where they were measured.
+    drawn: Option<DrawnFrom>,
+}
+
+/// What orientations were drawn from.
+#[derive(Debug, Clone, PartialEq)]
+struct DrawnFrom {
+    /// One of each phase; one of all grains without phases.
+    textures: Vec<Texture>,
     /// Index of each grain's component of its texture.
     components: Vec<usize>,
     /// What the disorientations of neighbours are to be, where that is asked for.
@@ -62,7 +71,7 @@ impl GrainTexture {
     /// Draws an orientation for each grain from its texture, by volume. The seeds' positions do not depend on what is drawn here.
     pub(crate) fn draw(
         textures: Vec<PhaseTexture>,
-        texture_of: Vec<usize>,
+        phase_of: Vec<usize>,
         volumes: &[f64],
         random_seed: u64,
     ) -> Self {
@@ -71,8 +80,7 @@ impl GrainTexture {
         let mut orientations = vec![Orientation::IDENTITY; volumes.len()];
         let mut components = vec![0; volumes.len()];
         for (number, of_phase) in textures.iter().enumerate() {
-            let members: Vec<usize> =
-                (0..volumes.len()).filter(|grain| texture_of[*grain] == number).collect();
+            let members: Vec<usize> = (0..volumes.len()).filter(|grain| phase_of[*grain] == number).collect();
             // Rounding may leave nothing of a sliver's.
             let volumes: Vec<f64> =
                 members.iter().map(|grain| volumes[*grain].max(f64::MIN_POSITIVE)).collect();
@@ -83,55 +91,71 @@ impl GrainTexture {
                 (orientations[*grain], components[*grain]) = (orientation, component);
             }
         }
-        Self { textures, texture_of, orientations, components, target: None, fit: None }
+        let symmetries = textures.iter().map(|of_phase| of_phase.symmetry).collect();
+        let textures = textures.into_iter().map(|of_phase| of_phase.texture).collect();
+        let drawn = Some(DrawnFrom { textures, components, target: None, fit: None });
+        Self { symmetries, phase_of, orientations, drawn }
+    }
+
+    /// Measured orientations of grains, with the phase of each and the symmetry of each phase.
+    pub(crate) fn measured(
+        symmetries: Vec<CrystalSymmetry>,
+        phase_of: Vec<usize>,
+        orientations: Vec<Orientation>,
+    ) -> Self {
+        Self { symmetries, phase_of, orientations, drawn: None }
     }
 
     /// The same, with a histogram that the disorientations of neighbours are to have when these are known.
-    pub(crate) fn with_target(self, target: Option<AngleHistogram>) -> Self {
-        Self { target, ..self }
+    pub(crate) fn with_target(mut self, target: Option<AngleHistogram>) -> Self {
+        if let Some(drawn) = &mut self.drawn {
+            drawn.target = target;
+        }
+        self
     }
 
     /// Swaps orientations toward the histogram that is asked for, if one is and grains have neighbours.
     pub(crate) fn swap(&mut self, pairs: &[Pair], volumes: &[f64], random_seed: u64) {
-        let Some(target) = self.target.as_ref().filter(|_| !pairs.is_empty()) else { return };
+        let Some(drawn) = &mut self.drawn else { return };
+        let Some(target) = drawn.target.as_ref().filter(|_| !pairs.is_empty()) else { return };
         let mut generator = ChaCha8Rng::seed_from_u64(random_seed);
         generator.set_stream(SWAP_STREAM);
         // Phases are refused beside a histogram.
-        let symmetry = self.textures[0].symmetry;
+        let symmetry = self.symmetries[0];
         let before = target.distance(&self.orientations, symmetry, pairs);
         let tries = TRIES * volumes.len();
         let sources = target.swaps(&self.orientations, symmetry, pairs, volumes, tries, &mut generator);
         self.orientations = sources.iter().map(|source| self.orientations[*source]).collect();
-        self.components = sources.iter().map(|source| self.components[*source]).collect();
+        drawn.components = sources.iter().map(|source| drawn.components[*source]).collect();
         let after = target.distance(&self.orientations, symmetry, pairs);
-        self.fit = Some(HistogramFit { before, after });
+        drawn.fit = Some(HistogramFit { before, after });
     }
 
     /// What the disorientations of neighbours are to be, where that is asked for.
     pub(crate) fn target(&self) -> Option<&AngleHistogram> {
-        self.target.as_ref()
+        self.drawn.as_ref()?.target.as_ref()
     }
 
     /// How near the disorientations of neighbours came to a histogram, where one is asked for.
     pub fn fit(&self) -> Option<HistogramFit> {
-        self.fit
+        self.drawn.as_ref()?.fit
     }
 
     /// The symmetry of a grain's crystal.
     pub fn symmetry_of(&self, grain: usize) -> CrystalSymmetry {
-        self.textures[self.texture_of[grain]].symmetry
+        self.symmetries[self.phase_of[grain]]
     }
 
     /// The symmetry of all crystals; nothing where phases have different ones.
     pub fn symmetry(&self) -> Option<CrystalSymmetry> {
-        let first = self.textures[0].symmetry;
-        self.textures.iter().all(|of_phase| of_phase.symmetry == first).then_some(first)
+        let first = self.symmetries[0];
+        self.symmetries.iter().all(|symmetry| *symmetry == first).then_some(first)
     }
 
     /// The symmetries of the crystals, each once.
     pub fn symmetries(&self) -> Vec<CrystalSymmetry> {
         let mut symmetries = Vec::new();
-        for PhaseTexture { symmetry, .. } in &self.textures {
+        for symmetry in &self.symmetries {
             if !symmetries.contains(symmetry) {
                 symmetries.push(*symmetry);
             }
@@ -141,13 +165,13 @@ impl GrainTexture {
 
     /// Number of textures: one of each phase, or one of all grains.
     pub fn texture_count(&self) -> usize {
-        self.textures.len()
+        self.symmetries.len()
     }
 
     /// The symmetry of a texture's crystals, and the numbers of the grains that have it.
     pub(crate) fn members(&self, texture: usize) -> (CrystalSymmetry, Vec<usize>) {
-        let members = (0..self.texture_of.len()).filter(|grain| self.texture_of[*grain] == texture);
-        (self.textures[texture].symmetry, members.collect())
+        let members = (0..self.phase_of.len()).filter(|grain| self.phase_of[*grain] == texture);
+        (self.symmetries[texture], members.collect())
     }
 
     /// One of each grain.
@@ -171,25 +195,26 @@ impl GrainTexture {
         self.between(first, second)
     }
 
-    /// What share of a texture's volume each of its components was to have, and has.
+    /// What share of a texture's volume each of its components was to have, and has; nothing of measured orientations.
     pub fn shares(&self, texture: usize, volumes: &[f64]) -> Vec<ComponentShare> {
+        let Some(drawn) = &self.drawn else { return Vec::new() };
         let (_, members) = self.members(texture);
         let volume =
             |members: &mut dyn Iterator<Item = &usize>| members.map(|grain| volumes[*grain]).sum::<f64>();
         let total = volume(&mut members.iter());
-        let parts = self.textures[texture].texture.components().enumerate();
+        let parts = drawn.textures[texture].components().enumerate();
         let share = |(number, (_, asked, name)): (usize, (_, f64, &str))| {
-            let own = volume(&mut members.iter().filter(|grain| self.components[**grain] == number));
+            let own = volume(&mut members.iter().filter(|grain| drawn.components[**grain] == number));
             ComponentShare { name: name.to_owned(), asked, reached: own / total }
         };
         parts.map(share).collect()
     }
 
     /// A texture's index: its mean density at its grains' orientations, by volume. 1 is random. Nothing where a
-    /// component has no spread, and so no density.
+    /// component has no spread, and so no density, and of measured orientations.
     pub fn index(&self, texture: usize, volumes: &[f64]) -> Option<f64> {
         let (symmetry, members) = self.members(texture);
-        let texture = &self.textures[texture].texture;
+        let texture = &self.drawn.as_ref()?.textures[texture];
         let total: f64 = members.iter().map(|grain| volumes[*grain]).sum();
         let density =
             |grain: &usize| volumes[*grain] / total * texture.density(self.orientations[*grain], symmetry);
@@ -214,9 +239,9 @@ impl GrainTexture {
 
     /// The inverse pole figure colour of each grain for an axis of the sample.
     pub(crate) fn colors(&self, axis: DVec3) -> impl Iterator<Item = [u8; 3]> {
-        let keys: Vec<IpfKey> = self.textures.iter().map(|of_phase| IpfKey::new(of_phase.symmetry)).collect();
-        let grains = self.orientations.iter().zip(&self.texture_of);
-        grains.map(move |(one, texture)| keys[*texture].color_of(*one, axis))
+        let keys: Vec<IpfKey> = self.symmetries.iter().map(|symmetry| IpfKey::new(*symmetry)).collect();
+        let grains = self.orientations.iter().zip(&self.phase_of);
+        grains.map(move |(one, phase)| keys[*phase].color_of(*one, axis))
     }
 
     /// What files hold of each boundary, given by its sides: the angle of its `Disorientation` in degrees, and the axis.
@@ -247,11 +272,11 @@ impl fmt::Display for TextureLine<'_> {
             format!("{name} {:.1} % of the volume (asked {:.1} %)", 100.0 * reached, 100.0 * asked)
         };
         let shares: Vec<String> = texture.shares(*number, volumes).iter().map(share).collect();
-        write!(out, "{} crystals, {}", texture.textures[*number].symmetry, shares.join(", "))?;
+        write!(out, "{} crystals, {}", texture.symmetries[*number], shares.join(", "))?;
         if let Some(index) = texture.index(*number, volumes) {
             write!(out, "; texture index {index:.2}")?;
         }
-        match texture.fit {
+        match texture.fit() {
             Some(HistogramFit { before, after }) => write!(
                 out,
                 "; disorientations of neighbours are {after:.4} from those asked for, {before:.4} before swaps (sum of all bins' differences)"

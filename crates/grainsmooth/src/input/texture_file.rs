@@ -9,12 +9,10 @@ use texture::{AngleHistogram, CrystalSymmetry, Orientation};
 use crate::config::texture::TextureFormat;
 use crate::error::Error;
 use crate::files::text_table::TextProblem;
+use crate::input::orientation_map::{self, Fault, PointList, number};
 
-mod ang;
-mod ctf;
 mod euler;
 mod histogram;
-pub(crate) mod hkl;
 mod ori;
 
 /// Orientations with weights, of a file.
@@ -25,9 +23,6 @@ pub struct OrientationList {
     /// The symmetry of the crystals, where the file tells it.
     pub symmetry: Option<CrystalSymmetry>,
 }
-
-/// The line of a fault, counted from 1, and what it is.
-type Fault = (usize, String);
 
 /// Reads the orientations of a file, of one phase where a map has several; of one without a known extension as a table of Euler angles.
 ///
@@ -40,8 +35,12 @@ pub fn read_texture_file(path: &Path, phase: Option<i64>) -> Result<OrientationL
     let text = String::from_utf8_lossy(&bytes);
     let found = match TextureFormat::of_path(path) {
         Some(TextureFormat::Ori) => ori::read(&text),
-        Some(TextureFormat::Ang) => ang::read(&text, phase),
-        Some(TextureFormat::Ctf) => ctf::read(&text, phase),
+        Some(TextureFormat::Ang) => {
+            orientation_map::ang::read(&text).and_then(|found| of_one_phase(&found, phase))
+        }
+        Some(TextureFormat::Ctf) => {
+            orientation_map::ctf::read(&text).and_then(|found| of_one_phase(&found, phase))
+        }
         Some(TextureFormat::Euler) | None => euler::read(&bytes),
     };
     let found = found.and_then(|found| match found.orientations.is_empty() {
@@ -73,49 +72,37 @@ fn of_text((line, problem): (usize, TextProblem)) -> Fault {
     (line, problem.to_string())
 }
 
-/// The columns of a line, between commas, semicolons or blanks.
-fn columns(line: &str) -> Vec<&str> {
-    let is_between = |character: char| matches!(character, ',' | ';') || character.is_whitespace();
-    line.split(is_between).filter(|column| !column.is_empty()).collect()
-}
-
-/// The finite number in a column.
-fn number(line: usize, column: &str) -> Result<f64, Fault> {
-    let number = column.parse().ok().filter(|number: &f64| number.is_finite());
-    number.ok_or_else(|| {
-        let shown: String = column.chars().take(20).collect();
-        (line, format!("'{shown}' is no finite number; correct it or remove the line"))
-    })
-}
-
-/// A point of a map.
-struct MapPoint {
-    line: usize,
-    phase: i64,
-    /// In degrees.
-    angles: [f64; 3],
-}
-
-/// Leaves the points of one phase, and gives that: the one that is asked for, or the only one; nothing where there are no points.
-fn keep_phase(points: &mut Vec<MapPoint>, asked: Option<i64>) -> Result<Option<i64>, Fault> {
-    let Some(first) = points.first().map(|point| point.phase) else { return Ok(None) };
-    let phases: BTreeSet<i64> = points.iter().map(|point| point.phase).collect();
-    let Some(asked) = asked else {
-        return match points.iter().find(|point| point.phase != first) {
-            None => Ok(Some(first)),
-            Some(MapPoint { line, phase, .. }) => Err((
-                *line,
-                format!(
-                    "a point of phase {phase} after points of phase {first}; name one of its {} phases behind the path: #{phase}",
-                    phases.len()
-                ),
-            )),
-        };
+/// The orientations of one phase, each of weight 1: of the one that is asked for, or of the only one.
+fn of_one_phase(list: &PointList, asked: Option<i64>) -> Result<OrientationList, Fault> {
+    let solved = || list.points.iter().filter_map(|point| Some((point.phase?, point)));
+    let Some((first, _)) = solved().next() else {
+        return Ok(OrientationList { orientations: Vec::new(), symmetry: None });
     };
-    if !phases.contains(&asked) {
-        let known: Vec<String> = phases.iter().map(i64::to_string).collect();
-        return Err((1, format!("holds no point of phase {asked}; it has phases {}", known.join(", "))));
-    }
-    points.retain(|point| point.phase == asked);
-    Ok(Some(asked))
+    let phases: BTreeSet<i64> = solved().map(|(phase, _)| phase).collect();
+    let kept = match asked {
+        None => match solved().find(|(phase, _)| *phase != first) {
+            None => first,
+            Some((phase, point)) => {
+                return Err((
+                    point.line,
+                    format!(
+                        "a point of phase {phase} after points of phase {first}; name one of its {} phases behind the path: #{phase}",
+                        phases.len()
+                    ),
+                ));
+            }
+        },
+        Some(asked) if phases.contains(&asked) => asked,
+        Some(asked) => {
+            let known: Vec<String> = phases.iter().map(i64::to_string).collect();
+            return Err((1, format!("holds no point of phase {asked}; it has phases {}", known.join(", "))));
+        }
+    };
+    let of_phase = solved().filter(|(phase, _)| *phase == kept);
+    Ok(OrientationList {
+        orientations: of_phase
+            .map(|(_, point)| (Orientation::from_euler_degrees(point.angles), 1.0))
+            .collect(),
+        symmetry: list.phase(kept).and_then(|phase| list.phases[phase].symmetry),
+    })
 }

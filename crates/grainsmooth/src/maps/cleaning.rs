@@ -1,87 +1,55 @@
-//! A map as it is used: a part of it, without small grains, its grains numbered from 0.
+//! Small grains taken out, holes filled, grains numbered from 0.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
-use std::ops::Range;
 
-use glam::DVec3;
-
-use super::label_map::{LabelMap, MeasuredMap};
-use super::options::MapOptions;
+use super::neighbors::Grid;
 use crate::error::map_file::MapProblem;
 
-/// The label of voxels that belong to no grain.
+/// The label of places that belong to no grain.
 pub(crate) const NO_GRAIN: i32 = -1;
 
-impl MeasuredMap {
-    /// The grains of labels in memory, cropped and cleaned as options say.
-    ///
-    /// # Errors
-    /// [`MapProblem`] where labels and options do not go together.
-    pub fn of_labels(map: LabelMap, options: &MapOptions) -> Result<Self, MapProblem> {
-        cleaned(map, options)
-    }
+/// What cleaning kept, and what it changed.
+pub(super) struct Cleaned {
+    /// The label before of each grain, ascending.
+    pub(super) kept: Vec<i32>,
+    /// Number of places of each grain, with those that were filled.
+    pub(super) counts: Vec<u64>,
+    /// Grains that were too small, and their places.
+    pub(super) dropped: [u64; 2],
 }
 
-/// Crops a map, takes small grains out and numbers the others from 0 in the order of their labels.
-pub(super) fn cleaned(map: LabelMap, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
-    let mut map = cropped(map, options)?;
-    for label in &mut map.labels {
-        if *label < 0 || Some(*label) == options.exterior_label {
-            *label = NO_GRAIN;
-        }
-    }
-    let counts = counts(&map.labels);
-    let is_small = |label: i32| counts[&label] < options.min_voxels;
-    let dropped = counts.iter().filter(|(label, _)| is_small(**label));
-    let dropped = dropped.fold([0; 2], |[grains, voxels], (_, count)| [grains + 1, voxels + count]);
-    let kept: Vec<i32> = counts.keys().copied().filter(|label| !is_small(*label)).collect();
+/// Takes grains of less than `least` places out, fills them and the other holes, and numbers the grains that are left from 0 in the order of their labels.
+///
+/// # Errors
+/// [`MapProblem::NoGrain`].
+pub(super) fn clean(
+    labels: &mut [i32],
+    mut is_hole: Vec<bool>,
+    grid: Grid,
+    least: u64,
+) -> Result<Cleaned, MapProblem> {
+    let before = counts(labels);
+    let is_small = |label: i32| before.get(&label).is_some_and(|count| *count < least);
+    let dropped = before.iter().filter(|(label, _)| is_small(**label));
+    let dropped = dropped.fold([0; 2], |[grains, places], (_, count)| [grains + 1, places + count]);
+    let kept: Vec<i32> = before.keys().copied().filter(|label| !is_small(*label)).collect();
     if kept.is_empty() {
-        return Err(MapProblem::NoGrain { least: options.min_voxels });
+        return Err(MapProblem::NoGrain { least });
     }
-    if dropped[0] > 0 {
-        let is_hole: Vec<bool> =
-            map.labels.iter().map(|label| *label != NO_GRAIN && is_small(*label)).collect();
-        fill(&mut map, is_hole);
+    for (is_hole, label) in is_hole.iter_mut().zip(labels.iter()) {
+        *is_hole |= dropped[0] > 0 && is_small(*label);
     }
+    fill(labels, is_hole, grid);
     let numbers: BTreeMap<i32, i32> = kept.iter().copied().zip(0..).collect();
-    for label in map.labels.iter_mut().filter(|label| **label != NO_GRAIN) {
-        *label = numbers[label];
+    for row in labels.chunk_by_mut(|a, b| a == b).filter(|row| row[0] != NO_GRAIN) {
+        row.fill(numbers[&row[0]]);
     }
-    let labels = kept.into_iter().map(i32::cast_unsigned).collect();
-    Ok(MeasuredMap { map, labels, dropped })
+    let counts = counts(labels).into_values().collect();
+    Ok(Cleaned { kept, counts, dropped })
 }
 
-/// The part of a map that is asked for.
-fn cropped(map: LabelMap, options: &MapOptions) -> Result<LabelMap, MapProblem> {
-    let Some(crop) = &options.crop else { return Ok(map) };
-    let range = |axis: usize| -> Result<Range<usize>, MapProblem> {
-        let count = map.shape[axis];
-        let range = crop.0.get(axis).cloned().unwrap_or(0..count);
-        if range.end <= count {
-            return Ok(range);
-        }
-        let axis = ['x', 'y', 'z'][axis];
-        Err(MapProblem::Crop { axis, count, first: range.start, end: range.end })
-    };
-    let [xs, ys, zs] = [range(0)?, range(1)?, range(2)?];
-    let [nx, ny, _] = map.shape;
-    let mut labels = Vec::with_capacity(xs.len() * ys.len() * zs.len());
-    for z in zs.clone() {
-        for y in ys.clone() {
-            let row = (z * ny + y) * nx;
-            labels.extend_from_slice(&map.labels[row + xs.start..row + xs.end]);
-        }
-    }
-    let first = DVec3::new(xs.start as f64, ys.start as f64, zs.start as f64);
-    Ok(LabelMap {
-        shape: [xs.len(), ys.len(), zs.len()],
-        origin: map.origin + first * map.spacing,
-        spacing: map.spacing,
-        labels,
-    })
-}
-
-/// Number of voxels of each grain.
+/// Number of places of each grain.
 fn counts(labels: &[i32]) -> BTreeMap<i32, u64> {
     let mut counts = BTreeMap::new();
     for row in labels.chunk_by(|a, b| a == b).filter(|row| row[0] != NO_GRAIN) {
@@ -90,40 +58,29 @@ fn counts(labels: &[i32]) -> BTreeMap<i32, u64> {
     counts
 }
 
-/// Gives voxels the label that most of their six neighbours have, of equals the smallest, layer by layer from those around; holes that nothing but other
+/// Gives holes the label that most of their neighbours have, of equals the smallest, layer by layer from those around; holes that nothing but other
 /// holes touch stay as they are until their neighbours are filled.
-fn fill(map: &mut LabelMap, mut is_hole: Vec<bool>) {
-    let [nx, ny, nz] = map.shape;
-    let steps = [1, nx, nx * ny];
-    let mut holes: Vec<usize> = (0..is_hole.len()).filter(|voxel| is_hole[*voxel]).collect();
+fn fill(labels: &mut [i32], mut is_hole: Vec<bool>, grid: Grid) {
+    let mut holes: Vec<usize> = (0..is_hole.len()).filter(|place| is_hole[*place]).collect();
     while !holes.is_empty() {
         let filled: Vec<(usize, i32)> = holes
             .iter()
-            .filter_map(|voxel| {
-                let place = [voxel % nx, voxel / nx % ny, voxel / nx / ny];
-                let beside = (0..3).flat_map(|axis| {
-                    let lower = (place[axis] > 0).then(|| voxel - steps[axis]);
-                    let upper = (place[axis] + 1 < [nx, ny, nz][axis]).then(|| voxel + steps[axis]);
-                    [lower, upper]
-                });
-                let mut labels: Vec<i32> = beside
-                    .flatten()
-                    .filter(|other| !is_hole[*other])
-                    .map(|other| map.labels[other])
-                    .collect();
-                labels.sort_unstable();
-                let most = labels.chunk_by(|a, b| a == b);
-                most.max_by_key(|alike| (alike.len(), std::cmp::Reverse(alike[0])))
-                    .map(|alike| (*voxel, alike[0]))
+            .filter_map(|place| {
+                let beside = grid.neighbors(*place).filter(|other| !is_hole[*other]);
+                let mut beside: Vec<i32> = beside.map(|other| labels[other]).collect();
+                beside.sort_unstable();
+                let most =
+                    beside.chunk_by(|a, b| a == b).max_by_key(|alike| (alike.len(), Reverse(alike[0])));
+                most.map(|alike| (*place, alike[0]))
             })
             .collect();
         if filled.is_empty() {
             return;
         }
-        for (voxel, label) in filled {
-            map.labels[voxel] = label;
-            is_hole[voxel] = false;
+        for (place, label) in filled {
+            labels[place] = label;
+            is_hole[place] = false;
         }
-        holes.retain(|voxel| is_hole[*voxel]);
+        holes.retain(|place| is_hole[*place]);
     }
 }

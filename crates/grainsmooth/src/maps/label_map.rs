@@ -1,6 +1,15 @@
 //! Labels of grains on a grid, as a file tells them and as they are used.
 
+use std::fmt;
+
 use glam::DVec3;
+use texture::{CrystalSymmetry, Orientation};
+
+use super::cleaning::{NO_GRAIN, clean};
+use super::neighbors::Grid;
+use super::options::{Crop, MapOptions};
+use crate::error::map_file::MapProblem;
+use crate::figures::significant::significant;
 
 /// Labels of voxels, x fastest; in the plane of pixels, whose grid has one layer.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +29,51 @@ impl LabelMap {
     pub fn is_plane(&self) -> bool {
         self.shape[2] == 1
     }
+
+    /// The part that is asked for.
+    ///
+    /// # Errors
+    /// [`MapProblem::Crop`].
+    fn cropped(self, crop: &Crop) -> Result<Self, MapProblem> {
+        let [xs, ys, zs] = crop.ranges(self.shape)?;
+        let [nx, ny, _] = self.shape;
+        let mut labels = Vec::with_capacity(xs.len() * ys.len() * zs.len());
+        for z in zs.clone() {
+            for y in ys.clone() {
+                let row = (z * ny + y) * nx;
+                labels.extend_from_slice(&self.labels[row + xs.start..row + xs.end]);
+            }
+        }
+        let first = DVec3::new(xs.start as f64, ys.start as f64, zs.start as f64);
+        Ok(Self {
+            shape: [xs.len(), ys.len(), zs.len()],
+            origin: self.origin + first * self.spacing,
+            spacing: self.spacing,
+            labels,
+        })
+    }
+
+    /// The same without small grains, its grains numbered from 0 in the order of their labels.
+    ///
+    /// # Errors
+    /// [`MapProblem::NoGrain`].
+    fn cleaned(mut self, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
+        for label in &mut self.labels {
+            if *label < 0 || Some(*label) == options.exterior_label {
+                *label = NO_GRAIN;
+            }
+        }
+        let is_hole = vec![false; self.labels.len()];
+        let cleaned = clean(&mut self.labels, is_hole, Grid::Voxels(self.shape), options.min_voxels)?;
+        let labels = cleaned.kept.into_iter().map(i32::cast_unsigned).collect();
+        Ok(MeasuredMap {
+            map: self,
+            labels,
+            voxel_counts: cleaned.counts,
+            dropped: cleaned.dropped,
+            crystals: None,
+        })
+    }
 }
 
 /// What a file tells of a map. Labels stand x fastest; without spacing or origin the file tells none.
@@ -35,8 +89,101 @@ pub(super) struct FileMap {
 pub struct MeasuredMap {
     /// The labels as cleaned: below 0 what is no grain, others from 0 on, with none left out.
     pub map: LabelMap,
-    /// The label in the file of each grain.
+    /// The label in the file of each grain; where orientations make the grains, their numbers before small ones were dropped.
     pub labels: Vec<u32>,
+    /// Number of voxels, pixels or points of each grain.
+    pub voxel_counts: Vec<u64>,
     /// Grains with fewer voxels than are asked for, which went to others, and their voxels.
     pub dropped: [u64; 2],
+    /// What a map of orientations tells.
+    pub crystals: Option<MeasuredCrystals>,
+}
+
+impl MeasuredMap {
+    /// The grains of labels in memory, cropped and cleaned as options say.
+    ///
+    /// # Errors
+    /// [`MapProblem`] where labels and options do not go together.
+    pub fn of_labels(map: LabelMap, options: &MapOptions) -> Result<Self, MapProblem> {
+        match &options.crop {
+            Some(crop) => map.cropped(crop)?.cleaned(options),
+            None => map.cleaned(options),
+        }
+    }
+}
+
+/// What a map of orientations tells of its grains.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredCrystals {
+    /// The phases of the file by name, and the symmetry of their crystals.
+    pub phases: Vec<(String, CrystalSymmetry)>,
+    /// Index of each grain's phase.
+    pub phase_of: Vec<usize>,
+    /// The mean orientation of each grain.
+    pub orientations: Vec<Orientation>,
+    /// The mean angle between the points of each grain and its mean orientation, in degrees.
+    pub spreads: Vec<f64>,
+    /// How the points became grains.
+    pub points: PointCounts,
+}
+
+/// How the points of a map of orientations became grains: in words with [`Display`](fmt::Display).
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointCounts {
+    /// Points of each row, and rows.
+    pub shape: [usize; 2],
+    /// Whether every second row is shifted by half a step.
+    pub is_hexagonal: bool,
+    /// Between neighbours along a row, in the unit of the map.
+    pub step: f64,
+    /// Points without a solution.
+    pub unsolved: u64,
+    /// Points with a solution that is too uncertain.
+    pub masked: u64,
+    /// Points of both kinds that lie in pores, which were left open.
+    pub pores: u64,
+    /// Grains before small ones were dropped.
+    pub grains: u64,
+    /// Grains that are twins of others and became one with them.
+    pub merged: u64,
+    /// What the header of the file says of its points that they do not, in words.
+    pub contradicted: Option<String>,
+}
+
+impl fmt::Display for PointCounts {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            shape: [columns, rows],
+            is_hexagonal,
+            step,
+            unsolved,
+            masked,
+            pores,
+            grains,
+            merged,
+            contradicted,
+        } = self;
+        let lattice = if *is_hexagonal { "a hexagonal" } else { "a square" };
+        write!(
+            out,
+            "{columns} x {rows} points on {lattice} grid, step {}, in {grains} grains",
+            significant(*step, 6)
+        )?;
+        if *merged > 0 {
+            write!(out, ", after {merged} twins became one with others")?;
+        }
+        if *unsolved > 0 {
+            write!(out, "; {unsolved} points without a solution")?;
+        }
+        if *masked > 0 {
+            write!(out, "; {masked} too uncertain")?;
+        }
+        if *pores > 0 {
+            write!(out, "; {pores} in pores")?;
+        }
+        match contradicted {
+            Some(told) => write!(out, "; its head says {told}, which its points do not bear out"),
+            None => Ok(()),
+        }
+    }
 }

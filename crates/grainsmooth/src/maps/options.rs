@@ -7,7 +7,9 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 
+use super::ebsd_options::EbsdOptions;
 use super::number_type::NumberType;
+use crate::error::map_file::MapProblem;
 use crate::spelling::whole_number;
 
 /// How a map is read.
@@ -44,7 +46,7 @@ pub struct MapOptions {
     #[arg(long = "type", value_name = "TYPE")]
     pub number_type: Option<NumberType>,
 
-    /// Part of the map: the first voxel and the first one behind along each axis, from 0
+    /// Part of the map: the first voxel and the first one behind along each axis, from 0; in maps of orientations rows count from the top
     ///
     /// Example: grainsmooth smooth map.vti --crop 0:64,0:64,10:40
     #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1")]
@@ -56,11 +58,15 @@ pub struct MapOptions {
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub exterior_label: Option<i32>,
 
-    /// Fewest voxels of a grain; those of smaller ones go to the neighbours that they touch most
+    /// Fewest voxels, pixels or points of a grain; those of smaller ones go to the neighbours that they touch most
     ///
     /// Example: grainsmooth smooth map.vti --min-voxels 8
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole_number(1..=u64::MAX), allow_negative_numbers = true)]
     pub min_voxels: u64,
+
+    /// How grains are found in a map of orientations.
+    #[command(flatten)]
+    pub ebsd: EbsdOptions,
 }
 
 impl MapOptions {
@@ -86,7 +92,26 @@ pub enum Axes {
 
 /// A part of a map.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Crop(pub(super) Vec<Range<usize>>);
+pub struct Crop(Vec<Range<usize>>);
+
+impl Crop {
+    /// The part of so many voxels along each axis.
+    ///
+    /// # Errors
+    /// [`MapProblem::Crop`] where it is no part of them.
+    pub(super) fn ranges(&self, shape: [usize; 3]) -> Result<[Range<usize>; 3], MapProblem> {
+        let range = |axis: usize| {
+            let count = shape[axis];
+            let range = self.0.get(axis).cloned().unwrap_or(0..count);
+            if range.end <= count {
+                return Ok(range);
+            }
+            let axis = ['x', 'y', 'z'][axis];
+            Err(MapProblem::Crop { axis, count, first: range.start, end: range.end })
+        };
+        Ok([range(0)?, range(1)?, range(2)?])
+    }
+}
 
 impl FromStr for Crop {
     type Err = String;

@@ -5,30 +5,40 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::cleaning::cleaned;
+use super::ebsd::grains::grains;
 use super::label_map::{FileMap, LabelMap, MeasuredMap};
 use super::options::MapOptions;
 use super::stored_numbers::Source;
 use super::{mhd, npy, nrrd, raw, tesr, vti};
 use crate::Error;
 use crate::error::map_file::MapProblem;
+use crate::input::orientation_map::{Fault, PointList, ang, ctf};
 
 /// A format of maps.
 struct MapFormat {
     extension: &'static str,
-    read: fn(&Source<'_>, &MapOptions) -> Result<FileMap, MapProblem>,
+    content: Content,
+}
+
+/// What a format holds, and what reads it.
+enum Content {
+    Labels(fn(&Source<'_>, &MapOptions) -> Result<FileMap, MapProblem>),
+    /// Text with a line for each point.
+    Orientations(fn(&str) -> Result<PointList, Fault>),
 }
 
 /// Every format, a line for each extension.
-const FORMATS: [MapFormat; 8] = [
-    MapFormat { extension: "vti", read: vti::read },
-    MapFormat { extension: "npy", read: npy::read },
-    MapFormat { extension: "nrrd", read: nrrd::read },
-    MapFormat { extension: "nhdr", read: nrrd::read },
-    MapFormat { extension: "mhd", read: mhd::read },
-    MapFormat { extension: "mha", read: mhd::read },
-    MapFormat { extension: "tesr", read: tesr::read },
-    MapFormat { extension: "raw", read: raw::read },
+const FORMATS: [MapFormat; 10] = [
+    MapFormat { extension: "vti", content: Content::Labels(vti::read) },
+    MapFormat { extension: "npy", content: Content::Labels(npy::read) },
+    MapFormat { extension: "nrrd", content: Content::Labels(nrrd::read) },
+    MapFormat { extension: "nhdr", content: Content::Labels(nrrd::read) },
+    MapFormat { extension: "mhd", content: Content::Labels(mhd::read) },
+    MapFormat { extension: "mha", content: Content::Labels(mhd::read) },
+    MapFormat { extension: "tesr", content: Content::Labels(tesr::read) },
+    MapFormat { extension: "raw", content: Content::Labels(raw::read) },
+    MapFormat { extension: "ang", content: Content::Orientations(ang::read) },
+    MapFormat { extension: "ctf", content: Content::Orientations(ctf::read) },
 ];
 
 /// Reads a map, crops it and cleans it as options say.
@@ -42,15 +52,40 @@ pub fn read_map(path: &Path, options: &MapOptions) -> Result<MeasuredMap, Error>
 fn read(path: &Path, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     let format = FORMATS.iter().find(|format| extension == format.extension);
-    let format = format.ok_or_else(|| MapProblem::UnknownExtension { known: known_extensions() })?;
-    if format.extension != "raw" && (options.shape.is_some() || options.number_type.is_some()) {
+    let MapFormat { extension, content } =
+        format.ok_or_else(|| MapProblem::UnknownExtension { known: known_extensions() })?;
+    if *extension != "raw" && (options.shape.is_some() || options.number_type.is_some()) {
         return Err(MapProblem::Told { what: "shape and type", option: "--shape and --type" });
     }
-    if format.extension != "npy" && options.axes.is_some() {
+    if *extension != "npy" && options.axes.is_some() {
         return Err(MapProblem::Told { what: "order of axes", option: "--axes" });
     }
-    let bytes = fs::read(path).map_err(MapProblem::Unreadable)?;
-    let FileMap { shape, spacing, origin, labels } = (format.read)(&Source { path, bytes: &bytes }, options)?;
+    let bytes = || fs::read(path).map_err(MapProblem::Unreadable);
+    match content {
+        Content::Labels(read) => {
+            if let Some(option) = options.ebsd.first_given() {
+                return Err(MapProblem::OtherKind { kind: "a map of labels", option });
+            }
+            labelled((read)(&Source { path, bytes: &bytes()? }, options)?, options)
+        }
+        Content::Orientations(read) => {
+            let of_labels = [
+                ("--label-array", options.label_array.is_some()),
+                ("--exterior-label", options.exterior_label.is_some()),
+            ];
+            if let Some((option, _)) = of_labels.into_iter().find(|(_, is_given)| *is_given) {
+                return Err(MapProblem::OtherKind { kind: "a map of orientations", option });
+            }
+            // Names of phases and comments may have any coding; numbers have one.
+            let found = read(&String::from_utf8_lossy(&bytes()?));
+            grains(&found.map_err(|(line, what)| MapProblem::Line { line, what })?, options)
+        }
+    }
+}
+
+/// The grains of labels.
+fn labelled(found: FileMap, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
+    let FileMap { shape, spacing, origin, labels } = found;
     let axes = ['x', 'y', 'z'].into_iter();
     if let Some((axis, _)) = axes.clone().zip(shape).find(|(_, count)| *count == 0) {
         return Err(MapProblem::Empty { axis });
@@ -61,7 +96,7 @@ fn read(path: &Path, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
         return Err(MapProblem::Spacing { axis, spacing });
     }
     let origin = origin.filter(|origin| origin.is_finite()).unwrap_or(DVec3::ZERO);
-    cleaned(LabelMap { shape, spacing, origin, labels }, options)
+    MeasuredMap::of_labels(LabelMap { shape, spacing, origin, labels }, options)
 }
 
 fn known_extensions() -> String {

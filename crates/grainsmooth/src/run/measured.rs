@@ -14,8 +14,8 @@ use super::origin::{Measurement, Origin};
 use super::polycrystal::Polycrystal;
 use super::stage::{Progress, Stage};
 use super::topology::Topology;
-use crate::maps::label_map::{LabelMap, MeasuredMap};
-use crate::{Error, FileOptions, GrainAttributes};
+use crate::maps::label_map::{LabelMap, MeasuredCrystals, MeasuredMap};
+use crate::{Error, FileOptions, GrainAttributes, GrainPhases, GrainTexture, MeasuredAttributes};
 
 /// What is said of a map that is smoothed.
 #[derive(Debug, Clone)]
@@ -46,20 +46,14 @@ pub fn smooth_map(
         smooth_voxels(&voxels, Junctions::Crease, |done, count| progress(Stage::Network, done, count));
     let SmoothedVoxels { network, points, certificate, relabelled } = smoothed.map_err(failed)?;
     let times = vec![(Stage::Map, run.read_in), (Stage::Network, start.elapsed())];
-    let grains = GrainAttributes {
-        ids: measured.labels.clone(),
-        parents: None,
-        phases: None,
-        symmetry: CrystalSymmetry::default(),
-        texture: None,
-    };
     let Certificate { faults, .. } = &certificate;
     let measurement = Measurement {
         command_line: run.command_line,
         file: run.file,
-        grains,
+        grains: attributes(measured),
         map_shape: measured.map.shape,
         dropped: measured.dropped,
+        points: measured.crystals.as_ref().map(|crystals| crystals.points.clone()),
         relabelled,
         folds: faults.0.len(),
     };
@@ -77,6 +71,27 @@ pub fn smooth_map(
         volume_mesh: None,
         times,
     })
+}
+
+/// What the map tells of each grain.
+fn attributes(measured: &MeasuredMap) -> GrainAttributes {
+    let MeasuredMap { labels, voxel_counts, crystals, .. } = measured;
+    let spreads = crystals.as_ref().map(|crystals| crystals.spreads.clone());
+    let known = GrainAttributes {
+        ids: labels.clone(),
+        parents: None,
+        phases: None,
+        symmetry: CrystalSymmetry::default(),
+        texture: None,
+        measured: Some(MeasuredAttributes { voxel_counts: voxel_counts.clone(), spreads }),
+    };
+    let Some(MeasuredCrystals { phases, phase_of, orientations, .. }) = crystals else { return known };
+    let symmetries = phases.iter().map(|(_, symmetry)| *symmetry).collect();
+    GrainAttributes {
+        phases: Some(GrainPhases::measured(phases.clone(), phase_of.clone())),
+        texture: Some(GrainTexture::measured(symmetries, phase_of.clone(), orientations.clone())),
+        ..known
+    }
 }
 
 /// The voxels of a map in the box that they fill.

@@ -4,7 +4,7 @@ use polycrystal::{AngleStatistics, Collapsed, Relaxed, Vanished, WeightedAngle};
 
 use super::regularization::{Reconnected, Regularization};
 use super::tessellated::Tessellated;
-use crate::{Config, FileOptions, GrainAttributes};
+use crate::{Config, FileOptions, GrainAttributes, PointCounts};
 
 /// Where a network comes from.
 #[derive(Debug, Clone)]
@@ -51,6 +51,8 @@ pub struct Measurement {
     pub map_shape: [usize; 3],
     /// Grains that were too small, and their voxels, which went to neighbours.
     pub dropped: [u64; 2],
+    /// How points became grains, where the map is one of orientations.
+    pub points: Option<PointCounts>,
     /// Number of voxels that got another label, because a grain touched itself there.
     pub relabelled: usize,
     /// Number of pairs of elements that fold back on each other, as where a grain is thinner than three voxels.

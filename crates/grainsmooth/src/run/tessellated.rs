@@ -244,7 +244,14 @@ pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Er
     Ok(Tessellated {
         tessellation,
         weights,
-        grains: GrainAttributes { ids, parents, phases, symmetry: config.texture.symmetry, texture },
+        grains: GrainAttributes {
+            ids,
+            parents,
+            phases,
+            symmetry: config.texture.symmetry,
+            texture,
+            measured: None,
+        },
         dropped_seeds,
         merged_seeds,
         sizes,

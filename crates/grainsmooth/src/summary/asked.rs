@@ -18,7 +18,9 @@ impl Polycrystal {
         if let Some(phases) = &cells.grains.phases {
             for PhaseShare { name, fraction_asked, fraction, .. } in phases.shares(&cells.volumes(), volumes)
             {
-                add(format!("share of the volume, {name}"), fraction_asked, fraction);
+                if let Some(asked) = fraction_asked {
+                    add(format!("share of the volume, {name}"), asked, fraction);
+                }
             }
         }
         if let Some(shapes) = self.shapes_reached() {

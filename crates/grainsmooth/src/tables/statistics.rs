@@ -11,9 +11,7 @@ use polycrystal::{
 use serde::Serialize;
 use voronoi::Dimension;
 
-use crate::names::PARENT;
-use crate::names::PHASE;
-use crate::names::{MOBILITY, TENSION};
+use crate::names::{MOBILITY, PARENT, PHASE, SPREAD, TENSION, VOXEL_COUNT};
 use crate::tables::table::{Table, Value};
 use crate::{Error, GrainTexture, Output, Polycrystal, StagedFiles, TableFormat, Topology};
 
@@ -95,6 +93,15 @@ impl Polycrystal {
         if let Some(phases) = &self.grains().phases {
             let phase = |grain: GrainId| i64::from(phases.number(grain.index()));
             grains.add_column(PHASE, |row| Value::Integer(row[0].grain().map_or(0, phase)));
+        }
+        if let Some(measured) = &self.grains().measured {
+            let count = |grain: GrainId| i64::try_from(measured.voxel_counts[grain.index()]).ok();
+            let value = |row: &[Value]| row[0].grain().and_then(count).unwrap_or(0);
+            grains.add_column(VOXEL_COUNT, |row| Value::Integer(value(row)));
+            if let Some(spreads) = &measured.spreads {
+                let value = |row: &[Value]| row[0].grain().map_or(f64::NAN, |grain| spreads[grain.index()]);
+                grains.add_column(SPREAD, |row| Value::Number(value(row)));
+            }
         }
         let laws = [
             (TENSION, self.tensions.is_some(), self.network.tensions()),

@@ -21,6 +21,8 @@ pub struct VoxelTuning {
     pub rings: usize,
     /// Rounds of motions that give grains their volumes.
     pub volume_rounds: usize,
+    /// The longest motion of a point in such a round. Grains of one voxel are nearly nothing after bending, and to first order would grow far beyond their volumes.
+    pub longest_motion: f64,
 }
 
 impl Default for VoxelTuning {
@@ -35,6 +37,7 @@ impl Default for VoxelTuning {
             rounds_of_smoothing: 8,
             rings: 4,
             volume_rounds: 60,
+            longest_motion: 0.25,
         }
     }
 }

@@ -27,6 +27,8 @@ pub(super) struct VolumeSearch<'a> {
     /// Whether some boundary at the outside is free to move.
     pub(super) is_open: bool,
     pub(super) rounds: usize,
+    /// The longest motion of a point in a round.
+    pub(super) longest: f64,
 }
 
 /// How the volumes of grains grow with a point.
@@ -54,7 +56,7 @@ impl VolumeSearch<'_> {
         let mut largest = f64::INFINITY;
         for _ in 0..self.rounds {
             check_cancelled();
-            let mut missing = self.missing(points);
+            let missing = self.missing(points);
             largest = missing
                 .iter()
                 .zip(self.wanted)
@@ -63,19 +65,15 @@ impl VolumeSearch<'_> {
             if largest <= TOLERANCE {
                 break;
             }
-            if !self.is_open {
-                // No motion changes the sum, so what rounding leaves of it has no answer.
-                let rest = missing.iter().sum::<f64>() / missing.len() as f64;
-                missing.iter_mut().for_each(|missing| *missing -= rest);
-            }
             let slopes = self.slopes(points);
             let is_bound = |point: usize| boxes.is_fixed[point] | is_held[point] | BVec3::splat(stays[point]);
-            let multipliers = multipliers(&slopes, is_bound, &missing);
+            let multipliers = self.multipliers(&slopes, is_bound, missing);
             points.par_iter_mut().zip(&mut is_held).enumerate().filter(|(point, _)| !stays[*point]).for_each(
                 |(point, (place, is_held))| {
                     let along = slopes.of(point).iter();
                     let sum: DVec3 = along.map(|(grain, slope)| *slope * multipliers[*grain as usize]).sum();
-                    let wanted = *place + sum * slopes.mobilities[point];
+                    let motion = sum * slopes.mobilities[point];
+                    let wanted = *place + motion.clamp_length_max(self.longest);
                     let inside = boxes.nearest(point, wanted);
                     *place = DVec3::select(*is_held, *place, inside);
                     // Held until it would go back inside.
@@ -138,31 +136,50 @@ impl VolumeSearch<'_> {
         }
         slopes
     }
-}
 
-/// By how much points go along the slopes of each grain, so that volumes grow by what they lack, to first order.
-fn multipliers(slopes: &Slopes, is_bound: impl Fn(usize) -> BVec3, missing: &[f64]) -> Vec<f64> {
-    let mut matrix: Vec<BTreeMap<u32, f64>> = vec![BTreeMap::new(); missing.len()];
-    for (point, mobility) in slopes.mobilities.iter().enumerate() {
-        let is_bound = is_bound(point);
-        for (grain, slope) in slopes.of(point) {
-            let free = DVec3::select(is_bound, DVec3::ZERO, *slope * *mobility);
-            for (other, along) in slopes.of(point) {
-                *matrix[*grain as usize].entry(*other).or_default() += free.dot(*along);
+    /// By how much points go along the slopes of each grain, so that volumes grow by what they lack, to first order.
+    fn multipliers(
+        &self,
+        slopes: &Slopes,
+        is_bound: impl Fn(usize) -> BVec3,
+        mut missing: Vec<f64>,
+    ) -> Vec<f64> {
+        let mut matrix: Vec<BTreeMap<u32, f64>> = vec![BTreeMap::new(); missing.len()];
+        for (point, mobility) in slopes.mobilities.iter().enumerate() {
+            let is_bound = is_bound(point);
+            for (grain, slope) in slopes.of(point) {
+                let free = DVec3::select(is_bound, DVec3::ZERO, *slope * *mobility);
+                for (other, along) in slopes.of(point) {
+                    *matrix[*grain as usize].entry(*other).or_default() += free.dot(*along);
+                }
             }
         }
-    }
-    let apply = |multipliers: &[f64]| -> Vec<f64> {
-        let row = |row: &BTreeMap<u32, f64>| {
-            row.iter().map(|(other, value)| value * multipliers[*other as usize]).sum()
+        let apply = |multipliers: &[f64]| -> Vec<f64> {
+            let row = |row: &BTreeMap<u32, f64>| {
+                row.iter().map(|(other, value)| value * multipliers[*other as usize]).sum()
+            };
+            matrix.par_iter().map(row).collect()
         };
-        matrix.par_iter().map(row).collect()
-    };
-    let diagonal: Vec<f64> =
-        (0u32..).zip(&matrix).map(|(grain, row)| row.get(&grain).copied().unwrap_or(0.0)).collect();
-    let precondition = |residual: &[f64]| -> Vec<f64> {
-        let entry = |(value, diagonal): (&f64, &f64)| if *diagonal > 0.0 { value / diagonal } else { 0.0 };
-        residual.iter().zip(&diagonal).map(entry).collect()
-    };
-    solve(apply, precondition, missing, &Limits { tolerance: SOLVED, steps: 2 * missing.len() + 20 })
+        let diagonal: Vec<f64> =
+            (0u32..).zip(&matrix).map(|(grain, row)| row.get(&grain).copied().unwrap_or(0.0)).collect();
+        let can_grow: Vec<bool> = diagonal.iter().map(|diagonal| *diagonal > 0.0).collect();
+        // A grain whose points are all at the walls of their boxes waits.
+        missing.iter_mut().zip(&can_grow).filter(|(_, can)| !**can).for_each(|(missing, _)| *missing = 0.0);
+        if !self.is_open {
+            // No motion changes the sum, so what waiting grains and rounding leave of it has no answer.
+            let growing = can_grow.iter().filter(|can| **can).count();
+            let rest = missing.iter().sum::<f64>() / growing.max(1) as f64;
+            missing
+                .iter_mut()
+                .zip(&can_grow)
+                .filter(|(_, can)| **can)
+                .for_each(|(missing, _)| *missing -= rest);
+        }
+        let precondition = |residual: &[f64]| -> Vec<f64> {
+            let entry =
+                |(value, diagonal): (&f64, &f64)| if *diagonal > 0.0 { value / diagonal } else { 0.0 };
+            residual.iter().zip(&diagonal).map(entry).collect()
+        };
+        solve(apply, precondition, &missing, &Limits { tolerance: SOLVED, steps: 2 * missing.len() + 20 })
+    }
 }

@@ -3,7 +3,8 @@
 use glam::DVec3;
 use texture::Orientation;
 
-use super::{Fault, OrientationList, columns, number};
+use super::{Fault, OrientationList, number};
+use crate::input::orientation_map::columns;
 
 /// Reads a list. Lines that begin with `#` are comments.
 pub(super) fn read(text: &str) -> Result<OrientationList, Fault> {
@@ -12,7 +13,7 @@ pub(super) fn read(text: &str) -> Result<OrientationList, Fault> {
         if text.is_empty() || text.starts_with('#') {
             continue;
         }
-        let numbers = columns(text).into_iter().map(|column| number(line, column));
+        let numbers = columns(text).map(|column| number(line, column));
         let numbers = numbers.collect::<Result<Vec<f64>, Fault>>()?;
         let orientation = match numbers[..] {
             [x, y, z] => Orientation::from_rodrigues(DVec3::new(x, y, z)),

@@ -1,0 +1,5 @@
+//! Grains of orientation maps.
+
+pub(super) mod grains;
+mod grid;
+mod segmentation;

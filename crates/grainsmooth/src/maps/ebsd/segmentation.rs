@@ -1,0 +1,119 @@
+//! Points that are turned little against their neighbours are one grain.
+
+use std::collections::BTreeSet;
+
+use rayon::prelude::*;
+use texture::{CrystalSymmetry, Orientation};
+
+use super::super::cleaning::NO_GRAIN;
+use super::super::ebsd_options::AxisAngle;
+use super::super::neighbors::Grid;
+
+/// A point with a good solution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Crystal {
+    /// Index of its phase.
+    pub(super) phase: usize,
+    pub(super) orientation: Orientation,
+}
+
+/// The grain of each point: neighbours of one phase that differ by a threshold at most, in degrees, are in one. Grains are numbered from 0 by their first points.
+pub(super) fn segmented(
+    crystals: &[Option<Crystal>],
+    grid: Grid,
+    symmetries: &[CrystalSymmetry],
+    threshold: f64,
+) -> Vec<i32> {
+    let is_one = |first: &Crystal, second: &Crystal| {
+        first.phase == second.phase
+            && symmetries[first.phase].disorientation_angle(first.orientation, second.orientation)
+                <= threshold
+    };
+    let joined: Vec<Vec<usize>> = (0..crystals.len())
+        .into_par_iter()
+        .map(|place| {
+            let Some(own) = &crystals[place] else { return Vec::new() };
+            let before = grid.neighbors(place).filter(|other| *other < place);
+            before.filter(|other| crystals[*other].as_ref().is_some_and(|other| is_one(own, other))).collect()
+        })
+        .collect();
+    let mut sets = Sets::new(crystals.len());
+    for (place, others) in joined.iter().enumerate() {
+        others.iter().for_each(|other| sets.join(place, *other));
+    }
+    let mut next = 0;
+    let mut labels = vec![NO_GRAIN; crystals.len()];
+    for place in (0..crystals.len()).filter(|place| crystals[*place].is_some()) {
+        // The first of a set is its smallest.
+        let first = sets.first(place);
+        if first == place {
+            labels[place] = next;
+            next += 1;
+        } else {
+            labels[place] = labels[first];
+        }
+    }
+    labels
+}
+
+/// The grain that each becomes part of when twins are one, by their mean orientations; grains keep their order.
+pub(super) fn merged_twins(
+    labels: &[i32],
+    grid: Grid,
+    grains: &[Crystal],
+    symmetries: &[CrystalSymmetry],
+    twin: AxisAngle,
+    tolerance: f64,
+) -> Vec<i32> {
+    let mut pairs = BTreeSet::new();
+    for (place, label) in labels.iter().enumerate() {
+        let others = grid.neighbors(place).map(|other| labels[other]);
+        pairs.extend(others.filter(|other| other > label && *label >= 0).map(|other| [*label, other]));
+    }
+    let index = |label: i32| usize::try_from(label).expect("grains are numbered from 0");
+    let mut sets = Sets::new(grains.len());
+    for [first, second] in pairs.into_iter().map(|pair| pair.map(index)) {
+        let [one, other] = [grains[first], grains[second]];
+        if one.phase == other.phase
+            && symmetries[one.phase].twin_deviation(one.orientation, other.orientation, twin.angle, twin.axis)
+                <= tolerance
+        {
+            sets.join(first, second);
+        }
+    }
+    let mut next = 0;
+    let mut merged = vec![0; grains.len()];
+    for grain in 0..grains.len() {
+        let first = sets.first(grain);
+        if first == grain {
+            merged[grain] = next;
+            next += 1;
+        } else {
+            merged[grain] = merged[first];
+        }
+    }
+    merged
+}
+
+/// Numbers in sets, each known by its smallest.
+struct Sets(Vec<usize>);
+
+impl Sets {
+    fn new(count: usize) -> Self {
+        Self((0..count).collect())
+    }
+
+    /// The smallest of a number's set.
+    fn first(&mut self, mut number: usize) -> usize {
+        while self.0[number] != number {
+            self.0[number] = self.0[self.0[number]];
+            number = self.0[number];
+        }
+        number
+    }
+
+    fn join(&mut self, first: usize, second: usize) {
+        let (first, second) = (self.first(first), self.first(second));
+        self.0[first.max(second)] = first.min(second);
+    }
+}
