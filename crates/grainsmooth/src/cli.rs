@@ -80,7 +80,7 @@ pub enum Command {
     Smooth(Box<SmoothArguments>),
     View(ViewArguments),
     Edit(EditArguments),
-    /// Print what completes options and values in a shell
+    /// Print a completion script for a shell
     ///
     /// Example: grainsmooth completions bash > ~/.local/share/bash-completion/completions/grainsmooth
     Completions {

@@ -140,7 +140,7 @@ pub struct Config {
     #[serde(flatten)]
     pub seeds: SeedSource,
 
-    /// Start of the random generator: the same number gives the same grains on every machine
+    /// Seed of the random number generator: the same number gives the same grains on every machine
     ///
     /// Example: --rng-seed 7
     #[arg(long = "rng-seed", help_heading = "Seeds", value_name = "S", default_value_t = Self::default().random_seed, value_parser = whole_number(0..=u64::MAX), allow_negative_numbers = true)]
@@ -152,47 +152,48 @@ pub struct Config {
     #[serde(flatten)]
     pub sizes: SizeOptions,
 
-    /// Make a phase of a name, with a share of the volume that is exact (in 2D of the area); give it again for each phase
+    /// Add a phase with an exact share of the volume (of the area in 2D); repeat for each phase
     ///
-    /// Shares add up to 1. Behind them may stand what the grains of a phase have of their own: diameters= as of --diameters, texture= as of
-    /// --texture, symmetry= as of --crystal-symmetry; and place=, where its grains are among the others: interior, boundaries, triple-lines,
-    /// quadruple-points, clustered, dispersed.
+    /// Shares add up to 1. A phase can have its own diameters= (as for --diameters), texture= (as for --texture) and
+    /// symmetry= (as for --crystal-symmetry). place= says where its grains lie among the others: interior, boundaries,
+    /// triple-lines, quadruple-points, clustered or dispersed.
     ///
     /// Example: --phase ferrite:0.8 --phase 'austenite:0.2,texture=goss(10)'
     #[arg(long = "phase", help_heading = "Phases", value_name = "NAME:SHARE[,KEY=VALUE]", num_args = 1, conflicts_with_all = ["volumes", "lattice", "misorientations"])]
     #[serde(rename = "phase", skip_serializing_if = "Vec::is_empty", serialize_with = "as_texts")]
     pub phases: Vec<PhaseOptions>,
 
-    /// Divide the grains, or those of one phase, by a second tessellation: layers of a width, or Voronoi cells of a mean diameter, in the
-    /// unit of --box; give it again for other phases
+    /// Subdivide the grains, or those of one phase, into lamellae of a given width or Voronoi cells of a given mean
+    /// diameter, in the unit of --box; repeat for other phases
     ///
-    /// Each part is a grain of its own, with an orientation of its own, and Parent tells whose part it is. Grains keep their volumes. Layers lie in
-    /// a random direction in each grain, or across normal=; cells have lognormal diameters of a coefficient of variation cv= (0.35).
+    /// Each part becomes a grain with its own orientation, and the array Parent names the grain that it belongs to. Those
+    /// grains keep their volumes. Lamellae lie in a random direction in each grain, or across normal=; cells have lognormal
+    /// diameters with a coefficient of variation of cv= (0.35).
     ///
     /// Example: --inside 'lamellae(width=0.05)'; --inside 'beta:voronoi(diameter=0.1)' for one phase
     #[arg(long, help_heading = "Phases", value_name = "[PHASE:]PATTERN(LENGTH)", num_args = 1)]
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "as_texts")]
     pub inside: Vec<InsideOptions>,
 
-    /// Go on without seeds whose neighbours outweigh them; else that is an error
+    /// Drop seeds that their neighbours outweigh, so that they have no cell; without this option they are an error
     ///
     /// Example: --seeds-file spheres.csv --drop-empty
     #[arg(long, help_heading = "Seeds", requires = "seeds_file")]
     #[serde(skip_serializing_if = "is_usual")]
     pub drop_empty: bool,
 
-    /// Merge cells below F mean equivalent diameters into what surrounds them; 0 keeps all
+    /// Merge cells smaller than F mean equivalent diameters into their surroundings; 0 keeps all
     ///
-    /// The smallest cell below loses its seed and the cells are made again, so that its neighbours grow into its place, until none is
-    /// below. The grains have the volumes of these cells. SeedId leads from their numbers back to the seeds.
+    /// The smallest such cell loses its seed and all cells are computed again, so that its neighbours fill its space, until
+    /// no cell is too small. The grains have the volumes of these last cells. SeedId maps their numbers back to the seeds.
     ///
     /// Example: --min-diameter 0.2
     #[arg(long, help_heading = "Seeds", value_name = "F", default_value_t = 0.0, value_parser = number(0.0..1.0, "give a share of the mean diameter, from 0 (off) to below 1"), allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "is_usual")]
     pub min_diameter: f64,
 
-    /// Even out the grains: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 10
-    /// for packed grains, and where else --diameters or --volumes give sizes, but no --seeds-file the places; 0 for others]
+    /// Make the grains more alike: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 10
+    /// for packed grains, and for --diameters or --volumes without --seeds-file; otherwise 0]
     ///
     /// Example: --lloyd 10
     #[arg(long = "lloyd", help_heading = "Seeds", value_name = "N", value_parser = whole_number(0..=100_000_u32), allow_negative_numbers = true)]
@@ -215,11 +216,13 @@ pub struct Config {
     #[serde(skip_serializing_if = "is_equiaxed", serialize_with = "as_lengths")]
     pub aspect_ratio: DVec3,
 
-    /// Give each grain a shape: an ellipsoid (in 2D an ellipse) with lengths in proportion, in a random direction or along x, y and z
+    /// Give each grain a shape: an ellipsoid (an ellipse in 2D) of the given axis ratios, in a random direction or aligned
+    /// with x, y and z
     ///
-    /// Grains are several cells each, which makes them as long as there is room for; volumes are as exact as without, and the summary tells the
-    /// ratio that was reached. A file (.csv, .txt) has a line for each grain: lengths a, b, c and Bunge's Euler angles phi1, Phi, phi2 in
-    /// degrees, in 2D a, b and phi1. Relaxation rounds grains: --relax tells how far.
+    /// Each grain then consists of several cells, which make it as elongated as space allows. Volumes stay exact, and the
+    /// summary reports the ratio that was reached. A file (.csv, .txt) has one line for each grain: lengths a, b, c and
+    /// Bunge's Euler angles phi1, Phi, phi2 in degrees (a, b and phi1 in 2D). Relaxation makes grains rounder; --relax sets
+    /// for how long it acts.
     ///
     /// Example: --grain-shapes '3:1:1 aligned'
     #[arg(long, help_heading = "Sizes", value_name = "SPEC|FILE", value_parser = ShapeSource::parse, conflicts_with_all = ["lattice", "domain", "half_spaces", "series", "aspect_ratio", "inside", "cells_json", "cells_csv", "no_mesh"])]
@@ -236,7 +239,8 @@ pub struct Config {
     #[serde(serialize_with = "as_axis_names")]
     pub periodic: BVec3,
 
-    /// Grains of a periodic box whole, sticking out of it where they grow through a wall (wrap), or cut at its walls (box)
+    /// Keep the grains of a periodic box whole, sticking out where they cross its walls (wrap), or cut them at the walls
+    /// (box)
     ///
     /// Example: --periodic x,y,z --periodic-cut box
     #[arg(long, help_heading = "Domain", value_name = "RULE", value_enum, default_value_t)]
@@ -256,21 +260,24 @@ pub struct Config {
     #[serde(rename = "relax", skip_serializing_if = "Option::is_none", serialize_with = "as_time")]
     pub relaxation: Option<Relaxation>,
 
-    /// Tension of the walls, in units of that between grains, of the largest with --tension; 0 lets boundaries meet walls at right angles
+    /// Tension of the walls, relative to that between grains (to the largest, with --tension); with 0, boundaries meet the
+    /// walls at right angles
     ///
     /// Example: --wall-tension 0.5
     #[arg(long, help_heading = "Smoothing", value_name = "G", default_value_t = 0.0, value_parser = number(0.0..=f64::MAX, "a tension is 0 or a positive, finite number"), allow_negative_numbers = true)]
     pub wall_tension: f64,
 
-    /// Tension of boundaries between grains, in any unit: a number, read-shockley(15) over the disorientation, that times a number, or a
-    /// table of angles and tensions; with PHASE/PHASE: before it, of boundaries between these [default: 1]
+    /// Tension (energy per area) of boundaries between grains, in any unit: a number; read-shockley(15), a function of the
+    /// disorientation, or a multiple of it; or a table of angles and tensions. PHASE/PHASE: in front makes it the tension
+    /// between these phases [default: 1]
     ///
     /// Example: --texture 'goss(10)' --tension 'read-shockley(15)'
     #[arg(long = "tension", help_heading = "Smoothing", value_name = "[A/B:]LAW", num_args = 1)]
     #[serde(rename = "tension", skip_serializing_if = "Vec::is_empty", serialize_with = "as_texts")]
     pub tensions: Vec<LawOptions>,
 
-    /// Mobility of boundaries between grains that grow, in any unit: a law as of --tension, such as humphreys(15) [default: 1]
+    /// Mobility of the boundaries between growing grains, in any unit: a law as for --tension, such as humphreys(15)
+    /// [default: 1]
     ///
     /// Example: --relax 0.02 --free --texture 'goss(10)' --mobility 'humphreys(15)'
     #[arg(long = "mobility", help_heading = "Smoothing", value_name = "[A/B:]LAW", num_args = 1)]
@@ -282,21 +289,20 @@ pub struct Config {
     #[serde(rename = "free", skip_serializing_if = "is_usual", serialize_with = "as_true")]
     pub volumes: Volumes,
 
-    /// Keep the neighbours of the cells instead of letting grains switch them, but for edges shorter than L mean grain sizes, which
-    /// become points; 0 keeps all
+    /// Do not let grains switch neighbours; only edges shorter than L mean grain sizes become points. 0 keeps every edge
     ///
     /// Example: --regularize 0.05
     #[arg(long, help_heading = "Smoothing", value_name = "L", value_parser = number(0.0..=LARGEST_REGULARIZE, "give a length from 0 (off) to 0.5"), allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub regularize: Option<f64>,
 
-    /// Number of subdivisions; each makes four triangles of one (two segments in 2D)
+    /// Number of subdivisions; each divides every triangle into four (in 2D every segment into two)
     ///
     /// Example: -n 2
     #[arg(short = 'n', long, help_heading = "Smoothing", value_name = "LEVELS", default_value_t = Self::default().levels, value_parser = whole_number(0..=99_u32), allow_negative_numbers = true)]
     pub levels: u32,
 
-    /// Triple lines as smooth curves (crease) or as polylines through all their control points (corner)
+    /// Smooth the triple lines (crease), or leave them as polylines through their control points (corner)
     ///
     /// Example: --junctions corner
     #[arg(long, help_heading = "Smoothing", value_name = "RULE", default_value = "crease", value_parser = junctions())]

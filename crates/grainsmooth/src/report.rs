@@ -11,6 +11,7 @@ use std::io;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use polycrystal::{WeightedAngle, angles_between_boundaries};
+use quick_xml::escape::partial_escape;
 use sizes::Distribution;
 use texture::{AngleHistogram, Pair, RandomDisorientations};
 use voronoi::Dimension;
@@ -84,12 +85,12 @@ impl Polycrystal {
             &[
                 ("title", &title),
                 ("style", include_str!("../assets/report.css")),
-                ("command", &escaped(&self.provenance().command_line())),
+                ("command", &partial_escape(&self.provenance().command_line())),
                 (
                     "settings",
                     &format!(
                         "<details><summary>All settings</summary><pre>{}</pre></details>",
-                        escaped(&self.provenance().text())
+                        partial_escape(&self.provenance().text())
                     ),
                 ),
                 ("view", &view),
@@ -104,7 +105,7 @@ impl Polycrystal {
     fn asked_table(&self) -> String {
         let row = |AskedAndReached { what, asked, reached }: &AskedAndReached| {
             let [asked, reached] = [asked, reached].map(|value| significant(*value, 6));
-            format!("<tr><th>{}</th><td>{asked}</td><td>{reached}</td></tr>", escaped(what))
+            format!("<tr><th>{}</th><td>{asked}</td><td>{reached}</td></tr>", partial_escape(what))
         };
         let rows: String = self.asked_and_reached().iter().map(row).collect();
         if rows.is_empty() {
@@ -122,7 +123,7 @@ impl Polycrystal {
         let lines = summary.lines().chain([version]);
         let row = |line: &str| {
             let (name, value) = line.split_once("  ").unwrap_or((line, ""));
-            format!("<tr><th>{}</th><td>{}</td></tr>", escaped(name), escaped(value.trim()))
+            format!("<tr><th>{}</th><td>{}</td></tr>", partial_escape(name), partial_escape(value.trim()))
         };
         lines.map(row).collect()
     }
@@ -313,9 +314,4 @@ fn filled(template: &str, values: &[(&str, &str)]) -> String {
         text.push_str(rest);
     }
     text
-}
-
-/// Text as HTML shows it.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -13,6 +13,7 @@ use vtkio::xml::ScalarType;
 
 use xml::XmlFormat;
 
+mod coding;
 mod data_array;
 mod field;
 mod image;
@@ -21,6 +22,7 @@ mod legacy;
 mod pieces;
 mod raw;
 mod xml;
+mod xml_file;
 
 pub use data_array::{DataArray, DataNumbers};
 pub(crate) use field::field_entry;
@@ -28,8 +30,8 @@ pub use field::{FieldEntry, FieldValue};
 pub use image::{ImageData, write_vti};
 pub use item_tuples::ItemTuples;
 pub(crate) use pieces::{PieceData, PieceSize, PieceValue, PieceVectors, write_pieces};
-pub(crate) use raw::{XmlFile, attribute, field_names, find, try_inlined};
-pub use raw::{field_bytes, field_numbers, field_text, inlined};
+pub(crate) use xml_file::{Element, XmlFile, document};
+pub use xml_file::{field_bytes, field_numbers, field_text, inlined};
 
 /// A format of VTK files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-/// Check networks of grains: closed, wound alike, nothing folded or crossed, no point twice
+/// Check grain networks: grains closed, orientation consistent, no folds, crossings or duplicate points
 ///
 /// Reads triangles (in the plane: lines) with two labels each, from the cell array FaceLabels, boundary_labels or
 /// BoundaryLabels of .vtp, .vtu and .vtk files, whichever program wrote them.

@@ -36,7 +36,7 @@ pub struct DomainArguments {
     #[arg(long, value_name = "SHAPE", default_value = "box", value_parser = parse_shape)]
     domain: ShapeName,
 
-    /// Read the domain as half-spaces n . x <= d from a text file: nx, ny, nz, d on each line (nx, ny, d in 2D)
+    /// Define the domain by half-spaces n . x <= d in a text file: nx, ny, nz, d on each line (nx, ny, d in 2D)
     ///
     /// Example: --half-spaces octahedron.csv
     #[arg(long, value_name = "FILE", conflicts_with_all = ["domain", "box_size"])]
@@ -49,8 +49,8 @@ pub struct DomainArguments {
     #[arg(long, value_name = "E", value_parser = parse_chord_error, allow_negative_numbers = true)]
     chord_error: Option<f64>,
 
-    /// Axes along which the box repeats, such as x,y,z: grains are whole there and grow through the walls [default: none, or
-    /// those of a .tess file]
+    /// Axes along which the box is periodic, such as x,y,z: grains grow through these walls and stay whole [default: none,
+    /// or those of a .tess file]
     ///
     /// Example: --periodic x,y
     #[arg(long, value_name = "AXES", value_parser = parse_axes)]

@@ -21,19 +21,19 @@ pub struct OutputArguments {
     #[arg(short, long, help = output_help(), long_help = format!("{}\n\nExample: -o grains.vtp -o grains.msh", output_help()), value_name = "PATH", num_args = 1, default_value = "grains.vtp", value_parser = parse_output)]
     output: Vec<PathBuf>,
 
-    /// Format of what goes to standard output, named by its extension [default: vtp]
+    /// Format for standard output, by its extension [default: vtp]
     ///
     /// Example: -o - --format ply
     #[arg(long, value_name = "FORMAT", value_parser = parse_format)]
     format: Option<OutputFormat>,
 
-    /// Write each grain as a closed surface of its own into this new directory
+    /// Write each grain as a closed surface to a file of its own in this new directory
     ///
     /// Example: --grains-dir grains
     #[arg(long, value_name = "DIR")]
     pub grains_dir: Option<PathBuf>,
 
-    /// Format of the grains' own files
+    /// Format of these files
     ///
     /// Example: --grains-dir grains --grains-format stl
     #[arg(long, value_name = "FORMAT", value_parser = grain_formats(), default_value = "vtp", requires = "grains_dir")]
@@ -45,7 +45,7 @@ pub struct OutputArguments {
     #[arg(long, value_names = ["NX", "NY", "NZ"], num_args = 2.., value_parser = whole_number(1..=65_536_u32), allow_negative_numbers = true)]
     voxels: Option<Vec<u32>>,
 
-    /// Write STL as text
+    /// Write STL files as text
     ///
     /// Example: --ascii -o grains.stl
     #[arg(long)]
@@ -57,7 +57,8 @@ pub struct OutputArguments {
     #[command(flatten)]
     vtk: VtkArguments,
 
-    /// Write measures of the smooth network: as JSON, or as CSV of the grains with F.boundaries.csv and so on beside it
+    /// Write measures of the smooth network: as JSON, or as CSV, with boundaries, lines and points in F.boundaries.csv and
+    /// so on
     ///
     /// Example: --stats grains.json
     #[arg(long, value_name = "F", value_parser = parse_statistics)]
@@ -77,7 +78,7 @@ pub struct FileArguments {
     #[arg(long, value_name = "F", value_parser = parse_series)]
     series: Option<PathBuf>,
 
-    /// Steps of the relaxation between two of the series
+    /// Write every K-th step of the relaxation
     ///
     /// Example: --series relaxation.pvd --every 2
     #[arg(long, value_name = "K", default_value_t = NonZeroU32::MIN, value_parser = parse_every, allow_negative_numbers = true, requires = "series")]

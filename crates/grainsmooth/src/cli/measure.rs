@@ -9,11 +9,12 @@ use voronoi::Dimension;
 
 use super::domain::parse_dimension;
 
-/// Measure a sample: sizes, shapes, neighbours and texture of its grains, and the run that makes a twin of it
+/// Measure the sizes, shapes, neighbours and texture of the grains of a sample, and print the command that makes a similar
+/// one
 ///
-/// Reads networks with labels (.vtp, .vtu, .vtk), Neper's tessellations (.tess), and tables of grains with a column diameter or volume (.csv, .txt,
-/// .json). Diameters are equivalent ones. The twin is told as options of grainsmooth: with the fitted distribution, and with --table with
-/// the measured diameters and orientations themselves.
+/// Reads labelled networks (.vtp, .vtu, .vtk), Neper's tessellations (.tess), and tables of grains with a column diameter or
+/// volume (.csv, .txt, .json). Diameters are equivalent diameters. The command has the fitted distribution; with --table, it
+/// has the measured diameters and orientations themselves.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct MeasureArguments {

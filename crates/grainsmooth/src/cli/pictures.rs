@@ -13,7 +13,7 @@ use crate::spelling::whole_number;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Pictures")]
 pub struct PictureArguments {
-    /// Draw the network, seen from above one edge of the box; needs no display
+    /// Draw the network as seen from above one edge of the box; needs no display
     ///
     /// Example: --picture grains.png
     #[arg(long, value_name = "PATH.png", value_parser = parse_png)]
@@ -25,16 +25,17 @@ pub struct PictureArguments {
     #[arg(long, value_names = ["W", "H"], num_args = 2, value_parser = whole_number(16..=16_384_u16), allow_negative_numbers = true, requires = "picture")]
     picture_size: Option<Vec<u16>>,
 
-    /// What the colours mean: nothing (grain); a grain's equivalent diameter, number of boundaries (neighbors), phase, or crystal direction
-    /// along an axis (ipf-x, ipf-y, ipf-z); a boundary's disorientation
+    /// What the colours show: nothing but which grain is which (grain); the equivalent diameter, number of boundaries
+    /// (neighbors), phase, or crystal direction along an axis (ipf-x, ipf-y, ipf-z) of each grain; or the disorientation of
+    /// each boundary
     ///
-    /// A key stands at the right. Crystal directions and disorientations need a texture.
+    /// There is a key on the right. Crystal directions and disorientations need a texture.
     ///
     /// Example: --picture directions.png --texture random --color-by ipf-z
     #[arg(long, value_name = "WHAT", value_parser = colorings(), default_value = "grain", requires = "picture")]
     color_by: Coloring,
 
-    /// Move the grains of the picture apart: each away from the middle, by X times its distance from there
+    /// Exploded view: move each grain away from the middle by X times its distance from there
     ///
     /// Example: --picture apart.png --explode 0.4
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = parse_explode, allow_negative_numbers = true, requires = "picture")]
@@ -52,7 +53,7 @@ pub struct PictureArguments {
     #[arg(long, requires = "picture")]
     transparent: bool,
 
-    /// Write a page with a view of the grains to rotate, histograms and the figures of the run; it works offline
+    /// Write a web page with a 3D view of the grains, histograms and the figures of the run; it works offline
     ///
     /// Example: --report grains.html
     #[arg(long, value_name = "PATH.html", value_parser = parse_html)]

@@ -10,7 +10,7 @@ use crate::spelling::whole_number;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Run")]
 pub struct RunArguments {
-    /// Read options from a TOML file, or from a file that an earlier run wrote; those given here override them
+    /// Read options from a TOML file, or from a file that an earlier run wrote; options on the command line override them
     ///
     /// A key is the long name of an option, as in seeds = 500 or box = [2, 1, 1].
     ///
@@ -18,13 +18,13 @@ pub struct RunArguments {
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
 
-    /// Stop after the cells and their tables: no relaxation, no mesh
+    /// Stop after the cells and their tables, without relaxation and mesh
     ///
     /// Example: --no-mesh --cells-csv cells.csv
     #[arg(long, conflicts_with_all = ["output", "stats", "series", "picture", "report", "dry_run", "json_summary"])]
     pub no_mesh: bool,
 
-    /// Say how many grains, points and triangles there would be, and what file and memory they would take; write nothing
+    /// Report how many grains, points and triangles there would be, and the file size and memory they need; write nothing
     ///
     /// Example: --seeds 100000 -n 3 --dry-run
     #[arg(long)]
@@ -44,13 +44,13 @@ pub struct SharedArguments {
     #[arg(long, value_name = "PATH")]
     pub json_summary: Option<PathBuf>,
 
-    /// Number of threads [default: all processors]; the file does not depend on it
+    /// Number of threads [default: all processors]; it does not change the result
     ///
     /// Example: --threads 4
     #[arg(long, value_name = "N", value_parser = whole_number(1..=1024_u16), allow_negative_numbers = true)]
     pub threads: Option<u16>,
 
-    /// Say nothing unless something is wrong
+    /// Print nothing unless something goes wrong
     ///
     /// Example: --quiet
     #[arg(short, long)]

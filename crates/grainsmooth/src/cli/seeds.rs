@@ -16,30 +16,31 @@ const USUAL_SEEDS: u32 = 200;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Seeds")]
 pub struct SeedArguments {
-    /// Number of grains, grown from random seeds [default: 200, or what --diameters or --volumes ask for]
+    /// Number of grains [default: 200, or what --diameters or --volumes ask for]
     ///
     /// Example: --seeds 5000
     #[arg(long, value_name = "N", value_parser = whole_number(1..=4_000_000_000_u32), allow_negative_numbers = true)]
     seeds: Option<u32>,
 
-    /// Seeds as the centres of spheres that do not overlap, for grains of exact sizes as in metals (packed); random, uniform (random)
-    /// or at least 0.75 mean spacings apart (poisson-disc)
+    /// How seeds are placed: as centres of spheres that do not overlap, for grains of exact, realistic sizes (packed);
+    /// uniformly at random (random); or at random but at least 0.75 mean spacings apart (poisson-disc)
     ///
-    /// Packed grains have lognormal diameters with a coefficient of variation of 0.35, unless --diameters or --volumes ask for others.
-    /// Random seeds make Voronoi cells, for the exact statistics of those.
+    /// Packed grains have lognormal diameters with a coefficient of variation of 0.35, unless --diameters or --volumes ask
+    /// for others. Random seeds give Poisson-Voronoi cells, whose statistics are known.
     ///
     /// Example: --seeding random
     #[arg(long, value_name = "HOW", value_enum, default_value_t = Seeding::Packed)]
     seeding: Seeding,
 
-    /// Seeds on a lattice instead: sc, bcc, fcc or hcp (square or hex in 2D), with N unit cells along the shortest side
+    /// Place seeds on a lattice instead: sc, bcc, fcc or hcp (square or hex in 2D), with N unit cells along the shortest
+    /// side
     ///
     /// Example: --lattice bcc 4
     #[arg(long, value_names = ["LATTICE", "N"], num_args = 2, value_parser = parse_lattice, allow_negative_numbers = true, conflicts_with_all = ["seeds", "random_seed", "seeding"])]
     lattice: Option<Vec<LatticeValue>>,
 
-    /// Read seeds from a file instead: text with x, y, z on each line (x, y in 2D), or with names of columns in the first line,
-    /// where radius, diameter or weight makes power cells; .xyz; .json; or Neper's .tess, which tells the box as well
+    /// Read seeds from a file instead: text with x, y, z on each line (x, y in 2D), or with column names in the first line,
+    /// where radius, diameter or weight makes power cells; .xyz; .json; or Neper's .tess, which also defines the box
     ///
     /// Example: --seeds-file seeds.csv
     #[arg(long, value_name = "FILE", conflicts_with_all = ["seeds", "random_seed", "seeding", "lattice"])]

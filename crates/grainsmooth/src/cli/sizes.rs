@@ -17,27 +17,28 @@ const PROPORTIONS: RangeInclusive<f64> = 0.01..=100.0;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Sizes")]
 pub struct SizeArguments {
-    /// Give grains exact sizes: equivalent diameters of a distribution, in words or from a file, in the unit of --box
+    /// Give the grains exact sizes: equivalent diameters from a distribution or a file, in the unit of --box
     ///
-    /// Words are lognormal(mean=20, cv=0.35), normal(mean=20, sd=5), uniform(10, 30), weibull(shape=2.8, scale=20), gamma(mean=20, cv=0.35),
-    /// equal(20), and sums of these with weights by number: '0.8*lognormal(mean=20, cv=0.3) + 0.2*equal(60)'. Behind them may stand
-    /// cut-offs, and that weights are by volume: ', from=5, to=80, by=volume'. A file (.csv, .txt) holds a list, a histogram or a
-    /// distribution function. As many grains are made as fill the domain; with --seeds N, diameters are scaled to fill it.
+    /// Distributions are lognormal(mean=20, cv=0.35), normal(mean=20, sd=5), uniform(10, 30), weibull(shape=2.8, scale=20),
+    /// gamma(mean=20, cv=0.35), equal(20), and sums of these weighted by number: '0.8*lognormal(mean=20, cv=0.3) +
+    /// 0.2*equal(60)'. Cut-offs, and weights by volume, follow after commas: ', from=5, to=80, by=volume'. A file (.csv,
+    /// .txt) holds a list, a histogram or a cumulative distribution. There are as many grains as fill the domain; with
+    /// --seeds N, diameters are scaled to fill it.
     ///
     /// Example: --diameters 'lognormal(mean=20, cv=0.35)' --box 100 100 100
     #[arg(long, value_name = "SPEC|FILE", value_parser = parse_diameters, conflicts_with = "lattice")]
     diameters: Option<SizeSource>,
 
-    /// Give each grain a volume of its own (in 2D an area), scaled to fill the domain: one on each line of a text file
+    /// Give each grain its own volume (area in 2D), scaled to fill the domain: a text file with one on each line
     ///
     /// Example: --volumes volumes.csv
     #[arg(long, value_name = "FILE", conflicts_with_all = ["diameters", "lattice", "seeds"])]
     volumes: Option<PathBuf>,
 
-    /// Grains long along some axes, in proportion: 3 1 1 for rolled, 1 1 4 for columnar ones (X Y in 2D)
+    /// Elongate the grains along the axes, in these proportions: 3 1 1 for rolled, 1 1 4 for columnar grains (X Y in 2D)
     ///
-    /// Cells, network and relaxation are made where grains are as long along all axes, and stretched in the end: angles at triple
-    /// lines are 120 degrees before. The box is as --box says, and volumes are as without.
+    /// Grains are made and relaxed with equal axes, so triple lines have angles of 120 degrees at first, and then stretched.
+    /// The final box is that of --box, and volumes stay exact.
     ///
     /// Example: --aspect-ratio 3 1 1
     #[arg(long, value_names = ["X", "Y", "Z"], num_args = 2.., value_parser = parse_proportion, conflicts_with_all = ["lattice", "domain", "half_spaces", "series"], allow_negative_numbers = true)]

@@ -8,23 +8,23 @@ use polycrystal::{FaceMesh, Volumes};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Smoothing")]
 pub struct SmoothingArguments {
-    /// Control points inside boundaries: a fan of triangles round one in the middle (fan), or none (plain)
+    /// Triangulate each boundary as a fan around a control point in its middle (fan), or without inner points (plain)
     ///
     /// Example: --faces plain
     #[arg(long, value_name = "RULE", value_enum, default_value_t = FaceRule::Fan)]
     faces: FaceRule,
 
-    /// Refine the control mesh instead until no edge is longer than H, in the unit of --box; a grain is about as wide as the
-    /// cube root of its volume
+    /// Refine the control mesh instead, until no edge is longer than H, in the unit of --box; a grain is about as wide as
+    /// the cube root of its volume
     ///
     /// Example: --edge-length 0.05
     #[arg(long, value_name = "H", value_parser = parse_edge_length, allow_negative_numbers = true, conflicts_with = "faces")]
     edge_length: Option<f64>,
 
-    /// Let grains grow and shrink by curvature instead of keeping their volumes (in 2D: areas)
+    /// Let grains grow and shrink by curvature instead of keeping their volumes (areas in 2D)
     ///
-    /// In 2D grains vanish and switch neighbours on the way. In 3D, and with --regularize or --edge-length, they cannot: a run that would
-    /// come to that is refused.
+    /// In 2D, grains vanish and switch neighbours. In 3D, and with --regularize or --edge-length, they cannot; a run that
+    /// would need it stops with an error.
     ///
     /// Example: --dim 2 --relax 5 --free
     #[arg(long)]

@@ -17,21 +17,22 @@ pub struct ElementOptions {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub element_size: Option<f64>,
 
-    /// The same with edges of which K make the mean diameter of the grains
+    /// Set the edge length to 1/K of the mean grain diameter instead
     ///
     /// Example: --elements-per-grain 5 --relax equilibrium
     #[arg(long, value_name = "K", value_parser = number(0.1..=1000.0, "give a number from 0.1 to 1000"), allow_negative_numbers = true, conflicts_with = "series")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub elements_per_grain: Option<f64>,
 
-    /// Smaller triangles where boundaries are curved: edges no longer than S times the radius of curvature
+    /// Use smaller triangles where boundaries are curved: edges no longer than S times the radius of curvature
     ///
     /// Example: --elements-per-grain 5 --adapt-curvature 0.3
     #[arg(long, value_name = "S", value_parser = number(0.01..=10.0, "give a share of the radius from 0.01 to 10"), allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub adapt_curvature: Option<f64>,
 
-    /// How much longer edges may become per length, away from short triple lines and other narrow places [default: 0.4]
+    /// How fast edges may grow with the distance from short triple lines and other narrow places, as length per length
+    /// [default: 0.4]
     ///
     /// Example: --elements-per-grain 5 --size-growth 0.2
     #[arg(long, value_name = "G", value_parser = number(0.01..=10.0, "give a growth from 0.01 to 10"), allow_negative_numbers = true)]

@@ -14,7 +14,7 @@ use crate::vtk::VtkEncoding;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Args, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct FileOptions {
-    /// Names and numbers of arrays as another tool expects them
+    /// Name and number the arrays as another program expects
     ///
     /// Example: --names dream3d
     #[arg(long, value_name = "TOOL", value_enum, default_value_t)]
@@ -30,7 +30,7 @@ pub struct FileOptions {
     #[serde(rename = "ascii", skip_serializing_if = "is_usual", serialize_with = "as_true")]
     pub stl: StlEncoding,
 
-    /// Add arrays of what is measured to VTK files: curvatures, dihedral angles, areas, volumes, growth rates
+    /// Add measured quantities to VTK files as arrays: curvatures, dihedral angles, areas, volumes, growth rates
     ///
     /// Example: --arrays -o grains.vtm
     #[arg(long)]

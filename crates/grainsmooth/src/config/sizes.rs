@@ -23,14 +23,15 @@ pub struct SizeOptions {
     #[serde(flatten)]
     pub source: Option<SizeSource>,
 
-    /// Draw diameters as the middles of equal shares of the distribution (quantiles), or each by itself (random)
+    /// Take the diameters at equally spaced quantiles of the distribution (quantiles), or draw each independently (random)
     ///
     /// Example: --diameters 'lognormal(mean=20, cv=0.35)' --draw random
     #[arg(long, value_name = "HOW", value_enum, default_value_t, conflicts_with_all = ["volumes", "lattice"])]
     #[serde(skip_serializing_if = "is_usual")]
     pub draw: SizeDraw,
 
-    /// Change the diameters along an axis of the box: a table of positions, and what diameters are multiplied by there
+    /// Vary the diameters along an axis of the box: a table of positions and of the factors by which diameters are
+    /// multiplied there
     ///
     /// Example: --diameters 'lognormal(mean=20, cv=0.35)' --gradient z:factors.csv
     #[arg(long, value_name = "AXIS:FILE", conflicts_with_all = ["volumes", "lattice", "domain", "half_spaces"])]

@@ -16,9 +16,9 @@ use super::spelling::{as_text, as_text_if_given, is_usual};
 pub struct TextureOptions {
     /// Give each grain an orientation: random, components with halfwidths in degrees, or a file
     ///
-    /// Components are cube, goss, brass, copper, s and others; {112}<-1-11>(10); euler(30 45 60, 10); fiber(111||z, 10); gamma(10). Sums
-    /// have weights by volume: 'cube(5)*0.3 + random*0.7'. A file holds Euler angles with weights (.csv, .txt), Neper's orientations
-    /// (.ori), or a measured map (.ang, .ctf).
+    /// Components are cube, goss, brass, copper, s and others; {112}<-1-11>(10); euler(30 45 60, 10); fiber(111||z, 10);
+    /// gamma(10). Sums are weighted by volume: 'cube(5)*0.3 + random*0.7'. A file holds Euler angles with weights (.csv,
+    /// .txt), Neper's orientations (.ori), or a measured map (.ang, .ctf).
     ///
     /// Example: --texture 'goss(10)'
     #[arg(id = "texture", long = "texture", value_name = "SPEC|FILE", value_parser = TextureSource::new)]
@@ -41,15 +41,16 @@ pub struct TextureOptions {
     #[serde(rename = "crystal-symmetry", skip_serializing_if = "is_usual", serialize_with = "as_text")]
     pub symmetry: CrystalSymmetry,
 
-    /// Symmetry of the sample: triclinic (none) or orthorhombic, as of rolled sheet, where each component comes in all its variants
+    /// Symmetry of the sample: triclinic (none), or orthorhombic as for rolled sheet, where each component has all its
+    /// variants
     ///
     /// Example: --texture 'copper(8) + s(8) + brass(8)' --sample-symmetry orthorhombic
     #[arg(long, value_name = "GROUP", default_value = "triclinic")]
     #[serde(skip_serializing_if = "is_usual", serialize_with = "as_name")]
     pub sample_symmetry: SampleSymmetry,
 
-    /// Swap orientations until the disorientations of neighbours, by area, have the histogram in a file: on each line the upper end of a
-    /// bin in degrees, and its weight
+    /// Swap orientations until the disorientations between neighbours, weighted by area, match a histogram: a file with the
+    /// upper end of a bin in degrees and its weight on each line
     ///
     /// Example: --texture random --misorientations angles.csv
     #[arg(long, value_name = "FILE", requires = "texture", conflicts_with = "no_mesh")]

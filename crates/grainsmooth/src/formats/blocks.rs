@@ -6,6 +6,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use polycrystal::{BoundaryId, GrainId, Mesh, Side};
+use quick_xml::escape::escape;
 use rayon::prelude::*;
 
 use super::format::{Beside, Content, Format, Writer};
@@ -77,7 +78,8 @@ impl Polycrystal {
         output.stage(files, |out| {
             writeln!(out, "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\">\n<vtkMultiBlockDataSet>")?;
             for (index, block) in BLOCKS.iter().enumerate() {
-                let file = escaped(&format!("{name}/{block}.vtp"));
+                let path = format!("{name}/{block}.vtp");
+                let file = escape(&path);
                 writeln!(out, "<DataSet index=\"{index}\" name=\"{block}\" file=\"{file}\"/>")?;
             }
             writeln!(out, "</vtkMultiBlockDataSet>\n</VTKFile>")
@@ -341,11 +343,6 @@ fn sides(sides: impl Iterator<Item = Side>) -> Vec<Side> {
     sides.sort_unstable();
     sides.dedup();
     sides
-}
-
-/// A text within an XML attribute.
-pub(crate) fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
 /// Unit normals at points: the means over their triangles, by area.

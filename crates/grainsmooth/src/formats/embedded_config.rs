@@ -4,11 +4,13 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use memchr::memmem;
+use quick_xml::escape::unescape;
 use serde::Deserialize;
 
 use super::series::step_path;
 use crate::config::settings::{BEGIN, END, PREFIXES};
-use crate::vtk::{field_text, find};
+use crate::vtk::field_text;
 
 /// Most formats have the text near their beginning: so many bytes are searched.
 const SEARCHED_AT_BEGIN: u64 = 1 << 20;
@@ -28,7 +30,10 @@ pub fn embedded_config(path: &Path) -> io::Result<Option<String>> {
         Some("pvd") => embedded_config(&step_path(path, 0)),
         Some("json") => Ok(of_json(File::open(path)?)),
         Some("stl") => Ok(of_stl(&ends(path)?)),
-        Some("html") => Ok(extracted(&ends(path)?).map(|text| unescaped(&text))),
+        Some("html") => {
+            let text = extracted(&ends(path)?);
+            Ok(text.and_then(|text| Some(unescape(&text).ok()?.into_owned())))
+        }
         Some("vtp" | "vtu" | "vti") => {
             let bytes = ends(path)?;
             // Where numbers are encoded, texts are too.
@@ -53,8 +58,8 @@ fn ends(path: &Path) -> io::Result<Vec<u8>> {
 }
 
 fn extracted(bytes: &[u8]) -> Option<String> {
-    let begin = find(bytes, BEGIN.as_bytes())?;
-    let end = begin + find(&bytes[begin..], END.as_bytes())?;
+    let begin = memmem::find(bytes, BEGIN.as_bytes())?;
+    let end = begin + memmem::find(&bytes[begin..], END.as_bytes())?;
     let prefix = PREFIXES.iter().find(|prefix| bytes[..begin].ends_with(prefix.as_bytes()));
     let text = std::str::from_utf8(&bytes[begin..end]).ok()?;
     // The first line is a comment of TOML.
@@ -80,15 +85,10 @@ fn of_stl(bytes: &[u8]) -> Option<String> {
     } else {
         bytes.get(..80)?
     };
-    let table = &head[find(head, b", grainsmooth ")?..];
-    let table = std::str::from_utf8(&table[find(table, b"{")?..]).ok()?;
+    let table = &head[memmem::find(head, b", grainsmooth ")?..];
+    let table = std::str::from_utf8(&table[memmem::find(table, b"{")?..]).ok()?;
     let file: toml::Table = format!("settings={table}").parse().ok()?;
     toml::to_string(file.get("settings")?).ok()
-}
-
-/// Text as it was before HTML.
-fn unescaped(text: &str) -> String {
-    text.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
 }
 
 #[cfg(test)]

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use polycrystal::{Junctions, Moving, Network, NetworkError, RelaxationStep, Relaxed};
+use quick_xml::escape::escape;
 use voronoi::Tessellation;
 
-use super::blocks::escaped;
 use crate::{Error, Output, OutputFormat, Polycrystal, StagedFiles, Synthesis};
 
 /// The steps of a relaxation, every so many of them.
@@ -159,7 +159,8 @@ pub fn write_collection(
 ) -> io::Result<()> {
     writeln!(out, "<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>")?;
     for (time, path) in files {
-        let file = escaped(&path.as_ref().file_name().unwrap_or_default().to_string_lossy());
+        let name = path.as_ref().file_name().unwrap_or_default().to_string_lossy();
+        let file = escape(&name);
         writeln!(out, "<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{file}\"/>")?;
     }
     writeln!(out, "</Collection>\n</VTKFile>")

@@ -8,7 +8,7 @@ use super::number_type::labels_of_floats;
 use super::options::MapOptions;
 use super::stored_numbers::Source;
 use crate::error::map_file::MapProblem;
-use crate::vtk::{XmlFile, attribute};
+use crate::vtk::{Element, XmlFile};
 
 /// What programs call the labels of grains: DREAM.3D, DAMASK and Neper, ParaView's filters, this program, LabDCT.
 const USUAL_NAMES: [&str; 7] =
@@ -16,9 +16,8 @@ const USUAL_NAMES: [&str; 7] =
 
 /// An array with a number for each voxel.
 struct Candidate<'a> {
-    name: &'a str,
-    tag: &'a str,
-    content: &'a str,
+    name: String,
+    array: &'a Element<'a>,
     kind: ScalarType,
     is_of_points: bool,
 }
@@ -26,24 +25,21 @@ struct Candidate<'a> {
 /// Reads the labels.
 pub(super) fn read(source: &Source<'_>, options: &MapOptions) -> Result<FileMap, MapProblem> {
     let file = XmlFile::of(source.bytes).ok_or_else(|| damaged("it is no XML of VTK"))?;
-    let Some((_, rest)) = file.head.split_once("<ImageData") else {
-        return Err(damaged("it holds no ImageData"));
-    };
-    let tag = rest.split('>').next().unwrap_or_default();
+    let image = file.root.first("ImageData").ok_or_else(|| damaged("it holds no ImageData"))?;
     let missing = |name: &str| damaged(format!("its ImageData has no {name} that is understood"));
-    if file.head.matches("<Piece").count() != 1 {
+    if image.all("Piece").len() != 1 {
         return Err(MapProblem::Unfit { what: "it is not in one piece", remedy: "save it as one" });
     }
-    let extent: [i64; 6] = numbers(tag, "WholeExtent").ok_or_else(|| missing("WholeExtent"))?;
+    let extent: [i64; 6] = numbers(image, "WholeExtent").ok_or_else(|| missing("WholeExtent"))?;
     let edges = |axis: usize| {
         let count = extent[2 * axis + 1].checked_sub(extent[2 * axis])?;
         usize::try_from(count).ok()
     };
     let edges = [edges(0), edges(1), edges(2)];
     let [Some(nx), Some(ny), Some(nz)] = edges else { return Err(missing("WholeExtent")) };
-    let spacing = DVec3::from_array(numbers(tag, "Spacing").ok_or_else(|| missing("Spacing"))?);
-    let origin = DVec3::from_array(numbers(tag, "Origin").ok_or_else(|| missing("Origin"))?);
-    let direction = attribute(tag, "Direction").map(|_| numbers::<f64, 9>(tag, "Direction"));
+    let spacing = DVec3::from_array(numbers(image, "Spacing").ok_or_else(|| missing("Spacing"))?);
+    let origin = DVec3::from_array(numbers(image, "Origin").ok_or_else(|| missing("Origin"))?);
+    let direction = image.attribute("Direction").map(|_| numbers::<f64, 9>(image, "Direction"));
     if direction.is_some_and(|axes| axes != Some([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0])) {
         return Err(damaged("its axes are turned, which maps may not be"));
     }
@@ -52,14 +48,14 @@ pub(super) fn read(source: &Source<'_>, options: &MapOptions) -> Result<FileMap,
     let shapes = [[nx, ny, nz].map(|count| count.max(1)), [nx, ny, nz].map(|count| count.saturating_add(1))];
     let candidate = labels_among(candidates(&file), options)?;
     let shape = shapes[usize::from(candidate.is_of_points)];
-    let values = file.values(candidate.tag, candidate.content, candidate.kind);
+    let values = file.values(candidate.array, candidate.kind);
     let values = values.and_then(|buffer| buffer.cast_into::<f64>());
     let values =
         values.ok_or_else(|| damaged(format!("the numbers of its array {} are damaged", candidate.name)))?;
     let count = shape.iter().try_fold(1, |all: usize, count| all.checked_mul(*count));
     if count != Some(values.len()) {
         let [nx, ny, nz] = shape;
-        let (name, found) = (candidate.name, values.len());
+        let (name, found) = (&candidate.name, values.len());
         return Err(damaged(format!("its array {name} has {found} numbers for {nx} x {ny} x {nz} voxels")));
     }
     let lower = if candidate.is_of_points { first - 0.5 } else { first };
@@ -72,16 +68,15 @@ pub(super) fn read(source: &Source<'_>, options: &MapOptions) -> Result<FileMap,
 }
 
 /// The arrays with one number each.
-fn candidates<'a>(file: &'a XmlFile<'_>) -> Vec<Candidate<'a>> {
+fn candidates<'a>(file: &'a XmlFile<'a>) -> Vec<Candidate<'a>> {
     let of_element = |(element, is_of_points): (&str, bool)| {
-        let arrays = file.arrays(element).into_iter();
-        let candidate = move |(tag, content): (&'a str, &'a str)| {
-            let is_scalar = attribute(tag, "NumberOfComponents").is_none_or(|count| count == "1");
-            let kind = scalar_type(attribute(tag, "type")?)?;
-            let name = attribute(tag, "Name")?;
-            is_scalar.then_some(Candidate { name, tag, content, kind, is_of_points })
+        let candidate = move |array: &'a Element<'a>| {
+            let is_scalar = array.attribute("NumberOfComponents").is_none_or(|count| count == "1");
+            let kind = scalar_type(&array.attribute("type")?)?;
+            let name = array.attribute("Name")?;
+            is_scalar.then_some(Candidate { name, array, kind, is_of_points })
         };
-        arrays.filter_map(candidate).collect::<Vec<_>>()
+        file.arrays(element).filter_map(candidate).collect::<Vec<_>>()
     };
     [("CellData", false), ("PointData", true)].into_iter().flat_map(of_element).collect()
 }
@@ -92,11 +87,11 @@ fn labels_among<'a>(
     options: &MapOptions,
 ) -> Result<Candidate<'a>, MapProblem> {
     let known = |candidates: &[Candidate<'_>]| {
-        candidates.iter().map(|candidate| candidate.name).collect::<Vec<_>>().join(", ")
+        candidates.iter().map(|candidate| candidate.name.as_str()).collect::<Vec<_>>().join(", ")
     };
     if let Some(name) = &options.label_array {
         let known = known(&candidates);
-        let found = candidates.into_iter().find(|candidate| candidate.name == name);
+        let found = candidates.into_iter().find(|candidate| candidate.name == *name);
         return found.ok_or_else(|| match known.is_empty() {
             true => MapProblem::NoLabels,
             false => MapProblem::NoSuchArray { name: name.clone(), known },
@@ -108,7 +103,7 @@ fn labels_among<'a>(
         candidates.retain(is_whole);
     }
     let is_usual =
-        |candidate: &Candidate<'_>| USUAL_NAMES.iter().any(|name| name.eq_ignore_ascii_case(candidate.name));
+        |candidate: &Candidate<'_>| USUAL_NAMES.iter().any(|name| name.eq_ignore_ascii_case(&candidate.name));
     if candidates.len() > 1 && candidates.iter().any(is_usual) {
         candidates.retain(is_usual);
     }
@@ -137,8 +132,9 @@ fn scalar_type(name: &str) -> Option<ScalarType> {
 }
 
 /// The numbers of an attribute.
-fn numbers<T: std::str::FromStr, const N: usize>(tag: &str, name: &str) -> Option<[T; N]> {
-    let words = attribute(tag, name)?.split_whitespace();
+fn numbers<T: std::str::FromStr, const N: usize>(element: &Element<'_>, name: &str) -> Option<[T; N]> {
+    let value = element.attribute(name)?;
+    let words = value.split_whitespace();
     words.map(|word| word.parse().ok()).collect::<Option<Vec<T>>>()?.try_into().ok()
 }
 

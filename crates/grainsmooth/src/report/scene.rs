@@ -5,10 +5,11 @@ use std::io;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use glam::DVec3;
+use quick_xml::escape::partial_escape;
 
 use super::chart::{Bins, Chart};
 use super::view::view_of_scene;
-use super::{Html, escaped, filled};
+use super::{Html, filled};
 use crate::{Error, Output, Scene, ScenePicture, Shading, StagedFiles};
 
 /// Most triangles that the view shows: browsers without a graphics card still turn them.
@@ -60,7 +61,7 @@ impl SceneReport<'_> {
         };
         let row = |line: &String| {
             let (name, value) = line.split_once("  ").unwrap_or((line, ""));
-            format!("<tr><th>{}</th><td>{}</td></tr>", escaped(name), escaped(value.trim()))
+            format!("<tr><th>{}</th><td>{}</td></tr>", partial_escape(name), partial_escape(value.trim()))
         };
         let measured = [("area", area(last)), ("length of lines", length(last))];
         let measured = measured.into_iter().filter(|(_, value)| *value > 0.0);
@@ -76,7 +77,7 @@ impl SceneReport<'_> {
             &[
                 ("title", &title),
                 ("style", include_str!("../../assets/report.css")),
-                ("command", &escaped(self.command)),
+                ("command", &partial_escape(self.command)),
                 ("settings", ""),
                 ("asked", ""),
                 ("view", &view),

@@ -2,14 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use std::io::{self, Write};
 use std::path::Path;
 
 use glam::DVec3;
 use serde::Serialize;
-use texture::Orientation;
 use voronoi::{CellId, CellMeasure, Dimension, Side};
 
+use super::table::{Table, Value};
 use crate::{Config, Error, Output, StagedFiles, Tessellated};
 
 /// A format of tables.
@@ -35,80 +34,7 @@ impl TableFormat {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CellTable {
     settings: BTreeMap<String, toml::Value>,
-    cells: Vec<Cell>,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize)]
-struct Cell {
-    #[serde(flatten)]
-    row: Row,
-    /// The number of the seed of the grain that it is a part of, where grains are divided.
-    #[serde(rename = "Parent", skip_serializing_if = "Option::is_none")]
-    parent: Option<u32>,
-    /// The number of its phase, where there are phases.
-    #[serde(rename = "Phase", skip_serializing_if = "Option::is_none")]
-    phase: Option<i32>,
-    #[serde(flatten)]
-    orientation: Option<CellOrientation>,
-}
-
-/// The orientation of a cell, where it has one.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "PascalCase")]
-struct CellOrientation {
-    /// Bunge's, in degrees.
-    euler_angles: [f64; 3],
-    /// Scalar first.
-    quaternion: [f64; 4],
-}
-
-impl CellOrientation {
-    fn new(orientation: Orientation) -> Self {
-        Self { euler_angles: orientation.euler_degrees(), quaternion: orientation.quaternion() }
-    }
-
-    fn in_csv(&self) -> String {
-        let [angles, quaternion] = [&self.euler_angles[..], &self.quaternion]
-            .map(|numbers| numbers.iter().map(|number| format!("{number:?}")).collect::<Vec<_>>().join(" "));
-        format!(",{angles},{quaternion}")
-    }
-}
-
-/// A cell in space or in the plane, with the names that each has there.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
-enum Row {
-    Space {
-        id: u32,
-        seed: [f64; 3],
-        weight: f64,
-        volume: f64,
-        centroid: [f64; 3],
-        area: f64,
-        nfaces: usize,
-        nverts: usize,
-        nedges: usize,
-        neighbors: Vec<i64>,
-        equivalent_diameter: f64,
-        sphericity: f64,
-        #[serde(rename = "SeedId")]
-        seed_id: u32,
-    },
-    Plane {
-        id: u32,
-        seed: [f64; 2],
-        weight: f64,
-        area: f64,
-        centroid: [f64; 2],
-        perimeter: f64,
-        nedges: usize,
-        nverts: usize,
-        neighbors: Vec<i64>,
-        equivalent_diameter: f64,
-        circularity: f64,
-        #[serde(rename = "SeedId")]
-        seed_id: u32,
-    },
+    cells: Table,
 }
 
 impl CellTable {
@@ -116,28 +42,9 @@ impl CellTable {
     /// polyhedron -1 - number.
     pub fn new(config: &Config, cells: &Tessellated) -> Self {
         let tessellation = &cells.tessellation;
-        let rows = (0u32..).zip(tessellation.cell_measures()).map(|(id, measure)| {
-            let number = |side: Side| match side {
-                Side::Cell(cell) | Side::Image(cell, _) => i64::from(cell.0),
-                Side::Wall(wall) => -1 - i64::from(wall.number()),
-            };
-            let mut neighbors: Vec<i64> =
-                tessellation.neighbors(CellId(id)).into_iter().map(number).collect();
-            neighbors.sort_unstable();
-            let seed = tessellation.seeds()[id as usize];
-            let ids = [id, cells.grains.ids[id as usize]];
-            let weight = cells.weights[id as usize];
-            let row = match tessellation.domain().dimension() {
-                Dimension::Three => row_in_space(ids, seed, weight, &measure, neighbors),
-                Dimension::Two => row_in_plane(ids, seed, weight, &measure, neighbors),
-            };
-            let orientation =
-                cells.grains.texture.as_ref().map(|texture| texture.orientations()[id as usize]);
-            let phase = cells.grains.phases.as_ref().map(|phases| phases.number(id as usize));
-            let parent = cells.grains.parents.as_ref().map(|parents| parents.number(id as usize));
-            Cell { row, parent, phase, orientation: orientation.map(CellOrientation::new) }
-        });
-        Self { settings: config.settings().into_iter().collect(), cells: rows.collect() }
+        let rows =
+            (0u32..).zip(tessellation.cell_measures()).map(|(id, measure)| row(cells, CellId(id), &measure));
+        Self { settings: config.settings().into_iter().collect(), cells: Table::of_records(rows) }
     }
 
     /// Completes the table.
@@ -150,132 +57,65 @@ impl CellTable {
                 serde_json::to_writer(&mut *out, self)?;
                 writeln!(out)
             }
-            TableFormat::Csv => self.write_csv(out),
+            TableFormat::Csv => self.cells.write_csv(out),
         })
     }
-
-    fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        let first = self.cells.first();
-        match first.map(|cell| &cell.row) {
-            Some(Row::Plane { .. }) => write!(
-                out,
-                "id,x,y,weight,area,centroid_x,centroid_y,perimeter,nedges,nverts,equivalent_diameter,circularity,neighbors,SeedId"
-            )?,
-            _ => write!(
-                out,
-                "id,x,y,z,weight,volume,centroid_x,centroid_y,centroid_z,area,nfaces,nverts,nedges,equivalent_diameter,sphericity,neighbors,SeedId"
-            )?,
-        }
-        let has_orientations = first.is_some_and(|cell| cell.orientation.is_some());
-        let has_phases = first.is_some_and(|cell| cell.phase.is_some());
-        write!(out, "{}", if first.is_some_and(|cell| cell.parent.is_some()) { ",Parent" } else { "" })?;
-        write!(out, "{}", if has_phases { ",Phase" } else { "" })?;
-        writeln!(out, "{}", if has_orientations { ",EulerAngles,Quaternion" } else { "" })?;
-        for Cell { row, parent, phase, orientation } in &self.cells {
-            row.write_csv(out)?;
-            write!(out, "{}", parent.map_or_else(String::new, |parent| format!(",{parent}")))?;
-            write!(out, "{}", phase.map_or_else(String::new, |phase| format!(",{phase}")))?;
-            writeln!(out, "{}", orientation.as_ref().map_or_else(String::new, CellOrientation::in_csv))?;
-        }
-        Ok(())
-    }
 }
 
-impl Row {
-    fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        let (neighbors, seed_id) = match self {
-            Self::Space {
-                id,
-                seed_id,
-                seed: [x, y, z],
-                weight,
-                volume,
-                centroid: [cx, cy, cz],
-                area,
-                nfaces,
-                nverts,
-                nedges,
-                neighbors,
-                equivalent_diameter,
-                sphericity,
-            } => {
-                write!(out, "{id},{x:?},{y:?},{z:?},{weight:?},{volume:?},{cx:?},{cy:?},{cz:?},{area:?},")?;
-                write!(out, "{nfaces},{nverts},{nedges},{equivalent_diameter:?},{sphericity:?},")?;
-                (neighbors, seed_id)
-            }
-            Self::Plane {
-                id,
-                seed_id,
-                seed: [x, y],
-                weight,
-                area,
-                centroid: [cx, cy],
-                perimeter,
-                nedges,
-                nverts,
-                neighbors,
-                equivalent_diameter,
-                circularity,
-            } => {
-                write!(out, "{id},{x:?},{y:?},{weight:?},{area:?},{cx:?},{cy:?},{perimeter:?},")?;
-                write!(out, "{nedges},{nverts},{equivalent_diameter:?},{circularity:?},")?;
-                (neighbors, seed_id)
-            }
-        };
-        let neighbors: Vec<String> = neighbors.iter().map(i64::to_string).collect();
-        write!(out, "{},{seed_id}", neighbors.join(" "))
+fn row(cells: &Tessellated, cell: CellId, measure: &CellMeasure) -> Vec<(&'static str, Value)> {
+    let (tessellation, index) = (&cells.tessellation, cell.index());
+    let dimension = tessellation.domain().dimension();
+    let count = |number: usize| Value::Integer(i64::try_from(number).unwrap_or(i64::MAX));
+    let point = |point: DVec3| Value::Point(point.to_array()[..usize::from(dimension.axes())].to_vec());
+    // Of the ball with the cell's volume; in the plane, of the circle with its area.
+    let equivalent_diameter = dimension.ball_diameter(measure.volume);
+    let mut row = vec![
+        ("id", Value::Integer(cell.0.into())),
+        ("seed", point(tessellation.seeds()[index])),
+        ("weight", Value::Number(cells.weights[index])),
+    ];
+    let [faces, edges, vertices] = [measure.face_count, measure.edge_count, measure.vertex_count].map(count);
+    match dimension {
+        Dimension::Three => row.extend([
+            ("volume", Value::Number(measure.volume)),
+            ("centroid", point(measure.centroid)),
+            ("area", Value::Number(measure.area)),
+            ("nfaces", faces),
+            ("nverts", vertices),
+            ("nedges", edges),
+            ("equivalent_diameter", Value::Number(equivalent_diameter)),
+            ("sphericity", Value::Number(PI * equivalent_diameter.powi(2) / measure.area)),
+        ]),
+        Dimension::Two => row.extend([
+            ("area", Value::Number(measure.volume)),
+            ("centroid", point(measure.centroid)),
+            ("perimeter", Value::Number(measure.area)),
+            ("nedges", edges),
+            ("nverts", vertices),
+            ("equivalent_diameter", Value::Number(equivalent_diameter)),
+            ("circularity", Value::Number(PI * equivalent_diameter / measure.area)),
+        ]),
     }
-}
-
-fn row_in_space(
-    [id, seed_id]: [u32; 2],
-    seed: DVec3,
-    weight: f64,
-    measure: &CellMeasure,
-    neighbors: Vec<i64>,
-) -> Row {
-    let volume = measure.volume;
-    // Diameter and surface of the ball with the cell's volume.
-    let equivalent_diameter = Dimension::Three.ball_diameter(volume);
-    Row::Space {
-        id,
-        seed_id,
-        seed: seed.to_array(),
-        weight,
-        volume,
-        centroid: measure.centroid.to_array(),
-        area: measure.area,
-        nfaces: measure.face_count,
-        nverts: measure.vertex_count,
-        nedges: measure.edge_count,
-        neighbors,
-        equivalent_diameter,
-        sphericity: PI * equivalent_diameter.powi(2) / measure.area,
+    let number = |side: Side| match side {
+        Side::Cell(cell) | Side::Image(cell, _) => i64::from(cell.0),
+        Side::Wall(wall) => -1 - i64::from(wall.number()),
+    };
+    let mut neighbors: Vec<i64> = tessellation.neighbors(cell).into_iter().map(number).collect();
+    neighbors.sort_unstable();
+    let grains = &cells.grains;
+    row.extend([
+        ("neighbors", Value::Integers(neighbors)),
+        ("SeedId", Value::Integer(grains.ids[index].into())),
+    ]);
+    row.extend(
+        grains.parents.as_ref().map(|parents| ("Parent", Value::Integer(parents.number(index).into()))),
+    );
+    row.extend(grains.phases.as_ref().map(|phases| ("Phase", Value::Integer(phases.number(index).into()))));
+    if let Some(orientation) = grains.texture.as_ref().map(|texture| texture.orientations()[index]) {
+        row.extend([
+            ("EulerAngles", Value::Numbers(orientation.euler_degrees().to_vec())),
+            ("Quaternion", Value::Numbers(orientation.quaternion().to_vec())),
+        ]);
     }
-}
-
-fn row_in_plane(
-    [id, seed_id]: [u32; 2],
-    seed: DVec3,
-    weight: f64,
-    measure: &CellMeasure,
-    neighbors: Vec<i64>,
-) -> Row {
-    let area = measure.volume;
-    // Diameter and perimeter of the circle with the cell's area.
-    let equivalent_diameter = Dimension::Two.ball_diameter(area);
-    Row::Plane {
-        id,
-        seed_id,
-        seed: seed.truncate().to_array(),
-        weight,
-        area,
-        centroid: measure.centroid.truncate().to_array(),
-        perimeter: measure.area,
-        nedges: measure.edge_count,
-        nverts: measure.vertex_count,
-        neighbors,
-        equivalent_diameter,
-        circularity: PI * equivalent_diameter / measure.area,
-    }
+    row
 }

@@ -20,6 +20,8 @@ pub(crate) enum Value {
     /// Blanks between them in CSV.
     Integers(Vec<i64>),
     Numbers(Vec<f64>),
+    /// A column for each coordinate in CSV.
+    Point(Vec<f64>),
     Flag(bool),
 }
 
@@ -30,16 +32,38 @@ impl Table {
         self.rows.iter_mut().for_each(|row| row.push(value(row)));
     }
 
+    /// The table of rows that have the same columns.
+    pub(crate) fn of_records(records: impl Iterator<Item = Vec<(&'static str, Value)>>) -> Self {
+        let mut columns = Vec::new();
+        let rows = records.map(|record| {
+            let (names, values): (Vec<_>, Vec<_>) = record.into_iter().unzip();
+            columns = names;
+            values
+        });
+        let rows = rows.collect();
+        Self { columns, rows }
+    }
+
     /// Writes a header line, then one line a row.
     pub(crate) fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        writeln!(out, "{}", self.columns.join(","))?;
+        let mut writer = csv::Writer::from_writer(out);
+        let first: &[Value] = self.rows.first().map_or(&[], |row| row);
+        let header = (0..).zip(&self.columns).flat_map(|(k, name): (usize, _)| match first.get(k) {
+            // A seed has the names that `--seeds-file` reads.
+            Some(Value::Point(point)) if *name == "seed" => axis_names(point.len(), ""),
+            Some(Value::Point(point)) => axis_names(point.len(), &format!("{name}_")),
+            _ => vec![(*name).to_owned()],
+        });
+        writer.write_record(header)?;
         for row in &self.rows {
-            assert_eq!(row.len(), self.columns.len(), "a value for each column");
-            let values: Vec<String> = row.iter().map(Value::in_csv).collect();
-            writeln!(out, "{}", values.join(","))?;
+            writer.write_record(row.iter().flat_map(Value::in_csv))?;
         }
-        Ok(())
+        writer.flush()
     }
+}
+
+fn axis_names(count: usize, before: &str) -> Vec<String> {
+    ["x", "y", "z"][..count].iter().map(|axis| format!("{before}{axis}")).collect()
 }
 
 impl Value {
@@ -51,14 +75,15 @@ impl Value {
         }
     }
 
-    fn in_csv(&self) -> String {
+    fn in_csv(&self) -> Vec<String> {
         let number = |value: &f64| if value.is_finite() { format!("{value:?}") } else { String::new() };
         match self {
-            Self::Integer(value) => value.to_string(),
-            Self::Number(value) => number(value),
-            Self::Integers(values) => values.iter().map(i64::to_string).collect::<Vec<_>>().join(" "),
-            Self::Numbers(values) => values.iter().map(number).collect::<Vec<_>>().join(" "),
-            Self::Flag(value) => value.to_string(),
+            Self::Integer(value) => vec![value.to_string()],
+            Self::Number(value) => vec![number(value)],
+            Self::Integers(values) => vec![values.iter().map(i64::to_string).collect::<Vec<_>>().join(" ")],
+            Self::Numbers(values) => vec![values.iter().map(number).collect::<Vec<_>>().join(" ")],
+            Self::Point(values) => values.iter().map(number).collect(),
+            Self::Flag(value) => vec![value.to_string()],
         }
     }
 }

@@ -2,8 +2,7 @@
 
 use vtkio::xml::ScalarType;
 
-use super::raw::{attribute, field_tag, field_text, field_values};
-use super::{DataArray, ItemTuples};
+use super::{DataArray, ItemTuples, XmlFile};
 
 /// A named value about the file as a whole, kept in VTK's field data.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,22 +34,22 @@ pub enum FieldValue {
 }
 
 /// An entry of the field data of a .vtp, .vtu or .vti file, whatever it is. `is_text` tells a text in a .vtu file, where texts are bytes.
-pub(crate) fn field_entry(file: &[u8], name: &'static str, is_text: bool) -> Option<FieldEntry> {
-    let tag = field_tag(file, name)?;
-    let components = attribute(&tag, "NumberOfComponents").and_then(|count| count.parse().ok()).unwrap_or(1);
+pub(crate) fn field_entry(file: &XmlFile<'_>, name: &'static str, is_text: bool) -> Option<FieldEntry> {
+    let array = file.field(name)?;
+    let components = array.attribute("NumberOfComponents").and_then(|count| count.parse().ok()).unwrap_or(1);
     let data = |kind| {
-        let values = field_values(file, name, kind)?;
+        let values = file.values(array, kind)?;
         Some(FieldValue::Data(DataArray::of_buffer(name, components, &values)?))
     };
-    let value = match attribute(&tag, "type")? {
-        "String" => FieldValue::Text(field_text(file, name)?),
-        "UInt8" if is_text => FieldValue::Text(field_text(file, name)?),
+    let value = match array.attribute("type")?.as_str() {
+        "String" => FieldValue::Text(file.field_text(name)?),
+        "UInt8" if is_text => FieldValue::Text(file.field_text(name)?),
         "UInt8" => data(ScalarType::UInt8)?,
         "Int32" => data(ScalarType::Int32)?,
         "Float64" => data(ScalarType::Float64)?,
-        "UInt64" => FieldValue::Integer(
-            field_values(file, name, ScalarType::UInt64)?.into_vec::<u64>()?.first().copied()?,
-        ),
+        "UInt64" => {
+            FieldValue::Integer(file.values(array, ScalarType::UInt64)?.into_vec::<u64>()?.first().copied()?)
+        }
         _ => return None,
     };
     Some(FieldEntry { name, value })

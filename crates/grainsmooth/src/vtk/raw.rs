@@ -7,12 +7,7 @@ use rayon::prelude::*;
 
 use super::{Blocks, ItemBlocks, Items, Values, VtkEncoding};
 
-mod coding;
 mod encode;
-mod inline;
-
-pub(crate) use inline::{XmlFile, attribute, field_names, field_tag, field_values, find, try_inlined};
-pub use inline::{field_bytes, field_numbers, field_text, inlined};
 
 /// Numbers that are computed before they are written; so few that they are still in the cache then.
 const BLOCK_NUMBERS: usize = 1 << 17;

@@ -14,11 +14,11 @@ pub struct WallSet(u32);
 
 impl WallSet {
     /// No wall: a point inside the domain.
-    pub const NONE: Self = Self(0);
+    pub const EMPTY: Self = Self(0);
 
     /// Whether the point lies on no wall.
     pub fn is_empty(self) -> bool {
-        self == Self::NONE
+        self == Self::EMPTY
     }
 }
 
@@ -92,7 +92,7 @@ impl WallSets {
 
     /// The set of one wall alone.
     pub(crate) fn only(&self, wall: Option<Wall>) -> WallSet {
-        wall.map_or(WallSet::NONE, |wall| self.find(&[wall]))
+        wall.map_or(WallSet::EMPTY, |wall| self.find(&[wall]))
     }
 
     fn find(&self, walls: &[Wall]) -> WallSet {

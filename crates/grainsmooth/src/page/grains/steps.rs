@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::super::refusal::name;
 use crate::Error;
-use crate::vtk::attribute;
+use crate::vtk::{Element, document};
 
 /// A file of a series.
 #[derive(Debug, Clone, Serialize)]
@@ -22,8 +22,9 @@ pub(super) fn steps(paths: &[PathBuf]) -> Result<Vec<Step>, Error> {
     let mut steps = Vec::new();
     for path in paths {
         if has_extension(path, "pvd") {
-            let label = |tag: &str| format!("time {}", attribute(tag, "timestep").unwrap_or("?"));
-            steps.extend(files_of(path)?.into_iter().map(|(tag, path)| Step { label: label(&tag), path }));
+            let label = |time: Option<String>| format!("time {}", time.as_deref().unwrap_or("?"));
+            let files = files_of(path, "timestep")?.into_iter();
+            steps.extend(files.map(|(time, path)| Step { label: label(time), path }));
         } else {
             steps.push(Step { label: name(path), path: path.clone() });
         }
@@ -36,27 +37,23 @@ pub(super) fn network_of(path: &Path) -> Result<PathBuf, Error> {
     if !has_extension(path, "vtm") {
         return Ok(path.to_owned());
     }
-    let is_network = |(tag, _): &(String, PathBuf)| attribute(tag, "name") == Some("boundaries");
-    let block = files_of(path)?.into_iter().find(is_network);
+    let is_network = |(name, _): &(Option<String>, PathBuf)| name.as_deref() == Some("boundaries");
+    let block = files_of(path, "name")?.into_iter().find(is_network);
     block.map(|(_, path)| path).ok_or_else(|| Error::NoBoundariesBlock { path: path.to_owned() })
 }
 
-/// The files that a file of VTK's collections names, with their tags.
-fn files_of(path: &Path) -> Result<Vec<(String, PathBuf)>, Error> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|cause| Error::CollectionUnreadable { path: path.to_owned(), cause })?;
-    let tags = text.split("<DataSet").skip(1).filter_map(|rest| rest.split_once('>'));
+/// The files that one of VTK's collections names, each with an attribute of its element.
+fn files_of(path: &Path, attribute: &str) -> Result<Vec<(Option<String>, PathBuf)>, Error> {
+    let text =
+        std::fs::read(path).map_err(|cause| Error::CollectionUnreadable { path: path.to_owned(), cause })?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let files: Vec<(String, PathBuf)> = tags
-        .filter_map(|(tag, _)| Some((tag.to_owned(), folder.join(unescaped(attribute(tag, "file")?)))))
-        .collect();
+    let document = document(&text);
+    let file =
+        |element: &Element<'_>| Some((element.attribute(attribute), folder.join(element.attribute("file")?)));
+    let files: Vec<_> = document.all("DataSet").into_iter().filter_map(file).collect();
     if files.is_empty() { Err(Error::EmptyCollection { path: path.to_owned() }) } else { Ok(files) }
 }
 
 fn has_extension(path: &Path, wanted: &str) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
-}
-
-fn unescaped(text: &str) -> String {
-    text.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"").replace("&amp;", "&")
 }

@@ -7,7 +7,7 @@ use vtkio::model::{Attribute, CellType, DataSet, Vtk};
 
 use super::{MeshFile, MeshFileProblem, cells, in_thread, inline, legacy_parts, problem, xml_parts};
 use crate::names::{BOUNDARY_ID, FIELD_NAMES, LABEL_ARRAYS, NUMBER_OF_GRAINS, PHASE, VOLUMES};
-use crate::vtk::{FieldEntry, FieldValue, field_entry, field_names, field_numbers, field_text};
+use crate::vtk::{FieldEntry, FieldValue, XmlFile, field_entry};
 
 const NODE_TYPES: &str = "NodeTypes";
 
@@ -63,10 +63,10 @@ impl Notes {
     /// All entries of a file, without those that are looked at.
     pub(super) fn entries_of_xml(bytes: &[u8]) -> Self {
         let mut notes = Self::default();
-        let names = field_names(bytes);
-        for name in names {
+        let Some(file) = XmlFile::of(bytes) else { return notes };
+        for name in file.arrays("FieldData").filter_map(|array| array.attribute("Name")) {
             let known = FIELD_NAMES.iter().find(|(known, _)| *known == name);
-            match known.and_then(|(name, is_text)| field_entry(bytes, name, *is_text)) {
+            match known.and_then(|(name, is_text)| field_entry(&file, name, *is_text)) {
                 Some(entry) => notes.entries.push(entry),
                 None => notes.unknown.push(name),
             }
@@ -75,11 +75,12 @@ impl Notes {
     }
 
     fn of_xml(bytes: &[u8]) -> Self {
+        let Some(file) = XmlFile::of(bytes) else { return Self::default() };
         Self {
-            config: field_text(bytes, CONFIG),
-            volumes: field_numbers(bytes, VOLUMES),
-            euler_angles: field_numbers(bytes, EULER_ANGLES),
-            phases: field_numbers(bytes, PHASE),
+            config: file.field_text(CONFIG),
+            volumes: file.field_numbers(VOLUMES),
+            euler_angles: file.field_numbers(EULER_ANGLES),
+            phases: file.field_numbers(PHASE),
             ..Self::default()
         }
     }

@@ -1,9 +1,10 @@
 //! A legacy file put so that `vtkio` can read it.
 
+use memchr::memmem;
+
 use super::MeshFileProblem;
 use super::field::field_data;
 use super::labelled::Notes;
-use crate::vtk::find;
 
 /// Types of arrays that newer versions of VTK write, and older names of the same that `vtkio` knows.
 const TYPES: [(&str, &str); 9] = [
@@ -32,7 +33,7 @@ pub(super) fn readable(bytes: &[u8]) -> Result<(Vec<u8>, Notes), MeshFileProblem
     let (field, notes) = field_data(bytes).unwrap_or_default();
     let bytes = [&bytes[..field.start], &bytes[field.end..]].concat();
     let arrays = ["\nPOINT_DATA ", "\nCELL_DATA "];
-    let starts = arrays.into_iter().filter_map(|head| find(&bytes, head.as_bytes()));
+    let starts = arrays.into_iter().filter_map(|head| memmem::find(&bytes, head.as_bytes()));
     let (geometry, arrays) = bytes.split_at(starts.min().unwrap_or(bytes.len()));
     let geometry = with_wide_cells(geometry);
     let geometry = geometry.as_slice();
@@ -52,7 +53,7 @@ fn with_wide_cells(geometry: &[u8]) -> Vec<u8> {
         for kind in ["int", "vtktypeint32"] {
             let head = format!("\n{name} {kind}\n");
             let mut done = 0;
-            while let Some(found) = find(&wide[done..], head.as_bytes()) {
+            while let Some(found) = memmem::find(&wide[done..], head.as_bytes()) {
                 let start = done + found;
                 done = start + head.len();
                 let Some(count) = count_of_cells(&wide[..start], place) else { break };
@@ -87,7 +88,7 @@ fn count_of_cells(before: &[u8], place: usize) -> Option<usize> {
 /// Looks for coordinates of a text that are no numbers.
 fn check_coordinates(geometry: &[u8]) -> Result<(), MeshFileProblem> {
     const HEAD: &[u8] = b"\nPOINTS ";
-    let Some(start) = find(geometry, HEAD) else { return Ok(()) };
+    let Some(start) = memmem::find(geometry, HEAD) else { return Ok(()) };
     let words = geometry[start + HEAD.len()..].split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     // The number of points and the type of coordinates come first.
     match words.skip(2).enumerate().find(|(_, word)| NO_NUMBERS.contains(word)) {

@@ -6,8 +6,6 @@ use vtkio::IOBuffer;
 use vtkio::model::ByteOrder;
 use vtkio::xml::{Compressor, Data, DataArray, DataArrayFormat, EncodingInfo, ScalarType};
 
-use super::inline::attribute;
-
 /// Most bytes that one byte of a compressed array can stand for; zlib makes 1032 of one.
 const LARGEST_COMPRESSION: usize = 1100;
 
@@ -33,23 +31,21 @@ struct Lengths {
 }
 
 impl Coding {
-    /// That which the file's first element tells.
-    pub(super) fn of(head: &str) -> Option<Self> {
-        let file = &head[head.find("<VTKFile")?..];
-        let file = file.split('>').next()?;
-        let is_big = attribute(file, "byte_order") == Some("BigEndian");
-        let is_wide = attribute(file, "header_type") == Some("UInt64");
-        Some(Self(EncodingInfo {
+    /// That which the attributes of the file's first element tell.
+    pub(super) fn of(attribute: impl Fn(&str) -> Option<String>) -> Self {
+        let is_big = attribute("byte_order").as_deref() == Some("BigEndian");
+        let is_wide = attribute("header_type").as_deref() == Some("UInt64");
+        Self(EncodingInfo {
             byte_order: if is_big { ByteOrder::BigEndian } else { ByteOrder::LittleEndian },
             header_type: if is_wide { ScalarType::UInt64 } else { ScalarType::UInt32 },
-            compressor: match attribute(file, "compressor") {
+            compressor: match attribute("compressor").as_deref() {
                 None => Compressor::None,
                 Some("vtkLZ4DataCompressor") => Compressor::LZ4,
                 Some("vtkLZMADataCompressor") => Compressor::LZMA,
                 Some(_) => Compressor::ZLib,
             },
             compression_level: 0,
-        }))
+        })
     }
 
     pub(super) fn is_compressed(self) -> bool {
