@@ -133,7 +133,7 @@ fn help_tells_defaults_units_examples_and_exit_codes() {
     // Lines break where the terminal is narrow.
     let help = String::from_utf8(help).unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
     for text in [
-        "--seeds <N> Number of grains, grown from random seeds [default: 200, or what --diameters or --volumes ask for] Example: --seeds 5000",
+        "--seeds <N> Number of grains [default: 200, or what --diameters or --volumes ask for] Example: --seeds 5000",
         "--box <X> <Y> [Z]... Side lengths of the box in your unit of length",
         "[default: 1 1 1, or those of a .tess file]",
         "--rng-seed <S>",

@@ -61,6 +61,16 @@ const REMEDIES: &[Remedy] = &[
         "--seeds 3 --size-growth 0.3 --elements-per-grain 0.9",
     ),
     ("ElementsInPlane", &[], "--seeds 3 --dim 2 --element-size 0.1", &[], "--seeds 3 --dim 2"),
+    ("VolumesInPlane", &[], "--seeds 3 --dim 2 --volume-mesh -o a.vtu", &[], "--seeds 3 --dim 2 -o a.vtu"),
+    ("EquationsWithoutPeriods", &[], "--seeds 3 --periodic-equations -o a.inp", &[], "--seeds 3 -o a.vtp"),
+    ("CohesiveDeck", &[], "--seeds 3 --cohesive --solver-deck tension-x -o a.inp", &[], "--seeds 3 -o a.vtp"),
+    (
+        "DeckDomain",
+        &[],
+        "--seeds 3 --domain sphere --solver-deck tension-x -o a.inp",
+        &[],
+        "--seeds 3 --domain sphere -o a.vtp",
+    ),
     ("NoTexture", &[], "--seeds 2 -o a.ori", &[], "--seeds 2 -o a.ori --texture random"),
     (
         "BadTextureFile, empty",

@@ -154,8 +154,8 @@ pub struct Config {
 
     /// Add a phase with an exact share of the volume (of the area in 2D); repeat for each phase
     ///
-    /// Shares add up to 1. A phase can have its own diameters= (as for --diameters), texture= (as for --texture) and
-    /// symmetry= (as for --crystal-symmetry). place= says where its grains lie among the others: interior, boundaries,
+    /// Shares add up to 1. Each phase can have its own diameters=, texture= and symmetry=, with the values of --diameters,
+    /// --texture and --crystal-symmetry. place= says where its grains lie among the others: interior, boundaries,
     /// triple-lines, quadruple-points, clustered or dispersed.
     ///
     /// Example: --phase ferrite:0.8 --phase 'austenite:0.2,texture=goss(10)'
@@ -260,8 +260,8 @@ pub struct Config {
     #[serde(rename = "relax", skip_serializing_if = "Option::is_none", serialize_with = "as_time")]
     pub relaxation: Option<Relaxation>,
 
-    /// Tension of the walls, relative to that between grains (to the largest, with --tension); with 0, boundaries meet the
-    /// walls at right angles
+    /// Tension of the walls, relative to that between grains, or with --tension to the largest of these; with 0, boundaries
+    /// meet the walls at right angles
     ///
     /// Example: --wall-tension 0.5
     #[arg(long, help_heading = "Smoothing", value_name = "G", default_value_t = 0.0, value_parser = number(0.0..=f64::MAX, "a tension is 0 or a positive, finite number"), allow_negative_numbers = true)]

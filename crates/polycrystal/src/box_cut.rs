@@ -17,7 +17,7 @@ mod volumes;
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use voronoi::{Dimension, Domain, Translation};
+use voronoi::{Dimension, Domain, PeriodicVertex, Translation};
 
 use crate::mesh::id::id;
 use crate::{Attempt, BoundaryId, Elements, GrainId, Junctions, Network, NetworkError, Side, Surface};
@@ -27,23 +27,10 @@ use shape::widen;
 use snap::snap;
 use volumes::restore;
 
-/// A point of the torus, moved by whole periods.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-struct PeriodicPoint {
-    point: u32,
-    translation: Translation,
-}
-
-impl PeriodicPoint {
-    fn moved(self, by: Translation) -> Self {
-        Self { translation: self.translation + by, ..self }
-    }
-}
-
 /// A convex polygon between two sides; in the plane, a segment.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Piece {
-    corners: Vec<PeriodicPoint>,
+    corners: Vec<PeriodicVertex>,
     sides: [Side; 2],
     /// The boundary that it is part of; none for a cap.
     boundary: Option<BoundaryId>,
@@ -160,7 +147,7 @@ impl Network {
     /// The network that pieces and caps make up.
     fn in_box(&self, pieces: &Pieces, caps: &[Piece]) -> Result<(Self, Vec<DVec3>), NetworkError> {
         let domain = self.domain();
-        let mut numbers: BTreeMap<PeriodicPoint, u32> = BTreeMap::new();
+        let mut numbers: BTreeMap<PeriodicVertex, u32> = BTreeMap::new();
         let mut box_points = Vec::new();
         let all = || pieces.pieces.iter().chain(caps);
         // Where a boundary between a grain and its own image was left out, others end that lie between the same grains.
@@ -170,7 +157,7 @@ impl Network {
         boundaries.dedup();
         let (mut triangles, mut segments, mut boundary_of) = (Vec::new(), Vec::new(), Vec::new());
         for piece in all() {
-            let mut number = |corner: &PeriodicPoint| {
+            let mut number = |corner: &PeriodicVertex| {
                 *numbers.entry(*corner).or_insert_with(|| {
                     box_points.push(pieces.position(*corner));
                     id(box_points.len() - 1)

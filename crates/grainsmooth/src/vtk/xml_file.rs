@@ -194,11 +194,11 @@ impl<'a> XmlFile<'a> {
 
     /// The document with its arrays within its elements, as `vtkio` understands them; or what is damaged.
     pub(crate) fn inlined(&self) -> Result<Vec<u8>, String> {
+        let mut writer = Writer::new(Vec::new());
+        self.write(&self.root, &mut writer)?;
         if !self.is_whole {
             return Err("its last element is cut off".to_owned());
         }
-        let mut writer = Writer::new(Vec::new());
-        self.write(&self.root, &mut writer)?;
         Ok(writer.into_inner())
     }
 

@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use glam::DVec3;
 use spade::handles::{FixedVertexHandle, InnerTag};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
-use voronoi::{Dimension, Translation};
+use voronoi::{Dimension, PeriodicVertex, Translation};
 
 use crate::box_cut::cap_points::add_points;
 use crate::box_cut::pieces::{End, Pieces};
-use crate::box_cut::{PeriodicPoint, Piece, periodic_axes, position_in_box};
+use crate::box_cut::{Piece, periodic_axes, position_in_box};
 use crate::{NetworkError, Side};
 
 type Delaunay = ConstrainedDelaunayTriangulation<Point2<f64>>;
@@ -40,10 +40,10 @@ pub(crate) fn caps(pieces: &mut Pieces, only_grain: Option<Side>) -> Result<Vec<
 }
 
 /// Adds a cap of a grain, whose corners on the lower wall wind round the axis, on one of the opposite walls.
-fn push_cap(caps: &mut Vec<Piece>, axis: usize, corners: &[PeriodicPoint], grain: Side, end: End) {
+fn push_cap(caps: &mut Vec<Piece>, axis: usize, corners: &[PeriodicVertex], grain: Side, end: End) {
     let mut up = Translation::ZERO;
     up.0[axis] = end as i8;
-    let mut corners: Vec<PeriodicPoint> = corners.iter().map(|corner| corner.moved(up)).collect();
+    let mut corners: Vec<PeriodicVertex> = corners.iter().map(|corner| corner.moved(up)).collect();
     if end == End::Lower {
         corners.reverse();
     }
@@ -58,16 +58,16 @@ fn crosses(axis: usize) -> NetworkError {
 fn caps_of_line(
     pieces: &Pieces,
     axis: usize,
-    (origin, only_grain): (Option<PeriodicPoint>, Option<Side>),
+    (origin, only_grain): (Option<PeriodicVertex>, Option<Side>),
     caps: &mut Vec<Piece>,
 ) -> Result<(), NetworkError> {
     let along = 1 - axis;
-    let position = |corner: PeriodicPoint| {
-        position_in_box(&pieces.domain, pieces.positions[corner.point as usize], corner.translation)
+    let position = |corner: PeriodicVertex| {
+        position_in_box(&pieces.domain, pieces.positions[corner.vertex as usize], corner.translation)
     };
     let mut far = Translation::ZERO;
     far.0[along] = 1;
-    let mut line: Vec<PeriodicPoint> =
+    let mut line: Vec<PeriodicVertex> =
         origin.into_iter().flat_map(|origin| [origin, origin.moved(far)]).collect();
     for corner in pieces.pieces.iter().flat_map(|piece| &piece.corners) {
         let end = [End::Lower, End::Upper].into_iter().find(|end| pieces.is_on(*corner, axis, *end));
@@ -77,7 +77,7 @@ fn caps_of_line(
     line.dedup();
     for end in [End::Lower, End::Upper] {
         // The sides after and before each point, each with the slope along the wall of the boundary that bounds it.
-        let mut beside: HashMap<(PeriodicPoint, bool), (f64, Side)> = HashMap::new();
+        let mut beside: HashMap<(PeriodicVertex, bool), (f64, Side)> = HashMap::new();
         for piece in &pieces.pieces {
             let ends = [piece.corners[0], piece.corners[1]];
             let is_within = pieces.is_within(piece, axis);
@@ -104,8 +104,8 @@ fn caps_of_line(
                 }
             }
         }
-        let known = |corner: PeriodicPoint, is_after| beside.get(&(corner, is_after)).map(|(_, side)| *side);
-        let between = |pair: &[PeriodicPoint]| known(pair[0], true).or_else(|| known(pair[1], false));
+        let known = |corner: PeriodicVertex, is_after| beside.get(&(corner, is_after)).map(|(_, side)| *side);
+        let between = |pair: &[PeriodicVertex]| known(pair[0], true).or_else(|| known(pair[1], false));
         let mut sides: Vec<Option<Side>> = line.windows(2).map(between).collect();
         // Where no boundary meets the wall the same grain goes on.
         let middle = || {
@@ -140,7 +140,7 @@ fn caps_of_plane(
     caps: &mut Vec<Piece>,
 ) -> Result<(), NetworkError> {
     let [b, c] = [(axis + 1) % 3, (axis + 2) % 3];
-    let position = |corner: PeriodicPoint| {
+    let position = |corner: PeriodicVertex| {
         let position = pieces.position(corner);
         Point2::new(position[b], position[c])
     };
@@ -178,7 +178,7 @@ fn caps_of_plane(
             edges.extend(rims(pieces, [axis, across], along));
         }
     }
-    let mut corners: Vec<PeriodicPoint> = edges.iter().flatten().copied().collect();
+    let mut corners: Vec<PeriodicVertex> = edges.iter().flatten().copied().collect();
     corners.sort_unstable();
     corners.dedup();
     let mut delaunay = Delaunay::new();
@@ -224,25 +224,25 @@ fn caps_of_plane(
 
 /// What lies on the left of edges in a wall: where several pieces end there, the side of the one that leans there most.
 #[derive(Default)]
-struct Lefts(HashMap<[PeriodicPoint; 2], (f64, Side)>);
+struct Lefts(HashMap<[PeriodicVertex; 2], (f64, Side)>);
 
 impl Lefts {
-    fn add(&mut self, ends: [PeriodicPoint; 2], leaning: f64, side: Side) {
+    fn add(&mut self, ends: [PeriodicVertex; 2], leaning: f64, side: Side) {
         let best = self.0.entry(ends).or_insert((leaning, side));
         if leaning > best.0 {
             *best = (leaning, side);
         }
     }
 
-    fn side(&self, ends: [PeriodicPoint; 2]) -> Option<Side> {
+    fn side(&self, ends: [PeriodicVertex; 2]) -> Option<Side> {
         self.0.get(&ends).map(|(_, side)| *side)
     }
 }
 
 /// How far a piece leans to the left of its edge in a wall across an axis, seen from above: from -1 to 1.
-fn leaning(pieces: &Pieces, piece: &Piece, ends: [PeriodicPoint; 2], axis: usize) -> f64 {
-    let position = |corner: PeriodicPoint| {
-        position_in_box(&pieces.domain, pieces.positions[corner.point as usize], corner.translation)
+fn leaning(pieces: &Pieces, piece: &Piece, ends: [PeriodicVertex; 2], axis: usize) -> f64 {
+    let position = |corner: PeriodicVertex| {
+        position_in_box(&pieces.domain, pieces.positions[corner.vertex as usize], corner.translation)
     };
     let [start, end] = ends.map(position);
     let along = (end - start).normalize_or_zero();
@@ -254,18 +254,20 @@ fn leaning(pieces: &Pieces, piece: &Piece, ends: [PeriodicPoint; 2], axis: usize
 }
 
 /// The edges of the lower wall across the first of two axes that lie on walls across the second, below and above.
-fn rims(pieces: &Pieces, [axis, across]: [usize; 2], along: usize) -> Vec<[PeriodicPoint; 2]> {
+fn rims(pieces: &Pieces, [axis, across]: [usize; 2], along: usize) -> Vec<[PeriodicVertex; 2]> {
     let on_edge = (0u32..).zip(&pieces.planes).filter(|(_, planes)| planes[axis] && planes[across]);
     let height = |point: &u32| pieces.positions[*point as usize][along];
     let mut points: Vec<u32> = on_edge.map(|(point, _)| point).collect();
     points.sort_by(|a, b| height(a).total_cmp(&height(b)));
-    let mut line: Vec<PeriodicPoint> =
-        points.into_iter().map(|point| PeriodicPoint { point, translation: Translation::ZERO }).collect();
+    let mut line: Vec<PeriodicVertex> = points
+        .into_iter()
+        .map(|point| PeriodicVertex { vertex: point, translation: Translation::ZERO })
+        .collect();
     let mut far = Translation::ZERO;
     far.0[along] = 1;
     // The lowest is a corner of the box, and also the highest, where these are one point.
     let first = line[0];
-    if pieces.planes[first.point as usize][along] {
+    if pieces.planes[first.vertex as usize][along] {
         line.push(first.moved(far));
     }
     let mut up = Translation::ZERO;

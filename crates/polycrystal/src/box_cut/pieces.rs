@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
-use voronoi::{Dimension, Domain, Translation};
+use voronoi::{Dimension, Domain, PeriodicVertex, Translation};
 
-use crate::box_cut::{PeriodicPoint, Piece, periodic_axes, position_in_box};
+use crate::box_cut::{Piece, periodic_axes, position_in_box};
 use crate::mesh::id::id;
 use crate::mesh::triangle_quality::squared_sine;
 use crate::{Elements, Network};
@@ -31,12 +31,12 @@ pub(crate) enum End {
 }
 
 /// Where an edge meets a plane: the axis, the edge from one of its points, and the plane as seen from there.
-type Cut = (usize, PeriodicPoint, PeriodicPoint, i8);
+type Cut = (usize, PeriodicVertex, PeriodicVertex, i8);
 
 /// The points of a network on the torus, and its vertices as copies of them.
 pub(crate) struct Torus {
     /// The point that each vertex is, and the translation from there.
-    pub(crate) originals: Vec<PeriodicPoint>,
+    pub(crate) originals: Vec<PeriodicVertex>,
     /// Positions of points with lower <= x < upper along periodic axes.
     pub(crate) positions: Vec<DVec3>,
     /// The periods from there to the point.
@@ -50,13 +50,7 @@ impl Torus {
         let level = network.finest();
         assert_eq!(points.len(), level.vertex_count(), "there must be one point per vertex");
         let domain = network.domain();
-        let mut originals: Vec<PeriodicPoint> = (0..id(points.len()))
-            .map(|point| PeriodicPoint { point, translation: Translation::ZERO })
-            .collect();
-        for pair in &level.copies.vertices {
-            originals[pair.secondary as usize] =
-                PeriodicPoint { point: pair.primary, translation: pair.translation };
-        }
+        let originals = level.copies.originals(points.len());
         let mut torus = Self {
             positions: points.to_vec(),
             moved: vec![Translation::ZERO; points.len()],
@@ -64,7 +58,7 @@ impl Torus {
             originals,
         };
         for (point, position) in points.iter().enumerate() {
-            if torus.originals[point].point == id(point) {
+            if torus.originals[point].vertex == id(point) {
                 (torus.positions[point], torus.moved[point]) = home(domain, *position);
                 for axis in periodic_axes(domain) {
                     torus.planes[point][axis] = torus.positions[point][axis] == domain.lower()[axis];
@@ -75,9 +69,9 @@ impl Torus {
     }
 
     /// A vertex as a point moved by whole periods.
-    pub(crate) fn corner(&self, vertex: u32) -> PeriodicPoint {
-        let PeriodicPoint { point, translation } = self.originals[vertex as usize];
-        PeriodicPoint { point, translation: translation + self.moved[point as usize] }
+    pub(crate) fn corner(&self, vertex: u32) -> PeriodicVertex {
+        let PeriodicVertex { vertex: point, translation } = self.originals[vertex as usize];
+        PeriodicVertex { vertex: point, translation: translation + self.moved[point as usize] }
     }
 }
 
@@ -130,13 +124,13 @@ impl Pieces {
     }
 
     /// Where a corner of a piece in the box is.
-    pub(crate) fn position(&self, corner: PeriodicPoint) -> DVec3 {
-        position_in_box(&self.domain, self.positions[corner.point as usize], corner.translation)
+    pub(crate) fn position(&self, corner: PeriodicVertex) -> DVec3 {
+        position_in_box(&self.domain, self.positions[corner.vertex as usize], corner.translation)
     }
 
     /// Cuts all pieces at the planes across an axis.
     pub(crate) fn cut(&mut self, axis: usize) {
-        let mut cuts: HashMap<Cut, PeriodicPoint> = HashMap::new();
+        let mut cuts: HashMap<Cut, PeriodicVertex> = HashMap::new();
         for mut piece in std::mem::take(&mut self.pieces) {
             let cells = piece.corners.iter().map(|corner| corner.translation.0[axis]);
             let (first, last) = (cells.clone().min().expect("corners"), cells.max().expect("corners"));
@@ -158,13 +152,13 @@ impl Pieces {
         piece: &Piece,
         axis: usize,
         plane: i8,
-        cuts: &mut HashMap<Cut, PeriodicPoint>,
+        cuts: &mut HashMap<Cut, PeriodicVertex>,
     ) -> (Piece, Piece) {
         let count = piece.corners.len();
         let is_segment = self.domain.dimension() == Dimension::Two;
         // 0 in the plane.
-        let side = |corner: PeriodicPoint| match corner.translation.0[axis] - plane {
-            0 if self.planes[corner.point as usize][axis] => 0,
+        let side = |corner: PeriodicVertex| match corner.translation.0[axis] - plane {
+            0 if self.planes[corner.vertex as usize][axis] => 0,
             0.. => 1,
             _ => -1,
         };
@@ -195,12 +189,12 @@ impl Pieces {
     /// Where an edge meets a plane: the same point whichever piece asks, from whichever end, wherever its copy is.
     fn cut_edge(
         &mut self,
-        ends: [PeriodicPoint; 2],
+        ends: [PeriodicVertex; 2],
         axis: usize,
         plane: i8,
-        cuts: &mut HashMap<Cut, PeriodicPoint>,
-    ) -> PeriodicPoint {
-        let seen = |from: PeriodicPoint, to: PeriodicPoint| {
+        cuts: &mut HashMap<Cut, PeriodicVertex>,
+    ) -> PeriodicVertex {
+        let seen = |from: PeriodicVertex, to: PeriodicVertex| {
             let back = Translation::ZERO - from.translation;
             (axis, from.moved(back), to.moved(back), plane - from.translation.0[axis])
         };
@@ -211,13 +205,13 @@ impl Pieces {
             return corner.moved(base);
         }
         let (_, from, to, plane) = cut;
-        let [from_planes, to_planes] = [from, to].map(|end| self.planes[end.point as usize]);
+        let [from_planes, to_planes] = [from, to].map(|end| self.planes[end.vertex as usize]);
         let mut across = Translation::ZERO;
         across.0[axis] = plane;
         let lower = self.domain.lower();
         let height = lower[axis] + across.vector(&self.domain)[axis];
-        let start = self.positions[from.point as usize];
-        let end = self.positions[to.point as usize] + to.translation.vector(&self.domain);
+        let start = self.positions[from.vertex as usize];
+        let end = self.positions[to.vertex as usize] + to.translation.vector(&self.domain);
         let share = (height - start[axis]) / (end[axis] - start[axis]);
         // Where both ends have the same coordinate, as on a wall, so has this: a weighted mean of the two would round.
         let (mut position, mut translation) = home(&self.domain, start + (end - start) * share);
@@ -238,10 +232,10 @@ impl Pieces {
     }
 
     /// A new point of the torus.
-    pub(crate) fn add(&mut self, position: DVec3, planes: [bool; 3]) -> PeriodicPoint {
+    pub(crate) fn add(&mut self, position: DVec3, planes: [bool; 3]) -> PeriodicVertex {
         self.positions.push(position);
         self.planes.push(planes);
-        PeriodicPoint { point: id(self.positions.len() - 1), translation: Translation::ZERO }
+        PeriodicVertex { vertex: id(self.positions.len() - 1), translation: Translation::ZERO }
     }
 
     /// Moves every piece into the box, of whose upper walls corners are moved by a period.
@@ -257,12 +251,12 @@ impl Pieces {
     }
 
     /// Whether a corner lies on a wall of the box across an axis.
-    pub(crate) fn is_on(&self, corner: PeriodicPoint, axis: usize, end: End) -> bool {
-        self.planes[corner.point as usize][axis] && corner.translation.0[axis] == end as i8
+    pub(crate) fn is_on(&self, corner: PeriodicVertex, axis: usize, end: End) -> bool {
+        self.planes[corner.vertex as usize][axis] && corner.translation.0[axis] == end as i8
     }
 
     /// The corner on the lower wall opposite of one on a wall.
-    pub(crate) fn lowered(&self, corner: PeriodicPoint, axis: usize, end: End) -> PeriodicPoint {
+    pub(crate) fn lowered(&self, corner: PeriodicVertex, axis: usize, end: End) -> PeriodicVertex {
         let mut down = Translation::ZERO;
         down.0[axis] = -(end as i8);
         corner.moved(down)
@@ -274,10 +268,10 @@ impl Pieces {
     }
 
     /// The point in the corner of a box that is periodic along all axes.
-    pub(crate) fn origin(&mut self) -> PeriodicPoint {
+    pub(crate) fn origin(&mut self) -> PeriodicVertex {
         let planes = [0, 1, 2].map(|axis| axis < self.domain.dimension().axes());
         match self.planes.iter().position(|known| *known == planes) {
-            Some(point) => PeriodicPoint { point: id(point), translation: Translation::ZERO },
+            Some(point) => PeriodicVertex { vertex: id(point), translation: Translation::ZERO },
             None => self.add(self.domain.lower(), planes),
         }
     }

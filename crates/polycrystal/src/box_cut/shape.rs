@@ -33,7 +33,7 @@ pub(crate) fn widen(pieces: &mut Pieces, caps: &[Piece], is_flat: bool) {
     let all: Vec<&Piece> = pieces.pieces.iter().chain(caps).collect();
     let mut stars = vec![Vec::new(); pieces.positions.len()];
     for (number, piece) in all.iter().enumerate() {
-        piece.corners.iter().for_each(|corner| stars[corner.point as usize].push(number));
+        piece.corners.iter().for_each(|corner| stars[corner.vertex as usize].push(number));
     }
     let mut shape = Shape {
         domain: &pieces.domain,
@@ -52,7 +52,7 @@ pub(crate) fn widen(pieces: &mut Pieces, caps: &[Piece], is_flat: bool) {
         let thin =
             (0..shape.all.len()).filter(|piece| shape.squared_sine(*piece) < WANTED_SINE * WANTED_SINE);
         let mut points: Vec<usize> = thin
-            .flat_map(|piece| shape.all[piece].corners.iter().map(|corner| corner.point as usize))
+            .flat_map(|piece| shape.all[piece].corners.iter().map(|corner| corner.vertex as usize))
             .collect();
         points.sort_unstable();
         points.dedup();
@@ -87,7 +87,7 @@ impl Shape<'_> {
             let corner = corners[k];
             crate::box_cut::position_in_box(
                 self.domain,
-                self.positions[corner.point as usize],
+                self.positions[corner.vertex as usize],
                 corner.translation,
             )
         })
@@ -110,10 +110,10 @@ impl Shape<'_> {
             piece
                 .corners
                 .iter()
-                .for_each(|corner| *normals.entry((corner.point, boundary)).or_default() += normal);
+                .for_each(|corner| *normals.entry((corner.vertex, boundary)).or_default() += normal);
         }
         let facing = |(number, piece): (usize, &&Piece)| match piece.boundary {
-            Some(boundary) => piece.corners.iter().map(|corner| normals[&(corner.point, boundary)]).sum(),
+            Some(boundary) => piece.corners.iter().map(|corner| normals[&(corner.vertex, boundary)]).sum(),
             None => self.normal(number),
         };
         self.facing = self.all.iter().enumerate().map(|piece| facing(piece).normalize_or_zero()).collect();

@@ -6,10 +6,10 @@
 
 use glam::DVec3;
 use subzero::{FaceId, VertexRule};
-use voronoi::{Domain, Translation};
+use voronoi::{Domain, PeriodicVertex, Translation};
 
+use crate::box_cut::periodic_axes;
 use crate::box_cut::pieces::Torus;
-use crate::box_cut::{PeriodicPoint, periodic_axes};
 use crate::mesh::triangle_quality::squared_sine;
 use crate::{BoundaryId, Freedom, GrainId, Mesh, Network};
 
@@ -47,7 +47,7 @@ pub(crate) fn snap(network: &Network, torus: &mut Torus, points: &[DVec3], is_fl
     }
     let mut vertices_of = vec![Vec::new(); points.len()];
     for (vertex, original) in (0u32..).zip(&torus.originals) {
-        vertices_of[original.point as usize].push(vertex);
+        vertices_of[original.vertex as usize].push(vertex);
     }
     let start: Vec<DVec3> = normals(triangles, points);
     let freedoms = (0u32..)
@@ -151,12 +151,12 @@ impl Snapping<'_> {
         sum / (2 * star.len()).max(1) as f64
     }
 
-    fn corner(&self, vertex: u32) -> PeriodicPoint {
+    fn corner(&self, vertex: u32) -> PeriodicVertex {
         self.torus.corner(vertex)
     }
 
     fn position(&self, vertex: u32) -> DVec3 {
-        let PeriodicPoint { point, translation } = self.corner(vertex);
+        let PeriodicVertex { vertex: point, translation } = self.corner(vertex);
         self.torus.positions[point as usize] + translation.vector(self.domain)
     }
 
@@ -276,7 +276,7 @@ impl Snapping<'_> {
     }
 
     fn is_on_plane(&self, vertex: u32, axis: usize) -> bool {
-        self.torus.planes[self.torus.originals[vertex as usize].point as usize][axis]
+        self.torus.planes[self.torus.originals[vertex as usize].vertex as usize][axis]
     }
 
     /// Whether, around a vertex in a plane, what of each grain's surface lies above hangs together, and what lies below, and neither is all.

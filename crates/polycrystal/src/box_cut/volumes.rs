@@ -53,7 +53,7 @@ fn correct(pieces: &mut Pieces, missing: &[f64]) {
         let [a, b, c] = [0, 1, 2].map(|k| pieces.position(piece.corners[k]));
         let normal = (b - a).cross(c - a);
         for corner in &piece.corners {
-            let point = &mut points[corner.point as usize];
+            let point = &mut points[corner.vertex as usize];
             point.weight += normal.length() / 6.0;
             for (side, sign) in piece.sides.iter().zip([1.0, -1.0]) {
                 if let Side::Grain(grain) = side {

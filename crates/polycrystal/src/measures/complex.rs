@@ -1,6 +1,6 @@
 use std::borrow::Cow;
 
-use voronoi::Translation;
+use voronoi::PeriodicVertex;
 
 use crate::mesh::adjacency::{Adjacency, Incidence};
 use crate::mesh::angles::{DihedralSector, WeightedAngle, angles, dihedral_sectors};
@@ -53,13 +53,9 @@ impl<'a> Complex<'a> {
             };
             inner.retain(|pair| is_original(pair[0]));
             incidences.retain(|at| is_original(at.element));
-            let mut original_of: Vec<(u32, Translation)> =
-                ids(level.vertex_count()).map(|v| (v, Translation::ZERO)).collect();
-            for pair in &level.copies.vertices {
-                original_of[pair.secondary as usize] = (pair.primary, pair.translation);
-            }
+            let original_of = level.copies.originals(level.vertex_count());
             unite_edges(&mut incidences, surface.elements, &original_of);
-            points = original_of.into_iter().map(|(original, _)| original).collect();
+            points = original_of.into_iter().map(|original| original.vertex).collect();
         }
         let tensions = Cow::Borrowed(network.tensions());
         Self { surface: *surface, sides: Cow::Owned(sides), tensions, originals, points, inner, incidences }
@@ -104,15 +100,15 @@ impl<'a> Complex<'a> {
 }
 
 /// Renumbers edges, copies like their originals.
-fn unite_edges(incidences: &mut [Incidence], elements: Elements<'_>, original_of: &[(u32, Translation)]) {
+fn unite_edges(incidences: &mut [Incidence], elements: Elements<'_>, original_of: &[PeriodicVertex]) {
     let key = |at: &Incidence| {
         let [start, end] = at.ends(elements).map(|end| original_of[end as usize]);
-        let along = end.1 - start.1;
-        let against = start.1 - end.1;
-        match start.0.cmp(&end.0) {
-            std::cmp::Ordering::Less => ([start.0, end.0], along),
-            std::cmp::Ordering::Greater => ([end.0, start.0], against),
-            std::cmp::Ordering::Equal => ([start.0, end.0], along.max(against)),
+        let along = end.translation - start.translation;
+        let against = start.translation - end.translation;
+        match start.vertex.cmp(&end.vertex) {
+            std::cmp::Ordering::Less => ([start.vertex, end.vertex], along),
+            std::cmp::Ordering::Greater => ([end.vertex, start.vertex], against),
+            std::cmp::Ordering::Equal => ([start.vertex, end.vertex], along.max(against)),
         }
     };
     let mut keyed: Vec<_> = incidences.iter().map(|at| (key(at), *at)).collect();
@@ -121,8 +117,4 @@ fn unite_edges(incidences: &mut [Incidence], elements: Elements<'_>, original_of
     let numbered =
         groups.flat_map(|(edge, group)| group.iter().map(move |(_, at)| Incidence { edge, ..*at }));
     incidences.iter_mut().zip(numbered).for_each(|(at, numbered)| *at = numbered);
-}
-
-fn ids(count: usize) -> impl Iterator<Item = u32> {
-    0..u32::try_from(count).expect("ids fit 32 bits")
 }

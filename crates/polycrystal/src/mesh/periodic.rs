@@ -1,7 +1,7 @@
 //! Parts of a periodic network that are others moved by whole periods.
 
 use glam::DVec3;
-use voronoi::{Domain, FaceId, PeriodicPair, Tessellation, Translation};
+use voronoi::{Domain, FaceId, PeriodicPair, PeriodicVertex, Tessellation, Translation};
 
 use crate::Mesh;
 use crate::mesh::id::id;
@@ -20,6 +20,17 @@ impl PeriodicCopies {
     pub(crate) fn of_vertices(tessellation: &Tessellation) -> Self {
         let vertices = tessellation.periodic_vertices().iter().map(|pair| map_ids(*pair, |vertex| vertex.0));
         Self { vertices: vertices.collect(), elements: Vec::new() }
+    }
+
+    /// What each of so many vertices is a copy of, or itself.
+    pub(crate) fn originals(&self, vertex_count: usize) -> Vec<PeriodicVertex> {
+        let unmoved = |vertex| PeriodicVertex { vertex, translation: Translation::ZERO };
+        let mut originals: Vec<PeriodicVertex> = (0..id(vertex_count)).map(unmoved).collect();
+        for pair in &self.vertices {
+            originals[pair.secondary as usize] =
+                PeriodicVertex { vertex: pair.primary, translation: pair.translation };
+        }
+        originals
     }
 
     /// Adds the triangles and inner points of copied faces, of which each face has so many; inner points are numbered face by face from

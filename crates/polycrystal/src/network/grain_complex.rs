@@ -3,7 +3,6 @@
 use voronoi::{CellId, FaceId, PeriodicVertex, Tessellation, Translation};
 
 use crate::mesh::disjoint_sets::DisjointSets;
-use crate::mesh::id::id;
 use crate::network::coarsening::coarsened;
 use crate::network::control_mesh::ControlMesh;
 use crate::network::line_coarsening::coarsened_segments;
@@ -49,13 +48,7 @@ pub(super) fn grain_complex(
     ControlMesh { level, points, .. }: &ControlMesh,
 ) -> Result<Tessellation, NetworkError> {
     check_grains(tessellation, parts)?;
-    let mut corner_of: Vec<PeriodicVertex> = (0..id(points.len()))
-        .map(|vertex| PeriodicVertex { vertex, translation: Translation::ZERO })
-        .collect();
-    for pair in &level.copies.vertices {
-        corner_of[pair.secondary as usize] =
-            PeriodicVertex { vertex: pair.primary, translation: pair.translation };
-    }
+    let corner_of = level.copies.originals(points.len());
     let mut is_copy = vec![false; level.element_count()];
     level.copies.elements.iter().for_each(|pair| is_copy[pair.secondary as usize] = true);
     let beside = |(element, is_copy): (usize, bool)| {

@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use glam::{BVec3, DVec3};
-use voronoi::{PeriodicPair, Translation};
+use voronoi::{PeriodicPair, PeriodicVertex, Translation};
 
-use crate::mesh::id::id;
 use crate::{Level, Network, NetworkError};
 
 /// A vertex, or a part of a boundary, and the periods that lead from it to what it stands for.
@@ -39,13 +38,9 @@ impl Torus {
     }
 
     fn of_copies(level: &Level) -> Self {
-        let mut vertices: Vec<Moved<u32>> = (0..id(level.vertex_count()))
-            .map(|vertex| Moved { original: vertex, translation: Translation::ZERO })
-            .collect();
-        for pair in &level.copies.vertices {
-            vertices[pair.secondary as usize] =
-                Moved { original: pair.primary, translation: pair.translation };
-        }
+        let moved =
+            |original: PeriodicVertex| Moved { original: original.vertex, translation: original.translation };
+        let vertices = level.copies.originals(level.vertex_count()).into_iter().map(moved).collect();
         Self { vertices }
     }
 
