@@ -73,7 +73,7 @@ impl Domain {
     /// let domain = Domain::rectangle(DVec3::ZERO, DVec3::new(3.0, 1.0, 0.0))?;
     /// let seeds = [0.5, 1.5, 2.5].map(|x| DVec3::new(x, 0.5, 0.0));
     /// let cells = Tessellation::new(&domain, &seeds)?;
-    /// assert!(cells.cell_measures().iter().all(|cell| (cell.volume - 1.0).abs() < 1e-15), "areas, in the plane");
+    /// assert!(cells.cell_measures().iter().all(|cell| (cell.volume - 1.0).abs() < 1e-12), "areas, in the plane");
     /// # Ok::<(), voronoi::VoronoiError>(())
     /// ```
     ///
