@@ -36,6 +36,19 @@ fn main_colors(rows: &[Vec<Pixel>]) -> BTreeMap<Pixel, f64> {
 
 const WHITE: Pixel = [255; 3];
 
+/// The share of a picture of 500 x 400 pixels that a unit cube covers, of whose faces across x, y and z such shares are seen.
+///
+/// The shadow of a unit cube along a unit vector has the area of the sum of its components; its height is that of the unit vectors' shadows on
+/// the picture's upward direction, here the shorter side, of which 4 % are free at both ends.
+fn shadow(seen: glam::DVec3) -> f64 {
+    let toward = glam::DVec3::new(0.55, -0.95, 0.62).normalize();
+    let right = glam::DVec3::Z.cross(toward).normalize();
+    let up = toward.cross(right);
+    let sum = |vector: glam::DVec3| vector.abs().element_sum();
+    let scale = (0.92 * 400.0 / sum(up)).min(0.92 * 500.0 / sum(right));
+    sum(toward * seen) * scale * scale / (400.0 * 500.0)
+}
+
 #[test]
 fn single_grain_is_a_cube_with_three_faces() {
     let workplace = Workplace::new();
@@ -45,14 +58,7 @@ fn single_grain_is_a_cube_with_three_faces() {
     let colors = main_colors(&rows);
     assert_eq!(colors.len(), 4, "three faces on white: {colors:?}");
 
-    // The shadow of a unit cube along a unit vector has the area of the sum of its components; its height is that of the unit
-    // vectors' shadows on the picture's upward direction, here the shorter side, of which 4 % are free at both ends.
-    let toward = glam::DVec3::new(0.55, -0.95, 0.62).normalize();
-    let right = glam::DVec3::Z.cross(toward).normalize();
-    let up = toward.cross(right);
-    let sum = |vector: glam::DVec3| vector.abs().element_sum();
-    let scale = (0.92 * 400.0 / sum(up)).min(0.92 * 500.0 / sum(right));
-    let shadow = sum(toward) * scale * scale / (400.0 * 500.0);
+    let shadow = shadow(glam::DVec3::ONE);
     // Half the width of the outline and mixed colours at its rim are a hundredth.
     assert!((1.0 - colors[&WHITE] - shadow).abs() < 0.01, "{} {shadow}", colors[&WHITE]);
 }
@@ -64,12 +70,7 @@ fn slices_leave_out_what_is_before_a_plane() {
     workplace.run("--seeds 1 -n 0 --picture half.png --picture-size 500 400 --slice z=0.5 --quiet");
     let colors = main_colors(&pixels(&workplace.path("half.png")));
     assert_eq!(colors.len(), 4, "three faces on white: {colors:?}");
-    let toward = glam::DVec3::new(0.55, -0.95, 0.62).normalize();
-    let right = glam::DVec3::Z.cross(toward).normalize();
-    let up = toward.cross(right);
-    let sum = |vector: glam::DVec3| vector.abs().element_sum();
-    let scale = (0.92 * 400.0 / sum(up)).min(0.92 * 500.0 / sum(right));
-    let half = sum(toward * glam::DVec3::new(0.5, 0.5, 1.0)) * scale * scale / (400.0 * 500.0);
+    let half = shadow(glam::DVec3::new(0.5, 0.5, 1.0));
     assert!((1.0 - colors[&WHITE] - half).abs() < 0.01, "{} {half}", colors[&WHITE]);
 
     // A cut through the left grain alone leaves nothing of the right one, and shows its inside.

@@ -46,7 +46,8 @@ pub(super) fn draw(patches: &[Patch], paint: &Paint, picture: &Picture, pixmap: 
             };
             band.draw_patch(patch, shown, color);
             if let Some(cut) = &cut {
-                band.draw_inside(patch, shown, color.map(|channel| channel * cut.brightness));
+                let inside = paint.grains[patch.grain].map(|channel| channel * cut.brightness);
+                band.draw_inside(patch, shown, inside);
             }
         }
         if let Some(cut) = &cut {
