@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use glam::{BVec3, DVec3};
 use polycrystal::{
-    Boundary, GrowthRecipe, GrowthTuning, Moving, NetworkError, RelaxationStep, grow_cells_tuned,
-    measure_network,
+    Boundary, FaceMesh, GrowthRecipe, GrowthTuning, Junctions, Moving, NetworkError, NetworkRecipe,
+    RelaxationStep, grow_cells_tuned, measure_network,
 };
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -81,7 +81,13 @@ fn grow(random_seed: u64, tuning: &GrowthTuning, sum: &mut Outcome) -> Result<()
     let seeds: Vec<DVec3> = (0..GRAINS).map(|_| DVec3::new(coordinate(), coordinate(), 0.0)).collect();
     let cells = Tessellation::new(&domain, &seeds).expect("seeds in the square");
     let tension = |_: &Boundary| 1.0;
-    let recipe = GrowthRecipe { levels: 1, tension: &tension, mobility: &tension };
+    let network = NetworkRecipe {
+        face_mesh: FaceMesh::Fan,
+        junctions: Junctions::Crease,
+        levels: 1,
+        tension: &tension,
+    };
+    let recipe = GrowthRecipe { network, mobility: &tension };
     let mut last: Option<(f64, Vec<(usize, f64)>)> = None;
     let mut failed = None;
     let watch = |step: RelaxationStep<'_>| {
@@ -112,7 +118,7 @@ fn grow(random_seed: u64, tuning: &GrowthTuning, sum: &mut Outcome) -> Result<()
     };
     match grow_cells_tuned(&cells, &recipe, TIME, tuning, watch) {
         Ok(grown) => {
-            sum.steps += grown.relaxed.steps;
+            sum.steps += grown.cells.relaxed.steps;
             for (left, time) in sum.left.iter_mut().zip([0.5, 1.0, 2.0]) {
                 *left += GRAINS - grown.vanished.iter().filter(|grain| grain.time <= time).count();
             }

@@ -2,6 +2,7 @@
 
 mod cell_complex;
 mod edge;
+mod merging;
 mod plane;
 mod reconnect;
 mod ring;

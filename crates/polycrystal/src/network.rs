@@ -478,12 +478,12 @@ impl Network {
 
     /// The edge of a cube (in the plane: of a square) with the mean grain volume: the unit of lengths in relaxation.
     pub fn mean_grain_size(&self) -> f64 {
-        mean_grain_size(&self.domain, self.grain_count())
+        mean_grain_size(&self.domain, self.grains_left())
     }
 
     /// The mean grain size, or the box's shortest side where that is shorter: the size of what can be seen to be small.
     pub(crate) fn feature_size(&self) -> f64 {
-        feature_size(&self.domain, self.grain_count())
+        feature_size(&self.domain, self.grains_left())
     }
 }
 

@@ -20,10 +20,12 @@ fn periodic() -> Domain {
     Domain::unit_cube().with_periods(BVec3::TRUE)
 }
 
-/// V - E + F - C, and that every cell is a closed ball: each of its edges has two faces that run along it in opposite ways, and V -
-/// E + F = 2.
+/// V - E + F - C, and that every cell that is left is a closed ball: each of its edges has two faces that run along it in opposite ways, and
+/// V - E + F = 2.
 fn checked_euler_number(tessellation: &Tessellation) -> i64 {
-    for cell in (0u32..).take(tessellation.cell_count()).map(CellId) {
+    let cells = (0u32..).take(tessellation.cell_count()).map(CellId);
+    let left: Vec<CellId> = cells.filter(|cell| !tessellation.cell_faces(*cell).is_empty()).collect();
+    for cell in left.iter().copied() {
         let mut runs: HashMap<[VertexId; 2], i32> = HashMap::new();
         let mut vertices = Vec::new();
         for face in tessellation.cell_faces(cell) {
@@ -45,9 +47,8 @@ fn checked_euler_number(tessellation: &Tessellation) -> i64 {
         assert_eq!(vertices.len() + faces, runs.len() / 2 + 2, "{cell:?}");
     }
     let counts = complex_counts(tessellation);
-    let [vertices, edges, faces, cells] =
-        [counts.vertices, counts.edges, counts.faces, tessellation.cell_count()]
-            .map(|count| i64::try_from(count).expect("a small number"));
+    let [vertices, edges, faces, cells] = [counts.vertices, counts.edges, counts.faces, left.len()]
+        .map(|count| i64::try_from(count).expect("a small number"));
     vertices - edges + faces - cells
 }
 
@@ -243,11 +244,62 @@ fn edges_of_the_plane_shrink_and_open_again() {
             let again = complex.tessellation().0;
             for cell in (0u32..).take(count).map(CellId) {
                 assert_eq!(again.neighbors(cell), cells.neighbors(cell));
-                assert_eq!(complex.edges_of_cell(cell).len(), whole.edges_of_cell(cell).len());
+                assert_eq!(complex.faces_of_cell(cell).len(), whole.faces_of_cell(cell).len());
             }
             for (after, before) in again.cell_measures().iter().zip(cells.cell_measures()) {
                 assert!((after.volume - before.volume).abs() < 1e-14, "{edge:?}");
             }
         }
+    }
+}
+
+/// Cells give way to neighbours until a few are left, and all others stay closed balls. Where one cannot, nothing changes.
+#[test]
+fn cells_give_way_to_neighbors_and_leave_closed_balls() {
+    for (domain, euler) in [(periodic(), 0), (Domain::unit_cube(), 1)] {
+        for random_seed in 1..=4 {
+            let mut complex = CellComplex::from(&random_cells(&domain, 30, random_seed));
+            let mut gone = 0;
+            for cell in (0..30).map(CellId) {
+                let faces: Vec<FaceId> = complex.faces_of_cell(cell).collect();
+                let is_gone = faces.into_iter().any(|face| {
+                    let before = complex.tessellation().0;
+                    let is_gone = complex.cell_to_neighbor_across(cell, face, false);
+                    let after = complex.tessellation().0;
+                    assert_eq!(checked_euler_number(&after), euler, "{cell:?} {face:?}");
+                    if is_gone {
+                        assert!(after.cell_faces(cell).is_empty());
+                        let volume: f64 = after.cell_measures().iter().map(|cell| cell.volume).sum();
+                        assert!((volume - 1.0).abs() < 0.2, "faces are no longer plane: {volume}");
+                    } else {
+                        assert_eq!(after, before);
+                    }
+                    is_gone
+                });
+                gone += usize::from(is_gone);
+            }
+            assert!(gone > 15, "{gone}");
+        }
+    }
+}
+
+/// All faces of a tetrahedron may go: what is left is one point where its four neighbours meet.
+#[test]
+fn a_tetrahedron_becomes_a_point_whichever_of_its_faces_goes() {
+    let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+    let around = corners.map(|corner| DVec3::splat(0.5) + 0.25 * DVec3::from(corner));
+    let seeds: Vec<DVec3> = [DVec3::new(0.5, 0.5, 0.5)].into_iter().chain(around).collect();
+    let cells = Tessellation::new(&Domain::unit_cube(), &seeds).expect("valid seeds");
+    let complex = CellComplex::from(&cells);
+    let faces: Vec<FaceId> = complex.faces_of_cell(CellId(0)).collect();
+    assert_eq!(faces.len(), 4);
+    for face in faces {
+        let mut complex = complex.clone();
+        assert!(complex.cell_to_neighbor_across(CellId(0), face, false));
+        let (after, _) = complex.tessellation();
+        assert_eq!(checked_euler_number(&after), 1);
+        let is_left = |vertex: &VertexId| after.vertices()[vertex.index()].max_element() < 0.9;
+        let inside = (0..u32::try_from(after.vertices().len()).expect("few")).map(VertexId).filter(is_left);
+        assert_eq!(inside.filter(|vertex| after.vertices()[vertex.index()].min_element() > 0.1).count(), 1);
     }
 }

@@ -8,8 +8,8 @@ use std::f64::consts::FRAC_PI_3;
 use common::random_seeds;
 use glam::{BVec3, DVec3};
 use polycrystal::{
-    Boundary, GrainId, GrownCells, GrowthRecipe, Moving, NetworkError, RelaxationStep, grow_cells,
-    measure_network,
+    Boundary, FaceMesh, GrainId, GrownCells, GrowthRecipe, Junctions, Moving, NetworkError, NetworkRecipe,
+    RelaxationStep, grow_cells, measure_network,
 };
 use proptest::prelude::*;
 use voronoi::{Domain, Tessellation};
@@ -20,7 +20,12 @@ fn one(_: &Boundary) -> f64 {
     1.0
 }
 
-const EQUAL: GrowthRecipe<'_> = GrowthRecipe { levels: 1, tension: &one, mobility: &one };
+/// One level, boundaries alike.
+const EQUAL: GrowthRecipe<'_> = GrowthRecipe { network: recipe(1, &one), mobility: &one };
+
+const fn recipe(levels: usize, tension: &(dyn Fn(&Boundary) -> f64 + Sync)) -> NetworkRecipe<'_> {
+    NetworkRecipe { face_mesh: FaceMesh::Fan, junctions: Junctions::Crease, levels, tension }
+}
 
 fn square(periodic: BVec3) -> Domain {
     Domain::unit_square().with_periods(periodic)
@@ -65,11 +70,8 @@ fn grains_grow_by_the_law_of_von_neumann_and_mullins_while_others_vanish() {
         last = Some((step.time, now));
     };
     let grown = grow_cells(&cells(&square(TORUS), count, 3), &EQUAL, 2.0, watch).expect("grains grow");
-    assert!(
-        grown.vanished.len() > 50 && grown.reconnections.neighbor_switches > 20,
-        "{}",
-        grown.vanished.len()
-    );
+    let switches = grown.cells.reconnections.neighbor_switches;
+    assert!(grown.vanished.len() > 50 && switches > 20, "{} {switches}", grown.vanished.len());
     errors.sort_by(f64::total_cmp);
     let [median, most] = [2, 10].map(|part| errors[errors.len() - 1 - errors.len() / part]);
     assert!(median < 0.01 && most < 0.05, "{median} {most}");
@@ -92,9 +94,10 @@ fn five_thousand_grains_coarsen_to_five_hundred() {
         }
     };
     let cells = cells(&square(TORUS), count, 1);
-    let GrownCells { network, vanished, .. } = grow_cells(&cells, &EQUAL, 8.2, watch).expect("grains grow");
-    assert_eq!(network.grains_left() + vanished.len(), count);
-    assert!(network.grains_left() < 560, "{}", network.grains_left());
+    let GrownCells { cells, vanished } = grow_cells(&cells, &EQUAL, 8.2, watch).expect("grains grow");
+    let left = cells.network.grains_left();
+    assert_eq!(left + vanished.len(), count);
+    assert!(left < 560, "{left}");
     // The first half of the time is that in which random cells become grains.
     let late = &means[4..];
     let [times, areas] =
@@ -116,12 +119,14 @@ fn growth_goes_on_until_a_few_grains_are_left() {
         for random_seed in 1..=5 {
             let cells = cells(&square(periodic), 40, random_seed);
             let grown = grow_cells(&cells, &EQUAL, 40.0, |_| ()).expect("grains grow");
-            let left = grown.network.grains_left();
+            let left = grown.cells.network.grains_left();
             assert!((1..10).contains(&left), "{left} with seed {random_seed}");
-            let areas: f64 = grown.network.cell_volumes().iter().sum();
+            let areas: f64 = grown.cells.network.cell_volumes().iter().sum();
             assert!((areas - 1.0).abs() < 1e-12, "{areas}");
-            let gone =
-                grown.vanished.iter().all(|gone| grown.network.cell_volumes()[gone.grain.index()] == 0.0);
+            let gone = grown
+                .vanished
+                .iter()
+                .all(|gone| grown.cells.network.cell_volumes()[gone.grain.index()] == 0.0);
             assert!(gone && grown.vanished.is_sorted_by_key(|gone| gone.time));
         }
     }
@@ -135,7 +140,7 @@ fn squares_grow() {
     for periodic in [BVec3::FALSE, TORUS] {
         let cells = Tessellation::new(&square(periodic), &seeds).expect("valid seeds");
         let grown = grow_cells(&cells, &EQUAL, 0.3, |_| ()).expect("grains grow");
-        assert!(grown.reconnections.lines_to_boundaries >= 25, "{:?}", grown.reconnections);
+        assert!(grown.cells.reconnections.lines_to_boundaries >= 25, "{:?}", grown.cells.reconnections);
     }
 }
 
@@ -150,21 +155,21 @@ fn tensions_and_mobilities_are_free_of_units() {
     };
     let grown = |unit: f64| {
         let law = law(unit);
-        let recipe = GrowthRecipe { levels: 0, tension: &law, mobility: &law };
+        let recipe = GrowthRecipe { network: recipe(0, &law), mobility: &law };
         grow_cells(&cells, &recipe, 0.5, |_| ()).expect("grains grow")
     };
     let usual = grown(1.0);
     for unit in [1e-6, 1e6] {
         let other = grown(unit);
         assert_eq!(usual.vanished.len(), other.vanished.len());
-        let pairs = usual.network.cell_volumes().iter().zip(other.network.cell_volumes());
+        let pairs = usual.cells.network.cell_volumes().iter().zip(other.cells.network.cell_volumes());
         pairs.for_each(|(one, other)| assert!((one - other).abs() < 1e-9, "{one} {other}"));
     }
     let none = |_: &Boundary| 0.0;
-    let still = GrowthRecipe { levels: 0, tension: &none, mobility: &one };
+    let still = GrowthRecipe { network: recipe(0, &none), mobility: &one };
     let kept = grow_cells(&cells, &still, 0.5, |_| ()).expect("nothing moves");
     let areas = cells.cell_measures();
-    let pairs = kept.network.cell_volumes().iter().zip(&areas);
+    let pairs = kept.cells.network.cell_volumes().iter().zip(&areas);
     pairs.for_each(|(one, other)| assert!((one - other.volume).abs() < 1e-6, "{one} {}", other.volume));
 }
 
@@ -174,7 +179,10 @@ fn bad_numbers_are_named() {
     let error = |recipe: &GrowthRecipe<'_>, time| grow_cells(&cells, recipe, time, |_| ()).expect_err("bad");
     assert!(matches!(error(&EQUAL, f64::NAN), NetworkError::BadRelaxationTime(_)));
     let bad = |_: &Boundary| -1.0;
-    assert!(matches!(error(&GrowthRecipe { tension: &bad, ..EQUAL }, 1.0), NetworkError::BadTension { .. }));
+    assert!(matches!(
+        error(&GrowthRecipe { network: recipe(1, &bad), ..EQUAL }, 1.0),
+        NetworkError::BadTension { .. }
+    ));
     assert!(matches!(
         error(&GrowthRecipe { mobility: &bad, ..EQUAL }, 1.0),
         NetworkError::BadMobility { .. }
@@ -194,6 +202,6 @@ proptest! {
         };
         let [one, two] = [1, 2].map(with_threads);
         prop_assert_eq!(one.vanished, two.vanished);
-        prop_assert_eq!(one.relaxed.points, two.relaxed.points);
+        prop_assert_eq!(one.cells.relaxed.points, two.cells.relaxed.points);
     }
 }

@@ -94,13 +94,15 @@ impl Config {
         if self.face_mesh == FaceMesh::Fan { FaceMesh::SparseFan } else { self.face_mesh }
     }
 
-    /// Whether grains grow, vanish and switch neighbours on the way: freely, in the plane, unless the cells' own neighbours are asked for.
+    /// Whether grains grow, vanish and switch neighbours on the way: freely, unless the cells' own neighbours are asked for. Curves in the plane
+    /// have points of their own.
     pub(crate) fn lets_grains_vanish(&self) -> bool {
-        self.dimension == Dimension::Two
-            && self.volumes == Volumes::Free
+        let has_own_points =
+            self.dimension == Dimension::Two && matches!(self.face_mesh, FaceMesh::Refined { .. });
+        self.volumes == Volumes::Free
             && self.regularize.is_none()
             && !self.has_grains_of_several_cells()
-            && !matches!(self.face_mesh, FaceMesh::Refined { .. })
+            && !has_own_points
     }
 
     /// Number of voxels that are asked for.

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use polycrystal::{
-    AngleStatistics, Attempt, Boundary, Certificate, Collapsed, GrownCells, GrowthRecipe, MeshSize, Network,
+    AngleStatistics, Attempt, Boundary, Certificate, Collapsed, GrowthRecipe, MeshSize, Network,
     NetworkError, NetworkRecipe, RegularCells, Relaxation, RelaxationStep, Relaxed, RelaxedCells, Vanished,
     Volumes, WeightedAngle, angles_between_boundaries, dihedral_angles, grow_cells, herring_residual,
     regular_cells, relax_cells, relax_watched, remove_short_edges, validate,
@@ -267,9 +267,6 @@ fn smooth_regularized(
         progress(Stage::Relaxation, step.done, step.count);
         watch(step);
     };
-    if config.lets_grains_vanish() {
-        return smooth_by_growth(config, &cells.law, tessellation, clock, &mut watch);
-    }
     if regularization == Regularization::ByEnergy {
         return smooth_by_energy(config, &cells.law, tessellation, attempts, clock, &mut watch);
     }
@@ -306,37 +303,7 @@ fn flat_angles(of_cells: &Network, flat: &[DVec3]) -> (Vec<WeightedAngle>, Optio
     (angles_between_boundaries(of_cells, mesh, flat), dihedral_angles(of_cells, mesh, flat))
 }
 
-/// The network of cells of the plane that grow, whatever vanishes on the way.
-fn smooth_by_growth(
-    config: &Config,
-    law: &BoundaryLaw,
-    tessellation: &Tessellation,
-    clock: &mut Clock<'_>,
-    watch: &mut impl FnMut(RelaxationStep<'_>),
-) -> Result<Smoothed, NetworkError> {
-    let Relaxation::Time(time) = config.effective_relaxation() else { unreachable!("growth is for a time") };
-    let (of_cells, flat) = clock.time(Stage::Network, || Network::new(tessellation, config.junctions, 0))?;
-    let (flat_angles, angles_before) = flat_angles(&of_cells, &flat);
-    let (tension, mobility) =
-        (|boundary: &Boundary| law.tension(boundary), |boundary: &Boundary| law.mobility(boundary));
-    let recipe = GrowthRecipe { levels: config.levels as usize, tension: &tension, mobility: &mobility };
-    let GrownCells { network, relaxed, reconnections, vanished, validation } =
-        clock.time(Stage::Relaxation, || grow_cells(tessellation, &recipe, time, watch))?;
-    let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
-    Ok(Smoothed {
-        network,
-        points,
-        relaxed,
-        collapsed: Collapsed::default(),
-        reconnected: Some(Reconnected { reconnections, balance: None }),
-        vanished,
-        flat_angles,
-        angles_before,
-        validation,
-    })
-}
-
-/// The network of cells that come together and part as tension has it.
+/// The network of cells that come together and part as tension has it, or grow and vanish.
 fn smooth_by_energy(
     config: &Config,
     law: &BoundaryLaw,
@@ -350,9 +317,17 @@ fn smooth_by_energy(
     let (flat_angles, angles_before) = flat_angles(&of_cells, &flat);
     let tension = |boundary: &Boundary| law.tension(boundary);
     let recipe = NetworkRecipe { face_mesh, junctions, levels: levels as usize, tension: &tension };
-    let relaxed_cells = clock.time(Stage::Relaxation, || {
-        relax_cells(tessellation, &recipe, &config.effective_relaxation(), watch)
-    })?;
+    let mobility = |boundary: &Boundary| law.mobility(boundary);
+    let (relaxed_cells, vanished) =
+        clock.time(Stage::Relaxation, || match config.effective_relaxation() {
+            Relaxation::Time(time) if config.lets_grains_vanish() => {
+                let recipe = GrowthRecipe { network: recipe, mobility: &mobility };
+                grow_cells(tessellation, &recipe, time, watch).map(|grown| (grown.cells, grown.vanished))
+            }
+            relaxation => {
+                relax_cells(tessellation, &recipe, &relaxation, watch).map(|cells| (cells, Vec::new()))
+            }
+        })?;
     let RelaxedCells {
         network,
         relaxed,
@@ -373,7 +348,7 @@ fn smooth_by_energy(
         relaxed,
         collapsed: merged,
         reconnected,
-        vanished: Vec::new(),
+        vanished,
         flat_angles,
         angles_before,
         validation,

@@ -348,7 +348,7 @@ impl CurvedEdges {
     }
 
     fn can_lose(&self, cell: CellId, face: FaceId) -> bool {
-        let left = || self.complex.edges_of_cell(cell).filter(|edge| *edge != face);
+        let left = || self.complex.faces_of_cell(cell).filter(|edge| *edge != face);
         let is_at_wall = left().any(|edge| matches!(self.complex.sides(edge)[1], Side::Wall(_)));
         left().count() >= if is_at_wall { 2 } else { 3 }
     }

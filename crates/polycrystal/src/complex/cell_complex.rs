@@ -120,6 +120,11 @@ impl CellComplex {
         &self.faces[face.index()].corners
     }
 
+    /// The faces of a cell; one between the cell and its own image comes twice.
+    pub fn faces_of_cell(&self, cell: CellId) -> impl ExactSizeIterator<Item = FaceId> {
+        self.faces_of[cell.index()].iter().copied().map(FaceId)
+    }
+
     /// The two sides of a face: a cell, and what its corners are counter-clockwise seen from.
     pub fn sides(&self, face: FaceId) -> [Side; 2] {
         self.faces[face.index()].sides
@@ -161,10 +166,14 @@ impl CellComplex {
     }
 
     pub(super) fn add_face(&mut self, face: Face) {
-        let number = id(self.faces.len());
+        self.register(id(self.faces.len()), &face);
+        self.faces.push(face);
+    }
+
+    /// Notes a face of the given number at its corners and with its cells.
+    pub(super) fn register(&mut self, number: u32, face: &Face) {
         face.corners.iter().for_each(|corner| self.faces_at[corner.vertex as usize].push(number));
         face.sides.into_iter().filter_map(cell_of).for_each(|cell| self.faces_of[cell.index()].push(number));
-        self.faces.push(face);
     }
 
     pub(super) fn remove_face(&mut self, number: u32) {

@@ -41,15 +41,10 @@ impl CellComplex {
         outgoing
     }
 
-    /// The edges round a cell of the plane; one between a cell and its own image comes twice.
-    pub fn edges_of_cell(&self, cell: CellId) -> impl ExactSizeIterator<Item = FaceId> {
-        self.faces_of[cell.index()].iter().copied().map(FaceId)
-    }
-
     /// The corners of a cell of the plane where the cell stands, and the walls that each is on.
     pub fn corners_of_cell(&self, cell: CellId) -> Vec<(PeriodicVertex, Vec<Wall>)> {
         let mut corners: Vec<PeriodicVertex> = Vec::new();
-        for edge in self.edges_of_cell(cell) {
+        for edge in self.faces_of_cell(cell) {
             let [first, second] = self.sides(edge);
             let own = if first == Side::Cell(cell) { first } else { second };
             let back =

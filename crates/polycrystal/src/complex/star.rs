@@ -137,6 +137,11 @@ impl CellComplex {
         corners.map(move |corner| PeriodicVertex { translation: corner.translation + at.offset, ..*corner })
     }
 
+    /// Whether four sides meet at a corner, each two of them in a face (walls aside).
+    pub(super) fn is_general(&self, corner: PeriodicVertex) -> bool {
+        self.vertex_star(corner).is_some()
+    }
+
     fn vertex_star(&self, place: PeriodicVertex) -> Option<VertexStar> {
         let mut star = VertexStar { sides: Vec::new(), faces: Vec::new(), edges: Vec::new() };
         for &face in &self.faces_at[place.vertex as usize] {

@@ -70,6 +70,7 @@ pub(crate) struct FanTerms {
 }
 
 impl Fans {
+    /// The fans of a complex whose boundaries have these tensions.
     pub(crate) fn new(complex: &CellComplex, tension: &dyn Fn(&Boundary) -> f64) -> Self {
         let domain = complex.domain().clone();
         let faces = complex.faces();
@@ -104,7 +105,13 @@ impl Fans {
             let pairs = of_fan.map(|(fan, slot)| (slots[slot].point as usize, [id(fan), id(slot)]));
             Grouped::new(point_count, pairs)
         };
-        let tensions = sides.iter().map(|sides| tension(&boundary(*sides))).collect();
+        // All of a wall has the same area unless it folds, so that tension does nothing but unfold it.
+        let of_wall = |boundary: &Boundary| if boundary.wall.is_some() { 1.0 } else { 0.0 };
+        let of_sides = |sides: &[Side; 2]| {
+            let boundary = boundary(*sides);
+            tension(&boundary) + of_wall(&boundary)
+        };
+        let tensions = sides.iter().map(of_sides).collect();
         Self { domain, vertex_count, lines, faces, sides, tensions, starts, slots, of_point }
     }
 

@@ -166,6 +166,11 @@ impl Reconnector {
         Self { short, size, tries: HashMap::new(), copies: Copies::default() }
     }
 
+    /// Goes on with other lengths, as of [`Self::new`].
+    pub(crate) fn measure_by(&mut self, short: f64, size: LocalSize) {
+        (self.short, self.size) = (short, size);
+    }
+
     /// Length below which lines are short at some vertices.
     fn short_at(&self, complex: &CellComplex, vertices: &[u32], conditions: &Conditions<'_>) -> f64 {
         self.short * self.size.at_vertices(complex, vertices, conditions.volumes)

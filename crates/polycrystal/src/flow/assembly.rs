@@ -111,14 +111,22 @@ fn sliding_masses(
     let of_group = |group: usize| {
         groups.members(group).iter().any(is_junction).then(|| {
             let places = groups.places(group, patches);
-            let sliding = places.map(|place| {
+            let parts = places.map(|place| {
                 let place = place as usize;
-                let normal = terms.volume_gradient[place].normalize_or_zero();
-                (DMat3::IDENTITY - DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z))
-                    * terms.mass[place]
+                (terms.volume_gradient[place], terms.mass[place])
             });
-            (group, sliding.sum::<DMat3>() * (1.0 - ALONG_LINES))
+            (group, sliding_mass(parts))
         })
     };
     (0..groups.group_count()).into_par_iter().filter_map(of_group).collect()
+}
+
+/// What the mass of a junction is less than isotropic, given the normals, of any length, and the masses of the boundaries that meet there.
+pub(crate) fn sliding_mass(parts: impl IntoIterator<Item = (DVec3, f64)>) -> DMat3 {
+    let of_part = |(normal, mass): (DVec3, f64)| {
+        let normal = normal.normalize_or_zero();
+        let across = DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z);
+        (DMat3::IDENTITY - across) * (mass * (1.0 - ALONG_LINES))
+    };
+    parts.into_iter().map(of_part).sum()
 }

@@ -33,7 +33,7 @@ pub(crate) use growth::Grown;
 const FEATURE_EDGES: f64 = 6.0;
 
 /// Share of its first residual at which a step of grains that grow is solved: rates of growth are asked for, not only where they lead.
-const FREE_TOLERANCE: f64 = 1e-3;
+pub(crate) const FREE_TOLERANCE: f64 = 1e-3;
 
 /// Most steps of either kind where a start is folded by subdivision, and the share of its way that a point goes. The walls of a host whose cells
 /// are as flat as a fiftieth of it take one step.

@@ -1,11 +1,13 @@
 //! Curvature flow of flat fans.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use crate::energy::fans::{FanTerms, Fans, is_bent};
 use crate::energy::local_size::LocalSize;
 use crate::energy::sides::cell_and_offset;
+use crate::flow::assembly::sliding_mass;
+use crate::flow::boundary_flow::FREE_TOLERANCE;
 use crate::flow::boundary_flow::SLIGHT_BEND;
 use crate::flow::system::{CHUNK, Parts, System, single};
 use crate::flow::tied_points::TiedPoints;
@@ -18,10 +20,17 @@ use crate::{Freedom, GrainId, NetworkError};
 /// Fans that flow.
 pub(crate) struct FanFlow<'a> {
     pub(crate) fans: &'a Fans,
-    /// The volume that each cell is to have.
-    pub(crate) volumes: &'a [f64],
-    pub(crate) size: LocalSize,
+    pub(crate) motion: Motion<'a>,
     pub(crate) tuning: &'a Tuning,
+}
+
+/// By which law fans move.
+#[derive(Clone, Copy)]
+pub(crate) enum Motion<'a> {
+    /// Each cell is to have its volume. Around small ones time is slower.
+    Kept { volumes: &'a [f64], size: LocalSize },
+    /// By curvature alone: boundaries are as fast as their tension and their mobility make them.
+    Free { mobilities: &'a [f64] },
 }
 
 /// What a step found where it began.
@@ -37,21 +46,26 @@ impl FanFlow<'_> {
     /// What it folds moves by its mean displacement instead. That is local: to solve the step anew for all cells would take as
     /// many attempts as the worst place of all.
     pub(crate) fn step(&self, points: &mut Vec<DVec3>, time: f64) -> Result<Taken, NetworkError> {
-        let Self { fans, volumes, tuning, .. } = *self;
+        let Self { fans, tuning, .. } = *self;
         let terms = fans.terms(points, tuning.largest_cotangent_to_rest);
         let before = fans.normals(points);
-        let missing: Vec<f64> = {
-            let now = fans.volumes(volumes.len(), points, &before);
-            volumes.iter().zip(now).map(|(volume, now)| volume - now).collect()
+        let (missing, tolerance) = match self.motion {
+            Motion::Kept { volumes, .. } => {
+                let now = fans.volumes(volumes.len(), points, &before);
+                (volumes.iter().zip(now).map(|(volume, now)| volume - now).collect(), tuning.tolerance)
+            }
+            Motion::Free { .. } => (Vec::new(), FREE_TOLERANCE),
         };
         let freedoms: Vec<Freedom> = self.of_points(|point| fans.freedom(point));
-        let system = System::new(self.parts(&terms, &freedoms, last_place(points)), time, tuning.tolerance);
+        let system = System::new(self.parts(&terms, &freedoms, last_place(points)), time, tolerance);
         let (mut moves, pressures) = system.displacement(&missing);
-        // The centres come last among the points, fan by fan.
-        let (_, centers) = moves.split_at_mut(fans.center_of(0));
-        centers.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(fan, by)| {
-            *by += freedoms[fans.center_of(fan)].project(self.to_middle(fan, points, &before));
-        });
+        if let Motion::Kept { .. } = self.motion {
+            // The centres come last among the points, fan by fan.
+            let (_, centers) = moves.split_at_mut(fans.center_of(0));
+            centers.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(fan, by)| {
+                *by += freedoms[fans.center_of(fan)].project(self.to_middle(fan, points, &before));
+            });
+        }
         let mut groups = TiedPoints::apart(fans.point_count());
         *points = groups.moved_unbroken(
             points,
@@ -61,6 +75,22 @@ impl FanFlow<'_> {
         )?;
         let pressures = pressures.iter().map(|pressure| pressure / time).collect();
         Ok(Taken { energy: terms.energy, pressures })
+    }
+
+    /// Moves centres within their boundaries, which changes no volume: in a step of its own, as it takes no time.
+    pub(crate) fn center(&self, points: &mut [DVec3]) {
+        let normals = self.fans.normals(points);
+        let ways: Vec<DVec3> =
+            (0..self.fans.faces.len()).map(|fan| self.to_middle(fan, points, &normals)).collect();
+        for (fan, way) in ways.into_iter().enumerate() {
+            let center = self.fans.center_of(fan);
+            points[center] += self.fans.freedom(center).project(way);
+        }
+    }
+
+    /// Whether the way between two places of all points turns or bends a triangle too far.
+    pub(crate) fn breaks(&self, from: &[DVec3], to: &[DVec3]) -> bool {
+        !self.broken(&self.fans.normals(from), &self.fans.normals(to)).is_empty()
     }
 
     fn of_points<T: Send>(&self, of_point: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
@@ -99,32 +129,70 @@ impl FanFlow<'_> {
                 }
             }
         };
-        let of_fan = |fan: usize| {
-            let cells = fans.sides[fan].into_iter().filter_map(|side| cell_and_offset(side, fans.domain()));
-            let sizes = cells.map(|(cell, _)| self.size.of_volume(self.volumes[cell.index()]));
-            sizes.fold(1.0, f64::min)
-        };
-        let sizes: Vec<f64> = (0..fans.faces.len()).map(of_fan).collect();
-        let mass = |point: usize| {
-            let smallest = fans.at_point(point).map(|(fan, _)| sizes[fan]).fold(1.0, f64::min);
-            let mass: f64 = fans.at_point(point).map(|(fan, slot)| of_slot(fan, slot).mass).sum();
-            mass / (smallest * smallest)
-        };
         let gradient = |point: usize| -> DVec3 {
             fans.at_point(point).map(|(fan, slot)| of_slot(fan, slot).gradient).sum()
         };
-        let (stiffness, constraint) = rayon::join(
-            || CsrRows::made_by(fans.point_count(), stiffness),
-            || VolumeConstraint::new(freedoms, self.volumes.len(), rounding, volume_gradients),
-        );
+        let constraint = || match self.motion {
+            Motion::Kept { volumes, .. } => {
+                Some(VolumeConstraint::new(freedoms, volumes.len(), rounding, volume_gradients))
+            }
+            Motion::Free { .. } => None,
+        };
+        let (stiffness, volumes) =
+            rayon::join(|| CsrRows::made_by(fans.point_count(), stiffness), constraint);
         Parts {
-            masses: self.of_points(mass),
+            masses: self.masses(terms),
             gradient: self.of_points(gradient),
             stiffness,
             freedoms: freedoms.to_vec(),
-            volumes: Some(constraint),
-            sliding: Vec::new(),
+            volumes,
+            sliding: match self.motion {
+                Motion::Kept { .. } => Vec::new(),
+                Motion::Free { mobilities } => self.sliding_masses(terms, mobilities),
+            },
         }
+    }
+
+    /// The mass of each point.
+    fn masses(&self, terms: &FanTerms) -> Vec<f64> {
+        let fans = self.fans;
+        let mass = |(fan, slot): (usize, usize)| terms.of_slot[fans.first_slot(fan) + slot].mass;
+        match self.motion {
+            Motion::Kept { volumes, size } => {
+                let of_fan = |fan: usize| {
+                    let cells =
+                        fans.sides[fan].into_iter().filter_map(|side| cell_and_offset(side, fans.domain()));
+                    let sizes = cells.map(|(cell, _)| size.of_volume(volumes[cell.index()]));
+                    sizes.fold(1.0, f64::min)
+                };
+                let sizes: Vec<f64> = (0..fans.faces.len()).map(of_fan).collect();
+                self.of_points(|point| {
+                    let smallest = fans.at_point(point).map(|(fan, _)| sizes[fan]).fold(1.0, f64::min);
+                    fans.at_point(point).map(mass).sum::<f64>() / (smallest * smallest)
+                })
+            }
+            // Nothing holds what lies on walls up.
+            Motion::Free { mobilities } => self.of_points(|point| {
+                let inside = fans.at_point(point).filter(|(fan, _)| fans.wall(*fan).is_none());
+                inside.map(|at| mass(at) / mobilities[at.0]).sum()
+            }),
+        }
+    }
+
+    /// What the masses of points where three boundaries meet are less than isotropic.
+    fn sliding_masses(&self, terms: &FanTerms, mobilities: &[f64]) -> Vec<(usize, DMat3)> {
+        let fans = self.fans;
+        let of_point = |point: usize| {
+            let inside = fans.at_point(point).filter(|(fan, _)| fans.wall(*fan).is_none());
+            let part = |(fan, slot): (usize, usize)| {
+                let terms = &terms.of_slot[fans.first_slot(fan) + slot];
+                (terms.volume_gradient, terms.mass / mobilities[fan])
+            };
+            let parts: Vec<(DVec3, f64)> = inside.map(part).collect();
+            (parts.len() >= 3).then(|| (point, sliding_mass(parts)))
+        };
+        let junctions = 0..fans.vertex_count() + fans.lines.len();
+        junctions.into_par_iter().with_min_len(CHUNK).filter_map(of_point).collect()
     }
 
     /// A share of a centre's way to the middle of the triangles around, within their plane: those of a fan are thin where a line is short.

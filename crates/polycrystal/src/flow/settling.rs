@@ -8,12 +8,12 @@ use crate::energy::local_size::LocalSize;
 use crate::energy::shape::Shape;
 use crate::events::local_area::Conditions;
 use crate::events::reconnection::{Reconnections, Reconnector, SHORT};
-use crate::flow::fan_flow::{FanFlow, Taken};
+use crate::flow::fan_flow::{FanFlow, Motion, Taken};
 use crate::flow::recipe::NetworkRecipe;
 use crate::flow::relaxation::{Moving, Relaxation, RelaxationStep};
 use crate::flow::tuning::Tuning;
 use crate::network::{feature_size, mean_grain_size};
-use crate::{Boundary, CellComplex, NetworkError};
+use crate::{CellComplex, NetworkError};
 
 /// Longest time of a step, in units of the mean grain size squared. Short lines would shrink to nothing in less: what is
 /// left of them is still there, as a step lets none turn over.
@@ -51,9 +51,6 @@ pub(crate) fn settle(
     tuning: &Tuning,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<Settled, NetworkError> {
-    // All of a wall has the same area unless it folds, so that tension does nothing but unfold it.
-    let tension =
-        |boundary: &Boundary| (recipe.tension)(boundary) + if boundary.wall.is_some() { 1.0 } else { 0.0 };
     let (count, step_time) = match *relaxation {
         Relaxation::Time(time) => equal_steps(time),
         Relaxation::Equilibrium => (STEPS, STEP_TIME),
@@ -63,7 +60,7 @@ pub(crate) fn settle(
     let size = LocalSize::new(domain.dimension(), tuning.small_grain * mean_size);
     let mut reconnector = Reconnector::new(SHORT * feature_size(domain, volumes.len()), size);
     let mut complex = CellComplex::from(tessellation);
-    let mut fans = Fans::new(&complex, &tension);
+    let mut fans = Fans::new(&complex, recipe.tension);
     let mut shape = Shape::default();
     let mut points = shape.points(&complex, &fans);
     let mut reconnections = Reconnections::default();
@@ -76,7 +73,7 @@ pub(crate) fn settle(
     for steps in 1.. {
         check_cancelled();
         let before = complex.vertices.clone();
-        let flow = FanFlow { fans: &fans, volumes, size, tuning };
+        let flow = FanFlow { fans: &fans, motion: Motion::Kept { volumes, size }, tuning };
         let Taken { energy, pressures } = flow.step(&mut points, step_time * mean_size.powi(2))?;
         complex.vertices.copy_from_slice(&points[..fans.vertex_count()]);
         shape = Shape::new(&fans, &points);
@@ -95,7 +92,7 @@ pub(crate) fn settle(
         }
         last_energy = energy;
         if events.count() > 0 {
-            let changed = Fans::new(&complex, &tension);
+            let changed = Fans::new(&complex, recipe.tension);
             shape = shape.with_new_ends(&fans, &changed);
             fans = changed;
         }

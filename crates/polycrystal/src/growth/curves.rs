@@ -4,7 +4,9 @@ use glam::{DVec2, DVec3};
 use voronoi::{FaceId, PeriodicVertex, Side, Tessellation};
 
 use super::GrowthRecipe;
+use super::front::{Front, Happened};
 use super::step::{Curve, CurveNetwork, Places};
+use super::tuning::GrowthTuning;
 use crate::arcs::switching::CurvedEdges;
 use crate::energy::sides::{boundary, cell_and_offset, freedom};
 use crate::{CellComplex, Mesh, Network, NetworkError};
@@ -19,31 +21,73 @@ const LEAST_LENGTH: f64 = 1e-6;
 const UNEVEN: f64 = 1.6;
 
 /// Edges of a complex in the plane, with points along them.
-pub(super) struct Curves {
+pub(super) struct Curves<'a> {
+    pub(super) recipe: &'a GrowthRecipe<'a>,
+    pub(super) tuning: &'a GrowthTuning,
     pub(super) edges: CurvedEdges,
     /// Of each edge, by number, its points from end to end without these, where the edge's first side sees them.
     pub(super) inner: Vec<Vec<DVec2>>,
     /// Of each edge, its length before the last step; before the first, no end of it.
     pub(super) lengths: Vec<f64>,
+    /// What moves in a step: the edges between grains, and these as curves.
+    moving: (Vec<FaceId>, CurveNetwork),
 }
 
-/// Curves that move.
-pub(super) struct MovingCurves {
-    /// The edge of each.
-    pub(super) faces: Vec<FaceId>,
-    pub(super) network: CurveNetwork,
-    pub(super) places: Places,
+impl Front for Curves<'_> {
+    type Points = Places;
+
+    fn start(&mut self, mean: f64) -> Places {
+        let spacing = self.tuning.spacing * mean.sqrt();
+        self.resample(spacing);
+        let places;
+        (self.moving.0, self.moving.1, places) = self.moving(spacing);
+        places
+    }
+
+    fn step(&self, start: &Places, time: f64) -> Result<Places, NetworkError> {
+        Ok(self.moving.1.step(start, time))
+    }
+
+    fn extrapolated(&self, _: &Places, halves: Places, whole: &Places) -> Places {
+        halves.extrapolated(whole)
+    }
+
+    fn volumes(&self, points: &Places) -> Vec<f64> {
+        self.areas(&self.moving.0, points)
+    }
+
+    fn take(&mut self, points: Places) {
+        let faces = std::mem::take(&mut self.moving.0);
+        self.take_places(&faces, points);
+    }
+
+    fn pass(&mut self, volumes: &[f64], mean: f64) -> Happened {
+        self.let_happen(volumes, mean)
+    }
+
+    fn network(&self) -> Result<(Network, Vec<DVec3>), NetworkError> {
+        self.lay()
+    }
 }
 
-impl Curves {
-    /// The straight edges of some cells, with points so far from each other.
-    pub(super) fn new(tessellation: &Tessellation, spacing: f64) -> Self {
+impl<'a> Curves<'a> {
+    /// The straight edges of some cells.
+    pub(super) fn new(
+        tessellation: &Tessellation,
+        recipe: &'a GrowthRecipe<'a>,
+        tuning: &'a GrowthTuning,
+    ) -> Self {
         let complex = CellComplex::from(tessellation);
         let count = complex.faces().len();
         let edges = CurvedEdges { complex, turnings: vec![0.0; count] };
-        let mut curves = Self { edges, inner: vec![Vec::new(); count], lengths: vec![f64::INFINITY; count] };
-        curves.resample(spacing);
-        curves
+        Self {
+            recipe,
+            tuning,
+            edges,
+            inner: vec![Vec::new(); count],
+            lengths: vec![f64::INFINITY; count],
+            moving: (Vec::new(), CurveNetwork::default()),
+        }
     }
 
     pub(super) fn complex(&self) -> &CellComplex {
@@ -67,12 +111,9 @@ impl Curves {
         self.line(face).windows(2).map(|ends| ends[0].distance(ends[1])).sum()
     }
 
-    /// The network of these curves, refined so often.
-    pub(super) fn lay(
-        &self,
-        recipe: &GrowthRecipe<'_>,
-        levels: usize,
-    ) -> Result<(Network, Vec<DVec3>), NetworkError> {
+    /// The network of these curves.
+    fn lay(&self) -> Result<(Network, Vec<DVec3>), NetworkError> {
+        let recipe = self.recipe;
         let complex = self.complex();
         let faces = complex.faces();
         let (cells, corners) = complex.tessellation();
@@ -80,8 +121,8 @@ impl Curves {
         let own: Vec<u32> = faces.iter().map(segments).collect();
         let copied = cells.periodic_faces().iter().map(|pair| own[pair.primary.index()]);
         let counts: Vec<u32> = own.iter().copied().chain(copied).collect();
-        let network = Network::of_divided_lines(&cells, &counts, levels)?
-            .with_tensions(recipe.tension)?
+        let network = Network::of_divided_lines(&cells, &counts, recipe.network.levels)?
+            .with_tensions(recipe.network.tension)?
             .with_mobilities(recipe.mobility)?;
         let mesh = network.control_mesh();
         let Mesh::Segments(lines) = &mesh.mesh else { unreachable!("a network in the plane has lines") };
@@ -104,7 +145,8 @@ impl Curves {
     }
 
     /// The curves that move, those between grains, by number of their edges, and where they are.
-    pub(super) fn moving(&self, recipe: &GrowthRecipe<'_>, spacing: f64) -> MovingCurves {
+    fn moving(&self, spacing: f64) -> (Vec<FaceId>, CurveNetwork, Places) {
+        let recipe = self.recipe;
         let complex = self.complex();
         let between = |face: &FaceId| !matches!(complex.sides(*face)[1], Side::Wall(_));
         let faces: Vec<FaceId> = complex.faces().into_iter().filter(between).collect();
@@ -115,7 +157,7 @@ impl Curves {
                 let PeriodicVertex { vertex, translation } = corners[end];
                 (vertex as usize, translation.vector(complex.domain()).truncate())
             };
-            let tension = (recipe.tension)(&boundary);
+            let tension = (recipe.network.tension)(&boundary);
             let mobility = (recipe.mobility)(&boundary);
             Curve { ends: [end(0), end(1)], tension, mobility }
         };
@@ -124,11 +166,11 @@ impl Curves {
         let vertices = complex.vertices.iter().map(|place| place.truncate()).collect();
         let inner = faces.iter().map(|face| self.inner[face.index()].clone()).collect();
         let network = CurveNetwork { curves, freedoms, least_length: LEAST_LENGTH * spacing };
-        MovingCurves { faces, network, places: Places { vertices, inner } }
+        (faces, network, Places { vertices, inner })
     }
 
     /// Takes over where curves are now.
-    pub(super) fn take(&mut self, faces: &[FaceId], places: Places) {
+    fn take_places(&mut self, faces: &[FaceId], places: Places) {
         self.lengths = vec![0.0; self.inner.len()];
         for face in self.complex().faces() {
             self.lengths[face.index()] = self.length(face);
@@ -143,7 +185,7 @@ impl Curves {
     }
 
     /// The area of each cell with some of its edges in given places.
-    pub(super) fn areas(&self, faces: &[FaceId], places: &Places) -> Vec<f64> {
+    fn areas(&self, faces: &[FaceId], places: &Places) -> Vec<f64> {
         let complex = self.complex();
         let mut areas = vec![0.0; complex.cell_count()];
         let mut origins: Vec<Option<DVec2>> = vec![None; areas.len()];
@@ -186,7 +228,7 @@ impl Curves {
     }
 
     /// Lays the points of edges anew whose segments are much longer or shorter than the spacing.
-    pub(super) fn resample(&mut self, spacing: f64) {
+    fn resample(&mut self, spacing: f64) {
         for face in self.complex().faces() {
             let length = self.length(face);
             let count = self.inner[face.index()].len() + 1;

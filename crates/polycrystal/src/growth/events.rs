@@ -3,37 +3,23 @@
 use glam::{DVec2, DVec3};
 use voronoi::{CellId, Dimension, FaceId};
 
-use super::GrowthRecipe;
 use super::curves::Curves;
-use super::tuning::GrowthTuning;
+use super::front::Happened;
 use crate::GrainId;
 use crate::arcs::switching::Switcher;
 use crate::energy::local_size::LocalSize;
-use crate::events::reconnection::Reconnections;
 use crate::flow::tuning::Tuning;
 
-/// What has happened between two steps.
-pub(super) struct Happened {
-    pub(super) vanished: Vec<GrainId>,
-    pub(super) reconnections: Reconnections,
-}
-
-impl Curves {
+impl Curves<'_> {
     /// Lets all events happen that are due, given the areas of grains and their mean.
-    pub(super) fn pass(
-        &mut self,
-        areas: &[f64],
-        mean: f64,
-        recipe: &GrowthRecipe<'_>,
-        tuning: &GrowthTuning,
-    ) -> Happened {
+    pub(super) fn let_happen(&mut self, areas: &[f64], mean: f64) -> Happened {
         let size = mean.sqrt();
         let mut before: Vec<[DVec2; 2]> = vec![[DVec2::ZERO; 2]; self.inner.len()];
         for face in self.complex().faces() {
             before[face.index()] = self.ends(face);
         }
         let is_small = |cell: u32, area: f64| {
-            area < tuning.vanished * mean && self.complex().edges_of_cell(CellId(cell)).len() > 0
+            area < self.tuning.vanished * mean && self.complex().faces_of_cell(CellId(cell)).len() > 0
         };
         let mut small: Vec<(f64, u32)> = areas.iter().copied().zip(0u32..).collect();
         small.retain(|(area, cell)| is_small(*cell, *area));
@@ -44,12 +30,12 @@ impl Curves {
                 vanished.push(GrainId(cell));
             }
         }
-        let vanishing = self.vanishing(tuning.short * size);
+        let vanishing = self.vanishing(self.tuning.short * size);
         for face in self.complex().faces() {
             self.edges.turnings[face.index()] = turning(&self.line(face));
         }
         let local_size = LocalSize::new(Dimension::Two, Tuning::default().small_grain * size);
-        let mut switcher = Switcher::new(size, local_size, areas, recipe.tension);
+        let mut switcher = Switcher::new(size, local_size, areas, self.recipe.network.tension);
         let reconnections = switcher.pass(&mut self.edges, &vanishing);
         self.inner.resize(self.edges.turnings.len(), Vec::new());
         for face in self.complex().faces() {
@@ -85,12 +71,12 @@ impl Curves {
 
     /// Gives a grain to the neighbour that it shares the longest edge with, of those that can have it.
     fn give_to_neighbor(&mut self, cell: CellId, before: &mut [[DVec2; 2]]) -> bool {
-        let mut edges: Vec<FaceId> = self.complex().edges_of_cell(cell).collect();
+        let mut edges: Vec<FaceId> = self.complex().faces_of_cell(cell).collect();
         edges.sort_by(|a, b| self.length(*b).total_cmp(&self.length(*a)).then(a.cmp(b)));
         for edge in edges {
             let ends: Vec<u32> = self.complex().corners(edge).iter().map(|corner| corner.vertex).collect();
             let lines: Vec<(FaceId, Vec<DVec2>)> =
-                self.complex().edges_of_cell(cell).map(|edge| (edge, self.line(edge))).collect();
+                self.complex().faces_of_cell(cell).map(|edge| (edge, self.line(edge))).collect();
             let Some(changed) = self.edges.complex.cell_to_neighbor(cell, edge) else { continue };
             for (face, is_reversed) in changed {
                 let known = lines.iter().find(|(other, _)| *other == face);

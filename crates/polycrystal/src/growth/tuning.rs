@@ -1,24 +1,26 @@
-//! The tuned numbers of growth in the plane.
+//! The tuned numbers of growth.
 
-/// What growth in the plane is tuned by. Lengths are in units of the mean grain size at the time, the edge of a square with the mean area of the
-/// grains that are left; times and areas in units of that area.
+/// What growth is tuned by. Lengths are in units of the mean grain size at the time, the edge of a cube (in the plane, of a square) with the mean
+/// volume (area) of the grains that are left; times in units of its square, volumes in units of that volume.
 ///
 /// `cargo run --release -p grainsmooth-polycrystal --example growth` prints what becomes of a network with other numbers; docs/relaxation.md
 /// has the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GrowthTuning {
-    /// Distance of points along boundaries. Half of it halves the errors of rates and doubles the work.
+    /// Distance of points along boundaries in the plane. Half of it halves the errors of rates and doubles the work.
     pub spacing: f64,
-    /// Largest difference of a grain's area after a step and after two of half its time. Steps are as long as this allows.
+    /// Largest difference of a grain's volume after a step and after two of half its time. Steps are as long as this allows.
     pub largest_error: f64,
-    /// Length of an edge that shrinks, below which its ends switch neighbours.
+    /// Length of an edge in the plane that shrinks, below which its ends switch neighbours.
     pub short: f64,
-    /// Area of a grain below which it vanishes: with three sides it would last for a third of that.
+    /// Volume of a grain below which it vanishes: with three sides it would last in the plane for a third of that.
     pub vanished: f64,
+    /// Time for which the finer points of boundaries in space move in the end, at kept volumes.
+    pub smoothing: f64,
 }
 
 impl Default for GrowthTuning {
     fn default() -> Self {
-        Self { spacing: 0.1, largest_error: 3e-3, short: 0.05, vanished: 2e-3 }
+        Self { spacing: 0.1, largest_error: 3e-3, short: 0.05, vanished: 2e-3, smoothing: 0.05 }
     }
 }

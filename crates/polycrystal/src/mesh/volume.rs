@@ -97,7 +97,9 @@ impl ConeSum {
 /// # Panics
 /// When there are none.
 pub(crate) fn largest_relative_error(missing: &[f64], volumes: &[f64]) -> (GrainId, f64) {
-    let relative = missing.iter().zip(volumes).map(|(lack, volume)| (lack / volume).abs());
+    // What has vanished lacks nothing.
+    let of = |(lack, volume): (&f64, &f64)| if *volume == 0.0 { lack.abs() } else { (lack / volume).abs() };
+    let relative = missing.iter().zip(volumes).map(of);
     let errors = (0u32..).map(GrainId).zip(relative);
     errors.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a network has grains")
 }

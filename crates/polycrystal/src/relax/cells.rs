@@ -2,14 +2,14 @@
 
 use voronoi::Tessellation;
 
-use crate::energy::sides::boundary;
+use crate::energy::unit::Unit;
 use crate::events::merged_lines::MergedLines;
 use crate::flow::balance::Balance;
 use crate::flow::recipe::{NetworkRecipe, RelaxedCells};
 use crate::flow::relaxation::{Relaxation, RelaxationStep, Relaxed, TIME_OF_KEPT_TOPOLOGY};
-use crate::flow::settling::settle;
+use crate::flow::settling::{Settled, settle};
 use crate::flow::tuning::Tuning;
-use crate::network::tension::{checked_tension, in_unit, mean_in_flow};
+use crate::network::tension::checked_tension;
 use crate::relax::{Plan, Start, relax_levels};
 use crate::{Boundary, FaceMesh, Network, NetworkError, Volumes, arcs};
 
@@ -45,16 +45,10 @@ pub fn relax_cells_tuned(
     mut watch: impl FnMut(RelaxationStep<'_>),
 ) -> Result<RelaxedCells, NetworkError> {
     relaxation.check()?;
-    let mut given = Vec::new();
-    for face in tessellation.faces() {
-        let boundary = boundary(tessellation.face_sides(face));
-        given.push((boundary, checked_tension(&boundary, (recipe.tension)(&boundary))?));
-    }
-    let unit = mean_in_flow(given.iter().map(|(boundary, tension)| (boundary, *tension)));
-    let tension = |boundary: &Boundary| in_unit((recipe.tension)(boundary), unit);
+    let unit = Unit::of(tessellation, recipe.tension, checked_tension)?;
+    let tension = |boundary: &Boundary| unit.measure((recipe.tension)(boundary));
     let in_units = NetworkRecipe { tension: &tension, ..*recipe };
-    let has_tension = given.iter().any(|(_, tension)| *tension > 0.0);
-    let moves = has_tension && *relaxation != Relaxation::Time(0.0);
+    let moves = unit.is_of_any && *relaxation != Relaxation::Time(0.0);
     let mut relaxed = match (tessellation.domain().dimension(), relaxation) {
         (voronoi::Dimension::Two, Relaxation::Equilibrium) => {
             arcs::equilibrate(tessellation, &in_units, &mut watch)
@@ -66,6 +60,15 @@ pub fn relax_cells_tuned(
     }?;
     relaxed.network = relaxed.network.with_tensions(recipe.tension)?;
     Ok(relaxed)
+}
+
+/// As [`relax_cells`] where nothing moves, with tensions whose mean is 1.
+pub(crate) fn still(
+    tessellation: &Tessellation,
+    recipe: &NetworkRecipe<'_>,
+    tuning: &Tuning,
+) -> Result<RelaxedCells, NetworkError> {
+    relax_as_they_are(tessellation, recipe, &Relaxation::Time(0.0), tuning, &mut |_| ())
 }
 
 /// As [`relax_cells`] where the topology stays, with tensions whose mean is 1.
@@ -98,7 +101,6 @@ fn relax_in_space(
     tuning: &Tuning,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<RelaxedCells, NetworkError> {
-    let mut attempts = Vec::new();
     let volumes: Vec<f64> = tessellation.cell_measures().iter().map(|cell| cell.volume).collect();
     let settled = settle(tessellation, recipe, &volumes, relaxation, tuning, watch)?;
     // Most of a given time has passed.
@@ -106,6 +108,19 @@ fn relax_in_space(
         Relaxation::Time(time) => Relaxation::Time(time.min(TIME_OF_KEPT_TOPOLOGY)),
         Relaxation::Equilibrium => Relaxation::Equilibrium,
     };
+    smoothed(&settled, &volumes, recipe, later, tuning, watch)
+}
+
+/// The network of cells whose topology is what it is to be, relaxed further; each grain has the volume that is given. Tensions have a mean of 1.
+pub(crate) fn smoothed(
+    settled: &Settled,
+    volumes: &[f64],
+    recipe: &NetworkRecipe<'_>,
+    relaxation: Relaxation,
+    tuning: &Tuning,
+    watch: &mut impl FnMut(RelaxationStep<'_>),
+) -> Result<RelaxedCells, NetworkError> {
+    let mut attempts = Vec::new();
     let mut smooth = |merged_length: f64, rigid_length: f64| {
         let MergedLines { cells, middles, collapsed: merged } =
             MergedLines::new(&settled.complex, &settled.shape, merged_length);
@@ -118,7 +133,7 @@ fn relax_in_space(
                 (Network::with_face_mesh(&cells, face_mesh, junctions, levels)?, Start::Flat)
             }
         };
-        let network = network.with_cell_volumes(volumes.clone()).with_tensions(recipe.tension)?;
+        let network = network.with_cell_volumes(volumes.to_vec()).with_tensions(recipe.tension)?;
         let tuning = Tuning { rigid_length, ..*tuning };
         let mut watch_later = |step: RelaxationStep<'_>| {
             // Where it starts is where the last step ended.
@@ -127,13 +142,13 @@ fn relax_in_space(
                 watch(RelaxationStep { done, count, time: settled.time + step.time, ..step });
             }
         };
-        let relaxed = relax_levels(&network, &points, &plan(later, start, &tuning), &mut watch_later)?;
+        let relaxed = relax_levels(&network, &points, &plan(relaxation, start, &tuning), &mut watch_later)?;
         let relaxed =
             Relaxed { steps: settled.steps + relaxed.steps, time: settled.time + relaxed.time, ..relaxed };
         let points = relaxed.finest_points(&network);
         let cells = RelaxedCells::validated(network, relaxed, &points)?;
         let balance =
-            (*relaxation == Relaxation::Equilibrium).then(|| Balance::in_space(&cells.network, &points));
+            (relaxation == Relaxation::Equilibrium).then(|| Balance::in_space(&cells.network, &points));
         let reconnections = settled.reconnections;
         Ok::<_, NetworkError>(RelaxedCells { reconnections, merged, balance, ..cells })
     };

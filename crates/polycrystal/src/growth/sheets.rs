@@ -1,0 +1,200 @@
+//! Boundaries in space, as fans of triangles, that grow.
+
+use glam::DVec3;
+use voronoi::{CellId, FaceId, Tessellation};
+
+use super::GrowthRecipe;
+use super::front::{Front, Happened};
+use super::tuning::GrowthTuning;
+use crate::energy::fans::Fans;
+use crate::energy::local_size::LocalSize;
+use crate::energy::shape::Shape;
+use crate::energy::sides::boundary;
+use crate::events::local_area::Conditions;
+use crate::events::reconnection::{Reconnections, Reconnector, SHORT};
+use crate::flow::fan_flow::{FanFlow, Motion};
+use crate::network::{feature_size, mean_grain_size};
+use crate::{CellComplex, GrainId, Network, NetworkError, Tuning};
+
+/// The boundaries of a complex in space.
+pub(super) struct Sheets<'a> {
+    recipe: &'a GrowthRecipe<'a>,
+    growth: &'a GrowthTuning,
+    tuning: &'a Tuning,
+    pub(super) complex: CellComplex,
+    pub(super) shape: Shape,
+    fans: Fans,
+    mobilities: Vec<f64>,
+    /// Of all points of the fans.
+    points: Vec<DVec3>,
+    /// Where vertices were before the last step.
+    before: Vec<DVec3>,
+    reconnector: Reconnector,
+}
+
+impl<'a> Sheets<'a> {
+    /// The flat faces of some cells.
+    pub(super) fn new(
+        cells: &Tessellation,
+        recipe: &'a GrowthRecipe<'a>,
+        growth: &'a GrowthTuning,
+        tuning: &'a Tuning,
+    ) -> Self {
+        let complex = CellComplex::from(cells);
+        let (domain, count) = (cells.domain(), cells.cell_count());
+        let fans = Fans::new(&complex, recipe.network.tension);
+        let points = Shape::default().points(&complex, &fans);
+        let shape = Shape::new(&fans, &points);
+        let size = LocalSize::new(domain.dimension(), tuning.small_grain * mean_grain_size(domain, count));
+        let reconnector = Reconnector::new(SHORT * feature_size(domain, count), size);
+        let mut sheets = Self {
+            recipe,
+            growth,
+            tuning,
+            complex,
+            shape,
+            fans,
+            mobilities: Vec::new(),
+            points,
+            before: Vec::new(),
+            reconnector,
+        };
+        sheets.find_mobilities();
+        sheets
+    }
+
+    /// The volume of each grain now; 0 of those that have vanished.
+    pub(super) fn volumes_now(&self) -> Vec<f64> {
+        self.volumes(&self.points)
+    }
+
+    fn find_mobilities(&mut self) {
+        let mobility = |sides: &[voronoi::Side; 2]| (self.recipe.mobility)(&boundary(*sides));
+        self.mobilities = self.fans.sides.iter().map(mobility).collect();
+    }
+
+    /// Takes over how the complex has changed.
+    fn follow_complex(&mut self) {
+        let fans = Fans::new(&self.complex, self.recipe.network.tension);
+        self.shape = std::mem::take(&mut self.shape).with_new_ends(&self.fans, &fans);
+        self.fans = fans;
+        self.find_mobilities();
+        self.points = self.shape.points(&self.complex, &self.fans);
+    }
+
+    fn flow(&self) -> FanFlow<'_> {
+        let motion = Motion::Free { mobilities: &self.mobilities };
+        FanFlow { fans: &self.fans, motion, tuning: self.tuning }
+    }
+
+    /// Gives a grain to the neighbour that it shares the largest boundary with, of those that can have it. Whether there is one.
+    fn vanish(&mut self, cell: CellId) -> bool {
+        let normals = self.fans.normals(&self.points);
+        let area = |face: FaceId| {
+            let fan = self.fans.faces.binary_search(&face).expect("each face has a fan");
+            let first = self.fans.first_slot(fan);
+            normals[first..first + self.fans.rim_len(fan)].iter().map(|normal| normal.length()).sum::<f64>()
+        };
+        let mut faces: Vec<(f64, FaceId)> =
+            self.complex.faces_of_cell(cell).map(|face| (area(face), face)).collect();
+        faces.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let corners = self.complex.corners_of_cell(cell);
+        let mut ways =
+            [false, true].into_iter().flat_map(|allows| faces.iter().map(move |face| (face.1, allows)));
+        if !ways.any(|(face, allows)| self.complex.cell_to_neighbor_across(cell, face, allows)) {
+            return false;
+        }
+        // A grain of four faces leaves one of its corners, in the middle of all that are on the same walls.
+        let left: Vec<_> = corners
+            .iter()
+            .filter(|(corner, _)| !self.complex.faces_at(&[corner.vertex]).is_empty())
+            .collect();
+        if let [(kept, walls)] = left.as_slice()
+            && walls.len() < 3
+        {
+            let beside = corners.iter().filter(|(_, at)| walls.iter().all(|wall| at.contains(wall)));
+            let places: Vec<DVec3> = beside.map(|(corner, _)| self.complex.position(*corner)).collect();
+            let middle = places.iter().sum::<DVec3>() / places.len() as f64;
+            self.complex.vertices[kept.vertex as usize] =
+                middle - kept.translation.vector(self.complex.domain());
+        }
+        true
+    }
+}
+
+impl Front for Sheets<'_> {
+    type Points = Vec<DVec3>;
+
+    fn start(&mut self, _: f64) -> Vec<DVec3> {
+        let mut points = self.points.clone();
+        self.flow().center(&mut points);
+        self.before = self.complex.vertices.clone();
+        points
+    }
+
+    fn step(&self, start: &Vec<DVec3>, time: f64) -> Result<Vec<DVec3>, NetworkError> {
+        let mut points = start.clone();
+        self.flow().step(&mut points, time)?;
+        Ok(points)
+    }
+
+    fn extrapolated(&self, start: &Vec<DVec3>, halves: Vec<DVec3>, whole: &Vec<DVec3>) -> Vec<DVec3> {
+        let beyond: Vec<DVec3> =
+            halves.iter().zip(whole).map(|(halves, whole)| *halves + (*halves - *whole)).collect();
+        if self.flow().breaks(start, &beyond) { halves } else { beyond }
+    }
+
+    fn volumes(&self, points: &Vec<DVec3>) -> Vec<f64> {
+        self.fans.volumes(self.complex.cell_count(), points, &self.fans.normals(points))
+    }
+
+    fn take(&mut self, points: Vec<DVec3>) {
+        self.complex.vertices.copy_from_slice(&points[..self.fans.vertex_count()]);
+        self.shape = Shape::new(&self.fans, &points);
+        self.points = points;
+    }
+
+    fn pass(&mut self, volumes: &[f64], mean: f64) -> Happened {
+        let mut small: Vec<(f64, u32)> = volumes.iter().copied().zip(0u32..).collect();
+        small.retain(|(volume, cell)| {
+            *volume < self.growth.vanished * mean && self.complex.faces_of_cell(CellId(*cell)).len() > 0
+        });
+        small.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut vanished = Vec::new();
+        for (_, cell) in small {
+            if self.vanish(CellId(cell)) {
+                vanished.push(GrainId(cell));
+                self.follow_complex();
+            }
+        }
+        let volumes = if vanished.is_empty() { volumes.to_vec() } else { self.volumes_now() };
+        let left = volumes.iter().filter(|volume| **volume != 0.0).count();
+        let domain = self.complex.domain();
+        let unit = self.tuning.small_grain * mean_grain_size(domain, left);
+        self.reconnector
+            .measure_by(SHORT * feature_size(domain, left), LocalSize::new(domain.dimension(), unit));
+        let pressures = vec![0.0; volumes.len()];
+        let conditions = Conditions {
+            shape: &self.shape,
+            tension: self.recipe.network.tension,
+            volumes: &volumes,
+            pressures: &pressures,
+        };
+        let mut excess = vec![0.0; volumes.len()];
+        let reconnections = self.reconnector.pass(&mut self.complex, &conditions, &self.before, &mut excess);
+        if reconnections != Reconnections::default() {
+            self.follow_complex();
+        } else {
+            self.points = self.shape.points(&self.complex, &self.fans);
+        }
+        Happened { vanished, reconnections }
+    }
+
+    fn network(&self) -> Result<(Network, Vec<DVec3>), NetworkError> {
+        let (cells, points) = self.shape.cells(&self.complex);
+        let recipe = &self.recipe.network;
+        let (network, _) = Network::new(&cells, recipe.junctions, recipe.levels)?;
+        let network = network.with_tensions(recipe.tension)?.with_mobilities(self.recipe.mobility)?;
+        Ok((network.with_cell_volumes(self.volumes_now()), points))
+    }
+}
