@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let network = &polycrystal.network;
     let Relaxed { level, points: control_points, .. } =
         &polycrystal.synthesis().expect("made from cells").relaxed;
-    let (level, finest) = (*level, network.levels().len() - 1);
+    let (level, finest) = (*level, network.level_count());
     for height in [0.0, 0.5, 1.0] {
         // Everything goes up but what lies on the bottom and the top: grains become flat above and long below.
         let stretched = |point: &DVec3| *point + DVec3::Z * (height * point.z * (1.0 - point.z));

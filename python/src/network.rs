@@ -1,9 +1,9 @@
 //! The network of cells, stage by stage.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
-use grainsmooth::polycrystal::{Level, Mesh, Relaxation, relax};
+use grainsmooth::polycrystal::{Elements, LevelView, Relaxation, relax};
 use grainsmooth::{Names, Stage};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -18,6 +18,8 @@ pub struct Network {
     network: Arc<grainsmooth::polycrystal::Network>,
     level: usize,
     points: Vec<DVec3>,
+    /// The triangles, where the level is not held in memory.
+    triangles: OnceLock<Vec<[u32; 3]>>,
 }
 
 impl Network {
@@ -26,11 +28,11 @@ impl Network {
         level: usize,
         points: Vec<DVec3>,
     ) -> Self {
-        Self { network, level, points }
+        Self { network, level, points, triangles: OnceLock::new() }
     }
 
-    fn mesh(&self) -> &Level {
-        &self.network.levels()[self.level]
+    fn mesh(&self) -> LevelView<'_> {
+        self.network.level(self.level)
     }
 }
 
@@ -44,7 +46,7 @@ impl Network {
     /// Number of subdivisions that there are.
     #[getter]
     fn levels(&self) -> usize {
-        self.network.levels().len() - 1
+        self.network.level_count()
     }
 
     #[getter]
@@ -54,18 +56,22 @@ impl Network {
 
     #[getter]
     fn elements<'py>(slf: &Bound<'py, Self>) -> Bound<'py, PyArray2<u32>> {
-        match &slf.get().mesh().mesh {
-            Mesh::Triangles(mesh) => view_of_rows(slf.as_any(), mesh.triangles()),
-            Mesh::Segments(mesh) => view_of_rows(slf.as_any(), mesh.segments()),
+        let this = slf.get();
+        match this.mesh().elements() {
+            Elements::Triangles(triangles) => view_of_rows(slf.as_any(), triangles),
+            Elements::Refined(mesh) => {
+                view_of_rows(slf.as_any(), this.triangles.get_or_init(|| mesh.refined_triangles()))
+            }
+            Elements::Segments(segments) => view_of_rows(slf.as_any(), segments),
         }
     }
 
     #[getter]
     fn face_labels<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i32>>> {
         let boundaries = self.network.boundaries();
-        let of_element = self.mesh().boundary_of.iter();
+        let of_elements = self.mesh().boundaries();
         let labels: Vec<i32> =
-            of_element.flat_map(|boundary| Names::default().labels(&boundaries[boundary.index()])).collect();
+            of_elements.flat_map(|boundary| Names::default().labels(&boundaries[boundary.index()])).collect();
         let count = labels.len() / 2;
         PyArray1::from_vec(py, labels).reshape([count, 2])
     }
@@ -100,13 +106,13 @@ impl Network {
         run(py, threads, progress, move |tell| {
             let told = |done, count| tell(Stage::Relaxation, done, count);
             let relaxed = relax(&network, &points, &relaxation, told)?;
-            Ok(Self { level: relaxed.level, points: relaxed.points, network })
+            Ok(Self::new(network, relaxed.level, relaxed.points))
         })
     }
 
     /// The network subdivided so many times, or up to its finest level.
     fn subdivide(&self, py: Python<'_>, times: Option<usize>, threads: usize) -> PyResult<Self> {
-        let last = self.network.levels().len() - 1;
+        let last = self.network.level_count();
         let to = times.map_or(last, |times| self.level.saturating_add(times));
         if to > last {
             return Err(PyValueError::new_err(format!(
@@ -117,7 +123,7 @@ impl Network {
         let (network, from, points) = (Arc::clone(&self.network), self.level, self.points.clone());
         run(py, threads, None, move |_| {
             let points = network.subdivide_between(from, to, &points);
-            Ok(Self { network, level: to, points })
+            Ok(Self::new(network, to, points))
         })
     }
 }

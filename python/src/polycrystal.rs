@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
 use grainsmooth::cli::Arguments;
-use grainsmooth::polycrystal::{Mesh, Side};
+use grainsmooth::polycrystal::{Elements, Side};
 use grainsmooth::voronoi::Dimension;
 use grainsmooth::{
     Coloring, Config, Error, Html, LabelGrid, Names, Output, Picture, Progress, Stage, Summary,
@@ -29,6 +29,8 @@ pub struct Polycrystal {
     face_labels: OnceLock<Vec<[i32; 2]>>,
     boundary_ids: OnceLock<Vec<i32>>,
     node_types: OnceLock<Vec<i8>>,
+    /// The triangles, where the finest level is not held in memory.
+    triangles: OnceLock<Vec<[u32; 3]>>,
 }
 
 impl Polycrystal {
@@ -38,6 +40,7 @@ impl Polycrystal {
             face_labels: OnceLock::new(),
             boundary_ids: OnceLock::new(),
             node_types: OnceLock::new(),
+            triangles: OnceLock::new(),
         }
     }
 
@@ -117,9 +120,13 @@ impl Polycrystal {
     /// Triangles, or in the plane segments.
     #[getter]
     fn elements<'py>(slf: &Bound<'py, Self>) -> Bound<'py, PyArray2<u32>> {
-        match &slf.get().made.network.finest().mesh {
-            Mesh::Triangles(mesh) => view_of_rows(slf.as_any(), mesh.triangles()),
-            Mesh::Segments(mesh) => view_of_rows(slf.as_any(), mesh.segments()),
+        let this = slf.get();
+        match this.made.network.finest().elements() {
+            Elements::Triangles(triangles) => view_of_rows(slf.as_any(), triangles),
+            Elements::Refined(mesh) => {
+                view_of_rows(slf.as_any(), this.triangles.get_or_init(|| mesh.refined_triangles()))
+            }
+            Elements::Segments(segments) => view_of_rows(slf.as_any(), segments),
         }
     }
 
@@ -130,7 +137,7 @@ impl Polycrystal {
             let network = &this.made.network;
             let labels: Vec<[i32; 2]> =
                 network.boundaries().iter().map(|boundary| Names::default().labels(boundary)).collect();
-            network.finest().boundary_of.iter().map(|boundary| labels[boundary.index()]).collect()
+            network.finest().boundaries().map(|boundary| labels[boundary.index()]).collect()
         };
         view_of_rows(slf.as_any(), this.face_labels.get_or_init(of_elements))
     }
@@ -138,16 +145,19 @@ impl Polycrystal {
     #[getter]
     fn boundary_id<'py>(slf: &Bound<'py, Self>) -> Bound<'py, PyArray1<i32>> {
         let this = slf.get();
-        let boundary_of = &this.made.network.finest().boundary_of;
-        let ids = || boundary_of.iter().map(|boundary| boundary.0.cast_signed()).collect();
+        let ids = || {
+            let boundaries = this.made.network.finest().boundaries();
+            boundaries.map(|boundary| boundary.0.cast_signed()).collect()
+        };
         view(slf.as_any(), this.boundary_ids.get_or_init(ids))
     }
 
     #[getter]
     fn node_types<'py>(slf: &Bound<'py, Self>) -> Bound<'py, PyArray1<i8>> {
         let this = slf.get();
-        let types = &this.made.network.finest().node_types;
-        view(slf.as_any(), this.node_types.get_or_init(|| types.iter().map(|of| of.code()).collect()))
+        let finest = this.made.network.finest();
+        let types = || (0..finest.vertex_count()).map(|vertex| finest.node_type(vertex).code()).collect();
+        view(slf.as_any(), this.node_types.get_or_init(types))
     }
 
     /// Volumes of the grains, in the plane areas.

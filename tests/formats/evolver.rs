@@ -106,13 +106,13 @@ fn number(signed: i64) -> usize {
 /// The energy of the network: of a boundary that comes twice, once.
 fn energy(polycrystal: &Polycrystal) -> f64 {
     let network = &polycrystal.network;
-    let Mesh::Triangles(mesh) = &network.finest().mesh else { panic!("not in space") };
+    let Mesh::Triangles(mesh) = &network.finest().held().mesh else { panic!("not in space") };
     let of_triangle = |triangle: &[u32; 3]| {
         let [a, b, c] = triangle.map(|corner| polycrystal.points[corner as usize]);
         (b - a).cross(c - a).length() / 2.0
     };
     let share = |boundary: usize| if network.boundaries()[boundary].twin.is_some() { 0.5 } else { 1.0 };
-    let numbered = mesh.triangles().iter().zip(&network.finest().boundary_of);
+    let numbered = mesh.triangles().iter().zip(&network.finest().held().boundary_of);
     numbered
         .map(|(triangle, id)| share(id.index()) * network.tensions()[id.index()] * of_triangle(triangle))
         .sum()
@@ -123,7 +123,7 @@ fn a_periodic_network_stands_once_on_the_torus() {
     for (polycrystal, is_without_walls) in [(&*TORUS, true), (&*CHANNEL, false)] {
         let (_folder, path) = write(polycrystal, "grains.fe");
         let file = TorusFile::read(&fs::read_to_string(path).unwrap());
-        let copies = &polycrystal.network.finest().copies.vertices;
+        let copies = &polycrystal.network.finest().held().copies.vertices;
         assert_eq!(file.vertices.len() + copies.len(), polycrystal.points.len());
         assert_eq!(file.periods, BOX);
 

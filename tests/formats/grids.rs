@@ -88,7 +88,7 @@ fn voxels_outside_of_the_domain_belong_to_no_grain() {
 
 /// The solid angle that a grain's surface spans at a point is 4 pi inside and 0 outside; computed by other means than rays.
 fn winding(polycrystal: &Polycrystal, grain: usize, point: DVec3) -> f64 {
-    let level = polycrystal.network.finest();
+    let level = polycrystal.network.finest().held();
     let Mesh::Triangles(mesh) = &level.mesh else { panic!("not in space") };
     let mut sum = 0.0;
     for (triangle, boundary) in mesh.triangles().iter().zip(&level.boundary_of) {

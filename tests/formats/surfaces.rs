@@ -12,7 +12,7 @@ use tempfile::TempDir;
 use crate::workplace::{GRAINS, SPACE, volume, write};
 
 fn triangles(polycrystal: &Polycrystal) -> &[[u32; 3]] {
-    let Mesh::Triangles(mesh) = &polycrystal.network.finest().mesh else { panic!("not in space") };
+    let Mesh::Triangles(mesh) = &polycrystal.network.finest().held().mesh else { panic!("not in space") };
     mesh.triangles()
 }
 

@@ -153,7 +153,7 @@ fn vtk_meshio_and_trimesh_read_every_format() {
         OutputDirectory::check(directory.path().join("each"), OutputFormat::of_extension("stl").unwrap())
             .unwrap();
     write_together(|files| SPACE.stage_grains(&grains, files)).unwrap();
-    let level = SPACE.network.finest();
+    let level = SPACE.network.finest().held();
     let counts = SPACE.network.junction_counts();
     let expected = serde_json::json!({
         "points": SPACE.points.iter().map(|point| point.to_array()).collect::<Vec<_>>(),

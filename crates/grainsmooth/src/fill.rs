@@ -79,7 +79,8 @@ impl Polycrystal {
 
     /// The edges of all triangles, the lower end first.
     fn edges_of_boundaries(&self) -> BTreeSet<[u32; 2]> {
-        let Mesh::Triangles(mesh) = &self.network.finest().mesh else { return BTreeSet::new() };
+        let level = self.network.finest_level();
+        let Mesh::Triangles(mesh) = &level.mesh else { return BTreeSet::new() };
         let edges = mesh.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
         edges.map(|[a, b]| [a.min(b), a.max(b)]).collect()
     }

@@ -4,20 +4,30 @@ use std::path::Path;
 
 use sysinfo::{MemoryRefreshKind, System};
 
-/// Bytes that a run holds at its peak for each point, edge and triangle of its last level: the mesh with its
-/// arrays, the stencils that made the points, the level before, and the arrays being written.
+/// Bytes that a run in space holds at its peak, which is in one of two stages. Fitted to peak resident memory, in millions of bytes and brackets what
+/// comes of it: 200 grains took 100 (83) at level 3 and 212 (200) at level 4, 500 grains 239 (213) at level 3, 1000 grains 407 (439) at level 2, 2000
+/// grains 151 (150), 430 (433), 863 (886) and 883 (886) at levels 0 to 3.
 ///
-/// Fitted to peak resident memory, and up to 5 % above it: 200 grains took 201 MB at level 3 and 770 MB at level 4, 500
-/// grains 517 MB at level 3, 1000 grains 363 MB at level 2; in 2D, 20 000 grains 1862 MB at level 6, and in equilibrium at
-/// level 3 1196 MB, 2000 grains 128 MB.
-const BYTES_PER_POINT: u128 = 220;
-const BYTES_PER_EDGE: u128 = 50;
-const BYTES_PER_TRIANGLE: u128 = 62;
+/// In relaxation, for each edge of the control mesh: the cells, and the matrices and patches of what moves, level 1 where there is one ...
+const RELAXED_PER_CONTROL_EDGE: u128 = 860;
+const RELAXED_PER_CONTROL_EDGE_MOVED: u128 = 1900;
+const RELAXED_PER_CONTROL_EDGE_REFINED: u128 = 2750;
 
-/// The same for each edge of the control mesh: the cells, and relaxation's matrices, which cover the points of level 1 too
-/// where there is one. 2000 grains took 115 MB at level 0 and 373 MB at level 1.
-const BYTES_PER_CONTROL_EDGE: u128 = 600;
-const BYTES_PER_CONTROL_EDGE_REFINED: u128 = 1600;
+/// ... and for each triangle of the level that carries energy: level 1, or 2 where there is one.
+const RELAXED_PER_TRIANGLE: u128 = 193;
+const ENERGY_LEVEL: u32 = 2;
+
+/// In the certificate and in writing, for each edge of the control mesh and each triangle of the last level: its points and their arrays, and the levels
+/// before; the last level itself follows from these.
+const WRITTEN_PER_CONTROL_EDGE: u128 = 800;
+const WRITTEN_PER_TRIANGLE: u128 = 60;
+
+/// Bytes that a run in the plane holds at its peak for each point and segment of its last level, and each segment of the first. Up to 5 % above peak resident
+/// memory: 20 000 grains took 1862 MB at level 6, and in equilibrium at level 3 1196 MB, 2000 grains 128 MB.
+const PLANE_PER_POINT: u128 = 220;
+const PLANE_PER_SEGMENT: u128 = 50;
+const PLANE_PER_CONTROL_SEGMENT: u128 = 600;
+const PLANE_PER_CONTROL_SEGMENT_REFINED: u128 = 1600;
 
 /// Segments of a boundary in the plane that bends to an arc in equilibrium, on average: 200 to 2000 random grains had 59 to 66.
 const SEGMENTS_OF_ARC: u128 = 60;
@@ -159,17 +169,30 @@ impl ControlMesh {
 
     /// Bytes that a run takes at its peak through `levels` subdivisions to the file, as an estimate.
     pub fn bytes_after(self, levels: u32) -> u128 {
-        let size = self.after(levels);
-        let bytes_per_control_edge =
-            if levels == 0 { BYTES_PER_CONTROL_EDGE } else { BYTES_PER_CONTROL_EDGE_REFINED };
-        [
-            (size.points, BYTES_PER_POINT),
-            (size.edges, BYTES_PER_EDGE),
-            (size.triangles, BYTES_PER_TRIANGLE),
-            (self.size.edges, bytes_per_control_edge),
-        ]
-        .into_iter()
-        .fold(self.besides, |sum, (count, bytes)| sum.saturating_add(count.saturating_mul(bytes)))
+        let sum = |parts: &[(u128, u128)]| {
+            parts
+                .iter()
+                .fold(self.besides, |sum, (count, bytes)| sum.saturating_add(count.saturating_mul(*bytes)))
+        };
+        let (size, edges) = (self.after(levels), self.size.edges);
+        if self.size.triangles == 0 {
+            let of_control =
+                if levels == 0 { PLANE_PER_CONTROL_SEGMENT } else { PLANE_PER_CONTROL_SEGMENT_REFINED };
+            return sum(&[
+                (size.points, PLANE_PER_POINT),
+                (size.edges, PLANE_PER_SEGMENT),
+                (edges, of_control),
+            ]);
+        }
+        let (of_control, of_triangle) = match levels {
+            0 => (RELAXED_PER_CONTROL_EDGE, 0),
+            1 => (RELAXED_PER_CONTROL_EDGE_MOVED, RELAXED_PER_TRIANGLE),
+            _ => (RELAXED_PER_CONTROL_EDGE_REFINED, RELAXED_PER_TRIANGLE),
+        };
+        let carrying = self.after(levels.min(ENERGY_LEVEL));
+        let relaxed = sum(&[(edges, of_control), (carrying.triangles, of_triangle)]);
+        let written = sum(&[(edges, WRITTEN_PER_CONTROL_EDGE), (size.triangles, WRITTEN_PER_TRIANGLE)]);
+        relaxed.max(written)
     }
 }
 
@@ -339,15 +362,15 @@ mod tests {
         let message = |levels, available| check_levels(mesh, levels, available).unwrap_err().to_string();
         assert_eq!(
             message(9, 8_000_000_000),
-            "9 levels would take 906.4 GB of memory and 8.0 GB are available; 5 levels would fit"
+            "9 levels would take 220.2 GB of memory and 8.0 GB are available; 6 levels would fit"
         );
         assert_eq!(
             message(200, 8_000_000_000),
-            "200 levels would take over 1000 EB of memory and 8.0 GB are available; 5 levels would fit"
+            "200 levels would take over 1000 EB of memory and 8.0 GB are available; 6 levels would fit"
         );
         assert_eq!(
             message(3, 1_000_000),
-            "3 levels would take 250.9 MB of memory and 1.0 MB are available; not even 0 levels would fit, take fewer seeds"
+            "3 levels would take 98.2 MB of memory and 1.0 MB are available; not even 0 levels would fit, take fewer seeds"
         );
         assert_eq!(
             message(9, u64::MAX),

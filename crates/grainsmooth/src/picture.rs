@@ -117,7 +117,7 @@ impl Polycrystal {
     fn draw(&self, picture: &Picture, paint: &Paint, pixmap: &mut Pixmap) -> io::Result<()> {
         let domain = self.network.domain();
         let middle = domain.lower().midpoint(domain.upper());
-        match &self.network.finest().mesh {
+        match &self.network.finest().held().mesh {
             Mesh::Triangles(_) => {
                 let is_whole = picture.explode == 0.0 && picture.slice.is_none();
                 let seen = match (is_whole, &paint.boundaries) {

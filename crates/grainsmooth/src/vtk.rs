@@ -91,6 +91,8 @@ pub struct PolyData<'a> {
 pub enum Cells<'a> {
     /// Three points each.
     Triangles(&'a [[u32; 3]]),
+    /// Three points each, known when they are written.
+    TrianglesOf(Each<'a, [u32; 3]>),
     /// Three or more points each, in order around the face.
     Polygons(&'a [Vec<u32>]),
     /// Two or more points each, in order along the curve.
@@ -106,6 +108,7 @@ impl Cells<'_> {
     pub fn len(&self) -> usize {
         match self {
             Self::Triangles(triangles) => triangles.len(),
+            Self::TrianglesOf(each) => each.count,
             Self::Polygons(cells) | Self::Polylines(cells) => cells.len(),
             Self::Vertices(count) => *count,
             Self::Tetrahedra(tetrahedra) => tetrahedra.len(),
@@ -120,7 +123,7 @@ impl Cells<'_> {
     /// Number of point ids in all cells together.
     fn corner_count(&self) -> usize {
         match self {
-            Self::Triangles(triangles) => 3 * triangles.len(),
+            Self::Triangles(_) | Self::TrianglesOf(_) => 3 * self.len(),
             Self::Polygons(cells) | Self::Polylines(cells) => cells.iter().map(Vec::len).sum(),
             Self::Vertices(count) => *count,
             Self::Tetrahedra(tetrahedra) => 4 * tetrahedra.len(),
@@ -156,6 +159,8 @@ pub enum Values<'a> {
     Vectors(&'a [DVec3]),
     /// One 8-bit integer each, computed when it is written.
     Int8Of(Each<'a, i8>),
+    /// One unsigned 8-bit integer each, computed when it is written.
+    UInt8Of(Each<'a, u8>),
     /// One 32-bit integer each, computed when it is written.
     Int32Of(Each<'a, i32>),
     /// Two 32-bit integers each, computed when they are written.
@@ -263,6 +268,7 @@ impl<'a> Values<'a> {
             Self::Float64Pairs(pairs) => pairs.len(),
             Self::Vectors(vectors) => vectors.len(),
             Self::Int8Of(each) => each.count,
+            Self::UInt8Of(each) => each.count,
             Self::Int32Of(each) => each.count,
             Self::Int32PairsOf(each) => each.count,
             Self::Float64Of(each) => each.count,
@@ -281,7 +287,7 @@ impl<'a> Values<'a> {
 
     fn component_count(&self) -> usize {
         match self {
-            Self::Int8(_) | Self::Int8Of(_) | Self::UInt8(_) => 1,
+            Self::Int8(_) | Self::Int8Of(_) | Self::UInt8(_) | Self::UInt8Of(_) => 1,
             Self::Int32(_) | Self::Int32Of(_) | Self::Int32Blocks(_) => 1,
             Self::Float64(_) | Self::Float64Of(_) => 1,
             Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Float64Pairs(_) => 2,
@@ -296,7 +302,7 @@ impl<'a> Values<'a> {
     fn scalar_type(&self) -> ScalarType {
         match self {
             Self::Int8(_) | Self::Int8Of(_) => ScalarType::Int8,
-            Self::UInt8(_) => ScalarType::UInt8,
+            Self::UInt8(_) | Self::UInt8Of(_) => ScalarType::UInt8,
             Self::Int32(_) | Self::Int32Of(_) | Self::Int32Blocks(_) => ScalarType::Int32,
             Self::Int32Pairs(_) | Self::Int32PairsOf(_) | Self::Int32Tuples(_) => ScalarType::Int32,
             Self::Float64(_) | Self::Float64Of(_) => ScalarType::Float64,

@@ -90,7 +90,7 @@ fn main() {
             }
         };
         let taken = start.elapsed().as_secs_f64();
-        let Mesh::Triangles(mesh) = &remeshed.network.finest().mesh else { unreachable!("in space") };
+        let Mesh::Triangles(mesh) = &remeshed.network.finest().held().mesh else { unreachable!("in space") };
         let angles = angles(mesh.triangles(), &remeshed.points);
         let below = |angle: f64| angles.partition_point(|other| *other < angle);
         println!(

@@ -174,7 +174,7 @@ impl SmoothEdges {
         let faces = edges.complex.faces();
         let chords = |face| self.chords[faces.binary_search(&face).expect("numbers do not change")];
         let network = edges.network(self.network.cell_volumes(), recipe, chords);
-        let level = self.network.levels().len() - 1;
+        let level = self.network.level_count();
         let mut show = |done: usize, state: &[f64]| {
             let points = self.points(&network, state);
             watch(RelaxationStep {
@@ -198,7 +198,7 @@ impl SmoothEdges {
     }
 
     fn points(&self, network: &ArcNetwork<'_>, state: &[f64]) -> Vec<DVec3> {
-        let finest = self.network.finest();
+        let finest = self.network.finest_level();
         let Mesh::Segments(mesh) = &finest.mesh else { unreachable!("a network in the plane has lines") };
         let mut points = vec![DVec3::ZERO; finest.vertex_count()];
         // Some vertices belong to copies of edges alone.

@@ -1,5 +1,6 @@
 //! What makes a surface that of a network: closed, nothing crossed, nothing folded.
 
+pub(crate) mod boundary_survey;
 pub(crate) mod box_tree;
 pub(crate) mod certificate;
 pub(crate) mod closedness;

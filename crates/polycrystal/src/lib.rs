@@ -67,10 +67,11 @@ pub use measures::{
 pub use mesh::angles::{AngleStatistics, WeightedAngle};
 pub use mesh::boundary::{Boundary, BoundaryId, GrainId, Side, Twin};
 pub use mesh::connectivity::Mesh;
-pub use mesh::level::Level;
+pub use mesh::elements::{Corners, Elements};
+pub use mesh::level::{Level, LevelView};
 pub use mesh::node_type::NodeType;
 pub use mesh::periodic::PeriodicCopies;
-pub use mesh::surface::{Elements, Surface};
+pub use mesh::surface::Surface;
 pub use mesh::triangle_quality::TriangleQuality;
 pub use mesh::wall_set::{Freedom, WallSet, WallSets};
 pub use network::Network;

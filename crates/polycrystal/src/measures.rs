@@ -65,11 +65,11 @@ pub fn measure(surface: &Surface<'_>) -> Measures {
 /// # Panics
 /// When there is not one point per vertex.
 pub fn measure_network(network: &Network, points: &[DVec3]) -> Measures {
-    let level = network.finest();
+    let level = network.finest_level();
     assert_eq!(points.len(), level.vertex_count(), "there must be one point per vertex");
     let sides = network.sides();
-    let surface = Surface::of_level(level, points, &sides);
-    of_complex(&Complex::of_level(network, level, &surface))
+    let surface = Surface::of_level(&*level, points, &sides);
+    of_complex(&Complex::of_level(network, (&*level).into(), &surface))
 }
 
 /// The smallest and the largest dihedral angle of the triple lines (in the plane: of the triple point) at each point, in
@@ -97,7 +97,7 @@ pub fn point_dihedral_angles(network: &Network, points: &[DVec3]) -> Vec<[f64; 2
             }
         }
     }
-    for pair in &level.copies.vertices {
+    for pair in &level.copies().vertices {
         angles[pair.secondary as usize] = angles[pair.primary as usize];
     }
     angles
@@ -106,6 +106,7 @@ pub fn point_dihedral_angles(network: &Network, points: &[DVec3]) -> Vec<[f64; 2
 fn of_complex(complex: &Complex<'_>) -> Measures {
     match complex.surface.elements {
         Elements::Triangles(triangles) => Measures::Space(space::measure(complex, triangles)),
+        Elements::Refined(mesh) => Measures::Space(space::measure(complex, &mesh.refined_triangles())),
         Elements::Segments(segments) => Measures::Plane(plane::measure(complex, segments)),
     }
 }

@@ -3,8 +3,10 @@
 pub(crate) mod adjacency;
 pub(crate) mod angles;
 pub(crate) mod boundary;
+pub(crate) mod boundary_elements;
 pub(crate) mod connectivity;
 pub(crate) mod disjoint_sets;
+pub(crate) mod elements;
 pub(crate) mod grouped;
 pub(crate) mod id;
 pub(crate) mod level;

@@ -10,17 +10,20 @@ pub(crate) mod labelled_mesh;
 pub(crate) mod line_coarsening;
 pub(crate) mod tension;
 
+use std::borrow::Cow;
+
 use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
-use subzero::{EdgeId, StencilTable};
+use subzero::EdgeId;
 use voronoi::{Domain, Tessellation};
 
 use crate::check::folds::element_normals;
+use crate::mesh::id::id;
 use crate::mesh::volume::{boundary_cones, volumes_of_grains};
 use crate::{
-    Boundary, Certificate, FaceMesh, Freedom, GrainPart, Junctions, Level, Mesh, MeshSize, NetworkError,
-    Side, Surface, WallSet, WallSets,
+    Boundary, Certificate, FaceMesh, Freedom, GrainPart, Junctions, Level, LevelView, Mesh, MeshSize,
+    NetworkError, PeriodicCopies, Side, Surface, WallSet, WallSets,
 };
 use control_mesh::{ControlMesh, JunctionCounts};
 use labelled_mesh::SurfaceKind;
@@ -39,10 +42,10 @@ pub struct Network {
     tensions: Vec<f64>,
     mobilities: Vec<f64>,
     wall_sets: WallSets,
-    /// From the control mesh to the finest.
+    /// From the control mesh to the finest that is held in memory.
     levels: Vec<Level>,
-    /// How the points of each level but the first follow from those of the level before.
-    stencils: Vec<StencilTable>,
+    /// Where the finest level is one more: the copies there.
+    finest_copies: Option<PeriodicCopies>,
 }
 
 impl Network {
@@ -210,13 +213,14 @@ impl Network {
             return Err(NetworkError::BoundaryTooSmall { sides });
         }
         let mut levels = vec![level];
-        let mut stencils = Vec::new();
-        for coarser in 0..level_count {
+        for coarser in 0..level_count.min(finest_held(domain, level_count)) {
             check_cancelled();
-            let (finer, table) = levels[coarser].refine(&boundaries, &wall_sets)?;
-            levels.push(finer);
-            stencils.push(table);
+            levels.push(levels[coarser].refine(&boundaries, &wall_sets)?);
         }
+        let finest_copies = match &levels[levels.len() - 1] {
+            held if levels.len() <= level_count => Some(held.finest_copies()?),
+            _ => None,
+        };
         let tension = |boundary: &Boundary| if boundary.wall.is_none() { 1.0 } else { 0.0 };
         let network = Self {
             tensions: boundaries.iter().map(tension).collect(),
@@ -227,7 +231,7 @@ impl Network {
             cell_volumes,
             wall_sets,
             levels,
-            stencils,
+            finest_copies,
         };
         Ok((network, points))
     }
@@ -243,7 +247,7 @@ impl Network {
             mobilities: self.mobilities.clone(),
             wall_sets: self.wall_sets.clone(),
             levels: vec![level],
-            stencils: Vec::new(),
+            finest_copies: None,
         }
     }
 
@@ -377,7 +381,12 @@ impl Network {
         self.wall_sets.freedom(walls)
     }
 
-    /// The connectivity of all levels, from the control mesh to the finest.
+    /// How often the control mesh is subdivided.
+    pub fn level_count(&self) -> usize {
+        self.levels.len() - usize::from(self.finest_copies.is_none())
+    }
+
+    /// The connectivity of the levels that are held in memory: all of few, and in space all but the finest from the third on.
     pub fn levels(&self) -> &[Level] {
         &self.levels
     }
@@ -387,14 +396,36 @@ impl Network {
         &self.levels[0]
     }
 
-    /// The finest level.
-    pub fn finest(&self) -> &Level {
-        &self.levels[self.levels.len() - 1]
+    /// The connectivity of one level, the control mesh being level 0.
+    ///
+    /// # Panics
+    /// When there is no such level.
+    pub fn level(&self, level: usize) -> LevelView<'_> {
+        match (self.levels.get(level), &self.finest_copies) {
+            (Some(held), _) => held.into(),
+            (None, Some(copies)) if level == self.levels.len() => LevelView::Refined {
+                parent: &self.levels[level - 1],
+                copies,
+                generation: u8::try_from(level).expect("there are fewer than 128 levels"),
+            },
+            _ => panic!("there is no level {level}"),
+        }
     }
 
-    /// How the points of level `level + 1` follow from those of `level`.
-    pub(crate) fn stencils(&self, level: usize) -> &StencilTable {
-        &self.stencils[level]
+    /// The connectivity of the finest level.
+    pub fn finest(&self) -> LevelView<'_> {
+        self.level(self.level_count())
+    }
+
+    /// The finest level as a whole, made for it where it is not held in memory.
+    pub fn finest_level(&self) -> Cow<'_, Level> {
+        match self.finest() {
+            LevelView::Held(level) => Cow::Borrowed(level),
+            LevelView::Refined { parent, .. } => {
+                let finest = parent.refine(&self.boundaries, &self.wall_sets);
+                Cow::Owned(finest.expect("ids were counted when the network was made"))
+            }
+        }
     }
 
     /// The points of the finest level for the given control points, all boundaries in parallel.
@@ -404,7 +435,7 @@ impl Network {
     /// # Panics
     /// When there is not one point per vertex of the control mesh.
     pub fn subdivide(&self, control_points: &[DVec3]) -> Vec<DVec3> {
-        self.subdivide_between(0, self.levels.len() - 1, control_points)
+        self.subdivide_between(0, self.level_count(), control_points)
     }
 
     /// The points of level `to` for those of level `from`.
@@ -412,15 +443,21 @@ impl Network {
     /// # Panics
     /// When there is not one point per vertex of level `from`, or no level `to`.
     pub fn subdivide_between(&self, from: usize, to: usize, points: &[DVec3]) -> Vec<DVec3> {
-        assert_eq!(points.len(), self.levels[from].vertex_count(), "there must be one point per vertex");
+        let coarsest = self.level(from);
+        assert_eq!(points.len(), coarsest.vertex_count(), "there must be one point per vertex");
         let mut points = points.to_vec();
-        self.levels[from].copies.place(&self.domain, &mut points);
-        for (stencils, finer) in self.stencils[from..to].iter().zip(&self.levels[from + 1..=to]) {
+        coarsest.copies().place(&self.domain, &mut points);
+        for level in from + 1..=to {
             check_cancelled();
-            points = stencils.apply(&points);
-            let on_walls = points.par_iter_mut().zip(&finer.walls).filter(|(_, walls)| !walls.is_empty());
-            on_walls.for_each(|(point, walls)| *point = self.wall_sets.put_on_walls(*walls, *point));
-            finer.copies.place(&self.domain, &mut points);
+            let finer = self.level(level);
+            points = self.levels[level - 1].mesh.step(&points);
+            points.par_iter_mut().enumerate().for_each(|(vertex, point)| {
+                let walls = finer.walls(vertex, &self.wall_sets);
+                if !walls.is_empty() {
+                    *point = self.wall_sets.put_on_walls(walls, *point);
+                }
+            });
+            finer.copies().place(&self.domain, &mut points);
         }
         points
     }
@@ -440,9 +477,9 @@ impl Network {
         );
         let mut points = control_points.to_vec();
         self.control_mesh().copies.place(&self.domain, &mut points);
-        for pair in self.levels.windows(2) {
+        for level in 1..=self.level_count() {
             let middle = |[a, b]: [u32; 2]| points[a as usize].midpoint(points[b as usize]);
-            let middles: Vec<DVec3> = match &pair[0].mesh {
+            let middles: Vec<DVec3> = match &self.levels[level - 1].mesh {
                 Mesh::Triangles(mesh) => {
                     let edges = (0..mesh.counts().edges).into_par_iter();
                     edges.map(|edge| middle(mesh.edge(EdgeId(edge)))).collect()
@@ -450,27 +487,29 @@ impl Network {
                 Mesh::Segments(mesh) => mesh.segments().par_iter().map(|ends| middle(*ends)).collect(),
             };
             points.extend(middles);
-            pair[1].copies.place(&self.domain, &mut points);
+            self.level(level).copies().place(&self.domain, &mut points);
         }
         points
     }
 
     /// Volume (in the plane: area) of each grain, for points of the given level.
-    pub fn grain_volumes(&self, level: &Level, points: &[DVec3]) -> Vec<f64> {
-        let cones = boundary_cones(&Surface::of_level(level, points, &self.sides()));
+    pub fn grain_volumes<'a>(&self, level: impl Into<LevelView<'a>>, points: &[DVec3]) -> Vec<f64> {
+        let cones = boundary_cones(&Surface::of_level(level.into(), points, &self.sides()));
         volumes_of_grains(&self.boundaries, &cones, self.grain_count())
     }
 
     /// Surface area (in the plane: perimeter) of each grain, for points of the given level.
-    pub(crate) fn grain_areas(&self, level: &Level, points: &[DVec3]) -> Vec<f64> {
-        let of_element = |normal: DVec3| match self.domain.dimension() {
-            voronoi::Dimension::Two => normal.length(),
-            voronoi::Dimension::Three => 0.5 * normal.length(),
+    pub(crate) fn grain_areas(&self, level: LevelView<'_>, points: &[DVec3]) -> Vec<f64> {
+        let share = match self.domain.dimension() {
+            voronoi::Dimension::Two => 1.0,
+            voronoi::Dimension::Three => 0.5,
         };
+        let elements = level.elements();
         let mut areas = vec![0.0; self.grain_count()];
-        for (normal, boundary) in element_normals(level, points).into_iter().zip(&level.boundary_of) {
-            for (grain, _) in self.boundaries[boundary.index()].signed_grains() {
-                areas[grain.index()] += of_element(normal);
+        for element in 0..id(elements.len()) {
+            let area = share * elements.normal(points, element).length();
+            for (grain, _) in self.boundaries[level.boundary(element).index()].signed_grains() {
+                areas[grain.index()] += area;
             }
         }
         areas
@@ -484,6 +523,18 @@ impl Network {
     /// The mean grain size, or the box's shortest side where that is shorter: the size of what can be seen to be small.
     pub(crate) fn feature_size(&self) -> f64 {
         feature_size(&self.domain, self.grains_left())
+    }
+}
+
+/// The finest level whose points relaxation may move by themselves.
+const FINEST_MOVED: usize = 2;
+
+/// The finest level that is held in memory of so many: points of no finer one move by themselves, and the last follows from the one before. In
+/// the plane, where levels are small, all.
+fn finest_held(domain: &Domain, level_count: usize) -> usize {
+    match domain.dimension() {
+        voronoi::Dimension::Two => level_count,
+        voronoi::Dimension::Three => FINEST_MOVED.max(level_count.saturating_sub(1)),
     }
 }
 

@@ -13,7 +13,7 @@ pub(crate) mod regular_cells;
 
 use glam::DVec3;
 
-use crate::flow::boundary_flow::{End, Flow, Grown, Stage};
+use crate::flow::boundary_flow::{End, Flow, Grown, Stage, has_kept_volumes};
 use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::{Mesh, Moving, Network, NetworkError, Relaxation, RelaxationStep, Relaxed, Tuning, Volumes};
 
@@ -119,13 +119,15 @@ fn relax_levels(
     let mut points = control_points.to_vec();
     if time == 0.0 || !has_tension {
         // Cells that were regularised have lost the volumes that their grains are to have.
-        if volumes == Volumes::Kept {
-            flow(0).restore_lost_volumes(&mut points)?;
+        let is_lost =
+            || !has_kept_volumes(network, &network.subdivide_between(0, network.level_count(), &points));
+        if volumes == Volumes::Kept && is_lost() {
+            flow(0).restore_volumes(&mut points)?;
         }
         let is_flat = points == control_points;
         return Ok(Relaxed { level: 0, points, steps: 0, time: 0.0, given_up: Vec::new(), is_flat });
     }
-    let last = (network.levels().len() - 1).min(finest);
+    let last = network.level_count().min(finest);
     let whole_time = time * network.mean_grain_size().powi(2);
     if volumes == Volumes::Free {
         let begin = network.subdivide_between(0, last, control_points);

@@ -18,6 +18,8 @@ mod torus;
 mod tuning;
 mod volumes;
 
+use std::borrow::Cow;
+
 use glam::{BVec3, DVec3};
 use rayon::prelude::*;
 use subzero::EdgeId;
@@ -112,7 +114,7 @@ impl Network {
             }
         }
         assert_eq!(points.len(), self.finest().vertex_count(), "there must be one point per vertex");
-        let level = self.reference_level(points, size.length, tuning);
+        let level = &*self.reference_level(points, size.length, tuning);
         // A finer level has the vertices of a coarser one first.
         let points = &points[..level.vertex_count()];
         let Mesh::Triangles(mesh) = &level.mesh else { return Err(NetworkError::RemeshPlane) };
@@ -160,13 +162,13 @@ impl Network {
     /// # Panics
     /// When there is not one point per vertex.
     pub fn mean_edge_length(&self, points: &[DVec3]) -> f64 {
-        mean_edge_length(self.finest(), points)
+        mean_edge_length(&self.finest_level(), points)
     }
 
     /// The coarsest level with edges that are short enough for elements of a size, at the points of the finest one; the finest if there is none.
-    fn reference_level(&self, points: &[DVec3], size: f64, tuning: &RemeshTuning) -> &Level {
+    fn reference_level(&self, points: &[DVec3], size: f64, tuning: &RemeshTuning) -> Cow<'_, Level> {
         let is_fine = |level: &&Level| mean_edge_length(level, points) <= tuning.longest_of_reference * size;
-        self.levels().iter().find(is_fine).unwrap_or_else(|| self.finest())
+        self.levels().iter().find(is_fine).map_or_else(|| self.finest_level(), Cow::Borrowed)
     }
 }
 

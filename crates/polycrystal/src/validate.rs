@@ -20,12 +20,14 @@ pub fn validate(network: &Network, points: &[DVec3]) -> Result<Certificate, Faul
     let surface = Surface::of_level(level, points, &sides);
     let volumes: Vec<(GrainId, f64)> =
         (0u32..).map(GrainId).zip(network.cell_volumes().iter().copied()).collect();
-    let node_types: Vec<_> = level.node_types.iter().copied().map(Some).collect();
+    let points_of_level = || 0..level.vertex_count();
+    let node_types: Vec<_> = points_of_level().map(|point| Some(level.node_type(point))).collect();
+    let grain_counts: Vec<u8> = points_of_level().map(|point| level.grain_count(point)).collect();
     let originals = network.domain().is_periodic().then(|| level.originals());
     let expected = Expected {
         // Types in a periodic domain count the grains a period away, which the surface calls exterior.
         node_types: (!network.domain().is_periodic()).then_some(&node_types),
-        grain_counts: Some(&level.grain_counts),
+        grain_counts: Some(&grain_counts),
         originals: originals.as_deref(),
         grain_volumes: Some(&volumes),
         domain_volume: Some(network.domain().measure()),
@@ -67,7 +69,7 @@ mod tests {
 
     /// A point inside a boundary, for the faults to start from.
     fn inner_point(network: &Network) -> usize {
-        let node_types = &network.finest().node_types;
+        let node_types = &network.finest_level().into_owned().node_types;
         node_types.iter().position(|node_type| *node_type == crate::NodeType::INTERIOR).expect("a boundary")
     }
 
@@ -103,7 +105,7 @@ mod tests {
     fn triangles_and_segments_without_size_are_found() {
         for domain in [Domain::unit_cube(), Domain::unit_square()] {
             let (network, mut points) = cubes(&domain);
-            let (a, b) = match &network.finest().mesh {
+            let (a, b) = match &network.finest_level().mesh {
                 Mesh::Triangles(mesh) => (mesh.triangles()[0][0], mesh.triangles()[0][1]),
                 Mesh::Segments(mesh) => (mesh.segments()[0][0], mesh.segments()[0][1]),
             };

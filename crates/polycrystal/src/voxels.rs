@@ -14,6 +14,8 @@ mod tuning;
 mod untangling;
 mod volumes;
 
+use std::ops::Deref;
+
 use glam::{BVec3, DVec3};
 use rayon::prelude::*;
 
@@ -128,11 +130,16 @@ fn smoothed_points(
 }
 
 /// The faces at each point.
-fn grouped<'a>(points: usize, faces: usize, corners: impl Fn(usize) -> &'a [u32]) -> Grouped<u32> {
-    Grouped::new(
-        points,
-        (0..faces).flat_map(|face| corners(face).iter().map(move |corner| (*corner as usize, id(face)))),
-    )
+fn grouped<C: Deref<Target = [u32]> + Clone>(
+    points: usize,
+    faces: usize,
+    corners: impl Fn(usize) -> C,
+) -> Grouped<u32> {
+    let of_face = |face: usize| {
+        let corners = corners(face);
+        (0..corners.len()).map(move |k| (corners[k] as usize, id(face)))
+    };
+    Grouped::new(points, (0..faces).flat_map(of_face))
 }
 
 /// Points in the unit of the domain: exactly on its walls where they were on those of the lattice.

@@ -153,9 +153,9 @@ fn flat_boundaries_stay_flat_when_they_are_cut() {
     let cut = cut.with_cell_volumes(network.cell_volumes().to_vec());
     let validation = validate(&cut, &points).expect("valid");
     assert!(validation.largest_volume_error < 1e-12, "{validation:?}");
-    let Mesh::Triangles(mesh) = &cut.finest().mesh else { unreachable!("three dimensions") };
+    let Mesh::Triangles(mesh) = &cut.finest().held().mesh else { unreachable!("three dimensions") };
     let mut planes: Vec<Option<(f64, DVec3, DVec3)>> = vec![None; cut.boundaries().len()];
-    let triangles = || mesh.triangles().iter().zip(&cut.finest().boundary_of);
+    let triangles = || mesh.triangles().iter().zip(&cut.finest().held().boundary_of);
     for (corners, boundary) in triangles() {
         let [a, b, c] = corners.map(|corner| points[corner as usize]);
         let normal = (b - a).cross(c - a);

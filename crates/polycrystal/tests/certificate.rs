@@ -25,7 +25,8 @@ impl Parts {
     fn good() -> Self {
         let (network, flat) = random_network(&Domain::unit_cube(), 12, 7, 1);
         let points = relaxed(&network, &flat);
-        let Level { mesh: Mesh::Triangles(mesh), boundary_of, node_types, .. } = network.finest() else {
+        let Level { mesh: Mesh::Triangles(mesh), boundary_of, node_types, .. } = network.finest().held()
+        else {
             panic!("a network in space")
         };
         Self {
@@ -180,7 +181,7 @@ fn swapped_labels_are_found() {
 fn a_wrong_number_of_grains_is_found() {
     let parts = Parts::good();
     let (network, _) = random_network(&Domain::unit_cube(), 12, 7, 1);
-    let mut grain_counts = network.finest().grain_counts.clone();
+    let mut grain_counts = network.finest().held().grain_counts.clone();
     let faults = |grain_counts: &[u8]| {
         certify(&parts.surface(), &Expected { grain_counts: Some(grain_counts), ..Expected::default() })
             .faults
@@ -339,7 +340,8 @@ fn lines_in_the_plane_are_certified() {
     let certificate = certify(&Surface::of_level(network.finest(), &points, &sides), &expected);
     assert!(certificate.is_good(), "{}", certificate.faults);
 
-    let inner = network.finest().node_types.iter().position(|node_type| *node_type == NodeType::INTERIOR);
+    let inner =
+        network.finest().held().node_types.iter().position(|node_type| *node_type == NodeType::INTERIOR);
     points[inner.expect("a line between grains")] += DVec3::new(0.6, 0.2, 0.0);
     let certificate = certify(&Surface::of_level(network.finest(), &points, &sides), &expected);
     assert!(certificate.faults.0.iter().any(|fault| matches!(fault, Fault::Crossing { .. })));

@@ -60,7 +60,7 @@ fn networks_are_valid_flat_and_relaxed() {
             let sets = network.wall_sets();
             let mut moved = 0.0f64;
             let before = network.subdivide(&flat);
-            for ((point, before), set) in points.iter().zip(&before).zip(&network.finest().walls) {
+            for ((point, before), set) in points.iter().zip(&before).zip(&network.finest().held().walls) {
                 for wall in sets.walls(*set) {
                     let (normal, distance) = domain.wall_equation(*wall);
                     assert!((normal.dot(*point) - distance).abs() < 1e-13, "{name}: {point} leaves {wall:?}");
@@ -98,7 +98,7 @@ fn grains_switch_neighbors_at_the_walls_of_any_domain() {
             assert!(relaxed.validation.largest_volume_error < 1e-9, "{name}");
             let network = &relaxed.network;
             let points = relaxed.relaxed.finest_points(network);
-            for (point, set) in points.iter().zip(&network.finest().walls) {
+            for (point, set) in points.iter().zip(&network.finest().held().walls) {
                 for wall in network.wall_sets().walls(*set) {
                     let (normal, distance) = domain.wall_equation(*wall);
                     assert!((normal.dot(*point) - distance).abs() < 1e-12, "{name}: {point} leaves {wall:?}");

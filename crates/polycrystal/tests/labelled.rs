@@ -77,6 +77,7 @@ fn triangles_of_a_network_make_it_again() {
                 triangles = all.iter().map(|&[a, b, c]| [a, c, b]).collect();
                 Elements::Triangles(&triangles)
             }
+            Elements::Refined(_) => unreachable!("the level is held"),
             Elements::Segments(all) => {
                 segments = all.iter().map(|&[a, b]| [b, a]).collect();
                 Elements::Segments(&segments)

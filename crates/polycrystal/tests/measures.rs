@@ -325,7 +325,7 @@ fn points_where_boundaries_meet_have_no_curvature() {
         let (network, flat) = random_network(&domain, 12, 2, 2);
         let points = relaxed(&network, &flat);
         let sides = network.sides();
-        let level = network.finest();
+        let level = network.finest().held();
         let curvatures = point_curvatures(&Surface::of_level(level, &points, &sides));
         let mut defined = 0;
         for (node_type, PointCurvature { mean, gaussian }) in level.node_types.iter().zip(curvatures) {
@@ -354,7 +354,7 @@ proptest! {
             *point + 0.02 / (count as f64).cbrt() * wave
         };
         let points = network.subdivide(&flat.iter().map(waves).collect::<Vec<_>>());
-        let (rates, curvatures, whole): (Vec<f64>, Vec<f64>, f64) = match &network.finest().mesh {
+        let (rates, curvatures, whole): (Vec<f64>, Vec<f64>, f64) = match &network.finest().held().mesh {
             Mesh::Triangles(_) => {
                 let SpaceMeasures { grains, boundaries, triple_lines, quadruple_points, .. } =
                     in_space(&network, &points);

@@ -6,8 +6,11 @@ mod common;
 use std::collections::BTreeSet;
 
 use common::{network, random_network, random_seeds};
-use glam::DVec3;
-use polycrystal::{Junctions, Level, Mesh, Network, NetworkError, NodeType, Side, validate};
+use glam::{BVec3, DVec3};
+use polycrystal::{
+    Certificate, Expected, Junctions, Level, Mesh, Network, NetworkError, NodeType, Side, Surface, certify,
+    validate,
+};
 use voronoi::{Domain, Tessellation};
 
 fn elements(level: &Level) -> Vec<Vec<usize>> {
@@ -64,7 +67,7 @@ fn normals_point_from_the_first_side_to_the_second() {
     let seeds = random_seeds(&Domain::unit_cube(), 30, 3);
     let (network, flat) = network(&Domain::unit_cube(), &seeds, 1);
     let points = network.subdivide(&flat);
-    let level = network.finest();
+    let level = network.finest().held();
     for (corners, boundary) in elements(level).iter().zip(&level.boundary_of) {
         let [a, b, c] = [points[corners[0]], points[corners[1]], points[corners[2]]];
         let [Side::Grain(inside), beyond] = network.boundaries()[boundary.index()].sides else {
@@ -85,7 +88,7 @@ fn lines_in_the_plane_have_their_first_side_on_the_left() {
         random_seeds(&Domain::unit_square(), 30, 3).iter().map(|seed| seed.with_z(0.0)).collect();
     let (network, flat) = network(&Domain::unit_square(), &seeds, 1);
     let points = network.subdivide(&flat);
-    let level = network.finest();
+    let level = network.finest().held();
     for (ends, boundary) in elements(level).iter().zip(&level.boundary_of) {
         let [a, b] = [points[ends[0]], points[ends[1]]];
         let Side::Grain(left) = network.boundaries()[boundary.index()].sides[0] else {
@@ -101,7 +104,7 @@ fn lines_in_the_plane_have_their_first_side_on_the_left() {
 fn subdivision_alone_leaves_every_boundary_flat() {
     let (network, flat) = random_network(&Domain::unit_cube(), 60, 4, 4);
     let points = network.subdivide(&flat);
-    let level = network.finest();
+    let level = network.finest().held();
     let mut planes = vec![None; network.boundaries().len()];
     let control = network.control_mesh();
     for (corners, boundary) in elements(control).iter().zip(&control.boundary_of) {
@@ -126,7 +129,7 @@ fn points_on_walls_stay_on_them_exactly() {
         Domain::cuboid(DVec3::new(0.1, -0.7, 3.0), DVec3::new(0.4, 1.3, 3.3)).expect("positive sides");
     let (network, flat) = random_network(&domain, 30, 5, 3);
     let points = network.subdivide(&flat);
-    let level = network.finest();
+    let level = network.finest().held();
     let mut on_walls = 0;
     for (point, (walls, node_type)) in points.iter().zip(level.walls.iter().zip(&level.node_types)) {
         assert_eq!(walls.is_empty(), node_type.code() < 10);
@@ -145,7 +148,7 @@ fn one_grain_is_the_box() {
         assert_eq!((network.boundaries().len(), network.junction_counts().triple_lines), (6, 0));
         let points = network.subdivide(&flat);
         assert!(validate(&network, &points).is_ok());
-        let area: f64 = elements(network.finest())
+        let area: f64 = elements(network.finest().held())
             .iter()
             .map(|corners| {
                 let [a, b, c] = [points[corners[0]], points[corners[1]], points[corners[2]]];
@@ -191,4 +194,52 @@ fn networks_beyond_32_bit_ids_are_refused() {
     let error = Network::new(&tessellation, Junctions::Crease, 20).expect_err("too large");
     assert!(matches!(error, NetworkError::TooLarge { level: 13, .. }), "{error}");
     assert!(Network::new(&tessellation, Junctions::Crease, usize::MAX).is_err());
+}
+
+/// A finest level that follows from the one before is the one that is made by refinement, in what it has and what is found of it.
+#[test]
+fn the_finest_level_is_known_without_being_held() {
+    let periodic = Domain::unit_cube().with_periods(BVec3::TRUE);
+    for domain in [Domain::unit_cube(), periodic] {
+        let (network, flat) = random_network(&domain, 8, 5, 3);
+        assert_eq!((network.level_count(), network.levels().len()), (3, 3));
+        let (known, whole) = (network.finest(), network.finest_level());
+        assert_eq!(known.vertex_count(), whole.vertex_count());
+        assert_eq!(known.element_count(), whole.element_count());
+        for (element, (corners, boundary)) in (0u32..).zip(elements(&whole).iter().zip(&whole.boundary_of)) {
+            let known_corners: Vec<usize> =
+                known.elements().corners(element).iter().map(|corner| *corner as usize).collect();
+            assert_eq!((&known_corners, known.boundary(element)), (corners, *boundary));
+        }
+        for vertex in 0..whole.vertex_count() {
+            assert_eq!(known.node_type(vertex), whole.node_types[vertex]);
+            assert_eq!(known.grain_count(vertex), whole.grain_counts[vertex]);
+            assert_eq!(known.generation(vertex), whole.generations[vertex]);
+        }
+        assert_eq!(known.copies(), &whole.copies);
+
+        let mut points = network.subdivide(&flat);
+        let sides = network.sides();
+        // Edges of elements that come without a mesh are in another order, in which sums of angles differ by rounding.
+        let both = |points: &[DVec3]| -> [Certificate; 2] {
+            let surfaces =
+                [Surface::of_level(known, points, &sides), Surface::of_level(&*whole, points, &sides)];
+            let [known, whole] = surfaces.map(|surface| certify(&surface, &Expected::default()));
+            let [of_known, of_whole] = [&known, &whole].map(|of| of.angles.expect("boundaries meet"));
+            assert!((of_known.mean - of_whole.mean).abs() < 1e-10);
+            assert!((of_known.standard_deviation - of_whole.standard_deviation).abs() < 1e-10);
+            [known, whole].map(|certificate| Certificate { angles: None, ..certificate })
+        };
+        let [of_known, of_whole] = both(&points);
+        assert!(of_known.is_good());
+        assert_eq!(of_known, of_whole);
+        // Folds, crossings, points at one place, triangles without area.
+        let count = points.len();
+        (points[count / 2], points[count / 3]) = (points[count / 3], points[count / 2]);
+        points[count - 1] = points[count - 2];
+        let [of_known, of_whole] = both(&points);
+        let kinds: BTreeSet<&str> = of_known.faults.0.iter().map(|fault| fault.kind()).collect();
+        assert!(kinds.len() > 2, "{kinds:?}");
+        assert_eq!(of_known, of_whole);
+    }
 }

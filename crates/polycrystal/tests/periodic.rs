@@ -68,8 +68,10 @@ fn copies_stand_a_shift_from_their_originals_on_every_level() {
             for level in 0..3 {
                 let (_, network, flat) = network(&domain, &seeds, level);
                 let points = network.subdivide(&flat);
-                let originals = originals(network.finest());
-                for &PeriodicPair { secondary, primary, translation } in &network.finest().copies.vertices {
+                let originals = originals(network.finest().held());
+                for &PeriodicPair { secondary, primary, translation } in
+                    &network.finest().held().copies.vertices
+                {
                     assert_eq!(originals[primary as usize], (primary as usize, Translation::ZERO));
                     let moved = points[primary as usize] + translation.vector(&domain);
                     assert_eq!(points[secondary as usize], moved);
@@ -85,7 +87,7 @@ fn twins_are_the_same_triangles_turned_round() {
     for domain in domains() {
         for count in [1, 3, 40] {
             let (_, network, _) = network(&domain, &random_seeds(&domain, count, 2), 2);
-            let level = network.finest();
+            let level = network.finest().held();
             let originals = originals(level);
             let corners_of =
                 |boundary: usize, translation: Translation| -> BTreeSet<Vec<(usize, Translation)>> {
@@ -150,11 +152,13 @@ fn junctions_are_counted_once() {
         }
     }
     let outer = |boundary: usize| network.boundaries()[boundary].twin.is_some();
-    for (corners, boundary) in elements(network.finest()).iter().zip(&network.finest().boundary_of) {
-        let is_outer = corners.iter().all(|v| network.finest().node_types[*v].code() >= 10);
+    for (corners, boundary) in
+        elements(network.finest().held()).iter().zip(&network.finest().held().boundary_of)
+    {
+        let is_outer = corners.iter().all(|v| network.finest().held().node_types[*v].code() >= 10);
         assert!(!outer(boundary.index()) || is_outer);
     }
-    assert!(network.finest().node_types.contains(&NodeType::OUTER));
+    assert!(network.finest().held().node_types.contains(&NodeType::OUTER));
 }
 
 /// A cube that repeats: eight images of the one grain meet at a corner, four along an edge, two in a face.
@@ -162,7 +166,7 @@ fn junctions_are_counted_once() {
 fn images_of_a_grain_count_as_grains() {
     let domain = Domain::unit_cube().with_periods(BVec3::TRUE);
     let (_, network, flat) = network(&domain, &[DVec3::splat(0.5)], 2);
-    let level = network.finest();
+    let level = network.finest().held();
     let points = network.subdivide(&flat);
     for (point, grains) in points.iter().zip(&level.grain_counts) {
         let on_planes = point.to_array().iter().filter(|at| (**at - at.round()).abs() < 1e-12).count();
@@ -192,7 +196,7 @@ fn periodic_grains_relax_and_stay_periodic() {
             angles.expect("triple lines").standard_deviation
         };
         assert!(spread(&smooth) < 0.6 * spread(&network.subdivide(&flat)));
-        for pair in &network.finest().copies.vertices {
+        for pair in &network.finest().held().copies.vertices {
             let [copy, original] = [pair.secondary, pair.primary].map(|vertex| smooth[vertex as usize]);
             assert_eq!(copy, original + pair.translation.vector(&domain));
         }
@@ -222,7 +226,7 @@ fn periodic_grains_are_regularised() {
         let angles = dihedral_angles(&network, network.finest(), &smooth).expect("triple lines");
         let largest = if domain.dimension() == voronoi::Dimension::Two { 16.0 } else { 8.5 };
         assert!(angles.standard_deviation < largest, "{angles:?}");
-        for pair in &network.finest().copies.vertices {
+        for pair in &network.finest().held().copies.vertices {
             let [copy, original] = [pair.secondary, pair.primary].map(|vertex| smooth[vertex as usize]);
             assert_eq!(copy, original + pair.translation.vector(&domain));
         }

@@ -60,7 +60,7 @@ fn measures(RelaxedCells { network, relaxed, .. }: &RelaxedCells) -> PlaneMeasur
 
 /// The points of each boundary from start to end.
 fn lines(network: &Network, points: &[DVec3]) -> Vec<Vec<DVec2>> {
-    let level = network.finest();
+    let level = network.finest().held();
     let Mesh::Segments(mesh) = &level.mesh else { panic!("a network in the plane") };
     let mut lines: Vec<Vec<DVec2>> = vec![Vec::new(); network.boundaries().len()];
     for (segment, boundary) in mesh.segments().iter().zip(&level.boundary_of) {

@@ -41,7 +41,7 @@ fn few_triangles_are_needles() {
     for random_seed in [1, 16] {
         let (network, flat) = regular_network(&Domain::unit_cube(), 200, random_seed, 2);
         let points = relaxed(&network, &flat);
-        let Mesh::Triangles(mesh) = &network.finest().mesh else { unreachable!("three dimensions") };
+        let Mesh::Triangles(mesh) = &network.finest().held().mesh else { unreachable!("three dimensions") };
         let smallest_angle = |corners: &[u32; 3]| {
             let angle = |k: usize| {
                 let [apex, from, to] = [0, 1, 2].map(|step| points[corners[(k + step) % 3] as usize]);
@@ -165,12 +165,13 @@ fn kelvins_foam_has_its_area() {
     let (network, flat) = network(&domain, &seeds, 3);
     // Boundaries through the walls come twice, once for each of their grains.
     let area_of_a_cell = |points: &[DVec3]| {
-        let Mesh::Triangles(mesh) = &network.finest().mesh else { unreachable!("three dimensions") };
-        let areas = mesh.triangles().iter().zip(&network.finest().boundary_of).map(|(corners, boundary)| {
-            let [a, b, c] = corners.map(|corner| points[corner as usize]);
-            let share = if network.boundaries()[boundary.index()].twin.is_some() { 0.5 } else { 1.0 };
-            0.5 * share * (b - a).cross(c - a).length()
-        });
+        let Mesh::Triangles(mesh) = &network.finest().held().mesh else { unreachable!("three dimensions") };
+        let areas =
+            mesh.triangles().iter().zip(&network.finest().held().boundary_of).map(|(corners, boundary)| {
+                let [a, b, c] = corners.map(|corner| points[corner as usize]);
+                let share = if network.boundaries()[boundary.index()].twin.is_some() { 0.5 } else { 1.0 };
+                0.5 * share * (b - a).cross(c - a).length()
+            });
         areas.sum::<f64>() / 8.0 / (1.0f64 / 16.0).powf(2.0 / 3.0)
     };
     assert!((area_of_a_cell(&network.subdivide(&flat)) / 5.3147 - 1.0).abs() < 1e-4);
@@ -208,8 +209,8 @@ fn tensions_of_walls_set_the_angle_there() {
             let network = network.with_tensions(tension).expect("good tensions");
             let relaxed = relax(&network, &flat, &Relaxation::Equilibrium, |_, _| ()).expect("relaxes");
             let points = relaxed.finest_points(&network);
-            let Mesh::Segments(mesh) = &network.finest().mesh else { unreachable!("the plane") };
-            let between = mesh.segments().iter().zip(&network.finest().boundary_of);
+            let Mesh::Segments(mesh) = &network.finest().held().mesh else { unreachable!("the plane") };
+            let between = mesh.segments().iter().zip(&network.finest().held().boundary_of);
             let between =
                 between.filter(|(_, boundary)| network.boundaries()[boundary.index()].is_interior());
             let (mut angles, mut ends, mut middle) = (Vec::new(), Vec::new(), DVec3::INFINITY);
@@ -297,7 +298,7 @@ fn flat_equilibria_stay_as_they_are() {
     for seeds in [two, cubes] {
         let (network, flat) = network(&Domain::unit_cube(), &seeds, 2);
         let moved = network.subdivide(&flat).into_iter().zip(relaxed(&network, &flat));
-        for ((before, after), node_type) in moved.zip(&network.finest().node_types) {
+        for ((before, after), node_type) in moved.zip(&network.finest().held().node_types) {
             // Points inside a boundary may slide within its plane, which is square to an axis.
             let is_inside = node_type.code() % 10 == 2;
             let change = (before - after).abs();

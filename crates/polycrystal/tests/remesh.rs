@@ -19,7 +19,7 @@ fn size(network: &Network, per_diameter: f64) -> ElementSize {
 }
 
 fn triangles(network: &Network) -> &[[u32; 3]] {
-    match &network.finest().mesh {
+    match &network.finest().held().mesh {
         Mesh::Triangles(mesh) => mesh.triangles(),
         Mesh::Segments(_) => panic!("a network in space"),
     }
@@ -98,7 +98,7 @@ fn periodic_copies_are_the_same_bit_for_bit() {
     let size = size(&network, 5.0);
     let remeshed = network.remeshed(&points, &size, BVec3::FALSE).expect("remeshed");
     check(&network, &points, &size, &remeshed);
-    let copies = &remeshed.network.finest().copies.vertices;
+    let copies = &remeshed.network.finest().held().copies.vertices;
     assert!(copies.len() > 50);
     for pair in copies {
         let [secondary, primary] =

@@ -44,6 +44,7 @@ fn winding(surface: &Surface<'_>, grain: GrainId, from: DVec3) -> f64 {
                 let [a, b, c] = triangles[element as usize].map(at);
                 2.0 * a.dot(b.cross(c)).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a)) / (4.0 * PI)
             }
+            Elements::Refined(_) => unreachable!("the level is held"),
             Elements::Segments(segments) => {
                 let [a, b] = segments[element as usize].map(at);
                 a.cross(b).z.atan2(a.dot(b)) / (2.0 * PI)
@@ -116,7 +117,7 @@ fn staircase_of_a_plane_becomes_flat() {
     };
     let map = voxels(DVec3::ONE, shape, |voxel| Some(u32::from(is_above(voxel))));
     let SmoothedVoxels { network, points, .. } = smoothed(&map);
-    let level = network.finest();
+    let level = network.finest().held();
     let polycrystal::Mesh::Triangles(mesh) = &level.mesh else { panic!("a map in space") };
     let (mut sum, mut worst, mut count) = (0.0, 0.0f64, 0);
     for (triangle, boundary) in mesh.triangles().iter().zip(&level.boundary_of) {

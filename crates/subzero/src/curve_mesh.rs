@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::ids::id;
 use crate::mesh_checks::{check_size, check_vertex};
-use crate::{EdgeId, MeshError, Refinement, StencilTable, VertexRule};
+use crate::{EdgeId, MeshError, Point, Refinement, StencilTable, VertexRule};
 
 /// A network of polylines that subdivision turns into smooth curves: cubic B-splines, or curves through the points; positions live
 /// beside it as slices.
@@ -124,7 +124,11 @@ impl CurveMesh {
         Ok(Refinement { mesh: self.refine_connectivity()?, stencils })
     }
 
-    fn refine_connectivity(&self) -> Result<Self, MeshError> {
+    /// Halves each segment; points follow apart, as by [`spline_step`](Self::spline_step).
+    ///
+    /// # Errors
+    /// [`MeshError::TooLarge`] if the finer network outgrows 32-bit ids.
+    pub fn refine_connectivity(&self) -> Result<Self, MeshError> {
         let vertices = self.vertex_count();
         check_size("vertices", vertices + self.segments.len())?;
         check_size("segments", 2 * self.segments.len())?;
@@ -187,21 +191,52 @@ impl CurveMesh {
         if start == vertex { end } else { start }
     }
 
+    /// One stencil of the table that [`refine`](Self::refine) makes, by itself: puts the old points that make up a vertex of the refined
+    /// network in place of `entries`, each with its weight.
+    ///
+    /// # Panics
+    /// If the refined network has no such vertex.
+    pub fn spline_stencil(&self, vertex: u32, entries: &mut Vec<(u32, f64)>) {
+        entries.clear();
+        self.add_spline_stencil(vertex, &mut |point, weight| entries.push((point, weight)));
+    }
+
+    /// The points one level on: bit for bit what the table of [`refine`](Self::refine) makes of `points`, without the memory that the
+    /// table takes.
+    ///
+    /// # Panics
+    /// If there is not one point per vertex.
+    pub fn spline_step<P: Point>(&self, points: &[P]) -> Vec<P> {
+        assert_eq!(points.len(), self.vertex_count(), "there must be one point per vertex");
+        let refined = (0..self.vertex_count() + self.segments.len()).into_par_iter();
+        let point = |vertex: usize| {
+            let mut sum = P::zero();
+            self.add_spline_stencil(id(vertex), &mut |point, weight| {
+                sum = sum.add_scaled(points[point as usize], weight);
+            });
+            sum
+        };
+        refined.map(point).collect()
+    }
+
     fn stencils(&self) -> StencilTable {
-        let vertices = self.vertex_count();
-        StencilTable::from_stencils(vertices + self.segments.len(), |i, stencil| {
-            if let Some(segment) = (i as usize).checked_sub(vertices) {
-                for end in self.segments[segment] {
-                    stencil.add(end, 0.5);
-                }
-            } else if let Some(neighbours) = self.neighbours(i) {
-                stencil.add(i, 0.75);
-                for neighbour in neighbours {
-                    stencil.add(neighbour, 0.125);
-                }
-            } else {
-                stencil.add(i, 1.0);
-            }
+        StencilTable::from_stencils(self.vertex_count() + self.segments.len(), |i, stencil| {
+            self.add_spline_stencil(i, &mut |point, weight| stencil.add(point, weight));
         })
+    }
+
+    fn add_spline_stencil(&self, vertex: u32, add: &mut impl FnMut(u32, f64)) {
+        if let Some(segment) = (vertex as usize).checked_sub(self.vertex_count()) {
+            for end in self.segments[segment] {
+                add(end, 0.5);
+            }
+        } else if let Some(neighbours) = self.neighbours(vertex) {
+            add(vertex, 0.75);
+            for neighbour in neighbours {
+                add(neighbour, 0.125);
+            }
+        } else {
+            add(vertex, 1.0);
+        }
     }
 }

@@ -52,7 +52,8 @@ impl HalfEdgeId {
     }
 
     /// The half-edge after this one in its triangle.
-    pub(crate) fn next(self) -> Self {
+    #[must_use]
+    pub fn next(self) -> Self {
         Self(next(self.0))
     }
 

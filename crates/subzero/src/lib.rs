@@ -44,6 +44,7 @@ mod loop_hierarchy;
 mod loop_limit;
 mod loop_points;
 mod loop_scheme;
+mod loop_step;
 mod mesh_checks;
 mod orient;
 mod point;

@@ -104,7 +104,7 @@ impl TriangleMesh {
     }
 
     /// Whether a vertex has a rule of its own: its ring is not enough to move it.
-    fn is_sharp(&self, vertex: usize) -> bool {
+    pub(crate) fn is_sharp(&self, vertex: usize) -> bool {
         !matches!(self.vertex_rules[vertex], VertexRule::Smooth | VertexRule::Dart)
     }
 

@@ -3,8 +3,9 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::ids::{next, prev};
+use crate::stencil::merge;
 use crate::vertex_stencils::vertex_stencil;
-use crate::{EdgeId, StencilTable, TriangleMesh, VertexRule};
+use crate::{EdgeId, StencilTable, TriangleMesh, VertexParent, VertexRule};
 
 /// How strongly a smooth vertex is drawn to its neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,17 +40,32 @@ impl TriangleMesh {
     pub(crate) fn loop_stencils(&self, weights: LoopWeights) -> StencilTable {
         let vertices = self.counts().vertices;
         StencilTable::from_stencils(self.vertex_count() + self.edge_count(), |i, stencil| {
-            if i < vertices {
-                self.loop_vertex_stencil(i, weights, &mut |point, weight| stencil.add(point, weight));
-                if !matches!(self.vertex_rule(i), VertexRule::Smooth | VertexRule::Dart) {
-                    stencil.merge();
-                }
-            } else {
-                self.loop_edge_stencil(EdgeId(i - vertices), weights, &mut |point, weight| {
-                    stencil.add(point, weight)
-                });
+            self.add_loop_stencil(i, weights, &mut |point, weight| stencil.add(point, weight));
+            if i < vertices && self.is_sharp(i as usize) {
+                stencil.merge();
             }
         })
+    }
+
+    /// The stencil of one vertex of the refined mesh. That of a sharp one may name a point more than once.
+    fn add_loop_stencil(&self, vertex: u32, weights: LoopWeights, add: &mut impl FnMut(u32, f64)) {
+        match self.counts().vertex_parent(vertex) {
+            VertexParent::Vertex(vertex) => self.loop_vertex_stencil(vertex, weights, add),
+            VertexParent::Edge(edge) => self.loop_edge_stencil(edge, weights, add),
+        }
+    }
+
+    /// One stencil of the table that [`loop_refine`](Self::loop_refine) makes, by itself: puts the old points that make up a vertex of the
+    /// refined mesh in place of `entries`, each with its weight.
+    ///
+    /// # Panics
+    /// If the refined mesh has no such vertex.
+    pub fn loop_stencil(&self, vertex: u32, entries: &mut Vec<(u32, f64)>) {
+        entries.clear();
+        self.add_loop_stencil(vertex, LoopWeights::Loop, &mut |point, weight| entries.push((point, weight)));
+        if vertex < self.counts().vertices && self.is_sharp(vertex as usize) {
+            merge(entries);
+        }
     }
 
     pub(crate) fn loop_edge_stencil(

@@ -41,12 +41,22 @@ impl StencilWriter {
     pub(crate) fn merge(&mut self) {
         let start = self.starts.last().copied().unwrap_or(0);
         let mut stencil: Vec<(u32, f64)> = self.ids.drain(start..).zip(self.weights.drain(start..)).collect();
-        // Stable, so that weights of one point are summed in the order in which they were added.
-        stencil.sort_by_key(|&(point, _)| point);
-        for same in stencil.chunk_by(|a, b| a.0 == b.0) {
-            self.add(same[0].0, same.iter().map(|&(_, weight)| weight).sum());
-        }
+        merge(&mut stencil);
+        stencil.into_iter().for_each(|(point, weight)| self.add(point, weight));
     }
+}
+
+/// Sorts a stencil, and adds up entries of the same point.
+pub(crate) fn merge(stencil: &mut Vec<(u32, f64)>) {
+    // Stable, so that weights of one point are summed in the order in which they were added.
+    stencil.sort_by_key(|&(point, _)| point);
+    stencil.dedup_by(|entry, kept| {
+        let is_same = entry.0 == kept.0;
+        if is_same {
+            kept.1 += entry.1;
+        }
+        is_same
+    });
 }
 
 impl StencilTable {

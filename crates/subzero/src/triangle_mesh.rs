@@ -2,7 +2,7 @@
 
 use crate::ids::{NONE, id, next, prev};
 use crate::sharpness::{Sharpness, is_infinite};
-use crate::{EdgeId, FaceId, MeshCounts, MeshError, VertexRule};
+use crate::{EdgeId, FaceId, HalfEdgeId, MeshCounts, MeshError, VertexRule};
 
 /// Connectivity of a triangle mesh, possibly with boundary and non-manifold edges; positions live beside it as slices.
 ///
@@ -98,13 +98,30 @@ impl TriangleMesh {
         triangles.filter(|(_, corners)| corners.iter().any(is_there)).map(|(triangle, _)| triangle).collect()
     }
 
+    /// The two half-edges of an edge, the first of which it runs along; nothing on boundary and non-manifold edges.
+    ///
+    /// # Panics
+    /// If there is no such edge.
+    pub fn edge_half_edges(&self, edge: EdgeId) -> Option<[HalfEdgeId; 2]> {
+        let [along, against] = self.edges[edge.index()];
+        (against != NONE).then_some([along, against].map(HalfEdgeId))
+    }
+
     /// The two triangles of an edge; nothing on boundary and non-manifold edges.
     ///
     /// # Panics
     /// If there is no such edge.
     pub fn edge_triangles(&self, edge: EdgeId) -> Option<[FaceId; 2]> {
-        let [along, against] = self.edges[edge.index()];
-        (against != NONE).then_some([along, against].map(|h| FaceId(h / 3)))
+        self.edge_half_edges(edge).map(|pair| pair.map(HalfEdgeId::triangle))
+    }
+
+    /// The half-edge on the other side, which runs against this one; nothing on boundary and non-manifold edges. The half-edge 3 t + k
+    /// runs from corner k to corner k + 1 of triangle t.
+    ///
+    /// # Panics
+    /// If there is no such half-edge.
+    pub fn half_edge_beyond(&self, half_edge: HalfEdgeId) -> Option<HalfEdgeId> {
+        Some(self.twin(half_edge.0)).filter(|twin| *twin != NONE).map(HalfEdgeId)
     }
 
     /// Whether an edge is infinitely sharp: marked so, or on the boundary, or with three or more triangles.

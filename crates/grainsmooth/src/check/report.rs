@@ -87,7 +87,7 @@ impl CheckReport {
             position: fault.position(&surface).map(|place| place.to_array()),
         };
         let (element, dimension) = match surface.elements {
-            Elements::Triangles(_) => ("triangles", Dimension::Three),
+            Elements::Triangles(_) | Elements::Refined(_) => ("triangles", Dimension::Three),
             Elements::Segments(_) => ("segments", Dimension::Two),
         };
         let volumes: Vec<f64> = certificate.grain_volumes.iter().map(|(_, volume)| *volume).collect();

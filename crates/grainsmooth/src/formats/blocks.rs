@@ -286,9 +286,9 @@ impl Polycrystal {
     /// What is measured, wound as the files want it, if they are to have it.
     fn measured_arrays(&self) -> Option<MeasuredArrays<'_>> {
         let (level, boundaries, names) =
-            (self.network.finest(), self.network.boundaries(), self.file().names);
-        let triangles = triangles(level, boundaries, names);
-        let (polylines, _) = boundary_polylines(level, boundaries, names);
+            (self.network.finest_level(), self.network.boundaries(), self.file().names);
+        let triangles = triangles(&level, boundaries, names);
+        let (polylines, _) = boundary_polylines(&level, boundaries, names);
         let cells = match &level.mesh {
             Mesh::Triangles(_) => Cells::Triangles(&triangles),
             Mesh::Segments(_) => Cells::Polylines(&polylines),
@@ -305,8 +305,8 @@ impl Polycrystal {
 
     /// How many grains meet at some of the points.
     pub(super) fn grain_counts(&self, points: &[u32]) -> Vec<u8> {
-        let counts = &self.network.finest().grain_counts;
-        points.iter().map(|point| counts[*point as usize]).collect()
+        let level = self.network.finest();
+        points.iter().map(|point| level.grain_count(*point as usize)).collect()
     }
 
     /// The numbers of the sides that meet in each of some places. All blocks of a file have as many components, of which

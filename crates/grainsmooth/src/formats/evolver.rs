@@ -28,7 +28,8 @@ pub(super) const FORMAT: Format = Format {
 /// Writes the file; each point stays on its walls, and each body keeps its volume.
 fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let (surface, network) = (polycrystal.surface()?, &polycrystal.network);
-    let (domain, sets, walls) = (network.domain(), network.wall_sets(), &network.finest().walls);
+    let level = network.finest_level();
+    let (domain, sets, walls) = (network.domain(), network.wall_sets(), &level.walls);
     writeln!(out, "// grainsmooth {}", env!("CARGO_PKG_VERSION"))?;
     polycrystal.provenance().write_comments("// ", out)?;
     write_seed_comments(polycrystal.grains().renumbered(), "// ", out)?;
@@ -127,7 +128,7 @@ fn places(network: &Network, points: &[DVec3]) -> Vec<Place> {
         Place { original, position: point - periods * domain.size(), periods: periods.as_ivec3().to_array() }
     };
     let mut places: Vec<Place> = (0..).zip(points).map(place).collect();
-    for pair in &network.finest().copies.vertices {
+    for pair in &network.finest().copies().vertices {
         let original = places[pair.primary as usize];
         let periods = [0, 1, 2].map(|axis| original.periods[axis] + i32::from(pair.translation.0[axis]));
         places[pair.secondary as usize] = Place { periods, ..original };

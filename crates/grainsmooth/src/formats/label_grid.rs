@@ -10,7 +10,7 @@ use std::num::NonZeroU32;
 use std::ops::Range;
 
 use glam::DVec3;
-use polycrystal::{Boundary, GrainId, Mesh, Side};
+use polycrystal::{Boundary, GrainId, Side};
 use rayon::prelude::*;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 use voronoi::{Dimension, Domain};
@@ -169,17 +169,13 @@ impl<'a> LabelGrid<'a> {
             [..self.elements.partition_point(|element| (element.start as usize) < slab.slices.end)];
         let candidates = candidates.par_iter().filter(|element| (element.end as usize) > slab.slices.start);
         let of_element = |element: &Element| {
-            let boundary = &network.boundaries()[level.boundary_of[element.id as usize].index()];
+            let boundary = &network.boundaries()[level.boundary(element.id).index()];
             let at = |point: u32| points[point as usize] + self.images[element.image as usize];
-            match &level.mesh {
-                Mesh::Segments(mesh) => segment_crossings(
-                    &self.centers,
-                    slab,
-                    mesh.segments()[element.id as usize].map(at),
-                    boundary,
-                ),
-                Mesh::Triangles(mesh) => {
-                    let corners = mesh.triangles()[element.id as usize].map(at);
+            let corners = level.elements().corners(element.id);
+            match *corners {
+                [a, b] => segment_crossings(&self.centers, slab, [a, b].map(at), boundary),
+                _ => {
+                    let corners = [0, 1, 2].map(|k| at(corners[k]));
                     let slices = slab.slices.start.max(element.start as usize)
                         ..slab.slices.end.min(element.end as usize);
                     slices
@@ -195,21 +191,19 @@ impl<'a> LabelGrid<'a> {
 /// All elements in all images that a slice may cross, by first slice.
 fn elements(polycrystal: &Polycrystal, centers: &Centers, images: &[DVec3]) -> Vec<Element> {
     let level = polycrystal.network.finest();
+    let elements = level.elements();
     let count = u32::try_from(level.element_count()).expect("ids of elements fit 32 bits");
     let last = [0, 1].map(|axis| centers.coordinate(axis, centers.size[axis] - 1));
     let of_image = |(image, offset): (u32, &DVec3)| {
         let found = (0..count).into_par_iter().filter_map(move |id| {
-            let corners: &[u32] = match &level.mesh {
-                Mesh::Segments(mesh) => &mesh.segments()[id as usize],
-                Mesh::Triangles(mesh) => &mesh.triangles()[id as usize],
-            };
+            let corners = elements.corners(id);
             let corners = corners.iter().map(|corner| polycrystal.points[*corner as usize] + *offset);
             let bounds =
                 |(lower, upper): (DVec3, DVec3), corner: DVec3| (lower.min(corner), upper.max(corner));
             let (lower, upper) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), bounds);
-            let (start, end) = match &level.mesh {
-                Mesh::Segments(_) => (0, 1),
-                Mesh::Triangles(_) => {
+            let (start, end) = match elements.dimension() {
+                Dimension::Two => (0, 1),
+                Dimension::Three => {
                     let end = (centers.first_at(2, upper.z) + 1).min(centers.size[2]);
                     (centers.first_at(2, lower.z).min(end), end)
                 }

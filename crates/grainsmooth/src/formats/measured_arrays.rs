@@ -40,7 +40,8 @@ impl<'a> MeasuredArrays<'a> {
     pub(crate) fn new(polycrystal: &'a Polycrystal, cells: Cells<'_>) -> Self {
         let Polycrystal { network, points, .. } = polycrystal;
         let sides = network.sides();
-        let mut surface = Surface::of_level(network.finest(), points, &sides);
+        let level = network.finest_level();
+        let mut surface = Surface::of_level(&*level, points, &sides);
         if let Cells::Triangles(triangles) = cells {
             surface.elements = Elements::Triangles(triangles);
         }

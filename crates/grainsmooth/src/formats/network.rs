@@ -4,9 +4,9 @@ use std::borrow::Cow;
 use std::io::{self, Write};
 
 use glam::DVec3;
-use polycrystal::{Boundary, BoundaryId, Level, Mesh, Side};
+use polycrystal::{Boundary, BoundaryId, Elements, Level, Mesh, Side};
 use rayon::prelude::*;
-use voronoi::PeriodicPair;
+use voronoi::{Dimension, PeriodicPair};
 
 use super::measured_arrays::MeasuredArrays;
 use super::surface::{Surface, unit_normal};
@@ -57,36 +57,55 @@ impl Polycrystal {
 
     pub(crate) fn write_vtk(&self, format: VtkFormat, out: &mut dyn Write) -> io::Result<()> {
         let level = self.network.finest();
-        let names = self.file().names;
-        let (polylines, boundaries_of_lines) = boundary_polylines(level, self.network.boundaries(), names);
-        let (cells, boundary_of_cell) = match &level.mesh {
-            Mesh::Triangles(_) => (None, &level.boundary_of),
-            Mesh::Segments(_) => (Some(Cells::Polylines(&polylines)), &boundaries_of_lines),
+        let (boundaries, names) = (self.network.boundaries(), self.file().names);
+        let elements = level.elements();
+        let (polylines, boundaries_of_lines) = boundary_polylines(level.held(), boundaries, names);
+        let boundary_of = |cell: usize| match boundaries_of_lines.get(cell) {
+            Some(boundary) => boundary.index(),
+            None => level.boundary(id(cell)).index(),
         };
-        let triangles = triangles(level, self.network.boundaries(), names);
-        let cells = cells.unwrap_or(Cells::Triangles(&triangles));
-        let count = boundary_of_cell.len();
-        let boundary = |cell: usize| &self.network.boundaries()[boundary_of_cell[cell].index()];
-        let labels: Vec<[i32; 2]> =
-            self.network.boundaries().iter().map(|boundary| names.labels(boundary)).collect();
-        let labels = |cell: usize| labels[boundary_of_cell[cell].index()];
+        let is_reversed: Vec<bool> = boundaries.iter().map(|boundary| names.reverses(boundary)).collect();
+        let triangle = |cell: usize| {
+            let corners = elements.corners(id(cell));
+            let [a, b, c] = [0, 1, 2].map(|k| corners[k]);
+            if is_reversed[boundary_of(cell)] { [a, c, b] } else { [a, b, c] }
+        };
+        let of_arrays: Vec<[u32; 3]> = match elements.dimension() {
+            Dimension::Three if self.file().arrays => {
+                (0..elements.len()).into_par_iter().map(triangle).collect()
+            }
+            _ => Vec::new(),
+        };
+        let cells = match elements {
+            Elements::Segments(_) => Cells::Polylines(&polylines),
+            _ if self.file().arrays => Cells::Triangles(&of_arrays),
+            Elements::Triangles(triangles) if !is_reversed.contains(&true) => Cells::Triangles(triangles),
+            _ => Cells::TrianglesOf(Each { count: elements.len(), value: &triangle }),
+        };
+        let count = cells.len();
+        let labels: Vec<[i32; 2]> = boundaries.iter().map(|boundary| names.labels(boundary)).collect();
+        let labels = |cell: usize| labels[boundary_of(cell)];
         // Boundaries and points are far fewer than 2^31: edges have two directions with 32-bit ids.
-        let boundary_id = |cell: usize| boundary_of_cell[cell].0.cast_signed();
-        let node_type = |point: usize| level.node_types[point].code();
+        let boundary_id = |cell: usize| id(boundary_of(cell)).cast_signed();
+        let node_type = |point: usize| level.node_type(point).code();
         // There are fewer than 128 levels.
-        let generation = |point: usize| level.generations[point].cast_signed();
+        let generation = |point: usize| level.generation(point).cast_signed();
+        let grain_count = |point: usize| level.grain_count(point);
         let of_points = |value| Values::Int8Of(Each { count: self.points.len(), value });
         let of_cells = |value| Values::Int32Of(Each { count, value });
         let mut point_arrays = vec![
             Array { name: "NodeTypes", values: of_points(&node_type) },
             Array { name: "Generation", values: of_points(&generation) },
-            Array { name: NUMBER_OF_GRAINS, values: Values::UInt8(&level.grain_counts) },
+            Array {
+                name: NUMBER_OF_GRAINS,
+                values: Values::UInt8Of(Each { count: self.points.len(), value: &grain_count }),
+            },
         ];
         let mut cell_arrays = vec![
             Array { name: names.sides(), values: Values::Int32PairsOf(Each { count, value: &labels }) },
             Array { name: "BoundaryId", values: of_cells(&boundary_id) },
         ];
-        let neighbor = |cell: usize| self.periodic_neighbor(boundary(cell));
+        let neighbor = |cell: usize| self.periodic_neighbor(&boundaries[boundary_of(cell)]);
         let originals;
         if self.network.domain().is_periodic() {
             originals = self.originals();
@@ -94,19 +113,21 @@ impl Polycrystal {
             point_arrays.push(Array { name: "PeriodicOriginal", values: Values::Int32(&originals) });
         }
         let boundary_tuples = self.boundary_tuples();
-        let boundary_of = |cell: usize| Some(boundary_of_cell[cell].index());
+        let item = |cell: usize| Some(boundary_of(cell));
         cell_arrays.extend(boundary_tuples.iter().map(|tuples| Array {
             name: tuples.name,
-            values: Values::Items(Items { tuples, count, item: &boundary_of }),
+            values: Values::Items(Items { tuples, count, item: &item }),
         }));
         let measured = self.file().arrays.then(|| MeasuredArrays::new(self, cells));
         let (of_cells, of_points, normals);
         if let Some(measured) = &measured {
-            normals = unit_normals(&self.points, &triangles);
+            normals = unit_normals(&self.points, &of_arrays);
             if !normals.is_empty() {
                 cell_arrays.push(Array { name: "Normals", values: Values::Vectors(&normals) });
             }
-            of_cells = measured.of_cells(boundary_of_cell);
+            let boundary_of_cell: Vec<BoundaryId> =
+                (0..count).map(|cell| BoundaryId(id(boundary_of(cell)))).collect();
+            of_cells = measured.of_cells(&boundary_of_cell);
             of_points = measured.of_points();
             cell_arrays.extend(of_cells.arrays());
             point_arrays.extend(of_points.arrays());
@@ -240,6 +261,11 @@ pub(crate) fn boundary_polylines(
         (polyline, boundary)
     };
     connected.map(polyline).unzip()
+}
+
+/// The number of a cell or a boundary as an id.
+fn id(number: usize) -> u32 {
+    u32::try_from(number).expect("ids fit 32 bits")
 }
 
 fn text(name: &'static str, value: String) -> FieldEntry {

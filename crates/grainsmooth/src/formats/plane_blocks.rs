@@ -38,7 +38,7 @@ impl Polycrystal {
     ) -> io::Result<()> {
         let names = self.file().names;
         let boundaries = self.network.boundaries();
-        let (polylines, boundary_of) = boundary_polylines(self.network.finest(), boundaries, names);
+        let (polylines, boundary_of) = boundary_polylines(&self.network.finest_level(), boundaries, names);
         let ids: Vec<u32> = polylines.concat();
         let points: Vec<DVec3> = ids.iter().map(|&id| self.points[id as usize]).collect();
         let mut next = 0u32..;
@@ -163,7 +163,8 @@ impl Polycrystal {
     /// The boundaries' points, in order with the first side on the left, and their numbers.
     fn polylines(&self) -> Vec<(Vec<u32>, usize)> {
         let boundaries = self.network.boundaries();
-        let (lines, ids) = boundary_polylines(self.network.finest(), boundaries, crate::Names::Grainsmooth);
+        let (lines, ids) =
+            boundary_polylines(&self.network.finest_level(), boundaries, crate::Names::Grainsmooth);
         lines.into_iter().zip(ids.into_iter().map(|id| id.index())).collect()
     }
 

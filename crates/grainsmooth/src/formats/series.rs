@@ -120,7 +120,7 @@ impl Series {
     ) -> Result<(), Error> {
         let Some(Synthesis { relaxed, .. }) = polycrystal.synthesis() else { return Ok(()) };
         let Relaxed { level, time, .. } = *relaxed;
-        let finest = polycrystal.network.levels().len() - 1;
+        let finest = polycrystal.network.level_count();
         let is_before = |frame: &&Frame| frame.level <= level && frame.time < time;
         let mut times = Vec::new();
         for frame in self.frames.iter().filter(is_before) {
@@ -170,7 +170,7 @@ pub fn write_collection(
 fn network_of(cells: &Tessellation, polycrystal: &Polycrystal) -> Result<Network, NetworkError> {
     let finished = &polycrystal.network;
     let junctions = polycrystal.synthesis().map_or_else(Junctions::default, |made| made.config.junctions);
-    let (mut network, _) = Network::new(cells, junctions, finished.levels().len() - 1)?;
+    let (mut network, _) = Network::new(cells, junctions, finished.level_count())?;
     if let Some(Synthesis { cells, .. }) = polycrystal.synthesis() {
         network = cells.law.apply(network)?;
     }

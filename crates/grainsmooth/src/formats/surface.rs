@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::ops::Range;
 
 use glam::DVec3;
-use polycrystal::{Boundary, BoundaryId, GrainId, Level, Mesh, Side};
+use polycrystal::{Boundary, BoundaryId, Elements, GrainId, LevelView, Side};
 
 use crate::Polycrystal;
 use crate::names::SEED_ID;
@@ -17,11 +17,38 @@ const SEEDS_A_LINE: usize = 20;
 pub(crate) struct Surface<'a> {
     /// All points, each once.
     pub(crate) points: Cow<'a, [DVec3]>,
-    triangles: Cow<'a, [[u32; 3]]>,
+    triangles: Triangles<'a>,
     /// The triangles, by number, part after part.
     order: Vec<u32>,
     /// The boundaries.
     pub(crate) parts: Vec<Part>,
+}
+
+/// The triangles of a surface, by number.
+enum Triangles<'a> {
+    /// Of a level of a network.
+    OfLevel(Elements<'a>),
+    /// Of the surface itself.
+    Own(Cow<'a, [[u32; 3]]>),
+}
+
+impl Triangles<'_> {
+    fn len(&self) -> usize {
+        match self {
+            Self::OfLevel(elements) => elements.len(),
+            Self::Own(triangles) => triangles.len(),
+        }
+    }
+
+    fn get(&self, triangle: u32) -> [u32; 3] {
+        match self {
+            Self::OfLevel(elements) => {
+                let corners = elements.corners(triangle);
+                [0, 1, 2].map(|k| corners[k])
+            }
+            Self::Own(triangles) => triangles[triangle as usize],
+        }
+    }
 }
 
 /// The triangles of one boundary.
@@ -41,10 +68,12 @@ impl<'a> Surface<'a> {
     }
 
     /// The same with the triangles of a coarser level, whose vertices stand where they are on the finest.
-    pub(crate) fn of_level(polycrystal: &'a Polycrystal, level: &'a Level) -> Option<Self> {
-        let Mesh::Triangles(mesh) = &level.mesh else { return None };
+    pub(crate) fn of_level(polycrystal: &'a Polycrystal, level: LevelView<'a>) -> Option<Self> {
+        if let Elements::Segments(_) = level.elements() {
+            return None;
+        }
         let boundaries = polycrystal.network.boundaries();
-        let (order, ranges) = grouped(&level.boundary_of, boundaries.len());
+        let (order, ranges) = grouped(level, boundaries.len());
         let numbered = (0u32..).map(BoundaryId).zip(boundaries).zip(ranges);
         let part = |((id, boundary), range): ((BoundaryId, &Boundary), Range<usize>)| Part {
             boundary: id,
@@ -53,7 +82,7 @@ impl<'a> Surface<'a> {
         };
         Some(Self {
             points: Cow::Borrowed(&polycrystal.points[..level.vertex_count()]),
-            triangles: Cow::Borrowed(mesh.triangles()),
+            triangles: Triangles::OfLevel(level.elements()),
             order,
             parts: numbered.map(part).collect(),
         })
@@ -68,7 +97,11 @@ impl<'a> Surface<'a> {
             Part { boundary, sides, range: start..order.len() }
         };
         let parts = parts.into_iter().map(part).collect();
-        let (points, triangles) = (Cow::Borrowed(&*self.points), Cow::Borrowed(&*self.triangles));
+        let points = Cow::Borrowed(&*self.points);
+        let triangles = match &self.triangles {
+            Triangles::OfLevel(elements) => Triangles::OfLevel(*elements),
+            Triangles::Own(triangles) => Triangles::Own(Cow::Borrowed(&**triangles)),
+        };
         Surface { points, triangles, order, parts }
     }
 
@@ -84,12 +117,12 @@ impl<'a> Surface<'a> {
 
     /// The triangles of a part.
     pub(crate) fn triangles_of(&self, part: &Part) -> impl Iterator<Item = [u32; 3]> {
-        self.order[part.range.clone()].iter().map(|&triangle| self.triangles[triangle as usize])
+        self.order[part.range.clone()].iter().map(|&triangle| self.triangles.get(triangle))
     }
 
     /// All triangles, part after part.
     pub(crate) fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
-        self.order.iter().map(|&triangle| self.triangles[triangle as usize])
+        self.order.iter().map(|&triangle| self.triangles.get(triangle))
     }
 
     /// The corners of a triangle.
@@ -122,7 +155,7 @@ impl<'a> Surface<'a> {
         };
         let mut surface = Surface {
             points: ids.iter().map(|&id| self.points[id as usize]).collect(),
-            triangles: Cow::default(),
+            triangles: Triangles::Own(Cow::default()),
             order: Vec::new(),
             parts: Vec::with_capacity(parts.len()),
         };
@@ -142,24 +175,25 @@ impl<'a> Surface<'a> {
             });
         }
         surface.order = (0u32..).take(triangles.len()).collect();
-        surface.triangles = Cow::Owned(triangles);
+        surface.triangles = Triangles::Own(Cow::Owned(triangles));
         surface
     }
 }
 
 /// The numbers of all elements ordered by boundary, and where each boundary's stand.
-fn grouped(boundary_of: &[BoundaryId], boundary_count: usize) -> (Vec<u32>, Vec<Range<usize>>) {
+fn grouped(level: LevelView<'_>, boundary_count: usize) -> (Vec<u32>, Vec<Range<usize>>) {
+    let elements = 0..u32::try_from(level.element_count()).expect("ids fit 32 bits");
     let mut starts = vec![0; boundary_count + 1];
-    for boundary in boundary_of {
-        starts[boundary.index() + 1] += 1;
+    for element in elements.clone() {
+        starts[level.boundary(element).index() + 1] += 1;
     }
     for boundary in 0..boundary_count {
         starts[boundary + 1] += starts[boundary];
     }
     let ranges: Vec<Range<usize>> = starts.windows(2).map(|ends| ends[0]..ends[1]).collect();
-    let mut order = vec![0; boundary_of.len()];
-    for (element, boundary) in (0u32..).zip(boundary_of) {
-        let next = &mut starts[boundary.index()];
+    let mut order = vec![0; level.element_count()];
+    for element in elements {
+        let next = &mut starts[level.boundary(element).index()];
         order[*next] = element;
         *next += 1;
     }

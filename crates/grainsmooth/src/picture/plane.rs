@@ -73,7 +73,7 @@ pub(super) fn draw(
     };
     let stroke = Stroke { width: COLORED_LINE * stroke.width, ..stroke };
     let network = &polycrystal.network;
-    for (ends, boundary) in lines.segments().iter().zip(&network.finest().boundary_of) {
+    for (ends, boundary) in lines.segments().iter().zip(&network.finest().held().boundary_of) {
         for (grain, _) in network.boundaries()[boundary.index()].signed_grains() {
             let mut path = PathBuilder::new();
             let [[x0, y0], [x1, y1]] = ends.map(|point| on_picture(grain.index(), point));
@@ -106,7 +106,7 @@ fn closed_path(rounds: impl Iterator<Item = impl Iterator<Item = [f32; 2]>>) -> 
 
 /// The closed lines round each grain, which keep it on their left.
 fn outlines(polycrystal: &Polycrystal, lines: &CurveMesh) -> Vec<Vec<Vec<u32>>> {
-    let level = polycrystal.network.finest();
+    let level = polycrystal.network.finest().held();
     let boundaries = polycrystal.network.boundaries();
     let mut steps: Vec<Vec<[u32; 2]>> = vec![Vec::new(); polycrystal.network.grain_count()];
     for (&[start, end], boundary) in lines.segments().iter().zip(&level.boundary_of) {

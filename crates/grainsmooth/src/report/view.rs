@@ -19,9 +19,11 @@ const MOST_TRIANGLES: usize = 120_000;
 
 /// The grains at the finest level that is not too fine, with points of the finest of all.
 pub(super) fn view(polycrystal: &Polycrystal) -> io::Result<String> {
-    let levels = polycrystal.network.levels();
-    let level =
-        levels.iter().rev().find(|level| level.element_count() <= MOST_TRIANGLES).unwrap_or(&levels[0]);
+    let network = &polycrystal.network;
+    let mut levels = (0..=network.level_count()).rev().map(|level| network.level(level));
+    let level = levels
+        .find(|level| level.element_count() <= MOST_TRIANGLES)
+        .unwrap_or_else(|| network.control_mesh().into());
     let surface = Surface::of_level(polycrystal, level)
         .ok_or_else(|| io::Error::other("lines have no surface to turn"))?;
     let triangles: Vec<[u32; 3]> = surface.triangles().collect();

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use polycrystal::{
-    AngleStatistics, Attempt, Boundary, Certificate, Collapsed, GrowthRecipe, MeshSize, Network,
+    AngleStatistics, Attempt, Boundary, Certificate, Collapsed, GrowthRecipe, Junctions, MeshSize, Network,
     NetworkError, NetworkRecipe, RegularCells, Relaxation, RelaxationStep, Relaxed, RelaxedCells, Vanished,
     Volumes, WeightedAngle, angles_between_boundaries, dihedral_angles, grow_cells, herring_residual,
     regular_cells, relax_cells, relax_watched, remove_short_edges, validate,
@@ -297,6 +297,15 @@ fn smooth_regularized(
     })
 }
 
+/// As of [`flat_angles`], of a network that is not needed for anything else.
+fn angles_of_cells(
+    tessellation: &Tessellation,
+    junctions: Junctions,
+) -> Result<(Vec<WeightedAngle>, Option<AngleStatistics>), NetworkError> {
+    let (of_cells, flat) = Network::new(tessellation, junctions, 0)?;
+    Ok(flat_angles(&of_cells, &flat))
+}
+
 /// Angles between boundaries of flat cells, and their statistics.
 fn flat_angles(of_cells: &Network, flat: &[DVec3]) -> (Vec<WeightedAngle>, Option<AngleStatistics>) {
     let mesh = of_cells.control_mesh();
@@ -313,8 +322,8 @@ fn smooth_by_energy(
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<Smoothed, NetworkError> {
     let Config { face_mesh, junctions, levels, .. } = *config;
-    let (of_cells, flat) = clock.time(Stage::Network, || Network::new(tessellation, junctions, 0))?;
-    let (flat_angles, angles_before) = flat_angles(&of_cells, &flat);
+    let (flat_angles, angles_before) =
+        clock.time(Stage::Network, || angles_of_cells(tessellation, junctions))?;
     let tension = |boundary: &Boundary| law.tension(boundary);
     let recipe = NetworkRecipe { face_mesh, junctions, levels: levels as usize, tension: &tension };
     let mobility = |boundary: &Boundary| law.mobility(boundary);

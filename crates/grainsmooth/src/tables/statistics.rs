@@ -82,7 +82,7 @@ impl Polycrystal {
     pub fn statistics(&self) -> NetworkStatistics {
         let (mut grains, mut others, distributions) = match self.measures() {
             Measures::Space(measures) => {
-                in_space(&measures, &self.grains().ids, &self.network.finest().grain_counts)
+                in_space(&measures, &self.grains().ids, &self.network.finest_level().grain_counts)
             }
             Measures::Plane(measures) => in_plane(&measures, &self.grains().ids),
         };

@@ -73,7 +73,7 @@ impl CohesiveMesh {
         let mut nodes = Nodes::new(mesh);
         let mut prisms = Vec::new();
         let mut stand_ins = StandIns::new(mesh.surface_points, pairs);
-        let level = network.finest();
+        let level = network.finest_level();
         let boundaries = network.boundaries();
         if let Mesh::Triangles(triangles) = &level.mesh {
             let mut order: Vec<(BoundaryId, [u32; 3])> =

@@ -21,7 +21,7 @@ pub(crate) struct ElementFace {
 impl VolumeMesh {
     /// Of each triangle of the network's finest level, the face of the tetrahedron on its first side, and that on its second one; nothing at the exterior.
     pub(crate) fn faces_at_triangles(&self, network: &Network) -> Vec<[Option<ElementFace>; 2]> {
-        let level = network.finest();
+        let level = network.finest_level();
         let Mesh::Triangles(triangles) = &level.mesh else { return Vec::new() };
         let is_on_surface = |corner: &u32| (*corner as usize) < self.surface_points;
         let mut faces: BTreeMap<(GrainId, [u32; 3]), ElementFace> = BTreeMap::new();

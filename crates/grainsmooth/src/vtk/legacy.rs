@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use vtkio::xml::ScalarType;
 
 use super::raw::Numbers;
-use super::{Array, Cells, FieldEntry, FieldValue, PolyData, is_normals};
+use super::{Array, Cells, Each, FieldEntry, FieldValue, PolyData, is_normals};
 
 /// The last version whose cells are 32-bit; every reader knows it.
 const VERSION: &str = "4.2";
@@ -29,6 +29,13 @@ pub(super) fn write(data: &PolyData<'_>, out: &mut dyn Write) -> io::Result<()> 
                 [3, a, b, c]
             };
             ("POLYGONS", Numbers::each(triangles.len(), cell))
+        }
+        Cells::TrianglesOf(Each { count, value }) => {
+            let cell = move |index: usize| {
+                let [a, b, c] = value(index);
+                [3, a, b, c]
+            };
+            ("POLYGONS", Numbers::each(count, cell))
         }
         Cells::Polygons(cells) => ("POLYGONS", counted(cells)?),
         Cells::Polylines(cells) => ("LINES", counted(cells)?),

@@ -80,6 +80,7 @@ impl<'a> Numbers<'a> {
             Values::Float64Pairs(pairs) => Self::slice(pairs),
             Values::Vectors(vectors) => Self::slice(vectors),
             Values::Int8Of(each) => Self::each(each.count, each.value),
+            Values::UInt8Of(each) => Self::each(each.count, each.value),
             Values::Int32Of(each) => Self::each(each.count, each.value),
             Values::Int32PairsOf(each) => Self::each(each.count, each.value),
             Values::Int32Tuples(tuples) => Self::slice(tuples.values),

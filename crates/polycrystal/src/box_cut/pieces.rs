@@ -47,7 +47,7 @@ pub(crate) struct Torus {
 
 impl Torus {
     pub(crate) fn new(network: &Network, points: &[DVec3]) -> Self {
-        let level = network.finest();
+        let level = network.finest_level();
         assert_eq!(points.len(), level.vertex_count(), "there must be one point per vertex");
         let domain = network.domain();
         let originals = level.copies.originals(points.len());
@@ -78,7 +78,7 @@ impl Torus {
 impl Pieces {
     /// Whole elements, of boundaries that come twice those of one.
     pub(crate) fn of_network(network: &Network, torus: Torus) -> Self {
-        let level = network.finest();
+        let level = network.finest_level();
         let mut pieces = Self {
             pieces: Vec::new(),
             domain: network.domain().clone(),

@@ -38,7 +38,7 @@ const PASSES: usize = 3;
 
 /// Moves points near the planes of the cut into them; those of flat boundaries within these alone.
 pub(crate) fn snap(network: &Network, torus: &mut Torus, points: &[DVec3], is_flat: bool) {
-    let level = network.finest();
+    let level = network.finest_level();
     let Mesh::Triangles(mesh) = &level.mesh else { return };
     let triangles = mesh.triangles();
     let mut stars = vec![Vec::new(); points.len()];

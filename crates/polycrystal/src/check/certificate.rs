@@ -5,23 +5,19 @@ use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::check::boundary_survey::BoundarySurvey;
 use crate::check::closedness::closedness_faults;
 use crate::check::fault::Fault;
-use crate::check::folds::folded_pairs;
 use crate::check::intersections::crossing_elements;
 use crate::check::pinched_points::pinched_points;
 use crate::mesh::adjacency::Adjacency;
 use crate::mesh::angles::{angles, statistics};
-use crate::mesh::grouped::Grouped;
+use crate::mesh::boundary_elements::BoundaryElements;
+use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
 use crate::mesh::rounding::swept_by_rounding;
-use crate::mesh::triangle_quality::{squared_sine, triangle_quality};
-use crate::mesh::volume::{ConeSum, cones_of_boundaries};
-use crate::{AngleStatistics, Elements, GrainId, NodeType, Side, Surface, TriangleQuality};
-
-/// Cosine of the angle between normals beyond which neighbours in one boundary are folded: 90 degrees, and as much more as
-/// single precision, in which many files keep coordinates, blurs the right angles of a box.
-const FOLD_COSINE: f64 = -1e-6;
+use crate::mesh::volume::{Cone, ConeSum};
+use crate::{AngleStatistics, GrainId, NodeType, Side, Surface, TriangleQuality};
 
 /// Largest difference of a volume from what it should be, as a share of that.
 const VOLUME_TOLERANCE: f64 = 1e-9;
@@ -105,7 +101,11 @@ pub fn certify(surface: &Surface<'_>, expected: &Expected<'_>) -> Certificate {
 }
 
 /// The same with adjacency that are known.
-pub(crate) fn inspect(surface: &Surface<'_>, adjacency: &Adjacency, expected: &Expected<'_>) -> Certificate {
+pub(crate) fn inspect(
+    surface: &Surface<'_>,
+    adjacency: &Adjacency<'_>,
+    expected: &Expected<'_>,
+) -> Certificate {
     let mut certificate = Certificate {
         faults: Faults::default(),
         grain_volumes: Vec::new(),
@@ -114,22 +114,21 @@ pub(crate) fn inspect(surface: &Surface<'_>, adjacency: &Adjacency, expected: &E
         angles: None,
         triangles: None,
     };
-    let ids = |count: usize| 0..u32::try_from(count).expect("ids fit 32 bits");
-    let not_finite = ids(surface.points.len()).filter(|point| !surface.points[*point as usize].is_finite());
+    let not_finite =
+        (0..id(surface.points.len())).filter(|point| !surface.points[*point as usize].is_finite());
     certificate.faults.0.extend(not_finite.map(|point| Fault::NotFinite { point }));
     if !certificate.faults.0.is_empty() {
         return certificate;
     }
     check_cancelled();
-    let (normals, sines) = normals_and_sines(surface);
-    certificate.triangles = triangle_quality(sines);
-    let by_boundary = surface.elements_by_boundary();
+    let boundaries = BoundaryElements::new(surface);
+    let survey = BoundarySurvey::new(surface, &boundaries, adjacency);
+    certificate.triangles = survey.triangles;
     let faults = &mut certificate.faults.0;
-    let flat = ids(normals.len()).filter(|element| normals[*element as usize] == DVec3::ZERO);
-    faults.extend(flat.map(|element| Fault::NoArea { element }));
+    faults.extend(survey.flat.iter().map(|element| Fault::NoArea { element: *element }));
     // Each of these runs for the most part on one thread.
     let (crossing, ((meetings, duplicates), (closing, is_closed))) = rayon::join(
-        || crossing_elements(surface, adjacency, &by_boundary, &normals),
+        || crossing_elements(surface, adjacency, &boundaries, &survey.boxes),
         || {
             rayon::join(
                 || (meetings(surface), duplicate_points(surface.points)),
@@ -138,12 +137,10 @@ pub(crate) fn inspect(surface: &Surface<'_>, adjacency: &Adjacency, expected: &E
         },
     );
     faults.extend(duplicates.map(|points| Fault::DuplicatePoints { points }));
-    let orphans = ids(meetings.len()).filter(|point| meetings[*point as usize].is_none());
+    let orphans = (0..id(meetings.len())).filter(|point| meetings[*point as usize].is_none());
     faults.extend(orphans.map(|point| Fault::Orphan { point }));
     faults.extend(closing);
-    let has_area = |pair: &[u32; 2]| pair.iter().all(|element| normals[*element as usize] != DVec3::ZERO);
-    check_cancelled();
-    let folded = folded_pairs(&adjacency.inner, &normals, FOLD_COSINE).into_iter().filter(has_area);
+    let folded = survey.folded.into_iter();
     faults.extend(folded.map(|elements| Fault::Folded { elements, grains: surface.grains_at(elements) }));
     let crossing = crossing.into_iter();
     faults.extend(crossing.map(|elements| Fault::Crossing { elements, grains: surface.grains_at(elements) }));
@@ -153,30 +150,15 @@ pub(crate) fn inspect(surface: &Surface<'_>, adjacency: &Adjacency, expected: &E
     if let Some(stated) = expected.grain_counts {
         faults.extend(wrong_grain_counts(stated, &grain_counts(&meetings, expected.originals)));
     }
-    let (volumes, angles) = rayon::join(
-        || grain_volumes(surface, &by_boundary),
-        || statistics(angles(surface, surface.sides, adjacency.non_manifold_edges())),
-    );
-    certificate.grain_volumes = volumes;
-    certificate.check_volumes(surface, &normals, expected, is_closed);
-    certificate.angles = angles;
+    certificate.grain_volumes = grain_volumes(surface, &survey.cones);
+    let areas = if expected.rounding > 0.0 { side_areas(surface, &survey.areas) } else { BTreeMap::new() };
+    certificate.check_volumes(surface, &areas, expected, is_closed);
+    certificate.angles = statistics(angles(surface, surface.sides, adjacency.non_manifold_edges()));
     certificate
 }
 
-/// The normals of all elements, and of triangles the squared sines of their smallest angles: both from corners that are fetched once.
-fn normals_and_sines(surface: &Surface<'_>) -> (Vec<DVec3>, Vec<f64>) {
-    let Elements::Triangles(triangles) = surface.elements else {
-        return (surface.elements.normals(surface.points), Vec::new());
-    };
-    let of_triangle = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(|corner| surface.points[corner as usize]);
-        ((b - a).cross(c - a), squared_sine([a, b, c]))
-    };
-    triangles.par_iter().map(of_triangle).unzip()
-}
-
 /// Where grains are not closed, or are but touch themselves, and whether they are closed.
-fn closedness_and_pinches(surface: &Surface<'_>, adjacency: &Adjacency) -> (Vec<Fault>, bool) {
+fn closedness_and_pinches(surface: &Surface<'_>, adjacency: &Adjacency<'_>) -> (Vec<Fault>, bool) {
     let mut faults = closedness_faults(surface, adjacency);
     let is_closed = faults.is_empty();
     if is_closed {
@@ -195,14 +177,13 @@ impl Certificate {
     fn check_volumes(
         &mut self,
         surface: &Surface<'_>,
-        normals: &[DVec3],
+        areas: &BTreeMap<Side, f64>,
         expected: &Expected<'_>,
         is_closed: bool,
     ) {
         let faults = &mut self.faults.0;
         let empty = self.grain_volumes.iter().filter(|(_, volume)| is_closed && *volume <= 0.0);
         faults.extend(empty.map(|&(grain, volume)| Fault::NoVolume { grain, volume }));
-        let areas = if expected.rounding > 0.0 { side_areas(surface, normals) } else { BTreeMap::new() };
         let mut wrong = Vec::new();
         for (grain, claimed) in expected.grain_volumes.into_iter().flatten() {
             let Ok(found) = self.grain_volumes.binary_search_by_key(grain, |(grain, _)| *grain) else {
@@ -243,14 +224,8 @@ impl Certificate {
     }
 }
 
-/// The area (in the plane: length) of each side's surface.
-fn side_areas(surface: &Surface<'_>, normals: &[DVec3]) -> BTreeMap<Side, f64> {
-    // Normals of triangles are as long as twice the area.
-    let share = if matches!(surface.elements, Elements::Triangles(_)) { 0.5 } else { 1.0 };
-    let mut of_boundaries = vec![0.0; surface.sides.len()];
-    for (normal, boundary) in normals.iter().zip(surface.boundary_of) {
-        of_boundaries[boundary.index()] += share * normal.length();
-    }
+/// The area (in the plane: length) of each side's surface, given that of each boundary.
+fn side_areas(surface: &Surface<'_>, of_boundaries: &[f64]) -> BTreeMap<Side, f64> {
     let mut areas = BTreeMap::new();
     for (area, sides) in of_boundaries.iter().zip(surface.sides) {
         for side in sides {
@@ -291,9 +266,9 @@ fn meetings(surface: &Surface<'_>) -> Vec<Option<Meeting>> {
     const NONE: u32 = u32::MAX;
     const SEVERAL: u32 = u32::MAX - 1;
     let mut boundaries = vec![NONE; surface.points.len()];
-    let elements = || (0u32..).zip(surface.boundary_of).take(surface.elements.len());
+    let elements = || (0..id(surface.elements.len())).map(|element| (element, surface.boundary(element)));
     for (element, boundary) in elements() {
-        for corner in surface.elements.corners(element) {
+        for corner in surface.elements.corners(element).iter() {
             let at = &mut boundaries[*corner as usize];
             *at = if *at == NONE || *at == boundary.0 { boundary.0 } else { SEVERAL };
         }
@@ -302,8 +277,8 @@ fn meetings(surface: &Surface<'_>) -> Vec<Option<Meeting>> {
     let mut around: Vec<u64> = Vec::new();
     let mut latest = vec![NONE; surface.points.len()];
     for (element, boundary) in elements() {
-        let corners = surface.elements.corners(element).iter();
-        for corner in corners.filter(|corner| boundaries[**corner as usize] == SEVERAL) {
+        let corners = surface.elements.corners(element);
+        for corner in corners.iter().filter(|corner| boundaries[**corner as usize] == SEVERAL) {
             let latest = &mut latest[*corner as usize];
             if *latest != boundary.0 {
                 *latest = boundary.0;
@@ -381,12 +356,12 @@ fn wrong_node_types(stated: &[Option<NodeType>], derived: &[Option<Meeting>]) ->
     })
 }
 
-fn grain_volumes(surface: &Surface<'_>, by_boundary: &Grouped<u32>) -> Vec<(GrainId, f64)> {
+fn grain_volumes(surface: &Surface<'_>, cones: &[Cone]) -> Vec<(GrainId, f64)> {
     let mut volumes: BTreeMap<GrainId, ConeSum> = BTreeMap::new();
-    for (sides, cone) in surface.sides.iter().zip(cones_of_boundaries(surface, by_boundary)) {
+    for (sides, cone) in surface.sides.iter().zip(cones) {
         for (side, sign) in sides.iter().zip([1.0, -1.0]) {
             if let Side::Grain(grain) = side {
-                volumes.entry(*grain).or_default().add(&cone, sign);
+                volumes.entry(*grain).or_default().add(cone, sign);
             }
         }
     }

@@ -9,7 +9,7 @@ use crate::{GrainId, Side, Surface};
 /// What is wrong at the edges that are not inside a boundary.
 ///
 /// An element whose change of sides would close all its edges is blamed for them; other edges are reported one by one.
-pub(crate) fn closedness_faults(surface: &Surface<'_>, adjacency: &Adjacency) -> Vec<Fault> {
+pub(crate) fn closedness_faults(surface: &Surface<'_>, adjacency: &Adjacency<'_>) -> Vec<Fault> {
     let edges: Vec<&[Incidence]> = adjacency.non_manifold_edges().collect();
     let mut faults: Vec<Fault> = edges.iter().flat_map(|at| repeated_elements(surface, at)).collect();
     let mut open: BTreeMap<u32, &[Incidence]> =
@@ -39,7 +39,7 @@ pub(crate) fn closedness_faults(surface: &Surface<'_>, adjacency: &Adjacency) ->
 }
 
 /// Number of edges where some grain, or the exterior, is not closed.
-pub(crate) fn open_edge_count(surface: &Surface<'_>, adjacency: &Adjacency) -> usize {
+pub(crate) fn open_edge_count(surface: &Surface<'_>, adjacency: &Adjacency<'_>) -> usize {
     adjacency.non_manifold_edges().filter(|at| !is_closed(surface, at, None)).count()
 }
 
@@ -150,8 +150,8 @@ fn repeated_elements(surface: &Surface<'_>, at: &[Incidence]) -> Vec<Fault> {
 
 /// Whether an edge does not touch the highest point of its element (in the plane: is not its higher end).
 fn tells(surface: &Surface<'_>, at: &Incidence) -> bool {
-    let highest = surface.elements.corners(at.element).iter().max();
-    !at.ends(surface.elements).iter().any(|end| Some(end) == highest)
+    let highest = surface.elements.corners(at.element).iter().max().copied();
+    !at.ends(surface.elements).iter().any(|end| Some(*end) == highest)
 }
 
 fn place_of(surface: &Surface<'_>, at: &[Incidence]) -> Place {

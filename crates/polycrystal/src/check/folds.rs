@@ -2,30 +2,66 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::mesh::adjacency::Adjacency;
-use crate::{Elements, Level};
+use crate::mesh::boundary_elements::{BoundaryElements, BoundaryNeighbors};
+use crate::{Elements, LevelView};
 
 /// Normal of a triangle, or normal of a segment in the plane, as long as twice its area or as its length.
-pub(crate) fn element_normals(level: &Level, points: &[DVec3]) -> Vec<DVec3> {
-    Elements::from(&level.mesh).normals(points)
+pub(crate) fn element_normals<'a>(level: impl Into<LevelView<'a>>, points: &[DVec3]) -> Vec<DVec3> {
+    level.into().elements().normals(points)
 }
 
 /// Pairs of neighbouring elements of one boundary whose normals are more than the angle apart whose cosine is given.
 ///
 /// 0 finds folds over 90 degrees. Elements without area count as folded.
-pub fn folded_edges(level: &Level, points: &[DVec3], cosine: f64) -> Vec<[u32; 2]> {
-    folded_pairs(&Adjacency::of_level(level).inner, &element_normals(level, points), cosine)
+pub fn folded_edges<'a>(level: impl Into<LevelView<'a>>, points: &[DVec3], cosine: f64) -> Vec<[u32; 2]> {
+    let level = level.into();
+    folded_pairs(&Adjacency::of_level(level).inner.pairs(), &element_normals(level, points), cosine)
 }
 
 /// Those of some pairs of elements that [`folded_edges`] finds, for normals of any length.
 pub(crate) fn folded_pairs(pairs: &[[u32; 2]], normals: &[DVec3], cosine: f64) -> Vec<[u32; 2]> {
-    let is_folded = |pair: &&[u32; 2]| {
-        let [a, b] = pair.map(|element| normals[element as usize]);
-        let dot = a.dot(b);
-        // Nearly all pairs are told by this alone.
-        if dot > 0.0 && cosine <= 0.0 {
-            return false;
-        }
-        dot < cosine * (a.length() * b.length()) || a == DVec3::ZERO || b == DVec3::ZERO
+    let normals = |pair: &[u32; 2]| pair.map(|element| normals[element as usize]);
+    pairs.par_iter().filter(|pair| is_folded(normals(pair), cosine)).copied().collect()
+}
+
+/// The pairs of neighbours that are folded in some boundary, sorted, without normals of more than a boundary at a time.
+pub(crate) fn folded_neighbors(
+    elements: Elements<'_>,
+    points: &[DVec3],
+    boundaries: &BoundaryElements<'_>,
+    neighbors: &BoundaryNeighbors<'_>,
+    cosine: f64,
+) -> Vec<[u32; 2]> {
+    let of_boundary = |boundary: usize| {
+        let own: Vec<u32> = boundaries.of(boundary).collect();
+        let normals: Vec<DVec3> = own.iter().map(|element| elements.normal(points, *element)).collect();
+        folded_in_boundary(&own, &normals, &neighbors.of(boundaries, boundary), cosine)
     };
-    pairs.par_iter().filter(is_folded).copied().collect()
+    let boundaries = (0..boundaries.boundary_count()).into_par_iter();
+    let mut folded: Vec<[u32; 2]> = boundaries.flat_map_iter(of_boundary).collect();
+    folded.par_sort_unstable();
+    folded
+}
+
+/// The pairs of neighbours that are folded among some elements with these normals.
+pub(crate) fn folded_in_boundary(
+    elements: &[u32],
+    normals: &[DVec3],
+    neighbors: &[[u32; 2]],
+    cosine: f64,
+) -> Vec<[u32; 2]> {
+    let is_folded = |pair: &&[u32; 2]| is_folded(pair.map(|index| normals[index as usize]), cosine);
+    let folded = neighbors.iter().filter(is_folded);
+    let mut folded: Vec<[u32; 2]> = folded.map(|pair| pair.map(|index| elements[index as usize])).collect();
+    folded.iter_mut().for_each(|pair| pair.sort_unstable());
+    folded
+}
+
+fn is_folded([a, b]: [DVec3; 2], cosine: f64) -> bool {
+    let dot = a.dot(b);
+    // Nearly all pairs are told by this alone.
+    if dot > 0.0 && cosine <= 0.0 {
+        return false;
+    }
+    dot < cosine * (a.length() * b.length()) || a == DVec3::ZERO || b == DVec3::ZERO
 }

@@ -1,27 +1,32 @@
 //! Points where the surface of a grain touches itself, with no edge in common.
 
 use rayon::prelude::*;
+use subzero::{HalfEdgeId, TriangleMesh};
 
 use crate::check::fault::Fault;
-use crate::mesh::adjacency::{Adjacency, Incidence};
+use crate::mesh::adjacency::{Adjacency, Incidence, Inner};
 use crate::mesh::disjoint_sets::DisjointSets;
-use crate::{Elements, Side, Surface};
+use crate::mesh::id::id;
+use crate::{BoundaryId, Elements, Side, Surface};
 
 /// The points of closed surfaces in space where the triangles of a grain are not one fan around the point but several.
 ///
-/// In the plane, where edges are points, closedness tells that.
-pub(crate) fn pinched_points(surface: &Surface<'_>, adjacency: &Adjacency) -> Vec<Fault> {
-    let Elements::Triangles(triangles) = surface.elements else { return Vec::new() };
-    let fans = Fans::within_boundaries(triangles, &adjacency.inner);
+/// In the plane, where places are points, that is what closing tells.
+pub(crate) fn pinched_points(surface: &Surface<'_>, adjacency: &Adjacency<'_>) -> Vec<Fault> {
+    if let Elements::Segments(_) = surface.elements {
+        return Vec::new();
+    }
+    let fans = Fans { elements: surface.elements, half_edges: HalfEdges::new(surface.elements, adjacency) };
     let suspects = suspects(surface, adjacency, &fans);
     if !suspects.contains(&true) {
         return Vec::new();
     }
     let mut parts: Vec<Part> = Vec::new();
-    for (corner, point) in (0u32..).zip(triangles.as_flattened()) {
-        if suspects[*point as usize] {
+    for corner in fans.corners() {
+        let point = fans.point(corner);
+        if suspects[point as usize] {
             let fan = fans.number(corner);
-            parts.extend(surface.sides_of(corner / 3).map(|side| Part { point: *point, side, fan }));
+            parts.extend(surface.sides_of(corner / 3).map(|side| Part { point, side, fan }));
         }
     }
     parts.sort_unstable();
@@ -33,9 +38,12 @@ pub(crate) fn pinched_points(surface: &Surface<'_>, adjacency: &Adjacency) -> Ve
         for at in at {
             let corner = u32::from(at.corner);
             let corners = [3 * at.element + corner, 3 * at.element + (corner + 1) % 3];
-            incidences.extend(surface.sides_of(at.element).into_iter().flat_map(|side| {
-                corners.map(|corner| (side, triangles.as_flattened()[corner as usize], fans.number(corner)))
-            }));
+            incidences.extend(
+                surface
+                    .sides_of(at.element)
+                    .into_iter()
+                    .flat_map(|side| corners.map(|corner| (side, fans.point(corner), fans.number(corner)))),
+            );
         }
         incidences.sort_unstable();
         for pair in incidences.windows(2).filter(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1)) {
@@ -59,7 +67,7 @@ pub(crate) fn pinched_points(surface: &Surface<'_>, adjacency: &Adjacency) -> Ve
 }
 
 /// Points that more looks like than one fan on each side: a quick look that leaves few.
-fn suspects(surface: &Surface<'_>, adjacency: &Adjacency, fans: &Fans<'_>) -> Vec<bool> {
+fn suspects(surface: &Surface<'_>, adjacency: &Adjacency<'_>, fans: &Fans<'_>) -> Vec<bool> {
     let (mut suspects, counts) = fans.points_of_several(surface.points.len());
     let mut open: Vec<OpenFan> = fans.open_fans(adjacency, &counts);
     open.par_sort_unstable_by_key(|fan| fan.point);
@@ -122,35 +130,102 @@ struct Part {
 /// No triangle lies beyond an edge within the boundary.
 const NONE: u32 = u32::MAX;
 
-/// How triangles of one boundary follow each other around points.
-///
-/// Corner `k` of triangle `t` has the number `3 t + k`, and so has the edge from there to the triangle's next corner.
-struct Fans<'a> {
-    triangles: &'a [[u32; 3]],
-    /// For each edge, the same edge as the triangle beyond runs along it.
-    beyond: Vec<u32>,
+/// How triangles of one boundary meet at their edges. The edge from corner `k` of triangle `t` to the next has the number `3 t + k`.
+enum HalfEdges<'a> {
+    /// As a mesh has it whose triangles have these boundaries.
+    OfMesh { mesh: &'a TriangleMesh, boundary_of: &'a [BoundaryId] },
+    /// One subdivision on from there.
+    Refined { mesh: &'a TriangleMesh, boundary_of: &'a [BoundaryId] },
+    /// For each edge, the same edge as the triangle beyond runs along it, and its number among all edges if it is not inside a boundary.
+    Listed { beyond: Vec<u32>, numbers: Vec<u32> },
 }
 
-impl<'a> Fans<'a> {
-    fn within_boundaries(triangles: &'a [[u32; 3]], inner: &[[u32; 2]]) -> Self {
-        let mut beyond = vec![NONE; 3 * triangles.len()];
-        for [one, other] in inner {
-            let corners = triangles[*other as usize];
-            for (k, [from, to]) in (0u32..).zip(edges(triangles[*one as usize])) {
-                if let Some((corner, _)) = (0u32..).zip(edges(corners)).find(|(_, edge)| *edge == [to, from])
-                {
-                    let [edge, back] = [3 * one + k, 3 * other + corner];
+impl<'a> HalfEdges<'a> {
+    fn new(elements: Elements<'a>, adjacency: &Adjacency<'a>) -> Self {
+        let pairs = match &adjacency.inner {
+            Inner::OfMesh { mesh, boundary_of, is_refined: true } => {
+                return Self::Refined { mesh, boundary_of };
+            }
+            Inner::OfMesh { mesh, boundary_of, is_refined: false } => {
+                return Self::OfMesh { mesh, boundary_of };
+            }
+            Inner::Listed(pairs) => pairs,
+        };
+        let mut beyond = vec![NONE; 3 * elements.len()];
+        for [one, other] in pairs {
+            let (corners, others) = (elements.corners(*one), elements.corners(*other));
+            for k in 0..3 {
+                let edge = [corners[k], corners[(k + 1) % 3]];
+                if let Some(place) = (0..3).find(|place| [others[(place + 1) % 3], others[*place]] == edge) {
+                    let [edge, back] = [3 * one + id(k), 3 * other + id(place)];
                     beyond[edge as usize] = back;
                     beyond[back as usize] = edge;
                 }
             }
         }
-        Self { triangles, beyond }
+        // Most pages of it are never touched.
+        let mut numbers = vec![0; beyond.len()];
+        adjacency.incidences.iter().for_each(|at| numbers[half_edge(at) as usize] = at.edge);
+        Self::Listed { beyond, numbers }
+    }
+
+    /// The edge as the triangle beyond runs along it, if that is one of the same boundary.
+    #[inline]
+    fn beyond(&self, edge: u32) -> Option<u32> {
+        match self {
+            Self::Listed { beyond, .. } => Some(beyond[edge as usize]).filter(|beyond| *beyond != NONE),
+            Self::OfMesh { mesh, boundary_of } => {
+                let beyond = mesh.half_edge_beyond(HalfEdgeId(edge))?;
+                let boundary = |triangle: u32| boundary_of[triangle as usize];
+                (boundary(beyond.0 / 3) == boundary(edge / 3)).then_some(beyond.0)
+            }
+            Self::Refined { mesh, boundary_of } => {
+                let beyond = mesh.refined_twin(HalfEdgeId(edge))?;
+                let boundary = |edge: u32| {
+                    boundary_of[mesh.counts().triangle_parent(HalfEdgeId(edge).triangle()).index()]
+                };
+                (boundary(beyond.0) == boundary(edge)).then_some(beyond.0)
+            }
+        }
+    }
+
+    /// The number of a non-manifold edge among all edges.
+    fn number(&self, edge: u32) -> u32 {
+        match self {
+            Self::Listed { numbers, .. } => numbers[edge as usize],
+            Self::OfMesh { mesh, .. } => {
+                mesh.triangle_edges(HalfEdgeId(edge).triangle())[(edge % 3) as usize].0
+            }
+            Self::Refined { mesh, .. } => mesh.refined_edge(HalfEdgeId(edge)).0,
+        }
+    }
+}
+
+/// The edge that a use is one of.
+fn half_edge(at: &Incidence) -> u32 {
+    3 * at.element + u32::from(at.corner)
+}
+
+/// How triangles of one boundary follow each other around points. Corners are numbered as the edges that start there.
+struct Fans<'a> {
+    elements: Elements<'a>,
+    half_edges: HalfEdges<'a>,
+}
+
+impl Fans<'_> {
+    /// All corners.
+    fn corners(&self) -> std::ops::Range<u32> {
+        0..id(3 * self.elements.len())
+    }
+
+    /// The point of a corner.
+    fn point(&self, corner: u32) -> u32 {
+        self.elements.corners(corner / 3)[(corner % 3) as usize]
     }
 
     /// The corner after one at its point, if the fan does not end there.
     fn next(&self, corner: u32) -> Option<u32> {
-        Some(self.beyond[edge_before(corner) as usize]).filter(|corner| *corner != NONE)
+        self.half_edges.beyond(edge_before(corner))
     }
 
     /// The number of the fan that a corner belongs to: its last corner, or the lowest where it goes all around.
@@ -168,14 +243,10 @@ impl<'a> Fans<'a> {
     }
 
     /// The fans that begin and end at adjacency; points have so many corners.
-    fn open_fans(&self, adjacency: &Adjacency, counts: &[u32]) -> Vec<OpenFan> {
-        // Most pages of it are never touched.
-        let mut edge_of = vec![0; self.beyond.len()];
-        let edge = |at: &Incidence| 3 * at.element + u32::from(at.corner);
-        adjacency.incidences.iter().for_each(|at| edge_of[edge(at) as usize] = at.edge);
+    fn open_fans(&self, adjacency: &Adjacency<'_>, counts: &[u32]) -> Vec<OpenFan> {
         let fan_from = |at: &Incidence| {
-            let first = edge(at);
-            let point = self.triangles.as_flattened()[first as usize];
+            let first = half_edge(at);
+            let point = self.point(first);
             let mut last = first;
             let mut corners = 1;
             while let Some(next) = self.next(last)
@@ -184,7 +255,7 @@ impl<'a> Fans<'a> {
                 last = next;
                 corners += 1;
             }
-            let edges = [at.edge, edge_of[edge_before(last) as usize]];
+            let edges = [at.edge, self.half_edges.number(edge_before(last))];
             OpenFan { point, element: at.element, edges, corners }
         };
         adjacency.incidences.par_iter().map(fan_from).collect()
@@ -194,9 +265,11 @@ impl<'a> Fans<'a> {
     fn points_of_several(&self, point_count: usize) -> (Vec<bool>, Vec<u32>) {
         let mut first = vec![NONE; point_count];
         let mut counts = vec![0u32; point_count];
-        for (corner, point) in (0u32..).zip(self.triangles.as_flattened()) {
-            first[*point as usize] = corner;
-            counts[*point as usize] += 1;
+        for triangle in 0..id(self.elements.len()) {
+            for (corner, point) in (3 * triangle..).zip(self.elements.corners(triangle).iter()) {
+                first[*point as usize] = corner;
+                counts[*point as usize] += 1;
+            }
         }
         let goes_round = |(first, count): (&u32, &u32)| {
             let mut at = *first;
@@ -216,9 +289,4 @@ impl<'a> Fans<'a> {
 /// The edge that ends at a corner, in its triangle.
 fn edge_before(corner: u32) -> u32 {
     if corner.is_multiple_of(3) { corner + 2 } else { corner - 1 }
-}
-
-/// The edges of a triangle, each from the corner with the same index.
-fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]]
 }

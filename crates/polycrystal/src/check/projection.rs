@@ -14,8 +14,9 @@ use crate::check::box_tree::{Bounds, BoxTree};
 /// The triangles of one boundary.
 #[derive(Debug)]
 pub(crate) struct Piece<'a> {
-    pub(crate) elements: &'a [u32],
-    /// The edges that are not between two of the triangles, sorted by edge.
+    /// Of the triangles, as long as twice their areas.
+    pub(crate) normals: &'a [DVec3],
+    /// The edges that are not between two of the triangles, sorted by place.
     pub(crate) rim: &'a [RimEdge],
     /// The sum of the triangles' normals.
     pub(crate) normal: DVec3,
@@ -33,21 +34,16 @@ pub(crate) struct RimEdge {
 }
 
 /// Whether the triangles of a piece are proved not to cross each other. `false` says nothing.
-///
-/// All triangles have `normals`, as long as twice their areas.
-pub(crate) fn is_graph(points: &[DVec3], normals: &[DVec3], piece: &Piece<'_>) -> bool {
+pub(crate) fn is_graph(points: &[DVec3], piece: &Piece<'_>) -> bool {
     let rim: Vec<[u32; 2]> = piece.rim.iter().map(|edge| edge.ends).collect();
     let middle = middle(points, &rim);
     let Some(projection) = Projection::new(piece.normal, middle, piece.bounds) else { return false };
-    projection.sees_front(normals, piece, 1.0) && projection.is_simple_curve(points, &rim, &mut Vec::new())
+    projection.sees_front(piece, 1.0) && projection.is_simple_curve(points, &rim, &mut Vec::new())
 }
 
 /// Whether the triangles of two pieces that share edges are proved not to cross each other. `false` says nothing.
-///
-/// All triangles have `normals`, as long as twice their areas.
 pub(crate) fn are_one_graph(
     points: &[DVec3],
-    normals: &[DVec3],
     [first, second]: [&Piece<'_>; 2],
     Room { rim, flat }: &mut Room,
 ) -> bool {
@@ -68,8 +64,8 @@ pub(crate) fn are_one_graph(
     let Some(projection) = Projection::new(normal + sign * other_normal, middle, bounds) else {
         return false;
     };
-    projection.sees_front(normals, first, 1.0)
-        && projection.sees_front(normals, second, sign)
+    projection.sees_front(first, 1.0)
+        && projection.sees_front(second, sign)
         && projection.is_simple_curve(points, rim, flat)
 }
 
@@ -203,9 +199,9 @@ impl Projection {
     }
 
     /// Whether all triangles of a piece, turned over if `sign` is -1, keep their orientation.
-    fn sees_front(&self, normals: &[DVec3], piece: &Piece<'_>, sign: f64) -> bool {
+    fn sees_front(&self, piece: &Piece<'_>, sign: f64) -> bool {
         let along = sign * self.along;
-        piece.elements.iter().all(|element| normals[*element as usize].dot(along) > self.bound)
+        piece.normals.iter().all(|normal| normal.dot(along) > self.bound)
     }
 
     /// Whether a rim is for certain one closed curve, counter-clockwise, that does not cross or touch itself. `flat` is room for its edges.
@@ -327,19 +323,13 @@ mod tests {
         rim
     }
 
-    fn piece<'a>(points: &[DVec3], elements: &'a [u32], rim: &'a [RimEdge], normals: &[DVec3]) -> Piece<'a> {
-        Piece {
-            elements,
-            rim,
-            normal: elements.iter().map(|element| normals[*element as usize]).sum(),
-            bounds: Bounds::around(points.iter().copied()),
-        }
+    fn piece<'a>(points: &[DVec3], rim: &'a [RimEdge], normals: &'a [DVec3]) -> Piece<'a> {
+        Piece { normals, rim, normal: normals.iter().sum(), bounds: Bounds::around(points.iter().copied()) }
     }
 
     fn is_graph((points, triangles, rim): &Parts) -> bool {
         let normals = normals(points, triangles);
-        let elements: Vec<u32> = (0u32..).take(triangles.len()).collect();
-        super::is_graph(points, &normals, &piece(points, &elements, &rim_edges(rim), &normals))
+        super::is_graph(points, &piece(points, &rim_edges(rim), &normals))
     }
 
     /// A strip of triangles along a helix: `turns` times around, on a cone so that no triangle lies over the next.
@@ -397,11 +387,11 @@ mod tests {
         }
         let normals = normals(&points, &triangles);
         let rims = [rim_edges(&[[0, 1], [1, 2], [2, 3], [3, 0]]), rim_edges(&rim)];
-        let first = piece(&points, &[0, 1], &rims[0], &normals);
-        let second = piece(&points, &[2, 3, 4], &rims[1], &normals);
+        let first = piece(&points, &rims[0], &normals[..2]);
+        let second = piece(&points, &rims[1], &normals[2..]);
         let room = &mut Room::default();
-        let found = are_one_graph(&points, &normals, [&first, &second], room);
-        assert_eq!(are_one_graph(&points, &normals, [&second, &first], room), found);
+        let found = are_one_graph(&points, [&first, &second], room);
+        assert_eq!(are_one_graph(&points, [&second, &first], room), found);
         found
     }
 

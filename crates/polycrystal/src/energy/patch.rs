@@ -8,9 +8,9 @@
 //! Both are pulled back to the control points by the transposed weights of subdivision.
 
 use glam::DVec3;
-use subzero::StencilTable;
 use voronoi::Dimension;
 
+use crate::Mesh;
 use crate::mesh::volume::{Cone, segment_area, triangle_volume};
 
 /// A boundary's control mesh, and its surface in terms of the control points.
@@ -64,13 +64,14 @@ pub(crate) struct LocalStencils {
 }
 
 impl LocalStencils {
-    /// Those of some finer points; `coarser` are all points that these depend on, sorted.
-    pub(crate) fn new(stencils: &StencilTable, coarser: &[u32], finer: &[u32]) -> Self {
+    /// Those of some points one level on from a mesh; `coarser` are all points that these depend on, sorted.
+    pub(crate) fn new(mesh: &Mesh, coarser: &[u32], finer: &[u32]) -> Self {
         let mut local = Self { starts: vec![0], ids: Vec::new(), weights: Vec::new() };
+        let mut entries = Vec::new();
         for point in finer {
-            let (ids, weights) = stencils.stencil(*point as usize);
-            local.ids.extend(ids.iter().map(|point| index_in(coarser, *point)));
-            local.weights.extend(weights);
+            mesh.stencil(*point, &mut entries);
+            local.ids.extend(entries.iter().map(|(point, _)| index_in(coarser, *point)));
+            local.weights.extend(entries.iter().map(|(_, weight)| weight));
             local.starts.push(local.ids.len());
         }
         local

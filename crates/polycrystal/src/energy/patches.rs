@@ -3,13 +3,15 @@
 use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
-use subzero::{EdgeId, FaceId, StencilTable};
+use subzero::{EdgeId, FaceId};
+use voronoi::Dimension;
 
 use crate::energy::patch::{Elements, Law, LocalStencils, Patch, PatchTerms, Refinement, index_in};
+use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::grouped::{Grouped, split};
 use crate::mesh::volume::Cone;
 use crate::network::tension::in_unit;
-use crate::{BoundaryId, Mesh, Network};
+use crate::{Mesh, Network};
 
 /// The patches of all boundaries.
 ///
@@ -57,23 +59,24 @@ impl Patches {
         tension_unit: f64,
         largest_cotangent: f64,
     ) -> Self {
-        let [control_level, surface_level] = [control, surface].map(|level| &network.levels()[level]);
+        let control_level = &network.levels()[control];
+        let surface_level = network.level(surface);
         let count = network.boundaries().len();
         let mobility_unit = network.mean_mobility();
-        let control_elements = by_boundary(count, &control_level.boundary_of);
-        let surface_elements = by_boundary(count, &surface_level.boundary_of);
+        let control_elements = BoundaryElements::of_level(control_level, count);
+        let surface_elements = BoundaryElements::of_level(surface_level, count);
         let patches: Vec<Patch> = (0..count)
             .into_par_iter()
             .map(|boundary| {
-                let surface = (surface > control).then(|| {
-                    (network.stencils(control), &surface_level.mesh, surface_elements[boundary].as_slice())
-                });
+                let surface = (surface > control)
+                    .then(|| local_elements(surface_level.elements(), surface_elements.of(boundary)));
                 let law = Law {
                     tension: in_unit(network.tensions()[boundary], tension_unit),
                     mobility: in_unit(network.mobilities()[boundary], mobility_unit),
                     share: if network.boundaries()[boundary].twin.is_some() { 0.5 } else { 1.0 },
                 };
-                new_patch(&control_level.mesh, &control_elements[boundary], surface, law)
+                let numbers: Vec<u32> = control_elements.of(boundary).collect();
+                new_patch(&control_level.mesh, &numbers, surface, law)
             })
             .collect();
         let starts = |length: fn(&Patch) -> usize| {
@@ -140,46 +143,31 @@ impl Patches {
     }
 }
 
-/// The numbers of each boundary's elements.
-pub(crate) fn by_boundary(boundary_count: usize, boundary_of: &[BoundaryId]) -> Vec<Vec<u32>> {
-    let mut elements = vec![Vec::new(); boundary_count];
-    for (element, boundary) in (0u32..).zip(boundary_of) {
-        elements[boundary.index()].push(element);
+/// Some elements in terms of their own points, and these points, sorted.
+pub(crate) fn local_elements(
+    all: crate::Elements<'_>,
+    elements: impl Iterator<Item = u32> + Clone,
+) -> (Vec<u32>, Elements) {
+    let mut points = Vec::with_capacity(3 * elements.size_hint().0);
+    for element in elements.clone() {
+        points.extend_from_slice(&all.corners(element));
     }
-    elements
-}
-
-/// Some elements of a mesh in terms of their own points, and these points, sorted.
-pub(crate) fn local_elements(mesh: &Mesh, elements: &[u32]) -> (Vec<u32>, Elements) {
-    let mut points: Vec<u32> = match mesh {
-        Mesh::Triangles(mesh) => elements.iter().flat_map(|e| mesh.triangles()[*e as usize]).collect(),
-        Mesh::Segments(mesh) => elements.iter().flat_map(|e| mesh.segments()[*e as usize]).collect(),
-    };
     points.sort_unstable();
     points.dedup();
     let local = |point: u32| index_in(&points, point);
-    let elements = match mesh {
-        Mesh::Triangles(mesh) => {
-            Elements::Triangles(elements.iter().map(|e| mesh.triangles()[*e as usize].map(local)).collect())
-        }
-        Mesh::Segments(mesh) => {
-            Elements::Segments(elements.iter().map(|e| mesh.segments()[*e as usize].map(local)).collect())
-        }
+    let elements = match all.dimension() {
+        Dimension::Three => Elements::Triangles(elements.map(|e| all.points(e).map(local)).collect()),
+        Dimension::Two => Elements::Segments(elements.map(|e| all.points(e).map(local)).collect()),
     };
     (points, elements)
 }
 
-fn new_patch(
-    control: &Mesh,
-    numbers: &[u32],
-    surface: Option<(&StencilTable, &Mesh, &[u32])>,
-    law: Law,
-) -> Patch {
-    let (control_points, elements) = local_elements(control, numbers);
+fn new_patch(control: &Mesh, numbers: &[u32], surface: Option<(Vec<u32>, Elements)>, law: Law) -> Patch {
+    let (control_points, elements) = local_elements(control.into(), numbers.iter().copied());
     let (edges, edges_across) = local_edges(control, numbers, &control_points);
-    let refinement = surface.map(|(stencils, mesh, numbers)| {
-        let (points, elements) = local_elements(mesh, numbers);
-        Refinement { stencils: LocalStencils::new(stencils, &control_points, &points), elements }
+    let refinement = surface.map(|(points, elements)| Refinement {
+        stencils: LocalStencils::new(control, &control_points, &points),
+        elements,
     });
     Patch { control_points, elements, edges, edges_across, refinement, law }
 }

@@ -10,7 +10,7 @@ use glam::DVec3;
 use subzero::{FaceId, VertexRule};
 use voronoi::Dimension;
 
-use crate::check::folds::{element_normals, folded_pairs};
+use crate::check::folds::{element_normals, folded_neighbors, folded_pairs};
 use crate::energy::local_size::LocalSize;
 use crate::energy::patches::{Patches, Terms};
 use crate::flow::assembly::{Unknowns, assemble, gradient};
@@ -23,11 +23,13 @@ use crate::flow::tied_points::{ATTEMPTS, Numbering, TiedPoints};
 use crate::flow::tuning::Tuning;
 use crate::measures::rms_residual;
 use crate::mesh::adjacency::Adjacency;
+use crate::mesh::boundary_elements::{BoundaryElements, BoundaryNeighbors};
 use crate::mesh::volume::volumes_of_grains;
 use crate::solver::conjugate_gradients::dot;
-use crate::{Freedom, GrainId, Level, Mesh, Network, NetworkError, Surface, Volumes};
+use crate::{Freedom, GrainId, Level, LevelView, Mesh, Network, NetworkError, Surface, Volumes};
 use best::{Best, Defects};
 pub(crate) use growth::Grown;
+pub(crate) use volumes::has_kept_volumes;
 
 /// Most edges of the control mesh, as long as the mean, to a feature. Fans have three.
 const FEATURE_EDGES: f64 = 6.0;
@@ -104,13 +106,13 @@ impl<'a> Flow<'a> {
         tension_unit: f64,
         tuning: Tuning,
     ) -> Self {
-        let surface = (network.levels().len() - 1).min(level + 1);
+        let surface = network.level_count().min(level + 1);
         let groups = TiedPoints::new(&network.levels()[level]);
         let patches = Patches::new(network, level, surface, tension_unit, tuning.largest_cotangent);
         let unit = tuning.small_grain * network.mean_grain_size();
         let sizes =
             LocalSize::new(network.domain().dimension(), unit).at_points(network, level, &patches, volumes);
-        let neighbors = Adjacency::of_level(&network.levels()[surface]).inner;
+        let neighbors = Adjacency::of_level(network.level(surface)).inner.pairs();
         Self { network, patches, sizes, level, surface, neighbors, groups, volumes, tuning }
     }
 
@@ -334,9 +336,9 @@ impl<'a> Flow<'a> {
         let Mesh::Triangles(_) = self.control_mesh() else { return None };
         let residual = rms_residual(self.network, self.surface(), &surface.points)?;
         let folds = if self.surface == self.finest() {
-            finest.folds(&surface.points, &surface.normals)
+            finest.folds(&surface.points)
         } else {
-            finest.folds_of(&self.network.subdivide_between(self.surface, self.finest(), &surface.points))
+            finest.folds(&self.network.subdivide_between(self.surface, self.finest(), &surface.points))
         };
         Some(Defects { has_folds: !folds.is_empty(), residual })
     }
@@ -376,7 +378,7 @@ impl<'a> Flow<'a> {
     }
 
     fn finest(&self) -> usize {
-        self.network.levels().len() - 1
+        self.network.level_count()
     }
 
     /// Where volumes are free the flow itself is asked for: nothing is held but what a step would fold.
@@ -387,8 +389,8 @@ impl<'a> Flow<'a> {
         }
     }
 
-    fn surface(&self) -> &'a Level {
-        &self.network.levels()[self.surface]
+    fn surface(&self) -> LevelView<'a> {
+        self.network.level(self.surface)
     }
 
     fn control_mesh(&self) -> &'a Mesh {
@@ -414,18 +416,16 @@ impl<'a> Flow<'a> {
 
     /// The points that each element depends on which is folded on the finest level, or has passed another.
     fn folded_places(&self, surface: &[DVec3], finest: &LevelSectors<'_>) -> Vec<Vec<u32>> {
-        let folds = finest.folds_of(surface).into_iter().flatten();
+        let folds = finest.folds(surface).into_iter().flatten();
         folds.map(|element| self.dependencies(self.finest(), element)).collect()
     }
 
     /// The grains beside what is folded on the finest level, in order.
     fn folded_grains(&self, surface: &[DVec3], finest: &LevelSectors<'_>) -> Vec<GrainId> {
         let level = self.network.finest();
-        let folds = finest.folds_of(surface).into_iter().flatten();
-        let sides = folds.flat_map(|element| {
-            let boundary = level.boundary_of[element as usize];
-            self.network.boundaries()[boundary.index()].sides
-        });
+        let folds = finest.folds(surface).into_iter().flatten();
+        let sides =
+            folds.flat_map(|element| self.network.boundaries()[level.boundary(element).index()].sides);
         let mut grains: Vec<GrainId> = sides.filter_map(|side| side.grain()).collect();
         grains.sort_unstable();
         grains.dedup();
@@ -453,17 +453,18 @@ impl<'a> Flow<'a> {
 
     /// All control points that an element of a level depends on; those of the surface's element that it descends from.
     fn dependencies(&self, level: usize, element: u32) -> Vec<u32> {
-        let element = ancestor(&self.network.levels()[self.surface..=level], element) as usize;
-        let vertices: &[u32] = match &self.surface().mesh {
-            Mesh::Triangles(mesh) => &mesh.triangles()[element],
-            Mesh::Segments(mesh) => &mesh.segments()[element],
-        };
+        let element = ancestor(&self.network.levels()[self.surface..level], element);
+        let vertices = self.surface().elements().corners(element);
         if self.level == self.surface {
             return vertices.to_vec();
         }
-        let rows =
-            vertices.iter().map(|vertex| self.network.stencils(self.level).stencil(*vertex as usize).0);
-        rows.flatten().copied().collect()
+        let mut entries = Vec::new();
+        let mut points = Vec::new();
+        for vertex in vertices.iter() {
+            self.control_mesh().stencil(*vertex, &mut entries);
+            points.extend(entries.iter().map(|(point, _)| *point));
+        }
+        points
     }
 }
 
@@ -480,29 +481,27 @@ fn mean_edge(mesh: &Mesh, points: &[DVec3]) -> f64 {
 
 /// How the elements of a level meet.
 struct LevelSectors<'a> {
-    level: &'a Level,
     dihedral_sectors: DihedralSectors,
-    /// Pairs of neighbours in one boundary.
-    neighbors: Vec<[u32; 2]>,
+    level: LevelView<'a>,
+    boundaries: BoundaryElements<'a>,
+    neighbors: BoundaryNeighbors<'a>,
 }
 
 impl<'a> LevelSectors<'a> {
     fn new(network: &'a Network, level: usize) -> Self {
-        let level = &network.levels()[level];
+        let level = network.level(level);
+        let sides = network.sides();
+        let surface = Surface::of_level(level, &[], &sides);
         let adjacency = Adjacency::of_level(level);
-        let dihedral_sectors =
-            DihedralSectors::new(&Surface::of_level(level, &[], &network.sides()), &adjacency);
-        Self { level, dihedral_sectors, neighbors: adjacency.inner }
+        let boundaries = BoundaryElements::of_level(level, sides.len());
+        let neighbors = BoundaryNeighbors::new(level.labels(), &boundaries, &adjacency);
+        Self { dihedral_sectors: DihedralSectors::new(&surface, &adjacency), level, boundaries, neighbors }
     }
 
     /// Pairs of elements that are folded, or have passed each other.
-    fn folds_of(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
-        self.folds(points, &element_normals(self.level, points))
-    }
-
-    /// The same, given the normals of the elements.
-    fn folds(&self, points: &[DVec3], normals: &[DVec3]) -> Vec<[u32; 2]> {
-        let mut folds = folded_pairs(&self.neighbors, normals, 0.0);
+    fn folds(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
+        let elements = self.level.elements();
+        let mut folds = folded_neighbors(elements, points, &self.boundaries, &self.neighbors, 0.0);
         folds.extend(self.dihedral_sectors.turned(points));
         folds
     }
@@ -512,9 +511,9 @@ fn displaced(points: &[DVec3], moves: &[DVec3]) -> Vec<DVec3> {
     points.iter().zip(moves).map(|(point, by)| *point + *by).collect()
 }
 
-/// The element of the first of some consecutive levels that an element of the last descends from.
+/// The element of the first of some consecutive levels that an element of the level after the last descends from.
 fn ancestor(levels: &[Level], element: u32) -> u32 {
-    levels[..levels.len() - 1].iter().rev().fold(element, |element, parent| match &parent.mesh {
+    levels.iter().rev().fold(element, |element, parent| match &parent.mesh {
         Mesh::Triangles(mesh) => mesh.counts().triangle_parent(FaceId(element)).0,
         Mesh::Segments(_) => element / 2,
     })

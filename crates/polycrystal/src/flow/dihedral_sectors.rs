@@ -28,10 +28,12 @@ struct DihedralSector {
 }
 
 impl DihedralSectors {
-    pub(crate) fn new(surface: &Surface<'_>, adjacency: &Adjacency) -> Self {
+    pub(crate) fn new(surface: &Surface<'_>, adjacency: &Adjacency<'_>) -> Self {
         let mut dihedral_sectors = Vec::new();
-        let Elements::Triangles(triangles) = surface.elements else { return Self { dihedral_sectors } };
-        let apex = |at: &Incidence| triangles[at.element as usize][usize::from((at.corner + 2) % 3)];
+        if let Elements::Segments(_) = surface.elements {
+            return Self { dihedral_sectors };
+        }
+        let apex = |at: &Incidence| surface.elements.corners(at.element)[usize::from((at.corner + 2) % 3)];
         let mut incidences: Vec<(Side, &Incidence, f64)> = Vec::new();
         for edge in adjacency.non_manifold_edges() {
             incidences.clear();

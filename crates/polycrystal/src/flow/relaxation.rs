@@ -103,7 +103,7 @@ impl Relaxed {
         if self.is_flat {
             return network.divide(&self.points);
         }
-        network.subdivide_between(self.level, network.levels().len() - 1, &self.points)
+        network.subdivide_between(self.level, network.level_count(), &self.points)
     }
 }
 

@@ -11,7 +11,7 @@ use subzero::{FaceId, VertexRule};
 use crate::energy::patch::{Elements, LocalStencils, index_in};
 use crate::energy::patches::local_elements;
 use crate::mesh::triangle_quality::squared_sine;
-use crate::{BoundaryId, Freedom, Mesh, Network};
+use crate::{Freedom, LevelView, Mesh, Network};
 
 /// k: the higher, the more the thinnest triangle alone counts.
 const POWER: i32 = 3;
@@ -70,13 +70,13 @@ impl Room {
         movable: &[u32],
         points: &[DVec3],
     ) -> Option<Self> {
-        let levels = &network.levels()[level..];
-        let Mesh::Triangles(mesh) = &levels[0].mesh else { return None };
-        let (own, triangles) = local_triangles(&levels[0].mesh, &elements)?;
+        let coarsest = &network.levels()[level];
+        let Mesh::Triangles(mesh) = &coarsest.mesh else { return None };
+        let (own, triangles) = local_triangles((&coarsest.mesh).into(), &elements)?;
         let start: Vec<DVec3> = own.iter().map(|point| points[*point as usize]).collect();
         let normals = vertex_normals(&triangles, &start);
         let movable = movable.iter().map(|point| {
-            let walls = network.freedom(levels[0].walls[*point as usize]);
+            let walls = network.freedom(coarsest.walls[*point as usize]);
             let place = index_in(&own, *point);
             let (freedom, ease) = if mesh.vertex_rule(*point) == VertexRule::Smooth {
                 (walls.and(Freedom::InPlane(normals[place as usize])), 1.0)
@@ -89,23 +89,24 @@ impl Room {
         let mut room =
             Self { points: own.clone(), start, movable, stencils: Vec::new(), triangles, facing: Vec::new() };
         let mut coarser = own;
-        for (number, finer) in (level..).zip(&levels[1..]) {
-            let Mesh::Triangles(mesh) = &network.levels()[number].mesh else { return None };
+        for finer in level + 1..=network.level_count() {
+            let coarse = &network.levels()[finer - 1].mesh;
+            let Mesh::Triangles(mesh) = coarse else { return None };
             let children = |element: &u32| mesh.counts().triangle_children(FaceId(*element));
             elements = elements.iter().flat_map(children).map(|triangle| triangle.0).collect();
-            let (points, triangles) = local_triangles(&finer.mesh, &elements)?;
-            room.stencils.push(LocalStencils::new(network.stencils(number), &coarser, &points));
+            let (points, triangles) = local_triangles(network.level(finer).elements(), &elements)?;
+            room.stencils.push(LocalStencils::new(coarse, &coarser, &points));
             (coarser, room.triangles) = (points, triangles);
         }
-        room.face(&elements, &levels[levels.len() - 1].boundary_of);
+        room.face(&elements, network.finest());
         Some(room)
     }
 
     /// Remembers where triangles face, smoothed within each boundary.
-    fn face(&mut self, elements: &[u32], boundary_of: &[BoundaryId]) {
+    fn face(&mut self, elements: &[u32], finest: LevelView<'_>) {
         let surface = self.surfaces(&self.start).pop().expect("the level itself is one");
         let mut rest = self.triangles.as_slice();
-        for part in elements.chunk_by(|a, b| boundary_of[*a as usize] == boundary_of[*b as usize]) {
+        for part in elements.chunk_by(|a, b| finest.boundary(*a) == finest.boundary(*b)) {
             let triangles;
             (triangles, rest) = rest.split_at(part.len());
             let normals = vertex_normals(triangles, &surface);
@@ -232,8 +233,8 @@ struct Distortion {
 }
 
 /// Some elements of a mesh in terms of their own points, and these points, sorted.
-fn local_triangles(mesh: &Mesh, elements: &[u32]) -> Option<(Vec<u32>, Vec<[u32; 3]>)> {
-    match local_elements(mesh, elements) {
+fn local_triangles(all: crate::Elements<'_>, elements: &[u32]) -> Option<(Vec<u32>, Vec<[u32; 3]>)> {
+    match local_elements(all, elements.iter().copied()) {
         (points, Elements::Triangles(triangles)) => Some((points, triangles)),
         (_, Elements::Segments(_)) => None,
     }

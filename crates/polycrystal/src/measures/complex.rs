@@ -2,9 +2,9 @@ use std::borrow::Cow;
 
 use voronoi::PeriodicVertex;
 
-use crate::mesh::adjacency::{Adjacency, Incidence};
+use crate::mesh::adjacency::{Adjacency, Incidence, Inner};
 use crate::mesh::angles::{DihedralSector, WeightedAngle, angles, dihedral_sectors};
-use crate::{BoundaryId, Elements, Level, Network, Side, Surface};
+use crate::{BoundaryId, Elements, LevelView, Network, Side, Surface};
 
 /// A surface with every edge once: in a periodic network without what is a copy of something else, and with the grains
 /// beyond the period as sides.
@@ -18,8 +18,8 @@ pub(crate) struct Complex<'a> {
     pub(crate) originals: Vec<BoundaryId>,
     /// Of each point the one that it is a copy of; empty where there are no copies.
     points: Vec<u32>,
-    /// Places inside boundaries: two elements each.
-    pub(crate) inner: Vec<[u32; 2]>,
+    /// The pairs of elements at edges inside boundaries, copies among them.
+    inner: Inner<'a>,
     /// The incidences of all other edges, sorted by edge.
     incidences: Vec<Incidence>,
 }
@@ -36,8 +36,8 @@ impl<'a> Complex<'a> {
     }
 
     /// A level of a network, whose surface this is.
-    pub(crate) fn of_level(network: &'a Network, level: &Level, surface: &Surface<'a>) -> Self {
-        let Adjacency { mut inner, mut incidences } = Adjacency::of_level(level);
+    pub(crate) fn of_level(network: &'a Network, level: LevelView<'a>, surface: &Surface<'a>) -> Self {
+        let Adjacency { inner, mut incidences } = Adjacency::of_level(level);
         let boundaries = network.boundaries();
         let originals: Vec<BoundaryId> = (0u32..)
             .map(BoundaryId)
@@ -47,13 +47,11 @@ impl<'a> Complex<'a> {
         let sides: Vec<[Side; 2]> = boundaries.iter().map(|at| at.sides_across(boundaries)).collect();
         let mut points = Vec::new();
         if network.domain().is_periodic() {
-            let is_original = |element: u32| {
-                let boundary = surface.boundary_of[element as usize];
+            incidences.retain(|at| {
+                let boundary = surface.boundary(at.element);
                 originals[boundary.index()] == boundary
-            };
-            inner.retain(|pair| is_original(pair[0]));
-            incidences.retain(|at| is_original(at.element));
-            let original_of = level.copies.originals(level.vertex_count());
+            });
+            let original_of = level.copies().originals(level.vertex_count());
             unite_edges(&mut incidences, surface.elements, &original_of);
             points = original_of.into_iter().map(|original| original.vertex).collect();
         }
@@ -73,7 +71,14 @@ impl<'a> Complex<'a> {
 
     /// The boundary of an element that is no copy.
     pub(crate) fn boundary(&self, at: &Incidence) -> BoundaryId {
-        self.surface.boundary_of[at.element as usize]
+        self.surface.boundary(at.element)
+    }
+
+    /// Pairs of elements that meet inside a boundary that is no copy.
+    pub(crate) fn inner_pairs(&self) -> Vec<[u32; 2]> {
+        let mut pairs = self.inner.pairs();
+        pairs.retain(|pair| self.is_original(self.surface.boundary(pair[0])));
+        pairs
     }
 
     /// The incidences of each edge that is not inside a boundary.

@@ -6,7 +6,7 @@ use crate::measures::complex::Complex;
 use crate::measures::lines::{Line, Lines};
 use crate::mesh::adjacency::Incidence;
 use crate::mesh::angles::{edge_length, leg};
-use crate::{Elements, Level, Network, Side, Surface};
+use crate::{Elements, LevelView, Network, Side, Surface};
 
 /// Cosine beyond which two walls count as one plane, across a line on it.
 const ONE_PLANE: f64 = -0.999_999;
@@ -30,7 +30,7 @@ pub struct HerringResidual {
 /// When there is not one point per vertex.
 pub fn herring_residual(network: &Network, points: &[DVec3]) -> Option<HerringResidual> {
     of_level(network, network.finest(), points, |complex| match complex.surface.elements {
-        Elements::Triangles(_) => {
+        Elements::Triangles(_) | Elements::Refined(_) => {
             let lines = Lines::of(complex);
             lines.lines.iter().filter_map(|line| complex.residual_of_line(line)).fold(0.0, f64::max)
         }
@@ -39,13 +39,13 @@ pub fn herring_residual(network: &Network, points: &[DVec3]) -> Option<HerringRe
 }
 
 /// The root mean square alone, on any level.
-pub(crate) fn rms_residual(network: &Network, level: &Level, points: &[DVec3]) -> Option<f64> {
+pub(crate) fn rms_residual(network: &Network, level: LevelView<'_>, points: &[DVec3]) -> Option<f64> {
     Some(of_level(network, level, points, |_| 0.0)?.rms)
 }
 
 fn of_level(
     network: &Network,
-    level: &Level,
+    level: LevelView<'_>,
     points: &[DVec3],
     largest: impl FnOnce(&Complex<'_>) -> f64,
 ) -> Option<HerringResidual> {

@@ -6,6 +6,7 @@ use voronoi::Dimension;
 
 use crate::measures::complex::Complex;
 use crate::mesh::angles::statistics;
+use crate::mesh::boundary_elements::BoundaryElements;
 use crate::{AngleStatistics, BoundaryId, GrainId, Side};
 
 /// What a network in the plane is like.
@@ -92,12 +93,12 @@ pub struct TriplePointMeasures {
 pub(crate) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeasures {
     let surface = &complex.surface;
     let at = |point: u32| surface.points[point as usize].truncate();
-    let by_boundary = surface.elements_by_boundary();
+    let by_boundary = BoundaryElements::new(surface);
     let ends_of =
-        |boundary: usize| by_boundary.of(boundary).iter().map(|segment| segments[*segment as usize].map(at));
+        |boundary: usize| by_boundary.of(boundary).map(|segment| segments[segment as usize].map(at));
     let mut sums: Vec<Sums> = (0..surface.sides.len()).map(|boundary| Sums::of(ends_of(boundary))).collect();
-    for pair in &complex.inner {
-        let boundary = surface.boundary_of[pair[0] as usize];
+    for pair in &complex.inner_pairs() {
+        let boundary = surface.boundary(pair[0]);
         let [one, other] = pair.map(|segment| segments[segment as usize]);
         let [before, after] = if one[1] == other[0] { [one, other] } else { [other, one] };
         let along = [before, after].map(|[start, end]| at(end) - at(start));

@@ -7,6 +7,7 @@ use voronoi::Dimension;
 use crate::measures::complex::Complex;
 use crate::measures::lines::{Line, Lines};
 use crate::mesh::angles::{edge_length, statistics};
+use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::volume::triangle_volume;
 use crate::{AngleStatistics, BoundaryId, GrainId, Side, Surface};
 
@@ -141,14 +142,13 @@ pub struct QuadruplePointMeasures {
 pub(crate) fn measure(complex: &Complex<'_>, triangles: &[[u32; 3]]) -> SpaceMeasures {
     let surface = &complex.surface;
     let at = |corner: u32| surface.points[corner as usize];
-    let by_boundary = surface.elements_by_boundary();
-    let corners_of = |boundary: usize| {
-        by_boundary.of(boundary).iter().map(|triangle| triangles[*triangle as usize].map(at))
-    };
+    let by_boundary = BoundaryElements::new(surface);
+    let corners_of =
+        |boundary: usize| by_boundary.of(boundary).map(|triangle| triangles[triangle as usize].map(at));
     let mut sums: Vec<Sums> =
         (0..surface.sides.len()).map(|boundary| Sums::of(corners_of(boundary))).collect();
-    for pair in &complex.inner {
-        let boundary = surface.boundary_of[pair[0] as usize];
+    for pair in &complex.inner_pairs() {
+        let boundary = surface.boundary(pair[0]);
         sums[boundary.index()].edges += bend(surface, *pair, &triangles[pair[0] as usize]);
     }
     let mut grains: BTreeMap<GrainId, GrainSums> = BTreeMap::new();

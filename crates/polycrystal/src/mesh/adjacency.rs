@@ -1,16 +1,59 @@
 use rayon::prelude::*;
 
-use subzero::{EdgeId, FaceId};
+use subzero::{EdgeId, FaceId, HalfEdgeId, TriangleMesh};
 
-use crate::{BoundaryId, Elements, Level, Mesh};
+use crate::{BoundaryId, Elements, LevelView, Mesh};
 
 /// How the elements of a surface meet: triangles in edges, segments in points. In the plane, "edge" means such a point.
 #[derive(Debug)]
-pub(crate) struct Adjacency {
+pub(crate) struct Adjacency<'a> {
     /// The two elements at each edge inside a boundary; both have the same orientation.
-    pub(crate) inner: Vec<[u32; 2]>,
+    pub(crate) inner: Inner<'a>,
     /// The incidences of all other edges, sorted by edge.
     pub(crate) incidences: Vec<Incidence>,
+}
+
+/// The pairs of elements at edges inside boundaries.
+#[derive(Debug)]
+pub(crate) enum Inner<'a> {
+    /// One by one.
+    Listed(Vec<[u32; 2]>),
+    /// As a mesh has them whose triangles have these boundaries, or as they are one subdivision on from there.
+    OfMesh { mesh: &'a TriangleMesh, boundary_of: &'a [BoundaryId], is_refined: bool },
+}
+
+impl Inner<'_> {
+    /// All pairs, in the order of the edges.
+    pub(crate) fn pairs(&self) -> Vec<[u32; 2]> {
+        match self {
+            Self::Listed(pairs) => pairs.clone(),
+            Self::OfMesh { mesh, boundary_of, is_refined } => {
+                let edges = (0..mesh.counts().edges).into_par_iter();
+                let inner = edges.filter_map(|edge| inner_half_edges(mesh, boundary_of, EdgeId(edge)));
+                if !is_refined {
+                    return inner.map(|pair| pair.map(|h| h.triangle().0)).collect();
+                }
+                // A triangle at a corner has the number of the half-edge that starts there.
+                let halves = inner.flat_map_iter(|[along, against]| {
+                    [[along.0, against.next().0], [along.next().0, against.0]]
+                });
+                let half_edges = 3 * mesh.counts().triangles;
+                let inside = (0..half_edges).into_par_iter().map(|h| [h, half_edges + h / 3]);
+                halves.chain(inside).collect()
+            }
+        }
+    }
+}
+
+/// The two half-edges of an edge between two triangles of one boundary.
+fn inner_half_edges(
+    mesh: &TriangleMesh,
+    boundary_of: &[BoundaryId],
+    edge: EdgeId,
+) -> Option<[HalfEdgeId; 2]> {
+    let pair = mesh.edge_half_edges(edge)?;
+    let [one, other] = pair.map(|h| boundary_of[h.triangle().index()]);
+    (one == other).then_some(pair)
 }
 
 /// A triangle at an edge that is not inside a boundary; in the plane, a segment at such a point.
@@ -28,12 +71,10 @@ impl Incidence {
     /// The edge as its triangle runs along it; in the plane, the point twice.
     pub(crate) fn ends(&self, elements: Elements<'_>) -> [u32; 2] {
         let corner = usize::from(self.corner);
+        let corners = elements.corners(self.element);
         match elements {
-            Elements::Triangles(triangles) => {
-                let triangle = triangles[self.element as usize];
-                [triangle[corner], triangle[(corner + 1) % 3]]
-            }
-            Elements::Segments(segments) => [segments[self.element as usize][corner]; 2],
+            Elements::Triangles(_) | Elements::Refined(_) => [corners[corner], corners[(corner + 1) % 3]],
+            Elements::Segments(_) => [corners[corner]; 2],
         }
     }
 
@@ -41,7 +82,7 @@ impl Incidence {
     /// -1 where against it.
     pub(crate) fn direction(&self, elements: Elements<'_>) -> i32 {
         let is_along = match elements {
-            Elements::Triangles(_) => {
+            Elements::Triangles(_) | Elements::Refined(_) => {
                 let [start, end] = self.ends(elements);
                 start < end
             }
@@ -51,50 +92,48 @@ impl Incidence {
     }
 }
 
-impl Adjacency {
+impl<'a> Adjacency<'a> {
     /// The adjacency of a level, from the edges that its mesh knows.
-    pub(crate) fn of_level(level: &Level) -> Self {
-        let boundary_of = &level.boundary_of;
-        let is_inner = |pair: &[u32; 2]| boundary_of[pair[0] as usize] == boundary_of[pair[1] as usize];
-        let inner_pair = |pair: Option<[u32; 2]>| pair.filter(is_inner);
-        let (inner, mut incidences): (Vec<_>, Vec<_>) = match &level.mesh {
+    pub(crate) fn of_level(level: impl Into<LevelView<'a>>) -> Self {
+        let level = level.into();
+        let held = level.held();
+        let boundary_of = &held.boundary_of;
+        match &held.mesh {
             Mesh::Triangles(mesh) => {
-                let numbers = |pair: [FaceId; 2]| pair.map(|triangle| triangle.0);
-                let edge_count = u32::try_from(mesh.edge_count()).expect("ids fit 32 bits");
-                let pair = |edge: u32| inner_pair(mesh.edge_triangles(EdgeId(edge)).map(numbers));
-                // A bit for each edge: they stay in the cache while the triangles go by.
-                let words = (0..edge_count.div_ceil(64)).into_par_iter().map(|word| {
-                    let edges = 64 * word..edge_count.min(64 * word + 64);
-                    edges.fold(0u64, |bits, edge| bits | u64::from(pair(edge).is_none()) << (edge % 64))
-                });
-                let non_manifold: Vec<u64> = words.collect();
-                let is_non_manifold = |edge: u32| non_manifold[(edge / 64) as usize] >> (edge % 64) & 1 == 1;
-                let pairs = (0..edge_count).into_par_iter().filter(|edge| !is_non_manifold(*edge));
-                let pairs = pairs.filter_map(|edge| mesh.edge_triangles(EdgeId(edge)).map(numbers));
-                let elements = 0..u32::try_from(level.element_count()).expect("ids fit 32 bits");
-                let incidences = elements.into_par_iter().flat_map_iter(|element| {
-                    let edges = (0u8..).zip(mesh.triangle_edges(FaceId(element)));
-                    let non_manifold_edges = edges.filter(|(_, edge)| is_non_manifold(edge.0));
-                    non_manifold_edges.map(move |(corner, edge)| Incidence { edge: edge.0, element, corner })
-                });
-                (pairs.collect(), incidences.collect())
+                Self::of_mesh(mesh, boundary_of, matches!(level, LevelView::Refined { .. }))
             }
             Mesh::Segments(mesh) => {
-                let numbers = |pair: [EdgeId; 2]| pair.map(|segment| segment.0);
+                let is_inner =
+                    |pair: &[u32; 2]| boundary_of[pair[0] as usize] == boundary_of[pair[1] as usize];
+                let pair = |point: u32| {
+                    let segments = mesh.vertex_segments(point)?.map(|segment| segment.0);
+                    Some(segments).filter(is_inner)
+                };
                 let points = 0..u32::try_from(mesh.vertex_count()).expect("ids fit 32 bits");
-                let inner = points.filter_map(|point| inner_pair(mesh.vertex_segments(point).map(numbers)));
                 let incidences = incidences_of_segments(mesh.segments());
-                (inner.collect(), incidences.filter(|at| mesh.vertex_segments(at.edge).is_none()).collect())
+                let mut incidences: Vec<Incidence> =
+                    incidences.filter(|at| mesh.vertex_segments(at.edge).is_none()).collect();
+                incidences.par_sort_unstable();
+                Self { inner: Inner::Listed(points.filter_map(pair).collect()), incidences }
             }
-        };
+        }
+    }
+
+    /// The adjacency of a mesh whose triangles have these boundaries, or of one subdivision on from there.
+    fn of_mesh(mesh: &'a TriangleMesh, boundary_of: &'a [BoundaryId], is_refined: bool) -> Self {
+        let mut incidences = incidences_of_mesh(mesh, boundary_of);
+        if is_refined {
+            incidences = refined_incidences(mesh, &incidences);
+        }
         incidences.par_sort_unstable();
-        Self { inner, incidences }
+        Self { inner: Inner::OfMesh { mesh, boundary_of, is_refined }, incidences }
     }
 
     /// The adjacency of any elements.
-    pub(crate) fn of_elements(elements: Elements<'_>, boundary_of: &[BoundaryId]) -> Self {
+    pub(crate) fn of_elements(elements: Elements<'a>, boundary_of: &'a [BoundaryId]) -> Self {
         let mut incidences: Vec<Incidence> = match elements {
             Elements::Triangles(triangles) => incidences_of_triangles(triangles),
+            Elements::Refined(mesh) => return Self::of_mesh(mesh, boundary_of, true),
             Elements::Segments(segments) => incidences_of_segments(segments).collect(),
         };
         incidences.par_sort_unstable();
@@ -112,13 +151,50 @@ impl Adjacency {
                 others.extend_from_slice(at);
             }
         }
-        Self { inner, incidences: others }
+        Self { inner: Inner::Listed(inner), incidences: others }
     }
 
     /// The incidences of each edge that is not inside a boundary.
     pub(crate) fn non_manifold_edges(&self) -> impl Iterator<Item = &[Incidence]> {
-        self.incidences.chunk_by(|a, b| a.edge == b.edge)
+        by_edge(&self.incidences)
     }
+}
+
+/// The incidences of each edge, where they are sorted by edge.
+pub(crate) fn by_edge(incidences: &[Incidence]) -> impl Iterator<Item = &[Incidence]> {
+    incidences.chunk_by(|a, b| a.edge == b.edge)
+}
+
+/// The incidences of all edges of a mesh that are not inside a boundary.
+fn incidences_of_mesh(mesh: &TriangleMesh, boundary_of: &[BoundaryId]) -> Vec<Incidence> {
+    let edge_count = mesh.counts().edges;
+    // A bit for each edge: they stay in the cache while the triangles go by.
+    let is_non_manifold_edge = |edge: u32| inner_half_edges(mesh, boundary_of, EdgeId(edge)).is_none();
+    let words = (0..edge_count.div_ceil(64)).into_par_iter().map(|word| {
+        let edges = 64 * word..edge_count.min(64 * word + 64);
+        edges.fold(0u64, |bits, edge| bits | u64::from(is_non_manifold_edge(edge)) << (edge % 64))
+    });
+    let non_manifold: Vec<u64> = words.collect();
+    let is_non_manifold = |edge: u32| non_manifold[(edge / 64) as usize] >> (edge % 64) & 1 == 1;
+    let incidences = (0..mesh.counts().triangles).into_par_iter().flat_map_iter(|element| {
+        let edges = (0u8..).zip(mesh.triangle_edges(FaceId(element)));
+        let non_manifold_edges = edges.filter(|(_, edge)| is_non_manifold(edge.0));
+        non_manifold_edges.map(move |(corner, edge)| Incidence { edge: edge.0, element, corner })
+    });
+    incidences.collect()
+}
+
+/// The incidences one subdivision on: each triangle along an edge leaves two at its halves.
+fn refined_incidences(mesh: &TriangleMesh, incidences: &[Incidence]) -> Vec<Incidence> {
+    let halves = incidences.par_iter().flat_map_iter(|at| {
+        let start = HalfEdgeId(3 * at.element + u32::from(at.corner));
+        // Triangles at corners have the numbers of the half-edges that start there: the edge is their first, and the last of the next one.
+        [(start, 0), (start.next(), 2)].map(|(child, corner)| {
+            let edge = mesh.refined_edge(HalfEdgeId(3 * child.0 + u32::from(corner)));
+            Incidence { edge: edge.0, element: child.0, corner }
+        })
+    });
+    halves.collect()
 }
 
 fn incidences_of_triangles(triangles: &[[u32; 3]]) -> Vec<Incidence> {

@@ -27,8 +27,7 @@ pub(crate) fn angles<'a>(
     sides: &[[Side; 2]],
     places: impl Iterator<Item = &'a [Incidence]>,
 ) -> impl Iterator<Item = WeightedAngle> {
-    let is_interior =
-        |at: &Incidence| !sides[surface.boundary_of[at.element as usize].index()].contains(&Side::Exterior);
+    let is_interior = |at: &Incidence| !sides[surface.boundary(at.element).index()].contains(&Side::Exterior);
     let triple = places.filter(move |at| at.len() == 3 && at.iter().all(is_interior));
     triple.flat_map(move |at| {
         let weight = edge_length(surface, at);
@@ -55,7 +54,7 @@ pub(crate) fn dihedral_sectors(
 ) -> Vec<DihedralSector> {
     let ends = |at: &Incidence| at.ends(surface.elements).map(|end| surface.points[end as usize]);
     let axis = match surface.elements {
-        Elements::Triangles(_) => {
+        Elements::Triangles(_) | Elements::Refined(_) => {
             let [start, end] = ends(&at[0]);
             (end - start).normalize_or_zero()
         }
@@ -66,10 +65,10 @@ pub(crate) fn dihedral_sectors(
     let mut directions: Vec<(f64, Side)> = at
         .iter()
         .map(|at| {
-            let [first, second] = sides[surface.boundary_of[at.element as usize].index()];
+            let [first, second] = sides[surface.boundary(at.element).index()];
             // A triangle that runs along the axis has its second side counter-clockwise of it.
             let is_along = match surface.elements {
-                Elements::Triangles(_) => {
+                Elements::Triangles(_) | Elements::Refined(_) => {
                     let [start, end] = ends(at);
                     (end - start).dot(axis) > 0.0
                 }
@@ -109,7 +108,7 @@ pub(crate) fn statistics(angles: impl Iterator<Item = WeightedAngle>) -> Option<
 /// The length of an edge; in the plane every point counts alike.
 pub(crate) fn edge_length(surface: &Surface<'_>, at: &[Incidence]) -> f64 {
     match surface.elements {
-        Elements::Triangles(_) => {
+        Elements::Triangles(_) | Elements::Refined(_) => {
             let [start, end] = at[0].ends(surface.elements).map(|end| surface.points[end as usize]);
             start.distance(end)
         }
@@ -122,7 +121,7 @@ pub(crate) fn leg(surface: &Surface<'_>, at: &Incidence) -> DVec3 {
     let corners = surface.elements.corners(at.element);
     let [start, end] = at.ends(surface.elements).map(|end| surface.points[end as usize]);
     match surface.elements {
-        Elements::Triangles(_) => {
+        Elements::Triangles(_) | Elements::Refined(_) => {
             let apex = surface.points[corners[usize::from((at.corner + 2) % 3)] as usize];
             let along = (end - start).normalize_or_zero();
             (apex - start).reject_from_normalized(along).normalize_or_zero()

@@ -1,9 +1,10 @@
 use rayon::prelude::*;
-use subzero::{EdgeId, MeshError, Refinement, StencilTable};
+use subzero::{EdgeId, MeshError};
 
+use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
 use crate::mesh::periodic::PeriodicCopies;
-use crate::{Boundary, BoundaryId, Mesh, NodeType, WallSet, WallSets};
+use crate::{Boundary, BoundaryId, Elements, Mesh, NodeType, WallSet, WallSets};
 
 /// The network's connectivity on one level of subdivision, without positions.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +27,132 @@ pub struct Level {
     pub(crate) at_edges: Vec<Meeting>,
 }
 
+/// One level of a network: held in memory, or known from the level before.
+#[derive(Debug, Clone, Copy)]
+pub enum LevelView<'a> {
+    /// In memory.
+    Held(&'a Level),
+    /// One subdivision on from a level in space: all of it follows from ids, but for the copies.
+    Refined {
+        /// The level before.
+        parent: &'a Level,
+        /// Which vertices are others moved by whole periods.
+        copies: &'a PeriodicCopies,
+        /// Number of subdivisions of the control mesh that lead to it.
+        generation: u8,
+    },
+}
+
+impl<'a> From<&'a Level> for LevelView<'a> {
+    fn from(level: &'a Level) -> Self {
+        Self::Held(level)
+    }
+}
+
+impl<'a> LevelView<'a> {
+    /// Number of vertices.
+    pub fn vertex_count(self) -> usize {
+        match self {
+            Self::Held(level) => level.vertex_count(),
+            Self::Refined { parent, .. } => parent.vertex_count() + parent.at_edges.len(),
+        }
+    }
+
+    /// Number of triangles or segments.
+    pub fn element_count(self) -> usize {
+        self.elements().len()
+    }
+
+    /// The triangles or segments.
+    pub fn elements(self) -> Elements<'a> {
+        match (self, &self.held().mesh) {
+            (Self::Refined { .. }, Mesh::Triangles(mesh)) => Elements::Refined(mesh),
+            (_, mesh) => mesh.into(),
+        }
+    }
+
+    /// The boundary of an element.
+    pub fn boundary(self, element: u32) -> BoundaryId {
+        self.labels()[self.elements().labelled(element) as usize]
+    }
+
+    /// The boundaries of all elements, in their order.
+    pub fn boundaries(self) -> impl Iterator<Item = BoundaryId> + use<'a> {
+        (0..id(self.element_count())).map(move |element| self.boundary(element))
+    }
+
+    /// What a vertex is part of.
+    pub fn node_type(self, vertex: usize) -> NodeType {
+        self.born(vertex).map_or_else(|| self.held().node_types[vertex], |at| at.node_type)
+    }
+
+    /// How many grains meet at a vertex, as of [`Level::grain_counts`].
+    pub fn grain_count(self, vertex: usize) -> u8 {
+        self.born(vertex).map_or_else(|| self.held().grain_counts[vertex], |at| at.grains)
+    }
+
+    /// The level on which a vertex was born.
+    pub fn generation(self, vertex: usize) -> u8 {
+        match self {
+            Self::Refined { parent, generation, .. } if vertex >= parent.vertex_count() => generation,
+            _ => self.held().generations[vertex],
+        }
+    }
+
+    /// The walls that a vertex stays on.
+    pub(crate) fn walls(self, vertex: usize, sets: &WallSets) -> WallSet {
+        let held = self.held();
+        match (self, &held.mesh) {
+            (Self::Refined { .. }, Mesh::Triangles(mesh)) if vertex >= held.vertex_count() => {
+                let ends = mesh.edge(EdgeId(id(vertex - held.vertex_count())));
+                common_walls(held, ends, sets)
+            }
+            _ => held.walls[vertex],
+        }
+    }
+
+    /// Which vertices are others moved by whole periods.
+    pub fn copies(self) -> &'a PeriodicCopies {
+        match self {
+            Self::Held(level) => &level.copies,
+            Self::Refined { copies, .. } => copies,
+        }
+    }
+
+    /// Of each vertex the one that it is a copy of, or itself.
+    pub fn originals(self) -> Vec<u32> {
+        let mut originals: Vec<u32> = (0u32..).take(self.vertex_count()).collect();
+        for pair in &self.copies().vertices {
+            originals[pair.secondary as usize] = pair.primary;
+        }
+        originals
+    }
+
+    /// What is in memory of it: the level itself, or the one before.
+    pub fn held(self) -> &'a Level {
+        match self {
+            Self::Held(level) | Self::Refined { parent: level, .. } => level,
+        }
+    }
+
+    /// The boundary of each element that is in memory.
+    pub(crate) fn labels(self) -> &'a [BoundaryId] {
+        &self.held().boundary_of
+    }
+
+    /// What meets where a vertex was born that the level in memory does not have.
+    fn born(self, vertex: usize) -> Option<&'a Meeting> {
+        let held = self.held();
+        vertex.checked_sub(held.vertex_count()).map(|edge| &held.at_edges[edge])
+    }
+}
+
+/// The walls of a vertex between two others. A line between two points of a wall lies in the wall: no element joins walls through the inside.
+fn common_walls(level: &Level, ends: [u32; 2], sets: &WallSets) -> WallSet {
+    let [a, b] = ends.map(|end| level.walls[end as usize]);
+    sets.intersection(a, b)
+}
+
 impl Level {
     /// Number of vertices.
     pub fn vertex_count(&self) -> usize {
@@ -37,24 +164,11 @@ impl Level {
         self.boundary_of.len()
     }
 
-    /// Of each vertex the one that it is a copy of, or itself.
-    pub fn originals(&self) -> Vec<u32> {
-        let mut originals: Vec<u32> = (0u32..).take(self.vertex_count()).collect();
-        for pair in &self.copies.vertices {
-            originals[pair.secondary as usize] = pair.primary;
-        }
-        originals
-    }
-
-    /// The next level, and how its points follow from this one's.
-    pub(crate) fn refine(
-        &self,
-        boundaries: &[Boundary],
-        sets: &WallSets,
-    ) -> Result<(Self, StencilTable), MeshError> {
+    /// The next level.
+    pub(crate) fn refine(&self, boundaries: &[Boundary], sets: &WallSets) -> Result<Self, MeshError> {
         match &self.mesh {
             Mesh::Triangles(mesh) => {
-                let Refinement { mesh: finer, stencils } = mesh.loop_refine()?;
+                let finer = Mesh::Triangles(mesh.refine_connectivity()?);
                 let edges = (0..mesh.counts().edges).into_par_iter();
                 let ends: Vec<[u32; 2]> = edges.map(|edge| mesh.edge(EdgeId(edge))).collect();
                 let triangles = self.element_count();
@@ -65,17 +179,14 @@ impl Level {
                 let halves = self.at_edges.iter().flat_map(|at| [*at; 2]);
                 let inside = (0..triangles).flat_map(|t| [self.inside(t, boundaries); 3]);
                 let at_edges = halves.chain(inside).collect();
-                let born = &self.at_edges;
-                let finer = Mesh::Triangles(finer);
-                Ok((self.child(finer, boundary_of, (&ends, sets), born, at_edges), stencils))
+                Ok(self.child(finer, boundary_of, (&ends, sets), &self.at_edges, at_edges))
             }
             Mesh::Segments(mesh) => {
-                let Refinement { mesh: finer, stencils } = mesh.refine()?;
+                let finer = Mesh::Segments(mesh.refine_connectivity()?);
                 let boundary_of = self.boundary_of.iter().flat_map(|boundary| [*boundary; 2]).collect();
                 let born: Vec<Meeting> =
                     (0..self.element_count()).map(|s| self.inside(s, boundaries)).collect();
-                let ends = (mesh.segments(), sets);
-                Ok((self.child(Mesh::Segments(finer), boundary_of, ends, &born, Vec::new()), stencils))
+                Ok(self.child(finer, boundary_of, (mesh.segments(), sets), &born, Vec::new()))
             }
         }
     }
@@ -97,11 +208,21 @@ impl Level {
         let mut grain_counts = self.grain_counts.clone();
         grain_counts.extend(born.iter().map(|at| at.grains));
         let mut walls = self.walls.clone();
-        // A line between two points of a wall lies in the wall: no element joins walls through the inside.
-        let common = |[a, b]: &[u32; 2]| sets.intersection(self.walls[*a as usize], self.walls[*b as usize]);
-        walls.extend(ends.iter().map(common));
-        let copies = self.copies.refined(self.vertex_count(), self.element_count(), &mesh);
+        walls.extend(ends.iter().map(|ends| common_walls(self, *ends, sets)));
+        let copies = self.refined_copies((&mesh).into());
         Self { mesh, boundary_of, node_types, grain_counts, generations, walls, copies, at_edges }
+    }
+
+    /// The copies on the next level in space, which itself is not made.
+    pub(crate) fn finest_copies(&self) -> Result<PeriodicCopies, MeshError> {
+        let Mesh::Triangles(mesh) = &self.mesh else { unreachable!("all levels in the plane are held") };
+        mesh.counts().refined()?;
+        Ok(self.refined_copies(Elements::Refined(mesh)))
+    }
+
+    /// The copies on the next level, which has these elements.
+    fn refined_copies(&self, finer: Elements<'_>) -> PeriodicCopies {
+        self.copies.refined(self.vertex_count(), self.element_count(), finer)
     }
 
     /// What meets inside an element.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use voronoi::{Domain, FaceId, PeriodicPair, PeriodicVertex, Tessellation, Translation};
 
-use crate::Mesh;
+use crate::Elements;
 use crate::mesh::id::id;
 
 /// On one level, the vertices and elements that are others moved by whole periods; none in a domain with walls only.
@@ -83,29 +83,29 @@ impl PeriodicCopies {
     }
 
     /// Those of the next level, whose elements are numbered as [`subzero::MeshCounts`] says.
-    pub(crate) fn refined(&self, vertex_count: usize, element_count: usize, finer: &Mesh) -> Self {
+    pub(crate) fn refined(&self, vertex_count: usize, element_count: usize, finer: Elements<'_>) -> Self {
         if self.elements.is_empty() {
             return Self::default();
         }
         let mut finer_copies = Self { vertices: self.vertices.clone(), elements: Vec::new() };
         let mut new = NewVertices::new(vertex_count);
         match finer {
-            Mesh::Triangles(finer) => {
+            Elements::Triangles(_) | Elements::Refined(_) => {
                 let mut places: Vec<(u32, Translation)> =
                     (0..id(vertex_count)).map(|vertex| (vertex, Translation::ZERO)).collect();
                 for pair in &self.vertices {
                     places[pair.secondary as usize] = (pair.primary, pair.translation);
                 }
-                let corners = finer.triangles();
+                let corners = |child: u32| finer.points::<3>(child);
                 for &PeriodicPair { secondary, primary, translation } in &self.elements {
                     for own in (0..3).map(|k| 3 * secondary + k) {
-                        let place = |child: u32| places[corners[child as usize][0] as usize];
+                        let place = |child: u32| places[corners(child)[0] as usize];
                         let (vertex, at) = place(own);
                         let matching = (0..3)
                             .map(|k| 3 * primary + k)
                             .find(|child| place(*child) == (vertex, at - translation));
                         let other = matching.expect("a copied triangle has copied corners");
-                        let ([_, a, b], [_, d, c]) = (corners[own as usize], corners[other as usize]);
+                        let ([_, a, b], [_, d, c]) = (corners(own), corners(other));
                         new.unite(a, c, translation);
                         new.unite(b, d, translation);
                         finer_copies.elements.push(PeriodicPair {
@@ -118,7 +118,7 @@ impl PeriodicCopies {
                     finer_copies.elements.push(PeriodicPair { secondary: own, primary: other, translation });
                 }
             }
-            Mesh::Segments(_) => {
+            Elements::Segments(_) => {
                 for &PeriodicPair { secondary, primary, translation } in &self.elements {
                     new.unite(id(vertex_count) + secondary, id(vertex_count) + primary, translation);
                     let halves = [0, 1].map(|half| PeriodicPair {

@@ -4,8 +4,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::Dimension;
 
-use crate::mesh::grouped::Grouped;
-use crate::{Boundary, Elements, GrainId, Surface};
+use crate::mesh::boundary_elements::BoundaryElements;
+use crate::{Boundary, GrainId, Surface};
 
 /// The volume of the tetrahedron that a triangle spans with the origin.
 pub(crate) fn triangle_volume(corners: [DVec3; 3]) -> f64 {
@@ -46,36 +46,35 @@ impl Cone {
 
 /// Per boundary, the cone from a point of it.
 pub(crate) fn boundary_cones(surface: &Surface<'_>) -> Vec<Cone> {
-    cones_of_boundaries(surface, &surface.elements_by_boundary())
+    let boundaries = BoundaryElements::new(surface);
+    let cones = (0..boundaries.boundary_count()).into_par_iter();
+    cones.map(|boundary| cone_of_boundary(surface, boundaries.of(boundary))).collect()
 }
 
-/// The same for boundaries with these elements.
-pub(crate) fn cones_of_boundaries(surface: &Surface<'_>, by_boundary: &Grouped<u32>) -> Vec<Cone> {
+/// The cone from the first point of some elements to them.
+pub(crate) fn cone_of_boundary(surface: &Surface<'_>, elements: impl Iterator<Item = u32> + Clone) -> Cone {
     let dimension = surface.elements.dimension();
     let at = |vertex: u32| surface.points[vertex as usize];
-    let cone = |boundary: usize| {
-        let elements = by_boundary.of(boundary);
-        let Some(apex) = elements.first().map(|first| at(surface.elements.corners(*first)[0])) else {
-            return Cone::new(DVec3::ZERO, 0.0, DVec3::ZERO, dimension);
-        };
-        let mut sums = (0.0, DVec3::ZERO);
-        for element in elements {
-            let (volume, area) = match surface.elements {
-                Elements::Triangles(triangles) => {
-                    let [a, b, c] = triangles[*element as usize].map(|corner| at(corner) - apex);
-                    (triangle_volume([a, b, c]), (b - a).cross(c - a) / 2.0)
-                }
-                Elements::Segments(segments) => {
-                    let [a, b] = segments[*element as usize].map(|end| at(end) - apex);
-                    (segment_area([a, b]), (b - a).cross(DVec3::Z))
-                }
-            };
-            sums.0 += volume;
-            sums.1 += area;
-        }
-        Cone::new(apex, sums.0, sums.1, dimension)
+    let Some(apex) = elements.clone().next().map(|first| at(surface.elements.corners(first)[0])) else {
+        return Cone::new(DVec3::ZERO, 0.0, DVec3::ZERO, dimension);
     };
-    (0..by_boundary.count()).into_par_iter().map(cone).collect()
+    let mut sums = (0.0, DVec3::ZERO);
+    for element in elements {
+        let (volume, area) = match *surface.elements.corners(element) {
+            [a, b, c] => {
+                let [a, b, c] = [a, b, c].map(|corner| at(corner) - apex);
+                (triangle_volume([a, b, c]), (b - a).cross(c - a) / 2.0)
+            }
+            [a, b] => {
+                let [a, b] = [a, b].map(|end| at(end) - apex);
+                (segment_area([a, b]), (b - a).cross(DVec3::Z))
+            }
+            _ => unreachable!("elements have two or three points"),
+        };
+        sums.0 += volume;
+        sums.1 += area;
+    }
+    Cone::new(apex, sums.0, sums.1, dimension)
 }
 
 /// A volume that cones add up to, all from the apex of the first.
@@ -118,7 +117,7 @@ pub(crate) fn volumes_of_grains(boundaries: &[Boundary], cones: &[Cone], grain_c
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BoundaryId, Side};
+    use crate::{BoundaryId, Elements, Side};
 
     /// From the origin of coordinates, a volume of 1e-21 at a distance of 1 would drown in rounding.
     #[test]

@@ -3,7 +3,7 @@
 use subzero::{Crease, CurveMesh, EdgeId, FaceId, Features, TriangleMesh};
 use voronoi::{Dimension, PeriodicPair, Tessellation, Translation, VertexId};
 
-use crate::mesh::adjacency::Adjacency;
+use crate::mesh::adjacency::{Adjacency, Inner, by_edge};
 use crate::mesh::disjoint_sets::DisjointSets;
 use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
@@ -44,8 +44,8 @@ impl ControlMesh {
         groups.dedup();
         let group_of = |sides| BoundaryId(id(groups.binary_search(sides).expect("all were listed")));
         let group_of: Vec<BoundaryId> = sides.iter().map(group_of).collect();
-        let adjacency = Adjacency::of_elements(elements, &group_of);
-        let (mut boundaries, boundary_of) = connected(&sides, &adjacency);
+        let Adjacency { inner, incidences } = Adjacency::of_elements(elements, &group_of);
+        let (mut boundaries, boundary_of) = connected(&sides, &inner);
         let copies = copies(complex, elements, &boundary_of);
         join_twins(&mut boundaries, &boundary_of, &copies.elements)?;
         let of_faces: Vec<Boundary> = sides.iter().map(|sides| boundary(*sides)).collect();
@@ -69,18 +69,17 @@ impl ControlMesh {
         let of_points = || originals(&meetings, copies.vertices.iter().map(|pair| pair.secondary));
         let (mesh, at_edges, junctions) = match mesh {
             ElementList::Segments(segments) => {
-                let mut corners: Vec<u32> = adjacency.non_manifold_edges().map(|at| at[0].edge).collect();
+                let mut corners: Vec<u32> = by_edge(&incidences).map(|at| at[0].edge).collect();
                 copies.spread(&mut corners);
                 let mesh = CurveMesh::new(points.len(), segments, &corners)?;
                 (Mesh::Segments(mesh), Vec::new(), JunctionCounts::new(of_points(), of_points()))
             }
             ElementList::Triangles(triangles) => {
                 let elements = Elements::Triangles(&triangles);
-                let ends: Vec<[u32; 2]> =
-                    adjacency.non_manifold_edges().map(|at| at[0].ends(elements)).collect();
+                let ends: Vec<[u32; 2]> = by_edge(&incidences).map(|at| at[0].ends(elements)).collect();
                 let copied_edges = copies.of_edges(points.len(), &ends);
                 let mut at_lines = Meetings::new(ends.len(), copied_edges.iter().copied());
-                for (line, at) in adjacency.non_manifold_edges().enumerate() {
+                for (line, at) in by_edge(&incidences).enumerate() {
                     at.iter().for_each(|at| at_lines.note(line, sides[at.element as usize]));
                 }
                 let at_lines = at_lines.all();
@@ -93,7 +92,7 @@ impl ControlMesh {
                 let junctions = JunctionCounts::new(of_lines, of_points());
                 let mesh = TriangleMesh::new(points.len(), triangles, &features)?;
                 let mut at_edges = vec![None; mesh.edge_count()];
-                for (at, meeting) in adjacency.non_manifold_edges().zip(&at_lines) {
+                for (at, meeting) in by_edge(&incidences).zip(&at_lines) {
                     let edge = mesh.triangle_edges(FaceId(at[0].element))[usize::from(at[0].corner)];
                     at_edges[edge.index()] = Some(*meeting);
                 }
@@ -150,7 +149,7 @@ fn copies(complex: &Tessellation, elements: Elements<'_>, boundary_of: &[Boundar
     let mut only_boundary: Vec<Option<BoundaryId>> = vec![None; complex.vertices().len()];
     let mut is_shared = vec![false; only_boundary.len()];
     for (element, boundary) in (0u32..).zip(boundary_of) {
-        for corner in elements.corners(element) {
+        for corner in elements.corners(element).iter() {
             let known = only_boundary[*corner as usize].get_or_insert(*boundary);
             is_shared[*corner as usize] |= known != boundary;
         }
@@ -171,9 +170,9 @@ fn copies(complex: &Tessellation, elements: Elements<'_>, boundary_of: &[Boundar
 }
 
 /// Boundaries of elements with these sides, and the boundary of each element.
-fn connected(sides: &[[voronoi::Side; 2]], adjacency: &Adjacency) -> (Vec<Boundary>, Vec<BoundaryId>) {
+fn connected(sides: &[[voronoi::Side; 2]], inner: &Inner<'_>) -> (Vec<Boundary>, Vec<BoundaryId>) {
     let mut pieces = DisjointSets::new(sides.len());
-    adjacency.inner.iter().for_each(|[a, b]| pieces.join(*a, *b));
+    inner.pairs().iter().for_each(|[a, b]| pieces.join(*a, *b));
     let mut numbers = vec![None; sides.len()];
     let mut boundaries = Vec::new();
     let number = |(element, sides): (u32, &[voronoi::Side; 2])| {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use subzero::{Crease, CurveMesh, EdgeId, FaceId, Features, TriangleMesh};
-use voronoi::{Domain, PeriodicPair, Wall};
+use voronoi::{Dimension, Domain, PeriodicPair, Wall};
 
 use crate::mesh::adjacency::{Adjacency, Incidence};
 use crate::mesh::disjoint_sets::DisjointSets;
@@ -75,7 +75,7 @@ impl ControlMesh {
         let mut sides_of = vec![Vec::new(); surface.points.len()];
         for (element, boundary) in (0u32..).zip(&boundary_of) {
             let Boundary { sides, wall, .. } = boundaries[boundary.index()];
-            for corner in elements.as_elements().corners(element) {
+            for corner in elements.as_elements().corners(element).iter() {
                 walls_of[*corner as usize].extend(wall);
                 sides_of[*corner as usize].extend(sides);
             }
@@ -160,28 +160,26 @@ enum Ordered {
 
 impl OrderedElements {
     fn new(domain: &Domain, surface: &Surface<'_>, kind: SurfaceKind<'_>) -> Result<Self, NetworkError> {
-        let is_turned = |element: usize| {
-            let [first, second] = surface.sides[surface.boundary_of[element].index()];
+        let is_turned = |element: u32| {
+            let [first, second] = surface.sides_of(element);
             second < first
         };
-        let ordered = match surface.elements {
-            Elements::Triangles(triangles) => Ordered::Triangles(
-                triangles
-                    .iter()
-                    .enumerate()
-                    .map(|(t, &[a, b, c])| if is_turned(t) { [a, c, b] } else { [a, b, c] })
-                    .collect(),
-            ),
-            Elements::Segments(segments) => Ordered::Segments(
-                segments
-                    .iter()
-                    .enumerate()
-                    .map(|(s, &[a, b])| if is_turned(s) { [b, a] } else { [a, b] })
-                    .collect(),
-            ),
+        let all = || 0..id(surface.elements.len());
+        let triangle = |element: u32| {
+            let [a, b, c] = surface.elements.points(element);
+            if is_turned(element) { [a, c, b] } else { [a, b, c] }
         };
-        let mut keys = Vec::with_capacity(surface.boundary_of.len());
-        for (element, boundary) in (0u32..).zip(surface.boundary_of) {
+        let segment = |element: u32| {
+            let [a, b] = surface.elements.points(element);
+            if is_turned(element) { [b, a] } else { [a, b] }
+        };
+        let ordered = match surface.elements.dimension() {
+            Dimension::Three => Ordered::Triangles(all().map(triangle).collect()),
+            Dimension::Two => Ordered::Segments(all().map(segment).collect()),
+        };
+        let mut keys = Vec::with_capacity(surface.elements.len());
+        for element in all() {
+            let boundary = surface.boundary(element);
             let mut sides = surface.sides[boundary.index()];
             sides.sort_unstable();
             let wall = match sides[1] {
@@ -191,7 +189,7 @@ impl OrderedElements {
                     (wall, _) => wall,
                 },
             };
-            keys.push((*boundary, sides, wall));
+            keys.push((boundary, sides, wall));
         }
         let mut groups = keys.clone();
         groups.sort_unstable();
@@ -233,9 +231,9 @@ struct Connected {
 }
 
 impl Connected {
-    fn new(elements: &OrderedElements, adjacency: &Adjacency) -> Self {
+    fn new(elements: &OrderedElements, adjacency: &Adjacency<'_>) -> Self {
         let mut pieces = DisjointSets::new(elements.boundary_of.len());
-        adjacency.inner.iter().for_each(|[a, b]| pieces.join(*a, *b));
+        adjacency.inner.pairs().iter().for_each(|[a, b]| pieces.join(*a, *b));
         let mut numbers = vec![None; elements.boundary_of.len()];
         let mut boundaries = Vec::new();
         let mut boundary_of = Vec::with_capacity(numbers.len());

@@ -163,7 +163,8 @@ impl Assembled {
     /// All points: originals on their walls, copies where their translations lead.
     pub(crate) fn points(&self) -> Vec<DVec3> {
         let (domain, sets) = (self.network.domain(), self.network.wall_sets());
-        let walls = &self.network.finest().walls;
+        let level = self.network.finest_level();
+        let walls = &level.walls;
         let on_walls = |(point, moved): (usize, &Moved<u32>)| {
             let place =
                 sets.put_on_walls(walls[moved.original as usize], self.positions[moved.original as usize]);

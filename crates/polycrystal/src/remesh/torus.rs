@@ -94,7 +94,7 @@ impl Network {
         cut: BVec3,
     ) -> Result<Vec<PeriodicPair<u32>>, NetworkError> {
         assert_eq!(points.len(), self.finest().vertex_count(), "there must be one point per vertex");
-        let torus = Torus::new(self, self.finest(), points, cut)?;
+        let torus = Torus::new(self, &self.finest_level(), points, cut)?;
         let vertices =
             (0u32..).zip(torus.vertices).filter(|(_, moved)| moved.translation != Translation::ZERO);
         let pair = |(secondary, Moved { original, translation }): (u32, Moved<u32>)| PeriodicPair {

@@ -37,7 +37,7 @@ pub(crate) fn restore(assembled: &mut Assembled) {
 
 fn moving_points(assembled: &Assembled, points: &[glam::DVec3]) -> Vec<MovingPoint> {
     let network = &assembled.network;
-    let level = network.finest();
+    let level = network.finest_level();
     let Mesh::Triangles(mesh) = &level.mesh else { return Vec::new() };
     let mut moving = vec![MovingPoint::default(); assembled.positions.len()];
     for (corners, boundary) in mesh.triangles().iter().zip(&level.boundary_of) {

@@ -6,8 +6,9 @@ use rayon::prelude::*;
 
 use crate::Surface;
 use crate::check::folds::folded_pairs;
-use crate::check::intersections::crossing_elements;
+use crate::check::intersections::{boundary_boxes, crossing_elements};
 use crate::mesh::adjacency::Adjacency;
+use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::grouped::Grouped;
 use crate::voxels::bending::Boxes;
 use crate::voxels::graph::Graph;
@@ -38,9 +39,11 @@ struct Untangled {
 }
 
 /// How elements meet.
-struct Neighbors {
-    adjacency: Adjacency,
-    by_boundary: Grouped<u32>,
+struct Neighbors<'a> {
+    adjacency: Adjacency<'a>,
+    boundaries: BoundaryElements<'a>,
+    /// Pairs in one boundary.
+    pairs: Vec<[u32; 2]>,
 }
 
 impl Untangling<'_> {
@@ -50,12 +53,13 @@ impl Untangling<'_> {
     pub(super) fn untangle(&self, points: Vec<DVec3>, volume_error: f64) -> Vec<DVec3> {
         let surface = self.search.surface;
         let adjacency = Adjacency::of_elements(surface.elements, surface.boundary_of);
-        let neighbors = Neighbors { adjacency, by_boundary: surface.elements_by_boundary() };
+        let pairs = adjacency.inner.pairs();
+        let neighbors = Neighbors { adjacency, boundaries: BoundaryElements::new(&surface), pairs };
         let free = vec![false; points.len()];
         let mut best = self.without_crossings(points, free, volume_error, &neighbors);
         while !best.folds.is_empty() {
             let mut points = best.points.clone();
-            let is_held = self.smooth_folds(&mut points, &neighbors.adjacency);
+            let is_held = self.smooth_folds(&mut points, &neighbors.pairs);
             let volume_error = self.search.restore(&mut points, self.boxes, &is_held);
             if volume_error > VOLUME_TOLERANCE {
                 break;
@@ -78,16 +82,17 @@ impl Untangling<'_> {
         mut points: Vec<DVec3>,
         mut is_held: Vec<bool>,
         mut volume_error: f64,
-        neighbors: &Neighbors,
+        neighbors: &Neighbors<'_>,
     ) -> Untangled {
         let surface = self.search.surface;
         let mut home = None;
         for round in 0.. {
             let normals = surface.elements.normals(&points);
             let now = Surface { points: &points, ..surface };
-            let crossings = crossing_elements(&now, &neighbors.adjacency, &neighbors.by_boundary, &normals);
+            let Neighbors { adjacency, boundaries, pairs } = neighbors;
+            let crossings = crossing_elements(&now, adjacency, boundaries, &boundary_boxes(&now, boundaries));
             if crossings.is_empty() || round == self.tuning.crossing_rounds {
-                let folds = folded_pairs(&neighbors.adjacency.inner, &normals, 0.0);
+                let folds = folded_pairs(pairs, &normals, 0.0);
                 return Untangled { points, folds, crossings: crossings.len(), volume_error };
             }
             let home = home.get_or_insert_with(|| self.home());
@@ -112,13 +117,13 @@ impl Untangling<'_> {
     /// Points at folds, and after some rounds those around, go half the way to the mean of those that they follow. Returns which moved.
     ///
     /// Ends when a wider ring of points mends little.
-    fn smooth_folds(&self, points: &mut [DVec3], adjacency: &Adjacency) -> Vec<bool> {
+    fn smooth_folds(&self, points: &mut [DVec3], neighbors: &[[u32; 2]]) -> Vec<bool> {
         let mut is_moved = vec![false; points.len()];
         let mut before = usize::MAX;
         for ring in 0.. {
             for _ in 0..self.tuning.rounds_of_smoothing {
                 check_cancelled();
-                let folds = self.folds(points, adjacency);
+                let folds = self.folds(points, neighbors);
                 if folds.is_empty() {
                     return is_moved;
                 }
@@ -137,7 +142,7 @@ impl Untangling<'_> {
                 );
                 is_moved.iter_mut().zip(marked).for_each(|(moved, marked)| *moved |= marked);
             }
-            let left = self.folds(points, adjacency).len();
+            let left = self.folds(points, neighbors).len();
             if ring == self.tuning.rings || 2 * left > before {
                 break;
             }
@@ -146,16 +151,15 @@ impl Untangling<'_> {
         is_moved
     }
 
-    fn folds(&self, points: &[DVec3], adjacency: &Adjacency) -> Vec<[u32; 2]> {
-        folded_pairs(&adjacency.inner, &self.search.surface.elements.normals(points), 0.0)
+    fn folds(&self, points: &[DVec3], neighbors: &[[u32; 2]]) -> Vec<[u32; 2]> {
+        folded_pairs(neighbors, &self.search.surface.elements.normals(points), 0.0)
     }
 
     /// The corners of elements, and all points so many edges around them.
     fn marked(&self, pairs: &[[u32; 2]], rings: usize) -> Vec<bool> {
         let mut marked = vec![false; self.graph.count()];
-        let corners =
-            pairs.iter().flatten().flat_map(|element| self.search.surface.elements.corners(*element));
-        let mut last: Vec<u32> = corners.copied().collect();
+        let corners = pairs.iter().flatten().map(|element| self.search.surface.elements.corners(*element));
+        let mut last: Vec<u32> = corners.flat_map(|corners| corners.to_vec()).collect();
         for ring in 0..=rings {
             last.retain(|point| !std::mem::replace(&mut marked[*point as usize], true));
             if ring < rings {

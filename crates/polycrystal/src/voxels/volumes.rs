@@ -98,18 +98,10 @@ impl VolumeSearch<'_> {
     }
 
     fn slopes(&self, points: &[DVec3]) -> Slopes {
-        let at = |corner: u32| points[corner as usize];
         // A third of each triangle's area, and half of each segment's length, belongs to each corner.
-        let normal = |element: u32| match self.surface.elements {
-            Elements::Triangles(triangles) => {
-                let [a, b, c] = triangles[element as usize].map(at);
-                (b - a).cross(c - a) / 6.0
-            }
-            Elements::Segments(segments) => {
-                let [a, b] = segments[element as usize].map(at);
-                (b - a).cross(DVec3::Z) / 2.0
-            }
-        };
+        let elements = self.surface.elements;
+        let share = if let Elements::Segments(_) = elements { 2.0 } else { 6.0 };
+        let normal = |element: u32| elements.normal(points, element) / share;
         let of_point = |point: usize| {
             let mut slopes: Vec<(u32, DVec3)> = Vec::new();
             let mut area = 0.0;

@@ -56,7 +56,7 @@ pub(super) fn statistics(
 ) -> Vec<Statistic> {
     let count = certificate.grain_volumes.len() as f64;
     let (is_plane, all_axes) = match surface.elements {
-        Elements::Triangles(_) => (false, "x,y,z"),
+        Elements::Triangles(_) | Elements::Refined(_) => (false, "x,y,z"),
         Elements::Segments(_) => (true, "x,y"),
     };
     let text = |key| file.settings.as_ref().and_then(|settings| settings.get(key)?.as_str());
@@ -129,7 +129,7 @@ fn boundary_size(surface: &Surface<'_>, is_periodic: bool) -> f64 {
     };
     let size = elements.map(|element| {
         share(element)
-            * match surface.elements.corners(element) {
+            * match &*surface.elements.corners(element) {
                 [a, b, c] => (at(b) - at(a)).cross(at(c) - at(a)).length() / 2.0,
                 [a, b] => at(a).distance(at(b)),
                 _ => 0.0,

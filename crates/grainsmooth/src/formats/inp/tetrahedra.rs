@@ -120,7 +120,8 @@ fn write_surfaces(
     let boundaries = network.boundaries();
     let mut of_boundaries = vec![(BTreeSet::new(), Vec::new()); boundaries.len()];
     let mut of_sides: BTreeMap<String, Vec<ElementFace>> = BTreeMap::new();
-    for (both, boundary) in faces.iter().zip(&network.finest().boundary_of) {
+    let level = network.finest_level();
+    for (both, boundary) in faces.iter().zip(&level.boundary_of) {
         let (nodes, faces) = &mut of_boundaries[boundary.index()];
         for ElementFace { element, face } in both.iter().flatten() {
             nodes.extend(FACES[*face].map(|corner| mesh.tetrahedra[*element][corner] as usize));

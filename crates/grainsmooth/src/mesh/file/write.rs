@@ -119,6 +119,7 @@ fn poly_data<'a>(mesh: &MeshToWrite<'a>) -> PolyData<'a> {
 fn for_each_cell(cells: Cells<'_>, mut visit: impl FnMut(&[u32]) -> io::Result<()>) -> io::Result<()> {
     match cells {
         Cells::Triangles(triangles) => triangles.iter().try_for_each(|cell| visit(cell)),
+        Cells::TrianglesOf(each) => (0..each.count).try_for_each(|cell| visit(&(each.value)(cell))),
         Cells::Polygons(cells) | Cells::Polylines(cells) => cells.iter().try_for_each(|cell| visit(cell)),
         Cells::Tetrahedra(tetrahedra) => tetrahedra.iter().try_for_each(|cell| visit(cell)),
         Cells::Vertices(_) => Ok(()),
@@ -199,6 +200,7 @@ fn write_stl(mesh: &MeshToWrite<'_>, out: &mut dyn Write) -> io::Result<()> {
     };
     match mesh.cells {
         Cells::Triangles(triangles) => triangles.iter().copied().for_each(&mut add),
+        Cells::TrianglesOf(each) => (0..each.count).map(each.value).for_each(&mut add),
         Cells::Polygons(polygons) => {
             let cut = subzero::triangulate(mesh.points, polygons).map_err(io::Error::other)?;
             cut.0.into_iter().for_each(&mut add);

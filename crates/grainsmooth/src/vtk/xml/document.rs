@@ -8,7 +8,7 @@ use vtkio::model::ByteOrder;
 use vtkio::xml::{DataArrayFormat, DataSetType, ScalarType};
 
 use super::super::raw::{Numbers, NumbersOfFile};
-use super::super::{Array, Cells, FieldEntry, FieldValue, NORMALS, PolyData, is_normals};
+use super::super::{Array, Cells, Each, FieldEntry, FieldValue, NORMALS, PolyData, is_normals};
 use super::XmlFormat;
 
 /// The one file version that VTK, ParaView, pyvista and meshio all read.
@@ -184,14 +184,15 @@ impl Topology {
         ];
         match (format, data.cells) {
             // Tetrahedra do not come here: `write` refuses them.
-            (XmlFormat::PolyData, Cells::Triangles(_) | Cells::Polygons(_) | Cells::Tetrahedra(_)) => {
-                Self::Polys(Arrays::new(arrays))
-            }
+            (
+                XmlFormat::PolyData,
+                Cells::Triangles(_) | Cells::TrianglesOf(_) | Cells::Polygons(_) | Cells::Tetrahedra(_),
+            ) => Self::Polys(Arrays::new(arrays)),
             (XmlFormat::PolyData, Cells::Polylines(_)) => Self::Lines(Arrays::new(arrays)),
             (XmlFormat::PolyData, Cells::Vertices(_)) => Self::Verts(Arrays::new(arrays)),
             (XmlFormat::UnstructuredGrid, cells) => {
                 let kind = match cells {
-                    Cells::Triangles(_) => TRIANGLE,
+                    Cells::Triangles(_) | Cells::TrianglesOf(_) => TRIANGLE,
                     Cells::Polygons(_) => POLYGON,
                     Cells::Polylines(_) => POLY_LINE,
                     Cells::Vertices(_) => VERTEX,
@@ -214,6 +215,14 @@ fn cell_ids(cells: Cells<'_>, wide: bool) -> (Numbers<'_>, Numbers<'_>) {
     match cells {
         Cells::Triangles(triangles) => ids_of_alike(triangles, wide),
         Cells::Tetrahedra(tetrahedra) => ids_of_alike(tetrahedra, wide),
+        Cells::TrianglesOf(Each { count, value }) => {
+            let connectivity = match wide {
+                false => Numbers::each(count, value),
+                true => Numbers::each(count, move |triangle| value(triangle).map(i64::from)),
+            };
+            let end = |cell: usize| 3 * (cell as u64 + 1);
+            (connectivity, ids(count, end, wide))
+        }
         Cells::Polygons(cells) | Cells::Polylines(cells) => {
             let corners: Vec<u32> = cells.iter().flatten().copied().collect();
             let ends: Vec<u64> = cells

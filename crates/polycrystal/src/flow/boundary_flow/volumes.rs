@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::flow::boundary_flow::{Flow, TiedPoints, dot};
 use crate::mesh::rounding::{last_place, swept_by_rounding};
 use crate::mesh::volume::largest_relative_error;
-use crate::{GrainId, NetworkError, Volumes};
+use crate::{GrainId, Network, NetworkError, Volumes};
 
 /// Difference of a grain's volume from its cell's, as a share of the cell's, that ends the iteration on volumes.
 const VOLUME_TOLERANCE: f64 = 1e-12;
@@ -36,7 +36,7 @@ impl Flow<'_> {
     /// at last none.
     ///
     /// Gives the points of the finest level.
-    fn restore_volumes(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
+    pub(crate) fn restore_volumes(&self, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
         let free = TiedPoints::new(&self.network.levels()[self.level]);
         let mut short = free.clone();
         short.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
@@ -54,26 +54,6 @@ impl Flow<'_> {
             points.copy_from_slice(&start);
         }
         self.restore_with(&free, points).map_err(|error| error.after(attempts))
-    }
-
-    /// As [`Self::restore_volumes`] where a volume differs by more than rounding; else no point moves.
-    pub(crate) fn restore_lost_volumes(&self, points: &mut [DVec3]) -> Result<(), NetworkError> {
-        let surface = self.finest_points(points);
-        let missing = self.missing(&self.network.grain_volumes(self.network.finest(), &surface));
-        if !self.is_rounding(&missing, &surface) {
-            self.restore_volumes(points)?;
-        }
-        Ok(())
-    }
-
-    /// Whether rounding of the points may be all that volumes lack.
-    fn is_rounding(&self, missing: &[f64], surface: &[DVec3]) -> bool {
-        let areas = self.network.grain_areas(self.network.finest(), surface);
-        let rounding = last_place(surface);
-        let mut grains = missing.iter().zip(self.network.cell_volumes().iter().zip(areas));
-        grains.all(|(lack, (volume, area))| {
-            lack.abs() <= VOLUME_LIMIT * volume + swept_by_rounding(rounding, area)
-        })
     }
 
     fn restore_with(&self, groups: &TiedPoints, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
@@ -94,7 +74,9 @@ impl Flow<'_> {
                 stalled = relative_error > 0.5 * self.largest_error(last).1;
                 gain = (gain / (1.0 - left)).clamp(SMALLEST_GAIN, LARGEST_GAIN);
             }
-            if relative_error <= VOLUME_TOLERANCE || (stalled && self.is_rounding(&missing, &surface)) {
+            if relative_error <= VOLUME_TOLERANCE
+                || (stalled && is_rounding(self.network, &missing, &surface))
+            {
                 return Ok(surface);
             }
             // A correction that makes things worse (NaN included) would only be followed by others.
@@ -111,10 +93,30 @@ impl Flow<'_> {
 
     /// What each grain's volume lacks.
     pub(crate) fn missing(&self, volumes: &[f64]) -> Vec<f64> {
-        self.network.cell_volumes().iter().zip(volumes).map(|(cell, grain)| cell - grain).collect()
+        missing_volumes(self.network, volumes)
     }
 
     fn largest_error(&self, missing: &[f64]) -> (GrainId, f64) {
         largest_relative_error(missing, self.network.cell_volumes())
     }
+}
+
+/// Whether grains have the volumes of their cells, up to rounding, for points of the finest level.
+pub(crate) fn has_kept_volumes(network: &Network, surface: &[DVec3]) -> bool {
+    let missing = missing_volumes(network, &network.grain_volumes(network.finest(), surface));
+    is_rounding(network, &missing, surface)
+}
+
+/// What each grain's volume lacks.
+fn missing_volumes(network: &Network, volumes: &[f64]) -> Vec<f64> {
+    network.cell_volumes().iter().zip(volumes).map(|(cell, grain)| cell - grain).collect()
+}
+
+/// Whether rounding of the points may be all that volumes lack.
+fn is_rounding(network: &Network, missing: &[f64], surface: &[DVec3]) -> bool {
+    let areas = network.grain_areas(network.finest(), surface);
+    let rounding = last_place(surface);
+    let mut grains = missing.iter().zip(network.cell_volumes().iter().zip(areas));
+    grains
+        .all(|(lack, (volume, area))| lack.abs() <= VOLUME_LIMIT * volume + swept_by_rounding(rounding, area))
 }

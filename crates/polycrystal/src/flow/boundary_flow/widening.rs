@@ -6,11 +6,12 @@ use glam::DVec3;
 use rayon::prelude::*;
 use subzero::VertexRule;
 
-use crate::energy::patches::by_boundary;
 use crate::flow::boundary_flow::{Flow, LevelSectors, Room};
 use crate::flow::thin_triangles::STEPS;
+use crate::mesh::boundary_elements::BoundaryElements;
+use crate::mesh::id::id;
 use crate::mesh::triangle_quality::squared_sine;
-use crate::{BoundaryId, Mesh, TriangleQuality, Volumes};
+use crate::{BoundaryId, Elements, Mesh, TriangleQuality, Volumes};
 
 /// Smallest angle, in units of the bound, of a triangle that stays as it is ...
 const GOOD: f64 = 1.1;
@@ -68,16 +69,20 @@ impl Flow<'_> {
 
     /// Triangles of the finest level, the thinnest first: no order that depends on numbers.
     fn thin_triangles(&self, surface: &[DVec3]) -> Vec<u32> {
-        let Mesh::Triangles(mesh) = &self.network.finest().mesh else { return Vec::new() };
+        let elements = self.network.finest().elements();
+        if let Elements::Segments(_) = elements {
+            return Vec::new();
+        }
         let good = sine(GOOD).powi(2);
-        let squared_sine = |corners: &[u32; 3]| squared_sine(corners.map(|corner| surface[corner as usize]));
-        let triangles = mesh.triangles().par_iter().enumerate();
-        let mut thin: Vec<(f64, usize)> = triangles
-            .map(|(triangle, corners)| (squared_sine(corners), triangle))
+        let squared_sine =
+            |triangle: u32| squared_sine(elements.points(triangle).map(|corner| surface[corner as usize]));
+        let mut thin: Vec<(f64, u32)> = (0..id(elements.len()))
+            .into_par_iter()
+            .map(|triangle| (squared_sine(triangle), triangle))
             .filter(|(squared_sine, _)| *squared_sine < good)
             .collect();
         thin.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        thin.into_iter().map(|(_, triangle)| u32::try_from(triangle).expect("ids fit 32 bits")).collect()
+        thin.into_iter().map(|(_, triangle)| triangle).collect()
     }
 
     /// What can move for some triangles of the finest level, boundary by boundary. What is a copy follows its original, and lines that
@@ -91,7 +96,7 @@ impl Flow<'_> {
         let mut groups: Vec<Vec<u32>> = Vec::new();
         let mut group_of: HashMap<BoundaryId, usize> = HashMap::new();
         for triangle in thin {
-            let boundary = self.network.finest().boundary_of[*triangle as usize];
+            let boundary = self.network.finest().boundary(*triangle);
             let group = *group_of.entry(boundary).or_insert_with(|| {
                 let own = self.patches.patches[boundary.index()].control_points.iter();
                 let inside = own.filter(|point| mesh.vertex_rule(**point) == VertexRule::Smooth);
@@ -117,14 +122,14 @@ impl Flow<'_> {
     /// Moves groups of points so that the triangles around are wide; tells whether that was any help.
     fn widen(&self, points: &mut [DVec3], movable: &[Vec<u32>], moving: Moving) -> bool {
         let level = &self.network.levels()[self.level];
-        let elements = by_boundary(self.network.boundaries().len(), &level.boundary_of);
+        let elements = BoundaryElements::of_level(level, self.network.boundaries().len());
         let around = |movable: &Vec<u32>| {
             let places = movable.iter().flat_map(|point| self.patches.places_of_point(*point));
             let mut boundaries: Vec<usize> =
                 places.map(|place| self.patches.patch_of_place(*place)).collect();
             boundaries.sort_unstable();
             boundaries.dedup();
-            boundaries.into_iter().flat_map(|boundary| &elements[boundary]).copied().collect()
+            boundaries.into_iter().flat_map(|boundary| elements.of(boundary)).collect()
         };
         let groups: Vec<(&Vec<u32>, Vec<u32>)> =
             movable.iter().map(|movable| (movable, around(movable))).collect();

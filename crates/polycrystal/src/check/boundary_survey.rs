@@ -1,0 +1,124 @@
+//! What is found of each boundary by itself.
+
+use cancellation::check_cancelled;
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::check::box_tree::Bounds;
+use crate::check::folds::folded_in_boundary;
+use crate::mesh::adjacency::Adjacency;
+use crate::mesh::boundary_elements::{BoundaryElements, BoundaryNeighbors};
+use crate::mesh::triangle_quality::{SmallestAngles, squared_sine};
+use crate::mesh::volume::{Cone, cone_of_boundary};
+use crate::{Elements, Surface, TriangleQuality};
+
+/// Cosine of the angle between normals beyond which neighbours in one boundary are folded: 90 degrees, and as much more as
+/// single precision, in which many files keep coordinates, blurs the right angles of a box.
+const FOLD_COSINE: f64 = -1e-6;
+
+/// What is found of each boundary by itself: no more of a boundary is held at a time than its own elements.
+pub(crate) struct BoundarySurvey {
+    /// The box around each boundary.
+    pub(crate) boxes: Vec<Bounds>,
+    /// The cone to each boundary from a point of it.
+    pub(crate) cones: Vec<Cone>,
+    /// The area of each boundary; in the plane its length.
+    pub(crate) areas: Vec<f64>,
+    /// Elements without area, in order.
+    pub(crate) flat: Vec<u32>,
+    /// Pairs of neighbours that are folded, in order.
+    pub(crate) folded: Vec<[u32; 2]>,
+    /// How thin triangles are, in space.
+    pub(crate) triangles: Option<TriangleQuality>,
+}
+
+/// The same of one boundary.
+struct Surveyed {
+    bounds: Bounds,
+    cone: Cone,
+    area: f64,
+    flat: Vec<u32>,
+    folded: Vec<[u32; 2]>,
+}
+
+impl BoundarySurvey {
+    pub(crate) fn new(
+        surface: &Surface<'_>,
+        boundaries: &BoundaryElements<'_>,
+        adjacency: &Adjacency<'_>,
+    ) -> Self {
+        let neighbors = BoundaryNeighbors::new(surface.boundary_of, boundaries, adjacency);
+        let none = || (SmallestAngles::new(surface.elements.len()), Vec::new());
+        let survey = |(mut angles, mut surveyed): (SmallestAngles, Vec<Surveyed>), boundary: usize| {
+            check_cancelled();
+            let neighbors = neighbors.of(boundaries, boundary);
+            surveyed.push(Surveyed::new(surface, boundaries, boundary, &neighbors, &mut angles));
+            (angles, surveyed)
+        };
+        let join = |(angles, mut surveyed): (SmallestAngles, Vec<Surveyed>), (other, others): (_, Vec<_>)| {
+            surveyed.extend(others);
+            (angles.with(other), surveyed)
+        };
+        let (angles, surveyed) =
+            (0..boundaries.boundary_count()).into_par_iter().fold(none, survey).reduce(none, join);
+        let mut all = Self {
+            boxes: Vec::with_capacity(surveyed.len()),
+            cones: Vec::with_capacity(surveyed.len()),
+            areas: Vec::with_capacity(surveyed.len()),
+            flat: Vec::new(),
+            folded: Vec::new(),
+            triangles: angles.quality(),
+        };
+        for Surveyed { bounds, cone, area, flat, folded } in surveyed {
+            all.boxes.push(bounds);
+            all.cones.push(cone);
+            all.areas.push(area);
+            all.flat.extend(flat);
+            all.folded.extend(folded);
+        }
+        all.flat.sort_unstable();
+        all.folded.sort_unstable();
+        all
+    }
+}
+
+impl Surveyed {
+    fn new(
+        surface: &Surface<'_>,
+        boundaries: &BoundaryElements<'_>,
+        boundary: usize,
+        neighbors: &[[u32; 2]],
+        angles: &mut SmallestAngles,
+    ) -> Self {
+        let elements: Vec<u32> = boundaries.of(boundary).collect();
+        let mut bounds = Bounds::default();
+        let mut normals = Vec::with_capacity(elements.len());
+        for element in &elements {
+            let corners = surface.elements.corners(*element);
+            let at = |k: usize| surface.points[corners[k] as usize];
+            bounds = bounds.with(Bounds::around((0..corners.len()).map(at)));
+            normals.push(surface.elements.normal(surface.points, *element));
+            if corners.len() == 3 {
+                angles.add(squared_sine([at(0), at(1), at(2)]));
+            }
+        }
+        // Normals of triangles are as long as twice the area.
+        let share = if let Elements::Segments(_) = surface.elements { 1.0 } else { 0.5 };
+        let has_area = |pair: &[u32; 2]| {
+            pair.iter().all(|element| surface.elements.normal(surface.points, *element) != DVec3::ZERO)
+        };
+        let mut folded = folded_in_boundary(&elements, &normals, neighbors, FOLD_COSINE);
+        folded.retain(has_area);
+        let numbered = elements.iter().zip(&normals);
+        Self {
+            bounds,
+            cone: cone_of_boundary(surface, elements.iter().copied()),
+            area: normals.iter().map(|normal| share * normal.length()).sum(),
+            flat: numbered
+                .filter(|(_, normal)| **normal == DVec3::ZERO)
+                .map(|(element, _)| *element)
+                .collect(),
+            folded,
+        }
+    }
+}

@@ -1,0 +1,119 @@
+use std::ops::Deref;
+
+use glam::DVec3;
+use rayon::prelude::*;
+use subzero::{FaceId, TriangleMesh};
+use voronoi::Dimension;
+
+use crate::Mesh;
+
+/// The elements of a [`Surface`](crate::Surface).
+#[derive(Debug, Clone, Copy)]
+pub enum Elements<'a> {
+    /// In space.
+    Triangles(&'a [[u32; 3]]),
+    /// In space, the triangles one subdivision on from a mesh, which are known without being held.
+    Refined(&'a TriangleMesh),
+    /// In the plane.
+    Segments(&'a [[u32; 2]]),
+}
+
+/// The points of an element: three of a triangle, two of a segment.
+#[derive(Debug, Clone, Copy)]
+pub struct Corners {
+    points: [u32; 3],
+    count: usize,
+}
+
+impl Deref for Corners {
+    type Target = [u32];
+
+    #[inline]
+    fn deref(&self) -> &[u32] {
+        &self.points[..self.count]
+    }
+}
+
+impl<'a> Elements<'a> {
+    /// Number of elements.
+    pub fn len(self) -> usize {
+        match self {
+            Self::Triangles(triangles) => triangles.len(),
+            Self::Refined(mesh) => 4 * mesh.triangles().len(),
+            Self::Segments(segments) => segments.len(),
+        }
+    }
+
+    /// Whether there is no element.
+    pub fn is_empty(self) -> bool {
+        self.len() == 0
+    }
+
+    /// That of the domain which the elements divide.
+    pub fn dimension(self) -> Dimension {
+        match self {
+            Self::Triangles(_) | Self::Refined(_) => Dimension::Three,
+            Self::Segments(_) => Dimension::Two,
+        }
+    }
+
+    /// The points of an element.
+    ///
+    /// # Panics
+    /// If there is no such element.
+    #[inline]
+    pub fn corners(self, element: u32) -> Corners {
+        match self {
+            Self::Triangles(triangles) => Corners { points: triangles[element as usize], count: 3 },
+            Self::Refined(mesh) => Corners { points: mesh.refined_triangle(FaceId(element)), count: 3 },
+            Self::Segments(segments) => {
+                let [start, end] = segments[element as usize];
+                Corners { points: [start, end, end], count: 2 }
+            }
+        }
+    }
+
+    /// The points of an element of which it is known how many it has.
+    ///
+    /// # Panics
+    /// If there is no such element, or it has another number of points.
+    #[inline]
+    pub(crate) fn points<const COUNT: usize>(self, element: u32) -> [u32; COUNT] {
+        <[u32; COUNT]>::try_from(&*self.corners(element)).expect("an element of as many points")
+    }
+
+    /// The element that holds the label of an element: itself, or what it was refined from.
+    #[inline]
+    pub(crate) fn labelled(self, element: u32) -> u32 {
+        match self {
+            Self::Triangles(_) | Self::Segments(_) => element,
+            Self::Refined(mesh) => mesh.counts().triangle_parent(FaceId(element)).0,
+        }
+    }
+
+    /// Normal of a triangle, as long as twice its area; or of a segment in the plane, as long as it is.
+    #[inline]
+    pub(crate) fn normal(self, points: &[DVec3], element: u32) -> DVec3 {
+        let corners = self.corners(element);
+        let [a, b, c] = corners.points.map(|corner| points[corner as usize]);
+        match self {
+            Self::Triangles(_) | Self::Refined(_) => (b - a).cross(c - a),
+            Self::Segments(_) => (b - a).cross(DVec3::Z),
+        }
+    }
+
+    /// The normals of all elements.
+    pub(crate) fn normals(self, points: &[DVec3]) -> Vec<DVec3> {
+        let elements = 0..u32::try_from(self.len()).expect("ids fit 32 bits");
+        elements.into_par_iter().map(|element| self.normal(points, element)).collect()
+    }
+}
+
+impl<'a> From<&'a Mesh> for Elements<'a> {
+    fn from(mesh: &'a Mesh) -> Self {
+        match mesh {
+            Mesh::Triangles(mesh) => Self::Triangles(mesh.triangles()),
+            Mesh::Segments(mesh) => Self::Segments(mesh.segments()),
+        }
+    }
+}
