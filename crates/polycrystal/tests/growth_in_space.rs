@@ -98,6 +98,9 @@ fn growth_goes_on_until_a_few_grains_are_left() {
     }
 }
 
+/// A grain, its number of faces, its volume, and its rate of growth by the law.
+type GrainState = (GrainId, usize, f64, f64);
+
 /// MacPherson and Srolovitz 2007, of grains that keep their faces for a step, while others vanish. Boundaries are coarse fans, which have the law
 /// to first order in the angles by which they bend: these are some ten degrees. The mean number of faces of grains that have grown is 13.77
 /// (Lazar, Mason, MacPherson and Srolovitz 2011, "Complete topology of cells, grains, and bubbles in three-dimensional microstructures").
@@ -106,7 +109,7 @@ fn grains_grow_by_the_law_of_macpherson_and_srolovitz_while_others_vanish() {
     let count = 100;
     let mut errors = Vec::new();
     let (mut faces, mut grains) = (0, 0);
-    let mut last: Option<(f64, Vec<(GrainId, usize, f64, f64)>)> = None;
+    let mut last: Option<(f64, Vec<GrainState>)> = None;
     let watch = |step: RelaxationStep<'_>| {
         let (network, points) = network_of(&step);
         let measures = measure_network(&network, &points).in_space().expect("surfaces");
