@@ -209,7 +209,7 @@ class Options(TypedDict, total=False):
 
     relax: Value
     """Relaxation time, in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat [default: 1.2, in 2D
-    equilibrium; 0 with lamellae, 0.05 with --grain-shapes, 0.3 with --free and --regularize, in 2D with --edge-length too]
+    equilibrium; 0 with lamellae, 0.05 with --grain-shapes, 0.3 with --free or --regularize, in 2D with --edge-length too]
 
     Example of the command line: ``--relax 0.1``"""
 

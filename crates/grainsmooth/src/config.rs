@@ -253,7 +253,7 @@ pub struct Config {
     pub face_mesh: FaceMesh,
 
     /// Relaxation time, in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat [default: 1.2, in
-    /// 2D equilibrium; 0 with lamellae, 0.05 with --grain-shapes, 0.3 with --free and --regularize, in 2D with --edge-length too]
+    /// 2D equilibrium; 0 with lamellae, 0.05 with --grain-shapes, 0.3 with --free or --regularize, in 2D with --edge-length too]
     ///
     /// Example: --relax 0.1
     #[arg(long = "relax", help_heading = "Smoothing", value_name = "T", value_parser = parse_relaxation, allow_negative_numbers = true)]

@@ -1,4 +1,4 @@
-//! Grains that vanish, and neighbours that switch.
+//! Events in the plane: grains that vanish, and neighbours that switch. Those in space are in `sheets`.
 
 use glam::{DVec2, DVec3};
 use voronoi::{CellId, Dimension, FaceId};
