@@ -137,7 +137,7 @@ fn help_tells_defaults_units_examples_and_exit_codes() {
         "--box <X> <Y> [Z]... Side lengths of the box in your unit of length",
         "[default: 1 1 1, or those of a .tess file]",
         "--rng-seed <S>",
-        "in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat [default: 1.2, in 2D equilibrium; 0 with lamellae, 0.05 with --grain-shapes, 0.3 with --free and --regularize, in 2D with --edge-length too] Example: --relax 0.1",
+        "in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat [default: 1.2, in 2D equilibrium; 0 with lamellae, 0.05 with --grain-shapes, 0.3 with --free or --regularize, in 2D with --edge-length too] Example: --relax 0.1",
         "-n, --levels <LEVELS>",
         "[default: 3]",
         "[default: crease] [possible values: crease, corner]",

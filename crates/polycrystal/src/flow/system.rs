@@ -39,10 +39,10 @@ pub(crate) struct Parts {
 }
 
 /// A stiffness in single precision: what comes of a step is sought to a hundredth, and its matrix has to come through the memory again and
-/// again.
+/// again. That of an element without length, which no number of that kind can hold, becomes the largest.
 #[expect(clippy::cast_possible_truncation, reason = "rounding")]
 pub(crate) fn single(stiffness: f64) -> f32 {
-    stiffness as f32
+    stiffness.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32
 }
 
 /// `(M + dt K) d = -dt g + J^T p` for displacements d, with pressures p such that `J d` is given.
@@ -171,6 +171,8 @@ impl System {
                 changes.iter().zip(&change).map(|(wanted, change)| wanted - change).collect();
             add(&mut displacement, 1.0, &self.push(&left));
         }
+        // What rounding of large forces leaves of them would carry points off their walls.
+        self.hold(&mut displacement);
         (displacement, pressures)
     }
 
@@ -201,7 +203,10 @@ impl System {
         };
         let pressures = compliance.pressures(changes, TIGHT);
         let force = |unknown: usize| constraint.force(&pressures, unknown) * self.mobility[unknown];
-        (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect()
+        let mut moves: Vec<DVec3> =
+            (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect();
+        self.hold(&mut moves);
+        moves
     }
 
     /// `image` becomes `(M + dt K) d`, as far as walls leave it; gives its product with the displacement d.
