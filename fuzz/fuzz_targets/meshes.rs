@@ -277,7 +277,7 @@ fn check_half_edges(mesh: &HalfEdgeMesh) {
 /// Every row averages points that are there, and its weights add up to `sum` if that is given.
 fn check_rows(table: &StencilTable, points: usize, sum: Option<f64>) {
     for i in 0..table.len() {
-        let (ids, weights) = table.row(i);
+        let (ids, weights) = table.stencil(i);
         assert!(ids.iter().all(|&id| (id as usize) < points));
         let total: f64 = weights.iter().sum();
         assert!(total.is_finite());

@@ -21,53 +21,53 @@ class Options(TypedDict, total=False):
     """
 
     seeds: Value
-    """Number of grains, grown from random seeds [default: 200, or what --diameters or --volumes ask for]
+    """Number of grains [default: 200, or what --diameters or --volumes ask for]
 
     Example of the command line: ``--seeds 5000``"""
 
     seeding: Literal["random", "poisson-disc", "packed"]
-    """Seeds as the centres of spheres that do not overlap, for grains of exact sizes as in metals (packed); random, uniform
-    (random) or at least 0.75 mean spacings apart (poisson-disc)
+    """How seeds are placed: as centres of spheres that do not overlap, for grains of exact, realistic sizes (packed);
+    uniformly at random (random); or at random but at least 0.75 mean spacings apart (poisson-disc)
 
     Packed grains have lognormal diameters with a coefficient of variation of 0.35, unless --diameters or --volumes ask for
-    others. Random seeds make Voronoi cells, for the exact statistics of those.
+    others. Random seeds give Poisson-Voronoi cells, whose statistics are known.
 
     Example of the command line: ``--seeding random``
 
     Default: ``packed``"""
 
     lattice: Sequence[Value]
-    """Seeds on a lattice instead: sc, bcc, fcc or hcp (square or hex in 2D), with N unit cells along the shortest side
+    """Place seeds on a lattice instead: sc, bcc, fcc or hcp (square or hex in 2D), with N unit cells along the shortest side
 
     Example of the command line: ``--lattice bcc 4``"""
 
     seeds_file: Value
-    """Read seeds from a file instead: text with x, y, z on each line (x, y in 2D), or with names of columns in the first line,
-    where radius, diameter or weight makes power cells; .xyz; .json; or Neper's .tess, which tells the box as well
+    """Read seeds from a file instead: text with x, y, z on each line (x, y in 2D), or with column names in the first line,
+    where radius, diameter or weight makes power cells; .xyz; .json; or Neper's .tess, which also defines the box
 
     Example of the command line: ``--seeds-file seeds.csv``"""
 
     diameters: Value
-    """Give grains exact sizes: equivalent diameters of a distribution, in words or from a file, in the unit of --box
+    """Give the grains exact sizes: equivalent diameters from a distribution or a file, in the unit of --box
 
-    Words are lognormal(mean=20, cv=0.35), normal(mean=20, sd=5), uniform(10, 30), weibull(shape=2.8, scale=20),
-    gamma(mean=20, cv=0.35), equal(20), and sums of these with weights by number: '0.8*lognormal(mean=20, cv=0.3) +
-    0.2*equal(60)'. Behind them may stand cut-offs, and that weights are by volume: ', from=5, to=80, by=volume'. A file
-    (.csv, .txt) holds a list, a histogram or a distribution function. As many grains are made as fill the domain; with
-    --seeds N, diameters are scaled to fill it.
+    Distributions are lognormal(mean=20, cv=0.35), normal(mean=20, sd=5), uniform(10, 30), weibull(shape=2.8, scale=20),
+    gamma(mean=20, cv=0.35), equal(20), and sums of these weighted by number: '0.8*lognormal(mean=20, cv=0.3) +
+    0.2*equal(60)'. Cut-offs, and weights by volume, follow after commas: ', from=5, to=80, by=volume'. A file (.csv, .txt)
+    holds a list, a histogram or a cumulative distribution. There are as many grains as fill the domain; with --seeds N,
+    diameters are scaled to fill it.
 
     Example of the command line: ``--diameters 'lognormal(mean=20, cv=0.35)' --box 100 100 100``"""
 
     volumes: Value
-    """Give each grain a volume of its own (in 2D an area), scaled to fill the domain: one on each line of a text file
+    """Give each grain its own volume (area in 2D), scaled to fill the domain: a text file with one on each line
 
     Example of the command line: ``--volumes volumes.csv``"""
 
     aspect_ratio: Sequence[Value]
-    """Grains long along some axes, in proportion: 3 1 1 for rolled, 1 1 4 for columnar ones (X Y in 2D)
+    """Elongate the grains along the axes, in these proportions: 3 1 1 for rolled, 1 1 4 for columnar grains (X Y in 2D)
 
-    Cells, network and relaxation are made where grains are as long along all axes, and stretched in the end: angles at
-    triple lines are 120 degrees before. The box is as --box says, and volumes are as without.
+    Grains are made and relaxed with equal axes, so triple lines have angles of 120 degrees at first, and then stretched.
+    The final box is that of --box, and volumes stay exact.
 
     Example of the command line: ``--aspect-ratio 3 1 1``"""
 
@@ -94,7 +94,7 @@ class Options(TypedDict, total=False):
     Default: ``box``"""
 
     half_spaces: Value
-    """Read the domain as half-spaces n . x <= d from a text file: nx, ny, nz, d on each line (nx, ny, d in 2D)
+    """Define the domain by half-spaces n . x <= d in a text file: nx, ny, nz, d on each line (nx, ny, d in 2D)
 
     Example of the command line: ``--half-spaces octahedron.csv``"""
 
@@ -105,103 +105,105 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--chord-error 0.001``"""
 
     periodic: Value
-    """Axes along which the box repeats, such as x,y,z: grains are whole there and grow through the walls [default: none, or
+    """Axes along which the box is periodic, such as x,y,z: grains grow through these walls and stay whole [default: none, or
     those of a .tess file]
 
     Example of the command line: ``--periodic x,y``"""
 
     faces: Literal["fan", "plain"]
-    """Control points inside boundaries: a fan of triangles round one in the middle (fan), or none (plain)
+    """Triangulate each boundary as a fan around a control point in its middle (fan), or without inner points (plain)
 
     Example of the command line: ``--faces plain``
 
     Default: ``fan``"""
 
     edge_length: Value
-    """Refine the control mesh instead until no edge is longer than H, in the unit of --box; a grain is about as wide as the
+    """Refine the control mesh instead, until no edge is longer than H, in the unit of --box; a grain is about as wide as the
     cube root of its volume
 
     Example of the command line: ``--edge-length 0.05``"""
 
     free: bool
-    """Let grains grow and shrink by curvature instead of keeping their volumes (in 2D: areas)
+    """Let grains grow and shrink by curvature instead of keeping their volumes (areas in 2D)
 
-    In 2D grains vanish and switch neighbours on the way. In 3D, and with --regularize or --edge-length, they cannot: a run
-    that would come to that is refused.
+    In 2D, grains vanish and switch neighbours. In 3D, and with --regularize or --edge-length, they cannot; a run that would
+    need it stops with an error.
 
     Example of the command line: ``--dim 2 --relax 5 --free``"""
 
     rng_seed: Value
-    """Start of the random generator: the same number gives the same grains on every machine
+    """Seed of the random number generator: the same number gives the same grains on every machine
 
     Example of the command line: ``--rng-seed 7``
 
     Default: ``1``"""
 
     draw: Literal["quantiles", "random"]
-    """Draw diameters as the middles of equal shares of the distribution (quantiles), or each by itself (random)
+    """Take the diameters at equally spaced quantiles of the distribution (quantiles), or draw each independently (random)
 
     Example of the command line: ``--diameters 'lognormal(mean=20, cv=0.35)' --draw random``
 
     Default: ``quantiles``"""
 
     gradient: Value
-    """Change the diameters along an axis of the box: a table of positions, and what diameters are multiplied by there
+    """Vary the diameters along an axis of the box: a table of positions and of the factors by which diameters are multiplied
+    there
 
     Example of the command line: ``--diameters 'lognormal(mean=20, cv=0.35)' --gradient z:factors.csv``"""
 
     phase: Repeated
-    """Make a phase of a name, with a share of the volume that is exact (in 2D of the area); give it again for each phase
+    """Add a phase with an exact share of the volume (of the area in 2D); repeat for each phase
 
-    Shares add up to 1. Behind them may stand what the grains of a phase have of their own: diameters= as of --diameters,
-    texture= as of --texture, symmetry= as of --crystal-symmetry; and place=, where its grains are among the others:
-    interior, boundaries, triple-lines, quadruple-points, clustered, dispersed.
+    Shares add up to 1. Each phase can have its own diameters=, texture= and symmetry=, with the values of --diameters,
+    --texture and --crystal-symmetry. place= says where its grains lie among the others: interior, boundaries, triple-lines,
+    quadruple-points, clustered or dispersed.
 
     Example of the command line: ``--phase ferrite:0.8 --phase 'austenite:0.2,texture=goss(10)'``"""
 
     inside: Repeated
-    """Divide the grains, or those of one phase, by a second tessellation: layers of a width, or Voronoi cells of a mean
-    diameter, in the unit of --box; give it again for other phases
+    """Subdivide the grains, or those of one phase, into lamellae of a given width or Voronoi cells of a given mean diameter,
+    in the unit of --box; repeat for other phases
 
-    Each part is a grain of its own, with an orientation of its own, and Parent tells whose part it is. Grains keep their
-    volumes. Layers lie in a random direction in each grain, or across normal=; cells have lognormal diameters of a
-    coefficient of variation cv= (0.35).
+    Each part becomes a grain with its own orientation, and the array Parent names the grain that it belongs to. Those
+    grains keep their volumes. Lamellae lie in a random direction in each grain, or across normal=; cells have lognormal
+    diameters with a coefficient of variation of cv= (0.35).
 
     Example of the command line: ``--inside 'lamellae(width=0.05)'; --inside 'beta:voronoi(diameter=0.1)' for one phase``"""
 
     drop_empty: bool
-    """Go on without seeds whose neighbours outweigh them; else that is an error
+    """Drop seeds that their neighbours outweigh, so that they have no cell; without this option they are an error
 
     Example of the command line: ``--seeds-file spheres.csv --drop-empty``"""
 
     min_diameter: Value
-    """Merge cells below F mean equivalent diameters into what surrounds them; 0 keeps all
+    """Merge cells smaller than F mean equivalent diameters into their surroundings; 0 keeps all
 
-    The smallest cell below loses its seed and the cells are made again, so that its neighbours grow into its place, until
-    none is below. The grains have the volumes of these cells. SeedId leads from their numbers back to the seeds.
+    The smallest such cell loses its seed and all cells are computed again, so that its neighbours fill its space, until no
+    cell is too small. The grains have the volumes of these last cells. SeedId maps their numbers back to the seeds.
 
     Example of the command line: ``--min-diameter 0.2``
 
     Default: ``0``"""
 
     lloyd: Value
-    """Even out the grains: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 10 for packed
-    grains, and where else --diameters or --volumes give sizes, but no --seeds-file the places; 0 for others]
+    """Make the grains more alike: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 10 for
+    packed grains, and for --diameters or --volumes without --seeds-file; otherwise 0]
 
     Example of the command line: ``--lloyd 10``"""
 
     grain_shapes: Value
-    """Give each grain a shape: an ellipsoid (in 2D an ellipse) with lengths in proportion, in a random direction or along x, y
-    and z
+    """Give each grain a shape: an ellipsoid (an ellipse in 2D) of the given axis ratios, in a random direction or aligned with
+    x, y and z
 
-    Grains are several cells each, which makes them as long as there is room for; volumes are as exact as without, and the
-    summary tells the ratio that was reached. A file (.csv, .txt) has a line for each grain: lengths a, b, c and Bunge's
-    Euler angles phi1, Phi, phi2 in degrees, in 2D a, b and phi1. Relaxation rounds grains: --relax tells how far.
+    Each grain then consists of several cells, which make it as elongated as space allows. Volumes stay exact, and the
+    summary reports the ratio that was reached. A file (.csv, .txt) has one line for each grain: lengths a, b, c and Bunge's
+    Euler angles phi1, Phi, phi2 in degrees (a, b and phi1 in 2D). Relaxation makes grains rounder; --relax sets for how
+    long it acts.
 
     Example of the command line: ``--grain-shapes '3:1:1 aligned'``"""
 
     periodic_cut: Literal["wrap", "box"]
-    """Grains of a periodic box whole, sticking out of it where they grow through a wall (wrap), or cut at its walls (box)
+    """Keep the grains of a periodic box whole, sticking out where they cross its walls (wrap), or cut them at the walls (box)
 
     Example of the command line: ``--periodic x,y,z --periodic-cut box``
 
@@ -214,39 +216,40 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--relax 0.1``"""
 
     wall_tension: Value
-    """Tension of the walls, in units of that between grains, of the largest with --tension; 0 lets boundaries meet walls at
-    right angles
+    """Tension of the walls, relative to that between grains, or with --tension to the largest of these; with 0, boundaries
+    meet the walls at right angles
 
     Example of the command line: ``--wall-tension 0.5``
 
     Default: ``0``"""
 
     tension: Repeated
-    """Tension of boundaries between grains, in any unit: a number, read-shockley(15) over the disorientation, that times a
-    number, or a table of angles and tensions; with PHASE/PHASE: before it, of boundaries between these [default: 1]
+    """Tension (energy per area) of boundaries between grains, in any unit: a number; read-shockley(15), a function of the
+    disorientation, or a multiple of it; or a table of angles and tensions. PHASE/PHASE: in front makes it the tension
+    between these phases [default: 1]
 
     Example of the command line: ``--texture 'goss(10)' --tension 'read-shockley(15)'``"""
 
     mobility: Repeated
-    """Mobility of boundaries between grains that grow, in any unit: a law as of --tension, such as humphreys(15) [default: 1]
+    """Mobility of the boundaries between growing grains, in any unit: a law as for --tension, such as humphreys(15) [default:
+    1]
 
     Example of the command line: ``--relax 0.02 --free --texture 'goss(10)' --mobility 'humphreys(15)'``"""
 
     regularize: Value
-    """Keep the neighbours of the cells instead of letting grains switch them, but for edges shorter than L mean grain sizes,
-    which become points; 0 keeps all
+    """Do not let grains switch neighbours; only edges shorter than L mean grain sizes become points. 0 keeps every edge
 
     Example of the command line: ``--regularize 0.05``"""
 
     levels: Value
-    """Number of subdivisions; each makes four triangles of one (two segments in 2D)
+    """Number of subdivisions; each divides every triangle into four (in 2D every segment into two)
 
     Example of the command line: ``-n 2``
 
     Default: ``3``"""
 
     junctions: Literal["crease", "corner"]
-    """Triple lines as smooth curves (crease) or as polylines through all their control points (corner)
+    """Smooth the triple lines (crease), or leave them as polylines through their control points (corner)
 
     Example of the command line: ``--junctions corner``
 
@@ -258,17 +261,18 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--element-size 0.02``"""
 
     elements_per_grain: Value
-    """The same with edges of which K make the mean diameter of the grains
+    """Set the edge length to 1/K of the mean grain diameter instead
 
     Example of the command line: ``--elements-per-grain 5 --relax equilibrium``"""
 
     adapt_curvature: Value
-    """Smaller triangles where boundaries are curved: edges no longer than S times the radius of curvature
+    """Use smaller triangles where boundaries are curved: edges no longer than S times the radius of curvature
 
     Example of the command line: ``--elements-per-grain 5 --adapt-curvature 0.3``"""
 
     size_growth: Value
-    """How much longer edges may become per length, away from short triple lines and other narrow places [default: 0.4]
+    """How fast edges may grow with the distance from short triple lines and other narrow places, as length per length
+    [default: 0.4]
 
     Example of the command line: ``--elements-per-grain 5 --size-growth 0.2``"""
 
@@ -276,7 +280,7 @@ class Options(TypedDict, total=False):
     """Give each grain an orientation: random, components with halfwidths in degrees, or a file
 
     Components are cube, goss, brass, copper, s and others; {112}<-1-11>(10); euler(30 45 60, 10); fiber(111||z, 10);
-    gamma(10). Sums have weights by volume: 'cube(5)*0.3 + random*0.7'. A file holds Euler angles with weights (.csv, .txt),
+    gamma(10). Sums are weighted by volume: 'cube(5)*0.3 + random*0.7'. A file holds Euler angles with weights (.csv, .txt),
     Neper's orientations (.ori), or a measured map (.ang, .ctf).
 
     Example of the command line: ``--texture 'goss(10)'``"""
@@ -290,16 +294,15 @@ class Options(TypedDict, total=False):
     Default: ``cubic``"""
 
     sample_symmetry: Value
-    """Symmetry of the sample: triclinic (none) or orthorhombic, as of rolled sheet, where each component comes in all its
-    variants
+    """Symmetry of the sample: triclinic (none), or orthorhombic as for rolled sheet, where each component has all its variants
 
     Example of the command line: ``--texture 'copper(8) + s(8) + brass(8)' --sample-symmetry orthorhombic``
 
     Default: ``triclinic``"""
 
     misorientations: Value
-    """Swap orientations until the disorientations of neighbours, by area, have the histogram in a file: on each line the upper
-    end of a bin in degrees, and its weight
+    """Swap orientations until the disorientations between neighbours, weighted by area, match a histogram: a file with the
+    upper end of a bin in degrees and its weight on each line
 
     Example of the command line: ``--texture random --misorientations angles.csv``"""
 
@@ -309,19 +312,19 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--voxels 64 64 64 -o grains.vti``"""
 
     ascii: bool
-    """Write STL as text
+    """Write STL files as text
 
     Example of the command line: ``--ascii -o grains.stl``"""
 
     names: Literal["grainsmooth", "dream3d", "pyvista", "virmat", "neper"]
-    """Names and numbers of arrays as another tool expects them
+    """Name and number the arrays as another program expects
 
     Example of the command line: ``--names dream3d``
 
     Default: ``grainsmooth``"""
 
     arrays: bool
-    """Add arrays of what is measured to VTK files: curvatures, dihedral angles, areas, volumes, growth rates
+    """Add measured quantities to VTK files as arrays: curvatures, dihedral angles, areas, volumes, growth rates
 
     Example of the command line: ``--arrays -o grains.vtm``"""
 
