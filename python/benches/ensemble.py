@@ -18,7 +18,7 @@ OPTIONS = {"seeds": 100, "levels": 1}
 
 def runs_a_second(workers: int, count: int) -> float:
     """Makes so many runs, and tells how it went."""
-    with LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
+    with LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:  # type: ignore[no-untyped-call]
         grainsmooth.ensemble(OPTIONS, replicates=2 * workers, client=client)
         start = time.perf_counter()
         study = grainsmooth.ensemble(OPTIONS, replicates=count, client=client)
