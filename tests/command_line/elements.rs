@@ -75,6 +75,11 @@ fn what_solvers_need_is_refused_where_it_has_no_meaning() {
             "--solver-deck tension-x -o a.inp --periodic x",
             "--solver-deck pulls a box that repeats along all axes or along none; leave --domain and --half-spaces out, and give --periodic x,y,z or no --periodic",
         ),
+        ("--order 2", "--order is that of tetrahedra; give --volume-mesh -o grains.vtu, or -o grains.inp"),
+        (
+            "--cohesive --order 2 -o a.inp",
+            "--cohesive makes elements COH3D6, and Abaqus has none of second order; leave --order 2 or --cohesive out",
+        ),
         (
             "--cohesive --solver-deck tension-x -o a.inp",
             "--cohesive makes elements COH3D6, which CalculiX does not know, and --solver-deck writes a job for it; leave one of them out",

@@ -15,6 +15,7 @@ points = numpy.array(expected["points"])
 tetrahedra = numpy.array(expected["tetrahedra"])
 grains = numpy.array(expected["grains"])
 volumes = numpy.array(expected["volumes"])
+solid, triangle = [("tetra", "triangle"), ("tetra10", "triangle6")][expected["order"] - 1]
 
 
 def volumes_of(points, tetrahedra, grains):
@@ -25,37 +26,45 @@ def volumes_of(points, tetrahedra, grains):
 
 
 def check_volumes(mesh, grains, tolerance):
-    found = volumes_of(mesh.points, mesh.cells_dict["tetra"], grains)
+    nodes = mesh.cells_dict[solid]
+    found = volumes_of(mesh.points, nodes[:, :4], grains)
+    if expected["order"] == 2:
+        for middle, ends in enumerate([(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)], start=4):
+            between = mesh.points[nodes[:, ends]].mean(axis=1)
+            assert numpy.abs(mesh.points[nodes[:, middle]] - between).max() < 1e-12
     assert numpy.allclose(found, volumes, rtol=tolerance, atol=0), found / volumes - 1
 
 
 vtu = meshio.read("grains.vtu")
-assert (vtu.points == points).all()
-assert (vtu.cells_dict["tetra"] == tetrahedra).all()
-assert (vtu.cell_data_dict["GrainId"]["tetra"].ravel() == grains).all()
+count = len(points)
+assert (vtu.points[:count] == points).all() and (len(vtu.points) > count) == (expected["order"] == 2)
+assert (vtu.cells_dict[solid][:, :4] == tetrahedra).all()
+assert (vtu.cell_data_dict["GrainId"][solid].ravel() == grains).all()
 check_volumes(vtu, grains, 1e-9)
 if expected["periodic"]:
     originals = vtu.point_data["PeriodicOriginal"].ravel()
-    copies = numpy.flatnonzero(originals != numpy.arange(len(points)))
-    assert len(copies) > 100 and (copies < expected["surface_points"]).all()
-    periods = (points[copies] - points[originals[copies]]) / expected["box"]
+    copies = numpy.flatnonzero(originals != numpy.arange(len(vtu.points)))
+    of_points = copies[copies < count]
+    assert len(of_points) > 100 and (of_points < expected["surface_points"]).all()
+    assert (len(copies) > 2 * len(of_points)) == (expected["order"] == 2)
+    periods = (vtu.points[copies] - vtu.points[originals[copies]]) / expected["box"]
     assert numpy.abs(periods - periods.round()).max() < 4e-16 * numpy.abs(points).max()
     assert numpy.abs(periods.round()).sum(axis=1).min() > 0
 else:
     assert "PeriodicOriginal" not in vtu.point_data
 
 bdf = meshio.read("grains.bdf")
-assert numpy.abs(bdf.points - points).max() < 1e-12
-assert (bdf.cells_dict["tetra"] == tetrahedra).all()
-assert (bdf.cell_data_dict["nastran:ref"]["tetra"] == grains + 1).all()
+assert numpy.abs(bdf.points - vtu.points).max() < 1e-12
+assert (bdf.cells_dict[solid] == vtu.cells_dict[solid]).all()
+assert (bdf.cell_data_dict["nastran:ref"][solid] == grains + 1).all()
 check_volumes(bdf, grains, 1e-9)
 
 msh = meshio.read("grains.msh")
-assert sum(len(block.data) for block in msh.cells if block.type == "triangle") == expected["triangles"]
-assert {block.type for block in msh.cells} == {"triangle", "tetra"}
+assert sum(len(block.data) for block in msh.cells if block.type == triangle) == expected["triangles"]
+assert {block.type for block in msh.cells} == {triangle, solid}
 groups = msh.cell_data_dict["gmsh:physical"]
-check_volumes(msh, groups["tetra"] - 1, 1e-9)
-assert (groups["triangle"] > 0).all(), "every triangle is in a physical group"
+check_volumes(msh, groups[solid] - 1, 1e-9)
+assert (groups[triangle] > 0).all(), "every triangle is in a physical group"
 names = {name: tuple(group) for name, group in msh.field_data.items()}
 assert names["grain0"] == (1, 3)
 sides = {"x0", "x1", "y0", "y1", "z0", "z1"}
@@ -66,14 +75,14 @@ if expected["periodic"]:
         copies, originals = numpy.array(pairs).T
         assert len(copies) > 2
         # Nodes by their tags, which are those of our points; meshio's own points are in the order of the file.
-        periods = (points[copies] - points[originals]) / expected["box"]
+        periods = (vtu.points[copies] - vtu.points[originals]) / expected["box"]
         assert numpy.abs(periods - periods[0].round()).max() < 1e-15 and periods[0].round().any()
     at_exterior = sum(len(pairs) for _, _, _, pairs in msh.gmsh_periodic)
     assert at_exterior > 100
 
 # Poisson's equation with u = x on the outer surface: u = x everywhere.
-mesh = skfem.MeshTet.load("grains.msh")
-basis = skfem.Basis(mesh, skfem.ElementTetP1())
+mesh = [skfem.MeshTet, skfem.MeshTet2][expected["order"] - 1].load("grains.msh")
+basis = skfem.Basis(mesh, [skfem.ElementTetP1, skfem.ElementTetP2][expected["order"] - 1]())
 stiffness = skfem.BilinearForm(lambda u, v, _: dot(grad(u), grad(v))).assemble(basis)
 x = basis.doflocs[0]
 outer = basis.get_dofs().flatten()

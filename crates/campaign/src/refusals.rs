@@ -77,6 +77,7 @@ pub const REFUSALS: &[Kind] = &[
     ("ElementsWithoutSize", &["changes sizes of elements", "--elements-per-grain"]),
     ("VolumesInPlane", &["tetrahedra fill grains in space", "with --dim 2 leave"]),
     ("EquationsWithoutPeriods", &["--periodic-equations ties nodes", "give --periodic"]),
+    ("CohesiveOrder", &["--cohesive makes elements", "none of second order"]),
     ("CohesiveDeck", &["--cohesive makes elements", "leave one of them out"]),
     ("DeckDomain", &["--solver-deck pulls a box", "leave --domain"]),
     ("ElementsInPlane", &["elements of a size", "with --dim 2 leave"]),

@@ -2,6 +2,7 @@
 
 pub(crate) mod cohesive;
 pub(crate) mod element_faces;
+pub(crate) mod element_nodes;
 pub(crate) mod repair;
 
 use std::fmt;

@@ -101,6 +101,8 @@ pub enum Cells<'a> {
     Vertices(usize),
     /// Four points each; for unstructured grids alone.
     Tetrahedra(&'a [[u32; 4]]),
+    /// Ten points each: the corners, then the middles of the edges 0 1, 1 2, 2 0, 0 3, 1 3, 2 3; for unstructured grids alone.
+    QuadraticTetrahedra(&'a [[u32; 10]]),
 }
 
 impl Cells<'_> {
@@ -112,7 +114,13 @@ impl Cells<'_> {
             Self::Polygons(cells) | Self::Polylines(cells) => cells.len(),
             Self::Vertices(count) => *count,
             Self::Tetrahedra(tetrahedra) => tetrahedra.len(),
+            Self::QuadraticTetrahedra(tetrahedra) => tetrahedra.len(),
         }
+    }
+
+    /// Whether the cells are solids, which PolyData cannot hold.
+    fn are_solids(&self) -> bool {
+        matches!(self, Self::Tetrahedra(_) | Self::QuadraticTetrahedra(_))
     }
 
     /// Whether there is no cell.
@@ -127,6 +135,7 @@ impl Cells<'_> {
             Self::Polygons(cells) | Self::Polylines(cells) => cells.iter().map(Vec::len).sum(),
             Self::Vertices(count) => *count,
             Self::Tetrahedra(tetrahedra) => 4 * tetrahedra.len(),
+            Self::QuadraticTetrahedra(tetrahedra) => 10 * tetrahedra.len(),
         }
     }
 }

@@ -96,6 +96,11 @@ impl ResultFiles {
                 "--volume-mesh writes tetrahedra, and no file can hold them; give one of .vtu, .msh, .inp and .bdf, such as -o grains.vtu",
             ));
         }
+        if volume.order.is_some() && !self.need_tetrahedra(to_write) {
+            return Err(usage(
+                "--order is that of tetrahedra; give --volume-mesh -o grains.vtu, or -o grains.inp",
+            ));
+        }
         let has_inp = self.formats().contains(&OutputFormat::INP);
         for (name, is_asked) in [
             ("periodic-equations", volume.periodic_equations),

@@ -70,6 +70,11 @@ pub enum ConfigError {
         "--periodic-equations ties nodes that stand a period apart; give --periodic x,y,z or leave it out"
     )]
     EquationsWithoutPeriods,
+    /// Cohesive elements between tetrahedra of second order.
+    #[error(
+        "--cohesive makes elements COH3D6, and Abaqus has none of second order; leave --order 2 or --cohesive out"
+    )]
+    CohesiveOrder,
     /// Cohesive elements in a job for CalculiX.
     #[error(
         "--cohesive makes elements COH3D6, which CalculiX does not know, and --solver-deck writes a job for it; leave one of them out"
@@ -156,6 +161,7 @@ impl Config {
         let volume = &self.file.volume;
         let options = [
             ("volume-mesh", volume.volume_mesh),
+            ("order", volume.order.is_some()),
             ("periodic-equations", volume.periodic_equations),
             ("cohesive", volume.cohesive),
             ("solver-deck", volume.solver_deck.is_some()),
@@ -168,6 +174,9 @@ impl Config {
             return Err(ConfigError::EquationsWithoutPeriods);
         }
         let is_alike = self.shape == Shape::Box && self.periodic.any() == self.periodic.all();
+        if volume.cohesive && volume.order == Some(2) {
+            return Err(ConfigError::CohesiveOrder);
+        }
         if volume.cohesive && volume.solver_deck.is_some() {
             return Err(ConfigError::CohesiveDeck);
         }

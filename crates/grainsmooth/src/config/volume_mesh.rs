@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use super::spelling::is_usual;
+use super::spelling::{is_usual, whole_number};
 
 /// What is asked of the tetrahedra that fill grains, and of what solvers need beside them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Args, Serialize)]
@@ -16,6 +16,13 @@ pub struct VolumeMeshOptions {
     #[arg(long)]
     #[serde(skip_serializing_if = "is_usual")]
     pub volume_mesh: bool,
+
+    /// Order of the tetrahedra: 1, or 2 for a node in the middle of each edge, which stays straight [default: 1]
+    ///
+    /// Example: --elements-per-grain 3 --order 2 -o grains.inp
+    #[arg(long, value_name = "P", value_parser = whole_number(1..=2_u8), allow_negative_numbers = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub order: Option<u8>,
 
     /// Tie the nodes of .inp that stand a period apart by equations, with a node for each axis that moves as the box is to be stretched
     ///

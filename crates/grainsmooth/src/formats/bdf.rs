@@ -12,6 +12,9 @@ use crate::Polycrystal;
 /// Characters of a number in an entry's wide fields.
 const WIDE: usize = 16;
 
+/// Fields of a line.
+const OF_LINE: usize = 8;
+
 /// Some three tetrahedra for each triangle, with half a node each.
 pub(super) const FORMAT: Format = Format {
     extension: "bdf",
@@ -27,19 +30,24 @@ pub(super) const FORMAT: Format = Format {
 /// Writes grid points, tetrahedra, and properties: grain 0 is property 1. Their materials count phases from 1, and are for the user to say.
 fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     let mesh = polycrystal.tetrahedra()?;
+    let (elements, _) = polycrystal.elements(mesh)?;
     polycrystal.provenance().write_comments("$ ", out)?;
     writeln!(out, "BEGIN BULK")?;
     let phase_of = polycrystal.grains().phase_of();
     for grain in mesh.grains.chunk_by(|a, b| a == b).map(|of_grain| of_grain[0].index()) {
         writeln!(out, "PSOLID  {:8}{:8}", grain + 1, phase_of[grain] + 1)?;
     }
-    for (node, point) in (1..).zip(&mesh.points) {
+    for (node, point) in (1..).zip(&*elements.points) {
         let [x, y, z] = point.to_array().map(number);
         writeln!(out, "GRID*   {node:16}{:16}{x:>16}{y:>16}*\n*       {z:>16}", "")?;
     }
-    for (element, (corners, grain)) in (1..).zip(mesh.tetrahedra.iter().zip(&mesh.grains)) {
+    for (element, (nodes, grain)) in (1..).zip(elements.iter().zip(&mesh.grains)) {
         write!(out, "CTETRA  {element:8}{:8}", grain.0 + 1)?;
-        corners.iter().try_for_each(|corner| write!(out, "{:8}", corner + 1))?;
+        for (place, node) in nodes.iter().enumerate() {
+            // Two fields of an entry's first line are taken.
+            let continues = if place == OF_LINE - 2 { "\n        " } else { "" };
+            write!(out, "{continues}{:8}", node + 1)?;
+        }
         writeln!(out)?;
     }
     writeln!(out, "ENDDATA")

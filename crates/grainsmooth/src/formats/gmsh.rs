@@ -181,21 +181,10 @@ fn bounds(all: &[DVec3], points: impl Iterator<Item = u32>) -> String {
 fn write_nodes(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Write) -> io::Result<()> {
     let Junctions { lines, corners } = junctions;
     let mut is_written = vec![false; surface.points.len()];
-    let mut block = |dimension: u32, tag: usize, points: &mut dyn Iterator<Item = u32>| {
-        let mut new: Vec<u32> = Vec::new();
-        for point in points {
-            if !std::mem::replace(&mut is_written[point as usize], true) {
-                new.push(point);
-            }
-        }
-        writeln!(out, "{dimension} {tag} 0 {}", new.len())?;
-        for point in &new {
-            writeln!(out, "{}", u64::from(*point) + 1)?;
-        }
-        for DVec3 { x, y, z } in new.iter().map(|point| surface.points[*point as usize]) {
-            writeln!(out, "{x:?} {y:?} {z:?}")?;
-        }
-        Ok::<(), io::Error>(())
+    let mut block = |dimension: usize, tag: usize, points: &mut dyn Iterator<Item = u32>| {
+        let is_new = |point: &u32| !std::mem::replace(&mut is_written[*point as usize], true);
+        let new: Vec<u32> = points.filter(is_new).collect();
+        write_block([dimension, tag], &new, &surface.points, out)
     };
     for (tag, corner) in (1..).zip(corners) {
         block(0, tag, &mut std::iter::once(*corner))?;
@@ -225,24 +214,44 @@ fn write_elements(surface: &Surface<'_>, junctions: &Junctions, out: &mut dyn Wr
             writeln!(out, "{} {} {}", next(), u64::from(ends[0]) + 1, u64::from(ends[1]) + 1)?;
         }
     }
-    write_triangles(surface, next, out)?;
+    write_triangles(surface, TRIANGLE, |corners| corners, next, out)?;
     writeln!(out, "$EndElements")
 }
 
-/// Writes a block of triangles for each surface.
-fn write_triangles(
+/// Writes a block of triangles for each surface, of a kind of Gmsh with the nodes that a triangle has.
+fn write_triangles<Nodes: AsRef<[u32]>>(
     surface: &Surface<'_>,
+    kind: u32,
+    nodes_of: impl Fn([u32; 3]) -> Nodes,
     mut next: impl FnMut() -> u64,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     for part in &surface.parts {
-        let triangles = surface.triangles_of(part);
-        writeln!(out, "2 {} {TRIANGLE} {}", tag(part.boundary), surface.triangles_of(part).count())?;
-        for [a, b, c] in triangles.map(|triangle| triangle.map(|id| u64::from(id) + 1)) {
-            writeln!(out, "{} {a} {b} {c}", next())?;
+        writeln!(out, "2 {} {kind} {}", tag(part.boundary), surface.triangles_of(part).count())?;
+        for triangle in surface.triangles_of(part) {
+            write_element(next(), nodes_of(triangle).as_ref(), out)?;
         }
     }
     Ok(())
+}
+
+fn write_element(number: u64, nodes: &[u32], out: &mut dyn Write) -> io::Result<()> {
+    write!(out, "{number}")?;
+    nodes.iter().try_for_each(|node| write!(out, " {}", u64::from(*node) + 1))?;
+    writeln!(out)
+}
+
+/// Writes a block of nodes.
+fn write_block(
+    [dimension, tag]: [usize; 2],
+    nodes: &[u32],
+    points: &[DVec3],
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    writeln!(out, "{dimension} {tag} 0 {}", nodes.len())?;
+    nodes.iter().try_for_each(|node| writeln!(out, "{}", u64::from(*node) + 1))?;
+    let mut places = nodes.iter().map(|node| points[*node as usize]);
+    places.try_for_each(|DVec3 { x, y, z }| writeln!(out, "{x:?} {y:?} {z:?}"))
 }
 
 /// Number of a boundary's surface.

@@ -11,6 +11,7 @@ use voronoi::{Dimension, PeriodicPair};
 use super::measured_arrays::MeasuredArrays;
 use super::surface::{Surface, unit_normal};
 use crate::names::{MOBILITY, NUMBER_OF_GRAINS, SEED_ID, TENSION};
+use crate::volume_mesh::element_nodes::ElementNodes;
 use crate::vtk::write_vtk;
 use crate::vtk::{
     Array, Cells, Each, FieldEntry, FieldValue, ItemTuples, Items, PolyData, Values, VtkFormat,
@@ -44,6 +45,20 @@ impl Polycrystal {
     /// The points that are others moved by whole periods: those of a periodic network, or, where it was cut at its box, those on the upper sides.
     pub(crate) fn periodic_points(&self) -> io::Result<Vec<PeriodicPair<u32>>> {
         self.network.periodic_vertices(&self.points, self.axes_cut_at_box()).map_err(io::Error::other)
+    }
+
+    /// Tetrahedra of the order that files are to hold, and which of their nodes are others moved by whole periods.
+    pub(crate) fn elements<'a>(
+        &self,
+        mesh: &'a VolumeMesh,
+    ) -> io::Result<(ElementNodes<'a>, Vec<PeriodicPair<u32>>)> {
+        let mut pairs = self.periodic_points()?;
+        if self.file().volume.order != Some(2) {
+            return Ok((ElementNodes::linear(mesh), pairs));
+        }
+        let mut elements = ElementNodes::quadratic(mesh);
+        elements.tie_middles(&self.network, &mut pairs);
+        Ok((elements, pairs))
     }
 
     pub(crate) fn texture(&self) -> io::Result<&GrainTexture> {

@@ -20,8 +20,8 @@ pub(super) fn write(polycrystal: &Polycrystal, mesh: &VolumeMesh, out: &mut dyn 
         name: tuples.name,
         values: Values::Items(Items { tuples, count, item: &grain_of }),
     }));
-    let pairs = polycrystal.periodic_points()?;
-    let mut originals: Vec<i32> = (0..).take(mesh.points.len()).collect();
+    let (elements, pairs) = polycrystal.elements(mesh)?;
+    let mut originals: Vec<i32> = (0..).take(elements.points.len()).collect();
     pairs.iter().for_each(|pair| originals[pair.secondary as usize] = pair.primary.cast_signed());
     let originals = Array { name: "PeriodicOriginal", values: Values::Int32(&originals) };
     let point_arrays = if pairs.is_empty() { Vec::new() } else { vec![originals] };
@@ -30,7 +30,10 @@ pub(super) fn write(polycrystal: &Polycrystal, mesh: &VolumeMesh, out: &mut dyn 
     field.push(FieldEntry { name: VOLUMES, value: volumes });
     field.push(polycrystal.seed_ids());
     field.extend(polycrystal.grain_fields());
-    let cells = Cells::Tetrahedra(&mesh.tetrahedra);
-    let data = PolyData { points: &mesh.points, cells, point_arrays, cell_arrays, field };
+    let cells = match elements.are_quadratic() {
+        true => Cells::QuadraticTetrahedra(bytemuck::cast_slice(elements.nodes())),
+        false => Cells::Tetrahedra(&mesh.tetrahedra),
+    };
+    let data = PolyData { points: &elements.points, cells, point_arrays, cell_arrays, field };
     write_vtk(&data, VtkFormat::Vtu, polycrystal.file().encoding, out)
 }

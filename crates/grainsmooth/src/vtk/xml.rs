@@ -6,7 +6,7 @@
 use std::io::{self, Write};
 
 use super::raw::NumbersOfFile;
-use super::{Cells, PolyData, VtkEncoding};
+use super::{PolyData, VtkEncoding};
 use document::Document;
 
 mod document;
@@ -27,7 +27,7 @@ pub(super) fn write(
     encoding: VtkEncoding,
     out: &mut dyn Write,
 ) -> io::Result<()> {
-    if format == XmlFormat::PolyData && matches!(data.cells, Cells::Tetrahedra(_)) {
+    if format == XmlFormat::PolyData && data.cells.are_solids() {
         return Err(io::Error::other("PolyData holds no tetrahedra; write an unstructured grid"));
     }
     let mut numbers = NumbersOfFile::new(encoding);

@@ -4,11 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
 
 use polycrystal::BoundaryId;
-use voronoi::Translation;
+use voronoi::{PeriodicPair, Translation};
 
 use super::super::surface::{Part, Surface};
 use super::tag;
 use crate::Polycrystal;
+use crate::volume_mesh::element_nodes::ElementNodes;
 
 /// A point on the torus, and the periods that lead from there to where it stands.
 type Place = (u32, Translation);
@@ -21,10 +22,16 @@ struct Copy {
 }
 
 /// Writes the section `$Periodic`; nothing where nothing is periodic.
-pub(super) fn write(surface: &Surface<'_>, polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write(
+    surface: &Surface<'_>,
+    polycrystal: &Polycrystal,
+    elements: &ElementNodes<'_>,
+    pairs: &[PeriodicPair<u32>],
+    out: &mut dyn Write,
+) -> io::Result<()> {
     let mut places: Vec<Place> =
-        (0u32..).take(surface.points.len()).map(|point| (point, Translation::ZERO)).collect();
-    for pair in polycrystal.periodic_points()? {
+        (0u32..).take(elements.points.len()).map(|point| (point, Translation::ZERO)).collect();
+    for pair in pairs {
         places[pair.secondary as usize] = (pair.primary, pair.translation);
     }
     let mut copies = twins(polycrystal);
@@ -36,7 +43,8 @@ pub(super) fn write(surface: &Surface<'_>, polycrystal: &Polycrystal, out: &mut 
     }
     writeln!(out, "$Periodic\n{}", copies.len())?;
     let points_of = |boundary: BoundaryId| -> BTreeSet<u32> {
-        surface.triangles_of(&surface.parts[boundary.index()]).flatten().collect()
+        let triangles = surface.triangles_of(&surface.parts[boundary.index()]);
+        triangles.flat_map(|corners| elements.of_triangle(corners)).collect()
     };
     for Copy { boundary, original, translation } in &copies {
         let by_place: BTreeMap<Place, u32> =

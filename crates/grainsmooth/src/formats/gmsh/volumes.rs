@@ -5,21 +5,23 @@
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use glam::DVec3;
 use polycrystal::BoundaryId;
 
 use super::super::lines::Junctions;
 use super::super::surface::Surface;
 use super::periodic;
 use super::{
-    block_count, bounds, entity_counts, tag, write_entities, write_head, write_nodes, write_triangles,
+    block_count, bounds, entity_counts, tag, write_block, write_element, write_entities, write_head,
+    write_nodes, write_triangles,
 };
 use crate::Polycrystal;
 use crate::names::side_of_box;
 use crate::volume_mesh::VolumeMesh;
+use crate::volume_mesh::element_nodes::ElementNodes;
 
-/// Gmsh's code for tetrahedra.
-const TETRAHEDRON: u32 = 4;
+/// Gmsh's codes for triangles and tetrahedra of first and of second order.
+const LINEAR: [u32; 2] = [2, 4];
+const QUADRATIC: [u32; 2] = [9, 11];
 
 pub(super) fn write(
     surface: &Surface<'_>,
@@ -27,6 +29,7 @@ pub(super) fn write(
     polycrystal: &Polycrystal,
     out: &mut dyn Write,
 ) -> io::Result<()> {
+    let (elements, pairs) = polycrystal.elements(mesh)?;
     let junctions = Junctions::of(surface);
     let groups = Groups::of(polycrystal);
     let grain_count = polycrystal.network.grain_count();
@@ -36,33 +39,40 @@ pub(super) fn write(
     write_entities(surface, &junctions, |boundary| Some(groups.of_boundary[boundary.index()]), out)?;
     write_volumes(surface, mesh, grain_count, out)?;
     writeln!(out, "$EndEntities")?;
-    let count = mesh.points.len();
-    let inner = inner_points(mesh, grain_count);
-    writeln!(out, "$Nodes\n{} {count} 1 {count}", block_count(surface, &junctions) + grain_count)?;
+
+    let Nodes { on_surfaces, in_volumes } = Nodes::of(surface, mesh, &elements, grain_count);
+    let (blocks, count) = (on_surfaces.len() + in_volumes.len(), elements.points.len());
+    writeln!(out, "$Nodes\n{} {count} 1 {count}", block_count(surface, &junctions) + blocks)?;
     write_nodes(surface, &junctions, out)?;
-    for (tag, points) in (1..).zip(&inner) {
-        writeln!(out, "3 {tag} 0 {}", points.len())?;
-        points.iter().try_for_each(|point| writeln!(out, "{}", point + 1))?;
-        for DVec3 { x, y, z } in points.iter().map(|point| mesh.points[*point]) {
-            writeln!(out, "{x:?} {y:?} {z:?}")?;
-        }
+    for (part, nodes) in surface.parts.iter().zip(&on_surfaces) {
+        write_block([2, tag(part.boundary)], nodes, &elements.points, out)?;
+    }
+    for (volume, nodes) in (1..).zip(&in_volumes) {
+        write_block([3, volume], nodes, &elements.points, out)?;
     }
     writeln!(out, "$EndNodes")?;
+
     let count = surface.triangle_count() + mesh.tetrahedra.len();
     let of_grains: Vec<_> = mesh.grains.chunk_by(|a, b| a == b).collect();
     writeln!(out, "$Elements\n{} {count} 1 {count}", surface.parts.len() + of_grains.len())?;
     let mut element = 1u64..;
     let mut next = move || element.next().unwrap_or_default();
-    write_triangles(surface, &mut next, out)?;
-    let mut tetrahedra = mesh.tetrahedra.iter();
+    let [triangle, tetrahedron] = if elements.are_quadratic() { QUADRATIC } else { LINEAR };
+    write_triangles(surface, triangle, |corners| elements.of_triangle(corners), &mut next, out)?;
+    let mut nodes_of = elements.iter();
     for of_grain in of_grains {
-        writeln!(out, "3 {} {TETRAHEDRON} {}", of_grain[0].index() + 1, of_grain.len())?;
-        for [a, b, c, d] in tetrahedra.by_ref().take(of_grain.len()) {
-            writeln!(out, "{} {} {} {} {}", next(), a + 1, b + 1, c + 1, d + 1)?;
+        writeln!(out, "3 {} {tetrahedron} {}", of_grain[0].index() + 1, of_grain.len())?;
+        for nodes in nodes_of.by_ref().take(of_grain.len()) {
+            let mut nodes = nodes.to_vec();
+            if elements.are_quadratic() {
+                // Gmsh has the last two edges in the other order.
+                nodes.swap(8, 9);
+            }
+            write_element(next(), &nodes, out)?;
         }
     }
     writeln!(out, "$EndElements")?;
-    periodic::write(surface, polycrystal, out)
+    periodic::write(surface, polycrystal, &elements, &pairs, out)
 }
 
 /// The physical surfaces.
@@ -123,19 +133,27 @@ fn write_volumes(
     Ok(())
 }
 
-/// The points inside each grain.
-fn inner_points(mesh: &VolumeMesh, grain_count: usize) -> Vec<Vec<usize>> {
-    let mut grain_of = vec![None; mesh.points.len() - mesh.surface_points];
-    for (corners, grain) in mesh.tetrahedra.iter().zip(&mesh.grains) {
-        for inner in corners.iter().filter_map(|corner| (*corner as usize).checked_sub(mesh.surface_points)) {
-            grain_of[inner] = Some(grain.index());
+/// Nodes that are no points of the network: the middles of edges on each surface, and the nodes inside each grain.
+struct Nodes {
+    /// Nothing for elements of first order.
+    on_surfaces: Vec<Vec<u32>>,
+    in_volumes: Vec<Vec<u32>>,
+}
+
+impl Nodes {
+    fn of(surface: &Surface<'_>, mesh: &VolumeMesh, elements: &ElementNodes<'_>, grain_count: usize) -> Self {
+        let mut is_listed = vec![false; elements.points.len()];
+        is_listed[..mesh.surface_points].fill(true);
+        let mut is_new = |node: &u32| !std::mem::replace(&mut is_listed[*node as usize], true);
+        let mut on_surfaces = Vec::new();
+        for part in surface.parts.iter().filter(|_| elements.are_quadratic()) {
+            let nodes = surface.triangles_of(part).flat_map(|corners| elements.of_triangle(corners));
+            on_surfaces.push(nodes.filter(&mut is_new).collect());
         }
-    }
-    let mut points = vec![Vec::new(); grain_count];
-    for (point, grain) in (mesh.surface_points..).zip(grain_of) {
-        if let Some(grain) = grain {
-            points[grain].push(point);
+        let mut in_volumes = vec![Vec::new(); grain_count];
+        for (nodes, grain) in elements.iter().zip(&mesh.grains) {
+            in_volumes[grain.index()].extend(nodes.iter().copied().filter(&mut is_new));
         }
+        Self { on_surfaces, in_volumes }
     }
-    points
 }

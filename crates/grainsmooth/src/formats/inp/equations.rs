@@ -12,7 +12,6 @@ use voronoi::PeriodicPair;
 use super::tetrahedra::write_node;
 use crate::Polycrystal;
 use crate::names::AXES;
-use crate::volume_mesh::VolumeMesh;
 
 /// Whether equations are asked for, or needed by what is.
 pub(super) fn are_asked(polycrystal: &Polycrystal) -> bool {
@@ -24,7 +23,7 @@ pub(super) fn are_asked(polycrystal: &Polycrystal) -> bool {
 /// Writes the nodes of the axes as sets `PERIOD_X` and so on, one node that may be held as the set `HELD`, and the equations between pairs of nodes.
 pub(super) fn write(
     polycrystal: &Polycrystal,
-    mesh: &VolumeMesh,
+    node_count: usize,
     pairs: &[PeriodicPair<u32>],
     out: &mut dyn Write,
 ) -> io::Result<()> {
@@ -32,12 +31,12 @@ pub(super) fn write(
     let axes = if domain.is_periodic() { domain.periodic() } else { polycrystal.axes_cut_at_box() };
     let mut of_axes = [0; 3];
     let periodic = (0..3).filter(|axis| axes.test(*axis));
-    for (node, axis) in (mesh.points.len() + 1..).zip(periodic) {
+    for (node, axis) in (node_count + 1..).zip(periodic) {
         of_axes[axis] = node;
         writeln!(out, "*NODE, NSET=PERIOD_{}", AXES[axis].to_uppercase())?;
         write_node(node, domain.lower() + DVec3::AXES[axis] * domain.size(), out)?;
     }
-    let mut is_copy = vec![false; mesh.points.len()];
+    let mut is_copy = vec![false; node_count];
     pairs.iter().for_each(|pair| is_copy[pair.secondary as usize] = true);
     if let Some(held) = is_copy.iter().rposition(|is_copy| !is_copy) {
         writeln!(out, "*NSET, NSET=HELD\n{},", held + 1)?;

@@ -1,4 +1,4 @@
-//! Tetrahedra that fill smooth grains, as elements C3D4.
+//! Tetrahedra that fill smooth grains, as elements C3D4 or C3D10.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Write};
@@ -10,27 +10,28 @@ use crate::Polycrystal;
 use crate::names::{AXES, side_of_box};
 use crate::volume_mesh::VolumeMesh;
 use crate::volume_mesh::cohesive::{CohesiveMesh, Prism};
-use crate::volume_mesh::element_faces::{ElementFace, FACES};
+use crate::volume_mesh::element_faces::ElementFace;
+use crate::volume_mesh::element_nodes::ElementNodes;
 
 /// Writes nodes, those of the network first; elements grain by grain; sets of both; as surfaces each boundary, by the elements of its first side, and the sides of the box;
 /// and, where they are asked for, cohesive elements and equations.
 pub(super) fn write(polycrystal: &Polycrystal, filling: &VolumeMesh, out: &mut dyn Write) -> io::Result<()> {
     let network = &polycrystal.network;
-    let pairs = polycrystal.periodic_points()?;
+    let (mut elements, mut pairs) = polycrystal.elements(filling)?;
     let is_cohesive = polycrystal.file().volume.cohesive;
     let cohesive = is_cohesive.then(|| CohesiveMesh::new(filling, network, &pairs));
-    let (mesh, pairs) = match &cohesive {
-        Some(cohesive) => (&cohesive.mesh, &cohesive.ties),
-        None => (filling, &pairs),
-    };
+    if let Some(cohesive) = &cohesive {
+        elements = ElementNodes::linear(&cohesive.mesh);
+        pairs.clone_from(&cohesive.ties);
+    }
     writeln!(out, "*NODE, NSET=NODES")?;
-    (1..).zip(&mesh.points).try_for_each(|(node, point)| write_node(node, *point, out))?;
-    write_sides(polycrystal, mesh, out)?;
-    writeln!(out, "*ELEMENT, TYPE=C3D4, ELSET=ELEMENTS")?;
-    (1..).zip(&mesh.tetrahedra).try_for_each(|(element, nodes)| write_element(element, nodes, out))?;
+    (1..).zip(&*elements.points).try_for_each(|(node, point)| write_node(node, *point, out))?;
+    write_sides(polycrystal, &elements.points, out)?;
+    writeln!(out, "*ELEMENT, TYPE=C3D{}, ELSET=ELEMENTS", elements.node_count)?;
+    (1..).zip(elements.iter()).try_for_each(|(element, nodes)| write_element(element, nodes, out))?;
     let mut first = 1;
     let mut grains = Vec::new();
-    for of_grain in mesh.grains.chunk_by(|a, b| a == b) {
+    for of_grain in filling.grains.chunk_by(|a, b| a == b) {
         let grain = of_grain[0].index();
         first = write_element_set(&format!("GRAIN_{grain}"), first, of_grain.len(), out)?;
         grains.push(grain);
@@ -39,10 +40,10 @@ pub(super) fn write(polycrystal: &Polycrystal, filling: &VolumeMesh, out: &mut d
         write_prisms(&cohesive.prisms, first, out)?;
     }
     // The nodes of faces are those of a grain that may have its own.
-    write_surfaces(polycrystal, &filling.faces_at_triangles(network), mesh, out)?;
+    write_surfaces(polycrystal, &filling.faces_at_triangles(network), &elements, out)?;
     write_sections(&grains, polycrystal.grains(), out)?;
     if equations::are_asked(polycrystal) {
-        equations::write(polycrystal, mesh, pairs, out)?;
+        equations::write(polycrystal, elements.points.len(), &pairs, out)?;
     }
     Ok(())
 }
@@ -79,7 +80,7 @@ pub(super) fn write_node(node: usize, point: DVec3, out: &mut dyn Write) -> io::
 }
 
 /// The nodes on each side of a box, each edge and each corner of it: `X0`, `X0Y1`, `X0Y1Z0` and so on.
-fn write_sides(polycrystal: &Polycrystal, mesh: &VolumeMesh, out: &mut dyn Write) -> io::Result<()> {
+fn write_sides(polycrystal: &Polycrystal, points: &[DVec3], out: &mut dyn Write) -> io::Result<()> {
     let domain = polycrystal.network.domain();
     if !domain.is_box() {
         return Ok(());
@@ -87,7 +88,7 @@ fn write_sides(polycrystal: &Polycrystal, mesh: &VolumeMesh, out: &mut dyn Write
     let ends = [domain.lower(), domain.upper()];
     // Of each axis: not at a side, at the lower, at the upper one.
     let mut sets: BTreeMap<[Option<usize>; 3], Vec<usize>> = BTreeMap::new();
-    for (node, point) in mesh.points.iter().enumerate() {
+    for (node, point) in points.iter().enumerate() {
         let at = [0, 1, 2].map(|axis| {
             let is_wall = !domain.periodic().test(axis);
             (0..2).find(|end| is_wall && point[axis] == ends[*end][axis])
@@ -113,7 +114,7 @@ fn write_sides(polycrystal: &Polycrystal, mesh: &VolumeMesh, out: &mut dyn Write
 fn write_surfaces(
     polycrystal: &Polycrystal,
     faces: &[[Option<ElementFace>; 2]],
-    mesh: &VolumeMesh,
+    elements: &ElementNodes<'_>,
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let network = &polycrystal.network;
@@ -123,8 +124,8 @@ fn write_surfaces(
     let level = network.finest_level();
     for (both, boundary) in faces.iter().zip(&level.boundary_of) {
         let (nodes, faces) = &mut of_boundaries[boundary.index()];
-        for ElementFace { element, face } in both.iter().flatten() {
-            nodes.extend(FACES[*face].map(|corner| mesh.tetrahedra[*element][corner] as usize));
+        for face in both.iter().flatten() {
+            nodes.extend(elements.nodes_of_face(*face).into_iter().map(|node| node as usize));
         }
         let Some(face) = both[0] else { continue };
         faces.push(face);

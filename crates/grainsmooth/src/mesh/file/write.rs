@@ -122,6 +122,7 @@ fn for_each_cell(cells: Cells<'_>, mut visit: impl FnMut(&[u32]) -> io::Result<(
         Cells::TrianglesOf(each) => (0..each.count).try_for_each(|cell| visit(&(each.value)(cell))),
         Cells::Polygons(cells) | Cells::Polylines(cells) => cells.iter().try_for_each(|cell| visit(cell)),
         Cells::Tetrahedra(tetrahedra) => tetrahedra.iter().try_for_each(|cell| visit(cell)),
+        Cells::QuadraticTetrahedra(tetrahedra) => tetrahedra.iter().try_for_each(|cell| visit(cell)),
         Cells::Vertices(_) => Ok(()),
     }
 }
@@ -205,7 +206,7 @@ fn write_stl(mesh: &MeshToWrite<'_>, out: &mut dyn Write) -> io::Result<()> {
             let cut = subzero::triangulate(mesh.points, polygons).map_err(io::Error::other)?;
             cut.0.into_iter().for_each(&mut add);
         }
-        Cells::Polylines(_) | Cells::Vertices(_) | Cells::Tetrahedra(_) => {}
+        Cells::Polylines(_) | Cells::Vertices(_) | Cells::Tetrahedra(_) | Cells::QuadraticTetrahedra(_) => {}
     }
     if let Some(point) = outside {
         return Err(io::Error::other(format!(

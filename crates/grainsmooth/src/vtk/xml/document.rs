@@ -20,6 +20,7 @@ const POLY_LINE: u8 = 4;
 const TRIANGLE: u8 = 5;
 const POLYGON: u8 = 7;
 const TETRAHEDRON: u8 = 10;
+const QUADRATIC_TETRAHEDRON: u8 = 24;
 
 #[derive(Serialize)]
 #[serde(rename = "VTKFile")]
@@ -183,13 +184,10 @@ impl Topology {
             array("offsets", id_type, 1, numbers.append(ends)),
         ];
         match (format, data.cells) {
-            // Tetrahedra do not come here: `write` refuses them.
-            (
-                XmlFormat::PolyData,
-                Cells::Triangles(_) | Cells::TrianglesOf(_) | Cells::Polygons(_) | Cells::Tetrahedra(_),
-            ) => Self::Polys(Arrays::new(arrays)),
             (XmlFormat::PolyData, Cells::Polylines(_)) => Self::Lines(Arrays::new(arrays)),
             (XmlFormat::PolyData, Cells::Vertices(_)) => Self::Verts(Arrays::new(arrays)),
+            // Tetrahedra do not come here: `write` refuses them.
+            (XmlFormat::PolyData, _) => Self::Polys(Arrays::new(arrays)),
             (XmlFormat::UnstructuredGrid, cells) => {
                 let kind = match cells {
                     Cells::Triangles(_) | Cells::TrianglesOf(_) => TRIANGLE,
@@ -197,6 +195,7 @@ impl Topology {
                     Cells::Polylines(_) => POLY_LINE,
                     Cells::Vertices(_) => VERTEX,
                     Cells::Tetrahedra(_) => TETRAHEDRON,
+                    Cells::QuadraticTetrahedra(_) => QUADRATIC_TETRAHEDRON,
                 };
                 arrays.push(array(
                     "types",
@@ -215,6 +214,7 @@ fn cell_ids(cells: Cells<'_>, wide: bool) -> (Numbers<'_>, Numbers<'_>) {
     match cells {
         Cells::Triangles(triangles) => ids_of_alike(triangles, wide),
         Cells::Tetrahedra(tetrahedra) => ids_of_alike(tetrahedra, wide),
+        Cells::QuadraticTetrahedra(tetrahedra) => ids_of_alike(tetrahedra, wide),
         Cells::TrianglesOf(Each { count, value }) => {
             let connectivity = match wide {
                 false => Numbers::each(count, value),
