@@ -44,8 +44,8 @@ fn write(polycrystal: &Polycrystal, out: &mut dyn Write) -> io::Result<()> {
     for (element, (nodes, grain)) in (1..).zip(elements.iter().zip(&mesh.grains)) {
         write!(out, "CTETRA  {element:8}{:8}", grain.0 + 1)?;
         for (place, node) in nodes.iter().enumerate() {
-            // Two fields of an entry's first line are taken.
-            let continues = if place == OF_LINE - 2 { "\n        " } else { "" };
+            // The first line has the element's number and property too, and then the mark that it goes on.
+            let continues = if place == OF_LINE - 2 { "+\n+       " } else { "" };
             write!(out, "{continues}{:8}", node + 1)?;
         }
         writeln!(out)?;
