@@ -333,6 +333,11 @@ class Options(TypedDict, total=False):
 
     Example of the command line: ``--elements-per-grain 5 --volume-mesh -o grains.vtu``"""
 
+    order: int
+    """Order of the tetrahedra: 1, or 2 for a node in the middle of each edge, which stays straight [default: 1]
+
+    Example of the command line: ``--elements-per-grain 3 --order 2 -o grains.inp``"""
+
     periodic_equations: bool
     """Tie the nodes of .inp that stand a period apart by equations, with a node for each axis that moves as the box is to be
     stretched

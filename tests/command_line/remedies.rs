@@ -63,6 +63,7 @@ const REMEDIES: &[Remedy] = &[
     ("ElementsInPlane", &[], "--seeds 3 --dim 2 --element-size 0.1", &[], "--seeds 3 --dim 2"),
     ("VolumesInPlane", &[], "--seeds 3 --dim 2 --volume-mesh -o a.vtu", &[], "--seeds 3 --dim 2 -o a.vtu"),
     ("EquationsWithoutPeriods", &[], "--seeds 3 --periodic-equations -o a.inp", &[], "--seeds 3 -o a.vtp"),
+    ("CohesiveOrder", &[], "--seeds 3 --cohesive --order 2 -o a.inp", &[], "--seeds 3 -o a.vtp"),
     ("CohesiveDeck", &[], "--seeds 3 --cohesive --solver-deck tension-x -o a.inp", &[], "--seeds 3 -o a.vtp"),
     (
         "DeckDomain",
