@@ -84,6 +84,14 @@ impl Distribution {
     }
 
     /// The share of diameters that are no larger than x, by number.
+    ///
+    /// ```
+    /// use sizes::Spec;
+    ///
+    /// let diameters = "uniform(1, 3)".parse::<Spec>()?.distribution(3);
+    /// assert_eq!([0.5, 2.0, 4.0].map(|diameter| diameters.cdf(diameter)), [0.0, 0.5, 1.0]);
+    /// # Ok::<(), sizes::SpecError>(())
+    /// ```
     pub fn cdf(&self, x: f64) -> f64 {
         self.partial_moment(0, x)
     }
@@ -116,6 +124,14 @@ impl Distribution {
     }
 
     /// The least diameter that a share from 0 to 1 is no larger than, by number: the inverse of [`Self::cdf`].
+    ///
+    /// ```
+    /// use sizes::Spec;
+    ///
+    /// let diameters = "uniform(1, 3)".parse::<Spec>()?.distribution(3);
+    /// assert!((diameters.quantile(0.5) - 2.0).abs() < 1e-12, "the median");
+    /// # Ok::<(), sizes::SpecError>(())
+    /// ```
     pub fn quantile(&self, share: f64) -> f64 {
         let mut above = self.upper_end();
         if above.is_infinite() {

@@ -22,6 +22,14 @@ impl LognormalFit {
     /// volume tells the one by number that belongs to it. Few small diameters so weigh little.
     ///
     /// Nothing without diameters, or where one is not positive and finite.
+    ///
+    /// ```
+    /// use sizes::LognormalFit;
+    ///
+    /// let fit = LognormalFit::new(&[1.0, 2.0, 4.0], 0).expect("diameters that differ");
+    /// assert!((fit.median - 2.0).abs() < 1e-12);
+    /// assert_eq!(LognormalFit::new(&[], 0), None);
+    /// ```
     pub fn new(diameters: &[f64], power: u32) -> Option<Self> {
         if diameters.is_empty() || !diameters.iter().all(|diameter| diameter.is_finite() && *diameter > 0.0) {
             return None;

@@ -121,6 +121,14 @@ impl Table {
     /// A histogram: where each bin begins and ends, and its weight. With a number of axes weights are by volume (2: by area), as
     /// of grains of so many dimensions; else by number. In a bin all diameters are alike by number.
     ///
+    /// ```
+    /// use sizes::Table;
+    ///
+    /// assert!(Table::histogram(&[[1.0, 2.0, 0.3], [2.0, 3.0, 0.7]], None).is_ok());
+    /// let overlapping = Table::histogram(&[[1.0, 2.0, 0.3], [1.5, 3.0, 0.7]], None);
+    /// assert!(overlapping.is_err());
+    /// ```
+    ///
     /// # Errors
     /// [`TableError`].
     pub fn histogram(bins: &[[f64; 3]], weights_by: Option<u32>) -> Result<Self, TableError> {

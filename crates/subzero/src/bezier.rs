@@ -45,6 +45,15 @@ impl<P: Point> BezierCurve<P> {
     }
 
     /// The point at `t`, which runs from 0 to 1 along the curve (and may leave this range).
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use subzero::BezierCurve;
+    ///
+    /// let curve = BezierCurve::new(vec![DVec3::ZERO, DVec3::Y, DVec3::new(1., 1., 0.), DVec3::X])?;
+    /// assert_eq!(curve.point(0.5), DVec3::new(0.5, 0.75, 0.));
+    /// # Ok::<(), subzero::BezierError>(())
+    /// ```
     pub fn point(&self, t: f64) -> P {
         let mut points = self.control.clone();
         while points.len() > 1 {
@@ -78,6 +87,17 @@ impl<P: Point> BezierCurve<P> {
     }
 
     /// The two curves of the same degree before and after `t`.
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use subzero::BezierCurve;
+    ///
+    /// let parabola = BezierCurve::new(vec![DVec2::ZERO, DVec2::new(1., 2.), DVec2::new(2., 0.)])?;
+    /// let [left, right] = parabola.split(0.5);
+    /// assert_eq!(left.control(), [DVec2::ZERO, DVec2::new(0.5, 1.), DVec2::new(1., 1.)]);
+    /// assert_eq!(right.control()[0], DVec2::new(1., 1.));
+    /// # Ok::<(), subzero::BezierError>(())
+    /// ```
     pub fn split(&self, t: f64) -> [Self; 2] {
         let levels = self.casteljau(t);
         let left = levels.iter().map(|level| level[0]).collect();
@@ -141,6 +161,16 @@ impl<P: Point> BezierSurface<P> {
     /// Points on a grid of `u_steps` x `v_steps` cells, v running fastest, and two triangles per cell, counter-clockwise
     /// as seen from where u x v points. Triangles have corners apart; a collapsed side of the surface makes
     /// points that coincide.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use subzero::BezierSurface;
+    ///
+    /// let surface = BezierSurface::new(vec![vec![DVec3::ZERO, DVec3::X], vec![DVec3::Y, DVec3::ONE]])?;
+    /// let (points, triangles) = surface.tessellate(4, 2)?;
+    /// assert_eq!((points.len(), triangles.len()), (5 * 3, 2 * 4 * 2));
+    /// # Ok::<(), subzero::BezierError>(())
+    /// ```
     ///
     /// # Errors
     /// [`BezierError::TooLarge`] if there are more points than 32-bit ids can count.

@@ -12,6 +12,18 @@ impl TriangleMesh {
     /// Creases (boundaries and non-manifold edges among them) get the 4-point rule along their own curve; across them the
     /// 8-point rule reflects the points that it lacks. Semi-sharp creases count as smooth.
     ///
+    /// ```
+    /// use glam::DVec3;
+    /// use subzero::{Features, TriangleMesh};
+    ///
+    /// let triangles = vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
+    /// let points = [DVec3::ONE, DVec3::new(-1., 1., -1.), DVec3::new(1., -1., -1.), DVec3::new(-1., -1., 1.)];
+    /// let mesh = TriangleMesh::new(4, triangles, &Features::default())?;
+    /// let finer = mesh.butterfly_refine()?.stencils.apply(&points);
+    /// assert_eq!(finer[..4], points, "the old points stay");
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
     pub fn butterfly_refine(&self) -> Result<Refinement<Self>, MeshError> {
@@ -39,6 +51,18 @@ impl TriangleMesh {
     }
 
     /// Splits each triangle into four at the midpoints of its edges, without moving the surface.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use subzero::{Features, TriangleMesh};
+    ///
+    /// let triangles = vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
+    /// let points = [DVec3::ONE, DVec3::new(-1., 1., -1.), DVec3::new(1., -1., -1.), DVec3::new(-1., -1., 1.)];
+    /// let mesh = TriangleMesh::new(4, triangles, &Features::default())?;
+    /// let finer = mesh.midpoint_refine()?.stencils.apply(&points);
+    /// assert!(finer[4..].iter().all(|middle| middle.length() == 1.0), "the middles of the edges are an octahedron");
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
     ///
     /// # Errors
     /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.

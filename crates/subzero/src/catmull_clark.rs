@@ -21,6 +21,16 @@ impl PolygonMesh {
     /// the vertex V + e and face f the vertex V + E + f. The face at the corner where h starts is face h, and begins there. The
     /// halves of edge e are 2 e, at its end 0, and 2 e + 1, and the edge 2 E + h joins the edge of h to the face's centre.
     ///
+    /// ```
+    /// use subzero::{Features, PolygonMesh};
+    ///
+    /// let faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]].map(Vec::from);
+    /// let cube = PolygonMesh::new(8, &faces, &Features::default())?;
+    /// let finer = cube.catmull_clark_refine()?.mesh;
+    /// assert_eq!((finer.vertex_count(), finer.face_count()), (8 + 12 + 6, 24));
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids.
     pub fn catmull_clark_refine(&self) -> Result<Refinement<Self>, MeshError> {

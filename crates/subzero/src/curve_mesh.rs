@@ -86,6 +86,18 @@ impl CurveMesh {
 
     /// One step of cubic B-spline subdivision: (1, 6, 1)/8 at smooth vertices, (1, 1)/2 on segments.
     ///
+    /// ```
+    /// use glam::DVec2;
+    /// use subzero::CurveMesh;
+    ///
+    /// let square = CurveMesh::new(4, vec![[0, 1], [1, 2], [2, 3], [3, 0]], &[])?;
+    /// let points = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+    /// let finer = square.refine()?.stencils.apply(&points);
+    /// assert_eq!(finer[0], DVec2::splat(0.125), "(1, 6, 1)/8 of three points");
+    /// assert_eq!(finer[4], DVec2::new(0.5, 0.), "the middle of the first segment");
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`MeshError::TooLarge`] if the finer network outgrows 32-bit ids.
     pub fn refine(&self) -> Result<Refinement<Self>, MeshError> {
@@ -95,6 +107,18 @@ impl CurveMesh {
     /// One step of the interpolating four-point scheme (Dyn, Levin and Gregory 1987): vertices stay, and a segment gets 9/16 of its ends
     /// less 1/16 of the next vertices along the curve. Where it does not go on, the next vertex is the other end's reflection in
     /// the corner.
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use subzero::CurveMesh;
+    ///
+    /// let square = CurveMesh::new(4, vec![[0, 1], [1, 2], [2, 3], [3, 0]], &[])?;
+    /// let points = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+    /// let finer = square.four_point_refine()?.stencils.apply(&points);
+    /// assert_eq!(finer[..4], points, "the old points stay");
+    /// assert_eq!(finer[4], DVec2::new(0.5, -0.125), "(-1, 9, 9, -1)/16 of four points");
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
     ///
     /// # Errors
     /// [`MeshError::TooLarge`] if the finer network outgrows 32-bit ids.

@@ -55,6 +55,17 @@ impl PolygonMesh {
     /// The refined mesh has no creases but its boundary. The half-edge h gives the vertex h. The refined faces are: face f inside face f, then one across each
     /// inner edge in the order of the edges, then one around each inner vertex in the order of the vertices.
     ///
+    /// ```
+    /// use subzero::{DooSabinWeights, Features, PolygonMesh};
+    ///
+    /// let faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]].map(Vec::from);
+    /// let cube = PolygonMesh::new(8, &faces, &Features::default())?;
+    /// // A face for each face, each edge and each vertex.
+    /// let finer = cube.doo_sabin_refine(DooSabinWeights::DooSabin)?.mesh;
+    /// assert_eq!((finer.vertex_count(), finer.face_count()), (24, 6 + 12 + 8));
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`MeshError::ValenceTwo`] names an inner vertex with two edges, whose face would have two corners;
     /// [`MeshError::TooLarge`] if the finer mesh outgrows 32-bit ids.

@@ -30,6 +30,17 @@ pub enum BoundaryRule {
 }
 
 /// The features of a triangle mesh; the default has none beyond its boundary.
+///
+/// ```
+/// use subzero::{Crease, EdgeId, Features, TriangleMesh};
+///
+/// let creases = [Crease::infinite([0, 1])];
+/// let features = Features { creases: &creases, corners: &[2], ..Features::default() };
+/// let mesh = TriangleMesh::new(4, vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], &features)?;
+/// let is_crease = |edge: &u32| mesh.is_crease(EdgeId(*edge));
+/// assert_eq!((0..6).filter(is_crease).count(), 1);
+/// # Ok::<(), subzero::MeshError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Features<'a> {
     /// Sharp edges. Of two entries for one edge, the sharper holds.

@@ -12,6 +12,17 @@ impl HalfEdgeMesh {
     ///
     /// The half-edge and its twin keep their ids and run between the far corners afterwards.
     ///
+    /// ```
+    /// use subzero::HalfEdgeMesh;
+    ///
+    /// let mut square = HalfEdgeMesh::new(4, &[[0, 1, 2], [0, 2, 3]])?;
+    /// let diagonal = square.half_edge_between(0, 2)?;
+    /// square.flip(diagonal)?;
+    /// assert!(square.half_edge_between(0, 2).is_err());
+    /// assert!(square.half_edge_between(1, 3).is_ok());
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`MeshError::NoHalfEdge`], or [`MeshError::Edit`] if the edge is on the boundary or the far corners share an edge
     /// already. The mesh is unchanged then.
@@ -56,6 +67,17 @@ impl HalfEdgeMesh {
     /// Puts a vertex on an edge and joins it to the far corners of the edge's triangles; returns its id.
     ///
     /// The half-edge keeps its id and its start, and ends at the new vertex afterwards.
+    ///
+    /// ```
+    /// use subzero::HalfEdgeMesh;
+    ///
+    /// let mut square = HalfEdgeMesh::new(4, &[[0, 1, 2], [0, 2, 3]])?;
+    /// let diagonal = square.half_edge_between(0, 2)?;
+    /// let middle = square.split(diagonal)?;
+    /// assert_eq!(middle, 4);
+    /// assert_eq!(square.triangles().count(), 4);
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
     ///
     /// # Errors
     /// [`MeshError::NoHalfEdge`], or [`MeshError::TooLarge`] if the mesh outgrows 32-bit ids.

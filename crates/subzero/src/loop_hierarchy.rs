@@ -47,6 +47,20 @@ impl TriangleMesh {
 impl LoopHierarchy {
     /// Refines `mesh` so many times.
     ///
+    /// ```
+    /// use glam::DVec3;
+    /// use subzero::{Features, LoopHierarchy, LoopWeights, TriangleMesh};
+    ///
+    /// let triangles = vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
+    /// let points = [DVec3::ONE, DVec3::new(-1., 1., -1.), DVec3::new(1., -1., -1.), DVec3::new(-1., -1., 1.)];
+    /// let mesh = TriangleMesh::new(4, triangles, &Features::default())?;
+    /// let levels = LoopHierarchy::new(mesh, 3, LoopWeights::Loop)?;
+    /// assert_eq!(levels.finest().triangles().len(), 4 * 64);
+    /// // Connectivity is refined once; new control points cost one call.
+    /// assert_eq!(levels.apply(&points).len(), levels.finest().vertex_count());
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`MeshError::TooLarge`] if the finest mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
     pub fn new(mesh: TriangleMesh, levels: usize, weights: LoopWeights) -> Result<Self, MeshError> {

@@ -168,6 +168,18 @@ impl LoopLimits {
 
     /// The points moved to their limit positions.
     ///
+    /// ```
+    /// use glam::DVec3;
+    /// use subzero::{Features, LoopWeights, TriangleMesh};
+    ///
+    /// let triangles = vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
+    /// let points = [DVec3::ONE, DVec3::new(-1., 1., -1.), DVec3::new(1., -1., -1.), DVec3::new(-1., -1., 1.)];
+    /// let mesh = TriangleMesh::new(4, triangles, &Features::default())?;
+    /// let on_surface = mesh.loop_limits(LoopWeights::Loop)?.project(&points);
+    /// assert!(on_surface.iter().zip(&points).all(|(limit, control)| limit.length() < control.length()));
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
+    ///
     /// # Panics
     /// If `points` has fewer points than the mesh has vertices.
     pub fn project<P: Point>(&self, points: &[P]) -> Vec<P> {

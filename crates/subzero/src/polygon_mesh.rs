@@ -38,6 +38,15 @@ pub struct PolygonMesh {
 impl PolygonMesh {
     /// Connectivity of `faces` over `vertex_count` vertices, with its creases and corners.
     ///
+    /// ```
+    /// use subzero::{Features, PolygonMesh};
+    ///
+    /// let faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]].map(Vec::from);
+    /// let cube = PolygonMesh::new(8, &faces, &Features::default())?;
+    /// assert_eq!((cube.vertex_count(), cube.edge_count(), cube.face_count()), (8, 12, 6));
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`MeshError`] names the place: a vertex id out of range, a face with fewer than three corners or with one vertex
     /// twice, two faces with the same vertices, an edge with three or more faces, two faces that run the same way

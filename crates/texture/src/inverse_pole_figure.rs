@@ -37,6 +37,14 @@ impl IpfKey {
     }
 
     /// The colour of a crystal direction: red, green and blue from 0 to 1.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use texture::{CrystalSymmetry, IpfKey};
+    ///
+    /// let [red, green, blue] = IpfKey::new(CrystalSymmetry::Octahedral).color(DVec3::Z);
+    /// assert!(red > 0.99 && green < 0.01 && blue < 0.01, "[001] of a cubic crystal is red");
+    /// ```
     pub fn color(&self, direction: DVec3) -> [f64; 3] {
         let direction = self.sector.reduce(direction.normalize());
         let arc = direction.cross(self.sector.center()).length().atan2(direction.dot(self.sector.center()));

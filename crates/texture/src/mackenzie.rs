@@ -13,6 +13,14 @@ const DIRECTIONS: u32 = 300_000;
 ///
 /// Rotations that are the least of their equivalents form a zone around the identity. Along a direction n it ends where
 /// |n . a| tan(w/2) = tan(t/4) for the nearest rotation by t around an axis a of the group. Random rotations have angles of density (1 - cos w) / pi.
+///
+/// ```
+/// use texture::{CrystalSymmetry, RandomDisorientations};
+///
+/// let cubic = RandomDisorientations::new(CrystalSymmetry::Octahedral);
+/// assert!((cubic.mean() - 40.74).abs() < 0.01);
+/// assert!((cubic.largest() - 62.80).abs() < 0.01);
+/// ```
 #[derive(Debug, Clone)]
 pub struct RandomDisorientations {
     /// Radians at which the zone ends, sorted; one a direction.

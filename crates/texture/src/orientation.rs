@@ -17,6 +17,14 @@ impl Orientation {
     /// From a quaternion with the scalar first; its length does not matter.
     ///
     /// Nothing for one that is zero or not finite.
+    ///
+    /// ```
+    /// use texture::Orientation;
+    ///
+    /// let orientation = Orientation::from_quaternion([-2.0, 0.0, 0.0, 0.0]).expect("not zero");
+    /// assert_eq!(orientation.quaternion(), [1.0, 0.0, 0.0, 0.0], "of length 1, w not negative");
+    /// assert_eq!(Orientation::from_quaternion([0.0; 4]), None);
+    /// ```
     pub fn from_quaternion([w, x, y, z]: [f64; 4]) -> Option<Self> {
         let quaternion = DQuat::from_xyzw(x, y, z, w);
         let length = quaternion.length();
@@ -34,6 +42,15 @@ impl Orientation {
     }
 
     /// From Bunge's Euler angles phi1, Phi, phi2 in degrees.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use texture::Orientation;
+    ///
+    /// let turned = Orientation::from_euler_degrees([90.0, 0.0, 0.0]);
+    /// // The sample's y axis is the crystal's x axis.
+    /// assert!((turned.to_crystal(DVec3::Y) - DVec3::X).length() < 1e-12);
+    /// ```
     pub fn from_euler_degrees([phi1, phi, phi2]: [f64; 3]) -> Self {
         let [first, middle, second] = [phi1, phi, phi2].map(|angle| (angle % 720.0).to_radians() / 2.0);
         let (sum, difference) = ((first + second).sin_cos(), (first - second).sin_cos());

@@ -70,6 +70,16 @@ impl Texture {
     }
 
     /// Density at an orientation in multiples of random. What has no spread counts as nothing.
+    ///
+    /// ```
+    /// use texture::{CrystalSymmetry, Orientation, Texture};
+    ///
+    /// let cube = Orientation::from_euler_degrees([0.0; 3]);
+    /// assert_eq!(Texture::random().density(cube, CrystalSymmetry::Octahedral), 1.0);
+    /// let texture: Texture = "cube(10)".parse()?;
+    /// assert!(texture.density(cube, CrystalSymmetry::Octahedral) > 10.0, "times random");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn density(&self, orientation: Orientation, symmetry: CrystalSymmetry) -> f64 {
         let rotations = self.sample_symmetry.rotations();
         let count = rotations.len() as f64;

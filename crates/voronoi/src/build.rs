@@ -37,6 +37,17 @@ impl Tessellation {
     ///
     /// A seed whose neighbours outweigh it has no cell; [`Self::empty_cells`] lists those.
     ///
+    /// ```
+    /// use glam::DVec3;
+    /// use voronoi::{Domain, Tessellation};
+    ///
+    /// let seeds = [DVec3::new(0.25, 0.5, 0.5), DVec3::new(0.75, 0.5, 0.5)];
+    /// // The wall between two seeds moves by the difference of their weights over twice their distance.
+    /// let cells = Tessellation::power(&Domain::unit_cube(), &seeds, &[0.1, 0.0])?;
+    /// assert!((cells.cell_measures()[0].volume - 0.6).abs() < 1e-12);
+    /// # Ok::<(), voronoi::VoronoiError>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Self::new`]; [`VoronoiError::BadWeight`] for a weight that is not finite.
     ///

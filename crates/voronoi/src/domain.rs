@@ -33,6 +33,16 @@ impl Domain {
 
     /// A box in space from one corner to the opposite one.
     ///
+    /// ```
+    /// use glam::DVec3;
+    /// use voronoi::Domain;
+    ///
+    /// let domain = Domain::cuboid(DVec3::ZERO, DVec3::new(2.0, 1.0, 0.5))?;
+    /// assert_eq!(domain.measure(), 1.0);
+    /// assert_eq!(domain.walls().count(), 6);
+    /// # Ok::<(), voronoi::VoronoiError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`VoronoiError::BadDomain`] when a side is none of [`Self::LENGTHS`].
     pub fn cuboid(lower: DVec3, upper: DVec3) -> Result<Self, VoronoiError> {
@@ -55,6 +65,17 @@ impl Domain {
     }
 
     /// A rectangle in the plane z = 0; the z coordinates of the corners are ignored.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use voronoi::{Domain, Tessellation};
+    ///
+    /// let domain = Domain::rectangle(DVec3::ZERO, DVec3::new(3.0, 1.0, 0.0))?;
+    /// let seeds = [0.5, 1.5, 2.5].map(|x| DVec3::new(x, 0.5, 0.0));
+    /// let cells = Tessellation::new(&domain, &seeds)?;
+    /// assert!(cells.cell_measures().iter().all(|cell| (cell.volume - 1.0).abs() < 1e-12), "areas, in the plane");
+    /// # Ok::<(), voronoi::VoronoiError>(())
+    /// ```
     ///
     /// # Errors
     /// [`VoronoiError::BadDomain`] when a side is none of [`Self::LENGTHS`].
@@ -247,6 +268,14 @@ impl Domain {
     }
 
     /// Whether a point lies in the domain or on its walls; exact.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use voronoi::Domain;
+    ///
+    /// assert!(Domain::unit_cube().contains(DVec3::splat(0.5)));
+    /// assert!(!Domain::unit_cube().contains(DVec3::splat(1.5)));
+    /// ```
     pub fn contains(&self, point: DVec3) -> bool {
         if self.is_box() {
             return point.cmpge(self.frame.lower).all() && point.cmple(self.frame.upper).all();

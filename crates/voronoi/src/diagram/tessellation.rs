@@ -158,6 +158,18 @@ impl Tessellation {
     }
 
     /// What lies beyond the faces of a cell, sorted: cells by number, then moved cells, then walls.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use voronoi::{CellId, Domain, Side, Tessellation};
+    ///
+    /// let seeds = [DVec3::new(0.25, 0.5, 0.5), DVec3::new(0.75, 0.5, 0.5)];
+    /// let cells = Tessellation::new(&Domain::unit_cube(), &seeds)?;
+    /// let neighbors = cells.neighbors(CellId(0));
+    /// assert!(neighbors.contains(&Side::Cell(CellId(1))));
+    /// assert_eq!(neighbors.len(), 6, "the other cell and five walls");
+    /// # Ok::<(), voronoi::VoronoiError>(())
+    /// ```
     pub fn neighbors(&self, cell: CellId) -> Vec<Side> {
         let mut sides: Vec<Side> =
             self.cell_faces(cell).iter().map(|face| self.across(cell, *face)).collect();

@@ -134,6 +134,17 @@ impl PowerDiagram {
     /// weight, so that volumes may differ by factors of 1e6 (after Kitagawa, Merigot and Thibert 2019, who take volumes). It begins with
     /// the spheres of [`place_spheres`]. The same input gives the same result bit by bit whatever the number of threads.
     ///
+    /// ```
+    /// use glam::DVec3;
+    /// use voronoi::{Domain, PowerDiagram};
+    ///
+    /// let seeds = [DVec3::new(0.3, 0.5, 0.5), DVec3::new(0.6, 0.4, 0.5), DVec3::new(0.7, 0.7, 0.2)];
+    /// let cells = PowerDiagram::with_volumes(&Domain::unit_cube(), &seeds, &[0.5, 0.3, 0.2])?;
+    /// let measures = cells.tessellation().cell_measures();
+    /// assert!(measures.iter().zip([0.5, 0.3, 0.2]).all(|(cell, wanted)| (cell.volume - wanted).abs() < 1e-9));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`VolumesError`] for a bad seed, as [`Tessellation::new`]; for a count that differs, a volume that is not positive and volumes
     /// that do not add up to the domain's; for seeds so near to one another that rounding decides.
