@@ -335,6 +335,23 @@ fn is_normals(array: &Array<'_>) -> bool {
 
 /// Writes `data` in `format`; XML files hold their numbers in `encoding`.
 ///
+/// ```
+/// use grainsmooth::glam::DVec3;
+/// use grainsmooth::vtk::{Array, Cells, PolyData, Values, VtkEncoding, VtkFormat, write_vtk};
+///
+/// let data = PolyData {
+///     points: &[DVec3::ZERO, DVec3::X, DVec3::Y],
+///     cells: Cells::Triangles(&[[0, 1, 2]]),
+///     point_arrays: vec![],
+///     cell_arrays: vec![Array { name: "Area", values: Values::Float64(&[0.5]) }],
+///     field: vec![],
+/// };
+/// let mut file = Vec::new();
+/// write_vtk(&data, VtkFormat::Vtk, VtkEncoding::default(), &mut file)?;
+/// assert!(file.starts_with(b"# vtk DataFile Version"));
+/// # Ok::<(), std::io::Error>(())
+/// ```
+///
 /// # Errors
 /// Whatever `out` reports; and [`io::ErrorKind::InvalidInput`] when the legacy format, whose ids are signed
 /// 32-bit numbers, cannot hold so many points or cells.

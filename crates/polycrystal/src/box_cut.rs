@@ -92,6 +92,19 @@ impl Network {
     /// In space, points near the planes move so that these cut no slivers, and volumes are restored; those of boundaries that are flat
     /// move within these alone.
     ///
+    /// ```
+    /// use glam::{BVec3, DVec3};
+    /// use polycrystal::{Junctions, Network};
+    /// use voronoi::{Domain, Tessellation};
+    ///
+    /// let seeds: Vec<DVec3> = (1..=20).map(|k| (DVec3::new(0.819, 0.671, 0.550) * f64::from(k)).fract()).collect();
+    /// let cells = Tessellation::new(&Domain::unit_cube().with_periods(BVec3::TRUE), &seeds)?;
+    /// let (network, points) = Network::new(&cells, Junctions::Crease, 0)?;
+    /// let cut = network.cut_at_box(&points, true)?;
+    /// assert!(cut.points.iter().all(|point| point.min_element() >= 0.0 && point.max_element() <= 1.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`NetworkError::CutCrosses`]; [`NetworkError::TouchesItself`]; [`NetworkError::CutInvalid`] where the pieces are no valid network otherwise.
     ///

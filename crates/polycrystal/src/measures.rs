@@ -62,6 +62,20 @@ pub fn measure(surface: &Surface<'_>) -> Measures {
 /// In a periodic domain every boundary, line and point counts once, grains are whole, and a grain a period away is a
 /// neighbour like any other.
 ///
+/// ```
+/// use glam::DVec3;
+/// use polycrystal::{GrainId, Junctions, Network, measure_network};
+/// use voronoi::{Domain, Tessellation};
+///
+/// let seeds = [DVec3::new(0.25, 0.5, 0.5), DVec3::new(0.75, 0.5, 0.5)];
+/// let cells = Tessellation::new(&Domain::unit_cube(), &seeds)?;
+/// let (network, points) = Network::new(&cells, Junctions::Crease, 0)?;
+/// let measures = measure_network(&network, &points).in_space().expect("three dimensions");
+/// assert_eq!(measures.grains[0].neighbors, [GrainId(1)]);
+/// assert!((measures.grains[0].area - 4.0).abs() < 1e-12, "a box of 1/2 x 1 x 1");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Panics
 /// When there is not one point per vertex.
 pub fn measure_network(network: &Network, points: &[DVec3]) -> Measures {

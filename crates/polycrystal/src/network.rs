@@ -51,6 +51,22 @@ pub struct Network {
 impl Network {
     /// The network of a tessellation, refined `level_count` times, and its control points: still flat.
     ///
+    /// ```
+    /// use glam::DVec3;
+    /// use polycrystal::{Junctions, Network};
+    /// use voronoi::{Domain, Tessellation};
+    ///
+    /// let seeds = [DVec3::new(0.25, 0.5, 0.5), DVec3::new(0.75, 0.5, 0.5)];
+    /// let cells = Tessellation::new(&Domain::unit_cube(), &seeds)?;
+    /// let (network, control_points) = Network::new(&cells, Junctions::Crease, 2)?;
+    /// assert_eq!(network.boundaries().len(), 11, "one between the grains, five walls of each");
+    /// // Each level has four times as many triangles as the one before.
+    /// assert_eq!(network.finest().element_count(), 16 * network.control_mesh().element_count());
+    /// let points = network.subdivide(&control_points);
+    /// assert!((network.grain_volumes(network.finest(), &points)[0] - 0.5).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`NetworkError::TooLarge`] when a level outgrows 32-bit ids; [`NetworkError::BoundaryTooSmall`] when more than four
     /// grains all but meet in a point.

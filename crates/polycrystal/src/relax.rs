@@ -39,6 +39,22 @@ enum Start {
 ///
 /// `progress` is called after each step with the number of steps done and their total.
 ///
+/// ```
+/// use glam::DVec3;
+/// use polycrystal::{Junctions, Network, Relaxation, herring_residual, relax};
+/// use voronoi::{Domain, Tessellation};
+///
+/// let seeds: Vec<DVec3> = (1..=20).map(|k| (DVec3::new(0.819, 0.671, 0.550) * f64::from(k)).fract()).collect();
+/// let cells = Tessellation::new(&Domain::unit_cube(), &seeds)?;
+/// let (network, flat) = Network::new(&cells, Junctions::Crease, 1)?;
+/// let relaxed = relax(&network, &flat, &Relaxation::Time(0.1), |step, of| println!("step {step} of {of}"))?;
+///
+/// let residual = |points: &[DVec3]| herring_residual(&network, points).expect("there are triple lines").rms;
+/// let [before, after] = [network.subdivide(&flat), relaxed.finest_points(&network)].map(|points| residual(&points));
+/// assert!(after < before, "nearer to equilibrium");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`NetworkError::BadRelaxationTime`]; [`NetworkError::Folded`] or [`NetworkError::VolumeNotRestored`] when the
 /// network cannot be relaxed for so long without a change of its topology.

@@ -80,6 +80,20 @@ impl Network {
     /// Boundaries, triple lines and quadruple points stay what they are; elements are smaller where lines are short. Grains keep the volumes of their cells. Copies are
     /// the same, bit for bit; so are, along the axes of `cut`, the opposite walls of a periodic network that was cut at its box.
     ///
+    /// ```
+    /// use glam::{BVec3, DVec3};
+    /// use polycrystal::{ElementSize, Junctions, Network};
+    /// use voronoi::{Domain, Tessellation};
+    ///
+    /// let seeds = [DVec3::new(0.3, 0.4, 0.5), DVec3::new(0.7, 0.3, 0.2), DVec3::new(0.6, 0.8, 0.9)];
+    /// let cells = Tessellation::new(&Domain::unit_cube(), &seeds)?;
+    /// let (network, flat) = Network::new(&cells, Junctions::Crease, 3)?;
+    /// let remeshed = network.remeshed(&network.subdivide(&flat), &ElementSize::new(0.2), BVec3::FALSE)?;
+    /// assert!(remeshed.certificate.is_good());
+    /// assert!(remeshed.network.mean_edge_length(&remeshed.points) <= 0.2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`NetworkError::BadElementSize`]; [`NetworkError::RemeshPlane`] in the plane; [`NetworkError::NoCopyOnWall`] where opposite walls are not alike;
     /// [`NetworkError::RemeshInvalid`] with what the certificate finds where smaller elements did not help.

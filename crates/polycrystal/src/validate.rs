@@ -9,6 +9,21 @@ use crate::{Certificate, Expected, Faults, GrainId, Network, Surface, dihedral_a
 /// Checks the finest level of a network with the given points: everything that [`certify`](crate::certify) finds in any
 /// surface, grains that have the volumes of their cells, and the types of points.
 ///
+/// ```
+/// use glam::DVec3;
+/// use polycrystal::{Junctions, Network, validate};
+/// use voronoi::{Domain, Tessellation};
+///
+/// let seeds = [DVec3::new(0.3, 0.4, 0.5), DVec3::new(0.7, 0.3, 0.2), DVec3::new(0.6, 0.8, 0.9)];
+/// let cells = Tessellation::new(&Domain::unit_cube(), &seeds)?;
+/// let (network, mut points) = Network::new(&cells, Junctions::Crease, 0)?;
+/// assert!(validate(&network, &points)?.total_volume_error < 1e-12);
+/// // Twice as large, the grains no longer have the volumes of their cells.
+/// points.iter_mut().for_each(|point| *point *= 2.0);
+/// assert!(validate(&network, &points).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// All that is wrong.
 ///

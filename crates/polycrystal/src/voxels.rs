@@ -52,6 +52,19 @@ pub struct SmoothedVoxels {
 /// by least squares within boxes (after Lempitsky, Surface extraction from binary volumes with higher-order smoothness, 2010, here for any number of labels).
 /// Lines that go where grains touch along an edge only are parted for the grain with more voxels.
 ///
+/// ```
+/// use polycrystal::{GrainId, Junctions, VoxelLabel, Voxels, smooth_voxels};
+/// use voronoi::Domain;
+///
+/// // 4 x 4 x 4 voxels, x fastest: two grains that meet in the middle.
+/// let labels = (0..64).map(|voxel| VoxelLabel::of(GrainId(u32::from(voxel % 4 >= 2)))).collect();
+/// let voxels = Voxels::new(Domain::unit_cube(), [4, 4, 4], labels);
+/// let smoothed = smooth_voxels(&voxels, Junctions::Crease, |_done, _of| ())?;
+/// assert!(smoothed.certificate.is_good());
+/// assert_eq!(smoothed.network.grain_count(), 2);
+/// # Ok::<(), polycrystal::NetworkError>(())
+/// ```
+///
 /// # Errors
 /// [`NetworkError::NoGrain`]; [`NetworkError::MissingGrain`] where some number below the largest has no voxel; [`NetworkError::VoxelsTouch`] when a grain touches itself and its voxels
 /// cannot be relabelled; [`NetworkError::Invalid`] when elements cross that could not be untangled, or volumes are not those of the voxels.

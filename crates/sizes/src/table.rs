@@ -106,6 +106,14 @@ pub struct Table {
 impl Table {
     /// All diameters of a list alike.
     ///
+    /// ```
+    /// use sizes::Table;
+    ///
+    /// assert!(Table::list(&[10.0, 12.0, 20.0]).is_ok());
+    /// let problem = Table::list(&[10.0, -12.0]).expect_err("a negative diameter");
+    /// assert_eq!(problem.row(), Some(2));
+    /// ```
+    ///
     /// # Errors
     /// [`TableError`].
     pub fn list(diameters: &[f64]) -> Result<Self, TableError> {

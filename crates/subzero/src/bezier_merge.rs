@@ -46,6 +46,14 @@ impl MergedSurfaces {
     /// control points, in either direction. No distance is measured, and surfaces that touch in a point alone stay apart. A side whose
     /// control points are one becomes a point. If `fill`, every hole is filled with triangles between the points of its rim.
     ///
+    /// ```
+    /// use subzero::{MergedSurfaces, teapot};
+    ///
+    /// let teapot = MergedSurfaces::new(&teapot(), 4, true)?;
+    /// assert_eq!(teapot.holes, 0);
+    /// # Ok::<(), subzero::BezierError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`BezierError::TooLarge`] if there are more points than 32-bit ids can count.
     pub fn new(surfaces: &[BezierSurface<DVec3>], steps: u32, fill: bool) -> Result<Self, BezierError> {

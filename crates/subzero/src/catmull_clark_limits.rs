@@ -37,6 +37,20 @@ impl PolygonMesh {
     ///
     /// Corners have a tangent plane only in sectors of a single face; more make a cone.
     ///
+    /// ```
+    /// use glam::DVec3;
+    /// use subzero::{Features, PolygonMesh};
+    ///
+    /// let faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]].map(Vec::from);
+    /// let points = [[-1., -1., -1.], [1., -1., -1.], [1., 1., -1.], [-1., 1., -1.], [-1., -1., 1.], [1., -1., 1.], [1., 1., 1.], [-1., 1., 1.]];
+    /// let points = points.map(DVec3::from);
+    /// let limits = PolygonMesh::new(8, &faces, &Features::default())?.catmull_clark_limits()?;
+    /// let on_surface = limits.positions.apply(&points);
+    /// assert!((on_surface[6] - DVec3::splat(0.5)).length() < 1e-12);
+    /// assert!((limits.vertex_normals(&points)[6].expect("smooth") - DVec3::ONE.normalize()).length() < 1e-12);
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`MeshError::SemiSharp`] names a vertex with a sharpness that will run out: refine until it has. [`MeshError::TooLarge`] if the next level
     /// outgrows 32-bit ids.

@@ -49,6 +49,14 @@ pub enum EdgeParent {
 impl MeshCounts {
     /// The counts one level on.
     ///
+    /// ```
+    /// use subzero::MeshCounts;
+    ///
+    /// let tetrahedron = MeshCounts { vertices: 4, edges: 6, triangles: 4 };
+    /// assert_eq!(tetrahedron.refined()?, MeshCounts { vertices: 10, edges: 24, triangles: 16 });
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`MeshError::TooLarge`] if the half-edges or vertices of the next level outgrow 32-bit ids.
     pub fn refined(self) -> Result<Self, MeshError> {

@@ -178,6 +178,16 @@ impl CurveMesh {
     }
 
     /// One stencil per vertex: its place on the limit curve, (1, 4, 1)/6 of a smooth vertex and its neighbours.
+    ///
+    /// ```
+    /// use glam::DVec2;
+    /// use subzero::CurveMesh;
+    ///
+    /// let square = CurveMesh::new(4, vec![[0, 1], [1, 2], [2, 3], [3, 0]], &[])?;
+    /// let on_curve = square.limit_positions().apply(&[DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y]);
+    /// assert!((on_curve[0] - DVec2::splat(1. / 6.)).length() < 1e-12, "(1, 4, 1)/6 of three points");
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
     pub fn limit_positions(&self) -> StencilTable {
         StencilTable::from_stencils(self.vertex_count(), |v, stencil| match self.neighbours(v) {
             Some(neighbours) => {

@@ -141,6 +141,17 @@ impl HalfEdgeMesh {
 
     /// Draws the start of a half-edge into its end, which removes the start, the edge, and its triangles.
     ///
+    /// ```
+    /// use subzero::HalfEdgeMesh;
+    ///
+    /// // A fan around the vertex 4.
+    /// let mut fan = HalfEdgeMesh::new(5, &[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])?;
+    /// let edge = fan.outgoing_half_edges(4).next().expect("it has edges");
+    /// fan.collapse(edge)?;
+    /// assert_eq!(fan.triangles().count(), 2);
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`MeshError::NoHalfEdge`], or [`MeshError::Edit`] if the link condition does not hold: the mesh would be no manifold
     /// or change its topology. The mesh is unchanged then.

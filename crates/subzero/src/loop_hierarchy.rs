@@ -18,6 +18,19 @@ impl TriangleMesh {
     /// The mesh refined `levels` times by Loop's scheme, and its points. Faster than a [`LoopHierarchy`] if the points will
     /// not change.
     ///
+    /// ```
+    /// use glam::DVec3;
+    /// use subzero::{Features, LoopWeights, TriangleMesh};
+    ///
+    /// let triangles = vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
+    /// let points = [DVec3::ONE, DVec3::new(-1., 1., -1.), DVec3::new(1., -1., -1.), DVec3::new(-1., -1., 1.)];
+    /// let mesh = TriangleMesh::new(4, triangles, &Features::default())?;
+    /// let (finest, finest_points) = mesh.loop_subdivide(&points, 3, LoopWeights::Loop)?;
+    /// assert_eq!(finest.triangles().len(), 4 * 64);
+    /// assert_eq!(finest_points.len(), finest.vertex_count());
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`MeshError::TooLarge`] if the finest mesh outgrows 32-bit ids; [`MeshCounts::refined`](crate::MeshCounts::refined) tells beforehand.
     ///

@@ -21,6 +21,18 @@ pub struct Orientation {
 /// Finds which faces to reverse for the winding to agree: in each component the fewer ones, and of equally many those
 /// that wind unlike its first face. Edges of three or more faces join nothing.
 ///
+/// ```
+/// use subzero::orient;
+///
+/// // The third triangle winds the other way round.
+/// let mut faces = [[0, 1, 2], [0, 3, 1], [0, 3, 2], [1, 3, 2]].map(Vec::from);
+/// let orientation = orient(4, &faces)?;
+/// assert_eq!(orientation.reversed(), [false, false, true, false]);
+/// orientation.apply(&mut faces);
+/// assert_eq!(faces[2], [0, 2, 3]);
+/// # Ok::<(), subzero::MeshError>(())
+/// ```
+///
 /// # Errors
 /// [`MeshError::NotOrientable`] where no choice helps, as on a Moebius strip; a face with fewer than three corners or with a
 /// vertex twice, a vertex id out of range, two faces with the same vertices, or more elements than 32-bit ids can count.

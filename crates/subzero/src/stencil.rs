@@ -144,6 +144,18 @@ impl StencilTable {
     ///
     /// Within a stencil, old points are sorted.
     ///
+    /// ```
+    /// use glam::DVec2;
+    /// use subzero::{CurveMesh, Refinement};
+    ///
+    /// let line = CurveMesh::new(3, vec![[0, 1], [1, 2]], &[])?;
+    /// let Refinement { mesh, stencils } = line.refine()?;
+    /// let points = [DVec2::ZERO, DVec2::ONE, DVec2::new(2., 0.)];
+    /// let both = stencils.then(&mesh.refine()?.stencils);
+    /// assert_eq!(both.apply(&points), mesh.refine()?.stencils.apply(&stencils.apply(&points)));
+    /// # Ok::<(), subzero::MeshError>(())
+    /// ```
+    ///
     /// # Panics
     /// If `next` refers to points that `self` does not make.
     pub fn then(&self, next: &Self) -> Self {

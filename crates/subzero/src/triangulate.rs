@@ -17,6 +17,17 @@ const CLEARLY: f64 = 1e-9;
 /// cut it, the one is taken whose triangles are least thin (Delaunay's, by the angles in space); where two are as good, the diagonals from
 /// the first corner.
 ///
+/// ```
+/// use glam::DVec3;
+/// use subzero::{FaceId, triangulate};
+///
+/// let points = [DVec3::ZERO, DVec3::X, DVec3::new(1., 1., 0.), DVec3::Y];
+/// let (triangles, face_of) = triangulate(&points, &[vec![0, 1, 2, 3]])?;
+/// assert_eq!(triangles.len(), 2);
+/// assert_eq!(face_of, [FaceId(0); 2]);
+/// # Ok::<(), subzero::MeshError>(())
+/// ```
+///
 /// # Errors
 /// [`MeshError::FlatFace`] for one without area, [`MeshError::CrossedFace`] for one that crosses or touches itself; a face with fewer
 /// than three corners or with a vertex twice, a vertex id out of range, two faces with the same vertices, or more elements than

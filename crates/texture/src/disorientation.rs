@@ -21,6 +21,17 @@ pub struct Disorientation {
 
 impl CrystalSymmetry {
     /// The least rotation between two crystals of this symmetry. The order of the two does not matter.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use texture::{CrystalSymmetry, Orientation};
+    ///
+    /// let crystal = Orientation::from_euler_degrees([10.0, 20.0, 30.0]);
+    /// let turned = Orientation::from_euler_degrees([10.0, 20.0, 110.0]);
+    /// let least = CrystalSymmetry::Octahedral.disorientation(crystal, turned);
+    /// assert!((least.angle - 10.0).abs() < 1e-9, "80 degrees about a cube axis are 10 the other way");
+    /// assert!((least.axis - DVec3::Z).length() < 1e-9);
+    /// ```
     pub fn disorientation(self, first: Orientation, second: Orientation) -> Disorientation {
         let between = first.raw().conjugate() * second.raw();
         let scalar = |rotation: &glam::DQuat| rotation.dot(between).abs();

@@ -13,6 +13,15 @@ const SQUARINGS: usize = 40;
 ///
 /// Nothing without a positive weight. Of orientations spread over all directions the result means little: equivalents are chosen by the
 /// heaviest first.
+///
+/// ```
+/// use texture::{CrystalSymmetry, Orientation, mean_orientation};
+///
+/// let of = |phi1| (Orientation::from_euler_degrees([phi1, 0.0, 0.0]), 1.0);
+/// let mean = mean_orientation(&[of(2.0), of(4.0)], CrystalSymmetry::Octahedral).expect("weights above 0");
+/// let middle = Orientation::from_euler_degrees([3.0, 0.0, 0.0]);
+/// assert!(CrystalSymmetry::Octahedral.disorientation_angle(mean, middle) < 1e-6);
+/// ```
 pub fn mean_orientation(weighted: &[(Orientation, f64)], symmetry: CrystalSymmetry) -> Option<Orientation> {
     let positive = || weighted.iter().filter(|(_, weight)| *weight > 0.0);
     let heaviest = positive().rev().max_by(|a, b| a.1.total_cmp(&b.1))?;

@@ -74,6 +74,16 @@ impl Orientation {
     /// along the crystal's axes. What of the direction does not lie in the plane is left out.
     ///
     /// Nothing where they are parallel or zero.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use texture::Orientation;
+    ///
+    /// // Goss, {011}<100>: as rolled sheets of iron and silicon have it.
+    /// let goss = Orientation::from_plane_and_direction(DVec3::new(0.0, 1.0, 1.0), DVec3::X).expect("not parallel");
+    /// assert!((goss.to_crystal(DVec3::X) - DVec3::X).length() < 1e-12, "[100] along the sample's X axis");
+    /// assert_eq!(Orientation::from_plane_and_direction(DVec3::X, DVec3::X), None);
+    /// ```
     pub fn from_plane_and_direction(normal: DVec3, direction: DVec3) -> Option<Self> {
         let z = normal.try_normalize()?;
         let x = direction.reject_from_normalized(z);

@@ -19,6 +19,17 @@ pub struct PoleFigure {
 
 impl PoleFigure {
     /// Where an axis of the crystal and its equivalents point in the sample: orientations with weights, smoothed by a kernel.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use texture::{CrystalSymmetry, FiberKernel, Orientation, PoleFigure};
+    ///
+    /// let cube = [(Orientation::from_euler_degrees([0.0; 3]), 1.0)];
+    /// let figure = PoleFigure::of_crystal_axis(&cube, CrystalSymmetry::Octahedral, DVec3::Z, FiberKernel::new(10.0)?);
+    /// assert!(figure.density(DVec3::X) > 1.0, "one of the poles 001 lies along X");
+    /// assert!(figure.density(DVec3::ONE.normalize()) < 1e-3);
+    /// # Ok::<(), texture::HalfwidthError>(())
+    /// ```
     pub fn of_crystal_axis(
         weighted: &[(Orientation, f64)],
         symmetry: CrystalSymmetry,

@@ -39,6 +39,15 @@ impl Texture {
     /// Some orientations with weights, each spread by a kernel if one is given.
     ///
     /// Nothing without a positive weight, or with one that is negative or not finite.
+    ///
+    /// ```
+    /// use texture::{Kernel, Orientation, Texture};
+    ///
+    /// let measured = [([0.0, 45.0, 0.0], 3.0), ([35.0, 45.0, 0.0], 1.0)].map(|(angles, weight)| (Orientation::from_euler_degrees(angles), weight));
+    /// let texture = Texture::of_list(&measured, Some(Kernel::new(5.0)?), "measured").expect("weights above 0");
+    /// assert!(texture.is_spread());
+    /// # Ok::<(), texture::HalfwidthError>(())
+    /// ```
     pub fn of_list(weighted: &[(Orientation, f64)], kernel: Option<Kernel>, name: &str) -> Option<Self> {
         let sum: f64 = weighted.iter().map(|(_, weight)| *weight).sum();
         if weighted.iter().any(|(_, weight)| *weight < 0.0) || !(sum > 0.0 && sum.is_finite()) {

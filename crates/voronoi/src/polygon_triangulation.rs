@@ -36,6 +36,16 @@ pub struct PolygonTriangulation {
 ///
 /// None where double precision does not hold the polygon: when points of its outline coincide in its plane, its triangles are
 /// not a triangulation of the outline, or no number of points makes edges short enough.
+///
+/// ```
+/// use glam::DVec3;
+/// use voronoi::triangulate_polygon;
+///
+/// let square = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::Y];
+/// let coarse = triangulate_polygon(&square, None).expect("a polygon with an area");
+/// assert_eq!(coarse.triangles.len(), 2);
+/// assert!(coarse.inner_points.is_empty());
+/// ```
 pub fn triangulate_polygon(outline: &[DVec3], edge_length: Option<f64>) -> Option<PolygonTriangulation> {
     let plane = Plane::of(outline)?;
     let mut delaunay = Delaunay::new();

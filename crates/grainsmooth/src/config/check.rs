@@ -99,6 +99,13 @@ pub enum ConfigError {
 impl Config {
     /// Checks that the options go together.
     ///
+    /// ```
+    /// use grainsmooth::{Config, PeriodicCut};
+    ///
+    /// let config = Config { periodic_cut: PeriodicCut::Box, ..Config::default() };
+    /// println!("{}", config.check().expect_err("nothing to cut in a box without periods"));
+    /// ```
+    ///
     /// # Errors
     /// The first that do not.
     pub fn check(&self) -> Result<(), ConfigError> {

@@ -55,6 +55,16 @@ impl OutputFormat {
     }
 
     /// The format that the path's extension names, in upper or lower case.
+    ///
+    /// ```
+    /// use std::path::Path;
+    ///
+    /// use grainsmooth::OutputFormat;
+    ///
+    /// let format = OutputFormat::of_path(Path::new("grains.STL")).expect("a format that is known");
+    /// assert_eq!(format.extension(), "stl");
+    /// assert!(OutputFormat::of_path(Path::new("grains.docx")).is_none());
+    /// ```
     pub fn of_path(path: &Path) -> Option<Self> {
         Self::of_extension(path.extension()?.to_str()?)
     }

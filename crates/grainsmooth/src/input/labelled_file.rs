@@ -65,6 +65,18 @@ impl LabelledFile {
     /// 0), else of `boundary_labels` or `BoundaryLabels` (where 0 is the exterior too). Programs differ in which way triangles wind: the two ways, inside and
     /// at the exterior, that close most grains are taken for the file's.
     ///
+    /// ```
+    /// use std::path::Path;
+    ///
+    /// use grainsmooth::LabelledFile;
+    /// use grainsmooth::polycrystal::certify;
+    ///
+    /// let file = LabelledFile::read(Path::new("data/network.vtp"))?;
+    /// assert_eq!(file.surface().grains().len(), 4);
+    /// assert!(certify(&file.surface(), &file.expected()).is_good());
+    /// # Ok::<(), grainsmooth::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::MeshFile`] when the file cannot be read, is corrupt, has no labels, or cells that are not triangles.
     pub fn read(path: &Path) -> Result<Self, Error> {

@@ -73,6 +73,18 @@ impl SeedFormat {
 ///   told by [`read_file_domain`]. The `*id` of a cell is the number of its seed, from 1 there and from 0 here.
 ///   [`FileSeeds::passed_over`] tells whether it has orientations, which are not read.
 ///
+/// ```
+/// use std::path::Path;
+///
+/// use grainsmooth::read_seed_file;
+/// use grainsmooth::voronoi::Dimension;
+///
+/// let file = read_seed_file(Path::new("data/spheres.csv"), Dimension::Three)?;
+/// assert_eq!(file.seeds.len(), 30);
+/// assert!(file.seeds.iter().all(|seed| seed.weight.is_some()), "radii squared");
+/// # Ok::<(), grainsmooth::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::SeedFileUnreadable`] when the file cannot be read; [`Error::NoSeedsInFile`] when it holds none;
 /// [`Error::BadSeed`] at the first place that is not as above or holds a number that is not finite.

@@ -83,6 +83,18 @@ pub struct Limits {
 
 /// Subdivides a mesh `levels` times; the first of the levels returned is the mesh itself.
 ///
+/// ```
+/// use std::path::Path;
+///
+/// use grainsmooth::mesh::file::read_mesh;
+/// use grainsmooth::{Scheme, subdivide};
+///
+/// let path = Path::new("data/cube.obj");
+/// let levels = subdivide(&read_mesh(path)?, path, Scheme::CatmullClark, 2)?;
+/// assert_eq!(levels.iter().map(|level| level.points.len()).collect::<Vec<_>>(), [8, 26, 98]);
+/// # Ok::<(), grainsmooth::Error>(())
+/// ```
+///
 /// # Errors
 /// [`MeshFileProblem::NotATriangle`] or [`MeshFileProblem::Mesh`] where the scheme cannot work with the mesh, in
 /// [`Error::MeshFile`], which names `path`; [`LevelsExceedMemory`](crate::memory::MemoryError::LevelsExceedMemory) or [`LevelsExceedIds`](crate::memory::MemoryError::LevelsExceedIds).

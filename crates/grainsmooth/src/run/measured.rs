@@ -30,6 +30,23 @@ pub struct MapRun {
 
 /// The smooth network of a map.
 ///
+/// ```
+/// use std::path::Path;
+/// use std::time::Duration;
+///
+/// use grainsmooth::glam::DVec3;
+/// use grainsmooth::{FileOptions, LabelMap, MapOptions, MapRun, MeasuredMap, smooth_map};
+///
+/// // 4 x 4 x 4 voxels, x fastest: grains 10 and 20. A file would be read by `read_map`.
+/// let labels = (0..64).map(|voxel| if voxel % 4 < 2 { 10 } else { 20 }).collect();
+/// let map = LabelMap { shape: [4, 4, 4], spacing: DVec3::ONE, origin: DVec3::ZERO, labels };
+/// let measured = MeasuredMap::of_labels(map, &MapOptions { min_voxels: 1, ..MapOptions::default() })?;
+/// let run = MapRun { command_line: String::new(), file: FileOptions::default(), read_in: Duration::ZERO };
+/// let polycrystal = smooth_map(Path::new("labels in memory"), &measured, run, &|_, _, _| ())?;
+/// assert_eq!(polycrystal.network.grain_count(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`Error::NetworkOfMap`] where the map leads to none.
 pub fn smooth_map(

@@ -138,6 +138,19 @@ pub(crate) fn grain_volumes(tessellation: &Tessellation, grains: Option<&GrainCe
 
 /// Computes the cells alone.
 ///
+/// ```
+/// use grainsmooth::{Config, SeedSource, smooth, tessellate};
+///
+/// let config = Config { seeds: SeedSource::Random { count: 10 }, levels: 0, ..Config::default() };
+/// let cells = tessellate(&config, &|_, _, _| ())?;
+/// let volumes: f64 = cells.tessellation.cell_measures().iter().map(|cell| cell.volume).sum();
+/// assert!((volumes - 1.0).abs() < 1e-12);
+/// // The second half of `make_polycrystal`.
+/// let polycrystal = smooth(&config, cells, &|_, _, _| ())?;
+/// assert!(polycrystal.validation.is_good());
+/// # Ok::<(), grainsmooth::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Config`] where options do not go together; whatever is wrong with the seeds; [`Error::EmptyGrains`] unless the config drops them.
 pub fn tessellate(config: &Config, progress: Progress) -> Result<Tessellated, Error> {

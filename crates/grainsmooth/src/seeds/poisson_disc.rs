@@ -21,6 +21,16 @@ const SHRINKAGE: f64 = 0.95;
 /// The points are the first ones of the stream behind [`random_seeds`](crate::random_seeds) that lie at least 0.75 mean spacings
 /// from those before. (Should there be no room left for that, the distance is lowered by 5 % after every 10 000 darts in
 /// vain.) In a box distances are measured across opposite walls too, so that the seeds suit one that repeats.
+///
+/// ```
+/// use grainsmooth::poisson_disc_seeds;
+/// use grainsmooth::voronoi::Domain;
+///
+/// let seeds = poisson_disc_seeds(8, &Domain::unit_cube(), 7);
+/// for (k, seed) in seeds.iter().enumerate() {
+///     assert!(seeds[..k].iter().all(|other| other.distance(*seed) >= 0.3), "0.75 of the spacing 1/2, or a little less");
+/// }
+/// ```
 pub fn poisson_disc_seeds(count: usize, domain: &Domain, random_seed: u64) -> Vec<DVec3> {
     throw_darts(count, domain, random_seed, CLEARANCE)
 }

@@ -21,6 +21,15 @@ const FEWEST_HITS: f64 = 1.0 / 64.0;
 /// these would be more than 63 of 64, points are drawn in the simplices between the middle of the domain ([`Domain::center`]),
 /// the first corner of a face and each two that follow (in the plane, the two ends of an edge): the first number chooses among
 /// the simplices, laid end to end, the others, sorted, are the ends of the shares of the first corners.
+///
+/// ```
+/// use grainsmooth::random_seeds;
+/// use grainsmooth::voronoi::Domain;
+///
+/// let seeds = random_seeds(100, &Domain::unit_cube(), 7);
+/// assert_eq!(seeds.len(), 100);
+/// assert_eq!(seeds[..10], random_seeds(10, &Domain::unit_cube(), 7), "the same stream");
+/// ```
 pub fn random_seeds(count: usize, domain: &Domain, random_seed: u64) -> Vec<DVec3> {
     random_points(domain, random_seed).take(count).collect()
 }

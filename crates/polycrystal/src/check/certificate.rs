@@ -94,6 +94,22 @@ impl fmt::Display for Faults {
 /// Where a point is not finite the search ends with these points, and where the grains are not closed volumes are not
 /// compared with expected.
 ///
+/// ```
+/// use glam::DVec3;
+/// use polycrystal::{Expected, Fault, Junctions, Network, Surface, certify};
+/// use voronoi::{Domain, Tessellation};
+///
+/// let seeds = [DVec3::new(0.3, 0.4, 0.5), DVec3::new(0.7, 0.3, 0.2), DVec3::new(0.6, 0.8, 0.9)];
+/// let cells = Tessellation::new(&Domain::unit_cube(), &seeds)?;
+/// let (network, mut points) = Network::new(&cells, Junctions::Crease, 0)?;
+/// let sides = network.sides();
+/// let certified = |points: &[DVec3]| certify(&Surface::of_level(network.finest(), points, &sides), &Expected::default());
+/// assert!(certified(&points).is_good());
+/// points[7].x = f64::NAN;
+/// assert_eq!(certified(&points).faults.0, [Fault::NotFinite { point: 7 }]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Panics
 /// When elements refer to points or boundaries that there are not, or expected are not as many as points.
 pub fn certify(surface: &Surface<'_>, expected: &Expected<'_>) -> Certificate {

@@ -13,6 +13,18 @@ pub(crate) fn element_normals<'a>(level: impl Into<LevelView<'a>>, points: &[DVe
 /// Pairs of neighbouring elements of one boundary whose normals are more than the angle apart whose cosine is given.
 ///
 /// 0 finds folds over 90 degrees. Elements without area count as folded.
+///
+/// ```
+/// use glam::DVec3;
+/// use polycrystal::{Junctions, Network, folded_edges};
+/// use voronoi::{Domain, Tessellation};
+///
+/// let seeds = [DVec3::new(0.3, 0.4, 0.5), DVec3::new(0.7, 0.3, 0.2), DVec3::new(0.6, 0.8, 0.9)];
+/// let cells = Tessellation::new(&Domain::unit_cube(), &seeds)?;
+/// let (network, flat) = Network::new(&cells, Junctions::Crease, 2)?;
+/// assert!(folded_edges(network.finest(), &network.subdivide(&flat), 0.0).is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn folded_edges<'a>(level: impl Into<LevelView<'a>>, points: &[DVec3], cosine: f64) -> Vec<[u32; 2]> {
     let level = level.into();
     folded_pairs(&Adjacency::of_level(level).inner.pairs(), &element_normals(level, points), cosine)

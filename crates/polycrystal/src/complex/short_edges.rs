@@ -33,6 +33,19 @@ pub struct Collapsed {
 /// The ends of such an edge become one vertex in its middle, or where a wall holds one of them. Faces that are left with
 /// two edges vanish. Edges stay where a cell would no longer be a closed ball, or a face would fold. Cells are no longer
 /// quite convex, nor faces quite plane.
+///
+/// ```
+/// use glam::DVec3;
+/// use polycrystal::remove_short_edges;
+/// use voronoi::{Domain, Tessellation};
+///
+/// // Four grains whose corners nearly meet in one point: a short line parts two of them.
+/// let seeds = [[0.25, 0.25], [0.75, 0.26], [0.25, 0.75], [0.75, 0.75]].map(|[x, y]| DVec3::new(x, y, 0.0));
+/// let cells = Tessellation::new(&Domain::unit_square(), &seeds)?;
+/// let (_, collapsed) = remove_short_edges(&cells, 0.1);
+/// assert_eq!(collapsed.edges, 1);
+/// # Ok::<(), voronoi::VoronoiError>(())
+/// ```
 #[must_use]
 pub fn remove_short_edges(cells: &Tessellation, length: f64) -> (Tessellation, Collapsed) {
     remove_edges_that_shorten(cells, length, cells.vertices())

@@ -21,6 +21,20 @@ use crate::{Boundary, FaceMesh, Network, NetworkError, Volumes, arcs};
 /// In the plane, where only [`Relaxation::Equilibrium`] changes the topology, boundaries become arcs of circles, in segments that turn by
 /// a quarter of a degree at most, and meet at triple points. Steps are Newton's there, and count as time 1 each.
 ///
+/// ```
+/// use glam::DVec3;
+/// use polycrystal::{FaceMesh, Junctions, NetworkRecipe, Relaxation, relax_cells};
+/// use voronoi::{Domain, Tessellation};
+///
+/// let seeds: Vec<DVec3> = (1..=20).map(|k| (DVec3::new(0.819, 0.671, 0.550) * f64::from(k)).fract()).collect();
+/// let cells = Tessellation::new(&Domain::unit_cube(), &seeds)?;
+/// let recipe = NetworkRecipe { face_mesh: FaceMesh::Fan, junctions: Junctions::Crease, levels: 1, tension: &|_| 1.0 };
+/// let relaxed = relax_cells(&cells, &recipe, &Relaxation::USUAL, |_| ())?;
+/// assert!(relaxed.validation.is_good());
+/// assert!(relaxed.validation.largest_volume_error < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// As of [`relax`](crate::relax), and [`NetworkError::Invalid`], where no way leads to a valid network.
 pub fn relax_cells(

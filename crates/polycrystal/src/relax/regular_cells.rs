@@ -16,6 +16,19 @@ use crate::{
 ///
 /// Where the flat cells tangle when they are relaxed, the second step is left out too, and the attempt tells why.
 ///
+/// ```
+/// use glam::DVec3;
+/// use polycrystal::regular_cells;
+/// use voronoi::{Domain, Tessellation};
+///
+/// let seeds: Vec<DVec3> = (1..=20).map(|k| (DVec3::new(0.819, 0.671, 0.550) * f64::from(k)).fract()).collect();
+/// let cells = Tessellation::new(&Domain::unit_cube(), &seeds)?;
+/// let regular = regular_cells(&cells, 0.1)?;
+/// assert!(regular.collapsed.edges > 0);
+/// assert!(regular.cells.vertices().len() < cells.vertices().len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// As of [`Network::new`] and [`relax`](crate::relax), but for geometry that tangles.
 pub fn regular_cells(cells: &Tessellation, length: f64) -> Result<RegularCells, NetworkError> {

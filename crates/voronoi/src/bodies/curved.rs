@@ -20,6 +20,17 @@ impl Domain {
     /// The faces are those of a Goldberg polyhedron: their normals are the vertices of an icosahedron whose triangles are
     /// divided evenly.
     ///
+    /// ```
+    /// use glam::DVec3;
+    /// use voronoi::{Domain, Tessellation};
+    ///
+    /// let ball = Domain::ball(DVec3::ZERO, 1.0, 0.02)?;
+    /// assert!((ball.measure() - 4.0 / 3.0 * std::f64::consts::PI).abs() < 1e-9);
+    /// let halves = Tessellation::new(&ball, &[DVec3::new(0.5, 0.0, 0.0), DVec3::new(-0.5, 0.0, 0.0)])?;
+    /// assert!((halves.cell_measures()[0].volume / ball.measure() - 0.5).abs() < 1e-9);
+    /// # Ok::<(), voronoi::VoronoiError>(())
+    /// ```
+    ///
     /// # Errors
     /// [`VoronoiError::BadLength`] unless both lengths are positive and finite; [`VoronoiError::TooManyWalls`].
     pub fn ball(center: DVec3, radius: f64, chord_error: f64) -> Result<Self, VoronoiError> {

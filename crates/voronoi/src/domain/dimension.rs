@@ -19,6 +19,14 @@ impl Dimension {
     }
 
     /// The diameter of the ball of a volume, in the plane of the disc of an area; 0 where rounding made that negative.
+    ///
+    /// ```
+    /// use voronoi::Dimension;
+    ///
+    /// let diameter = Dimension::Three.ball_diameter(1.0);
+    /// assert!((diameter - 1.2407).abs() < 1e-4, "the equivalent diameter of a unit cube");
+    /// assert!((Dimension::Three.ball_volume(diameter) - 1.0).abs() < 1e-12);
+    /// ```
     pub fn ball_diameter(self, volume: f64) -> f64 {
         match self {
             Self::Two => 2.0 * (volume.max(0.0) / PI).sqrt(),

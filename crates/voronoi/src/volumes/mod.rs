@@ -136,7 +136,8 @@ impl PowerDiagram {
     ///
     /// ```
     /// use glam::DVec3;
-    /// use voronoi::{Domain, PowerDiagram};
+    /// use voronoi::Domain;
+    /// use voronoi::volumes::PowerDiagram;
     ///
     /// let seeds = [DVec3::new(0.3, 0.5, 0.5), DVec3::new(0.6, 0.4, 0.5), DVec3::new(0.7, 0.7, 0.2)];
     /// let cells = PowerDiagram::with_volumes(&Domain::unit_cube(), &seeds, &[0.5, 0.3, 0.2])?;
@@ -167,6 +168,18 @@ impl PowerDiagram {
     ///
     /// Seeds move part of the way where a cell would be empty otherwise. Where even a 512th of the way leaves one empty, the steps end
     /// early: [`Self::centroid_steps`] tells how many were done.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use voronoi::Domain;
+    /// use voronoi::volumes::PowerDiagram;
+    ///
+    /// let seeds = [DVec3::new(0.3, 0.5, 0.5), DVec3::new(0.6, 0.4, 0.5), DVec3::new(0.7, 0.7, 0.2)];
+    /// let cells = PowerDiagram::with_volumes(&Domain::unit_cube(), &seeds, &[0.5, 0.3, 0.2])?.lloyd(5)?;
+    /// assert_eq!(cells.centroid_steps(), 5);
+    /// assert!((cells.tessellation().cell_measures()[2].volume - 0.2).abs() < 1e-9, "volumes stay");
+    /// # Ok::<(), voronoi::volumes::VolumesError>(())
+    /// ```
     ///
     /// # Errors
     /// [`VolumesError::NotReached`], as [`Self::with_volumes`].
