@@ -59,7 +59,7 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--diameters 'lognormal(mean=20, cv=0.35)' --box 100 100 100``"""
 
     volumes: Value
-    """Give each grain its own volume (area in 2D), scaled to fill the domain: a text file with one on each line
+    """Give each grain its own volume (area in 2D), scaled to fill the domain: a text file with one volume on each line
 
     Example of the command line: ``--volumes volumes.csv``"""
 
@@ -87,7 +87,7 @@ class Options(TypedDict, total=False):
     .stl
 
     A sphere, cylinder or disc touches the sides of --box, which must be equal across its axis, and becomes a polyhedron of
-    the same volume. A file has its own coordinates, so --box has no meaning with it.
+    the same volume. A file has its own coordinates, so --box does not apply.
 
     Example of the command line: ``--domain sphere``
 
@@ -111,7 +111,7 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--periodic x,y``"""
 
     faces: Literal["fan", "plain"]
-    """Triangulate each boundary as a fan around a control point in its middle (fan), or without inner points (plain)
+    """Triangulate each boundary as a fan around a control point in its middle (fan), or without points inside (plain)
 
     Example of the command line: ``--faces plain``
 
@@ -126,8 +126,8 @@ class Options(TypedDict, total=False):
     free: bool
     """Let grains grow and shrink by curvature instead of keeping their volumes (areas in 2D)
 
-    In 2D, grains vanish and switch neighbours. In 3D, and with --regularize or --edge-length, they cannot; a run that would
-    need it stops with an error.
+    Grains vanish and switch neighbours on the way. With --regularize, and in 2D with --edge-length, they cannot; a run that
+    would need it stops with an error.
 
     Example of the command line: ``--dim 2 --relax 5 --free``"""
 
@@ -171,7 +171,7 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--inside 'lamellae(width=0.05)'; --inside 'beta:voronoi(diameter=0.1)' for one phase``"""
 
     drop_empty: bool
-    """Drop seeds that their neighbours outweigh, so that they have no cell; without this option they are an error
+    """Drop seeds without a cell, because their neighbours outweigh them; without this option they are an error
 
     Example of the command line: ``--seeds-file spheres.csv --drop-empty``"""
 
@@ -186,8 +186,8 @@ class Options(TypedDict, total=False):
     Default: ``0``"""
 
     lloyd: Value
-    """Make the grains more alike: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 10 for
-    packed grains, and for --diameters or --volumes without --seeds-file; otherwise 0]
+    """Make the grains more regular: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 10
+    for packed grains, and for --diameters or --volumes without --seeds-file; otherwise 0]
 
     Example of the command line: ``--lloyd 10``"""
 
@@ -307,7 +307,7 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--texture random --misorientations angles.csv``"""
 
     voxels: Sequence[Value]
-    """Number of voxels along each axis, for formats that hold voxels, X Y in 2D
+    """Number of voxels along each axis, for formats that hold voxels; X Y in 2D
 
     Example of the command line: ``--voxels 64 64 64 -o grains.vti``"""
 
@@ -329,7 +329,8 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--arrays -o grains.vtm``"""
 
     volume_mesh: bool
-    """Write tetrahedra that fill the grains to .msh and .vtu, which else hold boundaries; .inp and .bdf always have them
+    """Write tetrahedra that fill the grains to .msh and .vtu, which otherwise hold boundaries; .inp and .bdf always hold
+    tetrahedra
 
     Example of the command line: ``--elements-per-grain 5 --volume-mesh -o grains.vtu``"""
 
@@ -339,24 +340,23 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--elements-per-grain 3 --order 2 -o grains.inp``"""
 
     periodic_equations: bool
-    """Tie the nodes of .inp that stand a period apart by equations, with a node for each axis that moves as the box is to be
-    stretched
+    """Tie nodes of .inp that are one period apart by equations, with a node for each axis that controls the mean strain
 
     Example of the command line: ``--periodic x,y,z --elements-per-grain 4 --periodic-equations -o grains.inp``"""
 
     cohesive: bool
-    """Give each grain of .inp nodes of its own, and put cohesive elements (COH3D6 of Abaqus) between the grains, which may
-    part
+    """Give each grain of .inp its own nodes, and put cohesive elements (COH3D6 of Abaqus) between the grains
 
     Example of the command line: ``--elements-per-grain 4 --cohesive -o grains.inp``"""
 
     solver_deck: Literal["tension-x"]
-    """Write a job for CalculiX and Abaqus beside .inp: the box pulled along x, with the elasticity of a crystal for each phase
+    """Write a job for CalculiX and Abaqus next to .inp: the box is stretched along x, with the elastic constants of a crystal
+    for each phase
 
     Example of the command line: ``--texture random --elements-per-grain 4 --solver-deck tension-x -o grains.inp``"""
 
     vtk_encoding: Literal["raw", "base64", "zlib"]
-    """How .vtp, .vtu, .vti and .vtm hold their numbers: raw is the fastest; base64 and zlib are read by more programs
+    """How .vtp, .vtu, .vti and .vtm store numbers: raw is fastest; more programs read base64 and zlib
 
     Example of the command line: ``--vtk-encoding zlib -o grains.vtu``
 

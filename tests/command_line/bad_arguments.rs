@@ -82,7 +82,8 @@ fn relaxation_time() {
 #[test]
 fn free_grains_without_a_time() {
     let workplace = Workplace::new();
-    let message = "--free lets grains grow for a time, and has no equilibrium; give one, such as --relax 0.3";
+    let message =
+        "--free lets grains grow for a time, and has no equilibrium; give a time, such as --relax 0.3";
     workplace.refuses("--seeds 10 --free --relax equilibrium", USAGE, message);
     workplace.refuses("--seeds 10 --dim 2 --free --relax equilibrium", USAGE, message);
 }
@@ -164,12 +165,12 @@ fn more_than_memory_holds() {
         ("-n 20", "20 levels would take", "levels would fit"),
         ("-n 99", "99 levels would take over 1000 EB of memory and", "levels would fit"),
         ("--dim 2 -n 40", "40 levels would take", "levels would fit"),
-        ("--seeds 4000000000", "3 levels would take", "not even 0 levels would fit, take fewer seeds"),
-        ("--seeds 4000000000 --dim 2", "3 levels would take", "take fewer seeds"),
+        ("--seeds 4000000000", "3 levels would take", "not even 0 levels would fit; use fewer seeds"),
+        ("--seeds 4000000000 --dim 2", "3 levels would take", "use fewer seeds"),
         (
             "--seeds 4000000000 --no-mesh",
             "4000000000 cells would take 6.4 TB of memory and",
-            "take fewer seeds",
+            "use fewer seeds",
         ),
     ] {
         workplace.refuses(arguments, FAILED, &format!("{start} ... {end}"));

@@ -38,8 +38,7 @@ fn file_that_is_read_only() {
     let mut permissions = fs::metadata(workplace.path("grains.vtp")).unwrap().permissions();
     permissions.set_readonly(true);
     fs::set_permissions(workplace.path("grains.vtp"), permissions).unwrap();
-    let message =
-        "grains.vtp: cannot be written: the present file is read-only; allow it or choose another path";
+    let message = "grains.vtp: cannot be written: the present file is read-only; make it writable or choose another path";
     workplace.refuses(BEFORE_COMPUTING, FAILED, message);
 }
 
@@ -168,7 +167,7 @@ fn voxels_that_the_disk_has_no_room_for() {
     let workplace = Workplace::new();
     for name in ["a.vti", "a.npy"] {
         let message = format!(
-            "{name}: would take 1.1 PB and ... are free there; take fewer voxels or choose another path"
+            "{name}: would take 1.1 PB and ... are free there; use fewer voxels or choose another path"
         );
         let arguments = format!("{BEFORE_COMPUTING} --voxels 65536 65536 65536 -o {name}");
         workplace.refuses(&arguments, FAILED, &message);

@@ -93,7 +93,7 @@ fn seeds_at_the_same_place() {
 #[test]
 fn quote_that_is_left_open() {
     let message =
-        |line| format!("seeds.csv line {line}: a quote that the line does not close; close or remove it");
+        |line| format!("seeds.csv line {line}: a quote is not closed on its line; close or remove it");
     refuses("x,y,z,n\n.1,.2,.3,\"a\n.5,.6,.7,b\n", "", &message(2));
     for end in ["", "\n", "\n\n# the end\n"] {
         refuses(format!("x,y,z,n\n.1,.2,.3,a\n.5,.6,.7,\"b{end}"), "", &message(3));

@@ -51,6 +51,6 @@ fn edge_lengths_that_are_none_are_refused() {
     workplace.refuses(
         "--edge-length 1e-9 -n 0",
         crate::workplace::FAILED,
-        "0 levels would take ... take fewer seeds",
+        "0 levels would take ... use fewer seeds",
     );
 }

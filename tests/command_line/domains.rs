@@ -136,7 +136,7 @@ fn what_does_not_fit_together() {
     workplace.refuses(
         "--domain sphere --chord-error 1e-9",
         FAILED,
-        "more than the 32768 walls that a domain can have; take fewer half-spaces or a larger chord error",
+        "more than the 32768 walls that a domain can have; use fewer half-spaces or a larger chord error",
     );
 }
 
@@ -166,12 +166,12 @@ fn files_that_hold_no_domain() {
         (
             "empty.csv",
             "1,0,0,1\n-1,0,0,-2\n",
-            "empty.csv line 2: half-space 1 leaves nothing of what those before it have in common; turn its normal outward or move it",
+            "empty.csv line 2: half-space 1 has nothing in common with those before it; turn its normal outward or move it",
         ),
         (
             "none.csv",
             "",
-            "none.csv: the half-spaces have no end in the direction ... ; add one with a normal that points there",
+            "none.csv: the half-spaces are unbounded in the direction ... ; add one with a normal that points there",
         ),
         (
             "far.csv",
@@ -187,7 +187,7 @@ fn files_that_hold_no_domain() {
         (
             "huge.obj",
             &huge,
-            "huge.obj: point 1 has the coordinate 2e200; scale the mesh, so that none is beyond 1e30",
+            "huge.obj: point 1 has the coordinate 2e200; scale the mesh so that none exceeds 1e30",
         ),
     ] {
         workplace.put(name, content);

@@ -53,7 +53,7 @@ fn what_solvers_need_is_refused_where_it_has_no_meaning() {
     for (options, message) in [
         (
             "--volume-mesh",
-            "--volume-mesh writes tetrahedra, and no file can hold them; give one of .vtu, .msh, .inp and .bdf, such as -o grains.vtu",
+            "--volume-mesh writes tetrahedra, but none of the files can hold them; give one of .vtu, .msh, .inp and .bdf, such as -o grains.vtu",
         ),
         (
             "--periodic x --periodic-equations",
@@ -65,15 +65,15 @@ fn what_solvers_need_is_refused_where_it_has_no_meaning() {
         ),
         (
             "--solver-deck tension-x --format inp -o -",
-            "--solver-deck stands beside a file of elements; give -o grains.inp",
+            "--solver-deck needs a file of elements; give -o grains.inp",
         ),
         (
             "--periodic-equations -o a.inp",
-            "--periodic-equations ties nodes that stand a period apart; give --periodic x,y,z or leave it out",
+            "--periodic-equations ties nodes that are one period apart; give --periodic x,y,z or leave it out",
         ),
         (
             "--solver-deck tension-x -o a.inp --periodic x",
-            "--solver-deck pulls a box that repeats along all axes or along none; leave --domain and --half-spaces out, and give --periodic x,y,z or no --periodic",
+            "--solver-deck loads a box that is periodic along all axes or none; leave --domain and --half-spaces out, and give --periodic x,y,z or no --periodic",
         ),
         ("--order 2", "--order is that of tetrahedra; give --volume-mesh -o grains.vtu, or -o grains.inp"),
         (
@@ -84,7 +84,7 @@ fn what_solvers_need_is_refused_where_it_has_no_meaning() {
             "--cohesive --solver-deck tension-x -o a.inp",
             "--cohesive makes elements COH3D6, which CalculiX does not know, and --solver-deck writes a job for it; leave one of them out",
         ),
-        ("--dim 2 --volume-mesh", "tetrahedra fill grains in space; with --dim 2 leave --volume-mesh out"),
+        ("--dim 2 --volume-mesh", "tetrahedra fill grains in 3D only; with --dim 2 leave --volume-mesh out"),
     ] {
         workplace.refuses(&format!("--seeds 3 {options}"), USAGE, message);
     }
@@ -106,7 +106,7 @@ fn sizes_that_cannot_be_had_are_refused() {
     workplace.refuses(
         "--seeds 3 --dim 2 --element-size 0.1",
         USAGE,
-        "elements of a size are triangles of boundaries in space; with --dim 2 leave --element-size and --elements-per-grain out",
+        "only boundaries in 3D are remeshed; with --dim 2 leave --element-size and --elements-per-grain out",
     );
     workplace.refuses(
         "--seeds 3 --element-size 0",

@@ -88,7 +88,7 @@ fn mistaken_shapes_are_refused() {
         ("--dim 2 --grain-shapes 2:1:1", "--grain-shapes takes two lengths, such as 2:1, with --dim 2".to_owned()),
         (
             "--relax 0 --grain-shapes 2:1:1",
-            "--grain-shapes makes grains of several cells, which are sharp where these meet; leave --relax 0 out, or give --relax 0.02".to_owned(),
+            "--grain-shapes makes grains of several cells, with sharp edges where these meet; leave --relax 0 out, or give --relax 0.02".to_owned(),
         ),
         (
             "--aspect-ratio 3 1 1 --grain-shapes 2:1:1",
@@ -109,7 +109,7 @@ fn mistaken_shapes_are_refused() {
         ),
         (
             "--seeds 2 --grain-shapes 2:1:1 -o a.tess",
-            "a.tess: this format holds convex cells, and grains of --grain-shapes, place= or a map are none; choose another, such as .vtp",
+            "a.tess: this format holds convex cells, but grains of --grain-shapes, place= or a map are not convex; choose another, such as .vtp",
         ),
     ] {
         workplace.refuses(arguments, FAILED, message);

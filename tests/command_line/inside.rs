@@ -142,12 +142,13 @@ fn mistaken_patterns_are_refused() {
         ("layers(2)", format!("'layers' divides nothing; {known}")),
         ("lamellae", format!("'lamellae' divides nothing; {known}")),
         ("lamellae()", format!("lamellae needs width=; {known}")),
-        ("lamellae(width=0)", "width= is no length; give a number above 0".to_owned()),
+        ("lamellae(width=0)", "width= is not a length; give a number above 0".to_owned()),
         ("lamellae(2)", "lamellae takes width= and normal=; '2' is none of them".to_owned()),
         ("voronoi(diameter=1,cv=2)", "cv=2 is none; give a number from 0 to 1".to_owned()),
         (
             "lamellae(width=1,normal=w)",
-            "normal=w is no direction; give x, y, z, random, or coordinates such as normal=1 1 0".to_owned(),
+            "normal=w is not a direction; give x, y, z, random, or coordinates such as normal=1 1 0"
+                .to_owned(),
         ),
     ] {
         workplace.refuses(&format!("--inside {text}"), USAGE, &value(text, &message));
@@ -187,7 +188,7 @@ fn mistaken_patterns_are_refused() {
         ),
         (
             "--seeds 20 --inside lamellae(width=1e-12)",
-            "10071556060336 parts of grains would take 16.1 PB of memory and ... are available; take a larger width or diameter inside them",
+            "10071556060336 parts of grains would take 16.1 PB of memory and ... are available; make the parts wider",
         ),
     ] {
         workplace.refuses(arguments, FAILED, message);

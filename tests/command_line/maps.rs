@@ -213,9 +213,7 @@ fn small_grains_go_to_their_neighbours() {
     let workplace = workplace();
     let said = workplace.run("smooth volume.npy --min-voxels 80 -o a.vtp --stats a.json");
     assert!(
-        said.contains(
-            "map         24 x 20 x 16 voxels; 3 small grains with 101 of them went to neighbours\n"
-        ),
+        said.contains("map         24 x 20 x 16 voxels; 101 in 3 small grains went to neighbours\n"),
         "{said}"
     );
     let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
@@ -315,15 +313,15 @@ fn maps_that_cannot_be_used() {
         ("none.npy", "none.npy: has no voxels along x; give a map with at least one along each axis"),
         (
             "volume.raw",
-            "volume.raw: holds numbers alone; say what they are with --shape NX NY NZ and --type, such as u16",
+            "volume.raw: holds only numbers; describe them with --shape NX NY NZ and --type, such as u16",
         ),
         (
             "volume.raw --shape 24 20 15 --type u16",
-            "volume.raw: has 15360 bytes; 7200 voxels of 2 bytes take 14400: mend --shape or --type",
+            "volume.raw: has 15360 bytes; 7200 voxels of 2 bytes take 14400: correct --shape or --type",
         ),
         (
             "volume.npy --type u16",
-            "volume.npy: files of this format tell their shape and type; leave --shape and --type out",
+            "volume.npy: files of this format contain their shape and type; leave --shape and --type out",
         ),
         (
             "volume_damask.vti --axes zyx",
@@ -332,11 +330,11 @@ fn maps_that_cannot_be_used() {
         ("volume.npy --crop 0:25,0:9,0:9", "volume.npy: has 24 voxels along x; --crop asks for 0:25"),
         (
             "volume.npy --min-voxels 3000",
-            "volume.npy: has no grain of 3000 or more voxels beside the exterior; lower --min-voxels, or mend --exterior-label",
+            "volume.npy: has no grain of 3000 or more voxels besides the exterior; lower --min-voxels, or correct --exterior-label",
         ),
         (
             "volume.npy -o a.tess",
-            "a.tess: this format holds convex cells, and grains of --grain-shapes, place= or a map are none; choose another, such as .vtp",
+            "a.tess: this format holds convex cells, but grains of --grain-shapes, place= or a map are not convex; choose another, such as .vtp",
         ),
     ] {
         workplace.refuses(&format!("smooth {arguments}"), FAILED, message);
@@ -356,7 +354,7 @@ fn maps_that_cannot_be_used() {
         ),
         (
             "volume.npy --picture a.png --color-by ipf-z",
-            "--color-by ipf-z needs what a map of labels does not tell",
+            "--color-by ipf-z needs something that a map of labels does not hold",
         ),
     ] {
         workplace.refuses(&format!("smooth {arguments}"), USAGE, message);

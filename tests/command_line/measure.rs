@@ -237,7 +237,7 @@ fn an_open_grain_is_refused() {
     workplace.refuses(
         "measure open.vtk",
         FAILED,
-        "open.vtk: grain 0 is not closed; mend what `grainsmooth check` tells of the file",
+        "open.vtk: grain 0 is not closed; repair what `grainsmooth check` finds in the file",
     );
 }
 

@@ -215,7 +215,7 @@ fn points_are_masked_filled_dropped_or_left_as_pores() {
         line(&said, "map").starts_with("12 x 10 points on a square grid, step 1, in 3 grains; 7 points without a solution; 2 too uncertain; its head"),
         "{said}"
     );
-    assert!(line(&said, "map").ends_with("; 1 small grains with 1 of them went to neighbours"), "{said}");
+    assert!(line(&said, "map").ends_with("; 1 in 1 small grains went to neighbours"), "{said}");
     let counts = |options: &str| -> Vec<u64> {
         workplace.run(&format!("smooth a.ang {options} -o a.vtp --stats a.json"));
         let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
@@ -363,7 +363,7 @@ fn maps_without_a_grid_or_what_they_need_are_refused() {
             "a.ang",
             ang(HEAD, twice),
             "",
-            "line 20: the point stands where that of line 19 does; give a map whose points stand on one square or hexagonal grid",
+            "line 20: the point stands where that of line 19 does; give a map whose points lie on one square or hexagonal grid",
         ),
         ("a.ang", ang(HEAD, off), "", "line 20: the point stands off the grid of the others; give"),
         ("a.ang", ang(HEAD, spiral), "", "line 11: the point and those behind it stand on no grid; give"),
@@ -377,13 +377,13 @@ fn maps_without_a_grid_or_what_they_need_are_refused() {
             "a.ang",
             ang(HEAD, square([6, 5], 1.0, none)),
             "",
-            "has no grain of 1 or more voxels beside the exterior",
+            "has no grain of 1 or more voxels besides the exterior",
         ),
         (
             "a.ang",
             ang(HEAD, points.clone()),
             "--min-ci 1",
-            "has no grain of 1 or more voxels beside the exterior",
+            "has no grain of 1 or more voxels besides the exterior",
         ),
         ("a.ang", ang(HEAD, points.clone()), "--crop 0:7,0:3", "has 6 voxels along x; --crop asks for 0:7"),
         (
@@ -396,7 +396,7 @@ fn maps_without_a_grid_or_what_they_need_are_refused() {
             "a.ang",
             format!("{HEAD}0.1 0.2 0.3 1 2 x 0.5 1\n"),
             "",
-            "line 11: 'x' is no finite number; correct it or remove the line",
+            "line 11: 'x' is not a finite number; correct it or remove the line",
         ),
         ("a.ang", format!("{HEAD}0.1 0.2 0.3 1 2 3 0.5\n"), "", "line 11: 7 columns; TSL's maps have"),
         (
@@ -409,7 +409,7 @@ fn maps_without_a_grid_or_what_they_need_are_refused() {
             "a.ctf",
             format!("{ctf}1\t0\t0\t1\t2\t3\n1\t1\t0\t1\t2\n"),
             "",
-            "line 6: fewer columns than names; write as many on each line",
+            "line 6: fewer columns than names; write one for each name on each line",
         ),
         (
             "a.ctf",

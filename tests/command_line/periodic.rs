@@ -36,7 +36,7 @@ fn duplicates_across_a_period_are_named() {
 fn grains_are_whole_and_copies_match() {
     let workplace = Workplace::new();
     let said = workplace.run("--seeds 20 --periodic x,y,z --relax 0 -n 1 -o grains.vtp");
-    assert!(said.contains("0 on the walls") && said.contains("a period apart"), "{said}");
+    assert!(said.contains("0 on the walls") && said.contains("one period apart"), "{said}");
     let path = workplace.path("grains.vtp");
     let surface = SurfaceFile::read(&path);
     let mut volumes = [0.0; 20];
@@ -111,7 +111,7 @@ fn grains_are_cut_at_the_box() {
         ("--dim 2 --seeds 20 --periodic x,y -n 2", 2),
     ] {
         let said = workplace.run(&format!("{arguments} --periodic-cut box -o cut.vtp"));
-        assert!(said.contains("validation  good") && !said.contains("a period apart"), "{said}");
+        assert!(said.contains("validation  good") && !said.contains("one period apart"), "{said}");
         if axes == 3 {
             let surface = SurfaceFile::read(&workplace.path("cut.vtp"));
             assert!(surface.face_labels.iter().flatten().all(|label| (-1..20).contains(label)));

@@ -255,16 +255,16 @@ fn phases_that_are_mistaken() {
     };
     for (text, message) in [
         ("a", "no ':' in 'a'; write a name and a share of the volume, such as ferrite:0.8"),
-        (":0.5", "'' is no name; give letters, digits, _, - or ."),
-        ("a/b:0.5", "'a/b' is no name; give letters, digits, _, - or ."),
-        ("a:half", "'half' is no share of the volume; give a number above 0, up to 1"),
-        ("a:0", "'0' is no share of the volume; give a number above 0, up to 1"),
-        ("a:1.2", "'1.2' is no share of the volume; give a number above 0, up to 1"),
+        (":0.5", "'' is not a name; give letters, digits, _, - or ."),
+        ("a/b:0.5", "'a/b' is not a name; give letters, digits, _, - or ."),
+        ("a:half", "'half' is not a share of the volume; give a number above 0, up to 1"),
+        ("a:0", "'0' is not a share of the volume; give a number above 0, up to 1"),
+        ("a:1.2", "'1.2' is not a share of the volume; give a number above 0, up to 1"),
         ("a:1,textur=random", "'textur' is unknown; did you mean 'texture'?"),
         ("a:1,color=red", "'color' is unknown; a phase may have diameters=, texture=, symmetry=, place="),
         (
             "a:0.5,place=corner",
-            "'corner' is no place; give interior, boundaries, triple-lines, quadruple-points, clustered, dispersed",
+            "'corner' is not a place; give interior, boundaries, triple-lines, quadruple-points, clustered, dispersed",
         ),
         ("a:1,goss(10)", "'goss(10)' has no key; a phase may have diameters=, texture=, symmetry=, place="),
         ("a:1,symmetry=432,symmetry=622", "symmetry stands twice; leave one out"),
@@ -280,7 +280,7 @@ fn phases_that_are_mistaken() {
     for (arguments, message) in [
         (
             "--phase a:0.8 --phase b:0.3",
-            "the phases' fractions add up to 1.1, not to 1; give a:0.7272727273 and b:0.2727272727, say",
+            "the phases' fractions add up to 1.1, not to 1; give a:0.7272727273 and b:0.2727272727, for example",
         ),
         ("--phase a:0.5 --phase a:0.5", "two phases are called a; give each a name of its own"),
         (
@@ -337,10 +337,10 @@ fn phases_that_are_mistaken() {
         ),
         (
             "--phase a:0.9 --phase b:0.1,place=boundaries --relax 0",
-            "place= makes grains of several cells, which are sharp where these meet; leave --relax 0 out, or give --relax 0.02",
+            "place= makes grains of several cells, with sharp edges where these meet; leave --relax 0 out, or give --relax 0.02",
         ),
         ("--picture a.png --color-by phase", "--color-by phase needs phases; give some with --phase"),
-        ("--sample-symmetry orthorhombic", "--sample-symmetry is that of a texture; give --texture as well"),
+        ("--sample-symmetry orthorhombic", "--sample-symmetry needs a texture; give --texture as well"),
     ] {
         workplace.refuses(arguments, USAGE, message);
     }

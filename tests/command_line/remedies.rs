@@ -385,8 +385,7 @@ fn a_read_only_result_is_replaced_once_that_is_allowed() {
     };
     set_read_only(true);
     let arguments = "--seeds 2 -n 0 --relax 0";
-    let message =
-        "grains.vtp: cannot be written: the present file is read-only; allow it or choose another path";
+    let message = "grains.vtp: cannot be written: the present file is read-only; make it writable or choose another path";
     workplace.refuses(arguments, FAILED, message);
     workplace.run(&format!("{arguments} -o other.vtp"));
     set_read_only(false);

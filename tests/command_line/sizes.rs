@@ -170,7 +170,7 @@ fn sizes_that_are_mistaken() {
             "normal(20,5)",
             "'normal(20,5)' needs mean and sd, or mean and cv, and may have from and to: normal(mean=20, sd=5)",
         ),
-        ("0.5*equal(3)+equal(4)", "'equal(4)' has no weight, others do; write 0.5*equal(4), say"),
+        ("0.5*equal(3)+equal(4)", "'equal(4)' has no weight, others do; write 0.5*equal(4), for example"),
         (
             "equal(3),from=5",
             "'equal(3)': from 5 to inf there is next to nothing of it (a share of 0.0e0); widen the cut-offs",
@@ -202,7 +202,7 @@ fn sizes_that_are_mistaken() {
     }
     workplace.put("s.csv", ".1,.2,.3\n.5,.5,.5\n.7,.1,.3\n");
     for (arguments, message) in [
-        ("--volumes v.csv --seeds-file s.csv", "volumes of v.csv: 2 volumes for 3 seeds; give as many"),
+        ("--volumes v.csv --seeds-file s.csv", "volumes of v.csv: 2 volumes for 3 seeds; give one for each"),
         (
             "--diameters equal(60) --box 50 50 50",
             "a grain of diameter 60.000000 does not fit the domain; ask for diameters up to 50.000000 (to=50.000000 cuts larger \
@@ -215,7 +215,7 @@ fn sizes_that_are_mistaken() {
         ),
         (
             "--diameters equal(1e-6)",
-            "1909859317102744320 cells would take ... are available; take fewer seeds",
+            "1909859317102744320 cells would take ... are available; use fewer seeds",
         ),
         ("--diameters none.csv", "none.csv: cannot be read: ... ; give the path of a readable text file"),
         ("--volumes none.csv", "none.csv: cannot be read: ... ; give the path of a readable text file"),
@@ -229,7 +229,7 @@ fn file_of_sizes_that_is_mistaken() {
     let workplace = Workplace::new();
     for (option, content, message) in [
         ("diameters", "", "line 1: holds no diameters; give one or more"),
-        ("diameters", "diameter\n1\nx\n", "line 3: 'x' is no number; correct it or remove the line"),
+        ("diameters", "diameter\n1\nx\n", "line 3: 'x' is not a number; correct it or remove the line"),
         (
             "diameters",
             "diameter\n# zero\n0\n",
@@ -249,18 +249,18 @@ fn file_of_sizes_that_is_mistaken() {
         (
             "diameters",
             "from,to,weight\n1,3,2\n2,4,2\n",
-            "line 3: the bin from 2 to 4 has no width, or reaches into the one before; list bins from small to large",
+            "line 3: the bin from 2 to 4 has no width, or overlaps the one before; list bins from small to large",
         ),
         (
             "diameters",
             "from,to,count\n1,3,-2\n",
             "line 2: the weight -2 is not 0 or more; correct it or remove the line",
         ),
-        ("diameters", "from,to,count\n1,3,0\n", "line 1: every weight is 0; give one that is more"),
+        ("diameters", "from,to,count\n1,3,0\n", "line 1: every weight is 0; give a positive one"),
         (
             "diameters",
             "diameter,cdf\n1,0.1\n2,1\n",
-            "line 2: the distribution function begins with 0.1; begin with a line of the diameter that none is below, and 0",
+            "line 2: the distribution function begins with 0.1; begin with the smallest diameter and the share 0",
         ),
         (
             "diameters",
@@ -310,7 +310,7 @@ fn stretched_grains_are_those_of_the_unstretched_frame() {
         let said = workplace.run(&format!(
             "{run} --box 4 1 1 --aspect-ratio 8 1 1 -o b.obj -o b.vtp --json-summary b.json --report r.html --stats b_stats.json"
         ));
-        let line = "stretched   by 4.0000, 0.5000, 0.5000 along x, y, z; angles, residual and triangles are those before\n";
+        let line = "stretched   by 4.0000, 0.5000, 0.5000 along x, y, z; angles, residual and triangles are from before\n";
         assert!(said.contains(line) && said.contains(" in [0, 4] x [0, 1] x [0, 1]"), "{said}");
         let [frame, stretched] = ["a.obj", "b.obj"].map(|name| points(&workplace, name));
         assert_eq!(frame.len(), stretched.len());

@@ -169,15 +169,15 @@ fn tensions_that_are_mistaken() {
     for (text, message) in [
         (
             "high",
-            "'high' is no law; give a number such as 0.8, read-shockley(15), humphreys(15), one of them times a number, or a .csv file",
+            "'high' is not a law; give a number such as 0.8, read-shockley(15), humphreys(15), one of them times a number, or a .csv file",
         ),
         (
             "-1",
-            "'-1' is no law; give a number such as 0.8, read-shockley(15), humphreys(15), one of them times a number, or a .csv file",
+            "'-1' is not a law; give a number such as 0.8, read-shockley(15), humphreys(15), one of them times a number, or a .csv file",
         ),
         (
             "read(15)",
-            "'read(15)' is no law; give a number such as 0.8, read-shockley(15), humphreys(15), one of them times a number, or a .csv file",
+            "'read(15)' is not a law; give a number such as 0.8, read-shockley(15), humphreys(15), one of them times a number, or a .csv file",
         ),
         ("read-shockley(200)", "the angle 200 is not above 0, up to 180 degrees"),
     ] {
@@ -228,7 +228,7 @@ fn tensions_that_are_mistaken() {
     workplace.refuses(
         "--seeds 3 --tension 0",
         FAILED,
-        "--tension gives no boundary more than 0; give one a positive number",
+        "--tension gives every boundary 0; give at least one a positive number",
     );
 }
 
@@ -273,7 +273,7 @@ fn what_has_no_equilibrium_is_named_where_nothing_comes_to_rest() {
     let wet = "--phase a:0.5 --phase b:0.5 --tension 1 --seeds 30 -n 0";
     let said = workplace.run(&format!("{wet} --tension a/a:6"));
     assert!(
-        said.contains("led to no valid network, as lines without equilibrium are never at rest"),
+        said.contains("led to no valid network, because lines without equilibrium never come to rest"),
         "{said}"
     );
     std::fs::remove_file(workplace.path("grains.vtp")).unwrap();

@@ -168,7 +168,7 @@ fn texture_that_is_mistaken() {
     );
     for file in ["a.ori", "a.txt", "a.yaml"] {
         let message = format!(
-            "{file}: this format holds orientations, and the grains have none; give them some, such as --texture random, or choose another"
+            "{file}: this format holds orientations, but the grains have none; give them some, such as --texture random, or choose another"
         );
         workplace.refuses(&format!("--seeds 100000 -n 0 -o {file}"), FAILED, &message);
     }
@@ -192,11 +192,15 @@ fn file_of_orientations_that_is_mistaken() {
             "phi1,Phi,weight\n",
             "a.csv line 1: no column is named phi2; name three of them phi1, Phi and phi2, and perhaps one weight",
         ),
-        ("a.csv", "1,2,3\n1,x,3\n", "a.csv line 2: 'x' is no finite number; correct it or remove the line"),
+        (
+            "a.csv",
+            "1,2,3\n1,x,3\n",
+            "a.csv line 2: 'x' is not a finite number; correct it or remove the line",
+        ),
         (
             "a.csv",
             "1,2,3,1\n1,2,3\n",
-            "a.csv line 2: fewer columns than in the lines before; write as many on each",
+            "a.csv line 2: fewer columns than in the lines before; write the same number on each",
         ),
         ("a.csv", "1,2,3,-1\n", "a.csv line 1: weight is -1; write 0 or more"),
         ("a.csv", "1,2,3,0\n", "a.csv line 1: no orientation has a weight above 0; give at least one"),
@@ -360,10 +364,10 @@ fn histogram_of_disorientations_that_is_mistaken() {
             "angle,weight\n5,1,2\n",
             "line 2: 3 columns; write the upper end of a bin in degrees and its weight",
         ),
-        ("5,1\nx,1\n", "line 2: 'x' is no finite number; correct it or remove the line"),
+        ("5,1\nx,1\n", "line 2: 'x' is not a finite number; correct it or remove the line"),
         (
             "5,1\n\n5,1\n",
-            "line 3: bin 2 ends at 5, not above the one before; let the ends of bins rise from above 0",
+            "line 3: bin 2 ends at 5, not above the one before; list positive ends in increasing order",
         ),
         ("5,-1\n", "line 1: bin 1 has the weight -1; give 0 or more, and more than 0 somewhere"),
         (

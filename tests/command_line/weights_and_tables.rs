@@ -19,7 +19,7 @@ fn grains_without_volume_are_named_or_dropped() {
     workplace.refuses(
         "--seeds-file seeds.csv",
         FAILED,
-        "weights leave grain 1 without volume; change their radii, or go on without them with --drop-empty",
+        "weights leave grain 1 without volume; change their radii, or drop them with --drop-empty",
     );
     let said = workplace.run("--seeds-file seeds.csv --drop-empty -n 1");
     assert!(said.contains("grains      3 in [0, 1] x [0, 1] x [0, 1]"), "{said}");

@@ -65,16 +65,13 @@ fn bad_meshes_are_refused_by_name() {
         ),
         (
             "orient moebius.off",
-            "moebius.off: the winding cannot agree: the surface has one side only, which shows at edge 3-4 of faces 3 and 2; cut it open there",
+            "moebius.off: the winding cannot agree: the surface has only one side, as can be seen at edge 3-4 of faces 3 and 2; cut it open there",
         ),
         (
             "triangulate star.off",
-            "star.off: face 0 crosses or touches itself, as seen along its normal: divide it there into several",
+            "star.off: face 0 crosses or touches itself, as seen along its normal: divide it there",
         ),
-        (
-            "triangulate line.off",
-            "line.off: face 0 has no area: remove it, or move a corner of it off their line",
-        ),
+        ("triangulate line.off", "line.off: face 0 has no area: remove it, or move a corner off the line"),
         (
             "loop --closed open.off",
             "open.off: the surface is open: edge 0-1 has one face only; close the hole",
@@ -99,13 +96,13 @@ fn bad_meshes_are_refused_by_name() {
             "normals bowtie.obj",
             "bowtie.obj: the faces around vertex 0 touch only in this point: a manifold mesh has one fan around it; give each fan a vertex of its own",
         ),
-        ("loop two.obj", "two.obj: line 3: a face with 2 corners; three are the least"),
-        ("loop two.json", "two.json: face 0 has 2 corners: three are the least"),
+        ("loop two.obj", "two.obj: line 3: a face with 2 corners; it needs at least three"),
+        ("loop two.json", "two.json: face 0 has 2 corners: it needs at least three"),
         ("loop empty.obj", "empty.obj: holds no faces; give a surface mesh"),
         ("loop nothing.ply", "nothing.ply: ... give a complete PLY file"),
         (
             "loop cube.obj",
-            "cube.obj: face 0 has 4 corners where triangles are needed; cut it with `grainsmooth mesh triangulate`, or take catmull-clark or doo-sabin",
+            "cube.obj: face 0 has 4 corners where triangles are needed; cut it with `grainsmooth mesh triangulate`, or use catmull-clark or doo-sabin",
         ),
         (
             "doo-sabin valence.off",
@@ -113,7 +110,7 @@ fn bad_meshes_are_refused_by_name() {
         ),
         (
             "catmull-clark cube.obj --crease 0-6",
-            "cube.obj: crease 0 joins vertices 0 and 6, but the mesh has no such edge; name the ends of a face's side",
+            "cube.obj: crease 0 joins vertices 0 and 6, but the mesh has no such edge; name the two ends of an edge",
         ),
         (
             "catmull-clark cube.obj --corners 8",
@@ -124,17 +121,17 @@ fn bad_meshes_are_refused_by_name() {
             "cube.obj: vertex 0 is semi-sharp: refine until its sharpness has run out",
         ),
         ("loop missing.obj", "missing.obj: cannot be read: ... give the path of a readable mesh file"),
-        ("loop cube.blend", "cube.blend: unknown extension; give a file *.obj, ... or of lines *.txt"),
+        ("loop cube.blend", "cube.blend: unknown extension; give a file *.obj, ... or polylines as *.txt"),
         ("catmull-clark cube.obj -n 60", "60 levels would take ... would fit"),
         // Their normals were none, and nothing said so.
         (
             "normals huge.obj",
-            "huge.obj: point 1 has the coordinate 1e155; scale the mesh, so that none is beyond 1e30",
+            "huge.obj: point 1 has the coordinate 1e155; scale the mesh so that none exceeds 1e30",
         ),
-        ("loop tiny.obj", "tiny.obj: the mesh is 1e-155 wide; scale it, so that it is 1e-30 or more"),
+        ("loop tiny.obj", "tiny.obj: the mesh is 1e-155 wide; scale it to 1e-30 or more"),
         (
             "bezier huge.txt",
-            "huge.txt: point 1 has the coordinate -1e200; scale the mesh, so that none is beyond 1e30",
+            "huge.txt: point 1 has the coordinate -1e200; scale the mesh so that none exceeds 1e30",
         ),
     ] {
         workplace.refuses(&format!("mesh {command} -o out.obj"), FAILED, message);
@@ -152,7 +149,7 @@ fn mistakes_of_usage() {
         ),
         (
             "catmull-clark cube.obj --each-level -o out.json",
-            "--each-level is a file a level, but JSON holds all levels in one; leave it out",
+            "--each-level writes one file per level, but JSON holds all levels in one; leave it out",
         ),
         ("catmull-clark cube.obj", "the following required arguments were not provided:"),
         ("flip cube.obj -o out.obj", "the following required arguments were not provided:"),

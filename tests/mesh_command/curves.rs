@@ -115,14 +115,14 @@ fn what_is_no_curve_is_refused() {
     for (command, message) in [
         (
             "b-spline cube.obj",
-            "cube.obj: holds no polylines; give lines as .obj, .vtp, .vtu, .vtk, .json or .txt, or take a scheme of surfaces",
+            "cube.obj: holds no polylines; give lines as .obj, .vtp, .vtu, .vtk, .json or .txt, or use a scheme for surfaces",
         ),
         (
             "loop in.obj",
-            "in.obj: holds polylines and no faces; give a surface mesh, or take b-spline or four-point",
+            "in.obj: holds polylines and no faces; give a surface mesh, or use b-spline or four-point",
         ),
         ("four-point in.obj --closed", "in.obj: polyline 0 is open; end it with its first point"),
-        ("four-point short.json", "short.json: polyline 0 has one point; two are the least"),
+        ("four-point short.json", "short.json: polyline 0 has one point; give at least two"),
         (
             "four-point range.json",
             "range.json: polyline 0 refers to vertex 1, but there are only 1 vertices, counted from 0",
@@ -141,7 +141,7 @@ fn what_is_no_curve_is_refused() {
         ),
         (
             "four-point patch.txt",
-            "patch.txt: a surface of control points is no polyline; give a complete polyline file",
+            "patch.txt: a surface of control points is not a polyline; give a complete polyline file",
         ),
     ] {
         workplace.refuses(&format!("mesh {command} -o out.vtp"), FAILED, message);
@@ -149,7 +149,7 @@ fn what_is_no_curve_is_refused() {
     workplace.refuses(
         "mesh limit --scheme b-spline --crease 0-1 in.obj -o out.vtp",
         USAGE,
-        "--crease and --boundary are of surfaces; give --corners to curves",
+        "--crease and --boundary apply to surfaces only; for curves, give --corners",
     );
 }
 

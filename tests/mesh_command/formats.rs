@@ -280,7 +280,7 @@ fn de_casteljaus_points_level_by_level() {
     workplace.refuses(
         "mesh bezier patch.txt --t 0.25 --construction -o out.vtp",
         1,
-        "patch.txt: holds no curves, of which alone there is a construction; leave --construction and --t out",
+        "patch.txt: holds no curves, and only curves have a construction; leave --construction and --t out",
     );
     for (arguments, message) in [
         ("--t 0.4", "the following required arguments were not provided:"),

@@ -154,7 +154,7 @@ fn what_cannot_be_shown_is_told() {
     let (served, _) = served();
     let said = refuses(&format!("view a.vtp --port {}", served.port), network);
     assert!(said.starts_with(&format!("error: port {} of 127.0.0.1: ", served.port)), "{said}");
-    assert!(said.ends_with("; give another --port, or leave it out for one that is free\n"), "{said}");
+    assert!(said.ends_with("; give another --port, or leave it out to use a free one\n"), "{said}");
 }
 
 /// It leaves nothing, and that is a good end.

@@ -20,7 +20,7 @@ pub const REFUSALS: &[Kind] = &[
     ("NoOutputDirectory", &["no directory", "create it or choose another path"]),
     ("OutputNotAFile", &["is not a regular file"]),
     ("OutputDirectoryTaken", &["is not an empty directory"]),
-    ("OutputNotWritable", &["cannot be written", "allow it or choose another path"]),
+    ("OutputNotWritable", &["cannot be written", "make it writable or choose another path"]),
     // Files of seeds and domains.
     ("SeedFileUnreadable, DomainFileUnreadable", &["cannot be read", "give the path of a readable"]),
     ("NoSeedsInFile", &["holds no seeds"]),
@@ -28,8 +28,8 @@ pub const REFUSALS: &[Kind] = &[
     ("SeedProblem::NotUtf8", &["not UTF-8 text"]),
     ("SeedProblem::ColumnNames", &["columns named"]),
     ("SeedProblem::ColumnCount", &["columns; write"]),
-    ("SeedProblem::UnequalColumns", &["columns after lines of", "write as many"]),
-    ("SeedProblem::OpenQuote", &["a quote that the line does not close"]),
+    ("SeedProblem::UnequalColumns", &["columns, but earlier lines have", "write the same number"]),
+    ("SeedProblem::OpenQuote", &["a quote is not closed on its line"]),
     ("SeedProblem::NamedTwice, SizedTwice", &["rename one of them"]),
     ("SeedProblem::NotANumber", &["is not a number; write"]),
     ("SeedProblem::NotFinite", &["is not a finite number; correct or remove the seed"]),
@@ -37,7 +37,7 @@ pub const REFUSALS: &[Kind] = &[
     ("SeedProblem::NegativeDiameter", &["diameter is", "write 0 or more"]),
     ("SeedProblem::Tess, of other cells", &["its cell has the", "whose cells are those of its seeds"]),
     ("SeedProblem::Tess, of the domain", &["the domain is a", "give a file whose domain is a"]),
-    ("SeedProblem::BadId", &["is no whole number from 0 to", "number the seeds"]),
+    ("SeedProblem::BadId", &["is not a whole number from 0 to", "number the seeds"]),
     ("SeedProblem::EmptyId", &["the id is empty", "number each seed"]),
     ("SeedProblem::IdTwice, NoId", &["give each seed its own, or"]),
     ("SeedProblem::NotInPlane", &["in a 2D run"]),
@@ -54,15 +54,15 @@ pub const REFUSALS: &[Kind] = &[
     ("BadTextureFile, empty", &["holds no orientation"]),
     // Sizes that are asked for.
     ("BadSizeFile, empty", &["holds no diameters"]),
-    ("GrainTooLarge", &["does not fit", "take a larger domain"]),
-    ("VolumeCount", &["volumes for", "seeds; give as many"]),
+    ("GrainTooLarge", &["does not fit", "use a larger domain"]),
+    ("VolumeCount", &["volumes for", "seeds; give one for each"]),
     // Seeds and domains.
     ("OutsideDomain", &["lies outside the domain"]),
-    ("DuplicateSeeds", &["stand at the same place", "remove one of them"]),
+    ("DuplicateSeeds", &["have the same position", "remove one of them"]),
     ("DuplicateSeedsInFile", &["the same seed", "twice; remove one of them"]),
     ("EmptyGrains", &["weights leave", "without volume", "--drop-empty"]),
-    ("UnboundedDomain", &["half-spaces have no end in the direction"]),
-    ("EmptyDomain", &["leaves nothing of what those before it have in common"]),
+    ("UnboundedDomain", &["half-spaces are unbounded in the direction"]),
+    ("EmptyDomain", &["has nothing in common with those before it"]),
     ("BadDomain", &["every side must be between"]),
     ("FlatDomain", &["the domain between", "is flat"]),
     ("TooManyWalls", &["walls that a domain can have"]),
@@ -75,12 +75,12 @@ pub const REFUSALS: &[Kind] = &[
     ("TooLarge", &["more than 32-bit ids can name"]),
     ("CoarseReference", &["elements of", "need a finer surface", "give -n"]),
     ("ElementsWithoutSize", &["changes sizes of elements", "--elements-per-grain"]),
-    ("VolumesInPlane", &["tetrahedra fill grains in space", "with --dim 2 leave"]),
+    ("VolumesInPlane", &["tetrahedra fill grains in 3D only", "with --dim 2 leave"]),
     ("EquationsWithoutPeriods", &["--periodic-equations ties nodes", "give --periodic"]),
     ("CohesiveOrder", &["--cohesive makes elements", "none of second order"]),
     ("CohesiveDeck", &["--cohesive makes elements", "leave one of them out"]),
-    ("DeckDomain", &["--solver-deck pulls a box", "leave --domain"]),
-    ("ElementsInPlane", &["elements of a size", "with --dim 2 leave"]),
+    ("DeckDomain", &["--solver-deck loads a box", "leave --domain"]),
+    ("ElementsInPlane", &["only boundaries in 3D are remeshed", "with --dim 2 leave"]),
     ("TouchesItself", &["touches its own image", "give more seeds"]),
     // A grain that vanishes while it is free to, where the message names a time that works, or how to take such grains out.
     ("GrainVanished", &["shrinks to nothing by", "; --relax ", " works"]),
@@ -116,10 +116,10 @@ mod tests {
     #[test]
     fn messages_of_one_kind_are_alike() {
         let messages = [
-            "grain 3 misses its volume by 1.25e-3 of it after relaxation; relax for a shorter time",
-            "grain 17 misses its volume by -2 of it after relaxation; relax for a shorter time",
+            "grain 3 has the wrong volume after relaxation, with a relative error of 1.25e-3; relax for a shorter time",
+            "grain 17 has the wrong volume after relaxation, with a relative error of -2; relax for a shorter time",
         ];
-        let kind = "grain # misses its volume by # of it after relaxation; relax for a shorter time";
+        let kind = "grain # has the wrong volume after relaxation, with a relative error of #; relax for a shorter time";
         assert_eq!(messages.map(without_numbers), [kind, kind]);
         assert_eq!(without_numbers("elements 1 and 25."), "elements # and #.");
     }

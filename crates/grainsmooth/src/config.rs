@@ -73,7 +73,7 @@ pub enum SeedSource {
     File(PathBuf),
 }
 
-/// What the grains fill.
+/// The domain that grains fill.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Shape {
     /// The box.
@@ -175,7 +175,7 @@ pub struct Config {
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "as_texts")]
     pub inside: Vec<InsideOptions>,
 
-    /// Drop seeds that their neighbours outweigh, so that they have no cell; without this option they are an error
+    /// Drop seeds without a cell, because their neighbours outweigh them; without this option they are an error
     ///
     /// Example: --seeds-file spheres.csv --drop-empty
     #[arg(long, help_heading = "Seeds", requires = "seeds_file")]
@@ -192,7 +192,7 @@ pub struct Config {
     #[serde(skip_serializing_if = "is_usual")]
     pub min_diameter: f64,
 
-    /// Make the grains more alike: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 10
+    /// Make the grains more regular: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 10
     /// for packed grains, and for --diameters or --volumes without --seeds-file; otherwise 0]
     ///
     /// Example: --lloyd 10

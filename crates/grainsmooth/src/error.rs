@@ -59,7 +59,7 @@ pub enum Error {
     },
     /// A file of voxels is larger than what is free where it is to go.
     #[error(
-        "{}: would take {} and {} are free there; take fewer voxels or choose another path",
+        "{}: would take {} and {} are free there; use fewer voxels or choose another path",
         path.display(), memory::in_words(*needed), memory::in_words(u128::from(*available))
     )]
     OutputExceedsDisk {
@@ -97,7 +97,7 @@ pub enum Error {
         path: PathBuf,
     },
     /// Nothing can be written under the output path.
-    #[error("{}: cannot be written: {cause}; allow it or choose another path", path.display())]
+    #[error("{}: cannot be written: {cause}; make it writable or choose another path", path.display())]
     OutputNotWritable {
         /// The path as given.
         path: PathBuf,
@@ -128,7 +128,7 @@ pub enum Error {
     },
     /// No point of a lattice lies in the domain.
     #[error(
-        "no point of the lattice lies in the domain; take more unit cells along its shortest side, such as {more}"
+        "no point of the lattice lies in the domain; use more unit cells along its shortest side, such as {more}"
     )]
     NoLatticeSeeds {
         /// More unit cells than were asked for.
@@ -250,13 +250,13 @@ pub enum Error {
         option: &'static str,
     },
     /// The output's format holds orientations, and there are none.
-    #[error("{}: this format holds orientations, and the grains have none; give them some, such as --texture random, or choose another", path.display())]
+    #[error("{}: this format holds orientations, but the grains have none; give them some, such as --texture random, or choose another", path.display())]
     NoTexture {
         /// The path as given.
         path: PathBuf,
     },
     /// The output's format holds convex cells, and grains are none.
-    #[error("{}: this format holds convex cells, and grains of --grain-shapes, place= or a map are none; choose another, such as .vtp", path.display())]
+    #[error("{}: this format holds convex cells, but grains of --grain-shapes, place= or a map are not convex; choose another, such as .vtp", path.display())]
     CellsOfGrains {
         /// The path as given.
         path: PathBuf,
@@ -304,7 +304,7 @@ pub enum Error {
     Law(#[from] LawError),
     /// A grain of the sizes asked for is larger than the domain.
     #[error(
-        "a grain of diameter {diameter:.6} does not fit {of}; ask for diameters up to {fits:.6} (to={fits:.6} cuts larger ones off), or take a larger domain"
+        "a grain of diameter {diameter:.6} does not fit {of}; ask for diameters up to {fits:.6} (to={fits:.6} cuts larger ones off), or use a larger domain"
     )]
     GrainTooLarge {
         /// Its equivalent diameter.
@@ -315,7 +315,7 @@ pub enum Error {
         fits: f64,
     },
     /// As many volumes as seeds are wanted.
-    #[error("{asked}: {volumes} volumes for {seeds} seeds; give as many")]
+    #[error("{asked}: {volumes} volumes for {seeds} seeds; give one for each")]
     VolumeCount {
         /// Where the volumes come from.
         asked: String,
@@ -332,7 +332,7 @@ pub enum Error {
     Voronoi(#[from] VoronoiError),
     /// Weights leave grains without volume.
     #[error(
-        "weights leave {} without volume; change their radii, or go on without them with --drop-empty",
+        "weights leave {} without volume; change their radii, or drop them with --drop-empty",
         grains_in_words(grains)
     )]
     EmptyGrains {
@@ -341,7 +341,7 @@ pub enum Error {
     },
     /// The smooth network has too long edges for elements of the size that is asked for.
     #[error(
-        "elements of {length:.3e} need a finer surface than one whose edges have {mean:.3e} on the mean; give -n {levels}, or larger elements"
+        "elements of {length:.3e} need a finer surface: its edges are {mean:.3e} long on average; give -n {levels}, or larger elements"
     )]
     CoarseReference {
         /// Mean length of the edges of the finest level.
@@ -361,7 +361,7 @@ pub enum Error {
     },
     /// A job pulls at sides of a box that no node is on.
     #[error(
-        "{}: a job pulls at the sides of the box, and some have no node; leave --solver-deck out, or let the grains fill the box", path.display()
+        "{}: a job loads the sides of the box, but some have no node; leave --solver-deck out, or let the grains fill the box", path.display()
     )]
     NoSides {
         /// The path of the job.
@@ -369,7 +369,7 @@ pub enum Error {
     },
     /// Gmsh could not fill all grains.
     #[error(
-        "{cause}; give elements of another size with --elements-per-grain, or see the surface alone with --grains-dir grains"
+        "{cause}; give elements of another size with --elements-per-grain, or look at the surfaces alone with --grains-dir grains"
     )]
     NotFilled {
         /// What it said, or which grains lack tetrahedra.
@@ -426,7 +426,7 @@ pub enum Error {
         path: PathBuf,
     },
     /// A server cannot listen at a port of this machine.
-    #[error("port {port} of 127.0.0.1: {cause}; give another --port, or leave it out for one that is free")]
+    #[error("port {port} of 127.0.0.1: {cause}; give another --port, or leave it out to use a free one")]
     PortTaken {
         /// The port.
         port: u16,

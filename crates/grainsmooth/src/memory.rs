@@ -86,7 +86,7 @@ impl LevelSize {
 pub enum MemoryError {
     /// So many cells need more memory than there is.
     #[error(
-        "{count} cells would take {} of memory and {} are available; take fewer seeds",
+        "{count} cells would take {} of memory and {} are available; use fewer seeds",
         in_words(*needed), in_words(u128::from(*available))
     )]
     CellsExceedMemory {
@@ -99,7 +99,7 @@ pub enum MemoryError {
     },
     /// So many parts of grains need more memory than there is.
     #[error(
-        "{count} parts of grains would take {} of memory and {} are available; take a larger width or diameter inside them",
+        "{count} parts of grains would take {} of memory and {} are available; make the parts wider",
         in_words(*needed), in_words(u128::from(*available))
     )]
     PartsExceedMemory {
@@ -270,7 +270,7 @@ fn remedy(largest: Option<u32>) -> String {
     match largest {
         Some(1) => "1 level would fit".to_owned(),
         Some(levels) => format!("{levels} levels would fit"),
-        None => "not even 0 levels would fit, take fewer seeds".to_owned(),
+        None => "not even 0 levels would fit; use fewer seeds".to_owned(),
     }
 }
 
@@ -370,7 +370,7 @@ mod tests {
         );
         assert_eq!(
             message(3, 1_000_000),
-            "3 levels would take 98.2 MB of memory and 1.0 MB are available; not even 0 levels would fit, take fewer seeds"
+            "3 levels would take 98.2 MB of memory and 1.0 MB are available; not even 0 levels would fit; use fewer seeds"
         );
         assert_eq!(
             message(9, u64::MAX),

@@ -67,7 +67,7 @@ impl fmt::Display for Summary<'_> {
         let on_walls = count(|boundary| boundary.wall.is_some());
         write!(out, "boundaries  {between_grains} between grains, {on_walls} on the walls")?;
         if network.domain().is_periodic() {
-            write!(out, ", {through_walls} of the first twice, a period apart")?;
+            write!(out, ", {through_walls} of the first twice, one period apart")?;
         }
         writeln!(out)?;
         if let Some(synthesis) = synthesis {
@@ -89,7 +89,7 @@ impl fmt::Display for Summary<'_> {
             writeln!(out, "tetrahedra  {quality}")?;
         }
         if let Some(stretched) = synthesis.and_then(|made| StretchLine::new(&made.config)) {
-            writeln!(out, "{stretched}; angles, residual and triangles are those before")?;
+            writeln!(out, "{stretched}; angles, residual and triangles are from before")?;
         }
         if let Some(Synthesis { angles_before, .. }) = synthesis {
             write_angles(out, *angles_before, polycrystal.validation.angles)?;
@@ -150,7 +150,7 @@ fn write_map(out: &mut fmt::Formatter<'_>, measurement: &Measurement) -> fmt::Re
         (None, _) => write!(out, "map         {nx} x {ny} x {nz} voxels")?,
     }
     if *grains > 0 {
-        write!(out, "; {grains} small grains with {voxels} of them went to neighbours")?;
+        write!(out, "; {voxels} in {grains} small grains went to neighbours")?;
     }
     if *relabelled > 0 {
         write!(out, "; {relabelled} got another label where a grain touched itself")?;
@@ -178,7 +178,7 @@ fn write_crystals(out: &mut fmt::Formatter<'_>, Measurement { grains, .. }: &Mea
         0 => writeln!(out),
         _ => writeln!(
             out,
-            "; {drifting} grains above {LARGE_SPREAD}: there small steps add up, and a lower --threshold may part them"
+            "; {drifting} grains above {LARGE_SPREAD}, where small steps add up; a lower --threshold may separate them"
         ),
     }
 }
@@ -194,7 +194,7 @@ fn write_regularization(out: &mut fmt::Formatter<'_>, synthesis: &Synthesis) -> 
             Regularization::None => "not at all",
             _ => "less than usual, short edges only",
         };
-        writeln!(out, "regularized {kept}: with more taken out, boundaries folded or crossed when relaxed")?;
+        writeln!(out, "regularized {kept}: with more removed, boundaries folded or crossed in relaxation")?;
     }
     Ok(())
 }
@@ -211,12 +211,12 @@ fn write_angles(
         }
         (None, Some(after)) => writeln!(
             out,
-            "angles      {} after relaxation; before, nowhere three grains alone met",
+            "angles      {} after relaxation; before, no line had exactly three grains",
             Angle(after)
         ),
         (Some(before), None) => writeln!(
             out,
-            "angles      {} before relaxation; after, nowhere three grains alone meet",
+            "angles      {} before relaxation; after, no line has exactly three grains",
             Angle(before)
         ),
         (None, None) => Ok(()),
@@ -233,16 +233,19 @@ fn write_relaxation(
         write_topology(out, polycrystal.dimension(), *reconnections, balance.as_ref())?;
     } else if config.lets_topology_change() {
         let without = polycrystal.tensions.as_ref().map_or(0, |tensions| tensions.without_equilibrium.len());
-        let cause = if without == 0 { "" } else { ", as lines without equilibrium are never at rest" };
+        let cause = if without == 0 { "" } else { ", because lines without equilibrium never come to rest" };
         writeln!(
             out,
-            "topology    kept: letting grains switch neighbours led to no valid network{cause}; angles are not at rest where they would"
+            "topology    kept: letting grains switch neighbours led to no valid network{cause}; angles are not in equilibrium where they would switch"
         )?;
     } else if config.effective_relaxation() == Relaxation::Equilibrium {
-        writeln!(out, "topology    kept: angles are not at rest where grains would switch neighbours")?;
+        writeln!(
+            out,
+            "topology    kept: angles are not in equilibrium where grains would switch neighbours"
+        )?;
     }
     if !relaxed.given_up.is_empty() {
-        writeln!(out, "relaxation  of the points of level {} and coarser ones only", relaxed.level)?;
+        writeln!(out, "relaxation  only of points up to level {}", relaxed.level)?;
     }
     Ok(())
 }
@@ -473,9 +476,9 @@ mod tests {
             (
                 Regularization::Plain,
                 "short_edges",
-                Some("less than usual, short edges only: with more taken out, "),
+                Some("less than usual, short edges only: with more removed, "),
             ),
-            (Regularization::None, "none", Some("not at all: with more taken out, ")),
+            (Regularization::None, "none", Some("not at all: with more removed, ")),
         ] {
             synthesis(&mut polycrystal).regularization = regularization;
             let said = Summary(&polycrystal).to_string();

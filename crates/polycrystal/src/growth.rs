@@ -14,11 +14,10 @@ use voronoi::{Dimension, Tessellation};
 
 use crate::energy::unit::Unit;
 use crate::flow::recipe::{NetworkRecipe, RelaxedCells};
-use crate::flow::relaxation::{Relaxation, RelaxationStep, Relaxed, TIME_OF_KEPT_TOPOLOGY};
-use crate::flow::settling::Settled;
+use crate::flow::relaxation::{Relaxation, RelaxationStep};
 use crate::network::tension::{checked_mobility, checked_tension};
-use crate::relax::cells::{smoothed, still};
-use crate::{Boundary, FaceMesh, GrainId, NetworkError, Tuning};
+use crate::relax::cells::still;
+use crate::{Boundary, GrainId, NetworkError, Tuning};
 use curves::Curves;
 use front::{Front, History, advance};
 use sheets::Sheets;
@@ -106,58 +105,27 @@ pub fn grow_cells_tuned(
     let network = NetworkRecipe { tension: &tension, ..recipe.network };
     let in_units = GrowthRecipe { network, mobility: &mobility };
     let time = if tensions.is_of_grains { time } else { 0.0 };
+    let of_relaxation = Tuning::default();
     let (mut cells, vanished) = match cells.domain().dimension() {
-        Dimension::Two => grow_in_plane(cells, &in_units, time, tuning, &mut watch),
-        Dimension::Three => grow_in_space(cells, &in_units, time, tuning, &mut watch),
+        Dimension::Two => grow(Curves::new(cells, &in_units, tuning), cells, time, tuning, &mut watch),
+        Dimension::Three if time == 0.0 => Ok((still(cells, &network, &of_relaxation)?, Vec::new())),
+        Dimension::Three => {
+            grow(Sheets::new(cells, &in_units, tuning, &of_relaxation), cells, time, tuning, &mut watch)
+        }
     }?;
     cells.network = cells.network.with_tensions(recipe.network.tension)?.with_mobilities(recipe.mobility)?;
     Ok(GrownCells { cells, vanished })
 }
 
-/// As [`grow_cells`] in the plane, with tensions and mobilities whose means are 1.
-fn grow_in_plane(
+/// Lets boundaries move for a time; gives the grains in the end, and those that have vanished.
+fn grow(
+    mut front: impl Front,
     cells: &Tessellation,
-    recipe: &GrowthRecipe<'_>,
     time: f64,
     tuning: &GrowthTuning,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<(RelaxedCells, Vec<Vanished>), NetworkError> {
-    let mut curves = Curves::new(cells, recipe, tuning);
-    let is_flat = time == 0.0;
     let History { steps, reconnections, vanished } =
-        if is_flat { History::default() } else { advance(&mut curves, cells, time, tuning, watch)? };
-    let (network, points) = curves.network()?;
-    let relaxed = Relaxed { level: 0, points, steps, time, given_up: Vec::new(), is_flat };
-    let finest = relaxed.finest_points(&network);
-    let volumes = network.grain_volumes(network.finest(), &finest);
-    let cells = RelaxedCells::validated(network.with_cell_volumes(volumes), relaxed, &finest)?;
-    Ok((RelaxedCells { reconnections, ..cells }, vanished))
-}
-
-/// As [`grow_cells`] in space, with tensions and mobilities whose means are 1.
-fn grow_in_space(
-    cells: &Tessellation,
-    recipe: &GrowthRecipe<'_>,
-    time: f64,
-    tuning: &GrowthTuning,
-    watch: &mut impl FnMut(RelaxationStep<'_>),
-) -> Result<(RelaxedCells, Vec<Vanished>), NetworkError> {
-    let of_relaxation = Tuning::default();
-    if time == 0.0 {
-        return Ok((still(cells, &recipe.network, &of_relaxation)?, Vec::new()));
-    }
-    let mut sheets = Sheets::new(cells, recipe, tuning, &of_relaxation);
-    let History { steps, reconnections, vanished } = advance(&mut sheets, cells, time, tuning, &mut *watch)?;
-    let volumes = sheets.volumes_now();
-    let Sheets { complex, shape, .. } = sheets;
-    let settled = Settled { complex, shape, reconnections, steps, time };
-    // Time does not pass any more: what is left to do is for points that have not moved yet.
-    let smoothing = match recipe.network.face_mesh {
-        FaceMesh::Fan | FaceMesh::SparseFan => tuning.smoothing,
-        FaceMesh::Plain | FaceMesh::Refined { .. } => TIME_OF_KEPT_TOPOLOGY,
-    };
-    let smoothing = Relaxation::Time(smoothing);
-    let cells = smoothed(&settled, &volumes, &recipe.network, smoothing, &of_relaxation, &mut |_| ())?;
-    let relaxed = Relaxed { steps, time, ..cells.relaxed };
-    Ok((RelaxedCells { relaxed, ..cells }, vanished))
+        if time > 0.0 { advance(&mut front, cells, time, tuning, watch)? } else { History::default() };
+    Ok((front.finish(steps, reconnections, time)?, vanished))
 }

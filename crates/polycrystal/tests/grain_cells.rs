@@ -165,7 +165,7 @@ fn grains_in_pieces_and_numbers_left_out_are_refused() {
     let error = of_grains(&tessellation, &[0, 1, 0].map(GrainId), 0).expect_err("two pieces");
     assert_eq!(
         error.to_string(),
-        "the cells of grain 0 do not hang together by faces; give its pieces numbers of their own"
+        "the cells of grain 0 are not connected by faces; number its pieces separately"
     );
     let error = of_grains(&tessellation, &[0, 2, 2].map(GrainId), 0).expect_err("no grain 1");
     assert!(matches!(error, NetworkError::MissingGrain { grain: GrainId(1) }), "{error}");

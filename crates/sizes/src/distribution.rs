@@ -12,7 +12,7 @@ const MOST_HALVINGS: u32 = 200;
 
 /// Cut-offs leave next to nothing of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("from {from} to {to} there is next to nothing of it (a share of {left:.1e}); widen the cut-offs")]
+#[error("almost nothing of it is left from {from} to {to} (a share of {left:.1e}); widen the cut-offs")]
 pub struct CutError {
     from: f64,
     to: f64,

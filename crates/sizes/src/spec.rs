@@ -113,7 +113,7 @@ fn read(text: &str) -> Result<Spec, String> {
         && let Some((term, _)) = parts.iter().find(|part| !has_weight(part))
     {
         let term = term.trim();
-        return Err(format!("'{term}' has no weight, others do; write 0.5*{term}, say"));
+        return Err(format!("'{term}' has no weight, others do; write 0.5*{term}, for example"));
     }
     let parts = parts.into_iter().map(|(_, (weight, part))| (weight.unwrap_or(1.0), part)).collect();
     Ok(Spec { text: text.to_owned(), parts, is_by_volume })
@@ -168,7 +168,7 @@ fn weighted(term: &str, ends: [f64; 2]) -> Result<(Option<f64>, Part), String> {
     }
     let part = found.ok_or_else(|| match weight {
         Some(number) => format!("'{}' is a number alone; write equal({number})", term.trim()),
-        None => format!("'{}' is no distribution; write {}, say", term.trim(), FORMS[2].example),
+        None => format!("'{}' is not a distribution; write {}, for example", term.trim(), FORMS[2].example),
     })?;
     Ok((weight, part))
 }
@@ -235,7 +235,7 @@ fn law(name: &str, keys: &[&str], values: &[f64]) -> Result<Law, String> {
         }
         ("uniform", _, &[least, largest]) => {
             return Err(format!(
-                "from {least} to {largest} is no range of diameters; write the smaller one first"
+                "from {least} to {largest} is not a range of diameters; write the smaller one first"
             ));
         }
         ("weibull", [_, "scale"], &[shape, scale]) => Law::Weibull { shape, scale },
@@ -271,7 +271,7 @@ fn unknown(name: &str) -> String {
 
 fn finite(key: &str, text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
-    number.ok_or_else(|| format!("{key}={text} is no finite number; write {key}=0.5, say"))
+    number.ok_or_else(|| format!("{key}={text} is not a finite number; write {key}=0.5, for example"))
 }
 
 /// A cut-off.
@@ -297,10 +297,11 @@ fn split(text: &str, separator: char) -> Result<Vec<&str>, String> {
     }
     parts.push(&text[start..]);
     match parts.iter().any(|part| part.trim().is_empty()) {
-        true if parts.len() == 1 => Err(format!("is empty; write {}, say", FORMS[2].example)),
-        true => {
-            Err(format!("nothing stands on one side of a '{separator}'; write {}, say", FORMS[2].example))
-        }
+        true if parts.len() == 1 => Err(format!("is empty; write {}, for example", FORMS[2].example)),
+        true => Err(format!(
+            "nothing stands on one side of a '{separator}'; write {}, for example",
+            FORMS[2].example
+        )),
         false => Ok(parts),
     }
 }

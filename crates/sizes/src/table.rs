@@ -19,7 +19,7 @@ pub enum TableError {
     },
     /// A bin ends before it begins, or begins in the one before.
     #[error(
-        "the bin from {from} to {to} has no width, or reaches into the one before; list bins from small to large"
+        "the bin from {from} to {to} has no width, or overlaps the one before; list bins from small to large"
     )]
     Bin {
         /// Where it stands.
@@ -38,7 +38,7 @@ pub enum TableError {
         weight: f64,
     },
     /// All weights are 0.
-    #[error("every weight is 0; give one that is more")]
+    #[error("every weight is 0; give a positive one")]
     NoWeight,
     /// Diameters or shares of a distribution function fall.
     #[error("diameters and shares of a distribution function must not fall; list them from small to large")]
@@ -48,7 +48,7 @@ pub enum TableError {
     },
     /// A distribution function that does not begin with 0.
     #[error(
-        "the distribution function begins with {share}; begin with a line of the diameter that none is below, and 0"
+        "the distribution function begins with {share}; begin with the smallest diameter and the share 0"
     )]
     Begins {
         /// Its first value.

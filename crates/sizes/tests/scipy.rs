@@ -121,7 +121,7 @@ fn rows_that_are_no_table_are_named() {
 #[test]
 fn mistaken_words_are_told_with_a_remedy() {
     for (text, problem) in [
-        ("", "is empty; write lognormal(mean=20, cv=0.35), say"),
+        ("", "is empty; write lognormal(mean=20, cv=0.35), for example"),
         ("lognomal(mean=1,cv=0.3)", "'lognomal' is unknown; did you mean 'lognormal'?"),
         (
             "beta(1,2)",
@@ -142,10 +142,10 @@ fn mistaken_words_are_told_with_a_remedy() {
             "cv=0 in 'lognormal(mean=20,cv=0)' is not positive; give a positive number; for grains of one size write equal(20)",
         ),
         ("equal(-3)", "d=-3 in 'equal(-3)' is not positive; give a positive number"),
-        ("equal(nan)", "d=nan is no finite number; write d=0.5, say"),
+        ("equal(nan)", "d=nan is not a finite number; write d=0.5, for example"),
         (
             "uniform(30, 10)",
-            "'uniform(30, 10)': from 30 to 10 is no range of diameters; write the smaller one first",
+            "'uniform(30, 10)': from 30 to 10 is not a range of diameters; write the smaller one first",
         ),
         (
             "normal(mean=20, sd=1, from=30)",
@@ -154,10 +154,10 @@ fn mistaken_words_are_told_with_a_remedy() {
         ("equal(3), from=5, to=4", "'equal(3)' is cut off from 5 to 4; give a range"),
         ("equal(3), by=mass", "by=mass is unknown; write by=number or by=volume"),
         ("equal(3), under=5", "'under=5' is unknown; behind the sum may stand from=5, to=80, by=volume"),
-        ("0.5*equal(3)+equal(4)", "'equal(4)' has no weight, others do; write 0.5*equal(4), say"),
+        ("0.5*equal(3)+equal(4)", "'equal(4)' has no weight, others do; write 0.5*equal(4), for example"),
         ("-0.5*equal(3)", "the weight -0.5 is not positive and finite; leave out what has no share"),
         ("equal(3)*equal(4)", "'equal(3)*equal(4)' multiplies two distributions; add them with +"),
-        ("equal(3)+", "nothing stands on one side of a '+'; write lognormal(mean=20, cv=0.35), say"),
+        ("equal(3)+", "nothing stands on one side of a '+'; write lognormal(mean=20, cv=0.35), for example"),
         ("equal(3", "a bracket is not closed; add ')'"),
         ("equal 3)", "a ')' closes nothing; take it out"),
     ] {

@@ -7,7 +7,7 @@ use crate::{FaceId, HalfEdgeId};
 #[non_exhaustive]
 pub enum MeshError {
     /// More vertices or half-edges than 32-bit ids can count.
-    #[error("{count} {what} are too many: ids are 32 bits wide; take fewer levels or a part of the mesh")]
+    #[error("{count} {what} are too many: ids are 32 bits wide; use fewer levels or part of the mesh")]
     TooLarge {
         /// What there are too many of.
         what: &'static str,
@@ -53,7 +53,7 @@ pub enum MeshError {
         ends: [u32; 2],
     },
     /// A face has fewer than three corners.
-    #[error("face {face} has {corners} corners: three are the least")]
+    #[error("face {face} has {corners} corners: it needs at least three")]
     TooFewCorners {
         /// Which face.
         face: FaceId,
@@ -107,7 +107,7 @@ pub enum MeshError {
     },
     /// The winding of faces cannot be made to agree, as on a Moebius strip.
     #[error(
-        "the winding cannot agree: the surface has one side only, which shows at edge {}-{} of faces {first} and {second}; cut it open there",
+        "the winding cannot agree: the surface has only one side, as can be seen at edge {}-{} of faces {first} and {second}; cut it open there",
         ends[0], ends[1]
     )]
     NotOrientable {
@@ -119,19 +119,19 @@ pub enum MeshError {
         ends: [u32; 2],
     },
     /// A polygon without area cannot be cut into triangles.
-    #[error("face {face} has no area: remove it, or move a corner of it off their line")]
+    #[error("face {face} has no area: remove it, or move a corner off the line")]
     FlatFace {
         /// Which face.
         face: FaceId,
     },
     /// A polygon that crosses or touches itself cannot be cut into triangles.
-    #[error("face {face} crosses or touches itself, as seen along its normal: divide it there into several")]
+    #[error("face {face} crosses or touches itself, as seen along its normal: divide it there")]
     CrossedFace {
         /// Which face.
         face: FaceId,
     },
     /// A crease joins two vertices that share no edge.
-    #[error("crease {index} joins vertices {} and {}, but the mesh has no such edge; name the ends of a face's side", ends[0], ends[1])]
+    #[error("crease {index} joins vertices {} and {}, but the mesh has no such edge; name the two ends of an edge", ends[0], ends[1])]
     CreaseWithoutEdge {
         /// Which crease, counted from 0.
         index: usize,

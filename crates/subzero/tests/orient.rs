@@ -67,7 +67,7 @@ fn one_side_only() {
     let strip = faces(&[[0, 1, 2], [1, 2, 3], [2, 3, 4], [3, 4, 0], [4, 0, 1]]);
     let error = orient(5, &strip).unwrap_err();
     assert!(matches!(error, MeshError::NotOrientable { .. }), "{error}");
-    assert!(error.to_string().contains("one side only"));
+    assert!(error.to_string().contains("only one side"));
 }
 
 #[test]

@@ -12,7 +12,7 @@ const HALFWIDTHS: std::ops::RangeInclusive<f64> = 0.01..=90.0;
 /// A halfwidth that no kernel has.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error(
-    "a halfwidth of {0} degrees is not between 0.01 and 90; give 0 for none at all, and 'random' for any orientation"
+    "a halfwidth of {0} degrees is not between 0.01 and 90; give 0 for no spread, and 'random' for any orientation"
 )]
 pub struct HalfwidthError(pub f64);
 

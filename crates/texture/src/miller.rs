@@ -9,7 +9,7 @@ use glam::DVec3;
 /// What is wrong, and what to write instead.
 pub(crate) fn direction(text: &str) -> Result<DVec3, String> {
     let indices = indices(text).ok_or_else(|| {
-        format!("'{text}' is no direction; give three indices, such as 111, -1-12 or '4 4 11'")
+        format!("'{text}' is not a direction; give three indices, such as 111, -1-12 or '4 4 11'")
     })?;
     let direction = match indices[..] {
         [x, y, z] => DVec3::new(x, y, z),

@@ -26,7 +26,7 @@ pub enum HistogramError {
     #[error("holds no bin; give the upper end of each in degrees, and its weight")]
     NoBins,
     /// An end is not above the one before.
-    #[error("bin {bin} ends at {end}, not above the one before; let the ends of bins rise from above 0")]
+    #[error("bin {bin} ends at {end}, not above the one before; list positive ends in increasing order")]
     Order {
         /// From 1.
         bin: usize,
@@ -43,7 +43,7 @@ pub enum HistogramError {
     },
     /// No two crystals are so far apart.
     #[error(
-        "bin {bin} begins at {start} degrees, where no two {symmetry} crystals are: they differ by {largest:.1} at most; give it the weight 0"
+        "bin {bin} begins at {start} degrees, but two {symmetry} crystals differ by at most {largest:.1}; give it the weight 0"
     )]
     Unreachable {
         /// From 1.

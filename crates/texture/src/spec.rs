@@ -64,7 +64,7 @@ impl FromStr for Texture {
         if weighted_count != 0 && weighted_count != parts.len() {
             let without = parts.iter().find(|(_, weight, _)| weight.is_none()).map_or("", |part| &part.2);
             return Err(of_problem(format!(
-                "'{without}' has no weight, others do; write '{without}*0.5', say"
+                "'{without}' has no weight, others do; write '{without}*0.5', for example"
             )));
         }
         Ok(Self::sum(
@@ -91,8 +91,9 @@ fn weighted(term: &str) -> Result<(Component, Option<f64>, String), String> {
             return Err(format!("'{}' multiplies two components; add them with +", term.trim()));
         }
     }
-    let (component, name) =
-        found.ok_or_else(|| format!("'{}' has no component; write random, or goss(10), say", term.trim()))?;
+    let (component, name) = found.ok_or_else(|| {
+        format!("'{}' has no component; write random, or goss(10), for example", term.trim())
+    })?;
     Ok((component, weight, name))
 }
 
@@ -142,7 +143,7 @@ fn component(text: &str) -> Result<Component, String> {
 
 fn fiber_form(text: &str) -> String {
     format!(
-        "'{text}' is no fiber; write a crystal direction, a sample direction and a halfwidth: fiber(111||z, 10)"
+        "'{text}' is not a fiber; write a crystal direction, a sample direction and a halfwidth: fiber(111||z, 10)"
     )
 }
 
@@ -171,7 +172,7 @@ fn plain(name: &str) -> String {
 
 /// `112}<-1-11>`, after the brace.
 fn ideal(text: &str, rest: &str) -> Result<Orientation, String> {
-    let form = || format!("'{text}' is no ideal orientation; write it as {{112}}<-1-11>(10)");
+    let form = || format!("'{text}' is not an ideal orientation; write it as {{112}}<-1-11>(10)");
     let (plane, rest) = rest.split_once('}').ok_or_else(form)?;
     let direction = rest.trim().strip_prefix('<').and_then(|rest| rest.strip_suffix('>')).ok_or_else(form)?;
     let [plane, direction] = [miller::direction(plane)?, miller::direction(direction)?];
@@ -215,7 +216,10 @@ fn halfwidth(text: &str, arguments: Option<&str>) -> Result<f64, String> {
     })?;
     let number = word.trim().parse::<f64>().ok().filter(|number| number.is_finite());
     number.ok_or_else(|| {
-        format!("the halfwidth '{}' of '{name}' is no number of degrees; write 10, say", word.trim())
+        format!(
+            "the halfwidth '{}' of '{name}' is not a number of degrees; write 10, for example",
+            word.trim()
+        )
     })
 }
 
@@ -225,7 +229,7 @@ fn sample_direction(text: &str) -> Result<DVec3, String> {
         "y" | "td" => Ok(DVec3::Y),
         "z" | "nd" => Ok(DVec3::Z),
         _ => miller::direction(text).map_err(|_| {
-            format!("'{text}' is no sample direction; give x, y, z, rd, td, nd or three numbers")
+            format!("'{text}' is not a sample direction; give x, y, z, rd, td, nd or three numbers")
         }),
     }
 }
@@ -255,7 +259,9 @@ fn split(text: &str, separator: char) -> Result<Vec<&str>, String> {
     }
     parts.push(&text[start..]);
     match parts.iter().any(|part| part.trim().is_empty()) {
-        true => Err(format!("nothing stands on one side of a '{separator}'; write random, or goss(10), say")),
+        true => Err(format!(
+            "nothing stands on one side of a '{separator}'; write random, or goss(10), for example"
+        )),
         false => Ok(parts),
     }
 }

@@ -10,7 +10,7 @@ pub enum VoronoiError {
     #[error("no seeds: give at least one")]
     NoSeeds,
     /// More seeds than 32-bit ids can name.
-    #[error("{count} seeds are more than the {} that ids can name; take fewer", Generator::MAX_SITES)]
+    #[error("{count} seeds are more than the {} that ids can name; use fewer", Generator::MAX_SITES)]
     TooManySeeds {
         /// Number of seeds, with their periodic images if it is these that are too many.
         count: usize,
@@ -41,14 +41,14 @@ pub enum VoronoiError {
     },
     /// Half-spaces have no point in common.
     #[error(
-        "half-space {wall} leaves nothing of what those before it have in common; turn its normal outward or move it"
+        "half-space {wall} has nothing in common with those before it; turn its normal outward or move it"
     )]
     EmptyDomain {
         /// Position of the half-space in the input.
         wall: usize,
     },
     /// Half-spaces bound nothing in some direction.
-    #[error("the half-spaces have no end in the direction {}; add one with a normal that points there", Point(*.direction))]
+    #[error("the half-spaces are unbounded in the direction {}; add one with a normal that points there", Point(*.direction))]
     UnboundedDomain {
         /// A unit vector.
         direction: DVec3,
@@ -63,7 +63,7 @@ pub enum VoronoiError {
     },
     /// A domain has more walls than can be told apart.
     #[error(
-        "more than the {most} walls that a domain can have; take fewer half-spaces or a larger chord error"
+        "more than the {most} walls that a domain can have; use fewer half-spaces or a larger chord error"
     )]
     TooManyWalls {
         /// The largest number.
@@ -125,7 +125,7 @@ pub enum VoronoiError {
         weight: f64,
     },
     /// Two seeds share all coordinates, so neither has a cell of its own.
-    #[error("seeds {first} and {second} stand at the same place {}; remove one of them", Point(*.position))]
+    #[error("seeds {first} and {second} have the same position {}; remove one of them", Point(*.position))]
     DuplicateSeeds {
         /// The earlier of the two in the input.
         first: usize,

@@ -10,7 +10,7 @@ use voronoi::Dimension;
 
 use super::usage;
 
-/// What the grains fill.
+/// The domain that grains fill.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Domain")]
 pub struct DomainArguments {
@@ -30,7 +30,7 @@ pub struct DomainArguments {
     /// Shape of the domain: box, sphere, cylinder (along z), disc (2D), or the file of a closed convex surface, such as .obj or .stl
     ///
     /// A sphere, cylinder or disc touches the sides of --box, which must be equal across its axis, and becomes a polyhedron of
-    /// the same volume. A file has its own coordinates, so --box has no meaning with it.
+    /// the same volume. A file has its own coordinates, so --box does not apply.
     ///
     /// Example: --domain sphere
     #[arg(long, value_name = "SHAPE", default_value = "box", value_parser = parse_shape)]

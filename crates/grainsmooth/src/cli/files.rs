@@ -14,7 +14,7 @@ use voronoi::Dimension;
 
 use super::usage;
 
-/// What is written of a network, where and how.
+/// Output of a network.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Files")]
 pub struct OutputArguments {
@@ -27,19 +27,19 @@ pub struct OutputArguments {
     #[arg(long, value_name = "FORMAT", value_parser = parse_format)]
     format: Option<OutputFormat>,
 
-    /// Write each grain as a closed surface to a file of its own in this new directory
+    /// Write each grain as a closed surface to its own file in this new directory
     ///
     /// Example: --grains-dir grains
     #[arg(long, value_name = "DIR")]
     pub grains_dir: Option<PathBuf>,
 
-    /// Format of these files
+    /// Format of the files of --grains-dir
     ///
     /// Example: --grains-dir grains --grains-format stl
     #[arg(long, value_name = "FORMAT", value_parser = grain_formats(), default_value = "vtp", requires = "grains_dir")]
     pub grains_format: OutputFormat,
 
-    /// Number of voxels along each axis, for formats that hold voxels, X Y in 2D
+    /// Number of voxels along each axis, for formats that hold voxels; X Y in 2D
     ///
     /// Example: --voxels 64 64 64 -o grains.vti
     #[arg(long, value_names = ["NX", "NY", "NZ"], num_args = 2.., value_parser = whole_number(1..=65_536_u32), allow_negative_numbers = true)]
@@ -65,7 +65,7 @@ pub struct OutputArguments {
     stats: Option<PathBuf>,
 }
 
-/// What is written, where and how.
+/// Output.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Files")]
 pub struct FileArguments {
@@ -100,7 +100,7 @@ pub struct FileArguments {
 /// What is asked of XML files of VTK, of networks and of meshes.
 #[derive(Debug, Args)]
 pub struct VtkArguments {
-    /// How .vtp, .vtu, .vti and .vtm hold their numbers: raw is the fastest; base64 and zlib are read by more programs
+    /// How .vtp, .vtu, .vti and .vtm store numbers: raw is fastest; more programs read base64 and zlib
     ///
     /// Example: --vtk-encoding zlib -o grains.vtu
     #[arg(long, value_name = "ENCODING", value_enum, default_value_t)]

@@ -13,8 +13,7 @@ use super::domain::parse_dimension;
 /// one
 ///
 /// Reads labelled networks (.vtp, .vtu, .vtk), Neper's tessellations (.tess), and tables of grains with a column diameter or
-/// volume (.csv, .txt, .json). Diameters are equivalent diameters. The command has the fitted distribution; with --table, it
-/// has the measured diameters and orientations themselves.
+/// volume (.csv, .txt, .json). Diameters are equivalent diameters. The command uses the fitted distribution or, with --table, the measured diameters and orientations.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct MeasureArguments {
@@ -32,13 +31,13 @@ pub struct MeasureArguments {
     #[arg(long, value_name = "PATH", value_parser = parse_table)]
     pub table: Option<PathBuf>,
 
-    /// Symmetry of the crystals, where the file does not tell it; cubic where neither does
+    /// Symmetry of the crystals, if the file does not give it [default: cubic]
     ///
     /// Example: --crystal-symmetry hexagonal
     #[arg(long, value_name = "GROUP", value_parser = parse_symmetry, allow_hyphen_values = true)]
     pub crystal_symmetry: Option<CrystalSymmetry>,
 
-    /// Dimension of the grains of a table whose columns do not tell it
+    /// Dimension of the grains of a table whose columns do not show it
     ///
     /// Example: --dim 2
     #[arg(long, value_name = "2|3", value_parser = parse_dimension)]

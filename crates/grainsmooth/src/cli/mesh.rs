@@ -90,22 +90,22 @@ pub struct FileArguments {
     #[command(flatten)]
     pub shown: ShownArguments,
 
-    /// Say nothing unless something is wrong
+    /// Print nothing unless something goes wrong
     #[arg(short, long)]
     pub quiet: bool,
 }
 
 #[derive(Debug, Args)]
 pub struct FeatureArguments {
-    /// Points that stay where they are; with a sharpness they smooth out after so many levels
+    /// Points to fix; with a sharpness, only for that many levels
     #[arg(long, value_name = "V[:SHARPNESS],...", value_delimiter = ',', value_parser = parse_corner)]
     pub corners: Vec<(u32, f32)>,
 
-    /// Sharp edges; with a sharpness they smooth out after so many levels
+    /// Edges to keep sharp; with a sharpness, only for that many levels
     #[arg(long = "crease", value_name = "A-B[:SHARPNESS],...", value_delimiter = ',', value_parser = parse_crease)]
     pub creases: Vec<Crease>,
 
-    /// Boundary points of a single face: on the boundary's curve (edge) or fixed (edge-corner) [default: edge]
+    /// Boundary points of a single face: smoothed along the boundary (edge) or fixed (edge-corner) [default: edge]
     #[arg(long, value_enum)]
     pub boundary: Option<Boundary>,
 }
@@ -132,7 +132,7 @@ pub struct StepArguments {
     #[arg(long)]
     pub closed: bool,
 
-    /// Write one file a level, OUT_0, OUT_1, ..., and of .vtp and .vtu OUT.pvd, which names them; OUT may be OUT.pvd itself
+    /// Write one file per level, OUT_0, OUT_1, ...; for .vtp and .vtu also OUT.pvd, which lists them. OUT may be OUT.pvd itself
     #[arg(long, conflicts_with = "json")]
     pub each_level: bool,
 }
@@ -142,7 +142,7 @@ pub struct CurveArguments {
     #[command(flatten)]
     pub files: FileArguments,
 
-    /// Points that stay where they are, and at which a curve may have an angle
+    /// Points to fix, where a curve may have a corner
     #[arg(long, value_name = "V,...", value_delimiter = ',')]
     pub corners: Vec<u32>,
 
@@ -155,7 +155,7 @@ pub struct LoopArguments {
     #[command(flatten)]
     pub scheme: SchemeArguments,
 
-    /// How strongly a point is drawn to its neighbours
+    /// Weights of the neighbours of a point
     #[arg(long, value_enum, default_value_t = Weights::Loop)]
     pub weights: Weights,
 }
@@ -165,7 +165,7 @@ pub struct DooSabinArguments {
     #[command(flatten)]
     pub scheme: SchemeArguments,
 
-    /// Doo and Sabin's weights, or means of centroid, corner and midpoints
+    /// The weights of Doo and Sabin, or the mean of centroid, corner and midpoints
     #[arg(long, value_enum, default_value_t = PolygonWeights::DooSabin)]
     pub weights: PolygonWeights,
 }
@@ -178,11 +178,11 @@ pub struct LimitArguments {
     #[command(flatten)]
     pub features: FeatureArguments,
 
-    /// Number of subdivisions before
+    /// Number of subdivisions before taking the limit
     #[arg(short = 'n', long, value_name = "LEVELS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=99))]
     pub levels: u32,
 
-    /// The scheme whose limit is wanted
+    /// Subdivision scheme
     #[arg(long, value_enum, default_value_t = LimitScheme::Loop)]
     pub scheme: LimitScheme,
 
@@ -196,8 +196,7 @@ pub struct EdgeArguments {
     #[command(flatten)]
     pub files: FileArguments,
 
-    /// Edges to edit, one after the other: by their points, or all, the longest of each triangle, or those between triangles in one
-    /// plane (flat)
+    /// Edges to edit, one after the other: pairs of points; or all, the longest of each triangle, or those between coplanar triangles (flat)
     #[arg(long = "edge", value_name = "A-B|all|longest|flat,...", value_delimiter = ',', required = true, value_parser = parse_choice)]
     pub edges: Vec<EdgeChoice>,
 }
@@ -228,7 +227,7 @@ pub struct OrientArguments {
     #[command(flatten)]
     pub files: FileArguments,
 
-    /// Turn closed parts round whose normals point inward
+    /// Reverse closed parts whose normals point inward
     #[arg(long)]
     pub outward: bool,
 }
@@ -238,11 +237,11 @@ pub struct BezierArguments {
     #[command(flatten)]
     pub files: FileArguments,
 
-    /// Points on each curve, and along each side of a surface
+    /// Number of points on each curve, and along each side of a surface
     #[arg(long, value_name = "N", default_value_t = 33, value_parser = clap::value_parser!(u32).range(2..=10_000))]
     pub samples: u32,
 
-    /// Make one mesh of all surfaces: seams and poles joined, and holes filled (closed) or left (open)
+    /// Join all surfaces into one mesh, and fill its holes (closed) or leave them (open)
     #[arg(
         long,
         value_enum,
@@ -254,11 +253,11 @@ pub struct BezierArguments {
     )]
     pub merge: Option<Merge>,
 
-    /// Write de Casteljau's points of each curve at the parameter of --t, level by level
+    /// Write the points of de Casteljau's algorithm for each curve at the parameter --t, level by level
     #[arg(long, requires = "t", conflicts_with = "samples")]
     pub construction: bool,
 
-    /// Where on the curves, from 0 to 1
+    /// Parameter on the curves, from 0 to 1
     #[arg(long, value_name = "T", requires = "construction", value_parser = parse_parameter)]
     pub t: Option<f64>,
 }

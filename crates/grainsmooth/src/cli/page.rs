@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use crate::EditContent;
 use clap::Args;
 
-/// Look at grains in the browser: turn, explode, slice, hide and isolate them, colour them by any array
+/// View grains in the browser: rotate, explode, slice, hide and isolate them, and colour them by any array
 ///
-/// Serves a page on this machine alone and opens it; Ctrl-C ends it. Several files are a series with a slider.
+/// Serves a page on this machine only, and opens it; Ctrl-C stops it. Several files make a series with a slider.
 #[derive(Debug, Args)]
 #[command(after_help = VIEW_EXAMPLES)]
 pub struct ViewArguments {
-    /// Networks of grains: .vtp, .vtu, .vtk or .vtm; or a series of them, .pvd
+    /// Networks of grains: .vtp, .vtu, .vtk or .vtm; or a series, .pvd
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
 
@@ -21,7 +21,7 @@ pub struct ViewArguments {
 
 /// Edit meshes, curves and Bezier patches in the browser: click edges, drag points, step through levels
 ///
-/// Serves a page on this machine alone and opens it; Ctrl-C ends it. Nothing is written but what is saved there.
+/// Serves a page on this machine only, and opens it; Ctrl-C stops it. Nothing is written unless you save it there.
 #[derive(Debug, Args)]
 #[command(after_help = EDIT_EXAMPLES)]
 pub struct EditArguments {
@@ -29,11 +29,11 @@ pub struct EditArguments {
     #[arg(value_name = "FILE", required_unless_present = "teapot")]
     pub file: Option<PathBuf>,
 
-    /// What the file holds, where that is not plain: .txt may be polylines or control points
+    /// What the file holds, if its extension leaves it open: .txt may hold polylines or control points
     #[arg(long = "as", value_name = "KIND")]
     pub content: Option<EditContent>,
 
-    /// The Utah teapot, which comes with the program
+    /// Edit the built-in Utah teapot
     #[arg(long, conflicts_with_all = ["file", "content"])]
     pub teapot: bool,
 
@@ -44,13 +44,13 @@ pub struct EditArguments {
 /// Where the page is served.
 #[derive(Debug, Args)]
 pub struct ServerArguments {
-    /// Port on 127.0.0.1; one that is free where none is given
+    /// Port on 127.0.0.1 [default: any free port]
     ///
     /// Example: --port 8080, for ssh -L 8080:127.0.0.1:8080 HOST
     #[arg(long, value_name = "P", value_parser = clap::value_parser!(u16).range(1..))]
     pub port: Option<u16>,
 
-    /// Print the link and open no browser
+    /// Print the link without opening a browser
     #[arg(long)]
     pub no_open: bool,
 }

@@ -9,11 +9,11 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use crate::spelling::whole_number;
 
-/// What is shown of the result.
+/// Pictures and pages of the result.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Pictures")]
 pub struct PictureArguments {
-    /// Draw the network as seen from above one edge of the box; needs no display
+    /// Draw the network, seen from above one edge of the box, without a display
     ///
     /// Example: --picture grains.png
     #[arg(long, value_name = "PATH.png", value_parser = parse_png)]
@@ -25,7 +25,7 @@ pub struct PictureArguments {
     #[arg(long, value_names = ["W", "H"], num_args = 2, value_parser = whole_number(16..=16_384_u16), allow_negative_numbers = true, requires = "picture")]
     picture_size: Option<Vec<u16>>,
 
-    /// What the colours show: nothing but which grain is which (grain); the equivalent diameter, number of boundaries
+    /// What the colours show: only which grain is which (grain); the equivalent diameter, number of boundaries
     /// (neighbors), phase, or crystal direction along an axis (ipf-x, ipf-y, ipf-z) of each grain; or the disorientation of
     /// each boundary
     ///
@@ -35,13 +35,13 @@ pub struct PictureArguments {
     #[arg(long, value_name = "WHAT", value_parser = colorings(), default_value = "grain", requires = "picture")]
     color_by: Coloring,
 
-    /// Exploded view: move each grain away from the middle by X times its distance from there
+    /// Exploded view: move each grain away from the centre by X times its distance from it
     ///
     /// Example: --picture apart.png --explode 0.4
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = parse_explode, allow_negative_numbers = true, requires = "picture")]
     explode: f64,
 
-    /// Cut the grains of the picture by a plane across an axis, and leave out the part before it
+    /// Cut the grains in the picture by a plane across an axis, and leave out the part in front of it
     ///
     /// Example: --picture inside.png --slice z=0.5
     #[arg(long, value_name = "AXIS=X", value_parser = parse_slice, requires = "picture")]

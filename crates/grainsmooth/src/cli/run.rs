@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::spelling::whole_number;
 
-/// How the program goes about it.
+/// The run itself.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Run")]
 pub struct RunArguments {
@@ -18,7 +18,7 @@ pub struct RunArguments {
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
 
-    /// Stop after the cells and their tables, without relaxation and mesh
+    /// Stop after the cells and their tables, without relaxation or mesh
     ///
     /// Example: --no-mesh --cells-csv cells.csv
     #[arg(long, conflicts_with_all = ["output", "stats", "series", "picture", "report", "dry_run", "json_summary"])]
@@ -34,7 +34,7 @@ pub struct RunArguments {
     pub shared: SharedArguments,
 }
 
-/// What runs of every kind have.
+/// Options of every kind of run.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Run")]
 pub struct SharedArguments {

@@ -13,7 +13,7 @@ use super::usage;
 /// Lengths in proportion: grains a hundred times as long as wide are fibers that no network of boundaries shows.
 const PROPORTIONS: RangeInclusive<f64> = 0.01..=100.0;
 
-/// How large grains are, and how long.
+/// Sizes and elongation of grains.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Sizes")]
 pub struct SizeArguments {
@@ -29,7 +29,7 @@ pub struct SizeArguments {
     #[arg(long, value_name = "SPEC|FILE", value_parser = parse_diameters, conflicts_with = "lattice")]
     diameters: Option<SizeSource>,
 
-    /// Give each grain its own volume (area in 2D), scaled to fill the domain: a text file with one on each line
+    /// Give each grain its own volume (area in 2D), scaled to fill the domain: a text file with one volume on each line
     ///
     /// Example: --volumes volumes.csv
     #[arg(long, value_name = "FILE", conflicts_with_all = ["diameters", "lattice", "seeds"])]

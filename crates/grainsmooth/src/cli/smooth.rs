@@ -9,11 +9,11 @@ use super::files::OutputArguments;
 use super::pictures::PictureArguments;
 use super::run::SharedArguments;
 
-/// Make a smooth network of a measured map: labels of grains on a grid, or orientations (EBSD)
+/// Make a smooth network from a measured map: labels of grains on a grid, or orientations (EBSD)
 ///
-/// Boundaries bend as little as they can while every voxel stays in its grain, and every grain has the volume of its voxels. Where grains are at least
-/// three voxels thick no triangle folds back on its neighbour; how many do elsewhere is told. In maps of orientations grains are neighbouring points that are turned little
-/// against each other.
+/// Boundaries bend as little as possible while every voxel stays in its grain and every grain has the volume of its voxels. Where grains are at least three voxels
+/// thick, no triangle folds back on its neighbour; the summary counts those that do elsewhere. In orientation maps, a grain is a set of neighbouring points with similar
+/// orientations.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct SmoothArguments {

@@ -8,7 +8,7 @@ use polycrystal::{FaceMesh, Volumes};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Smoothing")]
 pub struct SmoothingArguments {
-    /// Triangulate each boundary as a fan around a control point in its middle (fan), or without inner points (plain)
+    /// Triangulate each boundary as a fan around a control point in its middle (fan), or without points inside (plain)
     ///
     /// Example: --faces plain
     #[arg(long, value_name = "RULE", value_enum, default_value_t = FaceRule::Fan)]
@@ -23,8 +23,7 @@ pub struct SmoothingArguments {
 
     /// Let grains grow and shrink by curvature instead of keeping their volumes (areas in 2D)
     ///
-    /// In 2D, grains vanish and switch neighbours. In 3D, and with --regularize or --edge-length, they cannot; a run that
-    /// would need it stops with an error.
+    /// Grains vanish and switch neighbours on the way. With --regularize, and in 2D with --edge-length, they cannot; a run that would need it stops with an error.
     ///
     /// Example: --dim 2 --relax 5 --free
     #[arg(long)]

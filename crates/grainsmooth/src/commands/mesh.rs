@@ -75,7 +75,7 @@ impl Job<'_> {
     fn subdivide(&self, scheme: Scheme, steps: &StepArguments, features: Features<'_>) -> Result<(), Error> {
         if steps.each_level && self.format == MeshFormat::Json {
             return Err(usage(
-                "--each-level is a file a level, but JSON holds all levels in one; leave it out",
+                "--each-level writes one file per level, but JSON holds all levels in one; leave it out",
             ));
         }
         // Outputs that cannot be written are found before the work.
@@ -130,7 +130,9 @@ impl Job<'_> {
         let mesh = match scheme {
             Scheme::BSpline => {
                 if !features.creases.is_empty() || features.boundary.is_some() {
-                    return Err(usage("--crease and --boundary are of surfaces; give --corners to curves"));
+                    return Err(usage(
+                        "--crease and --boundary apply to surfaces only; for curves, give --corners",
+                    ));
                 }
                 let mut mesh = self.read_lines()?;
                 mesh.corners.extend(&features.corners);

@@ -33,10 +33,10 @@ fn serve(document: PageDocument, arguments: &ServerArguments) -> anyhow::Result<
     print(&link)?;
     // Where no browser opens there is the link.
     let _file = if arguments.no_open { None } else { open(&link).ok() };
-    say("Ctrl-C ends this; Enter prints a new link, good once.");
+    say("Press Ctrl-C to stop, or Enter for a new link; each works once.");
     if arguments.no_open {
         let port = links.port();
-        say(&format!("From another machine: ssh -L {port}:127.0.0.1:{port} HOST there, then the link."));
+        say(&format!("From another machine: ssh -L {port}:127.0.0.1:{port} HOST there, then open the link."));
     }
     if io::stdin().is_terminal() {
         thread::spawn(move || {

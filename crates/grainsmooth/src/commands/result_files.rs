@@ -93,7 +93,7 @@ impl ResultFiles {
         let volume = &to_write.volume;
         if volume.volume_mesh && !self.need_tetrahedra(to_write) {
             return Err(usage(
-                "--volume-mesh writes tetrahedra, and no file can hold them; give one of .vtu, .msh, .inp and .bdf, such as -o grains.vtu",
+                "--volume-mesh writes tetrahedra, but none of the files can hold them; give one of .vtu, .msh, .inp and .bdf, such as -o grains.vtu",
             ));
         }
         if volume.order.is_some() && !self.need_tetrahedra(to_write) {
@@ -109,7 +109,7 @@ impl ResultFiles {
         ] {
             if is_asked && (!has_inp || to_write.has_voxels) {
                 return Err(usage(&format!(
-                    "--{name} goes with tetrahedra in .inp; give -o grains.inp without --voxels, or leave it out"
+                    "--{name} needs tetrahedra in .inp; give -o grains.inp without --voxels, or leave it out"
                 )));
             }
         }
@@ -120,7 +120,7 @@ impl ResultFiles {
     fn deck(&self, to_write: &ToWrite) -> Result<Option<DeckOutput>, Error> {
         let Some(deck) = to_write.volume.solver_deck else { return Ok(None) };
         let Some(elements) = self.outputs.iter().find(|output| output.format() == OutputFormat::INP) else {
-            return Err(usage("--solver-deck stands beside a file of elements; give -o grains.inp"));
+            return Err(usage("--solver-deck needs a file of elements; give -o grains.inp"));
         };
         DeckOutput::check(elements.path(), deck).map(Some)
     }

@@ -37,7 +37,7 @@ fn smooth(arguments: &SmoothArguments, line: &ProgressLine) -> Result<String, Er
     let has_orientations = measured.crystals.is_some();
     if !has_orientations && (coloring == Coloring::Phase || coloring.needs_texture()) {
         let name = coloring.name();
-        return Err(usage(&format!("--color-by {name} needs what a map of labels does not tell")));
+        return Err(usage(&format!("--color-by {name} needs something that a map of labels does not hold")));
     }
     let dimension = if measured.map.is_plane() { Dimension::Two } else { Dimension::Three };
     let file = outputs.options(dimension)?;

@@ -24,7 +24,7 @@ pub enum ConfigError {
     #[error("--periodic-cut box needs periodic grains; give --periodic x,y,z or leave it out")]
     CutWithoutPeriods,
     /// Grains that grow to equilibrium.
-    #[error("--free lets grains grow for a time, and has no equilibrium; give one, such as --relax 0.3")]
+    #[error("--free lets grains grow for a time, and has no equilibrium; give a time, such as --relax 0.3")]
     FreeEquilibrium,
     /// Shapes of the other dimension.
     #[error("{0}")]
@@ -39,7 +39,7 @@ pub enum ConfigError {
     },
     /// Grains of several cells that stay as they are.
     #[error(
-        "{what} makes grains of several cells, which are sharp where these meet; leave --relax 0 out, or give --relax 0.02"
+        "{what} makes grains of several cells, with sharp edges where these meet; leave --relax 0 out, or give --relax 0.02"
     )]
     SharpGrains {
         /// What makes them.
@@ -52,22 +52,22 @@ pub enum ConfigError {
     #[error("--gradient along z needs three dimensions; with --dim 2 give x or y")]
     GradientInPlane,
     /// A symmetry of a sample without orientations.
-    #[error("--sample-symmetry is that of a texture; give --texture as well")]
+    #[error("--sample-symmetry needs a texture; give --texture as well")]
     SampleSymmetry,
     /// How sizes of elements change, without a size.
     #[error("--{0} changes sizes of elements; give --elements-per-grain or --element-size as well")]
     ElementsWithoutSize(&'static str),
     /// Elements of a size in the plane.
     #[error(
-        "elements of a size are triangles of boundaries in space; with --dim 2 leave --element-size and --elements-per-grain out"
+        "only boundaries in 3D are remeshed; with --dim 2 leave --element-size and --elements-per-grain out"
     )]
     ElementsInPlane,
     /// Tetrahedra in the plane.
-    #[error("tetrahedra fill grains in space; with --dim 2 leave --{0} out")]
+    #[error("tetrahedra fill grains in 3D only; with --dim 2 leave --{0} out")]
     VolumesInPlane(&'static str),
     /// Nodes are tied where no period lies between any.
     #[error(
-        "--periodic-equations ties nodes that stand a period apart; give --periodic x,y,z or leave it out"
+        "--periodic-equations ties nodes that are one period apart; give --periodic x,y,z or leave it out"
     )]
     EquationsWithoutPeriods,
     /// Cohesive elements between tetrahedra of second order.
@@ -82,7 +82,7 @@ pub enum ConfigError {
     CohesiveDeck,
     /// A job for a domain whose sides are not alike.
     #[error(
-        "--solver-deck pulls a box that repeats along all axes or along none; leave --domain and --half-spaces out, and give --periodic x,y,z or no --periodic"
+        "--solver-deck loads a box that is periodic along all axes or none; leave --domain and --half-spaces out, and give --periodic x,y,z or no --periodic"
     )]
     DeckDomain,
     /// Phases.

@@ -25,9 +25,10 @@ impl Config {
     /// Centroid steps of grains with given sizes: with 10 they have 13.7 faces and a sphericity of 0.855, as those of measured metals.
     pub const LLOYD_OF_SIZES: u32 = 10;
 
-    /// How far boundaries relax unless something else is asked for. In the plane to equilibrium, which is quick and exact there, in
-    /// space for a time: longer where all that stands beside it lets grains switch neighbours. Not at all where grains are divided into
-    /// lamellae, which would bend and come apart.
+    /// The default of `--relax`. In the plane to equilibrium, which is quick and exact there; in space for a time, which is longer if the other
+    /// options let grains switch neighbours. Not at all if grains are divided into lamellae, which would bend and come apart.
+    ///
+    /// It is decided here alone; a test compares the help, from which all other texts follow.
     pub(super) fn usual_relaxation(&self) -> Relaxation {
         if self.inside.iter().any(|inside| matches!(inside.pattern, InsidePattern::Lamellae { .. })) {
             return Relaxation::Time(0.0);
@@ -199,5 +200,41 @@ impl Config {
             LawKind::Tension => &self.tensions,
             LawKind::Mobility => &self.mobilities,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Args as _;
+
+    use super::*;
+
+    #[test]
+    fn help_has_the_usual_relaxation() {
+        let relax = |config: Config| match config.effective_relaxation() {
+            Relaxation::Time(time) => time.to_string(),
+            Relaxation::Equilibrium => "equilibrium".to_owned(),
+        };
+        let plane = Config { dimension: Dimension::Two, ..Config::default() };
+        let lamellae = vec!["lamellae(width=0.1)".parse().expect("a pattern")];
+        let shapes = Some(crate::ShapeSource::parse("2:1:1").expect("a shape"));
+        let kept = [
+            relax(Config { volumes: Volumes::Free, ..Config::default() }),
+            relax(Config { regularize: Some(0.05), ..Config::default() }),
+            relax(Config { face_mesh: FaceMesh::Refined { edge_length: 0.1 }, ..plane.clone() }),
+        ];
+        assert_eq!(kept, [&*kept[0]; 3]);
+        let usual = format!(
+            "[default: {}, in 2D {}; {} with lamellae, {} with --grain-shapes, {} with --free or --regularize, in 2D with --edge-length too]",
+            relax(Config::default()),
+            relax(plane),
+            relax(Config { inside: lamellae, ..Config::default() }),
+            relax(Config { grain_shapes: shapes, ..Config::default() }),
+            kept[0],
+        );
+        let command = Config::augment_args(clap::Command::new("grainsmooth"));
+        let option = command.get_arguments().find(|option| option.get_long() == Some("relax"));
+        let help = option.and_then(|option| option.get_help()).expect("it has a help").to_string();
+        assert!(help.contains(&usual), "{help}");
     }
 }

@@ -77,7 +77,7 @@ impl FromStr for InsidePattern {
         let [first, second] = values;
         let length = first.ok_or_else(|| format!("{name} needs {}=; {known}", keys[0]))?;
         let length = number(length).filter(|length| *length >= f64::MIN_POSITIVE);
-        let length = length.ok_or_else(|| format!("{}= is no length; give a number above 0", keys[0]))?;
+        let length = length.ok_or_else(|| format!("{}= is not a length; give a number above 0", keys[0]))?;
         Ok(match (name, second) {
             ("lamellae", normal) => {
                 Self::Lamellae { width: length, normal: normal.map(direction).transpose()?.flatten() }
@@ -117,7 +117,7 @@ fn direction(text: &str) -> Result<Option<DVec3>, String> {
     });
     let found = axis.or(of_numbers).filter(|normal| normal.try_normalize().is_some());
     found.map(Some).ok_or_else(|| {
-        format!("normal={text} is no direction; give x, y, z, random, or coordinates such as normal=1 1 0")
+        format!("normal={text} is not a direction; give x, y, z, random, or coordinates such as normal=1 1 0")
     })
 }
 
@@ -180,7 +180,7 @@ pub enum InsideError {
         pattern: String,
     },
     /// Grains are too small to be divided.
-    #[error("--inside {pattern} divides no grain, as all are too small; give {remedy} at most")]
+    #[error("--inside {pattern} divides no grain because all are too small; give at most {remedy}")]
     NothingDivided {
         /// The pattern.
         pattern: String,
@@ -218,11 +218,11 @@ mod tests {
             ("layers(2)", "'layers' divides nothing"),
             ("lamellae", "'lamellae' divides nothing"),
             ("lamellae()", "lamellae needs width="),
-            ("lamellae(width=0)", "width= is no length"),
-            ("lamellae(width=nan)", "width= is no length"),
+            ("lamellae(width=0)", "width= is not a length"),
+            ("lamellae(width=nan)", "width= is not a length"),
             ("lamellae(width=1,width=2)", "width stands twice"),
             ("lamellae(2)", "lamellae takes width= and normal=; '2' is none of them"),
-            ("lamellae(width=1,normal=0 0 0)", "normal=0 0 0 is no direction"),
+            ("lamellae(width=1,normal=0 0 0)", "normal=0 0 0 is not a direction"),
             ("voronoi(diameter=1,cv=2)", "cv=2 is none"),
             ("voronoi(width=1)", "voronoi takes diameter= and cv="),
         ] {

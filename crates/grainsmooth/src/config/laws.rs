@@ -111,7 +111,7 @@ impl FromStr for LawSource {
         }
         let mistaken = || {
             format!(
-                "'{text}' is no law; give a number such as 0.8, read-shockley(15), humphreys(15), one of them times a number, or a .csv file"
+                "'{text}' is not a law; give a number such as 0.8, read-shockley(15), humphreys(15), one of them times a number, or a .csv file"
             )
         };
         let number = |text: &str| {
@@ -203,7 +203,7 @@ pub enum LawProblem {
         law: String,
     },
     /// No boundary has any.
-    #[error("gives no boundary more than 0; give one a positive number")]
+    #[error("gives every boundary 0; give at least one a positive number")]
     AllVanish,
     /// Mobilities of boundaries whose grains keep their volumes.
     #[error("is for grains that grow; give --free as well")]

@@ -68,12 +68,12 @@ impl FromStr for PhaseOptions {
         let name = name.trim();
         let is_good = |character: char| character.is_ascii_alphanumeric() || "_-.".contains(character);
         if name.is_empty() || !name.chars().all(is_good) {
-            return Err(format!("'{name}' is no name; give letters, digits, _, - or ."));
+            return Err(format!("'{name}' is not a name; give letters, digits, _, - or ."));
         }
         let number =
             fraction.trim().parse().ok().filter(|number: &f64| (f64::MIN_POSITIVE..=1.0).contains(number));
         let fraction = number.ok_or_else(|| {
-            format!("'{}' is no share of the volume; give a number above 0, up to 1", fraction.trim())
+            format!("'{}' is not a share of the volume; give a number above 0, up to 1", fraction.trim())
         })?;
         let mut phase = Self {
             name: name.to_owned(),
@@ -166,7 +166,7 @@ impl fmt::Display for PhaseOptions {
 #[non_exhaustive]
 pub enum PhasesError {
     /// Their fractions do not add up to 1.
-    #[error("the phases' fractions add up to {sum}, not to 1; give {remedy}, say")]
+    #[error("the phases' fractions add up to {sum}, not to 1; give {remedy}, for example")]
     Sum {
         /// The sum.
         sum: String,
@@ -198,12 +198,12 @@ pub enum PhasesError {
         key: &'static str,
     },
     /// Each grain has a volume of its own, and phases take what they need.
-    #[error(
-        "volumes that are given to each grain and fractions of phases contradict each other; leave one of them out"
-    )]
+    #[error("volumes given for each grain contradict fractions of phases; leave one of them out")]
     Volumes,
     /// All phases are to be put into others.
-    #[error("each phase has place={place} or another place in the grains of others; leave place= out of one")]
+    #[error(
+        "every phase has place=, such as {place}, and none makes the grains around them; leave place= out of one"
+    )]
     NoMatrix {
         /// The place of the first.
         place: PhasePlace,

@@ -81,6 +81,6 @@ impl FromStr for PhasePlace {
         Self::ALL
             .into_iter()
             .find(|place| place.name() == text)
-            .ok_or_else(|| format!("'{text}' is no place; give {}", Self::ALL.map(Self::name).join(", ")))
+            .ok_or_else(|| format!("'{text}' is not a place; give {}", Self::ALL.map(Self::name).join(", ")))
     }
 }

@@ -10,7 +10,7 @@ use super::spelling::{is_usual, whole_number};
 #[command(next_help_heading = "Finite elements")]
 #[serde(rename_all = "kebab-case")]
 pub struct VolumeMeshOptions {
-    /// Write tetrahedra that fill the grains to .msh and .vtu, which else hold boundaries; .inp and .bdf always have them
+    /// Write tetrahedra that fill the grains to .msh and .vtu, which otherwise hold boundaries; .inp and .bdf always hold tetrahedra
     ///
     /// Example: --elements-per-grain 5 --volume-mesh -o grains.vtu
     #[arg(long)]
@@ -24,21 +24,21 @@ pub struct VolumeMeshOptions {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<u8>,
 
-    /// Tie the nodes of .inp that stand a period apart by equations, with a node for each axis that moves as the box is to be stretched
+    /// Tie nodes of .inp that are one period apart by equations, with a node for each axis that controls the mean strain
     ///
     /// Example: --periodic x,y,z --elements-per-grain 4 --periodic-equations -o grains.inp
     #[arg(long)]
     #[serde(skip_serializing_if = "is_usual")]
     pub periodic_equations: bool,
 
-    /// Give each grain of .inp nodes of its own, and put cohesive elements (COH3D6 of Abaqus) between the grains, which may part
+    /// Give each grain of .inp its own nodes, and put cohesive elements (COH3D6 of Abaqus) between the grains
     ///
     /// Example: --elements-per-grain 4 --cohesive -o grains.inp
     #[arg(long)]
     #[serde(skip_serializing_if = "is_usual")]
     pub cohesive: bool,
 
-    /// Write a job for CalculiX and Abaqus beside .inp: the box pulled along x, with the elasticity of a crystal for each phase
+    /// Write a job for CalculiX and Abaqus next to .inp: the box is stretched along x, with the elastic constants of a crystal for each phase
     ///
     /// Example: --texture random --elements-per-grain 4 --solver-deck tension-x -o grains.inp
     #[arg(long, value_name = "JOB", value_enum)]

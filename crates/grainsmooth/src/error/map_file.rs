@@ -71,7 +71,7 @@ pub enum MapProblem {
         count: usize,
     },
     /// An option says what the file itself says.
-    #[error("files of this format tell their {what}; leave {option} out")]
+    #[error("files of this format contain their {what}; leave {option} out")]
     Told {
         /// What the file tells.
         what: &'static str,
@@ -79,10 +79,10 @@ pub enum MapProblem {
         option: &'static str,
     },
     /// A file of numbers alone comes without their shape or type.
-    #[error("holds numbers alone; say what they are with --shape NX NY NZ and --type, such as u16")]
+    #[error("holds only numbers; describe them with --shape NX NY NZ and --type, such as u16")]
     NumbersAlone,
     /// A file of numbers alone has another length.
-    #[error("has {bytes} bytes; {voxels} voxels of {width} bytes take {expected}: mend --shape or --type")]
+    #[error("has {bytes} bytes; {voxels} voxels of {width} bytes take {expected}: correct --shape or --type")]
     Length {
         /// Bytes of the file.
         bytes: usize,
@@ -108,7 +108,7 @@ pub enum MapProblem {
         spacing: f64,
     },
     /// The points of a map of orientations stand on no square or hexagonal grid.
-    #[error("line {line}: the point {what}; give a map whose points stand on one square or hexagonal grid")]
+    #[error("line {line}: the point {what}; give a map whose points lie on one square or hexagonal grid")]
     NoGrid {
         /// The line, from 1.
         line: usize,
@@ -124,7 +124,7 @@ pub enum MapProblem {
         what: String,
     },
     /// The symmetry of crystals is not known.
-    #[error("tells no symmetry of {phase}; give it with --crystal-symmetry, such as cubic")]
+    #[error("does not give the symmetry of {phase}; give it with --crystal-symmetry, such as cubic")]
     NoSymmetry {
         /// Name of the phase.
         phase: String,
@@ -151,7 +151,7 @@ pub enum MapProblem {
     },
     /// No grain is left.
     #[error(
-        "has no grain of {least} or more voxels beside the exterior; lower --min-voxels, or mend --exterior-label"
+        "has no grain of {least} or more voxels besides the exterior; lower --min-voxels, or correct --exterior-label"
     )]
     NoGrain {
         /// Least number of voxels.

@@ -13,7 +13,7 @@ pub enum MeshFileProblem {
     Unreadable(io::Error),
     /// The extension names no format.
     #[error(
-        "unknown extension; give a file *.obj, *.ply, *.stl, *.off, *.vtk, *.vtp, *.vtu, *.json, or of lines *.txt"
+        "unknown extension; give a file *.obj, *.ply, *.stl, *.off, *.vtk, *.vtp, *.vtu, *.json, or polylines as *.txt"
     )]
     UnknownExtension,
     /// A line of a text file is not what it must be.
@@ -33,7 +33,7 @@ pub enum MeshFileProblem {
         what: String,
     },
     /// A coordinate's powers leave the range of numbers.
-    #[error("point {point} has the coordinate {coordinate:e}; scale the mesh, so that none is beyond 1e30")]
+    #[error("point {point} has the coordinate {coordinate:e}; scale the mesh so that none exceeds 1e30")]
     TooFar {
         /// The point, counted from 0.
         point: usize,
@@ -41,7 +41,7 @@ pub enum MeshFileProblem {
         coordinate: f64,
     },
     /// Powers of the mesh's size leave the range of numbers.
-    #[error("the mesh is {width:e} wide; scale it, so that it is 1e-30 or more")]
+    #[error("the mesh is {width:e} wide; scale it to 1e-30 or more")]
     TooSmall {
         /// The largest side of its bounding box.
         width: f64,
@@ -50,21 +50,23 @@ pub enum MeshFileProblem {
     #[error("holds no faces; give a surface mesh")]
     NoFaces,
     /// The file has polylines where faces are needed.
-    #[error("holds polylines and no faces; give a surface mesh, or take b-spline or four-point")]
+    #[error("holds polylines and no faces; give a surface mesh, or use b-spline or four-point")]
     OnlyPolylines,
     /// The file has no polylines.
     #[error(
-        "holds no polylines; give lines as .obj, .vtp, .vtu, .vtk, .json or .txt, or take a scheme of surfaces"
+        "holds no polylines; give lines as .obj, .vtp, .vtu, .vtk, .json or .txt, or use a scheme for surfaces"
     )]
     NoPolylines,
     /// A polyline is a single point.
-    #[error("polyline {line} has one point; two are the least")]
+    #[error("polyline {line} has one point; give at least two")]
     ShortPolyline {
         /// The polyline, counted from 0.
         line: usize,
     },
     /// A corner of a polyline has a sharpness that runs out, for which curves have no rule.
-    #[error("corner {vertex} of a polyline has the sharpness {sharpness}; give it none, and it stays")]
+    #[error(
+        "corner {vertex} of a polyline has the sharpness {sharpness}; leave it out: corners of polylines are always fixed"
+    )]
     SoftCornerOfPolyline {
         /// The point.
         vertex: u32,
@@ -81,7 +83,7 @@ pub enum MeshFileProblem {
     #[error("has no cell array {}; add one with two labels for each triangle", LABEL_ARRAYS.join(" or "))]
     NoLabels,
     /// A label is beyond all that can number a grain.
-    #[error("cell {cell} has the label {label}; number grains from 0 to 4294967295, and the exterior -1")]
+    #[error("cell {cell} has the label {label}; number grains from 0 to 4294967295, and the exterior as -1")]
     BadLabel {
         /// The cell, counted from 0.
         cell: usize,
@@ -100,10 +102,10 @@ pub enum MeshFileProblem {
     #[error("unknown extension; give a network as *.vtp, *.vtu or *.vtk")]
     NotANetworkFormat,
     /// An edit that control points have no use for.
-    #[error("Bezier curves and patches have control points alone: move these")]
+    #[error("Bezier curves and patches have only control points; move these")]
     OnlyControlPoints,
     /// A format that is read and not written.
-    #[error("this format is not written; take vtp, vtu, vtk, obj, ply, stl or json")]
+    #[error("this format can only be read; use vtp, vtu, vtk, obj, ply, stl or json")]
     NotWritten,
     /// The extension names no format that can hold measured grains.
     #[error(
@@ -111,7 +113,7 @@ pub enum MeshFileProblem {
     )]
     NotASampleFormat,
     /// The boundaries of a grain leave gaps.
-    #[error("grain {grain} is not closed; mend what `grainsmooth check` tells of the file")]
+    #[error("grain {grain} is not closed; repair what `grainsmooth check` finds in the file")]
     NotClosed {
         /// Its number in the file.
         grain: u32,
@@ -126,7 +128,7 @@ pub enum MeshFileProblem {
     },
     /// A scheme for triangles was given another polygon.
     #[error(
-        "face {face} has {corners} corners where triangles are needed; cut it with `grainsmooth mesh triangulate`, or take catmull-clark or doo-sabin"
+        "face {face} has {corners} corners where triangles are needed; cut it with `grainsmooth mesh triangulate`, or use catmull-clark or doo-sabin"
     )]
     NotATriangle {
         /// The face, counted from 0.
@@ -135,7 +137,7 @@ pub enum MeshFileProblem {
         corners: usize,
     },
     /// A file of control points has both kinds, which only JSON can hold together.
-    #[error("holds curves and surfaces, which no mesh format holds together; write .json or give one kind")]
+    #[error("holds both curves and surfaces, which no mesh format can; write .json, or give one kind")]
     CurvesAndSurfaces,
     /// Two faces wind opposite ways.
     #[error("{0}; `grainsmooth mesh orient` makes it agree")]
@@ -144,7 +146,7 @@ pub enum MeshFileProblem {
     #[error("holds no surfaces to merge; leave --merge out")]
     NoSurfaces,
     /// A file of control points has no curves where their construction is asked for.
-    #[error("holds no curves, of which alone there is a construction; leave --construction and --t out")]
+    #[error("holds no curves, and only curves have a construction; leave --construction and --t out")]
     NoCurves,
     /// The faces make no mesh that the scheme can work with.
     #[error("{0}")]

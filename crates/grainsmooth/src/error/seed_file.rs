@@ -38,7 +38,7 @@ pub enum SeedProblem {
         dimension: Dimension,
     },
     /// A quoted column goes on in the next line, as where its second quote is missing.
-    #[error("a quote that the line does not close; close or remove it")]
+    #[error("a quote is not closed on its line; close or remove it")]
     OpenQuote,
     /// Two columns are named alike.
     #[error("two columns named {name}; rename one of them")]
@@ -61,7 +61,7 @@ pub enum SeedProblem {
         dimension: Dimension,
     },
     /// A line has more or fewer columns than those before.
-    #[error("{found} columns after lines of {expected}; write as many on each line")]
+    #[error("{found} columns, but earlier lines have {expected}; write the same number on each line")]
     UnequalColumns {
         /// Number of columns in the line.
         found: usize,
@@ -95,7 +95,10 @@ pub enum SeedProblem {
         diameter: f64,
     },
     /// A number of a seed that `SeedId` cannot hold.
-    #[error("id {value:?} is no whole number from 0 to {}; number the seeds, or rename the column", i32::MAX)]
+    #[error(
+        "id {value:?} is not a whole number from 0 to {}; number the seeds, or rename the column",
+        i32::MAX
+    )]
     BadId {
         /// The number, cut short.
         value: String,
@@ -104,7 +107,7 @@ pub enum SeedProblem {
     #[error("the id is empty; number each seed, or rename the column")]
     EmptyId,
     /// Two seeds have the same number.
-    #[error("id {id} is that of {first} too; give each seed its own, or rename the column")]
+    #[error("id {id} is also that of {first}; give each seed its own, or rename the column")]
     IdTwice {
         /// The number.
         id: u32,
@@ -112,7 +115,7 @@ pub enum SeedProblem {
         first: SeedPlace,
     },
     /// Some seeds have numbers, and this one has none.
-    #[error("no id, and other seeds have one; give each seed its own, or none")]
+    #[error("no id, but other seeds have one; give each seed its own, or none")]
     NoId,
     /// A seed of a 2D run has a third coordinate.
     #[error("z is {z} in a 2D run; set it to 0, run in 3D, or name the columns x, y, radius")]
@@ -129,7 +132,7 @@ pub enum SeedProblem {
         value: String,
     },
     /// A line of an XYZ file has too many or too few columns.
-    #[error("{found} columns; write an element, x, y, z and perhaps a radius on each line")]
+    #[error("{found} columns; write an element, x, y, z and, if known, a radius on each line")]
     XyzColumnCount {
         /// Number of columns in the line.
         found: usize,
@@ -143,7 +146,7 @@ pub enum SeedProblem {
         announced: usize,
     },
     /// An XYZ file has fewer lines than its first line says.
-    #[error("{announced} seeds announced and {found} there; give the complete file, or correct the number")]
+    #[error("{announced} seeds announced, but {found} found; give the complete file, or correct the number")]
     FewerThanAnnounced {
         /// The number of seeds in the first line.
         announced: usize,

@@ -9,7 +9,7 @@ pub(crate) enum TextProblem {
     #[error("not UTF-8 text; save the file as UTF-8")]
     NotUtf8,
     /// A quoted column goes on in the next line, as where its second quote is missing.
-    #[error("a quote that the line does not close; close or remove it")]
+    #[error("a quote is not closed on its line; close or remove it")]
     OpenQuote,
 }
 

@@ -189,7 +189,10 @@ mod tests {
         permissions.set_readonly(true);
         fs::set_permissions(at("kept.vtp"), permissions).unwrap();
         let error = Output::check(at("kept.vtp")).unwrap_err().to_string();
-        assert!(error.ends_with("the present file is read-only; allow it or choose another path"), "{error}");
+        assert!(
+            error.ends_with("the present file is read-only; make it writable or choose another path"),
+            "{error}"
+        );
         assert_eq!(names_in(directory.path()).len(), 3, "checking leaves nothing behind");
     }
 

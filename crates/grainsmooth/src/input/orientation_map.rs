@@ -67,7 +67,7 @@ pub(crate) fn number(line: usize, column: &str) -> Result<f64, Fault> {
     let number = column.parse().ok().filter(|number: &f64| number.is_finite());
     number.ok_or_else(|| {
         let shown: String = column.chars().take(20).collect();
-        (line, format!("'{shown}' is no finite number; correct it or remove the line"))
+        (line, format!("'{shown}' is not a finite number; correct it or remove the line"))
     })
 }
 

@@ -254,8 +254,9 @@ impl Rows {
             }
             let expected = *count.get_or_insert(found);
             if found != expected {
-                let problem =
-                    format!("{found} columns after lines of {expected}; write as many on each line");
+                let problem = format!(
+                    "{found} columns, but earlier lines have {expected}; write the same number on each line"
+                );
                 return Err((row.line, problem));
             }
             if table.names.is_empty() || row.line != table.first_line {
@@ -283,9 +284,9 @@ impl Rows {
             for (number, place) in numbers.iter_mut().zip(places) {
                 let text = &columns[place];
                 let shown: String = text.chars().take(20).collect();
-                *number = text
-                    .parse()
-                    .map_err(|_| (*line, format!("'{shown}' is no number; correct it or remove the line")))?;
+                *number = text.parse().map_err(|_| {
+                    (*line, format!("'{shown}' is not a number; correct it or remove the line"))
+                })?;
             }
             Ok(numbers)
         };

@@ -19,31 +19,31 @@ const TWIN_TOLERANCE: f64 = 3.0;
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Map of orientations")]
 pub struct EbsdOptions {
-    /// Degrees: neighbouring points of one phase that differ by more are in different grains [default: 5]
+    /// Largest angle in degrees between neighbouring points of one grain [default: 5]
     ///
     /// Example: grainsmooth smooth map.ctf --threshold 10
     #[arg(long, value_name = "DEGREES", value_parser = angle, allow_negative_numbers = true)]
     pub threshold: Option<f64>,
 
-    /// Least confidence index of a point; others are filled from their neighbours
+    /// Least confidence index of a point; points below it are filled from their neighbours
     ///
     /// Example: grainsmooth smooth map.ang --min-ci 0.1
     #[arg(long, value_name = "CI", value_parser = finite, allow_negative_numbers = true)]
     pub min_ci: Option<f64>,
 
-    /// Least image quality of a point, or band contrast in .ctf; others are filled from their neighbours
+    /// Least image quality of a point, or band contrast in .ctf; points below it are filled from their neighbours
     ///
     /// Example: grainsmooth smooth map.ang --min-iq 120
     #[arg(long, value_name = "IQ", value_parser = finite, allow_negative_numbers = true)]
     pub min_iq: Option<f64>,
 
-    /// Fewest points side by side without a good solution that are a pore; fewer are filled from their neighbours [default: all are filled]
+    /// Least number of connected points without a good solution that form a pore; fewer are filled from their neighbours [default: all are filled]
     ///
     /// Example: grainsmooth smooth map.ang --min-pore 200
     #[arg(long, value_name = "N", value_parser = whole_number(1..=u64::MAX), allow_negative_numbers = true)]
     pub min_pore: Option<u64>,
 
-    /// Make twins one grain: those turned by this angle about this axis of the crystal
+    /// Merge twins into one grain: those rotated by this angle about this axis of the crystal
     ///
     /// The axis has components along the orthogonal axes of the crystal; in hexagonal ones x is along a and z along c. A grain of several twins has the orientation and the
     /// spread of its largest part.
@@ -52,19 +52,19 @@ pub struct EbsdOptions {
     #[arg(long, value_name = "DEGREES,X,Y,Z", allow_hyphen_values = true)]
     pub merge_twins: Option<AxisAngle>,
 
-    /// Degrees by which a twin may differ from that [default: 3]
+    /// Tolerance of --merge-twins in degrees [default: 3]
     ///
     /// Example: grainsmooth smooth nickel.ang --merge-twins 60,1,1,1 --twin-tolerance 5
     #[arg(long, value_name = "DEGREES", value_parser = angle, allow_negative_numbers = true, requires = "merge_twins")]
     pub twin_tolerance: Option<f64>,
 
-    /// Turn all crystals by an angle about an axis of the sample; points stay where they are
+    /// Rotate all crystals by an angle about an axis of the sample; points stay where they are
     ///
     /// Example: grainsmooth smooth map.ang --rotate 180,1,0,0
     #[arg(long, value_name = "DEGREES,X,Y,Z", allow_hyphen_values = true)]
     pub rotate: Option<AxisAngle>,
 
-    /// Symmetry of the crystals, where the file tells none
+    /// Symmetry of the crystals, if the file gives none
     ///
     /// Example: grainsmooth smooth map.ang --crystal-symmetry cubic
     #[arg(long, value_name = "SYMMETRY")]

@@ -16,7 +16,7 @@ use crate::spelling::whole_number;
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Map")]
 pub struct MapOptions {
-    /// Array of the labels, where a file has several [default: the only one of whole numbers, or one of the usual names]
+    /// Array of the labels, if a file has several [default: the only integer array, or one with a usual name]
     ///
     /// Example: grainsmooth smooth map.vti --label-array FeatureIds
     #[arg(long, value_name = "NAME")]
@@ -34,31 +34,31 @@ pub struct MapOptions {
     #[arg(long, value_name = "ORDER", value_enum)]
     pub axes: Option<Axes>,
 
-    /// Number of voxels along each axis, for files of numbers alone; x comes first in the file
+    /// Number of voxels along each axis, for files that hold only numbers; x varies fastest
     ///
     /// Example: grainsmooth smooth map.raw --shape 200 200 150 --type u16
     #[arg(long, value_names = ["NX", "NY", "NZ"], num_args = 2..=3, value_parser = whole_number(1..=65_536_u32), allow_negative_numbers = true)]
     pub shape: Option<Vec<u32>>,
 
-    /// Type of the numbers of such a file, little-endian: u8, i8, u16, i16, u32, i32, u64, i64, f32 or f64
+    /// Type of the numbers in such a file, little-endian: u8, i8, u16, i16, u32, i32, u64, i64, f32 or f64
     ///
     /// Example: grainsmooth smooth map.raw --shape 200 200 150 --type u16
     #[arg(long = "type", value_name = "TYPE")]
     pub number_type: Option<NumberType>,
 
-    /// Part of the map: the first voxel and the first one behind along each axis, from 0; in maps of orientations rows count from the top
+    /// Part of the map: along each axis, the first voxel and the one after the last, from 0; in orientation maps, rows count from the top
     ///
     /// Example: grainsmooth smooth map.vti --crop 0:64,0:64,10:40
     #[arg(long, value_name = "X0:X1,Y0:Y1,Z0:Z1")]
     pub crop: Option<Crop>,
 
-    /// Label of what is no grain, such as pores or what surrounds the sample; negative labels are none either
+    /// Label of everything that is not a grain, such as pores or the surroundings; negative labels are never grains
     ///
     /// Example: grainsmooth smooth map.vti --exterior-label 0
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub exterior_label: Option<i32>,
 
-    /// Fewest voxels, pixels or points of a grain; those of smaller ones go to the neighbours that they touch most
+    /// Least number of voxels, pixels or points of a grain; those of smaller grains go to the neighbours that they touch most
     ///
     /// Example: grainsmooth smooth map.vti --min-voxels 8
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole_number(1..=u64::MAX), allow_negative_numbers = true)]

@@ -98,8 +98,9 @@ impl StoredNumbers {
         let mut numbers = Vec::new();
         for word in text.split_whitespace().take(count) {
             let number = word.parse::<f64>();
-            numbers
-                .push(number.map_err(|_| self.damaged(format!("`{word}` among its labels is no number")))?);
+            numbers.push(
+                number.map_err(|_| self.damaged(format!("`{word}` among its labels is not a number")))?,
+            );
         }
         if numbers.len() < count {
             return Err(self.few(numbers.len()));

@@ -241,7 +241,7 @@ mod tests {
         let error = from_json(ragged.as_bytes()).unwrap_err().to_string();
         assert_eq!(
             error,
-            "row 1 of the control points has 1 points, but the first row has 2; make all rows as long"
+            "row 1 of the control points has 1 points, but the first row has 2; make all rows equally long"
         );
     }
 }

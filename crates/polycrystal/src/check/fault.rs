@@ -22,7 +22,7 @@ pub enum Fault {
         point: u32,
     },
     /// Two points stand at the same place.
-    #[error("points {} and {} stand at the same place", points[0], points[1])]
+    #[error("points {} and {} coincide", points[0], points[1])]
     DuplicatePoints {
         /// The points, the lower first.
         points: [u32; 2],
@@ -55,7 +55,7 @@ pub enum Fault {
     },
     /// One element names other sides than all around it.
     #[error(
-        "element {element} lies between {} and {} by its label, where {} and {} fit",
+        "element {element} lies between {} and {} by its label, but should lie between {} and {}",
         stated[0], stated[1], fitting[0], fitting[1]
     )]
     WrongSides {
@@ -67,7 +67,7 @@ pub enum Fault {
         fitting: [Side; 2],
     },
     /// Elements wind against each other.
-    #[error("elements {elements:?} wind against each other at {place}")]
+    #[error("elements {elements:?} wind in opposite directions at {place}")]
     Winding {
         /// Where.
         place: Place,
@@ -111,7 +111,7 @@ pub enum Fault {
         grains: Vec<GrainId>,
     },
     /// A point's type is not that of the sides around it.
-    #[error("point {point} has the node type {}, the sides around it make {}", stated.code(), derived.code())]
+    #[error("point {point} has the node type {}, but the sides around it make {}", stated.code(), derived.code())]
     WrongNodeType {
         /// The point.
         point: u32,
@@ -121,7 +121,7 @@ pub enum Fault {
         derived: NodeType,
     },
     /// Not as many grains meet at a point as it has.
-    #[error("point {point} has {stated} as its number of grains, and {derived} meet there")]
+    #[error("point {point} has {stated} as its number of grains, but {derived} meet there")]
     WrongGrainCount {
         /// The point.
         point: u32,
@@ -145,13 +145,13 @@ pub enum Fault {
         grain: GrainId,
     },
     /// There is a grain that should not be there.
-    #[error("grain {} is none of those whose volumes are stated", grain.0)]
+    #[error("grain {} has no stated volume", grain.0)]
     UnknownGrain {
         /// The grain.
         grain: GrainId,
     },
     /// A grain does not have the volume that it should.
-    #[error("the volume of grain {} is off by {relative_error:.1e} of what it should be", grain.0)]
+    #[error("the volume of grain {} has a relative error of {relative_error:.1e}", grain.0)]
     WrongVolume {
         /// The grain.
         grain: GrainId,
@@ -161,7 +161,9 @@ pub enum Fault {
         relative_error: f64,
     },
     /// The grains do not fill the domain.
-    #[error("the grains' volumes sum to the domain's but for {relative_error:e} of it")]
+    #[error(
+        "the volumes of the grains add up to that of the domain with a relative error of {relative_error:e}"
+    )]
     WrongTotal {
         /// The difference as a share of the domain's volume.
         relative_error: f64,

@@ -9,7 +9,9 @@ use super::step::{Curve, CurveNetwork, Places};
 use super::tuning::GrowthTuning;
 use crate::arcs::switching::CurvedEdges;
 use crate::energy::sides::{boundary, cell_and_offset, freedom};
-use crate::{CellComplex, Mesh, Network, NetworkError};
+use crate::events::reconnection::Reconnections;
+use crate::flow::recipe::RelaxedCells;
+use crate::{CellComplex, Mesh, Network, NetworkError, Relaxed};
 
 /// Fewest segments of an edge.
 const FEWEST_SEGMENTS: usize = 4;
@@ -67,6 +69,20 @@ impl Front for Curves<'_> {
 
     fn network(&self) -> Result<(Network, Vec<DVec3>), NetworkError> {
         self.lay()
+    }
+
+    fn finish(
+        self,
+        steps: usize,
+        reconnections: Reconnections,
+        time: f64,
+    ) -> Result<RelaxedCells, NetworkError> {
+        let (network, points) = self.lay()?;
+        let relaxed = Relaxed { level: 0, points, steps, time, given_up: Vec::new(), is_flat: time == 0.0 };
+        let finest = relaxed.finest_points(&network);
+        let volumes = network.grain_volumes(network.finest(), &finest);
+        let cells = RelaxedCells::validated(network.with_cell_volumes(volumes), relaxed, &finest)?;
+        Ok(RelaxedCells { reconnections, ..cells })
     }
 }
 

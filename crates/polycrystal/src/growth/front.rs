@@ -7,6 +7,7 @@ use voronoi::Tessellation;
 use super::Vanished;
 use super::tuning::GrowthTuning;
 use crate::events::reconnection::Reconnections;
+use crate::flow::recipe::RelaxedCells;
 use crate::flow::relaxation::{Moving, RelaxationStep};
 use crate::{GrainId, Network, NetworkError};
 
@@ -44,6 +45,14 @@ pub(super) trait Front {
 
     /// The network as it is now, refined as it will be in the end, and its control points.
     fn network(&self) -> Result<(Network, Vec<DVec3>), NetworkError>;
+
+    /// The grains in the end, after so many steps of a time in all.
+    fn finish(
+        self,
+        steps: usize,
+        reconnections: Reconnections,
+        time: f64,
+    ) -> Result<RelaxedCells, NetworkError>;
 }
 
 /// What has happened between two steps.

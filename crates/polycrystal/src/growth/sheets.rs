@@ -13,16 +13,20 @@ use crate::energy::sides::boundary;
 use crate::events::local_area::Conditions;
 use crate::events::reconnection::{Reconnections, Reconnector, SHORT};
 use crate::flow::fan_flow::{FanFlow, Motion};
+use crate::flow::recipe::RelaxedCells;
+use crate::flow::relaxation::{Relaxation, Relaxed, TIME_OF_KEPT_TOPOLOGY};
+use crate::flow::settling::Settled;
 use crate::network::{feature_size, mean_grain_size};
-use crate::{CellComplex, GrainId, Network, NetworkError, Tuning};
+use crate::relax::cells::smoothed;
+use crate::{CellComplex, FaceMesh, GrainId, Network, NetworkError, Tuning};
 
 /// The boundaries of a complex in space.
 pub(super) struct Sheets<'a> {
     recipe: &'a GrowthRecipe<'a>,
     growth: &'a GrowthTuning,
     tuning: &'a Tuning,
-    pub(super) complex: CellComplex,
-    pub(super) shape: Shape,
+    complex: CellComplex,
+    shape: Shape,
     fans: Fans,
     mobilities: Vec<f64>,
     /// Of all points of the fans.
@@ -64,7 +68,7 @@ impl<'a> Sheets<'a> {
     }
 
     /// The volume of each grain now; 0 of those that have vanished.
-    pub(super) fn volumes_now(&self) -> Vec<f64> {
+    fn volumes_now(&self) -> Vec<f64> {
         self.volumes(&self.points)
     }
 
@@ -196,5 +200,25 @@ impl Front for Sheets<'_> {
         let (network, _) = Network::new(&cells, recipe.junctions, recipe.levels)?;
         let network = network.with_tensions(recipe.tension)?.with_mobilities(self.recipe.mobility)?;
         Ok((network.with_cell_volumes(self.volumes_now()), points))
+    }
+
+    fn finish(
+        self,
+        steps: usize,
+        reconnections: Reconnections,
+        time: f64,
+    ) -> Result<RelaxedCells, NetworkError> {
+        let volumes = self.volumes_now();
+        let Self { recipe, growth, tuning, complex, shape, .. } = self;
+        let settled = Settled { complex, shape, reconnections, steps, time };
+        // Time does not pass any more: what is left to do is for points that have not moved yet.
+        let smoothing = match recipe.network.face_mesh {
+            FaceMesh::Fan | FaceMesh::SparseFan => growth.smoothing,
+            FaceMesh::Plain | FaceMesh::Refined { .. } => TIME_OF_KEPT_TOPOLOGY,
+        };
+        let smoothing = Relaxation::Time(smoothing);
+        let cells = smoothed(&settled, &volumes, &recipe.network, smoothing, tuning, &mut |_| ())?;
+        let relaxed = Relaxed { steps, time, ..cells.relaxed };
+        Ok(RelaxedCells { relaxed, ..cells })
     }
 }

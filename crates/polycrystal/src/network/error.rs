@@ -106,7 +106,7 @@ pub enum NetworkError {
     /// A boundary is so small that rounding leaves parts of it without area (in the plane: without length):
     /// [`Tessellation::resolved`](voronoi::Tessellation::resolved) takes such out, unless it is a cell's last.
     #[error(
-        "the boundary between {} and {} is too small for double precision; take out seeds that are as close as this",
+        "the boundary between {} and {} is too small for double precision; remove seeds that are so close",
         sides[0], sides[1]
     )]
     BoundaryTooSmall {
@@ -125,11 +125,11 @@ pub enum NetworkError {
     )]
     RemeshInvalid(Faults),
     /// Remeshing in the plane.
-    #[error("networks in the plane are not remeshed; their lines have points enough with more levels")]
+    #[error("2D networks are not remeshed; more levels give their lines more points")]
     RemeshPlane,
     /// Opposite walls of a periodic network that was cut at its box differ.
     #[error(
-        "point {point} on a wall has no copy on the opposite one; cut whole grains at the box, and remesh what comes out"
+        "point {point} on a wall has no copy on the opposite one; cut whole grains at the box, and remesh the result"
     )]
     NoCopyOnWall {
         /// The point.
@@ -137,7 +137,7 @@ pub enum NetworkError {
     },
     /// An element of a labelled surface lies at the exterior, but on no wall.
     #[error(
-        "element {element} lies at the exterior, but on no wall of the domain; its corners must be on a wall exactly"
+        "element {element} lies at the exterior, but on no wall of the domain; its corners must lie exactly on a wall"
     )]
     NotOnWall {
         /// The element.
@@ -161,7 +161,7 @@ pub enum NetworkError {
         places: usize,
     },
     /// A grain of several cells is in pieces, or its cells touch in no more than a line somewhere.
-    #[error("the cells of grain {} do not hang together by faces; give its pieces numbers of their own", grain.0)]
+    #[error("the cells of grain {} are not connected by faces; number its pieces separately", grain.0)]
     GrainInPieces {
         /// The grain.
         grain: GrainId,
@@ -178,7 +178,7 @@ pub enum NetworkError {
     },
     /// The lines in which boundaries meet a plane of the box cross, or close nothing.
     #[error(
-        "boundaries cannot be told apart on the walls across {axis}; keep grains whole, or move the seeds a little"
+        "boundaries cannot be distinguished on the walls across {axis}; keep grains whole, or move the seeds a little"
     )]
     CutCrosses {
         /// The axis across the plane.
@@ -218,7 +218,7 @@ pub enum NetworkError {
     },
     /// The grains' volumes could not be restored.
     #[error(
-        "grain {} misses its volume by {relative_error:.1e} of it after relaxation; relax for a shorter time, or for none",
+        "grain {} has the wrong volume after relaxation, with a relative error of {relative_error:.1e}; relax for a shorter time, or not at all",
         grain.0
     )]
     VolumeNotRestored {

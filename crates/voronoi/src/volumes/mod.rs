@@ -73,7 +73,7 @@ pub enum VolumesError {
         volumes: usize,
     },
     /// A volume is not positive and finite.
-    #[error("grain {grain} is to have the volume {volume}; it must be positive and finite")]
+    #[error("grain {grain} is given the volume {volume}; it must be positive and finite")]
     BadVolume {
         /// Position of the grain in the input.
         grain: usize,
@@ -97,14 +97,14 @@ pub enum VolumesError {
         grain: usize,
     },
     /// A grain that others are put into comes apart.
-    #[error("grain {grain} comes apart, as others are put into it")]
+    #[error("grain {grain} is cut into pieces by the grains inside it")]
     InPieces {
         /// The grain.
         grain: usize,
     },
     /// A volume was not reached: coordinates have too few digits for a cell that small, or that far from the origin.
     #[error(
-        "grain {grain} is to have the volume {target:e}, but came to {reached:e} at best; move its seed away from its neighbours', or the domain to the origin"
+        "grain {grain} should have the volume {target:e}, but reached {reached:e} at best; move its seed away from its neighbours', or the domain to the origin"
     )]
     NotReached {
         /// Position of the grain in the input.

@@ -9,11 +9,11 @@ use clap::{Args, ValueEnum};
 use crate::cli::pictures::{parse_html, parse_png};
 use crate::spelling::whole_number;
 
-/// What is shown of the result.
+/// Pictures and pages of the result.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Pictures")]
 pub struct ShownArguments {
-    /// Draw the result, needing no display; with --each-level an animation (APNG) of the levels
+    /// Draw the result, without a display; with --each-level, an animation (APNG) of the levels
     #[arg(long, value_name = "PATH.png", value_parser = parse_png)]
     picture: Option<PathBuf>,
 
@@ -21,11 +21,11 @@ pub struct ShownArguments {
     #[arg(long, value_names = ["W", "H"], num_args = 2, value_parser = whole_number(16..=16_384_u16), allow_negative_numbers = true, requires = "picture")]
     picture_size: Option<Vec<u16>>,
 
-    /// Draw each face by itself with its edges, and curves with their points (flat), or surfaces by normals at points (smooth)
+    /// Draw faces in one shade with their edges, and curves with their points (flat), or draw smooth surfaces (smooth)
     #[arg(long, value_enum, default_value_t = ShadingName::Flat, requires = "picture")]
     shading: ShadingName,
 
-    /// Write a page with a view of the result to rotate, histograms and the figures of the run; it works offline
+    /// Write a web page with a 3D view of the result, histograms and the figures of the run; it works offline
     #[arg(long, value_name = "PATH.html", value_parser = parse_html)]
     report: Option<PathBuf>,
 }

@@ -187,19 +187,8 @@ impl Job<'_> {
     }
 
     pub(super) fn content<'a>(&'a self, points: &'a [DVec3], cells: Cells<'a>) -> MeshToWrite<'a> {
-        let command_line = &self.command_line;
         let encoding = self.files.vtk.vtk_encoding;
-        MeshToWrite {
-            points,
-            cells,
-            normals: None,
-            generations: None,
-            point_data: &[],
-            cell_data: &[],
-            field: &[],
-            command_line,
-            encoding,
-        }
+        MeshToWrite { encoding, ..MeshToWrite::new(points, cells, &self.command_line) }
     }
 }
 

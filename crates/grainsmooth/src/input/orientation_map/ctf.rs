@@ -81,9 +81,9 @@ impl Places {
     fn point(&self, line: usize, text: &str, phases: &[MapPhase]) -> Result<MapPoint, Fault> {
         let columns: Vec<&str> = text.split_whitespace().collect();
         let value = |place: usize| {
-            let column = columns
-                .get(place)
-                .ok_or_else(|| (line, "fewer columns than names; write as many on each line".to_owned()))?;
+            let column = columns.get(place).ok_or_else(|| {
+                (line, "fewer columns than names; write one for each name on each line".to_owned())
+            })?;
             // Where the system's language has decimal commas the file has them too.
             if column.contains(',') { number(line, &column.replace(',', ".")) } else { number(line, column) }
         };

@@ -31,7 +31,8 @@ pub(super) fn seeds(content: &[u8], dimension: Dimension) -> Result<Vec<FileSeed
 
 /// Position and weight in an entry.
 fn seed(entry: &Value, dimension: Dimension) -> Result<(DVec3, Option<f64>), SeedProblem> {
-    let what = || SeedProblem::NotJsonSeeds { what: format!("{} is no seed", shortened(&entry.to_string())) };
+    let what =
+        || SeedProblem::NotJsonSeeds { what: format!("{} is not a seed", shortened(&entry.to_string())) };
     let coordinates = entry.get("seed").unwrap_or(entry).as_array().ok_or_else(what)?;
     let numbers: Option<Vec<f64>> = coordinates.iter().map(Value::as_f64).collect();
     let number = |name| match entry.get(name) {

@@ -87,14 +87,22 @@ fn each_mistake_is_named_with_its_line() {
         ("1, nan, 3", 3, "seeds.csv line 1: \"nan\" is not a finite number; correct or remove the seed"),
         ("1, 2, -inf", 3, "seeds.csv line 1: \"-inf\" is not a finite number; correct or remove the seed"),
         ("1, 2, 1e999", 3, "seeds.csv line 1: \"1e999\" is not a finite number; correct or remove the seed"),
-        ("x,y,z\n1,2\n", 3, "seeds.csv line 2: 2 columns after lines of 3; write as many on each line"),
+        (
+            "x,y,z\n1,2\n",
+            3,
+            "seeds.csv line 2: 2 columns, but earlier lines have 3; write the same number on each line",
+        ),
         (
             "1,2,3,4,5\n",
             3,
             "seeds.csv line 1: 5 columns; write x, y, z on each line, or name the columns in the first",
         ),
         ("1,2,3,-4\n", 3, "seeds.csv line 1: radius is -4; write 0 or more"),
-        ("1,2,3\n1,2,3,4\n", 3, "seeds.csv line 2: 4 columns after lines of 3; write as many on each line"),
+        (
+            "1,2,3\n1,2,3,4\n",
+            3,
+            "seeds.csv line 2: 4 columns, but earlier lines have 3; write the same number on each line",
+        ),
         ("1\n", 2, "seeds.csv line 1: 1 columns; write x, y on each line, or name the columns in the first"),
         (
             "1,2,0.5",
@@ -118,7 +126,7 @@ fn each_mistake_is_named_with_its_line() {
         (
             "x,y,z,name\n1,2,3,\"a\n1,2,3",
             3,
-            "seeds.csv line 2: a quote that the line does not close; close or remove it",
+            "seeds.csv line 2: a quote is not closed on its line; close or remove it",
         ),
         ("1,2,3\nx,y,z", 3, "seeds.csv line 2: \"x\" is not a number; write x, y, z as numbers such as 0.5"),
         ("", 3, "seeds.csv: holds no seeds; give a file with one or more"),
@@ -168,11 +176,11 @@ fn xyz_files_begin_with_a_count_and_name_elements() {
         ),
         (
             "3\n\nFe 1 2 3\n",
-            "s.xyz line 1: 3 seeds announced and 1 there; give the complete file, or correct the number",
+            "s.xyz line 1: 3 seeds announced, but 1 found; give the complete file, or correct the number",
         ),
         (
             "1\n\n1 2\n",
-            "s.xyz line 3: 2 columns; write an element, x, y, z and perhaps a radius on each line",
+            "s.xyz line 3: 2 columns; write an element, x, y, z and, if known, a radius on each line",
         ),
         ("1\n\nFe 1 2 x\n", "s.xyz line 3: \"x\" is not a number; write x, y, z as numbers such as 0.5"),
         ("0\n\n", "s.xyz: holds no seeds; give a file with one or more"),
@@ -199,10 +207,13 @@ fn json_is_a_list_or_a_table_of_cells() {
     for (file, message) in [
         ("[[1, 2, 3],\n[1, 2", "line 2: EOF while parsing a list"),
         ("{\"seed\": 3}", "line 1: no list of seeds"),
-        ("[[1, 2, 3], [1, 2]]", "entry 2: [1,2] is no seed"),
-        ("[[1, 2, \"x\"]]", "entry 1: [1,2,\"x\"] is no seed"),
+        ("[[1, 2, 3], [1, 2]]", "entry 2: [1,2] is not a seed"),
+        ("[[1, 2, \"x\"]]", "entry 1: [1,2,\"x\"] is not a seed"),
         ("[[1, 2, 1e999]]", "line 1: number out of range"),
-        (r#"[{"seed": [1, 2, 3], "weight": "x"}]"#, r#"entry 1: {"seed":[1,2,3],"weight":"x"} is no seed"#),
+        (
+            r#"[{"seed": [1, 2, 3], "weight": "x"}]"#,
+            r#"entry 1: {"seed":[1,2,3],"weight":"x"} is not a seed"#,
+        ),
     ] {
         let expected = format!("s.json {message}; {remedy}");
         assert_eq!(read_as("s.json", file, Dimension::Three), Err(expected));
@@ -232,32 +243,32 @@ fn ids_of_seeds_are_kept() {
         (
             "s.csv",
             "id x y z\nA7 1 2 3\n",
-            format!("line 2: id \"A7\" is no whole number from 0 to 2147483647; {remedy}"),
+            format!("line 2: id \"A7\" is not a whole number from 0 to 2147483647; {remedy}"),
         ),
         (
             "s.csv",
             "id x y z\n-1 1 2 3\n",
-            format!("line 2: id \"-1\" is no whole number from 0 to 2147483647; {remedy}"),
+            format!("line 2: id \"-1\" is not a whole number from 0 to 2147483647; {remedy}"),
         ),
         (
             "s.csv",
             "id x y z\n2147483648 1 2 3\n",
-            format!("line 2: id \"2147483648\" is no whole number from 0 to 2147483647; {remedy}"),
+            format!("line 2: id \"2147483648\" is not a whole number from 0 to 2147483647; {remedy}"),
         ),
         (
             "s.csv",
             "id x y z\n0.5 1 2 3\n",
-            format!("line 2: id \"0.5\" is no whole number from 0 to 2147483647; {remedy}"),
+            format!("line 2: id \"0.5\" is not a whole number from 0 to 2147483647; {remedy}"),
         ),
         (
             "s.csv",
             "id x y z\n3 1 2 3\n4 1 2 4\n3 1 2 5\n",
-            "line 4: id 3 is that of line 2 too; give each seed its own, or rename the column".to_owned(),
+            "line 4: id 3 is also that of line 2; give each seed its own, or rename the column".to_owned(),
         ),
         (
             "s.json",
             r#"[{"id": 3, "seed": [1, 2, 3]}, [4, 5, 6]]"#,
-            "entry 2: no id, and other seeds have one; give each seed its own, or none".to_owned(),
+            "entry 2: no id, but other seeds have one; give each seed its own, or none".to_owned(),
         ),
     ] {
         assert_eq!(ids(name, content), Err(format!("{name} {message}")));

@@ -140,7 +140,7 @@ impl<'a> Words<'a> {
     fn seed_id(&mut self) -> Result<u32, TessProblem> {
         let word = self.next("the id of a cell")?;
         let id = word.parse::<i32>().ok().and_then(|id| u32::try_from(id - 1).ok());
-        id.ok_or_else(|| self.problem(format!("{word:?} is no id of a cell; number cells from 1")))
+        id.ok_or_else(|| self.problem(format!("{word:?} is not an id of a cell; number cells from 1")))
     }
 
     /// Checks that the next word is the number of the item at `index`.
@@ -243,7 +243,7 @@ impl Reader<'_> {
                     tess.groups = self.words.list(self.cell_count, |words, _| {
                         let group = words.count("the group of a cell")?;
                         u32::try_from(group)
-                            .map_err(|_| words.problem(format!("{group} is no group of a cell")))
+                            .map_err(|_| words.problem(format!("{group} is not a group of a cell")))
                     })?;
                 }
                 "*seed" => {

@@ -40,7 +40,11 @@ pub(super) fn read(content: &[u8]) -> Result<OrientationList, Fault> {
                 number(
                     line,
                     column.ok_or_else(|| {
-                        (line, "fewer columns than in the lines before; write as many on each".to_owned())
+                        (
+                            line,
+                            "fewer columns than in the lines before; write the same number on each"
+                                .to_owned(),
+                        )
                     })?,
                 )
             }

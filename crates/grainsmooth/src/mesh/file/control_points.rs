@@ -71,7 +71,7 @@ pub(in crate::mesh) fn read(text: &str) -> Result<ControlPoints, MeshFileProblem
 pub(super) fn read_polylines(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
     let found = read(&String::from_utf8_lossy(bytes))?;
     if !found.surfaces.is_empty() {
-        let what = "a surface of control points is no polyline";
+        let what = "a surface of control points is not a polyline";
         return Err(MeshFileProblem::corrupt("polyline", what));
     }
     let mut mesh = MeshFile::default();

@@ -28,10 +28,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {
     for (index, kind, cell) in cell_lines {
         let what = match kind {
             Kind::Face if cell.len() < 3 => {
-                format!("a face with {} corners; three are the least", cell.len())
+                format!("a face with {} corners; it needs at least three", cell.len())
             }
             Kind::Line if cell.len() < 2 => {
-                format!("a line with {} points; two are the least", cell.len())
+                format!("a line with {} points; it needs at least two", cell.len())
             }
             _ => String::new(),
         };
@@ -129,8 +129,8 @@ mod tests {
             ("\nv 0 nan 0\n", "line 2: NaN is a y coordinate that is not finite"),
             ("f 0 1 2\n", "line 1: a face refers to vertex 0, but OBJ counts from 1"),
             ("v 0 0 0\nf 1 2 1\n", "line 2: a face refers to vertex 2, but the file has 1 vertices"),
-            ("v 0 0 0\nf 1 1\n", "line 2: a face with 2 corners; three are the least"),
-            ("v 0 0 0\nl 1\n", "line 2: a line with 1 points; two are the least"),
+            ("v 0 0 0\nf 1 1\n", "line 2: a face with 2 corners; it needs at least three"),
+            ("v 0 0 0\nl 1\n", "line 2: a line with 1 points; it needs at least two"),
             ("v 0 0 0\nl 1 2\n", "line 2: a line refers to vertex 2, but the file has 1 vertices"),
             ("v 0 0 0\nf 1 a/2 1\n", "line 2: 'a/2' is not a vertex of a face"),
         ] {

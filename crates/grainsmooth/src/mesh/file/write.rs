@@ -65,6 +65,23 @@ pub struct MeshToWrite<'a> {
     pub encoding: VtkEncoding,
 }
 
+impl<'a> MeshToWrite<'a> {
+    /// Points and cells alone, in the usual encoding.
+    pub fn new(points: &'a [DVec3], cells: Cells<'a>, command_line: &'a str) -> Self {
+        Self {
+            points,
+            cells,
+            normals: None,
+            generations: None,
+            point_data: &[],
+            cell_data: &[],
+            field: &[],
+            command_line,
+            encoding: VtkEncoding::default(),
+        }
+    }
+}
+
 /// Writes a mesh in any format but JSON.
 ///
 /// # Errors

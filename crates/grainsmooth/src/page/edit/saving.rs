@@ -16,7 +16,7 @@ use crate::files::output::OutputPath;
 use crate::files::staged_files::write_together;
 use crate::mesh::file::{MeshFormat, MeshToWrite, write_mesh};
 use crate::mesh::{BezierFile, CarriedData, Connectivity, bezier_json, levels_json, mesh_json, subdivide};
-use crate::vtk::{Cells, VtkEncoding};
+use crate::vtk::Cells;
 
 /// What is told of itself by files that hold how they were made.
 const MADE_BY: &str = "grainsmooth edit";
@@ -167,15 +167,5 @@ fn write_bezier(file: &BezierFile, samples: u32, output: &OutputPath<MeshFormat>
 }
 
 fn content<'a>(points: &'a [glam::DVec3], cells: Cells<'a>) -> MeshToWrite<'a> {
-    MeshToWrite {
-        points,
-        cells,
-        normals: None,
-        generations: None,
-        point_data: &[],
-        cell_data: &[],
-        field: &[],
-        command_line: MADE_BY,
-        encoding: VtkEncoding::default(),
-    }
+    MeshToWrite::new(points, cells, MADE_BY)
 }
