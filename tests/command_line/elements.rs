@@ -57,11 +57,11 @@ fn what_solvers_need_is_refused_where_it_has_no_meaning() {
         ),
         (
             "--periodic x --periodic-equations",
-            "--periodic-equations goes with tetrahedra in .inp; give -o grains.inp without --voxels, or leave it out",
+            "--periodic-equations needs tetrahedra in .inp; give -o grains.inp without --voxels, or leave it out",
         ),
         (
             "--solver-deck tension-x -o a.inp --voxels 4 4 4",
-            "--solver-deck goes with tetrahedra in .inp; give -o grains.inp without --voxels, or leave it out",
+            "--solver-deck needs tetrahedra in .inp; give -o grains.inp without --voxels, or leave it out",
         ),
         (
             "--solver-deck tension-x --format inp -o -",
@@ -75,7 +75,7 @@ fn what_solvers_need_is_refused_where_it_has_no_meaning() {
             "--solver-deck tension-x -o a.inp --periodic x",
             "--solver-deck loads a box that is periodic along all axes or none; leave --domain and --half-spaces out, and give --periodic x,y,z or no --periodic",
         ),
-        ("--order 2", "--order is that of tetrahedra; give --volume-mesh -o grains.vtu, or -o grains.inp"),
+        ("--order 2", "--order needs tetrahedra; give --volume-mesh -o grains.vtu, or -o grains.inp"),
         (
             "--cohesive --order 2 -o a.inp",
             "--cohesive makes elements COH3D6, and Abaqus has none of second order; leave --order 2 or --cohesive out",
@@ -116,6 +116,6 @@ fn sizes_that_cannot_be_had_are_refused() {
     workplace.refuses(
         "--seeds 3 -n 0 --element-size 0.1",
         FAILED,
-        "elements of 1.000e-1 need a finer surface than one whose edges have ... on the mean; give -n 3, or larger elements",
+        "elements of 1.000e-1 need a finer surface: its edges are ... long on average; give -n 3, or larger elements",
     );
 }

@@ -180,11 +180,11 @@ fn mistaken_patterns_are_refused() {
     for (arguments, message) in [
         (
             "--seeds 20 --inside lamellae(width=5)",
-            "--inside lamellae(width=5.0) divides no grain, as all are too small; give width=0.41 at most",
+            "--inside lamellae(width=5.0) divides no grain because all are too small; give at most width=0.41",
         ),
         (
             "--seeds 20 --inside voronoi(diameter=0.7)",
-            "--inside voronoi(diameter=0.7,cv=0.35) divides no grain, as all are too small; give diameter=0.59 at most",
+            "--inside voronoi(diameter=0.7,cv=0.35) divides no grain because all are too small; give at most diameter=0.59",
         ),
         (
             "--seeds 20 --inside lamellae(width=1e-12)",

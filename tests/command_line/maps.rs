@@ -325,7 +325,7 @@ fn maps_that_cannot_be_used() {
         ),
         (
             "volume_damask.vti --axes zyx",
-            "volume_damask.vti: files of this format tell their order of axes; leave --axes out",
+            "volume_damask.vti: files of this format contain their order of axes; leave --axes out",
         ),
         ("volume.npy --crop 0:25,0:9,0:9", "volume.npy: has 24 voxels along x; --crop asks for 0:25"),
         (

@@ -371,7 +371,7 @@ fn maps_without_a_grid_or_what_they_need_are_refused() {
             "a.ang",
             ang(no_symmetry, points.clone()),
             "",
-            "tells no symmetry of Nickel; give it with --crystal-symmetry, such as cubic",
+            "does not give the symmetry of Nickel; give it with --crystal-symmetry, such as cubic",
         ),
         (
             "a.ang",

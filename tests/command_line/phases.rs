@@ -313,7 +313,7 @@ fn phases_that_are_mistaken() {
         ),
         (
             "--phase a:0.5,place=interior --phase b:0.5,place=boundaries",
-            "each phase has place=interior or another place in the grains of others; leave place= out of one",
+            "every phase has place=, such as interior, and none makes the grains around them; leave place= out of one",
         ),
         (
             "--dim 2 --phase a:0.9 --phase b:0.1,place=quadruple-points",
@@ -361,7 +361,7 @@ fn phases_that_are_mistaken() {
         (
             "--phase a:0.9,diameters=equal(0.2) --phase b:0.1,diameters=equal(0.7)",
             "a grain of diameter 0.700000 does not fit the share of phase b; ask for diameters up to 0.575882 (to=0.575882 cuts larger ones off), or \
-             take a larger domain",
+             use a larger domain",
         ),
         (
             "--seeds 2 --phase a:1,texture=m.ctf,symmetry=622",

@@ -23,7 +23,7 @@ fn ids_of_a_seed_file_become_seed_ids() {
     workplace.refuses(
         "--seeds-file twice.csv",
         FAILED,
-        "twice.csv line 3: id 1 is that of line 2 too; give each seed its own, or rename the column",
+        "twice.csv line 3: id 1 is also that of line 2; give each seed its own, or rename the column",
     );
 }
 

@@ -173,7 +173,7 @@ fn sizes_that_are_mistaken() {
         ("0.5*equal(3)+equal(4)", "'equal(4)' has no weight, others do; write 0.5*equal(4), for example"),
         (
             "equal(3),from=5",
-            "'equal(3)': from 5 to inf there is next to nothing of it (a share of 0.0e0); widen the cut-offs",
+            "'equal(3)': almost nothing of it is left from 5 to inf (a share of 0.0e0); widen the cut-offs",
         ),
     ] {
         workplace.refuses(&format!("--diameters {spec}"), USAGE, &value(spec, message));
@@ -206,12 +206,12 @@ fn sizes_that_are_mistaken() {
         (
             "--diameters equal(60) --box 50 50 50",
             "a grain of diameter 60.000000 does not fit the domain; ask for diameters up to 50.000000 (to=50.000000 cuts larger \
-             ones off), or take a larger domain",
+             ones off), or use a larger domain",
         ),
         (
             "--diameters equal(60) --dim 2 --box 200 2",
             "a grain of diameter 60.000000 does not fit the domain; ask for diameters up to 22.567583 (to=22.567583 cuts larger \
-             ones off), or take a larger domain",
+             ones off), or use a larger domain",
         ),
         (
             "--diameters equal(1e-6)",
@@ -270,7 +270,7 @@ fn file_of_sizes_that_is_mistaken() {
         (
             "diameters",
             "diameter,n\n1,2\n3\n",
-            "line 3: 1 columns after lines of 2; write as many on each line",
+            "line 3: 1 columns, but earlier lines have 2; write the same number on each line",
         ),
         ("volumes", "", "line 1: holds no grains; give one on each line"),
         ("volumes", "a,b\n1,2\n", "line 1: no column is named volume or diameter; name one so"),

@@ -239,7 +239,7 @@ fn file_of_orientations_that_is_mistaken() {
         (
             "a.ctf",
             &format!("{ctf}1 0 0 1\n"),
-            "a.ctf line 5: fewer columns than names; write as many on each line",
+            "a.ctf line 5: fewer columns than names; write one for each name on each line",
         ),
     ] {
         workplace.put(name, content);
@@ -372,7 +372,7 @@ fn histogram_of_disorientations_that_is_mistaken() {
         ("5,-1\n", "line 1: bin 1 has the weight -1; give 0 or more, and more than 0 somewhere"),
         (
             "70,1\n80,1\n",
-            "line 2: bin 2 begins at 70 degrees, where no two cubic crystals are: they differ by 62.8 at most; give it the weight 0",
+            "line 2: bin 2 begins at 70 degrees, but two cubic crystals differ by at most 62.8; give it the weight 0",
         ),
     ] {
         workplace.put("angles.csv", content);

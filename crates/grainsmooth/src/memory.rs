@@ -237,10 +237,14 @@ pub fn check_cells(count: usize, available: u64) -> Result<(), MemoryError> {
 pub fn available_memory() -> u64 {
     let mut system = System::new();
     system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
-    let of_system = Some(system.available_memory()).filter(|bytes| *bytes > 0);
+    let of_system = system.available_memory();
+    if of_system == 0 {
+        // As without /proc, where asking for the container's limits panics.
+        return AVAILABLE_WHERE_UNKNOWN;
+    }
     // What files keep in the cache is given back when it is needed, so it does not count as taken.
     let of_container = system.cgroup_limits().map(|limits| limits.total_memory.saturating_sub(limits.rss));
-    [of_system, of_container].into_iter().flatten().min().unwrap_or(AVAILABLE_WHERE_UNKNOWN)
+    of_container.map_or(of_system, |bytes| bytes.min(of_system))
 }
 
 /// Bytes that new files can take in a directory; nothing where the system does not tell.

@@ -6,5 +6,6 @@ pub(crate) mod patch;
 pub(crate) mod patches;
 pub(crate) mod shape;
 pub(crate) mod sides;
+pub(crate) mod triangle;
 pub(crate) mod unit;
 pub(crate) mod volumes_kept;

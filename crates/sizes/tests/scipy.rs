@@ -149,7 +149,7 @@ fn mistaken_words_are_told_with_a_remedy() {
         ),
         (
             "normal(mean=20, sd=1, from=30)",
-            "'normal(mean=20, sd=1, from=30)': from 30 to inf there is next to nothing of it (a share of 0.0e0); widen the cut-offs",
+            "'normal(mean=20, sd=1, from=30)': almost nothing of it is left from 30 to inf (a share of 0.0e0); widen the cut-offs",
         ),
         ("equal(3), from=5, to=4", "'equal(3)' is cut off from 5 to 4; give a range"),
         ("equal(3), by=mass", "by=mass is unknown; write by=number or by=volume"),

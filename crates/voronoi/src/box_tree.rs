@@ -70,8 +70,8 @@ impl Slabs {
     const EMPTY: Self = Self { normals: [[0.0; LANES]; 3], middles: [0.0; LANES], halves: [0.0; LANES] };
 
     /// Puts a slab around some points, in the plane of three that are far apart.
-    fn set(&mut self, lane: usize, places: Range<usize>, position: impl Fn(usize) -> DVec3) {
-        let points = || places.clone().map(&position);
+    fn set(&mut self, lane: usize, indices: Range<usize>, position: impl Fn(usize) -> DVec3) {
+        let points = || indices.clone().map(&position);
         let farthest = |square: &dyn Fn(DVec3) -> f64| {
             points().max_by(|a, b| square(*a).total_cmp(&square(*b))).unwrap_or_default()
         };
@@ -96,7 +96,7 @@ impl Slabs {
     }
 }
 
-/// Boxes around points that have places: what follows one another there should be near in space.
+/// Boxes around points in a list: what follows one another there should be near in space.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(crate) struct BoxTree {
     pub(crate) point_count: usize,
@@ -107,14 +107,14 @@ pub(crate) struct BoxTree {
 }
 
 impl BoxTree {
-    /// Boxes around some points, given the position and the weight at each place.
+    /// Boxes around some points, given the position and the weight at each index.
     pub(crate) fn new(point_count: usize, point: impl Fn(usize) -> (DVec3, f64) + Sync) -> Self {
         let group_of_points = |group: usize| {
             let mut boxes = Boxes::EMPTY;
             let first = group * LANES * LANES;
-            for place in first..point_count.min(first + LANES * LANES) {
-                let (position, weight) = point(place);
-                boxes.add((place - first) / LANES, position, position, weight);
+            for index in first..point_count.min(first + LANES * LANES) {
+                let (position, weight) = point(index);
+                boxes.add((index - first) / LANES, position, position, weight);
             }
             boxes
         };
@@ -137,7 +137,7 @@ impl BoxTree {
         Self { point_count, levels, slabs: Vec::new() }
     }
 
-    /// Puts slabs around what is in boxes where these are far thinner, given the position at each place.
+    /// Puts slabs around what is in boxes where these are far thinner, given the position at each index.
     pub(crate) fn add_slabs(&mut self, position: impl Fn(usize) -> DVec3 + Sync) {
         let mut points_in_box = LANES;
         for groups in &self.levels {
@@ -213,7 +213,7 @@ pub(crate) trait BoxSearch {
     }
 
     /// Visits points that follow one another; false to end the search.
-    fn visit(&mut self, places: Range<usize>) -> bool;
+    fn visit(&mut self, indices: Range<usize>) -> bool;
 }
 
 /// Groups of boxes that may wait at once: eight for each level but one, and there are at most eleven levels above 2^32 points.
@@ -221,7 +221,7 @@ const MOST_WAITING: usize = 8 * 11;
 
 /// Brings points, of which numbers are given, into an order in which few boxes hold what is near: halves of boxes across their
 /// longest sides, halves of these and so on, each as many points as whole boxes hold where there are enough. The first point has
-/// some place among all.
+/// some index among all.
 pub(crate) fn sort_into_boxes(points: &mut [u32], first: usize, position: &impl Fn(u32) -> DVec3) {
     if points.len() <= LANES {
         return;

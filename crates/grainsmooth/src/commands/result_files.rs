@@ -98,7 +98,7 @@ impl ResultFiles {
         }
         if volume.order.is_some() && !self.need_tetrahedra(to_write) {
             return Err(usage(
-                "--order is that of tetrahedra; give --volume-mesh -o grains.vtu, or -o grains.inp",
+                "--order needs tetrahedra; give --volume-mesh -o grains.vtu, or -o grains.inp",
             ));
         }
         let has_inp = self.formats().contains(&OutputFormat::INP);

@@ -7,7 +7,7 @@ use crate::arcs::arc_network::{Arc, ArcNetwork, OWN};
 use crate::arcs::chordal_arc::ChordalArc;
 use crate::solver::factors::{ELEMENT, Element, LdlFactors};
 
-/// Share of an arc's damping that holds its ends in their places, not only to each other.
+/// Share of an arc's damping that holds its ends where they are, not only to each other.
 const HELD: f64 = 0.1;
 
 /// The same where an arc has no damping at all: whole networks on a torus would be free to move.
@@ -108,15 +108,15 @@ impl ArcTerms {
             let free = free[end] * wind;
             (turns[2 * end], turns[2 * end + 1]) = (free.x, free.y);
         }
-        let mut places = [0; ELEMENT];
+        let mut unknowns = [0; ELEMENT];
         for (end, (vertex, _)) in arc.ends.into_iter().enumerate() {
             let index = network.order.vertex(vertex).expect("the arc ends there");
-            (places[2 * end], places[2 * end + 1]) = (index, index + 1);
+            (unknowns[2 * end], unknowns[2 * end + 1]) = (index, index + 1);
         }
         let beside = arc.beside.map(|beside| Some(beside?.0));
         let some = beside[0].or(beside[1]).expect("there is a cell beside each edge");
         for (side, cell) in beside.into_iter().enumerate() {
-            places[4 + side] = network.order.cell(cell.unwrap_or(some));
+            unknowns[4 + side] = network.order.cell(cell.unwrap_or(some));
             match cell {
                 None => continue,
                 Some(cell) if cell == network.pinned => {
@@ -138,7 +138,7 @@ impl ArcTerms {
         for (row, own) in matrix.iter_mut().zip(&turns) {
             row.iter_mut().zip(&turns).for_each(|(entry, other)| *entry -= own * other * flexibility);
         }
-        Element { places, matrix }
+        Element { unknowns, matrix }
     }
 
     /// The force on the end per turning; that on the start is the opposite.
@@ -202,9 +202,9 @@ impl<'a> KktSystem<'a> {
     pub(crate) fn answer(&self, force: &[f64], changes: &[f64]) -> Answer {
         let ArcNetwork { arcs, order, freedoms, .. } = self.network;
         let (forces, torques) = force.split_at(2 * freedoms.len());
-        let places = || (0..freedoms.len()).filter_map(|vertex| Some((vertex, order.vertex(vertex)?)));
+        let positions = || (0..freedoms.len()).filter_map(|vertex| Some((vertex, order.vertex(vertex)?)));
         let mut values = vec![0.0; order.len()];
-        for (vertex, index) in places() {
+        for (vertex, index) in positions() {
             values[index..index + 2].copy_from_slice(&forces[2 * vertex..2 * vertex + 2]);
         }
         for (cell, change) in changes.iter().enumerate() {
@@ -228,14 +228,14 @@ impl<'a> KktSystem<'a> {
         self.factors.solve(&mut values);
         let pressures: Vec<f64> = (0..changes.len()).map(|cell| -values[order.cell(cell)]).collect();
         let mut motion = self.zero();
-        for (vertex, index) in places() {
+        for (vertex, index) in positions() {
             motion[2 * vertex..2 * vertex + 2].copy_from_slice(&values[index..index + 2]);
         }
         self.network.keep_free(&mut motion);
-        let (places, turns) = motion.split_at_mut(2 * freedoms.len());
+        let (positions, turns) = motion.split_at_mut(2 * freedoms.len());
         for (((arc, terms), torque), turn) in arcs.iter().zip(&self.terms).zip(torques).zip(turns) {
             let [start, end] =
-                arc.ends.map(|(vertex, _)| DVec2::new(places[2 * vertex], places[2 * vertex + 1]));
+                arc.ends.map(|(vertex, _)| DVec2::new(positions[2 * vertex], positions[2 * vertex + 1]));
             let beside = arc.beside.iter().zip(&terms.areas);
             let pressed =
                 beside.map(|(beside, area)| beside.map_or(0.0, |(cell, _)| area[4] * pressures[cell]));

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use voronoi::{Domain, FaceId, PeriodicVertex, Side, Translation, Wall};
 
 use crate::energy::sides::{boundary, cell_and_offset, freedom_on};
+use crate::energy::triangle::Triangle;
 use crate::mesh::grouped::{Grouped, split};
 use crate::mesh::volume::{Cone, ConeSum};
 use crate::{Boundary, CellComplex, ComplexEdge, Freedom};
@@ -267,35 +268,29 @@ impl Fans {
 }
 
 /// The terms of one fan; gives its area times tension.
-///
-/// With N the normal of a triangle (a, b, c), twice as long as its area, the area's gradient at a is `1/2 N/|N| x (c - b)`, and
-/// the volume that the triangle sweeps per displacement of each of its corners is `N / 6`.
 fn fill_terms(ring: &[DVec3], tension: f64, largest_cotangent: f64, terms: &mut [SlotTerms]) -> f64 {
     let center = ring.len() - 1;
     let mut area = 0.0;
     for k in 0..center {
         let next = (k + 1) % center;
-        let [c, a, b] = [center, k, next].map(|slot| ring[slot]);
-        let normal = (a - c).cross(b - c);
-        let doubled_area = normal.length();
+        let slots = [center, k, next];
+        let triangle = Triangle::new(slots.map(|slot| ring[slot]));
+        let Triangle { normal, doubled_area, .. } = triangle;
         area += 0.5 * doubled_area;
-        let unit = normal / doubled_area.max(f64::MIN_POSITIVE) * (0.5 * tension);
-        for (slot, across) in [(center, b - a), (k, c - b), (next, a - c)] {
+        let half_pull = normal / doubled_area.max(f64::MIN_POSITIVE) * (0.5 * tension);
+        for (slot, gradient) in slots.into_iter().zip(triangle.gradients(half_pull)) {
             let terms = &mut terms[slot];
-            terms.gradient += unit.cross(across);
-            terms.volume_gradient += normal / 6.0;
+            terms.gradient += gradient;
+            terms.volume_gradient += triangle.volume_gradient();
             if tension > 0.0 {
                 terms.mass += doubled_area / 6.0;
             }
         }
-        // A triangle without area has no cotangent: the upper limit stands in. Obtuse angles would push points apart.
-        let cotangent_weight = |apex: DVec3, from: DVec3, to: DVec3| {
-            let cotangent = (from - apex).dot(to - apex) / doubled_area.max(f64::MIN_POSITIVE);
-            0.5 * tension * cotangent.clamp(0.0, largest_cotangent)
-        };
-        terms[k].rim += cotangent_weight(c, a, b);
-        terms[k].to_center += cotangent_weight(b, c, a);
-        terms[next].to_center += cotangent_weight(a, b, c);
+        let [at_center, at_k, at_next] =
+            triangle.cotangents(largest_cotangent).map(|cotangent| 0.5 * tension * cotangent);
+        terms[k].rim += at_center;
+        terms[k].to_center += at_next;
+        terms[next].to_center += at_k;
     }
     tension * area
 }

@@ -3,14 +3,14 @@
 //! The points of a boundary's subdivided surface depend on the control points of that boundary alone, for triple lines are
 //! creases. So all that a boundary brings to the energy is made by itself, in parallel with the others.
 //!
-//! With N the normal of a surface triangle (a, b, c), twice as long as its area, the area's gradient at a is
-//! `1/2 N/|N| x (c - b)`, and the volume that the triangle sweeps per displacement of each of its corners is `N / 6`.
-//! Both are pulled back to the control points by the transposed weights of subdivision.
+//! How area and volume change with the points of the surface ([`Triangle`]) is pulled back to the control points by the transposed weights
+//! of subdivision.
 
 use glam::DVec3;
 use voronoi::Dimension;
 
 use crate::Mesh;
+use crate::energy::triangle::Triangle;
 use crate::mesh::volume::{Cone, segment_area, triangle_volume};
 
 /// A boundary's control mesh, and its surface in terms of the control points.
@@ -148,15 +148,11 @@ impl Patch {
         match &self.elements {
             Elements::Triangles(triangles) => {
                 for (corners, across) in triangles.iter().zip(&self.edges_across) {
-                    let [a, b, c] = corners.map(at);
-                    let doubled_area = (b - a).cross(c - a).length();
-                    for k in 0..3 {
-                        let [apex, from, to] = [0, 1, 2].map(|step| at(corners[(k + step) % 3]));
-                        // A triangle without area has no cotangent: the upper limit stands in. Obtuse angles would push points apart.
-                        let cotangent = (from - apex).dot(to - apex) / doubled_area.max(f64::MIN_POSITIVE);
-                        let cotangent = cotangent.clamp(0.0, largest_cotangent);
-                        stiffness[across[k] as usize] += 0.5 * stiffness_share * cotangent;
-                        mass[corners[k] as usize] += mass_share * doubled_area / 6.0;
+                    let triangle = Triangle::new(corners.map(at));
+                    let cotangents = triangle.cotangents(largest_cotangent);
+                    for ((corner, edge), cotangent) in corners.iter().zip(across).zip(cotangents) {
+                        stiffness[*edge as usize] += 0.5 * stiffness_share * cotangent;
+                        mass[*corner as usize] += mass_share * triangle.doubled_area / 6.0;
                     }
                 }
             }
@@ -183,17 +179,16 @@ fn add_variation(
     match elements {
         Elements::Triangles(triangles) => {
             for corners in triangles {
-                let [a, b, c] = corners.map(at);
-                let normal = (b - a).cross(c - a);
-                let doubled_area = normal.length();
-                let unit =
+                let triangle = Triangle::new(corners.map(at));
+                let Triangle { normal, doubled_area, .. } = triangle;
+                let half_pull =
                     if doubled_area > 0.0 { normal * (0.5 * tension / doubled_area) } else { DVec3::ZERO };
-                for (corner, across) in corners.iter().zip([c - b, a - c, b - a]) {
-                    gradient[*corner as usize] += unit.cross(across);
-                    volume_gradient[*corner as usize] += normal / 6.0;
+                for (corner, of_corner) in corners.iter().zip(triangle.gradients(half_pull)) {
+                    gradient[*corner as usize] += of_corner;
+                    volume_gradient[*corner as usize] += triangle.volume_gradient();
                 }
                 area += 0.5 * doubled_area;
-                volume += triangle_volume([a, b, c]);
+                volume += triangle_volume(corners.map(at));
             }
         }
         Elements::Segments(segments) => {

@@ -9,6 +9,7 @@ use voronoi::{CellId, FaceId};
 
 use crate::energy::shape::Shape;
 use crate::energy::sides::{boundary, cell_and_offset, freedom};
+use crate::energy::triangle::Triangle;
 use crate::{Boundary, CellComplex, Freedom};
 
 /// Most steps of descent.
@@ -415,16 +416,18 @@ impl LocalArea {
             for k in 0..count {
                 let next = (k + 1) % count;
                 let [a, b] = [k, next].map(|corner| fan.ring[corner]);
-                let normal = (a - center).cross(b - center);
-                let length = normal.length();
-                area += 0.5 * face.tension * length;
-                let unit = normal * (0.5 * face.tension / length.max(f64::MIN_POSITIVE)) - pull_of_offset;
-                of_center += unit.cross(b - a) + a.cross(b) * pull;
+                let triangle = Triangle::new([center, a, b]);
+                let Triangle { normal, doubled_area, .. } = triangle;
+                area += 0.5 * face.tension * doubled_area;
+                let half_pull = normal * (0.5 * face.tension / doubled_area.max(f64::MIN_POSITIVE));
+                // A cone from an origin that is off changes as an area does.
+                let [at_center, at_a, at_b] = triangle.gradients(half_pull - pull_of_offset);
+                of_center += at_center + a.cross(b) * pull;
                 if let Place::Moving(moving, _) = face.corners[k] {
-                    slope[moving] += unit.cross(center - b) + b.cross(center) * pull;
+                    slope[moving] += at_a + b.cross(center) * pull;
                 }
                 if let Place::Moving(moving, _) = face.corners[next] {
-                    slope[moving] += unit.cross(a - center) + center.cross(a) * pull;
+                    slope[moving] += at_b + center.cross(a) * pull;
                 }
             }
             for corner in &face.corners {

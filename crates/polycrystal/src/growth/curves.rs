@@ -5,7 +5,7 @@ use voronoi::{FaceId, PeriodicVertex, Side, Tessellation};
 
 use super::GrowthRecipe;
 use super::front::{Front, Happened};
-use super::step::{Curve, CurveNetwork, Places};
+use super::step::{Curve, CurveNetwork, Positions};
 use super::tuning::GrowthTuning;
 use crate::arcs::switching::CurvedEdges;
 use crate::energy::sides::{boundary, cell_and_offset, freedom};
@@ -36,31 +36,31 @@ pub(super) struct Curves<'a> {
 }
 
 impl Front for Curves<'_> {
-    type Points = Places;
+    type Points = Positions;
 
-    fn start(&mut self, mean: f64) -> Places {
+    fn start(&mut self, mean: f64) -> Positions {
         let spacing = self.tuning.spacing * mean.sqrt();
         self.resample(spacing);
-        let places;
-        (self.moving.0, self.moving.1, places) = self.moving(spacing);
-        places
+        let positions;
+        (self.moving.0, self.moving.1, positions) = self.moving(spacing);
+        positions
     }
 
-    fn step(&self, start: &Places, time: f64) -> Result<Places, NetworkError> {
+    fn step(&self, start: &Positions, time: f64) -> Result<Positions, NetworkError> {
         Ok(self.moving.1.step(start, time))
     }
 
-    fn extrapolated(&self, _: &Places, halves: Places, whole: &Places) -> Places {
+    fn extrapolated(&self, _: &Positions, halves: Positions, whole: &Positions) -> Positions {
         halves.extrapolated(whole)
     }
 
-    fn volumes(&self, points: &Places) -> Vec<f64> {
+    fn volumes(&self, points: &Positions) -> Vec<f64> {
         self.areas(&self.moving.0, points)
     }
 
-    fn take(&mut self, points: Places) {
+    fn take(&mut self, points: Positions) {
         let faces = std::mem::take(&mut self.moving.0);
-        self.take_places(&faces, points);
+        self.take_positions(&faces, points);
     }
 
     fn pass(&mut self, volumes: &[f64], mean: f64) -> Happened {
@@ -161,7 +161,7 @@ impl<'a> Curves<'a> {
     }
 
     /// The curves that move, those between grains, by number of their edges, and where they are.
-    fn moving(&self, spacing: f64) -> (Vec<FaceId>, CurveNetwork, Places) {
+    fn moving(&self, spacing: f64) -> (Vec<FaceId>, CurveNetwork, Positions) {
         let recipe = self.recipe;
         let complex = self.complex();
         let between = |face: &FaceId| !matches!(complex.sides(*face)[1], Side::Wall(_));
@@ -179,29 +179,29 @@ impl<'a> Curves<'a> {
         };
         let curves = faces.iter().map(curve).collect();
         let freedoms = (0..id(complex.vertices.len())).map(|vertex| freedom(complex, vertex)).collect();
-        let vertices = complex.vertices.iter().map(|place| place.truncate()).collect();
+        let vertices = complex.vertices.iter().map(|position| position.truncate()).collect();
         let inner = faces.iter().map(|face| self.inner[face.index()].clone()).collect();
         let network = CurveNetwork { curves, freedoms, least_length: LEAST_LENGTH * spacing };
-        (faces, network, Places { vertices, inner })
+        (faces, network, Positions { vertices, inner })
     }
 
     /// Takes over where curves are now.
-    fn take_places(&mut self, faces: &[FaceId], places: Places) {
+    fn take_positions(&mut self, faces: &[FaceId], positions: Positions) {
         self.lengths = vec![0.0; self.inner.len()];
         for face in self.complex().faces() {
             self.lengths[face.index()] = self.length(face);
         }
-        for (vertex, place) in self.edges.complex.vertices.iter_mut().zip(&places.vertices) {
-            *vertex = place.extend(0.0);
+        for (vertex, position) in self.edges.complex.vertices.iter_mut().zip(&positions.vertices) {
+            *vertex = position.extend(0.0);
         }
-        for (face, inner) in faces.iter().zip(places.inner) {
+        for (face, inner) in faces.iter().zip(positions.inner) {
             self.inner[face.index()] = inner;
         }
         self.straighten_walls();
     }
 
-    /// The area of each cell with some of its edges in given places.
-    fn areas(&self, faces: &[FaceId], places: &Places) -> Vec<f64> {
+    /// The area of each cell with some of its edges in given positions.
+    fn areas(&self, faces: &[FaceId], positions: &Positions) -> Vec<f64> {
         let complex = self.complex();
         let mut areas = vec![0.0; complex.cell_count()];
         let mut origins: Vec<Option<DVec2>> = vec![None; areas.len()];
@@ -211,13 +211,13 @@ impl<'a> Curves<'a> {
             let corners = complex.corners(face);
             let end = |end: usize| {
                 let PeriodicVertex { vertex, translation } = corners[end];
-                places.vertices[vertex as usize] + translation.vector(complex.domain()).truncate()
+                positions.vertices[vertex as usize] + translation.vector(complex.domain()).truncate()
             };
-            let inner = numbers[face.index()].map_or(&[][..], |number: usize| &places.inner[number]);
+            let inner = numbers[face.index()].map_or(&[][..], |number: usize| &positions.inner[number]);
             for (side, sign) in complex.sides(face).into_iter().zip([1.0, -1.0]) {
                 let Some((cell, offset)) = cell_and_offset(side, complex.domain()) else { continue };
                 let offset = offset.truncate();
-                // From a place of its own: small cells would lose digits far from the origin.
+                // From a point of its own: small cells would lose digits far from the origin.
                 let origin = *origins[cell.index()].get_or_insert(end(0) - offset) + offset;
                 let line = std::iter::once(end(0)).chain(inner.iter().copied()).chain([end(1)]);
                 let (mut last, mut doubled) = (None::<DVec2>, 0.0);
@@ -237,8 +237,8 @@ impl<'a> Curves<'a> {
         for face in self.complex().faces() {
             if matches!(self.complex().sides(face)[1], Side::Wall(_)) {
                 let [start, end] = self.ends(face);
-                let place = |done: usize| start.lerp(end, done as f64 / FEWEST_SEGMENTS as f64);
-                self.inner[face.index()] = (1..FEWEST_SEGMENTS).map(place).collect();
+                let position = |done: usize| start.lerp(end, done as f64 / FEWEST_SEGMENTS as f64);
+                self.inner[face.index()] = (1..FEWEST_SEGMENTS).map(position).collect();
             }
         }
     }

@@ -49,13 +49,13 @@ pub(super) struct CurveNetwork {
 
 /// Where the points of curves are.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Places {
+pub(super) struct Positions {
     pub(super) vertices: Vec<DVec2>,
     /// Of each curve, the points between its ends.
     pub(super) inner: Vec<Vec<DVec2>>,
 }
 
-impl Places {
+impl Positions {
     /// All points of a curve.
     pub(super) fn line(&self, curve: &Curve, number: usize) -> Vec<DVec2> {
         let [start, end] = curve.ends.map(|(vertex, translation)| self.vertices[vertex] + translation);
@@ -77,7 +77,7 @@ impl Places {
 
 impl CurveNetwork {
     /// Where all is after a step.
-    pub(super) fn step(&self, start: &Places, time: f64) -> Places {
+    pub(super) fn step(&self, start: &Positions, time: f64) -> Positions {
         let mut end = start.clone();
         for _ in 0..LENGTHS {
             let reduce = |(number, curve): (usize, &Curve)| {
@@ -92,10 +92,10 @@ impl CurveNetwork {
             let reduced: Vec<Reduced> =
                 self.curves.par_iter().enumerate().with_min_len(CURVES_PER_TASK).map(reduce).collect();
             let moves = self.solve(&reduced);
-            end.vertices = start.vertices.iter().zip(&moves).map(|(place, by)| *place + *by).collect();
+            end.vertices = start.vertices.iter().zip(&moves).map(|(position, by)| *position + *by).collect();
             let inner = |((curve, reduced), inner): ((&Curve, &Reduced), &Vec<DVec2>)| {
                 let by = reduced.moves(curve.ends.map(|(vertex, _)| moves[vertex]));
-                inner.iter().zip(by).map(|(place, by)| *place + by).collect()
+                inner.iter().zip(by).map(|(position, by)| *position + by).collect()
             };
             let curves = self.curves.par_iter().zip(&reduced).zip(&start.inner);
             end.inner = curves.with_min_len(CURVES_PER_TASK).map(inner).collect();

@@ -11,7 +11,7 @@ const UNDIVIDED: usize = 12;
 
 /// Where unknowns come in the order, two for each vertex and one for each cell.
 pub(crate) struct Dissection {
-    /// Of each vertex, the first of its two places; none for those without edges.
+    /// Of each vertex, the first of its two unknowns; none for those without edges.
     vertices: Vec<Option<usize>>,
     cells: Vec<usize>,
     pub(crate) whole: Part,
@@ -21,9 +21,9 @@ pub(crate) struct Dissection {
 pub(crate) struct Part {
     /// Two or none.
     pub(crate) halves: Vec<Self>,
-    /// The first place of all within.
+    /// The first unknown of all within.
     pub(crate) start: usize,
-    /// The first place of what lies between the halves, or of all that is not divided ...
+    /// The first unknown of what lies between the halves, or of all that is not divided ...
     pub(crate) own: usize,
     /// ... and the one after the last.
     pub(crate) end: usize,
@@ -31,35 +31,35 @@ pub(crate) struct Part {
 
 /// What knows what.
 struct Graph {
-    places: Vec<DVec2>,
+    positions: Vec<DVec2>,
     /// Of each vertex and then each cell, the vertices ...
     vertices: Vec<Vec<u32>>,
     /// ... and the cells that share an edge with it.
     cells: Vec<Vec<u32>>,
     /// Of each vertex and then each cell, where it lies as a part is divided.
-    sides: Vec<Place>,
+    sides: Vec<Side>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Place {
+enum Side {
     Elsewhere,
     Half(bool),
     Between,
 }
 
 impl Dissection {
-    /// For vertices at these places and so many cells; edges have two ends and one or two cells beside them.
+    /// For vertices at these positions and so many cells; edges have two ends and one or two cells beside them.
     pub(crate) fn new(
-        places: Vec<DVec2>,
+        positions: Vec<DVec2>,
         cell_count: usize,
         edges: impl Iterator<Item = ([usize; 2], [Option<usize>; 2])>,
     ) -> Self {
-        let count = places.len();
+        let count = positions.len();
         let mut graph = Graph {
             vertices: vec![Vec::new(); count + cell_count],
             cells: vec![Vec::new(); count + cell_count],
-            sides: vec![Place::Elsewhere; count + cell_count],
-            places,
+            sides: vec![Side::Elsewhere; count + cell_count],
+            positions,
         };
         let id = |node: usize| u32::try_from(node).expect("vertices and cells have 32-bit numbers");
         for (ends, cells) in edges {
@@ -79,10 +79,10 @@ impl Dissection {
         let mut next = 0;
         let whole = graph.divide(nodes, &mut order, &mut next);
         let mut own = Self { vertices: vec![None; count], cells: vec![0; cell_count], whole };
-        for (node, place) in order {
+        for (node, unknown) in order {
             match (node as usize).checked_sub(count) {
-                Some(cell) => own.cells[cell] = place,
-                None => own.vertices[node as usize] = Some(place),
+                Some(cell) => own.cells[cell] = unknown,
+                None => own.vertices[node as usize] = Some(unknown),
             }
         }
         own
@@ -93,19 +93,19 @@ impl Dissection {
         self.whole.end
     }
 
-    /// The place of a vertex's first unknown, before that of its second; none where it has no edges.
+    /// A vertex's first unknown, before its second; none where it has no edges.
     pub(crate) fn vertex(&self, vertex: usize) -> Option<usize> {
         self.vertices[vertex]
     }
 
-    /// The place of a cell's unknown.
+    /// A cell's unknown.
     pub(crate) fn cell(&self, cell: usize) -> usize {
         self.cells[cell]
     }
 }
 
 impl Graph {
-    /// Divides a part and lists its nodes with their places.
+    /// Divides a part and lists its nodes with their unknowns.
     fn divide(&mut self, nodes: Vec<u32>, order: &mut Vec<(u32, usize)>, next: &mut usize) -> Part {
         let start = *next;
         let [first, second, between] = self.halves(nodes);
@@ -114,53 +114,54 @@ impl Graph {
         let own = *next;
         for node in between {
             order.push((node, *next));
-            *next += if (node as usize) < self.places.len() { 2 } else { 1 };
+            *next += if (node as usize) < self.positions.len() { 2 } else { 1 };
         }
         Part { halves, start, own, end: *next }
     }
 
     /// The nodes of two halves, and those between them; no halves where there are few.
     fn halves(&mut self, nodes: Vec<u32>) -> [Vec<u32>; 3] {
-        let count = self.places.len();
+        let count = self.positions.len();
         let mut vertices: Vec<u32> = nodes.iter().copied().filter(|node| (*node as usize) < count).collect();
         if vertices.len() <= UNDIVIDED {
             return [Vec::new(), Vec::new(), nodes];
         }
-        let place = |node: &u32| self.places[*node as usize];
-        let least = vertices.iter().map(place).reduce(DVec2::min).expect("there are vertices");
-        let most = vertices.iter().map(place).reduce(DVec2::max).expect("there are vertices");
+        let position = |node: &u32| self.positions[*node as usize];
+        let least = vertices.iter().map(position).reduce(DVec2::min).expect("there are vertices");
+        let most = vertices.iter().map(position).reduce(DVec2::max).expect("there are vertices");
         let axis = usize::from((most - least).y > (most - least).x);
         let middle = vertices.len() / 2;
-        vertices
-            .select_nth_unstable_by(middle, |a, b| place(a)[axis].total_cmp(&place(b)[axis]).then(a.cmp(b)));
+        vertices.select_nth_unstable_by(middle, |a, b| {
+            position(a)[axis].total_cmp(&position(b)[axis]).then(a.cmp(b))
+        });
         for (number, vertex) in vertices.iter().enumerate() {
-            self.sides[*vertex as usize] = Place::Half(number >= middle);
+            self.sides[*vertex as usize] = Side::Half(number >= middle);
         }
         // Cells first, which have one unknown each: what then still lies across are edges between vertices.
         let cells = || nodes.iter().copied().filter(|node| *node as usize >= count);
         for cell in cells() {
             let own = &self.vertices[cell as usize];
             let mut sides = own.iter().map(|vertex| self.sides[*vertex as usize]);
-            let mut known = sides.clone().filter(|side| matches!(side, Place::Half(_)));
-            let first = known.next().unwrap_or(Place::Half(false));
-            let is_across = sides.any(|side| matches!(side, Place::Half(_)) && side != first);
-            self.sides[cell as usize] = if is_across { Place::Between } else { first };
+            let mut known = sides.clone().filter(|side| matches!(side, Side::Half(_)));
+            let first = known.next().unwrap_or(Side::Half(false));
+            let is_across = sides.any(|side| matches!(side, Side::Half(_)) && side != first);
+            self.sides[cell as usize] = if is_across { Side::Between } else { first };
         }
         let mut part = |own: u32, others: fn(&Self) -> &[Vec<u32>]| {
-            let Place::Half(half) = self.sides[own as usize] else { return };
+            let Side::Half(half) = self.sides[own as usize] else { return };
             let mut others = others(self)[own as usize].iter();
-            if others.any(|other| self.sides[*other as usize] == Place::Half(!half)) {
-                self.sides[own as usize] = Place::Between;
+            if others.any(|other| self.sides[*other as usize] == Side::Half(!half)) {
+                self.sides[own as usize] = Side::Between;
             }
         };
         cells().for_each(|cell| part(cell, |graph| &graph.cells));
         vertices.sort_unstable();
         vertices.iter().for_each(|vertex| part(*vertex, |graph| &graph.vertices));
         let sides = &self.sides;
-        let parts = [Place::Half(false), Place::Half(true), Place::Between].map(|place| {
-            nodes.iter().copied().filter(|node| sides[*node as usize] == place).collect::<Vec<u32>>()
+        let parts = [Side::Half(false), Side::Half(true), Side::Between].map(|side| {
+            nodes.iter().copied().filter(|node| sides[*node as usize] == side).collect::<Vec<u32>>()
         });
-        nodes.iter().for_each(|node| self.sides[*node as usize] = Place::Elsewhere);
+        nodes.iter().for_each(|node| self.sides[*node as usize] = Side::Elsewhere);
         parts
     }
 }

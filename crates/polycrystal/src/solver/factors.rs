@@ -17,9 +17,9 @@ const AT_ONCE: usize = 4;
 /// Unknowns of two halves above which each is worth a task.
 const TASK: usize = 2000;
 
-/// A part of the matrix: the places of its unknowns, of which some may be the same, and their entries.
+/// A part of the matrix: its unknowns, of which some may be the same, and their entries.
 pub(crate) struct Element {
-    pub(crate) places: [usize; ELEMENT],
+    pub(crate) unknowns: [usize; ELEMENT],
     pub(crate) matrix: [[f64; ELEMENT]; ELEMENT],
 }
 
@@ -37,7 +37,7 @@ struct Front {
     inverse_pivots: Vec<f64>,
     /// ... the column of L below, one after the other.
     columns: Vec<f64>,
-    /// The places of later unknowns that know those within.
+    /// The later unknowns that share an element with those within.
     border: Vec<usize>,
     /// Of each of these, its number among the unknowns of the front around.
     outer: Vec<usize>,
@@ -52,7 +52,7 @@ struct Left {
 impl LdlFactors {
     /// Of the sum of some elements.
     pub(crate) fn new(order: &Dissection, elements: &[Element]) -> Self {
-        let first = |element: &Element| element.places.into_iter().min().expect("elements have unknowns");
+        let first = |element: &Element| element.unknowns.into_iter().min().expect("elements have unknowns");
         let mut sorted: Vec<(usize, &Element)> =
             elements.iter().map(|element| (first(element), element)).collect();
         sorted.sort_by_key(|(first, _)| *first);
@@ -71,10 +71,10 @@ impl LdlFactors {
     }
 }
 
-/// Eliminates the unknowns of a part; elements are sorted by their first places.
+/// Eliminates the unknowns of a part; elements are sorted by their first unknowns.
 fn eliminate(part: &Part, elements: &[(usize, &Element)]) -> Left {
     check_cancelled();
-    let start_of = |place: usize| elements.partition_point(|(first, _)| *first < place);
+    let start_of = |unknown: usize| elements.partition_point(|(first, _)| *first < unknown);
     let own = &elements[start_of(part.own)..];
     let task = |half: &Part| eliminate(half, &elements[start_of(half.start)..start_of(half.end)]);
     let mut halves: Vec<Left> = match &part.halves[..] {
@@ -84,20 +84,20 @@ fn eliminate(part: &Part, elements: &[(usize, &Element)]) -> Left {
         }
         halves => halves.iter().map(task).collect(),
     };
-    let known = own.iter().flat_map(|(_, element)| element.places);
+    let known = own.iter().flat_map(|(_, element)| element.unknowns);
     let handed_on = halves.iter().flat_map(|half| half.front.border.iter().copied());
-    let mut border: Vec<usize> = known.chain(handed_on).filter(|place| *place >= part.end).collect();
+    let mut border: Vec<usize> = known.chain(handed_on).filter(|unknown| *unknown >= part.end).collect();
     border.sort_unstable();
     border.dedup();
     let pivots = part.end - part.own;
-    let number = |place: usize| match place.checked_sub(part.end) {
-        None => place - part.own,
-        Some(_) => pivots + border.binary_search(&place).expect("the border has all of them"),
+    let number = |unknown: usize| match unknown.checked_sub(part.end) {
+        None => unknown - part.own,
+        Some(_) => pivots + border.binary_search(&unknown).expect("the border has all of them"),
     };
     let size = pivots + border.len();
     let mut matrix = vec![0.0; size * size];
     for (_, element) in own {
-        let numbers = element.places.map(number);
+        let numbers = element.unknowns.map(number);
         for (row, values) in numbers.iter().zip(&element.matrix) {
             for (column, value) in numbers.iter().zip(values).filter(|(column, _)| *column <= row) {
                 matrix[row * size + column] += value;
@@ -105,7 +105,7 @@ fn eliminate(part: &Part, elements: &[(usize, &Element)]) -> Left {
         }
     }
     for half in &mut halves {
-        half.front.outer = half.front.border.iter().map(|place| number(*place)).collect();
+        half.front.outer = half.front.border.iter().map(|unknown| number(*unknown)).collect();
         let rows = half.matrix.chunks(half.front.outer.len().max(1));
         for ((done, row), values) in half.front.outer.iter().enumerate().zip(rows) {
             // Both are sorted, so what was below the diagonal is so again.
@@ -268,7 +268,7 @@ mod tests {
     /// Vertices and cells of a square lattice with so many cells a side.
     struct Lattice {
         order: Dissection,
-        places: Vec<[usize; ELEMENT]>,
+        unknowns: Vec<[usize; ELEMENT]>,
     }
 
     impl Lattice {
@@ -284,9 +284,9 @@ mod tests {
                     edges.push(([vertex(x, y), vertex(x, y + 1)], [cell(x, y), cell(x.wrapping_sub(1), y)]));
                 }
             }
-            let place =
+            let point =
                 |number: usize| DVec2::new((number % (side + 1)) as f64, (number / (side + 1)) as f64);
-            let points = (0..(side + 1).pow(2)).map(place).collect();
+            let points = (0..(side + 1).pow(2)).map(point).collect();
             let order = Dissection::new(points, side * side, edges.iter().copied());
             let of_edge = |(ends, cells): &([usize; 2], [Option<usize>; 2])| {
                 let [start, end] = ends.map(|end| order.vertex(end).unwrap());
@@ -294,8 +294,8 @@ mod tests {
                 let [left, right] = cells.map(|cell| order.cell(cell.or(some).unwrap()));
                 [start, start + 1, end, end + 1, left, right]
             };
-            let places = edges.iter().map(of_edge).collect();
-            Self { order, places }
+            let unknowns = edges.iter().map(of_edge).collect();
+            Self { order, unknowns }
         }
     }
 
@@ -307,8 +307,8 @@ mod tests {
     #[test]
     fn solves_what_is_quasidefinite() {
         for side in [1, 2, 7, 30] {
-            let Lattice { order, places } = Lattice::new(side);
-            let element = |(number, places): (usize, &[usize; ELEMENT])| {
+            let Lattice { order, unknowns } = Lattice::new(side);
+            let element = |(number, unknowns): (usize, &[usize; ELEMENT])| {
                 let entry = |row: usize, column: usize| {
                     let (first, last) = (row.min(column), row.max(column));
                     let value = noise(number * 36 + first * 6 + last);
@@ -321,19 +321,19 @@ mod tests {
                     }
                 };
                 let matrix = from_fn(|row| from_fn(|column| entry(row, column)));
-                Element { places: *places, matrix }
+                Element { unknowns: *unknowns, matrix }
             };
-            let elements: Vec<Element> = places.iter().enumerate().map(element).collect();
+            let elements: Vec<Element> = unknowns.iter().enumerate().map(element).collect();
             let factors = LdlFactors::new(&order, &elements);
             assert_eq!(factors.negative_count(), side * side);
             let right_side: Vec<f64> = (0..order.len()).map(noise).collect();
             let mut solution = right_side.clone();
             factors.solve(&mut solution);
             let mut left = right_side;
-            for Element { places, matrix } in &elements {
-                for (row, values) in places.iter().zip(matrix) {
+            for Element { unknowns, matrix } in &elements {
+                for (row, values) in unknowns.iter().zip(matrix) {
                     let product: f64 =
-                        places.iter().zip(values).map(|(column, v)| v * solution[*column]).sum();
+                        unknowns.iter().zip(values).map(|(column, v)| v * solution[*column]).sum();
                     left[*row] -= product;
                 }
             }
@@ -344,24 +344,24 @@ mod tests {
 
     #[test]
     fn halves_of_the_plane_do_not_know_each_other() {
-        fn check(part: &Part, places: &[[usize; ELEMENT]]) {
+        fn check(part: &Part, unknowns: &[[usize; ELEMENT]]) {
             if let [first, second] = &part.halves[..] {
                 assert!(first.start == part.start && first.end == second.start && second.end == part.own);
-                for places in places {
+                for unknowns in unknowns {
                     let is_in =
-                        |half: &Part| places.iter().any(|place| (half.start..half.end).contains(place));
-                    assert!(!is_in(first) || !is_in(second), "{places:?}");
+                        |half: &Part| unknowns.iter().any(|unknown| (half.start..half.end).contains(unknown));
+                    assert!(!is_in(first) || !is_in(second), "{unknowns:?}");
                 }
             }
-            part.halves.iter().for_each(|half| check(half, places));
+            part.halves.iter().for_each(|half| check(half, unknowns));
         }
-        let Lattice { order, places } = Lattice::new(20);
+        let Lattice { order, unknowns } = Lattice::new(20);
         assert_eq!(order.len(), 2 * 21 * 21 + 20 * 20);
-        let mut all: Vec<usize> = places.iter().flatten().copied().collect();
+        let mut all: Vec<usize> = unknowns.iter().flatten().copied().collect();
         all.sort_unstable();
         all.dedup();
         assert_eq!(all, (0..order.len()).collect::<Vec<usize>>());
         assert_eq!(order.whole.halves.len(), 2);
-        check(&order.whole, &places);
+        check(&order.whole, &unknowns);
     }
 }

@@ -33,8 +33,8 @@ impl CellSums {
     }
 }
 
-/// The measures of the cells of all seeds, of which the places in the order of the sums are given.
-pub(crate) fn measures(sums: &[CellSum], places: &[u32], seeds: &[DVec3]) -> KeptMeasures {
-    let measure = |(place, seed): (&u32, &DVec3)| sums[*place as usize].measure(*seed);
-    KeptMeasures(Some(places.par_iter().zip(seeds).map(measure).collect()))
+/// The measures of the cells of all seeds, of which the indices in the order of the sums are given.
+pub(crate) fn measures(sums: &[CellSum], indices: &[u32], seeds: &[DVec3]) -> KeptMeasures {
+    let measure = |(index, seed): (&u32, &DVec3)| sums[*index as usize].measure(*seed);
+    KeptMeasures(Some(indices.par_iter().zip(seeds).map(measure).collect()))
 }

@@ -32,18 +32,18 @@ pub(crate) fn merge(search: &Search, seeds: &[DVec3]) -> Tessellation {
             coincident.extend(tile.coincident.iter().map(|pair| pair.map(|v| numbers[v as usize].vertex)));
         }
     });
-    let places = search.places();
+    let indices = search.indices();
     let mut face_counts = None;
     if !coincident.is_empty() {
         tessellation = unite_coincident(&tessellation, &coincident);
     } else if domain.dimension() == Dimension::Three {
         let sums = sums.whole();
-        tessellation.measures = measures(&sums, &places, seeds);
+        tessellation.measures = measures(&sums, &indices, seeds);
         face_counts = Some(sums.iter().map(CellSum::face_count).collect());
     }
     tessellation.shrink_to_fit();
     tessellation.put_vertices_on_walls();
-    tessellation.list_faces_of_cells(&places, face_counts);
+    tessellation.list_faces_of_cells(&indices, face_counts);
     tessellation
 }
 

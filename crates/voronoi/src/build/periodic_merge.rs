@@ -39,17 +39,17 @@ pub(crate) fn merge_periodic(search: &Search, seeds: &[DVec3], mut tiles: Vec<Ti
         // Both faces of a flat cell have the same corners.
         faces.remove_flat_cells(seeds.len());
     }
-    let places = search.places();
+    let indices = search.indices();
     let mut tessellation = unwrapped(search.domain(), seeds, &faces, &positions);
     let mut face_counts = None;
     if !are_coincident && dimension == Dimension::Three {
         let mut sums = CellSums::new(seeds.len());
         tiles.iter().for_each(|tile| sums.push_tile(tile));
         let sums = sums.whole();
-        tessellation.measures = measures(&sums, &places, seeds);
+        tessellation.measures = measures(&sums, &indices, seeds);
         face_counts = Some(sums.iter().map(CellSum::face_count).collect());
     }
-    tessellation.list_faces_of_cells(&places, face_counts);
+    tessellation.list_faces_of_cells(&indices, face_counts);
     tessellation
 }
 

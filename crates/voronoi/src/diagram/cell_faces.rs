@@ -21,25 +21,25 @@ impl PartialEq for CellFaces {
 }
 
 impl CellFaces {
-    /// Lists the faces of each cell by number, given the sides of all faces and the place of each cell's list among the lists; place by
-    /// place, `counts` are the lengths of these if they are known. Each thread takes some of the cells and looks for them through all
+    /// Lists the faces of each cell by number, given the sides of all faces and the index of each cell's list among the lists; in
+    /// that order, `counts` are the lengths of these if they are known. Each thread takes some of the cells and looks for them through all
     /// faces.
-    pub(crate) fn new(face_sides: &[[Side; 2]], places: &[u32], counts: Option<Vec<u32>>) -> Self {
-        // The cells of a face among `count` from place `first` on, by place counted from there.
+    pub(crate) fn new(face_sides: &[[Side; 2]], indices: &[u32], counts: Option<Vec<u32>>) -> Self {
+        // The cells of a face among `count` from index `first` on, by index counted from there.
         let cells_of = |sides: [Side; 2], first: usize, count: usize| {
-            let place = move |side: Side| match side {
-                Side::Cell(cell) => Some((places[cell.index()] as usize).wrapping_sub(first)),
+            let index = move |side: Side| match side {
+                Side::Cell(cell) => Some((indices[cell.index()] as usize).wrapping_sub(first)),
                 Side::Image(..) | Side::Wall(_) => None,
             };
-            sides.into_iter().filter_map(place).filter(move |place| *place < count)
+            sides.into_iter().filter_map(index).filter(move |index| *index < count)
         };
-        let some_cells = places.len().div_ceil(rayon::current_num_threads());
+        let some_cells = indices.len().div_ceil(rayon::current_num_threads());
         let counts = counts.unwrap_or_else(|| {
-            let mut counts = vec![0; places.len()];
+            let mut counts = vec![0; indices.len()];
             counts.par_chunks_mut(some_cells).enumerate().for_each(|(chunk, counts)| {
                 for sides in face_sides {
-                    for place in cells_of(*sides, chunk * some_cells, counts.len()) {
-                        counts[place] += 1;
+                    for index in cells_of(*sides, chunk * some_cells, counts.len()) {
+                        counts[index] += 1;
                     }
                 }
             });
@@ -52,11 +52,11 @@ impl CellFaces {
             end
         }));
         // As numbers, for then zeros are pages that nobody has written yet, and the threads share the work of the first time.
-        let mut lists = vec![0u32; starts[places.len()] as usize];
+        let mut lists = vec![0u32; starts[indices.len()] as usize];
         let mut rest = &mut lists[..];
         let mut parts = Vec::new();
-        for first in (0..places.len()).step_by(some_cells) {
-            let starts = &starts[first..=(first + some_cells).min(places.len())];
+        for first in (0..indices.len()).step_by(some_cells) {
+            let starts = &starts[first..=(first + some_cells).min(indices.len())];
             let (part, others) = rest.split_at_mut((starts[starts.len() - 1] - starts[0]) as usize);
             parts.push((first, starts, part));
             rest = others;
@@ -64,15 +64,15 @@ impl CellFaces {
         parts.into_par_iter().for_each(|(first, starts, part)| {
             let mut next: Vec<u32> = starts.iter().map(|start| start - starts[0]).collect();
             for (face, sides) in (0u32..).zip(face_sides) {
-                for place in cells_of(*sides, first, starts.len() - 1) {
-                    part[next[place] as usize] = face;
-                    next[place] += 1;
+                for index in cells_of(*sides, first, starts.len() - 1) {
+                    part[next[index] as usize] = face;
+                    next[index] += 1;
                 }
             }
         });
-        let range = |place: &u32| starts[*place as usize]..starts[*place as usize + 1];
+        let range = |index: &u32| starts[*index as usize]..starts[*index as usize + 1];
         Self {
-            ranges: places.par_iter().map(range).collect(),
+            ranges: indices.par_iter().map(range).collect(),
             lists: lists.into_iter().map(FaceId).collect(),
         }
     }

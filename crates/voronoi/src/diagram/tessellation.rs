@@ -12,7 +12,7 @@ use crate::{CellId, Dimension, Domain, FaceId, PeriodicPair, Side, VertexId};
 /// In three dimensions a face is a convex polygon. In the plane it is the edge between two cells, with two corners.
 ///
 /// In a periodic domain every cell is whole: it stands around its seed and may stick out of the domain. A face between a
-/// cell and a moved one then comes twice, once at each of the two cells, and so do vertices and edges, once at each place
+/// cell and a moved one then comes twice, once at each of the two cells, and so do vertices and edges, once at each position
 /// where cells meet there. One of them is the primary, the others are its secondaries and listed with the translation between
 /// them ([`Self::periodic_faces`], [`Self::periodic_vertices`], [`Self::periodic_edges`]). Primaries alone are the complex
 /// of the periodic domain.
@@ -93,15 +93,15 @@ impl Tessellation {
         face
     }
 
-    /// Lists the faces of each cell, with places and counts as in [`CellFaces::new`].
-    pub(crate) fn list_faces_of_cells(&mut self, places: &[u32], counts: Option<Vec<u32>>) {
-        self.cell_faces = CellFaces::new(&self.face_sides, places, counts);
+    /// Lists the faces of each cell, with indices and counts as in [`CellFaces::new`].
+    pub(crate) fn list_faces_of_cells(&mut self, indices: &[u32], counts: Option<Vec<u32>>) {
+        self.cell_faces = CellFaces::new(&self.face_sides, indices, counts);
     }
 
     /// The same with the lists in order of the cells.
     pub(crate) fn list_faces_of_cells_in_order(&mut self) {
-        let places: Vec<u32> = (0u32..).take(self.cell_count()).collect();
-        self.list_faces_of_cells(&places, None);
+        let indices: Vec<u32> = (0u32..).take(self.cell_count()).collect();
+        self.list_faces_of_cells(&indices, None);
     }
 
     /// The domain that is divided up.

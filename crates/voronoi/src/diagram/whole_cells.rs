@@ -20,7 +20,7 @@ pub(crate) fn unwrapped(
     faces: &TorusFaces,
     positions: &[DVec3],
 ) -> Tessellation {
-    with_places(domain, seeds, faces, positions).0
+    with_numbering(domain, seeds, faces, positions).0
 }
 
 impl Tessellation {
@@ -41,27 +41,27 @@ impl Tessellation {
             let corners = corners.into_iter();
             of_torus.push_in_order(sides.map(Side::end), corners);
         }
-        let (mut tessellation, places) = with_places(domain, seeds, &of_torus, positions);
+        let (mut tessellation, numbering) = with_numbering(domain, seeds, &of_torus, positions);
         tessellation.list_faces_of_cells_in_order();
-        (tessellation, places.all())
+        (tessellation, numbering.all())
     }
 }
 
-fn with_places(
+fn with_numbering(
     domain: &Domain,
     seeds: &[DVec3],
     faces: &TorusFaces,
     positions: &[DVec3],
-) -> (Tessellation, VertexPlaces) {
-    let places = VertexPlaces::new(faces, positions.len());
-    let vertices = Vec::with_capacity(places.count());
+) -> (Tessellation, VertexNumbering) {
+    let numbering = VertexNumbering::new(faces, positions.len());
+    let vertices = Vec::with_capacity(numbering.count());
     let mut tessellation = Tessellation::without_faces(domain, seeds, vertices);
     let period = |translation: Translation| translation.vector(domain);
     let moved =
         |original: &PeriodicVertex| positions[original.vertex as usize] + period(original.translation);
-    tessellation.vertices.par_extend(places.originals.par_iter().map(moved));
-    for (copy, original) in places.copies() {
-        let translation = copy.moved.translation - places.originals[original.index()].translation;
+    tessellation.vertices.par_extend(numbering.originals.par_iter().map(moved));
+    for (copy, original) in numbering.copies() {
+        let translation = copy.moved.translation - numbering.originals[original.index()].translation;
         let position = tessellation.vertices[original.index()] + period(translation);
         tessellation.vertices.push(position);
         tessellation.periodic_vertices.push(PeriodicPair {
@@ -86,7 +86,7 @@ fn with_places(
         .par_iter()
         .flat_map_iter(|(face, back)| {
             let moved = move |corner: &PeriodicVertex| corner.moved(*back);
-            corners_of(*face).iter().rev().map(moved).map(|corner| places.id(corner))
+            corners_of(*face).iter().rev().map(moved).map(|corner| numbering.id(corner))
         })
         .collect();
     let face_count = faces.ends().len() + copied.len();
@@ -96,7 +96,7 @@ fn with_places(
     let sides = |ends: [FaceEnd; 2], translation: Translation| ends.map(|end| Side::of(end, translation));
     tessellation.face_sides.par_extend(faces.ends().par_iter().map(|ends| sides(*ends, Translation::ZERO)));
     tessellation.face_starts.par_extend(&faces.starts()[1..]);
-    tessellation.face_corners.par_extend(faces.corners().par_iter().map(|corner| places.id(*corner)));
+    tessellation.face_corners.par_extend(faces.corners().par_iter().map(|corner| numbering.id(*corner)));
     let mut copied_corners = &copied_corners[..];
     for (face, back) in copied {
         let [first, second] = faces.ends()[face as usize];
@@ -110,16 +110,16 @@ fn with_places(
         });
     }
     tessellation.put_vertices_on_walls();
-    (tessellation, places)
+    (tessellation, numbering)
 }
 
-/// Numbers of all places at which the whole cells have vertices: first an original of each vertex of the torus, where it
+/// Numbers of the vertices of whole cells: first an original of each vertex of the torus, where it
 /// is not moved if there is a cell there, then the copies.
-struct VertexPlaces {
+struct VertexNumbering {
     originals: Vec<PeriodicVertex>,
     /// Of each vertex of the torus, its original.
     original_of: Vec<VertexId>,
-    /// All places but those of unmoved originals, sorted, with their ids.
+    /// All but unmoved originals, sorted, with their ids.
     moved: Vec<NumberedVertex>,
 }
 
@@ -129,7 +129,7 @@ struct NumberedVertex {
     id: VertexId,
 }
 
-impl VertexPlaces {
+impl VertexNumbering {
     fn new(faces: &TorusFaces, vertex_count: usize) -> Self {
         let is_used: Vec<AtomicBool> = (0..vertex_count).map(|_| AtomicBool::new(false)).collect();
         // Of a corner, what there is to note: where it is not moved, that it is used.
@@ -154,7 +154,7 @@ impl VertexPlaces {
         let mut moved: Vec<PeriodicVertex> = moved.collect();
         moved.par_sort_unstable();
         moved.dedup();
-        let mut places = Self {
+        let mut numbering = Self {
             originals: Vec::with_capacity(vertex_count),
             original_of: Vec::with_capacity(vertex_count),
             moved: Vec::new(),
@@ -167,20 +167,20 @@ impl VertexPlaces {
                 let first = moved.partition_point(|at| at.vertex < vertex);
                 moved.get(first).copied().filter(|at| at.vertex == vertex)
             };
-            places.original_of.push(id(places.originals.len()));
-            places.originals.extend(original);
+            numbering.original_of.push(id(numbering.originals.len()));
+            numbering.originals.extend(original);
         }
-        let mut next = places.originals.len();
+        let mut next = numbering.originals.len();
         for moved in moved {
-            let original = places.original_of[moved.vertex as usize];
-            if places.originals[original.index()] == moved {
-                places.moved.push(NumberedVertex { moved, id: original });
+            let original = numbering.original_of[moved.vertex as usize];
+            if numbering.originals[original.index()] == moved {
+                numbering.moved.push(NumberedVertex { moved, id: original });
             } else {
-                places.moved.push(NumberedVertex { moved, id: id(next) });
+                numbering.moved.push(NumberedVertex { moved, id: id(next) });
                 next += 1;
             }
         }
-        places
+        numbering
     }
 
     fn count(&self) -> usize {
@@ -193,7 +193,7 @@ impl VertexPlaces {
         with_original.filter(|(at, original)| at.id != *original)
     }
 
-    /// The vertices of the torus at all places, in order of id.
+    /// The vertices of the torus, and their copies, in order of id.
     fn all(&self) -> Vec<PeriodicVertex> {
         self.originals.iter().copied().chain(self.copies().map(|(copy, _)| copy.moved)).collect()
     }
@@ -202,7 +202,7 @@ impl VertexPlaces {
         if at.translation == Translation::ZERO {
             return self.original_of[at.vertex as usize];
         }
-        let place = self.moved.binary_search_by_key(&at, |known| known.moved);
-        self.moved[place.expect("all corners were numbered")].id
+        let found = self.moved.binary_search_by_key(&at, |known| known.moved);
+        self.moved[found.expect("all corners were numbered")].id
     }
 }

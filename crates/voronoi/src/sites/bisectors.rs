@@ -167,7 +167,7 @@ mod avx512 {
             for first in run.clone().step_by(WIDTH) {
                 let lanes = (run.end - first).min(WIDTH);
                 let mask = 0xffu8 >> (WIDTH - lanes);
-                // SAFETY: the lanes that are loaded are places of the run, which all columns have.
+                // SAFETY: the lanes that are loaded are indices of the run, which all columns have.
                 let (x_1, y_1, z_1, numbers) = unsafe {
                     (
                         _mm512_maskz_loadu_pd(mask, sites.x.as_ptr().add(first)),
@@ -187,7 +187,7 @@ mod avx512 {
                 let halved = _mm512_srli_epi64::<1>(_mm512_sub_epi64(biases, exponent));
                 let unit = _mm512_castsi512_pd(_mm512_slli_epi64::<52>(halved));
                 let (offset, size, limits) = if WEIGHTED {
-                    // SAFETY: weights have the same places.
+                    // SAFETY: weights have the same indices.
                     let weight = unsafe { _mm512_maskz_loadu_pd(mask, weights.as_ptr().add(first)) };
                     let excess = _mm512_sub_pd(own_weight, weight);
                     let error = _mm512_mul_pd(weight_error, _mm512_abs_pd(excess));

@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-/// Sites by place: their numbers, their coordinates, and their weights if there are any.
+/// Sites by index: their numbers, their coordinates, and their weights if there are any.
 #[derive(Clone, Copy)]
 pub(crate) struct Columns<'a> {
     pub(crate) sites: &'a [u32],
@@ -12,12 +12,12 @@ pub(crate) struct Columns<'a> {
 
 impl Columns<'_> {
     #[inline(always)]
-    pub(crate) fn position(&self, place: usize) -> DVec3 {
-        DVec3::new(self.x[place], self.y[place], self.z[place])
+    pub(crate) fn position(&self, index: usize) -> DVec3 {
+        DVec3::new(self.x[index], self.y[index], self.z[index])
     }
 
     #[inline(always)]
-    pub(crate) fn weight(&self, place: usize) -> f64 {
-        self.weights.map_or(0.0, |weights| weights[place])
+    pub(crate) fn weight(&self, index: usize) -> f64 {
+        self.weights.map_or(0.0, |weights| weights[index])
     }
 }

@@ -29,7 +29,7 @@ pub(crate) struct DeepestSearch<'a> {
     columns: Columns<'a>,
     /// Bounds on the errors of depths are the first times the square of a site's distance from the seed, and the second.
     error: [f64; 2],
-    /// The place of the deepest so far, and its depth.
+    /// The index of the deepest so far, and its depth.
     pub(crate) deepest: Option<usize>,
     depth: f64,
     /// As long as there is none, those that may lie in the ball.
@@ -77,16 +77,16 @@ impl BoxSearch for DeepestSearch<'_> {
     #[inline(always)]
     fn reached(&self, boxes: &Boxes, slabs: &Slabs) -> u32 {
         let Ball { center, own_weight, vertex, error, .. } = *self.ball;
-        let place = center + vertex;
+        let position = center + vertex;
         // Of an offset, as errors of coordinates make at most the root of 3 times as much.
         let offset_error = 2.0 * error + EVALUATION_ERROR * (center.abs() + vertex.abs()).element_sum();
         let radius = vertex.length() * (1.0 + EVALUATION_ERROR) + 2.0 * error;
         let squared = radius * radius;
         let mut reached = 0;
         for lane in 0..LANES {
-            let offset = slabs.normals[0][lane] * place.x
-                + slabs.normals[1][lane] * place.y
-                + slabs.normals[2][lane] * place.z
+            let offset = slabs.normals[0][lane] * position.x
+                + slabs.normals[1][lane] * position.y
+                + slabs.normals[2][lane] * position.z
                 - slabs.middles[lane];
             let gap = offset.abs() - slabs.halves[lane] - offset_error;
             let excess = boxes.weights[lane] - own_weight;
@@ -98,17 +98,17 @@ impl BoxSearch for DeepestSearch<'_> {
     }
 
     #[inline(always)]
-    fn visit(&mut self, places: Range<usize>) -> bool {
+    fn visit(&mut self, indices: Range<usize>) -> bool {
         let Columns { sites, x, y, z, weights } = self.columns;
-        let positions = [lanes(&x[places.clone()]), lanes(&y[places.clone()]), lanes(&z[places.clone()])];
-        let weights = weights.map_or([0.0; LANES], |weights| lanes(&weights[places.clone()]));
+        let positions = [lanes(&x[indices.clone()]), lanes(&y[indices.clone()]), lanes(&z[indices.clone()])];
+        let weights = weights.map_or([0.0; LANES], |weights| lanes(&weights[indices.clone()]));
         let center = self.ball.center;
         let mut chosen = self.may_be_deeper(|axis, lane| positions[axis][lane] - center[axis], &weights);
-        chosen &= (1 << places.len()) - 1;
+        chosen &= (1 << indices.len()) - 1;
         while chosen != 0 {
             let lane = chosen.trailing_zeros() as usize;
             chosen &= chosen - 1;
-            let site = Generator::site(sites[places.start + lane]);
+            let site = Generator::site(sites[indices.start + lane]);
             if self.ball.generators.contains(&site) {
                 continue;
             }
@@ -116,7 +116,7 @@ impl BoxSearch for DeepestSearch<'_> {
             let (depth, error) = self.depth([x, y, z], weights[lane]);
             if depth + error < 0.0 {
                 if self.deepest.is_none() || depth < self.depth {
-                    (self.deepest, self.depth) = (Some(places.start + lane), depth);
+                    (self.deepest, self.depth) = (Some(indices.start + lane), depth);
                     self.maybe.clear();
                 }
             } else if self.deepest.is_none() {
@@ -128,13 +128,14 @@ impl BoxSearch for DeepestSearch<'_> {
 }
 
 impl DeepestSearch<'_> {
-    /// Of places near the seed, one for each lane, those that may lie deeper in the ball than the deepest site so far, a bit for each.
+    /// Of sites near the seed, one for each lane, those that may lie deeper in the ball than the deepest site so far, a bit for each.
     /// Their coordinates are given by axis and lane.
     #[inline(always)]
-    fn may_be_deeper(&self, place: impl Fn(usize, usize) -> f64, weights: &[f64; LANES]) -> u32 {
+    fn may_be_deeper(&self, coordinate: impl Fn(usize, usize) -> f64, weights: &[f64; LANES]) -> u32 {
         let mut least = [0.0; LANES];
         for lane in 0..LANES {
-            let (depth, error) = self.depth([place(0, lane), place(1, lane), place(2, lane)], weights[lane]);
+            let (depth, error) =
+                self.depth([coordinate(0, lane), coordinate(1, lane), coordinate(2, lane)], weights[lane]);
             least[lane] = depth - error;
         }
         let mut chosen = 0;

@@ -34,7 +34,7 @@ const MOST_BLOCKS: i32 = 1024;
 /// Covers the rounding of a position in units of blocks, at most about [`MOST_BLOCKS`].
 const BLOCK_MARGIN: f64 = 1e-9;
 
-/// Blocks from a place up to which rows of blocks are gone through: beyond, larger boxes are quicker.
+/// Blocks from a point up to which rows of blocks are gone through: beyond, larger boxes are quicker.
 const MOST_STEPS: f64 = 4.0;
 
 /// Seeds in a block beyond which it is crowded: thrice the mean, which random seeds hardly ever come to.
@@ -54,10 +54,10 @@ pub(crate) struct SeedGrid {
     offsets: [Vec<u32>; 3],
     /// Of each block along x, the last one in the same tile.
     tile_ends: Vec<u32>,
-    /// Places of the seeds of block b are `starts[b]..starts[b + 1]`.
+    /// The seeds of block b are `starts[b]..starts[b + 1]`.
     starts: Vec<u32>,
     tiles: Vec<Range<u32>>,
-    /// The seeds' places in the input.
+    /// The seeds' indices in the input.
     pub(crate) order: Vec<u32>,
 }
 
@@ -82,9 +82,9 @@ impl SeedGrid {
         let (offsets, tile_blocks) = block_offsets(tile, tile_counts);
         let density = 1.0 / block;
         let block_of = |seed: &DVec3| {
-            let place = (*seed - lower) * density;
+            let scaled = (*seed - lower) * density;
             // Casting saturates, and the clamp takes in the seed on the upper side.
-            let block = place.as_ivec3().clamp(IVec3::ZERO, counts - 1).as_usizevec3();
+            let block = scaled.as_ivec3().clamp(IVec3::ZERO, counts - 1).as_usizevec3();
             offsets[0][block.x] + offsets[1][block.y] + offsets[2][block.z]
         };
         let block_count = tile_counts.element_product().unsigned_abs() as usize * tile_blocks;
@@ -96,23 +96,23 @@ impl SeedGrid {
         Self { lower, block, density, counts, offsets, tile_ends, starts, tiles, order }
     }
 
-    /// The ids of two seeds at one place, the smallest such pair.
+    /// The ids of two seeds at one point, the smallest such pair.
     pub(crate) fn duplicates(&self, seeds: &[DVec3]) -> Option<(u32, u32)> {
         let pairs = self.order.windows(2).map(|pair| (pair[0], pair[1]));
         pairs.filter(|(a, b)| seeds[*a as usize] == seeds[*b as usize]).min()
     }
 
-    /// The ranges of seeds, by place in the grid's order, that make up compact parts of space.
+    /// The ranges of seeds, by index in the grid's order, that make up compact parts of space.
     pub(crate) fn tiles(&self) -> &[Range<u32>] {
         &self.tiles
     }
 
-    /// Finds runs of seeds that follow one another in the grid's order, among which are all those at most `to` from a place; false if
+    /// Finds runs of seeds that follow one another in the grid's order, among which are all those at most `to` from a point; false if
     /// these are more than some number of seeds, or too many blocks.
     #[inline]
     pub(crate) fn find_runs(&self, center: DVec3, to: f64, most: usize, runs: &mut Vec<Range<u32>>) -> bool {
         let to_squared = to * to;
-        let place = (center - self.lower) * self.density;
+        let scaled = (center - self.lower) * self.density;
         let steps = to * self.density + BLOCK_MARGIN;
         // Along an axis with one block, it is all the same.
         let is_far = steps.cmpgt(DVec3::splat(MOST_STEPS)) & self.counts.cmpgt(IVec3::splat(8));
@@ -120,12 +120,12 @@ impl SeedGrid {
             return false;
         }
         let mut count = 0;
-        let first = (place - steps).max(DVec3::ZERO).as_ivec3().clamp(IVec3::ZERO, self.counts - 1);
-        let last = (place + steps).max(DVec3::ZERO).as_ivec3().clamp(IVec3::ZERO, self.counts - 1);
+        let first = (scaled - steps).max(DVec3::ZERO).as_ivec3().clamp(IVec3::ZERO, self.counts - 1);
+        let last = (scaled + steps).max(DVec3::ZERO).as_ivec3().clamp(IVec3::ZERO, self.counts - 1);
         // Squared distance from a row of blocks along one axis.
         let beside = |axis: usize, b: i32| {
-            let below = f64::from(b) - place[axis] - BLOCK_MARGIN;
-            let above = place[axis] - f64::from(b + 1) - BLOCK_MARGIN;
+            let below = f64::from(b) - scaled[axis] - BLOCK_MARGIN;
+            let above = scaled[axis] - f64::from(b + 1) - BLOCK_MARGIN;
             let distance = below.max(above).max(0.0) * self.block[axis];
             distance * distance
         };
@@ -138,7 +138,7 @@ impl SeedGrid {
                 }
                 let step = rest.sqrt() * self.density.x + BLOCK_MARGIN;
                 #[expect(clippy::cast_possible_truncation, reason = "saturates, then clamped")]
-                let [mut x, end] = [place.x - step, place.x + step]
+                let [mut x, end] = [scaled.x - step, scaled.x + step]
                     .map(|x| (x.max(0.0) as i32).min(self.counts.x - 1).unsigned_abs() as usize);
                 let row =
                     self.offsets[1][y.unsigned_abs() as usize] + self.offsets[2][z.unsigned_abs() as usize];
@@ -165,11 +165,11 @@ impl SeedGrid {
             return;
         }
         let count = seeds.len();
-        let mut places: Vec<u32> = (0u32..).take(count).collect();
+        let mut indices: Vec<u32> = (0u32..).take(count).collect();
         let tile = (count / TILES_OF_BOXES).next_multiple_of(SEEDS_PER_TILE[0]).min(SEEDS_PER_TILE[1]);
-        self.tiles = places.chunks(tile).map(|tile| tile[0]..tile[tile.len() - 1] + 1).collect();
-        sort_into_boxes(&mut places, 0, &|place: u32| seeds[self.order[place as usize] as usize]);
-        self.order = places.into_iter().map(|place| self.order[place as usize]).collect();
+        self.tiles = indices.chunks(tile).map(|tile| tile[0]..tile[tile.len() - 1] + 1).collect();
+        sort_into_boxes(&mut indices, 0, &|index: u32| seeds[self.order[index as usize] as usize]);
+        self.order = indices.into_iter().map(|index| self.order[index as usize]).collect();
     }
 
     /// Whether many seeds are in blocks that have so many that their order does not tell which are near one another.
@@ -196,7 +196,7 @@ fn sort(seeds: &[DVec3], blocks: &[u32], block_count: usize) -> (Vec<u32>, Vec<u
         order[*slot as usize] = seed;
         *slot += 1;
     }
-    // Adding zero makes -0 and 0 the same place.
+    // Adding zero makes -0 and 0 the same point.
     let key = |id: &u32| (seeds[*id as usize] + DVec3::ZERO).to_array();
     let before = |a: &u32, b: &u32| {
         let (left, right) = (key(a), key(b));
@@ -252,7 +252,7 @@ fn tile_counts(blocks: IVec3) -> IVec3 {
     tiles
 }
 
-/// The numbers that blocks get from their places along each axis, and how many a tile has with those that fill its last bricks, from
+/// The numbers that blocks get from their positions along each axis, and how many a tile has with those that fill its last bricks, from
 /// the numbers of blocks in a tile and of tiles along the axes.
 fn block_offsets(tile: IVec3, tile_counts: IVec3) -> ([Vec<u32>; 3], usize) {
     let brick = IVec3::new(tile.x, tile.y.min(BLOCKS_PER_BRICK), tile.z.min(BLOCKS_PER_BRICK));

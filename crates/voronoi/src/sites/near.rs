@@ -59,9 +59,9 @@ impl BoxSearch for RunSearch<'_> {
 
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "sites have numbers of 32 bits")]
-    fn visit(&mut self, places: Range<usize>) -> bool {
-        self.count += places.len();
-        let [start, end] = [places.start, places.end].map(|place| place as u32);
+    fn visit(&mut self, indices: Range<usize>) -> bool {
+        self.count += indices.len();
+        let [start, end] = [indices.start, indices.end].map(|index| index as u32);
         match self.runs.last_mut() {
             Some(last) if last.end == start => last.end = end,
             _ => self.runs.push(start..end),

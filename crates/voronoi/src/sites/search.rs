@@ -38,7 +38,7 @@ pub(crate) struct Search<'a> {
     seeds: Vec<DVec3>,
     weights: Option<Vec<f64>>,
     largest_weight: f64,
-    /// The seeds' places in the user's input.
+    /// The seeds' indices in the user's input.
     ids: Vec<u32>,
     tiles: Vec<Range<u32>>,
     pub(crate) layers: Vec<Layer>,
@@ -93,8 +93,8 @@ impl<'a> Search<'a> {
             search.widen()?;
         } else {
             let (thickness, images) = (DVec3::INFINITY, ImageTable::default());
-            let places = (0u32..).take(seeds.len()).collect();
-            let sites = search.tree(search.input_with(&images), places, grid);
+            let indices = (0u32..).take(seeds.len()).collect();
+            let sites = search.tree(search.input_with(&images), indices, grid);
             search.layers.push(Layer { thickness, images, sites });
         }
         Ok(search)
@@ -110,18 +110,18 @@ impl<'a> Search<'a> {
         &self.tiles
     }
 
-    /// The seeds' places in the user's input.
+    /// The seeds' indices in the user's input.
     pub(crate) fn ids(&self) -> &[u32] {
         &self.ids
     }
 
-    /// Of each seed in the user's order, its place in this one.
-    pub(crate) fn places(&self) -> Vec<u32> {
-        let mut places = vec![0; self.ids.len()];
-        for (place, id) in (0u32..).zip(&self.ids) {
-            places[*id as usize] = place;
+    /// Of each seed in the user's order, its index in this one.
+    pub(crate) fn indices(&self) -> Vec<u32> {
+        let mut indices = vec![0; self.ids.len()];
+        for (index, id) in (0u32..).zip(&self.ids) {
+            indices[*id as usize] = index;
         }
-        places
+        indices
     }
 
     /// What lies beyond a generator's plane, in the user's numbering of cells.

@@ -16,7 +16,7 @@ use crate::sites::grid::SeedGrid;
 use crate::sites::near;
 use crate::sites::near::Within;
 
-/// Places in rows of blocks up to which these are gone through: half as many again as around the largest cells of random seeds.
+/// Sites in rows of blocks up to which these are gone through: half as many again as around the largest cells of random seeds.
 const MOST_IN_ROWS: usize = 1000;
 
 /// Sites, sorted so that what is near in space is near in memory, and boxes around them.
@@ -47,9 +47,9 @@ impl SiteTree {
         let mut tree = Self { grid, sites, columns, weights, boxes };
         let columns = tree.columns();
         let mut boxes =
-            BoxTree::new(tree.sites.len(), |place| (columns.position(place), columns.weight(place)));
+            BoxTree::new(tree.sites.len(), |index| (columns.position(index), columns.weight(index)));
         if tree.is_crowded() {
-            boxes.add_slabs(|place| columns.position(place));
+            boxes.add_slabs(|index| columns.position(index));
         }
         tree.boxes = boxes;
         tree
@@ -65,8 +65,8 @@ impl SiteTree {
         Columns { sites: &self.sites, x, y, z, weights: self.weights.as_deref() }
     }
 
-    /// Finds runs of places that hold all sites with which a seed has bisectors within a radius, and so up to some security_radius; false if
-    /// these are more than some number of places.
+    /// Finds runs of indices that hold all sites with which a seed has bisectors within a radius, and so up to some security_radius; false if
+    /// these are more than some number of indices.
     #[inline]
     pub(crate) fn find_runs(
         &self,
@@ -90,13 +90,13 @@ impl SiteTree {
     pub(crate) fn deepest(&self, ball: &Ball, maybe: &mut Vec<Generator>) -> Option<InBox<'_>> {
         let mut search = DeepestSearch::new(ball, self.columns(), maybe);
         find_deepest(&self.boxes, &mut search);
-        let place = search.deepest?;
-        let first = place / LANES * LANES;
+        let index = search.deepest?;
+        let first = index / LANES * LANES;
         let sites = &self.sites[first..self.sites.len().min(first + LANES)];
-        Some(InBox { site: Generator::site(self.sites[place]), sites })
+        Some(InBox { site: Generator::site(self.sites[index]), sites })
     }
 
-    /// The sites in order of their distance from a place.
+    /// The sites in order of their distance from a point.
     pub(crate) fn near_first(&self, center: DVec3) -> NearFirst<'_> {
         let [top] = &self.boxes.levels[self.boxes.levels.len() - 1][..] else {
             unreachable!("one group holds all");
@@ -148,10 +148,10 @@ impl NearFirst<'_> {
                 PLANE => return Some((Generator(number), f64::from_bits(squared))),
                 0 => {
                     let columns = self.tree.columns();
-                    for place in first..columns.sites.len().min(first + LANES) {
-                        let squared = (columns.position(place) - self.center).length_squared();
-                        if is_wanted(squared, columns.weight(place)) {
-                            self.push(Generator::site(columns.sites[place]), squared);
+                    for index in first..columns.sites.len().min(first + LANES) {
+                        let squared = (columns.position(index) - self.center).length_squared();
+                        if is_wanted(squared, columns.weight(index)) {
+                            self.push(Generator::site(columns.sites[index]), squared);
                         }
                     }
                 }
@@ -214,8 +214,8 @@ mod tests {
                     let security_radius = radius + (radius * radius + 0.01).sqrt();
                     let mut runs = Vec::new();
                     assert!(tree.find_runs(&within, security_radius, usize::MAX, &mut runs));
-                    for place in runs.into_iter().flatten() {
-                        found[tree.sites[place as usize] as usize] = true;
+                    for index in runs.into_iter().flatten() {
+                        found[tree.sites[index as usize] as usize] = true;
                     }
                     for other in (0..seeds.len()).filter(|other| *other != seed) {
                         let squared = seeds[other].distance_squared(center);
