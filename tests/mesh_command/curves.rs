@@ -133,7 +133,7 @@ fn what_is_no_curve_is_refused() {
         ),
         (
             "b-spline soft.json",
-            "soft.json: corner 1 of a polyline has the sharpness 2.5; give it none, and it stays",
+            "soft.json: corner 1 of a polyline has the sharpness 2.5; leave it out: corners of polylines are always fixed",
         ),
         (
             "b-spline in.obj --corners 7",
