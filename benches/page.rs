@@ -236,7 +236,7 @@ fn grains(browser: &mut Browser) {
     row("allocated in a frame, mean of 100", "kB", (heap(browser) - before) / 100.0 / 1024.0, None);
     browser.value("drawn()");
     let times = browser.value(
-        "timed(20, (number) => { page.picker.pick(page.network, [300 + 20 * number, 200 + 10 * number]); })",
+        "timed(20, (number) => { page.pick({ clientX: 300 + 20 * number, clientY: 200 + 10 * number }); })",
     );
     let [median, often, _] = spread(&times);
     row("hover: the grain under the pointer, median", "ms", median, None);

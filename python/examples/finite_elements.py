@@ -12,5 +12,5 @@ corners = grains.points[grains.triangles]
 edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
 print(f"{len(corners)} triangles, whose edges have {edges.mean():.3f} on the mean")
 grains.save("surface.msh")
-# Tetrahedra that fill the grains: grains.save("tetrahedra.inp"), where Gmsh is installed.
+# Tetrahedra that fill the grains, where Gmsh is installed: grains.tetrahedra() as arrays, grains.save("tetrahedra.inp") as a file.
 grains.save("hexahedra.inp", voxels=[20, 20, 20])

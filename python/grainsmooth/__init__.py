@@ -9,21 +9,25 @@
 from __future__ import annotations
 
 from ._grainsmooth import InternalError, __version__
-from ._options import Options
+from ._options import MapOptions, Options
 from .ensemble import Ensemble, ensemble
 from .files import check, measure, read
-from .polycrystal import Polycrystal
+from .notebook import View
+from .polycrystal import Polycrystal, Tetrahedra
 from .stages import Network, Tessellation, tessellate
 from .subdivision import Subdivided, subdivide
 
 __all__ = [
     "Ensemble",
     "InternalError",
+    "MapOptions",
     "Network",
     "Options",
     "Polycrystal",
     "Subdivided",
     "Tessellation",
+    "Tetrahedra",
+    "View",
     "__version__",
     "check",
     "ensemble",

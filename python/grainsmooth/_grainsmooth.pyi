@@ -14,10 +14,11 @@ __all__ = [
     "check",
     "generate",
     "measure",
+    "of_arrays",
     "of_labels",
     "of_map",
+    "of_orientations",
     "of_settings",
-    "options",
     "read",
     "subdivide",
     "tessellate",
@@ -69,6 +70,9 @@ class Polycrystal:
         threads: int,
         progress: Callable[[str, int, int], object] | None,
     ) -> None: ...
+    def tetrahedra(
+        self, threads: int
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32], npt.NDArray[np.int32]]: ...
     def report(self, path: str | os.PathLike[str]) -> None: ...
 
 @final
@@ -114,6 +118,13 @@ def generate(
 def of_settings(
     settings: str, threads: int, progress: Callable[[str, int, int], object] | None
 ) -> Polycrystal: ...
+def of_arrays(
+    points: npt.NDArray[np.float64],
+    elements: npt.NDArray[np.uint32],
+    face_labels: npt.NDArray[np.int32],
+    ids: npt.NDArray[np.uint32],
+    threads: int,
+) -> Polycrystal: ...
 def of_labels(
     labels: npt.NDArray[np.int32],
     shape: Sequence[int],
@@ -126,6 +137,15 @@ def of_labels(
 ) -> Polycrystal: ...
 def of_map(
     path: str | os.PathLike[str],
+    options: Mapping[str, Any],
+    threads: int,
+    progress: Callable[[str, int, int], object] | None,
+) -> Polycrystal: ...
+def of_orientations(
+    angles: npt.NDArray[np.float64],
+    phase_of: npt.NDArray[np.int32],
+    shape: Sequence[int],
+    phases: Sequence[tuple[str, str]],
     options: Mapping[str, Any],
     threads: int,
     progress: Callable[[str, int, int], object] | None,
@@ -153,4 +173,3 @@ def subdivide(
 def read(path: str | os.PathLike[str]) -> dict[str, Any]: ...
 def check(path: str | os.PathLike[str]) -> str: ...
 def measure(path: str | os.PathLike[str], dim: int | None) -> str: ...
-def options() -> list[dict[str, Any]]: ...

@@ -361,3 +361,7 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--vtk-encoding zlib -o grains.vtu``
 
     Default: ``raw``"""
+
+
+class MapOptions(TypedDict, total=False):
+    """x"""

@@ -117,7 +117,7 @@ class Ensemble:
         pandas.DataFrame
             For each combination and figure: ``count``, ``mean``, ``sd``, ``low`` and ``high``.
         """
-        if not 0.0 < confidence < 1.0:
+        if not 0.0 < _inputs.number("confidence", confidence) < 1.0:
             raise ValueError(f"confidence: give a number between 0 and 1, not {confidence!r}")
         pandas = _inputs.require("pandas", "pandas")
         good = self.runs[self.runs["error"].isna()]
@@ -219,8 +219,8 @@ def ensemble(
 def _runs(
     base: dict[str, Any], vary: dict[str, Any], replicates: int, base_seed: int
 ) -> tuple[list[Run], list[str]]:
-    if isinstance(replicates, bool) or not isinstance(replicates, (int, np.integer)) or replicates < 1:
-        raise ValueError(f"replicates: give a whole number from 1, not {replicates!r}")
+    count = _inputs.count("replicates", replicates, 1, 10**9)
+    seed = _inputs.count("base_seed", base_seed, 0, 2**64 - 1)
     for options in (base, vary):
         if "rng_seed" in options:
             raise ValueError("rng_seed: each run has one of its own; give base_seed")
@@ -231,9 +231,9 @@ def _runs(
             raise ValueError(f"vary: {name} stands in base as well")
     values = [[_plain(value) for value in values] for values in vary.values()]
     combinations = [dict(zip(vary, combination)) for combination in itertools.product(*values)]
-    each = [varied for varied in combinations for _ in range(int(replicates))]
+    each = [varied for varied in combinations for _ in range(count)]
     runs = [
-        Run(index, rng_seed(base_seed, index), varied, {**base, **varied}) for index, varied in enumerate(each)
+        Run(index, rng_seed(seed, index), varied, {**base, **varied}) for index, varied in enumerate(each)
     ]
     return runs, list(vary)
 
@@ -338,7 +338,7 @@ def _failed(run: Run, error: BaseException | str) -> dict[str, Any]:
 
 def _in_processes(runs: list[Run], files: str | None, workers: int | None) -> Iterator[dict[str, Any]]:
     """Runs in processes of this machine. When one is killed all of its pool are lost: what was not done is begun again."""
-    count = _inputs.thread_count(workers) or os.cpu_count() or 1
+    count = _inputs.thread_count(workers, "workers") or os.cpu_count() or 1
     if not runs:
         return
     begun = dict.fromkeys((run.index for run in runs), 0)
@@ -386,15 +386,17 @@ def _on_cluster(client: Any, runs: list[Run], files: str | None) -> Iterator[dic
         of_key.update(zip((future.key for future in futures), some))
         return list(futures)
 
-    threads = max(1, sum(client.nthreads().values()))
-    sequence = distributed.as_completed(submit(threads * _WAITING))
-    for future in sequence:
+    # Some at a time: each time costs milliseconds.
+    batch = max(1, sum(client.nthreads().values())) * _WAITING
+    sequence = distributed.as_completed(submit(2 * batch), with_results=True, raise_errors=False)
+    done = 0
+    for future, result in sequence:
         run = of_key.pop(future.key)
-        error = future.exception()
-        yield future.result() if error is None else _failed(run, error)
-        future.release()
-        for more in submit(1):
-            sequence.add(more)
+        # Of what failed it is the kind, the error and the traceback.
+        yield _failed(run, result[1]) if future.status == "error" else result
+        done += 1
+        if done % batch == 0:
+            sequence.update(submit(batch))
 
 
 def _student(confidence: float, degrees: int) -> float:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _grainsmooth
+from . import _grainsmooth, _inputs
 from .polycrystal import Polycrystal
 
 
@@ -23,8 +23,8 @@ def read(path: str | os.PathLike[str]) -> Polycrystal:
     Returns
     -------
     Polycrystal
-        Its arrays are those of the file. What else is asked of it is computed from the settings in the file, and compared with its points; a
-        file of another program has none, and its arrays are all that is known.
+        Its arrays are those of the file, its grains count from 0 in the order of their labels. What else is asked of it is computed from the settings
+        in the file, and compared with its points; a file of another program has none, and its network is measured.
 
     Raises
     ------
@@ -35,6 +35,9 @@ def read(path: str | os.PathLike[str]) -> Polycrystal:
     """
     read = _grainsmooth.read(os.fspath(path))
     settings = read.pop("settings")
+    if settings is not None:
+        # Its settings tell the seeds.
+        del read["seed_id"]
     if read["node_types"] is None:
         read["node_types"] = np.zeros(len(read["points"]), dtype=np.int8)
     for array in read.values():
@@ -74,5 +77,6 @@ def measure(path: str | os.PathLike[str], *, dim: int | None = None) -> dict[str
     dict
         What ``grainsmooth measure --json`` tells.
     """
-    report: dict[str, Any] = json.loads(_grainsmooth.measure(os.fspath(path), dim))
+    dimension = None if dim is None else _inputs.count("dim", dim, 2, 3)
+    report: dict[str, Any] = json.loads(_grainsmooth.measure(os.fspath(path), dimension))
     return report

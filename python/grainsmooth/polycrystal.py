@@ -5,15 +5,18 @@ from __future__ import annotations
 import inspect
 import json
 import os
+import pathlib
+import tempfile
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _grainsmooth, _inputs
-from ._options import Options
+from ._options import MapOptions, Options
 from ._progress import Progress, told
+from .notebook import View
 
 if TYPE_CHECKING:
     import meshio
@@ -24,7 +27,7 @@ if TYPE_CHECKING:
 Floats = npt.NDArray[np.float64]
 
 #: Of the state that is pickled: raised when it changes.
-_FORMAT = 1
+_FORMAT = 2
 
 _ARRAYS = ("points", "elements", "face_labels", "boundary_id", "node_types")
 
@@ -43,10 +46,22 @@ _UNITS = {
 }
 
 
+class Tetrahedra(NamedTuple):
+    """Tetrahedra that fill grains."""
+
+    #: Points, float64 of shape (n, 3): those of the network first.
+    points: Floats
+    #: The corners of each, uint32 of shape (m, 4).
+    tetrahedra: npt.NDArray[np.uint32]
+    #: The grain of each, int32 of shape (m,).
+    grains: npt.NDArray[np.int32]
+
+
 class Polycrystal:
     """Grains that fill a domain, and the smooth boundaries between them.
 
-    Made by :meth:`generate`, :meth:`from_settings`, :meth:`from_labels` or :func:`grainsmooth.read`.
+    Made by :meth:`generate` and :meth:`from_settings`, of what was measured by :meth:`from_labels`, :meth:`from_map` and :meth:`from_orientations`,
+    of a network that is there by :meth:`from_arrays` and :func:`grainsmooth.read`.
 
     Arrays are read-only views on the library's memory: none is copied, and each keeps that memory alive. Lengths are in the unit
     of the option ``box``.
@@ -170,14 +185,9 @@ class Polycrystal:
         Polycrystal
             Its grains count from 0 in the order of their labels, which :attr:`seed_id` has.
         """
-        array = np.asarray(labels)
-        if array.dtype.kind not in "iu":
-            raise TypeError(f"labels: give whole numbers, not {array.dtype}")
+        array = _inputs.whole_numbers("labels", labels)
         if array.ndim not in (2, 3) or array.size == 0:
             raise ValueError(f"labels: give an array of shape (nx, ny, nz) or (nx, ny), not {array.shape}")
-        limits = np.iinfo(np.int32)
-        if array.min() < limits.min or array.max() > limits.max:
-            raise ValueError("labels: give numbers that 32 bits hold")
         nx, ny, nz = (*array.shape, 1)[:3]
         place = (0.0,) * array.ndim if origin is None else origin
         corner = _inputs.numbers("origin", place, 1)
@@ -186,12 +196,12 @@ class Polycrystal:
         x, y, z = (*(float(at) for at in corner), 0.0)[:3]
         with told(progress) as tell:
             made = _grainsmooth.of_labels(
-                np.ascontiguousarray(array.ravel(order="F"), dtype=np.int32),
+                array.ravel(order="F"),
                 (nx, ny, nz),
                 _inputs.edges("spacing", spacing, array.ndim),
                 (x, y, z),
-                exterior_label,
-                min_voxels,
+                None if exterior_label is None else _inputs.count("exterior_label", exterior_label, -(2**31), 2**31 - 1),
+                _inputs.count("min_voxels", min_voxels, 1, 2**63),
                 _inputs.thread_count(threads),
                 tell,
             )
@@ -199,19 +209,23 @@ class Polycrystal:
 
     @classmethod
     def from_map(
-        cls, path: str | os.PathLike[str], *, threads: int | None = None, progress: Progress = False, **options: Any
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        threads: int | None = None,
+        progress: Progress = False,
+        **options: Unpack[MapOptions],
     ) -> Polycrystal:
         """Make the smooth network of a measured map from a file, as the program's command ``smooth`` does.
 
         Parameters
         ----------
         path : str or path
-            A map: .vti, .npy, .nrrd, .mhd, .tesr or .raw.
+            Labels (.vti, .npy, .nrrd, .mhd, .tesr, .raw) or orientations as EBSD measures them (.ang, .ctf).
         threads, progress
             As of :meth:`generate`.
         **options
-            How the map is read, by the names of that command's options: such as ``label_array``, ``spacing``, ``axes``, ``crop``,
-            ``exterior_label``, ``min_voxels``, and for .raw ``shape`` and ``type``.
+            How the map is read and cleaned, see :class:`grainsmooth.MapOptions`.
 
         Returns
         -------
@@ -219,25 +233,143 @@ class Polycrystal:
             Its grains count from 0 in the order of their labels, which :attr:`seed_id` has.
         """
         with told(progress) as tell:
-            made = _grainsmooth.of_map(os.fspath(path), options, _inputs.thread_count(threads), tell)
+            made = _grainsmooth.of_map(os.fspath(path), dict(options), _inputs.thread_count(threads), tell)
+        return cls._of(made, {}, None)
+
+    @classmethod
+    def from_orientations(
+        cls,
+        euler_angles: npt.ArrayLike,
+        *,
+        spacing: float | tuple[float, float] = 1.0,
+        phases: Mapping[str, str] | None = None,
+        phase: npt.ArrayLike | None = None,
+        threshold: float = 5.0,
+        min_voxels: int = 1,
+        min_pore: int | None = None,
+        threads: int | None = None,
+        progress: Progress = False,
+    ) -> Polycrystal:
+        """Find the grains of a map of orientations, as EBSD measures it, and make their smooth network.
+
+        Parameters
+        ----------
+        euler_angles : array_like of float, shape (nx, ny, 3)
+            Bunge's angles of each point in degrees, indexed as ``euler_angles[x, y]``; NaN where the pattern has no solution.
+        spacing : float or tuple of float, optional
+            Distance of neighbouring points, or that along x and that along y.
+        phases : mapping of str to str, optional
+            The crystal symmetry of each phase by its name, such as ``{"iron": "cubic"}``; where it is not given there is one, which is cubic.
+        phase : array_like of int, shape (nx, ny), optional
+            The phase of each point, by its place among ``phases`` from 0; below 0 the point has none.
+        threshold : float, optional
+            Degrees: neighbouring points of one phase that differ by more are in different grains.
+        min_voxels : int, optional
+            Grains of fewer points go to their neighbours.
+        min_pore : int, optional
+            So many points side by side without a solution are a pore; fewer, and all where it is not given, are filled from their neighbours.
+        threads, progress
+            As of :meth:`generate`.
+
+        Returns
+        -------
+        Polycrystal
+            In the plane; each grain has the mean orientation of its points, see :attr:`euler_angles`.
+        """
+        angles = _inputs.array("euler_angles", euler_angles)
+        if angles.ndim != 3 or angles.shape[2] != 3 or angles.size == 0:
+            raise ValueError(f"euler_angles: give an array of shape (nx, ny, 3), not {angles.shape}")
+        is_solved = np.ones(angles.shape[:2], dtype=bool)
+        if angles.dtype.kind == "f":
+            is_solved = ~np.isnan(angles).any(axis=2)
+            angles = np.where(is_solved[..., np.newaxis], angles, 0.0)
+        rows = _inputs.numbers("euler_angles", angles.swapaxes(0, 1), 3).reshape(-1, 3)
+        nx, ny = is_solved.shape
+        if phases is not None and not isinstance(phases, Mapping):
+            raise TypeError(f"phases: give a mapping of names to symmetries, not {phases!r}")
+        known = {"grains": "cubic"} if phases is None else {name: _inputs.text("phases", of) for name, of in phases.items()}
+        of_points = np.zeros((nx, ny), np.int32) if phase is None else _inputs.whole_numbers("phase", phase)
+        if of_points.shape != (nx, ny) or (of_points >= len(known)).any():
+            raise ValueError(f"phase: give a number below {len(known)} for each of {nx} x {ny} points")
+        of_points = np.where(is_solved, of_points, np.int32(-1))
+        width, height, _ = _inputs.edges("spacing", spacing, 2)
+        options = {"threshold": threshold, "min_voxels": min_voxels, "min_pore": min_pore, "spacing": [width, height]}
+        with told(progress) as tell:
+            made = _grainsmooth.of_orientations(
+                rows,
+                of_points.ravel(order="F"),
+                (nx, ny),
+                list(known.items()),
+                options,
+                _inputs.thread_count(threads),
+                tell,
+            )
+        return cls._of(made, {}, None)
+
+    @classmethod
+    def from_arrays(
+        cls, points: npt.ArrayLike, elements: npt.ArrayLike, face_labels: npt.ArrayLike, *, threads: int | None = None
+    ) -> Polycrystal:
+        """Take a network that is there, such as another program's.
+
+        Parameters
+        ----------
+        points : array_like of float, shape (n, 3), or (n, 2) in the plane
+            Each point once: boundaries that meet share points.
+        elements : array_like of int, shape (m, 3), in the plane (m, 2)
+            The points of triangles, in the plane of segments.
+        face_labels : array_like of int, shape (m, 2)
+            The grains on both sides of each, below 0 outside. Normals point from the first side to the second, or all of them the other way.
+        threads : int, optional
+            As of :meth:`generate`.
+
+        Returns
+        -------
+        Polycrystal
+            Its grains count from 0 in the order of their labels, which :attr:`seed_id` has.
+
+        Raises
+        ------
+        ValueError
+            Grains that are not closed, or cross.
+        """
+        places = _inputs.points("points", points)
+        given = _inputs.array("elements", elements)
+        if given.ndim != 2 or given.shape[1] not in (2, 3):
+            raise ValueError(f"elements: give an array of shape (m, 3), or (m, 2) in the plane, not {given.shape}")
+        labels = _inputs.whole_numbers("face_labels", face_labels)
+        if labels.shape != (len(given), 2) or len(labels) == 0:
+            raise ValueError(f"face_labels: give an array of shape ({len(given)}, 2), not {labels.shape}")
+        grains, numbers = np.unique(np.maximum(labels, -1), return_inverse=True)
+        first = int(np.searchsorted(grains, 0))
+        made = _grainsmooth.of_arrays(
+            places,
+            _inputs.indices("elements", given, len(places)),
+            np.ascontiguousarray(numbers.reshape(labels.shape) - first, dtype=np.int32),
+            np.ascontiguousarray(grains[first:], dtype=np.uint32),
+            _inputs.thread_count(threads),
+        )
         return cls._of(made, {}, None)
 
     def _whole(self) -> _grainsmooth.Polycrystal:
-        """All that is known of it; where it came as arrays, it is made once more and compared."""
+        """All that is known of it. Where it came as arrays, these are measured, or it is made once more by its settings and compared."""
         if self._made is None:
             if self._settings is None:
-                raise ValueError("only arrays are known of this polycrystal: it came without the settings that make it")
+                names = ("points", "elements", "face_labels", "seed_id")
+                self._made = _grainsmooth.of_arrays(*(self._arrays[name] for name in names), 0)
+                return self._made
             made = _grainsmooth.of_settings(self._settings, 0, None)
             if not np.array_equal(made.points, self._arrays["points"]):
-                raise ValueError("its settings make other points here: it comes from another version of grainsmooth")
+                raise ValueError(
+                    "its settings make other points here: it comes from another version of grainsmooth; take its arrays by Polycrystal.from_arrays"
+                )
             self._made = made
         return self._made
 
     def _array(self, name: str) -> npt.NDArray[Any]:
-        if self._made is not None:
-            array: npt.NDArray[Any] = getattr(self._made, name)
-            return array
-        return self._arrays[name]
+        known = self._arrays.get(name)
+        array: npt.NDArray[Any] = getattr(self._whole(), name) if known is None else known
+        return array
 
     @property
     def points(self) -> Floats:
@@ -301,7 +433,7 @@ class Polycrystal:
     @property
     def seed_id(self) -> npt.NDArray[np.uint32]:
         """The number of each grain's seed, or its label in the map, uint32 of shape (grains,)."""
-        return self._whole().seed_id
+        return self._array("seed_id")
 
     @property
     def phases(self) -> list[str]:
@@ -375,11 +507,11 @@ class Polycrystal:
         numpy.ndarray of int32, shape (nx, ny, nz), in the plane (nx, ny)
             Grains from 0, -1 outside; in Fortran order, as DAMASK takes it.
         """
-        counts = np.atleast_1d(np.asarray(shape))
+        counts = np.atleast_1d(_inputs.whole_numbers("shape", shape))
         dimension = self.dimension
         if counts.shape == (1,):
             counts = np.repeat(counts, dimension)
-        if counts.dtype.kind not in "iu" or counts.shape != (dimension,) or (counts < 1).any() or (counts > 65_536).any():
+        if counts.shape != (dimension,) or (counts < 1).any() or (counts > 65_536).any():
             raise ValueError(f"shape: give {dimension} whole numbers from 1 to 65536, not {shape!r}")
         nx, ny, nz = (*(int(count) for count in counts), 1)[:3]
         labels = self._whole().voxelize((nx, ny, nz), _inputs.thread_count(threads))
@@ -410,6 +542,30 @@ class Polycrystal:
         """Write a page (.html) with a view of the grains to rotate, histograms and the figures of the run."""
         self._whole().report(os.fspath(path))
 
+    def view(self) -> View:
+        """Grains to turn, hide and cut in a notebook, where a cell ends with this; about 2 MB are kept in the notebook."""
+        with tempfile.TemporaryDirectory() as folder:
+            page = pathlib.Path(folder) / "view.html"
+            self.report(page)
+            return View(page.read_text(encoding="utf-8"))
+
+    def tetrahedra(self, *, threads: int | None = None) -> Tetrahedra:
+        """Fill the grains with tetrahedra between the triangles of their boundaries, which stay as they are. Needs Gmsh.
+
+        Parameters
+        ----------
+        threads : int, optional
+            As of :meth:`generate`.
+
+        Returns
+        -------
+        Tetrahedra
+            Its first points are those of the network, by the same numbers.
+        """
+        if self.dimension == 2:
+            raise ValueError("grains in the plane hold no tetrahedra")
+        return Tetrahedra(*self._whole().tetrahedra(_inputs.thread_count(threads)))
+
     def picture(
         self,
         path: str | os.PathLike[str] | None = None,
@@ -436,7 +592,10 @@ class Polycrystal:
         bytes
             The picture as PNG.
         """
-        png = self._whole().png(size, color_by, explode)
+        pixels = _inputs.whole_numbers("size", size)
+        if pixels.shape != (2,) or (pixels < 16).any() or (pixels > 16_384).any():
+            raise ValueError(f"size: give two numbers of pixels from 16 to 16384, not {size!r}")
+        png = self._whole().png(pixels.tolist(), _inputs.text("color_by", color_by), _inputs.number("explode", explode))
         if path is not None:
             with open(path, "wb") as file:
                 file.write(png)
@@ -517,7 +676,8 @@ class Polycrystal:
         return str(self._whole())
 
     def __reduce__(self) -> tuple[Any, ...]:
-        arrays = {name: np.array(self._array(name)) for name in _ARRAYS}
+        names = _ARRAYS if self._settings is not None else (*_ARRAYS, "seed_id")
+        arrays = {name: np.array(self._array(name)) for name in names}
         return (_unpickled, (_FORMAT, arrays, self._settings))
 
 

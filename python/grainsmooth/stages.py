@@ -50,10 +50,10 @@ class Tessellation:
         weights: npt.ArrayLike | None = None,
         threads: int | None = None,
     ) -> None:
-        given = np.asarray(seeds)
+        given = _inputs.array("seeds", seeds)
         array = _inputs.points("seeds", given)
         dimension = int(given.shape[1])
-        if not set(periodic) <= set("xyz"[:dimension]):
+        if not isinstance(periodic, str) or not set(periodic) <= set("xyz"[:dimension]):
             raise ValueError(f"periodic: give some of the axes {'xyz'[:dimension]}, not {periodic!r}")
         of_seeds = None if weights is None else _inputs.numbers("weights", weights, 1)
         if of_seeds is not None and len(of_seeds) != len(array):
@@ -117,9 +117,8 @@ class Tessellation:
         Network
             At level 0.
         """
-        if isinstance(levels, bool) or not isinstance(levels, (int, np.integer)) or not 0 <= levels <= 12:
-            raise ValueError(f"levels: give a whole number from 0 to 12, not {levels!r}")
-        return Network._of(self._cells.network(int(levels), _inputs.thread_count(threads)))
+        count = _inputs.count("levels", levels, 0, 12)
+        return Network._of(self._cells.network(count, _inputs.thread_count(threads)))
 
 
 def tessellate(
@@ -209,10 +208,11 @@ class Network:
         Network
             At the level whose points were moved.
         """
-        if time is not None and not time >= 0.0:
+        end = None if time is None else _inputs.number("time", time)
+        if end is not None and end < 0.0:
             raise ValueError(f"time: give 0 or a positive number, not {time!r}")
         with told(progress) as tell:
-            return Network._of(self._network.relax(time, _inputs.thread_count(threads), tell))
+            return Network._of(self._network.relax(end, _inputs.thread_count(threads), tell))
 
     def subdivide(self, times: int | None = None, *, threads: int | None = None) -> Network:
         """Make boundaries smooth by Loop's scheme, with triple lines as B-splines.
@@ -229,7 +229,8 @@ class Network:
         Network
             At the level that was reached.
         """
-        return Network._of(self._network.subdivide(times, _inputs.thread_count(threads)))
+        count = None if times is None else _inputs.count("times", times, 0, 99)
+        return Network._of(self._network.subdivide(count, _inputs.thread_count(threads)))
 
     def __repr__(self) -> str:
         return f"<grainsmooth.Network: level {self.level} of {self._network.levels}, {len(self.points)} points>"

@@ -78,26 +78,33 @@ def subdivide(
     (64, 3)
     """
     array = _inputs.points("points", points)
-    if isinstance(levels, bool) or not isinstance(levels, (int, np.integer)) or not 0 <= levels <= 99:
-        raise ValueError(f"levels: give a whole number from 0 to 99, not {levels!r}")
+    count = _inputs.count("levels", levels, 0, 99)
+    if not isinstance(faces, np.ndarray) and not isinstance(faces, Sequence):
+        raise TypeError(f"faces: give an array or a list of lists, not {faces!r}")
     lists = [_inputs.indices(f"faces[{number}]", face, len(array)).tolist() for number, face in enumerate(faces)]
-    sharp = creases.items() if isinstance(creases, Mapping) else [(ends, np.inf) for ends in creases]
     edges = []
-    for pair, sharpness in sharp:
+    for pair, sharpness in _sharp("creases", creases):
         ends = _inputs.indices("creases", pair, len(array))
         if ends.shape != (2,):
-            raise ValueError(f"creases: {ends.tolist()} is no edge; give two points")
-        edges.append(((int(ends[0]), int(ends[1])), _sharpness("creases", sharpness)))
-    fixed = corners.items() if isinstance(corners, Mapping) else [(corner, np.inf) for corner in corners]
-    kept = [
-        (int(_inputs.indices("corners", [corner], len(array))[0]), _sharpness("corners", sharpness))
-        for corner, sharpness in fixed
-    ]
-    made = _grainsmooth.subdivide(array, lists, scheme, int(levels), edges, kept, limits)
+            raise ValueError(f"creases: {pair!r} is no edge; give two points")
+        edges.append(((int(ends[0]), int(ends[1])), sharpness))
+    kept = []
+    for corner, sharpness in _sharp("corners", corners):
+        point = _inputs.indices("corners", corner, len(array))
+        if point.shape != ():
+            raise ValueError(f"corners: {corner!r} is no point; give its number")
+        kept.append((int(point), sharpness))
+    made = _grainsmooth.subdivide(array, lists, _inputs.text("scheme", scheme), count, edges, kept, limits)
     return Subdivided(made["points"], made["faces"], made.get("limits"), made.get("normals"))
 
 
-def _sharpness(name: str, sharpness: float) -> float:
-    if not sharpness >= 0.0:
-        raise ValueError(f"{name}: a sharpness is 0 or a positive number, not {sharpness!r}")
-    return float(sharpness)
+def _sharp(name: str, given: Any) -> list[tuple[Any, float]]:
+    """Edges or points, each with its sharpness."""
+    if not isinstance(given, (Mapping, Sequence, np.ndarray)) or isinstance(given, str):
+        raise TypeError(f"{name}: give a list, or a mapping to sharpnesses, not {given!r}")
+    if not isinstance(given, Mapping):
+        return [(one, np.inf) for one in given]
+    for one, sharpness in given.items():
+        if not isinstance(sharpness, (int, float, np.number)) or not sharpness >= 0.0:
+            raise ValueError(f"{name}: a sharpness is 0 or a positive number, not {sharpness!r} as of {one!r}")
+    return [(one, float(sharpness)) for one, sharpness in given.items()]

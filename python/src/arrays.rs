@@ -1,9 +1,10 @@
 //! Arrays of NumPy on the library's memory, and the library's points from arrays.
 
 use glam::DVec3;
-use numpy::ndarray::{ArrayView1, ArrayView2};
+use numpy::ndarray::{Array2, ArrayView1, ArrayView2};
 use numpy::{
-    Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
+    Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyUntypedArrayMethods,
 };
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -36,8 +37,18 @@ pub fn view_of_points<'py>(owner: &Bound<'py, PyAny>, points: &[DVec3]) -> Bound
     view_of_rows::<f64, 3>(owner, bytemuck::cast_slice(points))
 }
 
+/// A new array of rows.
+pub fn rows<'py, T: Element, const N: usize>(py: Python<'py>, rows: Vec<[T; N]>) -> Bound<'py, PyArray2<T>> {
+    Array2::from(rows).into_pyarray(py)
+}
+
+/// A new array of points.
+pub fn new_points<'py>(py: Python<'py>, points: &[DVec3]) -> Bound<'py, PyArray2<f64>> {
+    rows(py, points.iter().map(|point| point.to_array()).collect())
+}
+
 /// The rows of an array, which lie behind each other in memory: `as_slice` alone would take columns for rows.
-fn rows_of<'a, T: Element, const N: usize>(
+pub fn rows_of<'a, T: Element, const N: usize>(
     name: &str,
     array: &'a PyReadonlyArray2<'_, T>,
 ) -> PyResult<&'a [[T; N]]> {

@@ -11,6 +11,7 @@ mod polycrystal;
 mod reading;
 mod run;
 mod subdivision;
+mod surface;
 mod tessellation;
 
 /// The module that the package `grainsmooth` is made of.
@@ -21,17 +22,17 @@ mod _grainsmooth {
     #[pymodule_export]
     use crate::errors::InternalError;
     #[pymodule_export]
-    use crate::maps::{of_labels, of_map};
+    use crate::maps::{of_labels, of_map, of_orientations};
     #[pymodule_export]
     use crate::network::Network;
-    #[pymodule_export]
-    use crate::options::options;
     #[pymodule_export]
     use crate::polycrystal::{Polycrystal, generate, of_settings};
     #[pymodule_export]
     use crate::reading::{check, measure, read};
     #[pymodule_export]
     use crate::subdivision::subdivide;
+    #[pymodule_export]
+    use crate::surface::of_arrays;
     #[pymodule_export]
     use crate::tessellation::{Tessellation, tessellate, tessellation_of};
 

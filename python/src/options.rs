@@ -1,7 +1,6 @@
 //! The program's options as keywords.
 
-use clap::builder::ValueRange;
-use clap::{ArgAction, CommandFactory};
+use grainsmooth::Config;
 use grainsmooth::cli::{Arguments, OptionValue};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -12,6 +11,11 @@ use crate::errors::to_python;
 /// The arguments that keywords give.
 pub fn arguments(keywords: &Bound<'_, PyDict>) -> PyResult<Arguments> {
     Arguments::of_options(&given(keywords)?).map_err(to_python)
+}
+
+/// The config that keywords give.
+pub fn config(keywords: &Bound<'_, PyDict>) -> PyResult<Config> {
+    arguments(keywords)?.config().map_err(to_python)
 }
 
 /// Keywords as options: a long name has `_` for `-`, and `None` is not given.
@@ -58,36 +62,4 @@ fn option_value(name: &str, value: &Bound<'_, PyAny>) -> PyResult<OptionValue> {
         "{name}: give a number, a text, a path, True or False, or a list of them; {} given",
         value.get_type().name()?
     )))
-}
-
-/// Each option of the program: `name`, `heading`, `help`, `default`, `values`, `count` (least and most values) and `kind`: `flag`, `value` or `repeated`.
-#[pyfunction]
-pub fn options(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    let mut command = Arguments::command();
-    command.build();
-    let mut all = Vec::new();
-    for argument in command.get_arguments() {
-        let Some(name) = argument.get_long() else { continue };
-        let count = argument.get_num_args().unwrap_or(ValueRange::SINGLE);
-        let kind = match argument.get_action() {
-            ArgAction::SetTrue | ArgAction::Help | ArgAction::Version => "flag",
-            ArgAction::Append if count.max_values() == 1 => "repeated",
-            _ => "value",
-        };
-        let help = argument.get_long_help().or_else(|| argument.get_help()).map(ToString::to_string);
-        let default: Vec<String> =
-            argument.get_default_values().iter().map(|value| value.to_string_lossy().into_owned()).collect();
-        let values: Vec<String> =
-            argument.get_possible_values().iter().map(|value| value.get_name().to_owned()).collect();
-        let option = PyDict::new(py);
-        option.set_item("name", name.replace('-', "_"))?;
-        option.set_item("heading", argument.get_help_heading().unwrap_or_default())?;
-        option.set_item("help", help.unwrap_or_default())?;
-        option.set_item("default", if kind == "flag" { String::new() } else { default.join(" ") })?;
-        option.set_item("values", if kind == "flag" { Vec::new() } else { values })?;
-        option.set_item("count", (count.min_values(), count.max_values().min(3)))?;
-        option.set_item("kind", kind)?;
-        all.push(option);
-    }
-    Ok(all)
 }

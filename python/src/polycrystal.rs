@@ -17,9 +17,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-use crate::arrays::{view, view_of_points, view_of_rows};
+use crate::arrays::{new_points, rows, view, view_of_points, view_of_rows};
 use crate::errors::{invalid, to_python};
-use crate::options::arguments;
+use crate::options::{arguments, config};
 use crate::run::run;
 
 /// A finished polycrystal and what NumPy sees of it, which is made when it is first asked for.
@@ -67,7 +67,7 @@ pub fn generate(
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Polycrystal> {
-    let config = arguments(options)?.config().map_err(to_python)?;
+    let config = config(options)?;
     run(py, threads, progress, move |tell| make(&config, tell))
 }
 
@@ -250,6 +250,24 @@ impl Polycrystal {
         })
     }
 
+    /// Tetrahedra that fill the grains: their points, corners and grains.
+    fn tetrahedra<'py>(
+        &self,
+        py: Python<'py>,
+        threads: usize,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>, Bound<'py, PyArray1<i32>>)> {
+        let made = Arc::clone(&self.made);
+        let filled = run(py, threads, None, move |tell| {
+            tell(Stage::Filling, 0, 1);
+            if made.volume_mesh.is_some() { Ok(made) } else { Arc::unwrap_or_clone(made).filled().map(Arc::new) }
+        })?;
+        let mesh = filled.volume_mesh.as_ref();
+        let mesh = mesh.ok_or_else(|| PyValueError::new_err("grains in the plane hold no tetrahedra"))?;
+        let grains = mesh.grains.iter().map(|grain| grain.0.cast_signed());
+        let grains = PyArray1::from_vec(py, grains.collect());
+        Ok((new_points(py, &mesh.points), rows(py, mesh.tetrahedra.clone()), grains))
+    }
+
     /// Writes the page with a view of the grains, histograms and figures.
     fn report(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let output = Output::check_as(path, Html).map_err(to_python)?;
@@ -266,9 +284,7 @@ impl Polycrystal {
                 "the grains have no orientations; give them some, such as texture=\"random\"",
             )
         })?;
-        let angles: Vec<f64> = texture.orientations().iter().flat_map(|one| one.euler_degrees()).collect();
-        let count = texture.orientations().len();
-        PyArray1::from_vec(py, angles).reshape([count, 3])
+        Ok(rows(py, texture.orientations().iter().map(|one| one.euler_degrees()).collect()))
     }
 
     /// The number of the seed, or the map's label, of each grain.
@@ -294,12 +310,11 @@ fn picture([width, height]: [u16; 2], color_by: &str, explode: f64) -> PyResult<
         let known = Coloring::ALL.map(Coloring::name).join(", ");
         PyValueError::new_err(format!("color_by: {color_by:?} is none of {known}"))
     })?;
-    let side = |side: u16| {
-        let fits = NonZeroU16::new(side).filter(|side| (16..=16_384).contains(&side.get()));
-        fits.ok_or_else(|| PyValueError::new_err("size: give two numbers of pixels from 16 to 16384"))
-    };
     if !(0.0..=10.0).contains(&explode) {
         return Err(PyValueError::new_err("explode: give a number from 0 (whole) to 10"));
     }
+    let side = |side: u16| {
+        NonZeroU16::new(side).ok_or_else(|| PyValueError::new_err("size: give two numbers of pixels"))
+    };
     Ok(Picture { size: [side(width)?, side(height)?], coloring, explode, ..Picture::default() })
 }

@@ -2,39 +2,43 @@
 
 use std::path::PathBuf;
 
+use glam::DVec3;
 use grainsmooth::polycrystal::{NodeType, Side};
 use grainsmooth::voronoi::Dimension;
 use grainsmooth::{CheckReport, Error, FileElements, LabelledFile, MeasuredSample, SampleReport};
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::arrays::{new_points, rows};
 use crate::errors::invalid;
 use crate::run::run;
 
-/// The arrays of a network's file and its settings.
+/// The arrays of a network's file and its settings. Grains count from 0 in the order of their labels, which `seed_id` has.
 #[pyfunction]
 pub fn read(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>> {
     let file = run(py, 0, None, move |_| LabelledFile::read(&path))?;
     let read = PyDict::new(py);
-    let points: Vec<f64> = file.points.iter().flat_map(|point| (*point * file.stretch).to_array()).collect();
-    read.set_item("points", PyArray1::from_vec(py, points).reshape([file.points.len(), 3])?)?;
-    let (elements, corners) = match &file.elements {
-        FileElements::Triangles(triangles) => (triangles.as_flattened().to_vec(), 3),
-        FileElements::Segments(segments) => (segments.as_flattened().to_vec(), 2),
-    };
-    let count = elements.len() / corners;
-    read.set_item("elements", PyArray1::from_vec(py, elements).reshape([count, corners])?)?;
-    let number = |side: Side| side.grain().map_or(-1, |grain| grain.0.cast_signed());
-    let labels = file.boundary_of.iter().flat_map(|boundary| file.sides[boundary.index()].map(number));
-    read.set_item("face_labels", PyArray1::from_vec(py, labels.collect()).reshape([count, 2])?)?;
+    let points: Vec<DVec3> = file.points.iter().map(|point| *point * file.stretch).collect();
+    read.set_item("points", new_points(py, &points))?;
+    match &file.elements {
+        FileElements::Triangles(triangles) => read.set_item("elements", rows(py, triangles.clone()))?,
+        FileElements::Segments(segments) => read.set_item("elements", rows(py, segments.clone()))?,
+    }
+    let grains = file.labels_of_grains();
+    let number = |side: Side| side.grain().and_then(|grain| grains.binary_search(&grain).ok());
+    let number = |side: Side| number(side).map_or(-1, |number| i32::try_from(number).unwrap_or(i32::MAX));
+    let labels: Vec<[i32; 2]> = file.sides.iter().map(|sides| sides.map(number)).collect();
+    let of_elements = file.boundary_of.iter().map(|boundary| labels[boundary.index()]);
+    read.set_item("face_labels", rows(py, of_elements.collect()))?;
     let boundary_id = file.boundary_of.iter().map(|boundary| boundary.0.cast_signed());
     read.set_item("boundary_id", PyArray1::from_vec(py, boundary_id.collect()))?;
     let code = |of: &Option<NodeType>| of.map_or(0, NodeType::code);
     let node_types =
         file.node_types.as_ref().map(|types| PyArray1::from_vec(py, types.iter().map(code).collect()));
     read.set_item("node_types", node_types)?;
+    read.set_item("seed_id", PyArray1::from_vec(py, grains.iter().map(|grain| grain.0).collect()))?;
     read.set_item("settings", file.settings.as_ref().map(ToString::to_string))?;
     Ok(read)
 }

@@ -6,12 +6,12 @@ use glam::DVec3;
 use grainsmooth::mesh::file::MeshFile;
 use grainsmooth::subzero::{BoundaryRule, Crease, DooSabinWeights, LoopWeights};
 use grainsmooth::{Connectivity, Error, Scheme, limits};
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2};
+use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::points as points_of;
+use crate::arrays::{new_points, points as points_of, rows};
 use crate::run::run;
 
 /// What errors name as the source.
@@ -36,7 +36,7 @@ fn scheme_of(name: &str) -> PyResult<(Scheme, bool)> {
     })
 }
 
-/// The last level: `points`, `faces` (of curves, polylines), `face_starts`, and where they are asked for `limits` and `normals`.
+/// The last level: `points`, `faces` (of curves, polylines), and where they are asked for `limits` and `normals`.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "keywords of a function of Python")]
 pub fn subdivide<'py>(
@@ -67,22 +67,16 @@ pub fn subdivide<'py>(
         Ok((level, limits))
     })?;
     let result = PyDict::new(py);
-    let count = level.points.len();
-    let flat = |points: &[DVec3]| points.iter().flat_map(|point| point.to_array()).collect();
-    result.set_item("points", PyArray1::from_vec(py, flat(&level.points)).reshape([count, 3])?)?;
+    result.set_item("points", new_points(py, &level.points))?;
     match &level.mesh {
-        Connectivity::Triangles(mesh) => {
-            let triangles = mesh.triangles();
-            let flat = PyArray1::from_vec(py, triangles.as_flattened().to_vec());
-            result.set_item("faces", flat.reshape([triangles.len(), 3])?)?;
-        }
+        Connectivity::Triangles(mesh) => result.set_item("faces", rows(py, mesh.triangles().to_vec()))?,
         other => result.set_item("faces", other.faces())?,
     }
     if let Some(limits) = limits {
         let normals: Vec<DVec3> = limits.normals.iter().map(|normal| normal.unwrap_or(DVec3::NAN)).collect();
-        result.set_item("limits", PyArray1::from_vec(py, flat(&limits.positions)).reshape([count, 3])?)?;
-        if normals.len() == count {
-            result.set_item("normals", PyArray1::from_vec(py, flat(&normals)).reshape([count, 3])?)?;
+        result.set_item("limits", new_points(py, &limits.positions))?;
+        if normals.len() == level.points.len() {
+            result.set_item("normals", new_points(py, &normals))?;
         }
     }
     Ok(result)

@@ -5,15 +5,15 @@ use std::sync::Arc;
 use glam::{BVec3, DVec3};
 use grainsmooth::polycrystal::Junctions;
 use grainsmooth::voronoi::{self, CellId, Domain, Side};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{list, points, view, view_of_points};
-use crate::errors::{invalid, to_python};
+use crate::arrays::{list, new_points, points, view, view_of_points};
+use crate::errors::invalid;
 use crate::network::Network;
-use crate::options::arguments;
+use crate::options::config;
 use crate::run::run;
 
 /// Voronoi or power cells of seeds in a box.
@@ -39,7 +39,7 @@ pub fn tessellate(
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Tessellation> {
-    let config = arguments(options)?.config().map_err(to_python)?;
+    let config = config(options)?;
     run(py, threads, progress, move |tell| {
         let made = grainsmooth::tessellate(&config, tell)?.stretched(&config);
         Ok(Tessellation::new(made.tessellation, made.weights))
@@ -99,11 +99,8 @@ impl Tessellation {
     }
 
     #[getter]
-    fn centroids<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let centroids = self.cells.centroids();
-        let count = centroids.len();
-        PyArray1::from_vec(py, centroids.iter().flat_map(|point| point.to_array()).collect())
-            .reshape([count, 3])
+    fn centroids<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        new_points(py, &self.cells.centroids())
     }
 
     /// The vertices of each face, and the two cells that it lies between; -1 for a wall.

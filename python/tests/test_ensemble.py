@@ -5,6 +5,9 @@ from __future__ import annotations
 import os
 import pathlib
 import signal
+import subprocess
+import sys
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -69,33 +72,40 @@ def test_lists_may_vary() -> None:
     assert volumes.to_dict() == {"[1, 1, 1]": pytest.approx(0.2), "[2, 1, 1]": pytest.approx(0.4)}
 
 
-def test_an_interrupted_study_goes_on(tmp_path: pathlib.Path) -> None:
+#: A study whose process the system kills after two runs.
+KILLED = """
+import os, signal, sys
+import grainsmooth
+
+def kill(stage, done, count):
+    if done == 2:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+if __name__ == "__main__":
+    grainsmooth.ensemble({base}, {{"seeds": [5, 6]}}, 3, folder=sys.argv[1], workers=1, progress=kill)
+"""
+
+
+def test_a_study_that_is_killed_goes_on(tmp_path: pathlib.Path) -> None:
     needed("pyarrow")
     whole = grainsmooth.ensemble(BASE, {"seeds": [5, 6]}, 3, workers=1)
-
-    class Stop(Exception):
-        pass
-
-    def stop(stage: str, done: int, count: int) -> None:
-        if done == 2:
-            raise Stop
-
-    with pytest.raises(Stop):
-        grainsmooth.ensemble(BASE, {"seeds": [5, 6]}, 3, folder=tmp_path, workers=1, progress=stop)
-    journal = tmp_path / JOURNAL
+    script, folder = tmp_path / "study.py", tmp_path / "study"
+    script.write_text(KILLED.format(base=BASE))
+    assert subprocess.run([sys.executable, script, folder]).returncode == -signal.SIGKILL
+    journal = folder / JOURNAL
     assert len(journal.read_text().splitlines()) == 2
-    # A crash cut the last line.
+    # As if it had been killed while it wrote a line.
     with open(journal, "a") as file:
         file.write('{"index": 5, "rng')
     told: list[int] = []
     study = grainsmooth.ensemble(
-        BASE, {"seeds": [5, 6]}, 3, folder=tmp_path, workers=1, progress=lambda _, done, __: told.append(done)
+        BASE, {"seeds": [5, 6]}, 3, folder=folder, workers=1, progress=lambda _, done, __: told.append(done)
     )
     assert told == [3, 4, 5, 6]
     assert without_time(study._rows) == without_time(whole._rows)
     assert len(journal.read_text().splitlines()) == 6
     with pytest.raises(ValueError, match="another study"):
-        grainsmooth.ensemble(BASE, {"seeds": [5, 7]}, 3, folder=tmp_path)
+        grainsmooth.ensemble(BASE, {"seeds": [5, 7]}, 3, folder=folder)
 
 
 def test_failed_runs_are_made_again_only_when_asked(tmp_path: pathlib.Path) -> None:
@@ -154,19 +164,65 @@ def test_killed_processes_lose_no_run(tmp_path: pathlib.Path, monkeypatch: pytes
     assert errors[3] == "its process was killed 3 times" and errors.drop(index=3).isna().all()
 
 
-def test_a_cluster_makes_the_same_and_survives_its_workers() -> None:
+@pytest.fixture(scope="module")
+def client() -> Iterator[Any]:
+    """Two workers of one thread each."""
     distributed = needed("distributed")
-    whole = grainsmooth.ensemble(BASE, {"seeds": [30]}, 60, workers=1)
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
         with distributed.Client(cluster) as client:
-            killed: list[int] = []
+            yield client
 
-            def kill(stage: str, done: int, count: int) -> None:
-                if done == 20:
-                    pid = next(iter(client.run(os.getpid).values()))
-                    os.kill(pid, signal.SIGKILL)
-                    killed.append(pid)
 
-            study = grainsmooth.ensemble(BASE, {"seeds": [30]}, 60, client=client, progress=kill)
+def gaps_and_busy(client: Any, count: int) -> tuple[float, float]:
+    """The median time between two runs of a worker, and the share of its time that it is busy."""
+    with needed("distributed").get_task_stream(client) as stream:
+        grainsmooth.ensemble({"seeds": 30, "levels": 1}, {}, count, client=client)
+    spans: dict[str, list[tuple[float, float]]] = {}
+    for task in stream.data:
+        spans.setdefault(task["worker"], []).extend(
+            (part["start"], part["stop"]) for part in task["startstops"] if part["action"] == "compute"
+        )
+    assert len(spans) == 2
+    gaps, busy, all_time = [], 0.0, 0.0
+    for of_worker in spans.values():
+        of_worker.sort()
+        gaps += [after[0] - before[1] for before, after in zip(of_worker, of_worker[1:])]
+        busy += sum(stop - start for start, stop in of_worker)
+        all_time += of_worker[-1][1] - of_worker[0][0]
+    return float(np.median(gaps)), busy / all_time
+
+
+def test_workers_of_a_cluster_are_kept_busy(client: Any) -> None:
+    # Once of three times: others may use this machine.
+    found = []
+    for _ in range(3):
+        gap, busy = gaps_and_busy(client, 24)
+        found.append((gap, busy))
+        if gap <= 0.005 and busy >= 0.97:
+            return
+    raise AssertionError(found)
+
+
+def test_a_cluster_makes_the_same_and_survives_its_workers(client: Any) -> None:
+    whole = grainsmooth.ensemble(BASE, {"seeds": [30]}, 60, workers=2)
+    killed: list[int] = []
+
+    def kill(stage: str, done: int, count: int) -> None:
+        if done == 20:
+            pid = next(iter(client.run(os.getpid).values()))
+            os.kill(pid, signal.SIGKILL)
+            killed.append(pid)
+
+    study = grainsmooth.ensemble(BASE, {"seeds": [30]}, 60, client=client, progress=kill)
     assert killed
     assert without_time(study._rows) == without_time(whole._rows)
+
+
+def failing(run: Run, files: str | None) -> dict[str, Any]:
+    raise RuntimeError(f"run {run.index}")
+
+
+def test_what_a_cluster_raises_is_a_row(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(grainsmooth.ensemble.__globals__, "run_once", failing)
+    errors = grainsmooth.ensemble(BASE, {"seeds": [5]}, 2, client=client).runs["error"]
+    assert errors.tolist() == ["RuntimeError: run 0", "RuntimeError: run 1"]

@@ -4,47 +4,21 @@ from __future__ import annotations
 
 import inspect
 import pathlib
-import re
 import subprocess
-import sys
 
 import numpy as np
 import pytest
 
 import grainsmooth
-from grainsmooth import _grainsmooth
 
-PYTHON = pathlib.Path(__file__).parent.parent
-sys.path.insert(0, str(PYTHON / "tools"))
-
-import options as tool  # noqa: E402
-
-PROGRAM = PYTHON.parent / "target" / "debug" / "grainsmooth"
-
-
-def test_every_option_is_a_keyword_or_left_out_for_a_reason() -> None:
-    known = {option["name"] for option in _grainsmooth.options()}
-    assert set(tool.LEFT_OUT) <= known
-    assert set(grainsmooth.Options.__annotations__) == known - set(tool.LEFT_OUT)
-
-
-def keywords(text: str) -> list[str]:
-    """The names and types; help, which is the program's, may be worded anew there first."""
-    return re.findall(r"^    (\w+: [^\n]*[\w\]])$", text, re.M)
-
-
-def test_the_keywords_are_those_of_the_table() -> None:
-    written = keywords(tool.FILE.read_text(encoding="utf-8"))
-    assert len(written) >= len(grainsmooth.Options.__annotations__)
-    known = grainsmooth.Options.__annotations__
-    of_options = [line for line in written if line.split(":")[0] in known]
-    expected = [line for line in keywords(tool.text()) if line.split(":")[0] in known]
-    assert of_options == expected, "run `python tools/options.py`"
+PROGRAM = pathlib.Path(__file__).parent.parent.parent / "target" / "debug" / "grainsmooth"
 
 
 def test_notebooks_see_the_options() -> None:
     names = inspect.signature(grainsmooth.Polycrystal.generate).parameters
     assert {"seeds", "levels", "texture", "progress"} <= set(names)
+    # Whether all are there is compared where the program is tested.
+    assert {"rng_seed", "voxels"} <= set(names) and not {"output", "picture", "quiet"} & set(names)
 
 
 MISTAKES = [

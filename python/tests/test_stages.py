@@ -68,68 +68,6 @@ def test_voxels_are_in_the_grains_of_their_centres() -> None:
     np.testing.assert_array_equal(labels, distances.argmin(axis=-1))
 
 
-def test_networks_of_labels_keep_the_volumes_of_their_voxels() -> None:
-    grid = np.indices((14, 14, 14)).reshape(3, -1).T
-    seeds = np.random.default_rng(8).random((6, 3)) * 14
-    labels = np.linalg.norm(grid[:, np.newaxis] - seeds, axis=2).argmin(axis=1).reshape(14, 14, 14) * 10 + 3
-    grains = grainsmooth.Polycrystal.from_labels(labels, spacing=0.5)
-    values, counts = np.unique(labels, return_counts=True)
-    np.testing.assert_array_equal(grains.seed_id, values)
-    np.testing.assert_allclose(grains.volumes, counts * 0.5**3, rtol=1e-9)
-    assert grains.settings is None
-    same = grainsmooth.Polycrystal.from_labels(np.asfortranarray(labels), spacing=(0.5, 0.5, 0.5))
-    np.testing.assert_array_equal(same.points, grains.points)
-
-
-def test_maps_are_read_as_arrays_are(tmp_path: pathlib.Path) -> None:
-    labels = np.zeros((6, 5, 4), dtype=np.uint16)
-    labels[3:] = 7
-    np.save(tmp_path / "map.npy", labels)
-    of_file = grainsmooth.Polycrystal.from_map(tmp_path / "map.npy", spacing=0.25, min_voxels=2)
-    np.testing.assert_array_equal(of_file.points, grainsmooth.Polycrystal.from_labels(labels, spacing=0.25).points)
-    with pytest.raises(ValueError, match="unknown key 'spacin'; did you mean 'spacing'?"):
-        grainsmooth.Polycrystal.from_map(tmp_path / "map.npy", spacin=1)
-    with pytest.raises(FileNotFoundError):
-        grainsmooth.Polycrystal.from_map(tmp_path / "none.npy")
-
-
-WRONG = [
-    (lambda: grainsmooth.Tessellation([[0.5, np.nan, 0.5]]), ValueError, r"seeds\[0, 1\] is nan"),
-    (lambda: grainsmooth.Tessellation([["a", "b", "c"]]), TypeError, "seeds: give numbers"),
-    (lambda: grainsmooth.Tessellation([0.5, 0.5, 0.5]), ValueError, "seeds: give an array of 2 axes"),
-    (lambda: grainsmooth.Tessellation([[0.5] * 4]), ValueError, "seeds: give an array of shape"),
-    (lambda: grainsmooth.Tessellation(SEEDS, weights=[1.0]), ValueError, "weights: give one for each"),
-    (lambda: grainsmooth.Tessellation(SEEDS, box=(1, -1, 1)), ValueError, "box: give a positive length"),
-    (lambda: grainsmooth.Tessellation(SEEDS, periodic="w"), ValueError, "periodic: give some of the axes"),
-    (lambda: grainsmooth.Polycrystal.from_labels(np.ones((3, 3, 3))), TypeError, "labels: give whole numbers"),
-    (lambda: grainsmooth.Polycrystal.from_labels(np.ones(3, dtype=int)), ValueError, "labels: give an array of shape"),
-    (lambda: grainsmooth.subdivide(SEEDS, [[0, 1, 99]]), ValueError, r"faces\[0\]\[2\] is 99"),
-    (lambda: grainsmooth.subdivide(SEEDS, [[0, 1, -1]]), ValueError, r"faces\[0\]\[2\] is -1"),
-    (lambda: grainsmooth.subdivide(SEEDS, [[0.0, 1.0, 2.0]]), TypeError, "faces.0.: give whole numbers"),
-    (lambda: grainsmooth.subdivide(SEEDS, [[0, 1, 2]], "lop"), ValueError, "scheme: \"lop\" is none of"),
-    (lambda: grainsmooth.subdivide(SEEDS, [[0, 1, 2]], levels=-1), ValueError, "levels: give"),
-    (lambda: grainsmooth.subdivide(SEEDS, [[0, 1, 2]], creases=[(0, 1, 2)]), ValueError, "creases"),
-]
-
-
-@pytest.mark.parametrize("call, kind, text", WRONG)
-def test_wrong_arrays_name_the_argument(call, kind, text) -> None:  # type: ignore[no-untyped-def]
-    with pytest.raises(kind, match=text):
-        call()
-
-
-@pytest.mark.parametrize("kind", ["fortran", "float32", "strided", "list"])
-def test_arrays_of_every_layout_are_read_right(kind: str) -> None:
-    exact = np.round(SEEDS * 64) / 64 + np.arange(30)[:, np.newaxis] / 4096
-    given = {
-        "fortran": lambda: np.asfortranarray(exact),
-        "float32": lambda: exact.astype(np.float32),
-        "strided": lambda: np.repeat(exact, 2, axis=0)[::2],
-        "list": exact.tolist,
-    }[kind]()
-    np.testing.assert_array_equal(grainsmooth.Tessellation(given, box=2).seeds, exact)
-
-
 CUBE = (
     [[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)],
     [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]],

@@ -16,7 +16,7 @@ def passes(*words: object) -> None:
 
 def test_types_of_the_package_and_examples() -> None:
     needed("mypy")
-    passes("mypy", "grainsmooth", "tools", "benches", *sorted((PYTHON / "examples").glob("*.py")))
+    passes("mypy", "grainsmooth", "benches", *sorted((PYTHON / "examples").glob("*.py")))
 
 
 def test_stubs_are_those_of_the_module() -> None:

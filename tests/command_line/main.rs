@@ -22,6 +22,7 @@ mod phases;
 mod pictures;
 #[path = "../common/programs.rs"]
 mod programs;
+mod python_keywords;
 mod remedies;
 mod seed_formats;
 mod seed_sources;

@@ -109,6 +109,7 @@ pub use input::texture_file::{OrientationList, read_disorientation_file, read_te
 pub use maps::ebsd_options::{AxisAngle, EbsdOptions};
 pub use maps::label_map::{LabelMap, MeasuredCrystals, MeasuredMap, PointCounts};
 pub use maps::options::{Axes, Crop, MapOptions};
+pub use maps::orientations::OrientationMap;
 pub use maps::read::read_map;
 pub use measure::report::{FittedDistribution, MeasuredPhase, MeasuredTexture, SampleReport};
 pub use measure::sample::{MeasuredGrain, MeasuredSample};
@@ -122,7 +123,7 @@ pub use picture::{Coloring, Picture, Png, Scene, ScenePicture, Shading, Slice};
 pub use report::{Html, SceneReport};
 pub use run::elements_reached::ElementsReached;
 pub use run::measured::{MapRun, smooth_map};
-pub use run::origin::{Measurement, Origin, Synthesis};
+pub use run::origin::{Measurement, Origin, SmoothedMap, Synthesis};
 pub use run::pipeline::{check_expected_size, make_polycrystal, smooth, smooth_watched};
 pub use run::polycrystal::Polycrystal;
 pub use run::regularization::{Reconnected, Regularization};

@@ -10,6 +10,7 @@ mod npy;
 mod nrrd;
 mod number_type;
 pub(crate) mod options;
+pub(crate) mod orientations;
 mod raw;
 pub(crate) mod read;
 mod stored_numbers;

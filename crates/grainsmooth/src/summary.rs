@@ -17,7 +17,7 @@ use crate::figures::significant::significant;
 use crate::grains::texture::TextureLine;
 use crate::{
     Config, EquivalentDiameters, Measurement, Polycrystal, Reconnected, Regularization, SeedSource,
-    ShapesReached, SizesReached, Stage, Synthesis, Tessellated, TriangleAngles, VolumeMesh,
+    ShapesReached, SizesReached, SmoothedMap, Stage, Synthesis, Tessellated, TriangleAngles, VolumeMesh,
 };
 
 /// Degrees of spread above which the points of a grain have hardly one orientation.
@@ -59,7 +59,10 @@ impl fmt::Display for Summary<'_> {
             write_texture(out, cells)?;
         }
         if let Some(measurement) = polycrystal.measurement() {
-            write_map(out, measurement)?;
+            if let Some(map) = &measurement.map {
+                write_map(out, map)?;
+            }
+            write_crystals(out, measurement)?;
         }
         let count = |holds: fn(&Boundary) -> bool| network.boundaries().iter().filter(|b| holds(b)).count();
         let through_walls = count(|boundary| boundary.twin.is_some()) / 2;
@@ -141,9 +144,8 @@ impl fmt::Display for Summary<'_> {
 }
 
 /// What the map was, and what was changed of it.
-fn write_map(out: &mut fmt::Formatter<'_>, measurement: &Measurement) -> fmt::Result {
-    let Measurement { map_shape: [nx, ny, nz], dropped: [grains, voxels], relabelled, points, .. } =
-        measurement;
+fn write_map(out: &mut fmt::Formatter<'_>, map: &SmoothedMap) -> fmt::Result {
+    let SmoothedMap { shape: [nx, ny, nz], dropped: [grains, voxels], relabelled, points } = map;
     match (points, nz) {
         (Some(points), _) => write!(out, "map         {points}")?,
         (None, 1) => write!(out, "map         {nx} x {ny} pixels")?,
@@ -155,8 +157,7 @@ fn write_map(out: &mut fmt::Formatter<'_>, measurement: &Measurement) -> fmt::Re
     if *relabelled > 0 {
         write!(out, "; {relabelled} got another label where a grain touched itself")?;
     }
-    writeln!(out)?;
-    write_crystals(out, measurement)
+    writeln!(out)
 }
 
 /// The phases of measured grains, and how far their points are spread around their mean orientations.

@@ -182,18 +182,40 @@ impl Network {
         }
     }
 
-    /// As [`Self::of_surface`], of grains with known volumes between which there may be pores, and which may be folded.
+    /// As [`Self::of_surface`], of any closed grains, such as another program's file holds: they need not fill the domain, and may be folded. What lies on the domain's walls is known
+    /// as such. Also what [`certify`](crate::certify) finds, whose only faults are folds.
+    ///
+    /// # Errors
+    /// [`NetworkError::Invalid`] with all faults but folds; [`NetworkError::MissingGrain`], [`NetworkError::PeriodicSurface`], [`NetworkError::TooLarge`].
+    ///
+    /// # Panics
+    /// As [`Self::of_surface`].
+    pub fn of_closed_grains(
+        domain: &Domain,
+        surface: &Surface<'_>,
+        junctions: Junctions,
+    ) -> Result<(Self, Vec<DVec3>, Certificate), NetworkError> {
+        let grains = surface.grains();
+        if let Some((number, _)) = (0u32..).zip(&grains).find(|(number, grain)| *number != grain.0) {
+            return Err(NetworkError::MissingGrain { grain: crate::GrainId(number) });
+        }
+        Self::of_measured(domain, surface, None, junctions)
+    }
+
+    /// As [`Self::of_closed_grains`], which are to have these volumes, where some are given.
     pub(crate) fn of_measured(
         domain: &Domain,
         surface: &Surface<'_>,
-        volumes: &[f64],
+        volumes: Option<&[f64]>,
         junctions: Junctions,
     ) -> Result<(Self, Vec<DVec3>, Certificate), NetworkError> {
         check_surface_size(domain, surface, 0)?;
         let kind = SurfaceKind::Measured { volumes };
         let certificate = kind.certify(domain, surface)?;
         let control_mesh = ControlMesh::of_surface(domain, surface, kind, junctions)?;
-        let (network, points) = Self::assemble(domain, control_mesh, volumes.to_vec(), 0)?;
+        let own = || certificate.grain_volumes.iter().map(|(_, volume)| *volume).collect();
+        let volumes = volumes.map_or_else(own, <[f64]>::to_vec);
+        let (network, points) = Self::assemble(domain, control_mesh, volumes, 0)?;
         Ok((network, points, certificate))
     }
 

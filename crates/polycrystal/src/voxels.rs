@@ -98,7 +98,7 @@ pub fn smooth_voxels_tuned(
     let surface =
         Surface { points: &points, elements: cut.elements(), boundary_of: &cut.kind_of, sides: &sides };
     let (network, points, certificate) =
-        Network::of_measured(voxels.domain(), &surface, &volumes, junctions)?;
+        Network::of_measured(voxels.domain(), &surface, Some(&volumes), junctions)?;
     Ok(SmoothedVoxels { network, points, certificate, relabelled })
 }
 

@@ -1,6 +1,6 @@
 // The page of grains: what the controls do, in `grainsmooth view` and in reports.
 import { css, kind, NOTHING, range, scale, share } from "./colors.js";
-import { Network, Picker } from "./network.js";
+import { Network } from "./network.js";
 import { button, check, choice, digits, element, facts, group, row, say, slider } from "./panel.js";
 import { unpack } from "./packed.js";
 
@@ -15,7 +15,6 @@ export class GrainsPage {
     this.stage = stage;
     this.source = source;
     this.onselect = onselect;
-    this.picker = new Picker(stage);
     this.hidden = new Set();
     this.selected = -1;
     this.legend = element("div", { className: "legend" });
@@ -197,7 +196,7 @@ export class GrainsPage {
   }
 
   pick(event) {
-    return this.picker.pick(this.network, this.stage.pixel(event));
+    return this.network.pick(this.stage.ray(event));
   }
 
   hover(event) {

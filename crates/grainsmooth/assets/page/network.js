@@ -65,7 +65,7 @@ bool away() { return sliced && dot(plane.xyz, place) > plane.w; }
 
 const SURFACE = SHOWN + `
 uniform mat4 modelViewMatrix;
-uniform bool byValue, picking;
+uniform bool byValue;
 uniform int selected;
 float lit(vec3 normal) {
   float lamp = max(dot(normal, normalize(vec3(-0.4, 0.5, 1.0))), 0.0);
@@ -79,11 +79,6 @@ void main() {
   bool cap = here.a > 0.5;
   if (!cap && there.a <= 0.5) discard;
   int grain = cap ? viewer : beyond;
-  if (picking) {
-    int id = grain + 1;
-    color = vec4(float(id & 255), float((id >> 8) & 255), float(id >> 16), 255.0) / 255.0;
-    return;
-  }
   vec3 paint = cap ? here.rgb : there.rgb;
   if (byValue) paint = cap ? vec3(0.78, 0.78, 0.82) : painted(number);
   vec3 normal = normalize(gl_FrontFacing ? facing : -facing);
@@ -149,7 +144,7 @@ export class Network {
     this.uniforms = {
       sides: { value: this.sides.texture }, grains: { value: this.grains.texture }, centers: { value: this.centers.texture },
       explode: { value: 0 }, exploded: { value: false }, sliced: { value: false }, plane: { value: [0, 0, 1, 0] },
-      byValue: { value: false }, linesByValue: { value: false }, bounds: { value: [0, 1] }, scale: { value: scaleTexture }, selected: { value: -1 }, picking: { value: false },
+      byValue: { value: false }, linesByValue: { value: false }, bounds: { value: [0, 1] }, scale: { value: scaleTexture }, selected: { value: -1 },
     };
     this.value = new THREE.BufferAttribute(new Float32Array(number.length), 1);
     const attributes = {
@@ -176,12 +171,14 @@ export class Network {
     this.select();
   }
 
-  // The box around each piece of a grain: low and high corner.
+  // The box around each boundary, and around each piece of a grain: low and high corner.
   measureBoxes() {
     const { position } = this.arrays;
-    this.boxes = Float32Array.from({ length: 6 * this.head.centers.length }, (_, place) => (place % 6 < 3 ? Infinity : -Infinity));
-    for (const { pieces, vertex, vertices } of this.parts) {
-      const box = [Infinity, Infinity, Infinity, -Infinity, -Infinity, -Infinity];
+    const empty = (count) => Float32Array.from({ length: 6 * count }, (_, place) => (place % 6 < 3 ? Infinity : -Infinity));
+    this.boxes = empty(this.head.centers.length);
+    this.partBoxes = empty(this.parts.length);
+    this.parts.forEach(({ pieces, vertex, vertices }, part) => {
+      const box = this.partBoxes.subarray(6 * part, 6 * part + 6);
       for (let place = 3 * vertex; place < 3 * (vertex + vertices); place++) {
         const axis = place % 3;
         if (position[place] < box[axis]) box[axis] = position[place];
@@ -194,12 +191,12 @@ export class Network {
           this.boxes[6 * piece + 3 + axis] = Math.max(this.boxes[6 * piece + 3 + axis], box[3 + axis]);
         }
       }
-    }
+    });
   }
 
   // By how far a piece of a grain is moved.
   shift(piece, axis) {
-    return this.uniforms.explode.value * this.centers.data[4 * piece + axis];
+    return piece < 0 ? 0 : this.uniforms.explode.value * this.centers.data[4 * piece + axis];
   }
 
   // Whether the plane of a slice goes through the box of a piece.
@@ -207,9 +204,10 @@ export class Network {
     const { plane: { value: plane } } = this.uniforms;
     let low = 0, high = 0;
     for (let axis = 0; axis < 3; axis++) {
-      const ends = [this.boxes[6 * piece + axis], this.boxes[6 * piece + 3 + axis]].map((end) => plane[axis] * (end + this.shift(piece, axis)));
-      low += Math.min(...ends);
-      high += Math.max(...ends);
+      const shift = this.shift(piece, axis);
+      const one = plane[axis] * (this.boxes[6 * piece + axis] + shift), other = plane[axis] * (this.boxes[6 * piece + 3 + axis] + shift);
+      low += Math.min(one, other);
+      high += Math.max(one, other);
     }
     return low <= plane[3] && plane[3] <= high;
   }
@@ -221,17 +219,19 @@ export class Network {
     const { index: surface } = this.surface.geometry, { index: lines } = this.lines.geometry;
     let corners = 0, ends = 0;
     const cut = [];
-    for (const part of this.parts) {
+    this.chosen = [];
+    this.parts.forEach((part, number) => {
       const [a, b] = part.sides;
-      const first = a >= 0 && this.isShown[a], second = b >= 0 && this.isShown[b];
-      const isCut = (first && isOpen[part.pieces[0]]) || (second && isOpen[part.pieces[1]]);
+      const first = a >= 0 && this.isShown[a] === 1, second = b >= 0 && this.isShown[b] === 1;
+      const isCut = (first && isOpen[part.pieces[0]] === 1) || (second && isOpen[part.pieces[1]] === 1);
       if (isCut) cut.push(part);
-      if (!(Boolean(first) !== Boolean(second) || isCut || (exploded && (first || second)))) continue;
+      if (!(first !== second || isCut || (exploded && (first || second)))) return;
+      this.chosen.push(number);
       surface.array.set(this.arrays.corners.subarray(part.corner, part.corner + part.corners), corners);
       corners += part.corners;
       lines.array.set(this.arrays.rims.subarray(part.end, part.end + part.ends), ends);
       ends += part.ends;
-    }
+    });
     for (const [object, count] of [[this.surface, corners], [this.lines, ends]]) {
       object.geometry.instanceCount = exploded ? 2 : 1;
       object.geometry.setDrawRange(0, count);
@@ -248,31 +248,97 @@ export class Network {
     const { position, corners } = this.arrays;
     const [nx, ny, nz, offset] = this.uniforms.plane.value;
     const { exploded: { value: exploded } } = this.uniforms;
+    const isSeen = (grain) => grain >= 0 && this.isShown[grain] === 1;
     const found = [];
-    for (const part of parts) {
-      for (const side of exploded ? [0, 1] : [-1]) {
-        const isSeen = (grain) => grain >= 0 && this.isShown[grain];
-        if (exploded ? !isSeen(part.sides[side]) : !part.sides.some(isSeen)) continue;
-        const shift = [0, 1, 2].map((axis) => (exploded ? this.shift(part.pieces[side], axis) : 0));
-        const level = offset - (nx * shift[0] + ny * shift[1] + nz * shift[2]);
-        for (let corner = part.corner; corner < part.corner + part.corners; corner += 3) {
-          const at = [corners[corner], corners[corner + 1], corners[corner + 2]];
-          const [d, e, f] = at.map((v) => nx * position[3 * v] + ny * position[3 * v + 1] + nz * position[3 * v + 2] - level);
-          if ((d > 0) === (e > 0) && (e > 0) === (f > 0)) continue;
-          for (const [i, j, from, to] of [[0, 1, d, e], [1, 2, e, f], [2, 0, f, d]]) {
-            if ((from > 0) === (to > 0)) continue;
-            const t = from / (from - to);
-            for (let axis = 0; axis < 3; axis++) {
-              const start = position[3 * at[i] + axis];
-              found.push(start + t * (position[3 * at[j] + axis] - start) + shift[axis]);
-            }
-          }
+    for (const { sides, pieces, corner: first, corners: count } of parts) {
+      for (let side = exploded ? 0 : -1; side < (exploded ? 2 : 0); side++) {
+        if (exploded ? !isSeen(sides[side]) : !isSeen(sides[0]) && !isSeen(sides[1])) continue;
+        const piece = exploded ? pieces[side] : -1;
+        const sx = this.shift(piece, 0), sy = this.shift(piece, 1), sz = this.shift(piece, 2);
+        const level = offset - (nx * sx + ny * sy + nz * sz);
+        const height = (point) => nx * position[point] + ny * position[point + 1] + nz * position[point + 2] - level;
+        const cross = (a, b, from, to) => {
+          if (from > 0 === to > 0) return;
+          const t = from / (from - to);
+          found.push(
+            position[a] + t * (position[b] - position[a]) + sx,
+            position[a + 1] + t * (position[b + 1] - position[a + 1]) + sy,
+            position[a + 2] + t * (position[b + 2] - position[a + 2]) + sz,
+          );
+        };
+        for (let corner = first; corner < first + count; corner += 3) {
+          const a = 3 * corners[corner], b = 3 * corners[corner + 1], c = 3 * corners[corner + 2];
+          const d = height(a), e = height(b), f = height(c);
+          if (d > 0 === e > 0 && e > 0 === f > 0) continue;
+          cross(a, b, d, e);
+          cross(b, c, e, f);
+          cross(c, a, f, d);
         }
       }
     }
     this.cutGeometry.dispose();
     this.cutGeometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(found), 3));
     this.cut.visible = this.lines.visible && found.length > 0;
+  }
+
+  // The grain that is seen along a ray, -1 for none: the nearest of what the shaders show.
+  pick({ origin, direction }) {
+    const { sliced: { value: sliced }, plane: { value: plane }, exploded: { value: exploded } } = this.uniforms;
+    const { position, corners } = this.arrays;
+    const [dx, dy, dz] = direction;
+    let nearest = Infinity, seen = -1;
+    for (const number of this.chosen) {
+      const { sides, pieces, corner: first, corners: count } = this.parts[number];
+      for (let own = exploded ? 0 : -1; own < (exploded ? 2 : 0); own++) {
+        // Where each grain stands by itself, nothing of the other side is shown.
+        const isShown = (side) => sides[side] >= 0 && (own < 0 || own === side) && this.isShown[sides[side]] === 1;
+        const shown = [isShown(0), isShown(1)];
+        if (!shown[0] && !shown[1]) continue;
+        const piece = own < 0 ? -1 : pieces[own];
+        const ox = origin[0] - this.shift(piece, 0), oy = origin[1] - this.shift(piece, 1), oz = origin[2] - this.shift(piece, 2);
+        if (!this.meetsBox(number, [ox, oy, oz], direction, nearest)) continue;
+        for (let corner = first; corner < first + count; corner += 3) {
+          const a = 3 * corners[corner], b = 3 * corners[corner + 1], c = 3 * corners[corner + 2];
+          const ux = position[b] - position[a], uy = position[b + 1] - position[a + 1], uz = position[b + 2] - position[a + 2];
+          const vx = position[c] - position[a], vy = position[c + 1] - position[a + 1], vz = position[c + 2] - position[a + 2];
+          // Moller and Trumbore 1997.
+          const px = dy * vz - dz * vy, py = dz * vx - dx * vz, pz = dx * vy - dy * vx;
+          const facing = ux * px + uy * py + uz * pz;
+          if (facing === 0) continue;
+          const wx = ox - position[a], wy = oy - position[a + 1], wz = oz - position[a + 2];
+          const s = (wx * px + wy * py + wz * pz) / facing;
+          if (s < 0 || s > 1) continue;
+          const qx = wy * uz - wz * uy, qy = wz * ux - wx * uz, qz = wx * uy - wy * ux;
+          const t = (dx * qx + dy * qy + dz * qz) / facing;
+          if (t < 0 || s + t > 1) continue;
+          const distance = (vx * qx + vy * qy + vz * qz) / facing;
+          if (distance <= 0 || distance >= nearest) continue;
+          if (sliced && plane[0] * (origin[0] + distance * dx) + plane[1] * (origin[1] + distance * dy) + plane[2] * (origin[2] + distance * dz) > plane[3]) continue;
+          // Normals point from the first side to the second.
+          const viewer = facing > 0 ? 1 : 0;
+          if (!shown[viewer] && !shown[1 - viewer]) continue;
+          nearest = distance;
+          seen = sides[shown[viewer] ? viewer : 1 - viewer];
+        }
+      }
+    }
+    return seen;
+  }
+
+  // Whether a ray goes through the box of a boundary before it has gone so far.
+  meetsBox(part, origin, direction, far) {
+    let near = 0;
+    for (let axis = 0; axis < 3; axis++) {
+      const low = this.partBoxes[6 * part + axis] - origin[axis], high = this.partBoxes[6 * part + 3 + axis] - origin[axis];
+      if (direction[axis] === 0) {
+        if (low > 0 || high < 0) return false;
+        continue;
+      }
+      const one = low / direction[axis], other = high / direction[axis];
+      near = Math.max(near, Math.min(one, other));
+      far = Math.min(far, Math.max(one, other));
+    }
+    return near <= far;
   }
 
   explode(share) {
@@ -324,34 +390,5 @@ export class Network {
       object.removeFromParent();
     }
     for (const table of [this.sides, this.grains, this.centers]) table.texture.dispose();
-  }
-}
-
-// Which grain is seen at a pixel, -1 for none: that pixel alone is drawn, in numbers for colours.
-export class Picker {
-  constructor(stage) {
-    this.stage = stage;
-    this.target = new THREE.WebGLRenderTarget(1, 1);
-    this.pixel = new Uint8Array(4);
-    this.scene = new THREE.Scene();
-    this.scene.background = null;
-  }
-
-  pick(network, [x, y]) {
-    const { renderer, camera, view, scene } = this.stage;
-    camera.setViewOffset(view.clientWidth, view.clientHeight, x, y, 1, 1);
-    network.uniforms.picking.value = true;
-    this.scene.add(network.surface);
-    renderer.setRenderTarget(this.target);
-    renderer.setClearColor(0x000000, 0);
-    renderer.clear();
-    renderer.render(this.scene, camera);
-    renderer.readRenderTargetPixels(this.target, 0, 0, 1, 1, this.pixel);
-    renderer.setRenderTarget(null);
-    scene.add(network.surface);
-    network.uniforms.picking.value = false;
-    camera.clearViewOffset();
-    const [red, green, blue, alpha] = this.pixel;
-    return alpha === 0 ? -1 : red + 256 * green + 65536 * blue - 1;
   }
 }

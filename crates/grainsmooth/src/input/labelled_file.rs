@@ -209,6 +209,15 @@ impl LabelledFile {
         Surface { points: &self.points, elements, boundary_of: &self.boundary_of, sides: &self.sides }
     }
 
+    /// The label of each grain, from that of number 0: in files of this program also those of grains that vanished.
+    pub fn labels_of_grains(&self) -> Vec<GrainId> {
+        let grains = self.surface().grains();
+        match (&self.settings, grains.last()) {
+            (Some(settings), Some(last)) => (first_label(settings)..=last.0).map(GrainId).collect(),
+            _ => grains,
+        }
+    }
+
     /// What the file says about its network.
     pub fn expected(&self) -> Expected<'_> {
         Expected {
@@ -244,11 +253,16 @@ fn sticks_out_of_the_box(settings: &Table) -> bool {
     !has("periodic", "none") && !has("periodic-cut", "box")
 }
 
-/// What is known of all grains with their numbers: from 0 by our own names, from 1 by those of other tools.
+/// What is known of all grains with their labels.
 fn numbered<T>(of_grains: Vec<T>, settings: &Table) -> Option<Vec<(GrainId, T)>> {
-    let names = Names::from_str(settings.get("names")?.as_str()?, false);
-    let first = u32::from(names != Ok(Names::default()));
+    let first = first_label(settings);
     (of_grains.len() < u32::MAX as usize).then(|| (first..).map(GrainId).zip(of_grains).collect())
+}
+
+/// The label of the first grain: 0 by our own names, 1 by those of other tools.
+fn first_label(settings: &Table) -> u32 {
+    let names = settings.get("names").and_then(Value::as_str).map(|names| Names::from_str(names, false));
+    u32::from(names.is_some_and(|names| names != Ok(Names::default())))
 }
 
 /// By what the settings multiplied coordinates in the end.

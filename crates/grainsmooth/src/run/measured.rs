@@ -1,16 +1,17 @@
-//! From a measured map to its network.
+//! From a measured map to its network, and from a network that is there.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use polycrystal::{
-    Certificate, GrainId, Junctions, SmoothedVoxels, VoxelLabel, Voxels, herring_residual, smooth_voxels,
+    Certificate, GrainId, Junctions, Network, SmoothedVoxels, Surface, VoxelLabel, Voxels, herring_residual,
+    outward_sides, smooth_voxels,
 };
 use texture::CrystalSymmetry;
-use voronoi::Domain;
+use voronoi::{Dimension, Domain};
 
-use super::origin::{Measurement, Origin};
+use super::origin::{Measurement, Origin, SmoothedMap};
 use super::polycrystal::Polycrystal;
 use super::stage::{Progress, Stage};
 use super::topology::Topology;
@@ -63,31 +64,82 @@ pub fn smooth_map(
         smooth_voxels(&voxels, Junctions::Crease, |done, count| progress(Stage::Network, done, count));
     let SmoothedVoxels { network, points, certificate, relabelled } = smoothed.map_err(failed)?;
     let times = vec![(Stage::Map, run.read_in), (Stage::Network, start.elapsed())];
-    let Certificate { faults, .. } = &certificate;
     let measurement = Measurement {
         command_line: run.command_line,
         file: run.file,
         grains: attributes(measured),
-        map_shape: measured.map.shape,
-        dropped: measured.dropped,
-        points: measured.crystals.as_ref().map(|crystals| crystals.points.clone()),
-        relabelled,
-        folds: faults.0.len(),
+        map: Some(SmoothedMap {
+            shape: measured.map.shape,
+            dropped: measured.dropped,
+            points: measured.crystals.as_ref().map(|crystals| crystals.points.clone()),
+            relabelled,
+        }),
+        folds: certificate.faults.0.len(),
     };
-    Ok(Polycrystal {
-        origin: Origin::Measured(Box::new(measurement)),
-        topology: Topology::new(None, &network),
-        residual: herring_residual(&network, &points),
-        network,
-        points,
-        attempts: Vec::new(),
-        tensions: None,
-        mobilities: None,
-        validation: certificate,
-        elements: None,
-        volume_mesh: None,
-        times,
-    })
+    Ok(Polycrystal::measured(measurement, network, points, certificate, times))
+}
+
+impl Polycrystal {
+    /// The network of closed grains that are there, such as another program's, numbered from 0; `ids` are the numbers that they had. They need not fill the box around them.
+    /// `command_line` is what files tell of where they come from.
+    ///
+    /// # Errors
+    /// [`Error::Network`] where grains are not closed, or cross; as of [`Network::of_closed_grains`].
+    ///
+    /// # Panics
+    /// As [`Network::of_surface`].
+    pub fn of_surface(surface: &Surface<'_>, ids: Vec<u32>, command_line: String) -> Result<Self, Error> {
+        let start = Instant::now();
+        let sides = outward_sides(surface);
+        let surface = Surface { sides: &sides, ..*surface };
+        let lower = surface.points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let upper = surface.points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let domain = match surface.elements.dimension() {
+            Dimension::Two => Domain::rectangle(lower, upper),
+            Dimension::Three => Domain::cuboid(lower, upper),
+        };
+        let (network, points, certificate) =
+            Network::of_closed_grains(&domain?, &surface, Junctions::Crease)?;
+        let measurement = Measurement {
+            command_line,
+            file: FileOptions::default(),
+            grains: GrainAttributes {
+                ids,
+                parents: None,
+                phases: None,
+                symmetry: CrystalSymmetry::default(),
+                texture: None,
+                measured: None,
+            },
+            map: None,
+            folds: certificate.faults.0.len(),
+        };
+        let times = vec![(Stage::Validation, start.elapsed())];
+        Ok(Self::measured(measurement, network, points, certificate, times))
+    }
+
+    fn measured(
+        measurement: Measurement,
+        network: Network,
+        points: Vec<DVec3>,
+        validation: Certificate,
+        times: Vec<(Stage, Duration)>,
+    ) -> Self {
+        Self {
+            origin: Origin::Measured(Box::new(measurement)),
+            topology: Topology::new(None, &network),
+            residual: herring_residual(&network, &points),
+            network,
+            points,
+            attempts: Vec::new(),
+            tensions: None,
+            mobilities: None,
+            validation,
+            elements: None,
+            volume_mesh: None,
+            times,
+        }
+    }
 }
 
 /// What the map tells of each grain.

@@ -11,7 +11,7 @@ use crate::{Config, FileOptions, GrainAttributes, PointCounts};
 pub enum Origin {
     /// From cells that a config describes.
     Synthetic(Box<Synthesis>),
-    /// From a file: a map of voxels.
+    /// From a measured map, or a network that was there.
     Measured(Box<Measurement>),
 }
 
@@ -38,7 +38,7 @@ pub struct Synthesis {
     pub angles_before: Option<AngleStatistics>,
 }
 
-/// How a network came from a file.
+/// How a network came from what was measured.
 #[derive(Debug, Clone)]
 pub struct Measurement {
     /// The command that made it.
@@ -47,14 +47,21 @@ pub struct Measurement {
     pub file: FileOptions,
     /// What is known of each grain.
     pub grains: GrainAttributes,
-    /// Number of voxels of the map along each axis.
-    pub map_shape: [usize; 3],
+    /// The map that it was smoothed from; nothing where the network itself was given.
+    pub map: Option<SmoothedMap>,
+    /// Number of pairs of elements that fold back on each other, as where a grain is thinner than three voxels.
+    pub folds: usize,
+}
+
+/// A map, and what was changed of it.
+#[derive(Debug, Clone)]
+pub struct SmoothedMap {
+    /// Number of voxels along each axis.
+    pub shape: [usize; 3],
     /// Grains that were too small, and their voxels, which went to neighbours.
     pub dropped: [u64; 2],
     /// How points became grains, where the map is one of orientations.
     pub points: Option<PointCounts>,
     /// Number of voxels that got another label, because a grain touched itself there.
     pub relabelled: usize,
-    /// Number of pairs of elements that fold back on each other, as where a grain is thinner than three voxels.
-    pub folds: usize,
 }

@@ -22,10 +22,10 @@ const ON_WALL: f64 = 1e-12;
 pub(crate) enum SurfaceKind<'a> {
     /// Grains fill the domain, and nothing is folded.
     Whole,
-    /// Grains of known volumes may have pores between them, and be folded where they are thin.
+    /// Grains may have pores between them, and be folded where they are thin.
     Measured {
-        /// Of each grain.
-        volumes: &'a [f64],
+        /// What each grain is to have, where that is known.
+        volumes: Option<&'a [f64]>,
     },
 }
 
@@ -44,8 +44,9 @@ impl SurfaceKind<'_> {
                 certify(surface, &expected)
             }
             Self::Measured { volumes } => {
-                let of_grains: Vec<_> = (0u32..).map(GrainId).zip(volumes.iter().copied()).collect();
-                let expected = Expected { grain_volumes: Some(&of_grains), ..Expected::default() };
+                let numbered = |volumes: &[f64]| (0u32..).map(GrainId).zip(volumes.iter().copied()).collect();
+                let of_grains: Option<Vec<_>> = volumes.map(numbered);
+                let expected = Expected { grain_volumes: of_grains.as_deref(), ..Expected::default() };
                 certify(surface, &expected)
             }
         };

@@ -46,17 +46,15 @@ impl PlaneLines {
 
     /// The grains as the page draws them, each by itself: triangles between its lines (constrained Delaunay triangulation).
     pub(super) fn network(&self, points: &[DVec3]) -> ShownNetwork {
-        let filled = self.filled(points);
-        let mut grains: Vec<u32> = filled.iter().map(|(grain, _)| *grain).collect();
-        grains.sort_unstable();
+        let pieces = self.pieces(points);
+        let mut grains: Vec<u32> = pieces.iter().map(|(grain, _)| *grain).collect();
         grains.dedup();
-        let triangles: Vec<[u32; 3]> = filled.iter().map(|(_, corners)| *corners).collect();
-        let place = |grain: u32| grains.partition_point(|other| *other < grain);
-        // There are fewer grains than triangles, which are counted in 32 bits.
-        let of_grain: Vec<u32> =
-            filled.iter().map(|(grain, _)| u32::try_from(place(*grain)).unwrap_or(u32::MAX)).collect();
-        let outside: Vec<[Option<u32>; 2]> = grains.iter().map(|grain| [Some(*grain), None]).collect();
-        let mut network = ShownNetwork::new(points, &triangles, &of_grain, &outside);
+        // There are fewer pieces than triangles, which are counted in 32 bits.
+        let of_piece = (0u32..).zip(&pieces).flat_map(|(piece, (_, own))| std::iter::repeat_n(piece, own.len()));
+        let of_piece: Vec<u32> = of_piece.collect();
+        let triangles: Vec<[u32; 3]> = pieces.iter().flat_map(|(_, own)| own).copied().collect();
+        let outside: Vec<[Option<u32>; 2]> = pieces.iter().map(|(grain, _)| [Some(*grain), None]).collect();
+        let mut network = ShownNetwork::new(points, &triangles, &of_piece, &outside);
         let places: Vec<[Option<usize>; 2]> =
             self.sides.iter().map(|sides| sides.map(|grain| grains.binary_search(&grain?).ok())).collect();
         network.set_neighbors(&places);
@@ -71,8 +69,8 @@ impl PlaneLines {
         network
     }
 
-    /// The triangles of each grain.
-    fn filled(&self, points: &[DVec3]) -> Vec<(u32, [u32; 3])> {
+    /// The triangles of each grain, in the order of the grains: of each of its pieces by itself, where the box cuts it.
+    fn pieces(&self, points: &[DVec3]) -> Vec<(u32, Vec<[u32; 3]>)> {
         let vertices =
             (0..).zip(points).map(|(point, place)| Vertex { position: Point2::new(place.x, place.y), point });
         let edges = self.segments.iter().map(|ends| ends.map(|end| end as usize)).collect();
@@ -80,38 +78,42 @@ impl PlaneLines {
         let Ok(delaunay) = Delaunay::try_bulk_load_cdt(vertices.collect(), edges, |_| ()) else {
             return Vec::new();
         };
-        let mut grain_of: Vec<Option<Option<u32>>> = vec![None; delaunay.num_all_faces()];
-        let mut found: Vec<FixedFaceHandle<InnerTag>> = Vec::new();
         let mut vertex_of = vec![None::<FixedVertexHandle>; points.len()];
         for vertex in delaunay.vertices() {
             vertex_of[vertex.data().point as usize] = Some(vertex.fix());
         }
+        let mut beside_lines: Vec<(FixedFaceHandle<InnerTag>, Option<u32>)> = Vec::new();
         for ([start, end], [left, right]) in self.segments.iter().zip(&self.sides) {
             let (Some(from), Some(to)) = (vertex_of[*start as usize], vertex_of[*end as usize]) else {
                 continue;
             };
             let Some(edge) = delaunay.get_edge_from_neighbors(from, to) else { continue };
-            for (face, grain) in [(edge.face(), left), (edge.rev().face(), right)] {
-                if let Some(face) = face.as_inner() {
-                    grain_of[face.fix().index()] = Some(*grain);
-                    found.push(face.fix());
-                }
-            }
+            let faces = [(edge.face(), left), (edge.rev().face(), right)];
+            beside_lines.extend(
+                faces.into_iter().filter_map(|(face, grain)| Some((face.as_inner()?.fix(), *grain))),
+            );
         }
         // What no line parts belongs together.
-        while let Some(face) = found.pop() {
-            let grain = grain_of[face.index()];
-            for edge in delaunay.face(face).adjacent_edges() {
-                let beyond = edge.rev().face().as_inner().filter(|_| !edge.is_constraint_edge());
-                if let Some(beyond) = beyond.filter(|beyond| grain_of[beyond.fix().index()].is_none()) {
-                    grain_of[beyond.fix().index()] = grain;
-                    found.push(beyond.fix());
+        let mut is_found = vec![false; delaunay.num_all_faces()];
+        let mut pieces = Vec::new();
+        for (start, grain) in beside_lines {
+            let mut piece = Vec::new();
+            let mut faces = vec![start];
+            while let Some(face) = faces.pop() {
+                if std::mem::replace(&mut is_found[face.index()], true) {
+                    continue;
                 }
+                let face = delaunay.face(face);
+                piece.push(face.vertices().map(|vertex| vertex.data().point));
+                let inside = face.adjacent_edges().into_iter().filter(|edge| !edge.is_constraint_edge());
+                faces.extend(inside.filter_map(|edge| Some(edge.rev().face().as_inner()?.fix())));
+            }
+            if let Some(grain) = grain.filter(|_| !piece.is_empty()) {
+                pieces.push((grain, piece));
             }
         }
-        let of_grains =
-            delaunay.inner_faces().filter_map(|face| Some((grain_of[face.fix().index()]??, face)));
-        of_grains.map(|(grain, face)| (grain, face.vertices().map(|vertex| vertex.data().point))).collect()
+        pieces.sort_by_key(|(grain, _)| *grain);
+        pieces
     }
 
     /// At each vertex of a network of these lines, the mean of the numbers of the grain's lines there.
