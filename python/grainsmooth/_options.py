@@ -1,4 +1,4 @@
-"""The program's options as keywords. Written by tools/options.py from the program's own table: change options there."""
+"""The program's options as keywords. Written by the test `python_keywords` from the program's own: change options there."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Options(TypedDict, total=False):
     """
 
     seeds: Value
-    """Number of grains [default: 200, or what --diameters or --volumes ask for]
+    """Number of grains [default: 200, or what ``diameters`` or ``volumes`` ask for]
 
     Example of the command line: ``--seeds 5000``"""
 
@@ -29,8 +29,8 @@ class Options(TypedDict, total=False):
     """How seeds are placed: as centres of spheres that do not overlap, for grains of exact, realistic sizes (packed);
     uniformly at random (random); or at random but at least 0.75 mean spacings apart (poisson-disc)
 
-    Packed grains have lognormal diameters with a coefficient of variation of 0.35, unless --diameters or --volumes ask for
-    others. Random seeds give Poisson-Voronoi cells, whose statistics are known.
+    Packed grains have lognormal diameters with a coefficient of variation of 0.35, unless ``diameters`` or ``volumes`` ask
+    for others. Random seeds give Poisson-Voronoi cells, whose statistics are known.
 
     Example of the command line: ``--seeding random``
 
@@ -48,12 +48,12 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--seeds-file seeds.csv``"""
 
     diameters: Value
-    """Give the grains exact sizes: equivalent diameters from a distribution or a file, in the unit of --box
+    """Give the grains exact sizes: equivalent diameters from a distribution or a file, in the unit of ``box``
 
     Distributions are lognormal(mean=20, cv=0.35), normal(mean=20, sd=5), uniform(10, 30), weibull(shape=2.8, scale=20),
     gamma(mean=20, cv=0.35), equal(20), and sums of these weighted by number: '0.8*lognormal(mean=20, cv=0.3) +
     0.2*equal(60)'. Cut-offs, and weights by volume, follow after commas: ', from=5, to=80, by=volume'. A file (.csv, .txt)
-    holds a list, a histogram or a cumulative distribution. There are as many grains as fill the domain; with --seeds N,
+    holds a list, a histogram or a cumulative distribution. There are as many grains as fill the domain; with ``seeds`` N,
     diameters are scaled to fill it.
 
     Example of the command line: ``--diameters 'lognormal(mean=20, cv=0.35)' --box 100 100 100``"""
@@ -67,7 +67,7 @@ class Options(TypedDict, total=False):
     """Elongate the grains along the axes, in these proportions: 3 1 1 for rolled, 1 1 4 for columnar grains (X Y in 2D)
 
     Grains are made and relaxed with equal axes, so triple lines have angles of 120 degrees at first, and then stretched.
-    The final box is that of --box, and volumes stay exact.
+    The final box is that of ``box``, and volumes stay exact.
 
     Example of the command line: ``--aspect-ratio 3 1 1``"""
 
@@ -99,8 +99,8 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--half-spaces octahedron.csv``"""
 
     chord_error: Value
-    """How far the flat faces of a sphere, cylinder or disc may be from the true surface, in the unit of --box [default: 0.005
-    of its radius]
+    """How far the flat faces of a sphere, cylinder or disc may be from the true surface, in the unit of ``box`` [default:
+    0.005 of its radius]
 
     Example of the command line: ``--chord-error 0.001``"""
 
@@ -118,7 +118,7 @@ class Options(TypedDict, total=False):
     Default: ``fan``"""
 
     edge_length: Value
-    """Refine the control mesh instead, until no edge is longer than H, in the unit of --box; a grain is about as wide as the
+    """Refine the control mesh instead, until no edge is longer than H, in the unit of ``box``; a grain is about as wide as the
     cube root of its volume
 
     Example of the command line: ``--edge-length 0.05``"""
@@ -154,15 +154,15 @@ class Options(TypedDict, total=False):
     phase: Repeated
     """Add a phase with an exact share of the volume (of the area in 2D); repeat for each phase
 
-    Shares add up to 1. Each phase can have its own diameters=, texture= and symmetry=, with the values of --diameters,
-    --texture and --crystal-symmetry. place= says where its grains lie among the others: interior, boundaries, triple-lines,
-    quadruple-points, clustered or dispersed.
+    Shares add up to 1. Each phase can have its own diameters=, texture= and symmetry=, with the values of ``diameters``,
+    ``texture`` and ``crystal_symmetry``. place= says where its grains lie among the others: interior, boundaries,
+    triple-lines, quadruple-points, clustered or dispersed.
 
     Example of the command line: ``--phase ferrite:0.8 --phase 'austenite:0.2,texture=goss(10)'``"""
 
     inside: Repeated
     """Subdivide the grains, or those of one phase, into lamellae of a given width or Voronoi cells of a given mean diameter,
-    in the unit of --box; repeat for other phases
+    in the unit of ``box``; repeat for other phases
 
     Each part becomes a grain with its own orientation, and the array Parent names the grain that it belongs to. Those
     grains keep their volumes. Lamellae lie in a random direction in each grain, or across normal=; cells have lognormal
@@ -197,7 +197,7 @@ class Options(TypedDict, total=False):
 
     Each grain then consists of several cells, which make it as elongated as space allows. Volumes stay exact, and the
     summary reports the ratio that was reached. A file (.csv, .txt) has one line for each grain: lengths a, b, c and Bunge's
-    Euler angles phi1, Phi, phi2 in degrees (a, b and phi1 in 2D). Relaxation makes grains rounder; --relax sets for how
+    Euler angles phi1, Phi, phi2 in degrees (a, b and phi1 in 2D). Relaxation makes grains rounder; ``relax`` sets for how
     long it acts.
 
     Example of the command line: ``--grain-shapes '3:1:1 aligned'``"""
@@ -211,12 +211,13 @@ class Options(TypedDict, total=False):
 
     relax: Value
     """Relaxation time, in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat [default: 1.2, in 2D
-    equilibrium; 0 with lamellae, 0.05 with --grain-shapes, 0.3 with --free or --regularize, in 2D with --edge-length too]
+    equilibrium; 0 with lamellae, 0.05 with ``grain_shapes``, 0.3 with ``free`` or ``regularize``, in 2D with
+    ``edge_length`` too]
 
     Example of the command line: ``--relax 0.1``"""
 
     wall_tension: Value
-    """Tension of the walls, relative to that between grains, or with --tension to the largest of these; with 0, boundaries
+    """Tension of the walls, relative to that between grains, or with ``tension`` to the largest of these; with 0, boundaries
     meet the walls at right angles
 
     Example of the command line: ``--wall-tension 0.5``
@@ -231,8 +232,8 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--texture 'goss(10)' --tension 'read-shockley(15)'``"""
 
     mobility: Repeated
-    """Mobility of the boundaries between growing grains, in any unit: a law as for --tension, such as humphreys(15) [default:
-    1]
+    """Mobility of the boundaries between growing grains, in any unit: a law as for ``tension``, such as humphreys(15)
+    [default: 1]
 
     Example of the command line: ``--relax 0.02 --free --texture 'goss(10)' --mobility 'humphreys(15)'``"""
 
@@ -256,7 +257,7 @@ class Options(TypedDict, total=False):
     Default: ``crease``"""
 
     element_size: Value
-    """Remesh boundaries with triangles whose edges are H long, in the unit of --box
+    """Remesh boundaries with triangles whose edges are H long, in the unit of ``box``
 
     Example of the command line: ``--element-size 0.02``"""
 
@@ -364,4 +365,91 @@ class Options(TypedDict, total=False):
 
 
 class MapOptions(TypedDict, total=False):
-    """x"""
+    """How a measured map is read: the options of ``grainsmooth smooth``, as :class:`Options` has those of the program."""
+
+    label_array: Value
+    """Array of the labels, where a file has several [default: the only one of whole numbers, or one of the usual names]
+
+    Example of the command line: ``grainsmooth smooth map.vti --label-array FeatureIds``"""
+
+    spacing: Union[Value, Sequence[Value]]
+    """Edge of a voxel, one length or one along each axis [default: as the file says, else 1]
+
+    Example of the command line: ``grainsmooth smooth map.npy --spacing 0.5 0.5 0.8``"""
+
+    axes: Literal["xyz", "zyx"]
+    """Order of the indices of an array: xyz, as in labels[x, y, z], or zyx [default: xyz]
+
+    Example of the command line: ``grainsmooth smooth map.npy --axes zyx``"""
+
+    shape: Sequence[Value]
+    """Number of voxels along each axis, for files of numbers alone; x comes first in the file
+
+    Example of the command line: ``grainsmooth smooth map.raw --shape 200 200 150 --type u16``"""
+
+    type: Value
+    """Type of the numbers of such a file, little-endian: u8, i8, u16, i16, u32, i32, u64, i64, f32 or f64
+
+    Example of the command line: ``grainsmooth smooth map.raw --shape 200 200 150 --type u16``"""
+
+    crop: Value
+    """Part of the map: the first voxel and the first one behind along each axis, from 0; in maps of orientations rows count
+    from the top
+
+    Example of the command line: ``grainsmooth smooth map.vti --crop 0:64,0:64,10:40``"""
+
+    exterior_label: Value
+    """Label of what is no grain, such as pores or what surrounds the sample; negative labels are none either
+
+    Example of the command line: ``grainsmooth smooth map.vti --exterior-label 0``"""
+
+    min_voxels: Value
+    """Fewest voxels, pixels or points of a grain; those of smaller ones go to the neighbours that they touch most
+
+    Example of the command line: ``grainsmooth smooth map.vti --min-voxels 8``
+
+    Default: ``1``"""
+
+    threshold: Value
+    """Degrees: neighbouring points of one phase that differ by more are in different grains [default: 5]
+
+    Example of the command line: ``grainsmooth smooth map.ctf --threshold 10``"""
+
+    min_ci: Value
+    """Least confidence index of a point; others are filled from their neighbours
+
+    Example of the command line: ``grainsmooth smooth map.ang --min-ci 0.1``"""
+
+    min_iq: Value
+    """Least image quality of a point, or band contrast in .ctf; others are filled from their neighbours
+
+    Example of the command line: ``grainsmooth smooth map.ang --min-iq 120``"""
+
+    min_pore: Value
+    """Fewest points side by side without a good solution that are a pore; fewer are filled from their neighbours [default: all
+    are filled]
+
+    Example of the command line: ``grainsmooth smooth map.ang --min-pore 200``"""
+
+    merge_twins: Value
+    """Make twins one grain: those turned by this angle about this axis of the crystal
+
+    The axis has components along the orthogonal axes of the crystal; in hexagonal ones x is along a and z along c. A grain
+    of several twins has the orientation and the spread of its largest part.
+
+    Example of the command line: ``grainsmooth smooth nickel.ang --merge-twins 60,1,1,1``"""
+
+    twin_tolerance: Value
+    """Degrees by which a twin may differ from that [default: 3]
+
+    Example of the command line: ``grainsmooth smooth nickel.ang --merge-twins 60,1,1,1 --twin-tolerance 5``"""
+
+    rotate: Value
+    """Turn all crystals by an angle about an axis of the sample; points stay where they are
+
+    Example of the command line: ``grainsmooth smooth map.ang --rotate 180,1,0,0``"""
+
+    crystal_symmetry: Value
+    """Symmetry of the crystals, where the file tells none
+
+    Example of the command line: ``grainsmooth smooth map.ang --crystal-symmetry cubic``"""

@@ -284,7 +284,7 @@ class Polycrystal:
             is_solved = ~np.isnan(angles).any(axis=2)
             angles = np.where(is_solved[..., np.newaxis], angles, 0.0)
         rows = _inputs.numbers("euler_angles", angles.swapaxes(0, 1), 3).reshape(-1, 3)
-        nx, ny = is_solved.shape
+        nx, ny, _ = angles.shape
         if phases is not None and not isinstance(phases, Mapping):
             raise TypeError(f"phases: give a mapping of names to symmetries, not {phases!r}")
         known = {"grains": "cubic"} if phases is None else {name: _inputs.text("phases", of) for name, of in phases.items()}
@@ -355,8 +355,10 @@ class Polycrystal:
         """All that is known of it. Where it came as arrays, these are measured, or it is made once more by its settings and compared."""
         if self._made is None:
             if self._settings is None:
-                names = ("points", "elements", "face_labels", "seed_id")
-                self._made = _grainsmooth.of_arrays(*(self._arrays[name] for name in names), 0)
+                known = self._arrays
+                self._made = _grainsmooth.of_arrays(
+                    known["points"], known["elements"], known["face_labels"], known["seed_id"], 0
+                )
                 return self._made
             made = _grainsmooth.of_settings(self._settings, 0, None)
             if not np.array_equal(made.points, self._arrays["points"]):

@@ -277,11 +277,25 @@ fn de_casteljaus_points_level_by_level() {
     assert_eq!(points(&curve["left"])[3], [0.90625, 1.125, 0.0]);
     workplace.run("mesh bezier curve.txt --t 0.25 --construction -o levels.vtp");
     workplace.put("patch.txt", "1 1\n0 0 0\n0 1 0\n1 0 0\n1 1 2\n");
-    workplace.refuses(
-        "mesh bezier patch.txt --t 0.25 --construction -o out.vtp",
-        1,
-        "patch.txt: holds no curves, and only curves have a construction; leave --construction and --t out",
-    );
+    // Rows to v, then along u: the point is (t, v, 2 t v).
+    let said = workplace.run("mesh bezier patch.txt --t 0.25 --v 0.5 --construction -o patch.obj");
+    assert!(said.contains("point       0.25 0.5 0.25 after 1 levels along v and 1 along u"), "{said}");
+    let patch = grainsmooth::mesh::file::read_polylines(&workplace.path("patch.obj")).unwrap();
+    let expected = [
+        [0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 2.0],
+        [0.0, 0.5, 0.0],
+        [1.0, 0.5, 1.0],
+        [0.25, 0.5, 0.25],
+    ];
+    assert_eq!(patch.points, expected.map(DVec3::from));
+    assert_eq!(patch.lines, [vec![0, 1], vec![2, 3], vec![4, 5]]);
+    workplace.run("mesh bezier patch.txt --t 0.25 --construction -o patch.json");
+    let surface = &json(&workplace.bytes("patch.json"))["surfaces"][0];
+    assert_eq!(surface["point"], serde_json::json!([0.25, 0.25, 0.125]));
+    assert_eq!([&surface["du"], &surface["dv"]], [&serde_json::json!([1.0, 0.0, 0.5]), &serde_json::json!([0.0, 1.0, 0.5])]);
     for (arguments, message) in [
         ("--t 0.4", "the following required arguments were not provided:"),
         ("--construction", "the following required arguments were not provided:"),

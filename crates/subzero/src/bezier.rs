@@ -143,18 +143,23 @@ impl<P: Point> BezierSurface<P> {
 
     /// The point at `(u, v)`.
     pub fn point(&self, u: f64, v: f64) -> P {
-        self.curve_along_u(|row| row.point(v)).point(u)
+        self.curve_along_u(v).point(u)
+    }
+
+    /// The curve in u at `v`.
+    pub fn curve_along_u(&self, v: f64) -> BezierCurve<P> {
+        self.along_u(|row| row.point(v))
     }
 
     /// The derivatives with respect to u and to v at `(u, v)`.
     pub fn derivatives(&self, u: f64, v: f64) -> [P; 2] {
         [
-            self.curve_along_u(|row| row.point(v)).derivative(u),
-            self.curve_along_u(|row| row.derivative(v)).point(u),
+            self.curve_along_u(v).derivative(u),
+            self.along_u(|row| row.derivative(v)).point(u),
         ]
     }
 
-    fn curve_along_u(&self, of_row: impl Fn(&BezierCurve<P>) -> P) -> BezierCurve<P> {
+    fn along_u(&self, of_row: impl Fn(&BezierCurve<P>) -> P) -> BezierCurve<P> {
         BezierCurve { control: self.rows.iter().map(of_row).collect() }
     }
 

@@ -167,7 +167,8 @@ export class Network {
     this.cutGeometry = new THREE.BufferGeometry();
     this.cut = new THREE.LineSegments(this.cutGeometry, new THREE.LineBasicMaterial({ color: 0x1a1a1a }));
     this.objects = [this.surface, this.lines, this.cut];
-    for (const object of this.objects) object.frustumCulled = false;
+    // They stay where they are, and are always in sight.
+    for (const object of this.objects) Object.assign(object, { frustumCulled: false, matrixAutoUpdate: false, matrixWorldAutoUpdate: false });
     this.select();
   }
 

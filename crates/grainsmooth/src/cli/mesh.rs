@@ -253,13 +253,17 @@ pub struct BezierArguments {
     )]
     pub merge: Option<Merge>,
 
-    /// Write the points of de Casteljau's algorithm for each curve at the parameter --t, level by level
+    /// Write the points of de Casteljau's algorithm for each curve and surface at the parameters --t and --v, level by level
     #[arg(long, requires = "t", conflicts_with = "samples")]
     pub construction: bool,
 
-    /// Parameter on the curves, from 0 to 1
+    /// Parameter on the curves, and along u on the surfaces, from 0 to 1
     #[arg(long, value_name = "T", requires = "construction", value_parser = parse_parameter)]
     pub t: Option<f64>,
+
+    /// Parameter along v on the surfaces [default: that of --t]
+    #[arg(long, value_name = "V", requires = "construction", value_parser = parse_parameter)]
+    pub v: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -325,7 +329,7 @@ pub enum Task<'a> {
     Normals,
     Edit(Vec<MeshEdit>),
     Bezier { samples: u32, merge: Option<Merge> },
-    Construction { t: f64 },
+    Construction { t: f64, v: f64 },
 }
 
 /// What a subcommand says about creases and corners.
@@ -375,7 +379,7 @@ impl MeshCommand {
             Self::Edit(edit) => return (&edit.files, Task::Edit(edit.edits.clone())),
             Self::Bezier(bezier) => {
                 let task = match bezier.t {
-                    Some(t) => Task::Construction { t },
+                    Some(t) => Task::Construction { t, v: bezier.v.unwrap_or(t) },
                     None => Task::Bezier { samples: bezier.samples, merge: bezier.merge },
                 };
                 return (&bezier.files, task);

@@ -68,7 +68,7 @@ impl Job<'_> {
             Task::Edit(edits) => self.edit(&edits),
             Task::Bezier { samples, merge: None } => self.bezier(samples),
             Task::Bezier { samples, merge: Some(merge) } => self.merged(samples, merge),
-            Task::Construction { t } => self.construction(t),
+            Task::Construction { t, v } => self.construction(t, v),
         }
     }
 

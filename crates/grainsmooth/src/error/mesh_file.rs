@@ -145,9 +145,6 @@ pub enum MeshFileProblem {
     /// A file of control points has no surfaces where these are to be merged.
     #[error("holds no surfaces to merge; leave --merge out")]
     NoSurfaces,
-    /// A file of control points has no curves where their construction is asked for.
-    #[error("holds no curves, and only curves have a construction; leave --construction and --t out")]
-    NoCurves,
     /// The faces make no mesh that the scheme can work with.
     #[error("{0}")]
     Mesh(MeshError),

@@ -84,24 +84,23 @@ impl BezierFile {
         Ok((points, polylines))
     }
 
-    /// De Casteljau's points of each curve at `t`, level by level.
+    /// De Casteljau's points, level by level: of each curve at `t`; of each surface along all rows to `v`, then along u through what comes out to `t`.
     ///
     /// # Errors
     /// [`BezierError::TooLarge`] if there are more points than 32-bit ids can count.
-    pub fn construction(&self, t: f64) -> Result<Construction, BezierError> {
+    pub fn construction(&self, t: f64, v: f64) -> Result<Construction, BezierError> {
         let mut all = Construction::default();
         for curve in &self.curves {
-            for (level, points) in (0..).zip(curve.casteljau(t)) {
-                let first = first_id(all.points.len(), points.len())?;
-                let ids: Vec<u32> = (first..).take(points.len()).collect();
-                all.levels.extend(points.iter().map(|_| level));
-                all.points.extend(points);
-                // The last level is a point on the curve.
-                if ids.len() > 1 {
-                    all.lines.push(ids);
-                    all.line_levels.push(level);
-                }
+            all.add(curve.casteljau(t), 0)?;
+        }
+        for surface in &self.surfaces {
+            for row in surface.rows() {
+                let mut levels = row.casteljau(v);
+                // The last point is one of the control points along u.
+                levels.pop();
+                all.add(levels, 0)?;
             }
+            all.add(surface.curve_along_u(v).casteljau(t), surface.rows()[0].degree())?;
         }
         Ok(all)
     }
@@ -136,7 +135,7 @@ impl BezierFile {
 /// The levels of de Casteljau's scheme on all curves of a file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Construction {
-    /// The points of all levels of all curves.
+    /// The points of all levels of all curves and surfaces.
     pub points: Vec<DVec3>,
     /// The level of each point: 0 for control points.
     pub levels: Vec<i32>,
@@ -144,6 +143,26 @@ pub struct Construction {
     pub lines: Vec<Vec<u32>>,
     /// The level of each line.
     pub line_levels: Vec<i32>,
+}
+
+impl Construction {
+    /// Adds the levels of a curve, counted from `first_level`.
+    fn add(&mut self, levels: Vec<Vec<DVec3>>, first_level: usize) -> Result<(), BezierError> {
+        for (level, points) in (first_level..).zip(levels) {
+            // No degree is that high.
+            let level = i32::try_from(level).unwrap_or(i32::MAX);
+            let first = first_id(self.points.len(), points.len())?;
+            let ids: Vec<u32> = (first..).take(points.len()).collect();
+            self.levels.extend(points.iter().map(|_| level));
+            self.points.extend(points);
+            // The last level is a point on the curve.
+            if ids.len() > 1 {
+                self.lines.push(ids);
+                self.line_levels.push(level);
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The parameters of a surface's points, v running fastest.

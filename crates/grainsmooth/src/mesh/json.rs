@@ -6,7 +6,7 @@ use std::io::{self, Write};
 
 use glam::DVec3;
 use serde::Serialize;
-use subzero::{BoundaryRule, EdgeId, VertexRule};
+use subzero::{BezierCurve, BezierSurface, BoundaryRule, EdgeId, VertexRule};
 
 use super::bezier::{BezierFile, grid, step};
 use super::file::MeshFile;
@@ -298,7 +298,7 @@ struct SurfaceEntry {
 pub fn bezier_json(file: &BezierFile, samples: u32, out: &mut dyn Write) -> io::Result<()> {
     let arrays = |points: &[DVec3]| points.iter().map(DVec3::to_array).collect();
     let t: Vec<f64> = (0..samples).map(|i| step(i, samples)).collect();
-    let curve = |curve: &subzero::BezierCurve<DVec3>| CurveEntry {
+    let curve = |curve: &BezierCurve<DVec3>| CurveEntry {
         degree: curve.degree(),
         control: arrays(curve.control()),
         point: t.iter().map(|&t| curve.point(t).to_array()).collect(),
@@ -306,7 +306,7 @@ pub fn bezier_json(file: &BezierFile, samples: u32, out: &mut dyn Write) -> io::
         t: t.clone(),
     };
     let uv: Vec<[f64; 2]> = grid(samples).collect();
-    let surface = |(surface, control): (&subzero::BezierSurface<DVec3>, &Vec<Vec<DVec3>>)| {
+    let surface = |(surface, control): (&BezierSurface<DVec3>, &Vec<Vec<DVec3>>)| {
         let derivatives: Vec<[DVec3; 2]> = uv.iter().map(|&[u, v]| surface.derivatives(u, v)).collect();
         SurfaceEntry {
             control: control.iter().map(|row| arrays(row)).collect(),
@@ -328,7 +328,20 @@ pub fn bezier_json(file: &BezierFile, samples: u32, out: &mut dyn Write) -> io::
 struct ConstructionJson {
     source: String,
     t: f64,
+    v: f64,
     curves: Vec<ConstructedCurve>,
+    surfaces: Vec<ConstructedSurface>,
+}
+
+#[derive(Serialize)]
+struct ConstructedSurface {
+    /// Of each row, from its control points down to the point at v.
+    rows: Vec<Vec<Vec<Point>>>,
+    /// From these points, along u, down to the point on the surface.
+    levels: Vec<Vec<Point>>,
+    point: Point,
+    du: Point,
+    dv: Point,
 }
 
 #[derive(Serialize)]
@@ -345,28 +358,42 @@ struct ConstructedCurve {
 }
 
 /// Writes de Casteljau's points of each curve at `t`, level by level, with the curve's point and derivative there and the control points
-/// of its two parts.
+/// of its two parts; and those of each surface at (`t`, `v`), with its point and derivatives there.
 ///
 /// # Errors
 /// Whatever `out` reports.
-pub fn construction_json(file: &BezierFile, t: f64, out: &mut dyn Write) -> io::Result<()> {
+pub fn construction_json(file: &BezierFile, t: f64, v: f64, out: &mut dyn Write) -> io::Result<()> {
     let arrays = |points: &[DVec3]| points.iter().map(DVec3::to_array).collect();
-    let curve = |curve: &subzero::BezierCurve<DVec3>| {
+    let levels =
+        |curve: &BezierCurve<DVec3>, t| curve.casteljau(t).iter().map(|level| arrays(level)).collect();
+    let curve = |curve: &BezierCurve<DVec3>| {
         let [left, right] = curve.split(t);
         ConstructedCurve {
             degree: curve.degree(),
             control: arrays(curve.control()),
-            levels: curve.casteljau(t).iter().map(|level| arrays(level)).collect(),
+            levels: levels(curve, t),
             point: curve.point(t).to_array(),
             derivative: curve.derivative(t).to_array(),
             left: arrays(left.control()),
             right: arrays(right.control()),
         }
     };
+    let surface = |surface: &BezierSurface<DVec3>| {
+        let [du, dv] = surface.derivatives(t, v).map(|derivative| derivative.to_array());
+        ConstructedSurface {
+            rows: surface.rows().iter().map(|row| levels(row, v)).collect(),
+            levels: levels(&surface.curve_along_u(v), t),
+            point: surface.point(t, v).to_array(),
+            du,
+            dv,
+        }
+    };
     let json = ConstructionJson {
         source: format!("grainsmooth {}", env!("CARGO_PKG_VERSION")),
         t,
+        v,
         curves: file.curves.iter().map(curve).collect(),
+        surfaces: file.surfaces.iter().map(surface).collect(),
     };
     serde_json::to_writer(out, &json).map_err(io::Error::from)
 }

@@ -33,8 +33,11 @@ use pick::{Ray, pick};
 use saving::{Opened, Wanted};
 use surface::EditedMesh;
 
-/// How many states before global commands are kept: one of a mesh of 100 000 triangles takes some 4 MB.
+/// How many states are kept: one of a mesh of 100 000 triangles takes some 4 MB.
 const MOST_STATES: usize = 16;
+
+/// After how many commands a state is kept, beside those before global commands: undoing does no more again. A thousand take some milliseconds.
+const STATE_EVERY: usize = 1000;
 
 /// What is edited, and how it came to be.
 #[derive(Debug)]
@@ -259,7 +262,8 @@ impl Editor {
 
     /// Does a command behind those that are done.
     fn apply(&mut self, command: &Command) -> Result<String, Refusal> {
-        let before = command.is_global().then(|| self.model.clone());
+        let is_far = self.done >= self.states.last().map_or(0, |(done, _)| done + STATE_EVERY);
+        let before = (is_far || command.is_global()).then(|| self.model.clone());
         let said = self.model.apply(command).map_err(|problem| Refusal::impossible(&problem))?;
         if let Some(before) = before.filter(|_| self.states.iter().all(|(done, _)| *done != self.done)) {
             self.states.push((self.done, before));

@@ -8,6 +8,7 @@
 //! The complex of a periodic domain is that of the torus. What is said of edges and cells then holds for those of all space,
 //! and an edge collapses together with its copies, if nothing around it is a copy of something else there.
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::{CellId, Dimension, FaceId, PeriodicVertex, Side, Tessellation, Translation, Wall};
@@ -117,6 +118,7 @@ impl<'a> Complex<'a> {
         let mut faces_at = vec![Vec::new(); count];
         let mut faces = Vec::with_capacity(face_count);
         for face in original.faces().take(face_count) {
+            check_cancelled();
             let corners: Vec<PeriodicVertex> =
                 original.face_corners(face).iter().map(|vertex| original.periodic_vertex(*vertex)).collect();
             for PeriodicVertex { vertex, translation } in &corners {
@@ -153,6 +155,7 @@ impl<'a> Complex<'a> {
         for _ in 0..SWEEPS {
             let before = self.collapsed;
             for edge in self.short_edges() {
+                check_cancelled();
                 self.collapse(edge);
             }
             if self.collapsed == before {

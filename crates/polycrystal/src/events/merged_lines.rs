@@ -5,6 +5,7 @@
 
 use std::collections::HashMap;
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 use voronoi::{Side, Tessellation, VertexId};
 
@@ -47,6 +48,7 @@ fn lines_of(cells: &Tessellation) -> Vec<(Vec<Side>, DVec3)> {
     let mut around = vec![Vec::new(); edges.ends.len()];
     let mut of_corner = edges.of_corner.iter();
     for face in cells.faces() {
+        check_cancelled();
         for edge in of_corner.by_ref().take(cells.face_corners(face).len()) {
             around[*edge as usize].extend(cells.face_sides(face));
         }

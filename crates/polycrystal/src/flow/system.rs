@@ -1,5 +1,6 @@
 //! The linear system of one step: least energy under linear constraints. What its unknowns stand for it does not know.
 
+use cancellation::check_cancelled;
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
@@ -145,6 +146,7 @@ impl System {
         let mut direction = projected.clone();
         let enough = size * self.tolerance * self.tolerance;
         for _ in 0..ITERATIONS {
+            check_cancelled();
             if size <= enough || size <= 0.0 {
                 break;
             }

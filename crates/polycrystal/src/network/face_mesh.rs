@@ -1,5 +1,6 @@
 //! How the control mesh divides triple lines and boundaries.
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 use voronoi::{
@@ -264,6 +265,7 @@ pub(crate) fn triangulate_faces(
         corner_count += tessellation.face_corners(face).len();
     }
     let triangulate = |(face, first): &(FaceId, usize)| {
+        check_cancelled();
         let corners = tessellation.face_corners(*face);
         let (mut outline, mut lines_of) = (Vec::new(), Vec::new());
         for (corner, &line) in corners.iter().zip(&edges.of_corner[*first..]) {

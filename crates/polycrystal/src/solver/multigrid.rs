@@ -5,6 +5,7 @@
 //! grain and its neighbours as one (Vanek, Mandel and Brezina 1996, without smoothing), down to a grid that is solved
 //! directly.
 
+use cancellation::check_cancelled;
 use rayon::prelude::*;
 
 use crate::solver::rows::CsrRows;
@@ -43,6 +44,7 @@ impl Multigrid {
         let mut grids = Vec::new();
         let mut matrix = matrix;
         loop {
+            check_cancelled();
             let (aggregates, aggregate_count) = aggregate(&matrix);
             let is_coarsest = matrix.len() <= COARSEST || 2 * aggregate_count > matrix.len();
             let inverse_diagonal = inverse_diagonal(&matrix);

@@ -2,6 +2,7 @@
 
 use std::ops::AddAssign;
 
+use cancellation::check_cancelled;
 use rayon::prelude::*;
 
 /// Rows that one task makes: enough to be worth a task, and few enough for all threads to have some.
@@ -29,6 +30,7 @@ impl<T: Copy> CsrRows<T> {
         T: Send,
     {
         let task = |task: usize| {
+            check_cancelled();
             let mut entries = Vec::new();
             let rows = task * ROWS_PER_TASK..count.min((task + 1) * ROWS_PER_TASK);
             let ends: Vec<usize> = rows

@@ -76,17 +76,19 @@ impl Job<'_> {
         })
     }
 
-    /// De Casteljau's points on all curves of a file.
-    pub(super) fn construction(&self, t: f64) -> Result<(), Error> {
+    /// De Casteljau's points on all curves and surfaces of a file.
+    pub(super) fn construction(&self, t: f64, v: f64) -> Result<(), Error> {
         let output = self.output(&self.files.output)?;
         let file = self.read_control_points()?;
-        if file.curves.is_empty() {
-            return Err(self.located(MeshFileProblem::NoCurves));
-        }
-        let all = file.construction(t).map_err(|error| self.located(error.into()))?;
+        let all = file.construction(t, v).map_err(|error| self.located(error.into()))?;
         for curve in &file.curves {
             let DVec3 { x, y, z } = curve.point(t);
             self.report(format_args!("point       {x:?} {y:?} {z:?} after {} levels", curve.degree()));
+        }
+        for surface in &file.surfaces {
+            let DVec3 { x, y, z } = surface.point(t, v);
+            let (across, along) = (surface.rows()[0].degree(), surface.rows().len() - 1);
+            self.report(format_args!("point       {x:?} {y:?} {z:?} after {across} levels along v and {along} along u"));
         }
         let scene = Scene {
             points: all.points.clone(),
@@ -97,7 +99,7 @@ impl Job<'_> {
         let scenes = || Scenes { before: scene.clone(), levels: vec![scene.clone()] };
         self.write(vec![output.path().to_owned()], scenes, |files| {
             if self.format == MeshFormat::Json {
-                return output.stage(files, |out| construction_json(&file, t, out));
+                return output.stage(files, |out| construction_json(&file, t, v, out));
             }
             let level = |levels: &Vec<i32>| [DataArray::int32("Level", levels.clone())];
             let (of_points, of_lines) = (level(&all.levels), level(&all.line_levels));
