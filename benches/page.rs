@@ -231,7 +231,9 @@ fn grains(browser: &mut Browser) {
     row("its script, the longest", "ms", most, Some(10.0));
     browser.value("page.stage.controls.dispatchEvent({ type: 'end' }); drawn()");
     // What runs often enough is compiled, and then makes no objects of its numbers. Pixels and triangles, which are none of the script's work, are few here.
-    let draw = |count: u32| format!("for (let number = 0; number < {count}; number++) {{ {turn}; page.stage.render(); }} 0");
+    let draw = |count: u32| {
+        format!("for (let number = 0; number < {count}; number++) {{ {turn}; page.stage.render(); }} 0")
+    };
     browser.value("page.stage.renderer.setSize(4, 4); page.network.surface.geometry.setDrawRange(0, 3); page.network.lines.geometry.setDrawRange(0, 2); 0");
     browser.value(&draw(600));
     browser.call("HeapProfiler.collectGarbage", json!({}));

@@ -7,7 +7,8 @@ use glam::DVec3;
 use grainsmooth::cli::Arguments;
 use grainsmooth::texture::SymmetryError;
 use grainsmooth::{
-    Error, FileOptions, LabelMap, MapOptions, MapRun, MeasuredMap, OrientationMap, Stage, read_map, smooth_map,
+    Error, FileOptions, LabelMap, MapOptions, MapRun, MeasuredMap, OrientationMap, Stage, read_map,
+    smooth_map,
 };
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;

@@ -259,7 +259,11 @@ impl Polycrystal {
         let made = Arc::clone(&self.made);
         let filled = run(py, threads, None, move |tell| {
             tell(Stage::Filling, 0, 1);
-            if made.volume_mesh.is_some() { Ok(made) } else { Arc::unwrap_or_clone(made).filled().map(Arc::new) }
+            if made.volume_mesh.is_some() {
+                Ok(made)
+            } else {
+                Arc::unwrap_or_clone(made).filled().map(Arc::new)
+            }
         })?;
         let mesh = filled.volume_mesh.as_ref();
         let mesh = mesh.ok_or_else(|| PyValueError::new_err("grains in the plane hold no tetrahedra"))?;

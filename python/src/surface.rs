@@ -43,7 +43,8 @@ pub fn of_arrays(
 /// One boundary for each pair of labels: that of each element, and its sides.
 fn boundaries(labels: &[[i32; 2]]) -> (Vec<BoundaryId>, Vec<[Side; 2]>) {
     let side = |label: i32| u32::try_from(label).map_or(Side::Exterior, |grain| Side::Grain(GrainId(grain)));
-    let mut known: BTreeMap<[i32; 2], BoundaryId> = labels.iter().map(|pair| (*pair, BoundaryId(0))).collect();
+    let mut known: BTreeMap<[i32; 2], BoundaryId> =
+        labels.iter().map(|pair| (*pair, BoundaryId(0))).collect();
     known.values_mut().zip(0..).for_each(|(boundary, number)| *boundary = BoundaryId(number));
     (labels.iter().map(|pair| known[pair]).collect(), known.keys().map(|pair| pair.map(side)).collect())
 }

@@ -13,8 +13,17 @@ const WIDTH: usize = 120;
 
 /// Options that shape no polycrystal: of these headings, and of files those that Python has functions for.
 const LEFT_OUT_HEADINGS: [&str; 2] = ["Pictures", "Run"];
-const LEFT_OUT: [&str; 9] =
-    ["output", "format", "grains-dir", "grains-format", "stats", "series", "every", "cells-json", "cells-csv"];
+const LEFT_OUT: [&str; 9] = [
+    "output",
+    "format",
+    "grains-dir",
+    "grains-format",
+    "stats",
+    "series",
+    "every",
+    "cells-json",
+    "cells-csv",
+];
 
 const HEAD: &str = r#""""The program's options as keywords. Written by the test `python_keywords` from the program's own: change options there."""
 
@@ -58,7 +67,8 @@ fn keywords_are_the_options() {
         heading.is_some_and(|heading| !LEFT_OUT_HEADINGS.contains(&heading))
             && name.is_some_and(|name| !LEFT_OUT.contains(&name))
     };
-    let reads = |argument: &&Arg| argument.get_help_heading().is_some_and(|heading| heading.starts_with("Map"));
+    let reads =
+        |argument: &&Arg| argument.get_help_heading().is_some_and(|heading| heading.starts_with("Map"));
     let text = [HEAD, &class(OPTIONS, &command, shapes), &class(MAP_OPTIONS, smooth, reads)].concat();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("python/grainsmooth/_options.py");
     if std::env::var_os("UPDATE").is_some() {
@@ -67,7 +77,10 @@ fn keywords_are_the_options() {
     let written = std::fs::read_to_string(&path).unwrap();
     assert!(written == text, "the options changed: run `UPDATE=1 cargo test python_keywords`");
     for name in LEFT_OUT {
-        assert!(command.get_arguments().any(|argument| argument.get_long() == Some(name)), "{name} is no option");
+        assert!(
+            command.get_arguments().any(|argument| argument.get_long() == Some(name)),
+            "{name} is no option"
+        );
     }
 }
 
@@ -134,7 +147,8 @@ fn with_keywords(text: &str, names: &BTreeSet<&str>) -> String {
     let mut parts = text.split("--");
     let mut found = parts.next().unwrap_or_default().to_owned();
     for part in parts {
-        let end = part.find(|letter: char| !letter.is_ascii_lowercase() && letter != '-').unwrap_or(part.len());
+        let end =
+            part.find(|letter: char| !letter.is_ascii_lowercase() && letter != '-').unwrap_or(part.len());
         match names.contains(&part[..end]) {
             true => write!(found, "``{}``{}", keyword(&part[..end]), &part[end..]).unwrap(),
             false => write!(found, "--{part}").unwrap(),

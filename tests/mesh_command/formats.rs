@@ -295,7 +295,10 @@ fn de_casteljaus_points_level_by_level() {
     workplace.run("mesh bezier patch.txt --t 0.25 --construction -o patch.json");
     let surface = &json(&workplace.bytes("patch.json"))["surfaces"][0];
     assert_eq!(surface["point"], serde_json::json!([0.25, 0.25, 0.125]));
-    assert_eq!([&surface["du"], &surface["dv"]], [&serde_json::json!([1.0, 0.0, 0.5]), &serde_json::json!([0.0, 1.0, 0.5])]);
+    assert_eq!(
+        [&surface["du"], &surface["dv"]],
+        [&serde_json::json!([1.0, 0.0, 0.5]), &serde_json::json!([0.0, 1.0, 0.5])]
+    );
     for (arguments, message) in [
         ("--t 0.4", "the following required arguments were not provided:"),
         ("--construction", "the following required arguments were not provided:"),

@@ -153,10 +153,7 @@ impl<P: Point> BezierSurface<P> {
 
     /// The derivatives with respect to u and to v at `(u, v)`.
     pub fn derivatives(&self, u: f64, v: f64) -> [P; 2] {
-        [
-            self.curve_along_u(v).derivative(u),
-            self.along_u(|row| row.derivative(v)).point(u),
-        ]
+        [self.curve_along_u(v).derivative(u), self.along_u(|row| row.derivative(v)).point(u)]
     }
 
     fn along_u(&self, of_row: impl Fn(&BezierCurve<P>) -> P) -> BezierCurve<P> {

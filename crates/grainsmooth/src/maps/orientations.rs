@@ -40,16 +40,17 @@ impl MeasuredMap {
             [(f64::from(column) + 0.5) * spacing.x, (f64::from(rows - row) - 0.5) * spacing.y]
         };
         let places = (0..rows).flat_map(|row| (0..columns).map(move |column| place(column, row)));
-        let points = places.zip(&map.phase_of).zip(&map.angles).zip(1..).map(
-            |(((place, phase), angles), line)| MapPoint {
-                line,
-                place,
-                phase: phase.map(i64::from),
-                angles: *angles,
-                quality: 0.0,
-                confidence: None,
-            },
-        );
+        let points =
+            places.zip(&map.phase_of).zip(&map.angles).zip(1..).map(|(((place, phase), angles), line)| {
+                MapPoint {
+                    line,
+                    place,
+                    phase: phase.map(i64::from),
+                    angles: *angles,
+                    quality: 0.0,
+                    confidence: None,
+                }
+            });
         let phase = |(number, (name, symmetry)): (i64, &(String, CrystalSymmetry))| MapPhase {
             number,
             name: name.clone(),

@@ -88,7 +88,9 @@ impl Job<'_> {
         for surface in &file.surfaces {
             let DVec3 { x, y, z } = surface.point(t, v);
             let (across, along) = (surface.rows()[0].degree(), surface.rows().len() - 1);
-            self.report(format_args!("point       {x:?} {y:?} {z:?} after {across} levels along v and {along} along u"));
+            self.report(format_args!(
+                "point       {x:?} {y:?} {z:?} after {across} levels along v and {along} along u"
+            ));
         }
         let scene = Scene {
             points: all.points.clone(),

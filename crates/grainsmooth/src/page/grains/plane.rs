@@ -50,7 +50,8 @@ impl PlaneLines {
         let mut grains: Vec<u32> = pieces.iter().map(|(grain, _)| *grain).collect();
         grains.dedup();
         // There are fewer pieces than triangles, which are counted in 32 bits.
-        let of_piece = (0u32..).zip(&pieces).flat_map(|(piece, (_, own))| std::iter::repeat_n(piece, own.len()));
+        let of_piece =
+            (0u32..).zip(&pieces).flat_map(|(piece, (_, own))| std::iter::repeat_n(piece, own.len()));
         let of_piece: Vec<u32> = of_piece.collect();
         let triangles: Vec<[u32; 3]> = pieces.iter().flat_map(|(_, own)| own).copied().collect();
         let outside: Vec<[Option<u32>; 2]> = pieces.iter().map(|(grain, _)| [Some(*grain), None]).collect();
@@ -89,9 +90,8 @@ impl PlaneLines {
             };
             let Some(edge) = delaunay.get_edge_from_neighbors(from, to) else { continue };
             let faces = [(edge.face(), left), (edge.rev().face(), right)];
-            beside_lines.extend(
-                faces.into_iter().filter_map(|(face, grain)| Some((face.as_inner()?.fix(), *grain))),
-            );
+            beside_lines
+                .extend(faces.into_iter().filter_map(|(face, grain)| Some((face.as_inner()?.fix(), *grain))));
         }
         // What no line parts belongs together.
         let mut is_found = vec![false; delaunay.num_all_faces()];
