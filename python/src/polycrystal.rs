@@ -33,6 +33,9 @@ pub struct Polycrystal {
     triangles: OnceLock<Vec<[u32; 3]>>,
 }
 
+/// Points, corners and grains of tetrahedra.
+type Tetrahedra<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>, Bound<'py, PyArray1<i32>>);
+
 impl Polycrystal {
     pub(crate) fn new(made: grainsmooth::Polycrystal) -> Self {
         Self {
@@ -251,11 +254,7 @@ impl Polycrystal {
     }
 
     /// Tetrahedra that fill the grains: their points, corners and grains.
-    fn tetrahedra<'py>(
-        &self,
-        py: Python<'py>,
-        threads: usize,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>, Bound<'py, PyArray1<i32>>)> {
+    fn tetrahedra<'py>(&self, py: Python<'py>, threads: usize) -> PyResult<Tetrahedra<'py>> {
         let made = Arc::clone(&self.made);
         let filled = run(py, threads, None, move |tell| {
             tell(Stage::Filling, 0, 1);
