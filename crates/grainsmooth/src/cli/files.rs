@@ -210,7 +210,7 @@ fn parse_output(text: &str) -> Result<PathBuf, String> {
         return Ok(path.to_owned());
     }
     let extension = path.extension().unwrap_or_default().to_string_lossy();
-    let hint = nearest_format(&extension).map_or(String::new(), |name| format!("; did you mean .{name}?"));
+    let hint = nearest_format(&extension).map_or(String::new(), |name| format!(" (did you mean .{name}?)"));
     Err(format!("unknown extension{hint}; name the file {}", OutputFormat::known_extensions()))
 }
 
