@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import itertools
 import json
 import os
 import pathlib
@@ -662,7 +663,7 @@ class Polycrystal:
         else:
             mesh = mesh.extract_cells(np.flatnonzero(labels[:, 1] < 0).tolist())
             mesh.cell_data["Grain"] = mesh.cell_data["FaceLabels"][:, 0]
-        colors = _colors(self.grain_count)[np.asarray(mesh.cell_data["Grain"])]
+        colors = _colors(self.grain_count, self.face_labels)[np.asarray(mesh.cell_data["Grain"])]
         mesh.cell_data["Color"] = colors
         plotter.add_mesh(mesh, scalars="Color", rgb=True, ambient=0.3)
         return plotter.show(**options)
@@ -699,11 +700,25 @@ def _surface(mesh: pv.PolyData, labels: npt.NDArray[np.int32], grain: int, explo
     return part
 
 
-def _colors(count: int) -> npt.NDArray[np.uint8]:
-    """A colour for each grain: hues a golden section apart, so that neighbours differ."""
-    hue = np.mod(np.arange(count) * 0.618033988749895, 1.0)[:, np.newaxis]
-    wheel = np.abs(np.mod(hue * 6.0 + np.array([0.0, 4.0, 2.0]), 6.0) - 3.0) - 1.0
-    return np.asarray(255.0 * (0.35 + 0.6 * np.clip(wheel, 0.0, 1.0)), dtype=np.uint8)
+#: Okabe and Ito's colours without black, which readers who are colour-blind can tell apart.
+_PALETTE = np.array(
+    [[230, 159, 0], [86, 180, 233], [0, 158, 115], [240, 228, 66], [0, 114, 178], [213, 94, 0], [204, 121, 167], [153, 153, 153]]
+)
+
+
+def _colors(count: int, labels: npt.NDArray[np.int32]) -> npt.NDArray[np.uint8]:
+    """A colour for each grain, which no neighbour has."""
+    beside: list[list[int]] = [[] for _ in range(count)]
+    for first, second in np.unique(labels[(labels >= 0).all(axis=1)], axis=0).tolist():
+        beside[first].append(second)
+        beside[second].append(first)
+    numbers = [-1] * count
+    for grain in sorted(range(count), key=lambda grain: -len(beside[grain])):
+        taken = {numbers[other] for other in beside[grain]}
+        numbers[grain] = next(number for number in itertools.count() if number not in taken)
+    rounds, places = np.divmod(numbers, len(_PALETTE))
+    # Lighter each time that the palette begins again.
+    return np.asarray(255 - (255 - _PALETTE[places]) * 0.6 ** rounds[:, np.newaxis], dtype=np.uint8)
 
 
 def _show_options() -> None:

@@ -10,6 +10,7 @@ import pytest
 from conftest import needed
 
 import grainsmooth
+from grainsmooth.polycrystal import _colors
 
 NAMES = ["points", "triangles", "face_labels", "boundary_id", "node_types", "volumes", "seed_id"]
 
@@ -90,6 +91,12 @@ def test_pyvista_changes_nothing_of_ours(grains: grainsmooth.Polycrystal) -> Non
     mesh.cell_data["FaceLabels"][:] = 7
     np.testing.assert_array_equal(grains.points, before)
     assert grains.face_labels.max() < grains.grain_count
+
+
+def test_no_neighbours_are_drawn_in_one_colour(grains: grainsmooth.Polycrystal) -> None:
+    colors = _colors(grains.grain_count, grains.face_labels)
+    first, second = grains.face_labels[(grains.face_labels >= 0).all(axis=1)].T
+    assert colors.dtype == np.uint8 and (colors[first] != colors[second]).any(axis=1).all()
 
 
 def test_meshio_has_all(grains: grainsmooth.Polycrystal) -> None:
