@@ -1,5 +1,7 @@
 //! Edges of a list of faces: found by sorting the half-edges, then numbered in the order of the faces.
 
+use rayon::prelude::*;
+
 use crate::ids::{NONE, id};
 use crate::mesh_checks::{check_sharpness, check_vertex};
 use crate::{Crease, MeshError};
@@ -28,7 +30,7 @@ impl EdgeTable {
     pub(crate) fn new(half_edges: &[[u32; 2]]) -> Self {
         let mut sorted: Vec<([u32; 2], u32)> =
             half_edges.iter().enumerate().map(|(h, &ends)| (ordered(ends), id(h))).collect();
-        sorted.sort_unstable();
+        sorted.par_sort_unstable();
         let mut first_of = vec![0; half_edges.len()];
         for group in sorted.chunk_by(|a, b| a.0 == b.0) {
             for &(_, h) in group {

@@ -4,8 +4,8 @@ use glam::DVec3;
 use polycrystal::{
     AngleStatistics, Attempt, Boundary, Certificate, Collapsed, GrowthRecipe, Junctions, MeshSize, Network,
     NetworkError, NetworkRecipe, RegularCells, Relaxation, RelaxationStep, Relaxed, RelaxedCells, Vanished,
-    Volumes, WeightedAngle, angles_between_boundaries, dihedral_angles, grow_cells, herring_residual,
-    regular_cells, relax_cells, relax_watched, remove_short_edges, validate,
+    Volumes, WeightedAngle, angles_between_boundaries, grow_cells, herring_residual, regular_cells,
+    relax_cells, relax_watched, remove_short_edges, validate,
 };
 use voronoi::{Dimension, Tessellation};
 
@@ -309,7 +309,9 @@ fn angles_of_cells(
 /// Angles between boundaries of flat cells, and their statistics.
 fn flat_angles(of_cells: &Network, flat: &[DVec3]) -> (Vec<WeightedAngle>, Option<AngleStatistics>) {
     let mesh = of_cells.control_mesh();
-    (angles_between_boundaries(of_cells, mesh, flat), dihedral_angles(of_cells, mesh, flat))
+    let angles = angles_between_boundaries(of_cells, mesh, flat);
+    let statistics = AngleStatistics::of(angles.iter().copied());
+    (angles, statistics)
 }
 
 /// The network of cells that come together and part as tension has it, or grow and vanish.

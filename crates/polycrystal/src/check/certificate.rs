@@ -11,7 +11,7 @@ use crate::check::fault::Fault;
 use crate::check::intersections::crossing_elements;
 use crate::check::pinched_points::pinched_points;
 use crate::mesh::adjacency::Adjacency;
-use crate::mesh::angles::{angles, statistics};
+use crate::mesh::angles::angles;
 use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
@@ -169,7 +169,7 @@ pub(crate) fn inspect(
     certificate.grain_volumes = grain_volumes(surface, &survey.cones);
     let areas = if expected.rounding > 0.0 { side_areas(surface, &survey.areas) } else { BTreeMap::new() };
     certificate.check_volumes(surface, &areas, expected, is_closed);
-    certificate.angles = statistics(angles(surface, surface.sides, adjacency.non_manifold_edges()));
+    certificate.angles = AngleStatistics::of(angles(surface, surface.sides, adjacency.non_manifold_edges()));
     certificate
 }
 

@@ -325,7 +325,7 @@ impl<'a> Flow<'a> {
         // What turns over in the plane as grains grow may be going on to vanish.
         let is_growth_in_plane =
             self.volumes == Volumes::Free && matches!(self.control_mesh(), Mesh::Segments(_));
-        if self.tuning.keeps_joined && !is_growth_in_plane {
+        if !is_growth_in_plane {
             self.groups = groups;
         }
         Ok(terms.energy)

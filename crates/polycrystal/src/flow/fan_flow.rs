@@ -58,14 +58,7 @@ impl FanFlow<'_> {
         };
         let freedoms: Vec<Freedom> = self.of_points(|point| fans.freedom(point));
         let system = System::new(self.parts(&terms, &freedoms, last_place(points)), time, tolerance);
-        let (mut moves, pressures) = system.displacement(&missing);
-        if let Motion::Kept { .. } = self.motion {
-            // The centres come last among the points, fan by fan.
-            let (_, centers) = moves.split_at_mut(fans.center_of(0));
-            centers.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(fan, by)| {
-                *by += freedoms[fans.center_of(fan)].project(self.to_middle(fan, points, &before));
-            });
-        }
+        let (moves, pressures) = system.displacement(&missing);
         let mut groups = TiedPoints::apart(fans.point_count());
         *points = groups.moved_unbroken(
             points,

@@ -21,13 +21,14 @@ pub struct Tuning {
     pub forecast_factor: f64,
     /// Share of its first residual at which a step is solved: a step is one of several, and the next one starts from where it ends.
     pub tolerance: f64,
-    /// Length below which a control edge no longer changes. 0 leaves some thin triangles, twice as much spoils angles.
+    /// Length below which a control edge no longer changes where the topology stays. 0 leaves some thin triangles and folds in the plane, twice as
+    /// much spoils angles.
     pub rigid_length: f64,
     /// Size of a grain, as a share of the mean, below which the flow around is as slow as in its own units of length. 0 lets all flow as fast;
     /// dense crowds of small grains then fold.
     pub small_grain: f64,
-    /// Share of its way to the centre of the triangles around that a point inside a boundary goes in a step. 0 makes
-    /// triangles thinner.
+    /// Share of its way to the centre of the triangles around that a point inside a boundary goes in a step, where the topology stays. With 0 a
+    /// hundredth of the triangles is below 11 degrees instead of 13.
     pub centering: f64,
     /// The largest cotangent that an angle counts with in a flow of a given time: that of 11 degrees. Needles would otherwise glue
     /// their ends together.
@@ -37,8 +38,6 @@ pub struct Tuning {
     /// Cosine of the largest angle between neighbouring elements after a step (75 degrees), so that later subdivision has room
     /// before the 90 degrees of a fold; -1 for any.
     pub largest_bend: f64,
-    /// Whether points that a step would fold move as one in all steps that follow, not in this one alone.
-    pub keeps_joined: bool,
     /// Times that widening what is still thin in the end may look at as many triangles as there are: some places are hopeless, and must not
     /// take longer than the flow. 0 leaves all as it is.
     pub widening: f64,
@@ -69,12 +68,20 @@ impl Default for Tuning {
             largest_cotangent: 5.0,
             largest_turn: 0.5,
             largest_bend: 0.26,
-            keeps_joined: true,
             widening: 10.0,
             finest_moved: 1,
             finest_balanced: 2,
             largest_cotangent_to_rest: 50.0,
             merged_length: 0.06,
         }
+    }
+}
+
+impl Tuning {
+    /// These numbers where grains may switch neighbours: lines that shrink go, so nothing that is short has to be held, and triangles are good by
+    /// themselves. With centres that move, angles at equilibrium spread by 1.53 degrees instead of 1.39, and 128 triangles of 24 networks are
+    /// thin instead of 8.
+    pub(crate) fn where_topology_changes(self) -> Self {
+        Self { rigid_length: 0.0, centering: 0.0, ..self }
     }
 }

@@ -1,5 +1,6 @@
 use std::borrow::Cow;
 
+use rayon::prelude::*;
 use voronoi::PeriodicVertex;
 
 use crate::mesh::adjacency::{Adjacency, Incidence, Inner};
@@ -117,7 +118,7 @@ fn unite_edges(incidences: &mut [Incidence], elements: Elements<'_>, original_of
         }
     };
     let mut keyed: Vec<_> = incidences.iter().map(|at| (key(at), *at)).collect();
-    keyed.sort_unstable();
+    keyed.par_sort_unstable();
     let groups = (0u32..).zip(keyed.chunk_by(|a, b| a.0 == b.0));
     let numbered =
         groups.flat_map(|(edge, group)| group.iter().map(move |(_, at)| Incidence { edge, ..*at }));

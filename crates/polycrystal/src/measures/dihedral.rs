@@ -1,7 +1,7 @@
 use glam::DVec3;
 
 use crate::measures::complex::Complex;
-use crate::mesh::angles::{AngleStatistics, WeightedAngle, statistics};
+use crate::mesh::angles::{AngleStatistics, WeightedAngle};
 use crate::{LevelView, Network, Surface};
 
 /// The angles between the three boundaries at triple lines inside the domain, weighted by length; in the plane, at triple
@@ -14,7 +14,7 @@ pub fn dihedral_angles<'a>(
     points: &[DVec3],
 ) -> Option<AngleStatistics> {
     let (level, sides) = (level.into(), network.sides());
-    statistics(Complex::of_level(network, level, &Surface::of_level(level, points, &sides)).angles())
+    AngleStatistics::of(Complex::of_level(network, level, &Surface::of_level(level, points, &sides)).angles())
 }
 
 /// All angles that [`dihedral_angles`] takes the statistics of: three at each edge of a triple line.

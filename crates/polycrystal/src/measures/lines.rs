@@ -1,3 +1,5 @@
+use rayon::prelude::*;
+
 use crate::BoundaryId;
 use crate::measures::complex::Complex;
 use crate::mesh::adjacency::Incidence;
@@ -31,7 +33,7 @@ impl<'a> Lines<'a> {
             .collect();
         let mut halves: Vec<(u32, usize)> =
             ends.iter().enumerate().flat_map(|(edge, ends)| ends.map(|end| (end, edge))).collect();
-        halves.sort_unstable();
+        halves.par_sort_unstable();
         let at = |point: u32| {
             let start = halves.partition_point(|(other, _)| *other < point);
             let count = halves[start..].partition_point(|(other, _)| *other == point);

@@ -5,7 +5,6 @@ use glam::{DMat2, DVec2, DVec3};
 use voronoi::Dimension;
 
 use crate::measures::complex::Complex;
-use crate::mesh::angles::statistics;
 use crate::mesh::boundary_elements::BoundaryElements;
 use crate::{AngleStatistics, BoundaryId, GrainId, Side};
 
@@ -148,7 +147,7 @@ pub(crate) fn measure(complex: &Complex<'_>, segments: &[[u32; 2]]) -> PlaneMeas
         boundaries: boundaries.collect(),
         grains: grains.into_iter().map(|(grain, sums)| sums.measures(grain)).collect(),
         triple_points,
-        dihedral_angles: statistics(complex.angles()),
+        dihedral_angles: AngleStatistics::of(complex.angles()),
     }
 }
 

@@ -6,7 +6,7 @@ use voronoi::Dimension;
 
 use crate::measures::complex::Complex;
 use crate::measures::lines::{Line, Lines};
-use crate::mesh::angles::{edge_length, statistics};
+use crate::mesh::angles::edge_length;
 use crate::mesh::boundary_elements::BoundaryElements;
 use crate::mesh::volume::triangle_volume;
 use crate::{AngleStatistics, BoundaryId, GrainId, Side, Surface};
@@ -200,7 +200,7 @@ pub(crate) fn measure(complex: &Complex<'_>, triangles: &[[u32; 3]]) -> SpaceMea
         grains: grains.into_iter().map(|(grain, sums)| sums.measures(grain)).collect(),
         triple_lines,
         quadruple_points: quadruple_points(complex, triangles, tangents),
-        dihedral_angles: statistics(complex.angles()),
+        dihedral_angles: AngleStatistics::of(complex.angles()),
     }
 }
 

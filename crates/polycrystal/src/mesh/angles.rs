@@ -12,6 +12,24 @@ pub struct AngleStatistics {
     pub standard_deviation: f64,
 }
 
+impl AngleStatistics {
+    /// Those of some angles; nothing where all weights are 0.
+    pub fn of(angles: impl IntoIterator<Item = WeightedAngle>) -> Option<Self> {
+        // Sums of weight, weight * angle and weight * angle^2.
+        let mut sums = [0.0; 3];
+        for WeightedAngle { degrees, weight } in angles {
+            for (sum, power) in sums.iter_mut().zip([1.0, degrees, degrees * degrees]) {
+                *sum += weight * power;
+            }
+        }
+        let [weight, first, second] = sums;
+        (weight > 0.0).then(|| {
+            let mean = first / weight;
+            Self { mean, standard_deviation: (second / weight - mean * mean).max(0.0).sqrt() }
+        })
+    }
+}
+
 /// An angle between two boundaries at a triple line, in the plane at a triple point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeightedAngle {
@@ -87,22 +105,6 @@ pub(crate) fn dihedral_sectors(
         .zip(ends)
         .map(|(&(start, side), end)| DihedralSector { side, angle: end - start })
         .collect()
-}
-
-/// Mean and spread of angles; nothing where all weights are 0.
-pub(crate) fn statistics(angles: impl Iterator<Item = WeightedAngle>) -> Option<AngleStatistics> {
-    // Sums of weight, weight * angle and weight * angle^2.
-    let mut sums = [0.0; 3];
-    for WeightedAngle { degrees, weight } in angles {
-        for (sum, power) in sums.iter_mut().zip([1.0, degrees, degrees * degrees]) {
-            *sum += weight * power;
-        }
-    }
-    let [weight, first, second] = sums;
-    (weight > 0.0).then(|| {
-        let mean = first / weight;
-        AngleStatistics { mean, standard_deviation: (second / weight - mean * mean).max(0.0).sqrt() }
-    })
 }
 
 /// The length of an edge; in the plane every point counts alike.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use cancellation::check_cancelled;
 use glam::DVec3;
+use rayon::prelude::*;
 use subzero::{Crease, CurveMesh, Features, TriangleMesh};
 use voronoi::{Dimension, Edges, FaceId, PeriodicPair, Tessellation, Translation};
 
@@ -356,7 +357,7 @@ impl Meetings {
 
     /// What meets at every place.
     pub(crate) fn all(mut self) -> Vec<Meeting> {
-        self.sides.sort_unstable();
+        self.sides.par_sort_unstable();
         self.sides.dedup();
         let mut counts = vec![[0, 0]; self.originals.len()];
         for (original, side, _) in &self.sides {

@@ -134,8 +134,9 @@ pub(crate) fn smoothed(
     tuning: &Tuning,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<RelaxedCells, NetworkError> {
+    let tuning = tuning.where_topology_changes();
     let mut attempts = Vec::new();
-    let mut smooth = |merged_length: f64, rigid_length: f64| {
+    let mut smooth = |merged_length: f64| {
         let MergedLines { cells, middles, collapsed: merged } =
             MergedLines::new(&settled.complex, &settled.shape, merged_length);
         let NetworkRecipe { face_mesh, junctions, levels, .. } = *recipe;
@@ -148,7 +149,6 @@ pub(crate) fn smoothed(
             }
         };
         let network = network.with_cell_volumes(volumes.to_vec()).with_tensions(recipe.tension)?;
-        let tuning = Tuning { rigid_length, ..*tuning };
         let mut watch_later = |step: RelaxationStep<'_>| {
             // Where it starts is where the last step ended.
             if step.done > 0 {
@@ -166,22 +166,11 @@ pub(crate) fn smoothed(
         let reconnections = settled.reconnections;
         Ok::<_, NetworkError>(RelaxedCells { reconnections, merged, balance, ..cells })
     };
-    // On the way to rest points have time to part; in a given time what is short could not live.
-    let rigid_lengths = match relaxation {
-        Relaxation::Equilibrium => [0.0, tuning.rigid_length],
-        Relaxation::Time(_) => [tuning.rigid_length, 0.0],
-    };
-    let words = |rigid_length: f64| if rigid_length > 0.0 { "rigid" } else { "free" };
-    for rigid_length in rigid_lengths {
-        match smooth(tuning.merged_length, rigid_length) {
-            Err(error) if error.is_tangle() => {
-                let tried = format!("relaxing without short lines, short edges {}", words(rigid_length));
-                error.give_up(tried, &mut attempts);
-            }
-            result => return result.map(|relaxed| RelaxedCells { attempts, ..relaxed }),
-        }
+    match smooth(tuning.merged_length) {
+        Err(error) if error.is_tangle() => error.give_up("relaxing without short lines", &mut attempts),
+        result => return result,
     }
-    match smooth(0.0, 0.0) {
+    match smooth(0.0) {
         Ok(relaxed) => Ok(RelaxedCells { attempts, ..relaxed }),
         Err(error) => Err(error.after(attempts)),
     }

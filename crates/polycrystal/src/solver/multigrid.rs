@@ -141,17 +141,13 @@ fn aggregate(matrix: &CsrRows<f64>) -> (Vec<u32>, usize) {
 }
 
 fn coarsen(matrix: &CsrRows<f64>, groups: &[u32], count: usize) -> CsrRows<f64> {
-    let mut rows: Vec<Vec<(u32, f64)>> = vec![Vec::new(); count];
-    for (row, group) in groups.iter().enumerate() {
-        let entries = matrix.row(row).iter();
-        rows[*group as usize].extend(entries.map(|(column, value)| (groups[*column as usize], *value)));
-    }
-    for row in &mut rows {
-        row.sort_by_key(|(column, _)| *column);
-        let sums = row.chunk_by(|a, b| a.0 == b.0).map(|same| (same[0].0, same.iter().map(|e| e.1).sum()));
-        *row = sums.collect();
-    }
-    CsrRows::new(rows)
+    let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
+    groups.iter().enumerate().for_each(|(row, group)| members[*group as usize].push(row));
+    CsrRows::made_by(count, |group, sums| {
+        for (column, value) in members[group].iter().flat_map(|row| matrix.row(*row)) {
+            sums.add(groups[*column as usize], *value);
+        }
+    })
 }
 
 /// Dense factors of a small matrix.
@@ -202,25 +198,24 @@ impl Cholesky {
 mod tests {
     use super::*;
     use crate::solver::conjugate_gradients::{Limits, solve};
+    use crate::solver::rows::NewRow;
 
     /// The Laplacian of a cube of points, whose rows sum to zero.
     fn laplacian(side: u32) -> CsrRows<f64> {
-        let at = |x: u32, y: u32, z: u32| (x * side + y) * side + z;
-        let mut rows = Vec::new();
-        for (x, y, z) in (0..side.pow(3)).map(|i| (i / side / side, i / side % side, i % side)) {
-            let mut row = Vec::new();
-            for (axis, place) in [x, y, z].into_iter().enumerate() {
-                for next in [place.checked_sub(1), Some(place + 1).filter(|next| *next < side)] {
+        let at = |[x, y, z]: [u32; 3]| (x * side + y) * side + z;
+        CsrRows::made_by(side.pow(3) as usize, |row, entries| {
+            let i = u32::try_from(row).expect("few");
+            let place = [i / side / side, i / side % side, i % side];
+            for axis in 0..3 {
+                for next in [place[axis].checked_sub(1), Some(place[axis] + 1).filter(|next| *next < side)] {
                     let Some(next) = next else { continue };
-                    let mut other = [x, y, z];
+                    let mut other = place;
                     other[axis] = next;
-                    row.push((at(other[0], other[1], other[2]), -1.0));
+                    entries.add(at(other), -1.0);
+                    entries.add(i, 1.0);
                 }
             }
-            row.push((at(x, y, z), row.len() as f64));
-            rows.push(row);
-        }
-        CsrRows::new(rows)
+        })
     }
 
     #[test]
@@ -241,7 +236,12 @@ mod tests {
 
     #[test]
     fn unknowns_without_a_row_stay_zero() {
-        let grids = Multigrid::new(CsrRows::new(vec![vec![(0, 2.0)], vec![]]));
+        let only_first = |row: usize, entries: &mut NewRow<'_, f64>| {
+            if row == 0 {
+                entries.add(0, 2.0);
+            }
+        };
+        let grids = Multigrid::new(CsrRows::made_by(2, only_first));
         let solution = grids.precondition(&[3.0, 0.0]);
         assert!((solution[0] - 1.5).abs() < 1e-9 && solution[1] == 0.0);
     }

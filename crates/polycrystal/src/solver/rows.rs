@@ -8,81 +8,81 @@ use rayon::prelude::*;
 /// Rows that one task makes: enough to be worth a task, and few enough for all threads to have some.
 const ROWS_PER_TASK: usize = 1024;
 
-/// Rows of pairs of a column and a value.
+/// Rows of pairs of a column and a value, in blocks as tasks make them.
 #[derive(Debug)]
 pub(crate) struct CsrRows<T> {
+    blocks: Vec<Block<T>>,
+    len: usize,
+}
+
+/// Some rows, one after the other.
+#[derive(Debug)]
+struct Block<T> {
+    /// Where each row starts, and the end.
     starts: Vec<usize>,
     entries: Vec<(u32, T)>,
 }
 
-impl<T: Copy> CsrRows<T> {
-    pub(crate) fn new(rows: Vec<Vec<(u32, T)>>) -> Self {
-        let mut starts = vec![0];
-        for row in &rows {
-            starts.push(starts[starts.len() - 1] + row.len());
-        }
-        Self { starts, entries: rows.concat() }
-    }
-
+impl<T> CsrRows<T> {
     /// Rows that are made in parallel, each by `fill`.
-    pub(crate) fn made_by(count: usize, fill: impl Fn(usize, &mut NewRow<'_, T>) + Sync) -> Self
+    pub(crate) fn made_by(len: usize, fill: impl Fn(usize, &mut NewRow<'_, T>) + Sync) -> Self
     where
         T: Send,
     {
-        let task = |task: usize| {
+        let block = |block: usize| {
             check_cancelled();
             let mut entries = Vec::new();
-            let rows = task * ROWS_PER_TASK..count.min((task + 1) * ROWS_PER_TASK);
-            let ends: Vec<usize> = rows
-                .map(|row| {
-                    fill(row, &mut NewRow { start: entries.len(), entries: &mut entries });
-                    entries.len()
-                })
-                .collect();
-            (ends, entries)
+            let mut starts = vec![0];
+            for row in block * ROWS_PER_TASK..len.min((block + 1) * ROWS_PER_TASK) {
+                fill(row, &mut NewRow { start: entries.len(), entries: &mut entries });
+                starts.push(entries.len());
+            }
+            Block { starts, entries }
         };
-        let tasks: Vec<_> = (0..count.div_ceil(ROWS_PER_TASK)).into_par_iter().map(task).collect();
-        let mut rows = Self { starts: vec![0], entries: Vec::new() };
-        rows.entries.reserve_exact(tasks.iter().map(|(_, entries)| entries.len()).sum());
-        for (ends, entries) in tasks {
-            let before = rows.entries.len();
-            rows.starts.extend(ends.iter().map(|end| before + end));
-            rows.entries.extend(entries);
-        }
-        rows
+        Self { blocks: (0..len.div_ceil(ROWS_PER_TASK)).into_par_iter().map(block).collect(), len }
     }
 
     /// The matrix with rows and columns exchanged.
     pub(crate) fn transposed(&self, column_count: usize) -> Self
     where
-        T: Default,
+        T: Copy + Default,
     {
-        let mut starts = vec![0; column_count + 1];
-        for (column, _) in &self.entries {
-            starts[*column as usize + 1] += 1;
+        let mut counts = vec![0; column_count];
+        for (column, _) in self.blocks.iter().flat_map(|block| &block.entries) {
+            counts[*column as usize] += 1;
         }
-        for column in 0..column_count {
-            starts[column + 1] += starts[column];
-        }
-        let mut next = starts.clone();
-        let mut entries = vec![(0, T::default()); self.entries.len()];
-        for row in 0..self.len() {
+        let block = |counts: &mut [usize]| {
+            let mut starts = vec![0];
+            let mut end = 0;
+            for count in counts {
+                // From here on where the next entry of the row goes.
+                end += std::mem::replace(count, end);
+                starts.push(end);
+            }
+            Block { starts, entries: vec![(0, T::default()); end] }
+        };
+        let mut blocks: Vec<Block<T>> = counts.chunks_mut(ROWS_PER_TASK).map(block).collect();
+        let mut next = counts;
+        for row in 0..self.len {
             let id = u32::try_from(row).expect("a matrix has no more rows than ids");
             for (column, value) in self.row(row) {
-                let place = &mut next[*column as usize];
-                entries[*place] = (id, *value);
-                *place += 1;
+                let column = *column as usize;
+                blocks[column / ROWS_PER_TASK].entries[next[column]] = (id, *value);
+                next[column] += 1;
             }
         }
-        Self { starts, entries }
+        Self { blocks, len: column_count }
     }
 
+    #[inline]
     pub(crate) fn row(&self, row: usize) -> &[(u32, T)] {
-        &self.entries[self.starts[row]..self.starts[row + 1]]
+        let Block { starts, entries } = &self.blocks[row / ROWS_PER_TASK];
+        let row = row % ROWS_PER_TASK;
+        &entries[starts[row]..starts[row + 1]]
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.starts.len() - 1
+        self.len
     }
 }
 
