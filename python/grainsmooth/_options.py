@@ -336,7 +336,8 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--elements-per-grain 5 --volume-mesh -o grains.vtu``"""
 
     order: Value
-    """Order of the tetrahedra: 1, or 2 for a node in the middle of each edge, which stays straight [default: 1]
+    """Order of the tetrahedra: 1, or 2 for a node in the middle of each edge, on the smooth surface where boundaries are
+    remeshed [default: 1]
 
     Example of the command line: ``--elements-per-grain 3 --order 2 -o grains.inp``"""
 

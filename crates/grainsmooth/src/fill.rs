@@ -55,6 +55,9 @@ impl Polycrystal {
             match filled {
                 Ok(mut mesh) => {
                     mesh.repair(&self.edges_of_boundaries());
+                    if let Some(middles) = self.middles.clone() {
+                        mesh.curve(&self.network, middles);
+                    }
                     self.volume_mesh = Some(mesh);
                     self.add_time(Stage::Filling, start.elapsed());
                     return Ok(self);

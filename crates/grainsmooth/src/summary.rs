@@ -91,6 +91,9 @@ impl fmt::Display for Summary<'_> {
         if let Some(quality) = polycrystal.volume_mesh.as_ref().and_then(VolumeMesh::quality) {
             writeln!(out, "tetrahedra  {quality}")?;
         }
+        if let Some(curved) = polycrystal.volume_mesh.as_ref().and_then(|mesh| mesh.curved) {
+            writeln!(out, "curved      {curved}")?;
+        }
         if let Some(stretched) = synthesis.and_then(|made| StretchLine::new(&made.config)) {
             writeln!(out, "{stretched}; angles, residual and triangles are from before")?;
         }

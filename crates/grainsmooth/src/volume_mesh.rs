@@ -1,10 +1,12 @@
 //! Tetrahedra that fill grains, and how good they are.
 
 pub(crate) mod cohesive;
+pub(crate) mod curved;
 pub(crate) mod element_faces;
 pub(crate) mod element_nodes;
 pub(crate) mod repair;
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use glam::DVec3;
@@ -12,7 +14,7 @@ use polycrystal::GrainId;
 use serde::Serialize;
 
 /// Tetrahedra that fill grains.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct VolumeMesh {
     /// The points of the network, by the same numbers, then those inside grains.
     pub points: Vec<DVec3>,
@@ -22,6 +24,10 @@ pub struct VolumeMesh {
     pub tetrahedra: Vec<[u32; 4]>,
     /// The grain of each.
     pub grains: Vec<GrainId>,
+    /// The middles of edges that may bend, by their ends, the smaller number first.
+    pub middles: BTreeMap<[u32; 2], DVec3>,
+    /// What became of these, where elements are of second order.
+    pub curved: Option<CurvedEdges>,
 }
 
 impl VolumeMesh {
@@ -58,7 +64,7 @@ impl VolumeMesh {
     }
 }
 
-/// Six times the volume of a tetrahedron, divided by six; negative where it is turned inside out.
+/// The volume of a tetrahedron, negative where it is turned inside out.
 pub(crate) fn volume([a, b, c, d]: [DVec3; 4]) -> f64 {
     (b - a).cross(c - a).dot(d - a) / 6.0
 }
@@ -108,6 +114,29 @@ impl fmt::Display for TetrahedronQuality {
         write!(
             out,
             "{count}, gamma {mean:.3} on the mean, a hundredth below {first_percentile:.3}, {below_tenth} below 0.1, least {least:.3} in grain {worst_grain} at {x:.4} {y:.4} {z:.4}"
+        )
+    }
+}
+
+/// What became of the edges on boundaries of elements of second order.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CurvedEdges {
+    /// Number of edges whose middles lie on the smooth surface.
+    pub curved: usize,
+    /// Number of those that were made straight, as elements would have come near to turning inside out.
+    pub straight: usize,
+    /// Lower bound of the Jacobian determinant in all elements, as a share of what it is with straight edges.
+    pub least_jacobian: f64,
+    /// Largest error of the volume of a grain, as a share of it.
+    pub largest_volume_error: f64,
+}
+
+impl fmt::Display for CurvedEdges {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { curved, straight, least_jacobian, largest_volume_error } = self;
+        write!(
+            out,
+            "{curved} edges on the smooth surface, {straight} straight; Jacobian at least {least_jacobian:.2} of the straight element's; volumes to {largest_volume_error:.1e}"
         )
     }
 }

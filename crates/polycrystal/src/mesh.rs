@@ -12,6 +12,7 @@ pub(crate) mod id;
 pub(crate) mod level;
 pub(crate) mod node_type;
 pub(crate) mod periodic;
+pub(crate) mod quadratic_triangle;
 pub(crate) mod rounding;
 pub(crate) mod surface;
 pub(crate) mod triangle_quality;

@@ -7,6 +7,7 @@
 mod assembled;
 mod joints;
 mod lines;
+mod middles;
 mod outline;
 mod parts;
 mod patch;
@@ -30,6 +31,7 @@ use crate::{Certificate, Fault, Level, Mesh, Network, NetworkError, Surface, val
 use assembled::{Assembled, NewBoundary, assemble};
 use joints::separate_joints;
 use lines::{DividedLine, divide_lines};
+pub use middles::EdgeMiddles;
 use outline::{Numbering, Outlined, is_loop};
 use parts::Parts;
 use size_field::{Halved, SizeField, Surroundings};
@@ -46,6 +48,8 @@ pub struct ElementSize {
     pub growth: f64,
     /// Length of edges as a share of the radius of curvature, where that is less.
     pub of_radius: Option<f64>,
+    /// Whether edges get points in their middle, for elements of second order.
+    pub has_middles: bool,
 }
 
 impl ElementSize {
@@ -54,7 +58,7 @@ impl ElementSize {
 
     /// Edges of one length.
     pub fn new(length: f64) -> Self {
-        Self { length, growth: Self::GROWTH, of_radius: None }
+        Self { length, growth: Self::GROWTH, of_radius: None, has_middles: false }
     }
 }
 
@@ -69,6 +73,8 @@ pub struct Remeshed {
     pub certificate: Certificate,
     /// How often elements became smaller somewhere, because what came out was invalid there.
     pub refinements: usize,
+    /// The middles of edges, where these are asked for. They lie on the smooth surface, and volumes are restored by [`EdgeMiddles::restore_volumes`].
+    pub middles: Option<EdgeMiddles>,
 }
 
 impl Network {
@@ -139,11 +145,16 @@ impl Network {
         let mut halved = Vec::new();
         for refinements in 0.. {
             let sizes = SizeField::new(&around, size, &halved, tuning);
-            let assembled = remesh(self, &around, &sizes, tuning)?;
+            let lines = divide_lines(&skeleton.lines, around.points, &sizes, &torus);
+            let numbering = Numbering::new(&around, &lines);
+            let assembled = remesh(self, &around, &sizes, (&lines[..], &numbering), tuning)?;
             let (network, points) = (&assembled.network, assembled.points());
             let faults = match validate(network, &points) {
                 Ok(certificate) => {
-                    return Ok(Remeshed { network: assembled.network, points, certificate, refinements });
+                    let middles =
+                        size.has_middles.then(|| EdgeMiddles::new(&assembled, &around, &lines, &numbering));
+                    let network = assembled.network;
+                    return Ok(Remeshed { network, points, certificate, refinements, middles });
                 }
                 Err(faults) => faults,
             };
@@ -208,11 +219,10 @@ fn remesh(
     network: &Network,
     around: &Surroundings<'_>,
     sizes: &SizeField,
+    (lines, numbering): (&[DividedLine], &Numbering),
     tuning: &RemeshTuning,
 ) -> Result<Assembled, NetworkError> {
-    let lines = divide_lines(&around.skeleton.lines, around.points, sizes, around.torus);
-    let numbering = Numbering::new(around, &lines);
-    let positions = positions_on_lines(around, &lines, &numbering);
+    let positions = positions_on_lines(around, lines, numbering);
     let domain = network.domain();
     let position = |point: Moved<u32>| {
         let original = positions[point.original as usize];
@@ -227,13 +237,13 @@ fn remesh(
         .par_iter()
         .map(|part| {
             let triangles = around.parts.triangles.of(*part);
-            let outlined = Outlined::new(around, triangles, sizes, &lines, &numbering, position);
+            let outlined = Outlined::new(around, triangles, sizes, lines, numbering, position);
             outlined.shaped(tuning)
         })
         .collect();
-    separate_joints(&mut shaped, around, &lines, &numbering);
+    separate_joints(&mut shaped, around, lines, numbering);
     let new = shaped.into_iter().map(|shaped| new_boundary(shaped, numbering.count)).collect();
-    let mut assembled = assemble(network, around, &lines, &numbering, positions, new)?;
+    let mut assembled = assemble(network, around, lines, numbering, positions, new)?;
     volumes::restore(&mut assembled);
     Ok(assembled)
 }

@@ -10,6 +10,7 @@ use glam::{BVec3, DVec3};
 use polycrystal::{
     BoxCut, ElementSize, Measures, Mesh, Network, NetworkError, Remeshed, measure_network, validate,
 };
+use subzero::{EdgeId, FaceId};
 use voronoi::Domain;
 
 /// The size of elements of which so many edges make the mean equivalent diameter.
@@ -176,4 +177,63 @@ fn walls_without_copies_are_named() {
     let (network, points) = regular_network(&Domain::unit_cube(), 5, 1, 1);
     let error = network.remeshed(&network.subdivide(&points), &ElementSize::new(0.2), BVec3::TRUE);
     assert!(matches!(error, Err(NetworkError::NoCopyOnWall { .. })), "{error:?}");
+}
+
+#[test]
+fn middles_of_edges_lie_on_the_smooth_surface_and_keep_volumes() {
+    let periods = [BVec3::FALSE, BVec3::new(true, true, false)];
+    for domain in periods.map(|periods| Domain::unit_cube().with_periods(periods)) {
+        let (network, flat) = regular_network(&domain, 15, 3, 2);
+        let points = relaxed(&network, &flat);
+        let size = ElementSize { has_middles: true, ..size(&network, 4.0) };
+        let remeshed = network.remeshed(&points, &size, BVec3::FALSE).expect("remeshed");
+        let (new, new_points) = (&remeshed.network, &remeshed.points);
+        let Mesh::Triangles(mesh) = &new.finest().held().mesh else { panic!("a network in space") };
+        let straight: Vec<DVec3> = mesh
+            .edges()
+            .map(|[from, to]| new_points[from as usize].midpoint(new_points[to as usize]))
+            .collect();
+
+        let mut middles = remeshed.middles.clone().expect("middles");
+        let largest_error = |volumes: &[f64]| {
+            let relative = volumes.iter().zip(new.cell_volumes()).map(|(is, cell)| (is / cell - 1.0).abs());
+            relative.fold(0.0, f64::max)
+        };
+        // Before any motion quadratic triangles err by a fraction of what straight ones do before theirs.
+        let before = largest_error(&middles.grain_volumes(new, new_points));
+        assert!((1e-9..5e-3).contains(&before), "{before}");
+        assert!(middles.restore_volumes(new, new_points) < 1e-12);
+        assert!(largest_error(&middles.grain_volumes(new, new_points)) < 1e-12);
+        let rms = |middles: &[DVec3]| {
+            let squares = middles
+                .iter()
+                .step_by(middles.len().div_ceil(200))
+                .map(|middle| distance(*middle, triangles(&network), &points).powi(2));
+            (squares.sum::<f64>() / 200.0).sqrt() / size.length
+        };
+        let [curved, chords] = [rms(middles.points()), rms(&straight)];
+        assert!(curved < 0.3 * chords, "{curved} of {chords} from the smooth surface");
+
+        // Straight where it is asked for, there and at copies, and grains still have their volumes.
+        let asked: Vec<EdgeId> = (0u32..).take(mesh.edge_count()).step_by(7).map(EdgeId).collect();
+        middles.straighten(new, new_points, asked.iter().copied());
+        assert!(middles.restore_volumes(new, new_points) < 1e-12);
+        for edge in asked {
+            assert!(middles.is_straight(edge));
+            assert!(middles.points()[edge.index()].distance(straight[edge.index()]) < 1e-15);
+        }
+        // What is on a wall stays there.
+        let level = new.finest();
+        for (triangle, corners) in (0u32..).zip(triangles(new)) {
+            if new.boundaries()[level.boundary(triangle).index()].wall.is_none() {
+                continue;
+            }
+            let [a, b, c] = corners.map(|corner| new_points[corner as usize]);
+            let axis =
+                (0..3).find(|axis| a[*axis] == b[*axis] && b[*axis] == c[*axis]).expect("walls of a box");
+            for edge in mesh.triangle_edges(FaceId(triangle)) {
+                assert_eq!(middles.points()[edge.index()][axis], a[axis]);
+            }
+        }
+    }
 }

@@ -17,7 +17,8 @@ pub struct VolumeMeshOptions {
     #[serde(skip_serializing_if = "is_usual")]
     pub volume_mesh: bool,
 
-    /// Order of the tetrahedra: 1, or 2 for a node in the middle of each edge, which stays straight [default: 1]
+    /// Order of the tetrahedra: 1, or 2 for a node in the middle of each edge, on the smooth surface where boundaries are
+    /// remeshed [default: 1]
     ///
     /// Example: --elements-per-grain 3 --order 2 -o grains.inp
     #[arg(long, value_name = "P", value_parser = whole_number(1..=2_u8), allow_negative_numbers = true)]

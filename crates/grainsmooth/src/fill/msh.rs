@@ -69,7 +69,8 @@ pub(super) fn read(text: &str, surface: &[DVec3]) -> Result<VolumeMesh, String> 
             grains.push(GrainId(grain.ok_or("Gmsh wrote a tetrahedron of no grain")?));
         }
     }
-    let mut mesh = VolumeMesh { surface_points: surface.len(), points, tetrahedra, grains };
+    let mut mesh =
+        VolumeMesh { surface_points: surface.len(), points, tetrahedra, grains, ..VolumeMesh::default() };
     mesh.sort_by_grain();
     Ok(mesh)
 }

@@ -136,6 +136,7 @@ impl Polycrystal {
             mobilities: None,
             validation,
             elements: None,
+            middles: None,
             volume_mesh: None,
             times,
         }

@@ -164,6 +164,7 @@ pub fn smooth_watched(
         mobilities: None,
         validation,
         elements: None,
+        middles: None,
         volume_mesh: None,
         times,
     };

@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use glam::{BVec3, DVec3};
 use polycrystal::{
-    Attempt, BoxCut, Certificate, HerringResidual, Measures, Network, NetworkError, Side, measure_network,
-    validate,
+    Attempt, BoxCut, Certificate, EdgeMiddles, HerringResidual, Measures, Network, NetworkError, Side,
+    measure_network, validate,
 };
 use voronoi::Dimension;
 
@@ -42,6 +42,8 @@ pub struct Polycrystal {
     pub validation: Certificate,
     /// What became of a wish for elements of a size.
     pub elements: Option<ElementsReached>,
+    /// The middles of the triangles' edges, where elements of second order are asked for.
+    pub middles: Option<EdgeMiddles>,
     /// Tetrahedra that fill the grains, where these were filled.
     pub volume_mesh: Option<VolumeMesh>,
     /// Time that each stage took.

@@ -52,17 +52,18 @@ impl Polycrystal {
             return Err(Error::CoarseReference { mean, length, levels: more_levels(self.level(), coarser) });
         }
         let growth = options.size_growth.unwrap_or(ElementSize::GROWTH);
-        let size = ElementSize { length, growth, of_radius: options.adapt_curvature };
+        let has_middles = self.file().volume.order == Some(2);
+        let size = ElementSize { length, growth, of_radius: options.adapt_curvature, has_middles };
         let cut = self.axes_cut_at_box();
         let start = Instant::now();
         match self.network.remeshed(&self.points, &size, cut) {
-            Ok(Remeshed { network, points, certificate, refinements }) => {
+            Ok(Remeshed { network, points, certificate, refinements, middles }) => {
                 let mean_edge = network.mean_edge_length(&points);
                 self.elements = Some(ElementsReached { size: length, mean_edge, refinements });
                 // Angles stay those of the smooth boundaries, as they were before they were stretched.
                 self.validation.triangles = certificate.triangles;
                 self.validation.largest_volume_error = certificate.largest_volume_error;
-                (self.network, self.points) = (network, points);
+                (self.network, self.points, self.middles) = (network, points, middles);
             }
             Err(error) => return Err(self.failure(error)),
         }

@@ -8,9 +8,9 @@ use serde::Serialize;
 
 use crate::figures::triangle_angles::TriangleAngles;
 use crate::{
-    AskedAndReached, ComponentShare, Divided, ElementsReached, EquivalentDiameters, HistogramFit, LawReached,
-    PhaseShare, Polycrystal, Reconnected, ShapesReached, SizesFit, SizesReached, TensionsReached,
-    TetrahedronQuality, Topology, VolumeMesh,
+    AskedAndReached, ComponentShare, CurvedEdges, Divided, ElementsReached, EquivalentDiameters,
+    HistogramFit, LawReached, PhaseShare, Polycrystal, Reconnected, ShapesReached, SizesFit, SizesReached,
+    TensionsReached, TetrahedronQuality, Topology, VolumeMesh,
 };
 
 /// The numbers of [`Summary`](crate::Summary), to be written as JSON.
@@ -66,6 +66,8 @@ pub struct SummaryRecord {
     element_size: Option<ElementsReached>,
     /// Of grains that are filled.
     tetrahedra: Option<TetrahedronQuality>,
+    /// Of elements of second order on the smooth surface.
+    curved_edges: Option<CurvedEdges>,
     /// In degrees.
     angles_before: Option<Angles>,
     angles_after: Option<Angles>,
@@ -252,6 +254,7 @@ impl SummaryRecord {
             level: polycrystal.level(),
             element_size: polycrystal.elements,
             tetrahedra: polycrystal.volume_mesh.as_ref().and_then(VolumeMesh::quality),
+            curved_edges: polycrystal.volume_mesh.as_ref().and_then(|mesh| mesh.curved),
             angles_before: synthesis.and_then(|made| made.angles_before).map(angles),
             angles_after: polycrystal.validation.angles.map(angles),
             triangle_angles: polycrystal.validation.triangles.map(TriangleAngles::from),

@@ -11,7 +11,7 @@ use super::VolumeMesh;
 use super::element_faces::{ElementFace, FACES};
 
 /// The edges of a tetrahedron, by the corners that they join, in the order of their middle nodes in Abaqus, CalculiX, Nastran and VTK.
-const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
+pub(crate) const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
 
 /// Number of corners of a tetrahedron.
 const CORNERS: usize = 4;
@@ -40,7 +40,7 @@ impl<'a> ElementNodes<'a> {
         }
     }
 
-    /// Elements of second order, with straight edges.
+    /// Elements of second order; edges of boundaries bend to their middles, others are straight.
     pub(crate) fn quadratic(mesh: &VolumeMesh) -> Self {
         let mut points = mesh.points.clone();
         let mut nodes = Vec::with_capacity((CORNERS + EDGES.len()) * mesh.tetrahedra.len());
@@ -50,7 +50,7 @@ impl<'a> ElementNodes<'a> {
             for edge in EDGES.map(|ends| sorted(ends.map(|end| corners[end]))) {
                 nodes.push(*middles.entry(edge).or_insert_with(|| {
                     let [from, to] = edge.map(|end| points[end as usize]);
-                    points.push(from.midpoint(to));
+                    points.push(mesh.middles.get(&edge).copied().unwrap_or_else(|| from.midpoint(to)));
                     u32::try_from(points.len() - 1).expect("ids fit 32 bits")
                 }));
             }
@@ -111,13 +111,19 @@ impl<'a> ElementNodes<'a> {
             let (primary, from_primary) = *firsts.entry(key).or_insert((middle, from));
             if primary != middle {
                 let translation = from - from_primary;
-                points[middle as usize] = points[primary as usize] + translation.vector(network.domain());
+                let ends = edge.map(|end| points[end as usize]);
+                let mut place = points[primary as usize] + translation.vector(network.domain());
+                // What both ends have on a wall the sum may miss by a last place.
+                for axis in (0..3).filter(|axis| ends[0][*axis] == ends[1][*axis]) {
+                    place[axis] = ends[0][axis];
+                }
+                points[middle as usize] = place;
                 pairs.push(PeriodicPair { secondary: middle, primary, translation });
             }
         }
     }
 }
 
-fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
+pub(crate) fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }

@@ -203,6 +203,7 @@ mod tests {
             points: points.clone(),
             tetrahedra: tetrahedra.to_vec(),
             grains: vec![GrainId(0); 5],
+            ..VolumeMesh::default()
         };
         let volume = mesh.grain_volumes(1)[0];
         let fixed =

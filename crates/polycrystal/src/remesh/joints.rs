@@ -9,16 +9,13 @@ use crate::remesh::lines::DividedLine;
 use crate::remesh::outline::Numbering;
 use crate::remesh::shaping::Shaping;
 use crate::remesh::size_field::Surroundings;
-use crate::remesh::torus::Moved;
+use crate::remesh::torus::{Moved, seen_from_least};
 
 /// A boundary's triangles, and the new points on its outline.
 pub(crate) type Shaped<'a> = (Shaping<'a>, BTreeMap<u32, Moved<u32>>);
 
-/// Points on lines as seen from the least of them, which is no other way the same.
-fn key<const N: usize>(mut points: [Moved<u32>; N]) -> [Moved<u32>; N] {
-    points.sort_unstable();
-    let from = points[0].translation;
-    points.map(|point| Moved { translation: point.translation - from, ..point })
+fn key<const N: usize>(points: [Moved<u32>; N]) -> [Moved<u32>; N] {
+    seen_from_least(points).0
 }
 
 /// Gives boundaries that have an edge or a triangle between points of lines in common, on the torus, points of their own there.

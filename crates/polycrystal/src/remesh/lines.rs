@@ -23,6 +23,8 @@ pub(crate) struct DividedLine {
     pub(crate) parts: usize,
     /// New points, without the line's ends.
     pub(crate) points: Vec<DVec3>,
+    /// The middle of each segment along the smooth line.
+    pub(crate) middles: Vec<DVec3>,
     /// The point, counted from the line's start, that each smooth one goes to.
     pub(crate) goes_to: Vec<u32>,
     /// The smooth points that stay, one for each new point and end.
@@ -92,6 +94,17 @@ impl Smooth {
         (self.total().round() as usize).max(1)
     }
 
+    /// The step that a share of the line ends in, and the share of this step.
+    fn at(&self, share: f64) -> (usize, f64) {
+        let wanted = self.total() * share;
+        let step = self.segments.partition_point(|segments| *segments < wanted).max(1) - 1;
+        (step, (wanted - self.segments[step]) / (self.segments[step + 1] - self.segments[step]))
+    }
+
+    fn place(&self, (step, share): (usize, f64)) -> DVec3 {
+        self.places[step].lerp(self.places[step + 1], share)
+    }
+
     fn divide(&self, count: usize) -> DividedLine {
         let steps = self.places.len() - 1;
         let parts =
@@ -99,14 +112,9 @@ impl Smooth {
         let fine = self.in_parts(parts);
         let last = fine.places.len() - 1;
         let (mut points, mut staying) = (Vec::with_capacity(count - 1), vec![0]);
-        let mut at = 0;
         for number in 1..count {
-            let wanted = fine.total() * number as f64 / count as f64;
-            while fine.segments[at + 1] < wanted {
-                at += 1;
-            }
-            let share = (wanted - fine.segments[at]) / (fine.segments[at + 1] - fine.segments[at]);
-            points.push(fine.places[at].lerp(fine.places[at + 1], share));
+            let (at, share) = fine.at(number as f64 / count as f64);
+            points.push(fine.place((at, share)));
             let nearest = if share < 0.5 { at } else { at + 1 };
             // No two may stay at one point, and the later ones need their own too.
             let before = staying[number - 1] as usize;
@@ -122,7 +130,9 @@ impl Smooth {
             };
             goes_to.push(id(if is_nearer_before { next - 1 } else { next }));
         }
-        DividedLine { parts, points, goes_to, staying }
+        let middle = |segment: usize| fine.place(fine.at((segment as f64 + 0.5) / count as f64));
+        let middles = (0..count).map(middle).collect();
+        DividedLine { parts, points, middles, goes_to, staying }
     }
 
     /// The same line with each step cut into so many parts.

@@ -14,6 +14,13 @@ pub(crate) struct Moved<Id> {
     pub(crate) translation: Translation,
 }
 
+/// Points as seen from the least of them, which is no other way the same at any copy, and the periods that lead there.
+pub(crate) fn seen_from_least<const N: usize>(mut points: [Moved<u32>; N]) -> ([Moved<u32>; N], Translation) {
+    points.sort_unstable();
+    let from = points[0].translation;
+    (points.map(|point| Moved { translation: point.translation - from, ..point }), from)
+}
+
 /// The copies of a network.
 ///
 /// In a periodic network they are known. Where one was cut at its box, they are what has the same coordinates, bit for bit, on opposite walls.

@@ -7,10 +7,10 @@ use crate::remesh::assembled::Assembled;
 use crate::solver::least_motion::{MovingPoint, least_motion};
 
 /// What a volume may lack in the end, as a share of it.
-const TOLERANCE: f64 = 1e-12;
+pub(crate) const TOLERANCE: f64 = 1e-12;
 
 /// Most corrections: each squares what is missing, until rounding is left.
-const STEPS: usize = 8;
+pub(crate) const STEPS: usize = 8;
 
 /// Moves points so that grains have the volumes of their cells. All move along the gradients of the volumes, the less the more area stands on them; those on walls stay
 /// in these.

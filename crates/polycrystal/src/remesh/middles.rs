@@ -1,0 +1,255 @@
+//! Points in the middle of edges, for elements of second order: on the smooth surface, and such that grains keep their volumes.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use rayon::prelude::*;
+use subzero::{EdgeId, FaceId, TriangleMesh};
+use voronoi::Translation;
+
+use crate::mesh::grouped::Grouped;
+use crate::mesh::id::id;
+use crate::mesh::quadratic_triangle::QuadraticTriangle;
+use crate::mesh::volume::{Cone, largest_relative_error, volumes_of_grains};
+use crate::remesh::assembled::Assembled;
+use crate::remesh::lines::DividedLine;
+use crate::remesh::outline::Numbering;
+use crate::remesh::reference::Reference;
+use crate::remesh::size_field::Surroundings;
+use crate::remesh::torus::{Moved, seen_from_least};
+use crate::remesh::volumes::{STEPS, TOLERANCE};
+use crate::solver::least_motion::{MovingPoint, least_motion};
+use crate::{Boundary, BoundaryId, Freedom, Mesh, Network, WallSet};
+
+/// A point in the middle of each edge of a remeshed network: with it edges are parabolas, and triangles parts of quadratic surfaces.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EdgeMiddles {
+    /// One for each edge of the finest level's mesh, by its number, in the unit of the domain.
+    points: Vec<DVec3>,
+    /// The edge that each is a copy of, and the periods from there; itself where it is none.
+    originals: Vec<Moved<u32>>,
+    walls: Vec<WallSet>,
+    /// Whether an original and its copies have no bend.
+    is_straight: Vec<bool>,
+}
+
+impl EdgeMiddles {
+    /// The middles of lines along the smooth lines; within boundaries the points of the smooth surface that are nearest to the middles of straight edges.
+    pub(crate) fn new(
+        assembled: &Assembled,
+        around: &Surroundings<'_>,
+        lines: &[DividedLine],
+        numbering: &Numbering,
+    ) -> Self {
+        let network = &assembled.network;
+        let (domain, sets, boundaries) = (network.domain(), network.wall_sets(), network.boundaries());
+        let level = network.finest_level();
+        let Mesh::Triangles(mesh) = &level.mesh else { unreachable!("triangles were assembled") };
+        let points = assembled.points();
+
+        let mut on_lines: BTreeMap<[Moved<u32>; 2], (DVec3, WallSet)> = BTreeMap::new();
+        for occurrence in &around.skeleton.occurrences {
+            let line = &lines[occurrence.line as usize];
+            let along = numbering.along(around, occurrence, line.points.len());
+            for (ends, middle) in along.windows(2).zip(&line.middles) {
+                let place = *middle + occurrence.translation.vector(domain);
+                on_lines.insert(sorted([ends[0], ends[1]]), (place, occurrence.walls));
+            }
+        }
+        let references = references(around, boundaries);
+
+        let mut known: BTreeMap<[Moved<u32>; 2], (u32, Translation)> = BTreeMap::new();
+        let mut originals = Vec::with_capacity(mesh.edge_count());
+        for (edge, ends) in (0u32..).zip(mesh.edges()) {
+            let (key, from) = seen_from_least(ends.map(|end| assembled.originals[end as usize]));
+            let (original, there) = *known.entry(key).or_insert((edge, from));
+            originals.push(Moved { original, translation: from - there });
+        }
+        // Of an edge on no line all triangles are of one boundary.
+        let mut boundary_of_edges = vec![0; mesh.edge_count()];
+        for (triangle, boundary) in (0u32..).zip(&level.boundary_of) {
+            let edges = mesh.triangle_edges(FaceId(triangle));
+            edges.iter().for_each(|edge| boundary_of_edges[edge.index()] = boundary.index());
+        }
+        let place = |(ends, boundary): ([u32; 2], usize)| {
+            let middle = points[ends[0] as usize].midpoint(points[ends[1] as usize]);
+            if let Some(found) = on_lines.get(&sorted(ends.map(|end| assembled.originals[end as usize]))) {
+                return *found;
+            }
+            match &references[boundary] {
+                Some(reference) => (reference.foot(middle, 0).place, WallSet::EMPTY),
+                None => (middle, sets.only(boundaries[boundary].wall)),
+            }
+        };
+        let edges: Vec<([u32; 2], usize)> = mesh.edges().zip(boundary_of_edges).collect();
+        let (points, walls) = edges.into_par_iter().map(place).unzip();
+        let is_straight = vec![false; mesh.edge_count()];
+        let mut middles = Self { points, originals, walls, is_straight };
+        middles.put_on_walls(network);
+        middles
+    }
+
+    /// The middle of each edge of the finest level's mesh, by its number.
+    pub fn points(&self) -> &[DVec3] {
+        &self.points
+    }
+
+    /// Whether an edge was made straight.
+    pub fn is_straight(&self, edge: EdgeId) -> bool {
+        self.is_straight[self.originals[edge.index()].original as usize]
+    }
+
+    /// Makes some edges straight, and all that are the same a period away, between the points of the network.
+    ///
+    /// # Panics
+    /// When there are no such edges or points.
+    pub fn straighten(&mut self, network: &Network, points: &[DVec3], edges: impl Iterator<Item = EdgeId>) {
+        let level = network.finest_level();
+        let Mesh::Triangles(mesh) = &level.mesh else { return };
+        for edge in edges {
+            let original = self.originals[edge.index()].original;
+            self.is_straight[original as usize] = true;
+            let [from, to] = mesh.edge(EdgeId(original)).map(|end| points[end as usize]);
+            self.points[original as usize] = from.midpoint(to);
+        }
+        self.put_on_walls(network);
+    }
+
+    /// Moves the middles of edges that are not straight so that grains, within quadratic triangles, have the volumes of their cells.
+    ///
+    /// Returns the largest error of a grain, as a share of its volume.
+    ///
+    /// # Panics
+    /// When the network or its points are others than those that the middles were made for.
+    pub fn restore_volumes(&mut self, network: &Network, points: &[DVec3]) -> f64 {
+        let wanted = network.cell_volumes();
+        let mut least = f64::INFINITY;
+        for _ in 0..STEPS {
+            let volumes = self.grain_volumes(network, points);
+            let mut missing: Vec<f64> = wanted.iter().zip(&volumes).map(|(wanted, is)| wanted - is).collect();
+            let (_, error) = largest_relative_error(&missing, wanted);
+            if error <= TOLERANCE || error >= least {
+                return error;
+            }
+            least = error;
+            // No motion changes the sum, so what rounding leaves of it has no answer.
+            let rest = missing.iter().sum::<f64>() / missing.len() as f64;
+            missing.iter_mut().for_each(|missing| *missing -= rest);
+            let motions = least_motion(&self.moving_points(network, points), &missing);
+            self.points.iter_mut().zip(motions).for_each(|(place, by)| *place += by);
+            self.put_on_walls(network);
+        }
+        least
+    }
+
+    /// The volume of each grain within quadratic triangles.
+    ///
+    /// # Panics
+    /// When the network or its points are others than those that the middles were made for.
+    pub fn grain_volumes(&self, network: &Network, points: &[DVec3]) -> Vec<f64> {
+        let level = network.finest_level();
+        let Mesh::Triangles(mesh) = &level.mesh else { return Vec::new() };
+        let boundary_count = network.boundaries().len();
+        let triangles = triangles_of_boundaries(boundary_count, &level.boundary_of);
+        let cone = |boundary: usize| {
+            let triangles = triangles.of(boundary);
+            let apex = triangles
+                .first()
+                .map_or(DVec3::ZERO, |first| points[mesh.triangles()[*first as usize][0] as usize]);
+            let (mut volume, mut area) = (0.0, DVec3::ZERO);
+            for triangle in triangles {
+                for (_, place, normal) in self.quadratic(mesh, points, *triangle).at_abscissas() {
+                    volume += (place - apex).dot(normal) / 3.0;
+                    area += normal;
+                }
+            }
+            Cone::new(apex, volume, area, voronoi::Dimension::Three)
+        };
+        let cones: Vec<Cone> = (0..boundary_count).into_par_iter().map(cone).collect();
+        volumes_of_grains(network.boundaries(), &cones, network.grain_count())
+    }
+
+    fn quadratic(&self, mesh: &TriangleMesh, points: &[DVec3], triangle: u32) -> QuadraticTriangle {
+        // An edge of this number joins the corner of the same number and the next.
+        QuadraticTriangle {
+            corners: mesh.triangles()[triangle as usize].map(|corner| points[corner as usize]),
+            middles: mesh.triangle_edges(FaceId(triangle)).map(|edge| self.points[edge.index()]),
+        }
+    }
+
+    /// How the volumes of grains grow as each original moves, which stands for its copies.
+    fn moving_points(&self, network: &Network, points: &[DVec3]) -> Vec<MovingPoint> {
+        let level = network.finest_level();
+        let Mesh::Triangles(mesh) = &level.mesh else { return Vec::new() };
+        let mut moving = vec![MovingPoint::default(); self.points.len()];
+        for (triangle, boundary) in (0u32..).zip(&level.boundary_of) {
+            let edges = mesh.triangle_edges(FaceId(triangle));
+            let mut normals = [DVec3::ZERO; 3];
+            for (weights, _, normal) in self.quadratic(mesh, points, triangle).at_abscissas() {
+                let of_middles = [0, 1, 2].map(|k| 4.0 * weights[k] * weights[(k + 1) % 3]);
+                normals.iter_mut().zip(of_middles).for_each(|(sum, share)| *sum += normal * share);
+            }
+            for (edge, normal) in edges.into_iter().zip(normals) {
+                let original = self.originals[edge.index()].original as usize;
+                if self.is_straight[original] {
+                    continue;
+                }
+                moving[original].weight += normal.length();
+                for (grain, sign) in network.boundaries()[boundary.index()].signed_grains() {
+                    *moving[original].gradients.entry(grain.0).or_default() += normal * sign;
+                }
+            }
+        }
+        let mut freedoms = vec![Freedom::Everywhere; moving.len()];
+        for (moved, walls) in self.originals.iter().zip(&self.walls) {
+            let freedom = &mut freedoms[moved.original as usize];
+            *freedom = freedom.and(network.freedom(*walls));
+        }
+        for (point, freedom) in moving.iter_mut().zip(freedoms) {
+            point.gradients.values_mut().for_each(|gradient| *gradient = freedom.project(*gradient));
+        }
+        moving
+    }
+
+    /// Puts originals on their walls, and copies where their translations lead.
+    fn put_on_walls(&mut self, network: &Network) {
+        let (domain, sets) = (network.domain(), network.wall_sets());
+        // An original comes before its copies.
+        for edge in 0..self.points.len() {
+            let Moved { original, translation } = self.originals[edge];
+            let mut place = self.points[original as usize];
+            if translation != Translation::ZERO {
+                place += translation.vector(domain);
+            }
+            self.points[edge] = sets.put_on_walls(self.walls[edge], place);
+        }
+    }
+}
+
+/// The smooth surface of each boundary; none of walls, which are flat.
+fn references(around: &Surroundings<'_>, boundaries: &[Boundary]) -> Vec<Option<Reference>> {
+    let triangles = triangles_of_boundaries(boundaries.len(), &around.level.boundary_of);
+    let reference = |boundary: usize| {
+        let of_boundary = triangles.of(boundary);
+        if of_boundary.is_empty() || boundaries[boundary].wall.is_some() {
+            return None;
+        }
+        let corners = || of_boundary.iter().map(|triangle| around.mesh.triangles()[*triangle as usize]);
+        let mut vertices: Vec<u32> = corners().flatten().collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let own = |vertex: u32| id(vertices.binary_search(&vertex).expect("all were listed"));
+        let own_corners = corners().map(|corners| corners.map(own)).collect();
+        let points = vertices.iter().map(|vertex| around.points[*vertex as usize]).collect();
+        Some(Reference::new(points, vec![0.0; vertices.len()], own_corners))
+    };
+    (0..boundaries.len()).into_par_iter().map(reference).collect()
+}
+
+fn triangles_of_boundaries(boundary_count: usize, boundary_of: &[BoundaryId]) -> Grouped<u32> {
+    Grouped::new(boundary_count, boundary_of.iter().map(|boundary| boundary.index()).zip(0u32..))
+}
+
+fn sorted([a, b]: [Moved<u32>; 2]) -> [Moved<u32>; 2] {
+    [a.min(b), a.max(b)]
+}
