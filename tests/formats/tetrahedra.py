@@ -60,6 +60,44 @@ def check_volumes(mesh, grains, tolerance):
     assert numpy.allclose(found, volumes, rtol=tolerance, atol=0), found / volumes - 1
 
 
+def check_histogram(histogram, values, end):
+    numbers = [histogram[name] for name in ("least", "mean", "largest")]
+    assert numpy.allclose(numbers, [values.min(), values.mean(), values.max()], rtol=1e-9)
+    counts, _ = numpy.histogram(values.clip(0, end), bins=20, range=(0, end))
+    # Values on an edge between bins may go to either.
+    assert numpy.abs(counts - histogram["counts"]).max() <= 1 and sum(histogram["counts"]) == len(values)
+
+
+def check_quality(quality, corners):
+    a, b, c, d = corners.transpose(1, 0, 2)
+    six_volumes = numpy.linalg.det(numpy.stack([b - a, c - a, d - a], axis=1))
+    edges = {(i, j): corners[:, j] - corners[:, i] for i in range(4) for j in range(4)}
+    length = {ends: numpy.linalg.norm(edge, axis=1) for ends, edge in edges.items()}
+    areas = [
+        numpy.linalg.norm(numpy.cross(edges[i, j], edges[i, k]), axis=1) / 2
+        for i, j, k in [(1, 2, 3), (0, 2, 3), (0, 1, 3), (0, 1, 2)]
+    ]
+    inside = six_volumes / 2 / sum(areas)
+    # Around: the centre is as far from a as from the others.
+    rows = 2 * numpy.stack([b - a, c - a, d - a], axis=1)
+    squares = numpy.stack([length[0, k] ** 2 for k in (1, 2, 3)], axis=1)[:, :, None]
+    around = numpy.linalg.norm(numpy.linalg.solve(rows, squares)[:, :, 0], axis=1)
+    check_histogram(quality["gammas"], 3 * inside / around, 1)
+    # sin(angle) = 3 V edge / (2 A B), the cosine by the other two corners' projections across the edge.
+    angles = []
+    for i, j, k, m in [(0, 1, 2, 3), (0, 2, 1, 3), (0, 3, 1, 2), (1, 2, 0, 3), (1, 3, 0, 2), (2, 3, 0, 1)]:
+        along = edges[i, j] / length[i, j][:, None]
+        across = [edges[i, n] - (edges[i, n] * along).sum(axis=1)[:, None] * along for n in (k, m)]
+        norms = [numpy.linalg.norm(vector, axis=1) for vector in across]
+        angles.append(numpy.degrees(numpy.arccos((across[0] * across[1]).sum(axis=1) / norms[0] / norms[1])))
+    check_histogram(quality["least_angles"], numpy.min(angles, axis=0), 80)
+    altitude = six_volumes / 2 / numpy.max(areas, axis=0)
+    longest = numpy.max([length[ends] for ends in edges], axis=0)
+    check_histogram(quality["aspect_ratios"], longest / altitude * (2 / 3) ** 0.5, 10)
+    check_histogram(quality["volumes"], six_volumes / six_volumes.mean(), 5)
+
+
+check_quality(expected["quality"], points[tetrahedra])
 vtu = meshio.read("grains.vtu")
 count = len(points)
 assert (vtu.points[:count] == points).all() and (len(vtu.points) > count) == (expected["order"] == 2)

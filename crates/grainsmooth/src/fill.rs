@@ -3,10 +3,13 @@
 mod msh;
 
 use std::collections::BTreeSet;
+use std::fs::File;
 use std::path::Path;
-use std::process::Command;
-use std::time::Instant;
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
+use cancellation::check_cancelled;
 use polycrystal::{GrainId, Mesh};
 
 use crate::volume_mesh::VolumeMesh;
@@ -20,6 +23,14 @@ const LEAST_VERSION: [u32; 2] = [4, 8];
 
 /// Gmsh's algorithms, the better one first: HXT, then Delaunay, which fills what the first cannot.
 const ALGORITHMS: [(&str, &str); 2] = [("10", "HXT"), ("1", "Delaunay")];
+
+/// Time that Gmsh may take, and more for each triangle of the surface: a hundred times what HXT takes, which fills what 100 000 triangles enclose in 3 s. Where it takes longer it
+/// does not end at all.
+const TIME: Duration = Duration::from_secs(60);
+const TIME_OF_TRIANGLE: Duration = Duration::from_millis(3);
+
+/// Time between two looks whether it has ended.
+const PAUSE: Duration = Duration::from_millis(10);
 
 /// How much of a grain's volume tetrahedra may miss: they have its very triangles.
 const VOLUME_TOLERANCE: f64 = 1e-9;
@@ -51,7 +62,9 @@ impl Polycrystal {
         self.write(&Output::check(folder.path().join("surface.msh"))?)?;
         let mut last = None;
         for (algorithm, name) in ALGORITHMS {
-            let filled = run(folder.path(), algorithm).and_then(|text| self.read_filled(&text));
+            let triangles = u32::try_from(self.network.finest().element_count()).unwrap_or(u32::MAX);
+            let limit = TIME + TIME_OF_TRIANGLE * triangles;
+            let filled = run(folder.path(), algorithm, limit).and_then(|text| self.read_filled(&text));
             match filled {
                 Ok(mut mesh) => {
                     mesh.repair(&self.edges_of_boundaries());
@@ -90,20 +103,67 @@ impl Polycrystal {
 }
 
 /// Runs Gmsh on the script of a surface; returns what it wrote. More threads make it slower, and another mesh.
-fn run(folder: &Path, algorithm: &str) -> Result<String, String> {
+fn run(folder: &Path, algorithm: &str, limit: Duration) -> Result<String, String> {
     let result = folder.join("volume.msh");
     let options = [("Mesh.Algorithm3D", algorithm), ("Mesh.Renumber", "0"), ("Mesh.Binary", "0")];
-    let output = Command::new(GMSH)
+    let words = folder.join("gmsh.log");
+    let refused = |cause: std::io::Error| cause.to_string();
+    let said = File::create(&words).map_err(refused)?;
+    let gmsh = Command::new(GMSH)
         .current_dir(folder)
         .args(["-3", "-nt", "1", "-v", "1", "-format", "msh41", "-o", "volume.msh", "surface.geo"])
         .args(options.into_iter().flat_map(|(name, value)| ["-setnumber", name, value]))
-        .output()
-        .map_err(|cause| cause.to_string())?;
-    let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+        .stdin(Stdio::null())
+        .stdout(said.try_clone().map_err(refused)?)
+        .stderr(said)
+        .spawn()
+        .map_err(refused)?;
+    if !Running(gmsh).ends_within(limit).map_err(refused)? {
+        return Err(format!("Gmsh did not end within {} s", limit.as_secs()));
+    }
+    let said = String::from_utf8_lossy(&std::fs::read(words).map_err(refused)?).into_owned();
     let error = said.lines().find(|line| line.contains("Error"));
     match (std::fs::read_to_string(result), error) {
         (Ok(text), None) => Ok(text),
         (_, Some(error)) => Err(format!("Gmsh says `{}`", error.trim())),
         (Err(cause), None) => Err(format!("Gmsh wrote nothing: {cause}")),
+    }
+}
+
+/// A program that ends when nobody waits for it any longer.
+struct Running(Child);
+
+impl Running {
+    /// Waits for the program; whether it has ended by then.
+    fn ends_within(mut self, limit: Duration) -> std::io::Result<bool> {
+        let start = Instant::now();
+        while self.0.try_wait()?.is_none() {
+            if start.elapsed() > limit {
+                return Ok(false);
+            }
+            check_cancelled();
+            sleep(PAUSE);
+        }
+        Ok(true)
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended meanwhile.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn programs_end_by_themselves_or_are_ended() {
+        let sleeping = |seconds: &str| Running(Command::new("sleep").arg(seconds).spawn().expect("sleep"));
+        assert!(sleeping("0").ends_within(Duration::from_secs(60)).expect("waited"));
+        assert!(!sleeping("600").ends_within(Duration::ZERO).expect("waited"));
     }
 }

@@ -137,7 +137,8 @@ pub use summary::record::SummaryRecord;
 pub use summary::{CellsSummary, Summary};
 pub use tables::cell_table::{CellTable, TableFormat};
 pub use tables::statistics::{NetworkStatistics, StatisticsOutput};
-pub use volume_mesh::{CurvedEdges, TetrahedronQuality, VolumeMesh};
+pub use volume_mesh::quality::{ShapeHistogram, TetrahedronQuality};
+pub use volume_mesh::{CurvedEdges, VolumeMesh};
 
 /// What most programs need.
 pub mod prelude {

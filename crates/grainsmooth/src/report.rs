@@ -17,9 +17,10 @@ use texture::{AngleHistogram, Pair, RandomDisorientations};
 use voronoi::Dimension;
 
 use crate::figures::significant::significant;
+use crate::volume_mesh::quality::TetrahedronShape;
 use crate::{
     AskedAndReached, Error, GrainSizes, GrainTexture, Output, Picture, Polycrystal, StagedFiles, Summary,
-    Synthesis,
+    Synthesis, VolumeMesh,
 };
 use chart::Chart;
 use poisson_voronoi::{SIZE_BIN, angle_density, face_shares, size_shares};
@@ -78,6 +79,9 @@ impl Polycrystal {
                 let weighted: Vec<_> = weighted.collect();
                 charts += &orientation_figures::figures(&weighted, symmetry, &self.of_phase(number))?;
             }
+        }
+        if let Some(mesh) = &self.volume_mesh {
+            charts.extend(tetrahedron_charts(mesh).iter().map(Chart::figure));
         }
         let title = format!("{} grains", self.network.grain_count());
         Ok(filled(
@@ -289,6 +293,30 @@ impl Polycrystal {
             exact_name: RANDOM_CELLS,
         }
     }
+}
+
+/// How good tetrahedra are. What is beyond ten times a regular one's aspect ratio counts as that.
+fn tetrahedron_charts(mesh: &VolumeMesh) -> [Chart; 4] {
+    let shapes = mesh.shapes();
+    let chart = |title: &str, unit, width, of: fn(&TetrahedronShape) -> f64| Chart {
+        title: title.to_owned(),
+        unit,
+        of: "tetrahedra",
+        bins: chart::Bins { start: 0.0, width },
+        before: Vec::new(),
+        names: BEFORE_AND_AFTER,
+        after: shapes.iter().map(|shape| (of(shape), 1.0)).collect(),
+        exact: Vec::new(),
+        exact_name: RANDOM_CELLS,
+    };
+    [
+        chart("Gamma of tetrahedra", "gamma", 0.05, |shape| shape.gamma),
+        chart("Least angle between faces of a tetrahedron", "degrees", ANGLE_BIN, |shape| shape.least_angle),
+        chart("Aspect ratios of tetrahedra", "aspect ratio", 0.5, |shape| {
+            shape.aspect_ratio.clamp(0.0, 10.0)
+        }),
+        chart("Volumes of tetrahedra", "volume in units of the mean", 0.25, |shape| shape.volume),
+    ]
 }
 
 /// A histogram as weighted angles, some each degree, for bins of another width.

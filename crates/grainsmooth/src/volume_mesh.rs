@@ -4,6 +4,7 @@ pub(crate) mod cohesive;
 pub(crate) mod curved;
 pub(crate) mod element_faces;
 pub(crate) mod element_nodes;
+pub(crate) mod quality;
 pub(crate) mod repair;
 
 use std::collections::BTreeMap;
@@ -44,24 +45,6 @@ impl VolumeMesh {
         }
         volumes
     }
-
-    /// How good the tetrahedra are; nothing where there are none.
-    pub fn quality(&self) -> Option<TetrahedronQuality> {
-        let mut all: Vec<(f64, usize)> =
-            (0..self.tetrahedra.len()).map(|t| (gamma(self.corners(t)), t)).collect();
-        all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let (least, worst) = *all.first()?;
-        let place = self.corners(worst).iter().sum::<DVec3>() / 4.0;
-        Some(TetrahedronQuality {
-            count: all.len(),
-            least,
-            first_percentile: all[all.len() / 100].0,
-            mean: all.iter().map(|(gamma, _)| gamma).sum::<f64>() / all.len() as f64,
-            below_tenth: all.partition_point(|(gamma, _)| *gamma < 0.1),
-            worst_place: place.to_array(),
-            worst_grain: self.grains[worst].0,
-        })
-    }
 }
 
 /// The volume of a tetrahedron, negative where it is turned inside out.
@@ -86,36 +69,6 @@ pub(crate) fn gamma([a, b, c, d]: [DVec3; 4]) -> f64 {
     }
     // r_in = six_volumes / areas, for areas are twice the faces'; R = around / (4 six_volumes).
     12.0 * six_volumes * six_volumes.abs() / (areas * around)
-}
-
-/// How good tetrahedra are, by gamma: three times the radius of the ball within one divided by that of the ball around it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct TetrahedronQuality {
-    /// Number of tetrahedra.
-    pub count: usize,
-    /// Least of all.
-    pub least: f64,
-    /// That which a hundredth is below.
-    pub first_percentile: f64,
-    /// The mean.
-    pub mean: f64,
-    /// How many are below 0.1.
-    pub below_tenth: usize,
-    /// Where the worst one is.
-    pub worst_place: [f64; 3],
-    /// Its grain.
-    pub worst_grain: u32,
-}
-
-impl fmt::Display for TetrahedronQuality {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { count, least, first_percentile, mean, below_tenth, worst_place: [x, y, z], worst_grain } =
-            self;
-        write!(
-            out,
-            "{count}, gamma {mean:.3} on the mean, a hundredth below {first_percentile:.3}, {below_tenth} below 0.1, least {least:.3} in grain {worst_grain} at {x:.4} {y:.4} {z:.4}"
-        )
-    }
 }
 
 /// What became of the edges on boundaries of elements of second order.
