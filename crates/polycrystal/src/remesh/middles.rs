@@ -10,16 +10,16 @@ use voronoi::Translation;
 use crate::mesh::grouped::Grouped;
 use crate::mesh::id::id;
 use crate::mesh::quadratic_triangle::QuadraticTriangle;
-use crate::mesh::volume::{Cone, largest_relative_error, volumes_of_grains};
+use crate::mesh::volume::{Cone, volumes_of_grains};
 use crate::remesh::assembled::Assembled;
 use crate::remesh::lines::DividedLine;
 use crate::remesh::outline::Numbering;
 use crate::remesh::reference::Reference;
 use crate::remesh::size_field::Surroundings;
 use crate::remesh::torus::{Moved, seen_from_least};
-use crate::remesh::volumes::{STEPS, TOLERANCE};
-use crate::solver::least_motion::{MovingPoint, least_motion};
-use crate::{Boundary, BoundaryId, Freedom, Mesh, Network, WallSet};
+use crate::remesh::volumes::{hold_on_walls, restore_by};
+use crate::solver::least_motion::MovingPoint;
+use crate::{Boundary, BoundaryId, Mesh, Network, WallSet};
 
 /// A point in the middle of each edge of a remeshed network: with it edges are parabolas, and triangles parts of quadratic surfaces.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,24 +122,17 @@ impl EdgeMiddles {
     /// # Panics
     /// When the network or its points are others than those that the middles were made for.
     pub fn restore_volumes(&mut self, network: &Network, points: &[DVec3]) -> f64 {
-        let wanted = network.cell_volumes();
-        let mut least = f64::INFINITY;
-        for _ in 0..STEPS {
-            let volumes = self.grain_volumes(network, points);
-            let mut missing: Vec<f64> = wanted.iter().zip(&volumes).map(|(wanted, is)| wanted - is).collect();
-            let (_, error) = largest_relative_error(&missing, wanted);
-            if error <= TOLERANCE || error >= least {
-                return error;
-            }
-            least = error;
-            // No motion changes the sum, so what rounding leaves of it has no answer.
-            let rest = missing.iter().sum::<f64>() / missing.len() as f64;
-            missing.iter_mut().for_each(|missing| *missing -= rest);
-            let motions = least_motion(&self.moving_points(network, points), &missing);
-            self.points.iter_mut().zip(motions).for_each(|(place, by)| *place += by);
-            self.put_on_walls(network);
-        }
-        least
+        let move_by = |middles: &mut Self, motions: Vec<DVec3>| {
+            middles.points.iter_mut().zip(motions).for_each(|(place, by)| *place += by);
+            middles.put_on_walls(network);
+        };
+        restore_by(
+            self,
+            network.cell_volumes(),
+            |middles| middles.grain_volumes(network, points),
+            |middles| middles.moving_points(network, points),
+            move_by,
+        )
     }
 
     /// The volume of each grain within quadratic triangles.
@@ -200,14 +193,7 @@ impl EdgeMiddles {
                 }
             }
         }
-        let mut freedoms = vec![Freedom::Everywhere; moving.len()];
-        for (moved, walls) in self.originals.iter().zip(&self.walls) {
-            let freedom = &mut freedoms[moved.original as usize];
-            *freedom = freedom.and(network.freedom(*walls));
-        }
-        for (point, freedom) in moving.iter_mut().zip(freedoms) {
-            point.gradients.values_mut().for_each(|gradient| *gradient = freedom.project(*gradient));
-        }
+        hold_on_walls(network, &mut moving, self.originals.iter().zip(&self.walls));
         moving
     }
 

@@ -1,42 +1,76 @@
 //! Volumes of grains after remeshing: what chords of curved boundaries take, points get back.
 
-use crate::Freedom;
-use crate::Mesh;
+use glam::DVec3;
+
 use crate::mesh::volume::largest_relative_error;
 use crate::remesh::assembled::Assembled;
+use crate::remesh::torus::Moved;
 use crate::solver::least_motion::{MovingPoint, least_motion};
+use crate::{Freedom, Mesh, Network, WallSet};
 
 /// What a volume may lack in the end, as a share of it.
-pub(crate) const TOLERANCE: f64 = 1e-12;
+const TOLERANCE: f64 = 1e-12;
 
 /// Most corrections: each squares what is missing, until rounding is left.
-pub(crate) const STEPS: usize = 8;
+const STEPS: usize = 8;
 
 /// Moves points so that grains have the volumes of their cells. All move along the gradients of the volumes, the less the more area stands on them; those on walls stay
 /// in these.
 pub(crate) fn restore(assembled: &mut Assembled) {
     let wanted = assembled.network.cell_volumes().to_vec();
+    let volumes = |assembled: &Assembled| {
+        assembled.network.grain_volumes(assembled.network.finest(), &assembled.points())
+    };
+    let move_by = |assembled: &mut Assembled, motions: Vec<DVec3>| {
+        assembled.positions.iter_mut().zip(motions).for_each(|(place, by)| *place += by);
+    };
+    restore_by(assembled, &wanted, volumes, moving_points, move_by);
+}
+
+/// Moves points until volumes are those wanted, or as near as rounding allows. Returns the largest error, as a share of a volume.
+pub(crate) fn restore_by<Points>(
+    points: &mut Points,
+    wanted: &[f64],
+    volumes: impl Fn(&Points) -> Vec<f64>,
+    moving: impl Fn(&Points) -> Vec<MovingPoint>,
+    move_by: impl Fn(&mut Points, Vec<DVec3>),
+) -> f64 {
     let mut least = f64::INFINITY;
     for _ in 0..STEPS {
-        let points = assembled.points();
-        let network = &assembled.network;
-        let volumes = network.grain_volumes(network.finest(), &points);
-        let mut missing: Vec<f64> = wanted.iter().zip(&volumes).map(|(wanted, is)| wanted - is).collect();
-        let (_, error) = largest_relative_error(&missing, &wanted);
+        let mut missing: Vec<f64> =
+            wanted.iter().zip(volumes(points)).map(|(wanted, is)| wanted - is).collect();
+        let (_, error) = largest_relative_error(&missing, wanted);
         if error <= TOLERANCE || error >= least {
-            return;
+            return error;
         }
         least = error;
         // No motion changes the sum, so what rounding leaves of it has no answer.
         let rest = missing.iter().sum::<f64>() / missing.len() as f64;
         missing.iter_mut().for_each(|missing| *missing -= rest);
-        let motions = least_motion(&moving_points(assembled, &points), &missing);
-        assembled.positions.iter_mut().zip(motions).for_each(|(place, by)| *place += by);
+        let motions = least_motion(&moving(points), &missing);
+        move_by(points, motions);
+    }
+    least
+}
+
+/// Keeps points on the walls of all their copies.
+pub(crate) fn hold_on_walls<'a>(
+    network: &Network,
+    moving: &mut [MovingPoint],
+    copies: impl Iterator<Item = (&'a Moved<u32>, &'a WallSet)>,
+) {
+    let mut freedoms = vec![Freedom::Everywhere; moving.len()];
+    for (moved, walls) in copies {
+        let freedom = &mut freedoms[moved.original as usize];
+        *freedom = freedom.and(network.freedom(*walls));
+    }
+    for (point, freedom) in moving.iter_mut().zip(freedoms) {
+        point.gradients.values_mut().for_each(|gradient| *gradient = freedom.project(*gradient));
     }
 }
 
-fn moving_points(assembled: &Assembled, points: &[glam::DVec3]) -> Vec<MovingPoint> {
-    let network = &assembled.network;
+fn moving_points(assembled: &Assembled) -> Vec<MovingPoint> {
+    let (network, points) = (&assembled.network, assembled.points());
     let level = network.finest_level();
     let Mesh::Triangles(mesh) = &level.mesh else { return Vec::new() };
     let mut moving = vec![MovingPoint::default(); assembled.positions.len()];
@@ -51,13 +85,6 @@ fn moving_points(assembled: &Assembled, points: &[glam::DVec3]) -> Vec<MovingPoi
             }
         }
     }
-    let mut freedoms = vec![Freedom::Everywhere; moving.len()];
-    for (moved, walls) in assembled.originals.iter().zip(&level.walls) {
-        let freedom = &mut freedoms[moved.original as usize];
-        *freedom = freedom.and(network.freedom(*walls));
-    }
-    for (point, freedom) in moving.iter_mut().zip(freedoms) {
-        point.gradients.values_mut().for_each(|gradient| *gradient = freedom.project(*gradient));
-    }
+    hold_on_walls(network, &mut moving, assembled.originals.iter().zip(&level.walls));
     moving
 }
