@@ -132,6 +132,7 @@ def of_labels(
     origin: Sequence[float],
     exterior_label: int | None,
     min_voxels: int,
+    decimate: float | None,
     threads: int,
     progress: Callable[[str, int, int], object] | None,
 ) -> Polycrystal: ...

@@ -159,6 +159,7 @@ class Polycrystal:
         origin: tuple[float, ...] | None = None,
         exterior_label: int | None = None,
         min_voxels: int = 1,
+        decimate: float | None = None,
         threads: int | None = None,
         progress: Progress = False,
     ) -> Polycrystal:
@@ -178,6 +179,8 @@ class Polycrystal:
             Label of what is no grain.
         min_voxels : int, optional
             Grains with fewer voxels go to their neighbours.
+        decimate : float, optional
+            Edges shorter than so many voxels collapse; 1.6 where it is not given, in the plane 0. With 0 every voxel stays in its grain.
         threads, progress
             As of :meth:`generate`.
 
@@ -189,6 +192,8 @@ class Polycrystal:
         array = _inputs.whole_numbers("labels", labels)
         if array.ndim not in (2, 3) or array.size == 0:
             raise ValueError(f"labels: give an array of shape (nx, ny, nz) or (nx, ny), not {array.shape}")
+        if decimate is not None and not 0 <= decimate < np.inf:
+            raise ValueError(f"decimate: give a finite number of voxels, 0 or more, not {decimate}")
         nx, ny, nz = (*array.shape, 1)[:3]
         place = (0.0,) * array.ndim if origin is None else origin
         corner = _inputs.numbers("origin", place, 1)
@@ -203,6 +208,7 @@ class Polycrystal:
                 (x, y, z),
                 None if exterior_label is None else _inputs.count("exterior_label", exterior_label, -(2**31), 2**31 - 1),
                 _inputs.count("min_voxels", min_voxels, 1, 2**63),
+                decimate,
                 _inputs.thread_count(threads),
                 tell,
             )

@@ -39,7 +39,7 @@ pub fn of_map(
         let start = Instant::now();
         let measured = read_map(&path, &arguments.options)?;
         let call = format!("grainsmooth.Polycrystal.from_map({:?})", path.display().to_string());
-        let run_of = run_of(call, start.elapsed());
+        let run_of = run_of(call, arguments.options.shortest_edge(measured.map.is_plane()), start.elapsed());
         smooth_map(&path, &measured, run_of, tell).map(Polycrystal::new)
     })
 }
@@ -55,15 +55,17 @@ pub fn of_labels(
     origin: [f64; 3],
     exterior_label: Option<i32>,
     min_voxels: u64,
+    decimate: Option<f64>,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Polycrystal> {
     let labels = list(LABELS, &labels)?;
     let map = LabelMap { shape, spacing: DVec3::from(spacing), origin: DVec3::from(origin), labels };
-    let options = MapOptions { exterior_label, min_voxels, ..MapOptions::default() };
+    let options = MapOptions { exterior_label, min_voxels, decimate, ..MapOptions::default() };
     let measured =
         MeasuredMap::of_labels(map, &options).map_err(|error| invalid(format!("{LABELS}: {error}")))?;
-    let run_of = run_of("grainsmooth.Polycrystal.from_labels".to_owned(), Duration::ZERO);
+    let shortest_edge = options.shortest_edge(measured.map.is_plane());
+    let run_of = run_of("grainsmooth.Polycrystal.from_labels".to_owned(), shortest_edge, Duration::ZERO);
     run(py, threads, progress, move |tell| {
         smooth_map(Path::new(LABELS), &measured, run_of, tell).map(Polycrystal::new)
     })
@@ -92,7 +94,9 @@ pub fn of_orientations(
     };
     let path = Path::new(ORIENTATIONS);
     let arguments = Arguments::of_smooth(path, &given(options)?).map_err(to_python)?;
-    let run_of = run_of("grainsmooth.Polycrystal.from_orientations".to_owned(), Duration::ZERO);
+    let shortest_edge = arguments.options.shortest_edge(true);
+    let run_of =
+        run_of("grainsmooth.Polycrystal.from_orientations".to_owned(), shortest_edge, Duration::ZERO);
     run(py, threads, progress, move |tell| {
         tell(Stage::Map, 0, 1);
         let measured = MeasuredMap::of_orientations(&map, &arguments.options);
@@ -102,6 +106,6 @@ pub fn of_orientations(
 }
 
 /// What is said of a map, which is written as usual.
-fn run_of(command_line: String, read_in: Duration) -> MapRun {
-    MapRun { command_line, file: FileOptions::default(), read_in }
+fn run_of(command_line: String, shortest_edge: f64, read_in: Duration) -> MapRun {
+    MapRun { command_line, file: FileOptions::default(), shortest_edge, read_in }
 }

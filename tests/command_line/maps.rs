@@ -74,7 +74,7 @@ fn every_form_of_a_map_gives_grains_of_exact_volume() {
 fn voxels_of_the_network_are_those_of_the_map() {
     let workplace = workplace();
     let raw = "smooth volume.raw --shape 24 20 16 --type u16";
-    workplace.run(&format!("{raw} --voxels 24 20 16 -o a.npy -o a.vti -o a.vtp"));
+    workplace.run(&format!("{raw} --decimate 0 --voxels 24 20 16 -o a.npy -o a.vti -o a.vtp"));
     let given = workplace.bytes("volume.raw");
     let made = workplace.bytes("a.npy")[128..].to_vec();
     let given: Vec<i32> =
@@ -83,9 +83,36 @@ fn voxels_of_the_network_are_those_of_the_map() {
     let made: Vec<i32> = made.map(|label| i32::from_le_bytes(label.try_into().unwrap())).collect();
     assert!(given == made);
     // What was written is read again.
-    workplace.run("smooth a.vti -o b.vtp");
+    workplace.run("smooth a.vti --decimate 0 -o b.vtp");
     let [first, second] = ["a.vtp", "b.vtp"].map(|name| SurfaceFile::read(&workplace.path(name)));
     assert!((first.points, first.cells) == (second.points, second.cells));
+}
+
+#[test]
+fn short_edges_collapse_unless_told_otherwise() {
+    let workplace = workplace();
+    let triangles = |options: &str| {
+        workplace
+            .run(&format!("smooth volume_damask.vti --exterior-label 0 {options} -o a.vtp --stats a.json"));
+        workplace.command("check a.vtp").assert().success();
+        let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();
+        for (grain, count) in statistics["grains"].as_array().unwrap().iter().zip(&COUNTS[1..]) {
+            assert!(
+                (grain["volume"].as_f64().unwrap() / (0.2 * count) - 1.0).abs() < 1e-12,
+                "{options}: {grain}"
+            );
+        }
+        SurfaceFile::read(&workplace.path("a.vtp")).cells
+    };
+    let [all, usual, same, three] = ["--decimate 0", "", "--decimate 1.6", "--decimate 3"].map(triangles);
+    assert!(usual == same);
+    assert!(
+        three.len() < usual.len() && 3 * usual.len() < all.len(),
+        "{}, {}, {}",
+        all.len(),
+        usual.len(),
+        three.len()
+    );
 }
 
 #[test]
@@ -272,7 +299,7 @@ fn maps_that_cannot_be_used() {
         ),
         (
             "map.png",
-            "map.png: unknown extension; give a map *.vti, *.npy, *.nrrd, *.nhdr, *.mhd, *.mha, *.tesr, *.raw, *.ang or *.ctf",
+            "map.png: unknown extension; give a map *.vti, *.npy, *.npz, *.nrrd, *.nhdr, *.mhd, *.mha, *.tesr, *.dream3d, *.h5, *.h5oina, *.raw, *.ang or *.ctf",
         ),
         (
             "no.vti",
@@ -347,6 +374,10 @@ fn maps_that_cannot_be_used() {
         (
             "volume.npy --spacing 0",
             "invalid value '0' for '--spacing <DX> [DY] [DZ]': give a positive, finite length",
+        ),
+        (
+            "volume.npy --decimate -1",
+            "invalid value '-1' for '--decimate <H>': give a finite number of voxels, 0 or more",
         ),
         (
             "volume.npy --type f16",

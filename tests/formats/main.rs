@@ -5,6 +5,7 @@
 mod corrupt;
 mod evolver;
 mod grids;
+mod hdf5;
 mod maps;
 #[path = "../common/programs.rs"]
 mod programs;

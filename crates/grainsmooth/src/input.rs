@@ -2,7 +2,6 @@
 
 pub(crate) mod domain_file;
 pub(crate) mod labelled_file;
-pub(crate) mod orientation_map;
 pub(crate) mod seed_file;
 pub(crate) mod size_file;
 pub(crate) mod tess;

@@ -1,15 +1,18 @@
-//! Measured maps: labels of grains on a grid, in the files of other programs.
+//! Measured maps: labels of grains on a grid, or orientations point by point, in the files of other programs.
 
 pub(crate) mod cleaning;
 mod ebsd;
 pub(crate) mod ebsd_options;
+mod hdf5;
 pub(crate) mod label_map;
 mod mhd;
 mod neighbors;
 mod npy;
+mod npz;
 mod nrrd;
 mod number_type;
 pub(crate) mod options;
+pub(crate) mod orientation_map;
 pub(crate) mod orientations;
 mod raw;
 pub(crate) mod read;

@@ -93,6 +93,6 @@ pub use relax::{relax, relax_watched};
 pub use remesh::RemeshTuning;
 pub use remesh::{EdgeMiddles, ElementSize, Remeshed};
 pub use validate::validate;
-pub use voxels::{SmoothedVoxels, VoxelLabel, Voxels, smooth_voxels};
+pub use voxels::{SmoothedVoxels, VoxelLabel, VoxelOptions, Voxels, smooth_voxels};
 #[doc(hidden)]
 pub use voxels::{VoxelTuning, smooth_voxels_tuned};

@@ -4,34 +4,33 @@
 //! no voxel changes its grain: the boundaries bend as little as they can there, and every grain keeps the volume of its voxels.
 
 mod bending;
+mod decimation;
 mod elements;
 mod graph;
 mod labels;
 mod lattice;
 mod pattern;
 mod staircase;
+mod surface;
 mod tuning;
 mod untangling;
 mod volumes;
 
-use std::ops::Deref;
+use glam::DVec3;
 
-use glam::{BVec3, DVec3};
-use rayon::prelude::*;
-
-use crate::mesh::grouped::Grouped;
-use crate::mesh::id::id;
 use crate::{Certificate, Junctions, Network, NetworkError, Side, Surface};
 use bending::{Boxes, least_bending};
-use elements::CutFaces;
+use decimation::Decimation;
+use elements::{CutFaces, at_corners};
 use graph::Graph;
 use labels::OUTSIDE;
 pub use labels::{VoxelLabel, Voxels};
 use lattice::Lattice;
-use staircase::Staircase;
+use staircase::{Kind, Staircase};
+use surface::VoxelSurface;
 pub use tuning::VoxelTuning;
 use untangling::{Untangling, starts};
-use volumes::VolumeSearch;
+use volumes::{VolumeSearch, Wanted};
 
 /// The smooth network of labelled voxels.
 #[derive(Debug, Clone)]
@@ -46,20 +45,38 @@ pub struct SmoothedVoxels {
     pub relabelled: usize,
 }
 
+/// How voxels become a network.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VoxelOptions {
+    /// How subdivision of the network would smooth its lines.
+    pub junctions: Junctions,
+    /// Edges that are shorter than so many edges of a voxel collapse, where grains are large enough; 0 keeps all. Of lines between two points where four or more grains
+    /// meet only those shorter than two fifths of that do.
+    pub shortest_edge: f64,
+}
+
+impl VoxelOptions {
+    /// Every point of the boundaries of voxels: no voxel changes its grain.
+    pub const ALL_POINTS: Self = Self { junctions: Junctions::Crease, shortest_edge: 0.0 };
+}
+
 /// The network of grains that voxels are labelled with, as smooth as it can be while each voxel stays in its grain and grains have the volumes of their voxels.
 ///
 /// `progress` is told how many steps of how many are done. Points of boundaries follow the mean of their neighbours, points of lines that of both neighbours along the line,
 /// by least squares within boxes (after Lempitsky, Surface extraction from binary volumes with higher-order smoothness, 2010, here for any number of labels).
 /// Lines that go where grains touch along an edge only are parted for the grain with more voxels.
 ///
+/// Then short edges collapse, if that is asked for. Grains keep their volumes, but the middle of a voxel near a boundary may come to lie in the grain beyond.
+/// Where the certificate finds a fault in what is left, more points stay.
+///
 /// ```
-/// use polycrystal::{GrainId, Junctions, VoxelLabel, Voxels, smooth_voxels};
+/// use polycrystal::{GrainId, VoxelLabel, VoxelOptions, Voxels, smooth_voxels};
 /// use voronoi::Domain;
 ///
 /// // 4 x 4 x 4 voxels, x fastest: two grains that meet in the middle.
 /// let labels = (0..64).map(|voxel| VoxelLabel::of(GrainId(u32::from(voxel % 4 >= 2)))).collect();
 /// let voxels = Voxels::new(Domain::unit_cube(), [4, 4, 4], labels);
-/// let smoothed = smooth_voxels(&voxels, Junctions::Crease, |_done, _of| ())?;
+/// let smoothed = smooth_voxels(&voxels, VoxelOptions::ALL_POINTS, |_done, _of| ())?;
 /// assert!(smoothed.certificate.is_good());
 /// assert_eq!(smoothed.network.grain_count(), 2);
 /// # Ok::<(), polycrystal::NetworkError>(())
@@ -70,17 +87,17 @@ pub struct SmoothedVoxels {
 /// cannot be relabelled; [`NetworkError::Invalid`] when elements cross that could not be untangled, or volumes are not those of the voxels.
 pub fn smooth_voxels(
     voxels: &Voxels,
-    junctions: Junctions,
+    options: VoxelOptions,
     progress: impl Fn(usize, usize) + Sync,
 ) -> Result<SmoothedVoxels, NetworkError> {
-    smooth_voxels_tuned(voxels, junctions, &VoxelTuning::default(), progress)
+    smooth_voxels_tuned(voxels, options, &VoxelTuning::default(), progress)
 }
 
 /// As [`smooth_voxels`], by other numbers than its own.
 #[doc(hidden)]
 pub fn smooth_voxels_tuned(
     voxels: &Voxels,
-    junctions: Junctions,
+    options: VoxelOptions,
     tuning: &VoxelTuning,
     progress: impl Fn(usize, usize) + Sync,
 ) -> Result<SmoothedVoxels, NetworkError> {
@@ -88,80 +105,65 @@ pub fn smooth_voxels_tuned(
     let mut mixed = lattice.mixed_places();
     let relabelled = lattice.part_what_touches(&mut mixed)?;
     let staircase = Staircase::new(&lattice, &mixed);
-    let points = smoothed_points(&staircase, &lattice, tuning, &progress);
-    let cut = points.cut;
-    let sides: Vec<[Side; 2]> =
-        staircase.kinds.iter().map(|kind| kind.labels.map(|label| VoxelLabel(label).side())).collect();
-    let points = in_domain(voxels, &staircase, &points.places);
-    let volume = voxels.spacing().element_product();
-    let volumes: Vec<f64> = lattice.counts.iter().map(|count| *count as f64 * volume).collect();
-    let surface =
-        Surface { points: &points, elements: cut.elements(), boundary_of: &cut.kind_of, sides: &sides };
-    let (network, points, certificate) =
-        Network::of_measured(voxels.domain(), &surface, Some(&volumes), junctions)?;
-    Ok(SmoothedVoxels { network, points, certificate, relabelled })
+    let sides: Vec<[Side; 2]> = staircase.kinds.iter().map(Kind::sides).collect();
+    let counts: Vec<f64> = lattice.counts.iter().map(|count| *count as f64).collect();
+    let is_open = staircase.kinds.iter().any(|kind| kind.wall.is_none() && kind.labels[1] == OUTSIDE);
+    let wanted = Wanted { volumes: &counts, sides: &sides, is_open };
+    let whole = smoothed(&staircase, &lattice, &wanted, tuning, &progress);
+    let voxel = voxels.spacing().element_product();
+    let volumes: Vec<f64> = counts.iter().map(|count| count * voxel).collect();
+    let network = |found: &VoxelSurface| {
+        let points = found.in_domain(voxels);
+        let surface = Surface { points: &points, ..found.as_surface(&sides) };
+        let network = Network::of_measured(voxels.domain(), &surface, Some(&volumes), options.junctions);
+        network.map(|(network, points, certificate)| SmoothedVoxels {
+            network,
+            points,
+            certificate,
+            relabelled,
+        })
+    };
+    if options.shortest_edge > 0.0 {
+        let decimation = Decimation {
+            whole: &whole,
+            domain: voxels.domain(),
+            lattice: &lattice,
+            kinds: &staircase.kinds,
+            wanted: &wanted,
+            shortest_edge: options.shortest_edge,
+            tuning,
+        };
+        let mut is_held = vec![false; whole.points.len()];
+        for _ in 0..tuning.decimations {
+            let decimated = decimation.decimated(&is_held);
+            match network(&decimated) {
+                Err(NetworkError::Invalid(faults)) => decimation.hold(&mut is_held, &faults, &decimated),
+                found => return found,
+            }
+        }
+    }
+    network(&whole)
 }
 
-/// Points of a staircase, in units of voxels, and its elements.
-struct SmoothedPoints {
-    places: Vec<DVec3>,
-    cut: CutFaces,
-}
-
-fn smoothed_points(
+/// The boundaries between voxels, bent as little as their boxes allow, with the volumes wanted and without crossings.
+fn smoothed(
     staircase: &Staircase,
     lattice: &Lattice,
+    wanted: &Wanted<'_>,
     tuning: &VoxelTuning,
     progress: &(impl Fn(usize, usize) + Sync),
-) -> SmoothedPoints {
-    let middles: Vec<DVec3> =
-        staircase.places.par_iter().map(|place| DVec3::from_array(place.map(|at| at as f64))).collect();
-    let is_fixed: Vec<BVec3> = staircase.places.par_iter().map(|place| lattice.is_on_walls(*place)).collect();
-    let boxes = Boxes { middles: &middles, is_fixed: &is_fixed, within: tuning.within };
-    let faces_at = grouped(middles.len(), staircase.faces.len(), |face| staircase.faces.corners(face));
+) -> VoxelSurface {
+    let faces = &staircase.faces;
+    let boxes = Boxes::new(&staircase.places, lattice, tuning.within);
+    let middles = &boxes.middles;
+    let faces_at = at_corners(middles.len(), faces.len(), |face| faces.corners(face));
     let graph = Graph::new(staircase, &faces_at);
-    let starts = starts(&middles, &faces_at, |face| staircase.faces.corners(face as usize), tuning.apart);
+    let starts = starts(middles, &faces_at, |face| faces.corners(face as usize), tuning.apart);
     let mut points = least_bending(&graph, &starts, &boxes, tuning, progress);
     let cut = CutFaces::new(staircase, &points);
-    let sides: Vec<[Side; 2]> =
-        staircase.kinds.iter().map(|kind| kind.labels.map(|label| VoxelLabel(label).side())).collect();
-    let elements = cut.elements();
-    let at_points = grouped(points.len(), elements.len(), |element| elements.corners(id(element)));
-    let wanted: Vec<f64> = lattice.counts.iter().map(|count| *count as f64).collect();
-    let search = VolumeSearch {
-        surface: Surface { points: &middles, elements, boundary_of: &cut.kind_of, sides: &sides },
-        at_points: &at_points,
-        wanted: &wanted,
-        is_open: staircase.kinds.iter().any(|kind| kind.wall.is_none() && kind.labels[1] == OUTSIDE),
-        rounds: tuning.volume_rounds,
-        longest: tuning.longest_motion,
-    };
+    let search = VolumeSearch::new(middles, &cut, wanted, tuning);
     let volume_error = search.restore(&mut points, &boxes, &vec![false; middles.len()]);
     let untangling = Untangling { graph: &graph, boxes: &boxes, starts: &starts, search: &search, tuning };
-    let places = untangling.untangle(points, volume_error);
-    SmoothedPoints { places, cut }
-}
-
-/// The faces at each point.
-fn grouped<C: Deref<Target = [u32]> + Clone>(
-    points: usize,
-    faces: usize,
-    corners: impl Fn(usize) -> C,
-) -> Grouped<u32> {
-    let of_face = |face: usize| {
-        let corners = corners(face);
-        (0..corners.len()).map(move |k| (corners[k] as usize, id(face)))
-    };
-    Grouped::new(points, (0..faces).flat_map(of_face))
-}
-
-/// Points in the unit of the domain: exactly on its walls where they were on those of the lattice.
-fn in_domain(voxels: &Voxels, staircase: &Staircase, points: &[DVec3]) -> Vec<DVec3> {
-    let (lower, upper, spacing) = (voxels.domain().lower(), voxels.domain().upper(), voxels.spacing());
-    let of_point = |(point, place): (&DVec3, &[usize; 3])| {
-        let inside = lower + *point * spacing;
-        let is_upper = BVec3::from_array(std::array::from_fn(|axis| place[axis] == voxels.shape()[axis]));
-        DVec3::select(is_upper, upper, inside)
-    };
-    points.par_iter().zip(&staircase.places).map(of_point).collect()
+    let points = untangling.untangle(points, volume_error);
+    VoxelSurface { points, places: staircase.places.clone(), cut }
 }

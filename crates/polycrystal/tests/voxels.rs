@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use polycrystal::{
-    Elements, Expected, Fault, GrainId, Junctions, NetworkError, Side, SmoothedVoxels, Surface, VoxelLabel,
-    Voxels, certify, smooth_voxels,
+    Elements, Expected, Fault, GrainId, NetworkError, Side, SmoothedVoxels, Surface, VoxelLabel,
+    VoxelOptions, Voxels, certify, smooth_voxels,
 };
 use proptest::prelude::*;
 use voronoi::Domain;
@@ -25,7 +25,7 @@ fn voxels(spacing: DVec3, shape: [usize; 3], label: impl Fn([usize; 3]) -> Optio
 }
 
 fn smoothed(voxels: &Voxels) -> SmoothedVoxels {
-    smooth_voxels(voxels, Junctions::Crease, |_, _| ()).expect("a network")
+    smooth_voxels(voxels, VoxelOptions::ALL_POINTS, |_, _| ()).expect("a network")
 }
 
 /// The share of the full angle that a grain's elements are seen under from a point: 1 inside, 0 outside.
@@ -54,9 +54,8 @@ fn winding(surface: &Surface<'_>, grain: GrainId, from: DVec3) -> f64 {
     turns.sum()
 }
 
-/// Closed, wound right, free of crossings, every voxel in its grain unless it was relabelled, and volumes those of the voxels then.
-fn check(voxels: &Voxels, smoothed: &SmoothedVoxels) {
-    let SmoothedVoxels { network, points, relabelled, .. } = smoothed;
+/// Closed, wound right, free of crossings, with the volumes that it states.
+fn check_surface(SmoothedVoxels { network, points, .. }: &SmoothedVoxels) {
     let sides = network.sides();
     let surface = Surface::of_level(network.finest(), points, &sides);
     let volumes: Vec<_> = (0..).map(GrainId).zip(network.cell_volumes().iter().copied()).collect();
@@ -64,6 +63,22 @@ fn check(voxels: &Voxels, smoothed: &SmoothedVoxels) {
     let mut faults = certify(&surface, &expected).faults;
     faults.0.retain(|fault| !matches!(fault, Fault::Folded { .. }));
     assert!(faults.0.is_empty(), "{faults}");
+}
+
+/// That, points in the boxes of places between voxels, and every voxel in its grain unless it was relabelled, and volumes those of the voxels then.
+fn check(voxels: &Voxels, smoothed: &SmoothedVoxels) {
+    check_surface(smoothed);
+    let SmoothedVoxels { network, points, relabelled, .. } = smoothed;
+    let [lower, size] = [voxels.domain().lower(), voxels.domain().size()];
+    let counts = DVec3::from_array(voxels.shape().map(|count| count as f64));
+    for point in points {
+        let place = (*point - lower) / size.max(DVec3::splat(1e-300)) * counts;
+        let off = (place - place.round()).abs();
+        assert!(off.x.max(off.y).max(if size.z > 0.0 { off.z } else { 0.0 }) < 0.49 + 1e-9, "{place}");
+    }
+    let sides = network.sides();
+    let surface = Surface::of_level(network.finest(), points, &sides);
+    let volumes: Vec<_> = (0..).map(GrainId).zip(network.cell_volumes().iter().copied()).collect();
     let domain = voxels.domain();
     let [width, height, depth] = voxels.shape();
     let spacing = domain.size() / DVec3::new(width as f64, height as f64, depth as f64);
@@ -162,7 +177,8 @@ fn checkerboard_is_parted() {
 
 #[test]
 fn labels_without_grains_or_with_gaps_are_refused() {
-    let smooth = |map: &Voxels| smooth_voxels(map, Junctions::Crease, |_, _| ()).expect_err("no network");
+    let smooth =
+        |map: &Voxels| smooth_voxels(map, VoxelOptions::ALL_POINTS, |_, _| ()).expect_err("no network");
     let empty = voxels(DVec3::ONE, [3, 3, 3], |_| None);
     assert!(matches!(smooth(&empty), NetworkError::NoGrain));
     for largest in [2, u32::MAX - 1] {
@@ -185,6 +201,56 @@ fn units_and_threads_change_nothing() {
         let [point, other] =
             [(point, &map), (other, &scaled)].map(|(point, map)| *point - map.domain().lower());
         assert!((point * 4.0).distance(other) < 1e-12);
+    }
+}
+
+/// A network without the edges that are shorter than so many voxels.
+fn decimated(voxels: &Voxels, shortest_edge: f64) -> Result<SmoothedVoxels, NetworkError> {
+    let options = VoxelOptions { shortest_edge, ..VoxelOptions::ALL_POINTS };
+    smooth_voxels(voxels, options, |_, _| ())
+}
+
+/// Balls in a ball's place: large grains beside small ones and a pore. Volumes hold exactly, and of large boundaries a small part of the elements is left.
+#[test]
+fn short_edges_collapse_and_volumes_stay() {
+    for (shape, at_most) in [([28, 28, 28], 0.16), ([60, 60, 1], 0.5)] {
+        let size = DVec3::from_array(shape.map(|count| count as f64));
+        let is_in = |voxel: [usize; 3], at: [f64; 3], radius: f64| {
+            let away = DVec3::from_array(voxel.map(|at| at as f64)) + 0.5 - DVec3::from_array(at) * size;
+            if shape[2] == 1 { away.with_z(0.0).length() < radius } else { away.length() < radius }
+        };
+        let map = voxels(DVec3::new(0.5, 0.5, 0.8), shape, |voxel @ [x, y, _]| match voxel {
+            _ if is_in(voxel, [0.3, 0.3, 0.5], 6.0) => Some(3),
+            _ if is_in(voxel, [0.7, 0.7, 0.5], 4.0) => None,
+            _ if is_in(voxel, [0.5, 0.9, 0.5], 1.1) => Some(4),
+            _ if 2 * x > y + 14 => Some(if 3 * y > x + 20 { 0 } else { 1 }),
+            _ => Some(2),
+        });
+        let whole = smoothed(&map);
+        let [two, three] = [2.0, 3.0].map(|length| decimated(&map, length).expect("a network"));
+        let count = |found: &SmoothedVoxels| found.network.finest().element_count() as f64;
+        for found in [&two, &three] {
+            check_surface(found);
+            assert_eq!(found.network.cell_volumes(), whole.network.cell_volumes());
+            // Points nearer than that may become one.
+            let [left, all] = [found, &whole].map(|of| of.network.junction_counts());
+            assert_eq!(left.triple_lines, all.triple_lines);
+            assert!(
+                left.quadruple_points <= all.quadruple_points
+                    && left.quadruple_points + 1 >= all.quadruple_points
+            );
+        }
+        assert!(count(&three) < count(&two), "{} and {}", count(&three), count(&two));
+        assert!(count(&two) < at_most * count(&whole), "{} of {}", count(&two), count(&whole));
+        // The least grain has too few voxels to lose any edge: a ball of 8 of them keeps its shape.
+        let of_least = |found: &SmoothedVoxels| {
+            let sides = found.network.sides();
+            let level = found.network.finest();
+            let surface = Surface::of_level(level, &found.points, &sides);
+            let all = 0..u32::try_from(surface.elements.len()).expect("few elements");
+            all.filter(|element| surface.sides_of(*element).contains(&Side::Grain(GrainId(4)))).count()
+        };
+        assert_eq!(of_least(&two), of_least(&whole));
     }
 }
 
@@ -211,10 +277,40 @@ proptest! {
             .collect();
         prop_assume!(!known.is_empty());
         let map = voxels(DVec3::new(1.0, 2.0, 0.5), shape, |[x, y, z]| labels[(z * height + y) * width + x]);
-        match smooth_voxels(&map, Junctions::Crease, |_, _| ()) {
+        match smooth_voxels(&map, VoxelOptions::ALL_POINTS, |_, _| ()) {
             Ok(smoothed) => check(&map, &smoothed),
             Err(NetworkError::VoxelsTouch { .. } | NetworkError::Invalid(_)) => (),
             Err(other) => prop_assert!(false, "{other}"),
+        }
+    }
+
+    /// The same when edges collapse: what a fault would come of stays as it is.
+    #[test]
+    fn any_labels_can_be_decimated(
+        shape in [2usize..8, 2usize..8, 1usize..8],
+        numbers in prop::collection::vec(0u32..3, 8),
+        shortest_edge in 0.5..4.0f64,
+    ) {
+        let [width, height, _] = shape;
+        // Blocks of two by two voxels with some noise, so that there are edges that may collapse.
+        let label = |[x, y, z]: [usize; 3]| {
+            let block = (x / 2 + 3 * (y / 2) + 5 * (z / 2)) % 8;
+            numbers[if (x * 7 + y * 5 + z * 3) % 11 == 0 { (block + 1) % 8 } else { block }]
+        };
+        let mut known = std::collections::BTreeMap::new();
+        for index in 0..shape.iter().product() {
+            let count = u32::try_from(known.len()).unwrap();
+            known.entry(label([index % width, index / width % height, index / width / height])).or_insert(count);
+        }
+        let map = voxels(DVec3::ONE, shape, |voxel| Some(known[&label(voxel)]));
+        match (smooth_voxels(&map, VoxelOptions::ALL_POINTS, |_, _| ()), decimated(&map, shortest_edge)) {
+            (Ok(whole), Ok(found)) => {
+                check_surface(&found);
+                prop_assert!(found.points.len() <= whole.points.len());
+                prop_assert_eq!(found.network.cell_volumes(), whole.network.cell_volumes());
+            }
+            (Err(_), Err(_)) => (),
+            (whole, found) => prop_assert!(false, "{:?} and {:?}", whole.is_ok(), found.is_ok()),
         }
     }
 

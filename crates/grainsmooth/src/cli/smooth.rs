@@ -17,7 +17,7 @@ use super::run::SharedArguments;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct SmoothArguments {
-    /// Map to smooth: .vti, .npy, .nrrd, .nhdr, .mhd, .mha, .tesr, .raw, .ang or .ctf
+    /// Map to smooth: .vti, .npy, .npz, .nrrd, .nhdr, .mhd, .mha, .tesr, .dream3d, .h5, .h5oina, .raw, .ang or .ctf
     #[arg(value_name = "MAP")]
     pub map: PathBuf,
 

@@ -50,7 +50,8 @@ fn smooth(arguments: &SmoothArguments, line: &ProgressLine) -> Result<String, Er
     };
     let files = ResultFiles::check(outputs, pictures, shared, &to_write, true)?;
     check_all_differ(files.targets())?;
-    let run = MapRun { command_line: command_line(), file, read_in };
+    let shortest_edge = options.shortest_edge(measured.map.is_plane());
+    let run = MapRun { command_line: command_line(), file, shortest_edge, read_in };
     let mut polycrystal =
         smooth_map(path, &measured, run, &|stage, done, count| line.show(stage, done, count))?;
     if files.need_tetrahedra(&to_write) {

@@ -123,6 +123,14 @@ pub enum MapProblem {
         /// What is wrong, and the remedy.
         what: String,
     },
+    /// A point of a file that is no text is not understood.
+    #[error("point {point}: {what}")]
+    Point {
+        /// The point, from 1.
+        point: usize,
+        /// What is wrong, and the remedy.
+        what: String,
+    },
     /// The symmetry of crystals is not known.
     #[error("does not give the symmetry of {phase}; give it with --crystal-symmetry, such as cubic")]
     NoSymmetry {

@@ -8,7 +8,7 @@ use voronoi::Dimension;
 use super::ang::lattice_constants;
 use super::format::{Content, Format, HEAD, TEXT_POINT, Writer};
 use super::orientation_map::OrientationMap;
-use crate::input::orientation_map::hkl::{LAUE_GROUPS, hkl_turn};
+use crate::maps::orientation_map::hkl::{LAUE_GROUPS, hkl_turn};
 
 pub(super) const FORMAT: Format = Format {
     extension: "ctf",

@@ -9,7 +9,7 @@ use texture::{AngleHistogram, CrystalSymmetry, Orientation};
 use crate::config::texture::TextureFormat;
 use crate::error::Error;
 use crate::files::text_table::TextProblem;
-use crate::input::orientation_map::{self, Fault, PointList, number};
+use crate::maps::orientation_map::{self, Fault, PointList, number};
 
 mod euler;
 mod histogram;

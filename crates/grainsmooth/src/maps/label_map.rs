@@ -8,6 +8,7 @@ use texture::{CrystalSymmetry, Orientation};
 use super::cleaning::{NO_GRAIN, clean};
 use super::neighbors::Grid;
 use super::options::{Crop, MapOptions};
+use super::orientation_map::PointList;
 use crate::error::map_file::MapProblem;
 use crate::figures::significant::significant;
 
@@ -76,12 +77,22 @@ impl LabelMap {
     }
 }
 
+/// What programs call the labels of grains: DREAM.3D, DAMASK and Neper, ParaView's filters, this program, LabDCT.
+pub(super) const USUAL_NAMES: [&str; 7] =
+    ["FeatureIds", "material", "labels", "GrainId", "GrainIds", "grain_id", "MaterialId"];
+
 /// What a file tells of a map. Labels stand x fastest; without spacing or origin the file tells none.
 pub(super) struct FileMap {
     pub(super) shape: [usize; 3],
     pub(super) spacing: Option<DVec3>,
     pub(super) origin: Option<DVec3>,
     pub(super) labels: Vec<i32>,
+}
+
+/// What a file holds that may have either.
+pub(super) enum MapContent {
+    Labels(FileMap),
+    Points(PointList),
 }
 
 /// What is known of measured grains.

@@ -77,6 +77,22 @@ impl NumberType {
             Self::F64 => labels_of_floats(numbers(bytes, order, f64::from_le_bytes)),
         }
     }
+
+    /// The numbers that some bytes hold; a last one that is cut off is left out.
+    pub(super) fn floats(self, bytes: &[u8], order: ByteOrder) -> Vec<f64> {
+        match self {
+            Self::U8 => bytes.iter().map(|byte| f64::from(*byte)).collect(),
+            Self::I8 => bytes.iter().map(|byte| f64::from(byte.cast_signed())).collect(),
+            Self::U16 => numbers(bytes, order, u16::from_le_bytes).map(f64::from).collect(),
+            Self::I16 => numbers(bytes, order, i16::from_le_bytes).map(f64::from).collect(),
+            Self::U32 => numbers(bytes, order, u32::from_le_bytes).map(f64::from).collect(),
+            Self::I32 => numbers(bytes, order, i32::from_le_bytes).map(f64::from).collect(),
+            Self::U64 => numbers(bytes, order, u64::from_le_bytes).map(|number| number as f64).collect(),
+            Self::I64 => numbers(bytes, order, i64::from_le_bytes).map(|number| number as f64).collect(),
+            Self::F32 => numbers(bytes, order, f32::from_le_bytes).map(f64::from).collect(),
+            Self::F64 => numbers(bytes, order, f64::from_le_bytes).collect(),
+        }
+    }
 }
 
 /// Labels that are written as floating point numbers.

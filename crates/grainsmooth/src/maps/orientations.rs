@@ -7,7 +7,7 @@ use super::ebsd::grains::grains;
 use super::label_map::MeasuredMap;
 use super::options::MapOptions;
 use crate::error::map_file::MapProblem;
-use crate::input::orientation_map::{HeadGrid, MapPhase, MapPoint, PointList};
+use crate::maps::orientation_map::{HeadGrid, MapPhase, MapPoint, PointList};
 
 /// Orientations on a square grid in the plane, x fastest, y upward.
 #[derive(Debug, Clone, PartialEq)]

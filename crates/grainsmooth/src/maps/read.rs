@@ -6,13 +6,13 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::ebsd::grains::grains;
-use super::label_map::{FileMap, LabelMap, MeasuredMap};
+use super::label_map::{FileMap, LabelMap, MapContent, MeasuredMap};
 use super::options::MapOptions;
+use super::orientation_map::{Fault, PointList, ang, ctf};
 use super::stored_numbers::Source;
-use super::{mhd, npy, nrrd, raw, tesr, vti};
+use super::{hdf5, mhd, npy, npz, nrrd, raw, tesr, vti};
 use crate::Error;
 use crate::error::map_file::MapProblem;
-use crate::input::orientation_map::{Fault, PointList, ang, ctf};
 
 /// A format of maps.
 struct MapFormat {
@@ -25,17 +25,23 @@ enum Content {
     Labels(fn(&Source<'_>, &MapOptions) -> Result<FileMap, MapProblem>),
     /// Text with a line for each point.
     Orientations(fn(&str) -> Result<PointList, Fault>),
+    /// One or the other.
+    Either(fn(&Source<'_>, &MapOptions) -> Result<MapContent, MapProblem>),
 }
 
 /// Every format, a line for each extension.
-const FORMATS: [MapFormat; 10] = [
+const FORMATS: [MapFormat; 14] = [
     MapFormat { extension: "vti", content: Content::Labels(vti::read) },
     MapFormat { extension: "npy", content: Content::Labels(npy::read) },
+    MapFormat { extension: "npz", content: Content::Labels(npz::read) },
     MapFormat { extension: "nrrd", content: Content::Labels(nrrd::read) },
     MapFormat { extension: "nhdr", content: Content::Labels(nrrd::read) },
     MapFormat { extension: "mhd", content: Content::Labels(mhd::read) },
     MapFormat { extension: "mha", content: Content::Labels(mhd::read) },
     MapFormat { extension: "tesr", content: Content::Labels(tesr::read) },
+    MapFormat { extension: "dream3d", content: Content::Either(hdf5::read) },
+    MapFormat { extension: "h5", content: Content::Either(hdf5::read) },
+    MapFormat { extension: "h5oina", content: Content::Either(hdf5::read) },
     MapFormat { extension: "raw", content: Content::Labels(raw::read) },
     MapFormat { extension: "ang", content: Content::Orientations(ang::read) },
     MapFormat { extension: "ctf", content: Content::Orientations(ctf::read) },
@@ -57,29 +63,63 @@ fn read(path: &Path, options: &MapOptions) -> Result<MeasuredMap, MapProblem> {
     if *extension != "raw" && (options.shape.is_some() || options.number_type.is_some()) {
         return Err(MapProblem::Told { what: "shape and type", option: "--shape and --type" });
     }
-    if *extension != "npy" && options.axes.is_some() {
+    if !matches!(*extension, "npy" | "npz") && options.axes.is_some() {
         return Err(MapProblem::Told { what: "order of axes", option: "--axes" });
     }
     let bytes = || fs::read(path).map_err(MapProblem::Unreadable);
     match content {
         Content::Labels(read) => {
-            if let Some(option) = options.ebsd.first_given() {
-                return Err(MapProblem::OtherKind { kind: "a map of labels", option });
-            }
-            labelled((read)(&Source { path, bytes: &bytes()? }, options)?, options)
+            check_of_labels(options)?;
+            labelled(read(&Source { path, bytes: &bytes()? }, options)?, options)
         }
         Content::Orientations(read) => {
-            let of_labels = [
-                ("--label-array", options.label_array.is_some()),
-                ("--exterior-label", options.exterior_label.is_some()),
-            ];
-            if let Some((option, _)) = of_labels.into_iter().find(|(_, is_given)| *is_given) {
-                return Err(MapProblem::OtherKind { kind: "a map of orientations", option });
-            }
+            check_of_points(options)?;
             // Names of phases and comments may have any coding; numbers have one.
             let found = read(&String::from_utf8_lossy(&bytes()?));
             grains(&found.map_err(|(line, what)| MapProblem::Line { line, what })?, options)
         }
+        Content::Either(read) => match read(&Source { path, bytes: &bytes()? }, options)? {
+            MapContent::Labels(found) => {
+                check_of_labels(options)?;
+                labelled(found, options)
+            }
+            MapContent::Points(found) => {
+                check_of_points(options)?;
+                grains(&found, options).map_err(of_point)
+            }
+        },
+    }
+}
+
+/// What is wrong with a point of a file that has no lines.
+fn of_point(problem: MapProblem) -> MapProblem {
+    match problem {
+        MapProblem::Line { line, what } => MapProblem::Point { point: line, what },
+        MapProblem::NoGrid { line, what } => {
+            let what = format!("{what}; give a map whose points stand on one square or hexagonal grid");
+            MapProblem::Point { point: line, what }
+        }
+        other => other,
+    }
+}
+
+/// Checks that no option is for maps of orientations.
+fn check_of_labels(options: &MapOptions) -> Result<(), MapProblem> {
+    match options.ebsd.first_given() {
+        Some(option) => Err(MapProblem::OtherKind { kind: "a map of labels", option }),
+        None => Ok(()),
+    }
+}
+
+/// Checks that no option is for maps of labels.
+fn check_of_points(options: &MapOptions) -> Result<(), MapProblem> {
+    let of_labels = [
+        ("--label-array", options.label_array.is_some()),
+        ("--exterior-label", options.exterior_label.is_some()),
+    ];
+    match of_labels.into_iter().find(|(_, is_given)| *is_given) {
+        Some((option, _)) => Err(MapProblem::OtherKind { kind: "a map of orientations", option }),
+        None => Ok(()),
     }
 }
 

@@ -3,16 +3,12 @@
 use glam::DVec3;
 use vtkio::xml::ScalarType;
 
-use super::label_map::FileMap;
+use super::label_map::{FileMap, USUAL_NAMES};
 use super::number_type::labels_of_floats;
 use super::options::MapOptions;
 use super::stored_numbers::Source;
 use crate::error::map_file::MapProblem;
 use crate::vtk::{Element, XmlFile};
-
-/// What programs call the labels of grains: DREAM.3D, DAMASK and Neper, ParaView's filters, this program, LabDCT.
-const USUAL_NAMES: [&str; 7] =
-    ["FeatureIds", "material", "labels", "GrainId", "GrainIds", "grain_id", "MaterialId"];
 
 /// An array with a number for each voxel.
 struct Candidate<'a> {

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use polycrystal::{
-    Certificate, GrainId, Junctions, Network, SmoothedVoxels, Surface, VoxelLabel, Voxels, herring_residual,
-    outward_sides, smooth_voxels,
+    Certificate, GrainId, Junctions, Network, SmoothedVoxels, Surface, VoxelLabel, VoxelOptions, Voxels,
+    herring_residual, outward_sides, smooth_voxels,
 };
 use texture::CrystalSymmetry;
 use voronoi::{Dimension, Domain};
@@ -25,6 +25,8 @@ pub struct MapRun {
     pub command_line: String,
     /// How files are written.
     pub file: FileOptions,
+    /// Edges of boundaries that are shorter than so many voxels collapse; 0 keeps all.
+    pub shortest_edge: f64,
     /// Time that reading the map took.
     pub read_in: Duration,
 }
@@ -42,7 +44,7 @@ pub struct MapRun {
 /// let labels = (0..64).map(|voxel| if voxel % 4 < 2 { 10 } else { 20 }).collect();
 /// let map = LabelMap { shape: [4, 4, 4], spacing: DVec3::ONE, origin: DVec3::ZERO, labels };
 /// let measured = MeasuredMap::of_labels(map, &MapOptions { min_voxels: 1, ..MapOptions::default() })?;
-/// let run = MapRun { command_line: String::new(), file: FileOptions::default(), read_in: Duration::ZERO };
+/// let run = MapRun { command_line: String::new(), file: FileOptions::default(), shortest_edge: 0.0, read_in: Duration::ZERO };
 /// let polycrystal = smooth_map(Path::new("labels in memory"), &measured, run, &|_, _, _| ())?;
 /// assert_eq!(polycrystal.network.grain_count(), 2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -60,8 +62,8 @@ pub fn smooth_map(
     progress(Stage::Network, 0, 1);
     let start = Instant::now();
     let voxels = voxels(&measured.map)?;
-    let smoothed =
-        smooth_voxels(&voxels, Junctions::Crease, |done, count| progress(Stage::Network, done, count));
+    let options = VoxelOptions { junctions: Junctions::Crease, shortest_edge: run.shortest_edge };
+    let smoothed = smooth_voxels(&voxels, options, |done, count| progress(Stage::Network, done, count));
     let SmoothedVoxels { network, points, certificate, relabelled } = smoothed.map_err(failed)?;
     let times = vec![(Stage::Map, run.read_in), (Stage::Network, start.elapsed())];
     let measurement = Measurement {

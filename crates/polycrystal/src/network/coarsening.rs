@@ -26,7 +26,7 @@ const SHORT_LINE: f64 = 0.4;
 
 /// Triangles between grains, which share points along the lines where three and more meet. Each point is there once; in a periodic domain a corner of a
 /// triangle is one moved by whole periods.
-pub(super) struct Coarsening<'a> {
+struct Coarsening<'a> {
     domain: &'a Domain,
     points: &'a [DVec3],
     /// Of each point: edges at it that are shorter collapse; none where it is to stay as it is.
@@ -54,7 +54,7 @@ enum Part {
 ///
 /// No point moves from the lines and walls that it is on, and each grain stays a closed surface, which touches itself nowhere. What is left of each triangle is at
 /// its place; nothing is left of those that have collapsed.
-pub(super) fn coarsened(
+pub(crate) fn coarsened(
     domain: &Domain,
     points: &[DVec3],
     limits: &[Option<f64>],

@@ -131,7 +131,7 @@ fn in_order([first, second]: [voronoi::Side; 2]) -> [voronoi::Side; 2] {
 
 /// Below what edges at each point are short: the least length of all grains there; nothing where an element has a point twice, a period apart, and between cells of one
 /// grain.
-fn limits<'a>(
+pub(crate) fn limits<'a>(
     lengths: &[f64],
     elements: impl Iterator<Item = (&'a [PeriodicVertex], &'a [voronoi::Side; 2])>,
     point_count: usize,

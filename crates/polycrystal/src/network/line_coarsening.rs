@@ -8,7 +8,7 @@ use voronoi::{Domain, PeriodicVertex, Side, Translation};
 
 /// Collapses segments shorter than the limits of both ends, as [`coarsened`](super::coarsening::coarsened) does with edges: points inside a boundary go. Where boundaries
 /// meet nothing moves.
-pub(super) fn coarsened_segments(
+pub(crate) fn coarsened_segments(
     domain: &Domain,
     points: &[DVec3],
     limits: &[Option<f64>],

@@ -5,19 +5,30 @@ use glam::{BVec3, DVec3};
 use rayon::prelude::*;
 
 use crate::voxels::graph::{Graph, Part};
+use crate::voxels::lattice::{Lattice, Place};
 use crate::voxels::tuning::VoxelTuning;
 
 /// Points that are summed as one: few enough for all threads, many enough for each; the sum does not depend on the number of threads.
 const CHUNK: usize = 4096;
 
 /// Where points started, and how they may move: by [`VoxelTuning::within`] along each axis that is free.
-pub(super) struct Boxes<'a> {
-    pub(super) middles: &'a [DVec3],
-    pub(super) is_fixed: &'a [BVec3],
-    pub(super) within: f64,
+pub(super) struct Boxes {
+    pub(super) middles: Vec<DVec3>,
+    pub(super) is_fixed: Vec<BVec3>,
+    within: f64,
 }
 
-impl Boxes<'_> {
+impl Boxes {
+    /// The boxes around places. Points on walls of the lattice stay there.
+    pub(super) fn new(places: &[Place], lattice: &Lattice, within: f64) -> Self {
+        let middle = |place: &Place| DVec3::from_array(place.map(|at| at as f64));
+        Self {
+            middles: places.par_iter().map(middle).collect(),
+            is_fixed: places.par_iter().map(|place| lattice.is_on_walls(*place)).collect(),
+            within,
+        }
+    }
+
     /// The place within a point's box that is nearest to one.
     pub(super) fn nearest(&self, point: usize, place: DVec3) -> DVec3 {
         let middle = self.middles[point];
@@ -37,7 +48,7 @@ impl Boxes<'_> {
 pub(super) fn least_bending(
     graph: &Graph,
     starts: &[DVec3],
-    boxes: &Boxes<'_>,
+    boxes: &Boxes,
     tuning: &VoxelTuning,
     progress: &(impl Fn(usize, usize) + Sync),
 ) -> Vec<DVec3> {

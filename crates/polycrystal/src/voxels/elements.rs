@@ -1,18 +1,22 @@
 //! Triangles for squares that are no longer flat.
 
+use std::ops::Deref;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
+use crate::mesh::grouped::Grouped;
+use crate::mesh::id::id;
 use crate::voxels::staircase::{Faces, Staircase};
 use crate::{BoundaryId, Elements};
 
 /// Triangles or segments, and the kind of each.
 pub(super) struct CutFaces {
-    elements: ElementList,
+    pub(super) elements: ElementList,
     pub(super) kind_of: Vec<BoundaryId>,
 }
 
-enum ElementList {
+pub(super) enum ElementList {
     Triangles(Vec<[u32; 3]>),
     Segments(Vec<[u32; 2]>),
 }
@@ -57,4 +61,17 @@ fn cut([a, b, c, d]: [u32; 4], points: &[DVec3]) -> [[u32; 3]; 2] {
         _ if is_first_shorter => along_first,
         _ => along_second,
     }
+}
+
+/// The faces or elements at each point.
+pub(super) fn at_corners<C: Deref<Target = [u32]> + Clone>(
+    points: usize,
+    faces: usize,
+    corners: impl Fn(usize) -> C,
+) -> Grouped<u32> {
+    let of_face = |face: usize| {
+        let corners = corners(face);
+        (0..corners.len()).map(move |k| (corners[k] as usize, id(face)))
+    };
+    Grouped::new(points, (0..faces).flat_map(of_face))
 }

@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
+use crate::Side;
 use crate::mesh::id::id;
-use crate::voxels::labels::OUTSIDE;
+use crate::voxels::labels::{OUTSIDE, VoxelLabel};
 use crate::voxels::lattice::{Lattice, MixedPlace, Place};
 use crate::voxels::pattern::quarter;
 
@@ -32,6 +33,13 @@ pub(super) enum Faces {
 pub(super) struct Kind {
     pub(super) labels: [u32; 2],
     pub(super) wall: Option<u32>,
+}
+
+impl Kind {
+    /// What lies on both sides.
+    pub(super) fn sides(&self) -> [Side; 2] {
+        self.labels.map(|label| VoxelLabel(label).side())
+    }
 }
 
 impl Faces {

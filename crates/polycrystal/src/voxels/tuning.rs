@@ -23,6 +23,15 @@ pub struct VoxelTuning {
     pub volume_rounds: usize,
     /// The longest motion of a point in such a round. Grains of one voxel are nearly nothing after bending, and to first order would grow far beyond their volumes.
     pub longest_motion: f64,
+    /// The longest edge that collapses, in units of the edge of a cube as large as the smallest grain there.
+    pub longest_of_grain: f64,
+    /// How far a point that is left may move from its place along each axis, so that grains have their volumes again: chords of curved boundaries take some. With `within`,
+    /// edges of three voxels left balls of twelve voxels without theirs.
+    pub within_when_decimated: f64,
+    /// Rounds of decimation, each of which leaves the points around faults of the one before; then nothing is decimated.
+    pub decimations: usize,
+    /// How far around a fault points stay, in units of the shortest edge asked for.
+    pub held_around: f64,
 }
 
 impl Default for VoxelTuning {
@@ -38,6 +47,10 @@ impl Default for VoxelTuning {
             rings: 4,
             volume_rounds: 60,
             longest_motion: 0.25,
+            longest_of_grain: 0.25,
+            within_when_decimated: 1.0,
+            decimations: 8,
+            held_around: 2.0,
         }
     }
 }

@@ -21,7 +21,7 @@ const VOLUME_TOLERANCE: f64 = 1e-12;
 /// What points are moved by.
 pub(super) struct Untangling<'a> {
     pub(super) graph: &'a Graph,
-    pub(super) boxes: &'a Boxes<'a>,
+    pub(super) boxes: &'a Boxes,
     /// Where points start, and cross nowhere.
     pub(super) starts: &'a [DVec3],
     pub(super) search: &'a VolumeSearch<'a>,

@@ -7,9 +7,12 @@ use glam::{BVec3, DVec3};
 use rayon::prelude::*;
 
 use crate::mesh::grouped::Grouped;
+use crate::mesh::id::id;
 use crate::mesh::volume::{ConeSum, boundary_cones};
 use crate::solver::conjugate_gradients::{Limits, solve};
 use crate::voxels::bending::Boxes;
+use crate::voxels::elements::{CutFaces, at_corners};
+use crate::voxels::tuning::VoxelTuning;
 use crate::{Elements, Side, Surface};
 
 /// Residual of the multipliers, as a share of what volumes lack.
@@ -18,17 +21,23 @@ const SOLVED: f64 = 1e-6;
 /// What volumes may lack in the end, as a share of each.
 const TOLERANCE: f64 = 1e-13;
 
-/// Elements, and how they meet in points.
-pub(super) struct VolumeSearch<'a> {
-    pub(super) surface: Surface<'a>,
-    pub(super) at_points: &'a Grouped<u32>,
+/// What grains are to have.
+pub(super) struct Wanted<'a> {
     /// Volume of each grain, in the unit of the points.
-    pub(super) wanted: &'a [f64],
+    pub(super) volumes: &'a [f64],
+    /// The sides of each kind of face.
+    pub(super) sides: &'a [[Side; 2]],
     /// Whether some boundary at the outside is free to move.
     pub(super) is_open: bool,
-    pub(super) rounds: usize,
-    /// The longest motion of a point in a round.
-    pub(super) longest: f64,
+}
+
+/// Elements, and how they meet in points.
+pub(super) struct VolumeSearch<'a> {
+    /// Its points stand for any others.
+    pub(super) surface: Surface<'a>,
+    at_points: Grouped<u32>,
+    wanted: &'a Wanted<'a>,
+    tuning: &'a VoxelTuning,
 }
 
 /// How the volumes of grains grow with a point.
@@ -46,20 +55,32 @@ impl Slopes {
     }
 }
 
-impl VolumeSearch<'_> {
+impl<'a> VolumeSearch<'a> {
+    pub(super) fn new(
+        points: &'a [DVec3],
+        cut: &'a CutFaces,
+        wanted: &'a Wanted<'a>,
+        tuning: &'a VoxelTuning,
+    ) -> Self {
+        let elements = cut.elements();
+        let surface = Surface { points, elements, boundary_of: &cut.kind_of, sides: wanted.sides };
+        let at_points = at_corners(points.len(), elements.len(), |element| elements.corners(id(element)));
+        Self { surface, at_points, wanted, tuning }
+    }
+
     /// Moves points within their boxes, but for some that stay, until grains have their volumes, and returns the largest error that is left, as a share of a volume.
     ///
     /// Newton's method: all points move along the slopes of the volumes, by one multiplier for each grain. What the bound of a box takes from that, the other points make
     /// up for in the next round.
-    pub(super) fn restore(&self, points: &mut [DVec3], boxes: &Boxes<'_>, stays: &[bool]) -> f64 {
+    pub(super) fn restore(&self, points: &mut [DVec3], boxes: &Boxes, stays: &[bool]) -> f64 {
         let mut is_held = vec![BVec3::FALSE; points.len()];
         let mut largest = f64::INFINITY;
-        for _ in 0..self.rounds {
+        for _ in 0..self.tuning.volume_rounds {
             check_cancelled();
             let missing = self.missing(points);
             largest = missing
                 .iter()
-                .zip(self.wanted)
+                .zip(self.wanted.volumes)
                 .map(|(lack, wanted)| (lack / wanted).abs())
                 .fold(0.0, f64::max);
             if largest <= TOLERANCE {
@@ -73,7 +94,7 @@ impl VolumeSearch<'_> {
                     let along = slopes.of(point).iter();
                     let sum: DVec3 = along.map(|(grain, slope)| *slope * multipliers[*grain as usize]).sum();
                     let motion = sum * slopes.mobilities[point];
-                    let wanted = *place + motion.clamp_length_max(self.longest);
+                    let wanted = *place + motion.clamp_length_max(self.tuning.longest_motion);
                     let inside = boxes.nearest(point, wanted);
                     *place = DVec3::select(*is_held, *place, inside);
                     // Held until it would go back inside.
@@ -86,7 +107,7 @@ impl VolumeSearch<'_> {
 
     fn missing(&self, points: &[DVec3]) -> Vec<f64> {
         let cones = boundary_cones(&Surface { points, ..self.surface });
-        let mut sums = vec![ConeSum::default(); self.wanted.len()];
+        let mut sums = vec![ConeSum::default(); self.wanted.volumes.len()];
         for (sides, cone) in self.surface.sides.iter().zip(&cones) {
             for (side, sign) in sides.iter().zip([1.0, -1.0]) {
                 if let Side::Grain(grain) = side {
@@ -94,7 +115,7 @@ impl VolumeSearch<'_> {
                 }
             }
         }
-        self.wanted.iter().zip(sums).map(|(wanted, sum)| wanted - sum.volume).collect()
+        self.wanted.volumes.iter().zip(sums).map(|(wanted, sum)| wanted - sum.volume).collect()
     }
 
     fn slopes(&self, points: &[DVec3]) -> Slopes {
@@ -157,7 +178,7 @@ impl VolumeSearch<'_> {
         let can_grow: Vec<bool> = diagonal.iter().map(|diagonal| *diagonal > 0.0).collect();
         // A grain whose points are all at the walls of their boxes waits.
         missing.iter_mut().zip(&can_grow).filter(|(_, can)| !**can).for_each(|(missing, _)| *missing = 0.0);
-        if !self.is_open {
+        if !self.wanted.is_open {
             // No motion changes the sum, so what waiting grains and rounding leave of it has no answer.
             let growing = can_grow.iter().filter(|can| **can).count();
             let rest = missing.iter().sum::<f64>() / growing.max(1) as f64;

@@ -4,7 +4,7 @@ use glam::DVec3;
 use texture::Orientation;
 
 use super::{Fault, OrientationList, number};
-use crate::input::orientation_map::columns;
+use crate::maps::orientation_map::columns;
 
 /// Reads a list. Lines that begin with `#` are comments.
 pub(super) fn read(text: &str) -> Result<OrientationList, Fault> {

@@ -11,7 +11,7 @@ use super::super::options::MapOptions;
 use super::grid::PointGrid;
 use super::segmentation::{Crystal, merged_twins, segmented};
 use crate::error::map_file::MapProblem;
-use crate::input::orientation_map::{HeadGrid, MapPhase, MapPoint, PointList};
+use crate::maps::orientation_map::{HeadGrid, MapPhase, MapPoint, PointList};
 
 /// The grains of a map.
 ///

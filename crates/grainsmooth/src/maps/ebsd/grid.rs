@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::super::neighbors::{Grid, Hexagons};
 use super::super::options::Crop;
 use crate::error::map_file::MapProblem;
-use crate::input::orientation_map::MapPoint;
+use crate::maps::orientation_map::MapPoint;
 
 /// Coordinates that differ by less count as one, as a share of the width of the map: rounding in files is coarser, steps are wider.
 const SAME: f64 = 1e-7;

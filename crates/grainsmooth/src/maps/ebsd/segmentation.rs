@@ -41,19 +41,7 @@ pub(super) fn segmented(
     for (place, others) in joined.iter().enumerate() {
         others.iter().for_each(|other| sets.join(place, *other));
     }
-    let mut next = 0;
-    let mut labels = vec![NO_GRAIN; crystals.len()];
-    for place in (0..crystals.len()).filter(|place| crystals[*place].is_some()) {
-        // The first of a set is its smallest.
-        let first = sets.first(place);
-        if first == place {
-            labels[place] = next;
-            next += 1;
-        } else {
-            labels[place] = labels[first];
-        }
-    }
-    labels
+    sets.numbers(|place| crystals[place].is_some())
 }
 
 /// The grain that each becomes part of when twins are one, by their mean orientations; grains keep their order.
@@ -81,18 +69,7 @@ pub(super) fn merged_twins(
             sets.join(first, second);
         }
     }
-    let mut next = 0;
-    let mut merged = vec![0; grains.len()];
-    for grain in 0..grains.len() {
-        let first = sets.first(grain);
-        if first == grain {
-            merged[grain] = next;
-            next += 1;
-        } else {
-            merged[grain] = merged[first];
-        }
-    }
-    merged
+    sets.numbers(|_| true)
 }
 
 /// Numbers in sets, each known by its smallest.
@@ -110,6 +87,22 @@ impl Sets {
             number = self.0[number];
         }
         number
+    }
+
+    /// Numbers sets from 0 by their first members; those without a grain have none.
+    fn numbers(&mut self, has_grain: impl Fn(usize) -> bool) -> Vec<i32> {
+        let mut next = 0;
+        let mut numbers = vec![NO_GRAIN; self.0.len()];
+        for member in (0..self.0.len()).filter(|member| has_grain(*member)) {
+            let first = self.first(member);
+            if first == member {
+                numbers[member] = next;
+                next += 1;
+            } else {
+                numbers[member] = numbers[first];
+            }
+        }
+        numbers
     }
 
     fn join(&mut self, first: usize, second: usize) {

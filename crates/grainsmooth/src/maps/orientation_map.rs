@@ -62,6 +62,11 @@ impl PointList {
     }
 }
 
+/// Whether an Euler angle in degrees is what EDAX writes where a pattern has no solution: 4 pi.
+pub(crate) fn is_unsolved_angle(degrees: f64) -> bool {
+    degrees > 1.99 * 360.0
+}
+
 /// The finite number in a column.
 pub(crate) fn number(line: usize, column: &str) -> Result<f64, Fault> {
     let number = column.parse().ok().filter(|number: &f64| number.is_finite());

@@ -1,11 +1,9 @@
 //! TSL's maps: Euler angles in radians at each point. Points without a solution have a confidence below 0, or angles of 4 pi.
 
-use std::f64::consts::TAU;
-
 use rayon::prelude::*;
 use texture::CrystalSymmetry;
 
-use super::{Fault, HeadGrid, MapPhase, MapPoint, PointList, columns, number};
+use super::{Fault, HeadGrid, MapPhase, MapPoint, PointList, columns, is_unsolved_angle, number};
 
 /// The column of the phase.
 const PHASE: usize = 7;
@@ -40,7 +38,7 @@ pub(crate) fn read(text: &str) -> Result<PointList, Fault> {
         let phase = row[phase_column] as i64;
         // In maps of one phase its number may be 0.
         let is_solved = confidence >= 0.0
-            && [phi1, phi, phi2].iter().all(|angle| *angle <= 1.99 * TAU)
+            && ![phi1, phi, phi2].into_iter().any(|angle| is_unsolved_angle(angle.to_degrees()))
             && !(has_several_phases && phase == 0);
         MapPoint {
             line: *line,
@@ -105,7 +103,7 @@ fn row(line: usize, text: &str) -> Result<Row, Fault> {
 }
 
 /// TSL's number of a Laue group.
-fn symmetry(code: &str) -> Option<CrystalSymmetry> {
+pub(crate) fn symmetry(code: &str) -> Option<CrystalSymmetry> {
     Some(match code {
         "1" => CrystalSymmetry::Triclinic,
         "2" | "20" => CrystalSymmetry::Monoclinic,

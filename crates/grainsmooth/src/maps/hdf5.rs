@@ -1,0 +1,30 @@
+//! Maps in HDF5: of DREAM.3D and DREAM3D-NX, of LabDCT, and orientations of Oxford, EDAX and Bruker.
+
+mod dream3d_points;
+mod file;
+mod geometry;
+mod labels;
+mod points;
+
+use super::label_map::MapContent;
+use super::options::MapOptions;
+use super::stored_numbers::Source;
+use crate::error::map_file::MapProblem;
+use file::Hdf5;
+
+/// Reads labels, where the file has an array of them, else orientations.
+///
+/// # Errors
+/// [`MapProblem`] where the file is damaged, or holds neither.
+pub(super) fn read(source: &Source<'_>, options: &MapOptions) -> Result<MapContent, MapProblem> {
+    let file = Hdf5::open(source.bytes)?;
+    if options.label_array.is_none() && !labels::are_in(&file) {
+        if let Some(found) = points::read(&file)? {
+            return Ok(MapContent::Points(found));
+        }
+        if let Some(found) = dream3d_points::read(&file)? {
+            return Ok(MapContent::Points(found));
+        }
+    }
+    labels::read(&file, options).map(MapContent::Labels)
+}

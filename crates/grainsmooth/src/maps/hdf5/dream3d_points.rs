@@ -1,0 +1,113 @@
+//! Orientations of DREAM.3D: an array of angles for the points of a grid, without a coordinate of each.
+
+use texture::CrystalSymmetry;
+
+use super::super::orientation_map::{HeadGrid, MapPhase, MapPoint, PointList, is_unsolved_angle};
+use super::file::{Hdf5, base, damaged, parent, within};
+use super::geometry::Geometry;
+use crate::error::map_file::MapProblem;
+
+/// The points of the only map in a file; nothing where it has none.
+///
+/// # Errors
+/// [`MapProblem`] where the file holds several, or sections one above the other, or its arrays do not go together.
+pub(super) fn read(file: &Hdf5) -> Result<Option<PointList>, MapProblem> {
+    let is_map = |group: &&str| {
+        ["EulerAngles", "Phases"].iter().all(|name| file.shape(&within(group, name)).is_some())
+    };
+    let groups: Vec<&str> = file.groups().filter(is_map).collect();
+    let group = match groups[..] {
+        [] => return Ok(None),
+        [group] => group,
+        _ => {
+            return Err(MapProblem::Unfit {
+                what: "it holds several maps of orientations",
+                remedy: "save the one to read in a file of its own",
+            });
+        }
+    };
+    let geometry = Geometry::of(file, &within(group, "Phases"))?;
+    let geometry = geometry.ok_or_else(|| damaged("it tells no grid of its orientations"))?;
+    let [columns, rows, sections] =
+        geometry.shape.ok_or_else(|| damaged("it tells no grid of its orientations"))?;
+    if sections != 1 {
+        return Err(MapProblem::Unfit {
+            what: "it holds orientations of several sections and no FeatureIds",
+            remedy: "segment its grains in DREAM.3D first",
+        });
+    }
+    let array = |name: &str| file.numbers(&within(group, name));
+    let missing = |name: &str| damaged(format!("its array {group}/{name} does not fit its grid"));
+    let count = columns.checked_mul(rows);
+    let fitting = |name: &str, each: usize| {
+        let numbers = array(name)?
+            .filter(|numbers| count.and_then(|count| count.checked_mul(each)) == Some(numbers.len()));
+        Ok::<_, MapProblem>(numbers)
+    };
+    let angles = fitting("EulerAngles", 3)?.ok_or_else(|| missing("EulerAngles"))?;
+    let phase_of = fitting("Phases", 1)?.ok_or_else(|| missing("Phases"))?;
+    let confidence = fitting("Confidence Index", 1)?;
+    // EDAX's name, and Oxford's.
+    let quality = match fitting("Image Quality", 1)? {
+        None => fitting("BC", 1)?,
+        found => found,
+    };
+    let point = |(at, number): (usize, &f64)| {
+        let angles = [0, 1, 2].map(|k| angles[3 * at + k].to_degrees());
+        let confidence = confidence.as_ref().map(|confidence| confidence[at]);
+        #[expect(clippy::cast_possible_truncation, reason = "numbers of phases are small")]
+        let phase = *number as i64;
+        let is_solved = phase > 0
+            && confidence.is_none_or(|confidence| confidence >= 0.0)
+            && angles.iter().all(|angle| angle.is_finite())
+            && !angles.into_iter().any(is_unsolved_angle);
+        let [column, row] = [at % columns, at / columns];
+        MapPoint {
+            line: at + 1,
+            place: [column as f64 * geometry.spacing.x, row as f64 * geometry.spacing.y],
+            phase: is_solved.then_some(phase),
+            angles,
+            quality: quality.as_ref().map_or(f64::NAN, |quality| quality[at]),
+            confidence,
+        }
+    };
+    let points = phase_of.iter().enumerate().map(point).collect();
+    Ok(Some(PointList { phases: phases(file, parent(group))?, points, head: HeadGrid::default() }))
+}
+
+/// The phases of the container's ensemble, of which the first is none.
+fn phases(file: &Hdf5, container: &str) -> Result<Vec<MapPhase>, MapProblem> {
+    let structures =
+        file.paths().find(|path| base(path) == "CrystalStructures" && path.starts_with(container));
+    let Some(structures) = structures else { return Ok(Vec::new()) };
+    let codes = file.numbers(structures)?.unwrap_or_default();
+    let names = file.texts(&within(parent(structures), "MaterialName"));
+    let phase = |(number, code): (usize, &f64)| MapPhase {
+        number: i64::try_from(number).unwrap_or(i64::MAX),
+        name: names
+            .get(number)
+            .filter(|name| !name.is_empty())
+            .cloned()
+            .unwrap_or_else(|| format!("phase {number}")),
+        symmetry: symmetry(*code),
+    };
+    Ok(codes.iter().enumerate().skip(1).map(phase).collect())
+}
+
+/// DREAM.3D's number of a Laue group.
+fn symmetry(code: f64) -> Option<CrystalSymmetry> {
+    let known = [
+        CrystalSymmetry::Hexagonal,
+        CrystalSymmetry::Octahedral,
+        CrystalSymmetry::HexagonalLow,
+        CrystalSymmetry::Tetrahedral,
+        CrystalSymmetry::Triclinic,
+        CrystalSymmetry::Monoclinic,
+        CrystalSymmetry::Orthorhombic,
+        CrystalSymmetry::TetragonalLow,
+        CrystalSymmetry::Tetragonal,
+        CrystalSymmetry::TrigonalLow,
+        CrystalSymmetry::Trigonal,
+    ];
+    (0..).map(f64::from).zip(known).find(|(number, _)| *number == code).map(|(_, symmetry)| symmetry)
+}

@@ -1,0 +1,110 @@
+"""Writes maps in HDF5 as other programs lay them out: of the labels in a file of NumPy, and of a small map of orientations with the same points in .ang and .ctf."""
+
+import sys
+
+import h5py
+import numpy as np
+
+labels = np.load(sys.argv[1])  # labels[x, y, z]
+shape = np.array(labels.shape, dtype=np.int64)
+zyx = np.ascontiguousarray(labels.transpose(2, 1, 0)).astype(np.int32)[..., np.newaxis]
+spacing = np.array([0.5, 0.5, 0.8], dtype=np.float32)
+origin = np.array([1, 2, -3], dtype=np.float32)
+
+# DREAM.3D 6: an old layout, nothing compressed.
+with h5py.File("labels_6.dream3d", "w", libver="earliest") as file:
+    file.attrs["FileVersion"] = "7.0"
+    container = file.create_group("DataContainers/SyntheticVolumeDataContainer")
+    geometry = container.create_group("_SIMPL_GEOMETRY")
+    geometry.attrs["GeometryTypeName"] = "ImageGeometry"
+    geometry["DIMENSIONS"], geometry["SPACING"], geometry["ORIGIN"] = shape, spacing, origin
+    container["CellData/FeatureIds"] = zyx
+    container["CellData/EulerAngles"] = np.zeros(zyx.shape[:3] + (3,), dtype=np.float32)
+    container["CellData/Phases"] = np.ones_like(zyx)
+
+# DREAM3D-NX: in chunks and compressed, the grid in attributes.
+with h5py.File("labels_nx.dream3d", "w", libver="latest") as file:
+    file.attrs["FileVersion"] = "8.0"
+    geometry = file.create_group("DataStructure/Nested/Image Geometry")
+    geometry.attrs["ObjectType"] = "ImageGeom"
+    geometry.attrs["_DIMENSIONS"] = shape.astype(np.uint64)
+    geometry.attrs["_SPACING"], geometry.attrs["_ORIGIN"] = spacing, origin
+    data = geometry.create_group("Cell Data")
+    data.create_dataset("FeatureIds", data=zyx, chunks=(5, 7, 9, 1), compression="gzip", shuffle=True)
+
+# LabDCT of GrainMapper3D.
+with h5py.File("labels_dct.h5", "w") as file:
+    file["LabDCT/Data/GrainId"] = zyx[..., 0]
+    file["LabDCT/Data/Completeness"] = np.ones(zyx.shape[:3], dtype=np.float32)
+    extent = spacing * shape
+    file["LabDCT/Spacing"], file["LabDCT/Extent"], file["LabDCT/Center"] = spacing, extent, origin + extent / 2
+
+# Three grains of magnesium and one of nickel in 12 x 10 points; a row of them has no solution, and some are uncertain.
+columns, rows, step = 12, 10, 0.25
+column, row = (a.ravel() for a in np.meshgrid(np.arange(columns), np.arange(rows)))
+x, y = column * step, row * step
+grain = np.where(column < 5, 0, np.where(row < 4, 1, np.where(column < 8, 2, 3)))
+angles = np.array([[10.0, 20, 30], [50, 60, 7], [100, 40, 12], [200, 80, 44]])[grain]  # with x along a
+angles += 0.3 * np.sin(np.arange(grain.size)[:, np.newaxis] * [1, 2, 3])
+phase = np.where(grain == 3, 2, 1)
+is_solved = ~((row == 7) & (column > 8))
+confidence = np.where(is_solved, 0.6, -1)
+quality = np.where((column == 2) & (row < 3), 40.0, 150.0)
+radians = np.where(is_solved[:, np.newaxis], np.radians(angles), 4 * np.pi)
+along_a2 = angles + np.where(phase == 1, 30, 0)[:, np.newaxis] * [0, 0, 1]  # Oxford's x is along the normal of (10-10)
+
+with open("points.ang", "w") as file:
+    file.write("# Phase 1\n# MaterialName Magnesium\n# Symmetry 62\n# Phase 2\n# MaterialName Nickel\n# Symmetry 43\n")
+    for at in range(grain.size):
+        number = " ".join(f"{angle:.9f}" for angle in radians[at])
+        file.write(f"{number} {x[at]} {y[at]} {quality[at]} {confidence[at]} {phase[at]} 0 1\n")
+
+with h5py.File("points.h5oina", "w") as file:
+    data, header = file.create_group("1/EBSD/Data"), file.create_group("1/EBSD/Header")
+    data["Phase"] = np.where(is_solved, phase, 0).astype(np.uint8)
+    data["Euler"] = np.radians(along_a2).astype(np.float32)
+    data["X"], data["Y"] = x.astype(np.float32), y.astype(np.float32)
+    data["Band Contrast"] = quality.astype(np.uint8)
+    header["X Cells"], header["Y Cells"] = [columns], [rows]
+    header["X Step"], header["Y Step"] = [step], [step]
+    for number, name, group in [("1", "Magnesium", 9), ("2", "Nickel", 11)]:
+        header[f"Phases/{number}/Phase Name"] = name
+        header[f"Phases/{number}/Laue Group"] = np.array([group], dtype=np.int32)
+
+with h5py.File("points_edax.h5", "w") as file:
+    data, header = file.create_group("Scan 1/EBSD/Data"), file.create_group("Scan 1/EBSD/Header")
+    for name, values in zip(["Phi1", "Phi", "Phi2"], radians.T):
+        data.create_dataset(name, data=values.astype(np.float32), chunks=(50,), compression="gzip")
+    data["X Position"], data["Y Position"] = x.astype(np.float32), y.astype(np.float32)
+    data["CI"], data["IQ"] = confidence.astype(np.float32), quality.astype(np.float32)
+    data["Phase"] = phase.astype(np.uint8)
+    # What heads say of steps is often wrong.
+    header["nColumns"], header["nRows"], header["Step X"], header["Step Y"] = [columns], [rows], [0.5], [0.5]
+    for number, name, symmetry in [("1", b"Magnesium", 62), ("2", b"Nickel", 43)]:
+        header[f"Phase/{number}/MaterialName"] = np.array([name])
+        header[f"Phase/{number}/Symmetry"] = np.array([symmetry], dtype=np.int32)
+
+with h5py.File("points_bruker.h5", "w") as file:
+    data, header = file.create_group("Scan/EBSD/Data"), file.create_group("Scan/EBSD/Header")
+    for name, values in zip(["phi1", "PHI", "phi2"], angles.T):
+        data[name] = values.astype(np.float32)
+    data["X BEAM"], data["Y BEAM"] = column.astype(np.int32), row.astype(np.int32)
+    data["Phase"], data["RadonQuality"] = np.where(is_solved, phase, 0).astype(np.int32), quality
+    header["NCOLS"], header["NROWS"], header["XSTEP"], header["YSTEP"] = columns, rows, step, step
+    for number, name, space_group in [("1", "Magnesium", 194), ("2", "Nickel", 225)]:
+        header[f"Phases/{number}/Name"], header[f"Phases/{number}/IT"] = name, space_group
+
+with h5py.File("points.dream3d", "w", libver="earliest") as file:
+    container = file.create_group("DataContainers/ImageDataContainer")
+    geometry = container.create_group("_SIMPL_GEOMETRY")
+    geometry["DIMENSIONS"] = np.array([columns, rows, 1], dtype=np.int64)
+    geometry["SPACING"], geometry["ORIGIN"] = np.array([step, step, 1], np.float32), np.zeros(3, np.float32)
+    data = container.create_group("EBSD Scan Data")
+    grid = (1, rows, columns)
+    data["EulerAngles"] = radians.reshape(*grid, 3).astype(np.float32)
+    data["Phases"] = phase.reshape(*grid, 1).astype(np.int32)
+    data["Confidence Index"] = confidence.reshape(*grid, 1).astype(np.float32)
+    data["Image Quality"] = quality.reshape(*grid, 1).astype(np.float32)
+    ensemble = container.create_group("EBSD Phase Data")
+    ensemble["CrystalStructures"] = np.array([[999], [0], [1]], dtype=np.uint32)
+    ensemble["MaterialName"] = np.array([b"Invalid", b"Magnesium", b"Nickel"])
