@@ -86,8 +86,8 @@ class Options(TypedDict, total=False):
     """Shape of the domain: box, sphere, cylinder (along z), disc (2D), or the file of a closed convex surface, such as .obj or
     .stl
 
-    A sphere, cylinder or disc touches the sides of --box, which must be equal across its axis, and becomes a polyhedron of
-    the same volume. A file has its own coordinates, so --box does not apply.
+    A sphere, cylinder or disc touches the sides of ``box``, which must be equal across its axis, and becomes a polyhedron
+    of the same volume. A file has its own coordinates, so ``box`` does not apply.
 
     Example of the command line: ``--domain sphere``
 
@@ -126,8 +126,8 @@ class Options(TypedDict, total=False):
     free: bool
     """Let grains grow and shrink by curvature instead of keeping their volumes (areas in 2D)
 
-    Grains vanish and switch neighbours on the way. With --regularize, and in 2D with --edge-length, they cannot; a run that
-    would need it stops with an error.
+    Grains vanish and switch neighbours on the way. With ``regularize``, and in 2D with ``edge_length``, they cannot; a run
+    that would need it stops with an error.
 
     Example of the command line: ``--dim 2 --relax 5 --free``"""
 
@@ -187,7 +187,7 @@ class Options(TypedDict, total=False):
 
     lloyd: Value
     """Make the grains more regular: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 10
-    for packed grains, and for --diameters or --volumes without --seeds-file; otherwise 0]
+    for packed grains, and for ``diameters`` or ``volumes`` without ``seeds_file``; otherwise 0]
 
     Example of the command line: ``--lloyd 10``"""
 
@@ -369,7 +369,7 @@ class MapOptions(TypedDict, total=False):
     """How a measured map is read: the options of ``grainsmooth smooth``, as :class:`Options` has those of the program."""
 
     label_array: Value
-    """Array of the labels, where a file has several [default: the only one of whole numbers, or one of the usual names]
+    """Array of the labels, if a file has several [default: the only integer array, or one with a usual name]
 
     Example of the command line: ``grainsmooth smooth map.vti --label-array FeatureIds``"""
 
@@ -384,56 +384,64 @@ class MapOptions(TypedDict, total=False):
     Example of the command line: ``grainsmooth smooth map.npy --axes zyx``"""
 
     shape: Sequence[Value]
-    """Number of voxels along each axis, for files of numbers alone; x comes first in the file
+    """Number of voxels along each axis, for files that hold only numbers; x varies fastest
 
     Example of the command line: ``grainsmooth smooth map.raw --shape 200 200 150 --type u16``"""
 
     type: Value
-    """Type of the numbers of such a file, little-endian: u8, i8, u16, i16, u32, i32, u64, i64, f32 or f64
+    """Type of the numbers in such a file, little-endian: u8, i8, u16, i16, u32, i32, u64, i64, f32 or f64
 
     Example of the command line: ``grainsmooth smooth map.raw --shape 200 200 150 --type u16``"""
 
     crop: Value
-    """Part of the map: the first voxel and the first one behind along each axis, from 0; in maps of orientations rows count
+    """Part of the map: along each axis, the first voxel and the one after the last, from 0; in orientation maps, rows count
     from the top
 
     Example of the command line: ``grainsmooth smooth map.vti --crop 0:64,0:64,10:40``"""
 
     exterior_label: Value
-    """Label of what is no grain, such as pores or what surrounds the sample; negative labels are none either
+    """Label of everything that is not a grain, such as pores or the surroundings; negative labels are never grains
 
     Example of the command line: ``grainsmooth smooth map.vti --exterior-label 0``"""
 
     min_voxels: Value
-    """Fewest voxels, pixels or points of a grain; those of smaller ones go to the neighbours that they touch most
+    """Least number of voxels, pixels or points of a grain; those of smaller grains go to the neighbours that they touch most
 
     Example of the command line: ``grainsmooth smooth map.vti --min-voxels 8``
 
     Default: ``1``"""
 
+    decimate: Value
+    """Collapse edges of boundaries that are shorter than H voxels, and give grains their volumes again; 0 keeps all edges, and
+    every voxel in its grain [default: 1.6; in the plane 0]
+
+    Around small grains edges stay shorter, at most a quarter of the grain.
+
+    Example of the command line: ``grainsmooth smooth map.vti --decimate 3``"""
+
     threshold: Value
-    """Degrees: neighbouring points of one phase that differ by more are in different grains [default: 5]
+    """Largest angle in degrees between neighbouring points of one grain [default: 5]
 
     Example of the command line: ``grainsmooth smooth map.ctf --threshold 10``"""
 
     min_ci: Value
-    """Least confidence index of a point; others are filled from their neighbours
+    """Least confidence index of a point; points below it are filled from their neighbours
 
     Example of the command line: ``grainsmooth smooth map.ang --min-ci 0.1``"""
 
     min_iq: Value
-    """Least image quality of a point, or band contrast in .ctf; others are filled from their neighbours
+    """Least image quality of a point, or band contrast in .ctf; points below it are filled from their neighbours
 
     Example of the command line: ``grainsmooth smooth map.ang --min-iq 120``"""
 
     min_pore: Value
-    """Fewest points side by side without a good solution that are a pore; fewer are filled from their neighbours [default: all
-    are filled]
+    """Least number of connected points without a good solution that form a pore; fewer are filled from their neighbours
+    [default: all are filled]
 
     Example of the command line: ``grainsmooth smooth map.ang --min-pore 200``"""
 
     merge_twins: Value
-    """Make twins one grain: those turned by this angle about this axis of the crystal
+    """Merge twins into one grain: those rotated by this angle about this axis of the crystal
 
     The axis has components along the orthogonal axes of the crystal; in hexagonal ones x is along a and z along c. A grain
     of several twins has the orientation and the spread of its largest part.
@@ -441,16 +449,16 @@ class MapOptions(TypedDict, total=False):
     Example of the command line: ``grainsmooth smooth nickel.ang --merge-twins 60,1,1,1``"""
 
     twin_tolerance: Value
-    """Degrees by which a twin may differ from that [default: 3]
+    """Tolerance of ``merge_twins`` in degrees [default: 3]
 
     Example of the command line: ``grainsmooth smooth nickel.ang --merge-twins 60,1,1,1 --twin-tolerance 5``"""
 
     rotate: Value
-    """Turn all crystals by an angle about an axis of the sample; points stay where they are
+    """Rotate all crystals by an angle about an axis of the sample; points stay where they are
 
     Example of the command line: ``grainsmooth smooth map.ang --rotate 180,1,0,0``"""
 
     crystal_symmetry: Value
-    """Symmetry of the crystals, where the file tells none
+    """Symmetry of the crystals, if the file gives none
 
     Example of the command line: ``grainsmooth smooth map.ang --crystal-symmetry cubic``"""
