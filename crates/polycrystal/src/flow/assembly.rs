@@ -32,12 +32,12 @@ pub(crate) fn assemble(
     volumes: Volumes,
 ) -> Parts {
     let count = groups.group_count();
-    let row = |group: usize, row: &mut NewRow<'_, f32>| {
+    let row = |group: usize, row: &mut NewRow<'_, f64>| {
         let links = groups.members(group).iter().flat_map(|point| patches.links(*point));
         for [end, edge] in links {
             let other = groups.numbers()[*end as usize];
             if other as usize != group {
-                row.add(other, single(terms.stiffness[*edge as usize]));
+                row.add(other, terms.stiffness[*edge as usize]);
             }
         }
     };
@@ -66,8 +66,10 @@ pub(crate) fn assemble(
     let freedoms: Vec<Freedom> = groups_in_chunks().map(freedom).collect();
     let constraint =
         || VolumeConstraint::new(&freedoms, network.grain_count(), last_place(points), volume_gradients);
-    let (stiffness, volumes_of_grains) =
-        rayon::join(|| CsrRows::made_by(count, row), || (volumes == Volumes::Kept).then(constraint));
+    let (stiffness, volumes_of_grains) = rayon::join(
+        || CsrRows::made_of_sums(count, row, single),
+        || (volumes == Volumes::Kept).then(constraint),
+    );
     Parts {
         masses: groups_in_chunks().map(mass).collect(),
         gradient: gradient(patches, terms, groups),

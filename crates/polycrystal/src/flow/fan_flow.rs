@@ -93,14 +93,14 @@ impl FanFlow<'_> {
     fn parts(&self, terms: &FanTerms, freedoms: &[Freedom], rounding: f64) -> Parts {
         let fans = self.fans;
         let of_slot = |fan: usize, slot: usize| &terms.of_slot[fans.first_slot(fan) + slot];
-        let stiffness = |point: usize, row: &mut NewRow<'_, f32>| {
+        let stiffness = |point: usize, row: &mut NewRow<'_, f64>| {
             for (fan, slot) in fans.at_point(point) {
                 let slots = fans.slots_of(fan);
                 let count = fans.rim_len(fan);
                 let mut add = |slot: usize, stiffness: f64| {
                     let other = slots[slot].point;
                     if other as usize != point {
-                        row.add(other, single(stiffness));
+                        row.add(other, stiffness);
                     }
                 };
                 if slot == count {
@@ -132,7 +132,7 @@ impl FanFlow<'_> {
             Motion::Free { .. } => None,
         };
         let (stiffness, volumes) =
-            rayon::join(|| CsrRows::made_by(fans.point_count(), stiffness), constraint);
+            rayon::join(|| CsrRows::made_of_sums(fans.point_count(), stiffness, single), constraint);
         Parts {
             masses: self.masses(terms),
             gradient: self.of_points(gradient),

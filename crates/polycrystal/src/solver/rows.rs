@@ -27,17 +27,29 @@ impl<T> CsrRows<T> {
     /// Rows that are made in parallel, each by `fill`.
     pub(crate) fn made_by(len: usize, fill: impl Fn(usize, &mut NewRow<'_, T>) + Sync) -> Self
     where
+        T: Copy + Send,
+    {
+        Self::made_of_sums(len, fill, |sum| sum)
+    }
+
+    /// The same from sums of another type, so that rounding does not depend on the order in which they are added up.
+    pub(crate) fn made_of_sums<S: Copy>(
+        len: usize,
+        fill: impl Fn(usize, &mut NewRow<'_, S>) + Sync,
+        value: impl Fn(S) -> T + Sync,
+    ) -> Self
+    where
         T: Send,
     {
         let block = |block: usize| {
             check_cancelled();
-            let mut entries = Vec::new();
+            let mut sums = Vec::new();
             let mut starts = vec![0];
             for row in block * ROWS_PER_TASK..len.min((block + 1) * ROWS_PER_TASK) {
-                fill(row, &mut NewRow { start: entries.len(), entries: &mut entries });
-                starts.push(entries.len());
+                fill(row, &mut NewRow { start: sums.len(), entries: &mut sums });
+                starts.push(sums.len());
             }
-            Block { starts, entries }
+            Block { starts, entries: sums.iter().map(|(column, sum)| (*column, value(*sum))).collect() }
         };
         Self { blocks: (0..len.div_ceil(ROWS_PER_TASK)).into_par_iter().map(block).collect(), len }
     }
