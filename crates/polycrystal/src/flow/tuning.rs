@@ -21,14 +21,14 @@ pub struct Tuning {
     pub forecast_factor: f64,
     /// Share of its first residual at which a step is solved: a step is one of several, and the next one starts from where it ends.
     pub tolerance: f64,
-    /// Length below which a control edge no longer changes where the topology stays. 0 leaves some thin triangles and folds in the plane, twice as
+    /// Length below which a control edge no longer changes in a flow of a given time. 0 leaves some thin triangles and folds in the plane, twice as
     /// much spoils angles.
     pub rigid_length: f64,
     /// Size of a grain, as a share of the mean, below which the flow around is as slow as in its own units of length. 0 lets all flow as fast;
     /// dense crowds of small grains then fold.
     pub small_grain: f64,
-    /// Share of its way to the centre of the triangles around that a point inside a boundary goes in a step, where the topology stays. With 0 a
-    /// hundredth of the triangles is below 11 degrees instead of 13.
+    /// Share of its way to the centre of the triangles around that a point inside a boundary goes in a step of a flow of a given time. Where
+    /// the topology stays, with 0 a hundredth of the triangles is below 11 degrees instead of 13.
     pub centering: f64,
     /// The largest cotangent that an angle counts with in a flow of a given time: that of 11 degrees. Needles would otherwise glue
     /// their ends together.
@@ -78,10 +78,9 @@ impl Default for Tuning {
 }
 
 impl Tuning {
-    /// These numbers where grains may switch neighbours: lines that shrink go, so nothing that is short has to be held, and triangles are good by
-    /// themselves. With centres that move, angles at equilibrium spread by 1.53 degrees instead of 1.39, and 128 triangles of 24 networks are
-    /// thin instead of 8.
-    pub(crate) fn where_topology_changes(self) -> Self {
+    /// These numbers in a flow to rest: points have time to part, so nothing that is short has to be held, and triangles are good by themselves.
+    /// With centres that move, angles at equilibrium spread by 1.53 degrees instead of 1.39, and 128 triangles of 24 networks are thin instead of 8.
+    pub(crate) fn to_rest(self) -> Self {
         Self { rigid_length: 0.0, centering: 0.0, ..self }
     }
 }

@@ -134,7 +134,10 @@ pub(crate) fn smoothed(
     tuning: &Tuning,
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<RelaxedCells, NetworkError> {
-    let tuning = tuning.where_topology_changes();
+    let tuning = match relaxation {
+        Relaxation::Time(_) => *tuning,
+        Relaxation::Equilibrium => tuning.to_rest(),
+    };
     let mut attempts = Vec::new();
     let mut smooth = |merged_length: f64| {
         let MergedLines { cells, middles, collapsed: merged } =
