@@ -1,3 +1,4 @@
+use cancellation::check_cancelled;
 use rayon::prelude::*;
 use subzero::{EdgeId, MeshError};
 
@@ -169,6 +170,7 @@ impl Level {
         match &self.mesh {
             Mesh::Triangles(mesh) => {
                 let finer = Mesh::Triangles(mesh.refine_connectivity()?);
+                check_cancelled();
                 let edges = (0..mesh.counts().edges).into_par_iter();
                 let ends: Vec<[u32; 2]> = edges.map(|edge| mesh.edge(EdgeId(edge))).collect();
                 let triangles = self.element_count();
@@ -209,6 +211,7 @@ impl Level {
         grain_counts.extend(born.iter().map(|at| at.grains));
         let mut walls = self.walls.clone();
         walls.extend(ends.iter().map(|ends| common_walls(self, *ends, sets)));
+        check_cancelled();
         let copies = self.refined_copies((&mesh).into());
         Self { mesh, boundary_of, node_types, grain_counts, generations, walls, copies, at_edges }
     }

@@ -201,7 +201,9 @@ fn surfaces(
         .collect();
     let corners: Vec<u32> = (0..id(corner_count)).collect();
     let features = Features { creases: &creases, corners: &corners, ..Features::default() };
+    check_cancelled();
     let mesh = TriangleMesh::new(points.len(), triangles, &features)?;
+    check_cancelled();
     let mut at_edges = vec![Meeting::new(2, 2, false); mesh.edge_count()];
     for (triangle, of_triangle) in (0u32..).zip(at_triangle_edges) {
         for (edge, at_edge) in mesh.triangle_edges(subzero::FaceId(triangle)).into_iter().zip(of_triangle) {
