@@ -240,9 +240,9 @@ fn change_topology(
         tension: &|boundary| if boundary.wall.is_none() { 1.0 } else { 0.0 },
     };
     let relaxed = relax_cells_tuned(cells, &recipe, &row.relaxation, tuning, |_| ());
-    let RelaxedCells { network, relaxed, attempts, .. } = relaxed.map_err(|error| error.to_string())?;
+    let RelaxedCells { network, relaxed, points, attempts, .. } =
+        relaxed.map_err(|error| error.to_string())?;
     check_nothing_given_up(attempts.first().or(relaxed.given_up.first()))?;
-    let points = relaxed.finest_points(&network);
     Ok((network, points))
 }
 

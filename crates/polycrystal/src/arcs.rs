@@ -9,18 +9,16 @@ pub(crate) mod descent;
 pub(crate) mod kkt_system;
 pub(crate) mod switching;
 
-use std::time::Instant;
-
 use glam::{DVec2, DVec3};
 use voronoi::{FaceId, PeriodicVertex, Tessellation};
 
+use crate::CellComplex;
 use crate::energy::local_size::LocalSize;
 use crate::events::reconnection::Reconnections;
 use crate::flow::balance::Balance;
 use crate::flow::recipe::{NetworkRecipe, RelaxedCells};
 use crate::flow::relaxation::{Moving, RelaxationStep, Relaxed};
 use crate::flow::tuning::Tuning;
-use crate::{CellComplex, Collapsed, validate};
 use crate::{Mesh, Network, NetworkError, Side, measure_network};
 use arc_network::ArcNetwork;
 use chordal_arc::point_on_arc;
@@ -54,20 +52,10 @@ pub(crate) fn equilibrate(
     let smooth = SmoothEdges::new(&edges, recipe, &areas)?;
     let relaxed = smooth.balanced(&edges, recipe, states, descent, watch)?;
     let network = smooth.network;
-    let start = Instant::now();
-    let validation = validate(&network, &relaxed.points).map_err(NetworkError::Invalid)?;
-    let validated_in = start.elapsed();
-    let balance = Some(balance(&network, &relaxed.points));
-    Ok(RelaxedCells {
-        network,
-        relaxed,
-        reconnections,
-        merged: Collapsed::default(),
-        balance,
-        validation,
-        validated_in,
-        attempts: Vec::new(),
-    })
+    let points = relaxed.points.clone();
+    let cells = RelaxedCells::validated(network, relaxed, points)?;
+    let balance = Some(balance(&cells.network, &cells.points));
+    Ok(RelaxedCells { reconnections, balance, ..cells })
 }
 
 /// How a topology came about, and the states from there to rest.

@@ -325,12 +325,13 @@ fn smooth_by_energy(
     watch: &mut impl FnMut(RelaxationStep<'_>),
 ) -> Result<Smoothed, NetworkError> {
     let Config { face_mesh, junctions, levels, .. } = *config;
-    let (flat_angles, angles_before) =
-        clock.time(Stage::Network, || angles_of_cells(tessellation, junctions))?;
     let tension = |boundary: &Boundary| law.tension(boundary);
     let recipe = NetworkRecipe { face_mesh, junctions, levels: levels as usize, tension: &tension };
     let mobility = |boundary: &Boundary| law.mobility(boundary);
-    let (relaxed_cells, vanished) =
+    let mut flat_angles = Ok(Default::default());
+    let relaxed_cells = rayon::in_place_scope(|scope| {
+        // On a thread that relaxation leaves idle.
+        scope.spawn(|_| flat_angles = angles_of_cells(tessellation, junctions));
         clock.time(Stage::Relaxation, || match config.effective_relaxation() {
             Relaxation::Time(time) if config.lets_grains_vanish() => {
                 let recipe = GrowthRecipe { network: recipe, mobility: &mobility };
@@ -339,10 +340,14 @@ fn smooth_by_energy(
             relaxation => {
                 relax_cells(tessellation, &recipe, &relaxation, watch).map(|cells| (cells, Vec::new()))
             }
-        })?;
+        })
+    });
+    let (relaxed_cells, vanished) = relaxed_cells?;
+    let (flat_angles, angles_before) = flat_angles?;
     let RelaxedCells {
         network,
         relaxed,
+        points,
         reconnections,
         merged,
         balance,
@@ -351,7 +356,6 @@ fn smooth_by_energy(
         attempts: tried,
     } = relaxed_cells;
     attempts.extend(tried);
-    let points = clock.time(Stage::Subdivision, || relaxed.finest_points(&network));
     clock.move_time(validated_in, Stage::Relaxation, Stage::Validation);
     let reconnected = Some(Reconnected { reconnections, balance });
     Ok(Smoothed {

@@ -69,7 +69,8 @@ pub(crate) fn folded_in_boundary(
     folded
 }
 
-fn is_folded([a, b]: [DVec3; 2], cosine: f64) -> bool {
+/// Whether two neighbours with these normals, of any length, are further apart than the angle whose cosine is given, or without area.
+pub(crate) fn is_folded([a, b]: [DVec3; 2], cosine: f64) -> bool {
     let dot = a.dot(b);
     // Nearly all pairs are told by this alone.
     if dot > 0.0 && cosine <= 0.0 {

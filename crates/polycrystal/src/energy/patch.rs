@@ -11,6 +11,7 @@ use voronoi::Dimension;
 
 use crate::Mesh;
 use crate::energy::triangle::Triangle;
+use crate::mesh::id::id;
 use crate::mesh::volume::{Cone, segment_area, triangle_volume};
 
 /// A boundary's control mesh, and its surface in terms of the control points.
@@ -58,28 +59,40 @@ pub(crate) struct Refinement {
 #[derive(Debug)]
 pub(crate) struct LocalStencils {
     /// Finer point f is the mean of the coarser points `ids[starts[f]..starts[f + 1]]` by the weights of the same range.
-    starts: Vec<usize>,
+    starts: Vec<u32>,
     ids: Vec<u32>,
-    weights: Vec<f64>,
+    /// As numbers of `values`: there are few different ones.
+    weights: Vec<u16>,
+    values: Vec<f64>,
 }
 
 impl LocalStencils {
     /// Those of some points one level on from a mesh; `coarser` are all points that these depend on, sorted.
     pub(crate) fn new(mesh: &Mesh, coarser: &[u32], finer: &[u32]) -> Self {
-        let mut local = Self { starts: vec![0], ids: Vec::new(), weights: Vec::new() };
+        let mut local = Self { starts: vec![0], ids: Vec::new(), weights: Vec::new(), values: Vec::new() };
         let mut entries = Vec::new();
         for point in finer {
             mesh.stencil(*point, &mut entries);
-            local.ids.extend(entries.iter().map(|(point, _)| index_in(coarser, *point)));
-            local.weights.extend(entries.iter().map(|(_, weight)| weight));
-            local.starts.push(local.ids.len());
+            for (point, weight) in &entries {
+                let known = local.values.iter().position(|value| value == weight);
+                let number = known.unwrap_or_else(|| {
+                    local.values.push(*weight);
+                    local.values.len() - 1
+                });
+                local.ids.push(index_in(coarser, *point));
+                local.weights.push(u16::try_from(number).expect("a weight belongs to a valence"));
+            }
+            local.starts.push(id(local.ids.len()));
         }
+        local.ids.shrink_to_fit();
+        local.weights.shrink_to_fit();
         local
     }
 
     fn row(&self, point: usize) -> impl Iterator<Item = (usize, f64)> {
-        let range = self.starts[point]..self.starts[point + 1];
-        self.ids[range.clone()].iter().map(|id| *id as usize).zip(self.weights[range].iter().copied())
+        let range = self.starts[point] as usize..self.starts[point + 1] as usize;
+        let weights = self.weights[range.clone()].iter().map(|number| self.values[*number as usize]);
+        self.ids[range].iter().map(|id| *id as usize).zip(weights)
     }
 
     pub(crate) fn apply(&self, points: &[DVec3]) -> Vec<DVec3> {

@@ -4,7 +4,8 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use crate::energy::patches::{Patches, Terms};
-use crate::flow::system::{CHUNK, Parts, single};
+use crate::flow::pressure_response::{CHUNK, PressureResponse};
+use crate::flow::system::{Parts, single};
 use crate::flow::tied_points::Numbering;
 use crate::flow::volume_constraint::{VolumeConstraint, VolumeGradients};
 use crate::mesh::rounding::last_place;
@@ -28,10 +29,10 @@ pub(crate) fn assemble(
     network: &Network,
     patches: &Patches,
     terms: &Terms,
-    Unknowns { level, points, sizes, groups }: Unknowns<'_>,
+    unknowns: &Unknowns<'_>,
     volumes: Volumes,
 ) -> Parts {
-    let count = groups.group_count();
+    let Unknowns { level, groups, .. } = *unknowns;
     let row = |group: usize, row: &mut NewRow<'_, f64>| {
         let links = groups.members(group).iter().flat_map(|point| patches.links(*point));
         for [end, edge] in links {
@@ -41,6 +42,48 @@ pub(crate) fn assemble(
             }
         }
     };
+    let freedoms = freedoms(network, unknowns);
+    let (stiffness, constraint) = rayon::join(
+        || CsrRows::made_of_sums(groups.group_count(), row, single),
+        || (volumes == Volumes::Kept).then(|| constraint(network, patches, terms, unknowns, &freedoms)),
+    );
+    Parts {
+        masses: masses(patches, terms, unknowns),
+        gradient: gradient(patches, terms, groups),
+        stiffness,
+        volumes: constraint,
+        freedoms,
+        sliding: match volumes {
+            Volumes::Kept => Vec::new(),
+            Volumes::Free => sliding_masses(patches, terms, groups, level),
+        },
+    }
+}
+
+/// How some unknowns whose masses resist give way to pressures, where volumes are kept.
+pub(crate) fn pressure_response(
+    network: &Network,
+    patches: &Patches,
+    terms: &Terms,
+    unknowns: &Unknowns<'_>,
+) -> PressureResponse {
+    let freedoms = freedoms(network, unknowns);
+    let constraint = constraint(network, patches, terms, unknowns, &freedoms);
+    PressureResponse::new(&masses(patches, terms, unknowns), &freedoms, Some(constraint))
+}
+
+fn in_chunks(groups: &Numbering) -> impl IndexedParallelIterator<Item = usize> {
+    (0..groups.group_count()).into_par_iter().with_min_len(CHUNK)
+}
+
+/// How each group can move.
+fn freedoms(network: &Network, Unknowns { level, groups, .. }: &Unknowns<'_>) -> Vec<Freedom> {
+    let freedom = |group| groups.freedom(group, |point| network.freedom(level.walls[point as usize]));
+    in_chunks(groups).map(freedom).collect()
+}
+
+/// The mass of each group.
+fn masses(patches: &Patches, terms: &Terms, Unknowns { sizes, groups, .. }: &Unknowns<'_>) -> Vec<f64> {
     let mass = |group: usize| {
         let masses = groups.members(group).iter().map(|point| {
             let places = patches.places_of_point(*point).iter();
@@ -49,7 +92,18 @@ pub(crate) fn assemble(
         });
         masses.sum::<f64>()
     };
-    let volume_gradients = |group: usize, volume_gradients: &mut VolumeGradients<'_, '_>| {
+    in_chunks(groups).map(mass).collect()
+}
+
+/// How the volumes of grains follow groups with these freedoms.
+fn constraint(
+    network: &Network,
+    patches: &Patches,
+    terms: &Terms,
+    Unknowns { points, groups, .. }: &Unknowns<'_>,
+    freedoms: &[Freedom],
+) -> VolumeConstraint {
+    let fill = |group: usize, volume_gradients: &mut VolumeGradients<'_, '_>| {
         for place in groups.places(group, patches) {
             let boundary = &network.boundaries()[patches.patch_of_place(place)];
             // Walls do not move, so what lies on them changes no volume.
@@ -61,26 +115,7 @@ pub(crate) fn assemble(
             }
         }
     };
-    let freedom = |group| groups.freedom(group, |point| network.freedom(level.walls[point as usize]));
-    let groups_in_chunks = || (0..count).into_par_iter().with_min_len(CHUNK);
-    let freedoms: Vec<Freedom> = groups_in_chunks().map(freedom).collect();
-    let constraint =
-        || VolumeConstraint::new(&freedoms, network.grain_count(), last_place(points), volume_gradients);
-    let (stiffness, volumes_of_grains) = rayon::join(
-        || CsrRows::made_of_sums(count, row, single),
-        || (volumes == Volumes::Kept).then(constraint),
-    );
-    Parts {
-        masses: groups_in_chunks().map(mass).collect(),
-        gradient: gradient(patches, terms, groups),
-        stiffness,
-        volumes: volumes_of_grains,
-        freedoms,
-        sliding: match volumes {
-            Volumes::Kept => Vec::new(),
-            Volumes::Free => sliding_masses(patches, terms, groups, level),
-        },
-    }
+    VolumeConstraint::new(freedoms, network.grain_count(), last_place(points), fill)
 }
 
 /// The gradient of the energy by the displacement of each group.
@@ -88,7 +123,7 @@ pub(crate) fn gradient(patches: &Patches, terms: &Terms, groups: &Numbering) -> 
     let gradient = |group: usize| {
         groups.places(group, patches).map(|place| terms.gradient[place as usize]).sum::<DVec3>()
     };
-    (0..groups.group_count()).into_par_iter().with_min_len(CHUNK).map(gradient).collect()
+    in_chunks(groups).map(gradient).collect()
 }
 
 /// The part of the mass of junctions that does not resist their motion.

@@ -5,12 +5,15 @@ mod growth;
 mod volumes;
 mod widening;
 
+use std::cell::LazyCell;
+
 use cancellation::check_cancelled;
 use glam::DVec3;
+use rayon::prelude::*;
 use subzero::{FaceId, VertexRule};
 use voronoi::Dimension;
 
-use crate::check::folds::{element_normals, folded_neighbors, folded_pairs};
+use crate::check::folds::{folded_neighbors, is_folded};
 use crate::energy::local_size::LocalSize;
 use crate::energy::patches::{Patches, Terms};
 use crate::flow::assembly::{Unknowns, assemble, gradient};
@@ -24,6 +27,7 @@ use crate::flow::tuning::Tuning;
 use crate::measures::rms_residual;
 use crate::mesh::adjacency::Adjacency;
 use crate::mesh::boundary_elements::{BoundaryElements, BoundaryNeighbors};
+use crate::mesh::id::id;
 use crate::mesh::volume::volumes_of_grains;
 use crate::solver::conjugate_gradients::dot;
 use crate::{Freedom, GrainId, Level, LevelView, Mesh, Network, NetworkError, Surface, Volumes};
@@ -74,12 +78,6 @@ enum OnFold {
     Round,
 }
 
-/// The surface that carries a flow, where its points are, and the normals of its elements.
-struct Placed {
-    points: Vec<DVec3>,
-    normals: Vec<DVec3>,
-}
-
 /// A network whose points of one level move.
 pub(crate) struct Flow<'a> {
     network: &'a Network,
@@ -90,8 +88,8 @@ pub(crate) struct Flow<'a> {
     level: usize,
     /// The level whose surface carries energy and volumes during the flow: one subdivision on, if there is any.
     surface: usize,
-    /// Neighbouring elements of each boundary on that level.
-    neighbors: Vec<[u32; 2]>,
+    /// The elements of each boundary on that level.
+    elements: LevelElements<'a>,
     groups: TiedPoints,
     volumes: Volumes,
     tuning: Tuning,
@@ -112,8 +110,8 @@ impl<'a> Flow<'a> {
         let unit = tuning.small_grain * network.mean_grain_size();
         let sizes =
             LocalSize::new(network.domain().dimension(), unit).at_points(network, level, &patches, volumes);
-        let neighbors = Adjacency::of_level(network.level(surface)).inner.pairs();
-        Self { network, patches, sizes, level, surface, neighbors, groups, volumes, tuning }
+        let elements = LevelElements::new(network, surface, &Adjacency::of_level(network.level(surface)));
+        Self { network, patches, sizes, level, surface, elements, groups, volumes, tuning }
     }
 
     /// The flow as one until all is at rest.
@@ -202,10 +200,10 @@ impl<'a> Flow<'a> {
         progress: &mut impl FnMut(usize, &[DVec3]),
     ) -> Result<Vec<DVec3>, NetworkError> {
         let mut points = start.to_vec();
-        let finest = LevelSectors::new(self.network, self.finest());
+        let finest = self.finest_sectors();
         let mut last_energy = f64::INFINITY;
         let mut best = Best::new();
-        let mut surface = self.placed(&points);
+        let mut surface = self.refined(&points);
         for step in 1..=stage.steps {
             check_cancelled();
             let energy = self.step(&mut points, &mut surface, stage.step_time)?;
@@ -223,17 +221,18 @@ impl<'a> Flow<'a> {
             }
             last_energy = energy;
         }
+        drop(surface);
         self.finished(best.into_points().unwrap_or(points), start, stage.end, folded, &finest)
     }
 
-    /// The points at the end of a stage, good where its end has to be.
+    /// The points at the end of a stage, good where its end has to be. The finest level, which may be large, is looked at in the end alone.
     fn finished(
         &mut self,
         mut points: Vec<DVec3>,
         start: &[DVec3],
         end: End,
         folded: OnFold,
-        finest: &LevelSectors<'_>,
+        finest: &LazyCell<LevelSectors<'a>, impl FnOnce() -> LevelSectors<'a>>,
     ) -> Result<Vec<DVec3>, NetworkError> {
         // Where the finest level folds though no step did, all has moved too far from where it did not.
         let (mut count, mut grains) = (0, Vec::new());
@@ -287,7 +286,7 @@ impl<'a> Flow<'a> {
     fn step(
         &mut self,
         points: &mut Vec<DVec3>,
-        surface: &mut Placed,
+        surface: &mut Vec<DVec3>,
         time: f64,
     ) -> Result<f64, NetworkError> {
         let terms = self.patches.terms(points);
@@ -316,8 +315,7 @@ impl<'a> Flow<'a> {
             moves,
             |point| self.freedom(point),
             |moved| {
-                let moved = after.insert(self.placed(moved));
-                let broken = self.broken_elements(&surface.normals, &moved.normals).into_iter();
+                let broken = self.broken_elements(surface, after.insert(self.refined(moved))).into_iter();
                 broken.map(|element| self.dependencies(self.surface, element)).collect()
             },
         )?;
@@ -332,13 +330,13 @@ impl<'a> Flow<'a> {
     }
 
     /// How far points are from rest; nothing where no boundaries meet, and in the plane.
-    fn defects(&self, surface: &Placed, finest: &LevelSectors<'_>) -> Option<Defects> {
+    fn defects(&self, surface: &[DVec3], finest: &LevelSectors<'_>) -> Option<Defects> {
         let Mesh::Triangles(_) = self.control_mesh() else { return None };
-        let residual = rms_residual(self.network, self.surface(), &surface.points)?;
+        let residual = rms_residual(self.network, self.surface(), surface)?;
         let folds = if self.surface == self.finest() {
-            finest.folds(&surface.points)
+            finest.folds(surface)
         } else {
-            finest.folds(&self.network.subdivide_between(self.surface, self.finest(), &surface.points))
+            finest.folds(&self.network.subdivide_between(self.surface, self.finest(), surface))
         };
         Some(Defects { has_folds: !folds.is_empty(), residual })
     }
@@ -364,10 +362,12 @@ impl<'a> Flow<'a> {
             Volumes::Kept => self.tuning.tolerance,
             Volumes::Free => FREE_TOLERANCE,
         };
-        let level = &self.network.levels()[self.level];
-        let unknowns = Unknowns { level, points, sizes: &self.sizes, groups };
-        let parts = assemble(self.network, &self.patches, terms, unknowns, self.volumes);
-        System::new(parts, time, tolerance)
+        let unknowns = self.unknowns(points, groups);
+        System::new(assemble(self.network, &self.patches, terms, &unknowns, self.volumes), time, tolerance)
+    }
+
+    fn unknowns<'b>(&'b self, points: &'b [DVec3], groups: &'b Numbering) -> Unknowns<'b> {
+        Unknowns { level: &self.network.levels()[self.level], points, sizes: &self.sizes, groups }
     }
 
     /// The feature size as control edges of this level have it. Where they are fine, what is short among them is not what is
@@ -379,6 +379,12 @@ impl<'a> Flow<'a> {
 
     fn finest(&self) -> usize {
         self.network.level_count()
+    }
+
+    /// How the elements of the finest level meet, once that is asked for.
+    fn finest_sectors(&self) -> LazyCell<LevelSectors<'a>, impl FnOnce() -> LevelSectors<'a> + use<'a>> {
+        let (network, level) = (self.network, self.finest());
+        LazyCell::new(move || LevelSectors::new(network, level))
     }
 
     /// Where volumes are free the flow itself is asked for: nothing is held but what a step would fold.
@@ -395,13 +401,6 @@ impl<'a> Flow<'a> {
 
     fn control_mesh(&self) -> &'a Mesh {
         &self.network.levels()[self.level].mesh
-    }
-
-    /// The level that carries the flow, for some points of the level that moves.
-    fn placed(&self, points: &[DVec3]) -> Placed {
-        let points = self.refined(points);
-        let normals = element_normals(self.surface(), &points);
-        Placed { points, normals }
     }
 
     /// The points of the level that carries the flow.
@@ -432,23 +431,40 @@ impl<'a> Flow<'a> {
         grains
     }
 
-    /// Elements that a step has turned too far, or bent too far and more than they were; given the normals before and after.
+    /// Elements that a step has turned too far, or bent too far and more than they were; given the points of the level that carries the flow
+    /// before and after.
     fn broken_elements(&self, before: &[DVec3], after: &[DVec3]) -> Vec<u32> {
-        let cosine = |normals: &[DVec3], [a, b]: [u32; 2]| {
-            normals[a as usize].normalize_or_zero().dot(normals[b as usize].normalize_or_zero())
-        };
         // Growth is asked for step by step: where a line shrinks it bends, and what is held there would not grow as it should.
         let largest_bend = match self.volumes {
             Volumes::Kept => self.tuning.largest_bend,
             Volumes::Free => -1.0,
         };
-        let bent = folded_pairs(&self.neighbors, after, largest_bend);
-        let bent = bent.into_iter().filter(|pair| cosine(after, *pair) < cosine(before, *pair) - SLIGHT_BEND);
-        let turned = (0u32..).zip(before.iter().zip(after)).filter(|(_, (before, after))| {
-            let turn = before.dot(**after) - self.tuning.largest_turn * before.length() * after.length();
-            turn.is_nan() || turn < 0.0
-        });
-        turned.map(|(element, _)| element).chain(bent.flatten()).collect()
+        let LevelElements { level, boundaries, neighbors } = &self.elements;
+        let of_boundary = |boundary: usize| {
+            let own: Vec<u32> = boundaries.of(boundary).collect();
+            let normals = |points: &[DVec3]| -> Vec<DVec3> {
+                own.iter().map(|element| level.elements().normal(points, *element)).collect()
+            };
+            let [before, after] = [before, after].map(normals);
+            let is_turned = |index: &u32| {
+                let [before, after] = [&before, &after].map(|normals| normals[*index as usize]);
+                let turn = before.dot(after) - self.tuning.largest_turn * before.length() * after.length();
+                turn.is_nan() || turn < 0.0
+            };
+            let of_pair = |normals: &[DVec3], pair: [u32; 2]| pair.map(|index| normals[index as usize]);
+            let cosine = |pair: [DVec3; 2]| {
+                let [a, b] = pair.map(DVec3::normalize_or_zero);
+                a.dot(b)
+            };
+            let is_bent = |pair: &[u32; 2]| {
+                is_folded(of_pair(&after, *pair), largest_bend)
+                    && cosine(of_pair(&after, *pair)) < cosine(of_pair(&before, *pair)) - SLIGHT_BEND
+            };
+            let bent = neighbors.of(boundaries, boundary).into_iter().filter(is_bent).flatten();
+            let turned = (0..id(own.len())).filter(is_turned);
+            turned.chain(bent).map(|index| own[index as usize]).collect::<Vec<u32>>()
+        };
+        (0..boundaries.boundary_count()).into_par_iter().flat_map_iter(of_boundary).collect()
     }
 
     /// All control points that an element of a level depends on; those of the surface's element that it descends from.
@@ -479,29 +495,41 @@ fn mean_edge(mesh: &Mesh, points: &[DVec3]) -> f64 {
     }
 }
 
-/// How the elements of a level meet.
-struct LevelSectors<'a> {
-    dihedral_sectors: DihedralSectors,
+/// The elements of each boundary on a level, and which of them are neighbours.
+struct LevelElements<'a> {
     level: LevelView<'a>,
     boundaries: BoundaryElements<'a>,
     neighbors: BoundaryNeighbors<'a>,
 }
 
+impl<'a> LevelElements<'a> {
+    fn new(network: &'a Network, level: usize, adjacency: &Adjacency<'a>) -> Self {
+        let level = network.level(level);
+        let boundaries = BoundaryElements::of_level(level, network.boundaries().len());
+        let neighbors = BoundaryNeighbors::new(level.labels(), &boundaries, adjacency);
+        Self { level, boundaries, neighbors }
+    }
+}
+
+/// How the elements of a level meet.
+struct LevelSectors<'a> {
+    elements: LevelElements<'a>,
+    dihedral_sectors: DihedralSectors,
+}
+
 impl<'a> LevelSectors<'a> {
     fn new(network: &'a Network, level: usize) -> Self {
-        let level = network.level(level);
         let sides = network.sides();
-        let surface = Surface::of_level(level, &[], &sides);
-        let adjacency = Adjacency::of_level(level);
-        let boundaries = BoundaryElements::of_level(level, sides.len());
-        let neighbors = BoundaryNeighbors::new(level.labels(), &boundaries, &adjacency);
-        Self { dihedral_sectors: DihedralSectors::new(&surface, &adjacency), level, boundaries, neighbors }
+        let adjacency = Adjacency::of_level(network.level(level));
+        let surface = Surface::of_level(network.level(level), &[], &sides);
+        let dihedral_sectors = DihedralSectors::new(&surface, &adjacency);
+        Self { elements: LevelElements::new(network, level, &adjacency), dihedral_sectors }
     }
 
     /// Pairs of elements that are folded, or have passed each other.
     fn folds(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
-        let elements = self.level.elements();
-        let mut folds = folded_neighbors(elements, points, &self.boundaries, &self.neighbors, 0.0);
+        let LevelElements { level, boundaries, neighbors } = &self.elements;
+        let mut folds = folded_neighbors(level.elements(), points, boundaries, neighbors, 0.0);
         folds.extend(self.dihedral_sectors.turned(points));
         folds
     }

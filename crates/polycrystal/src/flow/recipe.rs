@@ -31,6 +31,8 @@ pub struct RelaxedCells {
     pub network: Network,
     /// Where its points are.
     pub relaxed: Relaxed,
+    /// Those of the finest level, as of [`Relaxed::finest_points`].
+    pub points: Vec<DVec3>,
     /// What changed the topology.
     pub reconnections: Reconnections,
     /// Short triple lines, and boundaries with them, that were drawn together into points of higher order.
@@ -50,13 +52,14 @@ impl RelaxedCells {
     pub(crate) fn validated(
         network: Network,
         relaxed: Relaxed,
-        points: &[DVec3],
+        points: Vec<DVec3>,
     ) -> Result<Self, NetworkError> {
         let start = Instant::now();
-        let validation = validate(&network, points).map_err(NetworkError::Invalid)?;
+        let validation = validate(&network, &points).map_err(NetworkError::Invalid)?;
         Ok(Self {
             network,
             relaxed,
+            points,
             reconnections: Reconnections::default(),
             merged: Collapsed::default(),
             balance: None,

@@ -5,7 +5,8 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use crate::Freedom;
-use crate::flow::volume_constraint::{Compliance, VolumeConstraint};
+use crate::flow::pressure_response::{CHUNK, PressureResponse};
+use crate::flow::volume_constraint::VolumeConstraint;
 use crate::solver::rows::CsrRows;
 
 /// Most iterations for a step.
@@ -16,12 +17,6 @@ const CORRECTIONS: usize = 6;
 
 /// Error of the pressures within the iteration, which works on what they leave.
 const LOOSE: f64 = 0.1;
-
-/// Error of the pressures that give the volumes.
-const TIGHT: f64 = 1e-6;
-
-/// Unknowns that one task works on; fixed, so that no sum depends on the number of threads.
-pub(crate) const CHUNK: usize = 4096;
 
 /// What a system is made of: unknown displacements, the energy around where they start, and how volumes follow.
 pub(crate) struct Parts {
@@ -54,15 +49,12 @@ pub(crate) struct System {
     tolerance: f64,
     /// The diagonal of `M + dt K`.
     diagonal: Vec<f64>,
-    /// One over that, and 0 where it is 0: the displacement under a force of one if there were only the diagonal.
-    mobility: Vec<f64>,
+    /// What pressures do if there is only the diagonal.
+    response: PressureResponse,
     sliding: Vec<(usize, DMat3)>,
     stiffness: CsrRows<f32>,
     /// `-dt g`.
     forces: Vec<DVec3>,
-    /// The unknowns that walls hold, and what they leave to them.
-    held: Vec<(usize, Freedom)>,
-    constraint: Option<(VolumeConstraint, Compliance)>,
 }
 
 impl System {
@@ -74,17 +66,10 @@ impl System {
             mass + time * stiffness
         };
         let diagonal: Vec<f64> = masses.par_iter().with_min_len(CHUNK).enumerate().map(diagonal).collect();
-        let mobility: Vec<f64> =
-            diagonal.iter().map(|diagonal| if *diagonal > 0.0 { 1.0 / diagonal } else { 0.0 }).collect();
-        let held = freedoms.into_iter().enumerate().filter(|(_, freedom)| *freedom != Freedom::Everywhere);
-        let constraint = volumes.map(|constraint| {
-            let compliance = constraint.compliance(&mobility);
-            (constraint, compliance)
-        });
+        let response = PressureResponse::new(&diagonal, &freedoms, volumes);
         let mut forces = gradient;
         forces.par_iter_mut().with_min_len(CHUNK).for_each(|force| *force *= -time);
-        let held = held.collect();
-        Self { time, tolerance, diagonal, mobility, sliding, stiffness, forces, held, constraint }
+        Self { time, tolerance, diagonal, response, sliding, stiffness, forces }
     }
 
     /// The displacements that change volumes by `changes`, to first order, and are otherwise those of the flow; and the
@@ -135,9 +120,9 @@ impl System {
     /// The displacements under some forces, and pressures, as of [`Self::displacement`].
     fn solve(&self, forces: &[DVec3], changes: &[f64]) -> (Vec<DVec3>, Vec<f64>) {
         let mut pressures = vec![0.0; changes.len()];
-        let mut displacement = self.push(changes);
+        let mut displacement = self.response.displacement(changes);
         let mut residual = forces.to_vec();
-        self.hold(&mut residual);
+        self.response.hold(&mut residual);
         let mut image = vec![DVec3::ZERO; residual.len()];
         self.apply(&displacement, &mut image);
         add(&mut residual, -1.0, &image);
@@ -167,22 +152,23 @@ impl System {
             directions.for_each(|(direction, projected)| *direction = *projected + *direction * growth);
             size = next;
         }
-        if let Some((constraint, _)) = &self.constraint {
+        if let Some((constraint, _)) = &self.response.constraint {
             let change = constraint.volume_change(|unknown| displacement[unknown]);
             let left: Vec<f64> =
                 changes.iter().zip(&change).map(|(wanted, change)| wanted - change).collect();
-            add(&mut displacement, 1.0, &self.push(&left));
+            add(&mut displacement, 1.0, &self.response.displacement(&left));
         }
         // What rounding of large forces leaves of them would carry points off their walls.
-        self.hold(&mut displacement);
+        self.response.hold(&mut displacement);
         (displacement, pressures)
     }
 
     /// Takes out of a residual what pressures balance, and the pressures from `sum`; `projected` becomes the displacement under the rest if
     /// there were only the diagonal of the matrix. Gives the product of the two.
     fn project(&self, residual: &mut [DVec3], projected: &mut [DVec3], sum: &mut [f64]) -> f64 {
-        let pressures = self.constraint.as_ref().map(|(constraint, compliance)| {
-            let moved = constraint.volume_change(|unknown| residual[unknown] * self.mobility[unknown]);
+        let PressureResponse { mobility, constraint, .. } = &self.response;
+        let pressures = constraint.as_ref().map(|(constraint, compliance)| {
+            let moved = constraint.volume_change(|unknown| residual[unknown] * mobility[unknown]);
             let pressures = compliance.pressures(&moved, LOOSE);
             sum.iter_mut().zip(&pressures).for_each(|(sum, pressure)| *sum -= *pressure);
             (constraint, pressures)
@@ -191,24 +177,10 @@ impl System {
             if let Some((constraint, pressures)) = &pressures {
                 *residual -= constraint.force(pressures, unknown);
             }
-            *projected = *residual * self.mobility[unknown];
+            *projected = *residual * mobility[unknown];
             residual.dot(*projected)
         };
         sum_by_chunks(residual.par_iter_mut().zip(projected).enumerate().map(project))
-    }
-
-    /// The displacement under the pressures that change volumes by `changes`, if there were only the diagonal of the matrix: for a time of 0
-    /// the least motion by mass, to first order. None where volumes are free.
-    pub(crate) fn push(&self, changes: &[f64]) -> Vec<DVec3> {
-        let Some((constraint, compliance)) = &self.constraint else {
-            return vec![DVec3::ZERO; self.mobility.len()];
-        };
-        let pressures = compliance.pressures(changes, TIGHT);
-        let force = |unknown: usize| constraint.force(&pressures, unknown) * self.mobility[unknown];
-        let mut moves: Vec<DVec3> =
-            (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect();
-        self.hold(&mut moves);
-        moves
     }
 
     /// `image` becomes `(M + dt K) d`, as far as walls leave it; gives its product with the displacement d.
@@ -228,13 +200,8 @@ impl System {
             image[*unknown] -= by;
             product -= by.dot(displacement[*unknown]);
         }
-        self.hold(image);
+        self.response.hold(image);
         product
-    }
-
-    /// Takes out what walls hold.
-    fn hold(&self, vector: &mut [DVec3]) {
-        self.held.iter().for_each(|(unknown, freedom)| vector[*unknown] = freedom.project(vector[*unknown]));
     }
 }
 

@@ -81,7 +81,7 @@ impl Front for Curves<'_> {
         let relaxed = Relaxed { level: 0, points, steps, time, given_up: Vec::new(), is_flat: time == 0.0 };
         let finest = relaxed.finest_points(&network);
         let volumes = network.grain_volumes(network.finest(), &finest);
-        let cells = RelaxedCells::validated(network.with_cell_volumes(volumes), relaxed, &finest)?;
+        let cells = RelaxedCells::validated(network.with_cell_volumes(volumes), relaxed, finest)?;
         Ok(RelaxedCells { reconnections, ..cells })
     }
 }

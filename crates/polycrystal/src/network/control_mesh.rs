@@ -12,7 +12,7 @@ use voronoi::{Dimension, Edges, FaceId, PeriodicPair, Tessellation, Translation}
 use crate::mesh::id::id;
 use crate::mesh::node_type::Meeting;
 use crate::mesh::periodic::PeriodicCopies;
-use crate::network::face_mesh::{LinePoints, triangulate_faces};
+use crate::network::face_mesh::{FaceTriangles, LinePoints, triangulate_faces};
 use crate::{
     Boundary, BoundaryId, FaceMesh, GrainId, Junctions, Level, Mesh, NetworkError, Side, Twin, WallSet,
     WallSets,
@@ -164,11 +164,16 @@ fn surfaces(
     let of_faces: Vec<[usize; 2]> =
         faces.iter().map(|face| [face.triangles.len(), face.inner_points.len()]).collect();
     copies.add_faces(tessellation.periodic_faces(), &of_faces, points.len());
-    let (mut triangles, mut boundary_of, mut at_triangle_edges) = (Vec::new(), Vec::new(), Vec::new());
-    for ((face, boundary), mesh) in (0u32..).zip(&boundaries).zip(faces) {
+    let mut first_inner = Vec::with_capacity(faces.len());
+    for (boundary, mesh) in boundaries.iter().zip(&faces) {
+        first_inner.push(id(points.len()));
+        points.extend(&mesh.inner_points);
+        meetings.resize(points.len(), Meeting::inside(boundary));
+        walls.resize(points.len(), wall_sets.only(boundary.wall));
+    }
+    let of_face = |((mesh, boundary), first_inner): ((&FaceTriangles, &Boundary), &u32)| {
         check_cancelled();
         let outline_count = id(mesh.outline.len());
-        let first_inner = id(points.len());
         let inside = Meeting::inside(boundary);
         let number = |place: u32| match place.checked_sub(outline_count) {
             None => mesh.outline[place as usize],
@@ -179,16 +184,16 @@ fn surfaces(
             let is_on_line = from < outline_count && to == (from + 1) % outline_count;
             if is_on_line { at_lines[mesh.lines[from as usize] as usize] } else { inside }
         };
-        for &[a, b, c] in &mesh.triangles {
-            triangles.push([a, b, c].map(number));
-            at_triangle_edges.push([[a, b], [b, c], [c, a]].map(at_edge));
-            boundary_of.push(BoundaryId(face));
-        }
-        let inner_count = mesh.inner_points.len();
-        points.extend(mesh.inner_points);
-        meetings.resize(meetings.len() + inner_count, inside);
-        walls.resize(walls.len() + inner_count, wall_sets.only(boundary.wall));
-    }
+        let triangles = mesh.triangles.iter();
+        triangles
+            .map(|&[a, b, c]| ([a, b, c].map(number), [[a, b], [b, c], [c, a]].map(at_edge)))
+            .collect::<Vec<_>>()
+    };
+    let meshes = faces.par_iter().zip(&boundaries).zip(&first_inner);
+    let (triangles, at_triangle_edges): (Vec<_>, Vec<_>) = meshes.flat_map_iter(of_face).unzip();
+    let counted = (0u32..).map(BoundaryId).zip(&faces);
+    let boundary_of =
+        counted.flat_map(|(face, mesh)| std::iter::repeat_n(face, mesh.triangles.len())).collect();
     // Dividing lines and faces may miss a wall by a last place.
     points.iter_mut().zip(&walls).for_each(|(point, walls)| *point = wall_sets.put_on_walls(*walls, *point));
 

@@ -99,7 +99,7 @@ fn relax_as_they_are(
     let plan = plan(*relaxation, Start::Flat, tuning);
     let relaxed = relax_levels(&network, &flat, &plan, watch)?;
     let points = relaxed.finest_points(&network);
-    RelaxedCells::validated(network, relaxed, &points)
+    RelaxedCells::validated(network, relaxed, points)
 }
 
 /// The plan for tensions whose mean is 1.
@@ -163,9 +163,9 @@ pub(crate) fn smoothed(
         let relaxed =
             Relaxed { steps: settled.steps + relaxed.steps, time: settled.time + relaxed.time, ..relaxed };
         let points = relaxed.finest_points(&network);
-        let cells = RelaxedCells::validated(network, relaxed, &points)?;
+        let cells = RelaxedCells::validated(network, relaxed, points)?;
         let balance =
-            (relaxation == Relaxation::Equilibrium).then(|| Balance::in_space(&cells.network, &points));
+            (relaxation == Relaxation::Equilibrium).then(|| Balance::in_space(&cells.network, &cells.points));
         let reconnections = settled.reconnections;
         Ok::<_, NetworkError>(RelaxedCells { reconnections, merged, balance, ..cells })
     };

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{End, Flow, LevelSectors, OnFold};
+use super::{End, Flow, OnFold};
 use crate::flow::relaxation::{TIME_OF_KEPT_TOPOLOGY, check_grains_are_left};
 use crate::{GrainId, NetworkError};
 
@@ -85,18 +85,17 @@ impl Flow<'_> {
                 Err(error) => return Err(self.vanishing(&points, passed, longest).unwrap_or(error)),
             }
         }
-        let finest = LevelSectors::new(self.network, self.finest());
-        self.finished(points, start, End::Finished, OnFold::GiveWay, &finest)
+        self.finished(points, start, End::Finished, OnFold::GiveWay, &self.finest_sectors())
     }
 
     /// A step at once and in halves, and where both lead together.
     fn try_step(&mut self, points: &[DVec3], time: f64) -> Result<Trial, NetworkError> {
         let groups = self.groups.clone();
         let mut at_once = points.to_vec();
-        self.step(&mut at_once, &mut self.placed(points), time)?;
+        self.step(&mut at_once, &mut self.refined(points), time)?;
         self.groups = groups;
         let mut halves = points.to_vec();
-        let mut surface = self.placed(points);
+        let mut surface = self.refined(points);
         self.step(&mut halves, &mut surface, 0.5 * time)?;
         self.step(&mut halves, &mut surface, 0.5 * time)?;
         let volumes = self.volumes_at(&halves);
@@ -109,7 +108,7 @@ impl Flow<'_> {
         let (worst, error) = worst.map_or((GrainId(0), 0.0), |(grain, error)| (GrainId(grain), error));
         let extrapolated: Vec<DVec3> =
             halves.iter().zip(&at_once).map(|(halves, once)| *halves + (*halves - *once)).collect();
-        let [before, after] = [points, &extrapolated].map(|points| self.placed(points).normals);
+        let [before, after] = [points, &extrapolated].map(|points| self.refined(points));
         let is_broken = !self.broken_elements(&before, &after).is_empty();
         if is_broken {
             return Ok(Trial { points: halves, volumes, error, worst });

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::flow::assembly::pressure_response;
 use crate::flow::boundary_flow::{Flow, TiedPoints, dot};
 use crate::mesh::rounding::{last_place, swept_by_rounding};
 use crate::mesh::volume::largest_relative_error;
@@ -59,7 +60,9 @@ impl Flow<'_> {
     fn restore_with(&self, groups: &TiedPoints, points: &mut [DVec3]) -> Result<Vec<DVec3>, NetworkError> {
         let terms = self.patches.terms(points);
         let groups = groups.number();
-        let system = self.system(&terms, &groups, 0.0, points);
+        let response =
+            pressure_response(self.network, &self.patches, &terms, &self.unknowns(points, &groups));
+        drop(terms);
         let mut last: Option<Vec<f64>> = None;
         // The gradient is that of a coarser level: what is too small or large in it is measured and made up for.
         let mut gain = 1.0;
@@ -84,7 +87,7 @@ impl Flow<'_> {
                 return Err(NetworkError::volume_not_restored(grain, relative_error));
             }
             let wanted: Vec<f64> = missing.iter().map(|lack| gain * lack).collect();
-            let moves = groups.of_points(&system.push(&wanted));
+            let moves = groups.of_points(&response.displacement(&wanted));
             points.iter_mut().zip(&moves).for_each(|(point, by)| *point += *by);
             last = Some(missing);
             step += 1;

@@ -33,17 +33,15 @@ const TRIES: [Moving; 3] = [Moving::Inside, Moving::Lines, Moving::Lines];
 
 impl Flow<'_> {
     /// Makes thin triangles of the finest level wide, as far as nothing folds; `surface` are the points of that level.
-    pub(super) fn widen_all(
-        &self,
-        points: &mut Vec<DVec3>,
-        mut surface: Vec<DVec3>,
-        finest: &LevelSectors<'_>,
-    ) {
+    pub(super) fn widen_all(&self, points: &mut Vec<DVec3>, surface: Vec<DVec3>, finest: &LevelSectors<'_>) {
         // Where grains grow, what that does to volumes would count as growth.
         let widens = self.tuning.widening > 0.0 && self.volumes == Volumes::Kept;
         let tries = if widens { TRIES.as_slice() } else { &[] };
+        let mut thin = self.thin_triangles(&surface);
+        // What is tried has a surface of its own: on the finest level there is room for one.
+        drop(surface);
         for moving in tries.iter().copied() {
-            let movable = self.movable_points(&self.thin_triangles(&surface), moving);
+            let movable = self.movable_points(&thin, moving);
             if movable.is_empty() {
                 break;
             }
@@ -56,7 +54,7 @@ impl Flow<'_> {
                 let Ok(restored) = self.restored(&mut right) else { break };
                 let folded = self.folded_places(&restored, finest).concat();
                 if folded.is_empty() {
-                    (*points, surface) = (right, restored);
+                    (*points, thin) = (right, self.thin_triangles(&restored));
                     break;
                 }
                 // Where that folds all stays as it was.

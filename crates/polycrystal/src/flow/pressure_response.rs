@@ -1,0 +1,56 @@
+//! How unknowns that resist one by one give way to the pressures of grains.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::Freedom;
+use crate::flow::volume_constraint::{Compliance, VolumeConstraint};
+
+/// Unknowns that one task works on; fixed, so that no sum depends on the number of threads.
+pub(crate) const CHUNK: usize = 4096;
+
+/// Error of the pressures that give the volumes.
+const TIGHT: f64 = 1e-6;
+
+/// Unknown displacements, how much each resists, and how volumes follow.
+pub(crate) struct PressureResponse {
+    /// The displacement under a force of one; 0 where nothing resists.
+    pub(crate) mobility: Vec<f64>,
+    /// The unknowns that walls hold, and what they leave to them.
+    held: Vec<(usize, Freedom)>,
+    pub(crate) constraint: Option<(VolumeConstraint, Compliance)>,
+}
+
+impl PressureResponse {
+    /// That of unknowns that resist so much; without a constraint volumes are free.
+    pub(crate) fn new(resistance: &[f64], freedoms: &[Freedom], volumes: Option<VolumeConstraint>) -> Self {
+        let one_over = |resistance: &f64| if *resistance > 0.0 { 1.0 / resistance } else { 0.0 };
+        let mobility: Vec<f64> = resistance.iter().map(one_over).collect();
+        let constraint = volumes.map(|constraint| {
+            let compliance = constraint.compliance(&mobility);
+            (constraint, compliance)
+        });
+        let freedoms = freedoms.iter().copied().enumerate();
+        let held = freedoms.filter(|(_, freedom)| *freedom != Freedom::Everywhere).collect();
+        Self { mobility, held, constraint }
+    }
+
+    /// The displacement under the pressures that change volumes by `changes`, to first order: the least one, by resistance. None where
+    /// volumes are free.
+    pub(crate) fn displacement(&self, changes: &[f64]) -> Vec<DVec3> {
+        let Some((constraint, compliance)) = &self.constraint else {
+            return vec![DVec3::ZERO; self.mobility.len()];
+        };
+        let pressures = compliance.pressures(changes, TIGHT);
+        let force = |unknown: usize| constraint.force(&pressures, unknown) * self.mobility[unknown];
+        let mut moves: Vec<DVec3> =
+            (0..self.mobility.len()).into_par_iter().with_min_len(CHUNK).map(force).collect();
+        self.hold(&mut moves);
+        moves
+    }
+
+    /// Takes out what walls hold.
+    pub(crate) fn hold(&self, vector: &mut [DVec3]) {
+        self.held.iter().for_each(|(unknown, freedom)| vector[*unknown] = freedom.project(vector[*unknown]));
+    }
+}
