@@ -105,8 +105,8 @@ class Options(TypedDict, total=False):
     Example of the command line: ``--chord-error 0.001``"""
 
     periodic: Value
-    """Axes along which the box is periodic, such as x,y,z: grains grow through these walls and stay whole [default: none, or
-    those of a .tess file]
+    """Axes along which the box is periodic, such as x,y,z: grains continue across these walls and stay whole [default: none,
+    or those of a .tess file]
 
     Example of the command line: ``--periodic x,y``"""
 
@@ -118,16 +118,15 @@ class Options(TypedDict, total=False):
     Default: ``fan``"""
 
     edge_length: Value
-    """Refine the control mesh instead, until no edge is longer than H, in the unit of ``box``; a grain is about as wide as the
-    cube root of its volume
+    """Refine the control mesh until no edge is longer than H, in the unit of ``box``; this replaces ``faces``
 
     Example of the command line: ``--edge-length 0.05``"""
 
     free: bool
     """Let grains grow and shrink by curvature instead of keeping their volumes (areas in 2D)
 
-    Grains vanish and switch neighbours on the way. With ``regularize``, and in 2D with ``edge_length``, they cannot; a run
-    that would need it stops with an error.
+    Grains vanish and switch neighbours on the way. With ``regularize``, in 2D with ``edge_length``, and in grains of
+    several cells, they cannot; a run that would need it stops with an error.
 
     Example of the command line: ``--dim 2 --relax 5 --free``"""
 
@@ -187,7 +186,7 @@ class Options(TypedDict, total=False):
 
     lloyd: Value
     """Make the grains more regular: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 10
-    for packed grains, and for ``diameters`` or ``volumes`` without ``seeds_file``; otherwise 0]
+    where grains have given volumes, as packed ones do, unless ``seeds_file`` says where they are; otherwise 0]
 
     Example of the command line: ``--lloyd 10``"""
 
@@ -211,7 +210,7 @@ class Options(TypedDict, total=False):
 
     relax: Value
     """Relaxation time, in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat [default: 1.2, in 2D
-    equilibrium; 0 with lamellae, 0.05 with ``grain_shapes``, 0.3 with ``free`` or ``regularize``, in 2D with
+    equilibrium; 0 with lamellae, 0.05 for grains of several cells, 0.3 with ``free`` or ``regularize``, in 2D with
     ``edge_length`` too]
 
     Example of the command line: ``--relax 0.1``"""

@@ -416,6 +416,10 @@ fn each_format_is_in_the_docs() {
     let (formats, options) = (include_str!("../../docs/formats.md"), include_str!("../../docs/options.md"));
     let rows: Vec<&str> = formats.lines().filter(|line| line.starts_with("| `.")).collect();
     let output = options.lines().find(|line| line.contains("`--output PATH`")).unwrap();
+    assert!(
+        include_str!("../../README.md").contains(&format!("{} formats", OutputFormat::ALL.len())),
+        "README.md"
+    );
     for format in OutputFormat::ALL {
         let name = format!("`.{}`", format.extension());
         assert!(rows.iter().any(|row| row.split('|').nth(1).unwrap().contains(&name)), "formats.md: {name}");

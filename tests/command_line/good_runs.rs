@@ -89,7 +89,7 @@ fn summary_counts_what_the_file_holds() {
         "written",
     ];
     assert!(first_words.eq(expected), "{said}");
-    for stage in ["seeds", "cells", "network", "relaxation", "subdivision", "validation", "writing"] {
+    for stage in ["seeds", "cells", "relaxation", "validation", "writing"] {
         let times = said.lines().find(|line| line.starts_with("time ")).unwrap();
         let time = times.split(&format!(" {stage} ")).nth(1).and_then(|rest| rest.split(' ').next());
         assert!(time.is_some_and(|time| time.parse::<f64>().is_ok()), "{stage} has no time in\n{said}");
@@ -137,7 +137,7 @@ fn help_tells_defaults_units_examples_and_exit_codes() {
         "--box <X> <Y> [Z]... Side lengths of the box in your unit of length",
         "[default: 1 1 1, or those of a .tess file]",
         "--rng-seed <S>",
-        "in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat [default: 1.2, in 2D equilibrium; 0 with lamellae, 0.05 with --grain-shapes, 0.3 with --free or --regularize, in 2D with --edge-length too] Example: --relax 0.1",
+        "in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat [default: 1.2, in 2D equilibrium; 0 with lamellae, 0.05 for grains of several cells, 0.3 with --free or --regularize, in 2D with --edge-length too] Example: --relax 0.1",
         "-n, --levels <LEVELS>",
         "[default: 3]",
         "[default: crease] [possible values: crease, corner]",

@@ -45,8 +45,9 @@ use smoothing::SmoothingArguments;
 
 /// Make a virtual polycrystal: smooth, closed grains of exact volume, as a VTK file for ParaView.
 ///
-/// Random seeds grow into Voronoi grains. Relaxation then moves the grain boundaries toward the equilibrium of their
-/// tension (120 degrees at triple lines) while every grain keeps its volume, and Loop subdivision makes them smooth.
+/// Each seed becomes a convex cell; by default cells have the volumes of real grains, see --seeding. Relaxation then moves
+/// their boundaries toward the equilibrium of tension (120 degrees at triple lines) while every grain keeps its volume, and
+/// Loop subdivision makes them smooth.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 100, after_help = EXAMPLES)]
 #[command(args_conflicts_with_subcommands = true)]

@@ -193,7 +193,7 @@ pub struct Config {
     pub min_diameter: f64,
 
     /// Make the grains more regular: move every seed to the centroid of its cell, N times; exact sizes are kept [default: 10
-    /// for packed grains, and for --diameters or --volumes without --seeds-file; otherwise 0]
+    /// where grains have given volumes, as packed ones do, unless --seeds-file says where they are; otherwise 0]
     ///
     /// Example: --lloyd 10
     #[arg(long = "lloyd", help_heading = "Seeds", value_name = "N", value_parser = whole_number(0..=100_000_u32), allow_negative_numbers = true)]
@@ -253,7 +253,7 @@ pub struct Config {
     pub face_mesh: FaceMesh,
 
     /// Relaxation time, in units of the mean grain size squared, or `equilibrium`; 0 keeps boundaries flat [default: 1.2, in
-    /// 2D equilibrium; 0 with lamellae, 0.05 with --grain-shapes, 0.3 with --free or --regularize, in 2D with --edge-length too]
+    /// 2D equilibrium; 0 with lamellae, 0.05 for grains of several cells, 0.3 with --free or --regularize, in 2D with --edge-length too]
     ///
     /// Example: --relax 0.1
     #[arg(long = "relax", help_heading = "Smoothing", value_name = "T", value_parser = parse_relaxation, allow_negative_numbers = true)]

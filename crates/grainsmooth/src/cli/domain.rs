@@ -49,7 +49,7 @@ pub struct DomainArguments {
     #[arg(long, value_name = "E", value_parser = parse_chord_error, allow_negative_numbers = true)]
     chord_error: Option<f64>,
 
-    /// Axes along which the box is periodic, such as x,y,z: grains grow through these walls and stay whole [default: none,
+    /// Axes along which the box is periodic, such as x,y,z: grains continue across these walls and stay whole [default: none,
     /// or those of a .tess file]
     ///
     /// Example: --periodic x,y

@@ -14,8 +14,7 @@ pub struct SmoothingArguments {
     #[arg(long, value_name = "RULE", value_enum, default_value_t = FaceRule::Fan)]
     faces: FaceRule,
 
-    /// Refine the control mesh instead, until no edge is longer than H, in the unit of --box; a grain is about as wide as
-    /// the cube root of its volume
+    /// Refine the control mesh until no edge is longer than H, in the unit of --box; this replaces --faces
     ///
     /// Example: --edge-length 0.05
     #[arg(long, value_name = "H", value_parser = parse_edge_length, allow_negative_numbers = true, conflicts_with = "faces")]
@@ -23,7 +22,7 @@ pub struct SmoothingArguments {
 
     /// Let grains grow and shrink by curvature instead of keeping their volumes (areas in 2D)
     ///
-    /// Grains vanish and switch neighbours on the way. With --regularize, and in 2D with --edge-length, they cannot; a run that would need it stops with an error.
+    /// Grains vanish and switch neighbours on the way. With --regularize, in 2D with --edge-length, and in grains of several cells, they cannot; a run that would need it stops with an error.
     ///
     /// Example: --dim 2 --relax 5 --free
     #[arg(long)]

@@ -225,7 +225,7 @@ mod tests {
         ];
         assert_eq!(kept, [&*kept[0]; 3]);
         let usual = format!(
-            "[default: {}, in 2D {}; {} with lamellae, {} with --grain-shapes, {} with --free or --regularize, in 2D with --edge-length too]",
+            "[default: {}, in 2D {}; {} with lamellae, {} for grains of several cells, {} with --free or --regularize, in 2D with --edge-length too]",
             relax(Config::default()),
             relax(plane),
             relax(Config { inside: lamellae, ..Config::default() }),

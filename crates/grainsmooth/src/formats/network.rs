@@ -9,7 +9,8 @@ use rayon::prelude::*;
 use voronoi::{Dimension, PeriodicPair};
 
 use super::measured_arrays::MeasuredArrays;
-use super::surface::{Surface, unit_normal};
+use super::surface::Surface;
+use crate::mesh::file::stl::unit_normal;
 use crate::names::{MOBILITY, NUMBER_OF_GRAINS, SEED_ID, TENSION};
 use crate::volume_mesh::element_nodes::ElementNodes;
 use crate::vtk::write_vtk;

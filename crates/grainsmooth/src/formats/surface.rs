@@ -121,7 +121,7 @@ impl<'a> Surface<'a> {
     }
 
     /// All triangles, part after part.
-    pub(crate) fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
+    pub(crate) fn triangles(&self) -> impl ExactSizeIterator<Item = [u32; 3]> {
         self.order.iter().map(|&triangle| self.triangles.get(triangle))
     }
 
@@ -222,10 +222,4 @@ pub(crate) fn write_seed_comments(seed_ids: &[u32], sign: &str, out: &mut dyn Wr
         let ids: Vec<String> = ids.iter().map(u32::to_string).collect();
         writeln!(out, "{sign}{SEED_ID} {}", ids.join(" "))
     })
-}
-
-/// The unit normal of a triangle.
-pub(crate) fn unit_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    // Of edges of length one: the product of tiny ones would vanish.
-    (b - a).normalize_or_zero().cross((c - a).normalize_or_zero()).normalize_or_zero()
 }

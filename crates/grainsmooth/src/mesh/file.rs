@@ -20,7 +20,7 @@ mod lines;
 mod obj;
 mod off;
 mod ply;
-mod stl;
+pub(crate) mod stl;
 pub(crate) mod vtk;
 mod write;
 

@@ -2,6 +2,8 @@
 
 mod best;
 mod growth;
+mod level_elements;
+mod unfolding;
 mod volumes;
 mod widening;
 
@@ -10,14 +12,13 @@ use std::cell::LazyCell;
 use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
-use subzero::{FaceId, VertexRule};
+use subzero::FaceId;
 use voronoi::Dimension;
 
-use crate::check::folds::{folded_neighbors, is_folded};
+use crate::check::folds::is_folded;
 use crate::energy::local_size::LocalSize;
 use crate::energy::patches::{Patches, Terms};
 use crate::flow::assembly::{Unknowns, assemble, gradient};
-use crate::flow::dihedral_sectors::DihedralSectors;
 use crate::flow::relaxation::TIME_OF_KEPT_TOPOLOGY;
 use crate::flow::system::System;
 use crate::flow::tangential::tangential_moves;
@@ -26,13 +27,13 @@ use crate::flow::tied_points::{ATTEMPTS, Numbering, TiedPoints};
 use crate::flow::tuning::Tuning;
 use crate::measures::rms_residual;
 use crate::mesh::adjacency::Adjacency;
-use crate::mesh::boundary_elements::{BoundaryElements, BoundaryNeighbors};
 use crate::mesh::id::id;
 use crate::mesh::volume::volumes_of_grains;
 use crate::solver::conjugate_gradients::dot;
-use crate::{Freedom, GrainId, Level, LevelView, Mesh, Network, NetworkError, Surface, Volumes};
+use crate::{Freedom, GrainId, Level, LevelView, Mesh, Network, NetworkError, Volumes};
 use best::{Best, Defects};
 pub(crate) use growth::Grown;
+use level_elements::{LevelElements, LevelSectors};
 pub(crate) use volumes::has_kept_volumes;
 
 /// Most edges of the control mesh, as long as the mean, to a feature. Fans have three.
@@ -40,11 +41,6 @@ const FEATURE_EDGES: f64 = 6.0;
 
 /// Share of its first residual at which a step of grains that grow is solved: rates of growth are asked for, not only where they lead.
 pub(crate) const FREE_TOLERANCE: f64 = 1e-3;
-
-/// Most steps of either kind where a start is folded by subdivision, and the share of its way that a point goes. The walls of a host whose cells
-/// are as flat as a fiftieth of it take one step.
-const UNFOLDING_STEPS: usize = 10;
-const UNFOLDING: f64 = 0.5;
 
 /// Change of the cosine of a bend that counts as none.
 pub(crate) const SLIGHT_BEND: f64 = 1e-9;
@@ -138,58 +134,6 @@ impl<'a> Flow<'a> {
             }
             result => result,
         }
-    }
-
-    /// Points that fold the finest level, moved until they do not: a boundary of several faces has points inside that are crowded, so that
-    /// subdivision puts triangles there over each other even in a plane, and edges inside that are sharp. The first are centred within their
-    /// boundaries, and where folds remain, they go to the middle of their neighbours. Nothing where no point is to move.
-    fn unfolded(&self, start: &[DVec3]) -> Option<Vec<DVec3>> {
-        let finest = LevelSectors::new(self.network, self.finest());
-        let mut points = start.to_vec();
-        let mut places = self.folded_places(&self.finest_points(&points), &finest);
-        let mut best = (places.len(), None);
-        for step in 0..2 * UNFOLDING_STEPS {
-            if places.is_empty() {
-                break;
-            }
-            let moves = if step < UNFOLDING_STEPS {
-                tangential_moves(self.network, self.level, &points, UNFOLDING)
-            } else {
-                self.rounding(&points, &places)
-            };
-            points = displaced(&points, &moves);
-            places = self.folded_places(&self.finest_points(&points), &finest);
-            if places.len() < best.0 {
-                best = (places.len(), Some(points.clone()));
-            } else if step + 1 == UNFOLDING_STEPS {
-                points = best.1.clone().unwrap_or_else(|| start.to_vec());
-            }
-        }
-        best.1
-    }
-
-    /// A step of the points inside boundaries and on lines that some places depend on, toward the middle of their neighbours.
-    fn rounding(&self, points: &[DVec3], places: &[Vec<u32>]) -> Vec<DVec3> {
-        let mut moves = vec![DVec3::ZERO; points.len()];
-        let Mesh::Triangles(mesh) = self.control_mesh() else { return moves };
-        let mut is_moved = vec![false; points.len()];
-        places.iter().flatten().for_each(|point| is_moved[*point as usize] = true);
-        let mut counts = vec![0.0; points.len()];
-        for ends in mesh.edges() {
-            let [a, b] = ends.map(|end| end as usize);
-            let way = points[b] - points[a];
-            moves[a] += way;
-            moves[b] -= way;
-            counts[a] += 1.0;
-            counts[b] += 1.0;
-        }
-        for (point, by) in (0u32..).zip(&mut moves) {
-            let place = point as usize;
-            let moves_it = is_moved[place] && mesh.vertex_rule(point) != VertexRule::Corner;
-            let step = *by * (UNFOLDING / counts[place]);
-            *by = if moves_it { self.freedom(point).project(step) } else { DVec3::ZERO };
-        }
-        moves
     }
 
     fn run_from(
@@ -492,46 +436,6 @@ fn mean_edge(mesh: &Mesh, points: &[DVec3]) -> f64 {
             let segments = mesh.segments();
             segments.iter().map(|ends| length(*ends)).sum::<f64>() / segments.len() as f64
         }
-    }
-}
-
-/// The elements of each boundary on a level, and which of them are neighbours.
-struct LevelElements<'a> {
-    level: LevelView<'a>,
-    boundaries: BoundaryElements<'a>,
-    neighbors: BoundaryNeighbors<'a>,
-}
-
-impl<'a> LevelElements<'a> {
-    fn new(network: &'a Network, level: usize, adjacency: &Adjacency<'a>) -> Self {
-        let level = network.level(level);
-        let boundaries = BoundaryElements::of_level(level, network.boundaries().len());
-        let neighbors = BoundaryNeighbors::new(level.labels(), &boundaries, adjacency);
-        Self { level, boundaries, neighbors }
-    }
-}
-
-/// How the elements of a level meet.
-struct LevelSectors<'a> {
-    elements: LevelElements<'a>,
-    dihedral_sectors: DihedralSectors,
-}
-
-impl<'a> LevelSectors<'a> {
-    fn new(network: &'a Network, level: usize) -> Self {
-        let sides = network.sides();
-        let adjacency = Adjacency::of_level(network.level(level));
-        let surface = Surface::of_level(network.level(level), &[], &sides);
-        let dihedral_sectors = DihedralSectors::new(&surface, &adjacency);
-        Self { elements: LevelElements::new(network, level, &adjacency), dihedral_sectors }
-    }
-
-    /// Pairs of elements that are folded, or have passed each other.
-    fn folds(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
-        let LevelElements { level, boundaries, neighbors } = &self.elements;
-        let mut folds = folded_neighbors(level.elements(), points, boundaries, neighbors, 0.0);
-        folds.extend(self.dihedral_sectors.turned(points));
-        folds
     }
 }
 

@@ -1,7 +1,7 @@
-//! STL, text and binary, through `stl_io`.
+//! STL: read as text and binary through `stl_io`, written as binary.
 
 use std::collections::HashMap;
-use std::io::Cursor;
+use std::io::{self, Cursor, Write};
 
 use glam::{DVec3, Vec3};
 
@@ -10,6 +10,56 @@ use super::{MeshFile, MeshFileProblem};
 /// Bytes of a binary file before its triangles, and of each triangle.
 const HEADER_BYTES: usize = 84;
 const TRIANGLE_BYTES: usize = 50;
+
+/// Bytes of the title of a binary file.
+pub(crate) const TITLE_BYTES: usize = 80;
+
+/// Writes triangles as a binary file. The title must not begin with `solid`, which would make the file text to many readers.
+pub(crate) fn write_binary(
+    title: &str,
+    triangles: impl ExactSizeIterator<Item = [DVec3; 3]>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    let count = u32::try_from(triangles.len())
+        .map_err(|_| io::Error::other("more triangles than STL can count; write .vtp instead"))?;
+    let mut header = title.as_bytes().to_vec();
+    header.resize(TITLE_BYTES, b' ');
+    out.write_all(&header)?;
+    out.write_all(&count.to_le_bytes())?;
+    let mut record = [0; TRIANGLE_BYTES];
+    for corners in triangles {
+        let [a, b, c] = corners;
+        let vectors = [unit_normal(corners), a, b, c];
+        for (place, number) in
+            record.as_chunks_mut::<4>().0.iter_mut().zip(vectors.map(single).iter().flatten())
+        {
+            *place = number.to_le_bytes();
+        }
+        out.write_all(&record)?;
+    }
+    Ok(())
+}
+
+/// The unit normal of a triangle; zero where it has no area.
+pub(crate) fn unit_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    // Of edges of length one: the product of tiny ones would vanish.
+    (b - a).normalize_or_zero().cross((c - a).normalize_or_zero()).normalize_or_zero()
+}
+
+/// Coordinates in single precision.
+fn single(vector: DVec3) -> [f32; 3] {
+    vector.as_vec3().to_array()
+}
+
+/// Checks that points have coordinates in single precision.
+pub(crate) fn check_range(mut points: impl Iterator<Item = DVec3>) -> io::Result<()> {
+    match points.find(|point| !point.as_vec3().is_finite()) {
+        Some(point) => Err(io::Error::other(format!(
+            "{point} is too far out for STL's single precision; write .vtp instead"
+        ))),
+        None => Ok(()),
+    }
+}
 
 /// Reads triangles and merges corners whose coordinates are exactly equal, in the order in which they first occur.
 pub(super) fn read(bytes: &[u8]) -> Result<MeshFile, MeshFileProblem> {

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use super::stl;
 use crate::error::Error;
 use crate::files::output::OutputPath;
 use crate::files::staged_files::{StagedFiles, write_together};
@@ -204,35 +205,17 @@ fn write_ply(mesh: &MeshToWrite<'_>, out: &mut dyn Write) -> io::Result<()> {
 
 fn write_stl(mesh: &MeshToWrite<'_>, out: &mut dyn Write) -> io::Result<()> {
     refuse_polylines(mesh.cells, "STL")?;
-    let mut triangles = Vec::new();
-    let mut outside = None;
-    let mut add = |corners: [u32; 3]| {
-        let corners = corners.map(|id| mesh.points[id as usize]);
-        outside = outside.or(corners.into_iter().find(|point| !point.as_vec3().is_finite()));
-        let [a, b, c] = corners;
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        triangles.push(stl_io::Triangle {
-            normal: stl_io::Normal::new(normal.as_vec3().to_array()),
-            vertices: corners.map(|point| stl_io::Vertex::new(point.as_vec3().to_array())),
-        });
-    };
-    match mesh.cells {
-        Cells::Triangles(triangles) => triangles.iter().copied().for_each(&mut add),
-        Cells::TrianglesOf(each) => (0..each.count).map(each.value).for_each(&mut add),
-        Cells::Polygons(polygons) => {
-            let cut = subzero::triangulate(mesh.points, polygons).map_err(io::Error::other)?;
-            cut.0.into_iter().for_each(&mut add);
+    let triangles: Vec<[u32; 3]> = match mesh.cells {
+        Cells::Triangles(triangles) => triangles.to_vec(),
+        Cells::TrianglesOf(each) => (0..each.count).map(each.value).collect(),
+        Cells::Polygons(polygons) => subzero::triangulate(mesh.points, polygons).map_err(io::Error::other)?.0,
+        Cells::Polylines(_) | Cells::Vertices(_) | Cells::Tetrahedra(_) | Cells::QuadraticTetrahedra(_) => {
+            Vec::new()
         }
-        Cells::Polylines(_) | Cells::Vertices(_) | Cells::Tetrahedra(_) | Cells::QuadraticTetrahedra(_) => {}
-    }
-    if let Some(point) = outside {
-        return Err(io::Error::other(format!(
-            "{point} is too far out for STL's single precision; write .vtp instead"
-        )));
-    }
-    u32::try_from(triangles.len())
-        .map_err(|_| io::Error::other("more triangles than STL can count; write .ply instead"))?;
-    stl_io::write_stl(&mut &mut *out, triangles.iter())
+    };
+    let triangles = triangles.iter().map(|corners| corners.map(|id| mesh.points[id as usize]));
+    stl::check_range(triangles.clone().flatten())?;
+    stl::write_binary(concat!("grainsmooth ", env!("CARGO_PKG_VERSION")), triangles, out)
 }
 
 fn refuse_polylines(cells: Cells<'_>, format: &str) -> io::Result<()> {
