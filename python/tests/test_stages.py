@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import pathlib
+import shutil
 
 import numpy as np
 import pytest
@@ -66,6 +68,29 @@ def test_voxels_are_in_the_grains_of_their_centres() -> None:
     centers = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     distances = np.linalg.norm(centers[..., np.newaxis, :] - cells.seeds, axis=-1)
     np.testing.assert_array_equal(labels, distances.argmin(axis=-1))
+
+
+def test_tetrahedra_fill_the_grains() -> None:
+    if shutil.which("gmsh") is None and os.environ.get("CI") != "true":
+        pytest.skip("Gmsh is not installed")
+    grains = grainsmooth.Polycrystal.generate(seeds=6, levels=2, elements_per_grain=3, rng_seed=2)
+    points, tetrahedra, of_grains = grains.tetrahedra()
+    np.testing.assert_array_equal(points[: len(grains.points)], grains.points)
+    assert tetrahedra.shape[1] == 4 and tetrahedra.dtype == np.uint32 and of_grains.dtype == np.int32
+    edges = points[tetrahedra[:, 1:]] - points[tetrahedra[:, :1]]
+    volumes = np.linalg.det(edges) / 6.0
+    assert (volumes > 0.0).all()
+    np.testing.assert_allclose(np.bincount(of_grains, volumes), grains.volumes, rtol=1e-9)
+    # Two tetrahedra share each triangle, or one that is the surface's or a boundary's.
+    sides = np.sort(tetrahedra[:, [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]].reshape(-1, 3), axis=1)
+    once = np.unique(np.column_stack([sides, np.repeat(of_grains, 4)]), axis=0, return_counts=True)
+    bare = once[0][once[1] == 1]
+    # A boundary between two grains has a bare side in each of them.
+    of_boundaries = np.repeat(np.sort(grains.triangles, axis=1), 1 + (grains.face_labels[:, 1] >= 0), axis=0)
+    np.testing.assert_array_equal(bare[:, :3], of_boundaries[np.lexsort(of_boundaries.T[::-1])])
+    plane = grainsmooth.Polycrystal.generate(seeds=5, dim=2, levels=0)
+    with pytest.raises(ValueError, match="hold no tetrahedra"):
+        plane.tetrahedra()
 
 
 CUBE = (
