@@ -151,6 +151,59 @@ fn every_command_shows_its_result() {
     }
 }
 
+/// The colours of the key stand in the picture as they are; those of the surface are shaded.
+#[test]
+fn arrays_colour_pictures_and_have_a_key() {
+    let workplace = Workplace::new();
+    workplace.put("cube.obj", CUBE_OBJ);
+    workplace.run("mesh triangulate cube.obj -o in.obj");
+    let has = |name: &str, color: [u8; 3]| {
+        let (frames, _) = frames(&workplace, name);
+        frames.iter().all(|frame| frame.as_chunks::<4>().0.iter().any(|pixel| pixel[..3] == color))
+    };
+    let kinds = [[230, 159, 0], [86, 180, 233], [0, 158, 115]];
+    let run = "mesh loop in.obj -n 2 --each-level -o out.vtp --picture-size 240 180 --picture";
+    workplace.run(&format!("{run} plain.png"));
+    workplace.run(&format!("{run} born.png --color-by Generation"));
+    for color in kinds {
+        assert!(has("born.png", color) && !has("plain.png", color), "{color:?}");
+    }
+    // The same key, and so the same scale, beside each level.
+    let (levels, [width, height]) = frames(&workplace, "born.png");
+    let key = |frame: &[u8]| -> Vec<[u8; 3]> {
+        let right = (0..height).flat_map(|y| (width - 60..width).map(move |x| [x, y]));
+        right.map(|place| pixel(frame, width, place)).collect()
+    };
+    assert!(levels.windows(2).all(|pair| key(&pair[0]) == key(&pair[1]) && pair[0] != pair[1]));
+    // Numbers of faces, from the least, violet, to the greatest, yellow.
+    let table = "CELL_DATA 6\nSCALARS Height double 1\nLOOKUP_TABLE default\n0.5 1 2 3 4 7.25\n";
+    let faces = "POLYGONS 6 30\n4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
+    let points = "POINTS 8 double\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n";
+    let head = "# vtk DataFile Version 3.0\ncube\nASCII\nDATASET POLYDATA\n";
+    workplace.put("high.vtk", &format!("{head}{points}{faces}{table}"));
+    workplace.run("mesh catmull-clark high.vtk -n 1 -o out.vtp --picture high.png --picture-size 240 180 --color-by Height");
+    let (high, _) = frames(&workplace, "high.png");
+    let ends = [[68, 2, 86], [249, 230, 34]];
+    let is_near =
+        |pixel: &[u8; 4], end: [u8; 3]| (0..3).all(|channel| pixel[channel].abs_diff(end[channel]) < 5);
+    for end in ends {
+        assert!(high[0].as_chunks::<4>().0.iter().any(|pixel| is_near(pixel, end)), "{end:?}");
+    }
+    for (command, message) in [
+        (
+            "mesh catmull-clark high.vtk -n 1 -o no.vtp --picture no.png --color-by Hight",
+            "high.vtk: --color-by Hight: the result has no array of this name with one number each; give Generation or Height, or leave it out",
+        ),
+        (
+            "mesh triangulate cube.obj -o no.vtp --picture no.png --color-by Height",
+            "cube.obj: --color-by Height: the result has no array of this name with one number each; leave it out",
+        ),
+    ] {
+        workplace.refuses(command, 1, message);
+        assert!(!workplace.path("no.png").exists() && !workplace.path("no.vtp").exists());
+    }
+}
+
 #[test]
 fn mistakes_about_what_is_shown() {
     let workplace = Workplace::new();

@@ -119,7 +119,7 @@ pub use mesh::{
 };
 pub use names::Names;
 pub use page::{EditContent, PageDocument, PageLinks, PageServer, PageStop};
-pub use picture::{Coloring, Picture, Png, Scene, ScenePicture, Shading, Slice};
+pub use picture::{Coloring, Picture, Png, Scene, SceneColors, SceneNumbers, ScenePicture, Shading, Slice};
 pub use report::{Html, SceneReport};
 pub use run::elements_reached::ElementsReached;
 pub use run::measured::{MapRun, smooth_map};

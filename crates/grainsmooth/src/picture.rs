@@ -9,6 +9,7 @@ mod patch;
 mod plane;
 mod raster;
 mod scene;
+mod scene_colors;
 mod text;
 
 use std::io;
@@ -20,12 +21,14 @@ use tiny_skia::{Pixmap, PixmapPaint, Transform};
 use crate::{Error, Output, Polycrystal, StagedFiles};
 
 use coloring::Paint;
+use legend::Legend;
 use patch::Seen;
 
 pub(crate) use color::differing;
 pub use coloring::Coloring;
 pub(crate) use parts::{Parts, Pieces};
 pub use scene::{Scene, ScenePicture, Shading};
+pub use scene_colors::{SceneColors, SceneNumbers};
 
 /// The format of pictures, 8 bits a channel on white.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,21 +99,12 @@ impl Polycrystal {
     /// # Errors
     /// Where memory for the pixels is missing.
     pub fn png(&self, picture: &Picture) -> io::Result<Vec<u8>> {
-        let [width, height] = picture.size;
-        let mut pixmap = blank([width, height], picture.is_transparent)?;
         let paint = picture.coloring.paint(self);
-        let Some(legend) = &paint.legend else {
-            self.draw(picture, &paint, &mut pixmap)?;
-            return self.encoded(pixmap).map_err(io::Error::other);
-        };
-        let taken = legend.width([width, height].map(|side| usize::from(side.get())));
-        let left = u16::try_from(usize::from(width.get()) - taken).ok().and_then(NonZeroU16::new);
-        let inner = Picture { size: [left.unwrap_or(width), height], ..*picture };
-        let mut scene = blank(inner.size, picture.is_transparent)?;
-        self.draw(&inner, &paint, &mut scene)?;
-        let whole = PixmapPaint::default();
-        pixmap.draw_pixmap(0, 0, scene.as_ref(), &whole, Transform::identity(), None);
-        legend.draw(&mut pixmap);
+        let pixmap = beside_legend(paint.legend.as_ref(), picture.size, picture.is_transparent, |size| {
+            let mut pixmap = blank(size, picture.is_transparent)?;
+            self.draw(&Picture { size, ..*picture }, &paint, &mut pixmap)?;
+            Ok(pixmap)
+        })?;
         self.encoded(pixmap).map_err(io::Error::other)
     }
 
@@ -162,6 +156,24 @@ impl Polycrystal {
         let volumes = self.network.cell_volumes().iter();
         volumes.map(|volume| self.dimension().ball_diameter(*volume)).collect()
     }
+}
+
+/// A picture of a size with its legend, if there is one, on the right; `draw` makes the rest of it in the size that is left.
+fn beside_legend(
+    legend: Option<&Legend>,
+    size: [NonZeroU16; 2],
+    is_transparent: bool,
+    draw: impl FnOnce([NonZeroU16; 2]) -> io::Result<Pixmap>,
+) -> io::Result<Pixmap> {
+    let Some(legend) = legend else { return draw(size) };
+    let mut pixmap = blank(size, is_transparent)?;
+    let [width, height] = size;
+    let taken = legend.width(size.map(|side| usize::from(side.get())));
+    let left = u16::try_from(usize::from(width.get()) - taken).ok().and_then(NonZeroU16::new);
+    let drawn = draw([left.unwrap_or(width), height])?;
+    pixmap.draw_pixmap(0, 0, drawn.as_ref(), &PixmapPaint::default(), Transform::identity(), None);
+    legend.draw(&mut pixmap);
+    Ok(pixmap)
 }
 
 /// An empty picture, white or transparent.

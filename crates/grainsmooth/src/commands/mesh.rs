@@ -101,9 +101,11 @@ impl Job<'_> {
             self.report(format_args!("level {index:<5} {points} points, {faces} {kind}"));
         }
         let first = if steps.each_level { 0 } else { levels.len() - 1 };
-        let scenes = || Scenes {
-            before: scene_of_level(&levels[0]),
-            levels: levels[first..].iter().map(scene_of_level).collect(),
+        let is_changed = |index: usize| index > 0 && scheme != Scheme::Midpoint;
+        let scenes = || {
+            let shown = (first..levels.len())
+                .map(|index| self.scene_of_level(&mesh, &levels[index], is_changed(index)));
+            Ok(Scenes { before: scene_of_level(&levels[0]), levels: shown.collect::<Result<_, Error>>()? })
         };
         let written = outputs.iter().map(Output::path).chain(collection.iter().map(Output::path));
         self.write(written.map(Path::to_owned).collect(), scenes, |files| {
@@ -111,8 +113,7 @@ impl Job<'_> {
                 return outputs[0].stage(files, |out| levels_json(&mesh, scheme, &levels, out));
             }
             for ((index, level), output) in (first..).zip(&levels[first..]).zip(&outputs) {
-                let is_changed = index > 0 && scheme != Scheme::Midpoint;
-                self.stage_level(&mesh, level, None, is_changed, output, files)?;
+                self.stage_level(&mesh, level, None, is_changed(index), output, files)?;
             }
             match &collection {
                 Some(collection) => {
@@ -150,8 +151,10 @@ impl Job<'_> {
         // Curves have none.
         let normals = Some(&normals[..]).filter(|_| scheme != Scheme::BSpline);
         let at_limit = Level { points: found.positions, ..level.clone() };
-        let scenes =
-            || Scenes { before: scene_of_level(&levels[0]), levels: vec![scene_of_level(&at_limit)] };
+        let scenes = || {
+            let shown = self.scene_of_level(&mesh, &at_limit, true)?;
+            Ok(Scenes { before: scene_of_level(&levels[0]), levels: vec![shown] })
+        };
         self.write(vec![output.path().to_owned()], scenes, |files| match self.format {
             MeshFormat::Json => output.stage(files, |out| levels_json(&mesh, scheme, &levels, out)),
             _ => self.stage_level(&mesh, &at_limit, normals, true, &output, files),

@@ -145,12 +145,30 @@ pub enum MeshFileProblem {
     /// A file of control points has no surfaces where these are to be merged.
     #[error("holds no surfaces to merge; leave --merge out")]
     NoSurfaces,
+    /// What is made of the file has no array to colour by.
+    #[error(
+        "--color-by {name}: the result has no array of this name with one number each; {}",
+        known_arrays(known)
+    )]
+    NoArray {
+        /// The name.
+        name: String,
+        /// The arrays that can be taken.
+        known: Vec<String>,
+    },
     /// The faces make no mesh that the scheme can work with.
     #[error("{0}")]
     Mesh(MeshError),
     /// The control points make no curve or surface, or more points than ids can count.
     #[error("{0}")]
     Bezier(#[from] BezierError),
+}
+
+fn known_arrays(known: &[String]) -> String {
+    match known {
+        [] => "leave it out".to_owned(),
+        _ => format!("give {}, or leave it out", known.join(" or ")),
+    }
 }
 
 impl From<MeshError> for MeshFileProblem {

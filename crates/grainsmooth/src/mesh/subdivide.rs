@@ -11,7 +11,7 @@ use super::file::{MeshFile, MeshFileProblem};
 use crate::Error;
 use crate::memory::{LevelSize, available_memory, check_levels};
 use crate::names::GENERATION;
-use crate::vtk::DataArray;
+use crate::vtk::{DataArray, DataNumbers};
 
 /// A scheme of subdivision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -133,6 +133,12 @@ pub(crate) fn grown_generations(generations: &[i8], points: usize) -> Vec<i8> {
 }
 
 impl Level {
+    /// The level at which each point was born, as an array.
+    pub fn generation_array(&self) -> Option<DataArray> {
+        let numbers = DataNumbers::Int8(self.generations.clone()?);
+        Some(DataArray { name: GENERATION.to_owned(), components: 1, numbers })
+    }
+
     /// The mesh of a file itself.
     fn of_file(file: &MeshFile, mesh: Connectivity) -> Self {
         let cells = if matches!(mesh, Connectivity::Curves(_)) { file.lines.len() } else { file.faces.len() };

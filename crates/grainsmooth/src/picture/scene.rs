@@ -12,7 +12,8 @@ use tiny_skia::Pixmap;
 use super::camera::Camera;
 use super::color::{Color, channels};
 use super::raster::{Figures, LINE, draw_figures, samples};
-use super::{Picture, Png, blank};
+use super::scene_colors::{ColorScale, SceneColors};
+use super::{Picture, Png, beside_legend, blank};
 use crate::{Error, Output, StagedFiles};
 
 /// The front of surfaces: sand.
@@ -44,6 +45,8 @@ pub struct Scene {
     pub lines: Vec<Vec<u32>>,
     /// The number of each polyline's colour; all have the first where there are none.
     pub line_colors: Vec<i32>,
+    /// What is coloured by numbers.
+    pub colors: Option<SceneColors>,
 }
 
 /// How surfaces and curves are drawn.
@@ -89,26 +92,41 @@ impl ScenePicture {
 
     /// The bytes of a PNG file.
     pub(crate) fn png(self, scenes: &[Scene], made_by: &str) -> io::Result<Vec<u8>> {
-        let points = scenes.iter().flat_map(|scene| &scene.points);
-        let camera = Camera::of_points(points, samples(self.size));
-        let frames: Vec<Pixmap> =
-            scenes.iter().map(|scene| self.frame(scene, &camera)).collect::<io::Result<_>>()?;
+        let scale = ColorScale::new(scenes);
+        let legend = scale.as_ref().map(ColorScale::legend);
+        let frame = |scene| {
+            beside_legend(legend.as_ref(), self.size, false, |size| {
+                let points = scenes.iter().flat_map(|scene| &scene.points);
+                let camera = Camera::of_points(points, samples(size));
+                Self { size, ..self }.frame(scene, &camera, scale.as_ref())
+            })
+        };
+        let frames: Vec<Pixmap> = scenes.iter().map(frame).collect::<io::Result<_>>()?;
         encoded(frames, self.size, made_by).map_err(io::Error::other)
     }
 
-    fn frame(self, scene: &Scene, camera: &Camera) -> io::Result<Pixmap> {
+    fn frame(self, scene: &Scene, camera: &Camera, scale: Option<&ColorScale>) -> io::Result<Pixmap> {
         let mut pixmap = blank(self.size, false)?;
         let width = Picture { size: self.size, ..Picture::default() }.line_width();
         // Samples are three to a pixel.
         let half_width = 1.5 * width;
         let mut figures = Figures::default();
-        self.add_surface(scene, camera, half_width, &mut figures);
-        self.add_curves(scene, camera, half_width, &mut figures);
+        let painted =
+            |cell: usize, point: u32| Some(scale?.color(scene.colors.as_ref()?.numbers.at(cell, point)));
+        self.add_surface(scene, (camera, half_width), painted, &mut figures);
+        self.add_curves(scene, (camera, half_width), painted, &mut figures);
         draw_figures(&figures, &mut pixmap);
         Ok(pixmap)
     }
 
-    fn add_surface(self, scene: &Scene, camera: &Camera, half_width: f64, figures: &mut Figures) {
+    /// `painted` is the colour of a corner of a face, where numbers give it one.
+    fn add_surface(
+        self,
+        scene: &Scene,
+        (camera, half_width): (&Camera, f64),
+        painted: impl Fn(usize, u32) -> Option<Color>,
+        figures: &mut Figures,
+    ) {
         let places: Vec<DVec3> = scene.points.iter().map(|point| camera.project(*point)).collect();
         let (triangles, face_of) = scene.triangles();
         let normals: Vec<DVec3> = scene.faces.iter().map(|face| scene.area_vector(face)).collect();
@@ -126,9 +144,12 @@ impl ScenePicture {
                 };
                 camera.brightness(if is_front { normal } else { -normal })
             });
-            let color = if is_front { FRONT } else { BACK };
+            let side = if is_front { FRONT } else { BACK };
             let mut corners = triangle.map(|point| places[point as usize]);
-            let mut colors = brightness.map(|shade| color.map(|channel| channel * shade));
+            let mut colors = [0, 1, 2].map(|corner| {
+                let color = painted(face.index(), triangle[corner]).unwrap_or(side);
+                color.map(|channel| channel * brightness[corner])
+            });
             if !is_front {
                 corners.swap(1, 2);
                 colors.swap(1, 2);
@@ -141,14 +162,20 @@ impl ScenePicture {
         figures.lines.extend(lines);
     }
 
-    fn add_curves(self, scene: &Scene, camera: &Camera, half_width: f64, figures: &mut Figures) {
+    fn add_curves(
+        self,
+        scene: &Scene,
+        (camera, half_width): (&Camera, f64),
+        painted: impl Fn(usize, u32) -> Option<Color>,
+        figures: &mut Figures,
+    ) {
         for (number, line) in scene.lines.iter().enumerate() {
-            let color = scene.color(number);
             let places: Vec<DVec3> =
                 line.iter().map(|point| camera.project(scene.points[*point as usize])).collect();
-            figures
-                .lines
-                .extend(places.windows(2).map(|ends| ([ends[0], ends[1]], color, CURVE * half_width)));
+            for (ends, points) in places.windows(2).zip(line.windows(2)) {
+                let color = painted(number, points[0]).unwrap_or_else(|| scene.color(number));
+                figures.lines.push(([ends[0], ends[1]], color, CURVE * half_width));
+            }
             if self.shading == Shading::Flat {
                 figures.discs.extend(places.iter().map(|place| (*place, LINE, POINT * half_width)));
             }

@@ -56,6 +56,18 @@ impl DataArray {
         is_whole.then(|| Self { name: name.replace(char::is_whitespace, "_"), components, numbers })
     }
 
+    /// The numbers, where a tuple is a single one.
+    pub fn scalars(&self) -> Option<Vec<f64>> {
+        let numbers = match &self.numbers {
+            _ if self.components != 1 => return None,
+            DataNumbers::Int8(numbers) => numbers.iter().map(|number| f64::from(*number)).collect(),
+            DataNumbers::UInt8(numbers) => numbers.iter().map(|number| f64::from(*number)).collect(),
+            DataNumbers::Int32(numbers) => numbers.iter().map(|number| f64::from(*number)).collect(),
+            DataNumbers::Float64(numbers) => numbers.clone(),
+        };
+        Some(numbers)
+    }
+
     /// Number of tuples.
     pub fn len(&self) -> usize {
         self.numbers.len() / self.components

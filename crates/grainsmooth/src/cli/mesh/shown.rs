@@ -25,6 +25,14 @@ pub struct ShownArguments {
     #[arg(long, value_enum, default_value_t = ShadingName::Flat, requires = "picture")]
     shading: ShadingName,
 
+    /// Colour the picture by an array of the result, with a key on the right
+    ///
+    /// The array has one number for each point, face or polyline: Generation, or one that the input has and that is kept.
+    ///
+    /// Example: --picture smooth.png --color-by Generation
+    #[arg(long, value_name = "ARRAY", requires = "picture")]
+    color_by: Option<String>,
+
     /// Write a web page with a 3D view of the result, histograms and the figures of the run; it works offline
     #[arg(long, value_name = "PATH.html", value_parser = parse_html)]
     report: Option<PathBuf>,
@@ -50,6 +58,11 @@ impl ShownArguments {
             ShadingName::Smooth => Shading::Smooth,
         };
         Ok(Some((ScenePicture { size, shading }, Output::check_as(path, Png)?)))
+    }
+
+    /// The array that colours the picture.
+    pub fn color_by(&self) -> Option<&str> {
+        self.color_by.as_deref()
     }
 
     /// The report asked for, its path found writable.

@@ -27,7 +27,10 @@ impl Job<'_> {
         points.extend(of_surfaces);
         let faces = triangles.iter().map(|triangle| triangle.map(|id| first + id).to_vec()).collect();
         let scene = Scene { points: points.clone(), faces, lines: lines.clone(), ..Scene::default() };
-        let scenes = || Scenes { before: scene.clone(), levels: vec![scene.clone()] };
+        let scenes = || {
+            let shown = Scene { colors: self.colors(&[], &[])?, ..scene.clone() };
+            Ok(Scenes { before: scene.clone(), levels: vec![shown] })
+        };
         self.write(vec![output.path().to_owned()], scenes, |files| {
             if self.format == MeshFormat::Json {
                 return output.stage(files, |out| bezier_json(&file, samples, out));
@@ -64,7 +67,10 @@ impl Job<'_> {
         let mesh = MeshFile { points: merged.points, faces, ..MeshFile::default() };
         let connectivity = mesh.polygon_mesh().map_err(|error| self.located(error))?;
         let normals = connectivity.vertex_normals(&mesh.points);
-        let scenes = || Scenes { before: scene_of_file(&mesh), levels: vec![scene_of_file(&mesh)] };
+        let scenes = || {
+            let shown = Scene { colors: self.colors(&[], &surfaces)?, ..scene_of_file(&mesh) };
+            Ok(Scenes { before: scene_of_file(&mesh), levels: vec![shown] })
+        };
         self.write(vec![output.path().to_owned()], scenes, |files| {
             if self.format == MeshFormat::Json {
                 return output.stage(files, |out| mesh_json(&mesh, Some(&normals), out));
@@ -98,13 +104,16 @@ impl Job<'_> {
             line_colors: all.line_levels.clone(),
             ..Scene::default()
         };
-        let scenes = || Scenes { before: scene.clone(), levels: vec![scene.clone()] };
+        let level = |levels: &Vec<i32>| [DataArray::int32("Level", levels.clone())];
+        let (of_points, of_lines) = (level(&all.levels), level(&all.line_levels));
+        let scenes = || {
+            let shown = Scene { colors: self.colors(&of_points, &of_lines)?, ..scene.clone() };
+            Ok(Scenes { before: scene.clone(), levels: vec![shown] })
+        };
         self.write(vec![output.path().to_owned()], scenes, |files| {
             if self.format == MeshFormat::Json {
                 return output.stage(files, |out| construction_json(&file, t, v, out));
             }
-            let level = |levels: &Vec<i32>| [DataArray::int32("Level", levels.clone())];
-            let (of_points, of_lines) = (level(&all.levels), level(&all.line_levels));
             let content = self.content(&all.points, Cells::Polylines(&all.lines));
             let content = MeshToWrite { point_data: &of_points, cell_data: &of_lines, ..content };
             stage_mesh(&content, &output, files)

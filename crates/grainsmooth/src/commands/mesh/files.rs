@@ -5,11 +5,13 @@ use std::path::PathBuf;
 
 use glam::DVec3;
 use grainsmooth::mesh::CarriedData;
-use grainsmooth::mesh::file::{MeshFile, MeshFormat, MeshToWrite, read_mesh, read_polylines, stage_mesh};
-use grainsmooth::vtk::Cells;
+use grainsmooth::mesh::file::{
+    MeshFile, MeshFileProblem, MeshFormat, MeshToWrite, read_mesh, read_polylines, stage_mesh,
+};
+use grainsmooth::vtk::{Cells, DataArray};
 use grainsmooth::{
-    BezierFile, Connectivity, Error, Level, Output, Scene, StagedFiles, mesh_json, read_bezier,
-    write_together,
+    BezierFile, Connectivity, Error, Level, Output, Scene, SceneColors, SceneNumbers, StagedFiles, mesh_json,
+    read_bezier, write_together,
 };
 use subzero::INFINITE_SHARPNESS;
 
@@ -22,10 +24,10 @@ impl Job<'_> {
     pub(super) fn write(
         &self,
         written: Vec<PathBuf>,
-        scenes: impl FnOnce() -> Scenes,
+        scenes: impl FnOnce() -> Result<Scenes, Error>,
         stage: impl FnOnce(&mut StagedFiles) -> Result<(), Error>,
     ) -> Result<(), Error> {
-        let scenes = self.shown.is_any().then(scenes);
+        let scenes = self.shown.is_any().then(scenes).transpose()?;
         write_together(|files| {
             stage(files)?;
             match &scenes {
@@ -106,15 +108,15 @@ impl Job<'_> {
         files: &mut StagedFiles,
     ) -> Result<(), Error> {
         let polygons;
-        let (cells, arrays) = match &level.mesh {
-            Connectivity::Triangles(triangles) => (Cells::Triangles(triangles.triangles()), &mesh.face_data),
+        let cells = match &level.mesh {
+            Connectivity::Triangles(triangles) => Cells::Triangles(triangles.triangles()),
             Connectivity::Polygons(_) => {
                 polygons = level.mesh.faces();
-                (Cells::Polygons(&polygons[..]), &mesh.face_data)
+                Cells::Polygons(&polygons[..])
             }
-            Connectivity::Curves(curves) => (Cells::Polylines(&curves.lines[..]), &mesh.line_data),
+            Connectivity::Curves(curves) => Cells::Polylines(&curves.lines[..]),
         };
-        let data = CarriedData::new(mesh, level, arrays, shape_changes);
+        let data = carried(mesh, level, shape_changes);
         self.report_data(mesh, &data.names(normals.is_some()));
         let content = MeshToWrite {
             normals,
@@ -138,7 +140,11 @@ impl Job<'_> {
         let mut names = mesh.data_names();
         names.extend(normals.map(|_| "Normals".to_owned()));
         self.report_data(before, &names);
-        let scenes = || Scenes { before: scene_of_file(before), levels: vec![scene_of_file(mesh)] };
+        let scenes = || {
+            let colors = self.colors(&mesh.point_data, &mesh.face_data)?;
+            let scene = Scene { colors, ..scene_of_file(mesh) };
+            Ok(Scenes { before: scene_of_file(before), levels: vec![scene] })
+        };
         self.write(vec![output.path().to_owned()], scenes, |files| {
             if self.format == MeshFormat::Json {
                 return output.stage(files, |out| mesh_json(mesh, normals, out));
@@ -159,6 +165,38 @@ impl Job<'_> {
             };
             stage_mesh(&content, output, files)
         })
+    }
+
+    /// What a level of a file looks like.
+    pub(super) fn scene_of_level(
+        &self,
+        mesh: &MeshFile,
+        level: &Level,
+        shape_changes: bool,
+    ) -> Result<Scene, Error> {
+        let CarriedData { mut of_points, of_cells, .. } = carried(mesh, level, shape_changes);
+        of_points.extend(level.generation_array());
+        Ok(Scene { colors: self.colors(&of_points, &of_cells)?, ..scene_of_level(level) })
+    }
+
+    /// What colours a picture, of the arrays of what is shown.
+    pub(super) fn colors(
+        &self,
+        of_points: &[DataArray],
+        of_cells: &[DataArray],
+    ) -> Result<Option<SceneColors>, Error> {
+        let Some(name) = self.files.shown.color_by() else { return Ok(None) };
+        let find = |arrays: &[DataArray]| arrays.iter().find(|array| array.name == name)?.scalars();
+        let numbers = find(of_cells).map(SceneNumbers::OfCells);
+        let numbers = numbers.or_else(|| find(of_points).map(SceneNumbers::OfPoints));
+        match numbers {
+            Some(numbers) => Ok(Some(SceneColors { name: name.to_owned(), numbers })),
+            None => {
+                let with_one = of_points.iter().chain(of_cells).filter(|array| array.components == 1);
+                let known = with_one.map(|array| array.name.clone()).collect();
+                Err(self.located(MeshFileProblem::NoArray { name: name.to_owned(), known }))
+            }
+        }
     }
 
     /// Says once which arrays of a file are in what was made of it, and which are not, and why.
@@ -190,6 +228,15 @@ impl Job<'_> {
         let encoding = self.files.vtk.vtk_encoding;
         MeshToWrite { encoding, ..MeshToWrite::new(points, cells, &self.command_line) }
     }
+}
+
+/// What keeps a meaning of a file's arrays on a level.
+fn carried(mesh: &MeshFile, level: &Level, shape_changes: bool) -> CarriedData {
+    let arrays = match &level.mesh {
+        Connectivity::Triangles(_) | Connectivity::Polygons(_) => &mesh.face_data,
+        Connectivity::Curves(_) => &mesh.line_data,
+    };
+    CarriedData::new(mesh, level, arrays, shape_changes)
 }
 
 /// The faces of a file, or its polylines.
