@@ -180,7 +180,7 @@ fn arrays_colour_pictures_and_have_a_key() {
     let faces = "POLYGONS 6 30\n4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
     let points = "POINTS 8 double\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n";
     let head = "# vtk DataFile Version 3.0\ncube\nASCII\nDATASET POLYDATA\n";
-    workplace.put("high.vtk", &format!("{head}{points}{faces}{table}"));
+    workplace.put("high.vtk", format!("{head}{points}{faces}{table}"));
     workplace.run("mesh catmull-clark high.vtk -n 1 -o out.vtp --picture high.png --picture-size 240 180 --color-by Height");
     let (high, _) = frames(&workplace, "high.png");
     let ends = [[68, 2, 86], [249, 230, 34]];

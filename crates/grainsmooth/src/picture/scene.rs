@@ -92,7 +92,7 @@ impl ScenePicture {
 
     /// The bytes of a PNG file.
     pub(crate) fn png(self, scenes: &[Scene], made_by: &str) -> io::Result<Vec<u8>> {
-        let scale = ColorScale::new(scenes);
+        let scale = ColorScale::new(scenes.iter().filter_map(|scene| scene.colors.as_ref()));
         let legend = scale.as_ref().map(ColorScale::legend);
         let frame = |scene| {
             beside_legend(legend.as_ref(), self.size, false, |size| {

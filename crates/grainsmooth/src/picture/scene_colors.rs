@@ -2,7 +2,6 @@
 
 use colorous::VIRIDIS;
 
-use super::Scene;
 use super::color::{Color, channels, kind};
 use super::legend::Legend;
 use crate::figures::significant::significant;
@@ -41,11 +40,11 @@ pub(super) enum ColorScale {
 }
 
 impl ColorScale {
-    /// One for all scenes; nothing where they have no numbers.
-    pub(super) fn new(scenes: &[Scene]) -> Option<Self> {
-        let name = scenes.iter().find_map(|scene| Some(scene.colors.as_ref()?.name.clone()))?;
-        let all = scenes.iter().filter_map(|scene| scene.colors.as_ref());
-        let mut numbers: Vec<f64> = all.flat_map(|colors| colors.numbers.all()).copied().collect();
+    /// One for the numbers of all scenes; nothing where there are none.
+    pub(super) fn new<'a>(mut all: impl Iterator<Item = &'a SceneColors> + Clone) -> Option<Self> {
+        let numbers = all.clone().flat_map(|colors| colors.numbers.all());
+        let mut numbers: Vec<f64> = numbers.copied().collect();
+        let name = all.next()?.name.clone();
         numbers.retain(|number| number.is_finite());
         numbers.sort_by(f64::total_cmp);
         numbers.dedup();
@@ -104,14 +103,17 @@ impl SceneNumbers {
 mod tests {
     use super::*;
 
-    fn scene(numbers: &[f64]) -> Scene {
-        let numbers = SceneNumbers::OfCells(numbers.to_vec());
-        Scene { colors: Some(SceneColors { name: "Height".to_owned(), numbers }), ..Scene::default() }
+    fn scale_of(numbers: &[&[f64]]) -> Option<ColorScale> {
+        let colors = numbers.iter().map(|numbers| SceneColors {
+            name: "Height".to_owned(),
+            numbers: SceneNumbers::OfCells(numbers.to_vec()),
+        });
+        ColorScale::new(colors.collect::<Vec<_>>().iter())
     }
 
     #[test]
     fn few_whole_numbers_are_kinds() {
-        let scale = ColorScale::new(&[scene(&[3.0, 1.0]), scene(&[f64::NAN, -1.0])]).unwrap();
+        let scale = scale_of(&[&[3.0, 1.0], &[f64::NAN, -1.0]]).unwrap();
         assert_eq!([-1.0, 1.0, 3.0].map(|number| scale.color(number)), [0, 1, 2].map(kind));
         assert_eq!(scale.color(f64::NAN), NO_NUMBER);
         let Legend::Names(names) = scale.legend() else { panic!("a bar") };
@@ -121,13 +123,13 @@ mod tests {
     #[test]
     fn many_numbers_have_a_range_and_none_have_a_key() {
         let numbers: Vec<f64> = (0..20).map(|number| 0.5 * f64::from(number)).collect();
-        let scale = ColorScale::new(&[scene(&numbers)]).unwrap();
+        let scale = scale_of(&[&numbers]).unwrap();
         assert_eq!(scale.color(9.5), channels(VIRIDIS.eval_continuous(1.0)));
         let bar = Legend::Bar { title: "Height".to_owned(), ends: ["0".to_owned(), "9.5".to_owned()] };
         assert_eq!(scale.legend(), bar);
-        assert_eq!(ColorScale::new(&[Scene::default()]), None);
+        assert_eq!(scale_of(&[]), None);
         // One number alone has no range.
-        let one = ColorScale::new(&[scene(&[0.25, f64::INFINITY])]).unwrap();
+        let one = scale_of(&[&[0.25, f64::INFINITY]]).unwrap();
         assert_eq!(one.color(0.25), kind(0));
     }
 }
