@@ -7,8 +7,8 @@ use glam::DVec3;
 use grainsmooth::cli::Arguments;
 use grainsmooth::texture::SymmetryError;
 use grainsmooth::{
-    Error, FileOptions, LabelMap, MapOptions, MapRun, MeasuredMap, OrientationMap, Stage, read_map,
-    smooth_map,
+    Error, FileOptions, LabelMap, MapNetworkOptions, MapOptions, MapRun, MeasuredMap, OrientationMap, Stage,
+    read_map, smooth_map,
 };
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -39,7 +39,7 @@ pub fn of_map(
         let start = Instant::now();
         let measured = read_map(&path, &arguments.options)?;
         let call = format!("grainsmooth.Polycrystal.from_map({:?})", path.display().to_string());
-        let run_of = run_of(call, arguments.options.shortest_edge(measured.map.is_plane()), start.elapsed());
+        let run_of = run_of(call, arguments.network.shortest_edge(measured.map.is_plane()), start.elapsed());
         smooth_map(&path, &measured, run_of, tell).map(Polycrystal::new)
     })
 }
@@ -61,10 +61,10 @@ pub fn of_labels(
 ) -> PyResult<Polycrystal> {
     let labels = list(LABELS, &labels)?;
     let map = LabelMap { shape, spacing: DVec3::from(spacing), origin: DVec3::from(origin), labels };
-    let options = MapOptions { exterior_label, min_voxels, decimate, ..MapOptions::default() };
+    let options = MapOptions { exterior_label, min_voxels, ..MapOptions::default() };
     let measured =
         MeasuredMap::of_labels(map, &options).map_err(|error| invalid(format!("{LABELS}: {error}")))?;
-    let shortest_edge = options.shortest_edge(measured.map.is_plane());
+    let shortest_edge = MapNetworkOptions { decimate }.shortest_edge(measured.map.is_plane());
     let run_of = run_of("grainsmooth.Polycrystal.from_labels".to_owned(), shortest_edge, Duration::ZERO);
     run(py, threads, progress, move |tell| {
         smooth_map(Path::new(LABELS), &measured, run_of, tell).map(Polycrystal::new)
@@ -94,7 +94,7 @@ pub fn of_orientations(
     };
     let path = Path::new(ORIENTATIONS);
     let arguments = Arguments::of_smooth(path, &given(options)?).map_err(to_python)?;
-    let shortest_edge = arguments.options.shortest_edge(true);
+    let shortest_edge = arguments.network.shortest_edge(true);
     let run_of =
         run_of("grainsmooth.Polycrystal.from_orientations".to_owned(), shortest_edge, Duration::ZERO);
     run(py, threads, progress, move |tell| {

@@ -9,14 +9,14 @@ use crate::surface_file::SurfaceFile;
 use crate::workplace::{FAILED, Workplace};
 
 /// A small network as a legacy file in text: a unit cube of two grains, walls at x = 0, 1/2, 1.
-struct Cubes {
+pub struct Cubes {
     points: Vec<[f64; 3]>,
     /// Corners, then labels.
     triangles: Vec<([usize; 3], [i32; 2])>,
 }
 
 impl Cubes {
-    fn new() -> Self {
+    pub fn new() -> Self {
         let points =
             (0..12).map(|i: u8| [f64::from(i / 4) / 2.0, f64::from(i / 2 % 2), f64::from(i % 2)]).collect();
         let mut triangles = Vec::new();
@@ -39,7 +39,7 @@ impl Cubes {
     }
 
     /// The file, with what DREAM.3D or VTK call the labels.
-    fn file(&self, array: &str) -> String {
+    pub fn file(&self, array: &str) -> String {
         let mut text = format!(
             "# vtk DataFile Version 3.0\ncubes\nASCII\nDATASET POLYDATA\nPOINTS {} double\n",
             self.points.len()

@@ -14,6 +14,7 @@ mod front;
 mod good_runs;
 mod grain_shapes;
 mod inside;
+mod map_agreement;
 mod maps;
 mod measure;
 mod orientation_maps;

@@ -37,7 +37,7 @@ fn workplace() -> Workplace {
 }
 
 /// An array of whole numbers as NumPy writes it, the last index fastest.
-fn npy(shape: &[usize], labels: &[u8]) -> Vec<u8> {
+pub fn npy(shape: &[usize], labels: &[u8]) -> Vec<u8> {
     let shape: String = shape.iter().map(|count| format!("{count}, ")).collect();
     let mut header = format!("{{'descr': '|u1', 'fortran_order': False, 'shape': ({shape}), }}");
     header.extend(std::iter::repeat_n(' ', 117 - header.len()));
@@ -86,6 +86,27 @@ fn voxels_of_the_network_are_those_of_the_map() {
     workplace.run("smooth a.vti --decimate 0 -o b.vtp");
     let [first, second] = ["a.vtp", "b.vtp"].map(|name| SurfaceFile::read(&workplace.path(name)));
     assert!((first.points, first.cells) == (second.points, second.cells));
+}
+
+#[test]
+fn voxels_of_a_pore_are_in_no_grain() {
+    let workplace = workplace();
+    workplace.run("smooth volume_damask.vti --exterior-label 0 --decimate 0 --voxels 24 20 16 -o a.npy");
+    let made = workplace.bytes("a.npy")[128..].to_vec();
+    let (made, _) = made.as_chunks();
+    let mut counts = BTreeMap::new();
+    made[..7680].iter().for_each(|label| *counts.entry(i32::from_le_bytes(*label)).or_insert(0.0) += 1.0);
+    assert_eq!(counts.into_values().collect::<Vec<_>>(), COUNTS);
+}
+
+#[test]
+fn the_surface_of_a_pore_is_named_as_the_outer_one() {
+    let workplace = workplace();
+    workplace.run("smooth volume_damask.vti --exterior-label 0 --names dream3d -o a.vtp");
+    let file = SurfaceFile::read(&workplace.path("a.vtp"));
+    // Those of DREAM.3D put the exterior first.
+    assert!(file.face_labels.iter().any(|[first, _]| *first == -1));
+    assert!(file.face_labels.iter().all(|[_, second]| *second > 0));
 }
 
 #[test]

@@ -52,7 +52,9 @@ pub use subzero;
 pub use texture;
 pub use voronoi;
 
-pub use check::report::{CheckReport, Expectation, ReportedFault, SizesFound, Statistic};
+pub use check::report::{
+    CheckReport, Expectation, GrainAgreement, MapAgreement, ReportedFault, SizesFound, Statistic,
+};
 pub use config::check::ConfigError;
 pub use config::elements::ElementOptions;
 pub use config::files::{FileOptions, StlEncoding};
@@ -108,6 +110,7 @@ pub use input::tess::{
 pub use input::texture_file::{OrientationList, read_disorientation_file, read_texture_file};
 pub use maps::ebsd_options::{AxisAngle, EbsdOptions};
 pub use maps::label_map::{LabelMap, MeasuredCrystals, MeasuredMap, PointCounts};
+pub use maps::network_options::MapNetworkOptions;
 pub use maps::options::{Axes, Crop, MapOptions};
 pub use maps::orientations::OrientationMap;
 pub use maps::read::read_map;

@@ -7,6 +7,7 @@ mod hdf5;
 pub(crate) mod label_map;
 mod mhd;
 mod neighbors;
+pub(crate) mod network_options;
 mod npy;
 mod npz;
 mod nrrd;

@@ -59,10 +59,10 @@ pub use growth::grow_cells_tuned;
 pub use growth::tuning::GrowthTuning;
 pub use growth::{GrownCells, GrowthRecipe, Vanished, grow_cells};
 pub use measures::{
-    BoundaryMeasures, GrainMeasures, HerringResidual, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures,
-    PlaneMeasures, PointCurvature, QuadruplePointMeasures, SpaceMeasures, TripleLineMeasures,
-    TriplePointMeasures, angles_between_boundaries, dihedral_angles, herring_residual, measure,
-    measure_network, point_curvatures, point_dihedral_angles,
+    BoundaryDistances, BoundaryMeasures, GrainMeasures, HerringResidual, Measures, PlaneBoundaryMeasures,
+    PlaneGrainMeasures, PlaneMeasures, PointCurvature, QuadruplePointMeasures, SpaceMeasures,
+    TripleLineMeasures, TriplePointMeasures, angles_between_boundaries, dihedral_angles, herring_residual,
+    measure, measure_network, point_curvatures, point_dihedral_angles,
 };
 pub use mesh::angles::{AngleStatistics, WeightedAngle};
 pub use mesh::boundary::{Boundary, BoundaryId, GrainId, Side, Twin};

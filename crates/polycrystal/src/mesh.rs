@@ -10,6 +10,7 @@ pub(crate) mod elements;
 pub(crate) mod grouped;
 pub(crate) mod id;
 pub(crate) mod level;
+pub(crate) mod nearest_point;
 pub(crate) mod node_type;
 pub(crate) mod periodic;
 pub(crate) mod quadratic_triangle;

@@ -1,19 +1,21 @@
 //! What `grainsmooth check` says about a network from a file.
 
+mod agreement;
 mod sizes;
 mod statistics;
 
 use std::fmt;
 use std::path::Path;
 
-use polycrystal::{Elements, Fault, Side, certify};
+use polycrystal::{Certificate, Elements, Fault, Side, certify};
 use serde::Serialize;
 use voronoi::Dimension;
 
 use crate::figures::spread::Spread;
-use crate::{LabelledFile, TriangleAngles};
+use crate::{LabelledFile, MapProblem, MeasuredMap, TriangleAngles};
 use statistics::statistics;
 
+pub use agreement::{GrainAgreement, MapAgreement};
 pub use sizes::SizesFound;
 pub use statistics::{Expectation, Statistic};
 
@@ -51,6 +53,8 @@ pub struct CheckReport {
     pub statistics: Vec<Statistic>,
     /// How near the grains are to the sizes that the file's settings ask for.
     pub sizes: Option<SizesFound>,
+    /// How the network agrees with a map, where it is compared with one.
+    pub map: Option<MapAgreement>,
     /// All that is wrong.
     pub faults: Vec<ReportedFault>,
 }
@@ -75,9 +79,23 @@ pub struct ReportedFault {
 impl CheckReport {
     /// Examines a network.
     pub fn new(path: &Path, file: &LabelledFile) -> Self {
+        Self::of_certificate(path, file, &certify(&file.surface(), &file.expected()))
+    }
+
+    /// Examines a network, and compares it with the map that it should show.
+    ///
+    /// # Errors
+    /// As of [`MapAgreement::new`].
+    pub fn beside_map(path: &Path, file: &LabelledFile, map: &MeasuredMap) -> Result<Self, MapProblem> {
+        let certificate = certify(&file.surface(), &file.expected());
+        let report = Self::of_certificate(path, file, &certificate);
+        let agreement = MapAgreement::new(&report.file, file, &certificate.grain_volumes, map)?;
+        Ok(Self { map: Some(agreement), ..report })
+    }
+
+    fn of_certificate(path: &Path, file: &LabelledFile, certificate: &Certificate) -> Self {
         let surface = file.surface();
         let expected = file.expected();
-        let certificate = certify(&surface, &expected);
         let report = |fault: &Fault| ReportedFault {
             kind: fault.kind(),
             message: in_words(fault),
@@ -110,8 +128,9 @@ impl CheckReport {
                 .angles
                 .map(|angles| Spread { mean: angles.mean, standard_deviation: angles.standard_deviation }),
             triangle_angles: certificate.triangles.map(TriangleAngles::from),
-            statistics: statistics(file, &surface, &certificate),
+            statistics: statistics(file, &surface, certificate),
             sizes: file.settings.as_ref().and_then(|settings| sizes::sizes(settings, &volumes, dimension)),
+            map: None,
             faults: certificate.faults.0.iter().map(report).collect(),
         }
     }
@@ -160,6 +179,9 @@ impl fmt::Display for CheckReport {
             if let Some(Expectation { exact, standard_error }) = poisson_voronoi {
                 write!(out, "; so many Poisson-Voronoi cells have {exact} +- {standard_error:.4}")?;
             }
+        }
+        if let Some(map) = &self.map {
+            write!(out, "\n{map}")?;
         }
         for faults in self.faults.chunk_by(|a, b| a.kind == b.kind) {
             for fault in faults.iter().take(NAMED) {

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Arg, Args};
+
+use crate::MapOptions;
 
 /// Check grain networks: grains closed, orientation consistent, no folds, crossings or duplicate points
 ///
@@ -10,6 +12,7 @@ use clap::Args;
 /// BoundaryLabels of .vtp, .vtu and .vtk files, whichever program wrote them.
 #[derive(Debug, Args)]
 #[command(
+    mut_args = of_map,
     after_help = "Exit status: 0 all good, 1 something is wrong or unreadable, 2 a mistake on the command line."
 )]
 pub struct CheckArguments {
@@ -20,4 +23,19 @@ pub struct CheckArguments {
     /// Report as JSON: {"files": [...]}
     #[arg(long)]
     pub json: bool,
+
+    /// Map of labels or orientations to compare with, as for `grainsmooth smooth`: reports the voxels that lie in another grain, volumes and distances
+    ///
+    /// Example: grainsmooth check grains.vtp --labels map.vti --exterior-label 0
+    #[arg(long, value_name = "MAP")]
+    pub labels: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub options: MapOptions,
+}
+
+/// Options of a map need one.
+fn of_map(argument: Arg) -> Arg {
+    let is_of_map = argument.get_help_heading().is_some_and(|heading| heading.starts_with("Map"));
+    if is_of_map { argument.requires("labels") } else { argument }
 }

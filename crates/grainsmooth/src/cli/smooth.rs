@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::MapOptions;
+use crate::{MapNetworkOptions, MapOptions};
 use clap::Args;
 
 use super::files::OutputArguments;
@@ -23,6 +23,9 @@ pub struct SmoothArguments {
 
     #[command(flatten)]
     pub options: MapOptions,
+
+    #[command(flatten)]
+    pub network: MapNetworkOptions,
 
     #[command(flatten)]
     pub outputs: OutputArguments,

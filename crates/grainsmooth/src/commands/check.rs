@@ -1,9 +1,10 @@
 //! `grainsmooth check`: certifies networks from files.
 
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
-use grainsmooth::{CheckReport, LabelledFile};
+use grainsmooth::{CheckReport, Error, LabelledFile, MeasuredMap, read_map};
 use serde::Serialize;
 
 use crate::say;
@@ -16,11 +17,13 @@ struct Reports {
 
 /// Checks all files and reports on standard output; what cannot be read is told on standard error.
 pub fn run(arguments: &CheckArguments) -> anyhow::Result<ExitCode> {
+    let map = arguments.labels.as_deref();
+    let map = map.map(|path| read_map(path, &arguments.options).map(|map| (path, map))).transpose()?;
     let mut good = true;
     let mut reports = Reports { files: Vec::new() };
     for path in &arguments.files {
-        match LabelledFile::read(path) {
-            Ok(file) => reports.files.push(CheckReport::new(path, &file)),
+        match report(path, map.as_ref()) {
+            Ok(report) => reports.files.push(report),
             Err(error) => {
                 good = false;
                 say(&format!("error: {error}"));
@@ -38,4 +41,12 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<ExitCode> {
         }
     }
     Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// What there is to say of a network, beside a map with its path.
+fn report(path: &Path, map: Option<&(&Path, MeasuredMap)>) -> Result<CheckReport, Error> {
+    let file = LabelledFile::read(path)?;
+    let Some((map_path, map)) = map else { return Ok(CheckReport::new(path, &file)) };
+    CheckReport::beside_map(path, &file, map)
+        .map_err(|problem| Error::MapFile { path: map_path.to_path_buf(), problem })
 }

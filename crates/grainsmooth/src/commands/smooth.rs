@@ -28,7 +28,7 @@ pub fn run(arguments: &SmoothArguments) -> anyhow::Result<ExitCode> {
 
 /// Returns the summary.
 fn smooth(arguments: &SmoothArguments, line: &ProgressLine) -> Result<String, Error> {
-    let SmoothArguments { map: path, options, outputs, pictures, shared } = arguments;
+    let SmoothArguments { map: path, options, network, outputs, pictures, shared } = arguments;
     let start = Instant::now();
     line.show(Stage::Map, 0, 1);
     let measured = read_map(path, options)?;
@@ -50,7 +50,7 @@ fn smooth(arguments: &SmoothArguments, line: &ProgressLine) -> Result<String, Er
     };
     let files = ResultFiles::check(outputs, pictures, shared, &to_write, true)?;
     check_all_differ(files.targets())?;
-    let shortest_edge = options.shortest_edge(measured.map.is_plane());
+    let shortest_edge = network.shortest_edge(measured.map.is_plane());
     let run = MapRun { command_line: command_line(), file, shortest_edge, read_in };
     let mut polycrystal =
         smooth_map(path, &measured, run, &|stage, done, count| line.show(stage, done, count))?;

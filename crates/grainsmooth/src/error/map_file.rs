@@ -157,6 +157,18 @@ pub enum MapProblem {
         /// The first one behind.
         end: usize,
     },
+    /// A network is elsewhere than the map that it is compared with.
+    #[error(
+        "its grains fill {place}, those of {network} {other}; give --spacing, --crop or --exterior-label so that they agree"
+    )]
+    Elsewhere {
+        /// Where the grains of the map are.
+        place: String,
+        /// The file of the network.
+        network: String,
+        /// Where its grains are.
+        other: String,
+    },
     /// No grain is left.
     #[error(
         "has no grain of {least} or more voxels besides the exterior; lower --min-voxels, or correct --exterior-label"

@@ -1,6 +1,6 @@
 //! The grain at the centre of every voxel of a regular grid.
 //!
-//! Exact on the smoothed network: rows of voxels along x are followed through the boundaries that they cross, and every
+//! Exact on the smoothed network, or on any other surface of closed grains: rows of voxels along x are followed through the boundaries that they cross, and every
 //! decision, whether a row meets a triangle and on which side of it a centre lies, is made by Shewchuk's adaptive predicates.
 //! Where a row meets an edge or a point, it counts as moved by an infinitesimal in y and a yet smaller one in z; a centre on a
 //! boundary counts as moved in +x. So every centre belongs to exactly one grain. The whole grains of a periodic domain are
@@ -10,7 +10,7 @@ use std::num::NonZeroU32;
 use std::ops::Range;
 
 use glam::DVec3;
-use polycrystal::{Boundary, GrainId, Side};
+use polycrystal::{Boundary, BoundaryId, Elements, GrainId, Side, Surface};
 use rayon::prelude::*;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 use voronoi::{Dimension, Domain};
@@ -29,13 +29,30 @@ pub struct LabelGrid<'a> {
     pub origin: DVec3,
     /// Side lengths of a voxel; along z that along x in 2D.
     pub spacing: DVec3,
-    polycrystal: &'a Polycrystal,
+    cut: Cut<'a>,
     /// Rows that are labelled at the same time, at least one.
     slab_rows: usize,
     centers: Centers,
     images: Vec<DVec3>,
-    /// The boundaries' elements that rows cross, by first slice.
-    elements: Vec<Element>,
+    /// The elements that rows cross, by first slice.
+    crossed: Vec<Element>,
+}
+
+/// The surface of grains that rows cross.
+struct Cut<'a> {
+    points: &'a [DVec3],
+    elements: Elements<'a>,
+    boundary_of: &'a [BoundaryId],
+    sides: Vec<[Side; 2]>,
+    /// Whether there is a grain everywhere in the box.
+    is_full: bool,
+}
+
+impl Cut<'_> {
+    fn surface(&self) -> Surface<'_> {
+        let Self { points, elements, boundary_of, sides, .. } = self;
+        Surface { points, elements: *elements, boundary_of, sides }
+    }
 }
 
 /// A triangle or segment in one of its images, and the slices of constant z that may cross it.
@@ -68,7 +85,33 @@ struct Crossing {
 impl<'a> LabelGrid<'a> {
     /// A grid of `size` voxels; in 2D the third number is not used.
     pub fn new(polycrystal: &'a Polycrystal, size: [NonZeroU32; 3]) -> Self {
-        let domain = polycrystal.network.domain();
+        let network = &polycrystal.network;
+        let is_open = |boundary: &Boundary| {
+            !boundary.is_interior() && boundary.wall.is_none() && boundary.twin.is_none()
+        };
+        let is_full = network.domain().is_box() && !network.boundaries().iter().any(is_open);
+        let level = network.finest();
+        let cut = Cut {
+            points: &polycrystal.points,
+            elements: level.elements(),
+            boundary_of: level.labels(),
+            sides: network.sides(),
+            is_full,
+        };
+        Self::of_cut(network.domain(), cut, size)
+    }
+
+    /// A grid of `size` voxels in a box around closed grains, which may leave parts of it empty; in 2D the third number is not used.
+    pub fn of_surface(domain: &Domain, surface: &Surface<'a>, size: [NonZeroU32; 3]) -> Self {
+        let Surface { points, elements, boundary_of, sides } = *surface;
+        Self::of_cut(
+            domain,
+            Cut { points, elements, boundary_of, sides: sides.to_vec(), is_full: false },
+            size,
+        )
+    }
+
+    fn of_cut(domain: &Domain, cut: Cut<'a>, size: [NonZeroU32; 3]) -> Self {
         let mut size = size.map(|count| count.get() as usize);
         if domain.dimension() == Dimension::Two {
             size[2] = 1;
@@ -80,9 +123,9 @@ impl<'a> LabelGrid<'a> {
         }
         let centers = Centers { domain: domain.clone(), size };
         let images = images(domain);
-        let elements = elements(polycrystal, &centers, &images);
+        let crossed = crossed(&cut.surface(), &centers, &images);
         let slab_rows = (SLAB_VOXELS / (size[0] + VOXELS_OF_ROW)).max(1);
-        Self { size, origin: domain.lower(), spacing, polycrystal, slab_rows, centers, images, elements }
+        Self { size, origin: domain.lower(), spacing, cut, slab_rows, centers, images, crossed }
     }
 
     /// Number of voxels.
@@ -129,12 +172,11 @@ impl<'a> LabelGrid<'a> {
         let mut crossings = self.crossings(&slab);
         crossings.par_sort_unstable();
         let nx = self.size[0];
-        let fills_box = self.polycrystal.network.domain().is_box();
         let mut labels = vec![Side::Exterior; slab.slices.len() * slab.rows.len() * nx];
         (0u32..).zip(labels.chunks_mut(nx)).collect::<Vec<_>>().into_par_iter().for_each(|(row, labels)| {
             let start = crossings.partition_point(|crossing| crossing.row < row);
             let count = crossings[start..].partition_point(|crossing| crossing.row == row);
-            fill_row(&crossings[start..start + count], fills_box, labels);
+            fill_row(&crossings[start..start + count], self.cut.is_full, labels);
         });
         labels
     }
@@ -163,23 +205,22 @@ impl<'a> LabelGrid<'a> {
 
     /// All crossings of a slab's rows with boundaries.
     fn crossings(&self, slab: &Slab) -> Vec<Crossing> {
-        let (network, points) = (&self.polycrystal.network, &self.polycrystal.points);
-        let level = network.finest();
-        let candidates = &self.elements
-            [..self.elements.partition_point(|element| (element.start as usize) < slab.slices.end)];
+        let surface = self.cut.surface();
+        let candidates = &self.crossed
+            [..self.crossed.partition_point(|element| (element.start as usize) < slab.slices.end)];
         let candidates = candidates.par_iter().filter(|element| (element.end as usize) > slab.slices.start);
         let of_element = |element: &Element| {
-            let boundary = &network.boundaries()[level.boundary(element.id).index()];
-            let at = |point: u32| points[point as usize] + self.images[element.image as usize];
-            let corners = level.elements().corners(element.id);
+            let sides = surface.sides_of(element.id);
+            let at = |point: u32| surface.points[point as usize] + self.images[element.image as usize];
+            let corners = surface.elements.corners(element.id);
             match *corners {
-                [a, b] => segment_crossings(&self.centers, slab, [a, b].map(at), boundary),
+                [a, b] => segment_crossings(&self.centers, slab, [a, b].map(at), sides),
                 _ => {
                     let corners = [0, 1, 2].map(|k| at(corners[k]));
                     let slices = slab.slices.start.max(element.start as usize)
                         ..slab.slices.end.min(element.end as usize);
                     slices
-                        .flat_map(|slice| triangle_crossings(&self.centers, slab, slice, corners, boundary))
+                        .flat_map(|slice| triangle_crossings(&self.centers, slab, slice, corners, sides))
                         .collect()
                 }
             }
@@ -189,15 +230,14 @@ impl<'a> LabelGrid<'a> {
 }
 
 /// All elements in all images that a slice may cross, by first slice.
-fn elements(polycrystal: &Polycrystal, centers: &Centers, images: &[DVec3]) -> Vec<Element> {
-    let level = polycrystal.network.finest();
-    let elements = level.elements();
-    let count = u32::try_from(level.element_count()).expect("ids of elements fit 32 bits");
+fn crossed(surface: &Surface<'_>, centers: &Centers, images: &[DVec3]) -> Vec<Element> {
+    let elements = surface.elements;
+    let count = u32::try_from(elements.len()).expect("ids of elements fit 32 bits");
     let last = [0, 1].map(|axis| centers.coordinate(axis, centers.size[axis] - 1));
     let of_image = |(image, offset): (u32, &DVec3)| {
         let found = (0..count).into_par_iter().filter_map(move |id| {
             let corners = elements.corners(id);
-            let corners = corners.iter().map(|corner| polycrystal.points[*corner as usize] + *offset);
+            let corners = corners.iter().map(|corner| surface.points[*corner as usize] + *offset);
             let bounds =
                 |(lower, upper): (DVec3, DVec3), corner: DVec3| (lower.min(corner), upper.max(corner));
             let (lower, upper) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), bounds);
@@ -274,7 +314,7 @@ fn triangle_crossings(
     slab: &Slab,
     slice: usize,
     corners: [DVec3; 3],
-    boundary: &Boundary,
+    sides: [Side; 2],
 ) -> Vec<Crossing> {
     let z = centers.coordinate(2, slice);
     let [a, b, c] = corners.map(|corner| Coord { x: corner.y, y: corner.z });
@@ -302,7 +342,7 @@ fn triangle_crossings(
         };
         let range = centers.first_at(0, x0.min(x1).min(x2))..centers.first_at(0, x0.max(x1).max(x2));
         let row = (slice - slab.slices.start) * slab.rows.len() + row - slab.rows.start;
-        crossing(centers, row, range, is_beyond, boundary, area > 0.0)
+        crossing(centers, row, range, is_beyond, sides, area > 0.0)
     })
     .collect()
 }
@@ -312,7 +352,7 @@ fn segment_crossings(
     centers: &Centers,
     slab: &Slab,
     [start, end]: [DVec3; 2],
-    boundary: &Boundary,
+    sides: [Side; 2],
 ) -> Vec<Crossing> {
     let [a, b] = [start, end].map(|end| Coord { x: end.x, y: end.y });
     // A row on a point counts as moved in +y, so it is not on the lower end of a segment that begins there.
@@ -327,7 +367,7 @@ fn segment_crossings(
                 if upward { left <= 0.0 } else { left >= 0.0 }
             };
             let range = centers.first_at(0, start.x.min(end.x))..centers.first_at(0, start.x.max(end.x));
-            crossing(centers, row - slab.rows.start, range, is_beyond, boundary, upward)
+            crossing(centers, row - slab.rows.start, range, is_beyond, sides, upward)
         })
         .collect()
 }
@@ -339,7 +379,7 @@ fn crossing(
     row: usize,
     range: Range<usize>,
     is_beyond: impl Fn(usize) -> bool,
-    boundary: &Boundary,
+    sides: [Side; 2],
     is_forward: bool,
 ) -> Crossing {
     // The centre at the end of the range may lie exactly on the element's last corner.
@@ -348,7 +388,7 @@ fn crossing(
     while voxel < end && !is_beyond(voxel) {
         voxel += 1;
     }
-    let [first, second] = boundary.sides;
+    let [first, second] = sides;
     let (left, entered) = if is_forward { (first, second) } else { (second, first) };
     Crossing { row: index(row), voxel: index(voxel), left, entered }
 }
@@ -366,8 +406,8 @@ fn is_left(from: Coord<f64>, to: Coord<f64>, row: Coord<f64>) -> bool {
 }
 
 /// The labels of a row. Between two centres it may cross several boundaries, in an order that does not matter: it is
-/// in the grain that it has entered once more than it has left, or in none where the domain does not fill its box.
-fn fill_row(crossings: &[Crossing], fills_box: bool, labels: &mut [Side]) {
+/// in the grain that it has entered once more than it has left, or in none where grains do not fill the box.
+fn fill_row(crossings: &[Crossing], is_full: bool, labels: &mut [Side]) {
     let mut crossings = crossings.iter().peekable();
     // Grains that the row is in, and how often: more than one only where images of grains round differently.
     let mut counts: Vec<(GrainId, i32)> = Vec::new();
@@ -382,12 +422,12 @@ fn fill_row(crossings: &[Crossing], fills_box: bool, labels: &mut [Side]) {
         match counts.iter().max_by_key(|(_, count)| *count) {
             Some((grain, _)) => {
                 let label = Side::Grain(*grain);
-                if fills_box && before == Side::Exterior {
+                if is_full && before == Side::Exterior {
                     labels[..voxel].fill(label);
                 }
                 (before, labels[voxel]) = (label, label);
             }
-            None => labels[voxel] = if fills_box { before } else { Side::Exterior },
+            None => labels[voxel] = if is_full { before } else { Side::Exterior },
         }
     }
 }

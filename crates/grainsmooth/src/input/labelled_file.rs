@@ -41,6 +41,8 @@ pub struct LabelledFile {
     pub orientations: Option<Vec<(GrainId, Orientation)>>,
     /// The numbers of the phases of all grains, if this program wrote the file and they have some.
     pub phases: Option<Vec<(GrainId, u32)>>,
+    /// What each grain was called in the map that it was smoothed from, in order, if this program wrote the file.
+    pub map_labels: Option<Vec<u32>>,
     /// What coordinates in the file are those of `points` multiplied by.
     pub stretch: DVec3,
     /// Whether the file has its points in single precision.
@@ -111,7 +113,7 @@ impl LabelledFile {
             is_single,
             notes,
         } = cells;
-        let Notes { config, volumes, euler_angles, phases, .. } = notes;
+        let Notes { config, volumes, euler_angles, phases, seed_ids, .. } = notes;
         let settings: Option<Table> = config.and_then(|text| text.parse().ok());
         // Without an exterior the volumes of all grains would sum to nothing.
         let zero_is_exterior =
@@ -194,6 +196,10 @@ impl LabelledFile {
                 let phases = phases?.into_iter().map(|phase| phase as u32).collect();
                 numbered(phases, settings)
             }),
+            // With settings they are numbers of seeds.
+            map_labels: seed_ids
+                .filter(|_| settings.is_none())
+                .map(|ids| ids.into_iter().map(i32::cast_unsigned).collect()),
             stretch,
             is_single,
             settings,

@@ -4,6 +4,7 @@ use std::fmt;
 
 use glam::DVec3;
 use texture::{CrystalSymmetry, Orientation};
+use voronoi::Domain;
 
 use super::cleaning::{NO_GRAIN, clean};
 use super::neighbors::Grid;
@@ -29,6 +30,30 @@ impl LabelMap {
     /// Whether the map is one of pixels.
     pub fn is_plane(&self) -> bool {
         self.shape[2] == 1
+    }
+
+    /// The box that the voxels fill.
+    ///
+    /// # Errors
+    /// [`VoronoiError`](voronoi::VoronoiError) where it has no size.
+    pub fn domain(&self) -> Result<Domain, voronoi::VoronoiError> {
+        let upper = self.origin + self.spacing * DVec3::from_array(self.shape.map(|count| count as f64));
+        if self.is_plane() {
+            Domain::rectangle(self.origin, upper)
+        } else {
+            Domain::cuboid(self.origin, upper)
+        }
+    }
+
+    /// The lower and the upper corner of the box around all grains, whose labels are not below 0.
+    pub(crate) fn grain_bounds(&self) -> [DVec3; 2] {
+        let [nx, ny, _] = self.shape;
+        let grains = self.labels.iter().enumerate().filter(|(_, label)| **label >= 0);
+        let bounds = grains.fold([self.shape, [0; 3]], |[lower, upper], (voxel, _)| {
+            let at = [voxel % nx, voxel / nx % ny, voxel / (nx * ny)];
+            [[0, 1, 2].map(|k| lower[k].min(at[k])), [0, 1, 2].map(|k| upper[k].max(at[k] + 1))]
+        });
+        bounds.map(|corner| self.origin + self.spacing * DVec3::from_array(corner.map(|at| at as f64)))
     }
 
     /// The part that is asked for.

@@ -12,7 +12,7 @@ use super::number_type::NumberType;
 use crate::error::map_file::MapProblem;
 use crate::spelling::whole_number;
 
-/// How a map is read, and how fine its network is.
+/// How a map is read.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Map")]
 pub struct MapOptions {
@@ -64,14 +64,6 @@ pub struct MapOptions {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole_number(1..=u64::MAX), allow_negative_numbers = true)]
     pub min_voxels: u64,
 
-    /// Collapse edges of boundaries that are shorter than H voxels, and give grains their volumes again; 0 keeps all edges, and every voxel in its grain [default: 1.6; in the plane 0]
-    ///
-    /// Around small grains edges stay shorter, at most a quarter of the grain.
-    ///
-    /// Example: grainsmooth smooth map.vti --decimate 3
-    #[arg(long, value_name = "H", value_parser = not_negative, allow_negative_numbers = true)]
-    pub decimate: Option<f64>,
-
     /// How grains are found in a map of orientations.
     #[command(flatten)]
     pub ebsd: EbsdOptions,
@@ -87,16 +79,7 @@ impl MapOptions {
             edges => DVec3::splat(edges.first().copied().unwrap_or(1.0)),
         })
     }
-
-    /// Below how many voxels edges collapse. Lines in the plane are few.
-    pub fn shortest_edge(&self, is_plane: bool) -> f64 {
-        self.decimate.unwrap_or(if is_plane { 0.0 } else { DECIMATE })
-    }
 }
-
-/// In voxels: below this length edges collapse where nothing else is asked. On two maps of 64^3 voxels with 50 grains, at equilibrium and flat, it left an eighth of the
-/// triangles, with boundaries 8 % farther from the true ones; 1.8 and 2 were 12 and 16 % farther.
-const DECIMATE: f64 = 1.6;
 
 /// The order of the indices of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -153,11 +136,6 @@ impl fmt::Display for Crop {
             self.0.iter().map(|range| format!("{}:{}", range.start, range.end)).collect();
         out.write_str(&ranges.join(","))
     }
-}
-
-fn not_negative(text: &str) -> Result<f64, String> {
-    let length = text.parse().ok().filter(|length: &f64| length.is_finite() && *length >= 0.0);
-    length.ok_or_else(|| "give a finite number of voxels, 0 or more".to_owned())
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -168,14 +168,9 @@ fn attributes(measured: &MeasuredMap) -> GrainAttributes {
 
 /// The voxels of a map in the box that they fill.
 fn voxels(map: &LabelMap) -> Result<Voxels, voronoi::VoronoiError> {
-    let upper = map.origin + map.spacing * DVec3::from_array(map.shape.map(|count| count as f64));
-    let domain = match map.is_plane() {
-        true => Domain::rectangle(map.origin, upper)?,
-        false => Domain::cuboid(map.origin, upper)?,
-    };
     let label = |label: &i32| match u32::try_from(*label) {
         Ok(grain) => VoxelLabel::of(GrainId(grain)),
         Err(_) => VoxelLabel::EXTERIOR,
     };
-    Ok(Voxels::new(domain, map.shape, map.labels.iter().map(label).collect()))
+    Ok(Voxels::new(map.domain()?, map.shape, map.labels.iter().map(label).collect()))
 }

@@ -105,6 +105,6 @@ impl Boundary {
 
     /// Whether grains lie on both sides, without a period between them.
     pub fn is_interior(&self) -> bool {
-        self.wall.is_none() && self.twin.is_none()
+        self.sides[1] != Side::Exterior
     }
 }

@@ -137,7 +137,7 @@ impl<'a> LevelView<'a> {
     }
 
     /// The boundary of each element that is in memory.
-    pub(crate) fn labels(self) -> &'a [BoundaryId] {
+    pub fn labels(self) -> &'a [BoundaryId] {
         &self.held().boundary_of
     }
 

@@ -68,7 +68,9 @@ pub(super) fn field_data(bytes: &[u8]) -> Option<(Range<usize>, Notes)> {
                     }
                     false => (0..count).map(|_| reader.number()).collect(),
                 };
-                notes.note(name, data(DataNumbers::Int32(numbers?)));
+                let numbers = numbers?;
+                notes.note_ids(name, &numbers);
+                notes.note(name, data(DataNumbers::Int32(numbers)));
             }
             "vtktypeuint64" if count == 1 => {
                 let number = match reader.is_binary {

@@ -6,7 +6,7 @@ use vtkio::IOBuffer;
 use vtkio::model::{Attribute, CellType, DataSet, Vtk};
 
 use super::{MeshFile, MeshFileProblem, cells, in_thread, inline, legacy_parts, problem, xml_parts};
-use crate::names::{BOUNDARY_ID, FIELD_NAMES, LABEL_ARRAYS, NUMBER_OF_GRAINS, PHASE, VOLUMES};
+use crate::names::{BOUNDARY_ID, FIELD_NAMES, LABEL_ARRAYS, NUMBER_OF_GRAINS, PHASE, SEED_ID, VOLUMES};
 use crate::vtk::{FieldEntry, FieldValue, XmlFile, field_entry};
 
 const NODE_TYPES: &str = "NodeTypes";
@@ -30,6 +30,8 @@ pub(crate) struct Notes {
     pub(crate) euler_angles: Option<Vec<f64>>,
     /// The number of each grain's phase.
     pub(crate) phases: Option<Vec<f64>>,
+    /// The number of each grain's seed, or its label in a map.
+    pub(crate) seed_ids: Option<Vec<i32>>,
     /// All entries whose names this program knows.
     pub(crate) entries: Vec<FieldEntry>,
     /// The names of the others.
@@ -49,6 +51,12 @@ impl Notes {
             EULER_ANGLES => self.euler_angles = Some(numbers),
             PHASE => self.phases = Some(numbers),
             _ => {}
+        }
+    }
+
+    pub(super) fn note_ids(&mut self, name: &str, ids: &[i32]) {
+        if name == SEED_ID {
+            self.seed_ids = Some(ids.to_vec());
         }
     }
 
@@ -81,6 +89,7 @@ impl Notes {
             volumes: file.field_numbers(VOLUMES),
             euler_angles: file.field_numbers(EULER_ANGLES),
             phases: file.field_numbers(PHASE),
+            seed_ids: file.field_ids(SEED_ID),
             ..Self::default()
         }
     }
