@@ -1,5 +1,9 @@
 //! Who is not let in, and what is not done.
 
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+
 use serde_json::json;
 
 use super::served::Served;
@@ -116,6 +120,29 @@ fn commands_are_short_and_well_formed() {
     assert_eq!(served.said(&lines, &vec![b' '; 2 << 20]).status, 413);
     let long = format!("GET / HTTP/1.1\r\n{host}Cookie: {}\r\n", "x".repeat(120_000));
     assert_eq!(served.said(&long, b"").status, 431);
+}
+
+/// Whoever sends half a request and no more is told off, or cut off, and holds nobody up meanwhile.
+#[test]
+fn slow_senders_are_not_waited_for() {
+    let (served, host) = served();
+    let visitor = served.visitor();
+    let half = |text: &str| {
+        let mut stream = TcpStream::connect(("127.0.0.1", served.port)).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
+        stream.write_all(text.as_bytes()).unwrap();
+        stream
+    };
+    let mut head = half(&format!("GET / HTTP/1.1\r\n{host}Cookie: "));
+    let mut body =
+        half(&format!("{}Connection: close\r\nContent-Length: 100\r\n\r\n{{", visitor.lines("/step")));
+    assert_eq!(visitor.ask("/open", &json!(null)).status, 200);
+    let mut said = Vec::new();
+    head.read_to_end(&mut said).unwrap();
+    assert!(!said.starts_with(b"HTTP/1.1 200"), "{}", String::from_utf8_lossy(&said));
+    said.clear();
+    body.read_to_end(&mut said).unwrap();
+    assert!(said.starts_with(b"HTTP/1.1 408 "), "{}", String::from_utf8_lossy(&said));
 }
 
 /// What the program says that refuses to serve.

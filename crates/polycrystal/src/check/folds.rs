@@ -1,3 +1,4 @@
+use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -45,6 +46,7 @@ pub(crate) fn folded_neighbors(
     cosine: f64,
 ) -> Vec<[u32; 2]> {
     let of_boundary = |boundary: usize| {
+        check_cancelled();
         let own: Vec<u32> = boundaries.of(boundary).collect();
         let normals: Vec<DVec3> = own.iter().map(|element| elements.normal(points, *element)).collect();
         folded_in_boundary(&own, &normals, &neighbors.of(boundaries, boundary), cosine)

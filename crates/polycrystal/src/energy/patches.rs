@@ -79,6 +79,7 @@ impl Patches {
                 new_patch(&control_level.mesh, &numbers, surface, law)
             })
             .collect();
+        check_cancelled();
         let starts = |length: fn(&Patch) -> usize| {
             let ends = patches.iter().scan(0, |end, patch| {
                 *end += length(patch);
@@ -163,6 +164,7 @@ pub(crate) fn local_elements(
 }
 
 fn new_patch(control: &Mesh, numbers: &[u32], surface: Option<(Vec<u32>, Elements)>, law: Law) -> Patch {
+    check_cancelled();
     let (control_points, elements) = local_elements(control.into(), numbers.iter().copied());
     let (edges, edges_across) = local_edges(control, numbers, &control_points);
     let refinement = surface.map(|(points, elements)| Refinement {

@@ -103,9 +103,11 @@ impl<'a> Flow<'a> {
         let surface = network.level_count().min(level + 1);
         let groups = TiedPoints::new(&network.levels()[level]);
         let patches = Patches::new(network, level, surface, tension_unit, tuning.largest_cotangent);
+        check_cancelled();
         let unit = tuning.small_grain * network.mean_grain_size();
         let sizes =
             LocalSize::new(network.domain().dimension(), unit).at_points(network, level, &patches, volumes);
+        check_cancelled();
         let elements = LevelElements::new(network, surface, &Adjacency::of_level(network.level(surface)));
         Self { network, patches, sizes, level, surface, elements, groups, volumes, tuning }
     }
@@ -239,6 +241,7 @@ impl<'a> Flow<'a> {
         let mut groups = self.groups.clone();
         groups.join_short_edges(self.control_mesh(), points, &self.sizes, self.rigid_length(points));
         let numbering = groups.number();
+        check_cancelled();
         let system = self.system(&terms, &numbering, time, points);
         let moves = match (self.volumes, self.control_mesh()) {
             (Volumes::Kept, _) | (_, Mesh::Triangles(_)) => system.displacement(&missing).0,
@@ -251,6 +254,7 @@ impl<'a> Flow<'a> {
             }
         };
         let mut moves = numbering.of_points(&moves);
+        check_cancelled();
         let within = tangential_moves(self.network, self.level, points, self.centering(time));
         moves.iter_mut().zip(&within).for_each(|(by, within)| *by += *within);
         let mut after = None;

@@ -1,5 +1,6 @@
 //! How the elements of a level meet.
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 
 use crate::check::folds::folded_neighbors;
@@ -34,8 +35,10 @@ impl<'a> LevelSectors<'a> {
     pub(super) fn new(network: &'a Network, level: usize) -> Self {
         let sides = network.sides();
         let adjacency = Adjacency::of_level(network.level(level));
+        check_cancelled();
         let surface = Surface::of_level(network.level(level), &[], &sides);
         let dihedral_sectors = DihedralSectors::new(&surface, &adjacency);
+        check_cancelled();
         Self { elements: LevelElements::new(network, level, &adjacency), dihedral_sectors }
     }
 

@@ -1,5 +1,6 @@
 //! How a flow gives grains the volumes of their cells.
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 
 use crate::flow::assembly::pressure_response;
@@ -68,7 +69,9 @@ impl Flow<'_> {
         let mut gain = 1.0;
         let mut step = 0;
         loop {
+            check_cancelled();
             let surface = self.finest_points(points);
+            check_cancelled();
             let missing = self.missing(&self.network.grain_volumes(self.network.finest(), &surface));
             let (grain, relative_error) = self.largest_error(&missing);
             let mut stalled = false;

@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use cancellation::check_cancelled;
 use glam::DVec3;
 use rayon::prelude::*;
 use subzero::VertexRule;
@@ -45,6 +46,7 @@ impl Flow<'_> {
             if movable.is_empty() {
                 break;
             }
+            check_cancelled();
             let mut moved = points.clone();
             if !self.widen(&mut moved, &movable, moving) {
                 continue;
@@ -142,6 +144,7 @@ impl Flow<'_> {
         let mut is_wider = false;
         for groups in groups.chunks(together) {
             let widened = |(movable, around): &(&Vec<u32>, Vec<u32>)| {
+                check_cancelled();
                 let room = Room::new(self.network, self.level, around.clone(), movable, points)?;
                 room.widened(sine(WIDE), steps)
             };
