@@ -8,10 +8,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use common::{network, random_network, random_seeds};
 use glam::{BVec3, DVec3};
 use polycrystal::{
-    Boundary, FaceMesh, Junctions, Network, NetworkRecipe, Relaxation, RelaxedCells, Side, herring_residual,
-    measure_network, relax, relax_cells,
+    Boundary, FaceMesh, GrainId, Junctions, Network, NetworkRecipe, Relaxation, RelaxedCells, Side,
+    herring_residual, measure_network, relax, relax_cells,
 };
-use voronoi::{Domain, Tessellation};
+use voronoi::volumes::PowerDiagram;
+use voronoi::{Domain, Tessellation, WallPlane};
 
 /// Tensions from 0.8 to 1.2 by the numbers of both grains, and half as much on walls.
 fn unequal(boundary: &Boundary) -> f64 {
@@ -151,6 +152,43 @@ fn a_triple_line_of_unequal_tensions_comes_to_herrings_angles() {
         let residual = herring_residual(&network, &points).expect("triple lines");
         assert!(residual.rms < 0.03, "{residual:?}");
     }
+}
+
+/// Three grains around the axis of a prism each of whose walls crosses one boundary at a right angle, so that boundaries are flat at rest:
+/// then angles are exact however coarse the triangles are. The cells that it starts from have boundaries at other angles.
+#[test]
+fn flat_boundaries_of_unequal_tensions_come_to_herrings_angles() {
+    let law = |boundary: &Boundary| if boundary.wall.is_some() { 0.0 } else { unequal(boundary) };
+    let [a, b, c] = [0, 1, 2].map(|grain| Side::Grain(GrainId(grain)));
+    let wanted = [
+        herrings_angle(between(b, c), [between(a, b), between(a, c)]),
+        herrings_angle(between(a, c), [between(a, b), between(b, c)]),
+        herrings_angle(between(a, b), [between(a, c), between(b, c)]),
+    ]
+    .map(f64::to_radians);
+    // The boundary between grains 0 and 1 runs along x; grain 0 lies counter-clockwise of it, grain 1 clockwise.
+    let direction = |angle: f64| DVec3::new(angle.cos(), angle.sin(), 0.0);
+    let across = [direction(0.0), direction(wanted[0]), direction(-wanted[1]), DVec3::Z, DVec3::NEG_Z];
+    let wall =
+        |normal: DVec3| WallPlane::HalfSpace { normal, offset: if normal.z == 0.0 { 1.0 } else { 0.5 } };
+    let walls = across.map(wall);
+    let prism = Domain::polyhedron(walls.to_vec()).expect("a prism");
+    let middles = [0.5 * wanted[0], -0.5 * wanted[1], wanted[0] + 0.5 * wanted[2]];
+    let seeds = middles.map(|angle| 0.5 * direction(angle + 0.1));
+    // Two right triangles with a leg of 1, and height 1.
+    let volumes = wanted.map(|angle| (0.5 * angle).tan());
+    let cells = PowerDiagram::with_volumes(&prism, &seeds, &volumes).expect("grains of these volumes");
+    let recipe =
+        NetworkRecipe { face_mesh: FaceMesh::Fan, junctions: Junctions::Crease, levels: 2, tension: &law };
+    let RelaxedCells { network, points, .. } =
+        relax_cells(cells.tessellation(), &recipe, &Relaxation::Equilibrium, |_| ()).expect("relaxes");
+    let measures = measure_network(&network, &points).in_space().expect("space");
+    let line =
+        measures.triple_lines.iter().find(|line| !line.sides.contains(&Side::Exterior)).expect("the axis");
+    let error = largest_error(&line.sides, &line.mean_angles);
+    assert!(error < 0.05, "{error} degrees");
+    let residual = herring_residual(&network, &points).expect("triple lines");
+    assert!(residual.largest < 0.01, "{residual:?}");
 }
 
 #[test]
