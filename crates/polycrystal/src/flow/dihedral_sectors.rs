@@ -17,14 +17,13 @@ pub(crate) struct DihedralSectors {
     dihedral_sectors: Vec<DihedralSector>,
 }
 
+/// An edge, held as little as may be: there are as many as the finest level has on triple lines, three times.
 struct DihedralSector {
-    /// The edge, as the first element runs along it.
-    ends: [u32; 2],
-    /// What each element has beside the edge.
-    apexes: [u32; 2],
     elements: [u32; 2],
+    /// The number of the edge in each element.
+    edges: [u8; 2],
     /// 1 where the grain lies on the side that the first element's normal points to, -1 on the other.
-    sense: f64,
+    sense: i8,
 }
 
 impl DihedralSectors {
@@ -33,34 +32,31 @@ impl DihedralSectors {
         if let Elements::Segments(_) = surface.elements {
             return Self { dihedral_sectors };
         }
-        let apex = |at: &Incidence| surface.elements.corners(at.element)[usize::from((at.corner + 2) % 3)];
-        let mut incidences: Vec<(Side, &Incidence, f64)> = Vec::new();
+        let mut incidences: Vec<(Side, &Incidence, i8)> = Vec::new();
         for edge in adjacency.non_manifold_edges() {
             incidences.clear();
             for at in edge {
                 let [first, second] = surface.sides_of(at.element);
-                incidences.extend([(first, at, -1.0), (second, at, 1.0)]);
+                incidences.extend([(first, at, -1), (second, at, 1)]);
             }
             incidences.retain(|(side, ..)| *side != Side::Exterior);
             incidences.sort_unstable_by_key(|(side, at, _)| (*side, **at));
             let pairs = incidences.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 2);
             dihedral_sectors.extend(pairs.map(|pair| DihedralSector {
-                ends: pair[0].1.ends(surface.elements),
-                apexes: [pair[0].1, pair[1].1].map(apex),
                 elements: [pair[0].1, pair[1].1].map(|at| at.element),
+                edges: [pair[0].1, pair[1].1].map(|at| at.corner),
                 sense: pair[0].2,
             }));
         }
+        dihedral_sectors.shrink_to_fit();
         Self { dihedral_sectors }
     }
 
-    /// The elements at edges where grains are turned inside out.
-    pub(crate) fn turned(&self, points: &[DVec3]) -> Vec<[u32; 2]> {
-        let turned = self
-            .dihedral_sectors
-            .par_iter()
-            .filter(|dihedral_sector| is_turned(dihedral_sector.opening(points)));
-        turned.map(|dihedral_sector| dihedral_sector.elements).collect()
+    /// The elements at edges where grains are turned inside out, among those of the surface.
+    pub(crate) fn turned(&self, elements: Elements<'_>, points: &[DVec3]) -> Vec<[u32; 2]> {
+        let sectors = self.dihedral_sectors.par_iter();
+        let turned = sectors.filter(|sector| is_turned(sector.opening(elements, points)));
+        turned.map(|sector| sector.elements).collect()
     }
 }
 
@@ -71,13 +67,17 @@ fn is_turned([cosine, sine]: [f64; 2]) -> bool {
 
 impl DihedralSector {
     /// Cosine and sine of the grain's angle.
-    fn opening(&self, points: &[DVec3]) -> [f64; 2] {
-        let [start, end] = self.ends.map(|end| points[end as usize]);
+    fn opening(&self, elements: Elements<'_>, points: &[DVec3]) -> [f64; 2] {
+        // The edge as the element runs along it, and what it has beside.
+        let corners = |k: usize| -> [DVec3; 3] {
+            let corners: [u32; 3] = elements.points(self.elements[k]);
+            [0, 1, 2].map(|turn| points[corners[(usize::from(self.edges[k]) + turn) % 3] as usize])
+        };
+        let [[start, end, first], [_, _, second]] = [0, 1].map(corners);
         let along = (end - start).normalize_or_zero();
-        let leg =
-            |apex: u32| (points[apex as usize] - start).reject_from_normalized(along).normalize_or_zero();
-        let [first, second] = self.apexes.map(leg);
-        [first.dot(second), self.sense * along.dot(first.cross(second))]
+        let leg = |apex: DVec3| (apex - start).reject_from_normalized(along).normalize_or_zero();
+        let [first, second] = [first, second].map(leg);
+        [first.dot(second), f64::from(self.sense) * along.dot(first.cross(second))]
     }
 }
 
@@ -100,7 +100,7 @@ mod tests {
         let sides = network.sides();
         let dihedral_sectors =
             DihedralSectors::new(&Surface::of_level(level, &flat, &sides), &Adjacency::of_level(level));
-        assert!(dihedral_sectors.turned(&flat).is_empty());
+        assert!(dihedral_sectors.turned((&level.mesh).into(), &flat).is_empty());
         // What is inside the boundary at x = 0.5, y < 0.5, goes far beyond the one at y = 0.5.
         let mut pushed = flat.clone();
         for point in &mut pushed {
@@ -108,6 +108,6 @@ mod tests {
                 *point = DVec3::new(0.95, 0.7, point.z);
             }
         }
-        assert!(!dihedral_sectors.turned(&pushed).is_empty());
+        assert!(!dihedral_sectors.turned((&level.mesh).into(), &pushed).is_empty());
     }
 }
