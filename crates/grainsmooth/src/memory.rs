@@ -5,21 +5,28 @@ use std::path::Path;
 use sysinfo::{MemoryRefreshKind, System};
 
 /// Bytes that a run in space holds at its peak, which is in one of two stages. Fitted to peak resident memory, in millions of bytes and brackets what
-/// comes of it: 200 grains took 100 (83) at level 3 and 212 (200) at level 4, 500 grains 239 (213) at level 3, 1000 grains 407 (439) at level 2, 2000
-/// grains 151 (150), 430 (433), 863 (886) and 883 (886) at levels 0 to 3.
+/// comes of it: 200 grains took 91 (79) at level 3 and 209 (216) at level 4, 500 grains 183 (173) at level 3, 1000 grains 288 (284) and 327 (329) at
+/// levels 2 and 3, 2000 grains 116 (133), 320 (338), 566 (552) and 688 (653) at levels 0 to 3, 20 000 grains 5832 (6580) at level 3.
 ///
-/// In relaxation, for each edge of the control mesh: the cells, and the matrices and patches of what moves, level 1 where there is one ...
-const RELAXED_PER_CONTROL_EDGE: u128 = 860;
-const RELAXED_PER_CONTROL_EDGE_MOVED: u128 = 1900;
-const RELAXED_PER_CONTROL_EDGE_REFINED: u128 = 2750;
+/// The program itself ...
+const PROGRAM: u128 = 20_000_000;
 
-/// ... and for each triangle of the level that carries energy: level 1, or 2 where there is one.
-const RELAXED_PER_TRIANGLE: u128 = 193;
+/// ... in relaxation, for each edge of the control mesh: the cells, and the matrices and patches of what moves, level 1 where there is one ...
+const RELAXED_PER_CONTROL_EDGE: u128 = 600;
+const RELAXED_PER_CONTROL_EDGE_MOVED: u128 = 1250;
+const RELAXED_PER_CONTROL_EDGE_REFINED: u128 = 1700;
+
+/// ... for each triangle of level 1, where that carries energy, or of level 2 ...
+const RELAXED_PER_TRIANGLE_MOVED: u128 = 190;
+const RELAXED_PER_TRIANGLE_REFINED: u128 = 112;
 const ENERGY_LEVEL: u32 = 2;
+
+/// ... and for each triangle of a last level beyond: its points.
+const RELAXED_PER_LAST_TRIANGLE: u128 = 12;
 
 /// In the certificate and in writing, for each edge of the control mesh and each triangle of the last level: its points and their arrays, and the levels
 /// before; the last level itself follows from these.
-const WRITTEN_PER_CONTROL_EDGE: u128 = 800;
+const WRITTEN_PER_CONTROL_EDGE: u128 = 600;
 const WRITTEN_PER_TRIANGLE: u128 = 60;
 
 /// Bytes that a run in the plane holds at its peak for each point and segment of its last level, and each segment of the first. Up to 5 % above peak resident
@@ -186,13 +193,15 @@ impl ControlMesh {
         }
         let (of_control, of_triangle) = match levels {
             0 => (RELAXED_PER_CONTROL_EDGE, 0),
-            1 => (RELAXED_PER_CONTROL_EDGE_MOVED, RELAXED_PER_TRIANGLE),
-            _ => (RELAXED_PER_CONTROL_EDGE_REFINED, RELAXED_PER_TRIANGLE),
+            1 => (RELAXED_PER_CONTROL_EDGE_MOVED, RELAXED_PER_TRIANGLE_MOVED),
+            _ => (RELAXED_PER_CONTROL_EDGE_REFINED, RELAXED_PER_TRIANGLE_REFINED),
         };
         let carrying = self.after(levels.min(ENERGY_LEVEL));
-        let relaxed = sum(&[(edges, of_control), (carrying.triangles, of_triangle)]);
+        let of_last = if levels > ENERGY_LEVEL { RELAXED_PER_LAST_TRIANGLE } else { 0 };
+        let relaxed =
+            sum(&[(edges, of_control), (carrying.triangles, of_triangle), (size.triangles, of_last)]);
         let written = sum(&[(edges, WRITTEN_PER_CONTROL_EDGE), (size.triangles, WRITTEN_PER_TRIANGLE)]);
-        relaxed.max(written)
+        relaxed.max(written).saturating_add(PROGRAM)
     }
 }
 

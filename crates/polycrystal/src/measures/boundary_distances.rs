@@ -76,7 +76,7 @@ mod tests {
             assert_eq!(distances.pairs().collect::<Vec<_>>(), sides);
             for (sides, expected) in sides.iter().zip(expected) {
                 for sides in [*sides, [sides[1], sides[0]]] {
-                    assert!((distances.distance(sides, point).unwrap() - expected).abs() < 1e-15);
+                    assert!((distances.distance(sides, point).unwrap() - expected).abs() < 1e-14);
                 }
             }
             assert_eq!(distances.distance([grain(0), Side::Exterior], point), None);
