@@ -410,14 +410,6 @@ class MapOptions(TypedDict, total=False):
 
     Default: ``1``"""
 
-    decimate: Value
-    """Collapse edges of boundaries that are shorter than H voxels, and give grains their volumes again; 0 keeps all edges, and
-    every voxel in its grain [default: 1.6; in the plane 0]
-
-    Around small grains edges stay shorter, at most a quarter of the grain.
-
-    Example of the command line: ``grainsmooth smooth map.vti --decimate 3``"""
-
     threshold: Value
     """Largest angle in degrees between neighbouring points of one grain [default: 5]
 
@@ -461,3 +453,19 @@ class MapOptions(TypedDict, total=False):
     """Symmetry of the crystals, if the file gives none
 
     Example of the command line: ``grainsmooth smooth map.ang --crystal-symmetry cubic``"""
+
+    decimate: Value
+    """Collapse edges of boundaries that are shorter than H voxels, and give grains their volumes again; 0 keeps all edges, and
+    every voxel in its grain [default: 1.6; in the plane 0]
+
+    Around small grains edges stay shorter, at most a quarter of the grain.
+
+    Example of the command line: ``grainsmooth smooth map.vti --decimate 3``"""
+
+    relax: Value
+    """Move boundaries toward the equilibrium of their tension for this time, in units of the mean grain size squared, or to
+    `equilibrium`; grains keep their volumes [default: 0]
+
+    This moves boundaries away from where they were measured. Neighbours stay neighbours.
+
+    Example of the command line: ``grainsmooth smooth map.vti --relax 0.1``"""

@@ -39,7 +39,7 @@ pub fn of_map(
         let start = Instant::now();
         let measured = read_map(&path, &arguments.options)?;
         let call = format!("grainsmooth.Polycrystal.from_map({:?})", path.display().to_string());
-        let run_of = run_of(call, arguments.network.shortest_edge(measured.map.is_plane()), start.elapsed());
+        let run_of = run_of(call, arguments.network, start.elapsed());
         smooth_map(&path, &measured, run_of, tell).map(Polycrystal::new)
     })
 }
@@ -64,8 +64,8 @@ pub fn of_labels(
     let options = MapOptions { exterior_label, min_voxels, ..MapOptions::default() };
     let measured =
         MeasuredMap::of_labels(map, &options).map_err(|error| invalid(format!("{LABELS}: {error}")))?;
-    let shortest_edge = MapNetworkOptions { decimate }.shortest_edge(measured.map.is_plane());
-    let run_of = run_of("grainsmooth.Polycrystal.from_labels".to_owned(), shortest_edge, Duration::ZERO);
+    let network = MapNetworkOptions { decimate, ..MapNetworkOptions::default() };
+    let run_of = run_of("grainsmooth.Polycrystal.from_labels".to_owned(), network, Duration::ZERO);
     run(py, threads, progress, move |tell| {
         smooth_map(Path::new(LABELS), &measured, run_of, tell).map(Polycrystal::new)
     })
@@ -94,9 +94,11 @@ pub fn of_orientations(
     };
     let path = Path::new(ORIENTATIONS);
     let arguments = Arguments::of_smooth(path, &given(options)?).map_err(to_python)?;
-    let shortest_edge = arguments.network.shortest_edge(true);
-    let run_of =
-        run_of("grainsmooth.Polycrystal.from_orientations".to_owned(), shortest_edge, Duration::ZERO);
+    let run_of = run_of(
+        "grainsmooth.Polycrystal.from_orientations".to_owned(),
+        arguments.network.clone(),
+        Duration::ZERO,
+    );
     run(py, threads, progress, move |tell| {
         tell(Stage::Map, 0, 1);
         let measured = MeasuredMap::of_orientations(&map, &arguments.options);
@@ -106,6 +108,6 @@ pub fn of_orientations(
 }
 
 /// What is said of a map, which is written as usual.
-fn run_of(command_line: String, shortest_edge: f64, read_in: Duration) -> MapRun {
-    MapRun { command_line, file: FileOptions::default(), shortest_edge, read_in }
+fn run_of(command_line: String, network: MapNetworkOptions, read_in: Duration) -> MapRun {
+    MapRun { command_line, file: FileOptions::default(), network, read_in }
 }

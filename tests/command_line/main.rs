@@ -17,6 +17,7 @@ mod inside;
 mod map_agreement;
 mod maps;
 mod measure;
+mod measured_relaxation;
 mod orientation_maps;
 mod periodic;
 mod phases;

@@ -259,7 +259,8 @@ impl Network {
             held if levels.len() <= level_count => Some(held.finest_copies()?),
             _ => None,
         };
-        let tension = |boundary: &Boundary| if boundary.wall.is_none() { 1.0 } else { 0.0 };
+        let is_between_grains = |boundary: &Boundary| boundary.is_interior() || boundary.twin.is_some();
+        let tension = |boundary: &Boundary| if is_between_grains(boundary) { 1.0 } else { 0.0 };
         let network = Self {
             tensions: boundaries.iter().map(tension).collect(),
             mobilities: vec![1.0; boundaries.len()],

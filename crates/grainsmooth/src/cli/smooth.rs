@@ -17,7 +17,7 @@ use super::run::SharedArguments;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct SmoothArguments {
-    /// Map to smooth: .vti, .npy, .npz, .nrrd, .nhdr, .mhd, .mha, .tesr, .dream3d, .h5, .h5oina, .raw, .ang or .ctf
+    /// Map to smooth: .vti, .npy, .npz, .nrrd, .nhdr, .mhd, .mha, .tesr, .dream3d, .h5, .h5oina, .raw, .ang or .ctf; or, with --relax, a network: .vtp, .vtu or .vtk with two labels for each triangle
     #[arg(value_name = "MAP")]
     pub map: PathBuf,
 
@@ -43,6 +43,8 @@ Examples:
   grainsmooth smooth labels.npy --axes zyx --spacing 0.5 -o grains.vtu  an array of skimage, its unit told
   grainsmooth smooth ct.raw --shape 200 200 150 --type u16 --exterior-label 0
   grainsmooth smooth map.ctf --min-voxels 3 -o map.vtp --stats map.csv  grains of an EBSD map, with a table
+  grainsmooth smooth phase_field.vti --relax equilibrium                boundaries at rest, volumes kept
+  grainsmooth smooth network.vtp --relax 0.1 -o relaxed.vtp             a network of any program
   grainsmooth smooth map.ang --min-ci 0.1 --min-iq 120 --threshold 5 --min-voxels 5
 
 Exit status: 0 good, 1 the map is unreadable or gave no valid network, 2 a mistake on the command line.";

@@ -1,9 +1,12 @@
-//! `grainsmooth smooth`: from a measured map to its network.
+//! `grainsmooth smooth`: from a measured map to its network, or from a network to a relaxed one.
 
 use std::process::ExitCode;
 use std::time::Instant;
 
-use grainsmooth::{Coloring, Error, MapRun, Stage, Summary, ToWrite, read_map, smooth_map, write_together};
+use grainsmooth::{
+    Coloring, Error, LabelledFile, MapRun, MeasuredMap, Polycrystal, Progress, Stage, Summary, ToWrite,
+    read_map, smooth_map, write_together,
+};
 use voronoi::Dimension;
 
 use super::mesh::command_line;
@@ -15,7 +18,10 @@ use grainsmooth::cli::{SmoothArguments, usage};
 /// Smooths the map, writes what is asked for and reports.
 pub fn run(arguments: &SmoothArguments) -> anyhow::Result<ExitCode> {
     let pool = thread_pool(&arguments.shared)?;
-    let stages = vec![Stage::Map, Stage::Network, Stage::Writing];
+    let mut stages = vec![Stage::Map, Stage::Network, Stage::Writing];
+    if arguments.network.relaxation().is_some() {
+        stages.splice(2..2, [Stage::Relaxation, Stage::Validation]);
+    }
     let line = ProgressLine::new(arguments.shared.quiet, stages);
     let summary = pool.install(|| smooth(arguments, &line));
     line.clear();
@@ -26,20 +32,58 @@ pub fn run(arguments: &SmoothArguments) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// What is given.
+enum Given {
+    Map(Box<MeasuredMap>),
+    Network(Box<LabelledFile>),
+}
+
+impl Given {
+    fn read(arguments: &SmoothArguments) -> Result<Self, Error> {
+        let SmoothArguments { map: path, options, network, .. } = arguments;
+        if !LabelledFile::is_known(path) {
+            return Ok(Self::Map(Box::new(read_map(path, options)?)));
+        }
+        let of_maps = options.first_given().or(network.decimate.map(|_| "--decimate"));
+        if let Some(option) = of_maps {
+            return Err(usage(&format!("{} is a network, not a map; leave {option} out", path.display())));
+        }
+        if network.relaxation().is_none() {
+            return Err(usage(&format!(
+                "{} is a network already; give --relax, such as --relax equilibrium",
+                path.display()
+            )));
+        }
+        Ok(Self::Network(Box::new(LabelledFile::read(path)?)))
+    }
+
+    fn dimension(&self) -> Dimension {
+        match self {
+            Self::Map(measured) if measured.map.is_plane() => Dimension::Two,
+            Self::Map(_) => Dimension::Three,
+            Self::Network(file) => file.surface().elements.dimension(),
+        }
+    }
+
+    fn has_orientations(&self) -> bool {
+        matches!(self, Self::Map(measured) if measured.crystals.is_some())
+    }
+}
+
 /// Returns the summary.
 fn smooth(arguments: &SmoothArguments, line: &ProgressLine) -> Result<String, Error> {
-    let SmoothArguments { map: path, options, network, outputs, pictures, shared } = arguments;
+    let SmoothArguments { map: path, network, outputs, pictures, shared, .. } = arguments;
     let start = Instant::now();
     line.show(Stage::Map, 0, 1);
-    let measured = read_map(path, options)?;
+    let given = Given::read(arguments)?;
     let read_in = start.elapsed();
     let coloring = pictures.coloring();
-    let has_orientations = measured.crystals.is_some();
+    let has_orientations = given.has_orientations();
     if !has_orientations && (coloring == Coloring::Phase || coloring.needs_texture()) {
         let name = coloring.name();
         return Err(usage(&format!("--color-by {name} needs something that a map of labels does not hold")));
     }
-    let dimension = if measured.map.is_plane() { Dimension::Two } else { Dimension::Three };
+    let dimension = given.dimension();
     let file = outputs.options(dimension)?;
     let to_write = ToWrite {
         dimension,
@@ -50,10 +94,22 @@ fn smooth(arguments: &SmoothArguments, line: &ProgressLine) -> Result<String, Er
     };
     let files = ResultFiles::check(outputs, pictures, shared, &to_write, true)?;
     check_all_differ(files.targets())?;
-    let shortest_edge = network.shortest_edge(measured.map.is_plane());
-    let run = MapRun { command_line: command_line(), file, shortest_edge, read_in };
-    let mut polycrystal =
-        smooth_map(path, &measured, run, &|stage, done, count| line.show(stage, done, count))?;
+    let progress: Progress<'_> = &|stage, done, count| line.show(stage, done, count);
+    let mut polycrystal = match given {
+        Given::Map(measured) => {
+            let run = MapRun { command_line: command_line(), file, network: network.clone(), read_in };
+            smooth_map(path, &measured, run, progress)?
+        }
+        Given::Network(given) => {
+            progress(Stage::Network, 0, 1);
+            let mut polycrystal = Polycrystal::of_file(path, &given, command_line())?;
+            *polycrystal.file_mut() = file;
+            match network.relaxation() {
+                Some(relaxation) => polycrystal.relaxed(path, relaxation, progress)?,
+                None => polycrystal,
+            }
+        }
+    };
     if files.need_tetrahedra(&to_write) {
         line.show(Stage::Filling, 0, 1);
         polycrystal = polycrystal.filled()?;

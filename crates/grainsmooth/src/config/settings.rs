@@ -172,7 +172,7 @@ pub(super) fn by_option<S: Serializer>(mesh: &FaceMesh, serializer: S) -> Result
 }
 
 /// Reads `--relax`.
-pub(super) fn parse_relaxation(text: &str) -> Result<Relaxation, String> {
+pub(crate) fn parse_relaxation(text: &str) -> Result<Relaxation, String> {
     if text == EQUILIBRIUM {
         return Ok(Relaxation::Equilibrium);
     }

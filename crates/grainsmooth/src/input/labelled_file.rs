@@ -85,13 +85,13 @@ impl LabelledFile {
         Self::try_read(path).map_err(|problem| Error::MeshFile { path: path.to_owned(), problem })
     }
 
+    /// Whether files of such a name are read.
+    pub fn is_known(path: &Path) -> bool {
+        reader(path).is_some()
+    }
+
     fn try_read(path: &Path) -> Result<Self, MeshFileProblem> {
-        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
-        let read = match extension.to_str() {
-            Some("vtk") => read_legacy,
-            Some("vtp" | "vtu") => read_xml,
-            _ => return Err(MeshFileProblem::NotANetworkFormat),
-        };
+        let read = reader(path).ok_or(MeshFileProblem::NotANetworkFormat)?;
         let bytes = std::fs::read(path).map_err(MeshFileProblem::Unreadable)?;
         let cells = read(&bytes)?;
         check_lengths(&cells.mesh.points)?;
@@ -240,6 +240,15 @@ impl LabelledFile {
     fn single_rounding(&self) -> f64 {
         let largest = self.points.iter().map(|point| point.abs().max_element()).fold(0.0, f64::max);
         0.5 * f64::from(f32::EPSILON) * largest
+    }
+}
+
+/// What reads files of a name.
+fn reader(path: &Path) -> Option<fn(&[u8]) -> Result<LabelledCells, MeshFileProblem>> {
+    match path.extension()?.to_ascii_lowercase().to_str()? {
+        "vtk" => Some(read_legacy),
+        "vtp" | "vtu" => Some(read_xml),
+        _ => None,
     }
 }
 

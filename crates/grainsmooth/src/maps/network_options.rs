@@ -1,6 +1,9 @@
 //! What the network of a map is to be like.
 
 use clap::Args;
+use polycrystal::Relaxation;
+
+use crate::config::settings::parse_relaxation;
 
 /// What the network of a map is to be like.
 #[derive(Debug, Clone, Default, Args)]
@@ -13,11 +16,24 @@ pub struct MapNetworkOptions {
     /// Example: grainsmooth smooth map.vti --decimate 3
     #[arg(long, value_name = "H", value_parser = not_negative, allow_negative_numbers = true)]
     pub decimate: Option<f64>,
+
+    /// Move boundaries toward the equilibrium of their tension for this time, in units of the mean grain size squared, or to `equilibrium`; grains keep their volumes [default: 0]
+    ///
+    /// This moves boundaries away from where they were measured. Neighbours stay neighbours.
+    ///
+    /// Example: grainsmooth smooth map.vti --relax 0.1
+    #[arg(long = "relax", value_name = "T", value_parser = parse_relaxation, allow_negative_numbers = true)]
+    pub relaxation: Option<Relaxation>,
 }
 
 impl MapNetworkOptions {
+    /// The relaxation asked for, if boundaries are to move.
+    pub fn relaxation(&self) -> Option<Relaxation> {
+        self.relaxation.filter(|relaxation| *relaxation != Relaxation::Time(0.0))
+    }
+
     /// Below how many voxels edges collapse. Lines in the plane are few.
-    pub fn shortest_edge(&self, is_plane: bool) -> f64 {
+    pub(crate) fn shortest_edge(&self, is_plane: bool) -> f64 {
         self.decimate.unwrap_or(if is_plane { 0.0 } else { DECIMATE })
     }
 }

@@ -70,6 +70,22 @@ pub struct MapOptions {
 }
 
 impl MapOptions {
+    /// The first option that is given. Those that are not tell what files say, or what is usual.
+    pub fn first_given(&self) -> Option<&'static str> {
+        let all = [
+            ("--label-array", self.label_array.is_some()),
+            ("--spacing", self.spacing.is_some()),
+            ("--axes", self.axes.is_some()),
+            ("--shape", self.shape.is_some()),
+            ("--type", self.number_type.is_some()),
+            ("--crop", self.crop.is_some()),
+            ("--exterior-label", self.exterior_label.is_some()),
+            ("--min-voxels", self.min_voxels > 1),
+        ];
+        let first = all.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name);
+        first.or_else(|| self.ebsd.first_given())
+    }
+
     /// The edges of a voxel, where they are given.
     pub(super) fn spacing(&self) -> Option<DVec3> {
         Some(match self.spacing.as_deref()? {

@@ -19,6 +19,10 @@ const CANCELLED: f64 = 1e-13;
 /// are coarse. Sums of some hundred gradients stay below 10.
 const COARSE: f64 = 30.0;
 
+/// How little all grains give way to one pressure, as a share of how they do to their own, where walls hold them: rounding leaves less than [`CANCELLED`] of it, a free surface of a
+/// thousandth of all boundaries a thousandth.
+const HELD: f64 = 1e-9;
+
 /// Grains whose volumes one task sums up.
 const GRAINS_PER_TASK: usize = 64;
 
@@ -108,6 +112,8 @@ pub(crate) struct Compliance {
     diagonal: Vec<f64>,
     /// The sum of the diagonal.
     total: f64,
+    /// Whether the same pressure everywhere moves nothing, as walls hold the whole outer surface: there is none at pores.
+    is_held: bool,
 }
 
 impl Compliance {
@@ -116,15 +122,16 @@ impl Compliance {
         let diagonal = matrix.diagonal();
         // Where nothing can move there is nothing to share out.
         let total = diagonal.iter().sum::<f64>().max(f64::MIN_POSITIVE);
-        Self { grids: Multigrid::new(matrix), diagonal, total }
+        let row_sum = |grain: usize| matrix.row(grain).iter().map(|(_, value)| value).sum::<f64>().abs();
+        let is_held = (0..matrix.len()).map(row_sum).sum::<f64>() <= HELD * total;
+        Self { grids: Multigrid::new(matrix), diagonal, total, is_held }
     }
 
     /// The pressures that bring about the given changes of volume, up to an error of this share.
     pub(crate) fn pressures(&self, changes: &[f64], tolerance: f64) -> Vec<f64> {
-        // The same pressure everywhere moves nothing, as the walls hold: a total other than zero, which rounding leaves,
-        // has no answer and would grow without bound. Grains take it as they give way: one far smaller than the others may be
+        // A total other than zero, which rounding leaves, has no answer where walls hold and would grow without bound. Grains take it as they give way: one far smaller than the others may be
         // smaller than their rounding.
-        let share = changes.iter().sum::<f64>() / self.total;
+        let share = if self.is_held { changes.iter().sum::<f64>() / self.total } else { 0.0 };
         let balanced: Vec<f64> =
             changes.iter().zip(&self.diagonal).map(|(change, own)| change - share * own).collect();
         let limits = Limits { tolerance, steps: ITERATIONS.min(2 * changes.len() + 20) };

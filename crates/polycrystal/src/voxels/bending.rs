@@ -70,6 +70,8 @@ pub(super) fn least_bending(
         .collect();
     let mut points = starts.to_vec();
     let mut ahead = points.clone();
+    // Memory that is taken anew in each step costs a fifth of the time of large maps.
+    let mut next = points.clone();
     let mut bends = vec![DVec3::ZERO; count];
     let mut momentum = 1.0f64;
     for step in 0..tuning.bending_steps {
@@ -79,15 +81,12 @@ pub(super) fn least_bending(
             let sum: DVec3 = graph.followed(point).iter().map(|other| ahead[*other as usize]).sum();
             *bend = if shares[point] > 0.0 { ahead[point] - sum * shares[point] } else { DVec3::ZERO };
         });
-        let next: Vec<DVec3> = (0..count)
-            .into_par_iter()
-            .map(|point| {
-                let from: DVec3 =
-                    followers(point).map(|other| bends[other as usize] * shares[other as usize]).sum();
-                let slope = ahead[point] - starts[point] + tuning.bending * (bends[point] - from);
-                boxes.nearest(point, ahead[point] - slope * steps[point])
-            })
-            .collect();
+        next.par_iter_mut().enumerate().for_each(|(point, next)| {
+            let from: DVec3 =
+                followers(point).map(|other| bends[other as usize] * shares[other as usize]).sum();
+            let slope = ahead[point] - starts[point] + tuning.bending * (bends[point] - from);
+            *next = boxes.nearest(point, ahead[point] - slope * steps[point]);
+        });
         let overshoot = |(start, next): (usize, &[DVec3])| -> f64 {
             let all = next
                 .iter()
@@ -104,7 +103,7 @@ pub(super) fn least_bending(
         ahead.par_iter_mut().zip(&next).zip(&points).for_each(|((ahead, next), was)| {
             *ahead = *next + (*next - *was) * further;
         });
-        points = next;
+        std::mem::swap(&mut points, &mut next);
     }
     points
 }
