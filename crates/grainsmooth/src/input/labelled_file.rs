@@ -243,8 +243,10 @@ impl LabelledFile {
     }
 }
 
+type Reader = fn(&[u8]) -> Result<LabelledCells, MeshFileProblem>;
+
 /// What reads files of a name.
-fn reader(path: &Path) -> Option<fn(&[u8]) -> Result<LabelledCells, MeshFileProblem>> {
+fn reader(path: &Path) -> Option<Reader> {
     match path.extension()?.to_ascii_lowercase().to_str()? {
         "vtk" => Some(read_legacy),
         "vtp" | "vtu" => Some(read_xml),
