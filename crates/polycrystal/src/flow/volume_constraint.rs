@@ -19,8 +19,8 @@ const CANCELLED: f64 = 1e-13;
 /// are coarse. Sums of some hundred gradients stay below 10.
 const COARSE: f64 = 30.0;
 
-/// How little all grains give way to one pressure, as a share of how they do to their own, where walls hold them: rounding leaves less than [`CANCELLED`] of it, a free surface of a
-/// thousandth of all boundaries a thousandth.
+/// How little all grains give way to one pressure, as a share of how they do to their own, where walls hold them: rounding leaves less than
+/// [`CANCELLED`] of it, a free surface of a thousandth of all boundaries a thousandth.
 const HELD: f64 = 1e-9;
 
 /// Grains whose volumes one task sums up.
@@ -129,8 +129,8 @@ impl Compliance {
 
     /// The pressures that bring about the given changes of volume, up to an error of this share.
     pub(crate) fn pressures(&self, changes: &[f64], tolerance: f64) -> Vec<f64> {
-        // A total other than zero, which rounding leaves, has no answer where walls hold and would grow without bound. Grains take it as they give way: one far smaller than the others may be
-        // smaller than their rounding.
+        // A total other than zero, which rounding leaves, has no answer where walls hold and would grow without bound. Grains take it as they
+        // give way: one far smaller than the others may be smaller than their rounding.
         let share = if self.is_held { changes.iter().sum::<f64>() / self.total } else { 0.0 };
         let balanced: Vec<f64> =
             changes.iter().zip(&self.diagonal).map(|(change, own)| change - share * own).collect();

@@ -70,7 +70,7 @@ pub(super) fn least_bending(
         .collect();
     let mut points = starts.to_vec();
     let mut ahead = points.clone();
-    // Memory that is taken anew in each step costs a fifth of the time of large maps.
+    // Taken once: the pages of large maps would be new in each step.
     let mut next = points.clone();
     let mut bends = vec![DVec3::ZERO; count];
     let mut momentum = 1.0f64;
