@@ -383,7 +383,7 @@ mod tests {
         );
         assert_eq!(
             message(3, 1_000_000),
-            "3 levels would take 98.2 MB of memory and 1.0 MB are available; not even 0 levels would fit; use fewer seeds"
+            "3 levels would take 89.8 MB of memory and 1.0 MB are available; not even 0 levels would fit; use fewer seeds"
         );
         assert_eq!(
             message(9, u64::MAX),

@@ -68,7 +68,7 @@ mod tests {
         let boundary_of = [BoundaryId(0), BoundaryId(1)];
         let point = DVec3::new(0.25, 0.25, 2.0);
         for (elements, expected) in [
-            (Elements::Triangles(&[[0, 1, 2], [0, 1, 3]]), [2.0, 17.0f64.sqrt() / 4.0]),
+            (Elements::Triangles(&[[0, 1, 2], [0, 1, 3]]), [2.0, 18.0f64.sqrt() / 4.0]),
             (Elements::Segments(&[[0, 1], [0, 3]]), [65.0f64.sqrt() / 4.0, 18.0f64.sqrt() / 4.0]),
         ] {
             let surface = Surface { points: &points, elements, boundary_of: &boundary_of, sides: &sides };
