@@ -7,6 +7,7 @@ use grainsmooth::{
     Coloring, Error, LabelledFile, MapRun, MeasuredMap, Polycrystal, Progress, Stage, Summary, ToWrite,
     read_map, smooth_map, write_together,
 };
+use polycrystal::Relaxation;
 use voronoi::Dimension;
 
 use super::mesh::command_line;
@@ -35,7 +36,8 @@ pub fn run(arguments: &SmoothArguments) -> anyhow::Result<ExitCode> {
 /// What is given.
 enum Given {
     Map(Box<MeasuredMap>),
-    Network(Box<LabelledFile>),
+    /// To be relaxed.
+    Network(Box<LabelledFile>, Relaxation),
 }
 
 impl Given {
@@ -48,20 +50,20 @@ impl Given {
         if let Some(option) = of_maps {
             return Err(usage(&format!("{} is a network, not a map; leave {option} out", path.display())));
         }
-        if network.relaxation().is_none() {
+        let Some(relaxation) = network.relaxation() else {
             return Err(usage(&format!(
                 "{} is a network already; give --relax, such as --relax equilibrium",
                 path.display()
             )));
-        }
-        Ok(Self::Network(Box::new(LabelledFile::read(path)?)))
+        };
+        Ok(Self::Network(Box::new(LabelledFile::read(path)?), relaxation))
     }
 
     fn dimension(&self) -> Dimension {
         match self {
             Self::Map(measured) if measured.map.is_plane() => Dimension::Two,
             Self::Map(_) => Dimension::Three,
-            Self::Network(file) => file.surface().elements.dimension(),
+            Self::Network(file, _) => file.surface().elements.dimension(),
         }
     }
 
@@ -100,14 +102,11 @@ fn smooth(arguments: &SmoothArguments, line: &ProgressLine) -> Result<String, Er
             let run = MapRun { command_line: command_line(), file, network: network.clone(), read_in };
             smooth_map(path, &measured, run, progress)?
         }
-        Given::Network(given) => {
+        Given::Network(given, relaxation) => {
             progress(Stage::Network, 0, 1);
             let mut polycrystal = Polycrystal::of_file(path, &given, command_line())?;
             *polycrystal.file_mut() = file;
-            match network.relaxation() {
-                Some(relaxation) => polycrystal.relaxed(path, relaxation, progress)?,
-                None => polycrystal,
-            }
+            polycrystal.relaxed(path, relaxation, progress)?
         }
     };
     if files.need_tetrahedra(&to_write) {
