@@ -179,6 +179,25 @@ fn no_room_imports_from_one_above() {
     }
 }
 
+/// The crates whose rooms ARCHITECTURE.md lists one by one.
+#[test]
+fn each_room_stands_in_the_architecture() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let architecture = fs::read_to_string(root.join("ARCHITECTURE.md")).unwrap();
+    for name in ["grainsmooth", "polycrystal", "voronoi"] {
+        let source = root.join("crates").join(name).join("src");
+        let rooms: BTreeSet<Vec<String>> = files(&source)
+            .iter()
+            .map(|path| module(&source, path).into_iter().take(1).collect())
+            .filter(|room: &Vec<String>| !room.is_empty())
+            .collect();
+        assert!(rooms.len() > 5, "{name} has few rooms, or they were not found");
+        for room in rooms.iter().flatten() {
+            assert!(architecture.contains(&format!("`{room}`")), "the room {room} of {name} is missing");
+        }
+    }
+}
+
 #[test]
 fn circles_are_found() {
     let of = |rooms: &[&str]| rooms.iter().map(|room| (*room).to_owned()).collect::<BTreeSet<_>>();

@@ -66,6 +66,8 @@ fn a_click_flips_an_edge_and_undoing_gives_the_same_bytes() {
     let Some(mut browser) = Browser::new("editing in the browser") else { return };
     let served = served("cube_triangles.obj", "");
     browser.open(&served.link);
+    let status = browser.value("document.getElementById('status').textContent");
+    assert_eq!(status, json!("8 points, 18 edges"));
     let before = obj_of_page(&mut browser);
     // Triangles 4 and 5, of the face that is seen at y = 0: their edge is between points 0 and 5, counted from 0.
     let edge: [u32; 2] = diagonal(&before);

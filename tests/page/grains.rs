@@ -42,6 +42,7 @@ fn grains_of_the_plane_are_shown() {
     browser.open(&served.link);
     let dataset = "document.getElementById('view').dataset";
     assert_eq!(browser.value(&format!("{dataset}.shown")), json!("20"));
+    assert_eq!(browser.value("document.getElementById('status').textContent"), json!("20 grains"));
     for at in [[700.0, 250.0], [780.0, 400.0]] {
         browser.hover(at);
         assert_told(&mut browser, &served, "area");

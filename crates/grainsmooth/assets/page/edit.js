@@ -43,7 +43,8 @@ export class EditPage {
       if (this.head.undo !== this.saved) event.preventDefault();
     });
     this.listen();
-    if (this.model !== "mesh") this.redraw();
+    if (this.model === "mesh") say(this.counts());
+    else this.redraw();
   }
 
   build(panel, head) {

@@ -102,8 +102,13 @@ export class GrainsPage {
     this.color();
     this.lines();
     this.stage.view.dataset.triangles = this.network.triangles;
-    const counts = `${unpacked.arrays.corners.length / 3} triangles`;
-    say(this.coloring ? `${this.head.ids.length} grains, ${this.head.boundaries.length} boundaries, ${counts}` : counts);
+    say(this.counts(unpacked.arrays.corners.length / 3));
+  }
+
+  counts(triangles) {
+    const grains = `${this.head.ids.length} grains`;
+    if (this.isPlane) return grains;
+    return this.coloring ? `${grains}, ${this.head.boundaries.length} boundaries, ${triangles} triangles` : `${triangles} triangles`;
   }
 
   offerColors() {
@@ -152,9 +157,9 @@ export class GrainsPage {
       if (what === "field") {
         const { arrays: { values } } = unpack(await this.source.array(head.step, Number(number)));
         const bounds = range(values);
-        const onLines = this.isPlane && Number(number) >= head.point_fields;
-        if (onLines) network.paint(() => PALE);
-        network.paintValues(values, bounds, onLines);
+        // In the plane points and segments are of lines alone.
+        if (this.isPlane) network.paint(() => PALE);
+        network.paintValues(values, bounds, this.isPlane);
         this.bar(head.fields[number], bounds);
       } else if (what === "column") {
         this.paintColumn(head.columns[number]);

@@ -49,10 +49,7 @@ pub(crate) fn network_alone(
     columns: &[Column],
 ) -> serde_json::Result<Vec<u8>> {
     let (kind, fields) = ("grains", Vec::new());
-    network.packed(
-        points,
-        &Head { kind, is_plane: false, step: 0, steps: &[], columns, fields, point_fields: 0 },
-    )
+    network.packed(points, &Head { kind, is_plane: false, step: 0, steps: &[], columns, fields })
 }
 
 /// A step to show.
@@ -81,8 +78,6 @@ struct Head<'a> {
     columns: &'a [Column],
     /// Names of the arrays of points and triangles, component by component.
     fields: Vec<String>,
-    /// How many of them are of points.
-    point_fields: usize,
 }
 
 impl Grains {
@@ -135,7 +130,6 @@ impl Grains {
             steps: &self.steps,
             columns,
             fields: self.loaded.field_names(),
-            point_fields: mesh.point_data.iter().map(|array| array.components).sum(),
         };
         Ok(Answer::packed(network.packed(&mesh.points, &head)?))
     }

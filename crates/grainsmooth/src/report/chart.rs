@@ -66,7 +66,9 @@ impl Chart {
     pub(super) fn figure(&self) -> String {
         let (before, after) = (self.bins.shares(&self.before), self.bins.shares(&self.after));
         let key = |color: &str, name: &str| {
-            format!("<span class=\"key\" style=\"background: var(--{color})\"></span>{name} ")
+            format!(
+                "<span class=\"entry\"><span class=\"key\" style=\"background: var(--{color})\"></span>{name}</span> "
+            )
         };
         let mut keys = if before.is_empty() {
             key("after", "this run")

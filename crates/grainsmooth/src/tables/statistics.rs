@@ -1,13 +1,13 @@
 //! Measures of a finished polycrystal as files of numbers.
 
+mod plane;
+mod space;
+
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::Path;
 
-use polycrystal::{
-    BoundaryMeasures, GrainId, GrainMeasures, Measures, PlaneBoundaryMeasures, PlaneGrainMeasures,
-    PlaneMeasures, QuadruplePointMeasures, Side, SpaceMeasures, TripleLineMeasures, TriplePointMeasures,
-};
+use polycrystal::{GrainId, Measures, Side};
 use serde::Serialize;
 use voronoi::Dimension;
 
@@ -82,9 +82,9 @@ impl Polycrystal {
     pub fn statistics(&self) -> NetworkStatistics {
         let (mut grains, mut others, distributions) = match self.measures() {
             Measures::Space(measures) => {
-                in_space(&measures, &self.grains().ids, &self.network.finest_level().grain_counts)
+                space::tables(&measures, &self.grains().ids, &self.network.finest_level().grain_counts)
             }
-            Measures::Plane(measures) => in_plane(&measures, &self.grains().ids),
+            Measures::Plane(measures) => plane::tables(&measures, &self.grains().ids),
         };
         if let Some(parents) = &self.grains().parents {
             let parent = |grain: GrainId| i64::from(parents.number(grain.index()));
@@ -178,63 +178,6 @@ fn add_disorientations(texture: &GrainTexture, boundaries: &mut Table) {
     });
 }
 
-fn in_space(measures: &SpaceMeasures, seed_ids: &[u32], grain_counts: &[u8]) -> Tables {
-    let SpaceMeasures { grains, boundaries, triple_lines, quadruple_points, .. } = measures;
-    let boundaries_inside = boundaries.iter().filter(|boundary| is_inside(&boundary.sides));
-    let lines_inside = triple_lines.iter().filter(|line| is_inside(&line.sides));
-    let areas = boundaries_inside.clone().map(|boundary| boundary.area);
-    let mut distributions = distributions([
-        ("volume", grains.iter().map(|grain| grain.volume).collect()),
-        ("area", grains.iter().map(|grain| grain.area).collect()),
-        ("equivalent_diameter", grains.iter().map(|grain| grain.equivalent_diameter).collect()),
-        ("sphericity", grains.iter().map(|grain| grain.sphericity).collect()),
-        ("mean_width", grains.iter().map(|grain| grain.mean_width).collect()),
-        ("neighbors", grains.iter().map(|grain| grain.neighbors.len() as f64).collect()),
-        ("faces", grains.iter().map(|grain| grain.face_count as f64).collect()),
-        ("boundary_area", areas.collect()),
-        ("edges_per_face", boundaries_inside.map(|boundary| boundary.edge_count as f64).collect()),
-        ("triple_line_length", lines_inside.map(|line| line.length).collect()),
-    ]);
-    add_angles(&mut distributions, measures.dihedral_angles, |range| {
-        let lines = triple_lines.iter().filter(|line| is_inside(&line.sides) && line.sides.len() == 3);
-        for line in lines.clone() {
-            *range = [range[0].min(line.smallest_angle), range[1].max(line.largest_angle)];
-        }
-        3 * lines.count()
-    });
-    let others = [
-        ("boundaries", boundary_table(boundaries)),
-        ("triple_lines", triple_line_table(triple_lines)),
-        ("quadruple_points", quadruple_point_table(quadruple_points, grain_counts)),
-    ];
-    (grain_table(grains, seed_ids), BTreeMap::from(others), distributions)
-}
-
-fn in_plane(measures: &PlaneMeasures, seed_ids: &[u32]) -> Tables {
-    let PlaneMeasures { grains, boundaries, triple_points, .. } = measures;
-    let inside = boundaries.iter().filter(|boundary| is_inside(&boundary.sides));
-    let mut distributions = distributions([
-        ("area", grains.iter().map(|grain| grain.area).collect()),
-        ("perimeter", grains.iter().map(|grain| grain.perimeter).collect()),
-        ("equivalent_diameter", grains.iter().map(|grain| grain.equivalent_diameter).collect()),
-        ("circularity", grains.iter().map(|grain| grain.circularity).collect()),
-        ("neighbors", grains.iter().map(|grain| grain.neighbors.len() as f64).collect()),
-        ("sides", grains.iter().map(|grain| grain.side_count as f64).collect()),
-        ("boundary_length", inside.map(|boundary| boundary.length).collect()),
-    ]);
-    add_angles(&mut distributions, measures.dihedral_angles, |range| {
-        let inside = triple_points.iter().filter(|point| is_inside(&point.sides) && point.sides.len() == 3);
-        let angles: Vec<f64> = inside.flat_map(|point| point.angles.iter().copied()).collect();
-        *range = angles.iter().fold(*range, |range, angle| [range[0].min(*angle), range[1].max(*angle)]);
-        angles.len()
-    });
-    let others = [
-        ("boundaries", plane_boundary_table(boundaries)),
-        ("triple_points", triple_point_table(triple_points)),
-    ];
-    (plane_grain_table(grains, seed_ids), BTreeMap::from(others), distributions)
-}
-
 fn is_inside(sides: &[Side]) -> bool {
     !sides.contains(&Side::Exterior)
 }
@@ -305,211 +248,4 @@ fn ids(ids: impl IntoIterator<Item = u32>) -> Value {
 
 fn numbers(values: impl IntoIterator<Item = f64>) -> impl Iterator<Item = Value> {
     values.into_iter().map(Value::Number)
-}
-
-fn grain_table(grains: &[GrainMeasures], seed_ids: &[u32]) -> Table {
-    let row = |grain: &GrainMeasures| {
-        let [x, y, z] = [grain.inertia.x_axis, grain.inertia.y_axis, grain.inertia.z_axis];
-        let mut row = vec![id(grain.grain.0)];
-        row.extend(numbers([grain.volume, grain.area]));
-        row.extend(numbers(grain.centroid.to_array()));
-        row.extend(numbers([grain.equivalent_diameter, grain.sphericity]));
-        row.extend(numbers([grain.mean_width, grain.integral_mean_curvature, grain.triple_line_length]));
-        row.extend(numbers([grain.growth_rate.unwrap_or(f64::NAN), grain.curvature_rate]));
-        row.extend([grain.face_count, grain.edge_count, grain.vertex_count].map(count));
-        row.push(Value::Number(grain.edges_per_face));
-        row.extend(numbers([x.x, y.y, z.z, x.y, x.z, y.z]));
-        row.push(Value::Flag(grain.is_at_exterior));
-        row.push(ids(grain.neighbors.iter().map(|neighbor| neighbor.0)));
-        row.push(id(seed_ids[grain.grain.index()]));
-        row
-    };
-    let columns = vec![
-        "id",
-        "volume",
-        "area",
-        "centroid_x",
-        "centroid_y",
-        "centroid_z",
-        "equivalent_diameter",
-        "sphericity",
-        "mean_width",
-        "integral_mean_curvature",
-        "triple_line_length",
-        "growth_rate",
-        "curvature_rate",
-        "faces",
-        "edges",
-        "vertices",
-        "edges_per_face",
-        "inertia_xx",
-        "inertia_yy",
-        "inertia_zz",
-        "inertia_xy",
-        "inertia_xz",
-        "inertia_yz",
-        "at_exterior",
-        "neighbors",
-        "SeedId",
-    ];
-    Table { columns, rows: grains.iter().map(row).collect() }
-}
-
-fn boundary_table(boundaries: &[BoundaryMeasures]) -> Table {
-    let row = |boundary: &BoundaryMeasures| {
-        let mut row = vec![Value::Integer(i64::from(boundary.boundary.0))];
-        row.extend(boundary.sides.map(|of| Value::Integer(side(&of))));
-        row.push(Value::Number(boundary.area));
-        row.extend(numbers(boundary.centroid.to_array()));
-        row.extend(numbers(boundary.mean_normal.to_array()));
-        row.extend([count(boundary.edge_count), Value::Number(boundary.perimeter)]);
-        row.push(Value::Number(boundary.mean_curvature));
-        row
-    };
-    let columns = vec![
-        "id",
-        "side_0",
-        "side_1",
-        "area",
-        "centroid_x",
-        "centroid_y",
-        "centroid_z",
-        "normal_x",
-        "normal_y",
-        "normal_z",
-        "edges",
-        "perimeter",
-        "mean_curvature",
-    ];
-    Table { columns, rows: boundaries.iter().map(row).collect() }
-}
-
-fn triple_line_table(lines: &[TripleLineMeasures]) -> Table {
-    let row = |(id, line): (usize, &TripleLineMeasures)| {
-        vec![
-            count(id),
-            Value::Number(line.length),
-            Value::Number(line.smallest_angle),
-            Value::Number(line.largest_angle),
-            Value::Number(line.residual.unwrap_or(f64::NAN)),
-            Value::Flag(line.is_closed),
-            grain_count(&line.sides),
-            sides(&line.sides),
-            Value::Numbers(line.mean_angles.clone()),
-            ids(line.boundaries.iter().map(|boundary| boundary.0)),
-        ]
-    };
-    let columns = vec![
-        "id",
-        "length",
-        "smallest_angle",
-        "largest_angle",
-        "residual",
-        "closed",
-        "grains",
-        "sides",
-        "mean_angles",
-        "boundaries",
-    ];
-    Table { columns, rows: lines.iter().enumerate().map(row).collect() }
-}
-
-/// `grain_counts` are those of all points.
-fn quadruple_point_table(points: &[QuadruplePointMeasures], grain_counts: &[u8]) -> Table {
-    let row = |at: &QuadruplePointMeasures| {
-        let mut row = vec![Value::Integer(i64::from(at.point))];
-        row.extend(numbers(at.position.to_array()));
-        row.extend([count(at.line_count), count(grain_counts[at.point as usize].into())]);
-        row.extend(numbers([at.mean_angle, at.smallest_angle, at.largest_angle]));
-        row.push(sides(&at.sides));
-        row
-    };
-    let columns = vec![
-        "point",
-        "x",
-        "y",
-        "z",
-        "lines",
-        "grains",
-        "mean_angle",
-        "smallest_angle",
-        "largest_angle",
-        "sides",
-    ];
-    Table { columns, rows: points.iter().map(row).collect() }
-}
-
-fn plane_grain_table(grains: &[PlaneGrainMeasures], seed_ids: &[u32]) -> Table {
-    let row = |grain: &PlaneGrainMeasures| {
-        let [x, y] = [grain.second_moment.x_axis, grain.second_moment.y_axis];
-        let mut row = vec![id(grain.grain.0)];
-        row.extend(numbers([grain.area, grain.perimeter]));
-        row.extend(numbers(grain.centroid.to_array()));
-        row.extend(numbers([grain.equivalent_diameter, grain.circularity, grain.turning]));
-        row.extend(numbers([grain.growth_rate.unwrap_or(f64::NAN), grain.curvature_rate]));
-        row.push(count(grain.side_count));
-        row.extend(numbers([x.x, y.y, x.y]));
-        row.push(Value::Flag(grain.is_at_exterior));
-        row.push(ids(grain.neighbors.iter().map(|neighbor| neighbor.0)));
-        row.push(id(seed_ids[grain.grain.index()]));
-        row
-    };
-    let columns = vec![
-        "id",
-        "area",
-        "perimeter",
-        "centroid_x",
-        "centroid_y",
-        "equivalent_diameter",
-        "circularity",
-        "turning",
-        "growth_rate",
-        "curvature_rate",
-        "sides",
-        "moment_xx",
-        "moment_yy",
-        "moment_xy",
-        "at_exterior",
-        "neighbors",
-        "SeedId",
-    ];
-    Table { columns, rows: grains.iter().map(row).collect() }
-}
-
-fn plane_boundary_table(boundaries: &[PlaneBoundaryMeasures]) -> Table {
-    let row = |boundary: &PlaneBoundaryMeasures| {
-        let mut row = vec![Value::Integer(i64::from(boundary.boundary.0))];
-        row.extend(boundary.sides.map(|of| Value::Integer(side(&of))));
-        row.push(Value::Number(boundary.length));
-        row.extend(numbers(boundary.centroid.to_array()));
-        row.extend(numbers(boundary.mean_normal.to_array()));
-        row.push(Value::Number(boundary.mean_curvature));
-        row
-    };
-    let columns = vec![
-        "id",
-        "side_0",
-        "side_1",
-        "length",
-        "centroid_x",
-        "centroid_y",
-        "normal_x",
-        "normal_y",
-        "mean_curvature",
-    ];
-    Table { columns, rows: boundaries.iter().map(row).collect() }
-}
-
-fn triple_point_table(points: &[TriplePointMeasures]) -> Table {
-    let row = |at: &TriplePointMeasures| {
-        let mut row = vec![Value::Integer(i64::from(at.point))];
-        row.extend(numbers(at.position.to_array()));
-        row.push(grain_count(&at.sides));
-        row.extend([sides(&at.sides), Value::Numbers(at.angles.clone())]);
-        row.push(Value::Number(at.residual.unwrap_or(f64::NAN)));
-        row.push(ids(at.boundaries.iter().map(|boundary| boundary.0)));
-        row
-    };
-    let columns = vec!["point", "x", "y", "grains", "sides", "angles", "residual", "boundaries"];
-    Table { columns, rows: points.iter().map(row).collect() }
 }
