@@ -1,15 +1,14 @@
 //! Points of least bending, each within its box.
 
 use cancellation::check_cancelled;
-use glam::{BVec3, DVec3};
+use glam::{BVec3, BVec3A, DVec3, Vec3A};
 use rayon::prelude::*;
 
-use crate::voxels::graph::{Graph, Part};
+use crate::mesh::grouped::Grouped;
+use crate::mesh::id::id;
+use crate::voxels::graph::Graph;
 use crate::voxels::lattice::{Lattice, Place};
 use crate::voxels::tuning::VoxelTuning;
-
-/// Points that are summed as one: few enough for all threads, many enough for each; the sum does not depend on the number of threads.
-const CHUNK: usize = 4096;
 
 /// Where points started, and how they may move: by [`VoxelTuning::within`] along each axis that is free.
 pub(super) struct Boxes {
@@ -43,8 +42,8 @@ impl Boxes {
 ///
 /// `progress` is told how many steps of how many are done.
 ///
-/// A projected gradient with acceleration that starts anew where it overshoots (Beck and Teboulle, 2009; O'Donoghue and Candès, 2015); each point has the step that its row of the matrix
-/// allows.
+/// A projected gradient with constant momentum (Nesterov, Introductory lectures on convex optimization, 2004, section 2.2.4); each point has the step that its row of the matrix allows.
+/// The search is for displacements from the middles of the boxes, in single precision: they are below 1, so this is exact to 1e-7 of a voxel.
 pub(super) fn least_bending(
     graph: &Graph,
     starts: &[DVec3],
@@ -53,65 +52,60 @@ pub(super) fn least_bending(
     progress: &(impl Fn(usize, usize) + Sync),
 ) -> Vec<DVec3> {
     let count = graph.count();
+    let followers = Grouped::new(
+        count,
+        (0..count)
+            .flat_map(|point| graph.followed(point).iter().map(move |other| (*other as usize, id(point)))),
+    );
     let share = |point: usize| match graph.followed(point).len() {
         0 => 0.0,
-        followed => 1.0 / followed as f64,
+        followed => 1.0 / followed as f32,
     };
-    let shares: Vec<f64> = (0..count).into_par_iter().map(share).collect();
-    let followers = |point: usize| followers(graph, point);
-    let steps: Vec<f64> = (0..count)
+    let shares: Vec<f32> = (0..count).into_par_iter().map(share).collect();
+    let steps: Vec<f32> = (0..count)
         .into_par_iter()
         .map(|point| {
             // Rows of the matrix of means have the sum 2 at most; so this bounds the sum of a row of its square.
             let own = if shares[point] > 0.0 { 1.0 } else { 0.0 };
-            let sum: f64 = followers(point).map(|other| shares[other as usize]).sum();
+            let sum: f32 = followers.of(point).iter().map(|other| shares[*other as usize]).sum();
             1.0 / (1.0 + tuning.bending * 2.0 * (own + sum))
         })
         .collect();
-    let mut points = starts.to_vec();
-    let mut ahead = points.clone();
-    // Taken once: the pages of large maps would be new in each step.
-    let mut next = points.clone();
-    let mut bends = vec![DVec3::ZERO; count];
-    let mut momentum = 1.0f64;
+    // The distances from the starts alone curve the sum by 1: this is the root of its least curvature as a share of the largest.
+    let curvature = steps.iter().copied().fold(1.0, f32::min).sqrt();
+    let momentum = (1.0 - curvature) / (1.0 + curvature);
+    let bend_of_middle = |point: usize| {
+        let followed = graph.followed(point).iter();
+        let from = followed.map(|other| boxes.middles[point] - boxes.middles[*other as usize]);
+        from.sum::<DVec3>().as_vec3a()
+    };
+    let bends_of_middles: Vec<Vec3A> = (0..count).into_par_iter().map(bend_of_middle).collect();
+    let displacement = |(start, middle): (&DVec3, &DVec3)| (*start - *middle).as_vec3a();
+    let starts: Vec<Vec3A> = starts.par_iter().zip(&boxes.middles).map(displacement).collect();
+    let mut points = starts.clone();
+    let mut ahead = starts.clone();
+    // Distances from means, each times the share of one point in its mean.
+    let mut bends = vec![Vec3A::ZERO; count];
+    let within = DVec3::splat(boxes.within).as_vec3a();
     for step in 0..tuning.bending_steps {
         check_cancelled();
         progress(step, tuning.bending_steps);
         bends.par_iter_mut().enumerate().for_each(|(point, bend)| {
-            let sum: DVec3 = graph.followed(point).iter().map(|other| ahead[*other as usize]).sum();
-            *bend = if shares[point] > 0.0 { ahead[point] - sum * shares[point] } else { DVec3::ZERO };
+            let followed = graph.followed(point);
+            let sum: Vec3A = followed.iter().map(|other| ahead[*other as usize]).sum();
+            let all = bends_of_middles[point] + ahead[point] * followed.len() as f32 - sum;
+            *bend = all * shares[point] * shares[point];
         });
-        next.par_iter_mut().enumerate().for_each(|(point, next)| {
-            let from: DVec3 =
-                followers(point).map(|other| bends[other as usize] * shares[other as usize]).sum();
-            let slope = ahead[point] - starts[point] + tuning.bending * (bends[point] - from);
-            *next = boxes.nearest(point, ahead[point] - slope * steps[point]);
+        points.par_iter_mut().zip(&mut ahead).enumerate().for_each(|(point, (at, ahead))| {
+            let from: Vec3A = followers.of(point).iter().map(|other| bends[*other as usize]).sum();
+            let own = bends[point] * graph.followed(point).len() as f32;
+            let slope = *ahead - starts[point] + tuning.bending * (own - from);
+            let next = (*ahead - slope * steps[point]).clamp(-within, within);
+            let is_fixed = BVec3A::from_array(boxes.is_fixed[point].into());
+            let next = Vec3A::select(is_fixed, Vec3A::ZERO, next);
+            *ahead = next + (next - *at) * momentum;
+            *at = next;
         });
-        let overshoot = |(start, next): (usize, &[DVec3])| -> f64 {
-            let all = next
-                .iter()
-                .zip(&ahead[start * CHUNK..])
-                .zip(&points[start * CHUNK..])
-                .zip(&steps[start * CHUNK..]);
-            all.map(|(((next, ahead), was), step)| (*ahead - *next).dot(*next - *was) / step).sum()
-        };
-        let sums: Vec<f64> = next.par_chunks(CHUNK).enumerate().map(overshoot).collect();
-        let is_beyond = sums.iter().sum::<f64>() > 0.0;
-        let before = if is_beyond { 1.0 } else { momentum };
-        momentum = if is_beyond { 1.0 } else { 0.5 * (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt()) };
-        let further = if is_beyond { 0.0 } else { (before - 1.0) / momentum };
-        ahead.par_iter_mut().zip(&next).zip(&points).for_each(|((ahead, next), was)| {
-            *ahead = *next + (*next - *was) * further;
-        });
-        std::mem::swap(&mut points, &mut next);
     }
-    points
-}
-
-/// The points that are to be the mean of others, of which this is one.
-fn followers(graph: &Graph, point: usize) -> impl Iterator<Item = u32> {
-    let (along, off) = graph.along_and_off(point);
-    let along = along.iter().filter(|other| graph.part(**other as usize) == Part::Line);
-    let off = off.iter().filter(|other| graph.part(**other as usize) == Part::Boundary);
-    along.chain(off).copied()
+    points.par_iter().zip(&boxes.middles).map(|(point, middle)| *middle + point.as_dvec3()).collect()
 }
