@@ -26,6 +26,7 @@ mod pictures;
 mod programs;
 mod python_keywords;
 mod remedies;
+mod remesh;
 mod seed_formats;
 mod seed_sources;
 mod series;

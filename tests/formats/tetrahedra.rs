@@ -7,8 +7,8 @@ use std::process::Command;
 
 use glam::{BVec3, DMat3, DVec3};
 use grainsmooth::{
-    Config, DeckOutput, ElementOptions, Html, Output, PeriodicCut, Polycrystal, SeedSource, SolverDeck,
-    TextureOptions, TextureSource, make_polycrystal, write_together,
+    Config, DeckOutput, ElementOptions, Html, LabelledFile, Output, PeriodicCut, Polycrystal, SeedSource,
+    SolverDeck, TextureOptions, TextureSource, make_polycrystal, write_together,
 };
 use voronoi::Dimension;
 
@@ -64,7 +64,12 @@ const CURVED: f64 = 1e-3;
 fn check_periodic_patch(test: &str, mut config: Config, tolerance: f64) {
     config.file.volume.periodic_equations = true;
     let Some(polycrystal) = filled(test, &config) else { return };
-    let (folder, path) = write(&polycrystal, "grains.inp");
+    check_patch(test, &polycrystal, tolerance);
+}
+
+/// The same of grains that are filled.
+fn check_patch(test: &str, polycrystal: &Polycrystal, tolerance: f64) {
+    let (folder, path) = write(polycrystal, "grains.inp");
 
     let written = fs::read_to_string(path).unwrap();
     let (_, equations) = written.split_once("*EQUATION\n").unwrap();
@@ -110,8 +115,8 @@ fn check_periodic_patch(test: &str, mut config: Config, tolerance: f64) {
             points += 1;
         }
     }
-    let of_element = if config.file.volume.order == Some(2) { 4 } else { 1 };
-    assert_eq!(points, of_element * polycrystal.volume_mesh.unwrap().tetrahedra.len());
+    let of_element = if polycrystal.file().volume.order == Some(2) { 4 } else { 1 };
+    assert_eq!(points, of_element * polycrystal.volume_mesh.as_ref().unwrap().tetrahedra.len());
 }
 
 fn periodic(periodic_cut: PeriodicCut) -> Config {
@@ -128,6 +133,24 @@ fn calculix_strains_whole_periodic_grains_evenly() {
 fn calculix_strains_grains_cut_at_a_periodic_box_evenly() {
     let test = "calculix_strains_grains_cut_at_a_periodic_box_evenly";
     check_periodic_patch(test, periodic(PeriodicCut::Box), 1e-6);
+}
+
+#[test]
+fn calculix_strains_networks_of_files_evenly() {
+    let test = "calculix_strains_networks_of_files_evenly";
+    if let Err(error) = grainsmooth::check_gmsh() {
+        return skip(test, &error.to_string());
+    }
+    for periodic_cut in [PeriodicCut::Wrap, PeriodicCut::Box] {
+        let config = Config { levels: 1, ..periodic(periodic_cut) };
+        let made = make_polycrystal(&config, &|_, _, _| ()).unwrap().cut_if_asked().unwrap();
+        let (_folder, path) = write(&made, "network.vtp");
+        let file = LabelledFile::read(&path).unwrap();
+        let mut again = Polycrystal::of_file(&path, &file, None, String::new()).unwrap();
+        again.file_mut().volume.periodic_equations = true;
+        let filled = again.remeshed(&config.elements).unwrap().filled().unwrap();
+        check_patch(test, &filled, 1e-6);
+    }
 }
 
 #[test]

@@ -5,10 +5,14 @@ use std::path::Path;
 
 use crate::error::usage::UsageError;
 use crate::prelude::Dimension;
-use crate::{Coloring, Config, Error, PeriodicCut, SizeOptions, Slice, read_file_domain};
+use crate::{
+    Coloring, Config, Error, LabelledFile, PeriodicCut, Shape, SizeOptions, Slice, read_file_domain,
+};
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use clap_complete::Shell;
+use toml::Table;
+use voronoi::Domain;
 
 mod check;
 mod config_file;
@@ -20,6 +24,7 @@ pub mod mesh;
 mod option_value;
 mod page;
 mod pictures;
+mod remesh;
 mod run;
 mod seeds;
 mod sizes;
@@ -36,6 +41,7 @@ use mesh::MeshArguments;
 pub use option_value::OptionValue;
 pub use page::{EditArguments, ServerArguments, ViewArguments};
 pub use pictures::PictureArguments;
+pub use remesh::RemeshArguments;
 use run::RunArguments;
 pub use run::SharedArguments;
 use seeds::SeedArguments;
@@ -79,6 +85,7 @@ pub enum Command {
     Check(CheckArguments),
     Measure(MeasureArguments),
     Smooth(Box<SmoothArguments>),
+    Remesh(Box<RemeshArguments>),
     View(ViewArguments),
     Edit(EditArguments),
     /// Print a completion script for a shell
@@ -154,6 +161,16 @@ impl Arguments {
         Self::of_words(options.map(|options| options.into_iter().map(|(_, words)| words).collect()))
     }
 
+    /// The body that grains of a network from a file fill, where that is no box and the file tells it.
+    pub fn domain_of(file: &LabelledFile) -> Option<Domain> {
+        let settings = file.settings.as_ref()?;
+        let shape = ["dim", "box", "domain", "chord-error", "half-spaces"];
+        let settings: Table =
+            settings.clone().into_iter().filter(|(key, _)| shape.contains(&key.as_str())).collect();
+        let config = Self::of_settings(&settings.to_string()).ok()?.config().ok()?;
+        if config.shape == Shape::Box { None } else { config.domain().ok() }
+    }
+
     fn of_words(words: Result<Vec<Vec<OsString>>, String>) -> Result<Self, Error> {
         let words = words.map_err(invalid)?.concat();
         Self::read([vec![env!("CARGO_PKG_NAME").into()], words].concat())
@@ -193,6 +210,11 @@ impl Arguments {
         let Self { files, pictures, run, .. } = self;
         if config.periodic_cut == PeriodicCut::Box && files.has_series() {
             return Err(usage("--series shows whole grains; leave --periodic-cut box out"));
+        }
+        if config.elements.are_asked() && files.has_series() {
+            return Err(usage(
+                "--series shows boundaries before they are remeshed; leave --element-size and --elements-per-grain out",
+            ));
         }
         let is_of_cells =
             files.cells_csv.is_some() || files.cells_json.is_some() || run.no_mesh || files.has_series();

@@ -5,5 +5,6 @@ pub mod measure;
 pub mod mesh;
 pub mod network;
 pub mod page;
+pub mod remesh;
 mod result_files;
 pub mod smooth;

@@ -67,6 +67,7 @@ fn run() -> anyhow::Result<ExitCode> {
         Command::Check(check) => return commands::check::run(check),
         Command::Measure(measure) => commands::measure::run(measure)?,
         Command::Smooth(smooth) => return commands::smooth::run(smooth),
+        Command::Remesh(remesh) => return commands::remesh::run(remesh),
         Command::View(view) => return commands::page::view(view),
         Command::Edit(edit) => return commands::page::edit(edit),
         Command::Completions { shell } => io::stdout().lock().write_all(&cli::completions(*shell))?,

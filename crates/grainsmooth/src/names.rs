@@ -38,11 +38,20 @@ pub(crate) const GENERATION: &str = "Generation";
 /// The volumes (in the plane: areas) of all grains.
 pub(crate) const VOLUMES: &str = "Volumes";
 
+/// The names of the phases, and the symmetry of the crystals of each.
+pub(crate) const PHASE_NAMES: &str = "PhaseNames";
+pub(crate) const CRYSTAL_SYMMETRIES: &str = "CrystalSymmetries";
+
+/// The periods along the axes of a network that repeats; 0 along the others.
+pub(crate) const PERIODS: &str = "Periods";
+
 /// What files say of themselves and of all grains beside who made them and how, and whether it is text.
-pub(crate) const FIELD_NAMES: [(&str, bool); 9] = [
+pub(crate) const FIELD_NAMES: [(&str, bool); 11] = [
     ("Config", true),
     ("RandomSeed", false),
-    ("PhaseNames", true),
+    (PHASE_NAMES, true),
+    (CRYSTAL_SYMMETRIES, true),
+    (PERIODS, false),
     (VOLUMES, false),
     (SEED_ID, false),
     (PARENT, false),

@@ -2,6 +2,7 @@
 
 pub(crate) mod elements_reached;
 pub(crate) mod failing;
+pub(crate) mod given;
 pub(crate) mod measured;
 pub(crate) mod misorientations;
 pub(crate) mod origin;

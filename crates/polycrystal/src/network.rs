@@ -9,6 +9,7 @@ pub(crate) mod grain_mesh;
 pub(crate) mod junctions;
 pub(crate) mod labelled_mesh;
 pub(crate) mod line_coarsening;
+pub(crate) mod periodic_grains;
 pub(crate) mod tension;
 
 use std::borrow::Cow;
@@ -134,6 +135,14 @@ impl Network {
     /// The domain that the grains fill.
     pub fn domain(&self) -> &Domain {
         &self.domain
+    }
+
+    /// Whether grains fill the domain: what is given may have pores, or not reach all walls.
+    pub fn fills_domain(&self) -> bool {
+        let is_inside = |boundary: &Boundary| {
+            boundary.is_interior() || boundary.wall.is_some() || boundary.twin.is_some()
+        };
+        self.boundaries.iter().all(is_inside)
     }
 
     /// All boundaries, by number.

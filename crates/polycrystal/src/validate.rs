@@ -45,7 +45,7 @@ pub fn validate(network: &Network, points: &[DVec3]) -> Result<Certificate, Faul
         grain_counts: Some(&grain_counts),
         originals: originals.as_deref(),
         grain_volumes: Some(&volumes),
-        domain_volume: Some(network.domain().measure()),
+        domain_volume: network.fills_domain().then(|| network.domain().measure()),
         rounding: surface.last_place(),
     };
     let mut certificate = inspect(&surface, &Adjacency::of_level(level), &expected);

@@ -7,6 +7,7 @@ use crate::{Coloring, Error, Html, Output, Picture, Png, Slice};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
+use super::usage;
 use crate::spelling::whole_number;
 
 /// Pictures and pages of the result.
@@ -61,6 +62,21 @@ pub struct PictureArguments {
 }
 
 impl PictureArguments {
+    /// Checks that a file holds what colours are to show.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with what it lacks.
+    pub fn check_known(&self, path: &Path, has_orientations: bool, has_phases: bool) -> Result<(), Error> {
+        let coloring = self.coloring();
+        let lacks = match coloring {
+            Coloring::Phase if !has_phases => "phases",
+            _ if coloring.needs_texture() && !has_orientations => "orientations",
+            _ => return Ok(()),
+        };
+        let (name, path) = (coloring.name(), path.display());
+        Err(usage(&format!("--color-by {name} needs {lacks}, which {path} does not hold; leave it out")))
+    }
+
     /// How the picture is coloured.
     pub fn coloring(&self) -> Coloring {
         self.color_by

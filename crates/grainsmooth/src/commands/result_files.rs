@@ -7,8 +7,9 @@ use std::time::Instant;
 
 use anyhow::anyhow;
 use grainsmooth::{
-    DeckOutput, Error, Html, Output, OutputDirectory, OutputFormat, Picture, Png, Polycrystal, Stage,
-    StagedFiles, StatisticsOutput, SummaryRecord, ToWrite, check_gmsh,
+    Config, DeckOutput, Error, FileOptions, Html, Output, OutputDirectory, OutputFormat, Picture, Png,
+    Polycrystal, Progress, Stage, StagedFiles, StatisticsOutput, Summary, SummaryRecord, ToWrite,
+    VolumeMeshOptions, check_gmsh, write_together,
 };
 
 use grainsmooth::cli::{OutputArguments, PictureArguments, SharedArguments, usage};
@@ -165,6 +166,28 @@ impl ResultFiles {
         self.outputs.iter().map(Output::format).chain(printed).collect()
     }
 
+    /// Fills the grains of a network that was given, where some file is to hold that, writes everything and returns the summary.
+    pub fn fill_and_write(
+        &self,
+        mut polycrystal: Polycrystal,
+        to_write: &ToWrite,
+        progress: Progress<'_>,
+    ) -> Result<String, Error> {
+        if self.need_tetrahedra(to_write) {
+            check_solver_options(&polycrystal, &to_write.volume)?;
+            progress(Stage::Filling, 0, 1);
+            polycrystal = polycrystal.filled()?;
+        }
+        progress(Stage::Writing, 0, 1);
+        let start = Instant::now();
+        write_together(|staged| {
+            self.stage(&polycrystal, staged)?;
+            self.finish(&mut polycrystal, start, &self.paths(), staged)
+        })?;
+        let names: Vec<String> = self.paths().iter().map(|path| path.display().to_string()).collect();
+        Ok(format!("{}\nwritten     {}", Summary(&polycrystal), names.join(", ")))
+    }
+
     /// Completes all files but the report and the summary, which tell how long that takes.
     pub fn stage(&self, polycrystal: &Polycrystal, staged: &mut StagedFiles) -> Result<(), Error> {
         self.outputs.iter().try_for_each(|output| polycrystal.stage(output, staged))?;
@@ -232,6 +255,28 @@ pub fn check_all_differ(targets: Vec<PathBuf>) -> Result<(), Error> {
         return Err(usage(&Error::OutputTwice { path }.to_string()));
     }
     Ok(())
+}
+
+/// Checks that what solvers are to have goes with a network that was given.
+///
+/// # Errors
+/// [`Error::Usage`].
+fn check_solver_options(polycrystal: &Polycrystal, volume: &VolumeMeshOptions) -> Result<(), Error> {
+    let network = &polycrystal.network;
+    let repeats = network.domain().periodic() | polycrystal.axes_cut_at_box();
+    if volume.periodic_equations && !repeats.any() {
+        return Err(usage(
+            "--periodic-equations ties nodes that are one period apart, and this network does not repeat; leave it out",
+        ));
+    }
+    if volume.solver_deck.is_some() && (!network.fills_domain() || repeats.any() != repeats.all()) {
+        return Err(usage(
+            "--solver-deck loads a box that grains fill, periodic along all axes or none; leave it out",
+        ));
+    }
+    let file = FileOptions { volume: *volume, ..FileOptions::default() };
+    let options = Config { periodic: repeats, file, ..Config::default() };
+    options.check().map_err(|error| usage(&error.to_string()))
 }
 
 /// Threads to compute with.

@@ -4,8 +4,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use grainsmooth::{
-    Coloring, Error, LabelledFile, MapRun, MeasuredMap, Polycrystal, Progress, Stage, Summary, ToWrite,
-    read_map, smooth_map, write_together,
+    Error, LabelledFile, MapRun, MeasuredMap, Polycrystal, Progress, Stage, ToWrite, read_map, smooth_map,
 };
 use polycrystal::Relaxation;
 use voronoi::Dimension;
@@ -14,7 +13,7 @@ use super::mesh::command_line;
 use super::result_files::{ResultFiles, check_all_differ, thread_pool};
 use crate::progress::ProgressLine;
 use crate::say;
-use grainsmooth::cli::{SmoothArguments, usage};
+use grainsmooth::cli::{Arguments, SmoothArguments, usage};
 
 /// Smooths the map, writes what is asked for and reports.
 pub fn run(arguments: &SmoothArguments) -> anyhow::Result<ExitCode> {
@@ -68,7 +67,17 @@ impl Given {
     }
 
     fn has_orientations(&self) -> bool {
-        matches!(self, Self::Map(measured) if measured.crystals.is_some())
+        match self {
+            Self::Map(measured) => measured.crystals.is_some(),
+            Self::Network(file, _) => file.orientations.is_some(),
+        }
+    }
+
+    fn has_phases(&self) -> bool {
+        match self {
+            Self::Map(measured) => measured.crystals.is_some(),
+            Self::Network(file, _) => file.phases.is_some(),
+        }
     }
 }
 
@@ -79,12 +88,8 @@ fn smooth(arguments: &SmoothArguments, line: &ProgressLine) -> Result<String, Er
     line.show(Stage::Map, 0, 1);
     let given = Given::read(arguments)?;
     let read_in = start.elapsed();
-    let coloring = pictures.coloring();
     let has_orientations = given.has_orientations();
-    if !has_orientations && (coloring == Coloring::Phase || coloring.needs_texture()) {
-        let name = coloring.name();
-        return Err(usage(&format!("--color-by {name} needs something that a map of labels does not hold")));
-    }
+    pictures.check_known(path, has_orientations, given.has_phases())?;
     let dimension = given.dimension();
     let file = outputs.options(dimension)?;
     let to_write = ToWrite {
@@ -97,28 +102,18 @@ fn smooth(arguments: &SmoothArguments, line: &ProgressLine) -> Result<String, Er
     let files = ResultFiles::check(outputs, pictures, shared, &to_write, true)?;
     check_all_differ(files.targets())?;
     let progress: Progress<'_> = &|stage, done, count| line.show(stage, done, count);
-    let mut polycrystal = match given {
+    let polycrystal = match given {
         Given::Map(measured) => {
             let run = MapRun { command_line: command_line(), file, network: network.clone(), read_in };
             smooth_map(path, &measured, run, progress)?
         }
         Given::Network(given, relaxation) => {
             progress(Stage::Network, 0, 1);
-            let mut polycrystal = Polycrystal::of_file(path, &given, command_line())?;
+            let mut polycrystal =
+                Polycrystal::of_file(path, &given, Arguments::domain_of(&given), command_line())?;
             *polycrystal.file_mut() = file;
             polycrystal.relaxed(path, relaxation, progress)?
         }
     };
-    if files.need_tetrahedra(&to_write) {
-        line.show(Stage::Filling, 0, 1);
-        polycrystal = polycrystal.filled()?;
-    }
-    line.show(Stage::Writing, 0, 1);
-    let start = Instant::now();
-    write_together(|staged| {
-        files.stage(&polycrystal, staged)?;
-        files.finish(&mut polycrystal, start, &files.paths(), staged)
-    })?;
-    let names: Vec<String> = files.paths().iter().map(|path| path.display().to_string()).collect();
-    Ok(format!("{}\nwritten     {}", Summary(&polycrystal), names.join(", ")))
+    files.fill_and_write(polycrystal, &to_write, progress)
 }

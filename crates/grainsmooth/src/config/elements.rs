@@ -13,14 +13,14 @@ pub struct ElementOptions {
     /// Remesh boundaries with triangles whose edges are H long, in the unit of --box
     ///
     /// Example: --element-size 0.02
-    #[arg(long, value_name = "H", value_parser = element_size, allow_negative_numbers = true, conflicts_with_all = ["elements_per_grain", "series"])]
+    #[arg(long, value_name = "H", value_parser = element_size, allow_negative_numbers = true, conflicts_with = "elements_per_grain")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub element_size: Option<f64>,
 
     /// Set the edge length to 1/K of the mean grain diameter instead
     ///
     /// Example: --elements-per-grain 5 --relax equilibrium
-    #[arg(long, value_name = "K", value_parser = number(0.1..=1000.0, "give a number from 0.1 to 1000"), allow_negative_numbers = true, conflicts_with = "series")]
+    #[arg(long, value_name = "K", value_parser = number(0.1..=1000.0, "give a number from 0.1 to 1000"), allow_negative_numbers = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub elements_per_grain: Option<f64>,
 

@@ -11,7 +11,7 @@ use voronoi::{Dimension, PeriodicPair};
 use super::measured_arrays::MeasuredArrays;
 use super::surface::Surface;
 use crate::mesh::file::stl::unit_normal;
-use crate::names::{MOBILITY, NUMBER_OF_GRAINS, SEED_ID, TENSION};
+use crate::names::{CRYSTAL_SYMMETRIES, MOBILITY, NUMBER_OF_GRAINS, PERIODS, PHASE_NAMES, SEED_ID, TENSION};
 use crate::volume_mesh::element_nodes::ElementNodes;
 use crate::vtk::write_vtk;
 use crate::vtk::{
@@ -226,8 +226,20 @@ impl Polycrystal {
             field.push(text("Config", config.to_toml()));
             field.push(FieldEntry { name: "RandomSeed", value: FieldValue::Integer(config.random_seed) });
         }
-        if let Some(phases) = &self.grains().phases {
-            field.push(text("PhaseNames", phases.names().collect::<Vec<_>>().join(",")));
+        let grains = self.grains();
+        if let Some(phases) = &grains.phases {
+            field.push(text(PHASE_NAMES, phases.names().collect::<Vec<_>>().join(",")));
+        }
+        if grains.phases.is_some() || grains.texture.is_some() {
+            let symmetries = grains.named_symmetries().into_iter();
+            let symmetries: Vec<&str> = symmetries.map(|(_, symmetry)| symmetry.rotation_group()).collect();
+            field.push(text(CRYSTAL_SYMMETRIES, symmetries.join(",")));
+        }
+        let domain = self.network.domain();
+        let repeats = domain.periodic() | self.axes_cut_at_box();
+        if repeats.any() {
+            let periods = DVec3::select(repeats, domain.size(), DVec3::ZERO);
+            field.push(FieldEntry { name: PERIODS, value: FieldValue::Numbers(periods.to_array().to_vec()) });
         }
         field
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 use clap::ValueEnum;
 use glam::DVec3;
 use polycrystal::{BoundaryId, Elements, Expected, GrainId, NodeType, Side, Surface, outward_sides};
-use texture::Orientation;
+use texture::{CrystalSymmetry, Orientation};
 use toml::{Table, Value};
 use voronoi::Dimension;
 
@@ -41,8 +41,14 @@ pub struct LabelledFile {
     pub orientations: Option<Vec<(GrainId, Orientation)>>,
     /// The numbers of the phases of all grains, if this program wrote the file and they have some.
     pub phases: Option<Vec<(GrainId, u32)>>,
-    /// What each grain was called in the map that it was smoothed from, in order, if this program wrote the file.
-    pub map_labels: Option<Vec<u32>>,
+    /// The names of the phases, from number 1.
+    pub phase_names: Vec<String>,
+    /// The symmetries of the crystals of all phases, or, without phases, of all grains.
+    pub symmetries: Vec<CrystalSymmetry>,
+    /// The numbers of the seeds of all grains, or what they were called in the map that they come from, if this program wrote the file.
+    pub seed_ids: Option<Vec<(GrainId, u32)>>,
+    /// The periods along the axes, 0 where nothing repeats; nothing where nothing does along any.
+    pub periods: Option<DVec3>,
     /// What coordinates in the file are those of `points` multiplied by.
     pub stretch: DVec3,
     /// Whether the file has its points in single precision.
@@ -113,11 +119,26 @@ impl LabelledFile {
             is_single,
             notes,
         } = cells;
-        let Notes { config, volumes, euler_angles, phases, seed_ids, .. } = notes;
+        let Notes {
+            config,
+            volumes,
+            euler_angles,
+            phases,
+            phase_names,
+            crystal_symmetries,
+            periods,
+            seed_ids,
+            ..
+        } = notes;
         let settings: Option<Table> = config.and_then(|text| text.parse().ok());
         // Without an exterior the volumes of all grains would sum to nothing.
         let zero_is_exterior =
             label_array != "FaceLabels" || !labels.iter().flatten().any(|label| *label < 0);
+        // The label of the first grain, where this program wrote the file.
+        let first = match &settings {
+            Some(settings) => Some(first_label(settings)),
+            None => seed_ids.as_ref().map(|_| u32::from(zero_is_exterior)),
+        };
         // With the names of other tools, all that a periodic grain has beyond the box has the same labels.
         let boundary_ids = boundary_ids.filter(|_| settings.is_some());
         let mut boundaries: BTreeMap<([i64; 2], Option<i64>), BoundaryId> = BTreeMap::new();
@@ -162,7 +183,8 @@ impl LabelledFile {
         };
         // In a periodic network they count periodic images of grains, which are not at the point.
         let is_periodic = labels.iter().flatten().any(|label| *label < -1)
-            || settings.as_ref().is_some_and(sticks_out_of_the_box);
+            || settings.as_ref().is_some_and(sticks_out_of_the_box)
+            || periods.is_some() && originals.is_some();
         let node_types =
             node_types.filter(|_| !is_periodic).map(|codes| codes.into_iter().map(node_type).collect());
         let mut points = mesh.points;
@@ -181,25 +203,30 @@ impl LabelledFile {
             grain_counts: grain_counts.filter(|_| !is_periodic || originals.is_some()),
             originals: originals.filter(|_| is_periodic),
             label_array,
-            volumes: settings.as_ref().and_then(|settings| numbered(volumes?, settings)),
-            orientations: settings.as_ref().and_then(|settings| {
+            volumes: settings.as_ref().and_then(|settings| numbered(volumes?, first_label(settings))),
+            orientations: first.and_then(|first| {
                 let (angles, []) = euler_angles.as_ref()?.as_chunks() else { return None };
                 let orientations = angles.iter().map(|angles| Orientation::from_euler_degrees(*angles));
-                numbered(orientations.collect(), settings)
+                numbered(orientations.collect(), first)
             }),
-            phases: settings.as_ref().and_then(|settings| {
+            phases: first.and_then(|first| {
                 #[expect(
                     clippy::cast_possible_truncation,
                     clippy::cast_sign_loss,
                     reason = "whole and not negative"
                 )]
                 let phases = phases?.into_iter().map(|phase| phase as u32).collect();
-                numbered(phases, settings)
+                numbered(phases, first)
             }),
-            // With settings they are numbers of seeds.
-            map_labels: seed_ids
-                .filter(|_| settings.is_none())
-                .map(|ids| ids.into_iter().map(i32::cast_unsigned).collect()),
+            phase_names: phase_names.iter().flat_map(|names| names.split(',')).map(str::to_owned).collect(),
+            symmetries: crystal_symmetries
+                .iter()
+                .flat_map(|names| names.split(','))
+                .map(|name| name.parse().unwrap_or_default())
+                .collect(),
+            seed_ids: first
+                .and_then(|first| numbered(seed_ids?.into_iter().map(i32::cast_unsigned).collect(), first)),
+            periods: periods.and_then(|periods| Some(DVec3::from_array(periods.try_into().ok()?))),
             stretch,
             is_single,
             settings,
@@ -271,8 +298,7 @@ fn sticks_out_of_the_box(settings: &Table) -> bool {
 }
 
 /// What is known of all grains with their labels.
-fn numbered<T>(of_grains: Vec<T>, settings: &Table) -> Option<Vec<(GrainId, T)>> {
-    let first = first_label(settings);
+fn numbered<T>(of_grains: Vec<T>, first: u32) -> Option<Vec<(GrainId, T)>> {
     (of_grains.len() < u32::MAX as usize).then(|| (first..).map(GrainId).zip(of_grains).collect())
 }
 

@@ -1,25 +1,21 @@
-//! From a measured map to its network, and from a network that is there.
+//! From a measured map to its network.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use glam::DVec3;
+use glam::BVec3;
 use polycrystal::{
-    Certificate, Expected, GrainId, Junctions, Network, NetworkError, Relaxation, Side, SmoothedVoxels,
-    Surface, VoxelLabel, VoxelOptions, Voxels, certify, herring_residual, outward_sides, relax,
-    smooth_voxels,
+    Expected, GrainId, Junctions, NetworkError, Relaxation, SmoothedVoxels, Surface, VoxelLabel,
+    VoxelOptions, Voxels, certify, herring_residual, relax, smooth_voxels,
 };
-use texture::CrystalSymmetry;
-use voronoi::{Dimension, Domain};
 
+use super::given::grains_called;
 use super::origin::{Measurement, Origin, SmoothedMap};
 use super::polycrystal::Polycrystal;
 use super::stage::{Progress, Stage};
-use super::topology::Topology;
 use crate::maps::label_map::{LabelMap, MeasuredCrystals, MeasuredMap};
 use crate::{
-    Error, FileOptions, GrainAttributes, GrainPhases, GrainTexture, LabelledFile, MapNetworkOptions,
-    MeasuredAttributes,
+    Error, FileOptions, GrainAttributes, GrainPhases, GrainTexture, MapNetworkOptions, MeasuredAttributes,
 };
 
 /// What is said of a map that is smoothed.
@@ -84,6 +80,7 @@ pub fn smooth_map(
             points: measured.crystals.as_ref().map(|crystals| crystals.points.clone()),
             relabelled,
         }),
+        cut: BVec3::FALSE,
         folds: certificate.faults.0.len(),
     };
     let smooth = Polycrystal::measured(measurement, network, points, certificate, times);
@@ -94,32 +91,6 @@ pub fn smooth_map(
 }
 
 impl Polycrystal {
-    /// The network of a file, whose grains are numbered from 0 in order of their labels; `SeedId` has these labels. `command_line` is what files tell of where they come from.
-    ///
-    /// # Errors
-    /// [`Error::NetworkOfMap`] where grains are not closed, or cross.
-    pub fn of_file(path: &Path, file: &LabelledFile, command_line: String) -> Result<Self, Error> {
-        let surface = file.surface();
-        let grains = surface.grains();
-        let renumbered = |side: &Side| match side {
-            Side::Grain(grain) => {
-                let rank = grains.binary_search(grain).expect("grains of the surface are listed");
-                Side::Grain(GrainId(u32::try_from(rank).expect("no more grains than ids")))
-            }
-            Side::Exterior => Side::Exterior,
-        };
-        let sides: Vec<[Side; 2]> =
-            surface.sides.iter().map(|sides| [0, 1].map(|k| renumbered(&sides[k]))).collect();
-        let points: Vec<DVec3> = file.points.iter().map(|point| *point * file.stretch).collect();
-        let surface = Surface { points: &points, sides: &sides, ..surface };
-        let own = || grains.iter().map(|grain| grain.0).collect();
-        let ids = file.map_labels.clone().filter(|labels| labels.len() == grains.len()).unwrap_or_else(own);
-        Self::of_surface(&surface, ids, command_line).map_err(|error| match error {
-            Error::Network(cause) => Error::NetworkOfMap { path: path.to_owned(), cause: Box::new(cause) },
-            other => other,
-        })
-    }
-
     /// The grains of a map or of a given network with boundaries nearer to the equilibrium of their tension. `path` is where they come from. Volumes and neighbours stay.
     ///
     /// # Errors
@@ -157,82 +128,14 @@ impl Polycrystal {
         self.add_time(Stage::Validation, start.elapsed());
         Ok(self)
     }
-
-    /// The network of closed grains that are there, such as another program's, numbered from 0; `ids` are the numbers that they had. They need not fill the box around them.
-    /// `command_line` is what files tell of where they come from.
-    ///
-    /// # Errors
-    /// [`Error::Network`] where grains are not closed, or cross; as of [`Network::of_closed_grains`].
-    ///
-    /// # Panics
-    /// As [`Network::of_surface`].
-    pub fn of_surface(surface: &Surface<'_>, ids: Vec<u32>, command_line: String) -> Result<Self, Error> {
-        let start = Instant::now();
-        let sides = outward_sides(surface);
-        let surface = Surface { sides: &sides, ..*surface };
-        let lower = surface.points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let upper = surface.points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-        let domain = match surface.elements.dimension() {
-            Dimension::Two => Domain::rectangle(lower, upper),
-            Dimension::Three => Domain::cuboid(lower, upper),
-        };
-        let (network, points, certificate) =
-            Network::of_closed_grains(&domain?, &surface, Junctions::Crease)?;
-        let measurement = Measurement {
-            command_line,
-            file: FileOptions::default(),
-            grains: GrainAttributes {
-                ids,
-                parents: None,
-                phases: None,
-                symmetry: CrystalSymmetry::default(),
-                texture: None,
-                measured: None,
-            },
-            map: None,
-            folds: certificate.faults.0.len(),
-        };
-        let times = vec![(Stage::Validation, start.elapsed())];
-        Ok(Self::measured(measurement, network, points, certificate, times))
-    }
-
-    fn measured(
-        measurement: Measurement,
-        network: Network,
-        points: Vec<DVec3>,
-        validation: Certificate,
-        times: Vec<(Stage, Duration)>,
-    ) -> Self {
-        Self {
-            origin: Origin::Measured(Box::new(measurement)),
-            topology: Topology::new(None, &network),
-            residual: herring_residual(&network, &points),
-            network,
-            points,
-            attempts: Vec::new(),
-            tensions: None,
-            mobilities: None,
-            validation,
-            elements: None,
-            middles: None,
-            volume_mesh: None,
-            times,
-        }
-    }
 }
 
 /// What the map tells of each grain.
 fn attributes(measured: &MeasuredMap) -> GrainAttributes {
     let MeasuredMap { labels, voxel_counts, crystals, .. } = measured;
     let spreads = crystals.as_ref().map(|crystals| crystals.spreads.clone());
-    let known = GrainAttributes {
-        ids: labels.clone(),
-        parents: None,
-        phases: None,
-        symmetry: CrystalSymmetry::default(),
-        texture: None,
-        measured: Some(MeasuredAttributes { voxel_counts: voxel_counts.clone(), spreads }),
-    };
+    let measured = MeasuredAttributes { voxel_counts: voxel_counts.clone(), spreads };
+    let known = GrainAttributes { measured: Some(measured), ..grains_called(labels.clone()) };
     let Some(MeasuredCrystals { phases, phase_of, orientations, .. }) = crystals else { return known };
     let symmetries = phases.iter().map(|(_, symmetry)| *symmetry).collect();
     GrainAttributes {

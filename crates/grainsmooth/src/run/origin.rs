@@ -1,5 +1,6 @@
 //! Where grains come from.
 
+use glam::BVec3;
 use polycrystal::{AngleStatistics, Collapsed, Relaxed, Vanished, WeightedAngle};
 
 use super::regularization::{Reconnected, Regularization};
@@ -49,6 +50,8 @@ pub struct Measurement {
     pub grains: GrainAttributes,
     /// The map that it was smoothed from; nothing where the network itself was given.
     pub map: Option<SmoothedMap>,
+    /// The axes along which the network repeats, and is cut at its box.
+    pub cut: BVec3,
     /// Number of pairs of elements that fold back on each other, as where a grain is thinner than three voxels.
     pub folds: usize,
 }

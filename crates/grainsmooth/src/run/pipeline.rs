@@ -4,8 +4,8 @@ use glam::DVec3;
 use polycrystal::{
     AngleStatistics, Attempt, Boundary, Certificate, Collapsed, GrowthRecipe, Junctions, MeshSize, Network,
     NetworkError, NetworkRecipe, RegularCells, Relaxation, RelaxationStep, Relaxed, RelaxedCells, Vanished,
-    Volumes, WeightedAngle, angles_between_boundaries, grow_cells, herring_residual, regular_cells,
-    relax_cells, relax_watched, remove_short_edges, validate,
+    Volumes, WeightedAngle, angles_between_boundaries, grow_cells, regular_cells, relax_cells, relax_watched,
+    remove_short_edges, validate,
 };
 use voronoi::{Dimension, Tessellation};
 
@@ -138,8 +138,6 @@ pub fn smooth_watched(
         validation,
     } = smoothed;
     attempts.extend(relaxed.given_up.clone());
-    let residual = clock.time(Stage::Validation, || herring_residual(&network, &points));
-    let times = clock.times;
     let topology = Topology::new(Some(&cells.face_counts(tessellation)), &network);
     let config = config.clone();
     let synthesis = Synthesis {
@@ -153,21 +151,10 @@ pub fn smooth_watched(
         flat_angles,
         angles_before,
     };
-    let mut polycrystal = Polycrystal {
-        origin: Origin::Synthetic(Box::new(synthesis)),
-        network,
-        points,
-        topology,
-        attempts,
-        residual,
-        tensions: None,
-        mobilities: None,
-        validation,
-        elements: None,
-        middles: None,
-        volume_mesh: None,
-        times,
-    };
+    let origin = Origin::Synthetic(Box::new(synthesis));
+    let mut polycrystal =
+        clock.time(Stage::Validation, || Polycrystal::new(origin, topology, network, points, validation));
+    (polycrystal.attempts, polycrystal.times) = (attempts, clock.times);
     polycrystal.fit_misorientations();
     if let Some(Synthesis { cells, .. }) = polycrystal.synthesis() {
         let tensions = cells.law.tensions_reached(&polycrystal.network, || polycrystal.measures());

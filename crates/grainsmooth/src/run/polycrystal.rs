@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use glam::{BVec3, DVec3};
 use polycrystal::{
     Attempt, BoxCut, Certificate, EdgeMiddles, HerringResidual, Measures, Network, NetworkError, Side,
-    measure_network, validate,
+    herring_residual, measure_network, validate,
 };
 use voronoi::Dimension;
 
@@ -15,8 +15,7 @@ use super::stage::Stage;
 use super::topology::Topology;
 use crate::volume_mesh::VolumeMesh;
 use crate::{
-    Config, Error, Failure, FileOptions, GrainAttributes, LawReached, PeriodicCut, Provenance,
-    TensionsReached,
+    Error, Failure, FileOptions, GrainAttributes, LawReached, PeriodicCut, Provenance, TensionsReached,
 };
 
 /// A finished polycrystal: a valid network with the points of its finest level.
@@ -51,6 +50,31 @@ pub struct Polycrystal {
 }
 
 impl Polycrystal {
+    /// A network as it is found to be, with nothing that was tried, asked for or added since.
+    pub(crate) fn new(
+        origin: Origin,
+        topology: Topology,
+        network: Network,
+        points: Vec<DVec3>,
+        validation: Certificate,
+    ) -> Self {
+        Self {
+            origin,
+            topology,
+            residual: herring_residual(&network, &points),
+            network,
+            points,
+            attempts: Vec::new(),
+            tensions: None,
+            mobilities: None,
+            validation,
+            elements: None,
+            middles: None,
+            volume_mesh: None,
+            times: Vec::new(),
+        }
+    }
+
     /// What is known of each grain.
     pub fn grains(&self) -> &GrainAttributes {
         match &self.origin {
@@ -133,10 +157,14 @@ impl Polycrystal {
     }
 
     /// The axes across which grains of a periodic box are cut at it in the end.
-    pub(crate) fn axes_cut_at_box(&self) -> BVec3 {
-        let config = self.synthesis().map(|synthesis| &synthesis.config);
-        let is_cut = |config: &&Config| config.periodic_cut == PeriodicCut::Box;
-        config.filter(is_cut).map_or(BVec3::FALSE, |config| config.periodic)
+    pub fn axes_cut_at_box(&self) -> BVec3 {
+        match &self.origin {
+            Origin::Synthetic(synthesis) => match synthesis.config.periodic_cut {
+                PeriodicCut::Box => synthesis.config.periodic,
+                PeriodicCut::Wrap => BVec3::FALSE,
+            },
+            Origin::Measured(measurement) => measurement.cut,
+        }
     }
 
     /// How often the mesh of the cells was subdivided.

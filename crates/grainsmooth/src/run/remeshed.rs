@@ -38,7 +38,8 @@ impl Polycrystal {
         }
     }
 
-    /// Remeshes boundaries where `options` ask for it; others stay as they are.
+    /// Remeshes boundaries where `options` ask for it; others stay as they are. Triangles of a network that was not made from cells are the smooth surface: they are divided where they
+    /// are too large to put points on.
     ///
     /// # Errors
     /// As of [`Self::remeshed_if_asked`].
@@ -46,16 +47,21 @@ impl Polycrystal {
         let diameter = self.diameter_statistics().mean;
         let per_grain = options.elements_per_grain.map(|count| diameter / count);
         let Some(length) = options.element_size.or(per_grain) else { return Ok(self) };
+        let start = Instant::now();
         let mean = self.network.mean_edge_length(&self.points);
         if mean > LONGEST * length {
-            let coarser = mean / (LONGEST * length);
-            return Err(Error::CoarseReference { mean, length, levels: more_levels(self.level(), coarser) });
+            let more = more_levels(mean / (LONGEST * length));
+            if self.synthesis().is_some() {
+                return Err(Error::CoarseReference { mean, length, levels: self.level() + more });
+            }
+            let divided = self.network.divided(more as usize)?;
+            self.points = divided.divide(&self.points);
+            self.network = divided;
         }
         let growth = options.size_growth.unwrap_or(ElementSize::GROWTH);
         let has_middles = self.file().volume.order == Some(2);
         let size = ElementSize { length, growth, of_radius: options.adapt_curvature, has_middles };
         let cut = self.axes_cut_at_box();
-        let start = Instant::now();
         match self.network.remeshed(&self.points, &size, cut) {
             Ok(Remeshed { network, points, certificate, refinements, middles }) => {
                 let mean_edge = network.mean_edge_length(&points);
@@ -72,11 +78,7 @@ impl Polycrystal {
     }
 }
 
-/// The level with edges so many times as short.
-fn more_levels(levels: u32, times: f64) -> u32 {
-    let mut more = 1;
-    while 2f64.powi(more) < times {
-        more += 1;
-    }
-    levels + more.unsigned_abs()
+/// How many more levels have edges so many times as short.
+fn more_levels(times: f64) -> u32 {
+    (1..).find(|more| 0.5f64.powi(*more) * times <= 1.0).map_or(0, i32::unsigned_abs)
 }

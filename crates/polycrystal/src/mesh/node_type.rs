@@ -74,7 +74,8 @@ impl Meeting {
 
     /// What meets inside a boundary.
     pub(crate) fn inside(boundary: &Boundary) -> Self {
-        let grains = if boundary.wall.is_some() { 1 } else { 2 };
+        let is_between_grains = boundary.is_interior() || boundary.twin.is_some();
+        let grains = if is_between_grains { 2 } else { 1 };
         Self { node_type: NodeType::inside(boundary), sides: 2, grains }
     }
 }

@@ -171,7 +171,7 @@ impl Network {
         volumes: Option<&[f64]>,
         junctions: Junctions,
     ) -> Result<(Self, Vec<DVec3>, Certificate), NetworkError> {
-        check_surface_size(domain, surface, 0)?;
+        check_surface(domain, surface, 0)?;
         let kind = SurfaceKind::Measured { volumes };
         let certificate = kind.certify(domain, surface)?;
         let control_mesh = ControlMesh::of_surface(domain, surface, kind, junctions)?;
@@ -189,7 +189,7 @@ impl Network {
         junctions: Junctions,
         level_count: usize,
     ) -> Result<(Self, Vec<DVec3>), NetworkError> {
-        check_surface_size(domain, surface, level_count)?;
+        check_surface(domain, surface, level_count)?;
         SurfaceKind::Whole.certify(domain, surface)?;
         let control_mesh = ControlMesh::of_surface(domain, surface, SurfaceKind::Whole, junctions)?;
         let (mut network, points) = Self::assemble(domain, control_mesh, Vec::new(), level_count)?;
@@ -199,7 +199,7 @@ impl Network {
     }
 
     /// The network of a control mesh, and its points.
-    fn assemble(
+    pub(super) fn assemble(
         domain: &Domain,
         control_mesh: ControlMesh,
         cell_volumes: Vec<f64>,
@@ -235,6 +235,22 @@ impl Network {
             finest_copies,
         };
         Ok((network, points))
+    }
+
+    /// The network with so many more levels, all held. [`Self::divide`] puts their points on the triangles of the finest level that there is now.
+    ///
+    /// # Errors
+    /// [`NetworkError::TooLarge`].
+    pub fn divided(&self, level_count: usize) -> Result<Self, NetworkError> {
+        let finest = self.finest_level().into_owned();
+        let [points, count] = [finest.vertex_count(), finest.element_count()].map(|count| count as u128);
+        check_size(&self.domain, &MeshSize { points, edges: count, triangles: count }, level_count)?;
+        let mut divided = self.with_level(finest);
+        for coarser in 0..level_count {
+            check_cancelled();
+            divided.levels.push(divided.levels[coarser].refine(&self.boundaries, &self.wall_sets)?);
+        }
+        Ok(divided)
     }
 
     /// The same boundaries on another, single level.
@@ -279,18 +295,21 @@ fn check_face_mesh(
     check_size(tessellation.domain(), &face_mesh.control_mesh_size(tessellation), level_count)
 }
 
-fn check_surface_size(
-    domain: &Domain,
-    surface: &Surface<'_>,
-    level_count: usize,
-) -> Result<(), NetworkError> {
+/// Checks that a surface can be a network, refined so often: its domain has walls only.
+fn check_surface(domain: &Domain, surface: &Surface<'_>, level_count: usize) -> Result<(), NetworkError> {
+    if domain.is_periodic() {
+        return Err(NetworkError::PeriodicSurface);
+    }
+    check_size(domain, &surface_size(surface), level_count)
+}
+
+pub(super) fn surface_size(surface: &Surface<'_>) -> MeshSize {
     let count = surface.elements.len() as u128;
-    let size = MeshSize { points: surface.points.len() as u128, edges: count, triangles: count };
-    check_size(domain, &size, level_count)
+    MeshSize { points: surface.points.len() as u128, edges: count, triangles: count }
 }
 
 /// Subdivision multiplies elements by four (in the plane: two); the largest ids are those of half-edges, three a triangle.
-fn check_size(domain: &Domain, size: &MeshSize, level_count: usize) -> Result<(), NetworkError> {
+pub(super) fn check_size(domain: &Domain, size: &MeshSize, level_count: usize) -> Result<(), NetworkError> {
     let (factor, parts, of_control_mesh) = match domain.dimension() {
         voronoi::Dimension::Two => (2u128, "segments", size.edges),
         voronoi::Dimension::Three => (4u128, "half-edges", 3 * size.triangles),

@@ -116,6 +116,14 @@ pub enum NetworkError {
     /// A labelled surface in a periodic domain.
     #[error("a network of given triangles cannot be periodic; give a domain without periods")]
     PeriodicSurface,
+    /// A point or an element at the exterior of whole periodic grains that is no copy of another.
+    #[error(
+        "point {point} belongs to a periodic network, but lies on no wall and no whole periods away from its original; write the network again"
+    )]
+    NoPeriodicCopy {
+        /// The point.
+        point: u32,
+    },
     /// A size of elements, or what it is made of, that is none.
     #[error("element sizes, their growth and their share of the radius must be positive and finite, not {0}")]
     BadElementSize(f64),
@@ -302,6 +310,7 @@ impl NetworkError {
             | Self::BadElementSize(_)
             | Self::RemeshPlane
             | Self::NoCopyOnWall { .. }
+            | Self::NoPeriodicCopy { .. }
             | Self::BadRelaxationTime(_)
             | Self::BadMobility { .. }
             | Self::BadTension { .. } => None,

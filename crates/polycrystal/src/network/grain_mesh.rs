@@ -30,7 +30,7 @@ impl ControlMesh {
     }
 
     /// That of a complex whose faces are triangles (in the plane: segments), of which those that hang together between two grains are one boundary.
-    fn of_elements(complex: &Tessellation, junctions: Junctions) -> Result<Self, NetworkError> {
+    pub(super) fn of_elements(complex: &Tessellation, junctions: Junctions) -> Result<Self, NetworkError> {
         let mut points = complex.vertices().to_vec();
         let sides: Vec<[voronoi::Side; 2]> = complex.faces().map(|face| complex.face_sides(face)).collect();
         let corners = complex.faces().map(|face| complex.face_corners(face));

@@ -33,11 +33,8 @@ impl SurfaceKind<'_> {
     /// What a surface is like. Its only faults may be folds, where these are allowed.
     ///
     /// # Errors
-    /// [`NetworkError::PeriodicSurface`]; [`NetworkError::Invalid`].
+    /// [`NetworkError::Invalid`].
     pub(crate) fn certify(self, domain: &Domain, surface: &Surface<'_>) -> Result<Certificate, NetworkError> {
-        if domain.is_periodic() {
-            return Err(NetworkError::PeriodicSurface);
-        }
         let certificate = match self {
             Self::Whole => {
                 let expected = Expected { domain_volume: Some(domain.measure()), ..Expected::default() };
@@ -212,7 +209,7 @@ impl OrderedElements {
 }
 
 /// The wall that all corners of an element lie on.
-fn wall_of(domain: &Domain, surface: &Surface<'_>, element: u32) -> Option<Wall> {
+pub(super) fn wall_of(domain: &Domain, surface: &Surface<'_>, element: u32) -> Option<Wall> {
     let diagonal = domain.size().length();
     let is_on = |wall: Wall, point: DVec3| match domain.across_axis(wall) {
         Some((axis, coordinate)) => point[axis] == coordinate,

@@ -128,7 +128,7 @@ impl EdgeMiddles {
         };
         restore_by(
             self,
-            network.cell_volumes(),
+            (network.cell_volumes(), network.fills_domain()),
             |middles| middles.grain_volumes(network, points),
             |middles| middles.moving_points(network, points),
             move_by,

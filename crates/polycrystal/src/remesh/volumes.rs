@@ -24,13 +24,15 @@ pub(crate) fn restore(assembled: &mut Assembled) {
     let move_by = |assembled: &mut Assembled, motions: Vec<DVec3>| {
         assembled.positions.iter_mut().zip(motions).for_each(|(place, by)| *place += by);
     };
-    restore_by(assembled, &wanted, volumes, moving_points, move_by);
+    let is_sum_fixed = assembled.network.fills_domain();
+    restore_by(assembled, (&wanted, is_sum_fixed), volumes, moving_points, move_by);
 }
 
-/// Moves points until volumes are those wanted, or as near as rounding allows. Returns the largest error, as a share of a volume.
+/// Moves points until volumes are those wanted, or as near as rounding allows; whether no motion changes their sum, because grains fill their domain. Returns the largest error, as a
+/// share of a volume.
 pub(crate) fn restore_by<Points>(
     points: &mut Points,
-    wanted: &[f64],
+    (wanted, is_sum_fixed): (&[f64], bool),
     volumes: impl Fn(&Points) -> Vec<f64>,
     moving: impl Fn(&Points) -> Vec<MovingPoint>,
     move_by: impl Fn(&mut Points, Vec<DVec3>),
@@ -44,9 +46,11 @@ pub(crate) fn restore_by<Points>(
             return error;
         }
         least = error;
-        // No motion changes the sum, so what rounding leaves of it has no answer.
-        let rest = missing.iter().sum::<f64>() / missing.len() as f64;
-        missing.iter_mut().for_each(|missing| *missing -= rest);
+        if is_sum_fixed {
+            // What rounding leaves of the sum has no answer.
+            let rest = missing.iter().sum::<f64>() / missing.len() as f64;
+            missing.iter_mut().for_each(|missing| *missing -= rest);
+        }
         let motions = least_motion(&moving(points), &missing);
         move_by(points, motions);
     }

@@ -75,8 +75,10 @@ impl MapAgreement {
         let map = &measured.map;
         let domain = domain_at(name, &surface, map)?;
         let numbers = surface.grains();
-        let by_label: BTreeMap<u32, GrainId> = match &file.map_labels {
-            Some(labels) => labels.iter().copied().zip(numbers).collect(),
+        // With settings they are numbers of seeds.
+        let map_labels = file.seed_ids.as_ref().filter(|_| file.settings.is_none());
+        let by_label: BTreeMap<u32, GrainId> = match map_labels {
+            Some(labels) => labels.iter().map(|(grain, label)| (*label, *grain)).collect(),
             None => numbers.into_iter().map(|grain| (grain.0, grain)).collect(),
         };
         let grains: Vec<Option<GrainId>> =

@@ -6,7 +6,10 @@ use vtkio::IOBuffer;
 use vtkio::model::{Attribute, CellType, DataSet, Vtk};
 
 use super::{MeshFile, MeshFileProblem, cells, in_thread, inline, legacy_parts, problem, xml_parts};
-use crate::names::{BOUNDARY_ID, FIELD_NAMES, LABEL_ARRAYS, NUMBER_OF_GRAINS, PHASE, SEED_ID, VOLUMES};
+use crate::names::{
+    BOUNDARY_ID, CRYSTAL_SYMMETRIES, FIELD_NAMES, LABEL_ARRAYS, NUMBER_OF_GRAINS, PERIODS, PHASE,
+    PHASE_NAMES, SEED_ID, VOLUMES,
+};
 use crate::vtk::{FieldEntry, FieldValue, XmlFile, field_entry};
 
 const NODE_TYPES: &str = "NodeTypes";
@@ -30,6 +33,12 @@ pub(crate) struct Notes {
     pub(crate) euler_angles: Option<Vec<f64>>,
     /// The number of each grain's phase.
     pub(crate) phases: Option<Vec<f64>>,
+    /// The names of the phases, with commas between.
+    pub(crate) phase_names: Option<String>,
+    /// The symmetries of their crystals, in the same way.
+    pub(crate) crystal_symmetries: Option<String>,
+    /// The periods along the three axes, 0 where nothing repeats.
+    pub(crate) periods: Option<Vec<f64>>,
     /// The number of each grain's seed, or its label in a map.
     pub(crate) seed_ids: Option<Vec<i32>>,
     /// All entries whose names this program knows.
@@ -40,8 +49,11 @@ pub(crate) struct Notes {
 
 impl Notes {
     pub(super) fn note_text(&mut self, name: &str, text: String) {
-        if name == CONFIG {
-            self.config = Some(text);
+        match name {
+            CONFIG => self.config = Some(text),
+            PHASE_NAMES => self.phase_names = Some(text),
+            CRYSTAL_SYMMETRIES => self.crystal_symmetries = Some(text),
+            _ => {}
         }
     }
 
@@ -50,6 +62,7 @@ impl Notes {
             VOLUMES => self.volumes = Some(numbers),
             EULER_ANGLES => self.euler_angles = Some(numbers),
             PHASE => self.phases = Some(numbers),
+            PERIODS => self.periods = Some(numbers),
             _ => {}
         }
     }
@@ -89,6 +102,9 @@ impl Notes {
             volumes: file.field_numbers(VOLUMES),
             euler_angles: file.field_numbers(EULER_ANGLES),
             phases: file.field_numbers(PHASE),
+            phase_names: file.field_text(PHASE_NAMES),
+            crystal_symmetries: file.field_text(CRYSTAL_SYMMETRIES),
+            periods: file.field_numbers(PERIODS),
             seed_ids: file.field_ids(SEED_ID),
             ..Self::default()
         }

@@ -1,0 +1,170 @@
+//! `grainsmooth remesh`: networks of files with triangles of a size.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use serde_json::Value;
+
+use crate::surface_file::{SurfaceFile, integers};
+use crate::workplace::{FAILED, USAGE, Workplace};
+
+/// Number and volume of each grain in a file of `--stats`, in order.
+fn grains(workplace: &Workplace, name: &str) -> Vec<(u64, f64)> {
+    let statistics: Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+    let of_grain = |grain: &Value| (grain["SeedId"].as_u64().unwrap(), grain["volume"].as_f64().unwrap());
+    statistics["grains"].as_array().unwrap().iter().map(of_grain).collect()
+}
+
+#[test]
+fn every_network_is_remeshed_with_its_volumes() {
+    let workplace = Workplace::new();
+    workplace.put("map.vti", include_bytes!("../data/maps/volume_damask.vti"));
+    for (name, how) in [
+        ("box.vtp", "--seeds 12 -n 1 --texture random --phase a:0.4 --phase b:0.6"),
+        ("dream3d.vtu", "--seeds 12 -n 1 --names dream3d"),
+        ("stretched.vtk", "--seeds 12 -n 1 --names neper --aspect-ratio 2 1 1"),
+        ("periodic.vtp", "--seeds 12 -n 1 --periodic x,y,z --box 2 1 1"),
+        ("column.vtk", "--seeds 12 -n 1 --periodic z --names virmat"),
+        ("cut.vtp", "--seeds 12 -n 1 --periodic x,y,z --periodic-cut box"),
+        ("ball.vtp", "--seeds 6 -n 1 --domain sphere --chord-error 0.05"),
+        ("map.vtp", "smooth map.vti --exterior-label 0"),
+    ] {
+        workplace.run(&format!("{how} -o {name} --stats before.json"));
+        let said =
+            workplace.run(&format!("remesh {name} --elements-per-grain 3 -o again.vtp --stats after.json"));
+        assert!(said.contains("validation  good: every grain closed, nothing crossed or folded"), "{said}");
+        workplace.command("check again.vtp").assert().success();
+        let [before, after] = ["before.json", "after.json"].map(|name| grains(&workplace, name));
+        assert_eq!(before.len(), after.len(), "{name}");
+        for ((seed, volume), (same, kept)) in before.into_iter().zip(after) {
+            assert!(seed == same && (kept / volume - 1.0).abs() < 1e-9, "{name}, {seed}: {kept}, {volume}");
+        }
+    }
+}
+
+#[test]
+fn what_repeats_goes_on_repeating() {
+    let workplace = Workplace::new();
+    let lengths = DVec3::new(2.0, 1.0, 1.0);
+    workplace.run("--seeds 12 -n 1 --periodic x,y,z --box 2 1 1 -o 0.vtp");
+    // The last one comes from a file without settings.
+    for (from, to) in [("0.vtp", "1.vtp"), ("1.vtp", "2.vtp")] {
+        workplace.run(&format!("remesh {from} --elements-per-grain 4 -o {to}"));
+        let path = workplace.path(to);
+        let (file, originals) = (SurfaceFile::read(&path), integers(&path, "PeriodicOriginal"));
+        let mut copies = 0;
+        for (point, original) in file.points.iter().zip(&originals) {
+            let periods = (point - file.points[usize::try_from(*original).unwrap()]) / lengths;
+            assert!((periods - periods.round()).abs().max_element() < 2e-16, "{periods}");
+            copies += i32::from(periods.round() != DVec3::ZERO);
+        }
+        assert!(copies > 200, "{copies}");
+        let neighbors = integers(&path, "PeriodicNeighbor");
+        assert!(file.face_labels.iter().zip(neighbors).all(|(labels, beyond)| labels[1] >= 0 || beyond >= 0));
+    }
+    // Opposite walls of a network that was cut are the same, bit for bit.
+    workplace.run("--seeds 8 -n 1 --periodic x,y,z --periodic-cut box -o 0.vtp");
+    for (from, to) in [("0.vtp", "1.vtp"), ("1.vtp", "2.vtp")] {
+        workplace.run(&format!("remesh {from} --elements-per-grain 3 -o {to}"));
+        let points = SurfaceFile::read(&workplace.path(to)).points;
+        let mut on_walls: BTreeMap<[u64; 2], [usize; 2]> = BTreeMap::new();
+        for DVec3 { x, y, z } in points {
+            if x == 0.0 || x == 1.0 {
+                on_walls.entry([y.to_bits(), z.to_bits()]).or_default()[usize::from(x == 1.0)] += 1;
+            }
+        }
+        assert!(on_walls.len() > 50 && on_walls.values().all(|both| *both == [1, 1]), "{to}");
+    }
+}
+
+#[test]
+fn phases_and_orientations_ride_along() {
+    let workplace = Workplace::new();
+    workplace.run(
+        "--seeds 8 -n 1 --texture random --phase a:0.4 --phase b:0.6,symmetry=hexagonal -o 0.vtp --stats 0.json",
+    );
+    let of = |name: &str| {
+        let statistics: Value = serde_json::from_slice(&workplace.bytes(name)).unwrap();
+        let grains = statistics["grains"].as_array().unwrap().clone();
+        let kept = ["Phase", "Quaternion"];
+        let disorientations: Vec<Value> = statistics["boundaries"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|boundary| boundary["Disorientation"].clone())
+            .collect();
+        let grains: Vec<Value> = grains.iter().flat_map(|grain| kept.map(|key| grain[key].clone())).collect();
+        assert!(grains.iter().all(|value| !value.is_null()));
+        (grains, disorientations)
+    };
+    let before = of("0.json");
+    for (from, to) in [("0", "1"), ("1", "2")] {
+        workplace.run(&format!("remesh {from}.vtp --elements-per-grain 3 -o {to}.vtp --stats {to}.json --picture {to}.png --color-by ipf-z"));
+        assert!(of(&format!("{to}.json")).0 == before.0, "{to}");
+    }
+}
+
+#[test]
+fn coarse_triangles_are_the_surface_themselves() {
+    let workplace = Workplace::new();
+    // Flat cells with edges that are longer than elements.
+    workplace.run("--seeds 5 --seeding random -n 0 --relax 0 -o flat.vtp");
+    let said = workplace.run("remesh flat.vtp --elements-per-grain 8 -o fine.vtp");
+    assert!(said.contains("validation  good"), "{said}");
+    workplace.command("check fine.vtp").assert().success();
+}
+
+#[test]
+fn what_cannot_be_remeshed_is_refused() {
+    let workplace = Workplace::new();
+    workplace.put("nets.vtp", include_bytes!("../data/surface_nets_good.vtp"));
+    workplace.put("open.vtp", include_bytes!("../data/surface_nets_touching.vtp"));
+    workplace.run("--seeds 5 --dim 2 -o plane.vtp");
+    workplace.run("--seeds 3 -n 0 -o a.vtp");
+    for (options, message) in [
+        (
+            "nets.vtp",
+            "remesh needs a size of elements; give --elements-per-grain, such as --elements-per-grain 5, or --element-size",
+        ),
+        (
+            "plane.vtp --element-size 0.1",
+            "plane.vtp holds grains in 2D, and only boundaries in 3D are remeshed",
+        ),
+        (
+            "nets.vtp --element-size 1 --picture a.png --color-by ipf-z",
+            "--color-by ipf-z needs orientations, which nets.vtp does not hold; leave it out",
+        ),
+        (
+            "a.vtp --element-size 0.2 --volume-mesh",
+            "--volume-mesh writes tetrahedra, but none of the files can hold them; give one of .vtu, .msh, .inp and .bdf, such as -o grains.vtu",
+        ),
+    ] {
+        workplace.refuses(&format!("remesh {options}"), USAGE, message);
+    }
+    workplace.refuses(
+        "remesh none.vtp --element-size 1",
+        FAILED,
+        "none.vtp: cannot be read: No such file or directory (os error 2); give the path of a readable mesh file",
+    );
+    workplace.refuses("remesh open.vtp --element-size 1", FAILED, "open.vtp: ... ");
+}
+
+#[test]
+fn equations_are_for_networks_that_repeat() {
+    let workplace = Workplace::new();
+    if grainsmooth::check_gmsh().is_err() {
+        return crate::programs::skip("equations_are_for_networks_that_repeat", "there is no Gmsh");
+    }
+    workplace.run("--seeds 3 -n 0 -o a.vtp");
+    workplace.refuses(
+        "remesh a.vtp --element-size 0.3 --periodic-equations -o a.inp",
+        USAGE,
+        "--periodic-equations ties nodes that are one period apart, and this network does not repeat; leave it out",
+    );
+    workplace.run("--seeds 3 -n 1 --domain sphere --chord-error 0.1 -o ball.vtp");
+    workplace.refuses(
+        "remesh ball.vtp --element-size 0.3 --solver-deck tension-x -o a.inp",
+        USAGE,
+        "--solver-deck loads a box that grains fill, periodic along all axes or none; leave it out",
+    );
+}
