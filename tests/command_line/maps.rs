@@ -406,7 +406,7 @@ fn maps_that_cannot_be_used() {
         ),
         (
             "volume.npy --picture a.png --color-by ipf-z",
-            "--color-by ipf-z needs something that a map of labels does not hold",
+            "--color-by ipf-z needs orientations, which volume.npy does not hold; leave it out",
         ),
     ] {
         workplace.refuses(&format!("smooth {arguments}"), USAGE, message);

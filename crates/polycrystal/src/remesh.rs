@@ -143,6 +143,7 @@ impl Network {
         let parts = Parts::new((level, mesh), &skeleton, &torus, self.boundaries())?;
         let around = Surroundings { level, mesh, points, torus: &torus, skeleton: &skeleton, parts: &parts };
         let mut halved = Vec::new();
+        let mut most_faults = None;
         for refinements in 0.. {
             let sizes = SizeField::new(&around, size, &halved, tuning);
             let lines = divide_lines(&skeleton.lines, around.points, &sizes, &torus);
@@ -171,7 +172,10 @@ impl Network {
                         | Fault::Pinched { .. }
                 )
             };
-            if refinements == tuning.refinements || !faults.0.iter().all(is_of_size) {
+            // On the triangles of another program or run, elements that become smaller may find ever more edges to fold at.
+            let most_faults = *most_faults.get_or_insert(tuning.faults_of_first * faults.0.len());
+            let is_hopeless = refinements == tuning.refinements || faults.0.len() > most_faults;
+            if is_hopeless || !faults.0.iter().all(is_of_size) {
                 return Err(NetworkError::RemeshInvalid(faults));
             }
             let places: Vec<DVec3> = faults.0.iter().filter_map(|fault| fault.position(&surface)).collect();

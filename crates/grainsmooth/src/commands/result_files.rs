@@ -269,7 +269,8 @@ fn check_solver_options(polycrystal: &Polycrystal, volume: &VolumeMeshOptions) -
             "--periodic-equations ties nodes that are one period apart, and this network does not repeat; leave it out",
         ));
     }
-    if volume.solver_deck.is_some() && (!network.fills_domain() || repeats.any() != repeats.all()) {
+    let fills_box = network.domain().is_box() && network.fills_domain();
+    if volume.solver_deck.is_some() && (!fills_box || repeats.any() != repeats.all()) {
         return Err(usage(
             "--solver-deck loads a box that grains fill, periodic along all axes or none; leave it out",
         ));

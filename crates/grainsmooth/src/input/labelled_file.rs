@@ -137,7 +137,13 @@ impl LabelledFile {
         // The label of the first grain, where this program wrote the file.
         let first = match &settings {
             Some(settings) => Some(first_label(settings)),
-            None => seed_ids.as_ref().map(|_| u32::from(zero_is_exterior)),
+            // Without settings all grains are there.
+            None if seed_ids.is_some() => {
+                let grains =
+                    labels.iter().flatten().filter(|label| **label > 0 || **label == 0 && !zero_is_exterior);
+                grains.min().and_then(|label| u32::try_from(*label).ok())
+            }
+            None => None,
         };
         // With the names of other tools, all that a periodic grain has beyond the box has the same labels.
         let boundary_ids = boundary_ids.filter(|_| settings.is_some());
@@ -209,15 +215,8 @@ impl LabelledFile {
                 let orientations = angles.iter().map(|angles| Orientation::from_euler_degrees(*angles));
                 numbered(orientations.collect(), first)
             }),
-            phases: first.and_then(|first| {
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "whole and not negative"
-                )]
-                let phases = phases?.into_iter().map(|phase| phase as u32).collect();
-                numbered(phases, first)
-            }),
+            phases: first
+                .and_then(|first| numbered(phases?.into_iter().map(i32::cast_unsigned).collect(), first)),
             phase_names: phase_names.iter().flat_map(|names| names.split(',')).map(str::to_owned).collect(),
             symmetries: crystal_symmetries
                 .iter()

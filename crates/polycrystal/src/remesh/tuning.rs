@@ -28,6 +28,9 @@ pub struct RemeshTuning {
     pub halving_radius: f64,
     /// How often elements become smaller where something is wrong, before remeshing gives up.
     pub refinements: usize,
+    /// By how many times as many faults as at first remeshing gives up at once. In a box cut at its walls that was remeshed before, faults became six times as many from round to round, and
+    /// no round without them came; in smooth networks they become fewer.
+    pub faults_of_first: usize,
 }
 
 impl Default for RemeshTuning {
@@ -43,6 +46,7 @@ impl Default for RemeshTuning {
             searches: 12,
             halving_radius: 1.5,
             refinements: 6,
+            faults_of_first: 10,
         }
     }
 }

@@ -32,7 +32,7 @@ pub(crate) struct Notes {
     /// Bunge's angles of each grain in degrees, one after the other.
     pub(crate) euler_angles: Option<Vec<f64>>,
     /// The number of each grain's phase.
-    pub(crate) phases: Option<Vec<f64>>,
+    pub(crate) phases: Option<Vec<i32>>,
     /// The names of the phases, with commas between.
     pub(crate) phase_names: Option<String>,
     /// The symmetries of their crystals, in the same way.
@@ -61,15 +61,16 @@ impl Notes {
         match name {
             VOLUMES => self.volumes = Some(numbers),
             EULER_ANGLES => self.euler_angles = Some(numbers),
-            PHASE => self.phases = Some(numbers),
             PERIODS => self.periods = Some(numbers),
             _ => {}
         }
     }
 
     pub(super) fn note_ids(&mut self, name: &str, ids: &[i32]) {
-        if name == SEED_ID {
-            self.seed_ids = Some(ids.to_vec());
+        match name {
+            SEED_ID => self.seed_ids = Some(ids.to_vec()),
+            PHASE => self.phases = Some(ids.to_vec()),
+            _ => {}
         }
     }
 
@@ -101,7 +102,7 @@ impl Notes {
             config: file.field_text(CONFIG),
             volumes: file.field_numbers(VOLUMES),
             euler_angles: file.field_numbers(EULER_ANGLES),
-            phases: file.field_numbers(PHASE),
+            phases: file.field_ids(PHASE),
             phase_names: file.field_text(PHASE_NAMES),
             crystal_symmetries: file.field_text(CRYSTAL_SYMMETRIES),
             periods: file.field_numbers(PERIODS),
