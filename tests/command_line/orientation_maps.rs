@@ -215,7 +215,7 @@ fn points_are_masked_filled_dropped_or_left_as_pores() {
         line(&said, "map").starts_with("12 x 10 points on a square grid, step 1, in 3 grains; 7 points without a solution; 2 too uncertain; its head"),
         "{said}"
     );
-    assert!(line(&said, "map").ends_with("; 1 in 1 small grains went to neighbours"), "{said}");
+    assert!(line(&said, "map").ends_with("; 1 in 1 small grain went to neighbours"), "{said}");
     let counts = |options: &str| -> Vec<u64> {
         workplace.run(&format!("smooth a.ang {options} -o a.vtp --stats a.json"));
         let statistics: serde_json::Value = serde_json::from_slice(&workplace.bytes("a.json")).unwrap();

@@ -79,7 +79,7 @@ fn winding_is_made_to_agree() {
          the edge infinitely; `grainsmooth mesh orient` makes it agree",
     );
     let said = workplace.run("mesh orient typed.obj -o agreeing.obj");
-    assert!(said.contains("oriented    2 of 4 faces reversed; 1 parts"), "{said}");
+    assert!(said.contains("oriented    2 of 4 faces reversed; 1 part"), "{said}");
     let agreeing = read_mesh(&workplace.path("agreeing.obj")).unwrap();
     assert_eq!(agreeing.faces, [[6, 5, 2], [4, 3, 2], [2, 5, 4], [6, 2, 7]]);
     workplace.run("mesh loop agreeing.obj -n 3 -o smooth.vtp");
@@ -120,7 +120,7 @@ fn polygons_are_cut_where_they_are_notched() {
     // A chevron that stands upright, and a triangle below.
     workplace.put("in.obj", "v 0 0 0\nv 2 0 1\nv 0 0 2\nv 0.5 0 1\nv 2 0 -1\nf 1 2 3 4\nf 2 1 5\n");
     let said = workplace.run("mesh triangulate in.obj -o out.json");
-    assert!(said.contains("cut         1 polygons: 3 triangles"), "{said}");
+    assert!(said.contains("cut         1 polygon: 3 triangles"), "{said}");
     let mesh = read_mesh(&workplace.path("out.json")).unwrap();
     assert_eq!(triangles(&mesh), [[0, 1, 3], [0, 4, 1], [1, 2, 3]]);
 }
@@ -146,7 +146,7 @@ fn edges_chosen_together() {
     workplace.put("in.off", SQUARE);
     let said = workplace.run("mesh flip --edge all in.off -o out.obj");
     assert!(
-        said.contains("flipped     1 edges; 7 stay, on the boundary or as the mesh would be no manifold"),
+        said.contains("flipped     1 edge; 7 stay, on the boundary or as the mesh would be no manifold"),
         "{said}"
     );
 }

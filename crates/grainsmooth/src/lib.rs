@@ -81,6 +81,7 @@ pub use error::seed_file::{SeedPlace, SeedProblem};
 pub use error::usage::UsageError;
 pub use estimate::Estimate;
 pub use figures::asked::AskedAndReached;
+pub use figures::counted::Counted;
 pub use figures::equivalent_diameters::EquivalentDiameters;
 pub use figures::spread::Spread;
 pub use figures::triangle_angles::TriangleAngles;

@@ -13,6 +13,7 @@ use polycrystal::{
 };
 use voronoi::Dimension;
 
+use crate::figures::counted::Counted;
 use crate::figures::significant::significant;
 use crate::grains::texture::TextureLine;
 use crate::{
@@ -155,7 +156,8 @@ fn write_map(out: &mut fmt::Formatter<'_>, map: &SmoothedMap) -> fmt::Result {
         (None, _) => write!(out, "map         {nx} x {ny} x {nz} voxels")?,
     }
     if *grains > 0 {
-        write!(out, "; {voxels} in {grains} small grains went to neighbours")?;
+        let grains = Counted(usize::try_from(*grains).unwrap_or(usize::MAX), "small grain");
+        write!(out, "; {voxels} in {grains} went to neighbours")?;
     }
     if *relabelled > 0 {
         write!(out, "; {relabelled} got another label where a grain touched itself")?;
@@ -182,7 +184,8 @@ fn write_crystals(out: &mut fmt::Formatter<'_>, Measurement { grains, .. }: &Mea
         0 => writeln!(out),
         _ => writeln!(
             out,
-            "; {drifting} grains above {LARGE_SPREAD}, where small steps add up; a lower --threshold may separate them"
+            "; {} above {LARGE_SPREAD}, where small steps add up; a lower --threshold may separate them",
+            Counted(drifting, "grain")
         ),
     }
 }
@@ -191,7 +194,9 @@ fn write_crystals(out: &mut fmt::Formatter<'_>, Measurement { grains, .. }: &Mea
 fn write_regularization(out: &mut fmt::Formatter<'_>, synthesis: &Synthesis) -> fmt::Result {
     let Collapsed { edges, faces } = synthesis.collapsed;
     if edges > 0 {
-        writeln!(out, "collapsed   {edges} short edges of cells, with them {faces} small boundaries")?;
+        let [edges, faces] =
+            [(edges, "short edge"), (faces, "small boundary")].map(|(count, of)| Counted(count, of));
+        writeln!(out, "collapsed   {edges} of cells, with them {faces}")?;
     }
     if synthesis.regularization.fell_back(&synthesis.config) {
         let kept = match synthesis.regularization {

@@ -6,6 +6,7 @@ use subzero::{HalfEdgeMesh, MeshError};
 
 use super::edited_edges::EditedEdges;
 use super::file::{MeshFile, MeshFileProblem};
+use crate::figures::counted::Counted;
 use crate::names::LABEL_ARRAYS;
 
 /// A change of a mesh.
@@ -82,20 +83,28 @@ pub enum Edited {
 impl fmt::Display for Edited {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Flipped { edges, left: 0 } => write!(formatter, "flipped     {edges} edges"),
+            Self::Flipped { edges, left: 0 } => {
+                write!(formatter, "flipped     {}", Counted(*edges, "edge"))
+            }
             Self::Flipped { edges, left } => {
                 write!(
                     formatter,
-                    "flipped     {edges} edges; {left} stay, on the boundary or as the mesh would be no manifold"
+                    "flipped     {}; {left} stay, on the boundary or as the mesh would be no manifold",
+                    Counted(*edges, "edge")
                 )
             }
-            Self::Split { edges } => write!(formatter, "split       {edges} edges"),
-            Self::Collapsed { edges } => write!(formatter, "collapsed   {edges} edges"),
+            Self::Split { edges } => write!(formatter, "split       {}", Counted(*edges, "edge")),
+            Self::Collapsed { edges } => write!(formatter, "collapsed   {}", Counted(*edges, "edge")),
             Self::Turned { turned, faces, parts } => {
-                write!(formatter, "oriented    {turned} of {faces} faces reversed; {parts} parts")
+                write!(
+                    formatter,
+                    "oriented    {turned} of {faces} faces reversed; {}",
+                    Counted(*parts, "part")
+                )
             }
             Self::Cut { polygons, triangles } => {
-                write!(formatter, "cut         {polygons} polygons: {triangles} triangles")
+                let (polygons, triangles) = (Counted(*polygons, "polygon"), Counted(*triangles, "triangle"));
+                write!(formatter, "cut         {polygons}: {triangles}")
             }
         }
     }

@@ -10,8 +10,8 @@ use grainsmooth::mesh::file::{
 };
 use grainsmooth::vtk::{Cells, DataArray};
 use grainsmooth::{
-    BezierFile, Connectivity, Error, Level, Output, Scene, SceneColors, SceneNumbers, StagedFiles, mesh_json,
-    read_bezier, write_together,
+    BezierFile, Connectivity, Counted, Error, Level, Output, Scene, SceneColors, SceneNumbers, StagedFiles,
+    mesh_json, read_bezier, write_together,
 };
 use subzero::INFINITE_SHARPNESS;
 
@@ -44,7 +44,9 @@ impl Job<'_> {
     pub(super) fn read_control_points(&self) -> Result<BezierFile, Error> {
         let file = read_bezier(&self.files.input)?;
         let (curves, surfaces) = (file.curves.len(), file.surfaces.len());
-        self.report(format_args!("read        {curves} curves and {surfaces} surfaces"));
+        let [curves, surfaces] =
+            [(curves, "curve"), (surfaces, "surface")].map(|(count, of)| Counted(count, of));
+        self.report(format_args!("read        {curves} and {surfaces}"));
         Ok(file)
     }
 
