@@ -7,6 +7,7 @@ mod edit;
 mod edited_edges;
 pub mod file;
 mod json;
+pub(crate) mod normal;
 mod subdivide;
 
 pub use bezier::{BezierFile, Construction, read_bezier};

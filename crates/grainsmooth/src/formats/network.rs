@@ -10,7 +10,7 @@ use voronoi::{Dimension, PeriodicPair};
 
 use super::measured_arrays::MeasuredArrays;
 use super::surface::Surface;
-use crate::mesh::file::stl::unit_normal;
+use crate::mesh::normal::unit_normal;
 use crate::names::{CRYSTAL_SYMMETRIES, MOBILITY, NUMBER_OF_GRAINS, PERIODS, PHASE_NAMES, SEED_ID, TENSION};
 use crate::volume_mesh::element_nodes::ElementNodes;
 use crate::vtk::write_vtk;

@@ -6,7 +6,8 @@ use voronoi::Dimension;
 
 use super::format::{Content, Format, GrainSurface, Writer};
 use super::surface::Surface;
-use crate::mesh::file::stl::{TITLE_BYTES, check_range, unit_normal, write_binary};
+use crate::mesh::file::stl::{TITLE_BYTES, check_range, write_binary};
+use crate::mesh::normal::unit_normal;
 use crate::names::SEED_ID;
 use crate::{Polycrystal, Provenance, StlEncoding};
 

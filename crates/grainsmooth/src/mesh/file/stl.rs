@@ -6,6 +6,7 @@ use std::io::{self, Cursor, Write};
 use glam::{DVec3, Vec3};
 
 use super::{MeshFile, MeshFileProblem};
+use crate::mesh::normal::unit_normal;
 
 /// Bytes of a binary file before its triangles, and of each triangle.
 const HEADER_BYTES: usize = 84;
@@ -38,12 +39,6 @@ pub(crate) fn write_binary(
         out.write_all(&record)?;
     }
     Ok(())
-}
-
-/// The unit normal of a triangle; zero where it has no area.
-pub(crate) fn unit_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    // Of edges of length one: the product of tiny ones would vanish.
-    (b - a).normalize_or_zero().cross((c - a).normalize_or_zero()).normalize_or_zero()
 }
 
 /// Coordinates in single precision.
