@@ -9,7 +9,8 @@ use crate::flow::pressure_response::{CHUNK, PressureResponse};
 use crate::flow::volume_constraint::VolumeConstraint;
 use crate::solver::rows::CsrRows;
 
-/// Most iterations for a step.
+/// Most iterations for a step; usual ones take some ten. Where they do not suffice, the step is shorter: each iteration lessens the energy of
+/// the one before, and volumes are right in all of them.
 const ITERATIONS: usize = 200;
 
 /// Corrections of a step of free areas; each leaves about half of the error.
@@ -136,6 +137,7 @@ impl System {
                 break;
             }
             let stiffness = self.apply(&direction, &mut image);
+            // Rounding alone is left, or a direction that nothing resists: what was found so far is the step.
             if stiffness.is_nan() || stiffness <= 0.0 {
                 break;
             }
