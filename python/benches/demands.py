@@ -42,6 +42,8 @@ def points() -> None:
 
 def interruption() -> None:
     """From Ctrl-C to the exception, and from there until all threads have ended."""
+    # Where this runs in the background of a script, it would ignore what is sent below.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     waits, idles = [], []
     for seeds, after in [(200, 0.3), (3000, 1.0), (3000, 3.0), *((20_000, 4.0 * step) for step in range(1, 13))]:
         before = len(os.listdir("/proc/self/task"))

@@ -122,7 +122,7 @@ impl Table {
             return Err(TableError::Diameter { row: place + 1, diameter: diameters[place] });
         }
         let mut sorted = diameters.to_vec();
-        sorted.sort_by(f64::total_cmp);
+        sorted.sort_unstable_by(f64::total_cmp);
         Self::of_pieces(sorted.into_iter().map(|diameter| ([diameter, diameter], 1.0)))
     }
 

@@ -221,7 +221,7 @@ mod tests {
             longest_edge in 0.1..5.0f64,
             is_refined in any::<bool>(),
         ) {
-            angles.sort_by(f64::total_cmp);
+            angles.sort_unstable_by(f64::total_cmp);
             angles.dedup_by(|a, b| *a - *b < 1e-3);
             prop_assume!(angles.len() >= 3);
             let outline = outline(&angles, longest_edge);
@@ -251,7 +251,7 @@ mod tests {
             flat in prop_oneof![Just(1.0), Just(1e-9), Just(1e-15), Just(0.0)],
             scale in prop_oneof![Just(1.0), Just(1e-30), Just(1e30)],
         ) {
-            angles.sort_by(f64::total_cmp);
+            angles.sort_unstable_by(f64::total_cmp);
             let outline: Vec<DVec3> =
                 angles.iter().map(|angle| DVec3::new(angle.cos(), flat * angle.sin(), 0.3) * scale).collect();
             if let Some(mesh) = triangulate_polygon(&outline, Some(0.3 * scale)) {

@@ -254,7 +254,7 @@ impl BoundaryLaw {
 fn without_equilibrium(network: &Network, measures: &Measures) -> Vec<Vec<u32>> {
     let has_none = |ids: &[BoundaryId]| {
         let mut around: Vec<f64> = ids.iter().map(|id| network.tensions()[id.index()]).collect();
-        around.sort_by(f64::total_cmp);
+        around.sort_unstable_by(f64::total_cmp);
         matches!(around[..], [least, middle, most] if most > least + middle)
     };
     let lines: Vec<(&[Side], &[BoundaryId])> = match measures {

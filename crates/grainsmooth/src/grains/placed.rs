@@ -101,7 +101,7 @@ pub(crate) fn rearranged(config: &Config, cells: &Tessellation, sizes: &GrainSiz
     let count = cells.cell_count();
     let contacts = contact_areas(cells, None, count);
     let mut by_size: Vec<usize> = (0..count).collect();
-    by_size.sort_by(|a, b| sizes.volumes()[*a].total_cmp(&sizes.volumes()[*b]).then(a.cmp(b)));
+    by_size.sort_unstable_by(|a, b| sizes.volumes()[*a].total_cmp(&sizes.volumes()[*b]).then(a.cmp(b)));
     let reach = if config.phases_have_diameters() { count } else { NEXT_IN_SIZE };
     let mut grain_of: Vec<usize> = (0..count).collect();
     // Of a cell, if it were of a phase, and another cell of another: what it shares with its own kind.

@@ -165,7 +165,7 @@ fn ratio_in_plane(moment: DMat2) -> f64 {
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
+    values.sort_unstable_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(1.0)
 }
 

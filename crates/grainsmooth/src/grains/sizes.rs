@@ -402,7 +402,7 @@ fn shuffle<T>(items: &mut [T], generator: &mut ChaCha8Rng) {
 /// The largest difference between the shares of diameters up to any one and those of a distribution: by number with power 0, by
 /// volume with 3, by area with 2. What volumes may miss counts as none.
 pub(crate) fn cdf_distance(mut diameters: Vec<f64>, distribution: &Distribution, power: u32) -> f64 {
-    diameters.sort_by(f64::total_cmp);
+    diameters.sort_unstable_by(f64::total_cmp);
     let weight = |diameter: &f64| (0..power).map(|_| diameter).product::<f64>();
     let total: f64 = diameters.iter().map(weight).sum();
     let mut sum = 0.0;

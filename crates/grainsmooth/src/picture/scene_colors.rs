@@ -46,7 +46,7 @@ impl ColorScale {
         let mut numbers: Vec<f64> = numbers.copied().collect();
         let name = all.next()?.name.clone();
         numbers.retain(|number| number.is_finite());
-        numbers.sort_by(f64::total_cmp);
+        numbers.sort_unstable_by(f64::total_cmp);
         numbers.dedup();
         let [least, .., greatest] = numbers[..] else {
             return Some(Self::Kinds { name, numbers });

@@ -232,7 +232,7 @@ mod tests {
             apart - size * (apart / size).round()
         };
         let mut distances: Vec<f64> = seeds[1..].iter().map(|seed| wrapped(seed).length()).collect();
-        distances.sort_by(f64::total_cmp);
+        distances.sort_unstable_by(f64::total_cmp);
         let same = distances.chunk_by(|a, b| b - a < 1e-9);
         same.take(shells).map(|shell| (shell[0], shell.len())).collect()
     }

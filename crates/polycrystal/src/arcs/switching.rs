@@ -100,7 +100,7 @@ impl<'a> Switcher<'a> {
         let due = edges.complex.faces().into_iter().filter(|face| is_due(*face));
         let due = due.filter_map(|face| Some((self.length_below(edges, face, short)?, face)));
         let mut due: Vec<(f64, FaceId)> = due.collect();
-        due.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        due.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (_, face) in due {
             // An event beside it may have stretched it.
             if self.length_below(edges, face, short).is_some() {

@@ -35,7 +35,7 @@ pub(crate) fn add_points(delaunay: &mut Delaunay) {
             })
             .filter(|(squared, _)| *squared < GOOD_SINE * GOOD_SINE)
             .collect();
-        thin.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
+        thin.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
         let mut is_changed = false;
         for (squared, corners) in thin {
             if delaunay.num_vertices() >= most {

@@ -73,7 +73,7 @@ fn caps_of_line(
         let end = [End::Lower, End::Upper].into_iter().find(|end| pieces.is_on(*corner, axis, *end));
         line.extend(end.map(|end| pieces.lowered(*corner, axis, end)));
     }
-    line.sort_by(|a, b| position(*a)[along].total_cmp(&position(*b)[along]).then(a.cmp(b)));
+    line.sort_unstable_by(|a, b| position(*a)[along].total_cmp(&position(*b)[along]).then(a.cmp(b)));
     line.dedup();
     for end in [End::Lower, End::Upper] {
         // The sides after and before each point, each with the slope along the wall of the boundary that bounds it.

@@ -272,7 +272,7 @@ impl Reconnector {
         let edges = complex.faces().into_par_iter().flat_map_iter(|face| complex.edges_of(face));
         let lengths = edges.map(|edge| (length(complex, edge), edge));
         let mut short: Vec<(f64, ComplexEdge)> = lengths.filter(|(length, _)| *length < self.short).collect();
-        short.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        short.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         // Each face of a line has it.
         short.dedup();
         short.retain(|(length, edge)| *length < self.short_at(complex, &edge.vertices(), conditions));

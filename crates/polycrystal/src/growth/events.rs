@@ -23,7 +23,7 @@ impl Curves<'_> {
         };
         let mut small: Vec<(f64, u32)> = areas.iter().copied().zip(0u32..).collect();
         small.retain(|(area, cell)| is_small(*cell, *area));
-        small.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        small.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut vanished = Vec::new();
         for (_, cell) in small {
             if self.vanish(CellId(cell), &mut before) {
@@ -72,7 +72,7 @@ impl Curves<'_> {
     /// Gives a grain to the neighbour that it shares the longest edge with, of those that can have it.
     fn give_to_neighbor(&mut self, cell: CellId, before: &mut [[DVec2; 2]]) -> bool {
         let mut edges: Vec<FaceId> = self.complex().faces_of_cell(cell).collect();
-        edges.sort_by(|a, b| self.length(*b).total_cmp(&self.length(*a)).then(a.cmp(b)));
+        edges.sort_unstable_by(|a, b| self.length(*b).total_cmp(&self.length(*a)).then(a.cmp(b)));
         for edge in edges {
             let ends: Vec<u32> = self.complex().corners(edge).iter().map(|corner| corner.vertex).collect();
             let lines: Vec<(FaceId, Vec<DVec2>)> =

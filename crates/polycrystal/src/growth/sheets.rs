@@ -101,7 +101,7 @@ impl<'a> Sheets<'a> {
         };
         let mut faces: Vec<(f64, FaceId)> =
             self.complex.faces_of_cell(cell).map(|face| (area(face), face)).collect();
-        faces.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        faces.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let corners = self.complex.corners_of_cell(cell);
         let mut ways =
             [false, true].into_iter().flat_map(|allows| faces.iter().map(move |face| (face.1, allows)));
@@ -163,7 +163,7 @@ impl Front for Sheets<'_> {
         small.retain(|(volume, cell)| {
             *volume < self.growth.vanished * mean && self.complex.faces_of_cell(CellId(*cell)).len() > 0
         });
-        small.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        small.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut vanished = Vec::new();
         for (_, cell) in small {
             if self.vanish(CellId(cell)) {

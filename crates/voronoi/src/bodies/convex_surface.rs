@@ -48,7 +48,7 @@ impl Domain {
         // Largest faces first: their planes are known best.
         let mut order: Vec<(f64, usize)> =
             faces.iter().enumerate().map(|(number, face)| (-doubled_area(face).length(), number)).collect();
-        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut walls: Vec<(usize, WallPlane)> = Vec::new();
         let mut planes: Vec<(DVec3, f64)> = Vec::new();
         for (_, number) in order {

@@ -152,7 +152,7 @@ fn goldberg(divisions: u32) -> (Vec<DVec3>, f64, f64) {
             }
         }
     }
-    normals.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z)));
+    normals.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z)));
     normals.dedup_by(|a, b| a.distance_squared(*b) < 1e-20);
     let distance = (4.0 * PI / 3.0 / volume.abs()).cbrt();
     (normals, distance, (1.0 - distance).max(distance * farthest - 1.0))

@@ -100,7 +100,7 @@ pub fn place_inclusions(
     }
     let radius_of = |volume: f64| ROOM * 0.5 * domain.dimension().ball_diameter(volume);
     let mut order: Vec<usize> = (0..wanted.len()).collect();
-    order.sort_by(|a, b| wanted[*b].1.total_cmp(&wanted[*a].1).then(a.cmp(b)));
+    order.sort_unstable_by(|a, b| wanted[*b].1.total_cmp(&wanted[*a].1).then(a.cmp(b)));
     let largest = wanted.iter().map(|(_, volume)| *volume).fold(0.0, f64::max);
     let mut grid = SphereGrid::new(domain, radius_of(largest), wanted.len());
     let mut placed: Vec<Option<Inclusion>> = vec![None; wanted.len()];
@@ -150,7 +150,7 @@ fn room(
     let faces = tessellation.cell_faces(cell).iter();
     let mut distances: Vec<f64> =
         faces.map(|face| beyond_face(tessellation, weights, cell, *face, center)).collect();
-    distances.sort_by(f64::total_cmp);
+    distances.sort_unstable_by(f64::total_cmp);
     distances.get(place.cells() - 1).copied().unwrap_or(f64::INFINITY)
 }
 

@@ -42,7 +42,7 @@ pub fn place_spheres(
     let volumes = check_volumes(domain, volumes)?;
     let radii: Vec<f64> = volumes.iter().map(|volume| sphere_radius(domain.dimension(), *volume)).collect();
     let mut order: Vec<usize> = (0..radii.len()).collect();
-    order.sort_by(|a, b| radii[*b].total_cmp(&radii[*a]).then(a.cmp(b)));
+    order.sort_unstable_by(|a, b| radii[*b].total_cmp(&radii[*a]).then(a.cmp(b)));
     let mut seeds = vec![DVec3::ZERO; radii.len()];
     let mut classes: Vec<SphereGrid> = Vec::new();
     for (rank, &sphere) in order.iter().enumerate() {
@@ -96,7 +96,7 @@ pub fn place_ellipsoids(
     let squares = || bodies.iter().flatten().map(|sphere| sphere.squared_radius);
     let mut grid = SphereGrid::new(domain, squares().fold(0.0, f64::max).sqrt(), squares().count());
     let mut order: Vec<usize> = (0..bodies.len()).collect();
-    order.sort_by(|a, b| volumes[*b].total_cmp(&volumes[*a]).then(a.cmp(b)));
+    order.sort_unstable_by(|a, b| volumes[*b].total_cmp(&volumes[*a]).then(a.cmp(b)));
     let mut centers = vec![DVec3::ZERO; bodies.len()];
     for body in order {
         check_cancelled();
